@@ -1,0 +1,114 @@
+# dem.h needs no build of its own. `make run` grinds, `make test` tests, `make help` lists the rest.
+# GNU make. Everything it makes lands in build/.
+
+# ---- yours to set: make CC=clang, make CFLAGS=-O1, make OMP= (no threads), make JOBS=1 ----
+CC           ?= cc
+CFLAGS       ?= $(CFLAGS_FOUND)
+OMP          ?= $(OMP_FOUND)
+LDLIBS       ?= -lm
+PYTHON       ?= /usr/bin/python3
+FUZZ_CC      ?= clang
+FUZZ_SECONDS ?= 600
+FILTER       ?=
+JOBS         ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
+
+# ---- what there is ----
+TESTS    := $(patsubst tests/%.c,build/%,$(wildcard tests/test_*.c))
+LESSONS  := $(patsubst examples/%.c,build/%,$(wildcard examples/[0-9][0-9]_*.c))
+STUDIES  := $(filter-out $(LESSONS),$(patsubst examples/%.c,build/%,$(wildcard examples/*.c)))
+FUZZERS  := $(patsubst tests/%.c,build/%,$(wildcard tests/fuzz_*.c))
+BENCHES  := $(patsubst bench/%.c,build/%,$(wildcard bench/*.c))
+
+hash := \#
+
+# ---- what the compiler can do; asked only when something is to be compiled ----
+ifneq ($(filter-out help clean tags check fuzz docs,$(or $(MAKECMDGOALS),help)),)
+$(shell mkdir -p build)
+CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
+    for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
+        $(CC) $$f build/probe.c -o build/probe >build/probe.log 2>&1 && test ! -s build/probe.log && echo $$f; done)
+ifeq ($(origin OMP),file)
+OMP_FOUND := $(shell printf '%s\n' '$(hash)include <omp.h>' 'int main(void) { return omp_get_max_threads() < 1; }' \
+        > build/probe.c; for f in "-fopenmp" "-Xpreprocessor -fopenmp -lomp"; do \
+        $(CC) build/probe.c -o build/probe $$f >build/probe.log 2>&1 && echo "$$f" && break; done)
+$(if $(OMP_FOUND),,$(info OpenMP not found: running on one thread))
+endif
+COMPILE = $(CC) $(CFLAGS) $(CPPFLAGS) -I.
+LINK = $(OMP) $(LDFLAGS) $(LDLIBS)
+# build/flags changes when the compiler or its flags do, and everything is built anew
+$(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(LINK)' > build/flags)
+MAKEFLAGS += -j$(JOBS)
+endif
+
+.PHONY: help all run test examples studies check bench bench-peers fuzz docs readers tags snippets clean
+.DEFAULT_GOAL := help
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
+
+run: build/mill ## the tumbling mill: progress on the terminal, pictures in build/out/mill
+	@mkdir -p build/out/mill
+	build/mill --out build/out/mill
+
+test: $(TESTS) ## build and run all tests; FILTER=words runs the sentences that contain them
+	@sh tests/run.sh "$(FILTER)" $(TESTS)
+
+examples: $(LESSONS) snippets ## build and run the numbered examples, compile the snippets of the manual
+	@failed=; for e in $(LESSONS); do n=$$(basename $$e); echo "== $$n"; mkdir -p build/out/$$n; \
+	    (cd build/out/$$n && ../../$$n) || failed="$$failed $$n"; done; \
+	if test -n "$$failed"; then echo "examples failed:$$failed"; exit 1; fi; echo "all examples as expected"
+
+studies: $(STUDIES) ## build the studies into build/: each takes --help
+
+all: $(STUDIES) $(LESSONS) $(TESTS) $(BENCHES) ## build everything, run nothing
+
+check: tags ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
+	@JOBS=$(JOBS) sh tests/check.sh
+
+bench: $(BENCHES) ## measure what the README claims
+	@if test -x build/bench; then build/bench; else echo "SKIP: there is no bench/bench.c"; fi
+
+bench-peers: $(BENCHES) ## the same scenes in other codes, where those are installed
+	@if test -f bench/peers.sh; then sh bench/peers.sh; else echo "SKIP: there is no bench/peers.sh"; fi
+
+fuzz: ## FUZZ_SECONDS (600) per reader under clang's fuzzer and sanitizers
+	@FUZZ_CC="$(FUZZ_CC)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
+
+docs: ## check that links in README and docs lead somewhere, and that cited keys exist
+	@awk -f tests/links.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md
+
+readers: build/write_files ## write every file format and open it with VTK and ASE
+	@mkdir -p build/out/readers && cd build/out/readers && ../../write_files
+	@$(PYTHON) tests/read_vtk.py build/out/readers
+	@$(PYTHON) tests/read_xyz.py build/out/readers
+
+tags: ## every part named in dem.h's contents stands there once and in order
+	@awk -f tests/tags.awk dem.h
+
+# the program in dem.h's manual and the C blocks of the pages: taken out and compiled, programs linked too
+snippets: build/flags
+	@rm -rf build/snippets && mkdir -p build/snippets
+	@awk -v out=build/snippets -f tests/snippets.awk dem.h README.md CONTRIBUTING.md docs/extending.md
+	@for f in build/snippets/*_program.c; do test -f $$f || continue; echo "$$f"; \
+	    $(COMPILE) -O0 -o $${f%.c} $$f $(LINK) || exit 1; done
+	@for f in build/snippets/*_part.c; do test -f $$f || continue; echo "$$f"; \
+	    $(COMPILE) -O0 -c -o $${f%.c}.o $$f || exit 1; done
+
+clean: ## remove build/
+	rm -rf build
+
+# ---- how a program is built: one source, one header ----
+$(TESTS): build/%: tests/%.c $(wildcard tests/*.h)
+$(LESSONS): build/%: examples/%.c
+$(STUDIES): build/%: examples/%.c $(wildcard examples/study.h)
+$(BENCHES): build/%: bench/%.c $(wildcard examples/study.h bench/*.h)
+build/write_files: tests/write_files.c
+# -O3 takes three times as long to compile as -O2 and is for those that run long
+$(TESTS) $(LESSONS) build/write_files: LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
+$(TESTS) $(LESSONS) $(STUDIES) $(BENCHES) build/write_files: dem.h build/flags
+	$(COMPILE) $(LEVEL) -o $@ $(filter %.c,$^) $(LINK)
+ifeq ($(wildcard examples/mill.c),)
+build/mill:
+	@echo "examples/mill.c is not there"; exit 1
+endif
+build/flags: ;

@@ -1,0 +1,5930 @@
+/* dem.h - version 0.1.0 - discrete-element (granular) simulation in one C99 header. MIT licence.
+
+   It simulates grains: spheres of any radius (or discs, in a plane) that touch, rub, roll and bounce
+   on each other and on moving walls.
+
+   Do this in *one* C or C++ file to get the implementation, and include it plainly elsewhere:
+
+       #define DEM_IMPLEMENTATION
+       #include "dem.h"                       build:  cc -O2 program.c -lm   (-fopenmp if you like)
+
+   Contents; jump to a part by searching for its tag:
+       >>manual      a complete program, conventions, one step, options, errors, threads, extending
+       >>api         types, descs, functions, in the order of a program's life
+       >>implementation  stop there if you only want to use it
+       >>platform    compiler, OpenMP, the one parallel loop
+       >>maths       vectors, poses, random numbers
+       >>memory      allocation, arrays that grow, errors, the world's layout
+       >>materials   materials, the pair table, coefficients
+       >>bodies      grains: slots, arrays, insertion, removal
+       >>walls       planes, cylinders, profiles, meshes, walls of grains, their motions
+       >>search      all pairs, grid, linked linear list; the candidate list
+       >>touch       candidate pairs -> contacts: geometry only
+       >>laws        contact -> force and torque
+       >>respond     the loops that bring touch and law together, grain-grain and grain-wall
+       >>integrators kick, drift, predict
+       >>ledger      where the energy went
+       >>step        time step, advisor, one step after the other
+       >>measure     fields on a grid, channels, balance
+       >>files       meshes in; VTP, VTK, XYZ, CSV out
+       >>checkpoint  everything, to the last bit
+       >>world       create, destroy, report
+*/
+
+/* ------------------------------------------------------------------------------------------------
+   >>manual
+   ------------------------------------------------------------------------------------------------
+   A complete program: 5000 glass beads fall into a heap.
+
+       #define DEM_IMPLEMENTATION
+       #include "dem.h"
+       #include <stdio.h>
+
+       int main(void) {
+           dem_world_desc desc = DEM_WORLD_DESC;           // zeros: nothing asked for, nothing simulated
+           desc.gravity.z = -9.81;                         // m/s2
+           dem_world *world = dem_world_create(&desc);
+
+           dem_material_desc glass_desc = DEM_MATERIAL_DESC;
+           glass_desc.density = 2500;                      // kg/m3
+           glass_desc.young = 6.4e7;                       // Pa, softened
+           glass_desc.poisson = 0.23;
+           glass_desc.restitution = 0.66;
+           glass_desc.friction = 0.15;
+           dem_material glass = dem_material_add(world, &glass_desc);
+
+           dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+           dem_spheres_fill(world, glass, 1.5e-3, dem_box_make(-0.05, -0.05, 0.01, 0.05, 0.05, 0.15), 5000, 1);
+
+           if (dem_world_run(world, 0.2, dem_progress_print, stderr) != DEM_OK) puts(dem_world_error(world));
+           dem_world_report(world, stdout);
+           dem_vtp_write(world, "pile.vtp");
+           dem_world_destroy(world);
+           return 0;
+       }
+
+   Conventions. SI units throughout. Overlap is positive when two bodies touch. The normal of a contact
+   points from body a to body b; of a wall contact, from the grain to the wall. `closing_speed` is
+   positive when the two approach. Forces in a `dem_push` are those on body a, except `normal`, which is
+   the repulsion (positive pushes the two apart). Rotations are right-handed. Angles are in radians.
+
+   One step, in the order in which data flows (the same numbers stand in demi_step_once):
+       1 move      first half kick, drift, predicted velocity; walls follow their motion
+       2 search    if something moved half the skin: sort bodies by cell, rebuild the candidate list,
+                   carry contact memory over
+       3 touch     candidate pairs -> contacts: who, where, normal, overlap
+       4 respond   contact -> force and torque, by the law chosen
+       5 gather    forces are summed per body in a fixed order
+       6 kick      second half kick; ledger, counters, time
+
+   Velocities that a law sees are those of the full step, v(t) and not v(t - dt/2), for every
+   integrator: half-step velocities give unphysical static friction at size ratios above 3 [VYA25].
+
+   What dem.h does not do: fluids, breakage, bonds, heat; implicit integration; graphics.
+
+   Options are fields of `dem_world_desc`; zero there means absent, or "chosen for you". What was chosen
+   is told by dem_world_report. Compile-time options:
+       DEM_REAL           double (default) or float: the type of all state
+       DEM_STATIC         makes every function static
+       DEM_LAW            name of your contact law, to have it inlined (see >>add-law)
+       DEM_NO_OPENMP      never use OpenMP, even when the compiler offers it
+       DEM_NO_SPECIALIZE  one run-time kernel instead of one per effect set: slower, same bits
+       DEM_ASSERT(x)      what checks for our own bugs; default: nothing
+
+   Memory. All of it comes from the allocator of the world desc (default malloc and free). A step
+   allocates nothing once the world is warm; it may grow lists when more grains come together than before.
+
+   Errors. A function that can fail returns a `dem_result`, or a null id or null pointer, and leaves one
+   sentence in dem_world_error: the call, the value, the limit, the likely cause, the remedy. The world
+   stays as it was before the call. A run that cannot be right (a force that is not finite, an overlap
+   larger than a radius) stops at the step that caused it. dem.h never prints, exits or aborts.
+
+   Threads. Different worlds may be used from different threads. Within a world, `threads` of the desc
+   sets the OpenMP threads; the same input gives the same bits for any number of them: bodies are dealt
+   to domains that depend on the number of bodies only, and every sum runs in a fixed order. To compare
+   bits between builds, compile with -ffp-contract=off.
+
+   Extending. A contact law is one function (>>add-law), a wall a function and a table row (>>add-wall),
+   an integrator likewise (>>add-integrator). docs/extending.md walks through each.
+
+   References, by the keys used below:
+     [AI11]    Ai, Chen, Rotter & Ooi, Powder Technol. 206 (2011) 269: rolling resistance
+     [CS79]    Cundall & Strack, Geotechnique 29 (1979) 47
+     [DIM04]   Di Maio & Di Renzo, Chem. Eng. Sci. 59 (2004) 3461: linear stiffness for a speed
+     [DIR05]   Di Renzo & Di Maio, Chem. Eng. Sci. 60 (2005) 1303: Mindlin by increments
+     [ERI05]   Ericson, Real-Time Collision Detection (2005): closest point on a triangle
+     [FEN]     seed 004 of the project: tumbling screening machine, MOLDYN
+     [HER82]   Hertz, J. reine angew. Math. 92 (1882) 156
+     [MIL]     seed 003 of the project: tumbling mill on a GPU
+     [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
+     [THO13]   Thornton, Cummins & Cleary, Powder Technol. 233 (2013) 30: rescaling on unloading
+     [TSU92]   Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239: delta^(1/4) damping
+     [VYA25]   Vyas et al., Comput. Phys. Commun. 310 (2025): law velocities at the full step
+     [ZHO99]   Zhou et al., Physica A 269 (1999) 536: constant rolling torque
+*/
+
+/* ------------------------------------------------------------------------------------------------
+   >>api
+   ------------------------------------------------------------------------------------------------ */
+#ifndef DEM_H
+#define DEM_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#define DEM_VERSION_MAJOR 0
+#define DEM_VERSION_MINOR 1
+#define DEM_VERSION_PATCH 0
+#define DEM_VERSION (DEM_VERSION_MAJOR*10000 + DEM_VERSION_MINOR*100 + DEM_VERSION_PATCH)
+
+#ifndef DEM_REAL
+#define DEM_REAL double
+#endif
+typedef DEM_REAL dem_real;
+#define DEM_R(x) ((dem_real)(x))
+
+#if defined(DEM_STATIC) && defined(__GNUC__)
+#define DEM_API static __attribute__((unused))
+#elif defined(DEM_STATIC)
+#define DEM_API static
+#else
+#define DEM_API extern
+#endif
+
+/* For small functions that belong into kernels: contact laws named by DEM_LAW. Inlined whatever it takes. */
+#if defined(__GNUC__) && !defined(__TINYC__)
+#define DEM_INLINE static inline __attribute__((always_inline))
+#else
+#define DEM_INLINE static inline
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- results ---- */
+typedef enum dem_result {
+    DEM_OK = 0,
+    DEM_ERROR_ARGUMENT,  /* a value outside its limits, an id that names nothing                      */
+    DEM_ERROR_MEMORY,    /* the allocator gave nothing                                                */
+    DEM_ERROR_FILE,      /* a file could not be opened, read, written or renamed                      */
+    DEM_ERROR_FORMAT,    /* a file's contents are not what the format says; or of another version     */
+    DEM_ERROR_TIME_STEP, /* the time step is larger than the stiffest contact allows                  */
+    DEM_ERROR_UNSTABLE,  /* the run blew up: a force not finite, an overlap beyond a radius           */
+    DEM_ERROR_STOPPED    /* the progress callback asked to stop                                       */
+} dem_result;
+
+/* ---- vectors, boxes, poses ---- */
+typedef struct dem_vec3 { dem_real x, y, z; } dem_vec3;
+typedef struct dem_box { dem_vec3 lo, hi; } dem_box;
+
+/* Where a rigid wall is and how it moves. rotation is row-major: world = position + rotation * local. */
+typedef struct dem_pose {
+    dem_vec3 position;    /* m                                                                        */
+    dem_real rotation[9]; /* orthonormal, 3 x 3                                                       */
+    dem_vec3 velocity;    /* m/s, of `position`                                                       */
+    dem_vec3 spin;        /* rad/s, about `position`                                                  */
+} dem_pose;
+
+DEM_INLINE dem_vec3 dem_vec3_make(dem_real x, dem_real y, dem_real z) {
+    dem_vec3 v; v.x = x; v.y = y; v.z = z; return v;
+}
+DEM_INLINE dem_box dem_box_make(dem_real x0, dem_real y0, dem_real z0, dem_real x1, dem_real y1, dem_real z1) {
+    dem_box b; b.lo = dem_vec3_make(x0, y0, z0); b.hi = dem_vec3_make(x1, y1, z1); return b;
+}
+
+/* ---- ids: all-zero names nothing ---- */
+typedef struct dem_material { int32_t id; } dem_material;                    /* id counts from 1      */
+typedef struct dem_wall { int32_t id; } dem_wall;                            /* id counts from 1      */
+typedef struct dem_field { int32_t id; } dem_field;                          /* id counts from 1      */
+typedef struct dem_body { uint32_t slot, generation; } dem_body;             /* slot counts from 1    */
+
+typedef struct dem_world dem_world;
+
+/* ---- choices ---- */
+typedef enum dem_normal_law {
+    DEM_NORMAL_HERTZ = 0,  /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92]                    */
+    DEM_NORMAL_LINEAR      /* F = kn delta + cn v; kn given, or from Young's modulus and a speed       */
+} dem_normal_law;
+
+typedef enum dem_tangent_law {
+    DEM_TANGENT_AUTO = 0,       /* DEM_TANGENT_SPRING when any pair has friction, else none            */
+    DEM_TANGENT_NONE,           /* no tangential force at all                                          */
+    DEM_TANGENT_VISCOUS,        /* -ct v_t, capped by Coulomb                                          */
+    DEM_TANGENT_STEP,           /* [MIL]: -kt (v_t dt) - ct v_t, capped; without memory                */
+    DEM_TANGENT_SPRING,         /* [CS79]: -kt xi - ct v_t, xi = integral of v_t dt, capped            */
+    DEM_TANGENT_MINDLIN,        /* [DIR05]: increments of force, kt of the present overlap; capped     */
+    DEM_TANGENT_MINDLIN_RESCALED/* [THO13]: the same, force scaled down with kt while unloading        */
+} dem_tangent_law;
+
+typedef enum dem_rolling_law {
+    DEM_ROLLING_AUTO = 0,   /* DEM_ROLLING_EPSD when any pair has rolling friction, else none          */
+    DEM_ROLLING_NONE,
+    DEM_ROLLING_STEP,       /* [MIL] section 4.5: mu_r R min(Fn, |w|), dimensions as printed           */
+    DEM_ROLLING_CONSTANT,   /* [ZHO99]: mu_r R* Fn against the relative spin                           */
+    DEM_ROLLING_EPSD        /* [AI11]: elastic-plastic spring-dashpot, with memory                     */
+} dem_rolling_law;
+
+typedef enum dem_tension {
+    DEM_TENSION_KEPT = 0,   /* the dashpot may pull at the end of a contact: restitution is as set     */
+    DEM_TENSION_CLIPPED     /* never pull: the contact ends at zero force; restitution comes out higher
+                               (.66 gives about .69) [SP07]                                            */
+} dem_tension;
+
+typedef enum dem_convention {
+    DEM_CONVENTION_STANDARD = 0, /* E*, G*, R*, m* and overlap as in the contact literature            */
+    DEM_CONVENTION_MILL          /* [MIL] Fig 5.23: E* = E, 8 G, half overlaps between grains, R/2 and
+                                    m/2 against walls. For reproducing that thesis only                */
+} dem_convention;
+
+typedef enum dem_integrator {
+    DEM_VELOCITY_VERLET = 0, /* second order; the default                                              */
+    DEM_FORWARD_EULER,       /* first order, gains energy; what [MIL] used                             */
+    DEM_SYMPLECTIC_EULER,    /* first order, energy bounded                                            */
+    DEM_POSITION_VERLET,     /* original Verlet: x(t+dt) = 2 x(t) - x(t-dt) + a dt^2                    */
+    DEM_LEAPFROG             /* velocities kept at half steps; same path as velocity Verlet            */
+} dem_integrator;
+
+typedef enum dem_search {
+    DEM_SEARCH_AUTO = 0,     /* the library decides; dem_world_report says what                        */
+    DEM_SEARCH_ALL_PAIRS,    /* every pair; the oracle for the others                                  */
+    DEM_SEARCH_GRID,         /* uniform grid of cells                                                  */
+    DEM_SEARCH_LINKED_LIST   /* linked linear list [FEN] 2.3.2: sorted box ends on three axes          */
+} dem_search;
+
+typedef enum dem_boundary {
+    DEM_BOUNDARY_OPEN = 0,   /* bodies may leave the domain box; nothing happens                       */
+    DEM_BOUNDARY_PERIODIC,   /* leaves on one side, enters on the other                                */
+    DEM_BOUNDARY_OUTFLOW     /* bodies whose centre leaves the box are taken out and counted as left   */
+} dem_boundary;
+
+/* ---- a contact, and a law of one's own ---- */
+
+/* What a law sees: this contact and nothing else. Velocities are of body a relative to body b, or to the
+   wall's surface, at the full step. */
+typedef struct dem_contact {
+    dem_real overlap;        /* m, > 0                                                                */
+    dem_real closing_speed;  /* m/s, positive while approaching                                       */
+    dem_vec3 normal;         /* unit, from a to b                                                     */
+    dem_vec3 slip;           /* m/s, tangential velocity at the contact point, rotation included      */
+    dem_vec3 spin;           /* rad/s, spin of a minus spin of b                                      */
+    dem_vec3 normal_rate;    /* 1/s, how the normal turns; for dem_memory_turn                        */
+    dem_real twist;          /* rad/s, how the contact plane turns about the normal                   */
+    dem_real r_eff;          /* m,  1/(1/Ra + 1/Rb);  Ra against a wall                               */
+    dem_real m_eff;          /* kg, 1/(1/ma + 1/mb);  ma against a wall                               */
+    dem_real dt;             /* s, to integrate memory with; 0: memory must be left as it is          */
+    dem_real kn, cn;         /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear)   */
+    dem_real kt, ct;         /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear)   */
+    dem_real friction, friction_static, rolling_friction;
+    int32_t material_a, material_b; /* dem_material ids                                               */
+    int32_t wall;            /* 0: b is a grain; otherwise the dem_wall id                            */
+    void *user;              /* law_user of the world desc                                            */
+} dem_contact;
+
+/* What a law answers. Zeroed before the law is called. */
+typedef struct dem_push {
+    dem_real normal;         /* N, repulsion: positive pushes apart                                   */
+    dem_vec3 tangent;        /* N, on a (b gets the opposite), at the contact point                   */
+    dem_vec3 moment;         /* N m, on a (b gets the opposite): rolling resistance                   */
+} dem_push;
+
+/* A contact law. memory holds law_memory reals that start at zero when the contact begins and are kept
+   while it lasts. Must not look at anything but its arguments and c->user; is called from several threads.
+   When a contact turns round (a and b change places) the first 3*law_vectors reals of the memory change
+   sign: put there what is a vector, such as a tangential spring, and scalars after them. */
+typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_push *push);
+
+/* A vector kept in contact memory, carried along with the contact plane over the last step: turned with the
+   normal, spun with the mean twist of the two bodies; lies in the tangent plane, keeps its length. Laws with
+   memory begin with this. (Rotation by n_old -> n is exact to fourth order of the angle of one step.) */
+DEM_INLINE dem_vec3 dem_memory_turn(const dem_contact *c, dem_vec3 v) {
+    const dem_vec3 n = c->normal, r = c->normal_rate;
+    const dem_real g = v.x*n.x + v.y*n.y + v.z*n.z;      /* what sticks out of the plane              */
+    const dem_real h = g*c->dt/2, t = c->dt*c->twist, q = 1 - t*t/2;
+    const dem_real x = v.x - g*n.x + h*r.x, y = v.y - g*n.y + h*r.y, z = v.z - g*n.z + h*r.z;
+    dem_vec3 out;
+    out.x = q*x + t*(n.y*z - n.z*y);
+    out.y = q*y + t*(n.z*x - n.x*z);
+    out.z = q*z + t*(n.x*y - n.y*x);
+    return out;
+}
+
+/* Force in N on a body at position (m) with velocity (m/s), of radius (m) and mass (kg), at time (s).
+   Called once per body and step, from several threads. */
+typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real radius, dem_real mass,
+                                 double time, void *user);
+
+/* Fills in a wall's pose at a time (s). Called once a step from one thread. Must be smooth, with velocity
+   and spin the exact derivatives of position and rotation. */
+typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
+
+/* Both functions or neither. size is given back on release. May be called from one thread at a time. */
+typedef struct dem_allocator {
+    void *(*alloc_fn)(size_t size, void *user);
+    void (*free_fn)(void *memory, size_t size, void *user);
+    void *user;
+} dem_allocator;
+
+/* ---- world ---- */
+typedef struct dem_world_desc {
+    dem_vec3 gravity;              /* m/s2; 0: none                                                    */
+    dem_box domain;                /* m; needed for periodic and outflow boundaries; 0: unbounded      */
+    dem_boundary boundary[3];      /* per axis                                                         */
+    int planar;                    /* 1: discs in the x-y plane: z and the spins about x, y stay put   */
+    dem_real thickness;            /* m, of discs; 0: 1 m                                              */
+
+    dem_normal_law normal_law;
+    dem_tangent_law tangent_law;
+    dem_rolling_law rolling_law;
+    dem_tension tension;
+    dem_convention convention;
+    dem_law_fn law;                /* your law; replaces normal, tangential and rolling laws           */
+    void *law_user;                /* handed to your law as c->user                                    */
+    int law_memory;                /* reals of memory per contact for your law, 0..8                   */
+    int law_vectors;               /* how many leading triples of them are vectors, 0..law_memory/3    */
+    dem_real law_stiffness;        /* N/m, the stiffest your law gets: for the time step; 0: built-in  */
+
+    dem_force_fn force;            /* force field of your own; 0: none                                 */
+    void *force_user;
+
+    dem_integrator integrator;
+    dem_real dt;                   /* s; 0: chosen from the live scene, see dem_step_advice            */
+    int allow_large_dt;            /* 1: run even when dt exceeds t_c/20. For showing what happens      */
+    dem_real impact_speed;         /* m/s, typical: for linear stiffness and the time step; 0: estimated
+                                      from gravity, walls and grains (linear stiffness: 1 m/s)         */
+    dem_search search;
+    dem_real skin;                 /* m, margin of the candidate list; 0: chosen; < 0: none, the list is
+                                      rebuilt every step                                               */
+    int ledger;                    /* 1: account for energy: dem_ledger_get                            */
+    int threads;                   /* 0: as many as OpenMP offers; 1..64                               */
+    dem_allocator allocator;
+} dem_world_desc;
+static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0, 0}},
+    {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
+    DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT, DEM_CONVENTION_STANDARD,
+    0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0, 0, 0, {0, 0, 0}};
+#define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
+
+/* Creates an empty world. Returns null when a value is out of its limits or memory runs out; why is told
+   by dem_create_error(desc). */
+static inline dem_world *dem_world_create(const dem_world_desc *desc);
+/* One sentence on why dem_world_create refuses this desc, or "" when it does not. */
+DEM_API const char *dem_create_error(const dem_world_desc *desc);
+DEM_API void dem_world_destroy(dem_world *world);
+/* The sentence of the last failed call on this world; "" when none failed yet. */
+DEM_API const char *dem_world_error(const dem_world *world);
+DEM_API const char *dem_result_name(dem_result result);
+/* The desc as it is in force: zeros replaced by what was chosen. */
+DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
+
+/* ---- materials ---- */
+typedef struct dem_material_desc {
+    dem_real density;          /* kg/m3, required, > 0                                                */
+    dem_real young;            /* Pa, required, > 0 (for a linear law with stiffness: not needed)     */
+    dem_real poisson;          /* 0 <= nu < 0.5; 0 is a physical value                                */
+    dem_real restitution;      /* required, 0 < e <= 1: speed after over speed before a normal impact */
+    dem_real friction;         /* sliding friction mu, >= 0; 0: none                                  */
+    dem_real friction_static;  /* >= friction; 0: the same as friction                                */
+    dem_real rolling_friction; /* mu_r, >= 0, of the effective radius; 0: none                        */
+    dem_real stiffness;        /* N/m, linear law only; 0: from young and impact_speed [DIM04]        */
+    dem_real stiffness_ratio;  /* kt/kn of the linear law; 0: 2(1-nu)/(2-nu)                          */
+} dem_material_desc;
+static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+#define DEM_MATERIAL_DESC DEM_MATERIAL_DESC_ZERO
+
+/* Adds a material. At most 64. Null id on bad values. */
+DEM_API dem_material dem_material_add(dem_world *world, const dem_material_desc *desc);
+
+/* What holds between two materials. Mixed from both when not set: restitution, friction, static friction
+   and rolling friction by the geometric mean; moduli by Hertz (1/E* = sum (1-nu^2)/E, 1/G* = sum (2-nu)/G);
+   given stiffnesses in series. Walls follow the same rule as grains. */
+typedef struct dem_pair {
+    dem_real young_eff;        /* E*, Pa                                                               */
+    dem_real shear_eff;        /* G*, Pa                                                               */
+    dem_real restitution, friction, friction_static, rolling_friction;
+    dem_real stiffness;        /* N/m, linear law; 0: from E* and impact speed, per pair of radii      */
+    dem_real stiffness_ratio;  /* kt/kn, linear law                                                    */
+    dem_real tangent_damping;  /* >= 0, factor on the tangential dashpot; 1 when mixed, 0: no dashpot  */
+} dem_pair;
+DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b, dem_pair *pair);
+/* Replaces what was mixed; both orders at once. */
+DEM_API dem_result dem_pair_set(dem_world *world, dem_material a, dem_material b, const dem_pair *pair);
+
+/* The coefficients of the built-in laws for two radii (m); radius_b = 0: a against a wall of b. */
+typedef struct dem_coefficients {
+    dem_real r_eff, m_eff;     /* m, kg                                                                */
+    dem_real kn, cn, kt, ct;   /* as in dem_contact: F = kn d^(3/2) + cn d^(1/4) v, or kn d + cn v      */
+    dem_real damping_ratio;    /* beta = -ln e / sqrt(pi^2 + ln^2 e)                                   */
+    dem_real contact_time;     /* s, at the world's impact speed                                       */
+} dem_coefficients;
+DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
+                                        dem_real radius_a, dem_real radius_b, dem_coefficients *out);
+/* The resolved pair table, one line a pair. */
+DEM_API void dem_pairs_print(const dem_world *world, FILE *out);
+
+/* ---- grains ---- */
+
+/* Adds a sphere (or disc) at rest. radius > 0 (m). Null id on bad values or when memory runs out. */
+DEM_API dem_body dem_sphere_add(dem_world *world, dem_material material, dem_real radius, dem_vec3 position);
+/* Adds count spheres: positions (count x 3), radii (count) or null for one radius. velocities (count x 3)
+   may be null. All or nothing. */
+DEM_API dem_result dem_spheres_add(dem_world *world, dem_material material, int count, const dem_real *positions,
+                                   const dem_real *velocities, const dem_real *radii, dem_real radius);
+/* Random filling: count spheres of one radius inside box, none overlapping another body; seed makes it
+   repeatable. Returns how many found a place (fewer than asked: the box is too full; the sentence says so). */
+DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius, dem_box box, int count,
+                             uint64_t seed);
+/* Hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, those for which
+   inside(centre, radius, user) is not 0 (null: all whose centre keeps a radius from the box), at most count
+   (0: all that fit), in layers along z. Returns how many were added. */
+typedef int (*dem_inside_fn)(dem_vec3 centre, dem_real radius, void *user);
+DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real radius, dem_real padding,
+                             dem_box box, dem_inside_fn inside, void *user, int count);
+DEM_API dem_result dem_body_remove(dem_world *world, dem_body body);
+
+/* State of one body. */
+typedef struct dem_body_state {
+    dem_vec3 position, velocity, spin;   /* m, m/s, rad/s                                              */
+    dem_vec3 force, torque;              /* N, N m: of the last step; ignored by dem_body_set          */
+    dem_real radius, mass, inertia;      /* m, kg, kg m2; ignored by dem_body_set                      */
+    dem_material material;
+    int fixed;                           /* 1: never moves, whatever pushes it                         */
+} dem_body_state;
+DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
+/* Sets position, velocity, spin and fixed. */
+DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
+
+/* All bodies at once, in the library's own order, which changes when the candidate list is rebuilt; slots
+   tell who is who. Pointers hold until the next step or change. Stride 4: x y z and one more. */
+typedef struct dem_bodies {
+    int count;
+    const dem_real *positions;  /* count x 4: x, y, z [m], radius [m]                                   */
+    const dem_real *velocities; /* count x 4: x, y, z [m/s], 0                                           */
+    const dem_real *spins;      /* count x 4: x, y, z [rad/s], 0                                         */
+    const dem_real *forces;     /* count x 4: x, y, z [N] of contacts and force field, gravity not; 0    */
+    const dem_real *torques;    /* count x 4: x, y, z [N m], 0                                           */
+    const dem_real *masses;     /* count: kg                                                             */
+    const uint32_t *slots;      /* count: slot of dem_body                                               */
+    const int32_t *materials;   /* count: dem_material ids                                               */
+} dem_bodies;
+DEM_API dem_bodies dem_bodies_get(const dem_world *world);
+DEM_API dem_body dem_bodies_id(const dem_world *world, int index);
+
+/* inserted = present + removed + left, always. */
+typedef struct dem_balance { uint64_t inserted, present, removed, left; } dem_balance;
+DEM_API dem_balance dem_balance_get(const dem_world *world);
+
+/* ---- walls ---- */
+typedef enum dem_motion_kind {
+    DEM_MOTION_FIXED = 0,
+    DEM_MOTION_TRANSLATING,   /* velocity                                                             */
+    DEM_MOTION_ROTATING,      /* speed [rad/s] about axis through point, right-handed                 */
+    DEM_MOTION_OSCILLATING,   /* displacement velocity/|velocity| * amplitude * sin(2 pi f t + phase)  */
+    DEM_MOTION_USER           /* function                                                             */
+} dem_motion_kind;
+typedef struct dem_motion {
+    dem_motion_kind kind;
+    dem_vec3 velocity;        /* m/s (translating); direction only (oscillating)                      */
+    dem_vec3 point, axis;     /* m, any length but 0: axis of rotation, and the one torque refers to  */
+    dem_real speed;           /* rad/s                                                                */
+    dem_real amplitude, frequency, phase; /* m, Hz, rad                                               */
+    double start;             /* s: rotating, translating: at rest in its first pose before; default 0*/
+    dem_motion_fn function;
+    void *user;
+} dem_motion;
+static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0, 0, 0, 0};
+#define DEM_MOTION DEM_MOTION_ZERO
+
+/* How a wall of segments shares the force where a grain straddles two of them. */
+typedef enum dem_edge_rule {
+    DEM_EDGE_RESOLVED = 0,    /* faces first, then edges and corners not already accounted for: a flat
+                                 mesh gives exactly the plane's force                                 */
+    DEM_EDGE_FRACTION         /* [MIL] Fig 5.19: every segment pushes along its own line's normal with
+                                 the fraction a^2(3-2a), a = share of the chord inside. Profiles only  */
+} dem_edge_rule;
+
+/* Triangles: vertices (vertex_count x 3), triangles (triangle_count x 3, counted from 0).
+   Segments:  vertices (vertex_count x 2), segments  (segment_count x 2, counted from 0). */
+typedef struct dem_mesh { int vertex_count, triangle_count; dem_real *vertices; int32_t *triangles; } dem_mesh;
+typedef struct dem_profile { int vertex_count, segment_count; dem_real *vertices; int32_t *segments; } dem_profile;
+
+/* Plane through point; grains live on the side normal points to. */
+DEM_API dem_wall dem_plane_add(dem_world *world, dem_material material, dem_vec3 point, dem_vec3 normal);
+/* Endless cylinder about axis through point. inside = 1: grains live inside. */
+DEM_API dem_wall dem_cylinder_add(dem_world *world, dem_material material, dem_vec3 point, dem_vec3 axis,
+                                  dem_real radius, int inside);
+/* Segments in the x-y plane drawn out along z without end; both sides push. The data is copied. */
+DEM_API dem_wall dem_profile_add(dem_world *world, dem_material material, const dem_profile *profile,
+                                 dem_edge_rule rule);
+/* Triangles; both sides push. The data is copied. */
+DEM_API dem_wall dem_mesh_add(dem_world *world, dem_material material, const dem_mesh *mesh);
+/* Spheres at positions (count x 3), all of one radius, fixed to each other: [MIL]'s wall of particles.
+   share (0 < share <= 1) multiplies every force: overlapping spheres stand for one surface. */
+DEM_API dem_wall dem_grains_wall_add(dem_world *world, dem_material material, int count, const dem_real *positions,
+                                     dem_real radius, dem_real share);
+/* Centres (count x 3, written to out, which may be null) of a drum lined with touching spheres along z:
+   [MIL] Algorithm 5.2 (shell) and 5.3 (ends: hexagonal sheet at +-length/2, layers inside). Returns count. */
+DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radius, int ends, dem_real *out);
+DEM_API dem_result dem_wall_motion(dem_world *world, dem_wall wall, const dem_motion *motion);
+DEM_API dem_result dem_wall_pose(const dem_world *world, dem_wall wall, dem_pose *pose);
+DEM_API dem_result dem_wall_remove(dem_world *world, dem_wall wall);
+
+/* What the grains do to a wall. Torque is about the point of its motion; axial is its part along axis. */
+typedef struct dem_channels {
+    dem_vec3 force;           /* N, of the last step                                                  */
+    dem_vec3 torque;          /* N m, of the last step                                                */
+    dem_real torque_axial;    /* N m                                                                  */
+    dem_real power;           /* W, the wall gives to the grains: -(force . v + torque . w)           */
+    int contacts;             /* now                                                                  */
+    double impulse[3];        /* N s, since dem_wall_channels_reset                                   */
+    double torque_impulse;    /* N m s, of torque_axial                                               */
+    double work;              /* J, done on the grains                                                */
+    double time;              /* s, over which the last three were summed                             */
+} dem_channels;
+DEM_API dem_result dem_wall_channels(const dem_world *world, dem_wall wall, dem_channels *channels);
+DEM_API dem_result dem_wall_channels_reset(dem_world *world, dem_wall wall);
+
+/* ---- run ---- */
+
+/* What limits the time step, worked out from the live scene. */
+typedef struct dem_advice {
+    dem_real dt;              /* s, proposed: contact_time/50                                         */
+    dem_real dt_max;          /* s, beyond which a run is refused: contact_time/20 [FEN] eq 2.22      */
+    dem_real contact_time;    /* s, of the shortest contact                                           */
+    dem_real rayleigh;        /* s, pi R sqrt(rho/G)/(.1631 nu + .8766), smallest; for comparison     */
+    dem_real speed;           /* m/s, impact speed assumed                                            */
+    char binds[160];          /* what binds: materials, radii, speed                                  */
+} dem_advice;
+DEM_API dem_result dem_step_advice(const dem_world *world, dem_advice *advice);
+
+DEM_API dem_result dem_world_step(dem_world *world, int steps);
+/* Runs for seconds (rounded to whole steps). progress, if given, is called about ten times a second of
+   wall time and at the end; a non-zero answer stops the run (DEM_ERROR_STOPPED, state intact). */
+typedef int (*dem_progress_fn)(const dem_world *world, double done, double seconds_left, void *user);
+DEM_API dem_result dem_world_run(dem_world *world, double seconds, dem_progress_fn progress, void *user);
+/* A progress function that rewrites one line on the FILE given as user. */
+DEM_API int dem_progress_print(const dem_world *world, double done, double seconds_left, void *user);
+
+DEM_API double dem_world_time(const dem_world *world);     /* s                                        */
+DEM_API uint64_t dem_world_steps(const dem_world *world);
+/* 64-bit digest of positions, velocities, spins, contact memory, walls and time; equal runs, equal hash. */
+DEM_API uint64_t dem_world_hash(const dem_world *world);
+
+/* Counters since creation; set once, read often. */
+typedef struct dem_counters {
+    uint64_t steps, rebuilds;
+    int candidates, contacts, wall_contacts;  /* at the last step                                      */
+    dem_real overlap_max;       /* largest overlap over the smaller radius, since the last reset       */
+    dem_real speed_max;         /* m/s, at the last step                                               */
+    dem_real skin;              /* m, in force                                                         */
+    dem_real dt;                /* s, in force                                                         */
+    dem_search search;          /* in force                                                            */
+    int threads, domains;
+    size_t memory;              /* bytes held                                                          */
+} dem_counters;
+DEM_API dem_counters dem_counters_get(const dem_world *world);
+DEM_API void dem_overlap_reset(dem_world *world);
+
+/* Where the energy went since the ledger was opened (J). stored = kinetic + rotational + elastic.
+   residual = (stored - stored at opening) - gravity - walls - force - inserted + removed
+            + normal + slide + tangent + rolling.
+   Potential energy is in `gravity`, as work done. 0 everywhere when the ledger is off. */
+typedef struct dem_ledger {
+    double kinetic, rotational, elastic;          /* stored                                            */
+    double gravity, walls, force, inserted;       /* work in                                           */
+    double normal, slide, tangent, rolling;       /* dissipated: dashpot, friction, shear dashpot, rolling */
+    double removed;                               /* energy taken out with bodies                      */
+    double throughput;                            /* sum of magnitudes of what came in                 */
+    double residual;
+} dem_ledger;
+DEM_API dem_ledger dem_ledger_get(const dem_world *world);
+/* Totals that cost one pass: kinetic and rotational energy (J), momentum (kg m/s), angular momentum about
+   the origin (kg m2/s), centre of mass (m), mass (kg) of the bodies that can move. */
+typedef struct dem_totals {
+    double mass, kinetic, rotational;
+    double centre[3], momentum[3], angular[3];
+} dem_totals;
+DEM_API dem_totals dem_totals_get(const dem_world *world);
+
+/* Grain-grain contacts as they are now, for analysis. Calls the same law as the run, on a copy of the
+   memory. Returns how many there are; fills at most capacity. */
+typedef struct dem_contact_info {
+    dem_body a, b;
+    int32_t wall;                        /* dem_wall id when b is a wall, then b is null               */
+    dem_vec3 point, normal;              /* m; unit, from a to b                                       */
+    dem_real overlap;                    /* m                                                          */
+    dem_vec3 force;                      /* N, on a                                                    */
+} dem_contact_info;
+DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
+/* The candidate pairs of the present list, slots of a and b (capacity x 2). Returns how many there are. */
+DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capacity);
+/* Rebuilds the candidate list now (for tests and analysis; a run does it by itself). */
+DEM_API dem_result dem_search_now(dem_world *world);
+
+/* ---- measuring ---- */
+
+/* A grid of cells over box on which solid fraction and velocity are averaged over a window of time. A grain
+   counts where its centre is ([MIL] 5.2.9): cells smaller than grains need a long window. */
+typedef struct dem_field_desc {
+    dem_box box;              /* m                                                                    */
+    int cells[3];             /* >= 1 each, at most 2^28 in all                                       */
+    double start, end;        /* s; end = 0: no end                                                   */
+    double interval;          /* s between samples; 0: every 100th step                               */
+} dem_field_desc;
+DEM_API dem_field dem_field_add(dem_world *world, const dem_field_desc *desc);
+/* Cell (i, j, k) is at index i + cells[0]*(j + cells[1]*k). Values hold until the next step. */
+typedef struct dem_field_data {
+    int cells[3];
+    dem_box box;
+    uint64_t samples;
+    const double *solid;      /* cells: sum over samples of volume in the cell / cell volume; / samples */
+    const double *mass;       /* cells: sum of kg                                                     */
+    const double *momentum;   /* cells x 3: sum of kg m/s; velocity = momentum/mass                    */
+} dem_field_data;
+DEM_API dem_result dem_field_get(const dem_world *world, dem_field field, dem_field_data *data);
+DEM_API dem_result dem_field_reset(dem_world *world, dem_field field);
+
+/* ---- files ---- */
+
+/* What is wrong with a mesh; never stops a run. */
+typedef struct dem_mesh_health {
+    int open_edges;           /* edges with one triangle                                              */
+    int crowded_edges;        /* edges with more than two                                             */
+    int duplicates;           /* triangles with the same three corners as an earlier one              */
+    int slivers;              /* height below 1e-3 of the longest side, or no area at all             */
+    int merged_vertices;      /* vertices at the same place, merged on reading (STL)                  */
+    dem_box box;              /* m                                                                    */
+    char hint[200];           /* likely unit mistake, or ""                                           */
+} dem_mesh_health;
+/* Reads triangles from [MIL]'s text format (counts; vertices; corners counted from 1), STL (text or binary)
+   or OBJ, told apart by the contents. Free with dem_mesh_free. Errors name file, line and reason. */
+DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh, dem_mesh_health *health);
+DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size, dem_mesh *mesh,
+                                  dem_mesh_health *health);
+DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh);
+/* Reads segments from [MIL]'s text format in 2-D: counts; x y per vertex; two corners counted from 1. */
+DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile);
+DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const void *data, size_t size,
+                                     dem_profile *profile);
+DEM_API void dem_profile_free(dem_world *world, dem_profile *profile);
+
+/* Pictures for ParaView (VTP, legacy VTK: points with radius, velocity, spin, id, material) and OVITO
+   (extended XYZ). Written to a temporary name and renamed, so that a file is whole or absent. */
+DEM_API dem_result dem_vtp_write(dem_world *world, const char *path);
+DEM_API dem_result dem_vtk_write(dem_world *world, const char *path);
+DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
+/* Triangles of all mesh and profile walls (profiles drawn out over z0..z1) in their present pose. */
+DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0, dem_real z1);
+/* Appends the channels of a wall as one CSV line; writes the heading first when the file is new or empty. */
+DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char *path);
+
+/* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters. Reading
+   replaces the state of a world that was created with the same desc, materials and walls (functions and user
+   pointers cannot be stored), which then continues bit for bit. A file that is cut short, damaged, of another
+   version or precision, or of another scene is refused by name and the world stays as it was. */
+DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
+DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
+
+/* ---- report ---- */
+
+/* Effects active and their price, time step and what binds it, search, balance, ledger. */
+DEM_API void dem_world_report(const dem_world *world, FILE *out);
+
+/* version and size of dem_real are checked against the implementation's. Use dem_world_create. */
+DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version, size_t real_size);
+static inline dem_world *dem_world_create(const dem_world_desc *desc) {
+    return dem_world_create_checked(desc, DEM_VERSION, sizeof(dem_real));
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* DEM_H */
+
+/* ================================================================================================
+   >>implementation - stop here if you only want to use it
+   ================================================================================================ */
+#if defined(DEM_IMPLEMENTATION) && !defined(DEM_IMPLEMENTATION_DONE)
+#define DEM_IMPLEMENTATION_DONE
+
+/* ------------------------------------------------------------------------------------------------
+   >>platform
+   What differs between compilers lives here and nowhere else. Kernels must be inlined into their
+   variants to be specialised, hence DEM_INLINE; gcc vectorises a root only when told that errno does
+   not matter. There is one parallel loop, demi_parallel: it deals whole domains to threads, and what
+   it calls never knows how many threads there are.
+   ------------------------------------------------------------------------------------------------ */
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#if defined(_OPENMP) && !defined(DEM_NO_OPENMP)
+#include <omp.h>
+#define DEMI_OPENMP 1
+#else
+#define DEMI_OPENMP 0
+#endif
+
+#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+#pragma GCC push_options
+#pragma GCC optimize("no-math-errno")
+#endif
+
+#if defined(__GNUC__) && !defined(__TINYC__)
+#define DEMI_NOINLINE static __attribute__((noinline))
+#define DEMI_RESTRICT __restrict__
+#define DEMI_FORMAT(f, a) __attribute__((format(printf, f, a)))
+#else
+#define DEMI_NOINLINE static
+#define DEMI_RESTRICT
+#define DEMI_FORMAT(f, a)
+#endif
+#if defined(__clang__)
+#define DEMI_VECTOR _Pragma("clang loop vectorize(enable)")
+#elif defined(__GNUC__) && !defined(__TINYC__)
+#define DEMI_VECTOR _Pragma("GCC ivdep")
+#else
+#define DEMI_VECTOR
+#endif
+
+#ifndef DEM_ASSERT
+#define DEM_ASSERT(x) ((void)0)
+#endif
+
+/* Maths in the precision of dem_real; the choice folds away at compile time. */
+#define DEMI_SINGLE (sizeof(dem_real) == sizeof(float))
+#define DEMI_SQRT(x) (DEMI_SINGLE ? (dem_real)sqrtf((float)(x)) : (dem_real)sqrt((double)(x)))
+#define DEMI_ABS(x) (DEMI_SINGLE ? (dem_real)fabsf((float)(x)) : (dem_real)fabs((double)(x)))
+#define DEMI_POW(x, y) ((dem_real)pow((double)(x), (double)(y)))
+#define DEMI_MIN(a, b) ((a) < (b) ? (a) : (b))
+#define DEMI_MAX(a, b) ((a) > (b) ? (a) : (b))
+#define DEMI_TINY (DEMI_SINGLE ? DEM_R(1e-30) : DEM_R(1e-200))   /* added to a length before dividing   */
+#define DEMI_PI 3.14159265358979323846
+
+/* Calls task(world, i) for i = 0 .. count-1. Tasks must not depend on each other. */
+typedef void (*demi_task)(dem_world *w, int index);
+static void demi_parallel(dem_world *w, int threads, int count, demi_task task) {
+    int i;
+#if DEMI_OPENMP
+    if (threads > 1 && count > 1) {
+        #pragma omp parallel for num_threads(threads) schedule(static)
+        for (i = 0; i < count; i++) task(w, i);
+        return;
+    }
+#endif
+    (void)threads;
+    for (i = 0; i < count; i++) task(w, i);
+}
+static int demi_threads_available(void) {
+#if DEMI_OPENMP
+    return omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
+static double demi_clock(void) {                          /* s of wall time, for progress only          */
+#if DEMI_OPENMP
+    return omp_get_wtime();
+#elif defined(TIME_UTC)
+    struct timespec t;
+    timespec_get(&t, TIME_UTC);
+    return (double)t.tv_sec + 1e-9*(double)t.tv_nsec;
+#else
+    return (double)clock()/CLOCKS_PER_SEC;
+#endif
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>maths
+   Small vectors by value, poses, random numbers. Finite is tested on the exponent bits, which
+   -ffast-math cannot fold away.
+   ------------------------------------------------------------------------------------------------ */
+DEM_INLINE dem_vec3 demi_v(dem_real x, dem_real y, dem_real z) { return dem_vec3_make(x, y, z); }
+DEM_INLINE dem_vec3 demi_at(const dem_real *p) { return dem_vec3_make(p[0], p[1], p[2]); }
+DEM_INLINE dem_vec3 demi_add(dem_vec3 a, dem_vec3 b) { return demi_v(a.x + b.x, a.y + b.y, a.z + b.z); }
+DEM_INLINE dem_vec3 demi_sub(dem_vec3 a, dem_vec3 b) { return demi_v(a.x - b.x, a.y - b.y, a.z - b.z); }
+DEM_INLINE dem_vec3 demi_scale(dem_vec3 a, dem_real s) { return demi_v(a.x*s, a.y*s, a.z*s); }
+DEM_INLINE dem_real demi_dot(dem_vec3 a, dem_vec3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
+DEM_INLINE dem_vec3 demi_cross(dem_vec3 a, dem_vec3 b) {
+    return demi_v(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
+}
+DEM_INLINE dem_real demi_length(dem_vec3 a) { return DEMI_SQRT(demi_dot(a, a)); }
+static dem_vec3 demi_unit(dem_vec3 a) {                   /* not for null vectors                       */
+    double x = (double)a.x, y = (double)a.y, z = (double)a.z, l = sqrt(x*x + y*y + z*z);
+    return demi_v((dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
+}
+static void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
+
+static int demi_finite(dem_real x) {
+    double d = (double)x;
+    uint64_t bits;
+    memcpy(&bits, &d, sizeof bits);
+    return ((bits >> 52) & 0x7ff) != 0x7ff;
+}
+static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y) && demi_finite(v.z); }
+
+/* local -> world and back, for points and for directions */
+DEM_INLINE dem_vec3 demi_turn(const dem_real *R, dem_vec3 a) {
+    return demi_v(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z, R[6]*a.x + R[7]*a.y + R[8]*a.z);
+}
+DEM_INLINE dem_vec3 demi_unturn(const dem_real *R, dem_vec3 a) {
+    return demi_v(R[0]*a.x + R[3]*a.y + R[6]*a.z, R[1]*a.x + R[4]*a.y + R[7]*a.z, R[2]*a.x + R[5]*a.y + R[8]*a.z);
+}
+/* Rotation by angle about a unit axis (Rodrigues), row-major. */
+static void demi_rotation(double *R, double x, double y, double z, double angle) {
+    double c = cos(angle), s = sin(angle), v = 1 - c;
+    R[0] = c + x*x*v;   R[1] = x*y*v - z*s; R[2] = x*z*v + y*s;
+    R[3] = y*x*v + z*s; R[4] = c + y*y*v;   R[5] = y*z*v - x*s;
+    R[6] = z*x*v - y*s; R[7] = z*y*v + x*s; R[8] = c + z*z*v;
+}
+/* A rotation whose third column is the unit vector n, so that local z is n (Duff et al. 2017). */
+static void demi_frame_of(dem_real *R, dem_vec3 n) {
+    dem_real s = n.z >= 0 ? DEM_R(1) : DEM_R(-1), a = -1/(s + n.z), b = n.x*n.y*a;
+    R[0] = 1 + s*n.x*n.x*a; R[3] = s*b;           R[6] = -s*n.x;
+    R[1] = b;               R[4] = s + n.y*n.y*a; R[7] = -n.y;
+    R[2] = n.x;             R[5] = n.y;           R[8] = n.z;
+}
+
+/* splitmix64: one 64-bit state, good enough to place grains. */
+static uint64_t demi_random(uint64_t *state) {
+    uint64_t z = (*state += UINT64_C(0x9E3779B97F4A7C15));
+    z = (z ^ (z >> 30))*UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27))*UINT64_C(0x94D049BB133111EB);
+    return z ^ (z >> 31);
+}
+static double demi_uniform(uint64_t *state) { return (double)(demi_random(state) >> 11)/9007199254740992.0; }
+
+/* FNV-1a, 64 bits: check sums and state hashes. */
+#define DEMI_HASH_START UINT64_C(14695981039346656037)
+static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
+    const unsigned char *p = (const unsigned char *)data;
+    size_t i;
+    for (i = 0; i < size; i++) h = (h ^ p[i])*UINT64_C(1099511628211);
+    return h;
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>memory
+   The layout of the world, and the only places where memory comes from. Bodies live in flat arrays of
+   four reals each, so that a gather touches one cache line and a drift is one long loop. Every
+   array that grows is a field here; demi_array_grow keeps what it holds, or leaves it alone and says so.
+   ------------------------------------------------------------------------------------------------ */
+enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_BLOCK = 256, DEMI_DOMAIN_BODIES = 2048, DEMI_DOMAINS = 256 };
+
+/* Coefficients of one contact, resolved: what the built-in laws need. */
+enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF, DEMI_COEFS };
+
+/* A growing array: items of one size. Never holds less than before. */
+typedef struct demi_array { void *data; size_t capacity, item; } demi_array;
+
+/* Candidate pairs of all domains. Domain d owns entries d*stride .. d*stride + stride - 1. */
+typedef struct demi_list {
+    int stride;                    /* capacity per domain                                             */
+    int32_t *a, *b;                /* body indices, a < b                                             */
+    uint32_t *stamp;               /* evaluation at which memory was last written                     */
+    dem_real *memory;              /* x w->memory_stride                                              */
+    dem_real *coef;                /* x DEMI_COEFS when bodies differ                                  */
+    demi_array a_, b_, stamp_, memory_, coef_;
+} demi_list;
+
+/* Sums of one domain over one step; combined in the order of domains. */
+enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED, DEMI_E_ROLL,
+       DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_ENERGIES };
+
+/* A contact with a wall; lives as long as the two touch. */
+typedef struct demi_wall_contact {
+    int32_t body, wall, element, feature;
+    dem_vec3 normal, point;        /* unit, grain -> wall; m                                          */
+    dem_real overlap, share;       /* m; part of the force that counts                                */
+    dem_real coef[DEMI_COEFS], memory[DEMI_MEMORY];
+    dem_vec3 force;                /* N, on the grain                                                 */
+} demi_wall_contact;
+
+/* What the grains of one domain do to one wall in one step. */
+typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; } demi_wall_sum;
+
+typedef struct demi_domain {
+    int begin, end;                /* bodies                                                          */
+    int own, cross, walls;         /* candidates: pairs inside, pairs leading out, wall elements      */
+    int contacts, wall_contacts;   /* touching now                                                    */
+    int overflow;                  /* a list ran out of room while being built                        */
+    double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step     */
+    double energy[DEMI_ENERGIES];
+    double mass_in_flow;
+} demi_domain;
+
+enum { DEMI_WALL_NONE = 0, DEMI_WALL_PLANE, DEMI_WALL_CYLINDER, DEMI_WALL_PROFILE, DEMI_WALL_MESH, DEMI_WALL_GRAINS };
+
+typedef struct demi_wall {
+    int kind, material;            /* DEMI_WALL_..., index                                            */
+    int inside;                    /* cylinder                                                        */
+    dem_edge_rule rule;
+    dem_real radius, share;        /* cylinder; grains                                                */
+    int vertex_count, element_count;
+    dem_real *vertices;            /* vertex_count x 3, in the wall's own frame                       */
+    int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile)                         */
+    dem_real reach;                /* m, farthest vertex from the frame's origin; < 0: endless        */
+    dem_pose home, pose;           /* pose at motion start, pose now                                  */
+    dem_motion motion;
+    int symmetric;                 /* its motion leaves its surface in place: no search needed        */
+    dem_box box;                   /* local box of the elements                                       */
+    int cells[3];                  /* local grid of elements; 0: none                                 */
+    dem_real cell;                 /* m                                                               */
+    int32_t *cell_start, *cell_items;
+    int cell_item_count;
+    dem_channels channels;
+} demi_wall;
+
+typedef struct demi_field {
+    int used;
+    dem_field_desc desc;
+    uint64_t samples;
+    double next;                   /* s, time of the next sample                                      */
+    double *solid, *mass, *momentum;
+} demi_field;
+
+/* Box ends of the linked linear list on one axis. */
+typedef struct demi_end { dem_real value; int32_t box; int32_t upper; } demi_end;
+
+struct dem_world {
+    dem_world_desc desc;           /* as given, with choices filled in                                */
+    dem_world_desc asked;          /* as given                                                        */
+    char error[512];
+    size_t bytes;
+
+    int material_count, pair_given;
+    dem_material_desc materials[DEMI_MATERIALS];
+    dem_pair *pairs;               /* DEMI_MATERIALS x DEMI_MATERIALS                                  */
+
+    int count, capacity;           /* bodies                                                          */
+    dem_real *pos, *vel, *spin;    /* x 4; at the full step (predicted while a step is under way)     */
+    dem_real *half_vel, *half_spin;/* x 4; at the half step (position Verlet: half_vel = last position)*/
+    dem_real *force, *torque;      /* x 4                                                             */
+    dem_real *inv_mass, *inv_inertia, *mass;
+    uint32_t *body_slot;
+    int32_t *body_material;
+    int32_t *slot_index;           /* slot -> index, -1 when free                                     */
+    uint32_t *slot_generation;
+    int slot_count, slot_capacity; /* slots used so far, room                                         */
+    int slot_free, slot_pending;   /* chains of free slots (-1: none); pending ones rest until a rebuild */
+    dem_real *scratch;             /* x 4, for permuting                                              */
+    int32_t *order, *cell_of;      /* permutation, cell of each body                                  */
+    dem_balance balance;
+
+    int wall_count, wall_capacity;
+    demi_wall *walls;
+    int field_count, field_capacity;
+    demi_field *fields;
+
+    /* effects, worked out when the scene changes */
+    int normal, tangent, rolling;  /* laws in force                                                   */
+    int uniform;                   /* one radius, one mass, one material, nothing fixed               */
+    int memory_stride, vector_mask;/* reals per contact; which of them are vectors                    */
+    dem_real uniform_coef[DEMI_COEFS], uniform_radius, uniform_inv_mass, uniform_inv_inertia;
+    dem_real radius_min, radius_max;
+    int fixed_count;
+
+    /* search */
+    int list_valid;                /* candidate list fits the bodies                                  */
+    double skin, reach, wall_reach;/* m: margin, farthest a body / a wall point went since            */
+    double skin_auto;              /* m: what the cost model proposes; 0: nothing yet                  */
+    uint64_t last_rebuild;         /* step                                                            */
+    int domain_count;
+    demi_domain *domains;
+    demi_list own, cross;
+    int *cross_incoming_start;     /* domain_count + 1                                                */
+    demi_array cross_incoming_, cross_hit_, cross_push_;
+    int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending                   */
+    int32_t *cross_hit;            /* entry -> slot of its push, 0 when not touching                  */
+    dem_real *cross_push;
+    size_t cross_push_stride;
+    int cross_entries;
+    demi_array cell_start_;
+    int cells[3];
+    double cell_origin[3], cell_size[3];
+    demi_array carry_start_, carry_partner_, carry_memory_;   /* contact memory on its way to a new list */
+    int32_t *carry_start, *carry_partner;
+    dem_real *carry_memory;
+    int carry_count;
+    int wall_stride;               /* wall candidates per domain                                      */
+    int wall_now_stride;           /* wall contacts per domain                                        */
+    demi_array wall_body_, wall_id_, wall_element_, wall_now_, wall_next_, wall_sums_;
+    int32_t *wall_body, *wall_id, *wall_element;
+    demi_wall_contact *wall_now, *wall_next;
+    demi_wall_sum *wall_sums;      /* domain_count x wall_count                                       */
+    demi_array lll_ends_[3], lll_table_, lll_rows_, lll_row_start_;
+    int lll_valid, lll_boxes, lll_size;
+    uint64_t lll_exchanges;
+
+    /* step */
+    void (*kernel)(dem_world *w, int domain);
+    uint64_t steps, rebuilds;
+    double time;
+    dem_real dt;
+    double assumed_speed;          /* m/s, behind dt                                                  */
+    int dt_valid, forces_valid, synced, primed;
+    uint32_t stamp;
+    double overlap_max, speed_max;
+    double energy[DEMI_ENERGIES], energy_inserted, energy_removed, energy_opening;
+    double throughput;
+    double half_kick;              /* s, of the step under way                                        */
+};
+
+static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) DEMI_FORMAT(3, 4);
+static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    vsnprintf(w->error, sizeof w->error, format, args);
+    va_end(args);
+    return result;
+}
+static dem_result demi_no_memory(dem_world *w, const char *call) {
+    return demi_fail(w, DEM_ERROR_MEMORY, "%s: out of memory with %.1f MB held; use fewer bodies or a smaller "
+                     "skin; nothing was changed", call, (double)w->bytes/1e6);
+}
+
+static void *demi_raw_alloc(const dem_allocator *a, size_t size) {
+    return a->alloc_fn ? a->alloc_fn(size, a->user) : malloc(size);
+}
+static void demi_raw_free(const dem_allocator *a, void *p, size_t size) {
+    if (!p) return;
+    if (a->free_fn) a->free_fn(p, size, a->user); else free(p);
+}
+/* count items of size bytes, cleared; null when there is no room or the product overflows. */
+static void *demi_alloc(dem_world *w, size_t count, size_t size) {
+    void *p;
+    if (size && count > (size_t)-1/2/size) return 0;
+    if (count*size == 0) return 0;
+    p = demi_raw_alloc(&w->desc.allocator, count*size);
+    if (p) { memset(p, 0, count*size); w->bytes += count*size; }
+    return p;
+}
+static void demi_free(dem_world *w, void *p, size_t count, size_t size) {
+    if (!p) return;
+    w->bytes -= count*size;
+    demi_raw_free(&w->desc.allocator, p, count*size);
+}
+/* Makes room for count items, keeping those there. 0 when memory ran out; then nothing has changed. */
+static int demi_array_grow(dem_world *w, demi_array *array, size_t item, size_t count) {
+    void *p;
+    size_t room = array->capacity;
+    if (count <= room) return 1;
+    room = count + count/4 + 16;
+    p = demi_alloc(w, room, item);
+    if (!p) return 0;
+    if (array->data) memcpy(p, array->data, array->capacity*item);
+    demi_free(w, array->data, array->capacity, item);
+    array->data = p;
+    array->capacity = room;
+    array->item = item;
+    return 1;
+}
+static void demi_array_free(dem_world *w, demi_array *array) {
+    demi_free(w, array->data, array->capacity, array->item);
+    memset(array, 0, sizeof *array);
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>materials
+   Users say what a material is (density, Young's modulus, Poisson's ratio, restitution, friction); the
+   pair table says what holds between two; demi_coefficients turns a pair and two radii into the
+   numbers a law multiplies with. Restitution comes first, damping is derived from it.
+   ------------------------------------------------------------------------------------------------ */
+static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
+    const int linear_k = w->desc.normal_law == DEM_NORMAL_LINEAR && d->stiffness > 0;
+    struct { const char *name; dem_real value; int ok; const char *limit; } rows[9];
+    int i;
+#define DEMI_ROW(k, field, good, text) \
+    rows[k].name = #field; rows[k].value = d->field; rows[k].ok = (good); rows[k].limit = text
+    DEMI_ROW(0, density, d->density > 0, "> 0 kg/m3 (required)");
+    DEMI_ROW(1, young, d->young > 0 || (linear_k && DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
+    DEMI_ROW(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
+    DEMI_ROW(3, restitution, d->restitution > 0 && d->restitution <= 1, "> 0 and <= 1 (required)");
+    DEMI_ROW(4, friction, d->friction >= 0, ">= 0");
+    DEMI_ROW(5, friction_static, DEMI_ABS(d->friction_static) <= 0 || d->friction_static >= d->friction,
+             "0 or at least the sliding friction");
+    DEMI_ROW(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
+    DEMI_ROW(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
+    DEMI_ROW(8, stiffness_ratio, d->stiffness_ratio >= 0, ">= 0");
+#undef DEMI_ROW
+    for (i = 0; i < 9; i++)
+        if (!rows[i].ok || !demi_finite(rows[i].value))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s; set it in the desc before the call",
+                             call, rows[i].name, (double)rows[i].value, rows[i].limit);
+    return DEM_OK;
+}
+
+/* One pair from two materials: Hertz's series of compliances for the moduli, geometric means for the rest. */
+static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b) {
+    dem_pair p;
+    const double Ea = (double)a->young, Eb = (double)b->young, na = (double)a->poisson, nb = (double)b->poisson;
+    const double sa = (double)(a->friction_static > 0 ? a->friction_static : a->friction);
+    const double sb = (double)(b->friction_static > 0 ? b->friction_static : b->friction);
+    memset(&p, 0, sizeof p);
+    if (Ea > 0 && Eb > 0) {
+        p.young_eff = (dem_real)(1/((1 - na*na)/Ea + (1 - nb*nb)/Eb));
+        p.shear_eff = (dem_real)(1/((2 - na)*2*(1 + na)/Ea + (2 - nb)*2*(1 + nb)/Eb));
+    }
+    p.restitution = (dem_real)sqrt((double)a->restitution*(double)b->restitution);
+    p.friction = (dem_real)sqrt((double)a->friction*(double)b->friction);
+    p.friction_static = (dem_real)sqrt(sa*sb);
+    p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
+    p.tangent_damping = 1;
+    if (a->stiffness > 0 && b->stiffness > 0)   /* springs in series; equal materials: their own value    */
+        p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
+    if (a->stiffness_ratio > 0 && b->stiffness_ratio > 0)
+        p.stiffness_ratio = DEMI_SQRT(a->stiffness_ratio*b->stiffness_ratio);
+    else                                        /* Mindlin's ratio 2(1-nu)/(2-nu), of the mean nu         */
+        p.stiffness_ratio = (dem_real)(2*(1 - (na + nb)/2)/(2 - (na + nb)/2));
+    return p;
+}
+
+DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *desc) {
+    dem_material id; int i, n = w->material_count;
+    id.id = 0;
+    if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
+    if (n == DEMI_MATERIALS) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, the limit; reuse one", n);
+        return id;
+    }
+    w->materials[n] = *desc;
+    w->material_count = n + 1;
+    for (i = 0; i <= n; i++)
+        w->pairs[i*DEMI_MATERIALS + n] = w->pairs[n*DEMI_MATERIALS + i] = demi_mix(&w->materials[i], desc);
+    w->list_valid = w->dt_valid = 0;
+    id.id = n + 1;
+    return id;
+}
+
+static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
+    if (m.id < 1 || m.id > w->material_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; add it with "
+                         "dem_material_add and check what that returned", call, (int)m.id, w->material_count);
+    *index = m.id - 1;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b, dem_pair *pair) {
+    dem_world *w = (dem_world *)world;          /* only the error sentence is written                     */
+    int i = 0, j = 0;
+    if (demi_material_index(w, "dem_pair_get", a, &i) || demi_material_index(w, "dem_pair_get", b, &j))
+        return DEM_ERROR_ARGUMENT;
+    *pair = w->pairs[i*DEMI_MATERIALS + j];
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
+    int i = 0, j = 0;
+    const char *bad = 0, *limit = "";
+    dem_real value = 0;
+    if (demi_material_index(w, "dem_pair_set", a, &i) || demi_material_index(w, "dem_pair_set", b, &j))
+        return DEM_ERROR_ARGUMENT;
+#define DEMI_BAD(field, good, text) \
+    if (!bad && (!demi_finite(p->field) || !(good))) { bad = #field; value = p->field; limit = text; }
+    DEMI_BAD(young_eff, p->young_eff > 0 || p->stiffness > 0, "> 0 Pa")
+    DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
+    DEMI_BAD(restitution, p->restitution > 0 && p->restitution <= 1, "> 0 and <= 1")
+    DEMI_BAD(friction, p->friction >= 0, ">= 0")
+    DEMI_BAD(friction_static, p->friction_static >= p->friction, "at least the sliding friction")
+    DEMI_BAD(rolling_friction, p->rolling_friction >= 0, ">= 0")
+    DEMI_BAD(stiffness, p->stiffness >= 0, ">= 0 N/m")
+    DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, ">= 0")
+    DEMI_BAD(tangent_damping, p->tangent_damping >= 0, ">= 0")
+#undef DEMI_BAD
+    if (bad)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, must be %s; start "
+                         "from dem_pair_get and change what differs", bad, i + 1, j + 1, (double)value, limit);
+    w->pairs[i*DEMI_MATERIALS + j] = w->pairs[j*DEMI_MATERIALS + i] = *p;
+    w->pair_given = 1;
+    w->list_valid = w->dt_valid = 0;
+    return DEM_OK;
+}
+
+/* beta = -ln e / sqrt(pi^2 + ln^2 e), the share of critical damping that gives restitution e */
+static double demi_damping_ratio(double e) { return -log(e)/sqrt(DEMI_PI*DEMI_PI + log(e)*log(e)); }
+
+/* The coefficients of one contact.
+     Hertz   F = kn d^(3/2) + cn d^(1/4) v,  kn = 4/3 E* sqrt(R*),  cn = 2 sqrt(5/6) beta sqrt(2 E* sqrt(R*) m*)
+             kt = 8 G* sqrt(R*) (times d^(1/2)),  ct = 2 sqrt(5/6) beta sqrt(8 G* sqrt(R*) m*)  [TSU92, MIL]
+     linear  F = kn d + cn v,  kn = (320/81 m* v^2 E*^4 R*^2)^(1/5) [DIM04] unless given, cn = 2 beta sqrt(kn m*)
+             kt = ratio kn,  ct = 2 beta sqrt(kt m*)
+   DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps between
+   grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff, m_eff: the standard ones.
+   Checked by "the thesis's eight coefficients". */
+static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff, int wall, dem_real *out) {
+    const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b];
+    const double beta = demi_damping_ratio((double)p->restitution);
+    double E = (double)p->young_eff, G = (double)p->shear_eff, kn, cn, kt, ct, R = r_eff, m = m_eff;
+    const int mill = w->desc.convention == DEM_CONVENTION_MILL;
+    if (mill) {                                 /* material b's own moduli: the wall's, or the grain's    */
+        const dem_material_desc *d = &w->materials[b];
+        E = (double)d->young;
+        G = E/(2*(1 + (double)d->poisson));
+        if (wall) { R /= 2; m /= 2; }
+    }
+    if (w->desc.normal_law == DEM_NORMAL_HERTZ) {
+        const double root = sqrt(R), half = mill && !wall ? 0.5 : 1;
+        kn = 4*E*root/3*pow(half, 1.5);
+        cn = 2*sqrt(5.0/6)*beta*sqrt(2*E*root*m)*pow(half, 0.25);
+        kt = 8*G*root*sqrt(half);
+        ct = 2*sqrt(5.0/6)*beta*sqrt(8*G*root*m)*pow(half, 0.25);
+    } else {
+        const double v = w->desc.impact_speed > 0 ? (double)w->desc.impact_speed : 1;
+        kn = p->stiffness > 0 ? (double)p->stiffness : pow(320.0/81*m*v*v*E*E*E*E*R*R, 0.2);
+        cn = 2*beta*sqrt(kn*m);
+        kt = kn*(double)p->stiffness_ratio;
+        ct = 2*beta*sqrt(kt*m);
+    }
+    ct *= (double)p->tangent_damping;
+    out[DEMI_KN] = (dem_real)kn; out[DEMI_CN] = (dem_real)cn; out[DEMI_KT] = (dem_real)kt; out[DEMI_CT] = (dem_real)ct;
+    out[DEMI_MU] = p->friction;
+    out[DEMI_MU_STATIC] = DEMI_MAX(p->friction, p->friction_static);
+    out[DEMI_MU_ROLL] = p->rolling_friction;
+    out[DEMI_R_EFF] = (dem_real)r_eff;
+}
+
+/* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi sqrt(m/k)
+   (with damping pi/sqrt(k/m - (c/2m)^2) [FEN] eq 2.21). */
+static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff, double speed) {
+    const double k = (double)coef[DEMI_KN], c = (double)coef[DEMI_CN];
+    if (w->desc.normal_law == DEM_NORMAL_LINEAR) {
+        const double eta = c/(2*m_eff);
+        return DEMI_PI/sqrt(DEMI_MAX(k/m_eff - eta*eta, 1e-12*k/m_eff));
+    }
+    return 2.94327518*pow(5*m_eff*speed*speed/(4*k), 0.4)/speed;
+}
+
+static double demi_sphere_mass(const dem_world *w, int material, double r) {
+    const double rho = (double)w->materials[material].density;
+    if (w->desc.planar) return rho*DEMI_PI*r*r*(double)w->desc.thickness;
+    return rho*4/3*DEMI_PI*r*r*r;
+}
+static double demi_sphere_inertia(const dem_world *w, double mass, double r) {
+    return w->desc.planar ? mass*r*r/2 : 0.4*mass*r*r;
+}
+
+DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
+                                        dem_real radius_a, dem_real radius_b, dem_coefficients *out) {
+    dem_world *w = (dem_world *)world;
+    int i = 0, j = 0;
+    double ra = (double)radius_a, rb = (double)radius_b, ma, r, m;
+    dem_real coef[DEMI_COEFS];
+    if (demi_material_index(w, "dem_coefficients_get", a, &i) || demi_material_index(w, "dem_coefficients_get", b, &j))
+        return DEM_ERROR_ARGUMENT;
+    if (!(ra > 0) || !(rb >= 0) || !demi_finite(radius_a) || !demi_finite(radius_b))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_coefficients_get: radii are %g and %g m, must be > 0 and >= 0 "
+                         "(0: a wall)", ra, rb);
+    ma = demi_sphere_mass(w, i, ra);
+    r = rb > 0 ? ra*rb/(ra + rb) : ra;
+    m = rb > 0 ? 1/(1/ma + 1/demi_sphere_mass(w, j, rb)) : ma;
+    demi_coefficients(w, i, j, r, m, rb <= 0, coef);
+    out->r_eff = (dem_real)r; out->m_eff = (dem_real)m;
+    out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT]; out->ct = coef[DEMI_CT];
+    out->damping_ratio = (dem_real)demi_damping_ratio((double)w->pairs[i*DEMI_MATERIALS + j].restitution);
+    out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0 ? (double)w->desc.impact_speed : 1);
+    return DEM_OK;
+}
+
+DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
+    int i, j;
+    fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    kt/kn\n");
+    for (i = 0; i < w->material_count; i++)
+        for (j = i; j < w->material_count; j++) {
+            const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j];
+            fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %.4g\n", i + 1, j + 1,
+                    (double)p->young_eff, (double)p->shear_eff, (double)p->restitution, (double)p->friction,
+                    (double)p->friction_static, (double)p->rolling_friction, (double)p->stiffness,
+                    (double)p->stiffness_ratio);
+        }
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>bodies
+   Grains: who they are (slots, which never move), where they stand in the arrays (indices, which
+   change whenever the list is rebuilt), adding, removing, placing. Whoever changes who is where calls
+   demi_list_drop first (it stands here because everyone needs it): contact memory is then filed by slot
+   and finds its way into the next list.
+   ------------------------------------------------------------------------------------------------ */
+
+/* Files the memory of all touching pairs by slot: row = lower slot; partner = higher slot, or its
+   complement when body a of the pair was the higher one. 0 when memory ran out. */
+static int demi_carry_collect(dem_world *w) {
+    const int stride = w->memory_stride, lists = 2;
+    int d, l, k, total = 0, pass;
+    w->carry_count = 0;
+    if (!stride || !w->domain_count) return 1;
+    if (!demi_array_grow(w, &w->carry_start_, sizeof(int32_t), (size_t)w->slot_count + 2)) return 0;
+    w->carry_start = (int32_t *)w->carry_start_.data;
+    memset(w->carry_start, 0, ((size_t)w->slot_count + 2)*sizeof(int32_t));
+    for (pass = 0; pass < 2; pass++) {          /* count by row, then fill                                */
+        for (l = 0; l < lists; l++) {
+            const demi_list *list = l ? &w->cross : &w->own;
+            for (d = 0; d < w->domain_count; d++) {
+                const int count = l ? w->domains[d].cross : w->domains[d].own;
+                for (k = d*list->stride; k < d*list->stride + count; k++) {
+                    int32_t a, b, row;
+                    if (list->stamp[k] != w->stamp) continue;
+                    a = (int32_t)w->body_slot[list->a[k]];
+                    b = (int32_t)w->body_slot[list->b[k]];
+                    row = DEMI_MIN(a, b);
+                    if (pass == 0) { w->carry_start[row + 2]++; total++; continue; }
+                    w->carry_partner[w->carry_start[row + 1]] = a < b ? b : ~a;
+                    memcpy(w->carry_memory + (size_t)w->carry_start[row + 1]++*(size_t)stride,
+                           list->memory + (size_t)k*(size_t)stride, (size_t)stride*sizeof(dem_real));
+                }
+            }
+        }
+        if (pass == 0) {
+            if (!demi_array_grow(w, &w->carry_partner_, sizeof(int32_t), (size_t)total) ||
+                !demi_array_grow(w, &w->carry_memory_, sizeof(dem_real), (size_t)total*(size_t)stride)) return 0;
+            w->carry_partner = (int32_t *)w->carry_partner_.data;
+            w->carry_memory = (dem_real *)w->carry_memory_.data;
+            for (k = 2; k < w->slot_count + 2; k++) w->carry_start[k] += w->carry_start[k - 1];
+        }
+    }
+    w->carry_count = total;
+    return 1;
+}
+
+/* The candidate list no longer fits: save what it remembers. 0 when memory ran out; nothing changed then. */
+static int demi_list_drop(dem_world *w) {
+    int d, k;
+    if (!w->list_valid) return 1;
+    if (!demi_carry_collect(w)) return 0;
+    for (d = 0; d < w->domain_count; d++)
+        for (k = 0; k < w->domains[d].wall_contacts; k++) {
+            demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
+            c->body = (int32_t)w->body_slot[c->body];      /* from here on a slot                        */
+        }
+    w->list_valid = 0;
+    return 1;
+}
+
+/* Gives every array of the set new room, or leaves all as they were. */
+typedef struct demi_room { void **data; size_t item; void *fresh; } demi_room;
+static int demi_room_grow(dem_world *w, demi_room *set, int count, size_t used, size_t old_room, size_t room) {
+    int i;
+    for (i = 0; i < count; i++) {
+        set[i].fresh = demi_alloc(w, room, set[i].item);
+        if (!set[i].fresh) {
+            while (i--) demi_free(w, set[i].fresh, room, set[i].item);
+            return 0;
+        }
+    }
+    for (i = 0; i < count; i++) {
+        if (used) memcpy(set[i].fresh, *set[i].data, used*set[i].item);
+        demi_free(w, *set[i].data, old_room, set[i].item);
+        *set[i].data = set[i].fresh;
+    }
+    return 1;
+}
+static void demi_room_add(demi_room *set, int *count, void *data, size_t item) {
+    set[*count].data = (void **)data;
+    set[*count].item = item;
+    (*count)++;
+}
+static int demi_body_rooms(dem_world *w, demi_room *set) {
+    int n = 0;
+    const size_t four = 4*sizeof(dem_real);
+    demi_room_add(set, &n, &w->pos, four);        demi_room_add(set, &n, &w->vel, four);
+    demi_room_add(set, &n, &w->spin, four);       demi_room_add(set, &n, &w->half_vel, four);
+    demi_room_add(set, &n, &w->half_spin, four);  demi_room_add(set, &n, &w->force, four);
+    demi_room_add(set, &n, &w->torque, four);     demi_room_add(set, &n, &w->scratch, four);
+    demi_room_add(set, &n, &w->inv_mass, sizeof(dem_real));
+    demi_room_add(set, &n, &w->inv_inertia, sizeof(dem_real));
+    demi_room_add(set, &n, &w->mass, sizeof(dem_real));
+    demi_room_add(set, &n, &w->body_slot, sizeof(uint32_t));
+    demi_room_add(set, &n, &w->body_material, sizeof(int32_t));
+    demi_room_add(set, &n, &w->order, sizeof(int32_t));
+    demi_room_add(set, &n, &w->cell_of, sizeof(int32_t));
+    return n;
+}
+static int demi_bodies_reserve(dem_world *w, size_t count) {
+    demi_room set[16];
+    size_t room = count + count/4 + 16;
+    int n = demi_body_rooms(w, set);
+    if (count > (size_t)(INT_MAX/64)) return 0;
+    if (count > (size_t)w->capacity) {
+        if (!demi_room_grow(w, set, n, (size_t)w->count, (size_t)w->capacity, room)) return 0;
+        w->capacity = (int)room;
+    }
+    if (count > (size_t)w->slot_capacity) {
+        n = 0;
+        demi_room_add(set, &n, &w->slot_index, sizeof(int32_t));
+        demi_room_add(set, &n, &w->slot_generation, sizeof(uint32_t));
+        if (!demi_room_grow(w, set, n, (size_t)w->slot_count, (size_t)w->slot_capacity, room)) return 0;
+        w->slot_capacity = (int)room;
+    }
+    return 1;
+}
+
+static double demi_body_energy(const dem_world *w, int i) {
+    const dem_real *v = w->vel + 4*i, *s = w->spin + 4*i;
+    double m = (double)w->mass[i], I = demi_sphere_inertia(w, m, (double)w->pos[4*i + 3]);
+    if (w->inv_mass[i] <= 0) return 0;
+    return m*(double)(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2 + I*(double)(s[0]*s[0] + s[1]*s[1] + s[2]*s[2])/2;
+}
+
+/* What follows from bodies having changed: forces, list and advice must be made anew. */
+static void demi_scene_changed(dem_world *w) { w->forces_valid = w->dt_valid = w->primed = 0; }
+
+/* Puts one body at the end of the arrays; room and list have been seen to. */
+static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, dem_vec3 x) {
+    const int i = w->count++;
+    const double m = demi_sphere_mass(w, material, (double)radius);
+    int slot = w->slot_free;
+    if (slot >= 0) w->slot_free = -2 - w->slot_index[slot];       /* chain: index = -2 - next             */
+    else { slot = w->slot_count++; w->slot_generation[slot] = 1; }
+    memset(w->pos + 4*i, 0, 4*sizeof(dem_real));       memset(w->vel + 4*i, 0, 4*sizeof(dem_real));
+    memset(w->spin + 4*i, 0, 4*sizeof(dem_real));      memset(w->force + 4*i, 0, 4*sizeof(dem_real));
+    memset(w->torque + 4*i, 0, 4*sizeof(dem_real));    memset(w->half_vel + 4*i, 0, 4*sizeof(dem_real));
+    memset(w->half_spin + 4*i, 0, 4*sizeof(dem_real));
+    demi_put(w->pos + 4*i, x);
+    w->pos[4*i + 3] = radius;
+    w->mass[i] = (dem_real)m;
+    w->inv_mass[i] = (dem_real)(1/m);
+    w->inv_inertia[i] = (dem_real)(1/demi_sphere_inertia(w, m, (double)radius));
+    w->body_slot[i] = (uint32_t)slot;
+    w->body_material[i] = material + 1;
+    w->slot_index[slot] = i;
+    w->balance.inserted++;
+    w->balance.present++;
+    return (uint32_t)slot;
+}
+
+DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int count, const dem_real *positions,
+                                   const dem_real *velocities, const dem_real *radii, dem_real radius) {
+    int i, m = 0;
+    if (demi_material_index(w, "dem_spheres_add", material, &m) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (count < 0 || (count > 0 && !positions))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: count is %d, must be >= 0 with positions (count x 3)"
+                         "; check the caller's array", count);
+    for (i = 0; i < count; i++) {
+        const dem_real r = radii ? radii[i] : radius;
+        if (!(r > 0) || !demi_finite(r))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: radius of sphere %d is %g, must be > 0 m; "
+                             "no sphere was added", i, (double)r);
+        if (!demi_finite3(demi_at(positions + 3*i)) || (velocities && !demi_finite3(demi_at(velocities + 3*i))))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of sphere %d is not a "
+                             "finite number; check the data it came from; no sphere was added", i);
+    }
+    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count))
+        return demi_no_memory(w, "dem_spheres_add");
+    for (i = 0; i < count; i++) {
+        const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius, demi_at(positions + 3*i));
+        const int k = w->slot_index[slot];
+        if (velocities) demi_put(w->vel + 4*k, demi_at(velocities + 3*i));
+        if (w->desc.planar) w->vel[4*k + 2] = 0;
+        w->energy_inserted += demi_body_energy(w, k);
+    }
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real radius, dem_vec3 position) {
+    dem_body id;
+    dem_real x[3];
+    id.slot = id.generation = 0;
+    demi_put(x, position);
+    if (dem_spheres_add(w, material, 1, x, 0, 0, radius) != DEM_OK) return id;
+    return dem_bodies_id(w, w->count - 1);
+}
+
+/* Index of a body, or -1 with a sentence. */
+static int demi_body_index(dem_world *w, const char *call, dem_body b) {
+    if (b.slot < 1 || b.slot > (uint32_t)w->slot_count || w->slot_generation[b.slot - 1] != b.generation ||
+        w->slot_index[b.slot - 1] < 0) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u (generation %u) does not exist; it was removed, has left the "
+                  "domain, or never was", call, (unsigned)b.slot, (unsigned)b.generation);
+        return -1;
+    }
+    return w->slot_index[b.slot - 1];
+}
+
+static void demi_body_take_out(dem_world *w, int i) {
+    const int last = w->count - 1, slot = (int)w->body_slot[i];
+    w->energy_removed += demi_body_energy(w, i);
+    if (i != last) {
+        dem_real *fours[7];
+        int k;
+        fours[0] = w->pos; fours[1] = w->vel; fours[2] = w->spin; fours[3] = w->half_vel; fours[4] = w->half_spin;
+        fours[5] = w->force; fours[6] = w->torque;
+        for (k = 0; k < 7; k++) memcpy(fours[k] + 4*i, fours[k] + 4*last, 4*sizeof(dem_real));
+        w->mass[i] = w->mass[last];
+        w->inv_mass[i] = w->inv_mass[last];
+        w->inv_inertia[i] = w->inv_inertia[last];
+        w->body_slot[i] = w->body_slot[last];
+        w->body_material[i] = w->body_material[last];
+        w->slot_index[w->body_slot[i]] = i;
+    }
+    w->slot_index[slot] = -2 - w->slot_pending;
+    w->slot_pending = slot;
+    w->slot_generation[slot]++;
+    w->count = last;
+    w->balance.present--;
+}
+
+DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
+    int i = demi_body_index(w, "dem_body_remove", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_remove");
+    demi_body_take_out(w, i);
+    w->balance.removed++;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *s) {
+    dem_world *w = (dem_world *)world;
+    int i = demi_body_index(w, "dem_body_get", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    s->position = demi_at(w->pos + 4*i);
+    s->velocity = demi_at(w->vel + 4*i);
+    s->spin = demi_at(w->spin + 4*i);
+    s->force = demi_at(w->force + 4*i);
+    s->torque = demi_at(w->torque + 4*i);
+    s->radius = w->pos[4*i + 3];
+    s->mass = w->mass[i];
+    s->inertia = (dem_real)demi_sphere_inertia(w, (double)w->mass[i], (double)s->radius);
+    s->material.id = w->body_material[i];
+    s->fixed = w->inv_mass[i] <= 0;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_state *s) {
+    int i = demi_body_index(w, "dem_body_set", body);
+    double before, m;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (!demi_finite3(s->position) || !demi_finite3(s->velocity) || !demi_finite3(s->spin))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: position, velocity or spin of body %u is not a finite "
+                         "number; check what it was computed from", (unsigned)body.slot);
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_set");
+    before = demi_body_energy(w, i);
+    m = (double)w->mass[i];
+    demi_put(w->pos + 4*i, s->position);
+    demi_put(w->vel + 4*i, s->velocity);
+    demi_put(w->spin + 4*i, s->spin);
+    if (w->desc.planar) w->vel[4*i + 2] = w->spin[4*i] = w->spin[4*i + 1] = 0;
+    w->inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
+    w->inv_inertia[i] = s->fixed ? 0 : (dem_real)(1/demi_sphere_inertia(w, m, (double)w->pos[4*i + 3]));
+    w->energy_inserted += demi_body_energy(w, i) - before;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
+    dem_bodies b;
+    b.count = w->count;
+    b.positions = w->pos; b.velocities = w->vel; b.spins = w->spin; b.forces = w->force; b.torques = w->torque;
+    b.masses = w->mass; b.slots = w->body_slot; b.materials = w->body_material;
+    return b;
+}
+DEM_API dem_body dem_bodies_id(const dem_world *w, int index) {
+    dem_body id;
+    id.slot = id.generation = 0;
+    if (index < 0 || index >= w->count) return id;
+    id.slot = w->body_slot[index] + 1;
+    id.generation = w->slot_generation[w->body_slot[index]];
+    return id;
+}
+DEM_API dem_balance dem_balance_get(const dem_world *w) { return w->balance; }
+
+/* Buckets of the bodies there are, for finding room: cell = at least twice the largest radius. */
+typedef struct demi_buckets { dem_box box; double cell; int n[3]; int32_t *head, *next; int next_room; } demi_buckets;
+static int demi_bucket_of(const demi_buckets *g, dem_vec3 x) {
+    int k, c[3];
+    double p[3], lo[3];
+    p[0] = (double)x.x; p[1] = (double)x.y; p[2] = (double)x.z;
+    lo[0] = (double)g->box.lo.x; lo[1] = (double)g->box.lo.y; lo[2] = (double)g->box.lo.z;
+    for (k = 0; k < 3; k++) {
+        double t = floor((p[k] - lo[k])/g->cell);
+        c[k] = t < 0 ? 0 : t >= g->n[k] ? g->n[k] - 1 : (int)t;
+    }
+    return c[0] + g->n[0]*(c[1] + g->n[1]*c[2]);
+}
+static int demi_bucket_free(const dem_world *w, const demi_buckets *g, dem_vec3 x, dem_real r) {
+    const int home = demi_bucket_of(g, x), hx = home%g->n[0], hy = home/g->n[0]%g->n[1], hz = home/g->n[0]/g->n[1];
+    int i, j, k, b;
+    for (k = DEMI_MAX(hz - 1, 0); k <= DEMI_MIN(hz + 1, g->n[2] - 1); k++)
+        for (j = DEMI_MAX(hy - 1, 0); j <= DEMI_MIN(hy + 1, g->n[1] - 1); j++)
+            for (i = DEMI_MAX(hx - 1, 0); i <= DEMI_MIN(hx + 1, g->n[0] - 1); i++)
+                for (b = g->head[i + g->n[0]*(j + g->n[1]*k)]; b >= 0; b = g->next[b]) {
+                    dem_vec3 d = demi_sub(demi_at(w->pos + 4*b), x);
+                    dem_real s = w->pos[4*b + 3] + r;
+                    if (demi_dot(d, d) < s*s) return 0;
+                }
+    return 1;
+}
+
+DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius, dem_box box, int count,
+                             uint64_t seed) {
+    demi_buckets g;
+    uint64_t state = seed;
+    dem_real r_max = radius;
+    int i, k, m = 0, done = 0, planar = w->desc.planar;
+    size_t cells;
+    double size[3];
+    if (demi_material_index(w, "dem_spheres_fill", material, &m) != DEM_OK) return 0;
+    if (!(radius > 0) || !demi_finite(radius) || count < 0) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: radius is %g m and count %d, must be > 0 and >= 0",
+                  (double)radius, count);
+        return 0;
+    }
+    size[0] = (double)(box.hi.x - box.lo.x) - 2*(double)radius;
+    size[1] = (double)(box.hi.y - box.lo.y) - 2*(double)radius;
+    size[2] = planar ? 0 : (double)(box.hi.z - box.lo.z) - 2*(double)radius;
+    if (!(size[0] >= 0 && size[1] >= 0 && size[2] >= 0) || !demi_finite3(box.lo) || !demi_finite3(box.hi)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: the box is smaller than one sphere of radius %g m; "
+                  "give lo below hi by at least a diameter", (double)radius);
+        return 0;
+    }
+    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count)) {
+        demi_no_memory(w, "dem_spheres_fill");
+        return 0;
+    }
+    for (i = 0; i < w->count; i++) r_max = DEMI_MAX(r_max, w->pos[4*i + 3]);
+    g.box = box;
+    g.cell = 2.0001*(double)r_max;
+    for (;; g.cell *= 1.26) {                   /* no more cells than about four per body                 */
+        for (k = 0; k < 3; k++) g.n[k] = (int)DEMI_MIN((size[k] + 2*(double)radius)/g.cell, 1e6) + 1;
+        if ((double)g.n[0]*g.n[1]*g.n[2] <= 4.0*(w->count + count) + 64) break;
+    }
+    cells = (size_t)g.n[0]*(size_t)g.n[1]*(size_t)g.n[2];
+    g.next_room = w->count + count;
+    g.head = (int32_t *)demi_alloc(w, cells, sizeof(int32_t));
+    g.next = (int32_t *)demi_alloc(w, (size_t)g.next_room + 1, sizeof(int32_t));
+    if (!g.head || !g.next) {
+        demi_free(w, g.head, cells, sizeof(int32_t));
+        demi_free(w, g.next, (size_t)g.next_room + 1, sizeof(int32_t));
+        demi_no_memory(w, "dem_spheres_fill");
+        return 0;
+    }
+    memset(g.head, 0xff, cells*sizeof(int32_t));
+    for (i = 0; i < w->count; i++) {
+        k = demi_bucket_of(&g, demi_at(w->pos + 4*i));
+        g.next[i] = g.head[k];
+        g.head[k] = i;
+    }
+    for (i = 0; i < count; i++) {
+        int tries;
+        for (tries = 0; tries < 2000; tries++) {
+            dem_vec3 x;
+            x.x = box.lo.x + radius + (dem_real)(size[0]*demi_uniform(&state));
+            x.y = box.lo.y + radius + (dem_real)(size[1]*demi_uniform(&state));
+            x.z = planar ? 0 : box.lo.z + radius + (dem_real)(size[2]*demi_uniform(&state));
+            if (!demi_bucket_free(w, &g, x, radius)) continue;
+            demi_body_append(w, m, radius, x);
+            k = demi_bucket_of(&g, x);
+            g.next[w->count - 1] = g.head[k];
+            g.head[k] = w->count - 1;
+            done++;
+            break;
+        }
+        if (tries == 2000) break;
+    }
+    if (done < count)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: %d of %d spheres of radius %g m found a place in 2000 "
+                  "tries each; enlarge the box, or pack them with dem_spheres_pack", done, count, (double)radius);
+    demi_free(w, g.head, cells, sizeof(int32_t));
+    demi_free(w, g.next, (size_t)g.next_room + 1, sizeof(int32_t));
+    demi_scene_changed(w);
+    return done;
+}
+
+/* Sphere (i, j, k) of a hexagonal close packing of spheres of radius r that starts at the origin:
+   even and odd layers alternate. In a plane: a triangular lattice, k = 0. */
+static dem_vec3 demi_pack_site(int i, int j, int k, double r) {
+    const double root3 = sqrt(3.0);
+    return demi_v((dem_real)(r*(2*i + ((j + k) & 1))), (dem_real)(r*root3*(j + (k & 1)/3.0)),
+                  (dem_real)(r*k*2*sqrt(6.0)/3));
+}
+
+DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radius, dem_real padding,
+                             dem_box box, dem_inside_fn inside, void *user, int count) {
+    const double r = (double)radius + (double)padding/2, slack = 1e-9*r;
+    double size[3];
+    int i, j, k, n[3], m = 0, done = 0;
+    if (demi_material_index(w, "dem_spheres_pack", material, &m) != DEM_OK) return 0;
+    if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) || count < 0 ||
+        !demi_finite3(box.lo) || !demi_finite3(box.hi)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_pack: radius %g, padding %g, count %d; must be > 0, >= 0, >= 0 "
+                  "and the box finite", (double)radius, (double)padding, count);
+        return 0;
+    }
+    if (!demi_list_drop(w)) { demi_no_memory(w, "dem_spheres_pack"); return 0; }
+    size[0] = (double)(box.hi.x - box.lo.x) - 2*(double)radius;
+    size[1] = (double)(box.hi.y - box.lo.y) - 2*(double)radius;
+    size[2] = w->desc.planar ? 0 : (double)(box.hi.z - box.lo.z) - 2*(double)radius;
+    for (k = 0; k < 3; k++) n[k] = size[k] < 0 ? 0 : (int)DEMI_MIN(size[k]/r + 2, 1e8);
+    if (w->desc.planar) n[2] = 1;
+    for (k = 0; k < n[2]; k++)
+        for (j = 0; j < n[1]; j++)
+            for (i = 0; i < n[0]; i++) {
+                dem_vec3 s = demi_pack_site(i, j, k, r), x;
+                if ((double)s.x > size[0] + slack) break;
+                if ((double)s.y > size[1] + slack || (double)s.z > size[2] + slack) break;
+                x = demi_v(box.lo.x + radius + s.x, box.lo.y + radius + s.y,
+                           w->desc.planar ? 0 : box.lo.z + radius + s.z);
+                if (inside && !inside(x, radius, user)) continue;
+                if (!demi_bodies_reserve(w, (size_t)w->count + 1)) {
+                    demi_no_memory(w, "dem_spheres_pack");
+                    demi_scene_changed(w);
+                    return done;
+                }
+                demi_body_append(w, m, radius, x);
+                if (++done == count) { demi_scene_changed(w); return done; }
+            }
+    demi_scene_changed(w);
+    return done;
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>walls
+   A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls of
+   many elements keep a grid of them in their own frame, so that a grain finds its neighbours at a cost
+   that does not depend on their number. Planes and cylinders are one element each, without end.
+   >>add-wall: a kind in the enum, a case in demi_wall_touch (>>touch), a function here that adds it.
+   ------------------------------------------------------------------------------------------------ */
+static void demi_pose_identity(dem_pose *p) {
+    memset(p, 0, sizeof *p);
+    p->rotation[0] = p->rotation[4] = p->rotation[8] = 1;
+}
+
+/* Where the wall is at a time. Rotating: exact rotation from the pose it started with, so that no error
+   builds up. Velocities are exact derivatives. */
+static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose) {
+    const dem_motion *m = &wall->motion;
+    const double t = time - m->start;
+    *pose = wall->home;
+    pose->velocity = pose->spin = demi_v(0, 0, 0);
+    switch (m->kind) {
+    case DEM_MOTION_FIXED: break;
+    case DEM_MOTION_TRANSLATING:
+        if (t <= 0) break;
+        pose->position = demi_add(pose->position, demi_scale(m->velocity, (dem_real)t));
+        pose->velocity = m->velocity;
+        break;
+    case DEM_MOTION_ROTATING: {
+        const dem_vec3 axis = demi_unit(m->axis), arm = demi_sub(wall->home.position, m->point);
+        double turn[9];
+        dem_real T[9];
+        int i, j;
+        if (t <= 0) break;
+        demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z, fmod((double)m->speed*t, 2*DEMI_PI));
+        for (i = 0; i < 9; i++) T[i] = (dem_real)turn[i];
+        for (i = 0; i < 3; i++)
+            for (j = 0; j < 3; j++)
+                pose->rotation[3*i + j] = (dem_real)(turn[3*i]*(double)wall->home.rotation[j] +
+                    turn[3*i + 1]*(double)wall->home.rotation[3 + j] + turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
+        pose->position = demi_add(m->point, demi_turn(T, arm));
+        pose->spin = demi_scale(axis, m->speed);
+        pose->velocity = demi_cross(pose->spin, demi_sub(pose->position, m->point));
+        break;
+    }
+    case DEM_MOTION_OSCILLATING: {
+        const dem_vec3 way = demi_unit(m->velocity);
+        const double w = 2*DEMI_PI*(double)m->frequency, phase = w*t + (double)m->phase;
+        pose->position = demi_add(pose->position, demi_scale(way, (dem_real)((double)m->amplitude*sin(phase))));
+        pose->velocity = demi_scale(way, (dem_real)((double)m->amplitude*w*cos(phase)));
+        break;
+    }
+    case DEM_MOTION_USER: m->function(time, pose, m->user); break;
+    }
+}
+
+/* An upper bound of the speed of the wall's surface (m/s); 0 when its motion leaves the surface in place. */
+static double demi_wall_speed(const demi_wall *wall) {
+    const dem_pose *p = &wall->pose;
+    if (wall->kind == DEMI_WALL_NONE || wall->symmetric) return 0;
+    if (wall->reach < 0) return -1;             /* endless and moving: no bound, look again every step     */
+    return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->reach;
+}
+
+static void demi_wall_free(dem_world *w, demi_wall *wall) {
+    const size_t per = wall->kind == DEMI_WALL_MESH ? 3 : 2;
+    demi_free(w, wall->vertices, (size_t)wall->vertex_count*3, sizeof(dem_real));
+    demi_free(w, wall->corners, (size_t)wall->element_count*per, sizeof(int32_t));
+    demi_free(w, wall->cell_start, (size_t)wall->cells[0]*(size_t)wall->cells[1]*(size_t)wall->cells[2] + 1,
+              sizeof(int32_t));
+    demi_free(w, wall->cell_items, (size_t)wall->cell_item_count, sizeof(int32_t));
+    memset(wall, 0, sizeof *wall);
+}
+
+/* Number of corners an element of this wall has; their coordinates. */
+static int demi_wall_corners(const demi_wall *wall, int element, dem_vec3 *out) {
+    const int n = wall->kind == DEMI_WALL_MESH ? 3 : wall->kind == DEMI_WALL_PROFILE ? 2 : 1;
+    int k;
+    for (k = 0; k < n; k++)
+        out[k] = demi_at(wall->vertices + 3*(wall->corners ? wall->corners[n*element + k] : element));
+    return n;
+}
+
+/* Cells of the element grid that a box touches. */
+static void demi_wall_cells(const demi_wall *wall, dem_vec3 lo, dem_vec3 hi, int *first, int *last) {
+    double a[3], b[3], o[3];
+    int k;
+    a[0] = (double)lo.x; a[1] = (double)lo.y; a[2] = (double)lo.z;
+    b[0] = (double)hi.x; b[1] = (double)hi.y; b[2] = (double)hi.z;
+    o[0] = (double)wall->box.lo.x; o[1] = (double)wall->box.lo.y; o[2] = (double)wall->box.lo.z;
+    for (k = 0; k < 3; k++) {
+        const double f = floor((a[k] - o[k])/(double)wall->cell), l = floor((b[k] - o[k])/(double)wall->cell);
+        first[k] = f < 0 ? 0 : f > wall->cells[k] ? wall->cells[k] : (int)f;
+        last[k] = l >= wall->cells[k] ? wall->cells[k] - 1 : l < -1 ? -1 : (int)l;
+    }
+}
+
+/* Box, reach and grid of a wall's elements. 0 when memory ran out. */
+static int demi_wall_index(dem_world *w, demi_wall *wall) {
+    const dem_real pad = wall->kind == DEMI_WALL_GRAINS ? wall->radius : 0;
+    dem_vec3 c[3], lo, hi, size;
+    double reach = 0, extent = 0;
+    int i, k, n, pass, x, y, z, f[3], l[3];
+    wall->box.lo = wall->box.hi = demi_at(wall->vertices);
+    for (i = 0; i < wall->vertex_count; i++) {
+        const dem_vec3 p = demi_at(wall->vertices + 3*i);
+        wall->box.lo = demi_v(DEMI_MIN(wall->box.lo.x, p.x), DEMI_MIN(wall->box.lo.y, p.y), DEMI_MIN(wall->box.lo.z, p.z));
+        wall->box.hi = demi_v(DEMI_MAX(wall->box.hi.x, p.x), DEMI_MAX(wall->box.hi.y, p.y), DEMI_MAX(wall->box.hi.z, p.z));
+        reach = DEMI_MAX(reach, (double)demi_length(p) + (double)pad);
+    }
+    wall->box.lo = demi_sub(wall->box.lo, demi_v(pad, pad, pad));
+    wall->box.hi = demi_add(wall->box.hi, demi_v(pad, pad, pad));
+    wall->reach = (dem_real)reach;
+    if (wall->element_count <= 4) return 1;     /* a handful: just look at all                            */
+    for (i = 0; i < wall->element_count; i++) { /* cell: the mean element, so that each is in few cells   */
+        n = demi_wall_corners(wall, i, c);
+        for (k = 1; k < n; k++) extent += (double)demi_length(demi_sub(c[k], c[0]))/(n - 1);
+        if (n == 1) extent += 2*(double)wall->radius;
+    }
+    size = demi_sub(wall->box.hi, wall->box.lo);
+    wall->cell = (dem_real)DEMI_MAX(extent/wall->element_count, 1e-6*(double)demi_length(size));
+    for (;; wall->cell *= DEM_R(1.26)) {
+        wall->cells[0] = (int)DEMI_MIN(size.x/wall->cell, DEM_R(1e6)) + 1;
+        wall->cells[1] = (int)DEMI_MIN(size.y/wall->cell, DEM_R(1e6)) + 1;
+        wall->cells[2] = (int)DEMI_MIN(size.z/wall->cell, DEM_R(1e6)) + 1;
+        if ((double)wall->cells[0]*wall->cells[1]*wall->cells[2] <= 32.0*wall->element_count + 64) break;
+    }
+    n = wall->cells[0]*wall->cells[1]*wall->cells[2];
+    wall->cell_start = (int32_t *)demi_alloc(w, (size_t)n + 1, sizeof(int32_t));
+    if (!wall->cell_start) return 0;
+    for (pass = 0; pass < 2; pass++) {          /* count, then fill from the back                         */
+        for (i = wall->element_count - 1; i >= 0; i--) {
+            int corner, corners = demi_wall_corners(wall, i, c);
+            lo = hi = c[0];
+            for (corner = 1; corner < corners; corner++) {
+                lo = demi_v(DEMI_MIN(lo.x, c[corner].x), DEMI_MIN(lo.y, c[corner].y), DEMI_MIN(lo.z, c[corner].z));
+                hi = demi_v(DEMI_MAX(hi.x, c[corner].x), DEMI_MAX(hi.y, c[corner].y), DEMI_MAX(hi.z, c[corner].z));
+            }
+            demi_wall_cells(wall, demi_sub(lo, demi_v(pad, pad, pad)), demi_add(hi, demi_v(pad, pad, pad)), f, l);
+            for (z = f[2]; z <= l[2]; z++)
+                for (y = f[1]; y <= l[1]; y++)
+                    for (x = f[0]; x <= l[0]; x++) {
+                        int32_t *slot = &wall->cell_start[x + wall->cells[0]*(y + wall->cells[1]*z)];
+                        if (pass == 0) ++*slot; else wall->cell_items[--*slot] = i;
+                    }
+        }
+        if (pass == 0) {
+            for (i = 1; i <= n; i++) wall->cell_start[i] += wall->cell_start[i - 1];
+            wall->cell_item_count = wall->cell_start[n];
+            wall->cell_items = (int32_t *)demi_alloc(w, (size_t)wall->cell_item_count, sizeof(int32_t));
+            if (!wall->cell_items) return 0;
+        }
+    }
+    return 1;
+}
+
+/* Takes over a prepared wall (its arrays included) or frees it. */
+static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
+    dem_wall id;
+    id.id = 0;
+    wall->pose = wall->home;
+    if (!demi_list_drop(w)) { demi_wall_free(w, wall); demi_no_memory(w, call); return id; }
+    if (w->wall_count == w->wall_capacity) {
+        const size_t room = (size_t)w->wall_capacity*2 + 8;
+        demi_wall *fresh = (demi_wall *)demi_alloc(w, room, sizeof(demi_wall));
+        if (!fresh) { demi_wall_free(w, wall); demi_no_memory(w, call); return id; }
+        if (w->wall_count) memcpy(fresh, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
+        demi_free(w, w->walls, (size_t)w->wall_capacity, sizeof(demi_wall));
+        w->walls = fresh;
+        w->wall_capacity = (int)room;
+    }
+    w->walls[w->wall_count++] = *wall;
+    demi_scene_changed(w);
+    id.id = w->wall_count;
+    return id;
+}
+
+static int demi_wall_begin(dem_world *w, const char *call, dem_material material, int kind, demi_wall *wall) {
+    memset(wall, 0, sizeof *wall);
+    demi_pose_identity(&wall->home);
+    wall->kind = kind;
+    wall->share = 1;
+    wall->symmetric = 1;                        /* until it moves                                         */
+    return demi_material_index(w, call, material, &wall->material) == DEM_OK;
+}
+
+DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 point, dem_vec3 normal) {
+    demi_wall wall;
+    dem_wall none;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_plane_add", material, DEMI_WALL_PLANE, &wall)) return none;
+    if (!demi_finite3(point) || !demi_finite3(normal) || !(demi_dot(normal, normal) > 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_plane_add: normal is (%g, %g, %g), must be finite and not zero, point "
+                  "finite", (double)normal.x, (double)normal.y, (double)normal.z);
+        return none;
+    }
+    wall.element_count = 1;
+    wall.home.position = point;
+    wall.motion.point = point;
+    wall.motion.axis = demi_unit(normal);
+    demi_frame_of(wall.home.rotation, demi_unit(normal));
+    wall.reach = -1;
+    return demi_wall_adopt(w, "dem_plane_add", &wall);
+}
+
+DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 point, dem_vec3 axis,
+                                  dem_real radius, int inside) {
+    demi_wall wall;
+    dem_wall none;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_cylinder_add", material, DEMI_WALL_CYLINDER, &wall)) return none;
+    if (!demi_finite3(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) || !(radius > 0) || !demi_finite(radius)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_cylinder_add: radius is %g m and axis (%g, %g, %g), must be > 0 and not "
+                  "zero", (double)radius, (double)axis.x, (double)axis.y, (double)axis.z);
+        return none;
+    }
+    wall.element_count = 1;
+    wall.radius = radius;
+    wall.inside = inside != 0;
+    wall.home.position = point;
+    wall.motion.point = point;
+    wall.motion.axis = demi_unit(axis);
+    demi_frame_of(wall.home.rotation, demi_unit(axis));
+    wall.reach = -1;
+    return demi_wall_adopt(w, "dem_cylinder_add", &wall);
+}
+
+/* Copies vertices (dimension `per_vertex`) and corners into a wall. 0 with a sentence when they are bad. */
+static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int vertices, const dem_real *xyz,
+                          int per_vertex, int elements, const int32_t *corners, int per_element) {
+    int i, k;
+    if (vertices < 1 || elements < 1 || !xyz || (per_element && !corners)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be at least one of each; was the file "
+                  "read?", call, vertices, elements);
+        return 0;
+    }
+    for (i = 0; i < vertices*per_vertex; i++)
+        if (!demi_finite(xyz[i])) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is not a finite number", call, i/per_vertex);
+            return 0;
+        }
+    for (i = 0; i < elements*per_element; i++)
+        if (corners[i] < 0 || corners[i] >= vertices) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; are they counted from 1?",
+                      call, i/per_element, (int)corners[i], vertices - 1);
+            return 0;
+        }
+    wall->vertex_count = vertices;
+    wall->element_count = elements;
+    wall->vertices = (dem_real *)demi_alloc(w, (size_t)vertices*3, sizeof(dem_real));
+    if (per_element) wall->corners = (int32_t *)demi_alloc(w, (size_t)elements*(size_t)per_element, sizeof(int32_t));
+    if (!wall->vertices || (per_element && !wall->corners)) {
+        demi_wall_free(w, wall);
+        demi_no_memory(w, call);
+        return 0;
+    }
+    for (i = 0; i < vertices; i++)
+        for (k = 0; k < per_vertex; k++) wall->vertices[3*i + k] = xyz[per_vertex*i + k];
+    if (per_element) memcpy(wall->corners, corners, (size_t)elements*(size_t)per_element*sizeof(int32_t));
+    if (!demi_wall_index(w, wall)) {
+        demi_wall_free(w, wall);
+        demi_no_memory(w, call);
+        return 0;
+    }
+    return 1;
+}
+
+DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_profile *profile, dem_edge_rule rule) {
+    demi_wall wall;
+    dem_wall none;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_profile_add", material, DEMI_WALL_PROFILE, &wall) ||
+        !demi_wall_load(w, "dem_profile_add", &wall, profile->vertex_count, profile->vertices, 2,
+                        profile->segment_count, profile->segments, 2)) return none;
+    wall.rule = rule;
+    wall.motion.axis = demi_v(0, 0, 1);
+    return demi_wall_adopt(w, "dem_profile_add", &wall);
+}
+
+DEM_API dem_wall dem_mesh_add(dem_world *w, dem_material material, const dem_mesh *mesh) {
+    demi_wall wall;
+    dem_wall none;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_mesh_add", material, DEMI_WALL_MESH, &wall) ||
+        !demi_wall_load(w, "dem_mesh_add", &wall, mesh->vertex_count, mesh->vertices, 3,
+                        mesh->triangle_count, mesh->triangles, 3)) return none;
+    wall.motion.axis = demi_v(0, 0, 1);
+    return demi_wall_adopt(w, "dem_mesh_add", &wall);
+}
+
+DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int count, const dem_real *positions,
+                                     dem_real radius, dem_real share) {
+    demi_wall wall;
+    dem_wall none;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_grains_wall_add", material, DEMI_WALL_GRAINS, &wall)) return none;
+    if (!(radius > 0) || !demi_finite(radius) || !(share > 0) || !(share <= 1)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_grains_wall_add: radius is %g m and share %g, must be > 0 and 0 < share "
+                  "<= 1", (double)radius, (double)share);
+        return none;
+    }
+    wall.radius = radius;
+    wall.share = share;
+    wall.motion.axis = demi_v(0, 0, 1);
+    if (!demi_wall_load(w, "dem_grains_wall_add", &wall, count, positions, 3, count, 0, 0)) return none;
+    return demi_wall_adopt(w, "dem_grains_wall_add", &wall);
+}
+
+/* [MIL] Algorithm 5.2: circles of touching spheres at R - r, layers r sqrt(3) apart, every other one turned by
+   half a place. Algorithm 5.3: hexagonal sheets over both ends, spheres that show at least in part. Printed:
+   layers from z = -L/2 + r(1 + z sqrt 3) with z itself stepping by r sqrt 3: we step the layer number. */
+DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radius, int ends, dem_real *out) {
+    const double R = (double)drum_radius, L = (double)length, r = (double)radius;
+    const double half = asin(r/(R - r));
+    int layers, circle, i, j, k, count = 0;
+    if (!(r > 0) || !(R > 2*r) || !(L > 0) || !demi_finite(drum_radius) || !demi_finite(length)) return 0;
+    circle = (int)(DEMI_PI/half);
+    layers = (int)ceil((L - 2*r)/(r*sqrt(3.0))) + 1;
+    for (k = 0; k < layers; k++)
+        for (i = 0; i < circle; i++, count++) {
+            const double angle = 2*DEMI_PI*i/circle + (k & 1 ? DEMI_PI/circle : 0);
+            if (!out) continue;
+            out[3*count] = (dem_real)((R - r)*cos(angle));
+            out[3*count + 1] = (dem_real)((R - r)*sin(angle));
+            out[3*count + 2] = (dem_real)(-L/2 + r*(1 + k*sqrt(3.0)));
+        }
+    if (!ends) return count;
+    for (k = -1; k <= 1; k += 2) {
+        const int rows = (int)(R/(r*sqrt(3.0))) + 2, columns = (int)(R/(2*r)) + 2;
+        for (j = -rows; j <= rows; j++)
+            for (i = -columns; i <= columns; i++) {
+                const double x = 2*r*i + (j & 1 ? r : 0), y = r*sqrt(3.0)*j;
+                if (sqrt(x*x + y*y) >= R + r) continue;
+                if (out) {
+                    out[3*count] = (dem_real)x;
+                    out[3*count + 1] = (dem_real)y;
+                    out[3*count + 2] = (dem_real)(k*(L/2 + r));
+                }
+                count++;
+            }
+    }
+    return count;
+}
+
+/* Index of a wall, or -1 with a sentence. */
+static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
+    if (wall.id < 1 || wall.id > w->wall_count || w->walls[wall.id - 1].kind == DEMI_WALL_NONE) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, there are %d; check what adding it returned",
+                  call, (int)wall.id, w->wall_count);
+        return -1;
+    }
+    return wall.id - 1;
+}
+
+/* 1 when turning about axis through point leaves the wall's surface where it is. */
+static int demi_wall_symmetric(const demi_wall *wall) {
+    const dem_motion *m = &wall->motion;
+    dem_vec3 z, off;
+    if (m->kind == DEM_MOTION_FIXED) return 1;
+    if (m->kind != DEM_MOTION_ROTATING || wall->reach >= 0) return 0;
+    z = demi_v(wall->home.rotation[2], wall->home.rotation[5], wall->home.rotation[8]);
+    if (demi_length(demi_cross(z, demi_unit(m->axis))) > DEM_R(1e-6)) return 0;
+    if (wall->kind == DEMI_WALL_PLANE) return 1;
+    off = demi_sub(m->point, wall->home.position);
+    return demi_length(demi_cross(z, off)) <= DEM_R(1e-6)*wall->radius;
+}
+
+DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *motion) {
+    const int i = demi_wall_find(w, "dem_wall_motion", id);
+    demi_wall *wall;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: axis of rotating wall %d is zero; give a direction",
+                         (int)id.id);
+    if (motion->kind == DEM_MOTION_OSCILLATING && !(demi_dot(motion->velocity, motion->velocity) > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: velocity, the direction of oscillating wall %d, is "
+                         "zero; give a direction", (int)id.id);
+    if (motion->kind == DEM_MOTION_USER && !motion->function)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: wall %d has kind DEM_MOTION_USER and no function; "
+                         "set motion.function", (int)id.id);
+    if (!demi_finite3(motion->velocity) || !demi_finite3(motion->point) || !demi_finite3(motion->axis) ||
+        !demi_finite(motion->speed) || !demi_finite(motion->amplitude) || !demi_finite(motion->frequency) ||
+        (int)motion->kind < 0 || motion->kind > DEM_MOTION_USER)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: a number in the motion of wall %d is not finite, or "
+                         "its kind %d unknown", (int)id.id, (int)motion->kind);
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_motion");
+    wall = &w->walls[i];
+    wall->home = wall->pose;                    /* goes on from where it is                               */
+    wall->home.velocity = wall->home.spin = demi_v(0, 0, 0);
+    wall->motion = *motion;
+    if (!(demi_dot(motion->axis, motion->axis) > 0)) wall->motion.axis = demi_v(0, 0, 1);
+    wall->motion.start = DEMI_MAX(motion->start, w->time);
+    wall->symmetric = demi_wall_symmetric(wall);
+    demi_wall_pose_at(wall, w->time, &wall->pose);
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_wall_pose(const dem_world *world, dem_wall id, dem_pose *pose) {
+    const int i = demi_wall_find((dem_world *)world, "dem_wall_pose", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *pose = world->walls[i].pose;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
+    const int i = demi_wall_find(w, "dem_wall_remove", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
+    demi_wall_free(w, &w->walls[i]);            /* its place stays empty: ids of other walls hold          */
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_wall_channels(const dem_world *world, dem_wall id, dem_channels *channels) {
+    const int i = demi_wall_find((dem_world *)world, "dem_wall_channels", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *channels = world->walls[i].channels;
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_channels_reset(dem_world *w, dem_wall id) {
+    const int i = demi_wall_find(w, "dem_wall_channels_reset", id);
+    demi_wall *wall;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    wall = &w->walls[i];
+    memset(wall->channels.impulse, 0, sizeof wall->channels.impulse);
+    wall->channels.torque_impulse = wall->channels.work = wall->channels.time = 0;
+    return DEM_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>search
+   Which pairs might touch before the next rebuild: all with distance < Ra + Rb + skin, found by one of
+   the methods below, stored in one canonical order (a ascending, then b), so that every method gives the
+   same list and the same bits. A rebuild sorts bodies by cell, deals them to domains of about 2000,
+   lists for each domain the pairs inside it and the pairs leading out, carries contact memory over, and
+   lists the wall elements near each grain.
+   ------------------------------------------------------------------------------------------------ */
+
+/* Shortest image of a distance d in a period: valid for |d| < 1.5 period. half = huge: not periodic. */
+DEM_INLINE dem_real demi_image(dem_real d, dem_real half, dem_real period) {
+    const dem_real up = d < -half ? period : 0, down = d > half ? period : 0;
+    return d + up - down;
+}
+typedef struct demi_periods { dem_real half[3], period[3]; } demi_periods;
+static demi_periods demi_periods_of(const dem_world *w) {
+    demi_periods p;
+    double lo[3], hi[3];
+    int k;
+    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y; lo[2] = (double)w->desc.domain.lo.z;
+    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y; hi[2] = (double)w->desc.domain.hi.z;
+    for (k = 0; k < 3; k++) {
+        const int periodic = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
+        p.period[k] = periodic ? (dem_real)(hi[k] - lo[k]) : 0;
+        p.half[k] = periodic ? (dem_real)((hi[k] - lo[k])/2) : (DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX);
+    }
+    return p;
+}
+static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
+    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y; lo[2] = (double)w->desc.domain.lo.z;
+    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y; hi[2] = (double)w->desc.domain.hi.z;
+}
+
+/* Brings positions back into the periodic box. */
+static void demi_wrap(dem_world *w) {
+    double lo[3], hi[3];
+    int i, k;
+    demi_domain_limits(w, lo, hi);
+    for (k = 0; k < 3; k++) {
+        const dem_real a = (dem_real)lo[k], b = (dem_real)hi[k], L = b - a;
+        if (w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC) continue;
+        for (i = 0; i < w->count; i++) {
+            dem_real *x = w->pos + 4*i + k, shift = 0;
+            if (*x >= b) shift = -L*(dem_real)floor((double)((*x - a)/L));
+            if (*x < a) shift = L*(dem_real)ceil((double)((a - *x)/L));
+            if (shift > 0 || shift < 0) {
+                *x += shift;
+                if (*x >= b) { *x -= L; shift -= L; }
+                if (w->desc.integrator == DEM_POSITION_VERLET) w->half_vel[4*i + k] += shift;
+            }
+        }
+    }
+}
+
+/* Lays the grid: cells no smaller than `least`, no more than about 4 per body; then the cell of each body. */
+static int demi_grid_lay(dem_world *w, double least) {
+    double lo[3], hi[3];
+    int i, k, n;
+    demi_domain_limits(w, lo, hi);
+    for (k = 0; k < 3; k++) {
+        const int periodic = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
+        if (periodic) continue;
+        lo[k] = w->count ? (double)w->pos[k] : 0;
+        hi[k] = lo[k];
+        for (i = 1; i < w->count; i++) {
+            const double x = (double)w->pos[4*i + k];
+            lo[k] = DEMI_MIN(lo[k], x);
+            hi[k] = DEMI_MAX(hi[k], x);
+        }
+    }
+    for (;; least *= 1.26) {
+        for (k = 0; k < 3; k++) w->cells[k] = (int)DEMI_MAX(1, DEMI_MIN((hi[k] - lo[k])/least, 1e6));
+        if ((double)w->cells[0]*w->cells[1]*w->cells[2] <= 4.0*w->count + 64) break;
+    }
+    for (k = 0; k < 3; k++) {
+        w->cell_origin[k] = lo[k];
+        w->cell_size[k] = DEMI_MAX((hi[k] - lo[k])/w->cells[k], least*1e-9);
+    }
+    n = w->cells[0]*w->cells[1]*w->cells[2];
+    if (!demi_array_grow(w, &w->cell_start_, sizeof(int32_t), (size_t)n + 2)) return 0;
+    for (i = 0; i < w->count; i++) {
+        int c[3];
+        for (k = 0; k < 3; k++) {
+            const double t = ((double)w->pos[4*i + k] - w->cell_origin[k])/w->cell_size[k];
+            c[k] = t <= 0 ? 0 : t >= w->cells[k] ? w->cells[k] - 1 : (int)t;
+        }
+        w->cell_of[i] = c[0] + w->cells[0]*(c[1] + w->cells[1]*c[2]);
+    }
+    return 1;
+}
+
+static void demi_permute4(const dem_world *w, dem_real *x) {
+    int i;
+    for (i = 0; i < w->count; i++) memcpy(w->scratch + 4*i, x + 4*w->order[i], 4*sizeof(dem_real));
+    memcpy(x, w->scratch, (size_t)w->count*4*sizeof(dem_real));
+}
+/* Sorts bodies by cell; within a cell they keep their order. */
+static void demi_bodies_sort(dem_world *w) {
+    const int n = w->cells[0]*w->cells[1]*w->cells[2];
+    int32_t *start = (int32_t *)w->cell_start_.data;
+    int i, sorted = 1;
+    memset(start, 0, ((size_t)n + 2)*sizeof(int32_t));
+    for (i = 0; i < w->count; i++) {
+        start[w->cell_of[i] + 2]++;
+        if (i && w->cell_of[i] < w->cell_of[i - 1]) sorted = 0;
+    }
+    for (i = 2; i < n + 2; i++) start[i] += start[i - 1];
+    for (i = 0; i < w->count; i++) w->order[start[w->cell_of[i] + 1]++] = i;
+    if (sorted) return;
+    demi_permute4(w, w->pos); demi_permute4(w, w->vel); demi_permute4(w, w->spin);
+    demi_permute4(w, w->half_vel); demi_permute4(w, w->half_spin);
+    demi_permute4(w, w->force); demi_permute4(w, w->torque);
+#define DEMI_PERMUTE(array, type) do { \
+        type *from = w->array, *to = (type *)(void *)w->scratch; \
+        for (i = 0; i < w->count; i++) to[i] = from[w->order[i]]; \
+        memcpy(from, to, (size_t)w->count*sizeof(type)); } while (0)
+    DEMI_PERMUTE(mass, dem_real); DEMI_PERMUTE(inv_mass, dem_real); DEMI_PERMUTE(inv_inertia, dem_real);
+    DEMI_PERMUTE(body_slot, uint32_t); DEMI_PERMUTE(body_material, int32_t);
+#undef DEMI_PERMUTE
+    for (i = 0; i < w->count; i++) w->slot_index[w->body_slot[i]] = i;
+}
+
+/* Memory of a pair in the filed list: its place, or -1; *flip when a and b have changed places since. */
+static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
+    const int32_t sa = (int32_t)w->body_slot[a], sb = (int32_t)w->body_slot[b];
+    const int32_t row = DEMI_MIN(sa, sb), other = DEMI_MAX(sa, sb);
+    int k;
+    if (!w->carry_count) return -1;
+    for (k = w->carry_start[row]; k < w->carry_start[row + 1]; k++) {
+        const int32_t p = w->carry_partner[k];
+        if (p == other) { *flip = sa > sb; return k; }
+        if (p == ~other) { *flip = sa < sb; return k; }
+    }
+    return -1;
+}
+
+/* Writes the coefficients of a candidate pair; only needed when bodies differ. */
+static void demi_pair_coefs(const dem_world *w, demi_list *list, int k) {
+    const int a = list->a[k], b = list->b[k];
+    const double ra = (double)w->pos[4*a + 3], rb = (double)w->pos[4*b + 3];
+    const double inv = (double)w->inv_mass[a] + (double)w->inv_mass[b];
+    demi_coefficients(w, w->body_material[a] - 1, w->body_material[b] - 1, ra*rb/(ra + rb), 1/inv, 0,
+                      list->coef + (size_t)k*DEMI_COEFS);
+}
+
+/* Tests one pair (a < b) and, if near enough, enters it in the list of a's domain. */
+static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a, int b) {
+    const dem_real *x = w->pos + 4*a, *y = w->pos + 4*b;
+    const dem_real dx = demi_image(y[0] - x[0], p->half[0], p->period[0]);
+    const dem_real dy = demi_image(y[1] - x[1], p->half[1], p->period[1]);
+    const dem_real dz = demi_image(y[2] - x[2], p->half[2], p->period[2]);
+    const dem_real cut = x[3] + y[3] + skin;
+    demi_domain *domain = &w->domains[d];
+    demi_list *list;
+    int k, from, flip = 0, m;
+    if (!(dx*dx + dy*dy + dz*dz < cut*cut)) return;
+    if (w->fixed_count && w->inv_mass[a] <= 0 && w->inv_mass[b] <= 0) return;
+    list = b < domain->end ? &w->own : &w->cross;
+    k = list == &w->own ? domain->own : domain->cross;
+    if (k >= list->stride) { domain->overflow |= list == &w->own ? 1 : 2; return; }
+    if (list == &w->own) domain->own++; else domain->cross++;
+    k += d*list->stride;
+    list->a[k] = a;
+    list->b[k] = b;
+    list->stamp[k] = w->stamp - 1;
+    if (!w->uniform) demi_pair_coefs(w, list, k);
+    if (!w->memory_stride || (from = demi_carry_find(w, a, b, &flip)) < 0) return;
+    list->stamp[k] = w->stamp;
+    for (m = 0; m < w->memory_stride; m++) {
+        const dem_real value = w->carry_memory[(size_t)from*(size_t)w->memory_stride + (size_t)m];
+        list->memory[(size_t)k*(size_t)w->memory_stride + (size_t)m] = flip && (w->vector_mask >> m & 1) ? -value : value;
+    }
+}
+
+/* --- methods: each offers, for every body a of domain d in turn, its possible partners b > a in
+       ascending order --- */
+
+static void demi_rows_all_pairs(dem_world *w, int d) {
+    const demi_periods p = demi_periods_of(w);
+    int a, b;
+    for (a = w->domains[d].begin; a < w->domains[d].end; a++)
+        for (b = a + 1; b < w->count; b++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a, b);
+}
+
+/* Cell indices c-1, c, c+1 along an axis, wrapped when periodic, without doubles, ascending. */
+static int demi_neighbours(int c, int n, int periodic, int *out) {
+    int count = 0, k, j;
+    for (k = -1; k <= 1; k++) {
+        int q = c + k, seen = 0;
+        if (q < 0 || q >= n) {
+            if (!periodic) continue;
+            q = (q + n)%n;
+        }
+        for (j = 0; j < count; j++) seen |= out[j] == q;
+        if (!seen) out[count++] = q;
+    }
+    for (k = 1; k < count; k++)                 /* at most three: put in order                            */
+        for (j = k; j > 0 && out[j] < out[j - 1]; j--) { int t = out[j]; out[j] = out[j - 1]; out[j - 1] = t; }
+    return count;
+}
+
+static void demi_rows_grid(dem_world *w, int d) {
+    const demi_periods p = demi_periods_of(w);
+    const int32_t *start = (const int32_t *)w->cell_start_.data;
+    int a, c, i, j, k, b, last = -1, ranges = 0;
+    int32_t from[27], to[27];
+    for (a = w->domains[d].begin; a < w->domains[d].end; a++) {
+        c = w->cell_of[w->order[a]];
+        if (c != last) {                        /* bodies of a cell share the ranges of index to look at   */
+            int nx[3], ny[3], nz[3], cx, cy, cz, x = c%w->cells[0], y = c/w->cells[0]%w->cells[1];
+            const int z = c/w->cells[0]/w->cells[1];
+            cx = demi_neighbours(x, w->cells[0], w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC, nx);
+            cy = demi_neighbours(y, w->cells[1], w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC, ny);
+            cz = demi_neighbours(z, w->cells[2], w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC, nz);
+            ranges = 0;
+            for (k = 0; k < cz; k++)
+                for (j = 0; j < cy; j++)
+                    for (i = 0; i < cx; i++) {
+                        const int q = nx[i] + w->cells[0]*(ny[j] + w->cells[1]*nz[k]);
+                        if (q < c || start[q] == start[q + 1]) continue;
+                        if (ranges && to[ranges - 1] == start[q]) { to[ranges - 1] = start[q + 1]; continue; }
+                        from[ranges] = start[q];
+                        to[ranges++] = start[q + 1];
+                    }
+            last = c;
+        }
+        for (k = 0; k < ranges; k++)
+            for (b = DEMI_MAX(from[k], a + 1); b < to[k]; b++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a, b);
+    }
+}
+
+/* --- linked linear list [FEN] 2.3.2. On each axis the ends of all boxes stand in one sorted list. A move
+       sorts it again by exchanges of neighbours; when the lower end of one box passes the upper end of
+       another, the two begin or cease to overlap on that axis, and the pair table is told. Boxes are those
+       of radius + skin/2. Along a periodic axis every box counts as endless: correct, and slow. --- */
+typedef struct demi_pair_key { int32_t lo, hi; } demi_pair_key;          /* slots; lo = -1: empty            */
+
+static size_t demi_pair_hash(int32_t lo, int32_t hi, size_t room) {
+    uint64_t x = ((uint64_t)(uint32_t)lo << 32 | (uint32_t)hi)*UINT64_C(0x9E3779B97F4A7C15);
+    return (size_t)(x >> 20) & (room - 1);
+}
+/* Open addressing with a power of two of places, at most two thirds full; deletion closes the gap. */
+static int demi_pair_table_add(dem_world *w, int32_t a, int32_t b) {
+    demi_pair_key *table = (demi_pair_key *)w->lll_table_.data;
+    size_t room = w->lll_table_.capacity, k;
+    const int32_t lo = DEMI_MIN(a, b), hi = DEMI_MAX(a, b);
+    if (3*(size_t)(w->lll_size + 1) > 2*room) {
+        const size_t fresh_room = room ? 2*room : 1024;
+        demi_pair_key *fresh = (demi_pair_key *)demi_alloc(w, fresh_room, sizeof *fresh);
+        size_t i;
+        if (!fresh) return 0;
+        for (i = 0; i < fresh_room; i++) fresh[i].lo = -1;
+        for (i = 0; i < room; i++) {
+            if (table[i].lo < 0) continue;
+            k = demi_pair_hash(table[i].lo, table[i].hi, fresh_room);
+            while (fresh[k].lo >= 0) k = (k + 1) & (fresh_room - 1);
+            fresh[k] = table[i];
+        }
+        demi_array_free(w, &w->lll_table_);
+        w->lll_table_.data = table = fresh;
+        w->lll_table_.capacity = room = fresh_room;
+        w->lll_table_.item = sizeof *fresh;
+    }
+    for (k = demi_pair_hash(lo, hi, room); table[k].lo >= 0; k = (k + 1) & (room - 1))
+        if (table[k].lo == lo && table[k].hi == hi) return 1;
+    table[k].lo = lo;
+    table[k].hi = hi;
+    w->lll_size++;
+    return 1;
+}
+static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
+    demi_pair_key *table = (demi_pair_key *)w->lll_table_.data;
+    const size_t room = w->lll_table_.capacity;
+    const int32_t lo = DEMI_MIN(a, b), hi = DEMI_MAX(a, b);
+    size_t k, gap;
+    if (!room) return;
+    for (k = demi_pair_hash(lo, hi, room); table[k].lo != lo || table[k].hi != hi; k = (k + 1) & (room - 1))
+        if (table[k].lo < 0) return;
+    w->lll_size--;
+    for (gap = k;;) {
+        size_t home;
+        table[gap].lo = -1;
+        do {
+            k = (k + 1) & (room - 1);
+            if (table[k].lo < 0) return;
+            home = demi_pair_hash(table[k].lo, table[k].hi, room);
+        } while (gap <= k ? gap < home && home <= k : gap < home || home <= k);
+        table[gap] = table[k];
+        gap = k;
+    }
+}
+static dem_real demi_box_end(const dem_world *w, int slot, int axis, int upper) {
+    const int i = w->slot_index[slot];
+    const dem_real grow = w->pos[4*i + 3] + (dem_real)w->skin/2;
+    return upper ? w->pos[4*i + axis] + grow : w->pos[4*i + axis] - grow;
+}
+static int demi_boxes_overlap(const dem_world *w, int s, int t) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC) continue;
+        if (demi_box_end(w, s, k, 1) < demi_box_end(w, t, k, 0)) return 0;
+        if (demi_box_end(w, t, k, 1) < demi_box_end(w, s, k, 0)) return 0;
+    }
+    return 1;
+}
+static int demi_end_before(const demi_end *x, const demi_end *y) {  /* a total order: lower ends first       */
+    if (x->value < y->value) return 1;
+    if (x->value > y->value) return 0;
+    if (x->upper != y->upper) return x->upper < y->upper;
+    return x->box < y->box;
+}
+static int demi_end_compare(const void *x, const void *y) {
+    return demi_end_before((const demi_end *)x, (const demi_end *)y) ? -1 : 1;
+}
+/* First time, or after bodies came or went: sort outright and sweep the first axis that is not periodic. */
+static int demi_lll_start(dem_world *w) {
+    const int n = w->count;
+    size_t i;
+    int axis, k, j, open = 0, sweep = 0;
+    int32_t *active;
+    demi_end *ends;
+    for (axis = 0; axis < 3; axis++) {
+        if (!demi_array_grow(w, &w->lll_ends_[axis], sizeof(demi_end), (size_t)n*2)) return 0;
+        ends = (demi_end *)w->lll_ends_[axis].data;
+        for (k = 0; k < 2*n; k++) {
+            ends[k].box = (int32_t)w->body_slot[k/2];
+            ends[k].upper = k & 1;
+            ends[k].value = demi_box_end(w, ends[k].box, axis, k & 1);
+        }
+        qsort(ends, (size_t)n*2, sizeof *ends, demi_end_compare);
+    }
+    for (i = 0; i < w->lll_table_.capacity; i++) ((demi_pair_key *)w->lll_table_.data)[i].lo = -1;
+    w->lll_size = 0;
+    w->lll_boxes = n;
+    while (sweep < 3 && w->desc.boundary[sweep] == DEM_BOUNDARY_PERIODIC) sweep++;
+    if (sweep == 3) {                           /* endless everywhere: every pair                         */
+        for (k = 0; k < n; k++)
+            for (j = k + 1; j < n; j++)
+                if (!demi_pair_table_add(w, (int32_t)w->body_slot[k], (int32_t)w->body_slot[j])) return 0;
+        return 1;
+    }
+    if (!demi_array_grow(w, &w->lll_rows_, sizeof(int32_t), (size_t)n)) return 0;
+    active = (int32_t *)w->lll_rows_.data;
+    ends = (demi_end *)w->lll_ends_[sweep].data;
+    for (k = 0; k < 2*n; k++) {
+        if (ends[k].upper) {
+            for (j = 0; active[j] != ends[k].box; j++) {}
+            active[j] = active[--open];
+            continue;
+        }
+        for (j = 0; j < open; j++)
+            if (demi_boxes_overlap(w, active[j], ends[k].box) && !demi_pair_table_add(w, active[j], ends[k].box)) return 0;
+        active[open++] = ends[k].box;
+    }
+    return 1;
+}
+/* The permutation update: insertion sort, exchanges told to the pair table. */
+static int demi_lll_update(dem_world *w) {
+    int axis, k, j;
+    for (axis = 0; axis < 3; axis++) {
+        demi_end *ends = (demi_end *)w->lll_ends_[axis].data;
+        for (k = 0; k < 2*w->lll_boxes; k++) ends[k].value = demi_box_end(w, ends[k].box, axis, ends[k].upper);
+        for (k = 1; k < 2*w->lll_boxes; k++) {
+            const demi_end e = ends[k];
+            for (j = k; j > 0 && demi_end_before(&e, &ends[j - 1]); j--) {
+                const demi_end *f = &ends[j - 1];
+                w->lll_exchanges++;
+                if (e.upper != f->upper && e.box != f->box && w->desc.boundary[axis] != DEM_BOUNDARY_PERIODIC) {
+                    if (e.upper) demi_pair_table_remove(w, e.box, f->box);       /* [f e] -> e before f: apart */
+                    else if (demi_boxes_overlap(w, e.box, f->box) &&             /* lower end passes upper end */
+                             !demi_pair_table_add(w, e.box, f->box)) return 0;
+                }
+                ends[j] = ends[j - 1];
+            }
+            ends[j] = e;
+        }
+    }
+    return 1;
+}
+static int demi_int_compare(const void *x, const void *y) {
+    const int32_t a = *(const int32_t *)x, b = *(const int32_t *)y;
+    return a < b ? -1 : a > b;
+}
+/* The table's pairs as rows of b by a, ascending. 0 when memory ran out. */
+static int demi_lll_rows(dem_world *w) {
+    int32_t *start, *rows;
+    size_t i;
+    int k, pass;
+    if (!w->lll_valid || w->lll_boxes != w->count) { if (!demi_lll_start(w)) return 0; }
+    else if (!demi_lll_update(w)) return 0;
+    w->lll_valid = 1;
+    if (!demi_array_grow(w, &w->lll_row_start_, sizeof(int32_t), (size_t)w->count + 2) ||
+        !demi_array_grow(w, &w->lll_rows_, sizeof(int32_t), (size_t)w->lll_size)) return 0;
+    start = (int32_t *)w->lll_row_start_.data;
+    rows = (int32_t *)w->lll_rows_.data;
+    memset(start, 0, ((size_t)w->count + 2)*sizeof(int32_t));
+    for (pass = 0; pass < 2; pass++) {
+        for (i = 0; i < w->lll_table_.capacity; i++) {
+            const demi_pair_key *key = (const demi_pair_key *)w->lll_table_.data + i;
+            int a, b;
+            if (key->lo < 0) continue;
+            a = w->slot_index[key->lo];
+            b = w->slot_index[key->hi];
+            if (pass == 0) start[DEMI_MIN(a, b) + 2]++;
+            else rows[start[DEMI_MIN(a, b) + 1]++] = DEMI_MAX(a, b);
+        }
+        if (pass == 0) for (k = 2; k < w->count + 2; k++) start[k] += start[k - 1];
+    }
+    for (k = 0; k < w->count; k++)
+        qsort(rows + start[k], (size_t)(start[k + 1] - start[k]), sizeof *rows, demi_int_compare);
+    return 1;
+}
+static void demi_rows_linked(dem_world *w, int d) {
+    const demi_periods p = demi_periods_of(w);
+    const int32_t *start = (const int32_t *)w->lll_row_start_.data, *rows = (const int32_t *)w->lll_rows_.data;
+    int a, k;
+    for (a = w->domains[d].begin; a < w->domains[d].end; a++)
+        for (k = start[a]; k < start[a + 1]; k++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a, rows[k]);
+}
+
+/* --- what is common --- */
+
+static void demi_domain_search(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    domain->own = domain->cross = 0;
+    domain->overflow &= ~3;
+    switch (w->desc.search) {
+    case DEM_SEARCH_ALL_PAIRS: demi_rows_all_pairs(w, d); break;
+    case DEM_SEARCH_LINKED_LIST: demi_rows_linked(w, d); break;
+    default: demi_rows_grid(w, d); break;
+    }
+}
+
+/* Wall elements near a grain, ascending; offered to the domain's list of wall candidates. */
+static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall, int element) {
+    int k = domain->walls;
+    if (k >= w->wall_stride) { domain->overflow |= 4; return; }
+    domain->walls++;
+    k += d*w->wall_stride;
+    w->wall_body[k] = body;
+    w->wall_id[k] = wall;
+    w->wall_element[k] = element;
+}
+static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local);
+static void demi_domain_walls(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    int i, j, k, x, y, z, f[3], l[3];
+    domain->walls = 0;
+    domain->overflow &= ~4;
+    for (i = domain->begin; i < domain->end; i++) {
+        if (w->fixed_count && w->inv_mass[i] <= 0) continue;
+        for (j = 0; j < w->wall_count; j++) {
+            const demi_wall *wall = &w->walls[j];
+            const dem_real near_by = w->pos[4*i + 3] + (dem_real)w->skin;
+            const int first = domain->walls;
+            dem_vec3 at;
+            if (wall->kind == DEMI_WALL_NONE) continue;
+            at = demi_unturn(wall->pose.rotation, demi_sub(demi_at(w->pos + 4*i), wall->pose.position));
+            if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
+            if (wall->element_count <= 4) {
+                for (k = 0; k < wall->element_count; k++)
+                    if (demi_wall_distance(wall, k, at) < near_by) demi_wall_offer(w, domain, d, i, j, k);
+                continue;
+            }
+            demi_wall_cells(wall, demi_sub(at, demi_v(near_by, near_by, near_by)),
+                            demi_add(at, demi_v(near_by, near_by, near_by)), f, l);
+            for (z = f[2]; z <= l[2]; z++)
+                for (y = f[1]; y <= l[1]; y++)
+                    for (x = f[0]; x <= l[0]; x++) {
+                        const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
+                        for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
+                            const int element = wall->cell_items[k];
+                            int q, seen = 0, base = d*w->wall_stride;
+                            for (q = first; q < domain->walls && !seen; q++) seen = w->wall_element[base + q] == element;
+                            if (!seen && demi_wall_distance(wall, element, at) < near_by)
+                                demi_wall_offer(w, domain, d, i, j, element);
+                        }
+                    }
+            for (k = first + 1; k < domain->walls; k++) {      /* ascending: the order must not hang on cells */
+                int32_t *e = w->wall_element + d*w->wall_stride, t = e[k];
+                for (x = k; x > first && e[x - 1] > t; x--) e[x] = e[x - 1];
+                e[x] = t;
+            }
+        }
+    }
+}
+
+static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int stride) {
+    const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
+    if (n > (size_t)INT_MAX/8) return 0;
+    if (!demi_array_grow(w, &list->a_, sizeof(int32_t), n) || !demi_array_grow(w, &list->b_, sizeof(int32_t), n) ||
+        !demi_array_grow(w, &list->stamp_, sizeof(uint32_t), n) ||
+        !demi_array_grow(w, &list->memory_, sizeof(dem_real), m) ||
+        (!w->uniform && !demi_array_grow(w, &list->coef_, sizeof(dem_real), n*DEMI_COEFS))) return 0;
+    list->a = (int32_t *)list->a_.data;
+    list->b = (int32_t *)list->b_.data;
+    list->stamp = (uint32_t *)list->stamp_.data;
+    list->memory = (dem_real *)list->memory_.data;
+    list->coef = (dem_real *)list->coef_.data;
+    list->stride = stride;
+    return 1;
+}
+static int demi_wall_lists_reserve(dem_world *w, int stride) {
+    const size_t n = (size_t)w->domain_count*(size_t)stride;
+    if (n > (size_t)INT_MAX/8) return 0;
+    if (!demi_array_grow(w, &w->wall_body_, sizeof(int32_t), n) || !demi_array_grow(w, &w->wall_id_, sizeof(int32_t), n) ||
+        !demi_array_grow(w, &w->wall_element_, sizeof(int32_t), n)) return 0;
+    w->wall_body = (int32_t *)w->wall_body_.data;
+    w->wall_id = (int32_t *)w->wall_id_.data;
+    w->wall_element = (int32_t *)w->wall_element_.data;
+    w->wall_stride = stride;
+    return 1;
+}
+
+/* Entries of the cross lists by the domain of b, so that each domain can add what reaches in from before it. */
+static int demi_cross_index(dem_world *w) {
+    int d, k, e, entries = w->domain_count*w->cross.stride;
+    if (!demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), (size_t)entries) ||
+        !demi_array_grow(w, &w->cross_hit_, sizeof(int32_t), (size_t)entries)) return 0;
+    w->cross_incoming = (int32_t *)w->cross_incoming_.data;
+    w->cross_hit = (int32_t *)w->cross_hit_.data;
+    w->cross_push_stride = (size_t)entries + 1;          /* slot 0: the push of what does not touch          */
+    if (!demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 9*w->cross_push_stride)) return 0;
+    w->cross_push = (dem_real *)w->cross_push_.data;
+    for (k = 0; k < 9; k++) w->cross_push[(size_t)k*w->cross_push_stride] = 0;
+    for (d = 0; d <= w->domain_count; d++) w->cross_incoming_start[d] = 0;
+    for (d = 0; d < w->domain_count; d++)
+        for (k = 0; k < w->domains[d].cross; k++) {
+            e = w->cross.b[d*w->cross.stride + k];
+            e = (int)((int64_t)e*w->domain_count/w->count);            /* near enough; then step             */
+            while (w->cross.b[d*w->cross.stride + k] >= w->domains[e].end) e++;
+            while (w->cross.b[d*w->cross.stride + k] < w->domains[e].begin) e--;
+            w->cross_incoming_start[e + 1]++;
+        }
+    for (d = 0; d < w->domain_count; d++) w->cross_incoming_start[d + 1] += w->cross_incoming_start[d];
+    w->cross_entries = w->cross_incoming_start[w->domain_count];
+    for (d = w->domain_count - 1; d >= 0; d--)
+        for (k = w->domains[d].cross - 1; k >= 0; k--) {
+            const int entry = d*w->cross.stride + k;
+            e = (int)((int64_t)w->cross.b[entry]*w->domain_count/w->count);
+            while (w->cross.b[entry] >= w->domains[e].end) e++;
+            while (w->cross.b[entry] < w->domains[e].begin) e--;
+            w->cross_incoming[--w->cross_incoming_start[e + 1]] = entry;
+        }
+    for (d = 0; d < w->domain_count; d++) w->cross_incoming_start[d] = w->cross_incoming_start[d + 1];
+    w->cross_incoming_start[w->domain_count] = w->cross_entries;
+    return 1;
+}
+
+/* Contacts with walls that still last, from the last list (by slot) into the domains of the new one. */
+static int demi_wall_contacts_move(dem_world *w, int stride) {
+    const size_t n = (size_t)w->domain_count*(size_t)stride;
+    int d, k, e = 0, total = 0;
+    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
+    if (!demi_array_grow(w, &w->wall_now_, sizeof(demi_wall_contact), n)) return 0;
+    w->wall_now = (demi_wall_contact *)w->wall_now_.data;
+    if (!demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact), DEMI_MAX(n, (size_t)total))) return 0;
+    w->wall_next = (demi_wall_contact *)w->wall_next_.data;
+    for (d = 0; d < DEMI_DOMAINS; d++) {        /* gather all in wall_next, slots turned to indices        */
+        for (k = 0; k < w->domains[d].wall_contacts; k++) {
+            demi_wall_contact c = w->wall_now[d*w->wall_now_stride + k];
+            c.body = w->slot_index[c.body];
+            if (c.body >= 0 && w->walls[c.wall].kind != DEMI_WALL_NONE) w->wall_next[e++] = c;
+        }
+        w->domains[d].wall_contacts = 0;
+    }
+    w->wall_now_stride = stride;
+    for (k = 0; k < e; k++) {                   /* deal out; insertion keeps each domain sorted by body     */
+        const demi_wall_contact c = w->wall_next[k];
+        demi_wall_contact *to;
+        int i;
+        d = (int)((int64_t)c.body*w->domain_count/w->count);
+        while (c.body >= w->domains[d].end) d++;
+        while (c.body < w->domains[d].begin) d--;
+        if (w->domains[d].wall_contacts == stride) continue;   /* cannot be: every contact is a candidate   */
+        to = w->wall_now + d*stride;
+        for (i = w->domains[d].wall_contacts++; i > 0 && to[i - 1].body > c.body; i--) to[i] = to[i - 1];
+        to[i] = c;
+    }
+    return 1;
+}
+
+/* The effects of the live scene: which laws act, whether all bodies are alike. */
+static void demi_effects(dem_world *w) {
+    int i, j, friction = 0, rolling = 0;
+    for (i = 0; i < w->material_count; i++)
+        for (j = 0; j < w->material_count; j++) {
+            friction |= w->pairs[i*DEMI_MATERIALS + j].friction_static > 0;
+            rolling |= w->pairs[i*DEMI_MATERIALS + j].rolling_friction > 0;
+        }
+    w->normal = (int)w->desc.normal_law;
+    w->tangent = (int)w->desc.tangent_law;
+    w->rolling = (int)w->desc.rolling_law;
+    if (w->tangent == DEM_TANGENT_AUTO) w->tangent = DEM_TANGENT_SPRING;
+    if (w->rolling == DEM_ROLLING_AUTO) w->rolling = DEM_ROLLING_EPSD;
+    if (!friction) w->tangent = DEM_TANGENT_NONE;
+    if (!rolling) w->rolling = DEM_ROLLING_NONE;
+    w->memory_stride = w->tangent >= DEM_TANGENT_SPRING ? 4 : 0;
+    if (w->rolling == DEM_ROLLING_EPSD) w->memory_stride = 8;
+    w->vector_mask = 0x77;
+    if (w->desc.law) {
+        w->memory_stride = w->desc.law_memory == 0 ? 0 : w->desc.law_memory <= 4 ? 4 : 8;
+        w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
+    }
+    w->uniform = w->count > 0;
+    w->fixed_count = 0;
+    w->radius_min = w->radius_max = w->count ? w->pos[3] : 0;
+    for (i = 0; i < w->count; i++) {
+        const dem_real r = w->pos[4*i + 3];
+        w->radius_min = DEMI_MIN(w->radius_min, r);
+        w->radius_max = DEMI_MAX(w->radius_max, r);
+        w->fixed_count += w->inv_mass[i] <= 0;
+        w->uniform &= w->body_material[i] == w->body_material[0];
+    }
+    w->uniform = w->uniform && w->radius_max <= w->radius_min && !w->fixed_count;
+    if (w->uniform) {
+        w->uniform_radius = w->pos[3];
+        w->uniform_inv_mass = w->inv_mass[0];
+        w->uniform_inv_inertia = w->inv_inertia[0];
+        demi_coefficients(w, w->body_material[0] - 1, w->body_material[0] - 1, (double)w->pos[3]/2,
+                          1/((double)w->inv_mass[0]*2), 0, w->uniform_coef);
+    }
+}
+
+/* Skin from counted work, so that it is the same on every run: one candidate costs 1, rebuilding costs 40
+   per body (bench/ measures both); candidates grow with the skin, rebuilds shrink with it. */
+static void demi_skin_choose(dem_world *w) {
+    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1), steps = (double)(w->steps - w->last_rebuild);
+    if (w->desc.skin > 0) { w->skin = (double)w->desc.skin; return; }
+    if (w->desc.skin < 0) { w->skin = 0; return; }
+    if (w->skin_auto <= 0) w->skin_auto = 0.1*r;
+    else if (steps > 0 && w->rebuilds > 1 && w->count > 0) {
+        double n = 0, hits = 0, slope, best, per_step = DEMI_MAX(2*w->reach, w->reach + w->wall_reach)/steps;
+        int d;
+        for (d = 0; d < w->domain_count; d++) {
+            n += w->domains[d].own + w->domains[d].cross;
+            hits += w->domains[d].contacts;
+        }
+        slope = DEMI_MAX((n - hits)/w->count, 0.02)/w->skin_auto;
+        best = sqrt(40*per_step/slope);
+        best = DEMI_MIN(DEMI_MAX(best, 0.5*w->skin_auto), 2*w->skin_auto);
+        w->skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->skin_auto), 0.01*r), 2*r);
+    }
+    w->skin = w->skin_auto;
+}
+
+/* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as they
+   were (the next call tries again). */
+static dem_result demi_rebuild(dem_world *w) {
+    int d, k, stride, again;
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+    k = w->memory_stride;
+    demi_effects(w);
+    demi_skin_choose(w);
+    if (k != w->memory_stride) w->carry_count = 0;   /* other laws than before: their memory means nothing */
+    demi_wrap(w);
+    for (k = 0; k < 3; k++) {
+        const demi_periods p = demi_periods_of(w);
+        const double need = 2*(2*(double)w->radius_max + w->skin);
+        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic axis %d, must be "
+                             "at least %g m (two grains and the skin, twice); make it longer or the grains smaller",
+                             (double)p.period[k], k, need);
+    }
+    if (!demi_grid_lay(w, 2*(double)w->radius_max + w->skin + 1e-300)) return demi_no_memory(w, "dem_world_step");
+    demi_bodies_sort(w);
+    w->domain_count = DEMI_MAX(1, DEMI_MIN(w->count/DEMI_DOMAIN_BODIES, (int)DEMI_DOMAINS));
+    for (d = 0; d < w->domain_count; d++) {
+        w->domains[d].begin = (int)((int64_t)w->count*d/w->domain_count);
+        w->domains[d].end = (int)((int64_t)w->count*(d + 1)/w->domain_count);
+        w->domains[d].overflow = 0;
+    }
+    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w)) return demi_no_memory(w, "dem_world_step");
+    stride = DEMI_MAX(64, w->count/w->domain_count*3);
+    if (!demi_list_reserve(w, &w->own, w->domain_count, DEMI_MAX(stride, (int)w->own.stride)) ||
+        !demi_list_reserve(w, &w->cross, w->domain_count, w->domain_count == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
+        return demi_no_memory(w, "dem_world_step");
+    do {                                        /* until every domain's pairs fit                          */
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_search);
+        for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 3;
+        if ((again & 1 && !demi_list_reserve(w, &w->own, w->domain_count, w->own.stride/2*3 + 64)) ||
+            (again & 2 && !demi_list_reserve(w, &w->cross, w->domain_count, w->cross.stride/2*3 + 64)))
+            return demi_no_memory(w, "dem_world_step");
+    } while (again);
+    if (!demi_cross_index(w)) return demi_no_memory(w, "dem_world_step");
+    if (!demi_wall_lists_reserve(w, DEMI_MAX(w->wall_stride, 64))) return demi_no_memory(w, "dem_world_step");
+    do {
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
+        for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 4;
+        if (again && !demi_wall_lists_reserve(w, w->wall_stride/2*3 + 64)) return demi_no_memory(w, "dem_world_step");
+    } while (again);
+    if (!demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum), (size_t)w->domain_count*(size_t)w->wall_count))
+        return demi_no_memory(w, "dem_world_step");
+    w->wall_sums = (demi_wall_sum *)w->wall_sums_.data;
+    if (!demi_wall_contacts_move(w, w->wall_stride)) return demi_no_memory(w, "dem_world_step");
+    while (w->slot_pending >= 0) {              /* slots freed since the last list may be used again       */
+        const int slot = w->slot_pending;
+        w->slot_pending = -2 - w->slot_index[slot];
+        w->slot_index[slot] = -2 - w->slot_free;
+        w->slot_free = slot;
+    }
+    w->carry_count = 0;
+    w->reach = w->wall_reach = 0;
+    w->last_rebuild = w->steps;
+    w->rebuilds++;
+    w->list_valid = 1;
+    return DEM_OK;
+}
+
+DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
+    int d, l, k, n = 0;
+    if (!w->list_valid) return 0;
+    for (d = 0; d < w->domain_count; d++)
+        for (l = 0; l < 2; l++) {
+            const demi_list *list = l ? &w->cross : &w->own;
+            const int count = l ? w->domains[d].cross : w->domains[d].own;
+            for (k = d*list->stride; k < d*list->stride + count; k++, n++) {
+                if (n >= capacity || !out) continue;
+                out[2*n] = w->body_slot[list->a[k]] + 1;
+                out[2*n + 1] = w->body_slot[list->b[k]] + 1;
+            }
+        }
+    return n;
+}
+DEM_API dem_result dem_search_now(dem_world *w) { return demi_rebuild(w); }
+
+/* ------------------------------------------------------------------------------------------------
+   >>touch
+   Geometry only: where a sphere meets a wall element, and which of the elements it overlaps count.
+   (Where two spheres meet is three lines in demi_pairs.) Knows no law and no material.
+   ------------------------------------------------------------------------------------------------ */
+
+/* Closest point on triangle abc to p [ERI05] 5.1.5; *feature 0 face, 1 edge, 2 corner. [MIL] Algorithm 5.6 is the
+   same with a misprint in line 17 (d1 <= 0 for d3 <= 0). */
+static dem_vec3 demi_triangle_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3 c, int *feature) {
+    const dem_vec3 ab = demi_sub(b, a), ac = demi_sub(c, a), ap = demi_sub(p, a), bp = demi_sub(p, b), cp = demi_sub(p, c);
+    const dem_real d1 = demi_dot(ab, ap), d2 = demi_dot(ac, ap), d3 = demi_dot(ab, bp), d4 = demi_dot(ac, bp);
+    const dem_real d5 = demi_dot(ab, cp), d6 = demi_dot(ac, cp);
+    const dem_real va = d3*d6 - d5*d4, vb = d5*d2 - d1*d6, vc = d1*d4 - d3*d2;
+    dem_vec3 normal, foot;
+    dem_real nn;
+    *feature = 2;
+    if (d1 <= 0 && d2 <= 0) return a;
+    if (d3 >= 0 && d4 <= d3) return b;
+    if (d6 >= 0 && d5 <= d6) return c;
+    *feature = 1;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return demi_add(a, demi_scale(ab, d1/(d1 - d3)));
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return demi_add(a, demi_scale(ac, d2/(d2 - d6)));
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return demi_add(b, demi_scale(demi_sub(c, b), (d4 - d3)/((d4 - d3) + (d5 - d6))));
+    *feature = 0;                               /* face: drop the part along the normal, which keeps the
+                                                   normal exact however large the triangle is             */
+    normal = demi_cross(ab, ac);
+    nn = demi_dot(normal, normal);
+    foot = demi_sub(p, demi_scale(normal, demi_dot(normal, ap)/nn));
+    return foot;
+}
+static dem_vec3 demi_segment_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, int *feature) {
+    const dem_vec3 ab = demi_sub(b, a);
+    const dem_real ll = demi_dot(ab, ab), t = ll > 0 ? demi_dot(demi_sub(p, a), ab)/ll : 0;
+    dem_vec3 normal;
+    *feature = 2;
+    if (t <= 0) return a;
+    if (t >= 1) return b;
+    *feature = 0;
+    normal = demi_v(-ab.y, ab.x, 0);            /* as for the triangle: subtract along the normal          */
+    return demi_sub(p, demi_scale(normal, demi_dot(normal, demi_sub(p, a))/ll));
+}
+
+/* One sphere against one element, all in the wall's frame. Fills in normal (grain -> wall), point and
+   feature; answers the overlap (negative: apart). */
+static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, dem_real r, dem_vec3 *normal,
+                                dem_vec3 *point, int *feature) {
+    dem_vec3 c[3], d;
+    dem_real l, edge = 0;
+    *feature = 0;
+    switch (wall->kind) {
+    case DEMI_WALL_PLANE:
+        *normal = demi_v(0, 0, -1);
+        *point = demi_v(x.x, x.y, 0);
+        return r - x.z;
+    case DEMI_WALL_CYLINDER:
+        l = DEMI_SQRT(x.x*x.x + x.y*x.y);
+        d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
+        *point = demi_v(d.x*wall->radius, d.y*wall->radius, x.z);
+        *normal = wall->inside ? d : demi_scale(d, -1);
+        return wall->inside ? r + l - wall->radius : r + wall->radius - l;
+    case DEMI_WALL_PROFILE:
+        x.z = 0;
+        demi_wall_corners(wall, element, c);
+        *point = demi_segment_point(x, c[0], c[1], feature);
+        break;
+    case DEMI_WALL_MESH:
+        demi_wall_corners(wall, element, c);
+        *point = demi_triangle_point(x, c[0], c[1], c[2], feature);
+        break;
+    default:
+        demi_wall_corners(wall, element, c);
+        *point = c[0];
+        edge = wall->radius;
+        break;
+    }
+    d = demi_sub(*point, x);
+    l = demi_length(d);
+    *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
+    return r + edge - l;
+}
+/* Distance of a point from an element's surface, for the candidate list. */
+static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local) {
+    dem_vec3 n, p;
+    int feature;
+    return -demi_wall_touch(wall, element, local, 0, &n, &p, &feature);
+}
+
+/* [MIL] Fig 5.19: the segment acts as its whole line, with the fraction a^2(3-2a) of the force, a = share of the
+   chord that the segment covers. */
+static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 x, dem_real r, dem_vec3 *normal,
+                                   dem_vec3 *point, dem_real *overlap) {
+    dem_vec3 c[2], t, n;
+    dem_real length, off, along, chord, lo, hi, a;
+    demi_wall_corners(wall, element, c);
+    t = demi_sub(c[1], c[0]);
+    length = demi_length(t);
+    if (!(length > 0)) return 0;
+    t = demi_scale(t, 1/length);
+    n = demi_v(-t.y, t.x, 0);
+    x.z = 0;
+    off = demi_dot(demi_sub(x, c[0]), n);       /* signed distance from the line                           */
+    along = demi_dot(demi_sub(x, c[0]), t);
+    if (DEMI_ABS(off) >= r) return 0;
+    chord = DEMI_SQRT(r*r - off*off);
+    lo = DEMI_MAX(along - chord, DEM_R(0));
+    hi = DEMI_MIN(along + chord, length);
+    if (hi <= lo) return 0;
+    a = (hi - lo)/(2*chord);
+    *normal = off > 0 ? demi_scale(n, -1) : n;
+    *point = demi_add(c[0], demi_scale(t, along));
+    *overlap = r - DEMI_ABS(off);
+    return a*a*(3 - 2*a);
+}
+
+/* Of the elements of one wall that a grain overlaps, keeps those that count. Faces come first, the deepest
+   first; an edge or corner is dropped when its point lies in the plane of a face already kept, or on a
+   contact already kept: so that a flat mesh is one plane, and a fold two. Answers how many are left. */
+static int demi_wall_resolve(demi_wall_contact *c, int count, dem_real r) {
+    const dem_real near_by = DEM_R(1e-6)*r;
+    int i, j, kept = 0;
+    for (i = 1; i < count; i++) {               /* few: insertion sort by feature, overlap, element        */
+        const demi_wall_contact t = c[i];
+        for (j = i; j > 0; j--) {
+            const demi_wall_contact *p = &c[j - 1];
+            if (p->feature != t.feature ? p->feature < t.feature
+                : p->overlap > t.overlap || (p->overlap >= t.overlap && p->element < t.element)) break;
+            c[j] = c[j - 1];
+        }
+        c[j] = t;
+    }
+    for (i = 0; i < count; i++) {
+        int covered = 0;
+        for (j = 0; j < kept && !covered; j++) {
+            const dem_vec3 d = demi_sub(c[i].point, c[j].point);
+            if (demi_dot(d, d) <= near_by*near_by) covered = 1;
+            else if (c[j].feature == 0 && c[i].feature > 0 && DEMI_ABS(demi_dot(d, c[j].normal)) <= near_by) covered = 1;
+            else if (c[j].feature == 0 && c[i].feature == 0 && demi_dot(c[i].normal, c[j].normal) > 1 - DEM_R(1e-9) &&
+                     DEMI_ABS(demi_dot(d, c[j].normal)) <= near_by) covered = 1;   /* the same plane twice */
+        }
+        if (!covered) c[kept++] = c[i];
+    }
+    return kept;
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>laws
+   One contact in, force and torque out. A law sees a dem_contact, its memory and its answer, nothing else.
+   demi_law is the built-in one; its first arguments are literals where a kernel is specialised, so that
+   what a scene does not call for is not there. It has no branches that depend on the contact: compilers
+   turn it into vector code. memory: [0..2] spring or force in the tangent plane, [3] kt of the last step;
+   [4..6] rolling moment. `out` gets the energies of the ledger, when there is one.
+   >>add-law: (1) an enum value in >>api, (2) a case here, (3) its memory in demi_effects,
+   (4) a sentence in tests/, (5) a line in docs/theory.md.
+   ------------------------------------------------------------------------------------------------ */
+typedef struct demi_law_energy { dem_real dashpot, elastic, shear_work, slide, shear_stored, roll; } demi_law_energy;
+
+DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push, int normal, int tangent, int rolling,
+                          int clipped, int ledger, demi_law_energy *out) {
+    const dem_vec3 n = c->normal, v = c->slip;
+    dem_real root, fn, elastic, kt, ct, limit, kn;
+
+    /* normal: Hertz F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], or linear F = kn d + cn v */
+    if (normal == DEM_NORMAL_HERTZ) {
+        root = DEMI_SQRT(c->overlap);
+        kn = c->kn*root;
+        elastic = kn*c->overlap;
+        kt = c->kt*root;
+        root = DEMI_SQRT(root);
+        ct = c->ct*root;
+        fn = elastic + c->cn*root*c->closing_speed;
+    } else {
+        kn = c->kn;
+        elastic = kn*c->overlap;
+        kt = c->kt;
+        ct = c->ct;
+        fn = elastic + c->cn*c->closing_speed;
+    }
+    if (clipped) fn = fn > 0 ? fn : 0;          /* no pull at the end of a contact                         */
+    push->normal = fn;
+    limit = fn > 0 ? fn : 0;
+    if (ledger) {
+        out->dashpot = (fn - elastic)*c->closing_speed*c->dt;
+        out->elastic = normal == DEM_NORMAL_HERTZ ? elastic*c->overlap*2/5 : elastic*c->overlap/2;
+        out->shear_work = out->slide = out->shear_stored = out->roll = 0;
+    }
+
+    /* tangential: a trial force, capped by Coulomb; what is cut off is sliding */
+    if (tangent != DEM_TANGENT_NONE) {
+        dem_vec3 s = demi_v(0, 0, 0), t;
+        dem_real size, most, cut, old = kt;
+        if (tangent >= DEM_TANGENT_SPRING) s = dem_memory_turn(c, demi_at(memory));
+        if (tangent == DEM_TANGENT_SPRING) {                /* s: displacement; [CS79]                     */
+            s = demi_add(s, demi_scale(v, c->dt));
+            t = demi_v(-kt*s.x - ct*v.x, -kt*s.y - ct*v.y, -kt*s.z - ct*v.z);
+        } else if (tangent >= DEM_TANGENT_MINDLIN) {        /* s: force; [DIR05, THO13]                    */
+            if (tangent == DEM_TANGENT_MINDLIN_RESCALED) {
+                old = memory[3];
+                old = kt < old ? kt/old : 1;
+                s = demi_scale(s, old);
+            }
+            s = demi_v(s.x - kt*c->dt*v.x, s.y - kt*c->dt*v.y, s.z - kt*c->dt*v.z);
+            t = demi_v(s.x - ct*v.x, s.y - ct*v.y, s.z - ct*v.z);
+        } else {                                            /* no memory: [MIL] 4.3 and 4.2                */
+            const dem_real k = tangent == DEM_TANGENT_STEP ? kt*c->dt + ct : ct;
+            t = demi_v(-k*v.x, -k*v.y, -k*v.z);
+        }
+        size = DEMI_SQRT(demi_dot(t, t));
+        most = limit*c->friction_static;
+        cut = limit*c->friction/(size + DEMI_TINY);
+        cut = size > most ? cut : 1;
+        push->tangent = demi_scale(t, cut);
+        if (tangent == DEM_TANGENT_SPRING) {                /* while sliding the spring holds what friction can */
+            const dem_real back = -cut/(kt + DEMI_TINY);
+            memory[0] = cut < 1 ? back*t.x : s.x;
+            memory[1] = cut < 1 ? back*t.y : s.y;
+            memory[2] = cut < 1 ? back*t.z : s.z;
+            if (ledger) {
+                const dem_vec3 e = demi_v(memory[0], memory[1], memory[2]), q = demi_sub(s, e);
+                out->slide = cut < 1 ? -demi_dot(push->tangent, q) : 0;
+                out->shear_stored = kt*demi_dot(e, e)/2;
+            }
+        }
+        if (tangent >= DEM_TANGENT_MINDLIN) {
+            memory[0] = cut < 1 ? push->tangent.x : s.x;
+            memory[1] = cut < 1 ? push->tangent.y : s.y;
+            memory[2] = cut < 1 ? push->tangent.z : s.z;
+            memory[3] = kt;
+            if (ledger) {
+                const dem_vec3 e = demi_v(memory[0], memory[1], memory[2]), q = demi_sub(e, s);
+                out->slide = cut < 1 ? demi_dot(push->tangent, q)/(kt + DEMI_TINY) : 0;
+                out->shear_stored = demi_dot(e, e)/(2*kt + DEMI_TINY);
+            }
+        }
+        if (ledger) {
+            out->shear_work = -demi_dot(push->tangent, v)*c->dt;
+            if (tangent < DEM_TANGENT_SPRING) out->slide = cut < 1 ? out->shear_work : 0;
+        }
+    }
+
+    /* rolling: against the relative spin across the normal */
+    if (rolling != DEM_ROLLING_NONE) {
+        const dem_real along = demi_dot(c->spin, n);
+        const dem_vec3 w = demi_sub(c->spin, demi_scale(n, along));
+        dem_real most = c->rolling_friction*c->r_eff*limit;
+        if (rolling == DEM_ROLLING_EPSD) {                  /* [AI11]: kr = 2.25 kn (mu_r R*)^2, damping below */
+            const dem_real arm = c->rolling_friction*c->r_eff, stiff = normal == DEM_NORMAL_HERTZ ? 3*kn/2 : kn;
+            const dem_real kr = DEM_R(2.25)*stiff*arm*arm, inertia = 7*c->m_eff*c->r_eff*c->r_eff/5;
+            const dem_real cr = DEM_R(0.6)*DEMI_SQRT(kr*inertia);   /* 2 x 0.3 sqrt(kr I): lightly damped   */
+            dem_vec3 m = dem_memory_turn(c, demi_at(memory + 4));
+            dem_real size, cut;
+            m = demi_sub(m, demi_scale(w, kr*c->dt));
+            size = DEMI_SQRT(demi_dot(m, m));
+            cut = most/(size + DEMI_TINY);
+            cut = size > most ? cut : 1;
+            m = demi_scale(m, cut);
+            memory[4] = m.x; memory[5] = m.y; memory[6] = m.z;
+            push->moment = cut < 1 ? m : demi_sub(m, demi_scale(w, cr));
+        } else if (rolling == DEM_ROLLING_CONSTANT) {       /* [ZHO99], eased near rest: never turns round  */
+            const dem_real size = DEMI_SQRT(demi_dot(w, w)), stop = 2*c->m_eff*c->r_eff*c->r_eff/5*size;
+            most = most*c->dt > stop && c->dt > 0 ? stop/(c->dt + DEMI_TINY) : most;
+            push->moment = demi_scale(w, -most/(size + DEMI_TINY));
+        } else {                                            /* [MIL] 4.5, as printed                        */
+            const dem_real size = demi_length(c->spin), f = limit < size ? limit : size;
+            push->moment = demi_scale(c->spin, -c->rolling_friction*c->r_eff*f/(size + DEMI_TINY));
+        }
+        if (ledger) out->roll = -demi_dot(push->moment, c->spin)*c->dt;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>respond
+   The loops that bring candidates, touch and law together. Grain-grain: blocks of candidates go through a
+   filter without branches that packs the touching ones, the law runs over the packed ones (vectorised
+   where the compiler can), pushes are added to both bodies. Pairs that lead out of a domain leave their
+   push in a slot of its own; the other domain fetches it after all are done, in the order of the list.
+   So every body's sum has one order whatever the number of threads. Grain-wall follows, per grain.
+   ------------------------------------------------------------------------------------------------ */
+enum { DEMI_FX, DEMI_FY, DEMI_FZ, DEMI_AX, DEMI_AY, DEMI_AZ, DEMI_BX, DEMI_BY, DEMI_BZ, DEMI_PUSH };
+/* Touching candidates of one block, packed: bodies, place in the list. */
+typedef struct demi_hits { int count; int32_t a[DEMI_BLOCK], b[DEMI_BLOCK], k[DEMI_BLOCK]; } demi_hits;
+
+/* Packs those of `count` candidates from `begin` that overlap. */
+DEM_INLINE void demi_filter(const dem_world *w, const demi_list *list, int begin, int count, const demi_periods *p,
+                             int uniform, int periodic, demi_hits *hits) {
+    dem_real gap[DEMI_BLOCK];
+    const dem_real *DEMI_RESTRICT x = w->pos;
+    const int32_t *DEMI_RESTRICT la = list->a + begin, *DEMI_RESTRICT lb = list->b + begin;
+    const dem_real both = 4*w->uniform_radius*w->uniform_radius;
+    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py = p->period[1], pz = p->period[2];
+    int k, m = 0;
+    DEMI_VECTOR
+    for (k = 0; k < count; k++) {
+        const int i = 4*la[k], j = 4*lb[k];
+        dem_real dx = x[j] - x[i], dy = x[j + 1] - x[i + 1], dz = x[j + 2] - x[i + 2], cut = both;
+        if (periodic) { dx = demi_image(dx, hx, px); dy = demi_image(dy, hy, py); dz = demi_image(dz, hz, pz); }
+        if (!uniform) { cut = x[i + 3] + x[j + 3]; cut *= cut; }
+        gap[k] = dx*dx + dy*dy + dz*dz - cut;
+    }
+    for (k = 0; k < count; k++) {
+        hits->a[m] = la[k];
+        hits->b[m] = lb[k];
+        hits->k[m] = begin + k;
+        m += gap[k] < 0;
+    }
+    hits->count = m;
+}
+
+/* The law over packed contacts; pushes go to push[component*stride + contact], overlaps over radius to
+   `deep`, energies are summed in order. Everything after `energy` is a literal in a specialised kernel. */
+DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const demi_hits *hits, const demi_periods *p,
+                              dem_real *DEMI_RESTRICT push, size_t stride, dem_real *DEMI_RESTRICT deep, double *energy,
+                              dem_real dt, int normal, int tangent, int rolling, int uniform, int periodic, int ledger, dem_law_fn law) {
+    const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT u = w->vel, *DEMI_RESTRICT s = w->spin;
+    const dem_real *DEMI_RESTRICT inv_mass = w->inv_mass, *DEMI_RESTRICT coef = list->coef;
+    dem_real *DEMI_RESTRICT memory = list->memory;
+    uint32_t *DEMI_RESTRICT stamp = list->stamp;
+    const uint32_t now = w->stamp;
+    const dem_real diameter = 2*w->uniform_radius, each = w->uniform_radius;
+    const int clipped = w->desc.tension == DEM_TENSION_CLIPPED;
+    const int turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
+    const int keep = law ? w->memory_stride : tangent >= DEM_TANGENT_SPRING ? (rolling == DEM_ROLLING_EPSD ? 8 : 4)
+                                            : rolling == DEM_ROLLING_EPSD ? 8 : 0;
+    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py = p->period[1], pz = p->period[2];
+    demi_law_energy part[DEMI_BLOCK];
+    int q;
+    DEMI_VECTOR
+    for (q = 0; q < hits->count; q++) {
+        const int i = 4*hits->a[q], j = 4*hits->b[q], k = hits->k[q];
+        dem_real dx = x[j] - x[i], dy = x[j + 1] - x[i + 1], dz = x[j + 2] - x[i + 2], d, over_d, la, lb, sum, m[8];
+        dem_contact c;
+        dem_push f;
+        dem_vec3 rate, around, across;
+        int e;
+        if (periodic) { dx = demi_image(dx, hx, px); dy = demi_image(dy, hy, py); dz = demi_image(dz, hz, pz); }
+        d = DEMI_SQRT(dx*dx + dy*dy + dz*dz);
+        over_d = 1/(d + DEMI_TINY);
+        c.normal = demi_v(dx*over_d, dy*over_d, dz*over_d);
+        c.dt = dt;
+        if (uniform) {
+            sum = diameter;
+            la = lb = d/2;
+            c.kn = w->uniform_coef[DEMI_KN]; c.cn = w->uniform_coef[DEMI_CN];
+            c.kt = w->uniform_coef[DEMI_KT]; c.ct = w->uniform_coef[DEMI_CT];
+            c.friction = w->uniform_coef[DEMI_MU]; c.friction_static = w->uniform_coef[DEMI_MU_STATIC];
+            c.rolling_friction = w->uniform_coef[DEMI_MU_ROLL]; c.r_eff = w->uniform_coef[DEMI_R_EFF];
+            c.m_eff = 1/(2*w->uniform_inv_mass);
+            deep[q] = (sum - d)/each;
+        } else {
+            const dem_real ra = x[i + 3], rb = x[j + 3], *r = coef + DEMI_COEFS*k;
+            sum = ra + rb;
+            la = ra*d/sum;                      /* the contact point divides the distance as the radii do   */
+            lb = d - la;
+            c.kn = r[DEMI_KN]; c.cn = r[DEMI_CN]; c.kt = r[DEMI_KT]; c.ct = r[DEMI_CT];
+            c.friction = r[DEMI_MU]; c.friction_static = r[DEMI_MU_STATIC];
+            c.rolling_friction = r[DEMI_MU_ROLL]; c.r_eff = r[DEMI_R_EFF];
+            c.m_eff = 1/(inv_mass[i/4] + inv_mass[j/4]);
+            deep[q] = (sum - d)/(ra < rb ? ra : rb);
+        }
+        c.overlap = sum - d;
+        rate = demi_v(u[i] - u[j], u[i + 1] - u[j + 1], u[i + 2] - u[j + 2]);
+        c.closing_speed = demi_dot(rate, c.normal);
+        f.tangent = f.moment = demi_v(0, 0, 0);
+        f.normal = 0;
+        for (e = 0; e < 8; e++) m[e] = 0;
+        if (turning) {
+            const dem_vec3 wa = demi_v(s[i], s[i + 1], s[i + 2]), wb = demi_v(s[j], s[j + 1], s[j + 2]);
+            const dem_vec3 t = demi_sub(rate, demi_scale(c.normal, c.closing_speed));
+            around = demi_add(demi_scale(wa, la), demi_scale(wb, lb));
+            c.slip = demi_add(t, demi_cross(around, c.normal));
+            c.spin = demi_sub(wa, wb);
+            c.normal_rate = demi_scale(t, -over_d);
+            c.twist = demi_dot(demi_add(wa, wb), c.normal)/2;
+        } else {
+            c.slip = c.spin = c.normal_rate = demi_v(0, 0, 0);
+            c.twist = 0;
+        }
+        if (keep) {                             /* memory counts only when written in the step before       */
+            const int valid = stamp[k] == now;
+            for (e = 0; e < keep; e++) m[e] = valid ? memory[keep*k + e] : 0;
+        }
+        if (law) {
+            c.material_a = w->body_material[i/4];
+            c.material_b = w->body_material[j/4];
+            c.wall = 0;
+            c.user = w->desc.law_user;
+            law(&c, m, &f);
+            part[q].dashpot = part[q].elastic = part[q].shear_work = part[q].slide = part[q].shear_stored = part[q].roll = 0;
+        } else {
+            demi_law(&c, m, &f, normal, tangent, rolling, clipped, ledger, &part[q]);
+        }
+        if (keep) {
+            for (e = 0; e < keep; e++) memory[keep*k + e] = m[e];
+            stamp[k] = now + 1;
+        }
+        push[DEMI_FX*stride + (size_t)q] = f.tangent.x - f.normal*c.normal.x;
+        push[DEMI_FY*stride + (size_t)q] = f.tangent.y - f.normal*c.normal.y;
+        push[DEMI_FZ*stride + (size_t)q] = f.tangent.z - f.normal*c.normal.z;
+        if (turning) {
+            across = demi_cross(c.normal, f.tangent);
+            push[DEMI_AX*stride + (size_t)q] = la*across.x + f.moment.x;
+            push[DEMI_AY*stride + (size_t)q] = la*across.y + f.moment.y;
+            push[DEMI_AZ*stride + (size_t)q] = la*across.z + f.moment.z;
+            push[DEMI_BX*stride + (size_t)q] = lb*across.x - f.moment.x;
+            push[DEMI_BY*stride + (size_t)q] = lb*across.y - f.moment.y;
+            push[DEMI_BZ*stride + (size_t)q] = lb*across.z - f.moment.z;
+        }
+    }
+    if (ledger && !law)
+        for (q = 0; q < hits->count; q++) {
+            energy[DEMI_E_DASHPOT] += (double)part[q].dashpot;
+            energy[DEMI_E_ELASTIC] += (double)part[q].elastic;
+            energy[DEMI_E_SHEAR_WORK] += (double)part[q].shear_work;
+            energy[DEMI_E_SLIDE] += (double)part[q].slide;
+            energy[DEMI_E_SHEAR_STORED] += (double)part[q].shear_stored;
+            energy[DEMI_E_ROLL] += (double)part[q].roll;
+        }
+}
+
+/* All pairs of one domain. */
+DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rolling, int uniform, int periodic,
+                            int ledger, dem_law_fn law) {
+    demi_domain *domain = &w->domains[d];
+    const demi_periods p = demi_periods_of(w);
+    const int turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
+    const dem_real dt = w->forces_valid ? w->dt : 0;          /* 0: looking only, memory stays              */
+    dem_real push[DEMI_PUSH*DEMI_BLOCK], deep[DEMI_BLOCK], deepest = 0;
+    dem_real *DEMI_RESTRICT force = w->force, *DEMI_RESTRICT torque = w->torque;
+    demi_hits hits;
+    int begin, q, contacts = 0;
+    for (begin = 0; begin < domain->own; begin += DEMI_BLOCK) {
+        demi_filter(w, &w->own, d*w->own.stride + begin, DEMI_MIN((int)DEMI_BLOCK, domain->own - begin), &p, uniform,
+                    periodic, &hits);
+        demi_respond(w, &w->own, &hits, &p, push, DEMI_BLOCK, deep, domain->energy, dt, normal, tangent, rolling, uniform,
+                     periodic, ledger, law);
+        for (q = 0; q < hits.count; q++) {
+            const int i = 4*hits.a[q], j = 4*hits.b[q];
+            const dem_real fx = push[DEMI_FX*DEMI_BLOCK + q], fy = push[DEMI_FY*DEMI_BLOCK + q], fz = push[DEMI_FZ*DEMI_BLOCK + q];
+            force[i] += fx; force[i + 1] += fy; force[i + 2] += fz;
+            force[j] -= fx; force[j + 1] -= fy; force[j + 2] -= fz;
+            deepest = deep[q] > deepest ? deep[q] : deepest;
+            if (turning) {
+                torque[i] += push[DEMI_AX*DEMI_BLOCK + q];
+                torque[i + 1] += push[DEMI_AY*DEMI_BLOCK + q];
+                torque[i + 2] += push[DEMI_AZ*DEMI_BLOCK + q];
+                torque[j] += push[DEMI_BX*DEMI_BLOCK + q];
+                torque[j + 1] += push[DEMI_BY*DEMI_BLOCK + q];
+                torque[j + 2] += push[DEMI_BZ*DEMI_BLOCK + q];
+            }
+        }
+        contacts += hits.count;
+    }
+    if (domain->cross) {
+        size_t slot = (size_t)d*(size_t)w->cross.stride + 1;
+        const size_t stride = w->cross_push_stride;
+        for (begin = 0; begin < domain->cross; begin += DEMI_BLOCK) {
+            const int first = d*w->cross.stride + begin, count = DEMI_MIN((int)DEMI_BLOCK, domain->cross - begin);
+            dem_real *DEMI_RESTRICT out = w->cross_push + slot;
+            demi_filter(w, &w->cross, first, count, &p, uniform, periodic, &hits);
+            demi_respond(w, &w->cross, &hits, &p, out, stride, deep, domain->energy, dt, normal, tangent, rolling, uniform,
+                         periodic, ledger, law);
+            for (q = 0; q < count; q++) w->cross_hit[first + q] = 0;
+            for (q = 0; q < hits.count; q++) {
+                const int i = 4*hits.a[q];
+                w->cross_hit[hits.k[q]] = (int32_t)(slot + (size_t)q);
+                force[i] += out[DEMI_FX*stride + (size_t)q];
+                force[i + 1] += out[DEMI_FY*stride + (size_t)q];
+                force[i + 2] += out[DEMI_FZ*stride + (size_t)q];
+                deepest = deep[q] > deepest ? deep[q] : deepest;
+                if (turning) {
+                    torque[i] += out[DEMI_AX*stride + (size_t)q];
+                    torque[i + 1] += out[DEMI_AY*stride + (size_t)q];
+                    torque[i + 2] += out[DEMI_AZ*stride + (size_t)q];
+                }
+            }
+            contacts += hits.count;
+            slot += (size_t)hits.count;
+        }
+    }
+    domain->contacts = contacts;
+    domain->overlap = DEMI_MAX(domain->overlap, (double)deepest);
+}
+
+/* The far ends of pairs that lead into domain d from domains before it. */
+static void demi_cross_gather(dem_world *w, int d) {
+    const size_t stride = w->cross_push_stride;
+    const dem_real *push = w->cross_push;
+    const int turning = w->desc.law || w->tangent != DEM_TANGENT_NONE || w->rolling != DEM_ROLLING_NONE;
+    int k;
+    for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
+        const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
+        const size_t slot = (size_t)w->cross_hit[entry];
+        w->force[j] -= push[DEMI_FX*stride + slot];
+        w->force[j + 1] -= push[DEMI_FY*stride + slot];
+        w->force[j + 2] -= push[DEMI_FZ*stride + slot];
+        if (!turning) continue;
+        w->torque[j] += push[DEMI_BX*stride + slot];
+        w->torque[j + 1] += push[DEMI_BY*stride + slot];
+        w->torque[j + 2] += push[DEMI_BZ*stride + slot];
+    }
+}
+
+/* Kernels: one line per effect set, and one that asks at run time. Same source, same bits. */
+static void demi_pairs_any(dem_world *w, int d) {
+    demi_pairs(w, d, w->normal, w->tangent, w->rolling, w->uniform, 1, w->desc.ledger, w->desc.law);
+}
+#ifndef DEM_NO_SPECIALIZE
+#define DEMI_KERNEL(NAME, NORMAL, TANGENT, UNIFORM, PERIODIC) \
+    static void NAME(dem_world *w, int d) { demi_pairs(w, d, NORMAL, TANGENT, DEM_ROLLING_NONE, UNIFORM, PERIODIC, 0, 0); }
+DEMI_KERNEL(demi_pairs_hertz,               DEM_NORMAL_HERTZ,  DEM_TANGENT_NONE,   1, 1)
+DEMI_KERNEL(demi_pairs_hertz_spring,        DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 0)
+DEMI_KERNEL(demi_pairs_hertz_spring_image,  DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 1)
+DEMI_KERNEL(demi_pairs_hertz_spring_mixed,  DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 0, 1)
+DEMI_KERNEL(demi_pairs_linear,              DEM_NORMAL_LINEAR, DEM_TANGENT_NONE,   1, 1)
+DEMI_KERNEL(demi_pairs_linear_mixed,        DEM_NORMAL_LINEAR, DEM_TANGENT_NONE,   0, 1)
+DEMI_KERNEL(demi_pairs_linear_spring,       DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1)
+DEMI_KERNEL(demi_pairs_linear_spring_mixed, DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 0, 1)
+#endif
+#ifdef DEM_LAW
+static void demi_pairs_own_law(dem_world *w, int d) {
+    demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 1, 0, DEM_LAW);
+}
+#endif
+typedef struct demi_kernel_row {
+    int normal, tangent, uniform, periodic;     /* periodic, uniform: 1 also serves 0 / only all-alike      */
+    void (*kernel)(dem_world *, int);
+    const char *name;
+} demi_kernel_row;
+
+static const char *demi_kernel_choose(dem_world *w) {
+    const char *name = "run-time kernel";
+    w->kernel = demi_pairs_any;
+#ifdef DEM_LAW
+    if (w->desc.law == DEM_LAW && !w->desc.ledger) { w->kernel = demi_pairs_own_law; return "your law, inlined"; }
+#endif
+#ifndef DEM_NO_SPECIALIZE
+    {
+        static const demi_kernel_row rows[] = {
+            {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 0, demi_pairs_hertz_spring, "hertz + spring, alike"},
+            {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 1, demi_pairs_hertz_spring_image, "hertz + spring, alike, periodic"},
+            {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 0, 1, demi_pairs_hertz_spring_mixed, "hertz + spring, mixed"},
+            {DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, 1, 1, demi_pairs_hertz, "hertz, alike"},
+            {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 1, 1, demi_pairs_linear, "linear, alike"},
+            {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 0, 1, demi_pairs_linear_mixed, "linear, mixed"},
+            {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1, demi_pairs_linear_spring, "linear + spring, alike"},
+            {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 0, 1, demi_pairs_linear_spring_mixed, "linear + spring, mixed"}};
+        const int periodic = w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC || w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC ||
+                             w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC;
+        size_t i;
+        if (w->desc.ledger || w->desc.law || w->rolling != DEM_ROLLING_NONE) return name;
+        for (i = 0; i < sizeof rows/sizeof *rows; i++)
+            if (rows[i].normal == w->normal && rows[i].tangent == w->tangent && rows[i].uniform <= w->uniform &&
+                rows[i].periodic >= periodic) {
+                w->kernel = rows[i].kernel;
+                return rows[i].name;
+            }
+    }
+#endif
+    return name;
+}
+
+/* --- walls --- */
+
+/* The old contact that a new one continues: same element; else one on the same wall that nothing else
+   continues and whose normal is within about 18 degrees: the grain slid on to the neighbouring element. */
+static const demi_wall_contact *demi_wall_match(const demi_wall_contact *old, int olds, const demi_wall_contact *fresh,
+                                                int freshs, const demi_wall_contact *c) {
+    const demi_wall_contact *best = 0;
+    dem_real nearest = DEM_R(0.95);
+    int i, j;
+    for (i = 0; i < olds; i++) if (old[i].wall == c->wall && old[i].element == c->element) return &old[i];
+    for (i = 0; i < olds; i++) {
+        const dem_real along = demi_dot(old[i].normal, c->normal);
+        int taken = old[i].wall != c->wall;
+        for (j = 0; j < freshs && !taken; j++) taken = fresh[j].wall == old[i].wall && fresh[j].element == old[i].element;
+        if (!taken && along > nearest) { nearest = along; best = &old[i]; }
+    }
+    return best;
+}
+
+/* The contact between a grain and a wall as a law sees it. normal_before: of the step before. */
+static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *k, dem_vec3 normal_before, dem_real dt,
+                                   dem_contact *c, dem_vec3 *surface) {
+    const demi_wall *wall = &w->walls[k->wall];
+    const dem_real *x = w->pos + 4*k->body, r = x[3];
+    const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body), at = demi_add(demi_at(x), demi_scale(n, r));
+    const dem_vec3 arm = demi_sub(at, wall->pose.position);
+    dem_vec3 u;
+    *surface = demi_add(wall->pose.velocity, demi_cross(wall->pose.spin, arm));
+    u = demi_sub(demi_at(w->vel + 4*k->body), *surface);
+    memset(c, 0, sizeof *c);
+    c->overlap = k->overlap;
+    c->normal = n;
+    c->closing_speed = demi_dot(u, n);
+    c->slip = demi_add(demi_sub(u, demi_scale(n, c->closing_speed)), demi_scale(demi_cross(spin, n), r));
+    c->spin = demi_sub(spin, wall->pose.spin);
+    c->dt = dt;
+    if (dt > 0) {
+        const dem_vec3 turn = demi_scale(demi_sub(n, normal_before), 1/dt);
+        c->normal_rate = demi_sub(turn, demi_scale(n, demi_dot(turn, n)));
+    }
+    c->twist = demi_dot(demi_add(spin, wall->pose.spin), n)/2;
+    c->r_eff = k->coef[DEMI_R_EFF];
+    c->m_eff = w->mass[k->body];
+    c->kn = k->coef[DEMI_KN]; c->cn = k->coef[DEMI_CN]; c->kt = k->coef[DEMI_KT]; c->ct = k->coef[DEMI_CT];
+    c->friction = k->coef[DEMI_MU]; c->friction_static = k->coef[DEMI_MU_STATIC];
+    c->rolling_friction = k->coef[DEMI_MU_ROLL];
+    c->material_a = w->body_material[k->body];
+    c->material_b = wall->material + 1;
+    c->wall = k->wall + 1;
+    c->user = w->desc.law_user;
+}
+
+static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
+    const demi_wall *wall = &w->walls[c->wall];
+    const double r = (double)w->pos[4*c->body + 3];
+    const double r_eff = wall->kind == DEMI_WALL_GRAINS ? r*(double)wall->radius/(r + (double)wall->radius) : r;
+    demi_coefficients(w, w->body_material[c->body] - 1, wall->material, r_eff, (double)w->mass[c->body],
+                      wall->kind != DEMI_WALL_GRAINS, c->coef);
+}
+
+/* Touching elements of one wall for one grain, from its candidates first .. last - 1. */
+enum { DEMI_TOUCH_MOST = 64 };
+static int demi_wall_collect(const dem_world *w, int d, int first, int last, demi_wall_contact *out) {
+    const int base = d*w->wall_stride, body = w->wall_body[base + first], id = w->wall_id[base + first];
+    const demi_wall *wall = &w->walls[id];
+    const dem_real r = w->pos[4*body + 3], *R = wall->pose.rotation;
+    const dem_vec3 x = demi_unturn(R, demi_sub(demi_at(w->pos + 4*body), wall->pose.position));
+    int k, count = 0;
+    for (k = first; k < last && count < DEMI_TOUCH_MOST; k++) {
+        demi_wall_contact *c = &out[count];
+        dem_vec3 n, p;
+        int feature = 0;
+        dem_real overlap, share = wall->share;
+        if (wall->kind == DEMI_WALL_PROFILE && wall->rule == DEM_EDGE_FRACTION) {
+            share = demi_segment_share(wall, w->wall_element[base + k], x, r, &n, &p, &overlap);
+            if (!(share > 0)) continue;
+        } else {
+            overlap = demi_wall_touch(wall, w->wall_element[base + k], x, r, &n, &p, &feature);
+            if (!(overlap > 0)) continue;
+        }
+        c->body = body;
+        c->wall = id;
+        c->element = w->wall_element[base + k];
+        c->feature = feature;
+        c->normal = demi_turn(R, n);
+        c->point = demi_add(wall->pose.position, demi_turn(R, p));
+        c->overlap = overlap;
+        c->share = share;
+        count++;
+    }
+    if (count > 1 && (wall->kind == DEMI_WALL_MESH || (wall->kind == DEMI_WALL_PROFILE && wall->rule == DEM_EDGE_RESOLVED)))
+        count = demi_wall_resolve(out, count, r);
+    return count;
+}
+
+/* All wall contacts of one domain: touch, memory, law, sums. */
+static void demi_walls_respond(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const dem_real dt = w->forces_valid ? w->dt : 0;
+    const int base = d*w->wall_stride, clipped = w->desc.tension == DEM_TENSION_CLIPPED;
+    const demi_wall_contact *old = w->wall_now + d*w->wall_now_stride;
+    demi_wall_contact *out = w->wall_next + d*w->wall_now_stride;
+    demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
+    int k, last, q, e, count = 0, o = 0, o_end;
+    if (w->wall_count) memset(sums, 0, (size_t)w->wall_count*sizeof *sums);
+    for (k = 0; k < domain->walls; k = last) {
+        const int body = w->wall_body[base + k], wall = w->wall_id[base + k];
+        const dem_real r = w->pos[4*body + 3];
+        int n;
+        for (last = k + 1; last < domain->walls && w->wall_body[base + last] == body && w->wall_id[base + last] == wall;) last++;
+        n = demi_wall_collect(w, d, k, last, out + count);
+        if (!n) continue;
+        while (o < domain->wall_contacts && old[o].body < body) o++;
+        for (o_end = o; o_end < domain->wall_contacts && old[o_end].body == body;) o_end++;
+        for (q = 0; q < n; q++) {
+            demi_wall_contact *c = &out[count + q];
+            const demi_wall_contact *from = demi_wall_match(old + o, o_end - o, out + count, n, c);
+            dem_contact contact;
+            dem_push f;
+            dem_vec3 surface, force, torque, arm;
+            demi_law_energy part;
+            demi_wall_sum *sum = &sums[wall];
+            memset(&f, 0, sizeof f);
+            memset(&part, 0, sizeof part);
+            if (from && from->wall == wall) {
+                memcpy(c->coef, from->coef, sizeof c->coef);
+                memcpy(c->memory, from->memory, sizeof c->memory);
+            } else {
+                demi_wall_coefs(w, c);
+                memset(c->memory, 0, sizeof c->memory);
+            }
+            demi_wall_contact_fill(w, c, from ? from->normal : c->normal, dt, &contact, &surface);
+            if (w->desc.law) w->desc.law(&contact, c->memory, &f);
+            else demi_law(&contact, c->memory, &f, w->normal, w->tangent, w->rolling, clipped, w->desc.ledger, &part);
+            force = demi_scale(demi_sub(f.tangent, demi_scale(contact.normal, f.normal)), c->share);
+            f.moment = demi_scale(f.moment, c->share);
+            torque = demi_add(demi_scale(demi_cross(contact.normal, force), r), f.moment);
+            c->force = force;
+            for (e = 0; e < 3; e++) {
+                w->force[4*body + e] += e == 0 ? force.x : e == 1 ? force.y : force.z;
+                w->torque[4*body + e] += e == 0 ? torque.x : e == 1 ? torque.y : torque.z;
+            }
+            arm = demi_sub(demi_add(demi_at(w->pos + 4*body), demi_scale(contact.normal, r)), w->walls[wall].motion.point);
+            torque = demi_add(demi_cross(arm, force), f.moment);
+            sum->force[0] -= (double)force.x; sum->force[1] -= (double)force.y; sum->force[2] -= (double)force.z;
+            sum->torque[0] -= (double)torque.x; sum->torque[1] -= (double)torque.y; sum->torque[2] -= (double)torque.z;
+            sum->power += (double)(demi_dot(force, surface) + demi_dot(f.moment, w->walls[wall].pose.spin));
+            sum->contacts++;
+            domain->overlap = DEMI_MAX(domain->overlap, (double)(c->overlap/r));
+            domain->energy[DEMI_E_DASHPOT] += (double)(c->share*part.dashpot);
+            domain->energy[DEMI_E_ELASTIC] += (double)(c->share*part.elastic);
+            domain->energy[DEMI_E_SHEAR_WORK] += (double)(c->share*part.shear_work);
+            domain->energy[DEMI_E_SLIDE] += (double)(c->share*part.slide);
+            domain->energy[DEMI_E_SHEAR_STORED] += (double)(c->share*part.shear_stored);
+            domain->energy[DEMI_E_ROLL] += (double)(c->share*part.roll);
+        }
+        count += n;
+    }
+    domain->wall_contacts = count;
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>integrators
+   Kick, drift and the velocity a law will see. Between steps pos, vel, force belong to the same time t_n;
+   half_vel holds v(t_n - dt/2) for the leapfrog and the last position for position Verlet. Each scheme
+   is one function over a range of bodies; `synced` = 0 says the step before was not finished, so that
+   its last half kick is still due (it is merged with the first one of this step: same arithmetic).
+   Rotation runs along in the same scheme (position Verlet: leapfrog).
+   >>add-integrator: an enum value, a function here, a row in demi_integrator_rows.
+   ------------------------------------------------------------------------------------------------ */
+typedef struct demi_lane {           /* one body's translation or rotation                            */
+    dem_real *v, *half, *f;          /* velocity, half-step velocity, force: 4 reals each             */
+    dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces          */
+} demi_lane;
+
+/* v(t) -> half, predicted v(t+dt); dt and half kick as reals. Answers nothing; drift uses half. */
+DEM_INLINE void demi_kick_verlet(const demi_lane *b, dem_real h, int synced) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const dem_real kick = (b->f[k]*b->inv + b->g[k])*h;
+        const dem_real v = synced ? b->v[k] : b->half[k] + kick;
+        const dem_real half = v + kick;
+        b->half[k] = half;
+        b->v[k] = half + kick;
+    }
+}
+DEM_INLINE void demi_kick_leapfrog(const demi_lane *b, dem_real h) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        const dem_real kick = (b->f[k]*b->inv + b->g[k])*h;
+        const dem_real half = b->half[k] + 2*kick;
+        b->half[k] = half;
+        b->v[k] = half + kick;
+    }
+}
+DEM_INLINE void demi_finish_half(const demi_lane *b, dem_real h) {
+    int k;
+    for (k = 0; k < 3; k++) b->v[k] = b->half[k] + (b->f[k]*b->inv + b->g[k])*h;
+}
+
+DEM_INLINE demi_lane demi_lane_move(const dem_world *w, int i) {
+    demi_lane b;
+    b.v = w->vel + 4*i; b.half = w->half_vel + 4*i; b.f = w->force + 4*i;
+    b.inv = w->inv_mass[i];
+    b.g[0] = b.inv > 0 ? w->desc.gravity.x : 0;
+    b.g[1] = b.inv > 0 ? w->desc.gravity.y : 0;
+    b.g[2] = b.inv > 0 ? w->desc.gravity.z : 0;
+    return b;
+}
+DEM_INLINE demi_lane demi_lane_turn(const dem_world *w, int i) {
+    demi_lane b;
+    b.v = w->spin + 4*i; b.half = w->half_spin + 4*i; b.f = w->torque + 4*i;
+    b.inv = w->inv_inertia[i];
+    b.g[0] = b.g[1] = b.g[2] = 0;
+    return b;
+}
+
+/* x(t+dt) = x + dt (v + a dt/2): kick half, drift, predict, later kick half */
+static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->dt, h = (dem_real)w->half_kick;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i);
+        demi_kick_verlet(&b, h, w->synced);
+        for (k = 0; k < 3; k++) w->pos[4*i + k] += b.half[k]*dt;
+    }
+    if (!turning) return;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_turn(w, i);
+        demi_kick_verlet(&b, h, w->synced);
+    }
+}
+/* v(t+dt/2) = v(t-dt/2) + a dt, x(t+dt) = x + v(t+dt/2) dt */
+static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->dt, h = (dem_real)w->half_kick;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i);
+        demi_kick_leapfrog(&b, h);
+        for (k = 0; k < 3; k++) w->pos[4*i + k] += b.half[k]*dt;
+    }
+    if (!turning) return;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_turn(w, i);
+        demi_kick_leapfrog(&b, h);
+    }
+}
+/* x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 [FEN] eq 2.3; v from differences, predicted with a */
+static void demi_move_position_verlet(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->dt, h = (dem_real)w->half_kick;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i);
+        for (k = 0; k < 3; k++) {
+            const dem_real a = b.f[k]*b.inv + b.g[k], x = w->pos[4*i + k], next = 2*x - b.half[k] + a*dt*dt;
+            b.v[k] = (next - x)/dt + a*h;
+            b.half[k] = x;
+            w->pos[4*i + k] = next;
+        }
+    }
+    if (!turning) return;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_turn(w, i);
+        demi_kick_leapfrog(&b, h);
+    }
+}
+/* v(t+dt) = v + a dt, x(t+dt) = x + v(t+dt) dt */
+static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->dt;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+        for (k = 0; k < 3; k++) {
+            b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
+            w->pos[4*i + k] += b.v[k]*dt;
+            if (turning) s.v[k] += s.f[k]*s.inv*dt;
+        }
+    }
+}
+/* x(t+dt) = x + v(t) dt, v(t+dt) = v + a dt [MIL] 4.6 */
+static void demi_move_forward_euler(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->dt;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+        for (k = 0; k < 3; k++) {
+            w->pos[4*i + k] += b.v[k]*dt;
+            b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
+            if (turning) s.v[k] += s.f[k]*s.inv*dt;
+        }
+    }
+}
+static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (void)begin; (void)end; }
+static void demi_finish_halves(dem_world *w, int begin, int end) {
+    const dem_real h = (dem_real)w->half_kick;
+    int i;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+        demi_finish_half(&b, h);
+        demi_finish_half(&s, h);
+    }
+}
+/* velocity of position Verlet at t: (x(t) - x(t-dt))/dt + a dt/2, which is (x(t+dt) - x(t-dt))/(2 dt) */
+static void demi_finish_position_verlet(dem_world *w, int begin, int end) {
+    const dem_real dt = w->dt, h = (dem_real)w->half_kick;
+    int i, k;
+    for (i = begin; i < end; i++) {
+        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+        for (k = 0; k < 3; k++) b.v[k] = (w->pos[4*i + k] - b.half[k])/dt + (b.f[k]*b.inv + b.g[k])*h;
+        demi_finish_half(&s, h);
+    }
+}
+/* What half_vel and half_spin must be before the first step from a state at t. */
+static void demi_prime(dem_world *w) {
+    const dem_real dt = w->dt, h = dt/2;
+    int i, k;
+    for (i = 0; i < w->count; i++) {
+        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+        for (k = 0; k < 3; k++) {
+            const dem_real a = b.f[k]*b.inv + b.g[k];
+            b.half[k] = w->desc.integrator == DEM_POSITION_VERLET ? w->pos[4*i + k] - b.v[k]*dt + a*dt*h : b.v[k] - a*h;
+            s.half[k] = s.v[k] - s.f[k]*s.inv*h;
+        }
+    }
+    w->primed = 1;
+}
+typedef struct demi_integrator_row {
+    const char *name;
+    void (*move)(dem_world *w, int begin, int end, int turning);
+    void (*finish)(dem_world *w, int begin, int end);
+    int order;
+} demi_integrator_row;
+static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator           */
+    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2},
+    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1},
+    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1},
+    {"position Verlet", demi_move_position_verlet, demi_finish_position_verlet, 2},
+    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2}};
+
+/* ------------------------------------------------------------------------------------------------
+   >>ledger
+   Where the energy went. Laws add what they dissipate and store; moves add the work of gravity and
+   fields; walls the work they do. The springs in the tangent planes are the odd one out: what they took
+   in and neither hold nor lost to sliding was dissipated by the shear dashpot, or with the contact.
+   ------------------------------------------------------------------------------------------------ */
+static double demi_sum_energy(const dem_world *w, int what) {
+    double sum = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
+    return sum;
+}
+static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational) {
+    int i;
+    *kinetic = *rotational = 0;
+    for (i = 0; i < w->count; i++) {
+        const dem_real *v = w->vel + 4*i, *s = w->spin + 4*i;
+        const double m = (double)w->mass[i];
+        if (w->inv_mass[i] <= 0) continue;
+        *kinetic += m*((double)v[0]*(double)v[0] + (double)v[1]*(double)v[1] + (double)v[2]*(double)v[2])/2;
+        *rotational += demi_sphere_inertia(w, m, (double)w->pos[4*i + 3])*
+                       ((double)s[0]*(double)s[0] + (double)s[1]*(double)s[1] + (double)s[2]*(double)s[2])/2;
+    }
+}
+/* After a force evaluation: adds the domains' flows to the totals; stored energies replace the last. */
+static void demi_ledger_book(dem_world *w) {
+    static const int flows[] = {DEMI_E_DASHPOT, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_FORCE};
+    double walls = 0;
+    size_t i;
+    for (i = 0; i < sizeof flows/sizeof *flows; i++) {
+        const double part = demi_sum_energy(w, flows[i]);
+        w->energy[flows[i]] += part;
+        if (flows[i] == DEMI_E_FORCE) w->throughput += fabs(part);
+    }
+    w->energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
+    w->energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
+    for (i = 0; i < (size_t)w->wall_count; i++) walls += (double)w->walls[i].channels.power*(w->forces_valid ? (double)w->dt : 0);
+    w->energy[DEMI_E_WALLS] += walls;
+    w->throughput += fabs(walls);
+}
+DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
+    dem_ledger l;
+    memset(&l, 0, sizeof l);
+    if (!w->desc.ledger) return l;
+    demi_kinetic(w, &l.kinetic, &l.rotational);
+    l.elastic = w->energy[DEMI_E_ELASTIC] + w->energy[DEMI_E_SHEAR_STORED];
+    l.gravity = w->energy[DEMI_E_GRAVITY];
+    l.walls = w->energy[DEMI_E_WALLS];
+    l.force = w->energy[DEMI_E_FORCE];
+    l.inserted = w->energy_inserted;
+    l.removed = w->energy_removed;
+    l.normal = w->energy[DEMI_E_DASHPOT];
+    l.slide = w->energy[DEMI_E_SLIDE];
+    l.tangent = w->energy[DEMI_E_SHEAR_WORK] - w->energy[DEMI_E_SLIDE] - w->energy[DEMI_E_SHEAR_STORED];
+    l.rolling = w->energy[DEMI_E_ROLL];
+    l.throughput = w->throughput + w->energy_inserted;
+    l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force - l.inserted + l.removed +
+                 l.normal + l.slide + l.tangent + l.rolling;
+    return l;
+}
+DEM_API dem_totals dem_totals_get(const dem_world *w) {
+    dem_totals t;
+    int i;
+    memset(&t, 0, sizeof t);
+    demi_kinetic(w, &t.kinetic, &t.rotational);
+    for (i = 0; i < w->count; i++) {
+        const double m = (double)w->mass[i], I = demi_sphere_inertia(w, m, (double)w->pos[4*i + 3]);
+        double x[3], v[3];
+        int k;
+        if (w->inv_mass[i] <= 0) continue;
+        for (k = 0; k < 3; k++) { x[k] = (double)w->pos[4*i + k]; v[k] = (double)w->vel[4*i + k]; }
+        t.mass += m;
+        for (k = 0; k < 3; k++) {
+            t.centre[k] += m*x[k];
+            t.momentum[k] += m*v[k];
+            t.angular[k] += m*(x[(k + 1)%3]*v[(k + 2)%3] - x[(k + 2)%3]*v[(k + 1)%3]) + I*(double)w->spin[4*i + k];
+        }
+    }
+    for (i = 0; i < 3 && t.mass > 0; i++) t.centre[i] /= t.mass;
+    return t;
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>step
+   The time step (advised, checked), one step in the order of the manual, and runs of many. Errors of a
+   run are found in the step that caused them and name the body.
+   ------------------------------------------------------------------------------------------------ */
+
+/* Impact speed to reckon with: given, or the largest of what grains and walls do now and what gravity can
+   make of the height there is. */
+static double demi_speed_estimate(const dem_world *w) {
+    double g = (double)demi_length(w->desc.gravity), speed = 0, lo = 1e300, hi = -1e300;
+    dem_vec3 down = g > 0 ? demi_unit(w->desc.gravity) : demi_v(0, 0, 0);
+    int i, k;
+    if (w->desc.impact_speed > 0) return (double)w->desc.impact_speed;
+    for (i = 0; i < w->count; i++) {
+        const dem_vec3 v = demi_at(w->vel + 4*i);
+        const double h = (double)demi_dot(demi_at(w->pos + 4*i), down), r = (double)w->pos[4*i + 3];
+        speed = DEMI_MAX(speed, (double)demi_length(v));
+        lo = DEMI_MIN(lo, h - r);
+        hi = DEMI_MAX(hi, h + r);
+    }
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        speed = DEMI_MAX(speed, (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*
+                         (double)DEMI_MAX(wall->reach, wall->radius));
+        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_GRAINS || wall->kind == DEMI_WALL_MESH) {
+            const int n = wall->kind == DEMI_WALL_PLANE ? 1 : wall->vertex_count;
+            for (k = 0; k < n; k++) {
+                const dem_vec3 p = wall->kind == DEMI_WALL_PLANE ? wall->pose.position :
+                    demi_add(wall->pose.position, demi_turn(wall->pose.rotation, demi_at(wall->vertices + 3*k)));
+                hi = DEMI_MAX(hi, (double)demi_dot(p, down));
+            }
+        } else hi = DEMI_MAX(hi, (double)demi_dot(wall->pose.position, down) +
+                             (double)DEMI_MAX(wall->radius, wall->reach));
+    }
+    if (g > 0 && hi > lo) speed = DEMI_MAX(speed, sqrt(2*g*(hi - lo)));
+    return DEMI_MAX(speed, 1e-3);
+}
+
+/* Shortest contact among all material pairs and walls there are, for their smallest grains. */
+static void demi_advise(const dem_world *w, dem_advice *out) {
+    double smallest[DEMI_MATERIALS], speed = demi_speed_estimate(w), best = 1e300, rayleigh = 1e300;
+    int i, j, at_i = -1, at_j = -1, at_wall = 0;
+    for (i = 0; i < DEMI_MATERIALS; i++) smallest[i] = 0;
+    for (i = 0; i < w->count; i++) {
+        double *s = &smallest[w->body_material[i] - 1], r = (double)w->pos[4*i + 3];
+        if (w->inv_mass[i] <= 0) continue;
+        if (*s <= 0 || r < *s) *s = r;
+    }
+    for (i = 0; i < w->material_count; i++) {
+        const double r = smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r) : 0;
+        const double nu = (double)w->materials[i].poisson, G = (double)w->materials[i].young/(2*(1 + nu));
+        dem_real coef[DEMI_COEFS];
+        if (r <= 0) continue;
+        if (G > 0) rayleigh = DEMI_MIN(rayleigh, DEMI_PI*r*sqrt((double)w->materials[i].density/G)/(0.1631*nu + 0.8766));
+        for (j = 0; j < w->material_count + w->wall_count; j++) {
+            const int wall = j - w->material_count, other = wall < 0 ? j : w->walls[wall].material;
+            double m_eff = m, r_eff = r, t;
+            if (wall >= 0 && w->walls[wall].kind == DEMI_WALL_NONE) continue;
+            if (wall < 0) {
+                if (smallest[j] <= 0) continue;
+                m_eff = 1/(1/m + 1/demi_sphere_mass(w, j, smallest[j]));
+                r_eff = r*smallest[j]/(r + smallest[j]);
+            }
+            demi_coefficients(w, i, other, r_eff, m_eff, wall >= 0, coef);
+            if (w->desc.law && w->desc.law_stiffness > 0) t = DEMI_PI*sqrt(m_eff/(double)w->desc.law_stiffness);
+            else t = demi_contact_time(w, coef, m_eff, speed);
+            if (t < best) { best = t; at_i = i; at_j = other; at_wall = wall + 1; }
+        }
+    }
+    memset(out, 0, sizeof *out);
+    out->speed = (dem_real)speed;
+    out->rayleigh = (dem_real)(rayleigh < 1e300 ? rayleigh : 0);
+    if (at_i < 0) { snprintf(out->binds, sizeof out->binds, "no grain that moves"); best = 0; }
+    else if (at_wall)
+        snprintf(out->binds, sizeof out->binds, "grains of material %d, radius %g m, on wall %d of material %d, at %.3g m/s",
+                 at_i + 1, smallest[at_i], at_wall, at_j + 1, speed);
+    else
+        snprintf(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g m, at %.3g m/s", at_i + 1,
+                 at_j + 1, smallest[at_i], smallest[at_j], speed);
+    out->contact_time = (dem_real)best;
+    out->dt = (dem_real)(best/50);
+    out->dt_max = (dem_real)(best/20);
+}
+DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
+    demi_advise(w, advice);
+    if (advice->contact_time > 0) return DEM_OK;
+    return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: the world has no grain that moves; add grains "
+                     "before asking for a time step");
+}
+
+static void demi_domain_finish(dem_world *w, int d) {
+    demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
+}
+
+/* Completes the half kick that a step leaves open: velocities are then those of the present time. */
+static void demi_finish(dem_world *w) {
+    if (w->synced) return;
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);
+    w->synced = 1;
+}
+
+/* Settles dt before stepping: chosen or checked. */
+static dem_result demi_dt_settle(dem_world *w) {
+    dem_advice a;
+    if (w->dt_valid) return DEM_OK;
+    if (!w->count) {                            /* nothing to limit it: walls still move                   */
+        if (!(w->dt > 0)) w->dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
+        return DEM_OK;
+    }
+    demi_advise(w, &a);
+    if (w->desc.dt > 0) {
+        if (!w->desc.allow_large_dt && a.contact_time > 0 && w->desc.dt > a.dt_max)
+            return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most t_c/20 = %g s (t_c of %s"
+                             "); use dt = 0, a softer material or a smaller dt", (double)w->desc.dt, (double)a.dt_max, a.binds);
+        w->dt = w->desc.dt;
+    } else {
+        const dem_real dt = a.contact_time > 0 ? a.dt : DEM_R(1e-3);
+        if (dt < w->dt || dt > w->dt) { demi_finish(w); w->primed = 0; }     /* half steps were of the old dt  */
+        w->dt = dt;
+    }
+    w->assumed_speed = (double)a.speed;
+    w->dt_valid = 1;
+    return DEM_OK;
+}
+
+/* --- the parts of a step, per domain --- */
+
+static void demi_domain_move(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const int turning = w->desc.law || w->tangent != DEM_TANGENT_NONE || w->rolling != DEM_ROLLING_NONE;
+    const int halves = w->desc.integrator == DEM_VELOCITY_VERLET || w->desc.integrator == DEM_LEAPFROG;
+    const dem_real *DEMI_RESTRICT v = halves ? w->half_vel : w->vel;
+    dem_real most = 0, sum = 0;
+    int i;
+    demi_integrator_rows[w->desc.integrator].move(w, domain->begin, domain->end, turning);
+    if (w->desc.planar)
+        for (i = domain->begin; i < domain->end; i++) {
+            w->pos[4*i + 2] = w->vel[4*i + 2] = 0;
+            w->spin[4*i] = w->spin[4*i + 1] = 0;
+            if (halves) w->half_vel[4*i + 2] = w->half_spin[4*i] = w->half_spin[4*i + 1] = 0;
+        }
+    for (i = domain->begin; i < domain->end; i++) {         /* a sum keeps what is not finite, a maximum loses it */
+        const dem_real s = v[4*i]*v[4*i] + v[4*i + 1]*v[4*i + 1] + v[4*i + 2]*v[4*i + 2];
+        most = s > most ? s : most;
+        sum += s;
+    }
+    domain->speed2 = (double)most;
+    domain->check = (double)sum;
+    domain->energy[DEMI_E_GRAVITY] = 0;
+    if (w->desc.ledger) {
+        const dem_vec3 g = w->desc.gravity;
+        for (i = domain->begin; i < domain->end; i++) {
+            const dem_real *u = v + 4*i;
+            if (w->inv_mass[i] <= 0) continue;
+            domain->energy[DEMI_E_GRAVITY] += (double)w->mass[i]*(double)(g.x*u[0] + g.y*u[1] + g.z*u[2])*(double)w->dt;
+        }
+    }
+}
+
+static void demi_domain_clear(dem_world *w, int d) {        /* force field, or nothing, to start the sums with */
+    const demi_domain *domain = &w->domains[d];
+    const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
+    int i;
+    memset(w->force + 4*domain->begin, 0, n);
+    memset(w->torque + 4*domain->begin, 0, n);
+    if (!w->desc.force) return;
+    for (i = domain->begin; i < domain->end; i++) {
+        const dem_vec3 f = w->desc.force(demi_at(w->pos + 4*i), demi_at(w->vel + 4*i), w->pos[4*i + 3], w->mass[i],
+                                         w->time, w->desc.force_user);
+        demi_put(w->force + 4*i, f);
+        if (w->desc.ledger && w->forces_valid && w->inv_mass[i] > 0)
+            w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f, demi_at(w->vel + 4*i))*(double)w->dt;
+    }
+}
+static void demi_domain_respond(dem_world *w, int d) {
+    demi_domain_clear(w, d);
+    w->kernel(w, d);
+}
+static void demi_domain_gather(dem_world *w, int d) {
+    if (w->cross_entries) demi_cross_gather(w, d);
+    demi_walls_respond(w, d);
+}
+/* Forces at the present positions and velocities; wall channels. */
+static void demi_forces(dem_world *w) {
+    const double dt = w->forces_valid ? (double)w->dt : 0;
+    demi_array swap;
+    int d, i, k;
+    for (d = 0; d < w->domain_count; d++) {
+        w->domains[d].overlap = 0;
+        for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
+    }
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_respond);
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gather);
+    swap = w->wall_now_; w->wall_now_ = w->wall_next_; w->wall_next_ = swap;
+    w->wall_now = (demi_wall_contact *)w->wall_now_.data;
+    w->wall_next = (demi_wall_contact *)w->wall_next_.data;
+    w->stamp++;
+    for (i = 0; i < w->wall_count; i++) {       /* domains in order: one order whatever the threads         */
+        dem_channels *c = &w->walls[i].channels;
+        const dem_vec3 axis = w->walls[i].motion.axis;
+        double f[3] = {0, 0, 0}, t[3] = {0, 0, 0}, power = 0;
+        if (w->walls[i].kind == DEMI_WALL_NONE) continue;
+        c->contacts = 0;
+        for (d = 0; d < w->domain_count; d++) {
+            const demi_wall_sum *s = &w->wall_sums[d*w->wall_count + i];
+            for (k = 0; k < 3; k++) { f[k] += s->force[k]; t[k] += s->torque[k]; }
+            power += s->power;
+            c->contacts += s->contacts;
+        }
+        c->force = demi_v((dem_real)f[0], (dem_real)f[1], (dem_real)f[2]);
+        c->torque = demi_v((dem_real)t[0], (dem_real)t[1], (dem_real)t[2]);
+        c->torque_axial = demi_dot(c->torque, demi_unit(axis));
+        c->power = (dem_real)power;
+        for (k = 0; k < 3; k++) c->impulse[k] += f[k]*dt;
+        c->torque_impulse += (double)c->torque_axial*dt;
+        c->work += power*dt;
+        c->time += dt;
+    }
+    for (d = 0; d < w->domain_count; d++) w->overlap_max = DEMI_MAX(w->overlap_max, w->domains[d].overlap);
+    if (w->desc.ledger) demi_ledger_book(w);
+}
+
+/* Names the body that went wrong. */
+static dem_result demi_unstable(dem_world *w) {
+    int i, d;
+    double deepest = 0;
+    for (i = 0; i < w->count; i++)
+        if (!demi_finite3(demi_at(w->pos + 4*i)) || !demi_finite3(demi_at(w->vel + 4*i)) || !demi_finite3(demi_at(w->spin + 4*i)))
+            return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its position, velocity or spin is no "
+                             "longer a finite number; likely a law, force field or motion of your own divided by zero, or dt "
+                             "= %g s is too large", (unsigned long long)w->steps, (unsigned)w->body_slot[i] + 1, (double)w->dt);
+    for (d = 0; d < w->domain_count; d++) deepest = DEMI_MAX(deepest, w->domains[d].overlap);
+    for (d = 0; d < w->domain_count; d++)
+        for (i = 0; i < w->domains[d].wall_contacts; i++) {
+            const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + i];
+            if (c->overlap > w->pos[4*c->body + 3])
+                return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u overlaps wall %d by %.3g of its "
+                                 "radius, must be below 1; it started inside the wall, hit it too fast for dt = %g s, or the "
+                                 "material is too soft", (unsigned long long)w->steps, (unsigned)w->body_slot[c->body] + 1,
+                                 (int)c->wall + 1, (double)(c->overlap/w->pos[4*c->body + 3]), (double)w->dt);
+        }
+    return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: two grains overlap by %.3g of the smaller radius, must "
+                     "be below 1; they started inside each other, met too fast for dt = %g s, or the material is too soft",
+                     (unsigned long long)w->steps, deepest, (double)w->dt);
+}
+
+/* Bodies whose centre left through an outflow boundary are taken out. */
+static dem_result demi_outflow(dem_world *w) {
+    double lo[3], hi[3];
+    int i, k, any = 0;
+    demi_domain_limits(w, lo, hi);
+    for (k = 0; k < 3; k++) any |= w->desc.boundary[k] == DEM_BOUNDARY_OUTFLOW;
+    if (!any) return DEM_OK;
+    for (i = 0; i < w->count; i++)
+        for (k = 0; k < 3; k++) {
+            const double x = (double)w->pos[4*i + k];
+            if (w->desc.boundary[k] != DEM_BOUNDARY_OUTFLOW || (x >= lo[k] && x <= hi[k])) continue;
+            if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+            demi_body_take_out(w, i--);
+            w->balance.left++;
+            w->lll_valid = 0;
+            break;
+        }
+    return DEM_OK;
+}
+
+static void demi_fields_sample(dem_world *w);
+
+/* One step. Numbers as in the manual. */
+static dem_result demi_step_once(dem_world *w) {
+    double speed2 = 0, wall_speed = 0, overlap = 0;
+    dem_result result;
+    int d, i, look;
+    w->half_kick = (double)w->dt/2;
+
+    /* 1 move: first half kick, drift, predicted velocities; walls follow */
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
+    w->synced = 0;
+    w->time += (double)w->dt;
+    w->steps++;
+    for (d = 0; d < w->domain_count; d++) {
+        const double s = w->domains[d].check;
+        if (!(s < 1e300) || (DEMI_SINGLE && !(s < 1e37))) return demi_unstable(w);
+        speed2 = DEMI_MAX(speed2, w->domains[d].speed2);
+    }
+    w->speed_max = sqrt(speed2);
+    if (w->desc.ledger) {
+        const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
+        w->energy[DEMI_E_GRAVITY] += work;
+        w->throughput += fabs(work);
+    }
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        double s;
+        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
+        demi_wall_pose_at(wall, w->time, &wall->pose);
+        s = demi_wall_speed(wall);
+        wall_speed = s < 0 || wall_speed < 0 ? -1 : DEMI_MAX(wall_speed, s);
+    }
+    result = demi_outflow(w);
+    if (result != DEM_OK) return result;
+
+    /* 2 search: when something may have come near that is not in the list */
+    w->reach += w->speed_max*(double)w->dt;
+    w->wall_reach += DEMI_MAX(wall_speed, 0)*(double)w->dt;
+    look = !w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach + w->wall_reach > w->skin || wall_speed < 0;
+    if (look) {
+        result = demi_rebuild(w);
+        if (result != DEM_OK) return result;
+        demi_kernel_choose(w);
+        if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;     /* faster than thought: ask again      */
+    }
+
+    /* 3 touch, 4 respond, 5 gather */
+    demi_forces(w);
+
+    /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish) */
+    for (d = 0; d < w->domain_count; d++) overlap = DEMI_MAX(overlap, w->domains[d].overlap);
+    if (!(overlap < 1)) return demi_unstable(w);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_world_step(dem_world *w, int steps) {
+    dem_result result = DEM_OK;
+    int i, f;
+    if (steps < 0) return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
+    for (i = 0; i < steps && result == DEM_OK; i++) {
+        int sampling = 0;
+        result = demi_dt_settle(w);
+        if (result != DEM_OK) break;
+        if (!w->forces_valid || !w->list_valid) {           /* something changed since: forces at t, no memory moved */
+            demi_finish(w);
+            if (!w->list_valid) result = demi_rebuild(w);
+            if (result != DEM_OK) break;
+            demi_kernel_choose(w);
+            w->forces_valid = 0;
+            demi_forces(w);
+            w->forces_valid = 1;
+        }
+        if (!w->primed) { demi_finish(w); demi_prime(w); }
+        result = demi_step_once(w);
+        for (f = 0; f < w->field_count; f++) sampling |= w->fields[f].used && w->time >= w->fields[f].next;
+        if (sampling && result == DEM_OK) { demi_finish(w); demi_fields_sample(w); }
+    }
+    if (result != DEM_ERROR_UNSTABLE && w->domain_count && w->list_valid) demi_finish(w);
+    return result;
+}
+
+DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress, void *user) {
+    const double start = w->time, begun = demi_clock();
+    double last = begun;
+    int chunk = 1;
+    if (!(seconds >= 0) || !(seconds < 1e300))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and >= 0", seconds);
+    for (;;) {
+        const double left = start + seconds - w->time;
+        double now;
+        int steps = chunk;
+        dem_result result = demi_dt_settle(w);
+        if (result != DEM_OK) return result;
+        if (left < (double)w->dt/2) break;
+        if (left/(double)w->dt < chunk) steps = (int)(left/(double)w->dt + 0.5);
+        if (steps < 1) steps = 1;
+        result = dem_world_step(w, steps);
+        if (result != DEM_OK) return result;
+        now = demi_clock();
+        if (now - last > 0.1 && progress) {
+            const double done = (w->time - start)/seconds;
+            last = now;
+            if (progress(w, done, (now - begun)*(1 - done)/DEMI_MAX(done, 1e-9), user))
+                return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_run: stopped by the progress function at %g s", w->time);
+        }
+        if (now - begun < 0.05*(double)w->steps && chunk < 1000) chunk++;     /* short steps: look at the clock less often */
+    }
+    if (progress) progress(w, 1, 0, user);
+    return DEM_OK;
+}
+
+DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
+    fprintf((FILE *)user, "\r%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", 100*done, w->time, w->count,
+            seconds_left, done >= 1 ? "\n" : "");
+    fflush((FILE *)user);
+    return 0;
+}
+
+DEM_API double dem_world_time(const dem_world *w) { return w->time; }
+DEM_API uint64_t dem_world_steps(const dem_world *w) { return w->steps; }
+
+/* ------------------------------------------------------------------------------------------------
+   >>measure
+   Looking at a world without changing it: fields on a grid, counters, contacts, the digest.
+   ------------------------------------------------------------------------------------------------ */
+static size_t demi_field_cells(const demi_field *f) {
+    return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
+}
+static void demi_fields_sample(dem_world *w) {
+    int f, i, k;
+    for (f = 0; f < w->field_count; f++) {
+        demi_field *field = &w->fields[f];
+        const dem_field_desc *d = &field->desc;
+        double lo[3], size[3], volume;
+        if (!field->used || w->time < field->next || (d->end > 0 && w->time > d->end)) continue;
+        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->time) : w->time + 100*(double)w->dt;
+        if (field->next <= w->time) field->next = w->time + (double)w->dt/2;
+        lo[0] = (double)d->box.lo.x; lo[1] = (double)d->box.lo.y; lo[2] = (double)d->box.lo.z;
+        size[0] = ((double)d->box.hi.x - lo[0])/d->cells[0];
+        size[1] = ((double)d->box.hi.y - lo[1])/d->cells[1];
+        size[2] = ((double)d->box.hi.z - lo[2])/d->cells[2];
+        volume = size[0]*size[1]*size[2];
+        for (i = 0; i < w->count; i++) {
+            const double m = (double)w->mass[i], r = (double)w->pos[4*i + 3];
+            size_t cell = 0;
+            int in = 1;
+            for (k = 2; k >= 0; k--) {
+                const double t = floor(((double)w->pos[4*i + k] - lo[k])/size[k]);
+                in = in && t >= 0 && t < d->cells[k];
+                cell = cell*(size_t)d->cells[k] + (in ? (size_t)t : 0);
+            }
+            if (!in) continue;
+            field->solid[cell] += (w->desc.planar ? DEMI_PI*r*r*size[2] : 4*DEMI_PI/3*r*r*r)/volume;
+            field->mass[cell] += m;
+            for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->vel[4*i + k];
+        }
+        field->samples++;
+    }
+}
+DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
+    dem_field id;
+    demi_field field;
+    size_t n;
+    id.id = 0;
+    if (d->cells[0] < 1 || d->cells[1] < 1 || d->cells[2] < 1 ||
+        (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->box.hi.x > d->box.lo.x) ||
+        !(d->box.hi.y > d->box.lo.y) || !(d->box.hi.z > d->box.lo.z) || !(d->interval >= 0) || !(d->start >= 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval %g s; must be >= 1 each and at most "
+                  "2^28 in all, the box with lo below hi, times >= 0", d->cells[0], d->cells[1], d->cells[2], d->interval);
+        return id;
+    }
+    memset(&field, 0, sizeof field);
+    field.used = 1;
+    field.desc = *d;
+    field.next = d->start;
+    n = demi_field_cells(&field);
+    field.solid = (double *)demi_alloc(w, n, sizeof(double));
+    field.mass = (double *)demi_alloc(w, n, sizeof(double));
+    field.momentum = (double *)demi_alloc(w, n, 3*sizeof(double));
+    if (field.solid && field.mass && field.momentum && w->field_count == w->field_capacity) {
+        const size_t room = (size_t)w->field_capacity*2 + 4;
+        demi_field *fresh = (demi_field *)demi_alloc(w, room, sizeof *fresh);
+        if (fresh) {
+            if (w->field_count) memcpy(fresh, w->fields, (size_t)w->field_count*sizeof *fresh);
+            demi_free(w, w->fields, (size_t)w->field_capacity, sizeof *fresh);
+            w->fields = fresh;
+            w->field_capacity = (int)room;
+        }
+    }
+    if (!field.solid || !field.mass || !field.momentum || w->field_count == w->field_capacity) {
+        demi_free(w, field.solid, n, sizeof(double));
+        demi_free(w, field.mass, n, sizeof(double));
+        demi_free(w, field.momentum, n, 3*sizeof(double));
+        demi_no_memory(w, "dem_field_add");
+        return id;
+    }
+    w->fields[w->field_count++] = field;
+    id.id = w->field_count;
+    return id;
+}
+static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
+    if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d", call, (int)id.id, w->field_count);
+    return 0;
+}
+DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
+    const demi_field *f = demi_field_find((dem_world *)w, "dem_field_get", id);
+    if (!f) return DEM_ERROR_ARGUMENT;
+    memcpy(data->cells, f->desc.cells, sizeof data->cells);
+    data->box = f->desc.box;
+    data->samples = f->samples;
+    data->solid = f->solid;
+    data->mass = f->mass;
+    data->momentum = f->momentum;
+    return DEM_OK;
+}
+DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
+    demi_field *f = demi_field_find(w, "dem_field_reset", id);
+    size_t n;
+    if (!f) return DEM_ERROR_ARGUMENT;
+    n = demi_field_cells(f);
+    memset(f->solid, 0, n*sizeof(double));
+    memset(f->mass, 0, n*sizeof(double));
+    memset(f->momentum, 0, 3*n*sizeof(double));
+    f->samples = 0;
+    return DEM_OK;
+}
+
+DEM_API dem_counters dem_counters_get(const dem_world *w) {
+    dem_counters c;
+    int d;
+    memset(&c, 0, sizeof c);
+    c.steps = w->steps;
+    c.rebuilds = w->rebuilds;
+    for (d = 0; d < w->domain_count && w->list_valid; d++) {
+        c.candidates += w->domains[d].own + w->domains[d].cross;
+        c.contacts += w->domains[d].contacts;
+        c.wall_contacts += w->domains[d].wall_contacts;
+    }
+    c.overlap_max = (dem_real)w->overlap_max;
+    c.speed_max = (dem_real)w->speed_max;
+    c.skin = (dem_real)w->skin;
+    c.dt = w->dt;
+    c.search = w->desc.search;
+    c.threads = w->desc.threads;
+    c.domains = w->domain_count;
+    c.memory = w->bytes;
+    return c;
+}
+DEM_API void dem_overlap_reset(dem_world *w) { w->overlap_max = 0; }
+
+/* One contact by slots, its force by the law of the run on a copy of its memory. */
+static void demi_contact_force(const dem_world *w, const demi_list *list, int k, dem_contact_info *out) {
+    const demi_periods p = demi_periods_of(w);
+    demi_hits hits;
+    dem_real push[DEMI_PUSH], deep[1], copy[DEMI_MEMORY];
+    uint32_t stamp = list->stamp[k];
+    double energy[DEMI_ENERGIES];
+    demi_list one = *list;
+    const int a = list->a[k], b = list->b[k], stride = w->memory_stride;
+    dem_vec3 d = demi_sub(demi_at(w->pos + 4*b), demi_at(w->pos + 4*a));
+    dem_real l, ra = w->pos[4*a + 3], rb = w->pos[4*b + 3];
+    int e;
+    for (e = 0; e < stride; e++) copy[e] = list->memory[(size_t)k*(size_t)stride + (size_t)e];
+    one.memory = copy;
+    one.stamp = &stamp;
+    one.coef = list->coef ? list->coef + (size_t)k*DEMI_COEFS : 0;
+    hits.count = 1;
+    hits.a[0] = a; hits.b[0] = b; hits.k[0] = 0;
+    demi_respond(w, &one, &hits, &p, push, 1, deep, energy, 0, w->normal, w->tangent, w->rolling, w->uniform, 1, 0, w->desc.law);
+    d = demi_v(demi_image(d.x, p.half[0], p.period[0]), demi_image(d.y, p.half[1], p.period[1]),
+               demi_image(d.z, p.half[2], p.period[2]));
+    l = demi_length(d);
+    out->a = dem_bodies_id(w, a);
+    out->b = dem_bodies_id(w, b);
+    out->wall = 0;
+    out->normal = demi_scale(d, 1/(l + DEMI_TINY));
+    out->overlap = ra + rb - l;
+    out->point = demi_add(demi_at(w->pos + 4*a), demi_scale(d, ra/(ra + rb)));
+    out->force = demi_v(push[DEMI_FX], push[DEMI_FY], push[DEMI_FZ]);
+}
+DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
+    const demi_periods p = demi_periods_of(w);
+    int d, l, k, n = 0;
+    if (!w->list_valid) return 0;
+    for (d = 0; d < w->domain_count; d++) {
+        for (l = 0; l < 2; l++) {
+            const demi_list *list = l ? &w->cross : &w->own;
+            const int count = l ? w->domains[d].cross : w->domains[d].own;
+            for (k = d*list->stride; k < d*list->stride + count; k++) {
+                const dem_real *x = w->pos + 4*list->a[k], *y = w->pos + 4*list->b[k];
+                const dem_real dx = demi_image(y[0] - x[0], p.half[0], p.period[0]);
+                const dem_real dy = demi_image(y[1] - x[1], p.half[1], p.period[1]);
+                const dem_real dz = demi_image(y[2] - x[2], p.half[2], p.period[2]);
+                if (!(dx*dx + dy*dy + dz*dz < (x[3] + y[3])*(x[3] + y[3]))) continue;
+                if (n < capacity && out) demi_contact_force(w, list, k, &out[n]);
+                n++;
+            }
+        }
+        for (k = 0; k < w->domains[d].wall_contacts; k++, n++) {
+            const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
+            if (n >= capacity || !out) continue;
+            out[n].a = dem_bodies_id(w, c->body);
+            out[n].b.slot = out[n].b.generation = 0;
+            out[n].wall = c->wall + 1;
+            out[n].normal = c->normal;
+            out[n].point = c->point;
+            out[n].overlap = c->overlap;
+            out[n].force = c->force;
+        }
+    }
+    return n;
+}
+
+/* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays; contact
+   memory as a sum over contacts of their own digests, for the same reason. */
+DEM_API uint64_t dem_world_hash(const dem_world *w) {
+    uint64_t h = DEMI_HASH_START, sum = 0;
+    int i, d, l, k;
+    h = demi_hash(h, &w->time, sizeof w->time);
+    for (i = 0; i < w->slot_count; i++) {
+        const int b = w->slot_index[i];
+        if (b < 0) continue;
+        h = demi_hash(h, &i, sizeof i);
+        h = demi_hash(h, w->pos + 4*b, 4*sizeof(dem_real));
+        h = demi_hash(h, w->vel + 4*b, 3*sizeof(dem_real));
+        h = demi_hash(h, w->spin + 4*b, 3*sizeof(dem_real));
+    }
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE) {
+            h = demi_hash(h, &w->walls[i].pose.position, sizeof(dem_vec3));
+            h = demi_hash(h, w->walls[i].pose.rotation, sizeof w->walls[i].pose.rotation);
+        }
+    for (d = 0; d < w->domain_count && w->list_valid; d++) {
+        for (l = 0; l < 2 && w->memory_stride; l++) {
+            const demi_list *list = l ? &w->cross : &w->own;
+            const int count = l ? w->domains[d].cross : w->domains[d].own;
+            for (k = d*list->stride; k < d*list->stride + count; k++) {
+                uint64_t one = DEMI_HASH_START;
+                const uint32_t sa = w->body_slot[list->a[k]], sb = w->body_slot[list->b[k]];
+                const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
+                if (list->stamp[k] != w->stamp) continue;
+                one = demi_hash(one, &lo, sizeof lo);
+                one = demi_hash(one, &hi, sizeof hi);
+                for (i = 0; i < w->memory_stride; i++) {
+                    dem_real m = list->memory[k*w->memory_stride + i];
+                    if (sa > sb && (w->vector_mask >> i & 1)) m = -m;
+                    if (!(m < 0) && !(m > 0)) m = 0;               /* -0 is 0                                  */
+                    one = demi_hash(one, &m, sizeof m);
+                }
+                sum += one;
+            }
+        }
+        for (k = 0; k < w->domains[d].wall_contacts; k++) {
+            const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
+            uint64_t one = DEMI_HASH_START;
+            one = demi_hash(one, &w->body_slot[c->body], sizeof(uint32_t));
+            one = demi_hash(one, &c->wall, sizeof c->wall);
+            one = demi_hash(one, &c->element, sizeof c->element);
+            sum += demi_hash(one, c->memory, sizeof c->memory);
+        }
+    }
+    return demi_hash(h, &sum, sizeof sum);
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>files
+   Reading. A file is loaded whole and goes to the parser that also serves data in memory. Its bytes
+   are not to be trusted: nothing is read past the end, a count is held against the bytes there before
+   memory is taken for it, and errors name the line. Text is read by moving (demi_text_line,
+   demi_text_word) and looking at the present word (demi_text_is, _real, _corner). OBJ and STL text
+   have no counts, so they are gone through twice: to count, then to fill arrays of the right size.
+
+   demi_first_equal says of each of many keys where it came first. Merging vertices, counting the
+   triangles of an edge and finding doubled triangles are all this one question.
+
+   Writing. demi_out_open gives a file of the name path.tmp; demi_out_close renames it to path when
+   all went well and removes it otherwise, so what stands under path is whole. Write errors stick to
+   the FILE and are looked at once, on closing. Text has decimal points whatever the locale says.
+   ---------------------------------------------------------------------------------------------- */
+#include <errno.h>
+
+#define DEMI_REACH 1e15             /* m: coordinates beyond are mistakes; squares could overflow */
+#define DEMI_ELEMENTS_MAX 700000000 /* vertices, triangles: three times as many fit an int32      */
+
+/* ---- text in ---- */
+
+/* A text being read, without a zero at its end, and what an error sentence needs. */
+typedef struct demi_text {
+    dem_world *world;
+    const char *call, *name;    /* the public function; the file or data it reads                 */
+    const char *word;           /* the present word; null at the end of the text                  */
+    size_t length;              /* of the word; 0 at the end of a line                            */
+    const char *at, *line_end;  /* what is left of the line                                       */
+    const char *next, *end;     /* what is left after it                                          */
+    long line;                  /* counted from 1                                                 */
+    char half[24];              /* 0.5 in this locale: strtod wants its decimal point             */
+} demi_text;
+
+static demi_text demi_text_make(dem_world *w, const char *call, const char *name, const char *data,
+                                size_t size) {
+    demi_text t;
+    size_t length = name ? strlen(name) : 0;
+    memset(&t, 0, sizeof t);
+    t.world = w;
+    t.call = call;
+    t.name = !name ? "data" : length > 200 ? name + (length - 200) : name;
+    t.end = data + size;
+    t.next = size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? data + 3 : data; /* order mark */
+    t.at = t.line_end = t.next;
+    if (snprintf(t.half, sizeof t.half, "%.1f", 0.5) < 3) memcpy(t.half, "0.5", 4);
+    return t;
+}
+
+/* Moves to the next word of the line; 0 when there is none. */
+static int demi_text_word(demi_text *t) {
+    const char *p = t->at;
+    while (p < t->line_end && (*p == ' ' || *p == '\t' || *p == '\v' || *p == '\f')) p++;
+    t->word = p;
+    while (p < t->line_end && !(*p == ' ' || *p == '\t' || *p == '\v' || *p == '\f')) p++;
+    t->at = p;
+    t->length = (size_t)(p - t->word);
+    return t->length > 0;
+}
+
+/* Moves to the first word of the next line that has one; 0 at the end. # begins a comment. */
+static int demi_text_line(demi_text *t) {
+    while (t->next < t->end) {
+        const char *p = t->next, *comment;
+        t->at = p;
+        t->line++;
+        while (p < t->end && *p != '\n' && *p != '\r') p++;
+        comment = (const char *)memchr(t->at, '#', (size_t)(p - t->at));
+        t->line_end = comment ? comment : p;
+        if (p < t->end) p += *p == '\r' && t->end - p > 1 && p[1] == '\n' ? 2 : 1;
+        t->next = p;
+        if (demi_text_word(t)) return 1;
+    }
+    t->at = t->line_end = t->end;
+    t->word = 0;
+    t->length = 0;
+    return 0;
+}
+
+/* Refuses the present word; `where` says what is allowed and what to do. */
+static dem_result demi_text_fail(const demi_text *t, const char *where) {
+    char shown[44] = "'";
+    size_t i, length = t->length < 40 ? t->length : 40;
+    for (i = 0; i < length; i++)
+        shown[i + 1] = (char)(t->word[i] >= 32 && t->word[i] < 127 ? t->word[i] : '?');
+    shown[length + 1] = '\'';
+    return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: found %s where %s", t->call,
+                     t->name, t->line, t->length ? shown : t->word ? "the end of the line" :
+                     "the end of the file", where);
+}
+
+static dem_result demi_text_memory(const demi_text *t) {
+    return demi_fail(t->world, DEM_ERROR_MEMORY, "%s: %s: no memory for what it holds; free some "
+                     "or simplify the mesh", t->call, t->name);
+}
+
+/* 1 if the present word is this one (given in lower case), in capitals or not. */
+static int demi_text_is(const demi_text *t, const char *word) {
+    size_t i;
+    if (t->length != strlen(word)) return 0;
+    for (i = 0; i < t->length; i++) {
+        char c = t->word[i];
+        if ((c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c) != word[i]) return 0;
+    }
+    return 1;
+}
+
+/* The present word as a coordinate: a decimal number with a point, no nan, inf or hexadecimal.
+   strtod rounds correctly, but needs a zero at the end and the locale's point: hence the copy. */
+static dem_result demi_text_real(demi_text *t, dem_real *value) {
+    char copy[160], *end = copy;
+    size_t i, n = 0, point = strlen(t->half) - 2;
+    int points = 0, bad = t->length == 0 || t->length > 120;
+    double number = 0;
+    for (i = 0; i < t->length && !bad; i++) {
+        char c = t->word[i];
+        if (c == '.' && points++ == 0) {
+            memcpy(copy + n, t->half + 1, point);
+            n += point;
+        } else {
+            bad = !(c >= '0' && c <= '9') && c != '+' && c != '-' && c != 'e' && c != 'E';
+            copy[n++] = c;
+        }
+    }
+    copy[bad ? 0 : n] = 0;
+    if (!bad) number = strtod(copy, &end);
+    if (bad || end != copy + n || number > DEMI_REACH || number < -DEMI_REACH)
+        return demi_text_fail(t, "a coordinate is expected, a decimal number within +-1e15 (m); "
+                              "correct it or export the file again");
+    *value = number == 0 ? 0 : (dem_real)number; /* -0 and 0 are one place */
+    return DEM_OK;
+}
+
+/* The first `length` bytes of the present word as a whole number of at most 9 digits. */
+static int demi_text_integer(const demi_text *t, size_t length, int32_t *value) {
+    size_t i = length > 0 && (t->word[0] == '-' || t->word[0] == '+') ? 1 : 0;
+    int32_t number = 0;
+    if (length == i || length - i > 9) return 0;
+    for (; i < length; i++) {
+        if (t->word[i] < '0' || t->word[i] > '9') return 0;
+        number = 10*number + (t->word[i] - '0');
+    }
+    *value = t->word[0] == '-' ? -number : number;
+    return 1;
+}
+
+/* The present word as a corner from 1 to count, handed back from 0. In OBJ (back > 0) what follows
+   a slash is passed over, and -1 is the last of the `back` vertices read so far. */
+static dem_result demi_text_corner(const demi_text *t, int count, int back, int32_t *corner) {
+    char where[160];
+    const char *slash = t->length && back > 0 ? (const char *)memchr(t->word, '/', t->length) : 0;
+    if (demi_text_integer(t, slash ? (size_t)(slash - t->word) : t->length, corner)) {
+        if (*corner < 0 && back > 0) *corner += back + 1;
+        if (*corner >= 1 && *corner <= count) {
+            --*corner;
+            return DEM_OK;
+        }
+    }
+    snprintf(where, sizeof where, "a corner is expected, a whole number from 1 to %d, the number "
+             "of vertices; correct it or export the file again", count);
+    return demi_text_fail(t, where);
+}
+
+/* ---- meshes and profiles in: width is 3 for triangles in space, 2 for segments in a plane ---- */
+
+static void demi_mesh_free(dem_world *w, dem_mesh *mesh, size_t width) {
+    demi_free(w, mesh->vertices, (size_t)mesh->vertex_count*width, sizeof(dem_real));
+    demi_free(w, mesh->triangles, (size_t)mesh->triangle_count*width, sizeof(int32_t));
+    memset(mesh, 0, sizeof *mesh);
+}
+
+/* Arrays for counts that are known and backed by bytes. On failure the caller frees. */
+static dem_result demi_mesh_allocate(const demi_text *t, dem_mesh *mesh, size_t width,
+                                     size_t vertices, size_t elements) {
+    if (vertices == 0 || elements == 0 || elements > DEMI_ELEMENTS_MAX ||
+        vertices > 3*(size_t)DEMI_ELEMENTS_MAX)
+        return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: found %.0f vertices and %.0f "
+                         "triangles where from 1 to %d are allowed; check what was exported",
+                         t->call, t->name, (double)vertices, (double)elements, DEMI_ELEMENTS_MAX);
+    mesh->vertex_count = (int)vertices;
+    mesh->triangle_count = (int)elements;
+    mesh->vertices = (dem_real *)demi_alloc(t->world, vertices*width, sizeof(dem_real));
+    mesh->triangles = (int32_t *)demi_alloc(t->world, elements*width, sizeof(int32_t));
+    return mesh->vertices && mesh->triangles ? DEM_OK : demi_text_memory(t);
+}
+
+/* [MIL] Fig 5.11: two counts, a line per vertex, a line of corners per element. */
+static dem_result demi_lists_read(demi_text *t, size_t width, dem_mesh *mesh) {
+    int32_t count[2] = {0, 0};
+    size_t i;
+    int k;
+    dem_result result;
+    for (k = 0; k < 2; k++) {
+        if (!(k ? demi_text_word(t) : demi_text_line(t)) ||
+            !demi_text_integer(t, t->length, &count[k]) || count[k] < 1 ||
+            count[k] > DEMI_ELEMENTS_MAX)
+            return demi_text_fail(t, "the numbers of vertices and elements are expected, from 1 to "
+                                  "700000000 (or an STL or OBJ file); correct the first line");
+    }
+    /* the shortest line is "0 0 0\n", and the last may lack its end */
+    if (((uint64_t)count[0] + (uint64_t)count[1])*2*width - 1 > (uint64_t)(t->end - t->next))
+        return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: found counts %ld and %ld, "
+                         "but only %.0f bytes follow; copy the file again or correct the counts",
+                         t->call, t->name, t->line, (long)count[0], (long)count[1],
+                         (double)(t->end - t->next));
+    result = demi_mesh_allocate(t, mesh, width, (size_t)count[0], (size_t)count[1]);
+    for (k = 0; k < 2; k++)
+        for (i = 0; i < (size_t)count[k]*width && result == DEM_OK; i++) {
+            if (i%width > 0) demi_text_word(t);
+            else if (demi_text_word(t))
+                return demi_text_fail(t, "the line should end; give each vertex and each element a "
+                                      "line of its own");
+            else demi_text_line(t);
+            result = k ? demi_text_corner(t, count[0], 0, mesh->triangles + i)
+                       : demi_text_real(t, mesh->vertices + i);
+        }
+    if (result == DEM_OK && (demi_text_word(t) || demi_text_line(t)))
+        return demi_text_fail(t, "the file should end; correct the counts in its first line");
+    return result;
+}
+
+/* OBJ: v and f lines, polygons cut into a fan of triangles, the rest passed over. Without `fill` it
+   counts and allocates. The text comes by value: each pass starts afresh. */
+static dem_result demi_obj_pass(demi_text t, dem_mesh *mesh, int fill) {
+    size_t vertices = 0, triangles = 0, axis;
+    dem_result result = DEM_OK;
+    while (result == DEM_OK && demi_text_line(&t)) {
+        if (demi_text_is(&t, "v")) {
+            for (axis = 0; fill && axis < 3 && result == DEM_OK; axis++) {
+                demi_text_word(&t);
+                result = demi_text_real(&t, &mesh->vertices[3*vertices + axis]);
+            }
+            vertices++;
+        } else if (demi_text_is(&t, "f")) {
+            int32_t corner[3] = {0, 0, 0}; /* first, previous, present */
+            int count = 0;
+            for (; result == DEM_OK && demi_text_word(&t); count++) {
+                if (fill)
+                    result = demi_text_corner(&t, mesh->vertex_count, (int)vertices, &corner[2]);
+                if (fill && count >= 2)
+                    memcpy(mesh->triangles + 3*triangles, corner, sizeof corner);
+                if (count >= 2) triangles++;
+                corner[count == 0 ? 0 : 1] = corner[2];
+            }
+            if (fill && result == DEM_OK && count < 3)
+                result = demi_text_fail(&t, "a face needs three corners or more; complete it or "
+                                        "take it out");
+        }
+    }
+    return fill ? result : demi_mesh_allocate(&t, mesh, 3, vertices, triangles);
+}
+
+/* STL as text: facet, three vertex lines, endfacet. Without `fill` it counts and allocates. */
+static dem_result demi_stl_pass(demi_text t, dem_mesh *mesh, int fill) {
+    size_t facets = 0, axis;
+    int corners = 3, ended = 0; /* of this facet, so far; whether `endsolid` came */
+    while (demi_text_line(&t)) {
+        int vertex = demi_text_is(&t, "vertex"), facet = demi_text_is(&t, "facet");
+        int endfacet = demi_text_is(&t, "endfacet"), endsolid = demi_text_is(&t, "endsolid");
+        if (facet) facets++;
+        if (!fill) continue;
+        if (vertex ? corners == 3 : (facet || endfacet || endsolid) && corners < 3)
+            return demi_text_fail(&t, "a facet should have three vertices; export the mesh as "
+                                  "triangles");
+        if (!vertex && !facet && !endfacet && !endsolid && !demi_text_is(&t, "outer") &&
+            !demi_text_is(&t, "endloop") && !demi_text_is(&t, "solid"))
+            return demi_text_fail(&t, "solid, facet, outer, vertex, endloop, endfacet or endsolid "
+                                  "is expected; export the file again");
+        if (facet) corners = 0;
+        ended = endsolid;
+        for (axis = 0; vertex && axis < 3; axis++) {
+            size_t corner = 3*(facets - 1) + (size_t)corners;
+            demi_text_word(&t);
+            if (demi_text_real(&t, &mesh->vertices[3*corner + axis]) != DEM_OK)
+                return DEM_ERROR_FORMAT;
+        }
+        corners += vertex;
+    }
+    if (!fill) return demi_mesh_allocate(&t, mesh, 3, 3*facets, facets);
+    if (ended) return DEM_OK;
+    return demi_text_fail(&t, "endsolid is expected; the file is cut short, so copy or export it "
+                          "again");
+}
+
+static uint32_t demi_little32(const char *data) {
+    const unsigned char *b = (const unsigned char *)data;
+    return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+/* Binary STL: 80 bytes, the number of triangles, then 50 bytes for each: a normal, three corners,
+   two bytes; all little-endian, in single precision. demi_parse has compared number and size. */
+static dem_result demi_stl_binary(const demi_text *t, const char *data, dem_mesh *mesh) {
+    size_t i, k, count = demi_little32(data + 80);
+    dem_result result = demi_mesh_allocate(t, mesh, 3, 3*count, count);
+    for (i = 0; i < count && result == DEM_OK; i++)
+        for (k = 0; k < 9; k++) {
+            size_t byte = 84 + 50*i + 12 + 4*k;
+            uint32_t bits = demi_little32(data + byte);
+            float value;
+            memcpy(&value, &bits, sizeof value);
+            if ((bits >> 23 & 255) == 255 || fabs((double)value) > DEMI_REACH) /* 255: nan, inf */
+                return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s byte %.0f: found a coordinate "
+                                 "of triangle %.0f that is not a number within +-1e15 (m); export "
+                                 "the mesh again", t->call, t->name, (double)byte, (double)i + 1);
+            mesh->vertices[9*i + k] = value == 0 ? 0 : (dem_real)value;
+        }
+    return result;
+}
+
+/* For every key of `width` bytes the index of the first equal one: count int32, to be
+   freed; null without memory. Open addressing, in a table that is at most half full. */
+static int32_t *demi_first_equal(dem_world *w, const void *keys, size_t count, size_t width) {
+    const char *key = (const char *)keys;
+    size_t i, slots = 16;
+    int32_t *first, *table; /* table: index + 1, or 0 */
+    while (slots < 2*count) slots *= 2;
+    first = (int32_t *)demi_alloc(w, count, sizeof(int32_t));
+    table = (int32_t *)demi_alloc(w, slots, sizeof(int32_t));
+    for (i = 0; first && table && i < count; i++) {
+        const char *mine = key + i*width;
+        size_t at = (size_t)demi_hash(DEMI_HASH_START, mine, width) & (slots - 1);
+        while (table[at] && memcmp(key + (size_t)(table[at] - 1)*width, mine, width) != 0)
+            at = (at + 1) & (slots - 1);
+        if (!table[at]) table[at] = (int32_t)i + 1;
+        first[i] = table[at] - 1;
+    }
+    demi_free(w, table, slots, sizeof(int32_t));
+    if (!table) demi_free(w, first, count, sizeof(int32_t));
+    return table ? first : 0;
+}
+
+/* STL has places where others have corners: merges those that are exactly equal. */
+static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh, int *merged) {
+    size_t i, count = (size_t)mesh->vertex_count, unique = 0;
+    int32_t *first = demi_first_equal(t->world, mesh->vertices, count, 3*sizeof(dem_real));
+    dem_real *vertices = 0;
+    for (i = 0; first && i < count; i++) unique += first[i] == (int32_t)i;
+    if (first) vertices = (dem_real *)demi_alloc(t->world, 3*unique, sizeof(dem_real));
+    for (i = 0, unique = 0; vertices && i < count; i++) { /* count = 3 triangles */
+        mesh->triangles[i] = first[i] < (int32_t)i ? mesh->triangles[first[i]] : (int32_t)unique;
+        if (first[i] == (int32_t)i)
+            memcpy(vertices + 3*unique++, mesh->vertices + 3*i, 3*sizeof(dem_real));
+    }
+    demi_free(t->world, first, count, sizeof(int32_t));
+    if (!vertices) return demi_text_memory(t);
+    demi_free(t->world, mesh->vertices, 3*count, sizeof(dem_real));
+    mesh->vertices = vertices;
+    mesh->vertex_count = (int)unique;
+    *merged = (int)(count - unique);
+    return DEM_OK;
+}
+
+/* Writes a number with a decimal point in every locale; returns buffer (32 bytes). */
+static const char *demi_format_real(char *buffer, double value, int digits) {
+    char raw[64];
+    size_t i, n = 0;
+    snprintf(raw, sizeof raw, "%.*g", digits, value);
+    for (i = 0; raw[i] && n < 31; i++) {
+        if (strchr("0123456789+-einfa", raw[i])) buffer[n++] = raw[i];
+        else if (n == 0 || buffer[n - 1] != '.') buffer[n++] = '.';
+    }
+    buffer[n] = 0;
+    return buffer;
+}
+
+/* Box, slivers and a hint on units: what each triangle tells by itself. */
+static void demi_health_shapes(const dem_mesh *mesh, dem_mesh_health *health) {
+    double lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, extent = 0;
+    char number[32];
+    int i, k, axis;
+    for (i = 0; i < mesh->triangle_count; i++) {
+        double p[3][3], side[3][3], longest = 0, area = 0;
+        for (k = 0; k < 3; k++) {
+            const ptrdiff_t corner = mesh->triangles[3*(ptrdiff_t)i + k];
+            const dem_real *vertex = mesh->vertices + 3*corner;
+            for (axis = 0; axis < 3; axis++) {
+                double x = p[k][axis] = (double)vertex[axis];
+                if (x < lo[axis] || i + k == 0) lo[axis] = x;
+                if (x > hi[axis] || i + k == 0) hi[axis] = x;
+            }
+        }
+        for (k = 0; k < 3; k++) {
+            double *s = side[k];
+            for (axis = 0; axis < 3; axis++) s[axis] = p[(k + 1)%3][axis] - p[k][axis];
+            longest = fmax(longest, sqrt(s[0]*s[0] + s[1]*s[1] + s[2]*s[2]));
+        }
+        for (axis = 0; axis < 3; axis++) {
+            int b = (axis + 1)%3, c = (axis + 2)%3;
+            double x = side[0][b]*side[1][c] - side[0][c]*side[1][b];
+            area += x*x;
+        }
+        area = sqrt(area); /* of the parallelogram: height times longest side */
+        health->slivers += !(area > 0 && area >= 1e-3*longest*longest);
+    }
+    health->box = dem_box_make((dem_real)lo[0], (dem_real)lo[1], (dem_real)lo[2], (dem_real)hi[0],
+                               (dem_real)hi[1], (dem_real)hi[2]);
+    for (axis = 0; axis < 3; axis++) extent = fmax(extent, hi[axis] - lo[axis]);
+    if (extent > 50 || extent < 1e-3)
+        snprintf(health->hint, sizeof health->hint, "largest extent is %s m: the file may %s; "
+                 "multiply its vertices by %s", demi_format_real(number, extent, 4), extent > 50 ?
+                 "be in millimetres" : "have been scaled to metres twice", extent > 50 ?
+                 "0.001" : "1000");
+}
+
+/* Open and crowded edges, duplicates: what triangles tell together. Pass 0 looks up triangles, pass
+   1 edges; a triangle with one corner twice is a sliver and has no edges worth counting. */
+static dem_result demi_health_edges(const demi_text *t, const dem_mesh *mesh,
+                                    dem_mesh_health *health) {
+    size_t i, j, k, n, count = (size_t)mesh->triangle_count, pass;
+    int32_t *keys = (int32_t *)demi_alloc(t->world, 6*count, sizeof(int32_t)), *first = 0;
+    dem_result result = keys ? DEM_OK : DEM_ERROR_MEMORY;
+    for (pass = 0; pass < 2 && result == DEM_OK; pass++) {
+        size_t width = 3 - pass;
+        for (i = n = 0; i < count; i++) {
+            const int32_t *corner = mesh->triangles + 3*i;
+            if (pass && (corner[0] == corner[1] || corner[1] == corner[2] ||
+                         corner[2] == corner[0])) continue;
+            for (k = 0; k < (pass ? 3u : 1u); k++, n++)
+                for (j = 0; j < width; j++) { /* in rising order: insert one by one */
+                    int32_t *key = keys + n*width, present = corner[(k + j)%3];
+                    size_t at = j;
+                    for (; at > 0 && key[at - 1] > present; at--) key[at] = key[at - 1];
+                    key[at] = present;
+                }
+        }
+        if (n == 0) break;
+        first = demi_first_equal(t->world, keys, n, width*sizeof(int32_t));
+        if (!first) result = DEM_ERROR_MEMORY;
+        if (pass) memset(keys, 0, n*sizeof(int32_t)); /* from here on: triangles at each edge */
+        for (i = 0; first && i < n; i++) {
+            if (pass) keys[first[i]]++;
+            else health->duplicates += first[i] != (int32_t)i;
+        }
+        for (i = 0; first && pass && i < n; i++) {
+            health->open_edges += keys[i] == 1;
+            health->crowded_edges += keys[i] > 2;
+        }
+        demi_free(t->world, first, n, sizeof(int32_t));
+    }
+    demi_free(t->world, keys, 6*count, sizeof(int32_t));
+    return result == DEM_OK ? result : demi_text_memory(t);
+}
+
+/* Any bytes -> a mesh (width 3) or the segments of a profile (2), or a sentence and an empty mesh.
+   Contents tell formats apart; binary STL is looked for first, as it too may begin with `solid`. */
+static dem_result demi_parse(dem_world *w, const char *call, const char *name, const char *data,
+                             size_t size, size_t width, dem_mesh *mesh, dem_mesh_health *health) {
+    static const char *const obj[] = {"v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl"};
+    demi_text t = demi_text_make(w, call, name, data, size), start = t;
+    dem_result result;
+    size_t i;
+    int merged = 0, is_obj = 0, is_stl;
+    if (width == 3 && size >= 84 && size == 84 + 50*(uint64_t)demi_little32(data + 80)) {
+        result = demi_stl_binary(&t, data, mesh);
+        if (result == DEM_OK) result = demi_mesh_merge(&t, mesh, &merged);
+    } else if (memchr(data, 0, size)) {
+        result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s: found %.0f bytes that are not text%s; the "
+                           "file is cut short or of another format, so copy or export it again",
+                           call, t.name, (double)size, width == 2 ? "" : ", where a binary STL has "
+                           "84 and 50 for each triangle it counts");
+    } else {
+        demi_text_line(&t);
+        for (i = 0; i < sizeof obj/sizeof *obj; i++) is_obj |= demi_text_is(&t, obj[i]);
+        is_stl = demi_text_is(&t, "solid") || demi_text_is(&t, "facet");
+        if (width == 2 || !(is_obj || is_stl)) {
+            result = demi_lists_read(&start, width, mesh);
+        } else {
+            result = is_obj ? demi_obj_pass(start, mesh, 0) : demi_stl_pass(start, mesh, 0);
+            if (result == DEM_OK)
+                result = is_obj ? demi_obj_pass(start, mesh, 1) : demi_stl_pass(start, mesh, 1);
+            if (result == DEM_OK && is_stl) result = demi_mesh_merge(&t, mesh, &merged);
+        }
+    }
+    if (result == DEM_OK && health) {
+        health->merged_vertices = merged;
+        demi_health_shapes(mesh, health);
+        result = demi_health_edges(&t, mesh, health);
+    }
+    if (result != DEM_OK) {
+        demi_mesh_free(w, mesh, width);
+        if (health) memset(health, 0, sizeof *health);
+    }
+    return result;
+}
+
+/* Loads a file whole into bytes, which the caller frees (also after a failure). */
+static dem_result demi_load(dem_world *w, const char *call, const char *path, demi_array *bytes, size_t *size) {
+    FILE *file;
+    dem_result result = DEM_OK;
+    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    errno = 0;
+    file = fopen(path, "rb");
+    *size = 0;
+    while (file && !feof(file) && !ferror(file) && result == DEM_OK) {
+        if (demi_array_grow(w, bytes, 1, *size + 65536))
+            *size += fread((char *)bytes->data + *size, 1, bytes->capacity - *size, file);
+        else result = demi_fail(w, DEM_ERROR_MEMORY, "%s: %.200s: no memory to load it beyond %.0f "
+                                "bytes; free some", call, path, (double)*size);
+    }
+    if (result == DEM_OK && (!file || ferror(file)))
+        result = demi_fail(w, DEM_ERROR_FILE, "%s: cannot read %.200s: %s; check its name and permissions",
+                           call, path, errno ? strerror(errno) : "unknown cause");
+    if (file) fclose(file);
+    return result;
+}
+
+/* The same for a file. */
+static dem_result demi_read(dem_world *w, const char *call, const char *path, size_t width,
+                            dem_mesh *mesh, dem_mesh_health *health) {
+    demi_array bytes = {0, 0, 0};
+    size_t size = 0;
+    dem_result result = demi_load(w, call, path, &bytes, &size);
+    if (result == DEM_OK) result = demi_parse(w, call, path, (const char *)bytes.data, size, width, mesh, health);
+    demi_array_free(w, &bytes);
+    return result;
+}
+
+DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size,
+                          dem_mesh *mesh, dem_mesh_health *health) {
+    if (mesh) memset(mesh, 0, sizeof *mesh);
+    if (health) memset(health, 0, sizeof *health);
+    if (!mesh || !data)
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_parse: %s is null; give its address",
+                         mesh ? "data" : "mesh");
+    return demi_parse(world, "dem_mesh_parse", name, (const char *)data, size, 3, mesh, health);
+}
+
+DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
+                                 dem_mesh_health *health) {
+    if (health) memset(health, 0, sizeof *health);
+    if (!mesh)
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_read: mesh is null; give its "
+                         "address");
+    memset(mesh, 0, sizeof *mesh);
+    return demi_read(world, "dem_mesh_read", path, 3, mesh, health);
+}
+
+DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
+    if (mesh) demi_mesh_free(world, mesh, 3);
+}
+
+/* What was read as a mesh of width 2, as a profile. */
+static dem_result demi_profile_take(dem_world *w, const char *call, const char *name,
+                                    const dem_mesh *lists, dem_profile *profile) {
+    int i;
+    profile->vertex_count = lists->vertex_count;
+    profile->segment_count = lists->triangle_count;
+    profile->vertices = lists->vertices;
+    profile->segments = lists->triangles;
+    for (i = 0; i < profile->segment_count; i++) {
+        const int32_t *segment = profile->segments + 2*(size_t)i;
+        if (segment[0] != segment[1]) continue;
+        dem_profile_free(w, profile);
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: found segment %d with one corner twice "
+                         "where two are expected; correct it or take it out", call,
+                         name ? name : "data", i + 1);
+    }
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const void *data,
+                                     size_t size, dem_profile *profile) {
+    dem_mesh lists = {0, 0, 0, 0};
+    dem_result result;
+    if (profile) memset(profile, 0, sizeof *profile);
+    if (!profile || !data)
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_profile_parse: %s is null; give its "
+                         "address", profile ? "data" : "profile");
+    result = demi_parse(world, "dem_profile_parse", name, (const char *)data, size, 2, &lists, 0);
+    if (result != DEM_OK) return result;
+    return demi_profile_take(world, "dem_profile_parse", name, &lists, profile);
+}
+
+DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile) {
+    dem_mesh lists = {0, 0, 0, 0};
+    dem_result result;
+    if (!profile)
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_profile_read: profile is null; give its "
+                         "address");
+    memset(profile, 0, sizeof *profile);
+    result = demi_read(world, "dem_profile_read", path, 2, &lists, 0);
+    if (result != DEM_OK) return result;
+    return demi_profile_take(world, "dem_profile_read", path, &lists, profile);
+}
+
+DEM_API void dem_profile_free(dem_world *world, dem_profile *profile) {
+    if (!profile) return;
+    demi_free(world, profile->vertices, (size_t)profile->vertex_count*2, sizeof(dem_real));
+    demi_free(world, profile->segments, (size_t)profile->segment_count*2, sizeof(int32_t));
+    memset(profile, 0, sizeof *profile);
+}
+
+/* ---- files out ---- */
+
+typedef struct demi_out {
+    dem_world *world;
+    const char *call, *path;
+    char *temporary;            /* path.tmp                                                       */
+    size_t temporary_size;
+    FILE *file;
+} demi_out;
+
+/* Ends a file: renames it to its path if all was written, removes it if not. Where rename refuses
+   to replace a file (Windows), the old one is removed first; a folder of that name never is. */
+static dem_result demi_out_close(demi_out *o) {
+    int whole = o->file && fflush(o->file) == 0 && !ferror(o->file), cause = errno;
+    if (o->file && fclose(o->file) != 0 && whole) {
+        whole = 0;
+        cause = errno;
+    }
+    if (whole && rename(o->temporary, o->path) != 0) {
+        cause = errno;
+        whole = (cause == EEXIST || cause == EACCES) && remove(o->path) == 0 &&
+                rename(o->temporary, o->path) == 0;
+    }
+    if (!whole) {
+        if (o->file) remove(o->temporary);
+        demi_fail(o->world, DEM_ERROR_FILE, "%s: cannot write %.200s: %s; check that its folder "
+                  "exists, may be written to and has room", o->call, o->path,
+                  cause ? strerror(cause) : "unknown cause");
+    }
+    demi_free(o->world, o->temporary, o->temporary_size, 1);
+    return whole ? DEM_OK : DEM_ERROR_FILE;
+}
+
+/* Begins a file under a temporary name. If this fails there is nothing to close. */
+static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, const char *path) {
+    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    o->world = w;
+    o->call = call;
+    o->path = path;
+    o->temporary_size = strlen(path) + 5;
+    o->temporary = (char *)demi_alloc(w, o->temporary_size, 1);
+    if (!o->temporary)
+        return demi_fail(w, DEM_ERROR_MEMORY, "%s: no memory for a file name; free some", call);
+    memcpy(o->temporary, path, o->temporary_size - 5);
+    memcpy(o->temporary + o->temporary_size - 5, ".tmp", 5);
+    errno = 0;
+    o->file = fopen(o->temporary, "wb");
+    return o->file ? DEM_OK : demi_out_close(o);
+}
+
+static int demi_is_little_endian(void) {
+    const uint16_t one = 1;
+    unsigned char first;
+    memcpy(&first, &one, 1);
+    return first == 1;
+}
+
+/* One binary number of at most 8 bytes, turned round if asked. */
+static void demi_out_number(demi_out *o, const void *number, size_t size, int turn) {
+    unsigned char bytes[8];
+    size_t i;
+    for (i = 0; i < size; i++) bytes[i] = ((const unsigned char *)number)[turn ? size - 1 - i : i];
+    fwrite(bytes, 1, size, o->file);
+}
+
+/* An array in a picture: count rows of `components` numbers. Without data it is the row of numbers
+   first, first + stride, ... */
+typedef struct demi_column {
+    const char *section, *name; /* section: of a VTP file                                         */
+    char type;                  /* r dem_real, i int32, u uint32                                  */
+    int components, count;      /* numbers in a row, rows                                        */
+    int stride, first;          /* numbers from row to row; to the first                         */
+    const void *data;
+} demi_column;
+
+static size_t demi_column_size(const demi_column *c) { /* bytes of one number */
+    return c->type == 'r' ? sizeof(dem_real) : 4;
+}
+
+static uint64_t demi_column_bytes(const demi_column *c) {
+    return (uint64_t)c->count*(uint64_t)c->components*demi_column_size(c);
+}
+
+static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
+    const char *data = (const char *)c->data;
+    size_t size = demi_column_size(c);
+    int i, k;
+    for (i = 0; i < c->count; i++) {
+        int32_t number = data ? 0 : c->first + i*c->stride;
+        if (!data) demi_out_number(o, &number, size, turn);
+        for (k = 0; data && k < c->components; k++) {
+            size_t at = (size_t)i*(size_t)c->stride + (size_t)(c->first + k);
+            demi_out_number(o, data + at*size, size, turn);
+        }
+    }
+}
+
+enum { DEMI_GRAIN_COLUMNS = 8 };
+
+/* What is told of grains; the last two make a cell of every point, so that it is drawn. */
+static void demi_grain_columns(const dem_world *w, demi_column *columns) {
+    dem_bodies b = dem_bodies_get(w);
+    const demi_column all[DEMI_GRAIN_COLUMNS] = {
+        {"Points",    "position",     'r', 3, b.count, 4, 0, b.positions},
+        {"PointData", "radius",       'r', 1, b.count, 4, 3, b.positions},
+        {"PointData", "velocity",     'r', 3, b.count, 4, 0, b.velocities},
+        {"PointData", "spin",         'r', 3, b.count, 4, 0, b.spins},
+        {"PointData", "id",           'u', 1, b.count, 1, 0, b.slots},
+        {"PointData", "material",     'i', 1, b.count, 1, 0, b.materials},
+        {"Verts",     "connectivity", 'i', 1, b.count, 1, 0, 0},
+        {"Verts",     "offsets",      'i', 1, b.count, 1, 1, 0}};
+    memcpy(columns, all, sizeof all);
+}
+
+/* VTK's XML format: the tree tells what there is; the numbers follow as they lie in memory, each
+   array after its size in bytes. The first column holds the points. */
+static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
+                           const demi_column *column, int columns, int verts, int polys) {
+    demi_out o;
+    char time[32];
+    const char *section = "";
+    uint64_t offset = 0, bytes;
+    int i;
+    dem_result result = demi_out_open(&o, w, call, path);
+    if (result != DEM_OK) return result;
+    fprintf(o.file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+            "byte_order=\"%s\" header_type=\"UInt64\">\n<PolyData>\n<FieldData><DataArray "
+            "type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">%s"
+            "</DataArray></FieldData>\n<Piece NumberOfPoints=\"%d\" NumberOfVerts=\"%d\" "
+            "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"%d\">\n",
+            demi_is_little_endian() ? "LittleEndian" : "BigEndian",
+            demi_format_real(time, dem_world_time(w), 17), column[0].count, verts, polys);
+    for (i = 0; i < columns; i++) {
+        const demi_column *c = column + i;
+        if (i > 0 && strcmp(c->section, section) != 0) fprintf(o.file, "</%s>\n", section);
+        if (strcmp(c->section, section) != 0) fprintf(o.file, "<%s>\n", c->section);
+        section = c->section;
+        fprintf(o.file, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" "
+                "format=\"appended\" offset=\"%.0f\"/>\n", c->type == 'u' ? "UInt32" :
+                c->type == 'i' ? "Int32" : sizeof(dem_real) == 4 ? "Float32" : "Float64", c->name,
+                c->components, (double)offset);
+        offset += 8 + demi_column_bytes(c);
+    }
+    fprintf(o.file, "</%s>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_", section);
+    for (i = 0; i < columns; i++) {
+        bytes = demi_column_bytes(column + i);
+        demi_out_number(&o, &bytes, sizeof bytes, 0);
+        demi_column_write(&o, column + i, 0);
+    }
+    fputs("\n</AppendedData>\n</VTKFile>\n", o.file);
+    return demi_out_close(&o);
+}
+
+DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
+    demi_column column[DEMI_GRAIN_COLUMNS];
+    demi_grain_columns(world, column);
+    return demi_vtp(world, "dem_vtp_write", path, column, DEMI_GRAIN_COLUMNS, column[0].count, 0);
+}
+
+/* Legacy VTK, in its binary form: numbers are big-endian. */
+DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
+    demi_column column[DEMI_GRAIN_COLUMNS];
+    demi_out o;
+    const char *real = sizeof(dem_real) == 4 ? "float" : "double";
+    double time = dem_world_time(world);
+    int i, count, turn = demi_is_little_endian();
+    dem_result result = demi_out_open(&o, world, "dem_vtk_write", path);
+    if (result != DEM_OK) return result;
+    demi_grain_columns(world, column);
+    count = column[0].count;
+    fputs("# vtk DataFile Version 3.0\ndem.h\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\n"
+          "TIME 1 1 double\n", o.file);
+    demi_out_number(&o, &time, sizeof time, turn);
+    fprintf(o.file, "\nPOINTS %d %s\n", count, real);
+    demi_column_write(&o, column, turn);
+    fprintf(o.file, "\nVERTICES %d %.0f\n", count, 2*(double)count);
+    for (i = 0; i < count; i++) { /* a cell: the number of its points, then their indices */
+        int32_t cell[2];
+        cell[0] = 1;
+        cell[1] = i;
+        demi_out_number(&o, cell, 4, turn);
+        demi_out_number(&o, cell + 1, 4, turn);
+    }
+    fprintf(o.file, "\nPOINT_DATA %d\n", count);
+    for (i = 1; i < DEMI_GRAIN_COLUMNS - 2; i++) {
+        const demi_column *c = column + i;
+        const char *type = c->type == 'u' ? "unsigned_int" : c->type == 'i' ? "int" : real;
+        if (c->components == 3) fprintf(o.file, "VECTORS %s %s\n", c->name, type);
+        else fprintf(o.file, "SCALARS %s %s 1\nLOOKUP_TABLE default\n", c->name, type);
+        demi_column_write(&o, c, turn);
+        fputs("\n", o.file);
+    }
+    return demi_out_close(&o);
+}
+
+/* Extended XYZ. Species, which ASE wants to be chemical elements, tell the material: H is 1, He 2,
+   and so on. A domain becomes the lattice; an axis without extent gets 1 m. */
+DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
+    static const char elements[] =
+        "H HeLiBeB C N O F NeNaMgAlSiP S ClArK CaScTiV CrMnFeCoNiCuZnGaGe"
+        "AsSeBrKrRbSrY ZrNbMoTcRuRhPdAgCdInSnSbTeI XeCsBaLaCePrNdPmSmEuGd";
+    dem_bodies b = dem_bodies_get(world);
+    dem_world_desc desc = dem_world_desc_get(world);
+    dem_box d = desc.domain;
+    double length[3];
+    char text[3][32];
+    demi_out o;
+    int i, k;
+    dem_result result = demi_out_open(&o, world, "dem_xyz_write", path);
+    if (result != DEM_OK) return result;
+    length[0] = (double)(d.hi.x - d.lo.x);
+    length[1] = (double)(d.hi.y - d.lo.y);
+    length[2] = (double)(d.hi.z - d.lo.z);
+    fprintf(o.file, "%d\n", b.count);
+    if (length[0] > 0 || length[1] > 0 || length[2] > 0) {
+        for (k = 0; k < 3; k++) demi_format_real(text[k], length[k] > 0 ? length[k] : 1, 9);
+        fprintf(o.file, "Lattice=\"%s 0 0 0 %s 0 0 0 %s\" ", text[0], text[1], text[2]);
+        demi_format_real(text[0], (double)d.lo.x, 9);
+        demi_format_real(text[1], (double)d.lo.y, 9);
+        demi_format_real(text[2], (double)d.lo.z, 9);
+        fprintf(o.file, "Origin=\"%s %s %s\" pbc=\"", text[0], text[1], text[2]);
+        for (k = 0; k < 3; k++)
+            fprintf(o.file, desc.boundary[k] == DEM_BOUNDARY_PERIODIC ? "T%s" : "F%s",
+                    k < 2 ? " " : "\" ");
+    }
+    fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:id:I:1 Time=%s\n",
+            demi_format_real(text[0], dem_world_time(world), 12));
+    for (i = 0; i < b.count; i++) {
+        const char *element = elements + 2*((b.materials[i] - 1) & 63);
+        fprintf(o.file, "%.*s", element[1] == ' ' ? 1 : 2, element);
+        for (k = 0; k < 7; k++) {
+            const dem_real *row = (k < 4 ? b.positions : b.velocities) + 4*(size_t)i;
+            fprintf(o.file, " %s", demi_format_real(text[0], (double)row[k < 4 ? k : k - 4], 9));
+        }
+        fprintf(o.file, " %lu\n", (unsigned long)b.slots[i]);
+    }
+    return demi_out_close(&o);
+}
+
+/* ---- walls and channels out ---- */
+
+/* Adds wall i as it lies now: its points (those of a profile at z[0], then at z[1]) and triangles
+   (a segment a b, with A B above it, becomes a b B and a B A). Without arrays it only counts. */
+static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t *points,
+                           int64_t *triangles, dem_real *place, int32_t *corners, int32_t *id) {
+    const demi_wall *wall = w->walls + i;
+    int64_t k, up = wall->vertex_count, base = *points;
+    int c, profile = wall->kind == DEMI_WALL_PROFILE, sides = profile ? 2 : 1;
+    dem_pose pose;
+    dem_wall handle;
+    handle.id = i + 1;
+    if (!profile && wall->kind != DEMI_WALL_MESH) return;
+    *points += sides*up;
+    *triangles += sides*(int64_t)wall->element_count;
+    if (!place || dem_wall_pose(w, handle, &pose) != DEM_OK) return;
+    for (k = 0; k < sides*up; k++) {
+        dem_vec3 local = demi_at(wall->vertices + 3*(k%up));
+        if (profile) local.z = z[k/up];
+        demi_put(place + 3*(base + k), demi_add(pose.position, demi_turn(pose.rotation, local)));
+    }
+    for (k = 0; k < sides*(int64_t)wall->element_count; k++) {
+        int64_t at = *triangles - sides*(int64_t)wall->element_count + k;
+        const int32_t *from = wall->corners + (profile ? k/2*2 : 3*k);
+        int64_t to[3];
+        to[0] = from[0];
+        to[1] = profile && k%2 ? from[1] + up : from[1];
+        to[2] = !profile ? from[2] : (k%2 ? from[0] : from[1]) + up;
+        for (c = 0; c < 3; c++) corners[3*at + c] = (int32_t)(base + to[c]);
+        id[at] = i + 1;
+    }
+}
+
+DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
+                                       dem_real z1) {
+    int64_t points = 0, triangles = 0, p = 0, t = 0;
+    dem_real z[2], *place = 0;
+    int32_t *corners = 0, *id = 0;
+    size_t room[2];
+    int i, profiles = 0;
+    dem_result result;
+    z[0] = z0;
+    z[1] = z1;
+    for (i = 0; i < world->wall_count; i++) {
+        demi_wall_draw(world, i, z, &points, &triangles, 0, 0, 0);
+        profiles += world->walls[i].kind == DEMI_WALL_PROFILE;
+    }
+    if (profiles && !(z1 > z0))
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_walls_vtp_write: z0 is %g and z1 is %g, "
+                         "but must be z0 < z1 to draw out a profile; change them", (double)z0,
+                         (double)z1);
+    room[0] = 3*(size_t)points + 1; /* never nothing */
+    room[1] = (size_t)triangles + 1;
+    if (points < DEMI_ELEMENTS_MAX && triangles < DEMI_ELEMENTS_MAX) {
+        place = (dem_real *)demi_alloc(world, room[0], sizeof(dem_real));
+        corners = (int32_t *)demi_alloc(world, 3*room[1], sizeof(int32_t));
+        id = (int32_t *)demi_alloc(world, room[1], sizeof(int32_t));
+    }
+    if (place && corners && id) {
+        for (i = 0; i < world->wall_count; i++)
+            demi_wall_draw(world, i, z, &p, &t, place, corners, id);
+        const demi_column column[] = {
+            {"Points",   "position",     'r', 3, (int)points,      3, 0, place},
+            {"CellData", "wall",         'i', 1, (int)triangles,   1, 0, id},
+            {"Polys",    "connectivity", 'i', 1, (int)triangles*3, 1, 0, corners},
+            {"Polys",    "offsets",      'i', 1, (int)triangles,   3, 3, 0}};
+        result = demi_vtp(world, "dem_walls_vtp_write", path, column, 4, 0, (int)triangles);
+    } else {
+        result = demi_fail(world, DEM_ERROR_MEMORY, "dem_walls_vtp_write: no memory for %.0f "
+                           "points and %.0f triangles; free some", (double)points, (double)triangles);
+    }
+    demi_free(world, place, room[0], sizeof(dem_real));
+    demi_free(world, corners, 3*room[1], sizeof(int32_t));
+    demi_free(world, id, room[1], sizeof(int32_t));
+    return result;
+}
+
+/* Appending cannot go by way of a temporary name. Instead the line goes out in one piece, and after
+   one that was cut short (a full disk, a killed run) a new line is begun. */
+DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char *path) {
+    static const char heading[] = "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts\n";
+    dem_channels c;
+    dem_real value[8];
+    double time = dem_world_time(world);
+    char text[sizeof heading + 10*32], number[32];
+    int i, n = 0, last = '\n', whole, cause;
+    FILE *file;
+    if (!path)
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_channels_csv: path is null; give a file "
+                         "name");
+    if (dem_wall_channels(world, wall, &c) != DEM_OK)
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_channels_csv: wall %ld names none; give "
+                         "one that was added and not removed", (long)wall.id);
+    value[0] = c.force.x;
+    value[1] = c.force.y;
+    value[2] = c.force.z;
+    value[3] = c.torque.x;
+    value[4] = c.torque.y;
+    value[5] = c.torque.z;
+    value[6] = c.torque_axial;
+    value[7] = c.power;
+    errno = 0;
+    file = fopen(path, "a+b");
+    whole = file && fseek(file, 0, SEEK_END) == 0;
+    if (whole && ftell(file) > 0) {
+        whole = fseek(file, -1, SEEK_END) == 0;
+        last = whole ? fgetc(file) : last;
+        whole = whole && fseek(file, 0, SEEK_END) == 0; /* C wants a seek between read and write */
+        n = snprintf(text, sizeof text, "%s", last == '\n' ? "" : "\n");
+    } else n = snprintf(text, sizeof text, "%s", heading);
+    n += snprintf(text + n, sizeof text - (size_t)n, "%s", demi_format_real(number, time, 12));
+    for (i = 0; i < 8; i++) {
+        demi_format_real(number, (double)value[i], 9);
+        n += snprintf(text + n, sizeof text - (size_t)n, ",%s", number);
+    }
+    n += snprintf(text + n, sizeof text - (size_t)n, ",%d\n", c.contacts);
+    whole = whole && fwrite(text, 1, (size_t)n, file) == (size_t)n && fflush(file) == 0;
+    cause = errno;
+    if (file) fclose(file);
+    if (whole) return DEM_OK;
+    return demi_fail(world, DEM_ERROR_FILE, "dem_channels_csv: cannot write %.200s: %s; check that "
+                     "its folder exists, may be written to and has room", path,
+                     cause ? strerror(cause) : "unknown cause");
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>checkpoint
+   Everything that decides the next step, as it lies in memory, in one visit that both writes and reads,
+   so that the two cannot differ. The file: magic, version, size of dem_real, byte order, digest of the
+   scene (desc, materials, walls), shape, state, check sum of all before it. Reading checks all of that
+   first, then makes room, then copies: until then the world is as it was.
+   ------------------------------------------------------------------------------------------------ */
+#define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
+enum { DEMI_CHECKPOINT_VERSION = 1 };
+
+typedef struct demi_stream { FILE *file; const char *from; uint64_t sum; } demi_stream;  /* from: reading    */
+
+static void demi_visit(demi_stream *s, void *data, size_t size) {
+    if (!size) return;
+    if (s->file) {
+        s->sum = demi_hash(s->sum, data, size);
+        fwrite(data, 1, size, s->file);
+    } else {
+        memcpy(data, s->from, size);
+        s->from += size;
+    }
+}
+
+typedef struct demi_shape {         /* how large the arrays are                                       */
+    int32_t count, slots, domains, walls, fields, own_stride, cross_stride, wall_stride, wall_now_stride, memory_stride;
+    int32_t list_valid, own_total, cross_total, candidate_total, contact_total;
+} demi_shape;
+static demi_shape demi_shape_of(const dem_world *w) {
+    demi_shape s;
+    int d;
+    memset(&s, 0, sizeof s);
+    s.count = w->count; s.slots = w->slot_count; s.domains = w->domain_count;
+    s.walls = w->wall_count; s.fields = w->field_count;
+    s.own_stride = w->own.stride; s.cross_stride = w->cross.stride;
+    s.wall_stride = w->wall_stride; s.wall_now_stride = w->wall_now_stride;
+    s.memory_stride = w->memory_stride;
+    s.list_valid = w->list_valid;
+    for (d = 0; d < w->domain_count; d++) {
+        s.own_total += w->domains[d].own;
+        s.cross_total += w->domains[d].cross;
+        s.candidate_total += w->domains[d].walls;
+        s.contact_total += w->domains[d].wall_contacts;
+    }
+    return s;
+}
+/* Bytes demi_state_visit moves for a shape: a lying file is found out before anything is touched. */
+static size_t demi_state_size(const dem_world *w, const demi_shape *s) {
+    const size_t r = sizeof(dem_real), n = (size_t)s->count, pairs = (size_t)s->own_total + (size_t)s->cross_total;
+    size_t size = n*(28*r + 3*r + 8) + (size_t)s->slots*8 + (size_t)s->domains*sizeof(demi_domain);
+    int i;
+    size += pairs*(12 + (size_t)s->memory_stride*r) + (size_t)s->candidate_total*12;
+    size += (size_t)s->contact_total*sizeof(demi_wall_contact);
+    size += (size_t)s->walls*(2*sizeof(dem_pose) + sizeof(dem_channels) + 4*sizeof(dem_vec3));
+    for (i = 0; i < w->field_count; i++) size += 16 + 5*sizeof(double)*demi_field_cells(&w->fields[i]);
+    return size;
+}
+
+/* Numbers that are not arrays. */
+static void demi_state_scalars(dem_world *w, demi_stream *s) {
+    demi_visit(s, &w->balance, sizeof w->balance);
+    demi_visit(s, &w->skin, sizeof w->skin);                 demi_visit(s, &w->reach, sizeof w->reach);
+    demi_visit(s, &w->wall_reach, sizeof w->wall_reach);     demi_visit(s, &w->skin_auto, sizeof w->skin_auto);
+    demi_visit(s, &w->last_rebuild, sizeof w->last_rebuild); demi_visit(s, &w->steps, sizeof w->steps);
+    demi_visit(s, &w->rebuilds, sizeof w->rebuilds);         demi_visit(s, &w->time, sizeof w->time);
+    demi_visit(s, &w->dt, sizeof w->dt);                     demi_visit(s, &w->assumed_speed, sizeof w->assumed_speed);
+    demi_visit(s, &w->dt_valid, sizeof w->dt_valid);         demi_visit(s, &w->forces_valid, sizeof w->forces_valid);
+    demi_visit(s, &w->synced, sizeof w->synced);             demi_visit(s, &w->primed, sizeof w->primed);
+    demi_visit(s, &w->stamp, sizeof w->stamp);               demi_visit(s, &w->overlap_max, sizeof w->overlap_max);
+    demi_visit(s, &w->speed_max, sizeof w->speed_max);       demi_visit(s, w->energy, sizeof w->energy);
+    demi_visit(s, &w->energy_inserted, sizeof w->energy_inserted);
+    demi_visit(s, &w->energy_removed, sizeof w->energy_removed);
+    demi_visit(s, &w->throughput, sizeof w->throughput);     demi_visit(s, &w->half_kick, sizeof w->half_kick);
+    demi_visit(s, &w->slot_free, sizeof w->slot_free);       demi_visit(s, &w->slot_pending, sizeof w->slot_pending);
+}
+static size_t demi_scalars_size(dem_world *w) {
+    return sizeof w->balance + 4*sizeof(double) + 3*sizeof(uint64_t) + sizeof(double) + sizeof(dem_real) + sizeof(double) +
+           4*sizeof(int) + sizeof(uint32_t) + 2*sizeof(double) + sizeof w->energy + 4*sizeof(double) + 2*sizeof(int);
+}
+static void demi_state_visit(dem_world *w, demi_stream *s) {
+    const size_t r = sizeof(dem_real), n = (size_t)w->count;
+    int d, i;
+    demi_visit(s, w->pos, 4*n*r);        demi_visit(s, w->vel, 4*n*r);       demi_visit(s, w->spin, 4*n*r);
+    demi_visit(s, w->half_vel, 4*n*r);   demi_visit(s, w->half_spin, 4*n*r);
+    demi_visit(s, w->force, 4*n*r);      demi_visit(s, w->torque, 4*n*r);
+    demi_visit(s, w->mass, n*r);         demi_visit(s, w->inv_mass, n*r);    demi_visit(s, w->inv_inertia, n*r);
+    demi_visit(s, w->body_slot, 4*n);    demi_visit(s, w->body_material, 4*n);
+    demi_visit(s, w->slot_index, (size_t)w->slot_count*4);
+    demi_visit(s, w->slot_generation, (size_t)w->slot_count*4);
+    demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (i = 0; i < 2; i++) {
+            demi_list *list = i ? &w->cross : &w->own;
+            const size_t from = (size_t)d*(size_t)list->stride, pairs = (size_t)(i ? domain->cross : domain->own);
+            const size_t per = (size_t)w->memory_stride;
+            demi_visit(s, list->a + from, 4*pairs);
+            demi_visit(s, list->b + from, 4*pairs);
+            demi_visit(s, list->stamp + from, 4*pairs);
+            if (per) demi_visit(s, list->memory + from*per, pairs*per*r);
+        }
+        demi_visit(s, w->wall_body + d*w->wall_stride, (size_t)domain->walls*4);
+        demi_visit(s, w->wall_id + d*w->wall_stride, (size_t)domain->walls*4);
+        demi_visit(s, w->wall_element + d*w->wall_stride, (size_t)domain->walls*4);
+        demi_visit(s, w->wall_now + d*w->wall_now_stride, (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
+    }
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        demi_visit(s, &wall->home, sizeof wall->home);
+        demi_visit(s, &wall->pose, sizeof wall->pose);
+        demi_visit(s, &wall->channels, sizeof wall->channels);
+        demi_visit(s, &wall->motion.velocity, sizeof(dem_vec3));
+        demi_visit(s, &wall->motion.point, sizeof(dem_vec3));
+        demi_visit(s, &wall->motion.axis, sizeof(dem_vec3));
+        demi_visit(s, &wall->motion.speed, sizeof(dem_real));
+        demi_visit(s, &wall->motion.amplitude, 2*sizeof(dem_real));
+    }
+    for (i = 0; i < w->field_count; i++) {
+        demi_field *f = &w->fields[i];
+        const size_t cells = demi_field_cells(f);
+        demi_visit(s, &f->samples, sizeof f->samples);
+        demi_visit(s, &f->next, sizeof f->next);
+        demi_visit(s, f->solid, cells*sizeof(double));
+        demi_visit(s, f->mass, cells*sizeof(double));
+        demi_visit(s, f->momentum, 3*cells*sizeof(double));
+    }
+}
+
+/* What a checkpoint's world must have in common with the one that reads it. */
+static uint64_t demi_scene_digest(const dem_world *w) {
+    uint64_t h = DEMI_HASH_START;
+    const dem_world_desc *d = &w->asked;
+    const int flags[] = {d->boundary[0], d->boundary[1], d->boundary[2], d->planar, d->normal_law, d->tangent_law,
+                         d->rolling_law, d->tension, d->convention, d->law != 0, d->law_memory, d->law_vectors, d->force != 0,
+                         d->integrator, d->search, d->ledger, w->material_count, w->wall_count, w->field_count};
+    const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x, d->domain.lo.y, d->domain.lo.z,
+                                d->domain.hi.x, d->domain.hi.y, d->domain.hi.z, d->thickness, d->dt, d->impact_speed, d->skin};
+    int i, j;
+    h = demi_hash(h, flags, sizeof flags);
+    h = demi_hash(h, numbers, sizeof numbers);
+    h = demi_hash(h, w->materials, (size_t)w->material_count*sizeof w->materials[0]);
+    for (i = 0; i < w->material_count; i++)
+        for (j = 0; j < w->material_count; j++)
+            h = demi_hash(h, &w->pairs[i*DEMI_MATERIALS + j], sizeof(dem_pair));
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule, wall->vertex_count,
+                            wall->element_count, (int)wall->motion.kind};
+        h = demi_hash(h, what, sizeof what);
+        h = demi_hash(h, &wall->radius, sizeof(dem_real));
+        if (wall->vertices) h = demi_hash(h, wall->vertices, (size_t)wall->vertex_count*3*sizeof(dem_real));
+    }
+    for (i = 0; i < w->field_count; i++) h = demi_hash(h, w->fields[i].desc.cells, sizeof w->fields[i].desc.cells);
+    return h;
+}
+
+typedef struct demi_checkpoint_head {
+    char magic[8];
+    uint32_t version, real_size, byte_order, int_size;
+    uint64_t scene, body_size;      /* digest; bytes that follow the shape, without the check sum      */
+    demi_shape shape;
+} demi_checkpoint_head;
+
+DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
+    demi_checkpoint_head head;
+    demi_out out;
+    demi_stream s;
+    uint64_t sum;
+    if (demi_out_open(&out, w, "dem_checkpoint_write", path) != DEM_OK) return DEM_ERROR_FILE;
+    memset(&head, 0, sizeof head);
+    memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
+    head.version = DEMI_CHECKPOINT_VERSION;
+    head.real_size = (uint32_t)sizeof(dem_real);
+    head.byte_order = 0x01020304u;
+    head.int_size = (uint32_t)(sizeof(demi_domain) + sizeof(demi_wall_contact));
+    head.scene = demi_scene_digest(w);
+    head.shape = demi_shape_of(w);
+    head.body_size = demi_scalars_size(w) + demi_state_size(w, &head.shape);
+    s.file = out.file;
+    s.from = 0;
+    s.sum = DEMI_HASH_START;
+    demi_visit(&s, &head, sizeof head);
+    demi_state_scalars(w, &s);
+    demi_state_visit(w, &s);
+    sum = s.sum;
+    fwrite(&sum, 1, sizeof sum, out.file);
+    return demi_out_close(&out);
+}
+
+/* Everything that can be wrong with a file, before anything is touched. */
+static dem_result demi_checkpoint_check(dem_world *w, const char *path, const char *data, size_t size,
+                                        demi_checkpoint_head *head) {
+    const char *call = "dem_checkpoint_read";
+    uint64_t sum;
+    if (size < sizeof *head || memcmp(data, DEMI_CHECKPOINT_MAGIC, 8))
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: %s; write checkpoints with dem_checkpoint_write", call, path,
+                         size >= 8 && !memcmp(data, DEMI_CHECKPOINT_MAGIC, 8) ? "is cut short within its head"
+                                                                             : "is not a checkpoint");
+    memcpy(head, data, sizeof *head);
+    if (head->byte_order != 0x01020304u || head->version != DEMI_CHECKPOINT_VERSION)
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: is of checkpoint version %u%s, must be %d; read it with the "
+                         "dem.h that wrote it", call, path, (unsigned)head->version,
+                         head->byte_order != 0x01020304u ? " and another byte order" : "", (int)DEMI_CHECKPOINT_VERSION);
+    if (head->real_size != sizeof(dem_real))
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written with DEM_REAL of %u bytes, must be %u; build with the "
+                         "same precision", call, path, (unsigned)head->real_size, (unsigned)sizeof(dem_real));
+    if (size != sizeof *head + head->body_size + sizeof sum)
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has %llu bytes, must be %llu; it was cut short or appended to", call,
+                         path, (unsigned long long)size, (unsigned long long)(sizeof *head + head->body_size + sizeof sum));
+    memcpy(&sum, data + size - sizeof sum, sizeof sum);
+    if (sum != demi_hash(DEMI_HASH_START, data, size - sizeof sum))
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: its check sum does not match its contents; the file is damaged", call,
+                         path);
+    if (head->int_size != sizeof(demi_domain) + sizeof(demi_wall_contact) || head->scene != demi_scene_digest(w) ||
+        head->shape.walls != w->wall_count || head->shape.fields != w->field_count ||
+        head->body_size != demi_scalars_size(w) + demi_state_size(w, &head->shape))
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene; create the world with the same desc, "
+                         "materials, pairs, walls, motions and fields as the one that wrote it, then read", call, path);
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
+    demi_checkpoint_head head;
+    const demi_shape *shape = &head.shape;
+    demi_array bytes = {0, 0, 0};
+    const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride, domains = w->domain_count;
+    const int stride = w->memory_stride, uniform = w->uniform;
+    size_t size = 0;
+    demi_stream s;
+    dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
+    int d, k, room;
+    if (result == DEM_OK) result = demi_checkpoint_check(w, path, (const char *)bytes.data, size, &head);
+    if (result != DEM_OK) {
+        demi_array_free(w, &bytes);
+        return result;
+    }
+    w->memory_stride = shape->memory_stride;    /* room for all of it first                                */
+    w->uniform = 0;
+    w->domain_count = shape->domains;
+    room = demi_bodies_reserve(w, (size_t)DEMI_MAX(shape->count, shape->slots)) &&
+           demi_list_reserve(w, &w->own, shape->domains, shape->own_stride) &&
+           demi_list_reserve(w, &w->cross, shape->domains, shape->cross_stride) &&
+           demi_wall_lists_reserve(w, shape->wall_stride) &&
+           demi_array_grow(w, &w->wall_now_, sizeof(demi_wall_contact), (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
+           demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact), (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
+           demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum), (size_t)shape->domains*(size_t)shape->walls) &&
+           demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), (size_t)shape->domains*(size_t)shape->cross_stride) &&
+           demi_array_grow(w, &w->cross_hit_, sizeof(int32_t), (size_t)shape->domains*(size_t)shape->cross_stride) &&
+           demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 9*((size_t)shape->domains*(size_t)shape->cross_stride + 1));
+    w->wall_now = (demi_wall_contact *)w->wall_now_.data;
+    w->wall_next = (demi_wall_contact *)w->wall_next_.data;
+    w->wall_sums = (demi_wall_sum *)w->wall_sums_.data;
+    if (!room) {
+        w->own.stride = own; w->cross.stride = cross; w->wall_stride = walls;
+        w->domain_count = domains; w->memory_stride = stride; w->uniform = uniform;
+        demi_array_free(w, &bytes);
+        return demi_no_memory(w, "dem_checkpoint_read");
+    }
+    w->count = shape->count;
+    w->slot_count = shape->slots;
+    w->wall_now_stride = shape->wall_now_stride;
+    for (d = 0; d < DEMI_DOMAINS; d++) memset(&w->domains[d], 0, sizeof w->domains[d]);
+    s.file = 0;
+    s.from = (const char *)bytes.data + sizeof head;
+    s.sum = 0;
+    /* the per-domain counts steer the visit: take them from their place first */
+    memcpy(w->domains, s.from + demi_scalars_size(w) + (size_t)w->count*(31*sizeof(dem_real) + 8) + (size_t)w->slot_count*8,
+           (size_t)w->domain_count*sizeof(demi_domain));
+    demi_state_scalars(w, &s);
+    demi_state_visit(w, &s);
+    demi_array_free(w, &bytes);
+    demi_effects(w);
+    w->list_valid = shape->list_valid;
+    w->lll_valid = 0;
+    w->carry_count = 0;
+    if (!w->uniform)
+        for (d = 0; d < w->domain_count; d++) {
+            for (k = 0; k < w->domains[d].own; k++) demi_pair_coefs(w, &w->own, d*w->own.stride + k);
+            for (k = 0; k < w->domains[d].cross; k++) demi_pair_coefs(w, &w->cross, d*w->cross.stride + k);
+        }
+    for (k = 0; k < w->wall_count; k++) {
+        w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
+    }
+    if (w->list_valid && w->count) demi_cross_index(w);      /* its room is there already                 */
+    demi_kernel_choose(w);
+    return DEM_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------
+   >>world
+   Making one, taking it down, saying what it does.
+   ------------------------------------------------------------------------------------------------ */
+DEM_API const char *dem_result_name(dem_result r) {
+    static const char *names[] = {"ok", "bad argument", "out of memory", "file error", "bad format", "time step too large",
+                                  "unstable", "stopped"};
+    return (int)r >= 0 && (size_t)r < sizeof names/sizeof *names ? names[r] : "unknown";
+}
+
+DEM_API const char *dem_create_error(const dem_world_desc *d) {
+    const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
+    const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
+    int k;
+    if (!demi_finite3(d->gravity)) return "dem_world_create: gravity is not finite, must be m/s2; check how it was computed";
+    for (k = 0; k < 3; k++) {
+        if ((int)d->boundary[k] < 0 || d->boundary[k] > DEM_BOUNDARY_OUTFLOW)
+            return "dem_world_create: a boundary is unknown, must be a DEM_BOUNDARY_ value; start from DEM_WORLD_DESC";
+        if (d->boundary[k] != DEM_BOUNDARY_OPEN && (!(hi[k] > lo[k]) || !demi_finite(lo[k]) || !demi_finite(hi[k])))
+            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not below domain.hi there; set domain";
+    }
+    if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
+        return "dem_world_create: planar is 1 and the z boundary is not open; discs live at z = 0: leave it open";
+    if (!(d->thickness >= 0) || !demi_finite(d->thickness)) return "dem_world_create: thickness must be >= 0 m; 0 means 1 m";
+    if (!(d->dt >= 0) || !demi_finite(d->dt)) return "dem_world_create: dt must be >= 0 s; 0 lets the library choose";
+    if (!(d->impact_speed >= 0) || !demi_finite(d->impact_speed)) return "dem_world_create: impact_speed must be >= 0 m/s";
+    if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library choose, below 0 means none";
+    if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64; 0 means as many as OpenMP offers";
+    if (d->law_memory < 0 || d->law_memory > DEMI_MEMORY) return "dem_world_create: law_memory must be 0 to 8 reals";
+    if (d->law_vectors < 0 || 3*d->law_vectors > d->law_memory)
+        return "dem_world_create: law_vectors is more than fits into law_memory, must be at most law_memory/3";
+    if ((int)d->normal_law < 0 || d->normal_law > DEM_NORMAL_LINEAR || (int)d->tangent_law < 0 ||
+        d->tangent_law > DEM_TANGENT_MINDLIN_RESCALED || (int)d->rolling_law < 0 || d->rolling_law > DEM_ROLLING_EPSD)
+        return "dem_world_create: a contact law is unknown, must be one of the enum values; start from DEM_WORLD_DESC";
+    if ((int)d->integrator < 0 || d->integrator > DEM_LEAPFROG || (int)d->search < 0 || d->search > DEM_SEARCH_LINKED_LIST)
+        return "dem_world_create: integrator or search is unknown, must be one of the enum values; start from DEM_WORLD_DESC";
+    if (!d->allocator.alloc_fn != !d->allocator.free_fn)
+        return "dem_world_create: the allocator has one of alloc_fn and free_fn; give both or neither";
+    return "";
+}
+
+DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version, size_t real_size) {
+    dem_world *w;
+    if (version != DEM_VERSION || real_size != sizeof(dem_real) || *dem_create_error(desc)) return 0;
+    w = (dem_world *)demi_raw_alloc(&desc->allocator, sizeof *w);
+    if (!w) return 0;
+    memset(w, 0, sizeof *w);
+    w->desc = w->asked = *desc;
+    w->bytes = sizeof *w;
+    if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
+    if (w->desc.planar) w->desc.gravity.z = 0;
+    if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
+    if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
+    w->slot_free = w->slot_pending = -1;
+    w->synced = 1;
+    w->pairs = (dem_pair *)demi_alloc(w, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
+    w->domains = (demi_domain *)demi_alloc(w, DEMI_DOMAINS, sizeof(demi_domain));
+    w->cross_incoming_start = (int *)demi_alloc(w, DEMI_DOMAINS + 1, sizeof(int));
+    if (!w->pairs || !w->domains || !w->cross_incoming_start) {
+        dem_world_destroy(w);
+        return 0;
+    }
+    return w;
+}
+
+DEM_API void dem_world_destroy(dem_world *w) {
+    demi_room set[16];
+    demi_array *arrays[32];
+    int i, n, k = 0;
+    dem_allocator allocator;
+    if (!w) return;
+    n = demi_body_rooms(w, set);
+    for (i = 0; i < n; i++) demi_free(w, *set[i].data, (size_t)w->capacity, set[i].item);
+    demi_free(w, w->slot_index, (size_t)w->slot_capacity, sizeof(int32_t));
+    demi_free(w, w->slot_generation, (size_t)w->slot_capacity, sizeof(uint32_t));
+    for (i = 0; i < w->wall_count; i++) demi_wall_free(w, &w->walls[i]);
+    demi_free(w, w->walls, (size_t)w->wall_capacity, sizeof(demi_wall));
+    for (i = 0; i < w->field_count; i++) {
+        const size_t cells = demi_field_cells(&w->fields[i]);
+        demi_free(w, w->fields[i].solid, cells, sizeof(double));
+        demi_free(w, w->fields[i].mass, cells, sizeof(double));
+        demi_free(w, w->fields[i].momentum, cells, 3*sizeof(double));
+    }
+    demi_free(w, w->fields, (size_t)w->field_capacity, sizeof(demi_field));
+    for (i = 0; i < 2; i++) {
+        demi_list *list = i ? &w->cross : &w->own;
+        arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->stamp_;
+        arrays[k++] = &list->memory_; arrays[k++] = &list->coef_;
+    }
+    arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_hit_; arrays[k++] = &w->cross_push_;
+    arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
+    arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
+    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_now_; arrays[k++] = &w->wall_next_;
+    arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
+    arrays[k++] = &w->lll_row_start_;
+    for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
+    while (k) demi_array_free(w, arrays[--k]);
+    demi_free(w, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
+    demi_free(w, w->domains, DEMI_DOMAINS, sizeof(demi_domain));
+    demi_free(w, w->cross_incoming_start, DEMI_DOMAINS + 1, sizeof(int));
+    allocator = w->desc.allocator;
+    demi_raw_free(&allocator, w, sizeof *w);
+}
+
+DEM_API const char *dem_world_error(const dem_world *w) { return w ? w->error : "dem_world_create: returned null; dem_create_error(desc) says why"; }
+DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
+    dem_world_desc d = w->desc;
+    if (w->dt > 0) d.dt = w->dt;
+    d.skin = (dem_real)w->skin;
+    return d;
+}
+
+static const char *demi_search_name(const dem_world *w) {
+    return w->desc.search == DEM_SEARCH_ALL_PAIRS ? "all pairs" : w->desc.search == DEM_SEARCH_LINKED_LIST
+         ? "linked linear list" : "uniform grid";
+}
+
+DEM_API void dem_world_report(const dem_world *world, FILE *out) {
+    static const char *tangents[] = {"auto", "none", "viscous", "step", "spring", "Mindlin", "Mindlin, rescaled"};
+    static const char *rollings[] = {"auto", "none", "step", "constant torque", "EPSD"};
+    dem_world *w = (dem_world *)world;          /* effects are worked out if they were not yet              */
+    const dem_counters c = dem_counters_get(w);
+    const double per = w->count ? 1.0/w->count : 0;
+    dem_advice a;
+    int i;
+    if (!w->list_valid) demi_effects(w);
+    demi_advise(w, &a);
+    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s, %d domain%s, %.1f MB\n", DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
+            DEM_VERSION_PATCH, DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? "" : "s", c.domains,
+            c.domains == 1 ? "" : "s", (double)c.memory/1e6);
+    fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed + %llu left\n", w->count,
+            (double)w->radius_min, (double)w->radius_max, (unsigned long long)w->balance.inserted,
+            (unsigned long long)w->balance.present, (unsigned long long)w->balance.removed, (unsigned long long)w->balance.left);
+    fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->time, (unsigned long long)w->steps, (double)w->dt,
+            demi_integrator_rows[w->desc.integrator].name, demi_integrator_rows[w->desc.integrator].order);
+    fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit t_c/20 = %.4g s; Rayleigh %.4g s; bound by %s\n", (double)a.contact_time,
+            w->dt > 0 ? (double)a.contact_time/(double)w->dt : 0, (double)a.dt_max, (double)a.rayleigh, a.binds);
+    fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f candidates, %.2f contacts\n",
+            demi_search_name(w), w->skin, (unsigned long long)w->rebuilds, w->rebuilds ? (double)w->steps/(double)w->rebuilds : 0,
+            per*c.candidates, per*c.contacts);
+    fprintf(out, "effects    normal: %s%s\n", w->desc.law ? "your own law" : w->normal == DEM_NORMAL_HERTZ ? "Hertz" : "linear",
+            w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped" : "");
+    fprintf(out, "           tangential: %s%s\n", tangents[w->tangent], w->tangent == DEM_TANGENT_NONE
+            ? " (no friction in any pair: no spin, no torque, no memory)" : w->tangent >= DEM_TANGENT_SPRING
+            ? " (32 bytes of memory per candidate)" : "");
+    fprintf(out, "           rolling: %s\n", rollings[w->rolling]);
+    fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
+            w->uniform ? "all alike (coefficients once per run)" : "differ (coefficients per candidate)", w->wall_count,
+            w->desc.force ? "yes" : "no", w->desc.ledger ? "on" : "off", demi_kernel_choose(w));
+    fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->overlap_max,
+            w->overlap_max > 0.05 ? "  (beyond .05: stiffen the material or slow down)" : "");
+    dem_pairs_print(w, out);
+    for (i = 0; i < w->wall_count; i++) {
+        const dem_channels *ch = &w->walls[i].channels;
+        if (w->walls[i].kind == DEMI_WALL_NONE) continue;
+        fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, power %.4g W\n", i + 1,
+                ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z, (double)ch->torque_axial,
+                (double)ch->power);
+    }
+    if (w->desc.ledger) {
+        const dem_ledger l = dem_ledger_get(w);
+        fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed %.6g\n"
+                "           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
+                "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n"
+                "           residual %.3g (%.2g of the throughput)\n", l.gravity, l.walls, l.force, l.inserted, l.removed,
+                l.kinetic, l.rotational, l.elastic, l.normal, l.slide, l.tangent, l.rolling, l.residual,
+                l.throughput > 0 ? l.residual/l.throughput : 0);
+    }
+}
+
+#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
+#pragma GCC pop_options
+#endif
+#endif /* DEM_IMPLEMENTATION */

@@ -1,0 +1,850 @@
+/* mill.c - a tumbling mill: glass beads in a rotating drum with lifters.
+
+   The machine is that of [MIL], a thesis on tumbling mills on a GPU: a drum of 300 mm with 3 mm glass beads (its
+   Fig 5.24). We simulate a thin slice of it, periodic along the axis, with as many beads per length as there
+   (303156 in 270 mm), and softer beads, which is what lets the default run end soon: --soften F lowers every Young's
+   modulus above that of glass over F to that value; --stiffness true simulates the glass of the thesis. The lifters
+   of the thesis are printed as a picture only, of 259 points and 259 lines; examples/data/mill_300mm.profile has as
+   many of each, with 12 trapezoidal lifters of our own choice: 9 mm high, 16 mm wide at the foot, 8 mm at the top
+   (made by --write-profile).
+
+   build:  cc -O2 -std=c99 -fopenmp examples/mill.c -o build/mill -lm          (-fopenmp if you like)
+   run:    build/mill, build/mill --quick, build/mill --help
+
+   The axis is z, gravity points to -y, the mill turns about +z: with x to the right it turns to the left, and
+   carries the charge up on the right. Critical speed is that of the thesis: 42.3/sqrt(D) turns a minute.
+   What is measured, over the last --revolutions:
+     rate                  particle-steps per second of wall time
+     solidicity_bulk       mean solid fraction of the cells (64 x 64) that are above 0.4 with all their 8 neighbours
+     shell_speed_ratio     speed of the grains whose centre is within 1.5 diameters of the shell, between toe and
+                           shoulder, over omega times the radius of the shell
+     overlap_max           largest overlap of the whole run, over the radius
+     torque_mean           N m, of the mill on the charge of the slice
+     torque_balance_error  |T - M g x|/(M g x), x: mean horizontal offset of the charge's centre of mass
+     power_balance_error   |T omega - D|/(T omega), D: rate of dissipation and of growth of the energy stored,
+                           elevation included. The ledger sums the dissipation contact by contact
+     ledger_residual       energy that the ledger cannot account for, over all that was put through, whole run
+     toe, shoulder         degrees from straight down, positive the way the mill turns: where, on a ring at 0.84 to
+                           0.92 of the shell's radius (inside the lifters), solidicity falls below half the bulk's
+     steady_after          revolutions after which the torque, averaged over half a turn, stays within 5 % of its mean
+     grains_missing        inserted - present + those found outside the shell
+     hash                  of the final state: equal for equal runs, whatever the number of threads
+   Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG); torque.csv, ledger.csv;
+   frames for ParaView (VTP); report.txt; summary.txt. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "study.h"
+
+#define PI 3.14159265358979323846
+#define GRAVITY 9.81
+#define CELLS 256          /* of the finest map; the others are sums of its cells */
+#define SAMPLES 240        /* of torque and energy, per revolution */
+
+static struct mill_options {
+    double diameter, length, radius, speed, fill, friction, wall_friction, soften, dt, revolutions, settle;
+    const char *ends, *profile, *wall, *stiffness, *law, *integrator, *tangent, *study, *out;
+    const char *checkpoint, *resume, *write_profile;
+    int threads, frames, quick;
+} options = {0.3, 0.0064, 0.0015, 0.7, 0.3743, 0.154, 0.32, 500, 0, 1, 1.25, "periodic", "lifters", "mesh", "soft",
+             "hertz", "verlet", "auto", "mill", "build/out/mill", 0, 0, 0, 0, 4, 0};
+
+#define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"          /* in the order of dem_integrator */
+#define TANGENTS "auto|none|viscous|step|spring|mindlin|rescaled"        /* in the order of dem_tangent_law */
+static const study_option table[] = {
+    {"diameter", STUDY_REAL, &options.diameter, 0.02, 20, "m", "of the drum; lifters scale with it"},
+    {"length", STUDY_REAL, &options.length, 0.003, 20, "m", "of the slice simulated"},
+    {"ends", STUDY_CHOICE, &options.ends, 0, 0, "periodic|flat", "of the slice"},
+    {"radius", STUDY_REAL, &options.radius, 1e-4, 0.5, "m", "of the beads"},
+    {"speed", STUDY_REAL, &options.speed, 0.05, 3, "of critical", "of the mill"},
+    {"fill", STUDY_REAL, &options.fill, 0.01, 0.9, "of the volume", "charge, at a solid fraction of 0.6"},
+    {"profile", STUDY_TEXT, &options.profile, 0, 0, "", "lifters (of examples/data), none (smooth), or a file"},
+    {"wall", STUDY_CHOICE, &options.wall, 0, 0, "mesh|grains", "grains: a smooth drum lined with beads"},
+    {"friction", STUDY_REAL, &options.friction, 0, 5, "", "between beads"},
+    {"wall-friction", STUDY_REAL, &options.wall_friction, 0, 5, "", "between beads and mill"},
+    {"stiffness", STUDY_CHOICE, &options.stiffness, 0, 0, "true|soft", "of beads and mill"},
+    {"soften", STUDY_REAL, &options.soften, 1, 1e6, "", "soft: nothing is stiffer than glass over this"},
+    {"dt", STUDY_REAL, &options.dt, 0, 1, "s", "time step; 0: a 21st of the shortest contact at shell speed"},
+    {"law", STUDY_CHOICE, &options.law, 0, 0, "hertz|linear", "normal force"},
+    {"integrator", STUDY_CHOICE, &options.integrator, 0, 0, INTEGRATORS, "scheme"},
+    {"tangent", STUDY_CHOICE, &options.tangent, 0, 0, TANGENTS, "friction law"},
+    {"revolutions", STUDY_REAL, &options.revolutions, 0.05, 1000, "", "measured"},
+    {"settle", STUDY_REAL, &options.settle, 0, 1000, "", "revolutions before that"},
+    {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
+    {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
+    {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "a smaller mill, under 20 s on two cores"},
+    {"frames", STUDY_INT, &options.frames, 0, 100000, "", "VTP files of grains and mill over the run"},
+    {"checkpoint", STUDY_TEXT, &options.checkpoint, 0, 0, "", "file written every quarter revolution"},
+    {"resume", STUDY_TEXT, &options.resume, 0, 0, "", "such a file, of a run with the same options"},
+    {"study", STUDY_CHOICE, &options.study, 0, 0, "mill|drop|overlap|speeds|friction", "what to run"},
+    {"write-profile", STUDY_TEXT, &options.write_profile, 0, 0, "", "write the lifters' profile to a file, and stop"},
+};
+
+typedef struct sample {    /* sums since the start, so that any window is a difference */
+    double time, impulse, work, x, angular; /* s, N m s, J, m, kg m2/s */
+    dem_ledger ledger;
+} sample;
+
+typedef struct mill {
+    struct mill_options o;
+    dem_world *world;
+    dem_material glass, lining;
+    dem_wall walls[3];
+    dem_profile profile;
+    dem_field field;
+    int wall_count, grains, sample_count, sample_steps, settled;
+    double shell, critical, omega, period, dt, mass;
+    sample *samples;
+    double torque, power, toe, shoulder, solidicity;
+} mill;
+
+static const char *program_path; /* argv[0]: the data lie relative to it */
+
+static int is(const char *a, const char *b) { return !strcmp(a, b); }
+
+static int place_of(const char *word, const char *list) { /* in "one|another", which the option made sure of */
+    int place = 0;
+    const char *at = strstr(list, word);
+    while (at > list) place += *--at == '|';
+    return place;
+}
+
+static int refused(dem_world *world, dem_result result) {
+    if (result != DEM_OK) study_fail("%s", dem_world_error(world));
+    return result != DEM_OK;
+}
+
+static int world_create(mill *m, const dem_world_desc *desc) {
+    m->world = dem_world_create(desc);
+    if (!m->world) study_fail("%s", dem_create_error(desc));
+    return !m->world;
+}
+
+static void mill_destroy(mill *m) {
+    if (m->profile.vertices) dem_profile_free(m->world, &m->profile);
+    dem_world_destroy(m->world);
+    memset(&m->profile, 0, sizeof m->profile);
+    m->world = 0;
+}
+
+/* Fig 5.24 of [MIL]. What it says of beads against the mill ("ps") is set for the pair, moduli mixed by Hertz. A
+   lining of beads is of glass, as in its section 5.2.1: one set of coefficients only. */
+static int materials_add(mill *m) {
+    static const double density[2] = {2500, 950}, shear[2] = {26e9, 0.31e9}, poisson[2] = {0.23, 0.42};
+    double limit = is(m->o.stiffness, "soft") ? 2*shear[0]*(1 + poisson[0])/m->o.soften : 1e300;
+    dem_material made[2];
+    dem_pair pair;
+    int i;
+    for (i = 0; i < 2; i++) {
+        dem_material_desc d = DEM_MATERIAL_DESC;
+        d.density = density[i];
+        d.young = fmin(2*shear[i]*(1 + poisson[i]), limit);
+        d.poisson = poisson[i];
+        d.restitution = i ? 0.55 : 0.66;
+        d.friction = i ? m->o.wall_friction : m->o.friction;
+        made[i] = dem_material_add(m->world, &d);
+        if (!made[i].id) return refused(m->world, DEM_ERROR_ARGUMENT);
+    }
+    m->glass = made[0];
+    m->lining = made[is(m->o.wall, "mesh")];
+    if (refused(m->world, dem_pair_get(m->world, made[0], made[1], &pair))) return 1;
+    pair.restitution = 0.55;
+    pair.friction = pair.friction_static = m->o.wall_friction;
+    return refused(m->world, dem_pair_set(m->world, made[0], made[1], &pair));
+}
+
+/* ---- the shell ---- */
+
+/* 12 lifters on a circle of 300 mm: 48 corners, and 211 points on the arcs between them: 259, as in [MIL]. */
+static int profile_write(const char *path) {
+    static const double corner[4][2] = {{0, -0.008}, {0.141, -0.004}, {0.141, 0.004}, {0, 0.008}};
+    FILE *file = fopen(path, "wb");
+    double foot = asin(0.008/0.15), span = PI/6 - 2*foot;
+    int lifter, i;
+    if (!file) { study_fail("cannot write %s: %s", path, strerror(errno)); return 1; }
+    fprintf(file, "259 259\n");
+    for (lifter = 0; lifter < 12; lifter++) {
+        double a = lifter*PI/6;
+        int points = (lifter + 1)*211/12 - lifter*211/12;
+        for (i = 0; i < 4; i++) {
+            double x = corner[i][0] > 0 ? corner[i][0] : 0.15*cos(foot), y = corner[i][1];
+            fprintf(file, "%.9g %.9g\n", x*cos(a) - y*sin(a), x*sin(a) + y*cos(a));
+        }
+        for (i = 1; i <= points; i++) {
+            double on = a + foot + span*i/(points + 1);
+            fprintf(file, "%.9g %.9g\n", 0.15*cos(on), 0.15*sin(on));
+        }
+    }
+    for (i = 1; i <= 259; i++) fprintf(file, "%d %d\n", i, i%259 + 1);
+    if (fclose(file)) { study_fail("%s was not written in full", path); return 1; }
+    return 0;
+}
+
+static int profile_load(mill *m) { /* ours is looked for here, then beside the program's folder, and scaled */
+    static const char *const place = "examples/data/mill_300mm.profile";
+    char path[1024];
+    const char *slash = strrchr(program_path, '/');
+    int i, ours = is(m->o.profile, "lifters");
+    FILE *file = fopen(place, "rb");
+    if (file) fclose(file);
+    if (!ours) snprintf(path, sizeof path, "%s", m->o.profile);
+    else if (file || !slash) snprintf(path, sizeof path, "%s", place);
+    else snprintf(path, sizeof path, "%.*s/../%s", (int)(slash - program_path), program_path, place);
+    if (refused(m->world, dem_profile_read(m->world, path, &m->profile))) return 1;
+    for (i = 0; ours && i < 2*m->profile.vertex_count; i++) m->profile.vertices[i] *= m->o.diameter/0.3;
+    return 0;
+}
+
+/* Is a disc at (x, y) inside the shell? Its centre is inside when a ray to the right leaves an odd number of times. */
+static int has_room(const mill *m, double x, double y, double radius) {
+    const dem_profile *p = &m->profile;
+    int i, inside = 0;
+    if (hypot(x, y) + radius > m->shell) return 0;
+    if (!p->segment_count || hypot(x, y) < 0.7*m->shell) return 1;
+    for (i = 0; i < p->segment_count; i++) {
+        const dem_real *a = p->vertices + 2*p->segments[2*i], *b = p->vertices + 2*p->segments[2*i + 1];
+        double dx = b[0] - a[0], dy = b[1] - a[1], t = ((x - a[0])*dx + (y - a[1])*dy)/(dx*dx + dy*dy);
+        t = fmin(fmax(t, 0), 1);
+        if (hypot(x - a[0] - t*dx, y - a[1] - t*dy) < radius) return 0;
+        if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1])*dx/dy) inside = !inside;
+    }
+    return inside;
+}
+
+static int shell_add(mill *m) {
+    dem_motion turning = DEM_MOTION;
+    double R = m->o.diameter/2, r = m->o.radius, L = m->o.length;
+    dem_vec3 centre = dem_vec3_make(0, 0, 0), axis = dem_vec3_make(0, 0, 1);
+    int i, count;
+    m->wall_count = 1;
+    if (is(m->o.wall, "grains")) { /* layers r sqrt(3) apart; mill_begin made a periodic slice an even number of them */
+        double lining = is(m->o.ends, "flat") ? L : L + 2*r - 1.001*sqrt(3.0)*r;
+        dem_real *at;
+        count = dem_drum_grains(R, lining, r, 0, 0);
+        at = (dem_real *)study_alloc(3*(size_t)count, sizeof *at);
+        dem_drum_grains(R, lining, r, 0, at);
+        m->walls[0] = dem_grains_wall_add(m->world, m->lining, count, at, r, 1);
+        free(at);
+    } else if (is(m->o.profile, "none")) m->walls[0] = dem_cylinder_add(m->world, m->lining, centre, axis, R, 1);
+    else {
+        if (profile_load(m)) return 1;
+        m->walls[0] = dem_profile_add(m->world, m->lining, &m->profile, DEM_EDGE_RESOLVED);
+    }
+    for (i = -1; i <= 1 && is(m->o.ends, "flat"); i += 2)
+        m->walls[m->wall_count++] = dem_plane_add(m->world, m->lining, dem_vec3_make(0, 0, i*L/2), dem_vec3_make(0, 0, -i));
+    turning.kind = DEM_MOTION_ROTATING;
+    turning.axis = axis;
+    turning.speed = m->omega;
+    for (i = 0; i < m->wall_count; i++) {
+        if (!m->walls[i].id) return refused(m->world, DEM_ERROR_ARGUMENT);
+        if (refused(m->world, dem_wall_motion(m->world, m->walls[i], &turning))) return 1;
+    }
+    return 0;
+}
+
+/* ---- the charge ---- */
+
+typedef struct site_list { const mill *m; int count, capacity; dem_real *at; } site_list;
+
+static int site_note(dem_vec3 c, dem_real radius, void *user) { /* notes where the packing has room; takes none */
+    site_list *list = (site_list *)user;
+    if (fabs(c.z) + 1.02*radius > list->m->o.length/2 || !has_room(list->m, c.x, c.y, 1.02*radius)) return 0;
+    if (list->count == list->capacity) {
+        list->capacity = 2*list->capacity + 1000;
+        list->at = (dem_real *)realloc(list->at, 3*(size_t)list->capacity*sizeof *list->at);
+        if (!list->at) { study_fail("no memory for %d grains", list->capacity); exit(1); }
+    }
+    memcpy(list->at + 3*list->count++, &c, sizeof c);
+    return 0;
+}
+static int site_lower(const void *a, const void *b) {
+    const dem_real *p = (const dem_real *)a, *q = (const dem_real *)b;
+    int axis = p[1] != q[1] ? 1 : p[0] != q[0] ? 0 : 2;
+    return p[axis] < q[axis] ? -1 : p[axis] > q[axis];
+}
+
+/* The lowest places of a hexagonal packing with some padding; each grain is shoved about within the padding, without
+   which rows stay rows for long. */
+static int charge_add(mill *m) {
+    double R = m->o.diameter/2, L = m->o.length, r = m->o.radius, padding = 0.05*r;
+    dem_box box = dem_box_make(-R, -R, -L/2, R, R, L/2);
+    uint32_t random = 1;
+    int i, bad = 1;
+    site_list list;
+    memset(&list, 0, sizeof list);
+    list.m = m;
+    m->grains = (int)(m->o.fill*0.6*PI*m->shell*m->shell*L/(4*PI*r*r*r/3) + 0.5);
+    dem_spheres_pack(m->world, m->glass, r, padding, box, site_note, &list, 0);
+    if (list.count < m->grains) study_fail("%d grains were asked for, but only %d fit into the mill", m->grains, list.count);
+    else {
+        qsort(list.at, (size_t)list.count, 3*sizeof *list.at, site_lower);
+        for (i = 0; i < 3*m->grains; i++) {
+            random = random*1664525u + 1013904223u;
+            list.at[i] += 0.4*padding*((random >> 8)/16777216.0 - 0.5);
+        }
+        bad = refused(m->world, dem_spheres_add(m->world, m->glass, m->grains, list.at, 0, 0, r));
+    }
+    free(list.at);
+    return bad;
+}
+
+/* ---- the mill ---- */
+
+static int mill_create(mill *m, double dt) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_field_desc field;
+    double R = m->o.diameter/2, L = m->o.length;
+    desc.gravity.y = -GRAVITY;
+    desc.normal_law = is(m->o.law, "linear") ? DEM_NORMAL_LINEAR : DEM_NORMAL_HERTZ;
+    desc.integrator = (dem_integrator)place_of(m->o.integrator, INTEGRATORS);
+    desc.tangent_law = (dem_tangent_law)place_of(m->o.tangent, TANGENTS);
+    desc.impact_speed = m->omega*R;
+    desc.threads = m->o.threads;
+    desc.ledger = 1;
+    desc.dt = dt;
+    if (is(m->o.ends, "periodic")) {
+        desc.domain = dem_box_make(-1.1*R, -1.1*R, -L/2, 1.1*R, 1.1*R, L/2);
+        desc.boundary[2] = DEM_BOUNDARY_PERIODIC;
+    }
+    if (world_create(m, &desc) || materials_add(m) || shell_add(m) || charge_add(m)) return 1;
+    memset(&field, 0, sizeof field);
+    field.box = dem_box_make(-R, -R, -L/2, R, R, L/2);
+    field.cells[0] = field.cells[1] = CELLS;
+    field.cells[2] = 1;
+    field.start = m->settled*m->period/SAMPLES;
+    field.interval = m->period/720;
+    m->field = dem_field_add(m->world, &field);
+    return m->field.id ? 0 : refused(m->world, DEM_ERROR_ARGUMENT);
+}
+
+/* Chooses the time step so that samples fall on whole steps: the scene is built twice, first to ask for advice. */
+static int mill_begin(mill *m) {
+    dem_advice advice;
+    double wanted = m->o.dt, pair = 2*sqrt(3.0)*m->o.radius;
+    m->shell = m->o.diameter/2;
+    if (is(m->o.wall, "grains")) { /* no lifters; and layers of the lining meet across a periodic end */
+        m->shell -= 2*m->o.radius;
+        m->o.profile = "none";
+        if (is(m->o.ends, "periodic")) m->o.length = pair*fmax(2, floor(m->o.length/pair + 0.5));
+    }
+    m->critical = 42.3/sqrt(m->o.diameter)*2*PI/60;
+    m->omega = m->o.speed*m->critical;
+    m->period = 2*PI/m->omega;
+    m->settled = (int)(m->o.settle*SAMPLES + 0.5);
+    if (!(wanted > 0)) {
+        int bad = mill_create(m, 0) || refused(m->world, dem_step_advice(m->world, &advice));
+        mill_destroy(m);
+        if (bad) return 1;
+        wanted = advice.contact_time/21;
+    }
+    m->sample_steps = (int)ceil(m->period/SAMPLES/wanted);
+    m->dt = m->o.dt > 0 ? m->o.dt : m->period/SAMPLES/m->sample_steps;
+    if (mill_create(m, m->dt)) return 1;
+    m->mass = dem_totals_get(m->world).mass;
+    return 0;
+}
+
+static void sample_take(const mill *m, sample *s) {
+    dem_totals totals = dem_totals_get(m->world);
+    int i;
+    memset(s, 0, sizeof *s);
+    s->time = dem_world_time(m->world);
+    s->ledger = dem_ledger_get(m->world);
+    s->x = totals.centre[0];
+    s->angular = totals.angular[2];
+    for (i = 0; i < m->wall_count; i++) {
+        dem_channels c;
+        if (refused(m->world, dem_wall_channels(m->world, m->walls[i], &c))) return;
+        s->impulse -= c.torque_impulse; /* of the mill on the grains */
+        s->work += c.work;
+    }
+}
+
+/* Beside a checkpoint lie the samples so far, in FILE.samples. */
+static int samples_file(mill *m, const char *path, int writing, int *count) {
+    char name[1024];
+    FILE *file;
+    int good;
+    snprintf(name, sizeof name, "%s.samples", path);
+    file = fopen(name, writing ? "wb" : "rb");
+    if (!file) { study_fail("cannot open %s: %s", name, strerror(errno)); return 1; }
+    if (writing) good = fwrite(count, sizeof *count, 1, file) == 1
+                     && fwrite(m->samples, sizeof(sample), (size_t)*count, file) == (size_t)*count;
+    else good = fread(count, sizeof *count, 1, file) == 1 && *count > 0 && *count <= m->sample_count + 1
+             && fread(m->samples, sizeof(sample), (size_t)*count, file) == (size_t)*count;
+    if (fclose(file) || !good) { study_fail("%s is not whole, or of another run", name); return 1; }
+    return 0;
+}
+
+static void frame_write(mill *m, int number) {
+    char name[32];
+    double z = m->o.length/2;
+    snprintf(name, sizeof name, "grains_%04d.vtp", number);
+    study.files += !refused(m->world, dem_vtp_write(m->world, study_path(name)));
+    snprintf(name, sizeof name, "mill_%04d.vtp", number);
+    if (m->profile.segment_count) study.files += !refused(m->world, dem_walls_vtp_write(m->world, study_path(name), -z, z));
+}
+
+static int mill_turn(mill *m) { /* the run itself */
+    int k = 0, first, count, frames = m->o.frames;
+    double begun, work = (double)m->grains*m->sample_steps;
+    char what[64];
+    m->sample_count = m->settled + (int)(m->o.revolutions*SAMPLES + 0.5);
+    m->samples = (sample *)study_alloc((size_t)m->sample_count + 1, sizeof *m->samples);
+    sample_take(m, &m->samples[0]);
+    if (m->o.resume) {
+        if (refused(m->world, dem_checkpoint_read(m->world, m->o.resume)) || samples_file(m, m->o.resume, 0, &count)) return 1;
+        k = count - 1;
+    }
+    snprintf(what, sizeof what, "mill: %d grains, %.3g revolutions", m->grains, m->sample_count/(double)SAMPLES);
+    study_progress(what, 0, 0);
+    for (begun = study_clock(), first = k; k < m->sample_count; k++) {
+        if (frames && (int64_t)k*frames%m->sample_count < frames) frame_write(m, (int)((int64_t)k*frames/m->sample_count));
+        if (refused(m->world, dem_world_step(m->world, m->sample_steps))) return 1;
+        sample_take(m, &m->samples[k + 1]);
+        count = k + 2;
+        if (m->o.checkpoint && ((k + 1)%(SAMPLES/4) == 0 || k + 1 == m->sample_count))
+            if (samples_file(m, m->o.checkpoint, 1, &count) || refused(m->world, dem_checkpoint_write(m->world, m->o.checkpoint))) return 1;
+        study_progress(what, (k + 1 - first)/(double)(m->sample_count - first), work*(k + 1 - first));
+    }
+    study_result("rate", work*(k - first)/fmax(study_clock() - begun, 1e-3), "particle-steps/s");
+    if (frames) frame_write(m, frames);
+    return 0;
+}
+
+/* ---- maps ---- */
+
+typedef struct map { int n; double *solid, *u, *v, *mass; } map; /* n x n cells; not a number where nothing was */
+
+static map map_make(const dem_field_data *d, int n) { /* cells of the field summed to n x n */
+    map a;
+    int i, j, k, step = CELLS/n;
+    double **lists[4];
+    lists[0] = &a.solid; lists[1] = &a.u; lists[2] = &a.v; lists[3] = &a.mass;
+    for (k = 0; k < 4; k++) *lists[k] = (double *)study_alloc((size_t)n*(size_t)n, sizeof(double));
+    a.n = n;
+    for (j = 0; j < CELLS; j++)
+        for (i = 0; i < CELLS; i++) {
+            int from = i + CELLS*j;
+            k = i/step + n*(j/step);
+            a.solid[k] += d->solid[from]/((double)d->samples*step*step);
+            a.mass[k] += d->mass[from];
+            a.u[k] += d->momentum[3*from];
+            a.v[k] += d->momentum[3*from + 1];
+        }
+    for (k = 0; k < n*n; k++) {
+        if (!(a.mass[k] > 0)) a.solid[k] = NAN;
+        a.u[k] /= a.mass[k];
+        a.v[k] /= a.mass[k];
+    }
+    return a;
+}
+
+static double map_bulk(const map *a) { /* mean over the cells above 0.4 with all their neighbours */
+    double sum = 0;
+    int i, j, k, count = 0;
+    for (j = 1; j + 1 < a->n; j++)
+        for (i = 1; i + 1 < a->n; i++) {
+            int well = 1;
+            for (k = 0; k < 9; k++) well &= a->solid[i - 1 + k%3 + a->n*(j - 1 + k/3)] > 0.4;
+            if (well) { sum += a->solid[i + a->n*j]; count++; }
+        }
+    return sum/count;
+}
+
+/* Solid fraction on the ring inside the lifters, at an angle from straight down, over 4 degrees. */
+static double map_ring(const mill *m, const map *a, double degrees) {
+    double sum = 0, R = m->o.diameter/2;
+    int k;
+    for (k = 0; k < 81; k++) {
+        double angle = (degrees - 2 + 0.5*(k%9))*PI/180, r = m->shell*(0.84 + 0.01*(k/9));
+        double cell = a->solid[(int)((1 + r*sin(angle)/R)*a->n/2) + a->n*(int)((1 - r*cos(angle)/R)*a->n/2)];
+        if (cell > 0) sum += cell/81;
+    }
+    return sum;
+}
+static void map_toe_shoulder(mill *m, const map *a) { /* both ways from where the ring is fullest */
+    double at, best = 0;
+    for (at = -180; at < 180; at++) if (map_ring(m, a, at) > map_ring(m, a, best)) best = at;
+    for (m->toe = best; m->toe > best - 360 && map_ring(m, a, m->toe) > m->solidicity/2;) m->toe -= 0.5;
+    for (m->shoulder = best; m->shoulder < best + 360 && map_ring(m, a, m->shoulder) > m->solidicity/2;) m->shoulder += 0.5;
+}
+
+static double map_shell_speed(const mill *m, const map *a) {
+    double momentum = 0, mass = 0;
+    int i;
+    for (i = 0; i < a->n*a->n; i++) {
+        double x = ((2*(i%a->n) + 1.0)/a->n - 1)*m->o.diameter/2, y = ((2*(i/a->n) + 1.0)/a->n - 1)*m->o.diameter/2;
+        double angle = atan2(x, -y)*180/PI;
+        if (hypot(x, y) < m->shell - 3*m->o.radius || angle < m->toe || angle > m->shoulder || !(a->mass[i] > 0)) continue;
+        momentum += hypot(a->u[i], a->v[i])*a->mass[i];
+        mass += a->mass[i];
+    }
+    return momentum/mass/(m->omega*m->shell);
+}
+
+static study_figure section_figure(const mill *m, const char *title, const char *bar_label) { /* of the mill, end on */
+    study_figure f;
+    memset(&f, 0, sizeof f);
+    f.title = title;
+    f.bar_label = bar_label;
+    f.x_label = "x (m)";
+    f.y_label = "y (m)";
+    f.x1 = f.y1 = 1.01*m->o.diameter/2;
+    f.x0 = f.y0 = -f.x1;
+    f.equal = 1;
+    return f;
+}
+
+static void maps_write(mill *m) {
+    double circle[2][361], mark[2][2][2], R = m->o.diameter/2, fastest = 0;
+    char title[128], name[64];
+    dem_field_data d;
+    map maps[3];
+    int i, k;
+    if (refused(m->world, dem_field_get(m->world, m->field, &d))) return;
+    if (!d.samples) { study_fail("nothing was measured: --revolutions is too short"); return; }
+    for (i = 0; i < 3; i++) maps[i] = map_make(&d, 64 << i);
+    m->solidicity = map_bulk(&maps[0]);
+    map_toe_shoulder(m, &maps[2]);
+    study_result("solidicity_bulk", m->solidicity, "");
+    study_result("shell_speed_ratio", map_shell_speed(m, &maps[2]), "");
+    study_result("toe", m->toe, "degrees");
+    study_result("shoulder", m->shoulder, "degrees");
+    for (i = 0; i <= 360; i++) { circle[0][i] = R*sin(i*PI/180); circle[1][i] = R*cos(i*PI/180); }
+    for (k = 0; k < 4; k++) { /* short lines to the shell at toe and shoulder */
+        double angle = (k/2 ? m->shoulder : m->toe)*PI/180, r = k%2 ? R : 0.84*m->shell;
+        mark[k/2][0][k%2] = r*sin(angle);
+        mark[k/2][1][k%2] = -r*cos(angle);
+    }
+    for (k = 0; k < 64*64; k++) if (maps[0].mass[k] > 0) fastest = fmax(fastest, hypot(maps[0].u[k], maps[0].v[k]));
+    for (i = 0; i < 6; i++) {
+        int n = 64 << i/2;
+        study_figure f = section_figure(m, title, i%2 ? "speed (m/s)" : "solidicity");
+        f.x1 = f.y1 = R;
+        f.x0 = f.y0 = -R;
+        f.nx = f.ny = n;
+        f.hi = i%2 ? fastest : 0.7;
+        if (i%2) { f.u = maps[i/2].u; f.v = maps[i/2].v; }
+        else f.value = maps[i/2].solid;
+        if (i%2) f.size = fmax(620, 4.84*n); /* room for the darts */
+        study_curve(&f, 0, STUDY_OUTLINE, 361, circle[0], circle[1]);
+        for (k = 0; k < 2; k++) study_curve(&f, 0, STUDY_OUTLINE, 2, mark[k][0], mark[k][1]);
+        snprintf(title, sizeof title, "%s at %.0f %% of critical, %d x %d cells", i%2 ? "Velocity" : "Solidicity", 100*m->o.speed, n, n);
+        snprintf(name, sizeof name, "%s_%d.svg", i%2 ? "velocity" : "solidicity", n);
+        study_figure_write(&f, name);
+    }
+    for (i = 0; i < 3; i++) { free(maps[i].solid); free(maps[i].u); free(maps[i].v); free(maps[i].mass); }
+}
+
+static void grains_draw(mill *m) { /* all grains of the slice, as they are at the end */
+    dem_bodies b = dem_bodies_get(m->world);
+    int i, k, points = m->profile.segment_count ? m->profile.vertex_count + 1 : 361;
+    double *v[6];
+    dem_pose pose;
+    study_figure f = section_figure(m, "The charge at the end of the run", "speed (m/s)");
+    if (refused(m->world, dem_wall_pose(m->world, m->walls[0], &pose))) return;
+    for (k = 0; k < 6; k++) v[k] = (double *)study_alloc((size_t)(k < 4 ? b.count : points), sizeof(double));
+    for (i = 0; i < b.count; i++) {
+        const dem_real *u = b.velocities + 4*i;
+        for (k = 0; k < 3; k++) v[k][i] = b.positions[4*i + (k < 2 ? k : 3)];
+        v[3][i] = sqrt(u[0]*u[0] + u[1]*u[1] + u[2]*u[2]);
+    }
+    for (i = 0; i < 2*points; i++) { /* the shell, turned */
+        const dem_real *p = m->profile.vertices + 2*(i/2%(points - 1)), *row = pose.rotation + 3*(i%2);
+        v[4 + i%2][i/2] = m->profile.segment_count ? row[0]*p[0] + row[1]*p[1] : m->shell*sin((i/2 + 90*(i%2))*PI/180);
+    }
+    f.disc_count = b.count;
+    f.disc_x = v[0]; f.disc_y = v[1]; f.disc_r = v[2]; f.disc_value = v[3];
+    study_curve(&f, 0, STUDY_OUTLINE, points, v[4], v[5]);
+    study_figure_write(&f, "grains.svg");
+    for (k = 0; k < 6; k++) free(v[k]);
+}
+
+/* ---- torque and energy ---- */
+
+static study_figure line_figure(const char *title, const char *x_label, const char *y_label) {
+    study_figure f;
+    memset(&f, 0, sizeof f);
+    f.title = title;
+    f.x_label = x_label;
+    f.y_label = y_label;
+    return f;
+}
+
+static double window_torque(const sample *from, const sample *to) { return (to->impulse - from->impulse)/(to->time - from->time); }
+static double dissipated(const sample *s) { return s->ledger.normal + s->ledger.slide + s->ledger.tangent + s->ledger.rolling; }
+static double stored(const sample *s) { /* elevation included: it is the work of gravity, turned round */
+    return s->ledger.kinetic + s->ledger.rotational + s->ledger.elastic - s->ledger.gravity;
+}
+
+static void torque_write(mill *m) {
+    enum { COLUMNS = 16, TORQUE = 7 };
+    int n = m->sample_count, half = SAMPLES/2, k, c, steady;
+    const sample *s = m->samples, *a = s + m->settled, *b = s + n;
+    double span = b->time - a->time, x = 0, weight, loss, *column[COLUMNS];
+    study_figure f;
+
+    /* results */
+    for (k = m->settled; k < n; k++) x += 0.5*(s[k].x + s[k + 1].x)/(n - m->settled);
+    weight = m->mass*GRAVITY*x;
+    loss = dissipated(b) - dissipated(a);
+    m->torque = window_torque(a, b);
+    m->power = m->torque*m->omega;
+    for (steady = n; steady >= half && fabs(window_torque(s + steady - half, s + steady)/m->torque - 1) < 0.05;) steady--;
+    study_result("torque_mean", m->torque, "N m");
+    study_result("torque_balance_error", fabs(m->torque - weight)/fabs(weight), "");
+    study_result("centre_of_mass_x", x, "m");
+    study_result("power_mean", m->power, "W");
+    study_result("dissipation_rate", loss/span, "W");
+    study_result("power_balance_error", fabs(m->power - (loss + stored(b) - stored(a))/span)/fabs(m->power), "");
+    study_result("steady_after", steady/(double)SAMPLES, "revolutions");
+
+    /* files */
+    for (c = 0; c < COLUMNS; c++) column[c] = (double *)study_alloc((size_t)n, sizeof(double));
+    for (k = 0; k < n; k++) {
+        const sample *p = s + k, *q = p + 1;
+        const dem_ledger *l = &q->ledger;
+        double step = q->time - p->time;
+        const double row[COLUMNS] = {q->time, q->time/m->period, window_torque(p, q), window_torque(s + (k + 1 < half ? 0 : k + 1 - half), q),
+            m->mass*GRAVITY*q->x, (q->work - p->work)/step, (dissipated(q) - dissipated(p))/step,
+            q->time, l->kinetic, l->rotational, l->elastic, l->gravity, l->walls, l->normal, l->slide + l->tangent + l->rolling, l->residual};
+        for (c = 0; c < COLUMNS; c++) column[c][k] = row[c];
+    }
+    study_csv("torque.csv", "time_s,revolutions,torque_Nm,torque_over_half_a_turn_Nm,mass_g_x_Nm,power_W,dissipation_W",
+              n, TORQUE, (const double *const *)column);
+    study_csv("ledger.csv", "time_s,kinetic_J,rotational_J,elastic_J,gravity_J,walls_J,dashpot_J,friction_J,residual_J",
+              n, COLUMNS - TORQUE, (const double *const *)(column + TORQUE));
+    f = line_figure("Torque of the mill on its charge", "revolutions", "torque (N m)");
+    study_curve(&f, "at once", STUDY_FAINT, n, column[1], column[2]);
+    study_curve(&f, "over the last half turn", STUDY_LINE, n, column[1], column[3]);
+    study_curve(&f, "M g x", STUDY_DASHED, n, column[1], column[4]);
+    study_figure_write(&f, "torque.svg");
+    f = line_figure("Power", "revolutions", "power (W)");
+    study_curve(&f, "of the mill", STUDY_FAINT, n, column[1], column[5]);
+    study_curve(&f, "dissipated", STUDY_LINE, n, column[1], column[6]);
+    study_figure_write(&f, "power.svg");
+    for (c = 0; c < COLUMNS; c++) free(column[c]);
+}
+
+static void state_write(mill *m) { /* what the whole run left behind */
+    dem_ledger ledger = dem_ledger_get(m->world);
+    dem_balance balance = dem_balance_get(m->world);
+    dem_bodies b = dem_bodies_get(m->world);
+    char text[32];
+    FILE *report;
+    int i;
+    double missing = (double)balance.inserted - (double)balance.present;
+    for (i = 0; i < b.count; i++) missing += hypot(b.positions[4*i], b.positions[4*i + 1]) > m->o.diameter/2;
+    study_result("overlap_max", dem_counters_get(m->world).overlap_max, "");
+    study_result("ledger_residual", fabs(ledger.residual)/ledger.throughput, "");
+    study_result("grains_missing", missing, "");
+    if (missing != 0) study_fail("%g grains got lost", missing);
+    snprintf(text, sizeof text, "%016llx", (unsigned long long)dem_world_hash(m->world));
+    study_result_text("hash", text, "");
+    report = study_open("report.txt");
+    if (report) dem_world_report(m->world, report);
+    study_close(report, "report.txt");
+}
+
+static int mill_run(mill *m) {
+    int bad = mill_begin(m);
+    if (!bad) {
+        study_result("grains", m->grains, "");
+        study_result("dt", m->dt, "s");
+        study_result("speed_critical", m->critical, "rad/s");
+        study_result("omega", m->omega, "rad/s");
+        bad = mill_turn(m);
+    }
+    if (!bad) { maps_write(m); torque_write(m); grains_draw(m); state_write(m); }
+    free(m->samples);
+    mill_destroy(m);
+    return bad;
+}
+
+/* Several mills: 60, 70, 80 % of critical (Fig 6.7 to 6.12), or beads of three frictions in a smooth drum lined with
+   beads at 50 % (Fig 6.13). */
+static int study_several(int friction) {
+    double column[6][3];
+    const double *columns[6] = {column[0], column[1], column[2], column[3], column[4], column[5]};
+    int i;
+    for (i = 0; i < 3; i++) {
+        char part[32];
+        mill m;
+        memset(&m, 0, sizeof m);
+        m.o = options;
+        m.o.speed = friction ? 0.5 : 0.6 + 0.1*i;
+        if (friction) { m.o.wall = "grains"; m.o.friction = 0.42 + 0.02*i; }
+        column[0][i] = friction ? m.o.friction : m.o.speed;
+        snprintf(part, sizeof part, "%s_%.0f", friction ? "friction" : "speed", 100*column[0][i]);
+        study_part(part);
+        if (mill_run(&m)) return 1;
+        column[1][i] = m.torque; column[2][i] = m.power; column[3][i] = m.toe; column[4][i] = m.shoulder; column[5][i] = m.solidicity;
+    }
+    study_part("");
+    study_csv("comparison.csv", friction ? "friction,torque_Nm,power_W,toe_deg,shoulder_deg,solidicity" :
+              "speed,torque_Nm,power_W,toe_deg,shoulder_deg,solidicity", 3, 6, columns);
+    return 0;
+}
+
+/* ---- one bead ---- */
+
+static dem_body bead_add(mill *m, double y, double vx, double vy) {
+    dem_body bead = dem_sphere_add(m->world, m->glass, m->o.radius, dem_vec3_make(0, y, 0));
+    dem_body_state s;
+    if (!bead.slot || refused(m->world, dem_body_get(m->world, bead, &s))) return bead;
+    s.velocity = dem_vec3_make(vx, vy, 0);
+    refused(m->world, dem_body_set(m->world, bead, &s));
+    return bead;
+}
+
+/* Throws a bead of true stiffness onto a sheet of the same glass. The thesis's mode is its arithmetic: E* = E, R/2 and
+   m/2 at walls, forward Euler, steps of 1e-6 s, friction without memory. log: time, height, velocities, spin. */
+typedef struct throw_of { const char *title; double height, vx, vy, time; } throw_of;
+enum { ROWS = 2000 };
+
+static int throw_bead(const throw_of *t, int figure, int thesis, double *const *log, double worst[3]) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    double before_gap = 0, before_v = 0, in = 0;
+    int k, steps, bounces = 0, stride;
+    char name[64];
+    dem_body bead;
+    mill m;
+    memset(&m, 0, sizeof m);
+    m.o = options;
+    m.o.stiffness = "true";
+    desc.gravity.y = -GRAVITY;
+    desc.impact_speed = 0.5;
+    desc.threads = 1;
+    desc.dt = thesis ? 1e-6 : 1e-7;
+    if (thesis) {
+        desc.convention = DEM_CONVENTION_MILL;
+        desc.integrator = DEM_FORWARD_EULER;
+        desc.tangent_law = DEM_TANGENT_STEP;
+        desc.allow_large_dt = 1;
+    }
+    if (world_create(&m, &desc) || materials_add(&m)) return 1;
+    dem_plane_add(m.world, m.glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
+    bead = bead_add(&m, m.o.radius + t->height, t->vx, t->vy);
+    steps = (int)(t->time/desc.dt + 0.5);
+    stride = steps/ROWS;
+    for (k = 0; k < steps; k++) {
+        dem_body_state s;
+        double gap, v;
+        if (refused(m.world, dem_body_get(m.world, bead, &s))) return 1;
+        gap = s.position.y - m.o.radius;
+        v = s.velocity.y;
+        if (k && gap < 0 && before_gap >= 0) in = sqrt(before_v*before_v + 2*GRAVITY*before_gap);
+        if (gap >= 0 && before_gap < 0 && ++bounces <= 3) { /* speeds are those at height 0 */
+            double e = sqrt(v*v + 2*GRAVITY*gap)/in;
+            snprintf(name, sizeof name, "restitution_6_%d_bounce_%d_%s", figure, bounces, thesis ? "thesis" : "standard");
+            study_result(name, e, "");
+            if (!thesis) worst[0] = fmax(worst[0], fabs(e - 0.66));
+        }
+        before_gap = gap;
+        before_v = v;
+        if (t->vx == 0) worst[1] = fmax(worst[1], fabs(s.velocity.x) + fabs(s.velocity.z));
+        if (t->vx == 0) worst[2] = fmax(worst[2], fabs(s.spin.x) + fabs(s.spin.y) + fabs(s.spin.z));
+        if (k%stride == 0 && k/stride < ROWS) {
+            const double row[5] = {k*desc.dt, s.position.y, v, s.velocity.x, s.spin.z};
+            int c;
+            for (c = 0; c < 5; c++) log[c][k/stride] = row[c];
+        }
+        if (refused(m.world, dem_world_step(m.world, 1))) return 1;
+    }
+    mill_destroy(&m);
+    return 0;
+}
+
+static int study_drop(void) { /* Fig 6.1 to 6.6 */
+    static const throw_of throws[6] = {{"dropped from rest", 0.005, 0, 0, 0.2}, {"thrown up", 0.005, 0, 0.2, 0.2},
+        {"thrown down", 0.005, 0, -0.2, 0.2}, {"thrown to the right", 0.005, 0.2, 0, 0.2},
+        {"thrown to the left", 0.005, -0.2, 0, 0.2}, {"thrown to the right from higher up", 0.02, 0.5, 0, 0.4}};
+    static const char *const names[4] = {"height", "vertical_velocity", "horizontal_velocity", "spin"};
+    static const char *const labels[4] = {"height of the centre (m)", "vertical velocity (m/s)", "horizontal velocity (m/s)", "spin (rad/s)"};
+    double *log[10], worst[3] = {0, 0, 0};
+    char name[96], title[96];
+    int t, c;
+    for (c = 0; c < 10; c++) log[c] = (double *)study_alloc(ROWS, sizeof(double));
+    for (t = 0; t < 6; t++) {
+        for (c = 0; c < 2; c++) {
+            if (throw_bead(&throws[t], t + 1, c, log + 5*c, worst)) return 1;
+            snprintf(name, sizeof name, "drop_6_%d_%s.csv", t + 1, c ? "thesis" : "standard");
+            study_csv(name, "time_s,height_m,vertical_m_s,horizontal_m_s,spin_rad_s", ROWS, 5, (const double *const *)(log + 5*c));
+        }
+        for (c = 0; c < (t < 3 ? 2 : 4); c++) {
+            study_figure f = line_figure(title, "time (s)", labels[c]);
+            snprintf(title, sizeof title, "A glass bead %s", throws[t].title);
+            study_curve(&f, "standard", STUDY_LINE, ROWS, log[0], log[1 + c]);
+            study_curve(&f, "as in the thesis", STUDY_DASHED, ROWS, log[5], log[6 + c]);
+            snprintf(name, sizeof name, "drop_6_%d_%s.svg", t + 1, names[c]);
+            study_figure_write(&f, name);
+        }
+    }
+    study_result("restitution_error_max", worst[0], "");
+    study_result("sideways_max", worst[1], "m/s");
+    study_result("spin_max", worst[2], "rad/s");
+    if (worst[0] > 0.002) study_fail("restitution is off by %g", worst[0]);
+    if (worst[1] > 0 || worst[2] > 0) study_fail("a bead that falls straight moved sideways or spun");
+    for (c = 0; c < 10; c++) free(log[c]);
+    return 0;
+}
+
+static int study_overlap(void) { /* Fig 6.0: a bead hits another, or the mill, head on */
+    static const char *const names[4] = {"bead on bead, true", "bead on mill, true", "bead on bead, softened", "bead on mill, softened"};
+    static const char *const results[4] = {"overlap_bead_true", "overlap_mill_true", "overlap_bead_soft", "overlap_mill_soft"};
+    enum { SPEEDS = 25 };
+    double column[5][SPEEDS];
+    const double *columns[5] = {column[0], column[1], column[2], column[3], column[4]};
+    study_figure f = line_figure("Largest overlap against impact speed", "impact speed (m/s)", "overlap (% of the radius)");
+    int i, k;
+    for (k = 0; k < 4; k++) {
+        for (i = 0; i < SPEEDS; i++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_advice advice;
+            double v = column[0][i] = 0.1*(i + 1), r = 1.001*options.radius;
+            mill m;
+            memset(&m, 0, sizeof m);
+            m.o = options;
+            m.o.stiffness = k < 2 ? "true" : "soft";
+            desc.impact_speed = v;
+            desc.threads = 1;
+            if (world_create(&m, &desc) || materials_add(&m)) return 1;
+            bead_add(&m, r, 0, k%2 ? -v : -v/2);
+            if (k%2) dem_plane_add(m.world, m.lining, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
+            else bead_add(&m, -r, 0, v/2);
+            if (refused(m.world, dem_step_advice(m.world, &advice))) return 1;
+            if (refused(m.world, dem_world_run(m.world, 2*advice.contact_time + 0.003*r/v, 0, 0))) return 1;
+            column[k + 1][i] = 100*dem_counters_get(m.world).overlap_max;
+            mill_destroy(&m);
+        }
+        study_curve(&f, names[k], k < 2 ? STUDY_LINE : STUDY_DASHED, SPEEDS, column[0], column[k + 1]);
+        study_result(results[k], column[k + 1][11]/100, "at 1.2 m/s");
+    }
+    study_csv("overlap.csv", "speed_m_s,bead_true_percent,mill_true_percent,bead_soft_percent,mill_soft_percent", SPEEDS, 5, columns);
+    study_figure_write(&f, "overlap.svg");
+    return 0;
+}
+
+int main(int argc, char **argv) {
+    const char *about = "A tumbling mill with lifters, filled with glass beads.";
+    int count = (int)(sizeof table/sizeof *table);
+    mill m;
+    program_path = argv[0];
+    study_options(argc, argv, about, table, count);
+    if (options.quick) { /* half the size; what was asked for by name stays */
+        options.diameter = 0.15;
+        options.settle = 1;
+        options.revolutions = 1;
+        study_options(argc, argv, about, table, count);
+    }
+    if (options.write_profile) return profile_write(options.write_profile);
+    study_begin(options.out);
+    memset(&m, 0, sizeof m);
+    m.o = options;
+    if (is(options.study, "mill")) mill_run(&m);
+    if (is(options.study, "drop")) study_drop();
+    if (is(options.study, "overlap")) study_overlap();
+    if (is(options.study, "speeds")) study_several(0);
+    if (is(options.study, "friction")) study_several(1);
+    return study_end();
+}

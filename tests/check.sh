@@ -1,0 +1,116 @@
+# sh tests/check.sh [short]: dem.h through every compiler, standard, precision and warning found here.
+# The matrix is the middle of this file, one line a case. `short` leaves out the strict warnings, the
+# optimisation levels and the test runs. A compiler that is missing is skipped, loudly. Ends with
+# "N passed, N failed, N skipped" and a non-zero code when anything failed.
+JOBS=${JOBS:-1}
+dir=build/check
+rm -rf $dir; mkdir -p $dir
+number=1000; skipped=0
+
+found() { command -v "$1" >/dev/null 2>&1; }
+skip() { echo "SKIP: $1"; skipped=$((skipped + 1)); }
+# try NAME COMMAND...: one case. All run together below, JOBS at a time; $bin is the case's own program.
+try() {
+    number=$((number + 1)); name=$1; shift
+    printf '# %s\nbin=%s/%s.bin\n%s\n' "$name" $dir $number "$*" > $dir/$number.sh
+}
+
+# what is compiled: the header alone, the implementation, both in one file, two files linked
+user=tests/two_files.c
+one_file="-DDEM_IMPLEMENTATION $user"
+strict="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Werror"
+float="-DDEM_REAL=float"
+
+for cc in gcc clang tcc; do
+    found $cc || { skip "$cc not found (Debian package $cc)"; continue; }
+    openmp=; hint=; [ $cc = clang ] && hint=" (Debian package libomp-dev)"
+    echo 'int main(void) { return omp_get_max_threads() < 1; }' > $dir/probe.c
+    if $cc -include omp.h $dir/probe.c -o $dir/probe -fopenmp 2>/dev/null; then openmp=-fopenmp
+    else skip "$cc has no OpenMP$hint"; fi
+    for real in "" $float; do
+        try "$cc${real:+ float}: one file"                 "$cc -I. $real $one_file -o \$bin -lm && \$bin"
+        try "$cc${real:+ float}: two files linked"         "$cc -I. $real -c dem.c -o \$bin.o && $cc -I. $real $user \$bin.o -o \$bin -lm && \$bin"
+        try "$cc${real:+ float}: DEM_STATIC"               "$cc -I. $real -DDEM_STATIC $one_file -o \$bin -lm && \$bin"
+        try "$cc${real:+ float}: DEM_NO_SPECIALIZE"        "$cc -I. $real -DDEM_NO_SPECIALIZE $one_file -o \$bin -lm && \$bin"
+        [ "$openmp" ] &&
+        try "$cc${real:+ float}: OpenMP"                   "$cc -I. $real -O1 -fopenmp $one_file -o \$bin -lm && \$bin"
+    done
+    try "$cc: header and implementation of two precisions refuse each other" \
+        "$cc -I. -c dem.c -o \$bin.o && $cc -I. $float $user \$bin.o -o \$bin -lm && { \$bin; test \$? -eq 1; }"
+    [ "$1" = short ] || [ $cc = tcc ] && continue
+
+    for std in c99 c11; do for real in "" $float; do
+        try "$cc -std=$std${real:+ float}: strict, header alone"   "$cc -std=$std -I. $real $strict -c $user -o \$bin.o"
+        try "$cc -std=$std${real:+ float}: strict, implementation" "$cc -std=$std -I. $real $strict -O1 -c dem.c -o \$bin.o"
+    done; done
+    for real in "" $float; do
+        try "$cc${real:+ float}: strict, OpenMP"            "$cc -std=c99 -I. $real $strict $openmp -c dem.c -o \$bin.o"
+        try "$cc${real:+ float}: strict, DEM_NO_OPENMP"     "$cc -std=c99 -I. $real $strict $openmp -DDEM_NO_OPENMP -c dem.c -o \$bin.o"
+        try "$cc${real:+ float}: strict, DEM_STATIC"        "$cc -std=c99 -I. $real $strict -DDEM_STATIC -c dem.c -o \$bin.o"
+        try "$cc${real:+ float}: strict, DEM_NO_SPECIALIZE" "$cc -std=c99 -I. $real $strict -DDEM_NO_SPECIALIZE -c dem.c -o \$bin.o"
+    done
+    for level in -O0 -O1 -O2 -O3 "-O3 -ffast-math"; do
+        try "$cc $level: run"                      "$cc -std=c99 -I. $level $one_file -o \$bin -lm && \$bin"
+    done
+done
+
+for cxx in g++ clang++; do
+    package=${cxx%++}; [ $cxx = g++ ] && package=g++
+    found $cxx || { skip "$cxx not found (Debian package $package)"; continue; }
+    for std in c++11 c++17; do
+        try "$cxx -std=$std: one file"             "$cxx -std=$std -I. -x c++ $one_file -o \$bin -lm && \$bin"
+        [ "$1" = short ] && continue
+        for real in "" $float; do
+            try "$cxx -std=$std${real:+ float}: strict"     "$cxx -std=$std -I. $real $strict -O1 -x c++ -c dem.c -o \$bin.o"
+        done
+        try "$cxx -std=$std: strict, DEM_STATIC"   "$cxx -std=$std -I. $strict -DDEM_STATIC -x c++ -c dem.c -o \$bin.o"
+    done
+    found gcc &&
+    try "$cxx user, gcc implementation"            "gcc -I. -c dem.c -o \$bin.o && $cxx -I. -x c++ $user -x none \$bin.o -o \$bin -lm && \$bin"
+done
+
+echo 'int main(void) { return 0; }' > $dir/probe.c
+if found gcc && gcc -m32 $dir/probe.c -o $dir/probe 2>/dev/null; then
+    for real in "" $float; do
+        try "gcc -m32${real:+ float}: run"                  "gcc -m32 -msse2 -mfpmath=sse -I. $real $one_file -o \$bin -lm && \$bin"
+        [ "$1" = short ] ||
+        try "gcc -m32${real:+ float}: strict"               "gcc -std=c99 -m32 -msse2 -mfpmath=sse -I. $real $strict -O1 -c dem.c -o \$bin.o"
+    done
+else skip "gcc -m32 does not link (Debian package gcc-multilib)"; fi
+
+# the whole tests: under address and undefined-behaviour sanitizers, with tcc, in 32 bits, in C++
+tests() {  # tests NAME COMPILER: one case per test program
+    name=$1; shift
+    for source in tests/test_*.c; do
+        [ -f "$source" ] || { skip "there is no tests/test_*.c"; break; }
+        test=$(basename "$source" .c)
+        try "$name: $test" "mkdir -p \$bin && $* -I. $source -o \$bin/$test -lm && sh tests/run.sh '' \$bin/$test"
+    done
+}
+sanitize="-g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all"
+if [ "$1" != short ]; then
+    for cc in gcc clang; do
+        if $cc $sanitize $dir/probe.c -o $dir/probe 2>/dev/null; then
+            tests "$cc with sanitizers" "$cc -ffp-contract=off $sanitize"; break
+        else skip "$cc has no sanitizers (Debian package $cc)"; fi
+    done
+    found tcc && tests tcc "tcc"
+    found clang && tests "clang -O2" "clang -std=c99 -O2 -ffp-contract=off"
+    found g++ && tests "g++ -std=c++11" "g++ -std=c++11 -O2 -ffp-contract=off -x c++"
+    gcc -m32 $dir/probe.c -o $dir/probe 2>/dev/null &&
+    tests "gcc -m32" "gcc -m32 -msse2 -mfpmath=sse -std=c99 -O2 -ffp-contract=off"
+fi
+
+# run them, JOBS at a time, and tell
+cat > $dir/one <<'X'
+name=$(sed -n '1s/# //p' "$1")
+if sh "$1" > "$1.log" 2>&1; then echo "ok    $name"; : > "$1.ok"
+else echo "FAIL  $name"; { sed 1d "$1"; head -n 12 "$1.log"; } | sed 's/^/      | /'; fi
+rm -rf "${1%.sh}.bin" "${1%.sh}.bin.o"
+X
+ls $dir/*.sh | xargs -P "$JOBS" -n 1 sh $dir/one
+echo
+for case in $dir/*.sh; do [ -f $case.ok ] || sed -n '1s/# /FAILED: /p' $case; done
+cases=$(ls $dir/*.sh | wc -l); passed=$(ls $dir/*.ok 2>/dev/null | wc -l)
+echo "check: $((passed)) passed, $((cases - passed)) failed, $skipped skipped"
+[ "$passed" -eq "$cases" ]

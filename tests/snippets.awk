@@ -1,0 +1,23 @@
+# awk -v out=DIR -f tests/snippets.awk dem.h page.md...: takes the C blocks out of the pages (between
+# ```c and ```) and the program out of dem.h's manual, and writes each to DIR/FILE_N_program.c when it
+# has a main, to DIR/FILE_N_part.c otherwise (with dem.h included before it).
+FNR == 1 { name = FILENAME; sub(/.*\//, "", name); gsub(/[^A-Za-z0-9]/, "_", name); n = 0; inside = manual = 0 }
+FILENAME ~ /\.md$/ && /^```c$/ { inside = 1; text = ""; start = FNR; next }
+FILENAME ~ /\.md$/ && /^```/ && inside { finish(); next }
+FILENAME ~ /\.h$/ && $1 == ">>manual" { manual++ }
+FILENAME ~ /\.h$/ && manual == 2 && /^ +#define DEM_IMPLEMENTATION/ && n == 0 {
+    inside = 1; text = ""; start = FNR; match($0, /^ +/); indent = RLENGTH
+}
+inside {
+    text = text (FILENAME ~ /\.h$/ ? substr($0, indent + 1) : $0) "\n"
+    if (FILENAME ~ /\.h$/ && substr($0, indent + 1) == "}") finish()
+}
+function finish(    program, file) {
+    program = text ~ /int main\(/
+    file = out "/" name "_" ++n (program ? "_program.c" : "_part.c")
+    if (text !~ /#include "dem.h"/) print "#include \"dem.h\"" > file
+    printf "#line %d \"%s\"\n%s", start + (FILENAME ~ /\.md$/), FILENAME, text > file
+    close(file)
+    inside = 0
+}
+END { if (inside) { print FILENAME ": a C block does not end"; exit 1 } }

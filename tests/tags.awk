@@ -1,0 +1,24 @@
+# awk -f tests/tags.awk dem.h: the tags of the contents list at the top of the file (lines that begin
+# with >>name, before the first ruled banner) must each head one ruled banner, in the same order; a
+# banner that the list does not name is an error too. Tags such as >>add-law inside the text are free.
+BEGIN { dashes = "------------------------------------------------------------"; equals = dashes; gsub(/-/, "=", equals) }
+{ ruled = index($0, dashes) || index($0, equals) }
+$1 ~ /^>>[a-z]/ && !banners_begun && !was_ruled { listed[++lists] = $1; place[$1] = lists }
+$1 ~ /^>>[a-z]/ && was_ruled { headed[++heads] = $1; line[heads] = FNR; times[$1]++ }
+{ if (ruled) banners_begun = 1; was_ruled = ruled }
+END {
+    if (lists == 0) { print FILENAME ": no contents list found"; exit 1 }
+    for (i = 1; i <= lists; i++) {
+        if (times[listed[i]] == 0) complain(listed[i] " is in the contents, but heads no part")
+        if (times[listed[i]] > 1) complain(listed[i] " heads " times[listed[i]] " parts")
+        if (place[listed[i]] != i) complain(listed[i] " is twice in the contents")
+    }
+    for (i = 1; i <= heads; i++) {
+        if (!(headed[i] in place)) complain("line " line[i] ": " headed[i] " is not in the contents")
+        else if (place[headed[i]] < last) complain("line " line[i] ": " headed[i] " stands after " listed[last])
+        else last = place[headed[i]]
+    }
+    if (!bad) print FILENAME ": " lists " parts, all in order"
+    exit bad
+}
+function complain(sentence) { print FILENAME ": " sentence; bad = 1 }

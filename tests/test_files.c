@@ -1,0 +1,704 @@
+/* test_files.c - meshes and profiles in; VTP, VTK, XYZ and CSV out. Files go to build/tmp/. What VTK and
+   ASE make of the files is another matter: make readers. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "test.h"
+#include <locale.h>
+
+/* An allocator that counts what is held, and fails the call number fail_at. */
+typedef struct purse { long calls, fail_at; long long held; } purse;
+static void *purse_alloc(size_t size, void *user) {
+    purse *p = (purse *)user;
+    if (++p->calls == p->fail_at) return 0;
+    p->held += (long long)size;
+    return malloc(size);
+}
+static void purse_free(void *memory, size_t size, void *user) {
+    if (memory) ((purse *)user)->held -= (long long)size;
+    free(memory);
+}
+
+static dem_world *world_make(purse *p) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    desc.dt = DEM_R(1e-5);
+    desc.threads = 1;
+    if (p) {
+        memset(p, 0, sizeof *p);
+        desc.allocator.alloc_fn = purse_alloc;
+        desc.allocator.free_fn = purse_free;
+        desc.allocator.user = p;
+    }
+    return dem_world_create(&desc);
+}
+
+static dem_material material_make(dem_world *world) {
+    dem_material_desc desc = DEM_MATERIAL_DESC;
+    desc.density = 2500;
+    desc.young = DEM_R(1e7);
+    desc.poisson = DEM_R(0.25);
+    desc.restitution = DEM_R(0.5);
+    return dem_material_add(world, &desc);
+}
+
+/* Three grains of two materials and known radii. */
+static dem_world *three_make(purse *p) {
+    dem_world *world = world_make(p);
+    dem_material first = material_make(world), second = material_make(world);
+    dem_body body = dem_sphere_add(world, first, DEM_R(0.125), dem_vec3_make(1, 2, 3));
+    dem_body_state state;
+    dem_sphere_add(world, second, DEM_R(0.25), dem_vec3_make(-1, 0, DEM_R(0.5)));
+    dem_sphere_add(world, second, DEM_R(0.5), dem_vec3_make(10, 20, -30));
+    dem_body_get(world, body, &state);
+    state.velocity = dem_vec3_make(4, 5, DEM_R(-0.75));
+    state.spin = dem_vec3_make(7, 8, 9);
+    dem_body_set(world, body, &state);
+    return world;
+}
+
+static const char box_text[] = /* [MIL] Fig 5.12 */
+    "8 12\n-1 -1 -1\n-1 -1 1\n-1 1 -1\n-1 1 1\n1 -1 -1\n1 -1 1\n1 1 -1\n1 1 1\n"
+    "1 2 3\n2 3 4\n1 2 5\n2 5 6\n1 3 5\n3 5 7\n5 6 7\n6 7 8\n3 4 7\n4 7 8\n2 4 6\n4 6 8\n";
+static const char box_obj[] = "# a cube\nmtllib none.mtl\no cube\nv -1 -1 -1\nv 1 -1 -1\nv 1 1 -1 0.5 0.5 0.5\n"
+    "v -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1 1\nv -1 1 1\nvt 0 0\nvn 0 0 1\ns off\n"
+    "f 4 3 2 1\nf -4 -3 -2 -1\nf 1/1 2/1 6/1 5/1\nf 2//1 3//1 7//1 6//1\nf 3/1/1 4/1/1 8/1/1 7/1/1\nf 4 1 5 8\n";
+static const char profile_text[] = "4 3\n-1 1\n-1 -1\n1 -1\n1 1.5e0\n1 2\n2 3\n3 4\n";
+
+static dem_result parse(dem_world *world, const char *text, dem_mesh *mesh, dem_mesh_health *health) {
+    return dem_mesh_parse(world, "some.mesh", text, strlen(text), mesh, health);
+}
+
+static int mesh_is_empty(const dem_mesh *mesh) {
+    return !mesh->vertices && !mesh->triangles && mesh->vertex_count == 0 && mesh->triangle_count == 0;
+}
+
+/* Writes the triangles of a mesh as STL, as text or binary; returns the size. */
+static size_t stl_text_make(char *out, const dem_mesh *mesh) {
+    size_t n = (size_t)sprintf(out, "solid box\n");
+    for (int i = 0; i < mesh->triangle_count; i++) {
+        n += (size_t)sprintf(out + n, "  facet normal 0 0 0\n    outer loop\n");
+        for (int k = 0; k < 3; k++) {
+            const dem_real *v = mesh->vertices + 3*mesh->triangles[3*i + k];
+            n += (size_t)sprintf(out + n, "      vertex %.9g %.9g %.9g\n", (double)v[0], (double)v[1], (double)v[2]);
+        }
+        n += (size_t)sprintf(out + n, "    endloop\n  endfacet\n");
+    }
+    return n + (size_t)sprintf(out + n, "endsolid box\n");
+}
+static size_t stl_binary_make(unsigned char *out, const dem_mesh *mesh, const char *title) {
+    memset(out, 0, 84 + 50*(size_t)mesh->triangle_count);
+    memcpy(out, title, strlen(title));
+    out[80] = (unsigned char)mesh->triangle_count;
+    for (int i = 0; i < mesh->triangle_count; i++)
+        for (int k = 0; k < 9; k++) {
+            const float value = (float)mesh->vertices[3*mesh->triangles[3*i + k/3] + k%3];
+            uint32_t bits;
+            memcpy(&bits, &value, 4);
+            for (int b = 0; b < 4; b++) out[84 + 50*i + 12 + 4*k + b] = (unsigned char)(bits >> 8*b);
+        }
+    return 84 + 50*(size_t)mesh->triangle_count;
+}
+
+static void file_put(const char *path, const void *data, size_t size) {
+    FILE *file = fopen(path, "wb");
+    if (!file) return;
+    fwrite(data, 1, size, file);
+    fclose(file);
+}
+/* The whole file, with a zero after it; null when there is none. Free it. */
+static char *file_get(const char *path, size_t *size) {
+    FILE *file = fopen(path, "rb");
+    char *data = (char *)malloc(1 << 20);
+    *size = 0;
+    if (file && data) *size = fread(data, 1, (1 << 20) - 1, file);
+    if (data) data[*size] = 0;
+    if (file) fclose(file);
+    if (file && data) return data;
+    free(data);
+    return 0;
+}
+static int file_is_there(const char *path) {
+    FILE *file = fopen(path, "rb");
+    if (file) fclose(file);
+    return file != 0;
+}
+
+/* What a writer does to a world, for tests that go through all of them. */
+typedef dem_result (*writer_fn)(dem_world *world, const char *path);
+static dem_result walls_write(dem_world *world, const char *path) {
+    return dem_walls_vtp_write(world, path, -1, 1);
+}
+static const writer_fn writers[4] = {dem_vtp_write, dem_vtk_write, dem_xyz_write, walls_write};
+static const char *const writer_names[4] = {"dem_vtp_write", "dem_vtk_write", "dem_xyz_write", "dem_walls_vtp_write"};
+
+static void meshes(void) {
+    dem_world *world = world_make(0);
+    dem_mesh mesh;
+    dem_mesh_health health;
+    static char text[20000];
+    static unsigned char bytes[2000];
+
+    TEST("the box of [MIL] Fig 5.12 is read, closed and healthy") {
+        CHECK_EQ(parse(world, box_text, &mesh, &health), DEM_OK);
+        CHECK_EQ(mesh.vertex_count, 8);
+        CHECK_EQ(mesh.triangle_count, 12);
+        CHECK_EQ(mesh.triangles[0], 0);
+        CHECK_EQ(mesh.triangles[35], 7);
+        CHECK_NEAR(mesh.vertices[5], 1, 0);
+        CHECK_EQ(health.open_edges + health.crowded_edges + health.duplicates + health.slivers, 0);
+        CHECK_EQ(health.merged_vertices, 0);
+        CHECK_NEAR(health.box.lo.x, -1, 0);
+        CHECK_NEAR(health.box.hi.z, 1, 0);
+        CHECK_STR(health.hint, "");
+        dem_mesh_free(world, &mesh);
+        CHECK(mesh_is_empty(&mesh));
+    }
+    TEST("line ends of three systems, a byte order mark, comments and empty lines change nothing") {
+        const char *same[] = {"3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3", "3 1\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n1 2 3\r\n",
+            "3 1\r0 0 0\r1 0 0\r0 1 0\r1 2 3\r", "\xEF\xBB\xBF""3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n",
+            "# a triangle\n\n 3\t1 # counts\n\n0 0 0\n1.0 .0 0.\n+0e5 1E0 -0\n\n  1 2 3\n\n\n"};
+        for (int i = 0; i < 5; i++) {
+            CHECK_EQ(parse(world, same[i], &mesh, 0), DEM_OK);
+            CHECK_EQ(mesh.vertex_count, 3);
+            CHECK_EQ(mesh.triangle_count, 1);
+            if (mesh.vertices) CHECK(mesh.vertices[3] == 1 && mesh.vertices[7] == 1 && mesh.vertices[8] == 0);
+            dem_mesh_free(world, &mesh);
+        }
+    }
+    TEST("STL as text and as binary give the mesh they were made of, with places merged to corners") {
+        dem_mesh box;
+        parse(world, box_text, &box, 0);
+        for (int form = 0; form < 3; form++) { /* text; binary; binary that claims to be text */
+            size_t size = form ? stl_binary_make(bytes, &box, form == 1 ? "made by hand" : "solid box\nfacet")
+                               : stl_text_make(text, &box);
+            CHECK_EQ(dem_mesh_parse(world, "box.stl", form ? (const char *)bytes : text, size, &mesh, &health), DEM_OK);
+            CHECK_EQ(mesh.vertex_count, 8);
+            CHECK_EQ(mesh.triangle_count, 12);
+            CHECK_EQ(health.merged_vertices, 28);
+            CHECK_EQ(health.open_edges + health.crowded_edges + health.duplicates + health.slivers, 0);
+            for (int i = 0; i < 36 && mesh.triangles; i++)
+                for (int k = 0; k < 3; k++)
+                    CHECK_NEAR(mesh.vertices[3*mesh.triangles[i] + k], box.vertices[3*box.triangles[i] + k], 0);
+            dem_mesh_free(world, &mesh);
+        }
+        dem_mesh_free(world, &box);
+    }
+    TEST("OBJ faces are cut into fans, may carry textures and may count backwards") {
+        CHECK_EQ(parse(world, box_obj, &mesh, &health), DEM_OK);
+        CHECK_EQ(mesh.vertex_count, 8);
+        CHECK_EQ(mesh.triangle_count, 12);
+        CHECK_EQ(health.open_edges + health.crowded_edges + health.duplicates + health.slivers, 0);
+        const int32_t expected[6] = {4, 5, 6, 4, 6, 7}; /* f -4 -3 -2 -1 */
+        for (int i = 0; i < 6 && mesh.triangles; i++) CHECK_EQ(mesh.triangles[6 + i], expected[i]);
+        dem_mesh_free(world, &mesh);
+    }
+    TEST("health counts open and crowded edges, duplicates and slivers, each once") {
+        CHECK_EQ(parse(world, "3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n", &mesh, &health), DEM_OK);
+        CHECK_EQ(health.open_edges, 3);
+        dem_mesh_free(world, &mesh);
+        /* three triangles at one edge, one of them twice, turned round */
+        CHECK_EQ(parse(world, "5 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 -1 0\n1 2 3\n2 1 4\n1 2 5\n5 1 2\n", &mesh, &health), DEM_OK);
+        CHECK_EQ(health.crowded_edges, 1);
+        CHECK_EQ(health.duplicates, 1);
+        CHECK_EQ(health.open_edges, 4); /* the doubled triangle shares its other edges with itself */
+        CHECK_EQ(health.slivers, 0);
+        dem_mesh_free(world, &mesh);
+        /* height 0.9e-3 and 1.1e-3 of the longest side, no area, and a corner twice */
+        CHECK_EQ(parse(world, "5 4\n0 0 0\n1 0 0\n.5 .9e-3 0\n.5 1.1e-3 0\n2 0 0\n1 2 3\n1 2 4\n1 2 5\n1 1 2\n", &mesh,
+                       &health), DEM_OK);
+        CHECK_EQ(health.slivers, 3);
+        dem_mesh_free(world, &mesh);
+    }
+    TEST("a mesh that looks like millimetres is told so, and one that was scaled twice") {
+        CHECK_EQ(parse(world, "3 1\n0 0 0\n300 0 0\n0 120 0\n1 2 3\n", &mesh, &health), DEM_OK);
+        CHECK_STR(health.hint, "largest extent is 300 m: the file may be in millimetres; multiply its vertices by 0.001");
+        dem_mesh_free(world, &mesh);
+        CHECK_EQ(parse(world, "3 1\n0 0 0\n3e-4 0 0\n0 1e-4 0\n1 2 3\n", &mesh, &health), DEM_OK);
+        CHECK_STR(health.hint, "multiply its vertices by 1000");
+        dem_mesh_free(world, &mesh);
+    }
+    TEST("a decimal comma in the locale changes neither reading nor writing") {
+        const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "German_Germany.1252"};
+        for (int i = 0; i < 5 && !setlocale(LC_NUMERIC, names[i]); i++) {}
+        CHECK_EQ(parse(world, "3 1\n0 0 0\n1.5 0 0\n0 1e-4 0\n1 2 3\n", &mesh, &health), DEM_OK);
+        if (mesh.vertices) CHECK_NEAR(mesh.vertices[3], 1.5, 0);
+        dem_mesh_free(world, &mesh);
+        CHECK_EQ(parse(world, "3 1\n0 0 0\n1,5 0 0\n0 1e-4 0\n1 2 3\n", &mesh, &health), DEM_ERROR_FORMAT);
+        char number[32];
+        CHECK_STR(demi_format_real(number, -1.25e-10, 9), "-1.25e-10");
+        setlocale(LC_NUMERIC, "C");
+        CHECK_STR(demi_format_real(number, -1.25e-10, 9), "-1.25e-10");
+    }
+    TEST("a number is read to the last bit") {
+        CHECK_EQ(parse(world, "3 1\n0.1 0.3333333333333333148 2.2250738585072014e-308\n1 0 0\n0 1 0\n1 2 3\n", &mesh, 0), DEM_OK);
+        if (mesh.vertices) CHECK(mesh.vertices[0] == DEM_R(0.1) && mesh.vertices[1] == DEM_R(1.0/3));
+        dem_mesh_free(world, &mesh);
+    }
+    dem_world_destroy(world);
+}
+
+static void bad_meshes(void) {
+    purse p;
+    dem_world *world = world_make(&p);
+    const long long held = p.held;
+    dem_mesh mesh;
+    dem_mesh_health health;
+
+    TEST("what is wrong with a mesh is told with call, file, line, finding, limit and remedy") {
+        const char *const bad[][2] = {
+            {"", "end of the file"},
+            {"   \n# nothing\n\n", "end of the file"},
+            {"hello\n", "line 1: found 'hello'"},
+            {"3\n", "line 1: found the end of the line"},
+            {"3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 4\n", "line 5: found '4' where a corner is expected, a whole number from 1 to 3"},
+            {"3 1\n0 0 0\n1 0 0\n0 1 0\n0 1 2\n", "line 5: found '0'"},
+            {"3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 -3\n", "found '-3'"},
+            {"3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3.0\n", "found '3.0'"},
+            {"3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 99999999999\n", "found '99999999999'"},
+            {"3 1\n0 0 0\n1 0\n0 1 0\n1 2 3\n", "line 3: found the end of the line where a coordinate"},
+            {"3 1\n0 0 0\n1 0 0 0\n0 1 0\n1 2 3\n", "line 3: found '0' where the line should end"},
+            {"3 1\n0 0 0\n1 0 nan\n0 1 0\n1 2 3\n", "line 3: found 'nan'"},
+            {"3 1\n0 0 0\n1 0 -inf\n0 1 0\n1 2 3\n", "found '-inf'"},
+            {"3 1\n0 0 0\n1 0 1e999\n0 1 0\n1 2 3\n", "found '1e999'"},
+            {"3 1\n0 0 0\n1 0 0x10\n0 1 0\n1 2 3\n", "found '0x10'"},
+            {"3 1\n0 0 0\n1 0 1.2.3\n0 1 0\n1 2 3\n", "found '1.2.3'"},
+            {"3 1\n0 0 0\n1 0 \x01\x80\n0 1 0\n1 2 3\n", "found '\?\?'"},
+            {"3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n1 2 3\n", "line 6: found '1' where the file should end"},
+            {"3 2\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n", "line 5: found the end of the file where a corner"},
+            {"3 20\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n", "found counts 3 and 20, but only 24 bytes follow"},
+            {"0 1\n1 1 1\n", "found '0'"},
+            {"-3 1\n", "found '-3'"},
+            {"solid x\nendsolid x\n", "0 triangles"},
+            {"solid x\nfacet normal 0 0 1\nvertex 0 0 0\nvertex 1 0 0\nendfacet\nendsolid\n", "line 5: found 'endfacet'"},
+            {"solid x\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 1 1 0\nendfacet\nendsolid\n", "line 6"},
+            {"solid x\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n", "cut short"},
+            {"solid x\nvertex 0 0 0\nfacet\n", "line 2: found 'vertex'"},
+            {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n", "line 5: found the end of the line where a face"},
+            {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "found '-4'"},
+            {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 /3\n", "found '/3'"},
+            {"v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n", "line 3"},
+            {"f 1 2 3\n", "0 vertices"},
+            {"v 0 0 0\n", "0 triangles"}};
+        for (size_t i = 0; i < sizeof bad/sizeof *bad; i++) {
+            memset(&mesh, 255, sizeof mesh);
+            CHECK_EQ(parse(world, bad[i][0], &mesh, &health), DEM_ERROR_FORMAT);
+            CHECK(mesh_is_empty(&mesh));
+            CHECK_STR(dem_world_error(world), "dem_mesh_parse: some.mesh");
+            CHECK_STR(dem_world_error(world), bad[i][1]);
+            CHECK(strlen(dem_world_error(world)) < 400);
+            CHECK_EQ(p.held, held);
+        }
+    }
+    TEST("a count that promises more than the file holds is refused before memory is asked for") {
+        const char *const lies[] = {"700000000 700000000\n0 0 0\n", "3 500000000\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n"};
+        unsigned char binary[84] = {0};
+        for (int i = 0; i < 2; i++) {
+            const long calls = p.calls;
+            CHECK_EQ(parse(world, lies[i], &mesh, &health), DEM_ERROR_FORMAT);
+            CHECK_EQ(p.calls, calls);
+            CHECK_STR(dem_world_error(world), "bytes follow");
+        }
+        memset(binary + 80, 255, 4);
+        CHECK_EQ(dem_mesh_parse(world, "x.stl", binary, 84, &mesh, 0), DEM_ERROR_FORMAT);
+        CHECK_STR(dem_world_error(world), "a binary STL has 84 and 50 for each triangle");
+        binary[80] = binary[81] = binary[82] = binary[83] = 0;
+        CHECK_EQ(dem_mesh_parse(world, "x.stl", binary, 84, &mesh, 0), DEM_ERROR_FORMAT);
+        CHECK_EQ(p.held, held);
+    }
+    TEST("a binary STL with a coordinate that is not a number is refused with its byte") {
+        unsigned char bytes[134] = {0};
+        bytes[80] = 1;
+        bytes[84 + 12 + 4*4 + 2] = 0xC0; bytes[84 + 12 + 4*4 + 3] = 0x7F; /* nan */
+        CHECK_EQ(dem_mesh_parse(world, "x.stl", bytes, sizeof bytes, &mesh, 0), DEM_ERROR_FORMAT);
+        CHECK_STR(dem_world_error(world), "x.stl byte 112");
+        bytes[84 + 12 + 4*4 + 2] = 0x80;                                  /* inf */
+        CHECK_EQ(dem_mesh_parse(world, "x.stl", bytes, sizeof bytes, &mesh, 0), DEM_ERROR_FORMAT);
+        CHECK_EQ(p.held, held);
+    }
+    TEST("no beginning of a valid file crashes or leaks") {
+        static char text[20000];
+        dem_mesh box;
+        int readable = 0;
+        parse(world, box_text, &box, 0);
+        for (int form = 0; form < 4; form++) {
+            const size_t size = form == 0 ? strlen(box_text) : form == 1 ? strlen(box_obj) :
+                form == 2 ? stl_text_make(text, &box) : stl_binary_make((unsigned char *)text, &box, "x");
+            const char *whole = form == 0 ? box_text : form == 1 ? box_obj : text;
+            for (size_t n = 0; n <= size; n++) {
+                char *part = (char *)malloc(n + 1); /* its own, for the address sanitizer */
+                if (!part) break;
+                memcpy(part, whole, n);
+                if (dem_mesh_parse(world, "part", part, n, &mesh, &health) == DEM_OK) readable++;
+                else CHECK(mesh_is_empty(&mesh));
+                dem_mesh_free(world, &mesh);
+                free(part);
+            }
+        }
+        dem_mesh_free(world, &box);
+        CHECK(readable >= 4);
+        CHECK_EQ(p.held, held);
+    }
+    TEST("every allocation of a reader may fail: DEM_ERROR_MEMORY, an empty mesh, nothing leaked") {
+        static char text[20000];
+        dem_mesh box;
+        dem_profile profile;
+        parse(world, box_text, &box, 0);
+        for (int form = 0; form < 6; form++) {
+            const size_t size = form == 0 ? strlen(box_text) : form == 1 ? strlen(box_obj) :
+                form == 2 ? stl_text_make(text, &box) : form == 3 ? stl_binary_make((unsigned char *)text, &box, "x") :
+                form == 4 ? strlen(profile_text) : strlen(box_text);
+            const char *whole = form == 0 || form == 5 ? box_text : form == 1 ? box_obj : form == 4 ? profile_text : text;
+            const long long before = p.held;
+            dem_result result = DEM_ERROR_MEMORY;
+            if (form == 5) file_put("build/tmp/box.txt", box_text, strlen(box_text));
+            for (long k = 1; result != DEM_OK && k < 50; k++) {
+                p.fail_at = p.calls + k;
+                if (form == 4) result = dem_profile_parse(world, "x", whole, size, &profile);
+                else if (form == 5) result = dem_mesh_read(world, "build/tmp/box.txt", &mesh, &health);
+                else result = dem_mesh_parse(world, "x", whole, size, &mesh, &health);
+                if (result == DEM_OK) break;
+                CHECK_EQ(result, DEM_ERROR_MEMORY);
+                CHECK_STR(dem_world_error(world), "memory");
+                if (form != 4) CHECK(mesh_is_empty(&mesh));
+                CHECK_EQ(p.held, before);
+            }
+            p.fail_at = 0;
+            CHECK_EQ(result, DEM_OK);
+            if (form == 4) dem_profile_free(world, &profile);
+            else dem_mesh_free(world, &mesh);
+            CHECK_EQ(p.held, before);
+        }
+        dem_mesh_free(world, &box);
+        remove("build/tmp/box.txt");
+    }
+    TEST("a file that is not there, a folder and a null name are refused by name") {
+        CHECK_EQ(dem_mesh_read(world, "build/tmp/none.stl", &mesh, &health), DEM_ERROR_FILE);
+        CHECK_STR(dem_world_error(world), "dem_mesh_read: cannot read build/tmp/none.stl: ");
+        CHECK_EQ(dem_mesh_read(world, "build/tmp", &mesh, 0), DEM_ERROR_FILE);
+        CHECK_EQ(dem_mesh_read(world, 0, &mesh, 0), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_mesh_parse(world, "x", 0, 5, &mesh, 0), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_mesh_parse(world, "x", "", 0, 0, 0), DEM_ERROR_ARGUMENT);
+        CHECK(mesh_is_empty(&mesh));
+        dem_mesh_free(world, 0);
+        CHECK_EQ(p.held, held);
+    }
+    TEST("a large file is read whole, and errors in it name the line") {
+        const int n = 20000;
+        char *text = (char *)malloc((size_t)n*48);
+        size_t size;
+        if (!text) continue;
+        size = (size_t)sprintf(text, "%d %d\n", n + 2, n);
+        for (int i = 0; i < n + 2; i++) size += (size_t)sprintf(text + size, "%d %d 0\n", i/2, i%2);
+        for (int i = 0; i < n; i++) size += (size_t)sprintf(text + size, "%d %d %d\n", i + 1, i + 2, i + 3);
+        file_put("build/tmp/strip.txt", text, size);
+        CHECK_EQ(dem_mesh_read(world, "build/tmp/strip.txt", &mesh, &health), DEM_OK);
+        CHECK_EQ(mesh.triangle_count, n);
+        CHECK_EQ(health.open_edges, n + 2);
+        dem_mesh_free(world, &mesh);
+        text[size - 2] = 'x';
+        file_put("build/tmp/strip.txt", text, size);
+        CHECK_EQ(dem_mesh_read(world, "build/tmp/strip.txt", &mesh, &health), DEM_ERROR_FORMAT);
+        CHECK_STR(dem_world_error(world), "dem_mesh_read: build/tmp/strip.txt line 40003: found '2000x'");
+        remove("build/tmp/strip.txt");
+        free(text);
+        CHECK_EQ(p.held, held);
+    }
+    dem_world_destroy(world);
+    TEST("a world that read meshes gives back all its memory") CHECK_EQ(p.held, 0);
+}
+
+static void profiles(void) {
+    purse p;
+    dem_world *world = world_make(&p);
+    const long long held = p.held;
+    dem_profile profile;
+    TEST("a profile is read from memory and from a file") {
+        for (int from_file = 0; from_file < 2; from_file++) {
+            file_put("build/tmp/profile.txt", profile_text, strlen(profile_text));
+            if (from_file) CHECK_EQ(dem_profile_read(world, "build/tmp/profile.txt", &profile), DEM_OK);
+            else CHECK_EQ(dem_profile_parse(world, 0, profile_text, strlen(profile_text), &profile), DEM_OK);
+            CHECK_EQ(profile.vertex_count, 4);
+            CHECK_EQ(profile.segment_count, 3);
+            if (profile.vertices) CHECK_NEAR(profile.vertices[7], 1.5, 0);
+            if (profile.segments) CHECK(profile.segments[0] == 0 && profile.segments[5] == 3);
+            dem_profile_free(world, &profile);
+            CHECK(!profile.vertices && profile.vertex_count == 0);
+            CHECK_EQ(p.held, held);
+        }
+        remove("build/tmp/profile.txt");
+    }
+    TEST("a bad profile is refused with its line") {
+        const char *const bad[][2] = {{"", "end of the file"}, {"2 1\n0 0\n1 1\n1 3\n", "line 4: found '3'"},
+            {"2 1\n0 0\n1 1\n2 2\n", "one corner twice"}, {"2 1\n0 0 0\n1 1 0\n1 2\n", "line 2: found '0'"},
+            {"2 1\n0 0\n1 1\n1 2\n1", "line 5"}, {"solid x\n", "found 'solid'"}};
+        for (size_t i = 0; i < sizeof bad/sizeof *bad; i++) {
+            CHECK_EQ(dem_profile_parse(world, "p.txt", bad[i][0], strlen(bad[i][0]), &profile), DEM_ERROR_FORMAT);
+            CHECK_STR(dem_world_error(world), "dem_profile_parse: p.txt");
+            CHECK_STR(dem_world_error(world), bad[i][1]);
+            CHECK(!profile.vertices && !profile.segments && profile.vertex_count == 0 && profile.segment_count == 0);
+            CHECK_EQ(p.held, held);
+        }
+        CHECK_EQ(dem_profile_read(world, "build/tmp/none.txt", &profile), DEM_ERROR_FILE);
+        CHECK_EQ(dem_profile_read(world, 0, &profile), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_profile_parse(world, "x", 0, 0, &profile), DEM_ERROR_ARGUMENT);
+    }
+    dem_world_destroy(world);
+}
+
+static void pictures(void) {
+    dem_world *world = three_make(0);
+    size_t size;
+
+    TEST("a VTP file announces its arrays and carries radii where it says") {
+        CHECK_EQ(dem_vtp_write(world, "build/tmp/three.vtp"), DEM_OK);
+        char *text = file_get("build/tmp/three.vtp", &size);
+        CHECK(text != 0);
+        if (!text) continue;
+        CHECK_STR(text, "NumberOfPoints=\"3\" NumberOfVerts=\"3\"");
+        CHECK_STR(text, sizeof(dem_real) == 4 ? "\"Float32\" Name=\"velocity\" NumberOfComponents=\"3\""
+                                              : "\"Float64\" Name=\"velocity\" NumberOfComponents=\"3\"");
+        const char *array = strstr(text, "Name=\"radius\""), *data = strstr(text, "<AppendedData encoding=\"raw\">\n_");
+        const char *offset = array ? strstr(array, "offset=\"") : 0;
+        CHECK(offset && data);
+        if (offset && data) {
+            uint64_t bytes;
+            dem_real radius[3];
+            const char *at = data + strlen("<AppendedData encoding=\"raw\">\n_") + atoi(offset + 8);
+            memcpy(&bytes, at, sizeof bytes);
+            memcpy(radius, at + 8, sizeof radius);
+            CHECK_EQ(bytes, sizeof radius);
+            CHECK_NEAR(radius[0] + radius[1] + radius[2], 0.875, 0);
+        }
+        CHECK(size > 20 && memcmp(text + size - 12, "\n</VTKFile>\n", 12) == 0);
+        free(text);
+    }
+    TEST("a legacy VTK file is binary and big-endian") {
+        CHECK_EQ(dem_vtk_write(world, "build/tmp/three.vtk"), DEM_OK);
+        char *text = file_get("build/tmp/three.vtk", &size);
+        CHECK(text != 0);
+        if (!text) continue;
+        CHECK_STR(text, "# vtk DataFile Version 3.0\n");
+        CHECK_STR(text, "BINARY\nDATASET POLYDATA\n");
+        const char *end = text + size - 13; /* the materials 1, 2, 2 and a line end */
+        const dem_bodies b = dem_bodies_get(world);
+        for (int i = 0; i < 3; i++) CHECK_EQ(end[4*i + 3], b.materials[i]);
+        free(text);
+    }
+    TEST("an extended XYZ file tells positions, radii, velocities and ids, and the domain as lattice") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_material grain;
+        dem_world *box;
+        double v[9];
+        char species[8];
+        CHECK_EQ(dem_xyz_write(world, "build/tmp/three.xyz"), DEM_OK);
+        char *text = file_get("build/tmp/three.xyz", &size), *line;
+        CHECK(text != 0);
+        if (!text) continue;
+        CHECK_STR(text, "3\nProperties=species:S:1:pos:R:3:radius:R:1:velo:R:3:id:I:1 Time=0\n");
+        line = strstr(text, "\nH ");
+        CHECK(line && sscanf(line, "%7s %lf %lf %lf %lf %lf %lf %lf %lf", species, v, v + 1, v + 2, v + 3, v + 4, v + 5,
+                             v + 6, v + 7) == 9);
+        if (line) CHECK(v[0] == 1 && v[1] == 2 && v[2] == 3 && v[3] == 0.125 && v[4] == 4 && v[5] == 5 && v[6] == -0.75);
+        CHECK_STR(text, "\nHe -1 0 0.5 0.25 0 0 0 ");
+        free(text);
+        desc.domain = dem_box_make(-1, -2, 0, 1, 2, DEM_R(0.5));
+        desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
+        desc.dt = DEM_R(1e-5);
+        box = dem_world_create(&desc);
+        grain = material_make(box);
+        dem_sphere_add(box, grain, DEM_R(0.1), dem_vec3_make(0, 0, DEM_R(0.25)));
+        CHECK_EQ(dem_xyz_write(box, "build/tmp/box.xyz"), DEM_OK);
+        text = file_get("build/tmp/box.xyz", &size);
+        CHECK_STR(text, "Lattice=\"2 0 0 0 4 0 0 0 0.5\" Origin=\"-1 -2 0\" pbc=\"F T F\" Properties=");
+        free(text);
+        remove("build/tmp/box.xyz");
+        dem_world_destroy(box);
+    }
+    TEST("a world without grains or walls is written as files without points") {
+        dem_world *empty = world_make(0);
+        for (int i = 0; i < 4; i++) CHECK_EQ(writers[i](empty, "build/tmp/empty.out"), DEM_OK);
+        remove("build/tmp/empty.out");
+        dem_world_destroy(empty);
+    }
+    dem_world_destroy(world);
+}
+
+/* Turned a quarter about z and moved by 10 along x, for all time. */
+static void quarter(double time, dem_pose *pose, void *user) {
+    (void)time; (void)user;
+    memset(pose, 0, sizeof *pose);
+    pose->position.x = 10;
+    pose->rotation[1] = -1;
+    pose->rotation[3] = pose->rotation[8] = 1;
+}
+
+static void walls(void) {
+    dem_world *world = world_make(0);
+    dem_material steel = material_make(world);
+    dem_mesh mesh;
+    dem_profile profile;
+    dem_wall plane, moved;
+    size_t size;
+    parse(world, "3 1\n1 0 0\n0 1 0\n0 0 1\n1 2 3\n", &mesh, 0);
+    dem_profile_parse(world, "p", profile_text, strlen(profile_text), &profile);
+    plane = dem_plane_add(world, steel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    moved = dem_mesh_add(world, steel, &mesh);
+
+    TEST("walls are drawn where they are now, profiles between z0 and z1, endless walls not at all") {
+        dem_motion motion = DEM_MOTION;
+        motion.kind = DEM_MOTION_USER;
+        motion.function = quarter;
+        CHECK_EQ(dem_wall_motion(world, moved, &motion), DEM_OK);
+        dem_profile_add(world, steel, &profile, DEM_EDGE_RESOLVED);
+        CHECK_EQ(dem_walls_vtp_write(world, "build/tmp/walls.vtp", -2, 2), DEM_OK);
+        char *text = file_get("build/tmp/walls.vtp", &size);
+        CHECK(text != 0);
+        if (!text) continue;
+        CHECK_STR(text, "NumberOfPoints=\"11\""); /* 3 + 2 x 4 */
+        CHECK_STR(text, "NumberOfPolys=\"7\"");   /* 1 + 2 x 3 */
+        const char *data = strstr(text, "<AppendedData encoding=\"raw\">\n_");
+        if (data) {
+            dem_real p[33];
+            int32_t id[7], corner[21];
+            data += strlen("<AppendedData encoding=\"raw\">\n_") + 8;
+            memcpy(p, data, sizeof p);
+            memcpy(id, data + sizeof p + 8, sizeof id);
+            memcpy(corner, data + sizeof p + 8 + sizeof id + 8, sizeof corner);
+            CHECK(p[0] == 10 && p[1] == 1 && p[2] == 0); /* (1, 0, 0) turned and moved */
+            CHECK(p[3] == 9 && p[4] == 0 && p[8] == 1);
+            CHECK(p[9] == -1 && p[10] == 1 && p[11] == -2 && p[23] == 2);
+            CHECK_EQ(id[0], moved.id);
+            CHECK_EQ(id[6], moved.id + 1);
+            CHECK(corner[3] == 3 && corner[4] == 4 && corner[5] == 8 && corner[6] == 3 && corner[7] == 8 && corner[8] == 7);
+        }
+        free(text);
+    }
+    TEST("profiles cannot be drawn between z1 and z0") {
+        dem_profile_add(world, steel, &profile, DEM_EDGE_RESOLVED);
+        CHECK_EQ(dem_walls_vtp_write(world, "build/tmp/walls.vtp", 1, 1), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "z0 is 1 and z1 is 1");
+    }
+    TEST("channels are appended line by line under one heading") {
+        const char *const path = "build/tmp/channels.csv";
+        remove(path);
+        CHECK_EQ(dem_channels_csv(world, plane, path), DEM_OK);
+        CHECK_EQ(dem_channels_csv(world, plane, path), DEM_OK);
+        char *text = file_get(path, &size);
+        int lines = 0, commas = 0;
+        CHECK(text != 0);
+        for (size_t i = 0; i < size; i++) { lines += text[i] == '\n'; commas += text[i] == ','; }
+        CHECK_EQ(lines, 3);
+        CHECK_EQ(commas, 27);
+        CHECK(text && strncmp(text, "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts\n0,", 53) == 0);
+        free(text);
+        file_put(path, "", 0);
+        CHECK_EQ(dem_channels_csv(world, plane, path), DEM_OK);
+        text = file_get(path, &size);
+        CHECK(text && strncmp(text, "time,", 5) == 0);
+        free(text);
+        file_put(path, "time\n0.5,1,2", 12); /* cut short by a full disk */
+        CHECK_EQ(dem_channels_csv(world, plane, path), DEM_OK);
+        text = file_get(path, &size);
+        CHECK(text && strncmp(text, "time\n0.5,1,2\n0,", 15) == 0);
+        free(text);
+        remove(path);
+    }
+    TEST("channels of a wall that is not there, or into a folder that is not there, are refused") {
+        dem_wall none;
+        none.id = 77;
+        CHECK_EQ(dem_channels_csv(world, none, "build/tmp/none.csv"), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "dem_channels_csv: wall 77");
+        CHECK(!file_is_there("build/tmp/none.csv"));
+        CHECK_EQ(dem_channels_csv(world, plane, "build/tmp/no_folder/x.csv"), DEM_ERROR_FILE);
+        CHECK_STR(dem_world_error(world), "cannot write build/tmp/no_folder/x.csv: ");
+        CHECK_EQ(dem_channels_csv(world, plane, 0), DEM_ERROR_ARGUMENT);
+        FILE *full = fopen("/dev/full", "rb");
+        if (full) {
+            fclose(full);
+            CHECK_EQ(dem_channels_csv(world, plane, "/dev/full"), DEM_ERROR_FILE);
+        }
+    }
+    dem_mesh_free(world, &mesh);
+    dem_profile_free(world, &profile);
+    dem_world_destroy(world);
+}
+
+static void whole_or_absent(void) {
+    purse p;
+    dem_world *world = three_make(&p);
+    dem_mesh mesh;
+    size_t size;
+    char *text;
+    parse(world, box_text, &mesh, 0);
+    dem_mesh_add(world, material_make(world), &mesh);
+    dem_mesh_free(world, &mesh);
+
+    TEST("a writer that cannot open its file names it and the cause") {
+        for (int i = 0; i < 4; i++) {
+            CHECK_EQ(writers[i](world, "build/tmp/no_folder/x.out"), DEM_ERROR_FILE);
+            CHECK_STR(dem_world_error(world), writer_names[i]);
+            CHECK_STR(dem_world_error(world), "cannot write build/tmp/no_folder/x.out: ");
+            CHECK_EQ(writers[i](world, 0), DEM_ERROR_ARGUMENT);
+            CHECK_EQ(writers[i](world, "build/tmp"), DEM_ERROR_FILE); /* a folder stays a folder */
+            CHECK(!file_is_there("build/tmp.tmp"));
+        }
+    }
+    TEST("a file is replaced as a whole, and nothing temporary is left") {
+        for (int i = 0; i < 4; i++) {
+            file_put("build/tmp/old.out", "old", 3);
+            CHECK_EQ(writers[i](world, "build/tmp/old.out"), DEM_OK);
+            text = file_get("build/tmp/old.out", &size);
+            CHECK(size > 100);
+            free(text);
+            CHECK(!file_is_there("build/tmp/old.out.tmp"));
+        }
+        remove("build/tmp/old.out");
+    }
+    TEST("when the disk is full the older file stays whole") {
+        FILE *full = fopen("/dev/full", "wb");
+        demi_out out;
+        CHECK(1);
+        if (!full) continue; /* only Linux has it */
+        file_put("build/tmp/old.out", "old", 3);
+        CHECK_EQ(demi_out_open(&out, world, "dem_vtp_write", "build/tmp/old.out"), DEM_OK);
+        fclose(out.file);
+        out.file = full;
+        for (int i = 0; i < 100000; i++) demi_out_number(&out, "12345678", 8, 0);
+        CHECK_EQ(demi_out_close(&out), DEM_ERROR_FILE);
+        CHECK_STR(dem_world_error(world), "dem_vtp_write: cannot write build/tmp/old.out: No space left");
+        CHECK(!file_is_there("build/tmp/old.out.tmp"));
+        text = file_get("build/tmp/old.out", &size);
+        CHECK(text && strcmp(text, "old") == 0);
+        free(text);
+        remove("build/tmp/old.out");
+    }
+    TEST("every allocation of a writer may fail: DEM_ERROR_MEMORY, no file, nothing leaked") {
+        for (int i = 0; i < 4; i++) {
+            const long long held = p.held;
+            dem_result result = DEM_ERROR_MEMORY;
+            for (long k = 1; k < 20; k++) {
+                remove("build/tmp/memory.out");
+                p.fail_at = p.calls + k;
+                result = writers[i](world, "build/tmp/memory.out");
+                CHECK_EQ(p.held, held);
+                if (result == DEM_OK) break;
+                CHECK_EQ(result, DEM_ERROR_MEMORY);
+                CHECK(!file_is_there("build/tmp/memory.out") && !file_is_there("build/tmp/memory.out.tmp"));
+            }
+            p.fail_at = 0;
+            CHECK_EQ(result, DEM_OK);
+        }
+        remove("build/tmp/memory.out");
+    }
+    dem_world_destroy(world);
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+    meshes();
+    bad_meshes();
+    profiles();
+    pictures();
+    walls();
+    whole_or_absent();
+    return test_end();
+}
