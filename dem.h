@@ -711,8 +711,8 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 /* ------------------------------------------------------------------------------------------------
    >>platform
    What differs between compilers lives here and nowhere else. Kernels must be inlined into their
-   variants to be specialised, hence DEM_INLINE; gcc vectorises a root only when told that errno does
-   not matter. There is one parallel loop, demi_parallel: it deals whole domains to threads, and what
+   variants to be specialised, hence DEM_INLINE; compilers vectorise a root only when told that it does
+   not set errno. There is one parallel loop, demi_parallel: it deals whole domains to threads, and what
    it calls never knows how many threads there are.
    ------------------------------------------------------------------------------------------------ */
 #include <float.h>
@@ -729,9 +729,9 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #define DEMI_OPENMP 0
 #endif
 
-#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
-#pragma GCC push_options
-#pragma GCC optimize("no-math-errno")
+#if defined(__GNUC__) && !defined(__TINYC__) && !defined(__cplusplus)
+extern double sqrt(double) __attribute__((const));        /* "const": does not set errno, so that roots     */
+extern float sqrtf(float) __attribute__((const));         /* can be vectorised without -fno-math-errno      */
 #endif
 
 #if defined(__GNUC__) && !defined(__TINYC__)
@@ -3221,6 +3221,7 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
                                             : rolling == DEM_ROLLING_EPSD ? 8 : 0;
     const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py = p->period[1], pz = p->period[2];
     demi_law_energy part[DEMI_BLOCK];
+    dem_real kept[DEMI_MEMORY*DEMI_BLOCK];
     int q;
     DEMI_VECTOR
     for (q = 0; q < hits->count; q++) {
@@ -3275,7 +3276,10 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
         }
         if (keep) {                             /* memory counts only when written in the step before       */
             const int valid = stamp[k] == now;
-            for (e = 0; e < keep; e++) m[e] = valid ? memory[keep*k + e] : 0;
+            for (e = 0; e < keep; e++) {
+                const dem_real last = memory[keep*k + e];
+                m[e] = valid ? last : 0;
+            }
         }
         if (law) {
             c.material_a = w->body_material[i/4];
@@ -3288,8 +3292,7 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
             demi_law(&c, m, &f, normal, tangent, rolling, clipped, ledger, &part[q]);
         }
         if (keep) {
-            for (e = 0; e < keep; e++) memory[keep*k + e] = m[e];
-            stamp[k] = now + 1;
+            for (e = 0; e < keep; e++) kept[e*DEMI_BLOCK + q] = m[e];
         }
         push[DEMI_FX*stride + (size_t)q] = f.tangent.x - f.normal*c.normal.x;
         push[DEMI_FY*stride + (size_t)q] = f.tangent.y - f.normal*c.normal.y;
@@ -3304,6 +3307,13 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
             push[DEMI_BZ*stride + (size_t)q] = lb*across.z - f.moment.z;
         }
     }
+    if (keep)                                   /* compilers scatter badly: one by one                     */
+        for (q = 0; q < hits->count; q++) {
+            const int k = hits->k[q];
+            int e;
+            for (e = 0; e < keep; e++) memory[keep*k + e] = kept[e*DEMI_BLOCK + q];
+            stamp[k] = now + 1;
+        }
     if (ledger && !law)
         for (q = 0; q < hits->count; q++) {
             energy[DEMI_E_DASHPOT] += (double)part[q].dashpot;
@@ -5924,7 +5934,4 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     }
 }
 
-#if defined(__GNUC__) && !defined(__clang__) && defined(__OPTIMIZE__)
-#pragma GCC pop_options
-#endif
 #endif /* DEM_IMPLEMENTATION */

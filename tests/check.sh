@@ -105,7 +105,7 @@ fi
 cat > $dir/one <<'X'
 name=$(sed -n '1s/# //p' "$1")
 if sh "$1" > "$1.log" 2>&1; then echo "ok    $name"; : > "$1.ok"
-else echo "FAIL  $name"; { sed 1d "$1"; head -n 12 "$1.log"; } | sed 's/^/      | /'; fi
+else echo "FAIL  $name"; { sed 1d "$1"; sed -n "/FAILED\|rror:\|ERROR\|undefined ref/,\$p" "$1.log" | head -n 12; tail -n 1 "$1.log"; } | cut -c1-200 | sed "s/^/      | /"; fi
 rm -rf "${1%.sh}.bin" "${1%.sh}.bin.o"
 X
 ls $dir/*.sh | xargs -P "$JOBS" -n 1 sh $dir/one

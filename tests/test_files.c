@@ -154,7 +154,7 @@ static void meshes(void) {
     }
     TEST("line ends of three systems, a byte order mark, comments and empty lines change nothing") {
         const char *same[] = {"3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3", "3 1\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n1 2 3\r\n",
-            "3 1\r0 0 0\r1 0 0\r0 1 0\r1 2 3\r", "\xEF\xBB\xBF""3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n",
+            "3 1\r0 0 0\r1 0 0\r0 1 0\r1 2 3\r", "\357\273\2773 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n",
             "# a triangle\n\n 3\t1 # counts\n\n0 0 0\n1.0 .0 0.\n+0e5 1E0 -0\n\n  1 2 3\n\n\n"};
         for (int i = 0; i < 5; i++) {
             CHECK_EQ(parse(world, same[i], &mesh, 0), DEM_OK);
@@ -694,6 +694,12 @@ static void whole_or_absent(void) {
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
+    file_put("build/tmp/probe", "", 0);
+    if (!file_is_there("build/tmp/probe")) {
+        printf("there is no folder build/tmp to write to: run from the root, after mkdir -p build/tmp\n");
+        return 1;
+    }
+    remove("build/tmp/probe");
     meshes();
     bad_meshes();
     profiles();
