@@ -62,7 +62,7 @@ studies: $(STUDIES) ## build the studies into build/: each takes --help
 
 all: $(STUDIES) $(LESSONS) $(TESTS) $(BENCHES) ## build everything, run nothing
 
-check: tags ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
+check: ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
 	@JOBS=$(JOBS) sh tests/check.sh
 
 bench: $(BENCHES) ## measure what the README claims

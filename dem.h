@@ -262,15 +262,18 @@ typedef enum dem_boundary {
 /* ---- a contact, and a law of one's own ---- */
 
 /* What a law sees: this contact and nothing else. Velocities are of body a relative to body b, or to the
-   wall's surface, at the full step. */
+   wall's surface, at the full step: what dashpots and friction take. Displacements kept in memory grow by
+   slip_step dt, the very displacement of the step: so springs conserve energy as the integrator does. */
 typedef struct dem_contact {
     dem_real overlap;        /* m, > 0                                                                */
     dem_real closing_speed;  /* m/s, positive while approaching                                       */
     dem_vec3 normal;         /* unit, from a to b                                                     */
     dem_vec3 slip;           /* m/s, tangential velocity at the contact point, rotation included      */
     dem_vec3 spin;           /* rad/s, spin of a minus spin of b                                      */
-    dem_vec3 normal_rate;    /* 1/s, how the normal turns; for dem_memory_turn                        */
-    dem_real twist;          /* rad/s, how the contact plane turns about the normal                   */
+    dem_vec3 slip_step;      /* m/s, slip averaged over the step just taken: what memory integrates    */
+    dem_vec3 spin_step;      /* rad/s, spin averaged over the step just taken                         */
+    dem_vec3 normal_rate;    /* 1/s, how the normal turned in that step; for dem_memory_turn          */
+    dem_real twist;          /* rad/s, how the contact plane turned about the normal                  */
     dem_real r_eff;          /* m,  1/(1/Ra + 1/Rb);  Ra against a wall                               */
     dem_real m_eff;          /* kg, 1/(1/ma + 1/mb);  ma against a wall                               */
     dem_real dt;             /* s, to integrate memory with; 0: memory must be left as it is          */
@@ -297,11 +300,13 @@ typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_push *pus
 
 /* A vector kept in contact memory, carried along with the contact plane over the last step: turned with the
    normal, spun with the mean twist of the two bodies; lies in the tangent plane, keeps its length. Laws with
-   memory begin with this. (Rotation by n_old -> n is exact to fourth order of the angle of one step.) */
+   memory begin with this. (Rotation by n_old -> n is exact to sixth order of the angle of one step.) */
 DEM_INLINE dem_vec3 dem_memory_turn(const dem_contact *c, dem_vec3 v) {
     const dem_vec3 n = c->normal, r = c->normal_rate;
     const dem_real g = v.x*n.x + v.y*n.y + v.z*n.z;      /* what sticks out of the plane              */
-    const dem_real h = g*c->dt/2, t = c->dt*c->twist, q = 1 - t*t/2;
+    const dem_real e = c->dt*c->dt*(r.x*r.x + r.y*r.y + r.z*r.z);  /* sin^2 of the angle                 */
+    const dem_real h = g*c->dt*(DEM_R(0.5) + e/8);       /* 1/(1 + cos)                               */
+    const dem_real t = c->dt*c->twist, q = 1 - t*t/2;
     const dem_real x = v.x - g*n.x + h*r.x, y = v.y - g*n.y + h*r.y, z = v.z - g*n.z + h*r.z;
     dem_vec3 out;
     out.x = q*x + t*(n.y*z - n.z*y);
@@ -315,7 +320,7 @@ DEM_INLINE dem_vec3 dem_memory_turn(const dem_contact *c, dem_vec3 v) {
 typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real radius, dem_real mass,
                                  double time, void *user);
 
-/* Fills in a wall's pose at a time (s). Called once a step from one thread. Must be smooth, with velocity
+/* Fills in a wall's pose at a time (s). Called twice a step (for its end and its middle) from one thread. Must be smooth, with velocity
    and spin the exact derivatives of position and rotation. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
 
@@ -744,7 +749,7 @@ extern float sqrtf(float) __attribute__((const));         /* can be vectorised w
 #define DEMI_FORMAT(f, a)
 #endif
 #if defined(__clang__)
-#define DEMI_VECTOR _Pragma("clang loop vectorize(enable)")
+#define DEMI_VECTOR                      /* clang checks for aliases itself, and warns when asked  */
 #elif defined(__GNUC__) && !defined(__TINYC__)
 #define DEMI_VECTOR _Pragma("GCC ivdep")
 #else
@@ -929,6 +934,7 @@ typedef struct demi_wall {
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile)                         */
     dem_real reach;                /* m, farthest vertex from the frame's origin; < 0: endless        */
     dem_pose home, pose;           /* pose at motion start, pose now                                  */
+    dem_pose mid;                  /* in the middle of the step just taken                            */
     dem_motion motion;
     int symmetric;                 /* its motion leaves its surface in place: no search needed        */
     dem_box box;                   /* local box of the elements                                       */
@@ -962,7 +968,8 @@ struct dem_world {
 
     int count, capacity;           /* bodies                                                          */
     dem_real *pos, *vel, *spin;    /* x 4; at the full step (predicted while a step is under way)     */
-    dem_real *half_vel, *half_spin;/* x 4; at the half step (position Verlet: half_vel = last position)*/
+    dem_real *half_vel, *half_spin;/* x 4; mean over the step just taken: at the half step             */
+    dem_real *last_pos;            /* x 4; one step ago (position Verlet only)                        */
     dem_real *force, *torque;      /* x 4                                                             */
     dem_real *inv_mass, *inv_inertia, *mass;
     uint32_t *body_slot;
@@ -1393,6 +1400,7 @@ static int demi_body_rooms(dem_world *w, demi_room *set) {
     demi_room_add(set, &n, &w->pos, four);        demi_room_add(set, &n, &w->vel, four);
     demi_room_add(set, &n, &w->spin, four);       demi_room_add(set, &n, &w->half_vel, four);
     demi_room_add(set, &n, &w->half_spin, four);  demi_room_add(set, &n, &w->force, four);
+    if (w->desc.integrator == DEM_POSITION_VERLET) demi_room_add(set, &n, &w->last_pos, four);
     demi_room_add(set, &n, &w->torque, four);     demi_room_add(set, &n, &w->scratch, four);
     demi_room_add(set, &n, &w->inv_mass, sizeof(dem_real));
     demi_room_add(set, &n, &w->inv_inertia, sizeof(dem_real));
@@ -1509,11 +1517,12 @@ static void demi_body_take_out(dem_world *w, int i) {
     const int last = w->count - 1, slot = (int)w->body_slot[i];
     w->energy_removed += demi_body_energy(w, i);
     if (i != last) {
-        dem_real *fours[7];
-        int k;
+        dem_real *fours[8];
+        int k, n = 7;
         fours[0] = w->pos; fours[1] = w->vel; fours[2] = w->spin; fours[3] = w->half_vel; fours[4] = w->half_spin;
-        fours[5] = w->force; fours[6] = w->torque;
-        for (k = 0; k < 7; k++) memcpy(fours[k] + 4*i, fours[k] + 4*last, 4*sizeof(dem_real));
+        fours[5] = w->force; fours[6] = w->torque; fours[7] = w->last_pos;
+        if (w->last_pos) n = 8;
+        for (k = 0; k < n; k++) memcpy(fours[k] + 4*i, fours[k] + 4*last, 4*sizeof(dem_real));
         w->mass[i] = w->mass[last];
         w->inv_mass[i] = w->inv_mass[last];
         w->inv_inertia[i] = w->inv_inertia[last];
@@ -1900,7 +1909,7 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
 static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
     dem_wall id;
     id.id = 0;
-    wall->pose = wall->home;
+    wall->pose = wall->mid = wall->home;
     if (!demi_list_drop(w)) { demi_wall_free(w, wall); demi_no_memory(w, call); return id; }
     if (w->wall_count == w->wall_capacity) {
         const size_t room = (size_t)w->wall_capacity*2 + 8;
@@ -2134,6 +2143,7 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
     wall->motion.start = DEMI_MAX(motion->start, w->time);
     wall->symmetric = demi_wall_symmetric(wall);
     demi_wall_pose_at(wall, w->time, &wall->pose);
+    wall->mid = wall->pose;
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -2218,7 +2228,7 @@ static void demi_wrap(dem_world *w) {
             if (shift > 0 || shift < 0) {
                 *x += shift;
                 if (*x >= b) { *x -= L; shift -= L; }
-                if (w->desc.integrator == DEM_POSITION_VERLET) w->half_vel[4*i + k] += shift;
+                if (w->last_pos) w->last_pos[4*i + k] += shift;
             }
         }
     }
@@ -2282,6 +2292,7 @@ static void demi_bodies_sort(dem_world *w) {
     demi_permute4(w, w->pos); demi_permute4(w, w->vel); demi_permute4(w, w->spin);
     demi_permute4(w, w->half_vel); demi_permute4(w, w->half_spin);
     demi_permute4(w, w->force); demi_permute4(w, w->torque);
+    if (w->last_pos) demi_permute4(w, w->last_pos);
 #define DEMI_PERMUTE(array, type) do { \
         type *from = w->array, *to = (type *)(void *)w->scratch; \
         for (i = 0; i < w->count; i++) to[i] = from[w->order[i]]; \
@@ -2974,6 +2985,12 @@ static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, 
     }
     d = demi_sub(*point, x);
     l = demi_length(d);
+    if (*feature > 0) {                         /* straight above its rim a face is met, not the rim       */
+        const dem_vec3 face = wall->kind == DEMI_WALL_MESH ? demi_cross(demi_sub(c[1], c[0]), demi_sub(c[2], c[0]))
+                                                           : demi_v(c[0].y - c[1].y, c[1].x - c[0].x, 0);
+        if (DEMI_ABS(demi_dot(face, d)) > (1 - 8*(DEMI_SINGLE ? (dem_real)FLT_EPSILON : (dem_real)DBL_EPSILON))*
+                                          l*demi_length(face)) *feature = 0;
+    }
     *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
     return r + edge - l;
 }
@@ -3089,7 +3106,7 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
         dem_real size, most, cut, old = kt;
         if (tangent >= DEM_TANGENT_SPRING) s = dem_memory_turn(c, demi_at(memory));
         if (tangent == DEM_TANGENT_SPRING) {                /* s: displacement; [CS79]                     */
-            s = demi_add(s, demi_scale(v, c->dt));
+            s = demi_add(s, demi_scale(c->slip_step, c->dt));
             t = demi_v(-kt*s.x - ct*v.x, -kt*s.y - ct*v.y, -kt*s.z - ct*v.z);
         } else if (tangent >= DEM_TANGENT_MINDLIN) {        /* s: force; [DIR05, THO13]                    */
             if (tangent == DEM_TANGENT_MINDLIN_RESCALED) {
@@ -3097,7 +3114,7 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
                 old = kt < old ? kt/old : 1;
                 s = demi_scale(s, old);
             }
-            s = demi_v(s.x - kt*c->dt*v.x, s.y - kt*c->dt*v.y, s.z - kt*c->dt*v.z);
+            s = demi_sub(s, demi_scale(c->slip_step, kt*c->dt));
             t = demi_v(s.x - ct*v.x, s.y - ct*v.y, s.z - ct*v.z);
         } else {                                            /* no memory: [MIL] 4.3 and 4.2                */
             const dem_real k = tangent == DEM_TANGENT_STEP ? kt*c->dt + ct : ct;
@@ -3147,7 +3164,7 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
             const dem_real cr = DEM_R(0.6)*DEMI_SQRT(kr*inertia);   /* 2 x 0.3 sqrt(kr I): lightly damped   */
             dem_vec3 m = dem_memory_turn(c, demi_at(memory + 4));
             dem_real size, cut;
-            m = demi_sub(m, demi_scale(w, kr*c->dt));
+            m = demi_sub(m, demi_scale(demi_sub(c->spin_step, demi_scale(n, demi_dot(c->spin_step, n))), kr*c->dt));
             size = DEMI_SQRT(demi_dot(m, m));
             cut = most/(size + DEMI_TINY);
             cut = size > most ? cut : 1;
@@ -3204,12 +3221,21 @@ DEM_INLINE void demi_filter(const dem_world *w, const demi_list *list, int begin
     hits->count = m;
 }
 
+/* Slip over the step just taken, in the tangent plane of now: velocity and spin (times arm) are means of the
+   step, so the normal they are taken across is that of its middle. Rigid motion of both gives zero. */
+DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone, dem_vec3 around) {
+    const dem_vec3 t = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
+    const dem_vec3 slip = demi_add(t, demi_cross(around, mid));
+    return demi_sub(slip, demi_scale(normal, demi_dot(slip, normal)));
+}
+
 /* The law over packed contacts; pushes go to push[component*stride + contact], overlaps over radius to
    `deep`, energies are summed in order. Everything after `energy` is a literal in a specialised kernel. */
 DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const demi_hits *hits, const demi_periods *p,
                               dem_real *DEMI_RESTRICT push, size_t stride, dem_real *DEMI_RESTRICT deep, double *energy,
                               dem_real dt, int normal, int tangent, int rolling, int uniform, int periodic, int ledger, dem_law_fn law) {
     const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT u = w->vel, *DEMI_RESTRICT s = w->spin;
+    const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
     const dem_real *DEMI_RESTRICT inv_mass = w->inv_mass, *DEMI_RESTRICT coef = list->coef;
     dem_real *DEMI_RESTRICT memory = list->memory;
     uint32_t *DEMI_RESTRICT stamp = list->stamp;
@@ -3268,10 +3294,17 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
             around = demi_add(demi_scale(wa, la), demi_scale(wb, lb));
             c.slip = demi_add(t, demi_cross(around, c.normal));
             c.spin = demi_sub(wa, wb);
-            c.normal_rate = demi_scale(t, -over_d);
+        } else c.slip = c.spin = demi_v(0, 0, 0);
+        if (law || keep) {
+            const dem_vec3 wa = demi_v(sh[i], sh[i + 1], sh[i + 2]), wb = demi_v(sh[j], sh[j + 1], sh[j + 2]);
+            const dem_vec3 gone = demi_v(uh[i] - uh[j], uh[i + 1] - uh[j + 1], uh[i + 2] - uh[j + 2]);
+            c.normal_rate = demi_scale(demi_sub(gone, demi_scale(c.normal, demi_dot(gone, c.normal))), -over_d);
+            around = demi_add(demi_scale(wa, la), demi_scale(wb, lb));
+            c.slip_step = demi_slip_step(c.normal, demi_sub(c.normal, demi_scale(c.normal_rate, dt/2)), gone, around);
+            c.spin_step = demi_sub(wa, wb);
             c.twist = demi_dot(demi_add(wa, wb), c.normal)/2;
         } else {
-            c.slip = c.spin = c.normal_rate = demi_v(0, 0, 0);
+            c.slip_step = c.spin_step = c.normal_rate = demi_v(0, 0, 0);
             c.twist = 0;
         }
         if (keep) {                             /* memory counts only when written in the step before       */
@@ -3493,6 +3526,8 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     const dem_real *x = w->pos + 4*k->body, r = x[3];
     const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body), at = demi_add(demi_at(x), demi_scale(n, r));
     const dem_vec3 arm = demi_sub(at, wall->pose.position);
+    const dem_vec3 mid = demi_add(wall->mid.velocity, demi_cross(wall->mid.spin, demi_sub(at, wall->mid.position)));
+    const dem_vec3 spin_step = demi_at(w->half_spin + 4*k->body);
     dem_vec3 u;
     *surface = demi_add(wall->pose.velocity, demi_cross(wall->pose.spin, arm));
     u = demi_sub(demi_at(w->vel + 4*k->body), *surface);
@@ -3502,12 +3537,15 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     c->closing_speed = demi_dot(u, n);
     c->slip = demi_add(demi_sub(u, demi_scale(n, c->closing_speed)), demi_scale(demi_cross(spin, n), r));
     c->spin = demi_sub(spin, wall->pose.spin);
+    c->slip_step = demi_slip_step(n, demi_scale(demi_add(n, normal_before), DEM_R(0.5)),
+                                  demi_sub(demi_at(w->half_vel + 4*k->body), mid), demi_scale(spin_step, r));
+    c->spin_step = demi_sub(spin_step, wall->mid.spin);
     c->dt = dt;
     if (dt > 0) {
         const dem_vec3 turn = demi_scale(demi_sub(n, normal_before), 1/dt);
         c->normal_rate = demi_sub(turn, demi_scale(n, demi_dot(turn, n)));
     }
-    c->twist = demi_dot(demi_add(spin, wall->pose.spin), n)/2;
+    c->twist = demi_dot(demi_add(spin_step, wall->mid.spin), n)/2;
     c->r_eff = k->coef[DEMI_R_EFF];
     c->m_eff = w->mass[k->body];
     c->kn = k->coef[DEMI_KN]; c->cn = k->coef[DEMI_CN]; c->kt = k->coef[DEMI_KT]; c->ct = k->coef[DEMI_CT];
@@ -3631,7 +3669,7 @@ static void demi_walls_respond(dem_world *w, int d) {
 /* ------------------------------------------------------------------------------------------------
    >>integrators
    Kick, drift and the velocity a law will see. Between steps pos, vel, force belong to the same time t_n;
-   half_vel holds v(t_n - dt/2) for the leapfrog and the last position for position Verlet. Each scheme
+   half_vel is the mean velocity of the step that led there, v(t_n - dt/2). Each scheme
    is one function over a range of bodies; `synced` = 0 says the step before was not finished, so that
    its last half kick is still due (it is merged with the first one of this step: same arithmetic).
    Rotation runs along in the same scheme (position Verlet: leapfrog).
@@ -3721,9 +3759,11 @@ static void demi_move_position_verlet(dem_world *w, int begin, int end, int turn
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i);
         for (k = 0; k < 3; k++) {
-            const dem_real a = b.f[k]*b.inv + b.g[k], x = w->pos[4*i + k], next = 2*x - b.half[k] + a*dt*dt;
-            b.v[k] = (next - x)/dt + a*h;
-            b.half[k] = x;
+            const dem_real a = b.f[k]*b.inv + b.g[k], x = w->pos[4*i + k];
+            const dem_real next = 2*x - w->last_pos[4*i + k] + a*dt*dt;
+            b.half[k] = (next - x)/dt;
+            b.v[k] = b.half[k] + a*h;
+            w->last_pos[4*i + k] = x;
             w->pos[4*i + k] = next;
         }
     }
@@ -3740,9 +3780,9 @@ static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int tur
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
         for (k = 0; k < 3; k++) {
-            b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
+            b.half[k] = b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
             w->pos[4*i + k] += b.v[k]*dt;
-            if (turning) s.v[k] += s.f[k]*s.inv*dt;
+            if (turning) s.half[k] = s.v[k] += s.f[k]*s.inv*dt;
         }
     }
 }
@@ -3753,8 +3793,10 @@ static void demi_move_forward_euler(dem_world *w, int begin, int end, int turnin
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
         for (k = 0; k < 3; k++) {
+            b.half[k] = b.v[k];
             w->pos[4*i + k] += b.v[k]*dt;
             b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
+            s.half[k] = s.v[k];
             if (turning) s.v[k] += s.f[k]*s.inv*dt;
         }
     }
@@ -3769,16 +3811,6 @@ static void demi_finish_halves(dem_world *w, int begin, int end) {
         demi_finish_half(&s, h);
     }
 }
-/* velocity of position Verlet at t: (x(t) - x(t-dt))/dt + a dt/2, which is (x(t+dt) - x(t-dt))/(2 dt) */
-static void demi_finish_position_verlet(dem_world *w, int begin, int end) {
-    const dem_real dt = w->dt, h = (dem_real)w->half_kick;
-    int i, k;
-    for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
-        for (k = 0; k < 3; k++) b.v[k] = (w->pos[4*i + k] - b.half[k])/dt + (b.f[k]*b.inv + b.g[k])*h;
-        demi_finish_half(&s, h);
-    }
-}
 /* What half_vel and half_spin must be before the first step from a state at t. */
 static void demi_prime(dem_world *w) {
     const dem_real dt = w->dt, h = dt/2;
@@ -3787,7 +3819,8 @@ static void demi_prime(dem_world *w) {
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
         for (k = 0; k < 3; k++) {
             const dem_real a = b.f[k]*b.inv + b.g[k];
-            b.half[k] = w->desc.integrator == DEM_POSITION_VERLET ? w->pos[4*i + k] - b.v[k]*dt + a*dt*h : b.v[k] - a*h;
+            b.half[k] = b.v[k] - a*h;
+            if (w->last_pos) w->last_pos[4*i + k] = w->pos[4*i + k] - b.half[k]*dt;
             s.half[k] = s.v[k] - s.f[k]*s.inv*h;
         }
     }
@@ -3803,7 +3836,7 @@ static const demi_integrator_row demi_integrator_rows[] = {     /* in the order 
     {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2},
     {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1},
     {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1},
-    {"position Verlet", demi_move_position_verlet, demi_finish_position_verlet, 2},
+    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2},
     {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2}};
 
 /* ------------------------------------------------------------------------------------------------
@@ -4019,8 +4052,7 @@ static dem_result demi_dt_settle(dem_world *w) {
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const int turning = w->desc.law || w->tangent != DEM_TANGENT_NONE || w->rolling != DEM_ROLLING_NONE;
-    const int halves = w->desc.integrator == DEM_VELOCITY_VERLET || w->desc.integrator == DEM_LEAPFROG;
-    const dem_real *DEMI_RESTRICT v = halves ? w->half_vel : w->vel;
+    const dem_real *DEMI_RESTRICT v = w->half_vel;
     dem_real most = 0, sum = 0;
     int i;
     demi_integrator_rows[w->desc.integrator].move(w, domain->begin, domain->end, turning);
@@ -4028,7 +4060,7 @@ static void demi_domain_move(dem_world *w, int d) {
         for (i = domain->begin; i < domain->end; i++) {
             w->pos[4*i + 2] = w->vel[4*i + 2] = 0;
             w->spin[4*i] = w->spin[4*i + 1] = 0;
-            if (halves) w->half_vel[4*i + 2] = w->half_spin[4*i] = w->half_spin[4*i + 1] = 0;
+            w->half_vel[4*i + 2] = w->half_spin[4*i] = w->half_spin[4*i + 1] = 0;
         }
     for (i = domain->begin; i < domain->end; i++) {         /* a sum keeps what is not finite, a maximum loses it */
         const dem_real s = v[4*i]*v[4*i] + v[4*i + 1]*v[4*i + 1] + v[4*i + 2]*v[4*i + 2];
@@ -4185,6 +4217,7 @@ static dem_result demi_step_once(dem_world *w) {
         double s;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(wall, w->time, &wall->pose);
+        demi_wall_pose_at(wall, w->time - w->half_kick, &wall->mid);
         s = demi_wall_speed(wall);
         wall_speed = s < 0 || wall_speed < 0 ? -1 : DEMI_MAX(wall_speed, s);
     }
@@ -4524,8 +4557,8 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
 /* ------------------------------------------------------------------------------------------------
    >>files
    Reading. A file is loaded whole and goes to the parser that also serves data in memory. Its bytes
-   are not to be trusted: nothing is read past the end, a count is held against the bytes there before
-   memory is taken for it, and errors name the line. Text is read by moving (demi_text_line,
+   are not to be trusted: nothing is read past the end, a count is held against the bytes there
+   before memory is taken for it, and errors name the line. Text is read by moving (demi_text_line,
    demi_text_word) and looking at the present word (demi_text_is, _real, _corner). OBJ and STL text
    have no counts, so they are gone through twice: to count, then to fill arrays of the right size.
 
@@ -4650,7 +4683,8 @@ static dem_result demi_text_real(demi_text *t, dem_real *value) {
     if (bad || end != copy + n || number > DEMI_REACH || number < -DEMI_REACH)
         return demi_text_fail(t, "a coordinate is expected, a decimal number within +-1e15 (m); "
                               "correct it or export the file again");
-    *value = number == 0 ? 0 : (dem_real)number; /* -0 and 0 are one place */
+    *value = (dem_real)number;
+    if (*value == 0) *value = 0; /* -0 and 0 are one place */
     return DEM_OK;
 }
 
@@ -4720,8 +4754,8 @@ static dem_result demi_lists_read(demi_text *t, size_t width, dem_mesh *mesh) {
             return demi_text_fail(t, "the numbers of vertices and elements are expected, from 1 to "
                                   "700000000 (or an STL or OBJ file); correct the first line");
     }
-    /* the shortest line is "0 0 0\n", and the last may lack its end */
-    if (((uint64_t)count[0] + (uint64_t)count[1])*2*width - 1 > (uint64_t)(t->end - t->next))
+    /* a line has two bytes at least, the last maybe one: memory stays in proportion to the file */
+    if (2*((uint64_t)count[0] + (uint64_t)count[1]) > (uint64_t)(t->end - t->next) + 1)
         return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: found counts %ld and %ld, "
                          "but only %.0f bytes follow; copy the file again or correct the counts",
                          t->call, t->name, t->line, (long)count[0], (long)count[1],
@@ -5006,14 +5040,16 @@ static dem_result demi_parse(dem_world *w, const char *call, const char *name, c
     return result;
 }
 
-/* Loads a file whole into bytes, which the caller frees (also after a failure). */
-static dem_result demi_load(dem_world *w, const char *call, const char *path, demi_array *bytes, size_t *size) {
+/* Loads a file whole into bytes, which the caller frees, also after a failure. */
+static dem_result demi_load(dem_world *w, const char *call, const char *path, demi_array *bytes,
+                            size_t *size) {
     FILE *file;
     dem_result result = DEM_OK;
-    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    *size = 0;
+    if (!path)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
     errno = 0;
     file = fopen(path, "rb");
-    *size = 0;
     while (file && !feof(file) && !ferror(file) && result == DEM_OK) {
         if (demi_array_grow(w, bytes, 1, *size + 65536))
             *size += fread((char *)bytes->data + *size, 1, bytes->capacity - *size, file);
@@ -5021,19 +5057,20 @@ static dem_result demi_load(dem_world *w, const char *call, const char *path, de
                                 "bytes; free some", call, path, (double)*size);
     }
     if (result == DEM_OK && (!file || ferror(file)))
-        result = demi_fail(w, DEM_ERROR_FILE, "%s: cannot read %.200s: %s; check its name and permissions",
-                           call, path, errno ? strerror(errno) : "unknown cause");
+        result = demi_fail(w, DEM_ERROR_FILE, "%s: cannot read %.200s: %s; check its name and "
+                           "permissions", call, path, errno ? strerror(errno) : "unknown cause");
     if (file) fclose(file);
     return result;
 }
 
-/* The same for a file. */
+/* demi_parse for a file. */
 static dem_result demi_read(dem_world *w, const char *call, const char *path, size_t width,
                             dem_mesh *mesh, dem_mesh_health *health) {
     demi_array bytes = {0, 0, 0};
-    size_t size = 0;
+    size_t size;
     dem_result result = demi_load(w, call, path, &bytes, &size);
-    if (result == DEM_OK) result = demi_parse(w, call, path, (const char *)bytes.data, size, width, mesh, health);
+    if (result == DEM_OK) result = demi_parse(w, call, path, (const char *)bytes.data, size, width,
+                                              mesh, health);
     demi_array_free(w, &bytes);
     return result;
 }
@@ -5421,7 +5458,8 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
         result = demi_vtp(world, "dem_walls_vtp_write", path, column, 4, 0, (int)triangles);
     } else {
         result = demi_fail(world, DEM_ERROR_MEMORY, "dem_walls_vtp_write: no memory for %.0f "
-                           "points and %.0f triangles; free some", (double)points, (double)triangles);
+                           "points and %.0f triangles; free some", (double)points,
+                           (double)triangles);
     }
     demi_free(world, place, room[0], sizeof(dem_real));
     demi_free(world, corners, 3*room[1], sizeof(int32_t));
@@ -5525,11 +5563,11 @@ static demi_shape demi_shape_of(const dem_world *w) {
 /* Bytes demi_state_visit moves for a shape: a lying file is found out before anything is touched. */
 static size_t demi_state_size(const dem_world *w, const demi_shape *s) {
     const size_t r = sizeof(dem_real), n = (size_t)s->count, pairs = (size_t)s->own_total + (size_t)s->cross_total;
-    size_t size = n*(28*r + 3*r + 8) + (size_t)s->slots*8 + (size_t)s->domains*sizeof(demi_domain);
+    size_t size = n*((w->desc.integrator == DEM_POSITION_VERLET ? 35 : 31)*r + 8) + (size_t)s->slots*8 + (size_t)s->domains*sizeof(demi_domain);
     int i;
     size += pairs*(12 + (size_t)s->memory_stride*r) + (size_t)s->candidate_total*12;
     size += (size_t)s->contact_total*sizeof(demi_wall_contact);
-    size += (size_t)s->walls*(2*sizeof(dem_pose) + sizeof(dem_channels) + 4*sizeof(dem_vec3));
+    size += (size_t)s->walls*(3*sizeof(dem_pose) + sizeof(dem_channels) + 4*sizeof(dem_vec3));
     for (i = 0; i < w->field_count; i++) size += 16 + 5*sizeof(double)*demi_field_cells(&w->fields[i]);
     return size;
 }
@@ -5561,6 +5599,7 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
     demi_visit(s, w->pos, 4*n*r);        demi_visit(s, w->vel, 4*n*r);       demi_visit(s, w->spin, 4*n*r);
     demi_visit(s, w->half_vel, 4*n*r);   demi_visit(s, w->half_spin, 4*n*r);
     demi_visit(s, w->force, 4*n*r);      demi_visit(s, w->torque, 4*n*r);
+    if (w->last_pos) demi_visit(s, w->last_pos, 4*n*r);
     demi_visit(s, w->mass, n*r);         demi_visit(s, w->inv_mass, n*r);    demi_visit(s, w->inv_inertia, n*r);
     demi_visit(s, w->body_slot, 4*n);    demi_visit(s, w->body_material, 4*n);
     demi_visit(s, w->slot_index, (size_t)w->slot_count*4);
@@ -5586,6 +5625,7 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
         demi_wall *wall = &w->walls[i];
         demi_visit(s, &wall->home, sizeof wall->home);
         demi_visit(s, &wall->pose, sizeof wall->pose);
+        demi_visit(s, &wall->mid, sizeof wall->mid);
         demi_visit(s, &wall->channels, sizeof wall->channels);
         demi_visit(s, &wall->motion.velocity, sizeof(dem_vec3));
         demi_visit(s, &wall->motion.point, sizeof(dem_vec3));
@@ -5608,9 +5648,10 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
 static uint64_t demi_scene_digest(const dem_world *w) {
     uint64_t h = DEMI_HASH_START;
     const dem_world_desc *d = &w->asked;
-    const int flags[] = {d->boundary[0], d->boundary[1], d->boundary[2], d->planar, d->normal_law, d->tangent_law,
-                         d->rolling_law, d->tension, d->convention, d->law != 0, d->law_memory, d->law_vectors, d->force != 0,
-                         d->integrator, d->search, d->ledger, w->material_count, w->wall_count, w->field_count};
+    const int flags[] = {(int)d->boundary[0], (int)d->boundary[1], (int)d->boundary[2], d->planar, (int)d->normal_law,
+                         (int)d->tangent_law, (int)d->rolling_law, (int)d->tension, (int)d->convention, d->law != 0,
+                         d->law_memory, d->law_vectors, d->force != 0, (int)d->integrator, (int)d->search, d->ledger,
+                         w->material_count, w->wall_count, w->field_count};
     const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x, d->domain.lo.y, d->domain.lo.z,
                                 d->domain.hi.x, d->domain.hi.y, d->domain.hi.z, d->thickness, d->dt, d->impact_speed, d->skin};
     int i, j;
@@ -5742,7 +5783,7 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     s.from = (const char *)bytes.data + sizeof head;
     s.sum = 0;
     /* the per-domain counts steer the visit: take them from their place first */
-    memcpy(w->domains, s.from + demi_scalars_size(w) + (size_t)w->count*(31*sizeof(dem_real) + 8) + (size_t)w->slot_count*8,
+    memcpy(w->domains, s.from + demi_scalars_size(w) + (size_t)w->count*((w->last_pos ? 35 : 31)*sizeof(dem_real) + 8) + (size_t)w->slot_count*8,
            (size_t)w->domain_count*sizeof(demi_domain));
     demi_state_scalars(w, &s);
     demi_state_visit(w, &s);

@@ -15,6 +15,8 @@ try() {
     printf '# %s\nbin=%s/%s.bin\n%s\n' "$name" $dir $number "$*" > $dir/$number.sh
 }
 
+try "parts of dem.h in order" "awk -f tests/tags.awk dem.h"
+
 # what is compiled: the header alone, the implementation, both in one file, two files linked
 user=tests/two_files.c
 one_file="-DDEM_IMPLEMENTATION $user"
@@ -80,11 +82,11 @@ else skip "gcc -m32 does not link (Debian package gcc-multilib)"; fi
 
 # the whole tests: under address and undefined-behaviour sanitizers, with tcc, in 32 bits, in C++
 tests() {  # tests NAME COMPILER: one case per test program
-    name=$1; shift
+    group=$1; shift
     for source in tests/test_*.c; do
         [ -f "$source" ] || { skip "there is no tests/test_*.c"; break; }
         test=$(basename "$source" .c)
-        try "$name: $test" "mkdir -p \$bin && $* -I. $source -o \$bin/$test -lm && sh tests/run.sh '' \$bin/$test"
+        try "$group: $test" "mkdir -p \$bin && $* -I. $source -o \$bin/$test -lm && sh tests/run.sh '' \$bin/$test"
     done
 }
 sanitize="-g -O1 -fsanitize=address,undefined -fno-sanitize-recover=all"

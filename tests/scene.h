@@ -1,0 +1,133 @@
+/* scene.h - small worlds that several tests build. Include after dem.h and test.h.
+   SI units; `at` and the like take doubles, so that a scene reads the same in both precisions. */
+#ifndef SCENE_H
+#define SCENE_H
+#include <stdlib.h>
+
+static inline dem_vec3 at(double x, double y, double z) {
+    return dem_vec3_make((dem_real)x, (dem_real)y, (dem_real)z);
+}
+static inline dem_box box_of(double x0, double y0, double z0, double x1, double y1, double z1) {
+    dem_box box;
+    box.lo = at(x0, y0, z0);
+    box.hi = at(x1, y1, z1);
+    return box;
+}
+/* 0 <= number < 1, of a generator with its own state (splitmix64) */
+static inline double scene_random(uint64_t *state) {
+    uint64_t z = (*state += UINT64_C(0x9E3779B97F4A7C15));
+    z = (z ^ (z >> 30))*UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27))*UINT64_C(0x94D049BB133111EB);
+    return (double)((z ^ (z >> 31)) >> 11)/9007199254740992.0;
+}
+static inline dem_material_desc scene_stuff(double young, double restitution, double friction,
+                                            double rolling) {
+    dem_material_desc m = DEM_MATERIAL_DESC;
+    m.density = 2500;
+    m.young = (dem_real)young;
+    m.poisson = DEM_R(0.25);
+    m.restitution = (dem_real)restitution;
+    m.friction = (dem_real)friction;
+    m.rolling_friction = (dem_real)rolling;
+    return m;
+}
+static inline dem_material scene_material(dem_world *world, double young, double restitution,
+                                          double friction, double rolling) {
+    dem_material_desc m = scene_stuff(young, restitution, friction, rolling);
+    return dem_material_add(world, &m);
+}
+static inline dem_body_state scene_state(const dem_world *world, dem_body body) {
+    dem_body_state s;
+    memset(&s, 0, sizeof s);
+    dem_body_get(world, body, &s);
+    return s;
+}
+static inline void scene_move(dem_world *world, dem_body body, dem_vec3 velocity, dem_vec3 spin) {
+    dem_body_state s = scene_state(world, body);
+    s.velocity = velocity;
+    s.spin = spin;
+    dem_body_set(world, body, &s);
+}
+/* Steps and says why when that fails. */
+static inline dem_result scene_step(dem_world *world, int steps) {
+    const dem_result result = dem_world_step(world, steps);
+    if (result != DEM_OK) puts(dem_world_error(world));
+    return result;
+}
+
+/* A lattice of grains that overlap slightly, radii within 3 % of each other (mixed) or all alike, with
+   random velocities of up to `speed`: contacts everywhere from the first step on. */
+static inline dem_result scene_block(dem_world *world, dem_material material, int nx, int ny, int nz,
+                                     double radius, int mixed, double speed, uint64_t seed) {
+    const int count = nx*ny*nz;
+    const double pitch = 1.97*radius;
+    dem_real *x = (dem_real *)malloc((size_t)count*7*sizeof(dem_real));
+    dem_real *v = x + 3*count, *r = x + 6*count;
+    dem_result result;
+    int i, k;
+    if (!x) return DEM_ERROR_MEMORY;
+    for (i = 0; i < count; i++) {
+        x[3*i] = (dem_real)(pitch*(i%nx) + radius);
+        x[3*i + 1] = (dem_real)(pitch*(i/nx%ny) + radius);
+        x[3*i + 2] = (dem_real)(pitch*(i/nx/ny) + radius);
+        for (k = 0; k < 3; k++) v[3*i + k] = (dem_real)(speed*(2*scene_random(&seed) - 1));
+        r[i] = (dem_real)(radius*(mixed ? 0.97 + 0.06*scene_random(&seed) : 1));
+    }
+    result = dem_spheres_add(world, material, count, x, v, r, 0);
+    free(x);
+    return result;
+}
+
+/* A mesh of nx by ny quads of two triangles each from (x0, y0) to (x1, y1) at z = 0. */
+static inline dem_wall scene_floor(dem_world *world, dem_material material, double x0, double y0,
+                                   double x1, double y1, int nx, int ny) {
+    const int points = (nx + 1)*(ny + 1);
+    dem_mesh mesh;
+    dem_wall wall;
+    int i, j, n = 0;
+    wall.id = 0;
+    mesh.vertex_count = points;
+    mesh.triangle_count = 2*nx*ny;
+    mesh.vertices = (dem_real *)malloc((size_t)points*3*sizeof(dem_real));
+    mesh.triangles = (int32_t *)malloc((size_t)mesh.triangle_count*3*sizeof(int32_t));
+    if (mesh.vertices && mesh.triangles) {
+        for (j = 0; j <= ny; j++)
+            for (i = 0; i <= nx; i++) {
+                dem_real *p = mesh.vertices + 3*(i + (nx + 1)*j);
+                p[0] = (dem_real)(x0 + (x1 - x0)*i/nx);
+                p[1] = (dem_real)(y0 + (y1 - y0)*j/ny);
+                p[2] = 0;
+            }
+        for (j = 0; j < ny; j++)
+            for (i = 0; i < nx; i++) {
+                const int32_t a = i + (nx + 1)*j, b = a + 1, c = a + nx + 1, d = c + 1;
+                int32_t *t = mesh.triangles + 3*n;
+                t[0] = a; t[1] = b; t[2] = d;
+                t[3] = a; t[4] = d; t[5] = c;
+                n += 2;
+            }
+        wall = dem_mesh_add(world, material, &mesh);
+    }
+    free(mesh.vertices);
+    free(mesh.triangles);
+    return wall;
+}
+
+/* A drum about the z axis as a profile of n segments. */
+static inline dem_wall scene_drum(dem_world *world, dem_material material, double radius, int n) {
+    dem_real vertices[2*128];
+    int32_t segments[2*128];
+    dem_profile profile;
+    int i;
+    for (i = 0; i < n; i++) {
+        vertices[2*i] = (dem_real)(radius*cos(6.283185307179586*i/n));
+        vertices[2*i + 1] = (dem_real)(radius*sin(6.283185307179586*i/n));
+        segments[2*i] = i;
+        segments[2*i + 1] = (i + 1)%n;
+    }
+    profile.vertex_count = profile.segment_count = n;
+    profile.vertices = vertices;
+    profile.segments = segments;
+    return dem_profile_add(world, material, &profile, DEM_EDGE_RESOLVED);
+}
+#endif

@@ -1,0 +1,360 @@
+/* Neighbour search: all pairs, grid and linked linear list against a brute-force oracle of their own.
+   The oracle looks at every pair of bodies with the shortest image, in double precision, and knows
+   nothing of cells, sorting or skins. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "test.h"
+#include "scene.h"
+
+enum { METHODS = 3, MOST = 700 };
+static const dem_search methods[METHODS] = {DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_GRID,
+                                            DEM_SEARCH_LINKED_LIST};
+static uint32_t listed[MOST][MOST], mark;      /* pairs of slots seen under the present mark */
+static uint32_t pairs[2*MOST*(MOST - 1)/2];
+
+static double gap_of(const dem_world_desc *desc, const dem_real *x, const dem_real *y) {
+    const double lo[3] = {(double)desc->domain.lo.x, (double)desc->domain.lo.y,
+                          (double)desc->domain.lo.z};
+    const double hi[3] = {(double)desc->domain.hi.x, (double)desc->domain.hi.y,
+                          (double)desc->domain.hi.z};
+    double square = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        double d = (double)y[k] - (double)x[k];
+        if (desc->boundary[k] == DEM_BOUNDARY_PERIODIC)
+            d -= (hi[k] - lo[k])*floor(d/(hi[k] - lo[k]) + 0.5);
+        square += d*d;
+    }
+    return sqrt(square) - (double)x[3] - (double)y[3];
+}
+
+/* Holds the candidate list against the oracle. Answers how many pairs are wrong: touching and not listed,
+   listed twice, or, when the list is fresh, within the skin and not listed or listed and beyond it.
+   *contacts: how many touch. Round-off decides pairs within `slack` of a limit. */
+static int wrong_pairs(const dem_world *world, const dem_world_desc *desc, int fresh, int *contacts) {
+    const double slack = 1e-12, skin = (double)dem_counters_get(world).skin; /* m; positions are < .2 m */
+    const dem_bodies b = dem_bodies_get(world);
+    const int n = dem_candidates_get(world, pairs, MOST*(MOST - 1)/2);
+    int i, j, wrong = 0;
+    mark++;
+    for (i = 0; i < n; i++) {
+        const uint32_t lo = pairs[2*i] < pairs[2*i + 1] ? pairs[2*i] : pairs[2*i + 1];
+        const uint32_t hi = pairs[2*i] < pairs[2*i + 1] ? pairs[2*i + 1] : pairs[2*i];
+        wrong += listed[lo - 1][hi - 1] == mark;
+        listed[lo - 1][hi - 1] = mark;
+    }
+    *contacts = 0;
+    for (i = 0; i < b.count; i++)
+        for (j = i + 1; j < b.count; j++) {
+            const uint32_t s = b.slots[i], t = b.slots[j];
+            const int in = listed[s < t ? s : t][s < t ? t : s] == mark;
+            const double gap = gap_of(desc, b.positions + 4*i, b.positions + 4*j);
+            *contacts += gap < 0;
+            if (gap < -slack) wrong += !in;
+            if (fresh && gap < skin - slack) wrong += !in;
+            if (fresh && gap > skin + slack) wrong += in;
+        }
+    return wrong;
+}
+
+typedef struct churn {
+    int periodic[3], planar;
+    double skin, length;
+    int count, steps;
+} churn;
+
+static dem_world *churn_world(const churn *c, dem_search method, dem_world_desc *desc) {
+    dem_world *world;
+    dem_material grain;
+    int k;
+    *desc = DEM_WORLD_DESC;
+    desc->threads = 1;
+    desc->dt = DEM_R(1e-5);
+    desc->allow_large_dt = 1;                  /* bits are compared, not physics */
+    desc->search = method;
+    desc->skin = (dem_real)c->skin;
+    desc->planar = c->planar;
+    desc->domain = box_of(0, 0, 0, c->length, c->length, c->length);
+    for (k = 0; k < 3; k++)
+        desc->boundary[k] = c->periodic[k] ? DEM_BOUNDARY_PERIODIC : DEM_BOUNDARY_OPEN;
+    world = dem_world_create(desc);
+    grain = scene_material(world, 1e6, 1, 0.3, 0);
+    for (k = 0; k < 3; k++) {
+        const double e[3] = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
+        const double l = c->length;
+        if (c->periodic[k] || (c->planar && k == 2)) continue;
+        dem_plane_add(world, grain, at(0, 0, 0), at(e[0], e[1], e[2]));
+        dem_plane_add(world, grain, at(l*e[0], l*e[1], l*e[2]), at(-e[0], -e[1], -e[2]));
+    }
+    return world;
+}
+/* Adds up to `count` grains of radii 1 to 10 mm where there is room (by the oracle), mostly small ones,
+   with a speed of 3 m/s. All worlds are alike, so one place serves them all. */
+static int churn_add(dem_world **world, const dem_world_desc *desc, const churn *c, int count,
+                     uint64_t *seed) {
+    int added = 0, tries, i, m;
+    for (tries = 0; tries < 4000 && added < count; tries++) {
+        const dem_bodies b = dem_bodies_get(world[0]);
+        const double u = scene_random(seed), r = 1e-3 + 9e-3*u*u*u;
+        dem_real x[4], v[3];
+        dem_material grain;
+        int room = 1, k;
+        for (k = 0; k < 3; k++) {
+            x[k] = (dem_real)(r + (c->length - 2*r)*scene_random(seed));
+            v[k] = (dem_real)(6*scene_random(seed) - 3);
+        }
+        if (c->planar) x[2] = v[2] = 0;
+        x[3] = (dem_real)r;
+        for (i = 0; i < b.count && room; i++) room = gap_of(desc, x, b.positions + 4*i) > 0;
+        if (!room) continue;
+        grain.id = 1;
+        for (m = 0; m < METHODS; m++) dem_spheres_add(world[m], grain, 1, x, v, 0, (dem_real)r);
+        added++;
+    }
+    return added;
+}
+/* Takes out a random body, the same of all worlds. */
+static void churn_remove(dem_world **world, uint64_t *seed) {
+    const dem_bodies b = dem_bodies_get(world[0]);
+    const dem_body body = dem_bodies_id(world[0], (int)(scene_random(seed)*b.count));
+    int m;
+    for (m = 0; m < METHODS; m++) CHECK_EQ(dem_body_remove(world[m], body), DEM_OK);
+}
+
+static void churn_run(churn c, uint64_t seed) {
+    dem_world *world[METHODS];
+    dem_world_desc desc[METHODS];
+    uint64_t rebuilds[METHODS] = {0, 0, 0};
+    int step, m, k, wrong = 0, miscounted = 0, apart = 0, fresh_lists = 0, touched = 0;
+    for (m = 0; m < METHODS; m++) world[m] = churn_world(&c, methods[m], &desc[m]);
+    CHECK(churn_add(world, &desc[0], &c, c.count, &seed) > c.count/2);
+    for (step = 1; step <= c.steps && wrong + miscounted + apart == 0; step++) {
+        int contacts = 0;
+        for (m = 0; m < METHODS; m++) {
+            dem_counters now;
+            int fresh;
+            if (scene_step(world[m], 1) != DEM_OK) { CHECK(!"the step failed"); step = c.steps; break; }
+            now = dem_counters_get(world[m]);
+            fresh = now.rebuilds != rebuilds[m];
+            rebuilds[m] = now.rebuilds;
+            fresh_lists += fresh;
+            /* the oracle is slow: every list when fresh, one a step otherwise */
+            if (fresh || step%METHODS == m) {
+                wrong += wrong_pairs(world[m], &desc[m], fresh, &contacts);
+                miscounted += now.contacts != contacts;
+            }
+            if (m && step%5 == 0) apart += dem_world_hash(world[m]) != dem_world_hash(world[0]);
+        }
+        touched += contacts;
+        if (step%(c.steps/4) == c.steps/8) { /* as many in as out, then more in, then more out */
+            const int phase = step/(c.steps/4), out = phase%3 == 1 ? 2 : 6;
+            for (k = 0; k < out; k++) churn_remove(world, &seed);
+            churn_add(world, &desc[0], &c, phase%3 == 2 ? 1 : 6, &seed);
+        }
+    }
+    CHECK_EQ(wrong, 0);
+    CHECK_EQ(miscounted, 0);
+    CHECK_EQ(apart, 0);
+    CHECK(touched > c.steps);                   /* it churns: more than one contact a step */
+    CHECK(fresh_lists > METHODS);
+    for (m = 0; m < METHODS; m++) dem_world_destroy(world[m]);
+}
+static void churn_skins(int x, int y, int z, int planar) {
+    churn c = {{0, 0, 0}, 0, 0, 0.08, 200, 0};
+    c.periodic[0] = x; c.periodic[1] = y; c.periodic[2] = z;
+    c.planar = planar;
+    if (planar) c.length = 0.2;
+    c.skin = -1; c.steps = 160;
+    churn_run(c, 1);
+    c.skin = 0; c.steps = 1600;
+    churn_run(c, 2);
+    c.skin = 2e-3; c.steps = 1600;
+    churn_run(c, 3);
+}
+
+/* A drag that stops everything within the step after `start`. */
+typedef struct brake { double start, dt; } brake;
+static dem_vec3 brake_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time,
+                            void *user) {
+    const brake *b = (const brake *)user;
+    const double s = time >= b->start ? -(double)mass/b->dt : 0;
+    (void)x; (void)radius;
+    return at(s*(double)v.x, s*(double)v.y, s*(double)v.z);
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("all pairs, grid and linked list give one list and one hash in a closed box, for every skin") {
+        churn_skins(0, 0, 0, 0);
+    }
+    TEST("all pairs, grid and linked list give one list and one hash with one periodic axis") {
+        churn_skins(1, 0, 0, 0);
+    }
+    TEST("all pairs, grid and linked list give one list and one hash with two periodic axes") {
+        churn_skins(0, 1, 1, 0);
+    }
+    TEST("all pairs, grid and linked list give one list and one hash with three periodic axes") {
+        churn_skins(1, 1, 1, 0);
+    }
+    TEST("all pairs, grid and linked list give one list and one hash for discs in a plane") {
+        churn_skins(0, 0, 0, 1);
+        churn_skins(1, 0, 0, 1);
+    }
+    TEST("one grain out and one in, the same number as before: the linked list forgets the one gone") {
+        churn c = {{0, 0, 0}, 0, 1e-3, 0.08, 60, 0};
+        dem_world *world[METHODS];
+        dem_world_desc desc[METHODS];
+        uint64_t seed = 9;
+        int m, round, wrong = 0, contacts = 0;
+        for (m = 0; m < METHODS; m++) world[m] = churn_world(&c, methods[m], &desc[m]);
+        churn_add(world, &desc[0], &c, c.count, &seed);
+        for (round = 0; round < 40; round++) {
+            for (m = 0; m < METHODS; m++) scene_step(world[m], 3);
+            churn_remove(world, &seed);
+            churn_add(world, &desc[0], &c, 1, &seed);
+            for (m = 0; m < METHODS; m++) {
+                CHECK_EQ(dem_search_now(world[m]), DEM_OK);
+                wrong += wrong_pairs(world[m], &desc[m], 1, &contacts);
+            }
+        }
+        CHECK_EQ(wrong, 0);
+        for (m = 0; m < METHODS; m++) dem_world_destroy(world[m]);
+    }
+    TEST("radii 1 : 100 in one world: every method lists what brute force finds") {
+        churn c = {{0, 0, 0}, 0, 1e-4, 0.1, 0, 0};
+        int periodic, m;
+        for (periodic = 0; periodic < 2; periodic++) {
+            dem_world *world[METHODS];
+            dem_world_desc desc[METHODS];
+            dem_material grain;
+            uint64_t seed = 4;
+            int i, contacts, count[METHODS];
+            grain.id = 1;
+            c.periodic[0] = c.periodic[1] = periodic;
+            for (m = 0; m < METHODS; m++) {
+                world[m] = churn_world(&c, methods[m], &desc[m]);
+                dem_sphere_add(world[m], grain, DEM_R(0.02), at(0.05, 0.05, 0.05));
+                dem_sphere_add(world[m], grain, DEM_R(0.02), at(0.0, 0.0, 0.05)); /* over a corner */
+            }
+            for (i = 0; i < 400; i++) {         /* dust on and around the big ones */
+                const double u = 2*scene_random(&seed) - 1, phi = 6.28*scene_random(&seed);
+                const double d = 0.02 + 4e-4*scene_random(&seed), s = sqrt(1 - u*u), c0 = i%2 ? 0.05 : 0;
+                double x = c0 + d*s*cos(phi), y = c0 + d*s*sin(phi);
+                if (periodic) { x += x < 0 ? 0.1 : 0; y += y < 0 ? 0.1 : 0; }
+                for (m = 0; m < METHODS; m++)
+                    dem_sphere_add(world[m], grain, DEM_R(2e-4), at(x, y, 0.05 + d*u));
+            }
+            for (m = 0; m < METHODS; m++) {
+                CHECK_EQ(dem_search_now(world[m]), DEM_OK);
+                CHECK_EQ(wrong_pairs(world[m], &desc[m], 1, &contacts), 0);
+                count[m] = dem_candidates_get(world[m], 0, 0);
+                CHECK_EQ(count[m], count[0]);
+                CHECK_EQ(dem_world_hash(world[m]), dem_world_hash(world[0]));
+                CHECK(contacts > 100);
+            }
+            for (m = 0; m < METHODS; m++) dem_world_destroy(world[m]);
+        }
+    }
+    TEST("two swarms a kilometre apart are searched without a grid that spans the void") {
+        churn c = {{0, 0, 0}, 0, 1e-3, 0.08, 0, 0};
+        dem_world_desc desc;
+        int m, i, contacts;
+        for (m = 0; m < METHODS; m++) {
+            dem_world *world = dem_world_create(&DEM_WORLD_DESC);
+            dem_material grain = scene_material(world, 1e6, 1, 0.3, 0);
+            uint64_t seed = 5;
+            dem_world_destroy(world);
+            world = churn_world(&c, methods[m], &desc);
+            grain.id = 1;
+            for (i = 0; i < 200; i++)
+                dem_sphere_add(world, grain, DEM_R(2e-3), at(i%2*1000 + 0.04*scene_random(&seed),
+                               0.04*scene_random(&seed), 0.04*scene_random(&seed)));
+            CHECK_EQ(dem_search_now(world), DEM_OK);
+            CHECK_EQ(wrong_pairs(world, &desc, 0, &contacts), 0);
+            CHECK(contacts > 20);
+            CHECK(dem_counters_get(world).memory < 4000000);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("the list stays safe with every integrator when all grains brake within one step") {
+        int i, m;
+        for (i = DEM_VELOCITY_VERLET; i <= DEM_LEAPFROG; i++)
+            for (m = 0; m < METHODS; m++) {
+                const double dt = 1e-5, r = 1e-3, skin = 1e-4, speed = 6;
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_world *world;
+                dem_material grain;
+                brake b;
+                dem_body left, right;
+                int step, contacts, wrong = 0;
+                b.start = 0.5*dt; b.dt = dt;
+                desc.threads = 1;
+                desc.integrator = (dem_integrator)i;
+                desc.search = methods[m];
+                desc.skin = (dem_real)skin;
+                desc.dt = (dem_real)dt;
+                desc.allow_large_dt = 1;
+                desc.force = brake_force;
+                desc.force_user = &b;
+                world = dem_world_create(&desc);
+                grain = scene_material(world, 1e6, 1, 0, 0);
+                /* apart by a hair more than the skin; two steps at 6 m/s bring them together */
+                left = dem_sphere_add(world, grain, (dem_real)r, at(0, 0, 0));
+                right = dem_sphere_add(world, grain, (dem_real)r, at(2*r + 1.05*skin, 0, 0));
+                scene_move(world, left, at(speed/2, 0, 0), at(0, 0, 0));
+                scene_move(world, right, at(-speed/2, 0, 0), at(0, 0, 0));
+                for (step = 0; step < 4; step++) {
+                    CHECK_EQ(scene_step(world, 1), DEM_OK);
+                    wrong += wrong_pairs(world, &desc, 0, &contacts);
+                }
+                CHECK_EQ(wrong, 0);
+                dem_world_destroy(world);
+            }
+    }
+    TEST("a skin that the library chooses never makes a periodic box too short that was long enough") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material grain;
+        uint64_t seed = 11;
+        int i;
+        desc.threads = 1;
+        desc.dt = DEM_R(1e-5);
+        desc.allow_large_dt = 1;
+        desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+        desc.domain = box_of(0, 0, 0, 4.5e-3, 0.03, 0.03);      /* a slice of 4.5 radii */
+        world = dem_world_create(&desc);
+        grain = scene_material(world, 1e6, 1, 0, 0);
+        for (i = 1; i < 3; i++) {
+            dem_plane_add(world, grain, at(0, 0, 0), at(0, i == 1, i == 2));
+            dem_plane_add(world, grain, at(0, 0.03, 0.03), at(0, -(i == 1), -(i == 2)));
+        }
+        for (i = 0; i < 25; i++) {              /* few and fast: a wide skin would pay */
+            dem_body b = dem_sphere_add(world, grain, DEM_R(1e-3),
+                                        at(2e-3, 3e-3 + 5e-3*(i%5), 3e-3 + 5e-3*(i/5)));
+            scene_move(world, b, at(0, 10*scene_random(&seed) - 5, 10*scene_random(&seed) - 5), at(0, 0, 0));
+        }
+        CHECK_EQ(scene_step(world, 4000), DEM_OK);
+        dem_world_destroy(world);
+    }
+    TEST("many grains added at once to a world with contact memory find their own contacts") {
+        int m;
+        for (m = 0; m < METHODS; m++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material grain;
+            int contacts;
+            desc.threads = 1;
+            desc.search = methods[m];
+            world = dem_world_create(&desc);
+            grain = scene_material(world, 1e6, 0.5, 0.3, 0);
+            scene_block(world, grain, 3, 3, 3, 1e-3, 1, 0.1, 1);
+            CHECK_EQ(scene_step(world, 20), DEM_OK);
+            scene_block(world, grain, 8, 8, 8, 1e-3, 1, 0.1, 2);  /* over the first: overlaps */
+            CHECK_EQ(dem_search_now(world), DEM_OK);
+            CHECK_EQ(wrong_pairs(world, &desc, 1, &contacts), 0);
+            dem_world_destroy(world);
+        }
+    }
+    return test_end();
+}
