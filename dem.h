@@ -2809,6 +2809,7 @@ static void demi_effects(dem_world *w) {
    per body (bench/ measures both); candidates grow with the skin, rebuilds shrink with it. */
 static void demi_skin_choose(dem_world *w) {
     const double r = (double)(w->radius_min > 0 ? w->radius_min : 1), steps = (double)(w->steps - w->last_rebuild);
+    int k;
     if (w->desc.skin > 0) { w->skin = (double)w->desc.skin; return; }
     if (w->desc.skin < 0) { w->skin = 0; return; }
     if (w->skin_auto <= 0) w->skin_auto = 0.1*r;
@@ -2823,6 +2824,10 @@ static void demi_skin_choose(dem_world *w) {
         best = sqrt(40*per_step/slope);
         best = DEMI_MIN(DEMI_MAX(best, 0.5*w->skin_auto), 2*w->skin_auto);
         w->skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->skin_auto), 0.01*r), 2*r);
+    }
+    for (k = 0; k < 3; k++) {                   /* a period must hold two grains and the skin, twice       */
+        const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) - 2*(double)w->radius_max;
+        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0) w->skin_auto = DEMI_MIN(w->skin_auto, room);
     }
     w->skin = w->skin_auto;
 }
@@ -3246,7 +3251,7 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
     const int keep = law ? w->memory_stride : tangent >= DEM_TANGENT_SPRING ? (rolling == DEM_ROLLING_EPSD ? 8 : 4)
                                             : rolling == DEM_ROLLING_EPSD ? 8 : 0;
     const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py = p->period[1], pz = p->period[2];
-    demi_law_energy part[DEMI_BLOCK];
+    dem_real part[6*DEMI_BLOCK];
     dem_real kept[DEMI_MEMORY*DEMI_BLOCK];
     int q;
     DEMI_VECTOR
@@ -3320,9 +3325,17 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
             c.wall = 0;
             c.user = w->desc.law_user;
             law(&c, m, &f);
-            part[q].dashpot = part[q].elastic = part[q].shear_work = part[q].slide = part[q].shear_stored = part[q].roll = 0;
         } else {
-            demi_law(&c, m, &f, normal, tangent, rolling, clipped, ledger, &part[q]);
+            demi_law_energy energies;
+            demi_law(&c, m, &f, normal, tangent, rolling, clipped, ledger, &energies);
+            if (ledger) {
+                part[q] = energies.dashpot;
+                part[DEMI_BLOCK + q] = energies.elastic;
+                part[2*DEMI_BLOCK + q] = energies.shear_work;
+                part[3*DEMI_BLOCK + q] = energies.slide;
+                part[4*DEMI_BLOCK + q] = energies.shear_stored;
+                part[5*DEMI_BLOCK + q] = energies.roll;
+            }
         }
         if (keep) {
             for (e = 0; e < keep; e++) kept[e*DEMI_BLOCK + q] = m[e];
@@ -3349,12 +3362,12 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
         }
     if (ledger && !law)
         for (q = 0; q < hits->count; q++) {
-            energy[DEMI_E_DASHPOT] += (double)part[q].dashpot;
-            energy[DEMI_E_ELASTIC] += (double)part[q].elastic;
-            energy[DEMI_E_SHEAR_WORK] += (double)part[q].shear_work;
-            energy[DEMI_E_SLIDE] += (double)part[q].slide;
-            energy[DEMI_E_SHEAR_STORED] += (double)part[q].shear_stored;
-            energy[DEMI_E_ROLL] += (double)part[q].roll;
+            energy[DEMI_E_DASHPOT] += (double)part[q];
+            energy[DEMI_E_ELASTIC] += (double)part[DEMI_BLOCK + q];
+            energy[DEMI_E_SHEAR_WORK] += (double)part[2*DEMI_BLOCK + q];
+            energy[DEMI_E_SLIDE] += (double)part[3*DEMI_BLOCK + q];
+            energy[DEMI_E_SHEAR_STORED] += (double)part[4*DEMI_BLOCK + q];
+            energy[DEMI_E_ROLL] += (double)part[5*DEMI_BLOCK + q];
         }
 }
 
@@ -3446,58 +3459,74 @@ static void demi_pairs_any(dem_world *w, int d) {
     demi_pairs(w, d, w->normal, w->tangent, w->rolling, w->uniform, 1, w->desc.ledger, w->desc.law);
 }
 #ifndef DEM_NO_SPECIALIZE
-#define DEMI_KERNEL(NAME, NORMAL, TANGENT, UNIFORM, PERIODIC) \
-    static void NAME(dem_world *w, int d) { demi_pairs(w, d, NORMAL, TANGENT, DEM_ROLLING_NONE, UNIFORM, PERIODIC, 0, 0); }
-DEMI_KERNEL(demi_pairs_hertz,               DEM_NORMAL_HERTZ,  DEM_TANGENT_NONE,   1, 1)
-DEMI_KERNEL(demi_pairs_hertz_spring,        DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 0)
-DEMI_KERNEL(demi_pairs_hertz_spring_image,  DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 1)
-DEMI_KERNEL(demi_pairs_hertz_spring_mixed,  DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 0, 1)
-DEMI_KERNEL(demi_pairs_linear,              DEM_NORMAL_LINEAR, DEM_TANGENT_NONE,   1, 1)
-DEMI_KERNEL(demi_pairs_linear_mixed,        DEM_NORMAL_LINEAR, DEM_TANGENT_NONE,   0, 1)
-DEMI_KERNEL(demi_pairs_linear_spring,       DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1)
-DEMI_KERNEL(demi_pairs_linear_spring_mixed, DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 0, 1)
+#define DEMI_KERNEL(NAME, NORMAL, TANGENT, UNIFORM, PERIODIC, LEDGER) \
+    static void NAME(dem_world *w, int d) { \
+        demi_pairs(w, d, NORMAL, TANGENT, DEM_ROLLING_NONE, UNIFORM, PERIODIC, LEDGER, 0); \
+    }
+DEMI_KERNEL(demi_pairs_hertz,               DEM_NORMAL_HERTZ,  DEM_TANGENT_NONE,   1, 1, 0)
+DEMI_KERNEL(demi_pairs_hertz_spring,        DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 0, 0)
+DEMI_KERNEL(demi_pairs_hertz_spring_image,  DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 1, 0)
+DEMI_KERNEL(demi_pairs_hertz_spring_mixed,  DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 0, 1, 0)
+DEMI_KERNEL(demi_pairs_hertz_spring_ledger, DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 1, 1)
+DEMI_KERNEL(demi_pairs_linear,              DEM_NORMAL_LINEAR, DEM_TANGENT_NONE,   1, 1, 0)
+DEMI_KERNEL(demi_pairs_linear_mixed,        DEM_NORMAL_LINEAR, DEM_TANGENT_NONE,   0, 1, 0)
+DEMI_KERNEL(demi_pairs_linear_spring,       DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1, 0)
+DEMI_KERNEL(demi_pairs_linear_spring_mixed, DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 0, 1, 0)
 #endif
 #ifdef DEM_LAW
 static void demi_pairs_own_law(dem_world *w, int d) {
     demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 1, 0, DEM_LAW);
 }
 #endif
+#ifndef DEM_NO_SPECIALIZE
+/* A kernel for alike bodies serves only those; one for periodic axes serves open ones too. First fit wins. */
 typedef struct demi_kernel_row {
-    int normal, tangent, uniform, periodic;     /* periodic, uniform: 1 also serves 0 / only all-alike      */
+    int normal, tangent, uniform, periodic, ledger;
     void (*kernel)(dem_world *, int);
     const char *name;
 } demi_kernel_row;
+static const demi_kernel_row demi_kernel_rows[] = {
+    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 0, 0, demi_pairs_hertz_spring, "hertz + spring, alike"},
+    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 1, 0, demi_pairs_hertz_spring_image,
+     "hertz + spring, alike, periodic"},
+    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 0, 1, 0, demi_pairs_hertz_spring_mixed, "hertz + spring, mixed"},
+    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 1, 1, demi_pairs_hertz_spring_ledger,
+     "hertz + spring, alike, ledger"},
+    {DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, 1, 1, 0, demi_pairs_hertz, "hertz, alike"},
+    {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 1, 1, 0, demi_pairs_linear, "linear, alike"},
+    {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 0, 1, 0, demi_pairs_linear_mixed, "linear, mixed"},
+    {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1, 0, demi_pairs_linear_spring, "linear + spring, alike"},
+    {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 0, 1, 0, demi_pairs_linear_spring_mixed,
+     "linear + spring, mixed"}};
+#endif
 
+/* Sets the kernel for the effects in force; answers its name. */
 static const char *demi_kernel_choose(dem_world *w) {
-    const char *name = "run-time kernel";
+#ifndef DEM_NO_SPECIALIZE
+    size_t i;
+    const dem_boundary *b = w->desc.boundary;
+    const int periodic = b[0] == DEM_BOUNDARY_PERIODIC || b[1] == DEM_BOUNDARY_PERIODIC ||
+                         b[2] == DEM_BOUNDARY_PERIODIC;
+#endif
     w->kernel = demi_pairs_any;
 #ifdef DEM_LAW
-    if (w->desc.law == DEM_LAW && !w->desc.ledger) { w->kernel = demi_pairs_own_law; return "your law, inlined"; }
-#endif
-#ifndef DEM_NO_SPECIALIZE
-    {
-        static const demi_kernel_row rows[] = {
-            {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 0, demi_pairs_hertz_spring, "hertz + spring, alike"},
-            {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 1, demi_pairs_hertz_spring_image, "hertz + spring, alike, periodic"},
-            {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 0, 1, demi_pairs_hertz_spring_mixed, "hertz + spring, mixed"},
-            {DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, 1, 1, demi_pairs_hertz, "hertz, alike"},
-            {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 1, 1, demi_pairs_linear, "linear, alike"},
-            {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 0, 1, demi_pairs_linear_mixed, "linear, mixed"},
-            {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1, demi_pairs_linear_spring, "linear + spring, alike"},
-            {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 0, 1, demi_pairs_linear_spring_mixed, "linear + spring, mixed"}};
-        const int periodic = w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC || w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC ||
-                             w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC;
-        size_t i;
-        if (w->desc.ledger || w->desc.law || w->rolling != DEM_ROLLING_NONE) return name;
-        for (i = 0; i < sizeof rows/sizeof *rows; i++)
-            if (rows[i].normal == w->normal && rows[i].tangent == w->tangent && rows[i].uniform <= w->uniform &&
-                rows[i].periodic >= periodic) {
-                w->kernel = rows[i].kernel;
-                return rows[i].name;
-            }
+    if (w->desc.law == DEM_LAW && !w->desc.ledger) {
+        w->kernel = demi_pairs_own_law;
+        return "your law, inlined";
     }
 #endif
-    return name;
+#ifndef DEM_NO_SPECIALIZE
+    for (i = 0; i < sizeof demi_kernel_rows/sizeof *demi_kernel_rows; i++) {
+        const demi_kernel_row *r = &demi_kernel_rows[i];
+        if (!w->desc.law && w->rolling == DEM_ROLLING_NONE && r->ledger == (w->desc.ledger != 0) &&
+            r->normal == w->normal && r->tangent == w->tangent && r->uniform <= w->uniform &&
+            r->periodic >= periodic) {
+            w->kernel = r->kernel;
+            return r->name;
+        }
+    }
+#endif
+    return "run-time kernel";
 }
 
 /* --- walls --- */

@@ -50,7 +50,7 @@ static dem_world *linear_world(dem_vec3 gravity, double dt) {
 
 /* ---- rolling and sliding ---- */
 
-typedef struct roll { double time, speed, way, last_speed; } roll;   /* when slip ends; speed in the end */
+typedef struct roll { double time, speed, way, last_speed; } roll; /* when slip ends; speed in the end */
 static roll slide_to_roll(double mu, double v0) {
     const double contact = 5e-4, dt = contact/50, r = 0.01, sink = 9.81*contact*contact/(pi*pi);
     dem_world *world = linear_world(at(0, 0, -9.81), dt);
@@ -66,7 +66,7 @@ static roll slide_to_roll(double mu, double v0) {
         step(world, 1);
         s = state_of(world, body);
         slip = (double)s.velocity.x - r*(double)s.spin.y;
-        if (slip <= 0 && out.time <= 0) {    /* slip falls linearly: where it crossed zero                */
+        if (slip <= 0 && out.time <= 0) {    /* slip falls linearly: where it crossed zero */
             const double late = slip/(slip - before)*dt;
             out.time = dem_world_time(world) - late;
             out.speed = (double)s.velocity.x + mu*9.81*late;
@@ -79,7 +79,7 @@ static roll slide_to_roll(double mu, double v0) {
     return out;
 }
 
-typedef struct descent { double speed, rise, spin_rise, slip; } descent; /* m/s at the end; mean m/s2    */
+typedef struct descent { double speed, rise, spin_rise, slip; } descent; /* m/s at the end; mean m/s2 */
 /* From rest down an incline, with gravity tilted; accelerations over the second half of the time. */
 static descent run_down(double degrees, double g, double mu, double seconds) {
     const double contact = 5e-4, dt = contact/50, r = 0.01, a = degrees*pi/180;
@@ -128,11 +128,11 @@ static void cradle(dem_normal_law law, double size, int count, double *out) {
     material = dem_material_add(world, &stuff);
     for (i = 0; i < count; i++) ball[i] = dem_sphere_add(world, material, (dem_real)r, at(2*r*i, 0, 0));
     set_velocity(world, ball[0], at(1, 0, 0));
-    step(world, 20000);                      /* 20 contact times                                          */
+    step(world, 20000);                      /* 20 contact times */
     for (i = 0; i < count; i++) {
         out[i] = (double)state_of(world, ball[i]).velocity.x;
         CHECK_NEAR(state_of(world, ball[i]).velocity.z, 0, 1e-15);
-        CHECK(i == 0 || out[i] > out[i - 1]); /* all parted for good                                      */
+        CHECK(i == 0 || out[i] > out[i - 1]); /* all parted for good */
     }
     dem_world_destroy(world);
 }
@@ -140,7 +140,7 @@ static void cradle(dem_normal_law law, double size, int count, double *out) {
 /* ---- [MIL] ---- */
 
 static const double mill_radius = 1.5e-3, mill_dt = 1e-6;
-static dem_material mill_glass(dem_world *world) { /* pp of Fig 5.24: shear modulus 26 GPa               */
+static dem_material mill_glass(dem_world *world) { /* pp of Fig 5.24: shear modulus 26 GPa */
     dem_material_desc m = DEM_MATERIAL_DESC;
     m.density = 2500;
     m.young = DEM_R(2*(1 + 0.23)*26e9);
@@ -149,7 +149,7 @@ static dem_material mill_glass(dem_world *world) { /* pp of Fig 5.24: shear modu
     m.friction = DEM_R(0.154);
     return dem_material_add(world, &m);
 }
-static dem_material mill_lining(dem_world *world) { /* ps: shear modulus .31 GPa                         */
+static dem_material mill_lining(dem_world *world) { /* ps: shear modulus .31 GPa */
     dem_material_desc m = DEM_MATERIAL_DESC;
     m.density = 950;
     m.young = DEM_R(2*(1 + 0.42)*0.31e9);
@@ -213,7 +213,7 @@ int main(int argc, char **argv) {
     TEST("bouncing ball (MFiX DEM01): comes to rest after sqrt(2h/g)(1+e)/(1-e), heights fall as e^(2k)") {
         static const double rows[][2] = {{0.5, 0.95783}, {0.8, 2.87348}, {0.9, 6.06623}}; /* e, s for .5 m */
         int i;
-        for (i = 0; i < 3; i++) {            /* Hertz: a linear dashpot sets in with a jump, and e scatters */
+        for (i = 0; i < 3; i++) { /* Hertz: a linear dashpot sets in with a jump, and e scatters */
             const double e = rows[i][0], contact = 1e-4*rows[i][1], r = 0.01, v = sqrt(2*9.81*0.5);
             const double deep = contact*v/2.94327518, m_ball = ball_mass(2600, r);
             dem_world_desc desc = DEM_WORLD_DESC;
@@ -227,7 +227,7 @@ int main(int argc, char **argv) {
             desc.gravity.z = DEM_R(-9.81);
             desc.dt = (dem_real)(contact/200);
             desc.allow_large_dt = 1;
-            stuff.density = 2600;            /* hard: g t_c is .03 to .2 % of the speed                   */
+            stuff.density = 2600;            /* hard: g t_c is .03 to .2 % of the speed */
             stuff.young = (dem_real)(2*15*m_ball*v*v/(16*sqrt(r)*pow(deep, 2.5)));
             stuff.restitution = (dem_real)e;
             world = dem_world_create(&desc);
@@ -240,7 +240,7 @@ int main(int argc, char **argv) {
                 step(world, 4);
                 s = state_of(world, body);
                 gap = (double)s.position.z - r;
-                if (gap > 0) rest = dem_world_time(world);           /* of the last flight               */
+                if (gap > 0) rest = dem_world_time(world);           /* of the last flight */
                 if (s.velocity.z < 0) down = 1;
                 if (gap > 0 && s.velocity.z > 0 && down && bounce < 4) {
                     const double up = (double)s.velocity.z;
@@ -249,7 +249,7 @@ int main(int argc, char **argv) {
                     down = 0;
                 }
             }
-            CHECK_REL(rest, sqrt(2*0.5/9.81)*(1 + e)/(1 - e), 1e-2); /* the limit of hard contacts      */
+            CHECK_REL(rest, sqrt(2*0.5/9.81)*(1 + e)/(1 - e), 1e-2); /* the limit of hard contacts */
             CHECK_REL(rest, rows[i][1], 1e-2);
             CHECK_EQ(bounce, 4);
             dem_world_destroy(world);
@@ -325,25 +325,25 @@ int main(int argc, char **argv) {
             desc.dt = (dem_real)(refused ? 3.1e-4 : 0.006/2000);
             world = dem_world_create(&desc);
             stuff.restitution = (dem_real)e;
-            stuff.stiffness = (dem_real)k;   /* equal stiffnesses: the pair's is the same                 */
+            stuff.stiffness = (dem_real)k;   /* equal stiffnesses: the pair's is the same */
             stuff.density = (dem_real)(mi/(4*pi*ri*ri*ri/3));
             si = dem_material_add(world, &stuff);
             stuff.density = (dem_real)(mj/(4*pi*rj*rj*rj/3));
             sj = dem_material_add(world, &stuff);
             CHECK_EQ(dem_coefficients_get(world, si, sj, (dem_real)ri, (dem_real)rj, &f), DEM_OK);
-            CHECK_NEAR(f.m_eff, 2.69e-5, 0.005e-5);                   /* 2.25                              */
+            CHECK_NEAR(f.m_eff, 2.69e-5, 0.005e-5);                   /* 2.25 */
             CHECK_REL(f.kn, k, 1e-6);
-            CHECK_REL(f.cn, c, 1e-6);                                 /* damping from restitution         */
-            CHECK_NEAR((double)f.cn/(2*(double)f.m_eff), 16.65, 0.03); /* 2.26, with m rounded to 2.69     */
-            CHECK_NEAR(sqrt((double)(f.kn/f.m_eff)), 523.07, 0.4);    /* 2.27                              */
+            CHECK_REL(f.cn, c, 1e-6);                                 /* damping from restitution */
+            CHECK_NEAR((double)f.cn/(2*(double)f.m_eff), 16.65, 0.03); /* 2.26, with m rounded to 2.69 */
+            CHECK_NEAR(sqrt((double)(f.kn/f.m_eff)), 523.07, 0.4);    /* 2.27 */
             CHECK_REL(f.contact_time, pi/w, 1e-6);
-            CHECK_NEAR(f.contact_time, 0.006, 5e-5);                  /* 2.29                              */
-            CHECK_NEAR((double)f.contact_time/20, 3e-4, 0.05e-4);     /* 2.30                              */
-            CHECK_NEAR(e, 0.905, 5e-4);                               /* 2.31                              */
+            CHECK_NEAR(f.contact_time, 0.006, 5e-5);                  /* 2.29 */
+            CHECK_NEAR((double)f.contact_time/20, 3e-4, 0.05e-4);     /* 2.30 */
+            CHECK_NEAR(e, 0.905, 5e-4);                               /* 2.31 */
             a = dem_sphere_add(world, si, (dem_real)ri, at(0, 0, 0));
             b = dem_sphere_add(world, sj, (dem_real)rj, at(ri + rj, 0, 0));
             set_velocity(world, a, at(1e-3, 0, 0));
-            if (refused) {                   /* "a ratio of 1:20"                                         */
+            if (refused) {                   /* "a ratio of 1:20" */
                 CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_TIME_STEP);
                 CHECK_STR(dem_world_error(world), "t_c/20");
             } else {
@@ -354,7 +354,7 @@ int main(int argc, char **argv) {
                     if (i > 0 && gap > 0) { parted = rate; time = dem_world_time(world) - gap/rate; }
                     else step(world, 1);
                 }
-                CHECK_REL(parted/1e-3, e, 1e-4);                      /* dt = tc/2000                     */
+                CHECK_REL(parted/1e-3, e, 1e-4);                      /* dt = tc/2000 */
                 CHECK_REL(time, pi/w, 1e-3);
             }
             dem_world_destroy(world);
@@ -376,22 +376,22 @@ int main(int argc, char **argv) {
         world = dem_world_create(&desc);
         glass = mill_glass(world);
         CHECK_EQ(dem_coefficients_get(world, glass, glass, (dem_real)mill_radius, (dem_real)mill_radius, &c), DEM_OK);
-        CHECK_REL((double)c.kn*pow(2, 1.5), 2335490000, 5e-6);        /* ppNormalForceCoeff               */
-        CHECK_REL((double)c.cn*pow(2, 0.25), 59.5637, 5e-6);          /* ppNormalDampingCoeff             */
-        CHECK_REL((double)c.kt*sqrt(2.0)*mill_dt, 5696.31, 5e-6);     /* ppTanForceCoeff                  */
-        CHECK_REL((double)c.ct*pow(2, 0.25), 75.9528, 5e-6);          /* ppTanDampingCoeff                */
+        CHECK_REL((double)c.kn*pow(2, 1.5), 2335490000, 5e-6);        /* ppNormalForceCoeff */
+        CHECK_REL((double)c.cn*pow(2, 0.25), 59.5637, 5e-6);          /* ppNormalDampingCoeff */
+        CHECK_REL((double)c.kt*sqrt(2.0)*mill_dt, 5696.31, 5e-6);     /* ppTanForceCoeff */
+        CHECK_REL((double)c.ct*pow(2, 0.25), 75.9528, 5e-6);          /* ppTanDampingCoeff */
         lining = mill_lining(world);
         {
-            dem_pair pair;                   /* the table takes ps as it stands, not mixed with glass     */
+            dem_pair pair; /* the table takes ps as it stands, not mixed with glass */
             dem_pair_get(world, glass, lining, &pair);
             pair.restitution = DEM_R(0.55);
             CHECK_EQ(dem_pair_set(world, glass, lining, &pair), DEM_OK);
         }
         CHECK_EQ(dem_coefficients_get(world, glass, lining, (dem_real)mill_radius, 0, &c), DEM_OK);
-        CHECK_REL(c.kn, 32147700, 5e-6);                              /* psNormalForceCoeff               */
-        CHECK_REL(c.cn, 9.96332, 5e-6);                               /* psNormalDampingCoeff             */
-        CHECK_REL((double)c.kt*mill_dt, 67.9176, 5e-6);               /* psTanForceCoeff                  */
-        CHECK_REL(c.ct, 11.8243, 5e-6);                               /* psTanDampingCoeff                */
+        CHECK_REL(c.kn, 32147700, 5e-6);                              /* psNormalForceCoeff */
+        CHECK_REL(c.cn, 9.96332, 5e-6);                               /* psNormalDampingCoeff */
+        CHECK_REL((double)c.kt*mill_dt, 67.9176, 5e-6);               /* psTanForceCoeff */
+        CHECK_REL(c.ct, 11.8243, 5e-6);                               /* psTanDampingCoeff */
         dem_world_destroy(world);
     }
     TEST("tumbling mill thesis, Fig 5.24 in the standard mode: Hertz, Mindlin and Tsuji with E*, G*, R*, m*") {
@@ -420,8 +420,8 @@ int main(int argc, char **argv) {
             CHECK_REL(c.m_eff, M, 1e-12);
             CHECK_REL(c.damping_ratio, damping(e), 1e-12);
             CHECK_REL(c.kn, 4.0/3*E*sqrt(R), 1e-12);
-            CHECK_REL(c.cn, dash*sqrt(2*E*sqrt(R)*M), 1e-12);        /* normal stiffness 2 E* sqrt(R* d)  */
-            CHECK_REL(c.kt, 8*G*sqrt(R), 1e-12);                     /* tangential 8 G* sqrt(R* d)        */
+            CHECK_REL(c.cn, dash*sqrt(2*E*sqrt(R)*M), 1e-12); /* normal stiffness 2 E* sqrt(R* d) */
+            CHECK_REL(c.kt, 8*G*sqrt(R), 1e-12); /* tangential 8 G* sqrt(R* d) */
             CHECK_REL(c.ct, dash*sqrt(8*G*sqrt(R)*M), 1e-12);
         }
         dem_world_destroy(world);
@@ -432,7 +432,7 @@ int main(int argc, char **argv) {
         dem_coefficients_get(world, glass, glass, (dem_real)r, (dem_real)r, &c);
         {
             const double E = E1/(2*(1 - nu1*nu1)), M = m/2, R = r/2;
-            const double k = pow(320.0/81*M*0.49*pow(E, 4)*R*R, 0.2);   /* Di Maio & Di Renzo 2004       */
+            const double k = pow(320.0/81*M*0.49*pow(E, 4)*R*R, 0.2); /* Di Maio & Di Renzo 2004 */
             const double ratio = 2*(1 - nu1)/(2 - nu1);
             CHECK_REL(c.kn, k, 1e-12);
             CHECK_REL(c.cn, 2*damping(0.66)*sqrt(k*M), 1e-12);
@@ -445,10 +445,10 @@ int main(int argc, char **argv) {
     TEST("tumbling mill thesis, Fig 6.1, standard mode: every bounce has the restitution set, .66") {
         static const double heights[] = {0.003, 0.005, 0.0075};
         int i, k;
-        for (i = 0; i < 3; i++) {            /* dt about tc/90                                            */
+        for (i = 0; i < 3; i++) {            /* dt about tc/90 */
             const drop d = drop_bead(DEM_CONVENTION_STANDARD, DEM_VELOCITY_VERLET, 2e-7, FLOOR_PLANE, heights[i]);
             for (k = 0; k < 3; k++) CHECK_NEAR(d.e[k], 0.66, 0.002);
-            CHECK(d.aside <= 0);             /* exactly                                                   */
+            CHECK(d.aside <= 0);             /* exactly */
             CHECK(d.spin <= 0);
         }
     }

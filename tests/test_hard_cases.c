@@ -175,7 +175,7 @@ typedef struct turned { double size, tilt, direction, work, torque; } turned; /*
    axis keeps velocity Verlet on the circle exactly. */
 static turned turn_once(dem_vec3 axis, int own_law, int steps) {
     const double angle = 2*pi/steps, dt = 1.0/steps, distance = 1.95;
-    const double rate = sin(angle)/dt;       /* makes v(t) of velocity Verlet the rigid body's            */
+    const double rate = sin(angle)/dt;       /* makes v(t) of velocity Verlet the rigid body's */
     dem_world_desc desc = one_thread(dt);
     dem_material_desc stuff = linear_stuff(3e20/(4*pi), 1, 1, 1e6);
     dem_world *world;
@@ -196,7 +196,7 @@ static turned turn_once(dem_vec3 axis, int own_law, int steps) {
     desc.force = towards_axis;
     desc.force_user = &centre;
     if (own_law) {
-        first = at(0, 3, 4);                 /* N                                                         */
+        first = at(0, 3, 4);                 /* N */
         desc.law = frozen_spring;
         desc.law_user = &first;
         desc.law_memory = 4;
@@ -206,8 +206,8 @@ static turned turn_once(dem_vec3 axis, int own_law, int steps) {
     world = dem_world_create(&desc);
     m = dem_material_add(world, &stuff);
     for (i = 0; i < 2; i++) body[i] = dem_sphere_add(world, m, 1, mix(at(0, 0, 0), i ? distance/2 : -distance/2, n));
-    if (own_law) step(world, 1);             /* the law writes its memory                                */
-    else {                                   /* spins in place load the spring to 100 m, 3:4 in y and z  */
+    if (own_law) step(world, 1);             /* the law writes its memory */
+    else { /* spins in place load the spring to 100 m, 3:4 in y and z */
         const dem_vec3 spin = at(0, 80/distance, -60/distance);
         for (i = 0; i < 2; i++) set_motion(world, body[i], at(0, 0, 0), spin);
         step(world, steps);
@@ -215,8 +215,8 @@ static turned turn_once(dem_vec3 axis, int own_law, int steps) {
     centre.pull = pow(2*sin(angle/2)/dt, 2);
     for (i = 0; i < 2; i++)
         set_motion(world, body[i], mix(at(0, 0, 0), (i ? 1 : -1)*rate*distance/2, side),
-                   mix(at(0, 0, 0), rate, axis));            /* no slip over a step                            */
-    CHECK_EQ(dem_search_now(world), DEM_OK); /* setting a body's state drops the list                     */
+                   mix(at(0, 0, 0), rate, axis));            /* no slip over a step */
+    CHECK_EQ(dem_search_now(world), DEM_OK); /* setting a body's state drops the list */
     CHECK_EQ(dem_contacts_get(world, &c, 1), 1);
     f0 = mix(c.force, -dot(c.force, c.normal), c.normal);
     size0 = length(f0);
@@ -256,7 +256,7 @@ static void check_turned(turned t) {
     CHECK_NEAR(t.tilt, 0, 1e-10);
     CHECK_NEAR(t.torque, 0, 1e-10);
     CHECK_NEAR(t.work, 0, 1e-10);
-    CHECK_NEAR(t.direction, 0, 1e-9);        /* not in the published case: round-off of 4e5 turns   */
+    CHECK_NEAR(t.direction, 0, 1e-9);        /* not in the published case: round-off of 4e5 turns */
 }
 
 /* ---- 5.12: pairs ---- */
@@ -324,7 +324,7 @@ static dem_wall target_add(dem_world *world, dem_material m, target t) {
     case FACET: return mesh_add(world, m, facet, 3, facet_corners, 1);
     case EDGE: return mesh_add(world, m, edge, 4, edge_corners, 2);
     case VERTEX: return mesh_add(world, m, fan, 7, fan_corners, 6);
-    case GRID: return grid_floor(world, m, -2, -2, 2, 2, 20, 20);      /* a vertex below the centre       */
+    case GRID: return grid_floor(world, m, -2, -2, 2, 2, 20, 20); /* a vertex below the centre */
     case PLANE: return dem_plane_add(world, m, at(0, 0, 0), at(0, 1, 0));
     default: return none;
     }
@@ -369,7 +369,7 @@ int main(int argc, char **argv) {
             dem_sphere_add(world, dem_material_add(world, &stuff), DEM_R(0.01), at(0, 0, 0));
             CHECK_EQ(dem_step_advice(world, &advice), DEM_OK);
             CHECK_REL(advice.rayleigh, pi*0.01*sqrt(2800/shear)/(0.1631*nu[i] + 0.8766), 1e-6); /* the formula */
-            CHECK_NEAR((double)advice.rayleigh/(0.01*sqrt(2800/shear)), coefficient[i], 5e-5);  /* as printed */
+            CHECK_NEAR((double)advice.rayleigh/(0.01*sqrt(2800/shear)), coefficient[i], 5e-5); /* as printed */
             if (i == 0) {
                 CHECK_NEAR((double)advice.rayleigh*1e6, 12.928, 5e-4);
                 CHECK_REL(advice.contact_time, 40.33946e-6, 1e-4);
@@ -412,7 +412,7 @@ int main(int argc, char **argv) {
             }
             CHECK_NEAR(dz, 0, 1e-9);
             CHECK_NEAR(dv, 0, 1e-9);
-            CHECK_NEAR(df, 0, 1e-6);          /* k dz: 2000 times the height's tolerance                  */
+            CHECK_NEAR(df, 0, 1e-6);          /* k dz: 2000 times the height's tolerance */
             dem_world_destroy(world);
         }
     }
@@ -422,7 +422,7 @@ int main(int argc, char **argv) {
         const dem_material_desc stuff = linear_stuff(6/pi, 2000, 1, 0.4);
         dem_body_state last[2];
         int i, k;
-        for (k = 0; k < 3; k++) {             /* along the row of edges, over the vertex, obliquely       */
+        for (k = 0; k < 3; k++) { /* along the row of edges, over the vertex, obliquely */
             for (i = 0; i < 2; i++) {
                 dem_world_desc desc = one_thread(1e-3);
                 dem_world *world;
@@ -436,14 +436,14 @@ int main(int argc, char **argv) {
                 else mesh_add(world, m, vertices, 8, triangles, 6);
                 body = dem_sphere_add(world, m, DEM_R(0.5), at(2, k == 1 ? 0 : -0.5, 0.4995));
                 set_motion(world, body, at(-1, k == 2 ? 0.4 : 0, 0), at(0, 0, 0));
-                step(world, 1900);            /* slides for .7 s, then rolls                              */
+                step(world, 1900);            /* slides for .7 s, then rolls */
                 last[i] = state_of(world, body);
                 dem_world_destroy(world);
             }
             CHECK_NEAR(length(mix(last[0].position, -1, last[1].position)), 0, 1e-9);
             CHECK_NEAR(length(mix(last[0].velocity, -1, last[1].velocity)), 0, 1e-9);
             CHECK_NEAR(length(mix(last[0].spin, -1, last[1].spin)), 0, 1e-9);
-            CHECK_REL(last[0].velocity.x, -5.0/7, 0.02);     /* and it does roll in the end               */
+            CHECK_REL(last[0].velocity.x, -5.0/7, 0.02);     /* and it does roll in the end */
         }
     }
 
@@ -469,7 +469,7 @@ int main(int argc, char **argv) {
                 dem_plane_add(world, m, at(side, 0, 0), at(-1, 0, 0));
                 dem_plane_add(world, m, at(0, 0, -side), at(0, 0, 1));
                 dem_plane_add(world, m, at(0, 0, side), at(0, 0, -1));
-            } else {                          /* corner c: bits x, y, z                                   */
+            } else {                          /* corner c: bits x, y, z */
                 static const int32_t faces[] = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4,
                                                 1, 5, 7, 1, 7, 3, 0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5};
                 dem_real corners[24];
@@ -535,7 +535,7 @@ int main(int argc, char **argv) {
             s = state_of(world, big);
             s.fixed = 1;
             dem_body_set(world, big, &s);
-            while (n < 1000) {                /* apart from the big one; some on each other, not deep    */
+            while (n < 1000) { /* apart from the big one; some on each other, not deep */
                 const double x = 2.2*uniform(&random) - 1.1, y = 2.2*uniform(&random) - 1.1, z = 2.2*uniform(&random) - 1.1;
                 const double d = sqrt(x*x + y*y + z*z);
                 dem_body b;
@@ -592,7 +592,7 @@ int main(int argc, char **argv) {
             if (s.velocity.z < 0) was_down = 1;
         }
         CHECK(bounces >= 14);
-        CHECK_NEAR((last - top)/bounces/top, 0, 1e-6);       /* of the height, per bounce                */
+        CHECK_NEAR((last - top)/bounces/top, 0, 1e-6);       /* of the height, per bounce */
         CHECK_NEAR(worst/top, 0, 1e-6);
         CHECK_NEAR((bounces*sum_kh - sum_k*sum_h)/(bounces*sum_kk - sum_k*sum_k)/top, 0, 1e-6); /* the trend */
         dem_world_destroy(world);
@@ -624,7 +624,7 @@ int main(int argc, char **argv) {
             CHECK_NEAR(aside, 0, 1e-12);
             CHECK_NEAR(turn, 0, 1e-12);
             if (t == PLANE) height = (double)state_of(world, body).position.y;
-            CHECK_NEAR(state_of(world, body).position.y, height, 1e-9);  /* one push, not one per triangle */
+            CHECK_NEAR(state_of(world, body).position.y, height, 1e-9); /* one push, not one per triangle */
             dem_world_destroy(world);
         }
     }
@@ -633,7 +633,7 @@ int main(int argc, char **argv) {
         enum { runs = 3, samples = 80 };
         static dem_vec3 v[runs][samples], w[runs][samples];
         int t, i;
-        for (t = 0; t < runs; t++) {          /* a plane, 2 triangles, 560 triangles                     */
+        for (t = 0; t < runs; t++) {          /* a plane, 2 triangles, 560 triangles */
             dem_world_desc desc = one_thread(2e-4);
             dem_world *world;
             dem_body body;
@@ -661,7 +661,7 @@ int main(int argc, char **argv) {
                 CHECK_NEAR(length(mix(v[t][i], -1, v[0][i]))/5, 0, 1e-9);
                 CHECK_NEAR(length(mix(w[t][i], -1, w[0][i]))*0.3/5, 0, 1e-9);
             }
-        CHECK_REL(v[0][samples - 1].x, 25.0/7, 1e-3);        /* it rolls by then: 5/7 of the first speed */
+        CHECK_REL(v[0][samples - 1].x, 25.0/7, 1e-3); /* it rolls by then: 5/7 of the first speed */
     }
     return test_end();
 }

@@ -69,8 +69,9 @@ static dem_world *churn_world(const churn *c, dem_search method, dem_world_desc 
     int k;
     *desc = DEM_WORLD_DESC;
     desc->threads = 1;
-    desc->dt = DEM_R(1e-5);
+    desc->dt = DEM_R(5e-6);
     desc->allow_large_dt = 1;                  /* bits are compared, not physics */
+    desc->thickness = DEM_R(2e-3);
     desc->search = method;
     desc->skin = (dem_real)c->skin;
     desc->planar = c->planar;
@@ -78,7 +79,7 @@ static dem_world *churn_world(const churn *c, dem_search method, dem_world_desc 
     for (k = 0; k < 3; k++)
         desc->boundary[k] = c->periodic[k] ? DEM_BOUNDARY_PERIODIC : DEM_BOUNDARY_OPEN;
     world = dem_world_create(desc);
-    grain = scene_material(world, 1e6, 1, 0.3, 0);
+    grain = scene_material(world, 1e7, 1, 0.3, 0);
     for (k = 0; k < 3; k++) {
         const double e[3] = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
         const double l = c->length;
@@ -89,7 +90,7 @@ static dem_world *churn_world(const churn *c, dem_search method, dem_world_desc 
     return world;
 }
 /* Adds up to `count` grains of radii 1 to 10 mm where there is room (by the oracle), mostly small ones,
-   with a speed of 3 m/s. All worlds are alike, so one place serves them all. */
+   with a speed of up to 2 m/s along each axis. All worlds are alike, so one place serves them all. */
 static int churn_add(dem_world **world, const dem_world_desc *desc, const churn *c, int count,
                      uint64_t *seed) {
     int added = 0, tries, i, m;
@@ -101,7 +102,7 @@ static int churn_add(dem_world **world, const dem_world_desc *desc, const churn 
         int room = 1, k;
         for (k = 0; k < 3; k++) {
             x[k] = (dem_real)(r + (c->length - 2*r)*scene_random(seed));
-            v[k] = (dem_real)(6*scene_random(seed) - 3);
+            v[k] = (dem_real)(4*scene_random(seed) - 2);
         }
         if (c->planar) x[2] = v[2] = 0;
         x[3] = (dem_real)r;
@@ -112,6 +113,16 @@ static int churn_add(dem_world **world, const dem_world_desc *desc, const churn 
         added++;
     }
     return added;
+}
+/* Rebuilds every list now and holds it against the oracle. */
+static int churn_look(dem_world **world, const dem_world_desc *desc, uint64_t *rebuilds) {
+    int m, contacts, wrong = 0;
+    for (m = 0; m < METHODS; m++) {
+        CHECK_EQ(dem_search_now(world[m]), DEM_OK);
+        wrong += wrong_pairs(world[m], &desc[m], 1, &contacts);
+        rebuilds[m] = dem_counters_get(world[m]).rebuilds;
+    }
+    return wrong;
 }
 /* Takes out a random body, the same of all worlds. */
 static void churn_remove(dem_world **world, uint64_t *seed) {
@@ -128,6 +139,7 @@ static void churn_run(churn c, uint64_t seed) {
     int step, m, k, wrong = 0, miscounted = 0, apart = 0, fresh_lists = 0, touched = 0;
     for (m = 0; m < METHODS; m++) world[m] = churn_world(&c, methods[m], &desc[m]);
     CHECK(churn_add(world, &desc[0], &c, c.count, &seed) > c.count/2);
+    wrong += churn_look(world, desc, rebuilds);
     for (step = 1; step <= c.steps && wrong + miscounted + apart == 0; step++) {
         int contacts = 0;
         for (m = 0; m < METHODS; m++) {
@@ -146,10 +158,11 @@ static void churn_run(churn c, uint64_t seed) {
             if (m && step%5 == 0) apart += dem_world_hash(world[m]) != dem_world_hash(world[0]);
         }
         touched += contacts;
-        if (step%(c.steps/4) == c.steps/8) { /* as many in as out, then more in, then more out */
-            const int phase = step/(c.steps/4), out = phase%3 == 1 ? 2 : 6;
+        if (step%(c.steps/8) == c.steps/16) { /* as many in as out, then more in, then more out */
+            const int phase = step/(c.steps/8), out = phase%3 == 1 ? 2 : 6;
             for (k = 0; k < out; k++) churn_remove(world, &seed);
             churn_add(world, &desc[0], &c, phase%3 == 2 ? 1 : 6, &seed);
+            wrong += churn_look(world, desc, rebuilds);
         }
     }
     CHECK_EQ(wrong, 0);
@@ -164,11 +177,11 @@ static void churn_skins(int x, int y, int z, int planar) {
     c.periodic[0] = x; c.periodic[1] = y; c.periodic[2] = z;
     c.planar = planar;
     if (planar) c.length = 0.2;
-    c.skin = -1; c.steps = 160;
+    c.skin = -1; c.steps = 96;
     churn_run(c, 1);
-    c.skin = 0; c.steps = 1600;
+    c.skin = 0; c.steps = 960;
     churn_run(c, 2);
-    c.skin = 2e-3; c.steps = 1600;
+    c.skin = 2e-3; c.steps = 960;
     churn_run(c, 3);
 }
 
@@ -206,17 +219,15 @@ int main(int argc, char **argv) {
         dem_world *world[METHODS];
         dem_world_desc desc[METHODS];
         uint64_t seed = 9;
-        int m, round, wrong = 0, contacts = 0;
+        uint64_t rebuilds[METHODS];
+        int m, round, wrong = 0;
         for (m = 0; m < METHODS; m++) world[m] = churn_world(&c, methods[m], &desc[m]);
         churn_add(world, &desc[0], &c, c.count, &seed);
         for (round = 0; round < 40; round++) {
             for (m = 0; m < METHODS; m++) scene_step(world[m], 3);
             churn_remove(world, &seed);
             churn_add(world, &desc[0], &c, 1, &seed);
-            for (m = 0; m < METHODS; m++) {
-                CHECK_EQ(dem_search_now(world[m]), DEM_OK);
-                wrong += wrong_pairs(world[m], &desc[m], 1, &contacts);
-            }
+            wrong += churn_look(world, desc, rebuilds);
         }
         CHECK_EQ(wrong, 0);
         for (m = 0; m < METHODS; m++) dem_world_destroy(world[m]);
@@ -319,20 +330,21 @@ int main(int argc, char **argv) {
         uint64_t seed = 11;
         int i;
         desc.threads = 1;
-        desc.dt = DEM_R(1e-5);
+        desc.dt = DEM_R(2e-6);
         desc.allow_large_dt = 1;
         desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
         desc.domain = box_of(0, 0, 0, 4.5e-3, 0.03, 0.03);      /* a slice of 4.5 radii */
         world = dem_world_create(&desc);
-        grain = scene_material(world, 1e6, 1, 0, 0);
+        grain = scene_material(world, 1e8, 1, 0, 0);
         for (i = 1; i < 3; i++) {
             dem_plane_add(world, grain, at(0, 0, 0), at(0, i == 1, i == 2));
             dem_plane_add(world, grain, at(0, 0.03, 0.03), at(0, -(i == 1), -(i == 2)));
         }
-        for (i = 0; i < 25; i++) {              /* few and fast: a wide skin would pay */
+        for (i = 0; i < 25; i++) {              /* few: a wide skin pays */
             dem_body b = dem_sphere_add(world, grain, DEM_R(1e-3),
                                         at(2e-3, 3e-3 + 5e-3*(i%5), 3e-3 + 5e-3*(i/5)));
-            scene_move(world, b, at(0, 10*scene_random(&seed) - 5, 10*scene_random(&seed) - 5), at(0, 0, 0));
+            scene_move(world, b, at(0, 4*scene_random(&seed) - 2, 4*scene_random(&seed) - 2),
+                       at(0, 0, 0));
         }
         CHECK_EQ(scene_step(world, 4000), DEM_OK);
         dem_world_destroy(world);
