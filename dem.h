@@ -1,7 +1,7 @@
 /* dem.h - version 0.1.0 - discrete-element (granular) simulation in one C99 header. MIT licence.
 
-   It simulates grains: spheres of any radius (or discs, in a plane) that touch, rub, roll and bounce
-   on each other and on moving walls.
+   It simulates grains: spheres of any radius (or discs, in a plane) that touch, rub, roll and
+   bounce on each other and on moving walls.
 
    Do this in *one* C or C++ file to get the implementation, and include it plainly elsewhere:
 
@@ -31,9 +31,9 @@
        >>world       create, destroy, report
 */
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>manual
-   ------------------------------------------------------------------------------------------------
+   ---------------------------------------------------------------------------------------------
    A complete program: 5000 glass beads fall into a heap.
 
        #define DEM_IMPLEMENTATION
@@ -41,7 +41,7 @@
        #include <stdio.h>
 
        int main(void) {
-           dem_world_desc desc = DEM_WORLD_DESC;           // zeros: nothing asked for, nothing simulated
+           dem_world_desc desc = DEM_WORLD_DESC;   // zeros: nothing asked, nothing simulated
            desc.gravity.z = -9.81;                         // m/s2
            dem_world *world = dem_world_create(&desc);
 
@@ -54,23 +54,27 @@
            dem_material glass = dem_material_add(world, &glass_desc);
 
            dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-           dem_spheres_fill(world, glass, 1.5e-3, dem_box_make(-0.05, -0.05, 0.01, 0.05, 0.05, 0.15), 5000, 1);
+           dem_box box = dem_box_make(-0.05, -0.05, 0.01, 0.05, 0.05, 0.15);
+           dem_spheres_fill(world, glass, 1.5e-3, box, 5000, 1);
 
-           if (dem_world_run(world, 0.2, dem_progress_print, stderr) != DEM_OK) puts(dem_world_error(world));
+           if (dem_world_run(world, 0.2, dem_progress_print, stderr) != DEM_OK)
+               puts(dem_world_error(world));
            dem_world_report(world, stdout);
            dem_vtp_write(world, "pile.vtp");
            dem_world_destroy(world);
            return 0;
        }
 
-   Conventions. SI units throughout. Overlap is positive when two bodies touch. The normal of a contact
-   points from body a to body b; of a wall contact, from the grain to the wall. `closing_speed` is
-   positive when the two approach. Forces in a `dem_push` are those on body a, except `normal`, which is
-   the repulsion (positive pushes the two apart). Rotations are right-handed. Angles are in radians.
+   Conventions. SI units throughout. Overlap is positive when two bodies touch. The normal of a
+   contact points from body a to body b; of a wall contact, from the grain to the wall.
+   `closing_speed` is positive when the two approach. Forces in a `dem_push` are those on body a,
+   except `normal`, which is the repulsion (positive pushes the two apart). Rotations are
+   right-handed. Angles are in radians.
 
    One step, in the order in which data flows (the same numbers stand in demi_step_once):
        1 move      first half kick, drift, predicted velocity; walls follow their motion
-       2 search    if something moved half the skin: sort bodies by cell, rebuild the candidate list,
+       2 search    if something moved half the skin: sort bodies by cell, rebuild the candidate
+                   list,
                    carry contact memory over
        3 touch     candidate pairs -> contacts: who, where, normal, overlap
        4 respond   contact -> force and torque, by the law chosen
@@ -82,8 +86,8 @@
 
    What dem.h does not do: fluids, breakage, bonds, heat; implicit integration; graphics.
 
-   Options are fields of `dem_world_desc`; zero there means absent, or "chosen for you". What was chosen
-   is told by dem_world_report. Compile-time options:
+   Options are fields of `dem_world_desc`; zero there means absent, or "chosen for you". What was
+   chosen is told by dem_world_report. Compile-time options:
        DEM_REAL           double (default) or float: the type of all state
        DEM_STATIC         makes every function static
        DEM_LAW            name of your contact law, to have it inlined (see >>add-law)
@@ -92,20 +96,22 @@
        DEM_ASSERT(x)      what checks for our own bugs; default: nothing
 
    Memory. All of it comes from the allocator of the world desc (default malloc and free). A step
-   allocates nothing once the world is warm; it may grow lists when more grains come together than before.
+   allocates nothing once the world is warm; it may grow lists when more grains come together than
+   before.
 
-   Errors. A function that can fail returns a `dem_result`, or a null id or null pointer, and leaves one
-   sentence in dem_world_error: the call, the value, the limit, the likely cause, the remedy. The world
-   stays as it was before the call. A run that cannot be right (a force that is not finite, an overlap
-   larger than a radius) stops at the step that caused it. dem.h never prints, exits or aborts.
+   Errors. A function that can fail returns a `dem_result`, or a null id or null pointer, and leaves
+   one sentence in dem_world_error: the call, the value, the limit, the likely cause, the remedy.
+   The world stays as it was before the call. A run that cannot be right (a force that is not
+   finite, an overlap larger than a radius) stops at the step that caused it. dem.h never prints,
+   exits or aborts.
 
-   Threads. Different worlds may be used from different threads. Within a world, `threads` of the desc
-   sets the OpenMP threads; the same input gives the same bits for any number of them: bodies are dealt
-   to domains that depend on the number of bodies only, and every sum runs in a fixed order. To compare
-   bits between builds, compile with -ffp-contract=off.
+   Threads. Different worlds may be used from different threads. Within a world, `threads` of the
+   desc sets the OpenMP threads; the same input gives the same bits for any number of them: bodies
+   are dealt to domains that depend on the number of bodies only, and every sum runs in a fixed
+   order. To compare bits between builds, compile with -ffp-contract=off.
 
-   Extending. A contact law is one function (>>add-law), a wall a function and a table row (>>add-wall),
-   an integrator likewise (>>add-integrator). docs/extending.md walks through each.
+   Extending. A contact law is one function (>>add-law), a wall a function and a table row
+   (>>add-wall), an integrator likewise (>>add-integrator). docs/extending.md walks through each.
 
    References, by the keys used below:
      [AI11]    Ai, Chen, Rotter & Ooi, Powder Technol. 206 (2011) 269: rolling resistance
@@ -123,9 +129,9 @@
      [ZHO99]   Zhou et al., Physica A 269 (1999) 536: constant rolling torque
 */
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>api
-   ------------------------------------------------------------------------------------------------ */
+   --------------------------------------------------------------------------------------------- */
 #ifndef DEM_H
 #define DEM_H
 
@@ -152,7 +158,8 @@ typedef DEM_REAL dem_real;
 #define DEM_API extern
 #endif
 
-/* For small functions that belong into kernels: contact laws named by DEM_LAW. Inlined whatever it takes. */
+/* For small functions that belong into kernels: contact laws named by DEM_LAW. Inlined whatever it
+   takes. */
 #if defined(__GNUC__) && !defined(__TINYC__)
 #define DEM_INLINE static inline __attribute__((always_inline))
 #else
@@ -166,146 +173,151 @@ extern "C" {
 /* ---- results ---- */
 typedef enum dem_result {
     DEM_OK = 0,
-    DEM_ERROR_ARGUMENT,  /* a value outside its limits, an id that names nothing                      */
-    DEM_ERROR_MEMORY,    /* the allocator gave nothing                                                */
-    DEM_ERROR_FILE,      /* a file could not be opened, read, written or renamed                      */
-    DEM_ERROR_FORMAT,    /* a file's contents are not what the format says; or of another version     */
-    DEM_ERROR_TIME_STEP, /* the time step is larger than the stiffest contact allows                  */
-    DEM_ERROR_UNSTABLE,  /* the run blew up: a force not finite, an overlap beyond a radius           */
-    DEM_ERROR_STOPPED    /* the progress callback asked to stop                                       */
+    DEM_ERROR_ARGUMENT,  /* a value outside its limits, an id that names nothing */
+    DEM_ERROR_MEMORY,    /* the allocator gave nothing */
+    DEM_ERROR_FILE,      /* a file could not be opened, read, written or renamed */
+    DEM_ERROR_FORMAT,    /* a file's contents are not what the format says; or of another version */
+    DEM_ERROR_TIME_STEP, /* the time step is larger than the stiffest contact allows */
+    DEM_ERROR_UNSTABLE,  /* the run blew up: a force not finite, an overlap beyond a radius */
+    DEM_ERROR_STOPPED    /* the progress callback asked to stop */
 } dem_result;
 
 /* ---- vectors, boxes, poses ---- */
 typedef struct dem_vec3 { dem_real x, y, z; } dem_vec3;
 typedef struct dem_box { dem_vec3 lo, hi; } dem_box;
 
-/* Where a rigid wall is and how it moves. rotation is row-major: world = position + rotation * local. */
+/* Where a rigid wall is and how it moves. rotation is row-major: world = position + rotation *
+   local. */
 typedef struct dem_pose {
-    dem_vec3 position;    /* m                                                                        */
-    dem_real rotation[9]; /* orthonormal, 3 x 3                                                       */
-    dem_vec3 velocity;    /* m/s, of `position`                                                       */
-    dem_vec3 spin;        /* rad/s, about `position`                                                  */
+    dem_vec3 position;    /* m */
+    dem_real rotation[9]; /* orthonormal, 3 x 3 */
+    dem_vec3 velocity;    /* m/s, of `position` */
+    dem_vec3 spin;        /* rad/s, about `position` */
 } dem_pose;
 
 DEM_INLINE dem_vec3 dem_vec3_make(dem_real x, dem_real y, dem_real z) {
     dem_vec3 v; v.x = x; v.y = y; v.z = z; return v;
 }
-DEM_INLINE dem_box dem_box_make(dem_real x0, dem_real y0, dem_real z0, dem_real x1, dem_real y1, dem_real z1) {
+DEM_INLINE dem_box dem_box_make(dem_real x0, dem_real y0, dem_real z0, dem_real x1, dem_real y1,
+                                dem_real z1) {
     dem_box b; b.lo = dem_vec3_make(x0, y0, z0); b.hi = dem_vec3_make(x1, y1, z1); return b;
 }
 
 /* ---- ids: all-zero names nothing ---- */
-typedef struct dem_material { int32_t id; } dem_material;                    /* id counts from 1      */
-typedef struct dem_wall { int32_t id; } dem_wall;                            /* id counts from 1      */
-typedef struct dem_field { int32_t id; } dem_field;                          /* id counts from 1      */
-typedef struct dem_body { uint32_t slot, generation; } dem_body;             /* slot counts from 1    */
+typedef struct dem_material { int32_t id; } dem_material;                    /* id counts from 1 */
+typedef struct dem_wall { int32_t id; } dem_wall;                            /* id counts from 1 */
+typedef struct dem_field { int32_t id; } dem_field;                          /* id counts from 1 */
+typedef struct dem_body { uint32_t slot, generation; } dem_body;  /* slot counts from 1 */
 
 typedef struct dem_world dem_world;
 
 /* ---- choices ---- */
 typedef enum dem_normal_law {
-    DEM_NORMAL_HERTZ = 0,  /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92]                    */
-    DEM_NORMAL_LINEAR      /* F = kn delta + cn v; kn given, or from Young's modulus and a speed       */
+    DEM_NORMAL_HERTZ = 0,  /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92] */
+    DEM_NORMAL_LINEAR      /* F = kn delta + cn v; kn given, or from Young's modulus and a speed */
 } dem_normal_law;
 
 typedef enum dem_tangent_law {
-    DEM_TANGENT_AUTO = 0,       /* DEM_TANGENT_SPRING when any pair has friction, else none            */
-    DEM_TANGENT_NONE,           /* no tangential force at all                                          */
-    DEM_TANGENT_VISCOUS,        /* -ct v_t, capped by Coulomb                                          */
-    DEM_TANGENT_STEP,           /* [MIL]: -kt (v_t dt) - ct v_t, capped; without memory                */
-    DEM_TANGENT_SPRING,         /* [CS79]: -kt xi - ct v_t, xi = integral of v_t dt, capped            */
-    DEM_TANGENT_MINDLIN,        /* [DIR05]: increments of force, kt of the present overlap; capped     */
-    DEM_TANGENT_MINDLIN_RESCALED/* [THO13]: the same, force scaled down with kt while unloading        */
+    DEM_TANGENT_AUTO = 0,       /* DEM_TANGENT_SPRING when any pair has friction, else none */
+    DEM_TANGENT_NONE,           /* no tangential force at all */
+    DEM_TANGENT_VISCOUS,        /* -ct v_t, capped by Coulomb */
+    DEM_TANGENT_STEP,           /* [MIL]: -kt (v_t dt) - ct v_t, capped; without memory */
+    DEM_TANGENT_SPRING,         /* [CS79]: -kt xi - ct v_t, xi = integral of v_t dt, capped */
+    DEM_TANGENT_MINDLIN,  /* [DIR05]: increments of force, kt of the present overlap; capped */
+    DEM_TANGENT_MINDLIN_RESCALED/* [THO13]: the same, force scaled down with kt while unloading */
 } dem_tangent_law;
 
 typedef enum dem_rolling_law {
-    DEM_ROLLING_AUTO = 0,   /* DEM_ROLLING_EPSD when any pair has rolling friction, else none          */
+    DEM_ROLLING_AUTO = 0,   /* DEM_ROLLING_EPSD when any pair has rolling friction, else none */
     DEM_ROLLING_NONE,
-    DEM_ROLLING_STEP,       /* [MIL] section 4.5: mu_r R min(Fn, |w|), dimensions as printed           */
-    DEM_ROLLING_CONSTANT,   /* [ZHO99]: mu_r R* Fn against the relative spin                           */
-    DEM_ROLLING_EPSD        /* [AI11]: elastic-plastic spring-dashpot, with memory                     */
+    DEM_ROLLING_STEP,       /* [MIL] section 4.5: mu_r R min(Fn, |w|), dimensions as printed */
+    DEM_ROLLING_CONSTANT,   /* [ZHO99]: mu_r R* Fn against the relative spin */
+    DEM_ROLLING_EPSD        /* [AI11]: elastic-plastic spring-dashpot, with memory */
 } dem_rolling_law;
 
 typedef enum dem_tension {
-    DEM_TENSION_KEPT = 0,   /* the dashpot may pull at the end of a contact: restitution is as set     */
+    DEM_TENSION_KEPT = 0,  /* the dashpot may pull at the end of a contact: restitution is as set */
     DEM_TENSION_CLIPPED     /* never pull: the contact ends at zero force; restitution comes out higher
-                               (.66 gives about .69) [SP07]                                            */
+                               (.66 gives about .69) [SP07] */
 } dem_tension;
 
 typedef enum dem_convention {
-    DEM_CONVENTION_STANDARD = 0, /* E*, G*, R*, m* and overlap as in the contact literature            */
+    DEM_CONVENTION_STANDARD = 0, /* E*, G*, R*, m* and overlap as in the contact literature */
     DEM_CONVENTION_MILL          /* [MIL] Fig 5.23: E* = E, 8 G, half overlaps between grains, R/2 and
-                                    m/2 against walls. For reproducing that thesis only                */
+                                    m/2 against walls. For reproducing that thesis only */
 } dem_convention;
 
 typedef enum dem_integrator {
-    DEM_VELOCITY_VERLET = 0, /* second order; the default                                              */
-    DEM_FORWARD_EULER,       /* first order, gains energy; what [MIL] used                             */
-    DEM_SYMPLECTIC_EULER,    /* first order, energy bounded                                            */
-    DEM_POSITION_VERLET,     /* original Verlet: x(t+dt) = 2 x(t) - x(t-dt) + a dt^2                    */
-    DEM_LEAPFROG             /* velocities kept at half steps; same path as velocity Verlet            */
+    DEM_VELOCITY_VERLET = 0, /* second order; the default */
+    DEM_FORWARD_EULER,       /* first order, gains energy; what [MIL] used */
+    DEM_SYMPLECTIC_EULER,    /* first order, energy bounded */
+    DEM_POSITION_VERLET,     /* original Verlet: x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 */
+    DEM_LEAPFROG             /* velocities kept at half steps; same path as velocity Verlet */
 } dem_integrator;
 
 typedef enum dem_search {
-    DEM_SEARCH_AUTO = 0,     /* the library decides; dem_world_report says what                        */
-    DEM_SEARCH_ALL_PAIRS,    /* every pair; the oracle for the others                                  */
-    DEM_SEARCH_GRID,         /* uniform grid of cells                                                  */
-    DEM_SEARCH_LINKED_LIST   /* linked linear list [FEN] 2.3.2: sorted box ends on three axes          */
+    DEM_SEARCH_AUTO = 0,     /* the library decides; dem_world_report says what */
+    DEM_SEARCH_ALL_PAIRS,    /* every pair; the oracle for the others */
+    DEM_SEARCH_GRID,         /* uniform grid of cells */
+    DEM_SEARCH_LINKED_LIST   /* linked linear list [FEN] 2.3.2: sorted box ends on three axes */
 } dem_search;
 
 typedef enum dem_boundary {
-    DEM_BOUNDARY_OPEN = 0,   /* bodies may leave the domain box; nothing happens                       */
-    DEM_BOUNDARY_PERIODIC,   /* leaves on one side, enters on the other                                */
-    DEM_BOUNDARY_OUTFLOW     /* bodies whose centre leaves the box are taken out and counted as left   */
+    DEM_BOUNDARY_OPEN = 0,   /* bodies may leave the domain box; nothing happens */
+    DEM_BOUNDARY_PERIODIC,   /* leaves on one side, enters on the other */
+    DEM_BOUNDARY_OUTFLOW  /* bodies whose centre leaves the box are taken out and counted as left */
 } dem_boundary;
 
 /* ---- a contact, and a law of one's own ---- */
 
-/* What a law sees: this contact and nothing else. Velocities are of body a relative to body b, or to the
-   wall's surface, at the full step: what dashpots and friction take. Displacements kept in memory grow by
-   slip_step dt, the very displacement of the step: so springs conserve energy as the integrator does. */
+/* What a law sees: this contact and nothing else. Velocities are of body a relative to body b, or
+   to the wall's surface, at the full step: what dashpots and friction take. Displacements kept in
+   memory grow by slip_step dt, the very displacement of the step: so springs conserve energy as the
+   integrator does. */
 typedef struct dem_contact {
-    dem_real overlap;        /* m, > 0                                                                */
-    dem_real closing_speed;  /* m/s, positive while approaching                                       */
-    dem_vec3 normal;         /* unit, from a to b                                                     */
-    dem_vec3 slip;           /* m/s, tangential velocity at the contact point, rotation included      */
-    dem_vec3 spin;           /* rad/s, spin of a minus spin of b                                      */
-    dem_vec3 slip_step;      /* m/s, slip averaged over the step just taken: what memory integrates    */
-    dem_vec3 spin_step;      /* rad/s, spin averaged over the step just taken                         */
-    dem_vec3 normal_rate;    /* 1/s, how the normal turned in that step; for dem_memory_turn          */
-    dem_real twist;          /* rad/s, how the contact plane turned about the normal                  */
-    dem_real r_eff;          /* m,  1/(1/Ra + 1/Rb);  Ra against a wall                               */
-    dem_real m_eff;          /* kg, 1/(1/ma + 1/mb);  ma against a wall                               */
-    dem_real dt;             /* s, to integrate memory with; 0: memory must be left as it is          */
-    dem_real kn, cn;         /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear)   */
-    dem_real kt, ct;         /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear)   */
+    dem_real overlap;        /* m, > 0 */
+    dem_real closing_speed;  /* m/s, positive while approaching */
+    dem_vec3 normal;         /* unit, from a to b */
+    dem_vec3 slip;           /* m/s, tangential velocity at the contact point, rotation included */
+    dem_vec3 spin;           /* rad/s, spin of a minus spin of b */
+    dem_vec3 slip_step;  /* m/s, slip averaged over the step just taken: what memory integrates */
+    dem_vec3 spin_step;      /* rad/s, spin averaged over the step just taken */
+    dem_vec3 normal_rate;    /* 1/s, how the normal turned in that step; for dem_memory_turn */
+    dem_real twist;          /* rad/s, how the contact plane turned about the normal */
+    dem_real r_eff;          /* m,  1/(1/Ra + 1/Rb);  Ra against a wall */
+    dem_real m_eff;          /* kg, 1/(1/ma + 1/mb);  ma against a wall */
+    dem_real dt;             /* s, to integrate memory with; 0: memory must be left as it is */
+    dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear) */
+    dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear) */
     dem_real friction, friction_static, rolling_friction;
-    int32_t material_a, material_b; /* dem_material ids                                               */
-    int32_t wall;            /* 0: b is a grain; otherwise the dem_wall id                            */
-    void *user;              /* law_user of the world desc                                            */
+    int32_t material_a, material_b; /* dem_material ids */
+    int32_t wall;            /* 0: b is a grain; otherwise the dem_wall id */
+    void *user;              /* law_user of the world desc */
 } dem_contact;
 
 /* What a law answers. Zeroed before the law is called. */
 typedef struct dem_push {
-    dem_real normal;         /* N, repulsion: positive pushes apart                                   */
-    dem_vec3 tangent;        /* N, on a (b gets the opposite), at the contact point                   */
-    dem_vec3 moment;         /* N m, on a (b gets the opposite): rolling resistance                   */
+    dem_real normal;         /* N, repulsion: positive pushes apart */
+    dem_vec3 tangent;        /* N, on a (b gets the opposite), at the contact point */
+    dem_vec3 moment;         /* N m, on a (b gets the opposite): rolling resistance */
 } dem_push;
 
-/* A contact law. memory holds law_memory reals that start at zero when the contact begins and are kept
-   while it lasts. Must not look at anything but its arguments and c->user; is called from several threads.
-   When a contact turns round (a and b change places) the first 3*law_vectors reals of the memory change
-   sign: put there what is a vector, such as a tangential spring, and scalars after them. */
+/* A contact law. memory holds law_memory reals that start at zero when the contact begins and are
+   kept while it lasts. Must not look at anything but its arguments and c->user; is called from
+   several threads. When a contact turns round (a and b change places) the first 3*law_vectors reals
+   of the memory change sign: put there what is a vector, such as a tangential spring, and scalars
+   after them. */
 typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_push *push);
 
-/* A vector kept in contact memory, carried along with the contact plane over the last step: turned with the
-   normal, spun with the mean twist of the two bodies; lies in the tangent plane, keeps its length. Laws with
-   memory begin with this. (Rotation by n_old -> n is exact to sixth order of the angle of one step.) */
+/* A vector kept in contact memory, carried along with the contact plane over the last step: turned
+   with the normal, spun with the mean twist of the two bodies; lies in the tangent plane, keeps its
+   length. Laws with memory begin with this. (Rotation by n_old -> n is exact to sixth order of the
+   angle of one step.) */
 DEM_INLINE dem_vec3 dem_memory_turn(const dem_contact *c, dem_vec3 v) {
     const dem_vec3 n = c->normal, r = c->normal_rate;
-    const dem_real g = v.x*n.x + v.y*n.y + v.z*n.z;      /* what sticks out of the plane              */
-    const dem_real e = c->dt*c->dt*(r.x*r.x + r.y*r.y + r.z*r.z);  /* sin^2 of the angle                 */
-    const dem_real h = g*c->dt*(DEM_R(0.5) + e/8);       /* 1/(1 + cos)                               */
+    const dem_real g = v.x*n.x + v.y*n.y + v.z*n.z;      /* what sticks out of the plane */
+    const dem_real e = c->dt*c->dt*(r.x*r.x + r.y*r.y + r.z*r.z);  /* sin^2 of the angle */
+    const dem_real h = g*c->dt*(DEM_R(0.5) + e/8);       /* 1/(1 + cos) */
     const dem_real t = c->dt*c->twist, q = 1 - t*t/2;
     const dem_real x = v.x - g*n.x + h*r.x, y = v.y - g*n.y + h*r.y, z = v.z - g*n.z + h*r.z;
     dem_vec3 out;
@@ -315,16 +327,18 @@ DEM_INLINE dem_vec3 dem_memory_turn(const dem_contact *c, dem_vec3 v) {
     return out;
 }
 
-/* Force in N on a body at position (m) with velocity (m/s), of radius (m) and mass (kg), at time (s).
-   Called once per body and step, from several threads. */
-typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real radius, dem_real mass,
+/* Force in N on a body at position (m) with velocity (m/s), of radius (m) and mass (kg), at time
+   (s). Called once per body and step, from several threads. */
+typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real radius,
+                                 dem_real mass,
                                  double time, void *user);
 
-/* Fills in a wall's pose at a time (s). Called twice a step (for its end and its middle) from one thread. Must be smooth, with velocity
-   and spin the exact derivatives of position and rotation. */
+/* Fills in a wall's pose at a time (s). Called twice a step (for its end and its middle) from one
+   thread. Must be smooth, with velocity and spin the exact derivatives of position and rotation. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
 
-/* Both functions or neither. size is given back on release. May be called from one thread at a time. */
+/* Both functions or neither. size is given back on release. May be called from one thread at a
+   time. */
 typedef struct dem_allocator {
     void *(*alloc_fn)(size_t size, void *user);
     void (*free_fn)(void *memory, size_t size, void *user);
@@ -333,36 +347,36 @@ typedef struct dem_allocator {
 
 /* ---- world ---- */
 typedef struct dem_world_desc {
-    dem_vec3 gravity;              /* m/s2; 0: none                                                    */
-    dem_box domain;                /* m; needed for periodic and outflow boundaries; 0: unbounded      */
-    dem_boundary boundary[3];      /* per axis                                                         */
-    int planar;                    /* 1: discs in the x-y plane: z and the spins about x, y stay put   */
-    dem_real thickness;            /* m, of discs; 0: 1 m                                              */
+    dem_vec3 gravity;              /* m/s2; 0: none */
+    dem_box domain;                /* m; needed for periodic and outflow boundaries; 0: unbounded */
+    dem_boundary boundary[3];      /* per axis */
+    int planar;  /* 1: discs in the x-y plane: z and the spins about x, y stay put */
+    dem_real thickness;            /* m, of discs; 0: 1 m */
 
     dem_normal_law normal_law;
     dem_tangent_law tangent_law;
     dem_rolling_law rolling_law;
     dem_tension tension;
     dem_convention convention;
-    dem_law_fn law;                /* your law; replaces normal, tangential and rolling laws           */
-    void *law_user;                /* handed to your law as c->user                                    */
-    int law_memory;                /* reals of memory per contact for your law, 0..8                   */
-    int law_vectors;               /* how many leading triples of them are vectors, 0..law_memory/3    */
-    dem_real law_stiffness;        /* N/m, the stiffest your law gets: for the time step; 0: built-in  */
+    dem_law_fn law;                /* your law; replaces normal, tangential and rolling laws */
+    void *law_user;                /* handed to your law as c->user */
+    int law_memory;                /* reals of memory per contact for your law, 0..8 */
+    int law_vectors;  /* how many leading triples of them are vectors, 0..law_memory/3 */
+    dem_real law_stiffness;  /* N/m, the stiffest your law gets: for the time step; 0: built-in */
 
-    dem_force_fn force;            /* force field of your own; 0: none                                 */
+    dem_force_fn force;            /* force field of your own; 0: none */
     void *force_user;
 
     dem_integrator integrator;
-    dem_real dt;                   /* s; 0: chosen from the live scene, see dem_step_advice            */
-    int allow_large_dt;            /* 1: run even when dt exceeds t_c/20. For showing what happens      */
+    dem_real dt;                   /* s; 0: chosen from the live scene, see dem_step_advice */
+    int allow_large_dt;  /* 1: run even when dt exceeds t_c/20. For showing what happens */
     dem_real impact_speed;         /* m/s, typical: for linear stiffness and the time step; 0: estimated
-                                      from gravity, walls and grains (linear stiffness: 1 m/s)         */
+                                      from gravity, walls and grains (linear stiffness: 1 m/s) */
     dem_search search;
     dem_real skin;                 /* m, margin of the candidate list; 0: chosen; < 0: none, the list is
-                                      rebuilt every step                                               */
-    int ledger;                    /* 1: account for energy: dem_ledger_get                            */
-    int threads;                   /* 0: as many as OpenMP offers; 1..64                               */
+                                      rebuilt every step */
+    int ledger;                    /* 1: account for energy: dem_ledger_get */
+    int threads;                   /* 0: as many as OpenMP offers; 1..64 */
     dem_allocator allocator;
 } dem_world_desc;
 static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0, 0}},
@@ -371,8 +385,8 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
-/* Creates an empty world. Returns null when a value is out of its limits or memory runs out; why is told
-   by dem_create_error(desc). */
+/* Creates an empty world. Returns null when a value is out of its limits or memory runs out; why is
+   told by dem_create_error(desc). */
 static inline dem_world *dem_world_create(const dem_world_desc *desc);
 /* One sentence on why dem_world_create refuses this desc, or "" when it does not. */
 DEM_API const char *dem_create_error(const dem_world_desc *desc);
@@ -385,15 +399,15 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
 
 /* ---- materials ---- */
 typedef struct dem_material_desc {
-    dem_real density;          /* kg/m3, required, > 0                                                */
-    dem_real young;            /* Pa, required, > 0 (for a linear law with stiffness: not needed)     */
-    dem_real poisson;          /* 0 <= nu < 0.5; 0 is a physical value                                */
-    dem_real restitution;      /* required, 0 < e <= 1: speed after over speed before a normal impact */
-    dem_real friction;         /* sliding friction mu, >= 0; 0: none                                  */
-    dem_real friction_static;  /* >= friction; 0: the same as friction                                */
-    dem_real rolling_friction; /* mu_r, >= 0, of the effective radius; 0: none                        */
-    dem_real stiffness;        /* N/m, linear law only; 0: from young and impact_speed [DIM04]        */
-    dem_real stiffness_ratio;  /* kt/kn of the linear law; 0: 2(1-nu)/(2-nu)                          */
+    dem_real density;          /* kg/m3, required, > 0 */
+    dem_real young;            /* Pa, required, > 0 (for a linear law with stiffness: not needed) */
+    dem_real poisson;          /* 0 <= nu < 0.5; 0 is a physical value */
+    dem_real restitution;  /* required, 0 < e <= 1: speed after over speed before a normal impact */
+    dem_real friction;         /* sliding friction mu, >= 0; 0: none */
+    dem_real friction_static;  /* >= friction; 0: the same as friction */
+    dem_real rolling_friction; /* mu_r, >= 0, of the effective radius; 0: none */
+    dem_real stiffness;        /* N/m, linear law only; 0: from young and impact_speed [DIM04] */
+    dem_real stiffness_ratio;  /* kt/kn of the linear law; 0: 2(1-nu)/(2-nu) */
 } dem_material_desc;
 static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0};
 #define DEM_MATERIAL_DESC DEM_MATERIAL_DESC_ZERO
@@ -401,77 +415,91 @@ static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0,
 /* Adds a material. At most 64. Null id on bad values. */
 DEM_API dem_material dem_material_add(dem_world *world, const dem_material_desc *desc);
 
-/* What holds between two materials. Mixed from both when not set: restitution, friction, static friction
-   and rolling friction by the geometric mean; moduli by Hertz (1/E* = sum (1-nu^2)/E, 1/G* = sum (2-nu)/G);
-   given stiffnesses in series. Walls follow the same rule as grains. */
+/* What holds between two materials. Mixed from both when not set: restitution, friction, static
+   friction and rolling friction by the geometric mean; moduli by Hertz (1/E* = sum (1-nu^2)/E, 1/G*
+   = sum (2-nu)/G); given stiffnesses in series. Walls follow the same rule as grains. */
 typedef struct dem_pair {
-    dem_real young_eff;        /* E*, Pa                                                               */
-    dem_real shear_eff;        /* G*, Pa                                                               */
+    dem_real young_eff;        /* E*, Pa */
+    dem_real shear_eff;        /* G*, Pa */
     dem_real restitution, friction, friction_static, rolling_friction;
-    dem_real stiffness;        /* N/m, linear law; 0: from E* and impact speed, per pair of radii      */
-    dem_real stiffness_ratio;  /* kt/kn, linear law                                                    */
-    dem_real tangent_damping;  /* >= 0, factor on the tangential dashpot; 1 when mixed, 0: no dashpot  */
+    dem_real stiffness;        /* N/m, linear law; 0: from E* and impact speed, per pair of radii */
+    dem_real stiffness_ratio;  /* kt/kn, linear law */
+    /* >= 0, factor on the tangential dashpot; 1 when mixed, 0: no dashpot */
+    dem_real tangent_damping;
 } dem_pair;
-DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b, dem_pair *pair);
+DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
+                                dem_pair *pair);
 /* Replaces what was mixed; both orders at once. */
-DEM_API dem_result dem_pair_set(dem_world *world, dem_material a, dem_material b, const dem_pair *pair);
+DEM_API dem_result dem_pair_set(dem_world *world, dem_material a, dem_material b,
+                                const dem_pair *pair);
 
 /* The coefficients of the built-in laws for two radii (m); radius_b = 0: a against a wall of b. */
 typedef struct dem_coefficients {
-    dem_real r_eff, m_eff;     /* m, kg                                                                */
-    dem_real kn, cn, kt, ct;   /* as in dem_contact: F = kn d^(3/2) + cn d^(1/4) v, or kn d + cn v      */
-    dem_real damping_ratio;    /* beta = -ln e / sqrt(pi^2 + ln^2 e)                                   */
-    dem_real contact_time;     /* s, at the world's impact speed                                       */
+    dem_real r_eff, m_eff;     /* m, kg */
+    dem_real kn, cn, kt, ct;  /* as in dem_contact: F = kn d^(3/2) + cn d^(1/4) v, or kn d + cn v */
+    dem_real damping_ratio;    /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
+    dem_real contact_time;     /* s, at the world's impact speed */
 } dem_coefficients;
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
-                                        dem_real radius_a, dem_real radius_b, dem_coefficients *out);
+                                        dem_real radius_a, dem_real radius_b,
+                                        dem_coefficients *out);
 /* The resolved pair table, one line a pair. */
 DEM_API void dem_pairs_print(const dem_world *world, FILE *out);
 
 /* ---- grains ---- */
 
-/* Adds a sphere (or disc) at rest. radius > 0 (m). Null id on bad values or when memory runs out. */
-DEM_API dem_body dem_sphere_add(dem_world *world, dem_material material, dem_real radius, dem_vec3 position);
-/* Adds count spheres: positions (count x 3), radii (count) or null for one radius. velocities (count x 3)
-   may be null. All or nothing. */
-DEM_API dem_result dem_spheres_add(dem_world *world, dem_material material, int count, const dem_real *positions,
-                                   const dem_real *velocities, const dem_real *radii, dem_real radius);
-/* Random filling: count spheres of one radius inside box, none overlapping another body; seed makes it
-   repeatable. Returns how many found a place (fewer than asked: the box is too full; the sentence says so). */
-DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius, dem_box box, int count,
+/* Adds a sphere (or disc) at rest. radius > 0 (m). Null id on bad values or when memory runs out.
+   */
+DEM_API dem_body dem_sphere_add(dem_world *world, dem_material material, dem_real radius,
+                                dem_vec3 position);
+/* Adds count spheres: positions (count x 3), radii (count) or null for one radius. velocities
+   (count x 3) may be null. All or nothing. */
+DEM_API dem_result dem_spheres_add(dem_world *world, dem_material material, int count,
+                                   const dem_real *positions,
+                                   const dem_real *velocities, const dem_real *radii,
+                                   dem_real radius);
+/* Random filling: count spheres of one radius inside box, none overlapping another body; seed makes
+   it repeatable. Returns how many found a place (fewer than asked: the box is too full; the
+   sentence says so). */
+DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius,
+                             dem_box box, int count,
                              uint64_t seed);
-/* Hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, those for which
-   inside(centre, radius, user) is not 0 (null: all whose centre keeps a radius from the box), at most count
+/* Hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, those for
+   which inside(centre, radius, user) is not 0 (null: all whose centre keeps a radius from the box),
+   at most count
    (0: all that fit), in layers along z. Returns how many were added. */
 typedef int (*dem_inside_fn)(dem_vec3 centre, dem_real radius, void *user);
-DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real radius, dem_real padding,
+DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real radius,
+                             dem_real padding,
                              dem_box box, dem_inside_fn inside, void *user, int count);
 DEM_API dem_result dem_body_remove(dem_world *world, dem_body body);
 
 /* State of one body. */
 typedef struct dem_body_state {
-    dem_vec3 position, velocity, spin;   /* m, m/s, rad/s                                              */
-    dem_vec3 force, torque;              /* N, N m: of the last step; ignored by dem_body_set          */
-    dem_real radius, mass, inertia;      /* m, kg, kg m2; ignored by dem_body_set                      */
+    dem_vec3 position, velocity, spin;   /* m, m/s, rad/s */
+    dem_vec3 force, torque;              /* N, N m: of the last step; ignored by dem_body_set */
+    dem_real radius, mass, inertia;      /* m, kg, kg m2; ignored by dem_body_set */
     dem_material material;
-    int fixed;                           /* 1: never moves, whatever pushes it                         */
+    int fixed;                           /* 1: never moves, whatever pushes it */
 } dem_body_state;
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
 /* Sets position, velocity, spin and fixed. */
 DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
 
-/* All bodies at once, in the library's own order, which changes when the candidate list is rebuilt; slots
-   tell who is who. Pointers hold until the next step or change. Stride 4: x y z and one more. */
+/* All bodies at once, in the library's own order, which changes when the candidate list is rebuilt;
+   slots tell who is who. Pointers hold until the next step or change. Stride 4: x y z and one more.
+   */
 typedef struct dem_bodies {
     int count;
-    const dem_real *positions;  /* count x 4: x, y, z [m], radius [m]                                   */
-    const dem_real *velocities; /* count x 4: x, y, z [m/s], 0                                           */
-    const dem_real *spins;      /* count x 4: x, y, z [rad/s], 0                                         */
-    const dem_real *forces;     /* count x 4: x, y, z [N] of contacts and force field, gravity not; 0    */
-    const dem_real *torques;    /* count x 4: x, y, z [N m], 0                                           */
-    const dem_real *masses;     /* count: kg                                                             */
-    const uint32_t *slots;      /* count: slot of dem_body                                               */
-    const int32_t *materials;   /* count: dem_material ids                                               */
+    const dem_real *positions;  /* count x 4: x, y, z [m], radius [m] */
+    const dem_real *velocities; /* count x 4: x, y, z [m/s], 0 */
+    const dem_real *spins;      /* count x 4: x, y, z [rad/s], 0 */
+    /* count x 4: x, y, z [N] of contacts and force field, gravity not; 0 */
+    const dem_real *forces;
+    const dem_real *torques;    /* count x 4: x, y, z [N m], 0 */
+    const dem_real *masses;     /* count: kg */
+    const uint32_t *slots;      /* count: slot of dem_body */
+    const int32_t *materials;   /* count: dem_material ids */
 } dem_bodies;
 DEM_API dem_bodies dem_bodies_get(const dem_world *world);
 DEM_API dem_body dem_bodies_id(const dem_world *world, int index);
@@ -483,69 +511,83 @@ DEM_API dem_balance dem_balance_get(const dem_world *world);
 /* ---- walls ---- */
 typedef enum dem_motion_kind {
     DEM_MOTION_FIXED = 0,
-    DEM_MOTION_TRANSLATING,   /* velocity                                                             */
-    DEM_MOTION_ROTATING,      /* speed [rad/s] about axis through point, right-handed                 */
-    DEM_MOTION_OSCILLATING,   /* displacement velocity/|velocity| * amplitude * sin(2 pi f t + phase)  */
-    DEM_MOTION_USER           /* function                                                             */
+    DEM_MOTION_TRANSLATING,   /* velocity */
+    DEM_MOTION_ROTATING,      /* speed [rad/s] about axis through point, right-handed */
+    /* displacement velocity/|velocity| * amplitude * sin(2 pi f t + phase) */
+    DEM_MOTION_OSCILLATING,
+    DEM_MOTION_USER           /* function */
 } dem_motion_kind;
 typedef struct dem_motion {
     dem_motion_kind kind;
-    dem_vec3 velocity;        /* m/s (translating); direction only (oscillating)                      */
-    dem_vec3 point, axis;     /* m, any length but 0: axis of rotation, and the one torque refers to  */
-    dem_real speed;           /* rad/s                                                                */
-    dem_real amplitude, frequency, phase; /* m, Hz, rad                                               */
-    double start;             /* s: rotating, translating: at rest in its first pose before; default 0*/
+    dem_vec3 velocity;        /* m/s (translating); direction only (oscillating) */
+    dem_vec3 point, axis;  /* m, any length but 0: axis of rotation, and the one torque refers to */
+    dem_real speed;           /* rad/s */
+    dem_real amplitude, frequency, phase; /* m, Hz, rad */
+    /* s: rotating, translating: at rest in its first pose before; default 0*/
+    double start;
     dem_motion_fn function;
     void *user;
 } dem_motion;
-static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0, 0, 0, 0};
+static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0,
+                                           0, 0, 0, 0, 0, 0};
 #define DEM_MOTION DEM_MOTION_ZERO
 
 /* How a wall of segments shares the force where a grain straddles two of them. */
 typedef enum dem_edge_rule {
     DEM_EDGE_RESOLVED = 0,    /* faces first, then edges and corners not already accounted for: a flat
-                                 mesh gives exactly the plane's force                                 */
+                                 mesh gives exactly the plane's force */
     DEM_EDGE_FRACTION         /* [MIL] Fig 5.19: every segment pushes along its own line's normal with
-                                 the fraction a^2(3-2a), a = share of the chord inside. Profiles only  */
+                                 the fraction a^2(3-2a), a = share of the chord inside. Profiles
+                                 only */
 } dem_edge_rule;
 
 /* Triangles: vertices (vertex_count x 3), triangles (triangle_count x 3, counted from 0).
    Segments:  vertices (vertex_count x 2), segments  (segment_count x 2, counted from 0). */
-typedef struct dem_mesh { int vertex_count, triangle_count; dem_real *vertices; int32_t *triangles; } dem_mesh;
-typedef struct dem_profile { int vertex_count, segment_count; dem_real *vertices; int32_t *segments; } dem_profile;
+typedef struct dem_mesh { int vertex_count, triangle_count; dem_real *vertices;
+                         int32_t *triangles; } dem_mesh;
+typedef struct dem_profile { int vertex_count, segment_count; dem_real *vertices;
+                            int32_t *segments; } dem_profile;
 
 /* Plane through point; grains live on the side normal points to. */
-DEM_API dem_wall dem_plane_add(dem_world *world, dem_material material, dem_vec3 point, dem_vec3 normal);
+DEM_API dem_wall dem_plane_add(dem_world *world, dem_material material, dem_vec3 point,
+                               dem_vec3 normal);
 /* Endless cylinder about axis through point. inside = 1: grains live inside. */
-DEM_API dem_wall dem_cylinder_add(dem_world *world, dem_material material, dem_vec3 point, dem_vec3 axis,
+DEM_API dem_wall dem_cylinder_add(dem_world *world, dem_material material, dem_vec3 point,
+                                  dem_vec3 axis,
                                   dem_real radius, int inside);
 /* Segments in the x-y plane drawn out along z without end; both sides push. The data is copied. */
-DEM_API dem_wall dem_profile_add(dem_world *world, dem_material material, const dem_profile *profile,
+DEM_API dem_wall dem_profile_add(dem_world *world, dem_material material,
+                                 const dem_profile *profile,
                                  dem_edge_rule rule);
 /* Triangles; both sides push. The data is copied. */
 DEM_API dem_wall dem_mesh_add(dem_world *world, dem_material material, const dem_mesh *mesh);
-/* Spheres at positions (count x 3), all of one radius, fixed to each other: [MIL]'s wall of particles.
-   share (0 < share <= 1) multiplies every force: overlapping spheres stand for one surface. */
-DEM_API dem_wall dem_grains_wall_add(dem_world *world, dem_material material, int count, const dem_real *positions,
+/* Spheres at positions (count x 3), all of one radius, fixed to each other: [MIL]'s wall of
+   particles. share (0 < share <= 1) multiplies every force: overlapping spheres stand for one
+   surface. */
+DEM_API dem_wall dem_grains_wall_add(dem_world *world, dem_material material, int count,
+                                     const dem_real *positions,
                                      dem_real radius, dem_real share);
-/* Centres (count x 3, written to out, which may be null) of a drum lined with touching spheres along z:
-   [MIL] Algorithm 5.2 (shell) and 5.3 (ends: hexagonal sheet at +-length/2, layers inside). Returns count. */
-DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radius, int ends, dem_real *out);
+/* Centres (count x 3, written to out, which may be null) of a drum lined with touching spheres
+   along z: [MIL] Algorithm 5.2 (shell) and 5.3 (ends: hexagonal sheet at +-length/2, layers
+   inside). Returns count. */
+DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radius, int ends,
+                            dem_real *out);
 DEM_API dem_result dem_wall_motion(dem_world *world, dem_wall wall, const dem_motion *motion);
 DEM_API dem_result dem_wall_pose(const dem_world *world, dem_wall wall, dem_pose *pose);
 DEM_API dem_result dem_wall_remove(dem_world *world, dem_wall wall);
 
-/* What the grains do to a wall. Torque is about the point of its motion; axial is its part along axis. */
+/* What the grains do to a wall. Torque is about the point of its motion; axial is its part along
+   axis. */
 typedef struct dem_channels {
-    dem_vec3 force;           /* N, of the last step                                                  */
-    dem_vec3 torque;          /* N m, of the last step                                                */
-    dem_real torque_axial;    /* N m                                                                  */
-    dem_real power;           /* W, the wall gives to the grains: -(force . v + torque . w)           */
-    int contacts;             /* now                                                                  */
-    double impulse[3];        /* N s, since dem_wall_channels_reset                                   */
-    double torque_impulse;    /* N m s, of torque_axial                                               */
-    double work;              /* J, done on the grains                                                */
-    double time;              /* s, over which the last three were summed                             */
+    dem_vec3 force;           /* N, of the last step */
+    dem_vec3 torque;          /* N m, of the last step */
+    dem_real torque_axial;    /* N m */
+    dem_real power;           /* W, the wall gives to the grains: -(force . v + torque . w) */
+    int contacts;             /* now */
+    double impulse[3];        /* N s, since dem_wall_channels_reset */
+    double torque_impulse;    /* N m s, of torque_axial */
+    double work;              /* J, done on the grains */
+    double time;              /* s, over which the last three were summed */
 } dem_channels;
 DEM_API dem_result dem_wall_channels(const dem_world *world, dem_wall wall, dem_channels *channels);
 DEM_API dem_result dem_wall_channels_reset(dem_world *world, dem_wall wall);
@@ -554,39 +596,44 @@ DEM_API dem_result dem_wall_channels_reset(dem_world *world, dem_wall wall);
 
 /* What limits the time step, worked out from the live scene. */
 typedef struct dem_advice {
-    dem_real dt;              /* s, proposed: contact_time/50                                         */
-    dem_real dt_max;          /* s, beyond which a run is refused: contact_time/20 [FEN] eq 2.22      */
-    dem_real contact_time;    /* s, of the shortest contact                                           */
-    dem_real rayleigh;        /* s, pi R sqrt(rho/G)/(.1631 nu + .8766), smallest; for comparison     */
-    dem_real speed;           /* m/s, impact speed assumed                                            */
-    char binds[160];          /* what binds: materials, radii, speed                                  */
+    dem_real dt;              /* s, proposed: contact_time/50 */
+    dem_real dt_max;          /* s, beyond which a run is refused: contact_time/20 [FEN] eq 2.22 */
+    dem_real contact_time;    /* s, of the shortest contact */
+    dem_real rayleigh;        /* s, pi R sqrt(rho/G)/(.1631 nu + .8766), smallest; for comparison */
+    dem_real speed;           /* m/s, impact speed assumed */
+    char binds[160];          /* what binds: materials, radii, speed */
 } dem_advice;
 DEM_API dem_result dem_step_advice(const dem_world *world, dem_advice *advice);
 
 DEM_API dem_result dem_world_step(dem_world *world, int steps);
-/* Runs for seconds (rounded to whole steps). progress, if given, is called about ten times a second of
-   wall time and at the end; a non-zero answer stops the run (DEM_ERROR_STOPPED, state intact). */
-typedef int (*dem_progress_fn)(const dem_world *world, double done, double seconds_left, void *user);
-DEM_API dem_result dem_world_run(dem_world *world, double seconds, dem_progress_fn progress, void *user);
+/* Runs for seconds (rounded to whole steps). progress, if given, is called about ten times a second
+   of wall time and at the end; a non-zero answer stops the run (DEM_ERROR_STOPPED, state intact).
+   */
+typedef int (*dem_progress_fn)(const dem_world *world, double done, double seconds_left,
+                               void *user);
+DEM_API dem_result dem_world_run(dem_world *world, double seconds, dem_progress_fn progress,
+                                 void *user);
 /* A progress function that rewrites one line on the FILE given as user. */
-DEM_API int dem_progress_print(const dem_world *world, double done, double seconds_left, void *user);
+DEM_API int dem_progress_print(const dem_world *world, double done, double seconds_left,
+                               void *user);
 
-DEM_API double dem_world_time(const dem_world *world);     /* s                                        */
+DEM_API double dem_world_time(const dem_world *world);     /* s */
 DEM_API uint64_t dem_world_steps(const dem_world *world);
-/* 64-bit digest of positions, velocities, spins, contact memory, walls and time; equal runs, equal hash. */
+/* 64-bit digest of positions, velocities, spins, contact memory, walls and time; equal runs, equal
+   hash. */
 DEM_API uint64_t dem_world_hash(const dem_world *world);
 
 /* Counters since creation; set once, read often. */
 typedef struct dem_counters {
     uint64_t steps, rebuilds;
-    int candidates, contacts, wall_contacts;  /* at the last step                                      */
-    dem_real overlap_max;       /* largest overlap over the smaller radius, since the last reset       */
-    dem_real speed_max;         /* m/s, at the last step                                               */
-    dem_real skin;              /* m, in force                                                         */
-    dem_real dt;                /* s, in force                                                         */
-    dem_search search;          /* in force                                                            */
+    int candidates, contacts, wall_contacts;  /* at the last step */
+    dem_real overlap_max;       /* largest overlap over the smaller radius, since the last reset */
+    dem_real speed_max;         /* m/s, at the last step */
+    dem_real skin;              /* m, in force */
+    dem_real dt;                /* s, in force */
+    dem_search search;          /* in force */
     int threads, domains;
-    size_t memory;              /* bytes held                                                          */
+    size_t memory;              /* bytes held */
 } dem_counters;
 DEM_API dem_counters dem_counters_get(const dem_world *world);
 DEM_API void dem_overlap_reset(dem_world *world);
@@ -596,46 +643,49 @@ DEM_API void dem_overlap_reset(dem_world *world);
             + normal + slide + tangent + rolling.
    Potential energy is in `gravity`, as work done. 0 everywhere when the ledger is off. */
 typedef struct dem_ledger {
-    double kinetic, rotational, elastic;          /* stored                                            */
-    double gravity, walls, force, inserted;       /* work in                                           */
-    double normal, slide, tangent, rolling;       /* dissipated: dashpot, friction, shear dashpot, rolling */
-    double removed;                               /* energy taken out with bodies                      */
-    double throughput;                            /* sum of magnitudes of what came in                 */
+    double kinetic, rotational, elastic;          /* stored */
+    double gravity, walls, force, inserted;       /* work in */
+    /* dissipated: dashpot, friction, shear dashpot, rolling */
+    double normal, slide, tangent, rolling;
+    double removed;                               /* energy taken out with bodies */
+    double throughput;                            /* sum of magnitudes of what came in */
     double residual;
 } dem_ledger;
 DEM_API dem_ledger dem_ledger_get(const dem_world *world);
-/* Totals that cost one pass: kinetic and rotational energy (J), momentum (kg m/s), angular momentum about
-   the origin (kg m2/s), centre of mass (m), mass (kg) of the bodies that can move. */
+/* Totals that cost one pass: kinetic and rotational energy (J), momentum (kg m/s), angular momentum
+   about the origin (kg m2/s), centre of mass (m), mass (kg) of the bodies that can move. */
 typedef struct dem_totals {
     double mass, kinetic, rotational;
     double centre[3], momentum[3], angular[3];
 } dem_totals;
 DEM_API dem_totals dem_totals_get(const dem_world *world);
 
-/* Grain-grain contacts as they are now, for analysis. Calls the same law as the run, on a copy of the
-   memory. Returns how many there are; fills at most capacity. */
+/* Grain-grain contacts as they are now, for analysis. Calls the same law as the run, on a copy of
+   the memory. Returns how many there are; fills at most capacity. */
 typedef struct dem_contact_info {
     dem_body a, b;
-    int32_t wall;                        /* dem_wall id when b is a wall, then b is null               */
-    dem_vec3 point, normal;              /* m; unit, from a to b                                       */
-    dem_real overlap;                    /* m                                                          */
-    dem_vec3 force;                      /* N, on a                                                    */
+    int32_t wall;                        /* dem_wall id when b is a wall, then b is null */
+    dem_vec3 point, normal;              /* m; unit, from a to b */
+    dem_real overlap;                    /* m */
+    dem_vec3 force;                      /* N, on a */
 } dem_contact_info;
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
-/* The candidate pairs of the present list, slots of a and b (capacity x 2). Returns how many there are. */
+/* The candidate pairs of the present list, slots of a and b (capacity x 2). Returns how many there
+   are. */
 DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capacity);
 /* Rebuilds the candidate list now (for tests and analysis; a run does it by itself). */
 DEM_API dem_result dem_search_now(dem_world *world);
 
 /* ---- measuring ---- */
 
-/* A grid of cells over box on which solid fraction and velocity are averaged over a window of time. A grain
-   counts where its centre is ([MIL] 5.2.9): cells smaller than grains need a long window. */
+/* A grid of cells over box on which solid fraction and velocity are averaged over a window of time.
+   A grain counts where its centre is ([MIL] 5.2.9): cells smaller than grains need a long window.
+   */
 typedef struct dem_field_desc {
-    dem_box box;              /* m                                                                    */
-    int cells[3];             /* >= 1 each, at most 2^28 in all                                       */
-    double start, end;        /* s; end = 0: no end                                                   */
-    double interval;          /* s between samples; 0: every 100th step                               */
+    dem_box box;              /* m */
+    int cells[3];             /* >= 1 each, at most 2^28 in all */
+    double start, end;        /* s; end = 0: no end */
+    double interval;          /* s between samples; 0: every 100th step */
 } dem_field_desc;
 DEM_API dem_field dem_field_add(dem_world *world, const dem_field_desc *desc);
 /* Cell (i, j, k) is at index i + cells[0]*(j + cells[1]*k). Values hold until the next step. */
@@ -643,9 +693,10 @@ typedef struct dem_field_data {
     int cells[3];
     dem_box box;
     uint64_t samples;
-    const double *solid;      /* cells: sum over samples of volume in the cell / cell volume; / samples */
-    const double *mass;       /* cells: sum of kg                                                     */
-    const double *momentum;   /* cells x 3: sum of kg m/s; velocity = momentum/mass                    */
+    /* cells: sum over samples of volume in the cell / cell volume; / samples */
+    const double *solid;
+    const double *mass;       /* cells: sum of kg */
+    const double *momentum;   /* cells x 3: sum of kg m/s; velocity = momentum/mass */
 } dem_field_data;
 DEM_API dem_result dem_field_get(const dem_world *world, dem_field field, dem_field_data *data);
 DEM_API dem_result dem_field_reset(dem_world *world, dem_field field);
@@ -654,40 +705,50 @@ DEM_API dem_result dem_field_reset(dem_world *world, dem_field field);
 
 /* What is wrong with a mesh; never stops a run. */
 typedef struct dem_mesh_health {
-    int open_edges;           /* edges with one triangle                                              */
-    int crowded_edges;        /* edges with more than two                                             */
-    int duplicates;           /* triangles with the same three corners as an earlier one              */
-    int slivers;              /* height below 1e-3 of the longest side, or no area at all             */
-    int merged_vertices;      /* vertices at the same place, merged on reading (STL)                  */
-    dem_box box;              /* m                                                                    */
-    char hint[200];           /* likely unit mistake, or ""                                           */
+    int open_edges;           /* edges with one triangle */
+    int crowded_edges;        /* edges with more than two */
+    int duplicates;           /* triangles with the same three corners as an earlier one */
+    int slivers;              /* height below 1e-3 of the longest side, or no area at all */
+    int merged_vertices;      /* vertices at the same place, merged on reading (STL) */
+    dem_box box;              /* m */
+    char hint[200];           /* likely unit mistake, or "" */
 } dem_mesh_health;
-/* Reads triangles from [MIL]'s text format (counts; vertices; corners counted from 1), STL (text or binary)
-   or OBJ, told apart by the contents. Free with dem_mesh_free. Errors name file, line and reason. */
-DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh, dem_mesh_health *health);
-DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size, dem_mesh *mesh,
+/* Reads triangles from [MIL]'s text format (counts; vertices; corners counted from 1), STL (text or
+   binary) or OBJ, told apart by the contents. Free with dem_mesh_free. Errors name file, line and
+   reason. */
+DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
+                                 dem_mesh_health *health);
+DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data,
+                                  size_t size, dem_mesh *mesh,
                                   dem_mesh_health *health);
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh);
-/* Reads segments from [MIL]'s text format in 2-D: counts; x y per vertex; two corners counted from 1. */
+/* Reads segments from [MIL]'s text format in 2-D: counts; x y per vertex; two corners counted from
+   1. */
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile);
-DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const void *data, size_t size,
+DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const void *data,
+                                     size_t size,
                                      dem_profile *profile);
 DEM_API void dem_profile_free(dem_world *world, dem_profile *profile);
 
-/* Pictures for ParaView (VTP, legacy VTK: points with radius, velocity, spin, id, material) and OVITO
+/* Pictures for ParaView (VTP, legacy VTK: points with radius, velocity, spin, id, material) and
+   OVITO
    (extended XYZ). Written to a temporary name and renamed, so that a file is whole or absent. */
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path);
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path);
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
-/* Triangles of all mesh and profile walls (profiles drawn out over z0..z1) in their present pose. */
-DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0, dem_real z1);
-/* Appends the channels of a wall as one CSV line; writes the heading first when the file is new or empty. */
+/* Triangles of all mesh and profile walls (profiles drawn out over z0..z1) in their present pose.
+   */
+DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
+                                       dem_real z1);
+/* Appends the channels of a wall as one CSV line; writes the heading first when the file is new or
+   empty. */
 DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char *path);
 
-/* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters. Reading
-   replaces the state of a world that was created with the same desc, materials and walls (functions and user
-   pointers cannot be stored), which then continues bit for bit. A file that is cut short, damaged, of another
-   version or precision, or of another scene is refused by name and the world stays as it was. */
+/* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters.
+   Reading replaces the state of a world that was created with the same desc, materials and walls
+   (functions and user pointers cannot be stored), which then continues bit for bit. A file that is
+   cut short, damaged, of another version or precision, or of another scene is refused by name and
+   the world stays as it was. */
 DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 
@@ -697,7 +758,8 @@ DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 DEM_API void dem_world_report(const dem_world *world, FILE *out);
 
 /* version and size of dem_real are checked against the implementation's. Use dem_world_create. */
-DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version, size_t real_size);
+DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version,
+                                            size_t real_size);
 static inline dem_world *dem_world_create(const dem_world_desc *desc) {
     return dem_world_create_checked(desc, DEM_VERSION, sizeof(dem_real));
 }
@@ -709,17 +771,17 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 
 /* ================================================================================================
    >>implementation - stop here if you only want to use it
-   ================================================================================================ */
+   ============================================================================================== */
 #if defined(DEM_IMPLEMENTATION) && !defined(DEM_IMPLEMENTATION_DONE)
 #define DEM_IMPLEMENTATION_DONE
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>platform
    What differs between compilers lives here and nowhere else. Kernels must be inlined into their
-   variants to be specialised, hence DEM_INLINE; compilers vectorise a root only when told that it does
-   not set errno. There is one parallel loop, demi_parallel: it deals whole domains to threads, and what
-   it calls never knows how many threads there are.
-   ------------------------------------------------------------------------------------------------ */
+   variants to be specialised, hence DEM_INLINE; compilers vectorise a root only when told that it
+   does not set errno. There is one parallel loop, demi_parallel: it deals whole domains to threads,
+   and what it calls never knows how many threads there are.
+   --------------------------------------------------------------------------------------------- */
 #include <float.h>
 #include <limits.h>
 #include <math.h>
@@ -735,8 +797,8 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #endif
 
 #if defined(__GNUC__) && !defined(__TINYC__) && !defined(__cplusplus)
-extern double sqrt(double) __attribute__((const));        /* "const": does not set errno, so that roots     */
-extern float sqrtf(float) __attribute__((const));         /* can be vectorised without -fno-math-errno      */
+extern double sqrt(double) __attribute__((const));  /* "const": does not set errno, so that roots */
+extern float sqrtf(float) __attribute__((const));  /* can be vectorised without -fno-math-errno */
 #endif
 
 #if defined(__GNUC__) && !defined(__TINYC__)
@@ -749,7 +811,7 @@ extern float sqrtf(float) __attribute__((const));         /* can be vectorised w
 #define DEMI_FORMAT(f, a)
 #endif
 #if defined(__clang__)
-#define DEMI_VECTOR                      /* clang checks for aliases itself, and warns when asked  */
+#define DEMI_VECTOR                      /* clang checks for aliases itself, and warns when asked */
 #elif defined(__GNUC__) && !defined(__TINYC__)
 #define DEMI_VECTOR _Pragma("GCC ivdep")
 #else
@@ -767,7 +829,7 @@ extern float sqrtf(float) __attribute__((const));         /* can be vectorised w
 #define DEMI_POW(x, y) ((dem_real)pow((double)(x), (double)(y)))
 #define DEMI_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define DEMI_MAX(a, b) ((a) > (b) ? (a) : (b))
-#define DEMI_TINY (DEMI_SINGLE ? DEM_R(1e-30) : DEM_R(1e-200))   /* added to a length before dividing   */
+#define DEMI_TINY (DEMI_SINGLE ? DEM_R(1e-30) : DEM_R(1e-200))   /* added to a length before dividing */
 #define DEMI_PI 3.14159265358979323846
 
 /* Calls task(world, i) for i = 0 .. count-1. Tasks must not depend on each other. */
@@ -791,7 +853,7 @@ static int demi_threads_available(void) {
     return 1;
 #endif
 }
-static double demi_clock(void) {                          /* s of wall time, for progress only          */
+static double demi_clock(void) {                          /* s of wall time, for progress only */
 #if DEMI_OPENMP
     return omp_get_wtime();
 #elif defined(TIME_UTC)
@@ -803,22 +865,24 @@ static double demi_clock(void) {                          /* s of wall time, for
 #endif
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>maths
    Small vectors by value, poses, random numbers. Finite is tested on the exponent bits, which
    -ffast-math cannot fold away.
-   ------------------------------------------------------------------------------------------------ */
+   --------------------------------------------------------------------------------------------- */
 DEM_INLINE dem_vec3 demi_v(dem_real x, dem_real y, dem_real z) { return dem_vec3_make(x, y, z); }
 DEM_INLINE dem_vec3 demi_at(const dem_real *p) { return dem_vec3_make(p[0], p[1], p[2]); }
-DEM_INLINE dem_vec3 demi_add(dem_vec3 a, dem_vec3 b) { return demi_v(a.x + b.x, a.y + b.y, a.z + b.z); }
-DEM_INLINE dem_vec3 demi_sub(dem_vec3 a, dem_vec3 b) { return demi_v(a.x - b.x, a.y - b.y, a.z - b.z); }
+DEM_INLINE dem_vec3 demi_add(dem_vec3 a, dem_vec3 b) { return demi_v(a.x + b.x, a.y + b.y, a.z +
+    b.z); }
+DEM_INLINE dem_vec3 demi_sub(dem_vec3 a, dem_vec3 b) { return demi_v(a.x - b.x, a.y - b.y, a.z -
+    b.z); }
 DEM_INLINE dem_vec3 demi_scale(dem_vec3 a, dem_real s) { return demi_v(a.x*s, a.y*s, a.z*s); }
 DEM_INLINE dem_real demi_dot(dem_vec3 a, dem_vec3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
 DEM_INLINE dem_vec3 demi_cross(dem_vec3 a, dem_vec3 b) {
     return demi_v(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
 }
 DEM_INLINE dem_real demi_length(dem_vec3 a) { return DEMI_SQRT(demi_dot(a, a)); }
-static dem_vec3 demi_unit(dem_vec3 a) {                   /* not for null vectors                       */
+static dem_vec3 demi_unit(dem_vec3 a) {                   /* not for null vectors */
     double x = (double)a.x, y = (double)a.y, z = (double)a.z, l = sqrt(x*x + y*y + z*z);
     return demi_v((dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
 }
@@ -830,14 +894,17 @@ static int demi_finite(dem_real x) {
     memcpy(&bits, &d, sizeof bits);
     return ((bits >> 52) & 0x7ff) != 0x7ff;
 }
-static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y) && demi_finite(v.z); }
+static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y) &&
+                                     demi_finite(v.z); }
 
 /* local -> world and back, for points and for directions */
 DEM_INLINE dem_vec3 demi_turn(const dem_real *R, dem_vec3 a) {
-    return demi_v(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z, R[6]*a.x + R[7]*a.y + R[8]*a.z);
+    return demi_v(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z, R[6]*a.x +
+                  R[7]*a.y + R[8]*a.z);
 }
 DEM_INLINE dem_vec3 demi_unturn(const dem_real *R, dem_vec3 a) {
-    return demi_v(R[0]*a.x + R[3]*a.y + R[6]*a.z, R[1]*a.x + R[4]*a.y + R[7]*a.z, R[2]*a.x + R[5]*a.y + R[8]*a.z);
+    return demi_v(R[0]*a.x + R[3]*a.y + R[6]*a.z, R[1]*a.x + R[4]*a.y + R[7]*a.z, R[2]*a.x +
+                  R[5]*a.y + R[8]*a.z);
 }
 /* Rotation by angle about a unit axis (Rodrigues), row-major. */
 static void demi_rotation(double *R, double x, double y, double z, double angle) {
@@ -872,74 +939,79 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
     return h;
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>memory
-   The layout of the world, and the only places where memory comes from. Bodies live in flat arrays of
-   four reals each, so that a gather touches one cache line and a drift is one long loop. Every
-   array that grows is a field here; demi_array_grow keeps what it holds, or leaves it alone and says so.
-   ------------------------------------------------------------------------------------------------ */
-enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_BLOCK = 256, DEMI_DOMAIN_BODIES = 2048, DEMI_DOMAINS = 256 };
+   The layout of the world, and the only places where memory comes from. Bodies live in flat arrays
+   of four reals each, so that a gather touches one cache line and a drift is one long loop. Every
+   array that grows is a field here; demi_array_grow keeps what it holds, or leaves it alone and
+   says so.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_BLOCK = 256, DEMI_DOMAIN_BODIES = 2048,
+      DEMI_DOMAINS = 256 };
 
 /* Coefficients of one contact, resolved: what the built-in laws need. */
-enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF, DEMI_COEFS };
+enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
+      DEMI_COEFS };
 
 /* A growing array: items of one size. Never holds less than before. */
 typedef struct demi_array { void *data; size_t capacity, item; } demi_array;
 
 /* Candidate pairs of all domains. Domain d owns entries d*stride .. d*stride + stride - 1. */
 typedef struct demi_list {
-    int stride;                    /* capacity per domain                                             */
-    int32_t *a, *b;                /* body indices, a < b                                             */
-    uint32_t *stamp;               /* evaluation at which memory was last written                     */
-    dem_real *memory;              /* x w->memory_stride                                              */
-    dem_real *coef;                /* x DEMI_COEFS when bodies differ                                  */
+    int stride;                    /* capacity per domain */
+    int32_t *a, *b;                /* body indices, a < b */
+    uint32_t *stamp;               /* evaluation at which memory was last written */
+    dem_real *memory;              /* x w->memory_stride */
+    dem_real *coef;                /* x DEMI_COEFS when bodies differ */
     demi_array a_, b_, stamp_, memory_, coef_;
 } demi_list;
 
 /* Sums of one domain over one step; combined in the order of domains. */
-enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED, DEMI_E_ROLL,
+enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED,
+      DEMI_E_ROLL,
        DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_ENERGIES };
 
 /* A contact with a wall; lives as long as the two touch. */
 typedef struct demi_wall_contact {
     int32_t body, wall, element, feature;
-    dem_vec3 normal, point;        /* unit, grain -> wall; m                                          */
-    dem_real overlap, share;       /* m; part of the force that counts                                */
+    dem_vec3 normal, point;        /* unit, grain -> wall; m */
+    dem_real overlap, share;       /* m; part of the force that counts */
     dem_real coef[DEMI_COEFS], memory[DEMI_MEMORY];
-    dem_vec3 force;                /* N, on the grain                                                 */
+    dem_vec3 force;                /* N, on the grain */
 } demi_wall_contact;
 
 /* What the grains of one domain do to one wall in one step. */
 typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; } demi_wall_sum;
 
 typedef struct demi_domain {
-    int begin, end;                /* bodies                                                          */
-    int own, cross, walls;         /* candidates: pairs inside, pairs leading out, wall elements      */
-    int contacts, wall_contacts;   /* touching now                                                    */
-    int overflow;                  /* a list ran out of room while being built                        */
-    double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step     */
+    int begin, end;                /* bodies */
+    int own, cross, walls;         /* candidates: pairs inside, pairs leading out, wall elements */
+    int contacts, wall_contacts;   /* touching now */
+    int overflow;                  /* a list ran out of room while being built */
+    double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
     double energy[DEMI_ENERGIES];
     double mass_in_flow;
 } demi_domain;
 
-enum { DEMI_WALL_NONE = 0, DEMI_WALL_PLANE, DEMI_WALL_CYLINDER, DEMI_WALL_PROFILE, DEMI_WALL_MESH, DEMI_WALL_GRAINS };
+enum { DEMI_WALL_NONE = 0, DEMI_WALL_PLANE, DEMI_WALL_CYLINDER, DEMI_WALL_PROFILE, DEMI_WALL_MESH,
+      DEMI_WALL_GRAINS };
 
 typedef struct demi_wall {
-    int kind, material;            /* DEMI_WALL_..., index                                            */
-    int inside;                    /* cylinder                                                        */
+    int kind, material;            /* DEMI_WALL_..., index */
+    int inside;                    /* cylinder */
     dem_edge_rule rule;
-    dem_real radius, share;        /* cylinder; grains                                                */
+    dem_real radius, share;        /* cylinder; grains */
     int vertex_count, element_count;
-    dem_real *vertices;            /* vertex_count x 3, in the wall's own frame                       */
-    int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile)                         */
-    dem_real reach;                /* m, farthest vertex from the frame's origin; < 0: endless        */
-    dem_pose home, pose;           /* pose at motion start, pose now                                  */
-    dem_pose mid;                  /* in the middle of the step just taken                            */
+    dem_real *vertices;            /* vertex_count x 3, in the wall's own frame */
+    int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
+    dem_real reach;                /* m, farthest vertex from the frame's origin; < 0: endless */
+    dem_pose home, pose;           /* pose at motion start, pose now */
+    dem_pose mid;                  /* in the middle of the step just taken */
     dem_motion motion;
-    int symmetric;                 /* its motion leaves its surface in place: no search needed        */
-    dem_box box;                   /* local box of the elements                                       */
-    int cells[3];                  /* local grid of elements; 0: none                                 */
-    dem_real cell;                 /* m                                                               */
+    int symmetric;                 /* its motion leaves its surface in place: no search needed */
+    dem_box box;                   /* local box of the elements */
+    int cells[3];                  /* local grid of elements; 0: none */
+    dem_real cell;                 /* m */
     int32_t *cell_start, *cell_items;
     int cell_item_count;
     dem_channels channels;
@@ -949,7 +1021,7 @@ typedef struct demi_field {
     int used;
     dem_field_desc desc;
     uint64_t samples;
-    double next;                   /* s, time of the next sample                                      */
+    double next;                   /* s, time of the next sample */
     double *solid, *mass, *momentum;
 } demi_field;
 
@@ -957,29 +1029,30 @@ typedef struct demi_field {
 typedef struct demi_end { dem_real value; int32_t box; int32_t upper; } demi_end;
 
 struct dem_world {
-    dem_world_desc desc;           /* as given, with choices filled in                                */
-    dem_world_desc asked;          /* as given                                                        */
+    dem_world_desc desc;           /* as given, with choices filled in */
+    dem_world_desc asked;          /* as given */
     char error[512];
     size_t bytes;
 
     int material_count, pair_given;
     dem_material_desc materials[DEMI_MATERIALS];
-    dem_pair *pairs;               /* DEMI_MATERIALS x DEMI_MATERIALS                                  */
+    dem_pair *pairs;               /* DEMI_MATERIALS x DEMI_MATERIALS */
 
-    int count, capacity;           /* bodies                                                          */
-    dem_real *pos, *vel, *spin;    /* x 4; at the full step (predicted while a step is under way)     */
-    dem_real *half_vel, *half_spin;/* x 4; mean over the step just taken: at the half step             */
-    dem_real *last_pos;            /* x 4; one step ago (position Verlet only)                        */
-    dem_real *force, *torque;      /* x 4                                                             */
+    int count, capacity;           /* bodies */
+    dem_real *pos, *vel, *spin;    /* x 4; at the full step (predicted while a step is under way) */
+    dem_real *half_vel, *half_spin;/* x 4; mean over the step just taken: at the half step */
+    dem_real *last_pos;            /* x 4; one step ago (position Verlet only) */
+    dem_real *force, *torque;      /* x 4 */
     dem_real *inv_mass, *inv_inertia, *mass;
     uint32_t *body_slot;
     int32_t *body_material;
-    int32_t *slot_index;           /* slot -> index, -1 when free                                     */
+    int32_t *slot_index;           /* slot -> index, -1 when free */
     uint32_t *slot_generation;
-    int slot_count, slot_capacity; /* slots used so far, room                                         */
-    int slot_free, slot_pending;   /* chains of free slots (-1: none); pending ones rest until a rebuild */
-    dem_real *scratch;             /* x 4, for permuting                                              */
-    int32_t *order, *cell_of;      /* permutation, cell of each body                                  */
+    int slot_count, slot_capacity; /* slots used so far, room */
+    /* chains of free slots (-1: none); pending ones rest until a rebuild */
+    int slot_free, slot_pending;
+    dem_real *scratch;             /* x 4, for permuting */
+    int32_t *order, *cell_of;      /* permutation, cell of each body */
     dem_balance balance;
 
     int wall_count, wall_capacity;
@@ -988,41 +1061,42 @@ struct dem_world {
     demi_field *fields;
 
     /* effects, worked out when the scene changes */
-    int normal, tangent, rolling;  /* laws in force                                                   */
-    int uniform;                   /* one radius, one mass, one material, nothing fixed               */
-    int memory_stride, vector_mask;/* reals per contact; which of them are vectors                    */
+    int normal, tangent, rolling;  /* laws in force */
+    int uniform;                   /* one radius, one mass, one material, nothing fixed */
+    int memory_stride, vector_mask;/* reals per contact; which of them are vectors */
     dem_real uniform_coef[DEMI_COEFS], uniform_radius, uniform_inv_mass, uniform_inv_inertia;
     dem_real radius_min, radius_max;
     int fixed_count;
 
     /* search */
-    int list_valid;                /* candidate list fits the bodies                                  */
-    double skin, reach, wall_reach;/* m: margin, farthest a body / a wall point went since            */
-    double skin_auto;              /* m: what the cost model proposes; 0: nothing yet                  */
-    uint64_t last_rebuild;         /* step                                                            */
+    int list_valid;                /* candidate list fits the bodies */
+    double skin, reach, wall_reach;/* m: margin, farthest a body / a wall point went since */
+    double skin_auto;              /* m: what the cost model proposes; 0: nothing yet */
+    uint64_t last_rebuild;         /* step */
     int domain_count;
     demi_domain *domains;
     demi_list own, cross;
-    int *cross_incoming_start;     /* domain_count + 1                                                */
+    int *cross_incoming_start;     /* domain_count + 1 */
     demi_array cross_incoming_, cross_hit_, cross_push_;
-    int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending                   */
-    int32_t *cross_hit;            /* entry -> slot of its push, 0 when not touching                  */
+    int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
+    int32_t *cross_hit;            /* entry -> slot of its push, 0 when not touching */
     dem_real *cross_push;
     size_t cross_push_stride;
     int cross_entries;
     demi_array cell_start_;
     int cells[3];
     double cell_origin[3], cell_size[3];
-    demi_array carry_start_, carry_partner_, carry_memory_;   /* contact memory on its way to a new list */
+    /* contact memory on its way to a new list */
+    demi_array carry_start_, carry_partner_, carry_memory_;
     int32_t *carry_start, *carry_partner;
     dem_real *carry_memory;
     int carry_count;
-    int wall_stride;               /* wall candidates per domain                                      */
-    int wall_now_stride;           /* wall contacts per domain                                        */
+    int wall_stride;               /* wall candidates per domain */
+    int wall_now_stride;           /* wall contacts per domain */
     demi_array wall_body_, wall_id_, wall_element_, wall_now_, wall_next_, wall_sums_;
     int32_t *wall_body, *wall_id, *wall_element;
     demi_wall_contact *wall_now, *wall_next;
-    demi_wall_sum *wall_sums;      /* domain_count x wall_count                                       */
+    demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     demi_array lll_ends_[3], lll_table_, lll_rows_, lll_row_start_;
     int lll_valid, lll_boxes, lll_size;
     uint64_t lll_exchanges;
@@ -1032,16 +1106,17 @@ struct dem_world {
     uint64_t steps, rebuilds;
     double time;
     dem_real dt;
-    double assumed_speed;          /* m/s, behind dt                                                  */
+    double assumed_speed;          /* m/s, behind dt */
     int dt_valid, forces_valid, synced, primed;
     uint32_t stamp;
     double overlap_max, speed_max;
     double energy[DEMI_ENERGIES], energy_inserted, energy_removed, energy_opening;
     double throughput;
-    double half_kick;              /* s, of the step under way                                        */
+    double half_kick;              /* s, of the step under way */
 };
 
-static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) DEMI_FORMAT(3, 4);
+static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
+                            ...) DEMI_FORMAT(3, 4);
 static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
     va_list args;
     va_start(args, format);
@@ -1050,7 +1125,8 @@ static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
     return result;
 }
 static dem_result demi_no_memory(dem_world *w, const char *call) {
-    return demi_fail(w, DEM_ERROR_MEMORY, "%s: out of memory with %.1f MB held; use fewer bodies or a smaller "
+    return demi_fail(w, DEM_ERROR_MEMORY, "%s: out of memory with %.1f MB held; use fewer bodies "
+                     "or a smaller "
                      "skin; nothing was changed", call, (double)w->bytes/1e6);
 }
 
@@ -1075,7 +1151,8 @@ static void demi_free(dem_world *w, void *p, size_t count, size_t size) {
     w->bytes -= count*size;
     demi_raw_free(&w->desc.allocator, p, count*size);
 }
-/* Makes room for count items, keeping those there. 0 when memory ran out; then nothing has changed. */
+/* Makes room for count items, keeping those there. 0 when memory ran out; then nothing has changed.
+   */
 static int demi_array_grow(dem_world *w, demi_array *array, size_t item, size_t count) {
     void *p;
     size_t room = array->capacity;
@@ -1095,12 +1172,12 @@ static void demi_array_free(dem_world *w, demi_array *array) {
     memset(array, 0, sizeof *array);
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>materials
-   Users say what a material is (density, Young's modulus, Poisson's ratio, restitution, friction); the
-   pair table says what holds between two; demi_coefficients turns a pair and two radii into the
+   Users say what a material is (density, Young's modulus, Poisson's ratio, restitution, friction);
+   the pair table says what holds between two; demi_coefficients turns a pair and two radii into the
    numbers a law multiplies with. Restitution comes first, damping is derived from it.
-   ------------------------------------------------------------------------------------------------ */
+   --------------------------------------------------------------------------------------------- */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
     const int linear_k = w->desc.normal_law == DEM_NORMAL_LINEAR && d->stiffness > 0;
     struct { const char *name; dem_real value; int ok; const char *limit; } rows[9];
@@ -1112,7 +1189,8 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     DEMI_ROW(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
     DEMI_ROW(3, restitution, d->restitution > 0 && d->restitution <= 1, "> 0 and <= 1 (required)");
     DEMI_ROW(4, friction, d->friction >= 0, ">= 0");
-    DEMI_ROW(5, friction_static, DEMI_ABS(d->friction_static) <= 0 || d->friction_static >= d->friction,
+    DEMI_ROW(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
+             d->friction_static >= d->friction,
              "0 or at least the sliding friction");
     DEMI_ROW(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
     DEMI_ROW(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
@@ -1120,15 +1198,18 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
 #undef DEMI_ROW
     for (i = 0; i < 9; i++)
         if (!rows[i].ok || !demi_finite(rows[i].value))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s; set it in the desc before the call",
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s; set it in the desc "
+                             "before the call",
                              call, rows[i].name, (double)rows[i].value, rows[i].limit);
     return DEM_OK;
 }
 
-/* One pair from two materials: Hertz's series of compliances for the moduli, geometric means for the rest. */
+/* One pair from two materials: Hertz's series of compliances for the moduli, geometric means for
+   the rest. */
 static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b) {
     dem_pair p;
-    const double Ea = (double)a->young, Eb = (double)b->young, na = (double)a->poisson, nb = (double)b->poisson;
+    const double Ea = (double)a->young, Eb = (double)b->young, na = (double)a->poisson, nb =
+        (double)b->poisson;
     const double sa = (double)(a->friction_static > 0 ? a->friction_static : a->friction);
     const double sb = (double)(b->friction_static > 0 ? b->friction_static : b->friction);
     memset(&p, 0, sizeof p);
@@ -1141,11 +1222,12 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     p.friction_static = (dem_real)sqrt(sa*sb);
     p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
     p.tangent_damping = 1;
-    if (a->stiffness > 0 && b->stiffness > 0)   /* springs in series; equal materials: their own value    */
+    /* springs in series; equal materials: their own value */
+    if (a->stiffness > 0 && b->stiffness > 0)
         p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
     if (a->stiffness_ratio > 0 && b->stiffness_ratio > 0)
         p.stiffness_ratio = DEMI_SQRT(a->stiffness_ratio*b->stiffness_ratio);
-    else                                        /* Mindlin's ratio 2(1-nu)/(2-nu), of the mean nu         */
+    else                                        /* Mindlin's ratio 2(1-nu)/(2-nu), of the mean nu */
         p.stiffness_ratio = (dem_real)(2*(1 - (na + nb)/2)/(2 - (na + nb)/2));
     return p;
 }
@@ -1155,13 +1237,15 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
     id.id = 0;
     if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
     if (n == DEMI_MATERIALS) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, the limit; reuse one", n);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, the "
+                  "limit; reuse one", n);
         return id;
     }
     w->materials[n] = *desc;
     w->material_count = n + 1;
     for (i = 0; i <= n; i++)
-        w->pairs[i*DEMI_MATERIALS + n] = w->pairs[n*DEMI_MATERIALS + i] = demi_mix(&w->materials[i], desc);
+        w->pairs[i*DEMI_MATERIALS + n] = w->pairs[n*DEMI_MATERIALS + i] =
+            demi_mix(&w->materials[i], desc);
     w->list_valid = w->dt_valid = 0;
     id.id = n + 1;
     return id;
@@ -1169,16 +1253,20 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
 
 static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
     if (m.id < 1 || m.id > w->material_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; add it with "
-                         "dem_material_add and check what that returned", call, (int)m.id, w->material_count);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; add "
+                         "it with "
+                         "dem_material_add and check what that returned", call, (int)m.id,
+                         w->material_count);
     *index = m.id - 1;
     return DEM_OK;
 }
 
-DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b, dem_pair *pair) {
-    dem_world *w = (dem_world *)world;          /* only the error sentence is written                     */
+DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
+                                dem_pair *pair) {
+    dem_world *w = (dem_world *)world;          /* only the error sentence is written */
     int i = 0, j = 0;
-    if (demi_material_index(w, "dem_pair_get", a, &i) || demi_material_index(w, "dem_pair_get", b, &j))
+    if (demi_material_index(w, "dem_pair_get", a, &i) ||
+        demi_material_index(w, "dem_pair_get", b, &j))
         return DEM_ERROR_ARGUMENT;
     *pair = w->pairs[i*DEMI_MATERIALS + j];
     return DEM_OK;
@@ -1188,10 +1276,13 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     int i = 0, j = 0;
     const char *bad = 0, *limit = "";
     dem_real value = 0;
-    if (demi_material_index(w, "dem_pair_set", a, &i) || demi_material_index(w, "dem_pair_set", b, &j))
+    if (demi_material_index(w, "dem_pair_set", a, &i) ||
+        demi_material_index(w, "dem_pair_set", b, &j))
         return DEM_ERROR_ARGUMENT;
 #define DEMI_BAD(field, good, text) \
-    if (!bad && (!demi_finite(p->field) || !(good))) { bad = #field; value = p->field; limit = text; }
+    if (!bad && (!demi_finite(p->field) || !(good))) { \
+        bad = #field; value = p->field; limit = text; \
+    }
     DEMI_BAD(young_eff, p->young_eff > 0 || p->stiffness > 0, "> 0 Pa")
     DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
     DEMI_BAD(restitution, p->restitution > 0 && p->restitution <= 1, "> 0 and <= 1")
@@ -1203,8 +1294,10 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     DEMI_BAD(tangent_damping, p->tangent_damping >= 0, ">= 0")
 #undef DEMI_BAD
     if (bad)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, must be %s; start "
-                         "from dem_pair_get and change what differs", bad, i + 1, j + 1, (double)value, limit);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
+                         "must be %s; start "
+                         "from dem_pair_get and change what differs", bad, i + 1, j + 1,
+                         (double)value, limit);
     w->pairs[i*DEMI_MATERIALS + j] = w->pairs[j*DEMI_MATERIALS + i] = *p;
     w->pair_given = 1;
     w->list_valid = w->dt_valid = 0;
@@ -1215,19 +1308,23 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
 static double demi_damping_ratio(double e) { return -log(e)/sqrt(DEMI_PI*DEMI_PI + log(e)*log(e)); }
 
 /* The coefficients of one contact.
-     Hertz   F = kn d^(3/2) + cn d^(1/4) v,  kn = 4/3 E* sqrt(R*),  cn = 2 sqrt(5/6) beta sqrt(2 E* sqrt(R*) m*)
-             kt = 8 G* sqrt(R*) (times d^(1/2)),  ct = 2 sqrt(5/6) beta sqrt(8 G* sqrt(R*) m*)  [TSU92, MIL]
-     linear  F = kn d + cn v,  kn = (320/81 m* v^2 E*^4 R*^2)^(1/5) [DIM04] unless given, cn = 2 beta sqrt(kn m*)
+     Hertz   F = kn d^(3/2) + cn d^(1/4) v,  kn = 4/3 E* sqrt(R*),  cn = 2 sqrt(5/6) beta sqrt(2 E*
+             sqrt(R*) m*)
+             kt = 8 G* sqrt(R*) (times d^(1/2)),  ct = 2 sqrt(5/6) beta sqrt(8 G* sqrt(R*) m*)
+                                                  [TSU92, MIL]
+     linear  F = kn d + cn v,  kn = (320/81 m* v^2 E*^4 R*^2)^(1/5) [DIM04] unless given, cn = 2
+             beta sqrt(kn m*)
              kt = ratio kn,  ct = 2 beta sqrt(kt m*)
-   DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps between
-   grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff, m_eff: the standard ones.
-   Checked by "the thesis's eight coefficients". */
-static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff, int wall, dem_real *out) {
+   DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
+   between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff, m_eff: the
+   standard ones. Checked by "the thesis's eight coefficients". */
+static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff,
+                              int wall, dem_real *out) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b];
     const double beta = demi_damping_ratio((double)p->restitution);
     double E = (double)p->young_eff, G = (double)p->shear_eff, kn, cn, kt, ct, R = r_eff, m = m_eff;
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
-    if (mill) {                                 /* material b's own moduli: the wall's, or the grain's    */
+    if (mill) {  /* material b's own moduli: the wall's, or the grain's */
         const dem_material_desc *d = &w->materials[b];
         E = (double)d->young;
         G = E/(2*(1 + (double)d->poisson));
@@ -1247,16 +1344,19 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
         ct = 2*beta*sqrt(kt*m);
     }
     ct *= (double)p->tangent_damping;
-    out[DEMI_KN] = (dem_real)kn; out[DEMI_CN] = (dem_real)cn; out[DEMI_KT] = (dem_real)kt; out[DEMI_CT] = (dem_real)ct;
+    out[DEMI_KN] = (dem_real)kn; out[DEMI_CN] = (dem_real)cn; out[DEMI_KT] = (dem_real)kt;
+    out[DEMI_CT] = (dem_real)ct;
     out[DEMI_MU] = p->friction;
     out[DEMI_MU_STATIC] = DEMI_MAX(p->friction, p->friction_static);
     out[DEMI_MU_ROLL] = p->rolling_friction;
     out[DEMI_R_EFF] = (dem_real)r_eff;
 }
 
-/* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi sqrt(m/k)
+/* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi
+   sqrt(m/k)
    (with damping pi/sqrt(k/m - (c/2m)^2) [FEN] eq 2.21). */
-static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff, double speed) {
+static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff,
+                                double speed) {
     const double k = (double)coef[DEMI_KN], c = (double)coef[DEMI_CN];
     if (w->desc.normal_law == DEM_NORMAL_LINEAR) {
         const double eta = c/(2*m_eff);
@@ -1275,47 +1375,56 @@ static double demi_sphere_inertia(const dem_world *w, double mass, double r) {
 }
 
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
-                                        dem_real radius_a, dem_real radius_b, dem_coefficients *out) {
+                                        dem_real radius_a, dem_real radius_b,
+                                        dem_coefficients *out) {
     dem_world *w = (dem_world *)world;
     int i = 0, j = 0;
     double ra = (double)radius_a, rb = (double)radius_b, ma, r, m;
     dem_real coef[DEMI_COEFS];
-    if (demi_material_index(w, "dem_coefficients_get", a, &i) || demi_material_index(w, "dem_coefficients_get", b, &j))
+    if (demi_material_index(w, "dem_coefficients_get", a, &i) ||
+        demi_material_index(w, "dem_coefficients_get", b, &j))
         return DEM_ERROR_ARGUMENT;
     if (!(ra > 0) || !(rb >= 0) || !demi_finite(radius_a) || !demi_finite(radius_b))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_coefficients_get: radii are %g and %g m, must be > 0 and >= 0 "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_coefficients_get: radii are %g and %g m, must "
+                         "be > 0 and >= 0 "
                          "(0: a wall)", ra, rb);
     ma = demi_sphere_mass(w, i, ra);
     r = rb > 0 ? ra*rb/(ra + rb) : ra;
     m = rb > 0 ? 1/(1/ma + 1/demi_sphere_mass(w, j, rb)) : ma;
     demi_coefficients(w, i, j, r, m, rb <= 0, coef);
     out->r_eff = (dem_real)r; out->m_eff = (dem_real)m;
-    out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT]; out->ct = coef[DEMI_CT];
-    out->damping_ratio = (dem_real)demi_damping_ratio((double)w->pairs[i*DEMI_MATERIALS + j].restitution);
-    out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0 ? (double)w->desc.impact_speed : 1);
+    out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT];
+    out->ct = coef[DEMI_CT];
+    out->damping_ratio = (dem_real)demi_damping_ratio((double)w->pairs[i*DEMI_MATERIALS +
+        j].restitution);
+    out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0
+                                                    ? (double)w->desc.impact_speed : 1);
     return DEM_OK;
 }
 
 DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
     int i, j;
-    fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    kt/kn\n");
+    fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
+            "kt/kn\n");
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j];
-            fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %.4g\n", i + 1, j + 1,
-                    (double)p->young_eff, (double)p->shear_eff, (double)p->restitution, (double)p->friction,
+            fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %.4g\n",
+                    i + 1, j + 1,
+                    (double)p->young_eff, (double)p->shear_eff, (double)p->restitution,
+                    (double)p->friction,
                     (double)p->friction_static, (double)p->rolling_friction, (double)p->stiffness,
                     (double)p->stiffness_ratio);
         }
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>bodies
    Grains: who they are (slots, which never move), where they stand in the arrays (indices, which
-   change whenever the list is rebuilt), adding, removing, placing. Whoever changes who is where calls
-   demi_list_drop first (it stands here because everyone needs it): contact memory is then filed by slot
-   and finds its way into the next list.
-   ------------------------------------------------------------------------------------------------ */
+   change whenever the list is rebuilt), adding, removing, placing. Whoever changes who is where
+   calls demi_list_drop first (it stands here because everyone needs it): contact memory is then
+   filed by slot and finds its way into the next list.
+   --------------------------------------------------------------------------------------------- */
 
 /* Files the memory of all touching pairs by slot: row = lower slot; partner = higher slot, or its
    complement when body a of the pair was the higher one. 0 when memory ran out. */
@@ -1327,7 +1436,7 @@ static int demi_carry_collect(dem_world *w) {
     if (!demi_array_grow(w, &w->carry_start_, sizeof(int32_t), (size_t)w->slot_count + 2)) return 0;
     w->carry_start = (int32_t *)w->carry_start_.data;
     memset(w->carry_start, 0, ((size_t)w->slot_count + 2)*sizeof(int32_t));
-    for (pass = 0; pass < 2; pass++) {          /* count by row, then fill                                */
+    for (pass = 0; pass < 2; pass++) {          /* count by row, then fill */
         for (l = 0; l < lists; l++) {
             const demi_list *list = l ? &w->cross : &w->own;
             for (d = 0; d < w->domain_count; d++) {
@@ -1341,13 +1450,15 @@ static int demi_carry_collect(dem_world *w) {
                     if (pass == 0) { w->carry_start[row + 2]++; total++; continue; }
                     w->carry_partner[w->carry_start[row + 1]] = a < b ? b : ~a;
                     memcpy(w->carry_memory + (size_t)w->carry_start[row + 1]++*(size_t)stride,
-                           list->memory + (size_t)k*(size_t)stride, (size_t)stride*sizeof(dem_real));
+                           list->memory + (size_t)k*(size_t)stride,
+                           (size_t)stride*sizeof(dem_real));
                 }
             }
         }
         if (pass == 0) {
             if (!demi_array_grow(w, &w->carry_partner_, sizeof(int32_t), (size_t)total) ||
-                !demi_array_grow(w, &w->carry_memory_, sizeof(dem_real), (size_t)total*(size_t)stride)) return 0;
+                !demi_array_grow(w, &w->carry_memory_, sizeof(dem_real),
+                                 (size_t)total*(size_t)stride)) return 0;
             w->carry_partner = (int32_t *)w->carry_partner_.data;
             w->carry_memory = (dem_real *)w->carry_memory_.data;
             for (k = 2; k < w->slot_count + 2; k++) w->carry_start[k] += w->carry_start[k - 1];
@@ -1357,7 +1468,8 @@ static int demi_carry_collect(dem_world *w) {
     return 1;
 }
 
-/* The candidate list no longer fits: save what it remembers. 0 when memory ran out; nothing changed then. */
+/* The candidate list no longer fits: save what it remembers. 0 when memory ran out; nothing changed
+   then. */
 static int demi_list_drop(dem_world *w) {
     int d, k;
     if (!w->list_valid) return 1;
@@ -1365,7 +1477,7 @@ static int demi_list_drop(dem_world *w) {
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
-            c->body = (int32_t)w->body_slot[c->body];      /* from here on a slot                        */
+            c->body = (int32_t)w->body_slot[c->body];      /* from here on a slot */
         }
     w->list_valid = 0;
     return 1;
@@ -1373,7 +1485,8 @@ static int demi_list_drop(dem_world *w) {
 
 /* Gives every array of the set new room, or leaves all as they were. */
 typedef struct demi_room { void **data; size_t item; void *fresh; } demi_room;
-static int demi_room_grow(dem_world *w, demi_room *set, int count, size_t used, size_t old_room, size_t room) {
+static int demi_room_grow(dem_world *w, demi_room *set, int count, size_t used, size_t old_room,
+                          size_t room) {
     int i;
     for (i = 0; i < count; i++) {
         set[i].fresh = demi_alloc(w, room, set[i].item);
@@ -1424,7 +1537,8 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
         n = 0;
         demi_room_add(set, &n, &w->slot_index, sizeof(int32_t));
         demi_room_add(set, &n, &w->slot_generation, sizeof(uint32_t));
-        if (!demi_room_grow(w, set, n, (size_t)w->slot_count, (size_t)w->slot_capacity, room)) return 0;
+        if (!demi_room_grow(w, set, n, (size_t)w->slot_count, (size_t)w->slot_capacity,
+                            room)) return 0;
         w->slot_capacity = (int)room;
     }
     return 1;
@@ -1434,7 +1548,8 @@ static double demi_body_energy(const dem_world *w, int i) {
     const dem_real *v = w->vel + 4*i, *s = w->spin + 4*i;
     double m = (double)w->mass[i], I = demi_sphere_inertia(w, m, (double)w->pos[4*i + 3]);
     if (w->inv_mass[i] <= 0) return 0;
-    return m*(double)(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2 + I*(double)(s[0]*s[0] + s[1]*s[1] + s[2]*s[2])/2;
+    return m*(double)(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2 +
+        I*(double)(s[0]*s[0] + s[1]*s[1] + s[2]*s[2])/2;
 }
 
 /* What follows from bodies having changed: forces, list and advice must be made anew. */
@@ -1445,11 +1560,13 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     const int i = w->count++;
     const double m = demi_sphere_mass(w, material, (double)radius);
     int slot = w->slot_free;
-    if (slot >= 0) w->slot_free = -2 - w->slot_index[slot];       /* chain: index = -2 - next             */
+    if (slot >= 0) w->slot_free = -2 - w->slot_index[slot];       /* chain: index = -2 - next */
     else { slot = w->slot_count++; w->slot_generation[slot] = 1; }
     memset(w->pos + 4*i, 0, 4*sizeof(dem_real));       memset(w->vel + 4*i, 0, 4*sizeof(dem_real));
-    memset(w->spin + 4*i, 0, 4*sizeof(dem_real));      memset(w->force + 4*i, 0, 4*sizeof(dem_real));
-    memset(w->torque + 4*i, 0, 4*sizeof(dem_real));    memset(w->half_vel + 4*i, 0, 4*sizeof(dem_real));
+    memset(w->spin + 4*i, 0, 4*sizeof(dem_real));      memset(w->force + 4*i, 0,
+                                                              4*sizeof(dem_real));
+    memset(w->torque + 4*i, 0, 4*sizeof(dem_real));    memset(w->half_vel + 4*i, 0,
+                                                              4*sizeof(dem_real));
     memset(w->half_spin + 4*i, 0, 4*sizeof(dem_real));
     demi_put(w->pos + 4*i, x);
     w->pos[4*i + 3] = radius;
@@ -1464,26 +1581,34 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     return (uint32_t)slot;
 }
 
-DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int count, const dem_real *positions,
-                                   const dem_real *velocities, const dem_real *radii, dem_real radius) {
+DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int count,
+                                   const dem_real *positions,
+                                   const dem_real *velocities, const dem_real *radii,
+                                   dem_real radius) {
     int i, m = 0;
-    if (demi_material_index(w, "dem_spheres_add", material, &m) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (demi_material_index(w, "dem_spheres_add", material,
+                            &m) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (count < 0 || (count > 0 && !positions))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: count is %d, must be >= 0 with positions (count x 3)"
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: count is %d, must be >= 0 with "
+                         "positions (count x 3)"
                          "; check the caller's array", count);
     for (i = 0; i < count; i++) {
         const dem_real r = radii ? radii[i] : radius;
         if (!(r > 0) || !demi_finite(r))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: radius of sphere %d is %g, must be > 0 m; "
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: radius of sphere %d is %g, "
+                             "must be > 0 m; "
                              "no sphere was added", i, (double)r);
-        if (!demi_finite3(demi_at(positions + 3*i)) || (velocities && !demi_finite3(demi_at(velocities + 3*i))))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of sphere %d is not a "
+        if (!demi_finite3(demi_at(positions + 3*i)) || (velocities &&
+                                                        !demi_finite3(demi_at(velocities + 3*i))))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of "
+                             "sphere %d is not a "
                              "finite number; check the data it came from; no sphere was added", i);
     }
     if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count))
         return demi_no_memory(w, "dem_spheres_add");
     for (i = 0; i < count; i++) {
-        const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius, demi_at(positions + 3*i));
+        const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius,
+                                               demi_at(positions + 3*i));
         const int k = w->slot_index[slot];
         if (velocities) demi_put(w->vel + 4*k, demi_at(velocities + 3*i));
         if (w->desc.planar) w->vel[4*k + 2] = 0;
@@ -1493,7 +1618,8 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
     return DEM_OK;
 }
 
-DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real radius, dem_vec3 position) {
+DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real radius,
+                                dem_vec3 position) {
     dem_body id;
     dem_real x[3];
     id.slot = id.generation = 0;
@@ -1504,9 +1630,11 @@ DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real ra
 
 /* Index of a body, or -1 with a sentence. */
 static int demi_body_index(dem_world *w, const char *call, dem_body b) {
-    if (b.slot < 1 || b.slot > (uint32_t)w->slot_count || w->slot_generation[b.slot - 1] != b.generation ||
+    if (b.slot < 1 || b.slot > (uint32_t)w->slot_count ||
+        w->slot_generation[b.slot - 1] != b.generation ||
         w->slot_index[b.slot - 1] < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u (generation %u) does not exist; it was removed, has left the "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u (generation %u) does not exist; it was "
+                  "removed, has left the "
                   "domain, or never was", call, (unsigned)b.slot, (unsigned)b.generation);
         return -1;
     }
@@ -1519,7 +1647,8 @@ static void demi_body_take_out(dem_world *w, int i) {
     if (i != last) {
         dem_real *fours[8];
         int k, n = 7;
-        fours[0] = w->pos; fours[1] = w->vel; fours[2] = w->spin; fours[3] = w->half_vel; fours[4] = w->half_spin;
+        fours[0] = w->pos; fours[1] = w->vel; fours[2] = w->spin; fours[3] = w->half_vel;
+        fours[4] = w->half_spin;
         fours[5] = w->force; fours[6] = w->torque; fours[7] = w->last_pos;
         if (w->last_pos) n = 8;
         for (k = 0; k < n; k++) memcpy(fours[k] + 4*i, fours[k] + 4*last, 4*sizeof(dem_real));
@@ -1569,7 +1698,8 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     double before, m;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (!demi_finite3(s->position) || !demi_finite3(s->velocity) || !demi_finite3(s->spin))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: position, velocity or spin of body %u is not a finite "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: position, velocity or spin of body "
+                         "%u is not a finite "
                          "number; check what it was computed from", (unsigned)body.slot);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_set");
     before = demi_body_energy(w, i);
@@ -1579,7 +1709,8 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     demi_put(w->spin + 4*i, s->spin);
     if (w->desc.planar) w->vel[4*i + 2] = w->spin[4*i] = w->spin[4*i + 1] = 0;
     w->inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
-    w->inv_inertia[i] = s->fixed ? 0 : (dem_real)(1/demi_sphere_inertia(w, m, (double)w->pos[4*i + 3]));
+    w->inv_inertia[i] = s->fixed ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
+        (double)w->pos[4*i + 3]));
     w->energy_inserted += demi_body_energy(w, i) - before;
     demi_scene_changed(w);
     return DEM_OK;
@@ -1588,7 +1719,8 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
 DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
     dem_bodies b;
     b.count = w->count;
-    b.positions = w->pos; b.velocities = w->vel; b.spins = w->spin; b.forces = w->force; b.torques = w->torque;
+    b.positions = w->pos; b.velocities = w->vel; b.spins = w->spin; b.forces = w->force;
+    b.torques = w->torque;
     b.masses = w->mass; b.slots = w->body_slot; b.materials = w->body_material;
     return b;
 }
@@ -1603,7 +1735,8 @@ DEM_API dem_body dem_bodies_id(const dem_world *w, int index) {
 DEM_API dem_balance dem_balance_get(const dem_world *w) { return w->balance; }
 
 /* Buckets of the bodies there are, for finding room: cell = at least twice the largest radius. */
-typedef struct demi_buckets { dem_box box; double cell; int n[3]; int32_t *head, *next; int next_room; } demi_buckets;
+typedef struct demi_buckets { dem_box box; double cell; int n[3]; int32_t *head, *next;
+                             int next_room; } demi_buckets;
 static int demi_bucket_of(const demi_buckets *g, dem_vec3 x) {
     int k, c[3];
     double p[3], lo[3];
@@ -1616,7 +1749,8 @@ static int demi_bucket_of(const demi_buckets *g, dem_vec3 x) {
     return c[0] + g->n[0]*(c[1] + g->n[1]*c[2]);
 }
 static int demi_bucket_free(const dem_world *w, const demi_buckets *g, dem_vec3 x, dem_real r) {
-    const int home = demi_bucket_of(g, x), hx = home%g->n[0], hy = home/g->n[0]%g->n[1], hz = home/g->n[0]/g->n[1];
+    const int home = demi_bucket_of(g, x), hx = home%g->n[0], hy = home/g->n[0]%g->n[1], hz =
+        home/g->n[0]/g->n[1];
     int i, j, k, b;
     for (k = DEMI_MAX(hz - 1, 0); k <= DEMI_MIN(hz + 1, g->n[2] - 1); k++)
         for (j = DEMI_MAX(hy - 1, 0); j <= DEMI_MIN(hy + 1, g->n[1] - 1); j++)
@@ -1629,7 +1763,8 @@ static int demi_bucket_free(const dem_world *w, const demi_buckets *g, dem_vec3 
     return 1;
 }
 
-DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius, dem_box box, int count,
+DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius, dem_box box,
+                             int count,
                              uint64_t seed) {
     demi_buckets g;
     uint64_t state = seed;
@@ -1639,15 +1774,18 @@ DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radiu
     double size[3];
     if (demi_material_index(w, "dem_spheres_fill", material, &m) != DEM_OK) return 0;
     if (!(radius > 0) || !demi_finite(radius) || count < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: radius is %g m and count %d, must be > 0 and >= 0",
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: radius is %g m and count %d, must be > "
+                  "0 and >= 0",
                   (double)radius, count);
         return 0;
     }
     size[0] = (double)(box.hi.x - box.lo.x) - 2*(double)radius;
     size[1] = (double)(box.hi.y - box.lo.y) - 2*(double)radius;
     size[2] = planar ? 0 : (double)(box.hi.z - box.lo.z) - 2*(double)radius;
-    if (!(size[0] >= 0 && size[1] >= 0 && size[2] >= 0) || !demi_finite3(box.lo) || !demi_finite3(box.hi)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: the box is smaller than one sphere of radius %g m; "
+    if (!(size[0] >= 0 && size[1] >= 0 && size[2] >= 0) || !demi_finite3(box.lo) ||
+        !demi_finite3(box.hi)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: the box is smaller than one sphere of "
+                  "radius %g m; "
                   "give lo below hi by at least a diameter", (double)radius);
         return 0;
     }
@@ -1658,8 +1796,9 @@ DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radiu
     for (i = 0; i < w->count; i++) r_max = DEMI_MAX(r_max, w->pos[4*i + 3]);
     g.box = box;
     g.cell = 2.0001*(double)r_max;
-    for (;; g.cell *= 1.26) {                   /* no more cells than about four per body                 */
-        for (k = 0; k < 3; k++) g.n[k] = (int)DEMI_MIN((size[k] + 2*(double)radius)/g.cell, 1e6) + 1;
+    for (;; g.cell *= 1.26) {                   /* no more cells than about four per body */
+        for (k = 0; k < 3; k++) g.n[k] = (int)DEMI_MIN((size[k] + 2*(double)radius)/g.cell, 1e6) +
+            1;
         if ((double)g.n[0]*g.n[1]*g.n[2] <= 4.0*(w->count + count) + 64) break;
     }
     cells = (size_t)g.n[0]*(size_t)g.n[1]*(size_t)g.n[2];
@@ -1696,8 +1835,10 @@ DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radiu
         if (tries == 2000) break;
     }
     if (done < count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: %d of %d spheres of radius %g m found a place in 2000 "
-                  "tries each; enlarge the box, or pack them with dem_spheres_pack", done, count, (double)radius);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: %d of %d spheres of radius %g m found "
+                  "a place in 2000 "
+                  "tries each; enlarge the box, or pack them with dem_spheres_pack", done, count,
+                  (double)radius);
     demi_free(w, g.head, cells, sizeof(int32_t));
     demi_free(w, g.next, (size_t)g.next_room + 1, sizeof(int32_t));
     demi_scene_changed(w);
@@ -1718,9 +1859,11 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     double size[3];
     int i, j, k, n[3], m = 0, done = 0;
     if (demi_material_index(w, "dem_spheres_pack", material, &m) != DEM_OK) return 0;
-    if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) || count < 0 ||
+    if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
+        count < 0 ||
         !demi_finite3(box.lo) || !demi_finite3(box.hi)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_pack: radius %g, padding %g, count %d; must be > 0, >= 0, >= 0 "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_pack: radius %g, padding %g, count %d; must "
+                  "be > 0, >= 0, >= 0 "
                   "and the box finite", (double)radius, (double)padding, count);
         return 0;
     }
@@ -1751,20 +1894,21 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     return done;
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>walls
-   A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls of
-   many elements keep a grid of them in their own frame, so that a grain finds its neighbours at a cost
-   that does not depend on their number. Planes and cylinders are one element each, without end.
-   >>add-wall: a kind in the enum, a case in demi_wall_touch (>>touch), a function here that adds it.
-   ------------------------------------------------------------------------------------------------ */
+   A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls
+   of many elements keep a grid of them in their own frame, so that a grain finds its neighbours at
+   a cost that does not depend on their number. Planes and cylinders are one element each, without
+   end. >>add-wall: a kind in the enum, a case in demi_wall_touch (>>touch), a function here that
+   adds it.
+   --------------------------------------------------------------------------------------------- */
 static void demi_pose_identity(dem_pose *p) {
     memset(p, 0, sizeof *p);
     p->rotation[0] = p->rotation[4] = p->rotation[8] = 1;
 }
 
-/* Where the wall is at a time. Rotating: exact rotation from the pose it started with, so that no error
-   builds up. Velocities are exact derivatives. */
+/* Where the wall is at a time. Rotating: exact rotation from the pose it started with, so that no
+   error builds up. Velocities are exact derivatives. */
 static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose) {
     const dem_motion *m = &wall->motion;
     const double t = time - m->start;
@@ -1783,12 +1927,14 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
         dem_real T[9];
         int i, j;
         if (t <= 0) break;
-        demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z, fmod((double)m->speed*t, 2*DEMI_PI));
+        demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z,
+                      fmod((double)m->speed*t, 2*DEMI_PI));
         for (i = 0; i < 9; i++) T[i] = (dem_real)turn[i];
         for (i = 0; i < 3; i++)
             for (j = 0; j < 3; j++)
                 pose->rotation[3*i + j] = (dem_real)(turn[3*i]*(double)wall->home.rotation[j] +
-                    turn[3*i + 1]*(double)wall->home.rotation[3 + j] + turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
+                    turn[3*i + 1]*(double)wall->home.rotation[3 + j] +
+                    turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
         pose->position = demi_add(m->point, demi_turn(T, arm));
         pose->spin = demi_scale(axis, m->speed);
         pose->velocity = demi_cross(pose->spin, demi_sub(pose->position, m->point));
@@ -1797,7 +1943,8 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     case DEM_MOTION_OSCILLATING: {
         const dem_vec3 way = demi_unit(m->velocity);
         const double w = 2*DEMI_PI*(double)m->frequency, phase = w*t + (double)m->phase;
-        pose->position = demi_add(pose->position, demi_scale(way, (dem_real)((double)m->amplitude*sin(phase))));
+        pose->position = demi_add(pose->position, demi_scale(way,
+                                                             (dem_real)((double)m->amplitude*sin(phase))));
         pose->velocity = demi_scale(way, (dem_real)((double)m->amplitude*w*cos(phase)));
         break;
     }
@@ -1805,11 +1952,12 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     }
 }
 
-/* An upper bound of the speed of the wall's surface (m/s); 0 when its motion leaves the surface in place. */
+/* An upper bound of the speed of the wall's surface (m/s); 0 when its motion leaves the surface in
+   place. */
 static double demi_wall_speed(const demi_wall *wall) {
     const dem_pose *p = &wall->pose;
     if (wall->kind == DEMI_WALL_NONE || wall->symmetric) return 0;
-    if (wall->reach < 0) return -1;             /* endless and moving: no bound, look again every step     */
+    if (wall->reach < 0) return -1;  /* endless and moving: no bound, look again every step */
     return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->reach;
 }
 
@@ -1817,7 +1965,8 @@ static void demi_wall_free(dem_world *w, demi_wall *wall) {
     const size_t per = wall->kind == DEMI_WALL_MESH ? 3 : 2;
     demi_free(w, wall->vertices, (size_t)wall->vertex_count*3, sizeof(dem_real));
     demi_free(w, wall->corners, (size_t)wall->element_count*per, sizeof(int32_t));
-    demi_free(w, wall->cell_start, (size_t)wall->cells[0]*(size_t)wall->cells[1]*(size_t)wall->cells[2] + 1,
+    demi_free(w, wall->cell_start,
+              (size_t)wall->cells[0]*(size_t)wall->cells[1]*(size_t)wall->cells[2] + 1,
               sizeof(int32_t));
     demi_free(w, wall->cell_items, (size_t)wall->cell_item_count, sizeof(int32_t));
     memset(wall, 0, sizeof *wall);
@@ -1828,19 +1977,22 @@ static int demi_wall_corners(const demi_wall *wall, int element, dem_vec3 *out) 
     const int n = wall->kind == DEMI_WALL_MESH ? 3 : wall->kind == DEMI_WALL_PROFILE ? 2 : 1;
     int k;
     for (k = 0; k < n; k++)
-        out[k] = demi_at(wall->vertices + 3*(wall->corners ? wall->corners[n*element + k] : element));
+        out[k] = demi_at(wall->vertices + 3*(wall->corners ? wall->corners[n*element + k]
+                                             : element));
     return n;
 }
 
 /* Cells of the element grid that a box touches. */
-static void demi_wall_cells(const demi_wall *wall, dem_vec3 lo, dem_vec3 hi, int *first, int *last) {
+static void demi_wall_cells(const demi_wall *wall, dem_vec3 lo, dem_vec3 hi, int *first,
+                            int *last) {
     double a[3], b[3], o[3];
     int k;
     a[0] = (double)lo.x; a[1] = (double)lo.y; a[2] = (double)lo.z;
     b[0] = (double)hi.x; b[1] = (double)hi.y; b[2] = (double)hi.z;
     o[0] = (double)wall->box.lo.x; o[1] = (double)wall->box.lo.y; o[2] = (double)wall->box.lo.z;
     for (k = 0; k < 3; k++) {
-        const double f = floor((a[k] - o[k])/(double)wall->cell), l = floor((b[k] - o[k])/(double)wall->cell);
+        const double f = floor((a[k] - o[k])/(double)wall->cell), l =
+            floor((b[k] - o[k])/(double)wall->cell);
         first[k] = f < 0 ? 0 : f > wall->cells[k] ? wall->cells[k] : (int)f;
         last[k] = l >= wall->cells[k] ? wall->cells[k] - 1 : l < -1 ? -1 : (int)l;
     }
@@ -1855,15 +2007,18 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
     wall->box.lo = wall->box.hi = demi_at(wall->vertices);
     for (i = 0; i < wall->vertex_count; i++) {
         const dem_vec3 p = demi_at(wall->vertices + 3*i);
-        wall->box.lo = demi_v(DEMI_MIN(wall->box.lo.x, p.x), DEMI_MIN(wall->box.lo.y, p.y), DEMI_MIN(wall->box.lo.z, p.z));
-        wall->box.hi = demi_v(DEMI_MAX(wall->box.hi.x, p.x), DEMI_MAX(wall->box.hi.y, p.y), DEMI_MAX(wall->box.hi.z, p.z));
+        wall->box.lo = demi_v(DEMI_MIN(wall->box.lo.x, p.x), DEMI_MIN(wall->box.lo.y, p.y),
+                              DEMI_MIN(wall->box.lo.z, p.z));
+        wall->box.hi = demi_v(DEMI_MAX(wall->box.hi.x, p.x), DEMI_MAX(wall->box.hi.y, p.y),
+                              DEMI_MAX(wall->box.hi.z, p.z));
         reach = DEMI_MAX(reach, (double)demi_length(p) + (double)pad);
     }
     wall->box.lo = demi_sub(wall->box.lo, demi_v(pad, pad, pad));
     wall->box.hi = demi_add(wall->box.hi, demi_v(pad, pad, pad));
     wall->reach = (dem_real)reach;
-    if (wall->element_count <= 4) return 1;     /* a handful: just look at all                            */
-    for (i = 0; i < wall->element_count; i++) { /* cell: the mean element, so that each is in few cells   */
+    if (wall->element_count <= 4) return 1;     /* a handful: just look at all */
+    /* cell: the mean element, so that each is in few cells */
+    for (i = 0; i < wall->element_count; i++) {
         n = demi_wall_corners(wall, i, c);
         for (k = 1; k < n; k++) extent += (double)demi_length(demi_sub(c[k], c[0]))/(n - 1);
         if (n == 1) extent += 2*(double)wall->radius;
@@ -1874,31 +2029,37 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
         wall->cells[0] = (int)DEMI_MIN(size.x/wall->cell, DEM_R(1e6)) + 1;
         wall->cells[1] = (int)DEMI_MIN(size.y/wall->cell, DEM_R(1e6)) + 1;
         wall->cells[2] = (int)DEMI_MIN(size.z/wall->cell, DEM_R(1e6)) + 1;
-        if ((double)wall->cells[0]*wall->cells[1]*wall->cells[2] <= 32.0*wall->element_count + 64) break;
+        if ((double)wall->cells[0]*wall->cells[1]*wall->cells[2] <= 32.0*wall->element_count +
+            64) break;
     }
     n = wall->cells[0]*wall->cells[1]*wall->cells[2];
     wall->cell_start = (int32_t *)demi_alloc(w, (size_t)n + 1, sizeof(int32_t));
     if (!wall->cell_start) return 0;
-    for (pass = 0; pass < 2; pass++) {          /* count, then fill from the back                         */
+    for (pass = 0; pass < 2; pass++) {          /* count, then fill from the back */
         for (i = wall->element_count - 1; i >= 0; i--) {
             int corner, corners = demi_wall_corners(wall, i, c);
             lo = hi = c[0];
             for (corner = 1; corner < corners; corner++) {
-                lo = demi_v(DEMI_MIN(lo.x, c[corner].x), DEMI_MIN(lo.y, c[corner].y), DEMI_MIN(lo.z, c[corner].z));
-                hi = demi_v(DEMI_MAX(hi.x, c[corner].x), DEMI_MAX(hi.y, c[corner].y), DEMI_MAX(hi.z, c[corner].z));
+                lo = demi_v(DEMI_MIN(lo.x, c[corner].x), DEMI_MIN(lo.y, c[corner].y),
+                            DEMI_MIN(lo.z, c[corner].z));
+                hi = demi_v(DEMI_MAX(hi.x, c[corner].x), DEMI_MAX(hi.y, c[corner].y),
+                            DEMI_MAX(hi.z, c[corner].z));
             }
-            demi_wall_cells(wall, demi_sub(lo, demi_v(pad, pad, pad)), demi_add(hi, demi_v(pad, pad, pad)), f, l);
+            demi_wall_cells(wall, demi_sub(lo, demi_v(pad, pad, pad)),
+                            demi_add(hi, demi_v(pad, pad, pad)), f, l);
             for (z = f[2]; z <= l[2]; z++)
                 for (y = f[1]; y <= l[1]; y++)
                     for (x = f[0]; x <= l[0]; x++) {
-                        int32_t *slot = &wall->cell_start[x + wall->cells[0]*(y + wall->cells[1]*z)];
+                        int32_t *slot = &wall->cell_start[x +
+                                                          wall->cells[0]*(y + wall->cells[1]*z)];
                         if (pass == 0) ++*slot; else wall->cell_items[--*slot] = i;
                     }
         }
         if (pass == 0) {
             for (i = 1; i <= n; i++) wall->cell_start[i] += wall->cell_start[i - 1];
             wall->cell_item_count = wall->cell_start[n];
-            wall->cell_items = (int32_t *)demi_alloc(w, (size_t)wall->cell_item_count, sizeof(int32_t));
+            wall->cell_items = (int32_t *)demi_alloc(w, (size_t)wall->cell_item_count,
+                                                     sizeof(int32_t));
             if (!wall->cell_items) return 0;
         }
     }
@@ -1926,22 +2087,25 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     return id;
 }
 
-static int demi_wall_begin(dem_world *w, const char *call, dem_material material, int kind, demi_wall *wall) {
+static int demi_wall_begin(dem_world *w, const char *call, dem_material material, int kind,
+                           demi_wall *wall) {
     memset(wall, 0, sizeof *wall);
     demi_pose_identity(&wall->home);
     wall->kind = kind;
     wall->share = 1;
-    wall->symmetric = 1;                        /* until it moves                                         */
+    wall->symmetric = 1;                        /* until it moves */
     return demi_material_index(w, call, material, &wall->material) == DEM_OK;
 }
 
-DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 point, dem_vec3 normal) {
+DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 point,
+                               dem_vec3 normal) {
     demi_wall wall;
     dem_wall none;
     none.id = 0;
     if (!demi_wall_begin(w, "dem_plane_add", material, DEMI_WALL_PLANE, &wall)) return none;
     if (!demi_finite3(point) || !demi_finite3(normal) || !(demi_dot(normal, normal) > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_plane_add: normal is (%g, %g, %g), must be finite and not zero, point "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_plane_add: normal is (%g, %g, %g), must be finite "
+                  "and not zero, point "
                   "finite", (double)normal.x, (double)normal.y, (double)normal.z);
         return none;
     }
@@ -1954,14 +2118,17 @@ DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 poi
     return demi_wall_adopt(w, "dem_plane_add", &wall);
 }
 
-DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 point, dem_vec3 axis,
+DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 point,
+                                  dem_vec3 axis,
                                   dem_real radius, int inside) {
     demi_wall wall;
     dem_wall none;
     none.id = 0;
     if (!demi_wall_begin(w, "dem_cylinder_add", material, DEMI_WALL_CYLINDER, &wall)) return none;
-    if (!demi_finite3(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) || !(radius > 0) || !demi_finite(radius)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_cylinder_add: radius is %g m and axis (%g, %g, %g), must be > 0 and not "
+    if (!demi_finite3(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) ||
+        !(radius > 0) || !demi_finite(radius)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_cylinder_add: radius is %g m and axis (%g, %g, %g), "
+                  "must be > 0 and not "
                   "zero", (double)radius, (double)axis.x, (double)axis.y, (double)axis.z);
         return none;
     }
@@ -1976,30 +2143,37 @@ DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 
     return demi_wall_adopt(w, "dem_cylinder_add", &wall);
 }
 
-/* Copies vertices (dimension `per_vertex`) and corners into a wall. 0 with a sentence when they are bad. */
-static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int vertices, const dem_real *xyz,
+/* Copies vertices (dimension `per_vertex`) and corners into a wall. 0 with a sentence when they are
+   bad. */
+static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int vertices,
+                          const dem_real *xyz,
                           int per_vertex, int elements, const int32_t *corners, int per_element) {
     int i, k;
     if (vertices < 1 || elements < 1 || !xyz || (per_element && !corners)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be at least one of each; was the file "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be at least one of "
+                  "each; was the file "
                   "read?", call, vertices, elements);
         return 0;
     }
     for (i = 0; i < vertices*per_vertex; i++)
         if (!demi_finite(xyz[i])) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is not a finite number", call, i/per_vertex);
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is not a finite "
+                      "number", call, i/per_vertex);
             return 0;
         }
     for (i = 0; i < elements*per_element; i++)
         if (corners[i] < 0 || corners[i] >= vertices) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; are they counted from 1?",
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; are "
+                      "they counted from 1?",
                       call, i/per_element, (int)corners[i], vertices - 1);
             return 0;
         }
     wall->vertex_count = vertices;
     wall->element_count = elements;
     wall->vertices = (dem_real *)demi_alloc(w, (size_t)vertices*3, sizeof(dem_real));
-    if (per_element) wall->corners = (int32_t *)demi_alloc(w, (size_t)elements*(size_t)per_element, sizeof(int32_t));
+    if (per_element) wall->corners = (int32_t *)demi_alloc(w,
+                                                           (size_t)elements*(size_t)per_element,
+                                                           sizeof(int32_t));
     if (!wall->vertices || (per_element && !wall->corners)) {
         demi_wall_free(w, wall);
         demi_no_memory(w, call);
@@ -2007,7 +2181,8 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
     }
     for (i = 0; i < vertices; i++)
         for (k = 0; k < per_vertex; k++) wall->vertices[3*i + k] = xyz[per_vertex*i + k];
-    if (per_element) memcpy(wall->corners, corners, (size_t)elements*(size_t)per_element*sizeof(int32_t));
+    if (per_element) memcpy(wall->corners, corners,
+                            (size_t)elements*(size_t)per_element*sizeof(int32_t));
     if (!demi_wall_index(w, wall)) {
         demi_wall_free(w, wall);
         demi_no_memory(w, call);
@@ -2016,7 +2191,8 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
     return 1;
 }
 
-DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_profile *profile, dem_edge_rule rule) {
+DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_profile *profile,
+                                 dem_edge_rule rule) {
     demi_wall wall;
     dem_wall none;
     none.id = 0;
@@ -2039,32 +2215,38 @@ DEM_API dem_wall dem_mesh_add(dem_world *w, dem_material material, const dem_mes
     return demi_wall_adopt(w, "dem_mesh_add", &wall);
 }
 
-DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int count, const dem_real *positions,
+DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int count,
+                                     const dem_real *positions,
                                      dem_real radius, dem_real share) {
     demi_wall wall;
     dem_wall none;
     none.id = 0;
     if (!demi_wall_begin(w, "dem_grains_wall_add", material, DEMI_WALL_GRAINS, &wall)) return none;
     if (!(radius > 0) || !demi_finite(radius) || !(share > 0) || !(share <= 1)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_grains_wall_add: radius is %g m and share %g, must be > 0 and 0 < share "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_grains_wall_add: radius is %g m and share %g, must "
+                  "be > 0 and 0 < share "
                   "<= 1", (double)radius, (double)share);
         return none;
     }
     wall.radius = radius;
     wall.share = share;
     wall.motion.axis = demi_v(0, 0, 1);
-    if (!demi_wall_load(w, "dem_grains_wall_add", &wall, count, positions, 3, count, 0, 0)) return none;
+    if (!demi_wall_load(w, "dem_grains_wall_add", &wall, count, positions, 3, count, 0,
+                        0)) return none;
     return demi_wall_adopt(w, "dem_grains_wall_add", &wall);
 }
 
-/* [MIL] Algorithm 5.2: circles of touching spheres at R - r, layers r sqrt(3) apart, every other one turned by
-   half a place. Algorithm 5.3: hexagonal sheets over both ends, spheres that show at least in part. Printed:
-   layers from z = -L/2 + r(1 + z sqrt 3) with z itself stepping by r sqrt 3: we step the layer number. */
-DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radius, int ends, dem_real *out) {
+/* [MIL] Algorithm 5.2: circles of touching spheres at R - r, layers r sqrt(3) apart, every other
+   one turned by half a place. Algorithm 5.3: hexagonal sheets over both ends, spheres that show at
+   least in part. Printed: layers from z = -L/2 + r(1 + z sqrt 3) with z itself stepping by r sqrt
+   3: we step the layer number. */
+DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radius, int ends,
+                            dem_real *out) {
     const double R = (double)drum_radius, L = (double)length, r = (double)radius;
     const double half = asin(r/(R - r));
     int layers, circle, i, j, k, count = 0;
-    if (!(r > 0) || !(R > 2*r) || !(L > 0) || !demi_finite(drum_radius) || !demi_finite(length)) return 0;
+    if (!(r > 0) || !(R > 2*r) || !(L > 0) || !demi_finite(drum_radius) ||
+        !demi_finite(length)) return 0;
     circle = (int)(DEMI_PI/half);
     layers = (int)ceil((L - 2*r)/(r*sqrt(3.0))) + 1;
     for (k = 0; k < layers; k++)
@@ -2096,7 +2278,8 @@ DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radi
 /* Index of a wall, or -1 with a sentence. */
 static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
     if (wall.id < 1 || wall.id > w->wall_count || w->walls[wall.id - 1].kind == DEMI_WALL_NONE) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, there are %d; check what adding it returned",
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, there are %d; check what "
+                  "adding it returned",
                   call, (int)wall.id, w->wall_count);
         return -1;
     }
@@ -2121,22 +2304,29 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
     demi_wall *wall;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: axis of rotating wall %d is zero; give a direction",
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: axis of rotating wall %d is "
+                         "zero; give a direction",
                          (int)id.id);
-    if (motion->kind == DEM_MOTION_OSCILLATING && !(demi_dot(motion->velocity, motion->velocity) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: velocity, the direction of oscillating wall %d, is "
+    if (motion->kind == DEM_MOTION_OSCILLATING && !(demi_dot(motion->velocity,
+                                                             motion->velocity) > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: velocity, the direction of "
+                         "oscillating wall %d, is "
                          "zero; give a direction", (int)id.id);
     if (motion->kind == DEM_MOTION_USER && !motion->function)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: wall %d has kind DEM_MOTION_USER and no function; "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: wall %d has kind DEM_MOTION_USER "
+                         "and no function; "
                          "set motion.function", (int)id.id);
-    if (!demi_finite3(motion->velocity) || !demi_finite3(motion->point) || !demi_finite3(motion->axis) ||
-        !demi_finite(motion->speed) || !demi_finite(motion->amplitude) || !demi_finite(motion->frequency) ||
+    if (!demi_finite3(motion->velocity) || !demi_finite3(motion->point) ||
+        !demi_finite3(motion->axis) ||
+        !demi_finite(motion->speed) || !demi_finite(motion->amplitude) ||
+        !demi_finite(motion->frequency) ||
         (int)motion->kind < 0 || motion->kind > DEM_MOTION_USER)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: a number in the motion of wall %d is not finite, or "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: a number in the motion of wall "
+                         "%d is not finite, or "
                          "its kind %d unknown", (int)id.id, (int)motion->kind);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_motion");
     wall = &w->walls[i];
-    wall->home = wall->pose;                    /* goes on from where it is                               */
+    wall->home = wall->pose;                    /* goes on from where it is */
     wall->home.velocity = wall->home.spin = demi_v(0, 0, 0);
     wall->motion = *motion;
     if (!(demi_dot(motion->axis, motion->axis) > 0)) wall->motion.axis = demi_v(0, 0, 1);
@@ -2159,7 +2349,7 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
     const int i = demi_wall_find(w, "dem_wall_remove", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
-    demi_wall_free(w, &w->walls[i]);            /* its place stays empty: ids of other walls hold          */
+    demi_wall_free(w, &w->walls[i]);            /* its place stays empty: ids of other walls hold */
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -2180,16 +2370,17 @@ DEM_API dem_result dem_wall_channels_reset(dem_world *w, dem_wall id) {
     return DEM_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>search
-   Which pairs might touch before the next rebuild: all with distance < Ra + Rb + skin, found by one of
-   the methods below, stored in one canonical order (a ascending, then b), so that every method gives the
-   same list and the same bits. A rebuild sorts bodies by cell, deals them to domains of about 2000,
-   lists for each domain the pairs inside it and the pairs leading out, carries contact memory over, and
-   lists the wall elements near each grain.
-   ------------------------------------------------------------------------------------------------ */
+   Which pairs might touch before the next rebuild: all with distance < Ra + Rb + skin, found by one
+   of the methods below, stored in one canonical order (a ascending, then b), so that every method
+   gives the same list and the same bits. A rebuild sorts bodies by cell, deals them to domains of
+   about 2000, lists for each domain the pairs inside it and the pairs leading out, carries contact
+   memory over, and lists the wall elements near each grain.
+   --------------------------------------------------------------------------------------------- */
 
-/* Shortest image of a distance d in a period: valid for |d| < 1.5 period. half = huge: not periodic. */
+/* Shortest image of a distance d in a period: valid for |d| < 1.5 period. half = huge: not
+   periodic. */
 DEM_INLINE dem_real demi_image(dem_real d, dem_real half, dem_real period) {
     const dem_real up = d < -half ? period : 0, down = d > half ? period : 0;
     return d + up - down;
@@ -2199,18 +2390,23 @@ static demi_periods demi_periods_of(const dem_world *w) {
     demi_periods p;
     double lo[3], hi[3];
     int k;
-    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y; lo[2] = (double)w->desc.domain.lo.z;
-    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y; hi[2] = (double)w->desc.domain.hi.z;
+    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y;
+    lo[2] = (double)w->desc.domain.lo.z;
+    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y;
+    hi[2] = (double)w->desc.domain.hi.z;
     for (k = 0; k < 3; k++) {
         const int periodic = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
         p.period[k] = periodic ? (dem_real)(hi[k] - lo[k]) : 0;
-        p.half[k] = periodic ? (dem_real)((hi[k] - lo[k])/2) : (DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX);
+        p.half[k] = periodic ? (dem_real)((hi[k] - lo[k])/2)
+            : (DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX);
     }
     return p;
 }
 static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
-    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y; lo[2] = (double)w->desc.domain.lo.z;
-    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y; hi[2] = (double)w->desc.domain.hi.z;
+    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y;
+    lo[2] = (double)w->desc.domain.lo.z;
+    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y;
+    hi[2] = (double)w->desc.domain.hi.z;
 }
 
 /* Brings positions back into the periodic box. */
@@ -2234,7 +2430,8 @@ static void demi_wrap(dem_world *w) {
     }
 }
 
-/* Lays the grid: cells no smaller than `least`, no more than about 4 per body; then the cell of each body. */
+/* Lays the grid: cells no smaller than `least`, no more than about 4 per body; then the cell of
+   each body. */
 static int demi_grid_lay(dem_world *w, double least) {
     double lo[3], hi[3];
     int i, k, n;
@@ -2251,7 +2448,8 @@ static int demi_grid_lay(dem_world *w, double least) {
         }
     }
     for (;; least *= 1.26) {
-        for (k = 0; k < 3; k++) w->cells[k] = (int)DEMI_MAX(1, DEMI_MIN((hi[k] - lo[k])/least, 1e6));
+        for (k = 0; k < 3; k++) w->cells[k] = (int)DEMI_MAX(1,
+                                                            DEMI_MIN((hi[k] - lo[k])/least, 1e6));
         if ((double)w->cells[0]*w->cells[1]*w->cells[2] <= 4.0*w->count + 64) break;
     }
     for (k = 0; k < 3; k++) {
@@ -2297,13 +2495,15 @@ static void demi_bodies_sort(dem_world *w) {
         type *from = w->array, *to = (type *)(void *)w->scratch; \
         for (i = 0; i < w->count; i++) to[i] = from[w->order[i]]; \
         memcpy(from, to, (size_t)w->count*sizeof(type)); } while (0)
-    DEMI_PERMUTE(mass, dem_real); DEMI_PERMUTE(inv_mass, dem_real); DEMI_PERMUTE(inv_inertia, dem_real);
+    DEMI_PERMUTE(mass, dem_real); DEMI_PERMUTE(inv_mass, dem_real);
+    DEMI_PERMUTE(inv_inertia, dem_real);
     DEMI_PERMUTE(body_slot, uint32_t); DEMI_PERMUTE(body_material, int32_t);
 #undef DEMI_PERMUTE
     for (i = 0; i < w->count; i++) w->slot_index[w->body_slot[i]] = i;
 }
 
-/* Memory of a pair in the filed list: its place, or -1; *flip when a and b have changed places since. */
+/* Memory of a pair in the filed list: its place, or -1; *flip when a and b have changed places
+   since. */
 static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
     const int32_t sa = (int32_t)w->body_slot[a], sb = (int32_t)w->body_slot[b];
     const int32_t row = DEMI_MIN(sa, sb), other = DEMI_MAX(sa, sb);
@@ -2322,12 +2522,14 @@ static void demi_pair_coefs(const dem_world *w, demi_list *list, int k) {
     const int a = list->a[k], b = list->b[k];
     const double ra = (double)w->pos[4*a + 3], rb = (double)w->pos[4*b + 3];
     const double inv = (double)w->inv_mass[a] + (double)w->inv_mass[b];
-    demi_coefficients(w, w->body_material[a] - 1, w->body_material[b] - 1, ra*rb/(ra + rb), 1/inv, 0,
+    demi_coefficients(w, w->body_material[a] - 1, w->body_material[b] - 1, ra*rb/(ra + rb), 1/inv,
+                      0,
                       list->coef + (size_t)k*DEMI_COEFS);
 }
 
 /* Tests one pair (a < b) and, if near enough, enters it in the list of a's domain. */
-static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a, int b) {
+static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
+                            int b) {
     const dem_real *x = w->pos + 4*a, *y = w->pos + 4*b;
     const dem_real dx = demi_image(y[0] - x[0], p->half[0], p->period[0]);
     const dem_real dy = demi_image(y[1] - x[1], p->half[1], p->period[1]);
@@ -2351,7 +2553,8 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     list->stamp[k] = w->stamp;
     for (m = 0; m < w->memory_stride; m++) {
         const dem_real value = w->carry_memory[(size_t)from*(size_t)w->memory_stride + (size_t)m];
-        list->memory[(size_t)k*(size_t)w->memory_stride + (size_t)m] = flip && (w->vector_mask >> m & 1) ? -value : value;
+        list->memory[(size_t)k*(size_t)w->memory_stride + (size_t)m] = flip &&
+            (w->vector_mask >> m & 1) ? -value : value;
     }
 }
 
@@ -2377,8 +2580,9 @@ static int demi_neighbours(int c, int n, int periodic, int *out) {
         for (j = 0; j < count; j++) seen |= out[j] == q;
         if (!seen) out[count++] = q;
     }
-    for (k = 1; k < count; k++)                 /* at most three: put in order                            */
-        for (j = k; j > 0 && out[j] < out[j - 1]; j--) { int t = out[j]; out[j] = out[j - 1]; out[j - 1] = t; }
+    for (k = 1; k < count; k++)                 /* at most three: put in order */
+        for (j = k; j > 0 && out[j] < out[j - 1]; j--) { int t = out[j]; out[j] = out[j - 1];
+                                                        out[j - 1] = t; }
     return count;
 }
 
@@ -2389,7 +2593,7 @@ static void demi_rows_grid(dem_world *w, int d) {
     int32_t from[27], to[27];
     for (a = w->domains[d].begin; a < w->domains[d].end; a++) {
         c = w->cell_of[w->order[a]];
-        if (c != last) {                        /* bodies of a cell share the ranges of index to look at   */
+        if (c != last) {  /* bodies of a cell share the ranges of index to look at */
             int nx[3], ny[3], nz[3], cx, cy, cz, x = c%w->cells[0], y = c/w->cells[0]%w->cells[1];
             const int z = c/w->cells[0]/w->cells[1];
             cx = demi_neighbours(x, w->cells[0], w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC, nx);
@@ -2401,28 +2605,33 @@ static void demi_rows_grid(dem_world *w, int d) {
                     for (i = 0; i < cx; i++) {
                         const int q = nx[i] + w->cells[0]*(ny[j] + w->cells[1]*nz[k]);
                         if (q < c || start[q] == start[q + 1]) continue;
-                        if (ranges && to[ranges - 1] == start[q]) { to[ranges - 1] = start[q + 1]; continue; }
+                        if (ranges && to[ranges - 1] == start[q]) { to[ranges - 1] = start[q + 1];
+                            continue; }
                         from[ranges] = start[q];
                         to[ranges++] = start[q + 1];
                     }
             last = c;
         }
         for (k = 0; k < ranges; k++)
-            for (b = DEMI_MAX(from[k], a + 1); b < to[k]; b++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a, b);
+            for (b = DEMI_MAX(from[k], a + 1); b < to[k];
+                 b++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a, b);
     }
 }
 
-/* --- linked linear list [FEN] 2.3.2. On each axis the ends of all boxes stand in one sorted list. A move
-       sorts it again by exchanges of neighbours; when the lower end of one box passes the upper end of
-       another, the two begin or cease to overlap on that axis, and the pair table is told. Boxes are those
-       of radius + skin/2. Along a periodic axis every box counts as endless: correct, and slow. --- */
-typedef struct demi_pair_key { int32_t lo, hi; } demi_pair_key;          /* slots; lo = -1: empty            */
+/* --- linked linear list [FEN] 2.3.2. On each axis the ends of all boxes stand in one sorted list.
+   A move
+       sorts it again by exchanges of neighbours; when the lower end of one box passes the upper end
+       of another, the two begin or cease to overlap on that axis, and the pair table is told. Boxes
+       are those of radius + skin/2. Along a periodic axis every box counts as endless: correct, and
+       slow. --- */
+typedef struct demi_pair_key { int32_t lo, hi; } demi_pair_key;          /* slots; lo = -1: empty */
 
 static size_t demi_pair_hash(int32_t lo, int32_t hi, size_t room) {
     uint64_t x = ((uint64_t)(uint32_t)lo << 32 | (uint32_t)hi)*UINT64_C(0x9E3779B97F4A7C15);
     return (size_t)(x >> 20) & (room - 1);
 }
-/* Open addressing with a power of two of places, at most two thirds full; deletion closes the gap. */
+/* Open addressing with a power of two of places, at most two thirds full; deletion closes the gap.
+   */
 static int demi_pair_table_add(dem_world *w, int32_t a, int32_t b) {
     demi_pair_key *table = (demi_pair_key *)w->lll_table_.data;
     size_t room = w->lll_table_.capacity, k;
@@ -2457,7 +2666,8 @@ static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
     const int32_t lo = DEMI_MIN(a, b), hi = DEMI_MAX(a, b);
     size_t k, gap;
     if (!room) return;
-    for (k = demi_pair_hash(lo, hi, room); table[k].lo != lo || table[k].hi != hi; k = (k + 1) & (room - 1))
+    for (k = demi_pair_hash(lo, hi, room); table[k].lo != lo || table[k].hi != hi;
+         k = (k + 1) & (room - 1))
         if (table[k].lo < 0) return;
     w->lll_size--;
     for (gap = k;;) {
@@ -2486,7 +2696,8 @@ static int demi_boxes_overlap(const dem_world *w, int s, int t) {
     }
     return 1;
 }
-static int demi_end_before(const demi_end *x, const demi_end *y) {  /* a total order: lower ends first       */
+/* a total order: lower ends first */
+static int demi_end_before(const demi_end *x, const demi_end *y) {
     if (x->value < y->value) return 1;
     if (x->value > y->value) return 0;
     if (x->upper != y->upper) return x->upper < y->upper;
@@ -2495,7 +2706,8 @@ static int demi_end_before(const demi_end *x, const demi_end *y) {  /* a total o
 static int demi_end_compare(const void *x, const void *y) {
     return demi_end_before((const demi_end *)x, (const demi_end *)y) ? -1 : 1;
 }
-/* First time, or after bodies came or went: sort outright and sweep the first axis that is not periodic. */
+/* First time, or after bodies came or went: sort outright and sweep the first axis that is not
+   periodic. */
 static int demi_lll_start(dem_world *w) {
     const int n = w->count;
     size_t i;
@@ -2516,10 +2728,11 @@ static int demi_lll_start(dem_world *w) {
     w->lll_size = 0;
     w->lll_boxes = n;
     while (sweep < 3 && w->desc.boundary[sweep] == DEM_BOUNDARY_PERIODIC) sweep++;
-    if (sweep == 3) {                           /* endless everywhere: every pair                         */
+    if (sweep == 3) {                           /* endless everywhere: every pair */
         for (k = 0; k < n; k++)
             for (j = k + 1; j < n; j++)
-                if (!demi_pair_table_add(w, (int32_t)w->body_slot[k], (int32_t)w->body_slot[j])) return 0;
+                if (!demi_pair_table_add(w, (int32_t)w->body_slot[k],
+                                         (int32_t)w->body_slot[j])) return 0;
         return 1;
     }
     if (!demi_array_grow(w, &w->lll_rows_, sizeof(int32_t), (size_t)n)) return 0;
@@ -2532,7 +2745,8 @@ static int demi_lll_start(dem_world *w) {
             continue;
         }
         for (j = 0; j < open; j++)
-            if (demi_boxes_overlap(w, active[j], ends[k].box) && !demi_pair_table_add(w, active[j], ends[k].box)) return 0;
+            if (demi_boxes_overlap(w, active[j], ends[k].box) &&
+                !demi_pair_table_add(w, active[j], ends[k].box)) return 0;
         active[open++] = ends[k].box;
     }
     return 1;
@@ -2542,15 +2756,19 @@ static int demi_lll_update(dem_world *w) {
     int axis, k, j;
     for (axis = 0; axis < 3; axis++) {
         demi_end *ends = (demi_end *)w->lll_ends_[axis].data;
-        for (k = 0; k < 2*w->lll_boxes; k++) ends[k].value = demi_box_end(w, ends[k].box, axis, ends[k].upper);
+        for (k = 0; k < 2*w->lll_boxes; k++) ends[k].value =
+            demi_box_end(w, ends[k].box, axis, ends[k].upper);
         for (k = 1; k < 2*w->lll_boxes; k++) {
             const demi_end e = ends[k];
             for (j = k; j > 0 && demi_end_before(&e, &ends[j - 1]); j--) {
                 const demi_end *f = &ends[j - 1];
                 w->lll_exchanges++;
-                if (e.upper != f->upper && e.box != f->box && w->desc.boundary[axis] != DEM_BOUNDARY_PERIODIC) {
-                    if (e.upper) demi_pair_table_remove(w, e.box, f->box);       /* [f e] -> e before f: apart */
-                    else if (demi_boxes_overlap(w, e.box, f->box) &&             /* lower end passes upper end */
+                if (e.upper != f->upper && e.box != f->box &&
+                    w->desc.boundary[axis] != DEM_BOUNDARY_PERIODIC) {
+                    /* [f e] -> e before f: apart */
+                    if (e.upper) demi_pair_table_remove(w, e.box, f->box);
+                    /* lower end passes upper end */
+                    else if (demi_boxes_overlap(w, e.box, f->box) &&
                              !demi_pair_table_add(w, e.box, f->box)) return 0;
                 }
                 ends[j] = ends[j - 1];
@@ -2595,10 +2813,12 @@ static int demi_lll_rows(dem_world *w) {
 }
 static void demi_rows_linked(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
-    const int32_t *start = (const int32_t *)w->lll_row_start_.data, *rows = (const int32_t *)w->lll_rows_.data;
+    const int32_t *start = (const int32_t *)w->lll_row_start_.data, *rows =
+        (const int32_t *)w->lll_rows_.data;
     int a, k;
     for (a = w->domains[d].begin; a < w->domains[d].end; a++)
-        for (k = start[a]; k < start[a + 1]; k++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a, rows[k]);
+        for (k = start[a]; k < start[a + 1]; k++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a,
+            rows[k]);
 }
 
 /* --- what is common --- */
@@ -2615,7 +2835,8 @@ static void demi_domain_search(dem_world *w, int d) {
 }
 
 /* Wall elements near a grain, ascending; offered to the domain's list of wall candidates. */
-static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall, int element) {
+static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
+                            int element) {
     int k = domain->walls;
     if (k >= w->wall_stride) { domain->overflow |= 4; return; }
     domain->walls++;
@@ -2638,11 +2859,13 @@ static void demi_domain_walls(dem_world *w, int d) {
             const int first = domain->walls;
             dem_vec3 at;
             if (wall->kind == DEMI_WALL_NONE) continue;
-            at = demi_unturn(wall->pose.rotation, demi_sub(demi_at(w->pos + 4*i), wall->pose.position));
+            at = demi_unturn(wall->pose.rotation, demi_sub(demi_at(w->pos + 4*i),
+                                                           wall->pose.position));
             if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
             if (wall->element_count <= 4) {
                 for (k = 0; k < wall->element_count; k++)
-                    if (demi_wall_distance(wall, k, at) < near_by) demi_wall_offer(w, domain, d, i, j, k);
+                    if (demi_wall_distance(wall, k, at) < near_by) demi_wall_offer(w, domain, d,
+                        i, j, k);
                 continue;
             }
             demi_wall_cells(wall, demi_sub(at, demi_v(near_by, near_by, near_by)),
@@ -2654,12 +2877,14 @@ static void demi_domain_walls(dem_world *w, int d) {
                         for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
                             const int element = wall->cell_items[k];
                             int q, seen = 0, base = d*w->wall_stride;
-                            for (q = first; q < domain->walls && !seen; q++) seen = w->wall_element[base + q] == element;
+                            for (q = first; q < domain->walls && !seen; q++) seen =
+                                w->wall_element[base + q] == element;
                             if (!seen && demi_wall_distance(wall, element, at) < near_by)
                                 demi_wall_offer(w, domain, d, i, j, element);
                         }
                     }
-            for (k = first + 1; k < domain->walls; k++) {      /* ascending: the order must not hang on cells */
+            /* ascending: the order must not hang on cells */
+            for (k = first + 1; k < domain->walls; k++) {
                 int32_t *e = w->wall_element + d*w->wall_stride, t = e[k];
                 for (x = k; x > first && e[x - 1] > t; x--) e[x] = e[x - 1];
                 e[x] = t;
@@ -2671,10 +2896,12 @@ static void demi_domain_walls(dem_world *w, int d) {
 static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
     if (n > (size_t)INT_MAX/8) return 0;
-    if (!demi_array_grow(w, &list->a_, sizeof(int32_t), n) || !demi_array_grow(w, &list->b_, sizeof(int32_t), n) ||
+    if (!demi_array_grow(w, &list->a_, sizeof(int32_t), n) ||
+        !demi_array_grow(w, &list->b_, sizeof(int32_t), n) ||
         !demi_array_grow(w, &list->stamp_, sizeof(uint32_t), n) ||
         !demi_array_grow(w, &list->memory_, sizeof(dem_real), m) ||
-        (!w->uniform && !demi_array_grow(w, &list->coef_, sizeof(dem_real), n*DEMI_COEFS))) return 0;
+        (!w->uniform && !demi_array_grow(w, &list->coef_, sizeof(dem_real),
+                                         n*DEMI_COEFS))) return 0;
     list->a = (int32_t *)list->a_.data;
     list->b = (int32_t *)list->b_.data;
     list->stamp = (uint32_t *)list->stamp_.data;
@@ -2686,7 +2913,8 @@ static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int str
 static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const size_t n = (size_t)w->domain_count*(size_t)stride;
     if (n > (size_t)INT_MAX/8) return 0;
-    if (!demi_array_grow(w, &w->wall_body_, sizeof(int32_t), n) || !demi_array_grow(w, &w->wall_id_, sizeof(int32_t), n) ||
+    if (!demi_array_grow(w, &w->wall_body_, sizeof(int32_t), n) ||
+        !demi_array_grow(w, &w->wall_id_, sizeof(int32_t), n) ||
         !demi_array_grow(w, &w->wall_element_, sizeof(int32_t), n)) return 0;
     w->wall_body = (int32_t *)w->wall_body_.data;
     w->wall_id = (int32_t *)w->wall_id_.data;
@@ -2695,14 +2923,15 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
     return 1;
 }
 
-/* Entries of the cross lists by the domain of b, so that each domain can add what reaches in from before it. */
+/* Entries of the cross lists by the domain of b, so that each domain can add what reaches in from
+   before it. */
 static int demi_cross_index(dem_world *w) {
     int d, k, e, entries = w->domain_count*w->cross.stride;
     if (!demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), (size_t)entries) ||
         !demi_array_grow(w, &w->cross_hit_, sizeof(int32_t), (size_t)entries)) return 0;
     w->cross_incoming = (int32_t *)w->cross_incoming_.data;
     w->cross_hit = (int32_t *)w->cross_hit_.data;
-    w->cross_push_stride = (size_t)entries + 1;          /* slot 0: the push of what does not touch          */
+    w->cross_push_stride = (size_t)entries + 1;  /* slot 0: the push of what does not touch */
     if (!demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 9*w->cross_push_stride)) return 0;
     w->cross_push = (dem_real *)w->cross_push_.data;
     for (k = 0; k < 9; k++) w->cross_push[(size_t)k*w->cross_push_stride] = 0;
@@ -2710,12 +2939,13 @@ static int demi_cross_index(dem_world *w) {
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].cross; k++) {
             e = w->cross.b[d*w->cross.stride + k];
-            e = (int)((int64_t)e*w->domain_count/w->count);            /* near enough; then step             */
+            e = (int)((int64_t)e*w->domain_count/w->count);            /* near enough; then step */
             while (w->cross.b[d*w->cross.stride + k] >= w->domains[e].end) e++;
             while (w->cross.b[d*w->cross.stride + k] < w->domains[e].begin) e--;
             w->cross_incoming_start[e + 1]++;
         }
-    for (d = 0; d < w->domain_count; d++) w->cross_incoming_start[d + 1] += w->cross_incoming_start[d];
+    for (d = 0; d < w->domain_count; d++) w->cross_incoming_start[d +
+        1] += w->cross_incoming_start[d];
     w->cross_entries = w->cross_incoming_start[w->domain_count];
     for (d = w->domain_count - 1; d >= 0; d--)
         for (k = w->domains[d].cross - 1; k >= 0; k--) {
@@ -2725,21 +2955,24 @@ static int demi_cross_index(dem_world *w) {
             while (w->cross.b[entry] < w->domains[e].begin) e--;
             w->cross_incoming[--w->cross_incoming_start[e + 1]] = entry;
         }
-    for (d = 0; d < w->domain_count; d++) w->cross_incoming_start[d] = w->cross_incoming_start[d + 1];
+    for (d = 0; d < w->domain_count; d++) w->cross_incoming_start[d] =
+        w->cross_incoming_start[d + 1];
     w->cross_incoming_start[w->domain_count] = w->cross_entries;
     return 1;
 }
 
-/* Contacts with walls that still last, from the last list (by slot) into the domains of the new one. */
+/* Contacts with walls that still last, from the last list (by slot) into the domains of the new
+   one. */
 static int demi_wall_contacts_move(dem_world *w, int stride) {
     const size_t n = (size_t)w->domain_count*(size_t)stride;
     int d, k, e = 0, total = 0;
     for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
     if (!demi_array_grow(w, &w->wall_now_, sizeof(demi_wall_contact), n)) return 0;
     w->wall_now = (demi_wall_contact *)w->wall_now_.data;
-    if (!demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact), DEMI_MAX(n, (size_t)total))) return 0;
+    if (!demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact),
+                         DEMI_MAX(n, (size_t)total))) return 0;
     w->wall_next = (demi_wall_contact *)w->wall_next_.data;
-    for (d = 0; d < DEMI_DOMAINS; d++) {        /* gather all in wall_next, slots turned to indices        */
+    for (d = 0; d < DEMI_DOMAINS; d++) {  /* gather all in wall_next, slots turned to indices */
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             demi_wall_contact c = w->wall_now[d*w->wall_now_stride + k];
             c.body = w->slot_index[c.body];
@@ -2748,16 +2981,18 @@ static int demi_wall_contacts_move(dem_world *w, int stride) {
         w->domains[d].wall_contacts = 0;
     }
     w->wall_now_stride = stride;
-    for (k = 0; k < e; k++) {                   /* deal out; insertion keeps each domain sorted by body     */
+    for (k = 0; k < e; k++) {  /* deal out; insertion keeps each domain sorted by body */
         const demi_wall_contact c = w->wall_next[k];
         demi_wall_contact *to;
         int i;
         d = (int)((int64_t)c.body*w->domain_count/w->count);
         while (c.body >= w->domains[d].end) d++;
         while (c.body < w->domains[d].begin) d--;
-        if (w->domains[d].wall_contacts == stride) continue;   /* cannot be: every contact is a candidate   */
+        /* cannot be: every contact is a candidate */
+        if (w->domains[d].wall_contacts == stride) continue;
         to = w->wall_now + d*stride;
-        for (i = w->domains[d].wall_contacts++; i > 0 && to[i - 1].body > c.body; i--) to[i] = to[i - 1];
+        for (i = w->domains[d].wall_contacts++; i > 0 && to[i - 1].body > c.body; i--) to[i] =
+            to[i - 1];
         to[i] = c;
     }
     return 1;
@@ -2805,16 +3040,19 @@ static void demi_effects(dem_world *w) {
     }
 }
 
-/* Skin from counted work, so that it is the same on every run: one candidate costs 1, rebuilding costs 40
-   per body (bench/ measures both); candidates grow with the skin, rebuilds shrink with it. */
+/* Skin from counted work, so that it is the same on every run: one candidate costs 1, rebuilding
+   costs 40 per body (bench/ measures both); candidates grow with the skin, rebuilds shrink with it.
+   */
 static void demi_skin_choose(dem_world *w) {
-    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1), steps = (double)(w->steps - w->last_rebuild);
+    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1), steps =
+        (double)(w->steps - w->last_rebuild);
     int k;
     if (w->desc.skin > 0) { w->skin = (double)w->desc.skin; return; }
     if (w->desc.skin < 0) { w->skin = 0; return; }
     if (w->skin_auto <= 0) w->skin_auto = 0.1*r;
     else if (steps > 0 && w->rebuilds > 1 && w->count > 0) {
-        double n = 0, hits = 0, slope, best, per_step = DEMI_MAX(2*w->reach, w->reach + w->wall_reach)/steps;
+        double n = 0, hits = 0, slope, best, per_step =
+            DEMI_MAX(2*w->reach, w->reach + w->wall_reach)/steps;
         int d;
         for (d = 0; d < w->domain_count; d++) {
             n += w->domains[d].own + w->domains[d].cross;
@@ -2825,32 +3063,38 @@ static void demi_skin_choose(dem_world *w) {
         best = DEMI_MIN(DEMI_MAX(best, 0.5*w->skin_auto), 2*w->skin_auto);
         w->skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->skin_auto), 0.01*r), 2*r);
     }
-    for (k = 0; k < 3; k++) {                   /* a period must hold two grains and the skin, twice       */
-        const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) - 2*(double)w->radius_max;
-        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0) w->skin_auto = DEMI_MIN(w->skin_auto, room);
+    for (k = 0; k < 3; k++) {  /* a period must hold two grains and the skin, twice */
+        const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) -
+            2*(double)w->radius_max;
+        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0) w->skin_auto =
+            DEMI_MIN(w->skin_auto, room);
     }
     w->skin = w->skin_auto;
 }
 
-/* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as they
-   were (the next call tries again). */
+/* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
+   they were (the next call tries again). */
 static dem_result demi_rebuild(dem_world *w) {
     int d, k, stride, again;
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
     k = w->memory_stride;
     demi_effects(w);
     demi_skin_choose(w);
-    if (k != w->memory_stride) w->carry_count = 0;   /* other laws than before: their memory means nothing */
+    /* other laws than before: their memory means nothing */
+    if (k != w->memory_stride) w->carry_count = 0;
     demi_wrap(w);
     for (k = 0; k < 3; k++) {
         const demi_periods p = demi_periods_of(w);
         const double need = 2*(2*(double)w->radius_max + w->skin);
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic axis %d, must be "
-                             "at least %g m (two grains and the skin, twice); make it longer or the grains smaller",
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on "
+                             "periodic axis %d, must be "
+                             "at least %g m (two grains and the skin, twice); make it longer or "
+                             "the grains smaller",
                              (double)p.period[k], k, need);
     }
-    if (!demi_grid_lay(w, 2*(double)w->radius_max + w->skin + 1e-300)) return demi_no_memory(w, "dem_world_step");
+    if (!demi_grid_lay(w, 2*(double)w->radius_max + w->skin + 1e-300)) return demi_no_memory(w,
+        "dem_world_step");
     demi_bodies_sort(w);
     w->domain_count = DEMI_MAX(1, DEMI_MIN(w->count/DEMI_DOMAIN_BODIES, (int)DEMI_DOMAINS));
     for (d = 0; d < w->domain_count; d++) {
@@ -2858,30 +3102,37 @@ static dem_result demi_rebuild(dem_world *w) {
         w->domains[d].end = (int)((int64_t)w->count*(d + 1)/w->domain_count);
         w->domains[d].overflow = 0;
     }
-    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w)) return demi_no_memory(w, "dem_world_step");
+    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w)) return demi_no_memory(w,
+        "dem_world_step");
     stride = DEMI_MAX(64, w->count/w->domain_count*3);
     if (!demi_list_reserve(w, &w->own, w->domain_count, DEMI_MAX(stride, (int)w->own.stride)) ||
-        !demi_list_reserve(w, &w->cross, w->domain_count, w->domain_count == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
+        !demi_list_reserve(w, &w->cross, w->domain_count, w->domain_count == 1 ? 0
+                           : DEMI_MAX(stride/4, (int)w->cross.stride)))
         return demi_no_memory(w, "dem_world_step");
-    do {                                        /* until every domain's pairs fit                          */
+    do {                                        /* until every domain's pairs fit */
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_search);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 3;
-        if ((again & 1 && !demi_list_reserve(w, &w->own, w->domain_count, w->own.stride/2*3 + 64)) ||
-            (again & 2 && !demi_list_reserve(w, &w->cross, w->domain_count, w->cross.stride/2*3 + 64)))
+        if ((again & 1 && !demi_list_reserve(w, &w->own, w->domain_count, w->own.stride/2*3 +
+                                             64)) ||
+            (again & 2 && !demi_list_reserve(w, &w->cross, w->domain_count, w->cross.stride/2*3 +
+                                             64)))
             return demi_no_memory(w, "dem_world_step");
     } while (again);
     if (!demi_cross_index(w)) return demi_no_memory(w, "dem_world_step");
-    if (!demi_wall_lists_reserve(w, DEMI_MAX(w->wall_stride, 64))) return demi_no_memory(w, "dem_world_step");
+    if (!demi_wall_lists_reserve(w, DEMI_MAX(w->wall_stride, 64))) return demi_no_memory(w,
+        "dem_world_step");
     do {
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 4;
-        if (again && !demi_wall_lists_reserve(w, w->wall_stride/2*3 + 64)) return demi_no_memory(w, "dem_world_step");
+        if (again && !demi_wall_lists_reserve(w, w->wall_stride/2*3 +
+                                              64)) return demi_no_memory(w, "dem_world_step");
     } while (again);
-    if (!demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum), (size_t)w->domain_count*(size_t)w->wall_count))
+    if (!demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum),
+                         (size_t)w->domain_count*(size_t)w->wall_count))
         return demi_no_memory(w, "dem_world_step");
     w->wall_sums = (demi_wall_sum *)w->wall_sums_.data;
     if (!demi_wall_contacts_move(w, w->wall_stride)) return demi_no_memory(w, "dem_world_step");
-    while (w->slot_pending >= 0) {              /* slots freed since the last list may be used again       */
+    while (w->slot_pending >= 0) {  /* slots freed since the last list may be used again */
         const int slot = w->slot_pending;
         w->slot_pending = -2 - w->slot_index[slot];
         w->slot_index[slot] = -2 - w->slot_free;
@@ -2912,17 +3163,19 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
 }
 DEM_API dem_result dem_search_now(dem_world *w) { return demi_rebuild(w); }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>touch
    Geometry only: where a sphere meets a wall element, and which of the elements it overlaps count.
    (Where two spheres meet is three lines in demi_pairs.) Knows no law and no material.
-   ------------------------------------------------------------------------------------------------ */
+   --------------------------------------------------------------------------------------------- */
 
-/* Closest point on triangle abc to p [ERI05] 5.1.5; *feature 0 face, 1 edge, 2 corner. [MIL] Algorithm 5.6 is the
-   same with a misprint in line 17 (d1 <= 0 for d3 <= 0). */
+/* Closest point on triangle abc to p [ERI05] 5.1.5; *feature 0 face, 1 edge, 2 corner. [MIL]
+   Algorithm 5.6 is the same with a misprint in line 17 (d1 <= 0 for d3 <= 0). */
 static dem_vec3 demi_triangle_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3 c, int *feature) {
-    const dem_vec3 ab = demi_sub(b, a), ac = demi_sub(c, a), ap = demi_sub(p, a), bp = demi_sub(p, b), cp = demi_sub(p, c);
-    const dem_real d1 = demi_dot(ab, ap), d2 = demi_dot(ac, ap), d3 = demi_dot(ab, bp), d4 = demi_dot(ac, bp);
+    const dem_vec3 ab = demi_sub(b, a), ac = demi_sub(c, a), ap = demi_sub(p, a), bp =
+        demi_sub(p, b), cp = demi_sub(p, c);
+    const dem_real d1 = demi_dot(ab, ap), d2 = demi_dot(ac, ap), d3 = demi_dot(ab, bp), d4 =
+        demi_dot(ac, bp);
     const dem_real d5 = demi_dot(ab, cp), d6 = demi_dot(ac, cp);
     const dem_real va = d3*d6 - d5*d4, vb = d5*d2 - d1*d6, vc = d1*d4 - d3*d2;
     dem_vec3 normal, foot;
@@ -2937,7 +3190,7 @@ static dem_vec3 demi_triangle_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
         return demi_add(b, demi_scale(demi_sub(c, b), (d4 - d3)/((d4 - d3) + (d5 - d6))));
     *feature = 0;                               /* face: drop the part along the normal, which keeps the
-                                                   normal exact however large the triangle is             */
+                                                   normal exact however large the triangle is */
     normal = demi_cross(ab, ac);
     nn = demi_dot(normal, normal);
     foot = demi_sub(p, demi_scale(normal, demi_dot(normal, ap)/nn));
@@ -2951,13 +3204,14 @@ static dem_vec3 demi_segment_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, int *feat
     if (t <= 0) return a;
     if (t >= 1) return b;
     *feature = 0;
-    normal = demi_v(-ab.y, ab.x, 0);            /* as for the triangle: subtract along the normal          */
+    normal = demi_v(-ab.y, ab.x, 0);            /* as for the triangle: subtract along the normal */
     return demi_sub(p, demi_scale(normal, demi_dot(normal, demi_sub(p, a))/ll));
 }
 
-/* One sphere against one element, all in the wall's frame. Fills in normal (grain -> wall), point and
-   feature; answers the overlap (negative: apart). */
-static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, dem_real r, dem_vec3 *normal,
+/* One sphere against one element, all in the wall's frame. Fills in normal (grain -> wall), point
+   and feature; answers the overlap (negative: apart). */
+static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                dem_vec3 *normal,
                                 dem_vec3 *point, int *feature) {
     dem_vec3 c[3], d;
     dem_real l, edge = 0;
@@ -2990,10 +3244,13 @@ static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, 
     }
     d = demi_sub(*point, x);
     l = demi_length(d);
-    if (*feature > 0) {                         /* straight above its rim a face is met, not the rim       */
-        const dem_vec3 face = wall->kind == DEMI_WALL_MESH ? demi_cross(demi_sub(c[1], c[0]), demi_sub(c[2], c[0]))
-                                                           : demi_v(c[0].y - c[1].y, c[1].x - c[0].x, 0);
-        if (DEMI_ABS(demi_dot(face, d)) > (1 - 8*(DEMI_SINGLE ? (dem_real)FLT_EPSILON : (dem_real)DBL_EPSILON))*
+    if (*feature > 0) {  /* straight above its rim a face is met, not the rim */
+        const dem_vec3 face = wall->kind == DEMI_WALL_MESH
+            ? demi_cross(demi_sub(c[1], c[0]), demi_sub(c[2], c[0]))
+                                                           : demi_v(c[0].y - c[1].y, c[1].x -
+                                                               c[0].x, 0);
+        if (DEMI_ABS(demi_dot(face, d)) > (1 - 8*(DEMI_SINGLE ? (dem_real)FLT_EPSILON
+                                                  : (dem_real)DBL_EPSILON))*
                                           l*demi_length(face)) *feature = 0;
     }
     *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
@@ -3006,9 +3263,10 @@ static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 
     return -demi_wall_touch(wall, element, local, 0, &n, &p, &feature);
 }
 
-/* [MIL] Fig 5.19: the segment acts as its whole line, with the fraction a^2(3-2a) of the force, a = share of the
-   chord that the segment covers. */
-static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 x, dem_real r, dem_vec3 *normal,
+/* [MIL] Fig 5.19: the segment acts as its whole line, with the fraction a^2(3-2a) of the force, a =
+   share of the chord that the segment covers. */
+static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                   dem_vec3 *normal,
                                    dem_vec3 *point, dem_real *overlap) {
     dem_vec3 c[2], t, n;
     dem_real length, off, along, chord, lo, hi, a;
@@ -3019,7 +3277,7 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
     t = demi_scale(t, 1/length);
     n = demi_v(-t.y, t.x, 0);
     x.z = 0;
-    off = demi_dot(demi_sub(x, c[0]), n);       /* signed distance from the line                           */
+    off = demi_dot(demi_sub(x, c[0]), n);       /* signed distance from the line */
     along = demi_dot(demi_sub(x, c[0]), t);
     if (DEMI_ABS(off) >= r) return 0;
     chord = DEMI_SQRT(r*r - off*off);
@@ -3033,18 +3291,20 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
     return a*a*(3 - 2*a);
 }
 
-/* Of the elements of one wall that a grain overlaps, keeps those that count. Faces come first, the deepest
-   first; an edge or corner is dropped when its point lies in the plane of a face already kept, or on a
-   contact already kept: so that a flat mesh is one plane, and a fold two. Answers how many are left. */
+/* Of the elements of one wall that a grain overlaps, keeps those that count. Faces come first, the
+   deepest first; an edge or corner is dropped when its point lies in the plane of a face already
+   kept, or on a contact already kept: so that a flat mesh is one plane, and a fold two. Answers how
+   many are left. */
 static int demi_wall_resolve(demi_wall_contact *c, int count, dem_real r) {
     const dem_real near_by = DEM_R(1e-6)*r;
     int i, j, kept = 0;
-    for (i = 1; i < count; i++) {               /* few: insertion sort by feature, overlap, element        */
+    for (i = 1; i < count; i++) {  /* few: insertion sort by feature, overlap, element */
         const demi_wall_contact t = c[i];
         for (j = i; j > 0; j--) {
             const demi_wall_contact *p = &c[j - 1];
             if (p->feature != t.feature ? p->feature < t.feature
-                : p->overlap > t.overlap || (p->overlap >= t.overlap && p->element < t.element)) break;
+                : p->overlap > t.overlap || (p->overlap >= t.overlap &&
+                                             p->element < t.element)) break;
             c[j] = c[j - 1];
         }
         c[j] = t;
@@ -3054,28 +3314,34 @@ static int demi_wall_resolve(demi_wall_contact *c, int count, dem_real r) {
         for (j = 0; j < kept && !covered; j++) {
             const dem_vec3 d = demi_sub(c[i].point, c[j].point);
             if (demi_dot(d, d) <= near_by*near_by) covered = 1;
-            else if (c[j].feature == 0 && c[i].feature > 0 && DEMI_ABS(demi_dot(d, c[j].normal)) <= near_by) covered = 1;
-            else if (c[j].feature == 0 && c[i].feature == 0 && demi_dot(c[i].normal, c[j].normal) > 1 - DEM_R(1e-9) &&
-                     DEMI_ABS(demi_dot(d, c[j].normal)) <= near_by) covered = 1;   /* the same plane twice */
+            else if (c[j].feature == 0 && c[i].feature > 0 &&
+                     DEMI_ABS(demi_dot(d, c[j].normal)) <= near_by) covered = 1;
+            else if (c[j].feature == 0 && c[i].feature == 0 &&
+                     demi_dot(c[i].normal, c[j].normal) > 1 - DEM_R(1e-9) &&
+                     /* the same plane twice */
+                     DEMI_ABS(demi_dot(d, c[j].normal)) <= near_by) covered = 1;
         }
         if (!covered) c[kept++] = c[i];
     }
     return kept;
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>laws
-   One contact in, force and torque out. A law sees a dem_contact, its memory and its answer, nothing else.
-   demi_law is the built-in one; its first arguments are literals where a kernel is specialised, so that
-   what a scene does not call for is not there. It has no branches that depend on the contact: compilers
-   turn it into vector code. memory: [0..2] spring or force in the tangent plane, [3] kt of the last step;
-   [4..6] rolling moment. `out` gets the energies of the ledger, when there is one.
-   >>add-law: (1) an enum value in >>api, (2) a case here, (3) its memory in demi_effects,
+   One contact in, force and torque out. A law sees a dem_contact, its memory and its answer,
+   nothing else. demi_law is the built-in one; its first arguments are literals where a kernel is
+   specialised, so that what a scene does not call for is not there. It has no branches that depend
+   on the contact: compilers turn it into vector code. memory: [0..2] spring or force in the tangent
+   plane, [3] kt of the last step; [4..6] rolling moment. `out` gets the energies of the ledger,
+   when there is one. >>add-law: (1) an enum value in >>api, (2) a case here, (3) its memory in
+   demi_effects,
    (4) a sentence in tests/, (5) a line in docs/theory.md.
-   ------------------------------------------------------------------------------------------------ */
-typedef struct demi_law_energy { dem_real dashpot, elastic, shear_work, slide, shear_stored, roll; } demi_law_energy;
+   --------------------------------------------------------------------------------------------- */
+typedef struct demi_law_energy { dem_real dashpot, elastic, shear_work, slide, shear_stored, roll;
+                                } demi_law_energy;
 
-DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push, int normal, int tangent, int rolling,
+DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push, int normal,
+                         int tangent, int rolling,
                           int clipped, int ledger, demi_law_energy *out) {
     const dem_vec3 n = c->normal, v = c->slip;
     dem_real root, fn, elastic, kt, ct, limit, kn;
@@ -3096,7 +3362,7 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
         ct = c->ct;
         fn = elastic + c->cn*c->closing_speed;
     }
-    if (clipped) fn = fn > 0 ? fn : 0;          /* no pull at the end of a contact                         */
+    if (clipped) fn = fn > 0 ? fn : 0;          /* no pull at the end of a contact */
     push->normal = fn;
     limit = fn > 0 ? fn : 0;
     if (ledger) {
@@ -3110,10 +3376,10 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
         dem_vec3 s = demi_v(0, 0, 0), t;
         dem_real size, most, cut, old = kt;
         if (tangent >= DEM_TANGENT_SPRING) s = dem_memory_turn(c, demi_at(memory));
-        if (tangent == DEM_TANGENT_SPRING) {                /* s: displacement; [CS79]                     */
+        if (tangent == DEM_TANGENT_SPRING) {                /* s: displacement; [CS79] */
             s = demi_add(s, demi_scale(c->slip_step, c->dt));
             t = demi_v(-kt*s.x - ct*v.x, -kt*s.y - ct*v.y, -kt*s.z - ct*v.z);
-        } else if (tangent >= DEM_TANGENT_MINDLIN) {        /* s: force; [DIR05, THO13]                    */
+        } else if (tangent >= DEM_TANGENT_MINDLIN) {        /* s: force; [DIR05, THO13] */
             if (tangent == DEM_TANGENT_MINDLIN_RESCALED) {
                 old = memory[3];
                 old = kt < old ? kt/old : 1;
@@ -3121,7 +3387,7 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
             }
             s = demi_sub(s, demi_scale(c->slip_step, kt*c->dt));
             t = demi_v(s.x - ct*v.x, s.y - ct*v.y, s.z - ct*v.z);
-        } else {                                            /* no memory: [MIL] 4.3 and 4.2                */
+        } else {                                            /* no memory: [MIL] 4.3 and 4.2 */
             const dem_real k = tangent == DEM_TANGENT_STEP ? kt*c->dt + ct : ct;
             t = demi_v(-k*v.x, -k*v.y, -k*v.z);
         }
@@ -3130,7 +3396,7 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
         cut = limit*c->friction/(size + DEMI_TINY);
         cut = size > most ? cut : 1;
         push->tangent = demi_scale(t, cut);
-        if (tangent == DEM_TANGENT_SPRING) {                /* while sliding the spring holds what friction can */
+        if (tangent == DEM_TANGENT_SPRING) {  /* while sliding the spring holds what friction can */
             const dem_real back = -cut/(kt + DEMI_TINY);
             memory[0] = cut < 1 ? back*t.x : s.x;
             memory[1] = cut < 1 ? back*t.y : s.y;
@@ -3163,24 +3429,30 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
         const dem_real along = demi_dot(c->spin, n);
         const dem_vec3 w = demi_sub(c->spin, demi_scale(n, along));
         dem_real most = c->rolling_friction*c->r_eff*limit;
-        if (rolling == DEM_ROLLING_EPSD) {                  /* [AI11]: kr = 2.25 kn (mu_r R*)^2, damping below */
-            const dem_real arm = c->rolling_friction*c->r_eff, stiff = normal == DEM_NORMAL_HERTZ ? 3*kn/2 : kn;
+        if (rolling == DEM_ROLLING_EPSD) {  /* [AI11]: kr = 2.25 kn (mu_r R*)^2, damping below */
+            const dem_real arm = c->rolling_friction*c->r_eff, stiff = normal == DEM_NORMAL_HERTZ
+                ? 3*kn/2 : kn;
             const dem_real kr = DEM_R(2.25)*stiff*arm*arm, inertia = 7*c->m_eff*c->r_eff*c->r_eff/5;
-            const dem_real cr = DEM_R(0.6)*DEMI_SQRT(kr*inertia);   /* 2 x 0.3 sqrt(kr I): lightly damped   */
+            /* 2 x 0.3 sqrt(kr I): lightly damped */
+            const dem_real cr = DEM_R(0.6)*DEMI_SQRT(kr*inertia);
             dem_vec3 m = dem_memory_turn(c, demi_at(memory + 4));
             dem_real size, cut;
-            m = demi_sub(m, demi_scale(demi_sub(c->spin_step, demi_scale(n, demi_dot(c->spin_step, n))), kr*c->dt));
+            m = demi_sub(m, demi_scale(demi_sub(c->spin_step,
+                                                demi_scale(n, demi_dot(c->spin_step, n))),
+                                                kr*c->dt));
             size = DEMI_SQRT(demi_dot(m, m));
             cut = most/(size + DEMI_TINY);
             cut = size > most ? cut : 1;
             m = demi_scale(m, cut);
             memory[4] = m.x; memory[5] = m.y; memory[6] = m.z;
             push->moment = cut < 1 ? m : demi_sub(m, demi_scale(w, cr));
-        } else if (rolling == DEM_ROLLING_CONSTANT) {       /* [ZHO99], eased near rest: never turns round  */
-            const dem_real size = DEMI_SQRT(demi_dot(w, w)), stop = 2*c->m_eff*c->r_eff*c->r_eff/5*size;
+        /* [ZHO99], eased near rest: never turns round */
+        } else if (rolling == DEM_ROLLING_CONSTANT) {
+            const dem_real size = DEMI_SQRT(demi_dot(w, w)), stop =
+                2*c->m_eff*c->r_eff*c->r_eff/5*size;
             most = most*c->dt > stop && c->dt > 0 ? stop/(c->dt + DEMI_TINY) : most;
             push->moment = demi_scale(w, -most/(size + DEMI_TINY));
-        } else {                                            /* [MIL] 4.5, as printed                        */
+        } else {                                            /* [MIL] 4.5, as printed */
             const dem_real size = demi_length(c->spin), f = limit < size ? limit : size;
             push->moment = demi_scale(c->spin, -c->rolling_friction*c->r_eff*f/(size + DEMI_TINY));
         }
@@ -3188,32 +3460,37 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
     }
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>respond
-   The loops that bring candidates, touch and law together. Grain-grain: blocks of candidates go through a
-   filter without branches that packs the touching ones, the law runs over the packed ones (vectorised
-   where the compiler can), pushes are added to both bodies. Pairs that lead out of a domain leave their
-   push in a slot of its own; the other domain fetches it after all are done, in the order of the list.
-   So every body's sum has one order whatever the number of threads. Grain-wall follows, per grain.
-   ------------------------------------------------------------------------------------------------ */
+   The loops that bring candidates, touch and law together. Grain-grain: blocks of candidates go
+   through a filter without branches that packs the touching ones, the law runs over the packed ones
+   (vectorised where the compiler can), pushes are added to both bodies. Pairs that lead out of a
+   domain leave their push in a slot of its own; the other domain fetches it after all are done, in
+   the order of the list. So every body's sum has one order whatever the number of threads.
+   Grain-wall follows, per grain.
+   --------------------------------------------------------------------------------------------- */
 enum { DEMI_FX, DEMI_FY, DEMI_FZ, DEMI_AX, DEMI_AY, DEMI_AZ, DEMI_BX, DEMI_BY, DEMI_BZ, DEMI_PUSH };
 /* Touching candidates of one block, packed: bodies, place in the list. */
-typedef struct demi_hits { int count; int32_t a[DEMI_BLOCK], b[DEMI_BLOCK], k[DEMI_BLOCK]; } demi_hits;
+typedef struct demi_hits { int count; int32_t a[DEMI_BLOCK], b[DEMI_BLOCK], k[DEMI_BLOCK];
+                          } demi_hits;
 
 /* Packs those of `count` candidates from `begin` that overlap. */
-DEM_INLINE void demi_filter(const dem_world *w, const demi_list *list, int begin, int count, const demi_periods *p,
+DEM_INLINE void demi_filter(const dem_world *w, const demi_list *list, int begin, int count,
+                            const demi_periods *p,
                              int uniform, int periodic, demi_hits *hits) {
     dem_real gap[DEMI_BLOCK];
     const dem_real *DEMI_RESTRICT x = w->pos;
     const int32_t *DEMI_RESTRICT la = list->a + begin, *DEMI_RESTRICT lb = list->b + begin;
     const dem_real both = 4*w->uniform_radius*w->uniform_radius;
-    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py = p->period[1], pz = p->period[2];
+    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py =
+        p->period[1], pz = p->period[2];
     int k, m = 0;
     DEMI_VECTOR
     for (k = 0; k < count; k++) {
         const int i = 4*la[k], j = 4*lb[k];
         dem_real dx = x[j] - x[i], dy = x[j + 1] - x[i + 1], dz = x[j + 2] - x[i + 2], cut = both;
-        if (periodic) { dx = demi_image(dx, hx, px); dy = demi_image(dy, hy, py); dz = demi_image(dz, hz, pz); }
+        if (periodic) { dx = demi_image(dx, hx, px); dy = demi_image(dy, hy, py);
+                       dz = demi_image(dz, hz, pz); }
         if (!uniform) { cut = x[i + 3] + x[j + 3]; cut *= cut; }
         gap[k] = dx*dx + dy*dy + dz*dz - cut;
     }
@@ -3226,19 +3503,24 @@ DEM_INLINE void demi_filter(const dem_world *w, const demi_list *list, int begin
     hits->count = m;
 }
 
-/* Slip over the step just taken, in the tangent plane of now: velocity and spin (times arm) are means of the
-   step, so the normal they are taken across is that of its middle. Rigid motion of both gives zero. */
+/* Slip over the step just taken, in the tangent plane of now: velocity and spin (times arm) are
+   means of the step, so the normal they are taken across is that of its middle. Rigid motion of
+   both gives zero. */
 DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone, dem_vec3 around) {
     const dem_vec3 t = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
     const dem_vec3 slip = demi_add(t, demi_cross(around, mid));
     return demi_sub(slip, demi_scale(normal, demi_dot(slip, normal)));
 }
 
-/* The law over packed contacts; pushes go to push[component*stride + contact], overlaps over radius to
-   `deep`, energies are summed in order. Everything after `energy` is a literal in a specialised kernel. */
-DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const demi_hits *hits, const demi_periods *p,
-                              dem_real *DEMI_RESTRICT push, size_t stride, dem_real *DEMI_RESTRICT deep, double *energy,
-                              dem_real dt, int normal, int tangent, int rolling, int uniform, int periodic, int ledger, dem_law_fn law) {
+/* The law over packed contacts; pushes go to push[component*stride + contact], overlaps over radius
+   to `deep`, energies are summed in order. Everything after `energy` is a literal in a specialised
+   kernel. */
+DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const demi_hits *hits,
+                             const demi_periods *p,
+                              dem_real *DEMI_RESTRICT push, size_t stride,
+                              dem_real *DEMI_RESTRICT deep, double *energy,
+                              dem_real dt, int normal, int tangent, int rolling, int uniform,
+                              int periodic, int ledger, dem_law_fn law) {
     const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT u = w->vel, *DEMI_RESTRICT s = w->spin;
     const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
     const dem_real *DEMI_RESTRICT inv_mass = w->inv_mass, *DEMI_RESTRICT coef = list->coef;
@@ -3248,21 +3530,25 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
     const dem_real diameter = 2*w->uniform_radius, each = w->uniform_radius;
     const int clipped = w->desc.tension == DEM_TENSION_CLIPPED;
     const int turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
-    const int keep = law ? w->memory_stride : tangent >= DEM_TANGENT_SPRING ? (rolling == DEM_ROLLING_EPSD ? 8 : 4)
+    const int keep = law ? w->memory_stride : tangent >= DEM_TANGENT_SPRING
+        ? (rolling == DEM_ROLLING_EPSD ? 8 : 4)
                                             : rolling == DEM_ROLLING_EPSD ? 8 : 0;
-    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py = p->period[1], pz = p->period[2];
+    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py =
+        p->period[1], pz = p->period[2];
     dem_real part[6*DEMI_BLOCK];
     dem_real kept[DEMI_MEMORY*DEMI_BLOCK];
     int q;
     DEMI_VECTOR
     for (q = 0; q < hits->count; q++) {
         const int i = 4*hits->a[q], j = 4*hits->b[q], k = hits->k[q];
-        dem_real dx = x[j] - x[i], dy = x[j + 1] - x[i + 1], dz = x[j + 2] - x[i + 2], d, over_d, la, lb, sum, m[8];
+        dem_real dx = x[j] - x[i], dy = x[j + 1] - x[i + 1], dz = x[j + 2] - x[i + 2], d, over_d,
+            la, lb, sum, m[8];
         dem_contact c;
         dem_push f;
         dem_vec3 rate, around, across;
         int e;
-        if (periodic) { dx = demi_image(dx, hx, px); dy = demi_image(dy, hy, py); dz = demi_image(dz, hz, pz); }
+        if (periodic) { dx = demi_image(dx, hx, px); dy = demi_image(dy, hy, py);
+                       dz = demi_image(dz, hz, pz); }
         d = DEMI_SQRT(dx*dx + dy*dy + dz*dz);
         over_d = 1/(d + DEMI_TINY);
         c.normal = demi_v(dx*over_d, dy*over_d, dz*over_d);
@@ -3272,14 +3558,16 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
             la = lb = d/2;
             c.kn = w->uniform_coef[DEMI_KN]; c.cn = w->uniform_coef[DEMI_CN];
             c.kt = w->uniform_coef[DEMI_KT]; c.ct = w->uniform_coef[DEMI_CT];
-            c.friction = w->uniform_coef[DEMI_MU]; c.friction_static = w->uniform_coef[DEMI_MU_STATIC];
-            c.rolling_friction = w->uniform_coef[DEMI_MU_ROLL]; c.r_eff = w->uniform_coef[DEMI_R_EFF];
+            c.friction = w->uniform_coef[DEMI_MU]; c.friction_static =
+                w->uniform_coef[DEMI_MU_STATIC];
+            c.rolling_friction = w->uniform_coef[DEMI_MU_ROLL];
+            c.r_eff = w->uniform_coef[DEMI_R_EFF];
             c.m_eff = 1/(2*w->uniform_inv_mass);
             deep[q] = (sum - d)/each;
         } else {
             const dem_real ra = x[i + 3], rb = x[j + 3], *r = coef + DEMI_COEFS*k;
             sum = ra + rb;
-            la = ra*d/sum;                      /* the contact point divides the distance as the radii do   */
+            la = ra*d/sum;  /* the contact point divides the distance as the radii do */
             lb = d - la;
             c.kn = r[DEMI_KN]; c.cn = r[DEMI_CN]; c.kt = r[DEMI_KT]; c.ct = r[DEMI_CT];
             c.friction = r[DEMI_MU]; c.friction_static = r[DEMI_MU_STATIC];
@@ -3294,25 +3582,31 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
         f.normal = 0;
         for (e = 0; e < 8; e++) m[e] = 0;
         if (turning) {
-            const dem_vec3 wa = demi_v(s[i], s[i + 1], s[i + 2]), wb = demi_v(s[j], s[j + 1], s[j + 2]);
+            const dem_vec3 wa = demi_v(s[i], s[i + 1], s[i + 2]), wb =
+                demi_v(s[j], s[j + 1], s[j + 2]);
             const dem_vec3 t = demi_sub(rate, demi_scale(c.normal, c.closing_speed));
             around = demi_add(demi_scale(wa, la), demi_scale(wb, lb));
             c.slip = demi_add(t, demi_cross(around, c.normal));
             c.spin = demi_sub(wa, wb);
         } else c.slip = c.spin = demi_v(0, 0, 0);
         if (law || keep) {
-            const dem_vec3 wa = demi_v(sh[i], sh[i + 1], sh[i + 2]), wb = demi_v(sh[j], sh[j + 1], sh[j + 2]);
-            const dem_vec3 gone = demi_v(uh[i] - uh[j], uh[i + 1] - uh[j + 1], uh[i + 2] - uh[j + 2]);
-            c.normal_rate = demi_scale(demi_sub(gone, demi_scale(c.normal, demi_dot(gone, c.normal))), -over_d);
+            const dem_vec3 wa = demi_v(sh[i], sh[i + 1], sh[i + 2]), wb =
+                demi_v(sh[j], sh[j + 1], sh[j + 2]);
+            const dem_vec3 gone = demi_v(uh[i] - uh[j], uh[i + 1] - uh[j + 1], uh[i + 2] -
+                                         uh[j + 2]);
+            c.normal_rate = demi_scale(demi_sub(gone, demi_scale(c.normal,
+                demi_dot(gone, c.normal))), -over_d);
             around = demi_add(demi_scale(wa, la), demi_scale(wb, lb));
-            c.slip_step = demi_slip_step(c.normal, demi_sub(c.normal, demi_scale(c.normal_rate, dt/2)), gone, around);
+            c.slip_step = demi_slip_step(c.normal, demi_sub(c.normal,
+                                                            demi_scale(c.normal_rate, dt/2)),
+                                                            gone, around);
             c.spin_step = demi_sub(wa, wb);
             c.twist = demi_dot(demi_add(wa, wb), c.normal)/2;
         } else {
             c.slip_step = c.spin_step = c.normal_rate = demi_v(0, 0, 0);
             c.twist = 0;
         }
-        if (keep) {                             /* memory counts only when written in the step before       */
+        if (keep) {  /* memory counts only when written in the step before */
             const int valid = stamp[k] == now;
             for (e = 0; e < keep; e++) {
                 const dem_real last = memory[keep*k + e];
@@ -3353,7 +3647,7 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
             push[DEMI_BZ*stride + (size_t)q] = lb*across.z - f.moment.z;
         }
     }
-    if (keep)                                   /* compilers scatter badly: one by one                     */
+    if (keep)                                   /* compilers scatter badly: one by one */
         for (q = 0; q < hits->count; q++) {
             const int k = hits->k[q];
             int e;
@@ -3372,24 +3666,28 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
 }
 
 /* All pairs of one domain. */
-DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rolling, int uniform, int periodic,
+DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rolling, int uniform,
+                           int periodic,
                             int ledger, dem_law_fn law) {
     demi_domain *domain = &w->domains[d];
     const demi_periods p = demi_periods_of(w);
     const int turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
-    const dem_real dt = w->forces_valid ? w->dt : 0;          /* 0: looking only, memory stays              */
+    const dem_real dt = w->forces_valid ? w->dt : 0;          /* 0: looking only, memory stays */
     dem_real push[DEMI_PUSH*DEMI_BLOCK], deep[DEMI_BLOCK], deepest = 0;
     dem_real *DEMI_RESTRICT force = w->force, *DEMI_RESTRICT torque = w->torque;
     demi_hits hits;
     int begin, q, contacts = 0;
     for (begin = 0; begin < domain->own; begin += DEMI_BLOCK) {
-        demi_filter(w, &w->own, d*w->own.stride + begin, DEMI_MIN((int)DEMI_BLOCK, domain->own - begin), &p, uniform,
+        demi_filter(w, &w->own, d*w->own.stride + begin,
+                    DEMI_MIN((int)DEMI_BLOCK, domain->own - begin), &p, uniform,
                     periodic, &hits);
-        demi_respond(w, &w->own, &hits, &p, push, DEMI_BLOCK, deep, domain->energy, dt, normal, tangent, rolling, uniform,
+        demi_respond(w, &w->own, &hits, &p, push, DEMI_BLOCK, deep, domain->energy, dt, normal,
+                     tangent, rolling, uniform,
                      periodic, ledger, law);
         for (q = 0; q < hits.count; q++) {
             const int i = 4*hits.a[q], j = 4*hits.b[q];
-            const dem_real fx = push[DEMI_FX*DEMI_BLOCK + q], fy = push[DEMI_FY*DEMI_BLOCK + q], fz = push[DEMI_FZ*DEMI_BLOCK + q];
+            const dem_real fx = push[DEMI_FX*DEMI_BLOCK + q], fy = push[DEMI_FY*DEMI_BLOCK + q],
+                fz = push[DEMI_FZ*DEMI_BLOCK + q];
             force[i] += fx; force[i + 1] += fy; force[i + 2] += fz;
             force[j] -= fx; force[j + 1] -= fy; force[j + 2] -= fz;
             deepest = deep[q] > deepest ? deep[q] : deepest;
@@ -3408,10 +3706,12 @@ DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rol
         size_t slot = (size_t)d*(size_t)w->cross.stride + 1;
         const size_t stride = w->cross_push_stride;
         for (begin = 0; begin < domain->cross; begin += DEMI_BLOCK) {
-            const int first = d*w->cross.stride + begin, count = DEMI_MIN((int)DEMI_BLOCK, domain->cross - begin);
+            const int first = d*w->cross.stride + begin, count =
+                DEMI_MIN((int)DEMI_BLOCK, domain->cross - begin);
             dem_real *DEMI_RESTRICT out = w->cross_push + slot;
             demi_filter(w, &w->cross, first, count, &p, uniform, periodic, &hits);
-            demi_respond(w, &w->cross, &hits, &p, out, stride, deep, domain->energy, dt, normal, tangent, rolling, uniform,
+            demi_respond(w, &w->cross, &hits, &p, out, stride, deep, domain->energy, dt, normal,
+                         tangent, rolling, uniform,
                          periodic, ledger, law);
             for (q = 0; q < count; q++) w->cross_hit[first + q] = 0;
             for (q = 0; q < hits.count; q++) {
@@ -3439,7 +3739,8 @@ DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rol
 static void demi_cross_gather(dem_world *w, int d) {
     const size_t stride = w->cross_push_stride;
     const dem_real *push = w->cross_push;
-    const int turning = w->desc.law || w->tangent != DEM_TANGENT_NONE || w->rolling != DEM_ROLLING_NONE;
+    const int turning = w->desc.law || w->tangent != DEM_TANGENT_NONE ||
+        w->rolling != DEM_ROLLING_NONE;
     int k;
     for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
         const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
@@ -3475,27 +3776,32 @@ DEMI_KERNEL(demi_pairs_linear_spring_mixed, DEM_NORMAL_LINEAR, DEM_TANGENT_SPRIN
 #endif
 #ifdef DEM_LAW
 static void demi_pairs_own_law(dem_world *w, int d) {
-    demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 1, 0, DEM_LAW);
+    demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 1, 0,
+               DEM_LAW);
 }
 #endif
 #ifndef DEM_NO_SPECIALIZE
-/* A kernel for alike bodies serves only those; one for periodic axes serves open ones too. First fit wins. */
+/* A kernel for alike bodies serves only those; one for periodic axes serves open ones too. First
+   fit wins. */
 typedef struct demi_kernel_row {
     int normal, tangent, uniform, periodic, ledger;
     void (*kernel)(dem_world *, int);
     const char *name;
 } demi_kernel_row;
 static const demi_kernel_row demi_kernel_rows[] = {
-    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 0, 0, demi_pairs_hertz_spring, "hertz + spring, alike"},
+    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 0, 0, demi_pairs_hertz_spring,
+     "hertz + spring, alike"},
     {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 1, 0, demi_pairs_hertz_spring_image,
      "hertz + spring, alike, periodic"},
-    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 0, 1, 0, demi_pairs_hertz_spring_mixed, "hertz + spring, mixed"},
+    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 0, 1, 0, demi_pairs_hertz_spring_mixed,
+     "hertz + spring, mixed"},
     {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 1, 1, demi_pairs_hertz_spring_ledger,
      "hertz + spring, alike, ledger"},
     {DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, 1, 1, 0, demi_pairs_hertz, "hertz, alike"},
     {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 1, 1, 0, demi_pairs_linear, "linear, alike"},
     {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 0, 1, 0, demi_pairs_linear_mixed, "linear, mixed"},
-    {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1, 0, demi_pairs_linear_spring, "linear + spring, alike"},
+    {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1, 0, demi_pairs_linear_spring,
+     "linear + spring, alike"},
     {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 0, 1, 0, demi_pairs_linear_spring_mixed,
      "linear + spring, mixed"}};
 #endif
@@ -3531,31 +3837,38 @@ static const char *demi_kernel_choose(dem_world *w) {
 
 /* --- walls --- */
 
-/* The old contact that a new one continues: same element; else one on the same wall that nothing else
-   continues and whose normal is within about 18 degrees: the grain slid on to the neighbouring element. */
-static const demi_wall_contact *demi_wall_match(const demi_wall_contact *old, int olds, const demi_wall_contact *fresh,
+/* The old contact that a new one continues: same element; else one on the same wall that nothing
+   else continues and whose normal is within about 18 degrees: the grain slid on to the neighbouring
+   element. */
+static const demi_wall_contact *demi_wall_match(const demi_wall_contact *old, int olds,
+                                                const demi_wall_contact *fresh,
                                                 int freshs, const demi_wall_contact *c) {
     const demi_wall_contact *best = 0;
     dem_real nearest = DEM_R(0.95);
     int i, j;
-    for (i = 0; i < olds; i++) if (old[i].wall == c->wall && old[i].element == c->element) return &old[i];
+    for (i = 0; i < olds; i++) if (old[i].wall == c->wall &&
+                                   old[i].element == c->element) return &old[i];
     for (i = 0; i < olds; i++) {
         const dem_real along = demi_dot(old[i].normal, c->normal);
         int taken = old[i].wall != c->wall;
-        for (j = 0; j < freshs && !taken; j++) taken = fresh[j].wall == old[i].wall && fresh[j].element == old[i].element;
+        for (j = 0; j < freshs && !taken; j++) taken = fresh[j].wall == old[i].wall &&
+            fresh[j].element == old[i].element;
         if (!taken && along > nearest) { nearest = along; best = &old[i]; }
     }
     return best;
 }
 
 /* The contact between a grain and a wall as a law sees it. normal_before: of the step before. */
-static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *k, dem_vec3 normal_before, dem_real dt,
+static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *k,
+                                   dem_vec3 normal_before, dem_real dt,
                                    dem_contact *c, dem_vec3 *surface) {
     const demi_wall *wall = &w->walls[k->wall];
     const dem_real *x = w->pos + 4*k->body, r = x[3];
-    const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body), at = demi_add(demi_at(x), demi_scale(n, r));
+    const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body), at =
+        demi_add(demi_at(x), demi_scale(n, r));
     const dem_vec3 arm = demi_sub(at, wall->pose.position);
-    const dem_vec3 mid = demi_add(wall->mid.velocity, demi_cross(wall->mid.spin, demi_sub(at, wall->mid.position)));
+    const dem_vec3 mid = demi_add(wall->mid.velocity, demi_cross(wall->mid.spin,
+        demi_sub(at, wall->mid.position)));
     const dem_vec3 spin_step = demi_at(w->half_spin + 4*k->body);
     dem_vec3 u;
     *surface = demi_add(wall->pose.velocity, demi_cross(wall->pose.spin, arm));
@@ -3564,10 +3877,12 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     c->overlap = k->overlap;
     c->normal = n;
     c->closing_speed = demi_dot(u, n);
-    c->slip = demi_add(demi_sub(u, demi_scale(n, c->closing_speed)), demi_scale(demi_cross(spin, n), r));
+    c->slip = demi_add(demi_sub(u, demi_scale(n, c->closing_speed)),
+                       demi_scale(demi_cross(spin, n), r));
     c->spin = demi_sub(spin, wall->pose.spin);
     c->slip_step = demi_slip_step(n, demi_scale(demi_add(n, normal_before), DEM_R(0.5)),
-                                  demi_sub(demi_at(w->half_vel + 4*k->body), mid), demi_scale(spin_step, r));
+                                  demi_sub(demi_at(w->half_vel + 4*k->body), mid),
+                                  demi_scale(spin_step, r));
     c->spin_step = demi_sub(spin_step, wall->mid.spin);
     c->dt = dt;
     if (dt > 0) {
@@ -3577,7 +3892,8 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     c->twist = demi_dot(demi_add(spin_step, wall->mid.spin), n)/2;
     c->r_eff = k->coef[DEMI_R_EFF];
     c->m_eff = w->mass[k->body];
-    c->kn = k->coef[DEMI_KN]; c->cn = k->coef[DEMI_CN]; c->kt = k->coef[DEMI_KT]; c->ct = k->coef[DEMI_CT];
+    c->kn = k->coef[DEMI_KN]; c->cn = k->coef[DEMI_CN]; c->kt = k->coef[DEMI_KT];
+    c->ct = k->coef[DEMI_CT];
     c->friction = k->coef[DEMI_MU]; c->friction_static = k->coef[DEMI_MU_STATIC];
     c->rolling_friction = k->coef[DEMI_MU_ROLL];
     c->material_a = w->body_material[k->body];
@@ -3589,15 +3905,19 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
 static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
     const demi_wall *wall = &w->walls[c->wall];
     const double r = (double)w->pos[4*c->body + 3];
-    const double r_eff = wall->kind == DEMI_WALL_GRAINS ? r*(double)wall->radius/(r + (double)wall->radius) : r;
-    demi_coefficients(w, w->body_material[c->body] - 1, wall->material, r_eff, (double)w->mass[c->body],
+    const double r_eff = wall->kind == DEMI_WALL_GRAINS
+        ? r*(double)wall->radius/(r + (double)wall->radius) : r;
+    demi_coefficients(w, w->body_material[c->body] - 1, wall->material, r_eff,
+                      (double)w->mass[c->body],
                       wall->kind != DEMI_WALL_GRAINS, c->coef);
 }
 
 /* Touching elements of one wall for one grain, from its candidates first .. last - 1. */
 enum { DEMI_TOUCH_MOST = 64 };
-static int demi_wall_collect(const dem_world *w, int d, int first, int last, demi_wall_contact *out) {
-    const int base = d*w->wall_stride, body = w->wall_body[base + first], id = w->wall_id[base + first];
+static int demi_wall_collect(const dem_world *w, int d, int first, int last,
+                             demi_wall_contact *out) {
+    const int base = d*w->wall_stride, body = w->wall_body[base + first], id =
+        w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
     const dem_real r = w->pos[4*body + 3], *R = wall->pose.rotation;
     const dem_vec3 x = demi_unturn(R, demi_sub(demi_at(w->pos + 4*body), wall->pose.position));
@@ -3624,7 +3944,8 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem
         c->share = share;
         count++;
     }
-    if (count > 1 && (wall->kind == DEMI_WALL_MESH || (wall->kind == DEMI_WALL_PROFILE && wall->rule == DEM_EDGE_RESOLVED)))
+    if (count > 1 && (wall->kind == DEMI_WALL_MESH || (wall->kind == DEMI_WALL_PROFILE &&
+                                                       wall->rule == DEM_EDGE_RESOLVED)))
         count = demi_wall_resolve(out, count, r);
     return count;
 }
@@ -3643,7 +3964,8 @@ static void demi_walls_respond(dem_world *w, int d) {
         const int body = w->wall_body[base + k], wall = w->wall_id[base + k];
         const dem_real r = w->pos[4*body + 3];
         int n;
-        for (last = k + 1; last < domain->walls && w->wall_body[base + last] == body && w->wall_id[base + last] == wall;) last++;
+        for (last = k + 1; last < domain->walls && w->wall_body[base + last] == body &&
+             w->wall_id[base + last] == wall;) last++;
         n = demi_wall_collect(w, d, k, last, out + count);
         if (!n) continue;
         while (o < domain->wall_contacts && old[o].body < body) o++;
@@ -3667,7 +3989,8 @@ static void demi_walls_respond(dem_world *w, int d) {
             }
             demi_wall_contact_fill(w, c, from ? from->normal : c->normal, dt, &contact, &surface);
             if (w->desc.law) w->desc.law(&contact, c->memory, &f);
-            else demi_law(&contact, c->memory, &f, w->normal, w->tangent, w->rolling, clipped, w->desc.ledger, &part);
+            else demi_law(&contact, c->memory, &f, w->normal, w->tangent, w->rolling, clipped,
+                          w->desc.ledger, &part);
             force = demi_scale(demi_sub(f.tangent, demi_scale(contact.normal, f.normal)), c->share);
             f.moment = demi_scale(f.moment, c->share);
             torque = demi_add(demi_scale(demi_cross(contact.normal, force), r), f.moment);
@@ -3676,11 +3999,15 @@ static void demi_walls_respond(dem_world *w, int d) {
                 w->force[4*body + e] += e == 0 ? force.x : e == 1 ? force.y : force.z;
                 w->torque[4*body + e] += e == 0 ? torque.x : e == 1 ? torque.y : torque.z;
             }
-            arm = demi_sub(demi_add(demi_at(w->pos + 4*body), demi_scale(contact.normal, r)), w->walls[wall].motion.point);
+            arm = demi_sub(demi_add(demi_at(w->pos + 4*body), demi_scale(contact.normal, r)),
+                           w->walls[wall].motion.point);
             torque = demi_add(demi_cross(arm, force), f.moment);
-            sum->force[0] -= (double)force.x; sum->force[1] -= (double)force.y; sum->force[2] -= (double)force.z;
-            sum->torque[0] -= (double)torque.x; sum->torque[1] -= (double)torque.y; sum->torque[2] -= (double)torque.z;
-            sum->power += (double)(demi_dot(force, surface) + demi_dot(f.moment, w->walls[wall].pose.spin));
+            sum->force[0] -= (double)force.x; sum->force[1] -= (double)force.y;
+            sum->force[2] -= (double)force.z;
+            sum->torque[0] -= (double)torque.x; sum->torque[1] -= (double)torque.y;
+            sum->torque[2] -= (double)torque.z;
+            sum->power += (double)(demi_dot(force, surface) +
+                                   demi_dot(f.moment, w->walls[wall].pose.spin));
             sum->contacts++;
             domain->overlap = DEMI_MAX(domain->overlap, (double)(c->overlap/r));
             domain->energy[DEMI_E_DASHPOT] += (double)(c->share*part.dashpot);
@@ -3695,18 +4022,18 @@ static void demi_walls_respond(dem_world *w, int d) {
     domain->wall_contacts = count;
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>integrators
-   Kick, drift and the velocity a law will see. Between steps pos, vel, force belong to the same time t_n;
-   half_vel is the mean velocity of the step that led there, v(t_n - dt/2). Each scheme
-   is one function over a range of bodies; `synced` = 0 says the step before was not finished, so that
-   its last half kick is still due (it is merged with the first one of this step: same arithmetic).
-   Rotation runs along in the same scheme (position Verlet: leapfrog).
+   Kick, drift and the velocity a law will see. Between steps pos, vel, force belong to the same
+   time t_n; half_vel is the mean velocity of the step that led there, v(t_n - dt/2). Each scheme
+   is one function over a range of bodies; `synced` = 0 says the step before was not finished, so
+   that its last half kick is still due (it is merged with the first one of this step: same
+   arithmetic). Rotation runs along in the same scheme (position Verlet: leapfrog).
    >>add-integrator: an enum value, a function here, a row in demi_integrator_rows.
-   ------------------------------------------------------------------------------------------------ */
-typedef struct demi_lane {           /* one body's translation or rotation                            */
-    dem_real *v, *half, *f;          /* velocity, half-step velocity, force: 4 reals each             */
-    dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces          */
+   --------------------------------------------------------------------------------------------- */
+typedef struct demi_lane {           /* one body's translation or rotation */
+    dem_real *v, *half, *f;          /* velocity, half-step velocity, force: 4 reals each */
+    dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces */
 } demi_lane;
 
 /* v(t) -> half, predicted v(t+dt); dt and half kick as reals. Answers nothing; drift uses half. */
@@ -3830,7 +4157,8 @@ static void demi_move_forward_euler(dem_world *w, int begin, int end, int turnin
         }
     }
 }
-static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (void)begin; (void)end; }
+static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (void)begin;
+    (void)end; }
 static void demi_finish_halves(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->half_kick;
     int i;
@@ -3861,19 +4189,20 @@ typedef struct demi_integrator_row {
     void (*finish)(dem_world *w, int begin, int end);
     int order;
 } demi_integrator_row;
-static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator           */
+static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator */
     {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2},
     {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1},
     {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1},
     {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2},
     {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2}};
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>ledger
    Where the energy went. Laws add what they dissipate and store; moves add the work of gravity and
-   fields; walls the work they do. The springs in the tangent planes are the odd one out: what they took
-   in and neither hold nor lost to sliding was dissipated by the shear dashpot, or with the contact.
-   ------------------------------------------------------------------------------------------------ */
+   fields; walls the work they do. The springs in the tangent planes are the odd one out: what they
+   took in and neither hold nor lost to sliding was dissipated by the shear dashpot, or with the
+   contact.
+   --------------------------------------------------------------------------------------------- */
 static double demi_sum_energy(const dem_world *w, int what) {
     double sum = 0;
     int d;
@@ -3887,14 +4216,18 @@ static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational
         const dem_real *v = w->vel + 4*i, *s = w->spin + 4*i;
         const double m = (double)w->mass[i];
         if (w->inv_mass[i] <= 0) continue;
-        *kinetic += m*((double)v[0]*(double)v[0] + (double)v[1]*(double)v[1] + (double)v[2]*(double)v[2])/2;
+        *kinetic += m*((double)v[0]*(double)v[0] + (double)v[1]*(double)v[1] +
+                       (double)v[2]*(double)v[2])/2;
         *rotational += demi_sphere_inertia(w, m, (double)w->pos[4*i + 3])*
-                       ((double)s[0]*(double)s[0] + (double)s[1]*(double)s[1] + (double)s[2]*(double)s[2])/2;
+                       ((double)s[0]*(double)s[0] + (double)s[1]*(double)s[1] +
+                        (double)s[2]*(double)s[2])/2;
     }
 }
-/* After a force evaluation: adds the domains' flows to the totals; stored energies replace the last. */
+/* After a force evaluation: adds the domains' flows to the totals; stored energies replace the
+   last. */
 static void demi_ledger_book(dem_world *w) {
-    static const int flows[] = {DEMI_E_DASHPOT, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_FORCE};
+    static const int flows[] = {DEMI_E_DASHPOT, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_ROLL,
+                                DEMI_E_FORCE};
     double walls = 0;
     size_t i;
     for (i = 0; i < sizeof flows/sizeof *flows; i++) {
@@ -3904,7 +4237,8 @@ static void demi_ledger_book(dem_world *w) {
     }
     w->energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
     w->energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
-    for (i = 0; i < (size_t)w->wall_count; i++) walls += (double)w->walls[i].channels.power*(w->forces_valid ? (double)w->dt : 0);
+    for (i = 0; i < (size_t)w->wall_count;
+         i++) walls += (double)w->walls[i].channels.power*(w->forces_valid ? (double)w->dt : 0);
     w->energy[DEMI_E_WALLS] += walls;
     w->throughput += fabs(walls);
 }
@@ -3921,10 +4255,12 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.removed = w->energy_removed;
     l.normal = w->energy[DEMI_E_DASHPOT];
     l.slide = w->energy[DEMI_E_SLIDE];
-    l.tangent = w->energy[DEMI_E_SHEAR_WORK] - w->energy[DEMI_E_SLIDE] - w->energy[DEMI_E_SHEAR_STORED];
+    l.tangent = w->energy[DEMI_E_SHEAR_WORK] - w->energy[DEMI_E_SLIDE] -
+        w->energy[DEMI_E_SHEAR_STORED];
     l.rolling = w->energy[DEMI_E_ROLL];
     l.throughput = w->throughput + w->energy_inserted;
-    l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force - l.inserted + l.removed +
+    l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force -
+        l.inserted + l.removed +
                  l.normal + l.slide + l.tangent + l.rolling;
     return l;
 }
@@ -3943,21 +4279,22 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
         for (k = 0; k < 3; k++) {
             t.centre[k] += m*x[k];
             t.momentum[k] += m*v[k];
-            t.angular[k] += m*(x[(k + 1)%3]*v[(k + 2)%3] - x[(k + 2)%3]*v[(k + 1)%3]) + I*(double)w->spin[4*i + k];
+            t.angular[k] += m*(x[(k + 1)%3]*v[(k + 2)%3] - x[(k + 2)%3]*v[(k + 1)%3]) +
+                I*(double)w->spin[4*i + k];
         }
     }
     for (i = 0; i < 3 && t.mass > 0; i++) t.centre[i] /= t.mass;
     return t;
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>step
-   The time step (advised, checked), one step in the order of the manual, and runs of many. Errors of a
-   run are found in the step that caused them and name the body.
-   ------------------------------------------------------------------------------------------------ */
+   The time step (advised, checked), one step in the order of the manual, and runs of many. Errors
+   of a run are found in the step that caused them and name the body.
+   --------------------------------------------------------------------------------------------- */
 
-/* Impact speed to reckon with: given, or the largest of what grains and walls do now and what gravity can
-   make of the height there is. */
+/* Impact speed to reckon with: given, or the largest of what grains and walls do now and what
+   gravity can make of the height there is. */
 static double demi_speed_estimate(const dem_world *w) {
     double g = (double)demi_length(w->desc.gravity), speed = 0, lo = 1e300, hi = -1e300;
     dem_vec3 down = g > 0 ? demi_unit(w->desc.gravity) : demi_v(0, 0, 0);
@@ -3973,13 +4310,16 @@ static double demi_speed_estimate(const dem_world *w) {
     for (i = 0; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
         if (wall->kind == DEMI_WALL_NONE) continue;
-        speed = DEMI_MAX(speed, (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*
+        speed = DEMI_MAX(speed, (double)demi_length(wall->pose.velocity) +
+                         (double)demi_length(wall->pose.spin)*
                          (double)DEMI_MAX(wall->reach, wall->radius));
-        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_GRAINS || wall->kind == DEMI_WALL_MESH) {
+        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_GRAINS ||
+            wall->kind == DEMI_WALL_MESH) {
             const int n = wall->kind == DEMI_WALL_PLANE ? 1 : wall->vertex_count;
             for (k = 0; k < n; k++) {
                 const dem_vec3 p = wall->kind == DEMI_WALL_PLANE ? wall->pose.position :
-                    demi_add(wall->pose.position, demi_turn(wall->pose.rotation, demi_at(wall->vertices + 3*k)));
+                    demi_add(wall->pose.position, demi_turn(wall->pose.rotation,
+                                                            demi_at(wall->vertices + 3*k)));
                 hi = DEMI_MAX(hi, (double)demi_dot(p, down));
             }
         } else hi = DEMI_MAX(hi, (double)demi_dot(wall->pose.position, down) +
@@ -4001,10 +4341,12 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
     }
     for (i = 0; i < w->material_count; i++) {
         const double r = smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r) : 0;
-        const double nu = (double)w->materials[i].poisson, G = (double)w->materials[i].young/(2*(1 + nu));
+        const double nu = (double)w->materials[i].poisson, G =
+            (double)w->materials[i].young/(2*(1 + nu));
         dem_real coef[DEMI_COEFS];
         if (r <= 0) continue;
-        if (G > 0) rayleigh = DEMI_MIN(rayleigh, DEMI_PI*r*sqrt((double)w->materials[i].density/G)/(0.1631*nu + 0.8766));
+        if (G > 0) rayleigh = DEMI_MIN(rayleigh,
+                                       DEMI_PI*r*sqrt((double)w->materials[i].density/G)/(0.1631*nu + 0.8766));
         for (j = 0; j < w->material_count + w->wall_count; j++) {
             const int wall = j - w->material_count, other = wall < 0 ? j : w->walls[wall].material;
             double m_eff = m, r_eff = r, t;
@@ -4015,7 +4357,8 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
                 r_eff = r*smallest[j]/(r + smallest[j]);
             }
             demi_coefficients(w, i, other, r_eff, m_eff, wall >= 0, coef);
-            if (w->desc.law && w->desc.law_stiffness > 0) t = DEMI_PI*sqrt(m_eff/(double)w->desc.law_stiffness);
+            if (w->desc.law && w->desc.law_stiffness > 0) t =
+                DEMI_PI*sqrt(m_eff/(double)w->desc.law_stiffness);
             else t = demi_contact_time(w, coef, m_eff, speed);
             if (t < best) { best = t; at_i = i; at_j = other; at_wall = wall + 1; }
         }
@@ -4025,10 +4368,12 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
     out->rayleigh = (dem_real)(rayleigh < 1e300 ? rayleigh : 0);
     if (at_i < 0) { snprintf(out->binds, sizeof out->binds, "no grain that moves"); best = 0; }
     else if (at_wall)
-        snprintf(out->binds, sizeof out->binds, "grains of material %d, radius %g m, on wall %d of material %d, at %.3g m/s",
+        snprintf(out->binds, sizeof out->binds, "grains of material %d, radius %g m, on wall %d of "
+                 "material %d, at %.3g m/s",
                  at_i + 1, smallest[at_i], at_wall, at_j + 1, speed);
     else
-        snprintf(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g m, at %.3g m/s", at_i + 1,
+        snprintf(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g m, "
+                 "at %.3g m/s", at_i + 1,
                  at_j + 1, smallest[at_i], smallest[at_j], speed);
     out->contact_time = (dem_real)best;
     out->dt = (dem_real)(best/50);
@@ -4037,7 +4382,8 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
 DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
-    return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: the world has no grain that moves; add grains "
+    return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: the world has no grain "
+                     "that moves; add grains "
                      "before asking for a time step");
 }
 
@@ -4045,7 +4391,8 @@ static void demi_domain_finish(dem_world *w, int d) {
     demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
 }
 
-/* Completes the half kick that a step leaves open: velocities are then those of the present time. */
+/* Completes the half kick that a step leaves open: velocities are then those of the present time.
+   */
 static void demi_finish(dem_world *w) {
     if (w->synced) return;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);
@@ -4056,19 +4403,22 @@ static void demi_finish(dem_world *w) {
 static dem_result demi_dt_settle(dem_world *w) {
     dem_advice a;
     if (w->dt_valid) return DEM_OK;
-    if (!w->count) {                            /* nothing to limit it: walls still move                   */
+    if (!w->count) {                            /* nothing to limit it: walls still move */
         if (!(w->dt > 0)) w->dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
         return DEM_OK;
     }
     demi_advise(w, &a);
     if (w->desc.dt > 0) {
         if (!w->desc.allow_large_dt && a.contact_time > 0 && w->desc.dt > a.dt_max)
-            return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most t_c/20 = %g s (t_c of %s"
-                             "); use dt = 0, a softer material or a smaller dt", (double)w->desc.dt, (double)a.dt_max, a.binds);
+            return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most "
+                             "t_c/20 = %g s (t_c of %s"
+                             "); use dt = 0, a softer material or a smaller dt",
+                             (double)w->desc.dt, (double)a.dt_max, a.binds);
         w->dt = w->desc.dt;
     } else {
         const dem_real dt = a.contact_time > 0 ? a.dt : DEM_R(1e-3);
-        if (dt < w->dt || dt > w->dt) { demi_finish(w); w->primed = 0; }     /* half steps were of the old dt  */
+        /* half steps were of the old dt */
+        if (dt < w->dt || dt > w->dt) { demi_finish(w); w->primed = 0; }
         w->dt = dt;
     }
     w->assumed_speed = (double)a.speed;
@@ -4080,7 +4430,8 @@ static dem_result demi_dt_settle(dem_world *w) {
 
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const int turning = w->desc.law || w->tangent != DEM_TANGENT_NONE || w->rolling != DEM_ROLLING_NONE;
+    const int turning = w->desc.law || w->tangent != DEM_TANGENT_NONE ||
+        w->rolling != DEM_ROLLING_NONE;
     const dem_real *DEMI_RESTRICT v = w->half_vel;
     dem_real most = 0, sum = 0;
     int i;
@@ -4091,7 +4442,8 @@ static void demi_domain_move(dem_world *w, int d) {
             w->spin[4*i] = w->spin[4*i + 1] = 0;
             w->half_vel[4*i + 2] = w->half_spin[4*i] = w->half_spin[4*i + 1] = 0;
         }
-    for (i = domain->begin; i < domain->end; i++) {         /* a sum keeps what is not finite, a maximum loses it */
+    /* a sum keeps what is not finite, a maximum loses it */
+    for (i = domain->begin; i < domain->end; i++) {
         const dem_real s = v[4*i]*v[4*i] + v[4*i + 1]*v[4*i + 1] + v[4*i + 2]*v[4*i + 2];
         most = s > most ? s : most;
         sum += s;
@@ -4104,12 +4456,14 @@ static void demi_domain_move(dem_world *w, int d) {
         for (i = domain->begin; i < domain->end; i++) {
             const dem_real *u = v + 4*i;
             if (w->inv_mass[i] <= 0) continue;
-            domain->energy[DEMI_E_GRAVITY] += (double)w->mass[i]*(double)(g.x*u[0] + g.y*u[1] + g.z*u[2])*(double)w->dt;
+            domain->energy[DEMI_E_GRAVITY] += (double)w->mass[i]*(double)(g.x*u[0] + g.y*u[1] +
+                g.z*u[2])*(double)w->dt;
         }
     }
 }
 
-static void demi_domain_clear(dem_world *w, int d) {        /* force field, or nothing, to start the sums with */
+/* force field, or nothing, to start the sums with */
+static void demi_domain_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
     int i;
@@ -4117,11 +4471,13 @@ static void demi_domain_clear(dem_world *w, int d) {        /* force field, or n
     memset(w->torque + 4*domain->begin, 0, n);
     if (!w->desc.force) return;
     for (i = domain->begin; i < domain->end; i++) {
-        const dem_vec3 f = w->desc.force(demi_at(w->pos + 4*i), demi_at(w->vel + 4*i), w->pos[4*i + 3], w->mass[i],
+        const dem_vec3 f = w->desc.force(demi_at(w->pos + 4*i), demi_at(w->vel + 4*i),
+                                         w->pos[4*i + 3], w->mass[i],
                                          w->time, w->desc.force_user);
         demi_put(w->force + 4*i, f);
         if (w->desc.ledger && w->forces_valid && w->inv_mass[i] > 0)
-            w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f, demi_at(w->vel + 4*i))*(double)w->dt;
+            w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f,
+                demi_at(w->vel + 4*i))*(double)w->dt;
     }
 }
 static void demi_domain_respond(dem_world *w, int d) {
@@ -4147,7 +4503,7 @@ static void demi_forces(dem_world *w) {
     w->wall_now = (demi_wall_contact *)w->wall_now_.data;
     w->wall_next = (demi_wall_contact *)w->wall_next_.data;
     w->stamp++;
-    for (i = 0; i < w->wall_count; i++) {       /* domains in order: one order whatever the threads         */
+    for (i = 0; i < w->wall_count; i++) {  /* domains in order: one order whatever the threads */
         dem_channels *c = &w->walls[i].channels;
         const dem_vec3 axis = w->walls[i].motion.axis;
         double f[3] = {0, 0, 0}, t[3] = {0, 0, 0}, power = 0;
@@ -4168,7 +4524,8 @@ static void demi_forces(dem_world *w) {
         c->work += power*dt;
         c->time += dt;
     }
-    for (d = 0; d < w->domain_count; d++) w->overlap_max = DEMI_MAX(w->overlap_max, w->domains[d].overlap);
+    for (d = 0; d < w->domain_count; d++) w->overlap_max =
+        DEMI_MAX(w->overlap_max, w->domains[d].overlap);
     if (w->desc.ledger) demi_ledger_book(w);
 }
 
@@ -4177,22 +4534,32 @@ static dem_result demi_unstable(dem_world *w) {
     int i, d;
     double deepest = 0;
     for (i = 0; i < w->count; i++)
-        if (!demi_finite3(demi_at(w->pos + 4*i)) || !demi_finite3(demi_at(w->vel + 4*i)) || !demi_finite3(demi_at(w->spin + 4*i)))
-            return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its position, velocity or spin is no "
-                             "longer a finite number; likely a law, force field or motion of your own divided by zero, or dt "
-                             "= %g s is too large", (unsigned long long)w->steps, (unsigned)w->body_slot[i] + 1, (double)w->dt);
+        if (!demi_finite3(demi_at(w->pos + 4*i)) || !demi_finite3(demi_at(w->vel + 4*i)) ||
+            !demi_finite3(demi_at(w->spin + 4*i)))
+            return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its "
+                             "position, velocity or spin is no "
+                             "longer a finite number; likely a law, force field or motion of your "
+                             "own divided by zero, or dt "
+                             "= %g s is too large", (unsigned long long)w->steps,
+                             (unsigned)w->body_slot[i] + 1, (double)w->dt);
     for (d = 0; d < w->domain_count; d++) deepest = DEMI_MAX(deepest, w->domains[d].overlap);
     for (d = 0; d < w->domain_count; d++)
         for (i = 0; i < w->domains[d].wall_contacts; i++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + i];
             if (c->overlap > w->pos[4*c->body + 3])
-                return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u overlaps wall %d by %.3g of its "
-                                 "radius, must be below 1; it started inside the wall, hit it too fast for dt = %g s, or the "
-                                 "material is too soft", (unsigned long long)w->steps, (unsigned)w->body_slot[c->body] + 1,
-                                 (int)c->wall + 1, (double)(c->overlap/w->pos[4*c->body + 3]), (double)w->dt);
+                return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
+                                 "overlaps wall %d by %.3g of its "
+                                 "radius, must be below 1; it started inside the wall, hit it too "
+                                 "fast for dt = %g s, or the "
+                                 "material is too soft", (unsigned long long)w->steps,
+                                 (unsigned)w->body_slot[c->body] + 1,
+                                 (int)c->wall + 1, (double)(c->overlap/w->pos[4*c->body + 3]),
+                                 (double)w->dt);
         }
-    return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: two grains overlap by %.3g of the smaller radius, must "
-                     "be below 1; they started inside each other, met too fast for dt = %g s, or the material is too soft",
+    return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: two grains overlap by %.3g "
+                     "of the smaller radius, must "
+                     "be below 1; they started inside each other, met too fast for dt = %g s, or "
+                     "the material is too soft",
                      (unsigned long long)w->steps, deepest, (double)w->dt);
 }
 
@@ -4256,18 +4623,21 @@ static dem_result demi_step_once(dem_world *w) {
     /* 2 search: when something may have come near that is not in the list */
     w->reach += w->speed_max*(double)w->dt;
     w->wall_reach += DEMI_MAX(wall_speed, 0)*(double)w->dt;
-    look = !w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach + w->wall_reach > w->skin || wall_speed < 0;
+    look = !w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach +
+        w->wall_reach > w->skin || wall_speed < 0;
     if (look) {
         result = demi_rebuild(w);
         if (result != DEM_OK) return result;
         demi_kernel_choose(w);
-        if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;     /* faster than thought: ask again      */
+        /* faster than thought: ask again */
+        if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;
     }
 
     /* 3 touch, 4 respond, 5 gather */
     demi_forces(w);
 
-    /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish) */
+    /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish)
+       */
     for (d = 0; d < w->domain_count; d++) overlap = DEMI_MAX(overlap, w->domains[d].overlap);
     if (!(overlap < 1)) return demi_unstable(w);
     return DEM_OK;
@@ -4276,12 +4646,14 @@ static dem_result demi_step_once(dem_world *w) {
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     dem_result result = DEM_OK;
     int i, f;
-    if (steps < 0) return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
+    if (steps < 0) return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be "
+                                    ">= 0", steps);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         int sampling = 0;
         result = demi_dt_settle(w);
         if (result != DEM_OK) break;
-        if (!w->forces_valid || !w->list_valid) {           /* something changed since: forces at t, no memory moved */
+        /* something changed since: forces at t, no memory moved */
+        if (!w->forces_valid || !w->list_valid) {
             demi_finish(w);
             if (!w->list_valid) result = demi_rebuild(w);
             if (result != DEM_OK) break;
@@ -4292,19 +4664,22 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
         }
         if (!w->primed) { demi_finish(w); demi_prime(w); }
         result = demi_step_once(w);
-        for (f = 0; f < w->field_count; f++) sampling |= w->fields[f].used && w->time >= w->fields[f].next;
+        for (f = 0; f < w->field_count; f++) sampling |= w->fields[f].used &&
+            w->time >= w->fields[f].next;
         if (sampling && result == DEM_OK) { demi_finish(w); demi_fields_sample(w); }
     }
     if (result != DEM_ERROR_UNSTABLE && w->domain_count && w->list_valid) demi_finish(w);
     return result;
 }
 
-DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress, void *user) {
+DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
+                                 void *user) {
     const double start = w->time, begun = demi_clock();
     double last = begun;
     int chunk = 1;
     if (!(seconds >= 0) || !(seconds < 1e300))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and >= 0", seconds);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
+                         ">= 0", seconds);
     for (;;) {
         const double left = start + seconds - w->time;
         double now;
@@ -4321,16 +4696,19 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
             const double done = (w->time - start)/seconds;
             last = now;
             if (progress(w, done, (now - begun)*(1 - done)/DEMI_MAX(done, 1e-9), user))
-                return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_run: stopped by the progress function at %g s", w->time);
+                return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_run: stopped by the progress "
+                                 "function at %g s", w->time);
         }
-        if (now - begun < 0.05*(double)w->steps && chunk < 1000) chunk++;     /* short steps: look at the clock less often */
+        /* short steps: look at the clock less often */
+        if (now - begun < 0.05*(double)w->steps && chunk < 1000) chunk++;
     }
     if (progress) progress(w, 1, 0, user);
     return DEM_OK;
 }
 
 DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
-    fprintf((FILE *)user, "\r%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", 100*done, w->time, w->count,
+    fprintf((FILE *)user, "\r%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", 100*done,
+            w->time, w->count,
             seconds_left, done >= 1 ? "\n" : "");
     fflush((FILE *)user);
     return 0;
@@ -4339,10 +4717,10 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
 DEM_API double dem_world_time(const dem_world *w) { return w->time; }
 DEM_API uint64_t dem_world_steps(const dem_world *w) { return w->steps; }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>measure
    Looking at a world without changing it: fields on a grid, counters, contacts, the digest.
-   ------------------------------------------------------------------------------------------------ */
+   --------------------------------------------------------------------------------------------- */
 static size_t demi_field_cells(const demi_field *f) {
     return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
 }
@@ -4353,7 +4731,8 @@ static void demi_fields_sample(dem_world *w) {
         const dem_field_desc *d = &field->desc;
         double lo[3], size[3], volume;
         if (!field->used || w->time < field->next || (d->end > 0 && w->time > d->end)) continue;
-        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->time) : w->time + 100*(double)w->dt;
+        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->time) : w->time +
+            100*(double)w->dt;
         if (field->next <= w->time) field->next = w->time + (double)w->dt/2;
         lo[0] = (double)d->box.lo.x; lo[1] = (double)d->box.lo.y; lo[2] = (double)d->box.lo.z;
         size[0] = ((double)d->box.hi.x - lo[0])/d->cells[0];
@@ -4372,7 +4751,8 @@ static void demi_fields_sample(dem_world *w) {
             if (!in) continue;
             field->solid[cell] += (w->desc.planar ? DEMI_PI*r*r*size[2] : 4*DEMI_PI/3*r*r*r)/volume;
             field->mass[cell] += m;
-            for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->vel[4*i + k];
+            for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->vel[4*i +
+                k];
         }
         field->samples++;
     }
@@ -4384,9 +4764,12 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     id.id = 0;
     if (d->cells[0] < 1 || d->cells[1] < 1 || d->cells[2] < 1 ||
         (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->box.hi.x > d->box.lo.x) ||
-        !(d->box.hi.y > d->box.lo.y) || !(d->box.hi.z > d->box.lo.z) || !(d->interval >= 0) || !(d->start >= 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval %g s; must be >= 1 each and at most "
-                  "2^28 in all, the box with lo below hi, times >= 0", d->cells[0], d->cells[1], d->cells[2], d->interval);
+        !(d->box.hi.y > d->box.lo.y) || !(d->box.hi.z > d->box.lo.z) || !(d->interval >= 0) ||
+        !(d->start >= 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval %g s; "
+                  "must be >= 1 each and at most "
+                  "2^28 in all, the box with lo below hi, times >= 0", d->cells[0], d->cells[1],
+                  d->cells[2], d->interval);
         return id;
     }
     memset(&field, 0, sizeof field);
@@ -4420,7 +4803,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
 }
 static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
     if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d", call, (int)id.id, w->field_count);
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d", call,
+              (int)id.id, w->field_count);
     return 0;
 }
 DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
@@ -4470,7 +4854,8 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
 DEM_API void dem_overlap_reset(dem_world *w) { w->overlap_max = 0; }
 
 /* One contact by slots, its force by the law of the run on a copy of its memory. */
-static void demi_contact_force(const dem_world *w, const demi_list *list, int k, dem_contact_info *out) {
+static void demi_contact_force(const dem_world *w, const demi_list *list, int k,
+                               dem_contact_info *out) {
     const demi_periods p = demi_periods_of(w);
     demi_hits hits;
     dem_real push[DEMI_PUSH], deep[1], copy[DEMI_MEMORY];
@@ -4487,7 +4872,8 @@ static void demi_contact_force(const dem_world *w, const demi_list *list, int k,
     one.coef = list->coef ? list->coef + (size_t)k*DEMI_COEFS : 0;
     hits.count = 1;
     hits.a[0] = a; hits.b[0] = b; hits.k[0] = 0;
-    demi_respond(w, &one, &hits, &p, push, 1, deep, energy, 0, w->normal, w->tangent, w->rolling, w->uniform, 1, 0, w->desc.law);
+    demi_respond(w, &one, &hits, &p, push, 1, deep, energy, 0, w->normal, w->tangent, w->rolling,
+                 w->uniform, 1, 0, w->desc.law);
     d = demi_v(demi_image(d.x, p.half[0], p.period[0]), demi_image(d.y, p.half[1], p.period[1]),
                demi_image(d.z, p.half[2], p.period[2]));
     l = demi_length(d);
@@ -4532,8 +4918,8 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
     return n;
 }
 
-/* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays; contact
-   memory as a sum over contacts of their own digests, for the same reason. */
+/* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;
+   contact memory as a sum over contacts of their own digests, for the same reason. */
 DEM_API uint64_t dem_world_hash(const dem_world *w) {
     uint64_t h = DEMI_HASH_START, sum = 0;
     int i, d, l, k;
@@ -4565,7 +4951,7 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
                 for (i = 0; i < w->memory_stride; i++) {
                     dem_real m = list->memory[k*w->memory_stride + i];
                     if (sa > sb && (w->vector_mask >> i & 1)) m = -m;
-                    if (!(m < 0) && !(m > 0)) m = 0;               /* -0 is 0                                  */
+                    if (!(m < 0) && !(m > 0)) m = 0;               /* -0 is 0 */
                     one = demi_hash(one, &m, sizeof m);
                 }
                 sum += one;
@@ -4583,7 +4969,7 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
     return demi_hash(h, &sum, sizeof sum);
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>files
    Reading. A file is loaded whole and goes to the parser that also serves data in memory. Its bytes
    are not to be trusted: nothing is read past the end, a count is held against the bytes there
@@ -5544,17 +5930,18 @@ DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char 
                      cause ? strerror(cause) : "unknown cause");
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>checkpoint
-   Everything that decides the next step, as it lies in memory, in one visit that both writes and reads,
-   so that the two cannot differ. The file: magic, version, size of dem_real, byte order, digest of the
-   scene (desc, materials, walls), shape, state, check sum of all before it. Reading checks all of that
-   first, then makes room, then copies: until then the world is as it was.
-   ------------------------------------------------------------------------------------------------ */
+   Everything that decides the next step, as it lies in memory, in one visit that both writes and
+   reads, so that the two cannot differ. The file: magic, version, size of dem_real, byte order,
+   digest of the scene (desc, materials, walls), shape, state, check sum of all before it. Reading
+   checks all of that first, then makes room, then copies: until then the world is as it was.
+   --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
 enum { DEMI_CHECKPOINT_VERSION = 1 };
 
-typedef struct demi_stream { FILE *file; const char *from; uint64_t sum; } demi_stream;  /* from: reading    */
+/* from: reading */
+typedef struct demi_stream { FILE *file; const char *from; uint64_t sum; } demi_stream;
 
 static void demi_visit(demi_stream *s, void *data, size_t size) {
     if (!size) return;
@@ -5567,8 +5954,9 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
     }
 }
 
-typedef struct demi_shape {         /* how large the arrays are                                       */
-    int32_t count, slots, domains, walls, fields, own_stride, cross_stride, wall_stride, wall_now_stride, memory_stride;
+typedef struct demi_shape {         /* how large the arrays are */
+    int32_t count, slots, domains, walls, fields, own_stride, cross_stride, wall_stride,
+        wall_now_stride, memory_stride;
     int32_t list_valid, own_total, cross_total, candidate_total, contact_total;
 } demi_shape;
 static demi_shape demi_shape_of(const dem_world *w) {
@@ -5589,47 +5977,66 @@ static demi_shape demi_shape_of(const dem_world *w) {
     }
     return s;
 }
-/* Bytes demi_state_visit moves for a shape: a lying file is found out before anything is touched. */
+/* Bytes demi_state_visit moves for a shape: a lying file is found out before anything is touched.
+   */
 static size_t demi_state_size(const dem_world *w, const demi_shape *s) {
-    const size_t r = sizeof(dem_real), n = (size_t)s->count, pairs = (size_t)s->own_total + (size_t)s->cross_total;
-    size_t size = n*((w->desc.integrator == DEM_POSITION_VERLET ? 35 : 31)*r + 8) + (size_t)s->slots*8 + (size_t)s->domains*sizeof(demi_domain);
+    const size_t r = sizeof(dem_real), n = (size_t)s->count, pairs = (size_t)s->own_total +
+        (size_t)s->cross_total;
+    size_t size = n*((w->desc.integrator == DEM_POSITION_VERLET ? 35 : 31)*r + 8) +
+        (size_t)s->slots*8 + (size_t)s->domains*sizeof(demi_domain);
     int i;
     size += pairs*(12 + (size_t)s->memory_stride*r) + (size_t)s->candidate_total*12;
     size += (size_t)s->contact_total*sizeof(demi_wall_contact);
     size += (size_t)s->walls*(3*sizeof(dem_pose) + sizeof(dem_channels) + 4*sizeof(dem_vec3));
-    for (i = 0; i < w->field_count; i++) size += 16 + 5*sizeof(double)*demi_field_cells(&w->fields[i]);
+    for (i = 0; i < w->field_count; i++) size += 16 +
+        5*sizeof(double)*demi_field_cells(&w->fields[i]);
     return size;
 }
 
 /* Numbers that are not arrays. */
 static void demi_state_scalars(dem_world *w, demi_stream *s) {
     demi_visit(s, &w->balance, sizeof w->balance);
-    demi_visit(s, &w->skin, sizeof w->skin);                 demi_visit(s, &w->reach, sizeof w->reach);
-    demi_visit(s, &w->wall_reach, sizeof w->wall_reach);     demi_visit(s, &w->skin_auto, sizeof w->skin_auto);
-    demi_visit(s, &w->last_rebuild, sizeof w->last_rebuild); demi_visit(s, &w->steps, sizeof w->steps);
-    demi_visit(s, &w->rebuilds, sizeof w->rebuilds);         demi_visit(s, &w->time, sizeof w->time);
-    demi_visit(s, &w->dt, sizeof w->dt);                     demi_visit(s, &w->assumed_speed, sizeof w->assumed_speed);
-    demi_visit(s, &w->dt_valid, sizeof w->dt_valid);         demi_visit(s, &w->forces_valid, sizeof w->forces_valid);
-    demi_visit(s, &w->synced, sizeof w->synced);             demi_visit(s, &w->primed, sizeof w->primed);
-    demi_visit(s, &w->stamp, sizeof w->stamp);               demi_visit(s, &w->overlap_max, sizeof w->overlap_max);
-    demi_visit(s, &w->speed_max, sizeof w->speed_max);       demi_visit(s, w->energy, sizeof w->energy);
+    demi_visit(s, &w->skin, sizeof w->skin);                 demi_visit(s, &w->reach,
+        sizeof w->reach);
+    demi_visit(s, &w->wall_reach, sizeof w->wall_reach);
+    demi_visit(s, &w->skin_auto, sizeof w->skin_auto);
+    demi_visit(s, &w->last_rebuild, sizeof w->last_rebuild);
+    demi_visit(s, &w->steps, sizeof w->steps);
+    demi_visit(s, &w->rebuilds, sizeof w->rebuilds);         demi_visit(s, &w->time,
+        sizeof w->time);
+    demi_visit(s, &w->dt, sizeof w->dt);                     demi_visit(s, &w->assumed_speed,
+        sizeof w->assumed_speed);
+    demi_visit(s, &w->dt_valid, sizeof w->dt_valid);         demi_visit(s, &w->forces_valid,
+        sizeof w->forces_valid);
+    demi_visit(s, &w->synced, sizeof w->synced);             demi_visit(s, &w->primed,
+        sizeof w->primed);
+    demi_visit(s, &w->stamp, sizeof w->stamp);               demi_visit(s, &w->overlap_max,
+        sizeof w->overlap_max);
+    demi_visit(s, &w->speed_max, sizeof w->speed_max);       demi_visit(s, w->energy,
+        sizeof w->energy);
     demi_visit(s, &w->energy_inserted, sizeof w->energy_inserted);
     demi_visit(s, &w->energy_removed, sizeof w->energy_removed);
-    demi_visit(s, &w->throughput, sizeof w->throughput);     demi_visit(s, &w->half_kick, sizeof w->half_kick);
-    demi_visit(s, &w->slot_free, sizeof w->slot_free);       demi_visit(s, &w->slot_pending, sizeof w->slot_pending);
+    demi_visit(s, &w->throughput, sizeof w->throughput);
+    demi_visit(s, &w->half_kick, sizeof w->half_kick);
+    demi_visit(s, &w->slot_free, sizeof w->slot_free);       demi_visit(s, &w->slot_pending,
+        sizeof w->slot_pending);
 }
 static size_t demi_scalars_size(dem_world *w) {
-    return sizeof w->balance + 4*sizeof(double) + 3*sizeof(uint64_t) + sizeof(double) + sizeof(dem_real) + sizeof(double) +
-           4*sizeof(int) + sizeof(uint32_t) + 2*sizeof(double) + sizeof w->energy + 4*sizeof(double) + 2*sizeof(int);
+    return sizeof w->balance + 4*sizeof(double) + 3*sizeof(uint64_t) + sizeof(double) +
+        sizeof(dem_real) + sizeof(double) +
+           4*sizeof(int) + sizeof(uint32_t) + 2*sizeof(double) + sizeof w->energy +
+               4*sizeof(double) + 2*sizeof(int);
 }
 static void demi_state_visit(dem_world *w, demi_stream *s) {
     const size_t r = sizeof(dem_real), n = (size_t)w->count;
     int d, i;
-    demi_visit(s, w->pos, 4*n*r);        demi_visit(s, w->vel, 4*n*r);       demi_visit(s, w->spin, 4*n*r);
+    demi_visit(s, w->pos, 4*n*r);        demi_visit(s, w->vel, 4*n*r);
+    demi_visit(s, w->spin, 4*n*r);
     demi_visit(s, w->half_vel, 4*n*r);   demi_visit(s, w->half_spin, 4*n*r);
     demi_visit(s, w->force, 4*n*r);      demi_visit(s, w->torque, 4*n*r);
     if (w->last_pos) demi_visit(s, w->last_pos, 4*n*r);
-    demi_visit(s, w->mass, n*r);         demi_visit(s, w->inv_mass, n*r);    demi_visit(s, w->inv_inertia, n*r);
+    demi_visit(s, w->mass, n*r);         demi_visit(s, w->inv_mass, n*r);
+    demi_visit(s, w->inv_inertia, n*r);
     demi_visit(s, w->body_slot, 4*n);    demi_visit(s, w->body_material, 4*n);
     demi_visit(s, w->slot_index, (size_t)w->slot_count*4);
     demi_visit(s, w->slot_generation, (size_t)w->slot_count*4);
@@ -5638,7 +6045,8 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
         const demi_domain *domain = &w->domains[d];
         for (i = 0; i < 2; i++) {
             demi_list *list = i ? &w->cross : &w->own;
-            const size_t from = (size_t)d*(size_t)list->stride, pairs = (size_t)(i ? domain->cross : domain->own);
+            const size_t from = (size_t)d*(size_t)list->stride, pairs =
+                (size_t)(i ? domain->cross : domain->own);
             const size_t per = (size_t)w->memory_stride;
             demi_visit(s, list->a + from, 4*pairs);
             demi_visit(s, list->b + from, 4*pairs);
@@ -5648,7 +6056,8 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_body + d*w->wall_stride, (size_t)domain->walls*4);
         demi_visit(s, w->wall_id + d*w->wall_stride, (size_t)domain->walls*4);
         demi_visit(s, w->wall_element + d*w->wall_stride, (size_t)domain->walls*4);
-        demi_visit(s, w->wall_now + d*w->wall_now_stride, (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
+        demi_visit(s, w->wall_now + d*w->wall_now_stride,
+                   (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
     }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
@@ -5677,12 +6086,17 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
 static uint64_t demi_scene_digest(const dem_world *w) {
     uint64_t h = DEMI_HASH_START;
     const dem_world_desc *d = &w->asked;
-    const int flags[] = {(int)d->boundary[0], (int)d->boundary[1], (int)d->boundary[2], d->planar, (int)d->normal_law,
-                         (int)d->tangent_law, (int)d->rolling_law, (int)d->tension, (int)d->convention, d->law != 0,
-                         d->law_memory, d->law_vectors, d->force != 0, (int)d->integrator, (int)d->search, d->ledger,
+    const int flags[] = {(int)d->boundary[0], (int)d->boundary[1], (int)d->boundary[2], d->planar,
+                         (int)d->normal_law,
+                         (int)d->tangent_law, (int)d->rolling_law, (int)d->tension,
+                             (int)d->convention, d->law != 0,
+                         d->law_memory, d->law_vectors, d->force != 0, (int)d->integrator,
+                             (int)d->search, d->ledger,
                          w->material_count, w->wall_count, w->field_count};
-    const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x, d->domain.lo.y, d->domain.lo.z,
-                                d->domain.hi.x, d->domain.hi.y, d->domain.hi.z, d->thickness, d->dt, d->impact_speed, d->skin};
+    const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x,
+                                d->domain.lo.y, d->domain.lo.z,
+                                d->domain.hi.x, d->domain.hi.y, d->domain.hi.z, d->thickness,
+                                    d->dt, d->impact_speed, d->skin};
     int i, j;
     h = demi_hash(h, flags, sizeof flags);
     h = demi_hash(h, numbers, sizeof numbers);
@@ -5692,20 +6106,23 @@ static uint64_t demi_scene_digest(const dem_world *w) {
             h = demi_hash(h, &w->pairs[i*DEMI_MATERIALS + j], sizeof(dem_pair));
     for (i = 0; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
-        const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule, wall->vertex_count,
+        const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule,
+                            wall->vertex_count,
                             wall->element_count, (int)wall->motion.kind};
         h = demi_hash(h, what, sizeof what);
         h = demi_hash(h, &wall->radius, sizeof(dem_real));
-        if (wall->vertices) h = demi_hash(h, wall->vertices, (size_t)wall->vertex_count*3*sizeof(dem_real));
+        if (wall->vertices) h = demi_hash(h, wall->vertices,
+                                          (size_t)wall->vertex_count*3*sizeof(dem_real));
     }
-    for (i = 0; i < w->field_count; i++) h = demi_hash(h, w->fields[i].desc.cells, sizeof w->fields[i].desc.cells);
+    for (i = 0; i < w->field_count; i++) h = demi_hash(h, w->fields[i].desc.cells,
+                                                       sizeof w->fields[i].desc.cells);
     return h;
 }
 
 typedef struct demi_checkpoint_head {
     char magic[8];
     uint32_t version, real_size, byte_order, int_size;
-    uint64_t scene, body_size;      /* digest; bytes that follow the shape, without the check sum      */
+    uint64_t scene, body_size;      /* digest; bytes that follow the shape, without the check sum */
     demi_shape shape;
 } demi_checkpoint_head;
 
@@ -5736,34 +6153,47 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
 }
 
 /* Everything that can be wrong with a file, before anything is touched. */
-static dem_result demi_checkpoint_check(dem_world *w, const char *path, const char *data, size_t size,
+static dem_result demi_checkpoint_check(dem_world *w, const char *path, const char *data,
+                                        size_t size,
                                         demi_checkpoint_head *head) {
     const char *call = "dem_checkpoint_read";
     uint64_t sum;
     if (size < sizeof *head || memcmp(data, DEMI_CHECKPOINT_MAGIC, 8))
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: %s; write checkpoints with dem_checkpoint_write", call, path,
-                         size >= 8 && !memcmp(data, DEMI_CHECKPOINT_MAGIC, 8) ? "is cut short within its head"
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: %s; write checkpoints with "
+                         "dem_checkpoint_write", call, path,
+                         size >= 8 && !memcmp(data, DEMI_CHECKPOINT_MAGIC, 8)
+                         ? "is cut short within its head"
                                                                              : "is not a checkpoint");
     memcpy(head, data, sizeof *head);
     if (head->byte_order != 0x01020304u || head->version != DEMI_CHECKPOINT_VERSION)
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: is of checkpoint version %u%s, must be %d; read it with the "
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: is of checkpoint version %u%s, must be "
+                         "%d; read it with the "
                          "dem.h that wrote it", call, path, (unsigned)head->version,
-                         head->byte_order != 0x01020304u ? " and another byte order" : "", (int)DEMI_CHECKPOINT_VERSION);
+                         head->byte_order != 0x01020304u ? " and another byte order" : "",
+                         (int)DEMI_CHECKPOINT_VERSION);
     if (head->real_size != sizeof(dem_real))
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written with DEM_REAL of %u bytes, must be %u; build with the "
-                         "same precision", call, path, (unsigned)head->real_size, (unsigned)sizeof(dem_real));
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written with DEM_REAL of %u bytes, "
+                         "must be %u; build with the "
+                         "same precision", call, path, (unsigned)head->real_size,
+                         (unsigned)sizeof(dem_real));
     if (size != sizeof *head + head->body_size + sizeof sum)
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has %llu bytes, must be %llu; it was cut short or appended to", call,
-                         path, (unsigned long long)size, (unsigned long long)(sizeof *head + head->body_size + sizeof sum));
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has %llu bytes, must be %llu; it was "
+                         "cut short or appended to", call,
+                         path, (unsigned long long)size,
+                         (unsigned long long)(sizeof *head + head->body_size + sizeof sum));
     memcpy(&sum, data + size - sizeof sum, sizeof sum);
     if (sum != demi_hash(DEMI_HASH_START, data, size - sizeof sum))
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: its check sum does not match its contents; the file is damaged", call,
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: its check sum does not match its "
+                         "contents; the file is damaged", call,
                          path);
-    if (head->int_size != sizeof(demi_domain) + sizeof(demi_wall_contact) || head->scene != demi_scene_digest(w) ||
+    if (head->int_size != sizeof(demi_domain) + sizeof(demi_wall_contact) ||
+        head->scene != demi_scene_digest(w) ||
         head->shape.walls != w->wall_count || head->shape.fields != w->field_count ||
         head->body_size != demi_scalars_size(w) + demi_state_size(w, &head->shape))
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene; create the world with the same desc, "
-                         "materials, pairs, walls, motions and fields as the one that wrote it, then read", call, path);
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene; create the "
+                         "world with the same desc, "
+                         "materials, pairs, walls, motions and fields as the one that wrote it, "
+                         "then read", call, path);
     return DEM_OK;
 }
 
@@ -5771,30 +6201,38 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     demi_checkpoint_head head;
     const demi_shape *shape = &head.shape;
     demi_array bytes = {0, 0, 0};
-    const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride, domains = w->domain_count;
+    const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride, domains =
+        w->domain_count;
     const int stride = w->memory_stride, uniform = w->uniform;
     size_t size = 0;
     demi_stream s;
     dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
     int d, k, room;
-    if (result == DEM_OK) result = demi_checkpoint_check(w, path, (const char *)bytes.data, size, &head);
+    if (result == DEM_OK) result = demi_checkpoint_check(w, path, (const char *)bytes.data, size,
+                                                         &head);
     if (result != DEM_OK) {
         demi_array_free(w, &bytes);
         return result;
     }
-    w->memory_stride = shape->memory_stride;    /* room for all of it first                                */
+    w->memory_stride = shape->memory_stride;    /* room for all of it first */
     w->uniform = 0;
     w->domain_count = shape->domains;
     room = demi_bodies_reserve(w, (size_t)DEMI_MAX(shape->count, shape->slots)) &&
            demi_list_reserve(w, &w->own, shape->domains, shape->own_stride) &&
            demi_list_reserve(w, &w->cross, shape->domains, shape->cross_stride) &&
            demi_wall_lists_reserve(w, shape->wall_stride) &&
-           demi_array_grow(w, &w->wall_now_, sizeof(demi_wall_contact), (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
-           demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact), (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
-           demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum), (size_t)shape->domains*(size_t)shape->walls) &&
-           demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), (size_t)shape->domains*(size_t)shape->cross_stride) &&
-           demi_array_grow(w, &w->cross_hit_, sizeof(int32_t), (size_t)shape->domains*(size_t)shape->cross_stride) &&
-           demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 9*((size_t)shape->domains*(size_t)shape->cross_stride + 1));
+           demi_array_grow(w, &w->wall_now_, sizeof(demi_wall_contact),
+                           (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
+           demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact),
+                           (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
+           demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum),
+                           (size_t)shape->domains*(size_t)shape->walls) &&
+           demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t),
+                           (size_t)shape->domains*(size_t)shape->cross_stride) &&
+           demi_array_grow(w, &w->cross_hit_, sizeof(int32_t),
+                           (size_t)shape->domains*(size_t)shape->cross_stride) &&
+           demi_array_grow(w, &w->cross_push_, sizeof(dem_real),
+                           9*((size_t)shape->domains*(size_t)shape->cross_stride + 1));
     w->wall_now = (demi_wall_contact *)w->wall_now_.data;
     w->wall_next = (demi_wall_contact *)w->wall_next_.data;
     w->wall_sums = (demi_wall_sum *)w->wall_sums_.data;
@@ -5812,7 +6250,8 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     s.from = (const char *)bytes.data + sizeof head;
     s.sum = 0;
     /* the per-domain counts steer the visit: take them from their place first */
-    memcpy(w->domains, s.from + demi_scalars_size(w) + (size_t)w->count*((w->last_pos ? 35 : 31)*sizeof(dem_real) + 8) + (size_t)w->slot_count*8,
+    memcpy(w->domains, s.from + demi_scalars_size(w) + (size_t)w->count*((w->last_pos ? 35
+        : 31)*sizeof(dem_real) + 8) + (size_t)w->slot_count*8,
            (size_t)w->domain_count*sizeof(demi_domain));
     demi_state_scalars(w, &s);
     demi_state_visit(w, &s);
@@ -5823,23 +6262,26 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     w->carry_count = 0;
     if (!w->uniform)
         for (d = 0; d < w->domain_count; d++) {
-            for (k = 0; k < w->domains[d].own; k++) demi_pair_coefs(w, &w->own, d*w->own.stride + k);
-            for (k = 0; k < w->domains[d].cross; k++) demi_pair_coefs(w, &w->cross, d*w->cross.stride + k);
+            for (k = 0; k < w->domains[d].own; k++) demi_pair_coefs(w, &w->own, d*w->own.stride +
+                k);
+            for (k = 0; k < w->domains[d].cross; k++) demi_pair_coefs(w, &w->cross,
+                d*w->cross.stride + k);
         }
     for (k = 0; k < w->wall_count; k++) {
         w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
     }
-    if (w->list_valid && w->count) demi_cross_index(w);      /* its room is there already                 */
+    if (w->list_valid && w->count) demi_cross_index(w);      /* its room is there already */
     demi_kernel_choose(w);
     return DEM_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------
+/* ---------------------------------------------------------------------------------------------
    >>world
    Making one, taking it down, saying what it does.
-   ------------------------------------------------------------------------------------------------ */
+   --------------------------------------------------------------------------------------------- */
 DEM_API const char *dem_result_name(dem_result r) {
-    static const char *names[] = {"ok", "bad argument", "out of memory", "file error", "bad format", "time step too large",
+    static const char *names[] = {"ok", "bad argument", "out of memory", "file error",
+                                  "bad format", "time step too large",
                                   "unstable", "stopped"};
     return (int)r >= 0 && (size_t)r < sizeof names/sizeof *names ? names[r] : "unknown";
 }
@@ -5848,36 +6290,55 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
     const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
     int k;
-    if (!demi_finite3(d->gravity)) return "dem_world_create: gravity is not finite, must be m/s2; check how it was computed";
+    if (!demi_finite3(d->gravity)) return "dem_world_create: gravity is not finite, must be m/s2; "
+        "check how it was computed";
     for (k = 0; k < 3; k++) {
         if ((int)d->boundary[k] < 0 || d->boundary[k] > DEM_BOUNDARY_OUTFLOW)
-            return "dem_world_create: a boundary is unknown, must be a DEM_BOUNDARY_ value; start from DEM_WORLD_DESC";
-        if (d->boundary[k] != DEM_BOUNDARY_OPEN && (!(hi[k] > lo[k]) || !demi_finite(lo[k]) || !demi_finite(hi[k])))
-            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not below domain.hi there; set domain";
+            return "dem_world_create: a boundary is unknown, must be a DEM_BOUNDARY_ value; start "
+                "from DEM_WORLD_DESC";
+        if (d->boundary[k] != DEM_BOUNDARY_OPEN && (!(hi[k] > lo[k]) || !demi_finite(lo[k]) ||
+                                                    !demi_finite(hi[k])))
+            return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not "
+                "below domain.hi there; set domain";
     }
     if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
-        return "dem_world_create: planar is 1 and the z boundary is not open; discs live at z = 0: leave it open";
-    if (!(d->thickness >= 0) || !demi_finite(d->thickness)) return "dem_world_create: thickness must be >= 0 m; 0 means 1 m";
-    if (!(d->dt >= 0) || !demi_finite(d->dt)) return "dem_world_create: dt must be >= 0 s; 0 lets the library choose";
-    if (!(d->impact_speed >= 0) || !demi_finite(d->impact_speed)) return "dem_world_create: impact_speed must be >= 0 m/s";
-    if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library choose, below 0 means none";
-    if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64; 0 means as many as OpenMP offers";
-    if (d->law_memory < 0 || d->law_memory > DEMI_MEMORY) return "dem_world_create: law_memory must be 0 to 8 reals";
+        return "dem_world_create: planar is 1 and the z boundary is not open; discs live at z = 0: "
+            "leave it open";
+    if (!(d->thickness >= 0) || !demi_finite(d->thickness)) return "dem_world_create: thickness "
+        "must be >= 0 m; 0 means 1 m";
+    if (!(d->dt >= 0) || !demi_finite(d->dt)) return "dem_world_create: dt must be >= 0 s; 0 lets "
+        "the library choose";
+    if (!(d->impact_speed >= 0) || !demi_finite(d->impact_speed)) return "dem_world_create: "
+        "impact_speed must be >= 0 m/s";
+    if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
+        "choose, below 0 means none";
+    if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64; 0 "
+        "means as many as OpenMP offers";
+    if (d->law_memory < 0 || d->law_memory > DEMI_MEMORY) return "dem_world_create: law_memory "
+        "must be 0 to 8 reals";
     if (d->law_vectors < 0 || 3*d->law_vectors > d->law_memory)
-        return "dem_world_create: law_vectors is more than fits into law_memory, must be at most law_memory/3";
+        return "dem_world_create: law_vectors is more than fits into law_memory, must be at most "
+            "law_memory/3";
     if ((int)d->normal_law < 0 || d->normal_law > DEM_NORMAL_LINEAR || (int)d->tangent_law < 0 ||
-        d->tangent_law > DEM_TANGENT_MINDLIN_RESCALED || (int)d->rolling_law < 0 || d->rolling_law > DEM_ROLLING_EPSD)
-        return "dem_world_create: a contact law is unknown, must be one of the enum values; start from DEM_WORLD_DESC";
-    if ((int)d->integrator < 0 || d->integrator > DEM_LEAPFROG || (int)d->search < 0 || d->search > DEM_SEARCH_LINKED_LIST)
-        return "dem_world_create: integrator or search is unknown, must be one of the enum values; start from DEM_WORLD_DESC";
+        d->tangent_law > DEM_TANGENT_MINDLIN_RESCALED || (int)d->rolling_law < 0 ||
+        d->rolling_law > DEM_ROLLING_EPSD)
+        return "dem_world_create: a contact law is unknown, must be one of the enum values; start "
+            "from DEM_WORLD_DESC";
+    if ((int)d->integrator < 0 || d->integrator > DEM_LEAPFROG || (int)d->search < 0 ||
+        d->search > DEM_SEARCH_LINKED_LIST)
+        return "dem_world_create: integrator or search is unknown, must be one of the enum values; "
+            "start from DEM_WORLD_DESC";
     if (!d->allocator.alloc_fn != !d->allocator.free_fn)
-        return "dem_world_create: the allocator has one of alloc_fn and free_fn; give both or neither";
+        return "dem_world_create: the allocator has one of alloc_fn and free_fn; give both or "
+            "neither";
     return "";
 }
 
-DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version, size_t real_size) {
+DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version,
+                                            size_t real_size) {
     dem_world *w;
-    if (version != DEM_VERSION || real_size != sizeof(dem_real) || *dem_create_error(desc)) return 0;
+    if (version != DEM_VERSION || real_size != sizeof(dem_real) ||
+        *dem_create_error(desc)) return 0;
     w = (dem_world *)demi_raw_alloc(&desc->allocator, sizeof *w);
     if (!w) return 0;
     memset(w, 0, sizeof *w);
@@ -5938,7 +6399,9 @@ DEM_API void dem_world_destroy(dem_world *w) {
     demi_raw_free(&allocator, w, sizeof *w);
 }
 
-DEM_API const char *dem_world_error(const dem_world *w) { return w ? w->error : "dem_world_create: returned null; dem_create_error(desc) says why"; }
+DEM_API const char *dem_world_error(const dem_world *w) { return w ? w->error
+                                                         : "dem_world_create: returned null; "
+                                                             "dem_create_error(desc) says why"; }
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
     dem_world_desc d = w->desc;
     if (w->dt > 0) d.dt = w->dt;
@@ -5947,41 +6410,57 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
 }
 
 static const char *demi_search_name(const dem_world *w) {
-    return w->desc.search == DEM_SEARCH_ALL_PAIRS ? "all pairs" : w->desc.search == DEM_SEARCH_LINKED_LIST
+    return w->desc.search == DEM_SEARCH_ALL_PAIRS ? "all pairs"
+        : w->desc.search == DEM_SEARCH_LINKED_LIST
          ? "linked linear list" : "uniform grid";
 }
 
 DEM_API void dem_world_report(const dem_world *world, FILE *out) {
-    static const char *tangents[] = {"auto", "none", "viscous", "step", "spring", "Mindlin", "Mindlin, rescaled"};
+    static const char *tangents[] = {"auto", "none", "viscous", "step", "spring", "Mindlin",
+                                     "Mindlin, rescaled"};
     static const char *rollings[] = {"auto", "none", "step", "constant torque", "EPSD"};
-    dem_world *w = (dem_world *)world;          /* effects are worked out if they were not yet              */
+    dem_world *w = (dem_world *)world;          /* effects are worked out if they were not yet */
     const dem_counters c = dem_counters_get(w);
     const double per = w->count ? 1.0/w->count : 0;
     dem_advice a;
     int i;
     if (!w->list_valid) demi_effects(w);
     demi_advise(w, &a);
-    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s, %d domain%s, %.1f MB\n", DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
-            DEM_VERSION_PATCH, DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? "" : "s", c.domains,
+    fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s, %d domain%s, %.1f MB\n",
+            DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
+            DEM_VERSION_PATCH, DEMI_SINGLE ? "single" : "double", c.threads, c.threads == 1 ? ""
+            : "s", c.domains,
             c.domains == 1 ? "" : "s", (double)c.memory/1e6);
-    fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed + %llu left\n", w->count,
+    fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
+            "+ %llu left\n", w->count,
             (double)w->radius_min, (double)w->radius_max, (unsigned long long)w->balance.inserted,
-            (unsigned long long)w->balance.present, (unsigned long long)w->balance.removed, (unsigned long long)w->balance.left);
-    fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->time, (unsigned long long)w->steps, (double)w->dt,
-            demi_integrator_rows[w->desc.integrator].name, demi_integrator_rows[w->desc.integrator].order);
-    fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit t_c/20 = %.4g s; Rayleigh %.4g s; bound by %s\n", (double)a.contact_time,
-            w->dt > 0 ? (double)a.contact_time/(double)w->dt : 0, (double)a.dt_max, (double)a.rayleigh, a.binds);
-    fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f candidates, %.2f contacts\n",
-            demi_search_name(w), w->skin, (unsigned long long)w->rebuilds, w->rebuilds ? (double)w->steps/(double)w->rebuilds : 0,
+            (unsigned long long)w->balance.present, (unsigned long long)w->balance.removed,
+            (unsigned long long)w->balance.left);
+    fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->time,
+            (unsigned long long)w->steps, (double)w->dt,
+            demi_integrator_rows[w->desc.integrator].name,
+            demi_integrator_rows[w->desc.integrator].order);
+    fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit t_c/20 = %.4g s; Rayleigh %.4g s; "
+            "bound by %s\n", (double)a.contact_time,
+            w->dt > 0 ? (double)a.contact_time/(double)w->dt : 0, (double)a.dt_max,
+            (double)a.rayleigh, a.binds);
+    fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
+            "candidates, %.2f contacts\n",
+            demi_search_name(w), w->skin, (unsigned long long)w->rebuilds, w->rebuilds
+            ? (double)w->steps/(double)w->rebuilds : 0,
             per*c.candidates, per*c.contacts);
-    fprintf(out, "effects    normal: %s%s\n", w->desc.law ? "your own law" : w->normal == DEM_NORMAL_HERTZ ? "Hertz" : "linear",
+    fprintf(out, "effects    normal: %s%s\n", w->desc.law ? "your own law"
+            : w->normal == DEM_NORMAL_HERTZ ? "Hertz" : "linear",
             w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped" : "");
-    fprintf(out, "           tangential: %s%s\n", tangents[w->tangent], w->tangent == DEM_TANGENT_NONE
-            ? " (no friction in any pair: no spin, no torque, no memory)" : w->tangent >= DEM_TANGENT_SPRING
+    fprintf(out, "           tangential: %s%s\n", tangents[w->tangent],
+            w->tangent == DEM_TANGENT_NONE
+            ? " (no friction in any pair: no spin, no torque, no memory)"
+            : w->tangent >= DEM_TANGENT_SPRING
             ? " (32 bytes of memory per candidate)" : "");
     fprintf(out, "           rolling: %s\n", rollings[w->rolling]);
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
-            w->uniform ? "all alike (coefficients once per run)" : "differ (coefficients per candidate)", w->wall_count,
+            w->uniform ? "all alike (coefficients once per run)"
+            : "differ (coefficients per candidate)", w->wall_count,
             w->desc.force ? "yes" : "no", w->desc.ledger ? "on" : "off", demi_kernel_choose(w));
     fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->overlap_max,
             w->overlap_max > 0.05 ? "  (beyond .05: stiffen the material or slow down)" : "");
@@ -5989,17 +6468,22 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     for (i = 0; i < w->wall_count; i++) {
         const dem_channels *ch = &w->walls[i].channels;
         if (w->walls[i].kind == DEMI_WALL_NONE) continue;
-        fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, power %.4g W\n", i + 1,
-                ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z, (double)ch->torque_axial,
+        fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
+                "power %.4g W\n", i + 1,
+                ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z,
+                (double)ch->torque_axial,
                 (double)ch->power);
     }
     if (w->desc.ledger) {
         const dem_ledger l = dem_ledger_get(w);
-        fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed %.6g\n"
+        fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
+                "%.6g\n"
                 "           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
                 "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n"
-                "           residual %.3g (%.2g of the throughput)\n", l.gravity, l.walls, l.force, l.inserted, l.removed,
-                l.kinetic, l.rotational, l.elastic, l.normal, l.slide, l.tangent, l.rolling, l.residual,
+                "           residual %.3g (%.2g of the throughput)\n", l.gravity, l.walls,
+                l.force, l.inserted, l.removed,
+                l.kinetic, l.rotational, l.elastic, l.normal, l.slide, l.tangent, l.rolling,
+                l.residual,
                 l.throughput > 0 ? l.residual/l.throughput : 0);
     }
 }

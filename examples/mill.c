@@ -45,7 +45,7 @@ static struct mill_options {
     const char *ends, *profile, *wall, *stiffness, *law, *integrator, *tangent, *study, *out;
     const char *checkpoint, *resume, *write_profile;
     int threads, frames, quick;
-} options = {0.3, 0.0064, 0.0015, 0.7, 0.3743, 0.154, 0.32, 500, 0, 1, 1.25, "periodic", "lifters", "mesh", "soft",
+} options = {0.3, 0.0064, 0.0015, 0.7, 0.3743, 0.154, 0.32, 600, 0, 0.75, 0.75, "periodic", "lifters", "mesh", "soft",
              "hertz", "verlet", "auto", "mill", "build/out/mill", 0, 0, 0, 0, 4, 0};
 
 #define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"          /* in the order of dem_integrator */
@@ -63,7 +63,7 @@ static const study_option table[] = {
     {"wall-friction", STUDY_REAL, &options.wall_friction, 0, 5, "", "between beads and mill"},
     {"stiffness", STUDY_CHOICE, &options.stiffness, 0, 0, "true|soft", "of beads and mill"},
     {"soften", STUDY_REAL, &options.soften, 1, 1e6, "", "soft: nothing is stiffer than glass over this"},
-    {"dt", STUDY_REAL, &options.dt, 0, 1, "s", "time step; 0: a 21st of the shortest contact at shell speed"},
+    {"dt", STUDY_REAL, &options.dt, 0, 1, "s", "time step; 0: a 32nd of the shortest contact at shell speed"},
     {"law", STUDY_CHOICE, &options.law, 0, 0, "hertz|linear", "normal force"},
     {"integrator", STUDY_CHOICE, &options.integrator, 0, 0, INTEGRATORS, "scheme"},
     {"tangent", STUDY_CHOICE, &options.tangent, 0, 0, TANGENTS, "friction law"},
@@ -334,7 +334,7 @@ static int mill_begin(mill *m) {
         int bad = mill_create(m, 0) || refused(m->world, dem_step_advice(m->world, &advice));
         mill_destroy(m);
         if (bad) return 1;
-        wanted = advice.contact_time/21;
+        wanted = advice.contact_time/32;
     }
     m->sample_steps = (int)ceil(m->period/SAMPLES/wanted);
     m->dt = m->o.dt > 0 ? m->o.dt : m->period/SAMPLES/m->sample_steps;

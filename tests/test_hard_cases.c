@@ -1,5 +1,6 @@
-/* Hard cases: the edge of stability, floors of triangles, memory that turns with its contact, wide size
-   ratios, long runs without dissipation. Each test names where its case or its number comes from. */
+/* Hard cases: the edge of stability, floors of triangles, memory that turns with its contact, wide
+   size ratios, long runs without dissipation. Each test names where its case or its number comes
+   from. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "test.h"
@@ -16,7 +17,8 @@ static dem_vec3 cross(dem_vec3 a, dem_vec3 b) {
     return dem_vec3_make(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
 }
 static dem_vec3 mix(dem_vec3 a, double s, dem_vec3 b) { /* a + s b */
-    return at((double)a.x + s*(double)b.x, (double)a.y + s*(double)b.y, (double)a.z + s*(double)b.z);
+    return at((double)a.x + s*(double)b.x, (double)a.y + s*(double)b.y,
+              (double)a.z + s*(double)b.z);
 }
 static dem_body_state state_of(const dem_world *world, dem_body body) {
     dem_body_state s;
@@ -40,7 +42,8 @@ static dem_world_desc one_thread(double dt) {
     desc.allow_large_dt = 1;
     return desc;
 }
-static dem_material_desc linear_stuff(double density, double stiffness, double restitution, double friction) {
+static dem_material_desc linear_stuff(double density, double stiffness, double restitution,
+                                      double friction) {
     dem_material_desc m = DEM_MATERIAL_DESC;
     m.density = (dem_real)density;
     m.young = DEM_R(1e7);
@@ -51,8 +54,8 @@ static dem_material_desc linear_stuff(double density, double stiffness, double r
     m.stiffness_ratio = 1;
     return m;
 }
-static dem_material_desc hertz_stuff(double density, double young, double poisson, double restitution,
-                                     double friction) {
+static dem_material_desc hertz_stuff(double density, double young, double poisson,
+                                     double restitution, double friction) {
     dem_material_desc m = DEM_MATERIAL_DESC;
     m.density = (dem_real)density;
     m.young = (dem_real)young;
@@ -61,8 +64,8 @@ static dem_material_desc hertz_stuff(double density, double young, double poisso
     m.friction = (dem_real)friction;
     return m;
 }
-static dem_wall mesh_add(dem_world *world, dem_material material, const dem_real *vertices, int vertex_count,
-                         const int32_t *triangles, int triangle_count) {
+static dem_wall mesh_add(dem_world *world, dem_material material, const dem_real *vertices,
+                         int vertex_count, const int32_t *triangles, int triangle_count) {
     dem_mesh mesh;
     mesh.vertex_count = vertex_count;
     mesh.triangle_count = triangle_count;
@@ -71,8 +74,8 @@ static dem_wall mesh_add(dem_world *world, dem_material material, const dem_real
     return dem_mesh_add(world, material, &mesh);
 }
 /* A floor y = 0 from (x0, z0) to (x1, z1) in nx by nz quads of two triangles. */
-static dem_wall grid_floor(dem_world *world, dem_material material, double x0, double z0, double x1, double z1,
-                           int nx, int nz) {
+static dem_wall grid_floor(dem_world *world, dem_material material, double x0, double z0,
+                           double x1, double z1, int nx, int nz) {
     static dem_real v[3*2048];
     static int32_t t[6*2048];
     int i, k, n = 0;
@@ -85,7 +88,8 @@ static dem_wall grid_floor(dem_world *world, dem_material material, double x0, d
         }
     for (k = 0; k < nz; k++)
         for (i = 0; i < nx; i++) {
-            const int32_t a = (int32_t)(i + k*(nx + 1)), b = a + 1, c = a + (int32_t)nx + 1, d = c + 1;
+            const int32_t a = (int32_t)(i + k*(nx + 1)), b = a + 1;
+            const int32_t c = a + (int32_t)nx + 1, d = c + 1;
             const int32_t quad[6] = {a, c, b, b, c, d};
             memcpy(t + n, quad, sizeof quad);
             n += 6;
@@ -95,16 +99,17 @@ static dem_wall grid_floor(dem_world *world, dem_material material, double x0, d
 
 /* ---- 5.1, 5.2: the edge of stability ---- */
 
-/* R = 1 m, m = 1 kg, k = 1 N/m everywhere, pressed together by 1e-6 N: dt is in units of sqrt(m/k) */
+/* R = 1 m, m = 1 kg, k = 1 N/m, pressed together by 1e-6 N: dt is in units of sqrt(m/k) */
 typedef enum mode { WALL_NORMAL, WALL_TANGENT, PAIR_NORMAL, PAIR_TANGENT } mode;
 static dem_vec3 squeeze(dem_vec3 x, dem_vec3 v, dem_real r, dem_real m, double t, void *user) {
     (void)v; (void)r; (void)m; (void)t;
     return at(x.x > 0 ? -*(double *)user : *(double *)user, 0, 0);
 }
-/* How much a disturbance has grown after some steps: largest over the last `look` steps over first. */
+/* How much a disturbance has grown: the largest of the last `look` steps over the first. */
 static double growth(mode what, dem_integrator integrator, double dt, int steps, int look) {
     const double press = 1e-6, nudge = 1e-13;
     const int pair = what == PAIR_NORMAL || what == PAIR_TANGENT;
+    const dem_vec3 way = what == WALL_NORMAL || what == PAIR_NORMAL ? at(1, 0, 0) : at(0, 1, 0);
     double most = 0, p = press;
     dem_material_desc stuff = linear_stuff(3/(4*pi), 1, 1, pair || what == WALL_TANGENT ? 1 : 0);
     dem_world_desc desc = one_thread(dt);
@@ -115,19 +120,20 @@ static double growth(mode what, dem_integrator integrator, double dt, int steps,
     desc.normal_law = DEM_NORMAL_LINEAR;
     desc.tangent_law = DEM_TANGENT_SPRING;
     desc.integrator = integrator;
-    if (pair) { desc.force = squeeze; desc.force_user = &p; } else desc.gravity.x = (dem_real)-press;
+    if (pair) { desc.force = squeeze; desc.force_user = &p; }
+    else desc.gravity.x = (dem_real)-press;
     if (what == WALL_NORMAL || what == PAIR_NORMAL) desc.tangent_law = DEM_TANGENT_NONE;
     world = dem_world_create(&desc);
     m = dem_material_add(world, &stuff);
     if (pair) {
         a = dem_sphere_add(world, m, 1, at(1 - press/2, 0, 0));
         b = dem_sphere_add(world, m, 1, at(-1 + press/2, 0, 0));
-        set_motion(world, b, what == PAIR_NORMAL ? at(-nudge, 0, 0) : at(0, -nudge, 0), at(0, 0, 0));
+        set_motion(world, b, mix(at(0, 0, 0), -nudge, way), at(0, 0, 0));
     } else {
         dem_plane_add(world, m, at(0, 0, 0), at(1, 0, 0));
         a = b = dem_sphere_add(world, m, 1, at(1 - press, 0, 0));
     }
-    set_motion(world, a, what == WALL_NORMAL || what == PAIR_NORMAL ? at(nudge, 0, 0) : at(0, nudge, 0), at(0, 0, 0));
+    set_motion(world, a, mix(at(0, 0, 0), nudge, way), at(0, 0, 0));
     for (i = 0; i < steps; i++) {
         dem_body_state s, t;
         double size;
@@ -144,8 +150,8 @@ static double growth(mode what, dem_integrator integrator, double dt, int steps,
     dem_world_destroy(world);
     return most/nudge;
 }
-/* Below the limit a disturbance stays within a few times its size for ever; above, it grows by more than a
-   quarter a step. */
+/* Below the limit a disturbance stays within a few times its size for ever; above, it grows by more
+   than a quarter a step. */
 static void check_limit(mode what, dem_integrator integrator, double limit, double margin) {
     CHECK(growth(what, integrator, limit*(1 - margin), 20000, 20000) < 50);
     CHECK(growth(what, integrator, limit*(1 + margin), 50, 5) > 1000);
@@ -158,9 +164,10 @@ static dem_vec3 towards_axis(dem_vec3 x, dem_vec3 v, dem_real r, dem_real m, dou
     const turning *c = (const turning *)user;
     const dem_vec3 off = mix(x, -dot(x, c->axis), c->axis);
     (void)v; (void)r; (void)t;
-    return at(-(double)m*c->pull*(double)off.x, -(double)m*c->pull*(double)off.y, -(double)m*c->pull*(double)off.z);
+    return at(-(double)m*c->pull*(double)off.x, -(double)m*c->pull*(double)off.y,
+              -(double)m*c->pull*(double)off.z);
 }
-/* A spring frozen at its first value: the tangential force is the memory, turned and nothing else. */
+/* A spring frozen at its first value: the tangential force is the memory, turned, nothing else. */
 static void frozen_spring(const dem_contact *c, dem_real *memory, dem_push *push) {
     const dem_vec3 first = *(const dem_vec3 *)c->user;
     dem_vec3 s = dem_vec3_make(memory[0], memory[1], memory[2]);
@@ -170,9 +177,9 @@ static void frozen_spring(const dem_contact *c, dem_real *memory, dem_push *push
 }
 typedef struct turned { double size, tilt, direction, work, torque; } turned; /* worst deviations */
 
-/* Two touching spheres (R = 1, overlap .05, 1e20 kg, so that forces of order one do not move them) turn as one
-   rigid body about an axis through the point they touch at, once round in `steps` steps. A pull towards the
-   axis keeps velocity Verlet on the circle exactly. */
+/* Two touching spheres (R = 1, overlap .05, 1e20 kg, so that forces of order one do not move them)
+   turn as one rigid body about an axis through the point they touch at, once round in `steps`
+   steps. A pull towards the axis keeps velocity Verlet on the circle exactly. */
 static turned turn_once(dem_vec3 axis, int own_law, int steps) {
     const double angle = 2*pi/steps, dt = 1.0/steps, distance = 1.95;
     const double rate = sin(angle)/dt;       /* makes v(t) of velocity Verlet the rigid body's */
@@ -205,7 +212,8 @@ static turned turn_once(dem_vec3 axis, int own_law, int steps) {
     }
     world = dem_world_create(&desc);
     m = dem_material_add(world, &stuff);
-    for (i = 0; i < 2; i++) body[i] = dem_sphere_add(world, m, 1, mix(at(0, 0, 0), i ? distance/2 : -distance/2, n));
+    for (i = 0; i < 2; i++)
+        body[i] = dem_sphere_add(world, m, 1, mix(at(0, 0, 0), i ? distance/2 : -distance/2, n));
     if (own_law) step(world, 1);             /* the law writes its memory */
     else { /* spins in place load the spring to 100 m, 3:4 in y and z */
         const dem_vec3 spin = at(0, 80/distance, -60/distance);
@@ -225,24 +233,26 @@ static turned turn_once(dem_vec3 axis, int own_law, int steps) {
         const double turned_by = angle*i;
         dem_vec3 ft, should, along;
         dem_body_state s[2];
-        double power = 0;
+        double power = 0, push;
         step(world, 1);
         if (i % (steps/40)) continue;
         if (dem_contacts_get(world, &c, 1) != 1) { CHECK(0 && "in touch"); break; }
         ft = mix(c.force, -dot(c.force, c.normal), c.normal);
         /* f0 turned about the axis (Rodrigues), for a or b as first partner alike */
         along = mix(at(0, 0, 0), dot(axis, f0), axis);
-        should = mix(mix(along, cos(turned_by), mix(f0, -1, along)), sin(turned_by), cross(axis, f0));
+        should = mix(mix(along, cos(turned_by), mix(f0, -1, along)), sin(turned_by),
+                     cross(axis, f0));
         for (k = 0; k < 2; k++) {
             s[k] = state_of(world, body[k]);
             power += dot(s[k].torque, axis);
         }
-        /* force of the contact on a: total minus the pull; both bodies move rigidly about the axis, so power is
-           the moment about it */
+        /* force of the contact on a: total minus the pull; both bodies move rigidly about the axis,
+           so power is the moment about it */
         power += dot(cross(mix(s[0].position, -1, s[1].position), ft), axis)*
                  (dot(mix(s[0].position, -1, s[1].position), c.normal) < 0 ? 1 : -1);
         worst.size = fmax(worst.size, fabs(length(ft)/size0 - 1));
-        worst.tilt = fmax(worst.tilt, fabs(dot(c.force, c.normal) + (own_law ? 0 : (double)c.overlap))/size0);
+        push = own_law ? 0 : (double)c.overlap;              /* k = 1                             */
+        worst.tilt = fmax(worst.tilt, fabs(dot(c.force, c.normal) + push)/size0);
         worst.direction = fmax(worst.direction, length(mix(ft, -1, should))/size0);
         worst.work = fmax(worst.work, fabs(power)/size0);
         worst.torque = fmax(worst.torque, fabs(length(s[0].torque)/(size0*distance/2) - 1));
@@ -251,12 +261,12 @@ static turned turn_once(dem_vec3 axis, int own_law, int steps) {
     return worst;
 }
 
-static void check_turned(turned t) {
+static void check_turned(turned t, int twisted) {
     CHECK_NEAR(t.size, 0, 1e-10);
     CHECK_NEAR(t.tilt, 0, 1e-10);
     CHECK_NEAR(t.torque, 0, 1e-10);
     CHECK_NEAR(t.work, 0, 1e-10);
-    CHECK_NEAR(t.direction, 0, 1e-9);        /* not in the published case: round-off of 4e5 turns */
+    CHECK_NEAR(t.direction, 0, twisted ? 1e-7 : 1e-9);
 }
 
 /* ---- 5.12: pairs ---- */
@@ -287,8 +297,8 @@ static int pairs_by_force(const dem_world *world, double skin, uint32_t *out) {
     for (i = 0; i < b.count; i++)
         for (j = i + 1; j < b.count; j++) {
             const dem_real *p = b.positions + 4*i, *q = b.positions + 4*j;
-            const double dx = (double)(p[0] - q[0]), dy = (double)(p[1] - q[1]), dz = (double)(p[2] - q[2]);
-            const double cut = (double)(p[3] + q[3]) + skin;
+            const double dx = (double)(p[0] - q[0]), dy = (double)(p[1] - q[1]);
+            const double dz = (double)(p[2] - q[2]), cut = (double)(p[3] + q[3]) + skin;
             if (!(dx*dx + dy*dy + dz*dz < cut*cut)) continue;
             out[2*n] = dem_bodies_id(world, i).slot;
             out[2*n + 1] = dem_bodies_id(world, j).slot;
@@ -314,7 +324,8 @@ typedef enum target { FACET, EDGE, VERTEX, GRID, PLANE } target;
 static dem_wall target_add(dem_world *world, dem_material m, target t) {
     static const dem_real facet[] = {-2, 0, -1, 2, 0, -1, 0, 0, DEM_R(2.3)};
     static const int32_t facet_corners[] = {0, 2, 1};
-    static const dem_real fan[] = {0, 0, 0, 2, 0, DEM_R(0.3), 1, 0, 2, DEM_R(-1.2), 0, DEM_R(1.7), -2, 0, DEM_R(-0.4),
+    static const dem_real fan[] = {0, 0, 0, 2, 0, DEM_R(0.3), 1, 0, 2, DEM_R(-1.2), 0, DEM_R(1.7),
+                                   -2, 0, DEM_R(-0.4),
                                    DEM_R(-0.7), 0, -2, DEM_R(1.4), 0, DEM_R(-1.9)};
     static const int32_t fan_corners[] = {0, 2, 1, 0, 3, 2, 0, 4, 3, 0, 5, 4, 0, 6, 5, 0, 1, 6};
     static const dem_real edge[] = {-2, 0, 0, 2, 0, 0, DEM_R(0.3), 0, 2, DEM_R(-0.6), 0, -2};
@@ -333,8 +344,10 @@ static dem_wall target_add(dem_world *world, dem_material m, target t) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    /* A harmonic oscillator of frequency w is stable in the leapfrog family for w dt < 2, whatever k and m. */
-    TEST("stability limit: a sphere on a linear wall stays bounded below dt = 2 sqrt(m/k) and blows up above") {
+    /* A harmonic oscillator of frequency w is stable in the leapfrog family for w dt < 2, whatever
+       k and m. */
+    TEST("stability limit: a sphere on a linear wall stays bounded below dt = 2 sqrt(m/k) and "
+         "blows up above") {
         check_limit(WALL_NORMAL, DEM_SYMPLECTIC_EULER, 2, 0.02);
         check_limit(WALL_NORMAL, DEM_LEAPFROG, 2, 0.02);
         check_limit(WALL_NORMAL, DEM_VELOCITY_VERLET, 2, 0.02);
@@ -344,18 +357,21 @@ int main(int argc, char **argv) {
         check_limit(PAIR_NORMAL, DEM_SYMPLECTIC_EULER, sqrt(2.0), 0.01);
         check_limit(PAIR_NORMAL, DEM_VELOCITY_VERLET, sqrt(2.0), 0.01);
     }
-    TEST("stability limit: 1.06904 sqrt(m/kt) for the tangential spring of a sphere on a wall, spin included") {
+    TEST("stability limit: 1.06904 sqrt(m/kt) for the tangential spring of a sphere on a wall, "
+         "spin included") {
         check_limit(WALL_TANGENT, DEM_SYMPLECTIC_EULER, 2*sqrt(2.0/7), 0.01);
         check_limit(WALL_TANGENT, DEM_LEAPFROG, 2*sqrt(2.0/7), 0.01);
         check_limit(WALL_TANGENT, DEM_VELOCITY_VERLET, 2*sqrt(2.0/7), 0.01);
     }
-    TEST("stability limit: .755929 sqrt(m/kt) for the tangential spring between two equal spheres") {
+    TEST("stability limit: .755929 sqrt(m/kt) for the tangential spring between two equal "
+         "spheres") {
         check_limit(PAIR_TANGENT, DEM_SYMPLECTIC_EULER, 2*sqrt(1.0/7), 0.01);
         check_limit(PAIR_TANGENT, DEM_LEAPFROG, 2*sqrt(1.0/7), 0.01);
         check_limit(PAIR_TANGENT, DEM_VELOCITY_VERLET, 2*sqrt(1.0/7), 0.01);
     }
 
-    TEST("Rayleigh's time step: pi R sqrt(rho/G)/(.1631 nu + .8766), 12.928 us for Chung & Ooi's glass") {
+    TEST("Rayleigh's time step: pi R sqrt(rho/G)/(.1631 nu + .8766), 12.928 us for Chung & Ooi's "
+         "glass") {
         static const double nu[] = {0.2, 0.3}, coefficient[] = {3.4553, 3.3944};
         int i;
         for (i = 0; i < 2; i++) {
@@ -368,8 +384,10 @@ int main(int argc, char **argv) {
             world = dem_world_create(&desc);
             dem_sphere_add(world, dem_material_add(world, &stuff), DEM_R(0.01), at(0, 0, 0));
             CHECK_EQ(dem_step_advice(world, &advice), DEM_OK);
-            CHECK_REL(advice.rayleigh, pi*0.01*sqrt(2800/shear)/(0.1631*nu[i] + 0.8766), 1e-6); /* the formula */
-            CHECK_NEAR((double)advice.rayleigh/(0.01*sqrt(2800/shear)), coefficient[i], 5e-5); /* as printed */
+            /* the formula */
+            CHECK_REL(advice.rayleigh, pi*0.01*sqrt(2800/shear)/(0.1631*nu[i] + 0.8766), 1e-6);
+            /* as printed */
+            CHECK_NEAR((double)advice.rayleigh/(0.01*sqrt(2800/shear)), coefficient[i], 5e-5);
             if (i == 0) {
                 CHECK_NEAR((double)advice.rayleigh*1e6, 12.928, 5e-4);
                 CHECK_REL(advice.contact_time, 40.33946e-6, 1e-4);
@@ -380,11 +398,14 @@ int main(int argc, char **argv) {
     }
 
     /* Vertex 3 lies within an edge of the second triangle: the mesh is flat, but not conforming. */
-    TEST("MercuryDPM rolling over triangles: height, force and speed stay constant over edges and the vertex") {
-        static const dem_real vertices[] = {0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 0, 0, 1, 1, 0, 2, -1, 0, 2, 0, 0, 2, 1, 0};
+    TEST("MercuryDPM rolling over triangles: height, force and speed stay constant over edges and "
+         "the vertex") {
+        static const dem_real vertices[] = {0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 0, 0, 1, 1, 0, 2, -1, 0,
+                                            2, 0, 0, 2, 1, 0};
         static const int32_t triangles[] = {0, 1, 4, 0, 2, 4, 2, 3, 6, 2, 5, 6, 3, 4, 7, 3, 6, 7};
-        static const double start[][4] = {{2, -0.5, -1, 0}, {2, 0, -1, 0}, {1, -1, 0, 1}, {2, -1, -0.6, 0.6},
-                                          {2, 1, -1, -1}, {1.9, -0.93, -0.8, 0.55}}; /* x y, vx vy */
+        static const double start[][4] = {{2, -0.5, -1, 0}, {2, 0, -1, 0}, {1, -1, 0, 1},
+                                          {2, -1, -0.6, 0.6}, {2, 1, -1, -1},
+                                          {1.9, -0.93, -0.8, 0.55}};      /* x y, vx vy    */
         const dem_material_desc stuff = linear_stuff(6/pi, 2000, 1, 0);
         size_t i;
         int k;
@@ -416,8 +437,10 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
-    TEST("MercuryDPM rolling over triangles: with friction the ball moves as on a plane, memory handed over") {
-        static const dem_real vertices[] = {0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 0, 0, 1, 1, 0, 2, -1, 0, 2, 0, 0, 2, 1, 0};
+    TEST("MercuryDPM rolling over triangles: with friction the ball moves as on a plane, memory "
+         "handed over") {
+        static const dem_real vertices[] = {0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 0, 0, 1, 1, 0, 2, -1, 0,
+                                            2, 0, 0, 2, 1, 0};
         static const int32_t triangles[] = {0, 1, 4, 0, 2, 4, 2, 3, 6, 2, 5, 6, 3, 4, 7, 3, 6, 7};
         const dem_material_desc stuff = linear_stuff(6/pi, 2000, 1, 0.4);
         dem_body_state last[2];
@@ -470,8 +493,9 @@ int main(int argc, char **argv) {
                 dem_plane_add(world, m, at(0, 0, -side), at(0, 0, 1));
                 dem_plane_add(world, m, at(0, 0, side), at(0, 0, -1));
             } else {                          /* corner c: bits x, y, z */
-                static const int32_t faces[] = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4,
-                                                1, 5, 7, 1, 7, 3, 0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5};
+                static const int32_t faces[] = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6,
+                                                0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3,
+                                                0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5};
                 dem_real corners[24];
                 for (k = 0; k < 8; k++) {
                     corners[3*k] = (dem_real)(k & 1 ? side : -side);
@@ -486,8 +510,10 @@ int main(int argc, char **argv) {
                 dem_body_state s;
                 step(world, 1);
                 s = state_of(world, body);
-                if ((double)s.position.y > r && s.velocity.y < 0) impact[i] = sqrt(2*9.81*(0.02 - r));
-                if ((double)s.position.y > r && s.velocity.y > 0) rebound[i] = (double)s.velocity.y;
+                if ((double)s.position.y <= r) continue;
+                if (s.velocity.y > 0) rebound[i] = (double)s.velocity.y;
+                else impact[i] = sqrt(pow((double)s.velocity.y, 2) +
+                                      2*9.81*((double)s.position.y - r));
             }
             CHECK_NEAR(state_of(world, body).velocity.x, 0, 1e-12);
             CHECK_NEAR(state_of(world, body).velocity.z, 0, 1e-12);
@@ -499,23 +525,27 @@ int main(int argc, char **argv) {
         CHECK_REL(rebound[0], rebound[1], 1e-9);
     }
 
-    /* 1e-10 per turn is for an exact rotation. Turned about an axis across the normal the memory is exact to
-       fourth order of the angle per step, .26 (angle)^3 per turn. Twisted as well it is of second order, so
-       those turns take smaller steps: 1.6e-5 rad, which is still more than a simulation's. */
-    TEST("co-rotation (ON-DEM shear test): the tangential force of a law of one's own turns with its contact, without work") {
-        const dem_vec3 axes[] = {at(0, 1, 0), at(0, 0, 1), at(0, 2, -1), at(1, 2, 3), at(2, 0, 1), at(1, 0, 0)};
+    /* Steps of 3e-4 rad, far more than a simulation's. 1e-10 per turn is the published case; also
+       checked is where the force points after the turn: when the contact plane is also twisted that
+       is of second order, .4 (angle)^2 per turn. */
+    TEST("co-rotation (ON-DEM shear test): the tangential force of a law of one's own turns with "
+         "its contact, without work") {
+        const dem_vec3 axes[] = {at(0, 1, 0), at(0, 0, 1), at(0, 2, -1), at(1, 2, 3), at(2, 0, 1),
+                                 at(1, 0, 0)};
         size_t i;
         for (i = 0; i < sizeof axes/sizeof *axes; i++)
-            check_turned(turn_once(axes[i], 1, fabs((double)axes[i].x) > 0 ? 400000 : 20000));
+            check_turned(turn_once(axes[i], 1, 20000), fabs((double)axes[i].x) > 0);
     }
-    TEST("co-rotation (ON-DEM shear test): the frozen spring of friction turns with its contact, without work") {
+    TEST("co-rotation (ON-DEM shear test): the frozen spring of friction turns with its contact, "
+         "without work") {
         const dem_vec3 axes[] = {at(0, 1, 0), at(0, 0, 1), at(1, 2, 3)};
         size_t i;
         for (i = 0; i < sizeof axes/sizeof *axes; i++)
-            check_turned(turn_once(axes[i], 0, fabs((double)axes[i].x) > 0 ? 400000 : 20000));
+            check_turned(turn_once(axes[i], 0, 20000), fabs((double)axes[i].x) > 0);
     }
 
-    TEST("size ratio 1:100 (Ogarko & Luding): every search finds the pairs that brute force finds") {
+    TEST("size ratio 1:100 (Ogarko & Luding): every search finds the pairs that brute force "
+         "finds") {
         static uint32_t found[2*20000], right[2*20000];
         int method;
         for (method = DEM_SEARCH_ALL_PAIRS; method <= DEM_SEARCH_LINKED_LIST; method++) {
@@ -536,7 +566,8 @@ int main(int argc, char **argv) {
             s.fixed = 1;
             dem_body_set(world, big, &s);
             while (n < 1000) { /* apart from the big one; some on each other, not deep */
-                const double x = 2.2*uniform(&random) - 1.1, y = 2.2*uniform(&random) - 1.1, z = 2.2*uniform(&random) - 1.1;
+                const double x = 2.2*uniform(&random) - 1.1, y = 2.2*uniform(&random) - 1.1;
+                const double z = 2.2*uniform(&random) - 1.1;
                 const double d = sqrt(x*x + y*y + z*z);
                 dem_body b;
                 if (d < 1.008 || d > 1.05 || !far_from_all(world, x, y, z, 0.017)) continue;
@@ -563,7 +594,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("MFiX DEM02: a ball with restitution one bounces for 10 s without losing or gaining height") {
+    TEST("MFiX DEM02: a ball with restitution one bounces for 10 s without losing or gaining "
+         "height") {
         const dem_material_desc stuff = linear_stuff(2600, 5e4, 1, 0);
         const double m = 2600*4.0/3*pi*1e-3, contact = pi*sqrt(m/5e4);
         dem_world_desc desc = one_thread(contact/2000);
@@ -583,22 +615,28 @@ int main(int argc, char **argv) {
             step(world, 50);
             s = state_of(world, body);
             if (s.velocity.z > 0 && s.position.z > DEM_R(0.1) && was_down) {
-                last = (double)s.position.z + (double)(s.velocity.z*s.velocity.z)/(2*9.81); /* free flight is exact */
+                /* free flight is exact */
+                last = (double)s.position.z + (double)(s.velocity.z*s.velocity.z)/(2*9.81);
                 bounces++;
                 was_down = 0;
                 worst = fmax(worst, fabs(last - top)/bounces);
-                sum_h += last - top; sum_k += bounces; sum_kk += (double)bounces*bounces; sum_kh += bounces*(last - top);
+                sum_k += bounces;
+                sum_h += last - top;
+                sum_kk += (double)bounces*bounces;
+                sum_kh += bounces*(last - top);
             }
             if (s.velocity.z < 0) was_down = 1;
         }
         CHECK(bounces >= 14);
         CHECK_NEAR((last - top)/bounces/top, 0, 1e-6);       /* of the height, per bounce */
         CHECK_NEAR(worst/top, 0, 1e-6);
-        CHECK_NEAR((bounces*sum_kh - sum_k*sum_h)/(bounces*sum_kk - sum_k*sum_k)/top, 0, 1e-6); /* the trend */
+        /* the trend */
+        CHECK_NEAR((bounces*sum_kh - sum_k*sum_h)/(bounces*sum_kk - sum_k*sum_k)/top, 0, 1e-6);
         dem_world_destroy(world);
     }
 
-    TEST("Kratos benchmarks 13 to 16: dropped exactly on a facet, edge, vertex or grid a sphere never leaves the vertical") {
+    TEST("Kratos benchmarks 13 to 16: dropped exactly on a facet, edge, vertex or grid a sphere "
+         "never leaves the vertical") {
         const dem_material_desc stuff = hertz_stuff(100, 1e5, 0.2, 0.9, 0.5);
         int t;
         double height = 0;
@@ -624,7 +662,8 @@ int main(int argc, char **argv) {
             CHECK_NEAR(aside, 0, 1e-12);
             CHECK_NEAR(turn, 0, 1e-12);
             if (t == PLANE) height = (double)state_of(world, body).position.y;
-            CHECK_NEAR(state_of(world, body).position.y, height, 1e-9); /* one push, not one per triangle */
+            /* one push, not one per triangle */
+            CHECK_NEAR(state_of(world, body).position.y, height, 1e-9);
             dem_world_destroy(world);
         }
     }
@@ -639,6 +678,7 @@ int main(int argc, char **argv) {
             dem_body body;
             dem_material m;
             const double mass = 100*4.0/3*pi*0.027;
+            double sink;
             dem_coefficients c;
             desc.gravity.y = DEM_R(-9.81);
             world = dem_world_create(&desc);
@@ -646,7 +686,8 @@ int main(int argc, char **argv) {
             if (t == 0) dem_plane_add(world, m, at(0, 0, 0), at(0, 1, 0));
             else grid_floor(world, m, -1, -1, 6, 1.1, t == 1 ? 1 : 28, t == 1 ? 1 : 10);
             dem_coefficients_get(world, m, m, DEM_R(0.3), 0, &c);
-            body = dem_sphere_add(world, m, DEM_R(0.3), at(0, 0.3 - pow(mass*9.81/(double)c.kn, 2.0/3), 0.013));
+            sink = pow(mass*9.81/(double)c.kn, 2.0/3);
+            body = dem_sphere_add(world, m, DEM_R(0.3), at(0, 0.3 - sink, 0.013));
             set_motion(world, body, at(5, 0, 0), at(0, 0, 0));
             for (i = 0; i < samples; i++) {
                 step(world, 60);

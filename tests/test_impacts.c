@@ -3,8 +3,9 @@
      Hertz (1882): largest overlap, largest force, duration
      Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution when a contact may not pull
      MFiX DEM05: oblique impacts of a linear spring
-   A rigid plane is a second material whose pair with the first has 1/E* = (1-nu^2)/E and 1/G* = (2-nu)/G of
-   the sphere alone. Spheres fly along x and down to z = 0; slip at the contact is v_x - R omega_y. */
+   A rigid plane is a second material whose pair with the first has 1/E* = (1-nu^2)/E and
+   1/G* = (2-nu)/G of the sphere alone. Spheres fly along x and down to z = 0; slip at the contact
+   is v_x - R omega_y. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "test.h"
@@ -90,7 +91,8 @@ static outcome fire(shot s) {
     if (s.ratio > 0) pair.stiffness_ratio = (dem_real)s.ratio;
     dem_pair_set(world, grain, rigid, &pair);
     dem_plane_add(world, rigid, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-    body = dem_sphere_add(world, grain, (dem_real)s.radius, dem_vec3_make(0, 0, (dem_real)s.radius));
+    body = dem_sphere_add(world, grain, (dem_real)s.radius,
+                          dem_vec3_make(0, 0, (dem_real)s.radius));
     set_motion(world, body, s.tangent, -s.normal, s.spin);
     for (i = 0; i < 20*s.steps; i++) {
         dem_body_state now;
@@ -100,7 +102,8 @@ static outcome fire(shot s) {
         gap = (double)now.position.z - s.radius;
         if (-gap > out.overlap) out.overlap = -gap;
         if ((double)now.force.z > out.force) out.force = (double)now.force.z;
-        if (gap > 0 || (s.tension == DEM_TENSION_CLIPPED && now.velocity.z > 0 && now.force.z <= 0)) {
+        if (gap > 0 || (s.tension == DEM_TENSION_CLIPPED && now.velocity.z > 0 &&
+                        now.force.z <= 0)) {
             out.normal = (double)now.velocity.z;
             out.tangent = (double)now.velocity.x;
             out.spin = (double)now.spin.y;
@@ -164,7 +167,8 @@ static outcome meet(stuff of, double radius, double speed, int steps) {
 }
 
 /* Against overlap (m), force (N) and duration (s) of an elastic Hertz contact. */
-static void check_hertz(outcome o, double overlap, double force, double duration, double tolerance) {
+static void check_hertz(outcome o, double overlap, double force, double duration,
+                        double tolerance) {
     CHECK_REL(o.overlap, overlap, tolerance);
     CHECK_REL(o.force, force, tolerance);
     CHECK_REL(o.duration, duration, tolerance);
@@ -172,8 +176,8 @@ static void check_hertz(outcome o, double overlap, double force, double duration
 }
 
 /* Test 6: spin only in the plane of the impact; tangential restitution -slip'/slip */
-static double spin_beta(stuff of, double s, dem_tangent_law law, double dashpot, dem_tension tension,
-                        double *e) {
+static double spin_beta(stuff of, double s, dem_tangent_law law, double dashpot,
+                        dem_tension tension, double *e) {
     shot hit = shot_make(of, 0.1, 0.5, 0.4, 0.2);
     outcome o;
     hit.tension = tension;
@@ -186,14 +190,16 @@ static double spin_beta(stuff of, double s, dem_tangent_law law, double dashpot,
     return -(o.tangent - 0.1*o.spin)/(-0.1*hit.spin);
 }
 
-/* The same by integrating overlap, its rate and the slip alone, without dem.h: small steps of first order.
-   Slip obeys d(slip)/dt = 3.5 F_t/m. */
+/* The same by integrating overlap, its rate and the slip alone, without dem.h: small steps of first
+   order. Slip obeys d(slip)/dt = 3.5 F_t/m. */
 static double integrate_beta(stuff of, double s, int law, double dashpot) {
     const double r = 0.1, m = sphere_mass(of, r), young_eff = plane_modulus(of);
     const double shear_eff = of.young/(2*(1 + of.poisson)*(2 - of.poisson));
     const double beta = log(2.0)/sqrt(pi*pi + log(2.0)*log(2.0)), dash = 2*sqrt(5.0/6)*beta;
-    const double kn = 4*young_eff*sqrt(r)/3, cn = dash*sqrt(1.5*kn*m), k = 8*shear_eff*sqrt(r), c = dashpot*dash*sqrt(k*m);
-    const double dt = hertz_duration(hertz_overlap(young_eff, r, m, 0.2), 0.2)/20000, first = -3.5*0.4*1.5*0.2/s;
+    const double kn = 4*young_eff*sqrt(r)/3, cn = dash*sqrt(1.5*kn*m);
+    const double k = 8*shear_eff*sqrt(r), c = dashpot*dash*sqrt(k*m);
+    const double dt = hertz_duration(hertz_overlap(young_eff, r, m, 0.2), 0.2)/20000;
+    const double first = -3.5*0.4*1.5*0.2/s;
     double depth = 0, speed = 0.2, slip = first, spring = 0, kt_before = 0;
     for (;;) {
         double fn, ft, kt, ct, trial;
@@ -202,7 +208,8 @@ static double integrate_beta(stuff of, double s, int law, double dashpot) {
         if (depth <= 0 || fn <= 0) return -slip/first;
         kt = k*sqrt(depth);
         ct = c*pow(depth, 0.25);
-        if (law == DEM_TANGENT_SPRING) spring = spring/(kt_before > 0 ? kt_before : kt)*kt; /* holds a length */
+        /* the spring law holds a length, the Mindlin laws a force */
+        if (law == DEM_TANGENT_SPRING) spring = spring/(kt_before > 0 ? kt_before : kt)*kt;
         else if (law == DEM_TANGENT_MINDLIN_RESCALED && kt < kt_before) spring *= kt/kt_before;
         spring -= kt*slip*dt;
         trial = spring - ct*slip;
@@ -214,7 +221,7 @@ static double integrate_beta(stuff of, double s, int law, double dashpot) {
     }
 }
 
-/* Test 8: a sphere of 0.1 m with spin falls on one of five times the radius and 1000 times the density */
+/* Test 8: a spinning sphere of 0.1 m lands on one of 5 times the radius, 1000 times the density */
 static outcome land_on_giant(double young_factor, double omega) {
     const stuff big = {70e9*young_factor, 0.33, 2.7e6};
     const double m = sphere_mass(al_alloy, 0.1);
@@ -225,11 +232,14 @@ static outcome land_on_giant(double young_factor, double omega) {
     int i;
     desc.threads = 1;
     desc.tension = DEM_TENSION_CLIPPED;
-    desc.dt = (dem_real)(hertz_duration(hertz_overlap(plane_modulus(al_alloy), 0.1, m, 0.2), 0.2)/2000);
+    desc.dt = (dem_real)(hertz_duration(hertz_overlap(plane_modulus(al_alloy), 0.1, m, 0.2),
+                                        0.2)/2000);
     desc.allow_large_dt = 1;
     world = dem_world_create(&desc);
-    a = dem_sphere_add(world, material_of(world, al_alloy, 0.5, 0.4), DEM_R(0.1), dem_vec3_make(0, 0, DEM_R(0.1)));
-    b = dem_sphere_add(world, material_of(world, big, 0.5, 0.4), DEM_R(0.5), dem_vec3_make(0, 0, DEM_R(-0.5)));
+    a = dem_sphere_add(world, material_of(world, al_alloy, 0.5, 0.4), DEM_R(0.1),
+                       dem_vec3_make(0, 0, DEM_R(0.1)));
+    b = dem_sphere_add(world, material_of(world, big, 0.5, 0.4), DEM_R(0.5),
+                       dem_vec3_make(0, 0, DEM_R(-0.5)));
     set_motion(world, a, 0, -0.2, omega);
     for (i = 0; i < 20000; i++) {
         dem_body_state sa, sb;
@@ -250,13 +260,15 @@ static outcome land_on_giant(double young_factor, double omega) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    /* Tolerances of the Hertz tests: 1e-4 at tc/400 and 1e-3 at tc/50, what a second-order scheme shows; the
-       largest value falls between two steps, which costs (pi/2n)^2/2 of it. */
-    TEST("Chung & Ooi test 1: two glass spheres at 20 m/s reach Hertz's overlap, force and duration") {
+    /* Tolerances of the Hertz tests: 1e-4 at tc/400 and 1e-3 at tc/50, what a second-order scheme
+       shows; the largest value falls between two steps, which costs (pi/2n)^2/2 of it. */
+    TEST("Chung & Ooi test 1: two glass spheres at 20 m/s reach Hertz's overlap, force and "
+         "duration") {
         check_hertz(meet(glass, 0.01, 20, 400), 274.1127e-6, 10696.89, 40.33946e-6, 1e-4);
         check_hertz(meet(glass, 0.01, 20, 50), 274.1127e-6, 10696.89, 40.33946e-6, 1e-3);
     }
-    TEST("Chung & Ooi test 2: an aluminium sphere on a rigid plane reaches Hertz's overlap, force and duration") {
+    TEST("Chung & Ooi test 2: an aluminium sphere on a rigid plane reaches Hertz's overlap, force "
+         "and duration") {
         shot s = shot_make(al_alloy_2, 0.1, 1, 0, 0.2);
         check_hertz(fire(s), 49.71718e-6, 11369.86, 731.6566e-6, 1e-4);
         s.steps = 50;
@@ -278,11 +290,14 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("Chung & Ooi test 4: sliding impacts at 40 to 85 degrees give the rigid body's speed, spin and angle") {
+    TEST("Chung & Ooi test 4: sliding impacts at 40 to 85 degrees give the rigid body's speed, "
+         "spin and angle") {
         static const double rows[][4] = { /* degrees from the normal, v_t'/v_t, rad/s, degrees */
-            {40, 0.78291, 544.22, 11.621}, {50, 0.84715, 456.65, 29.488}, {60, 0.89483, 355.21, 48.159},
-            {70, 0.93370, 242.98, 65.086}, {80, 0.96788, 123.36, 78.983}, {85, 0.98406, 61.92, 84.812}};
-        static const dem_tangent_law laws[] = {DEM_TANGENT_SPRING, DEM_TANGENT_MINDLIN, DEM_TANGENT_MINDLIN_RESCALED};
+            {40, 0.78291, 544.22, 11.621}, {50, 0.84715, 456.65, 29.488},
+            {60, 0.89483, 355.21, 48.159}, {70, 0.93370, 242.98, 65.086},
+            {80, 0.96788, 123.36, 78.983}, {85, 0.98406, 61.92, 84.812}};
+        static const dem_tangent_law laws[] = {DEM_TANGENT_SPRING, DEM_TANGENT_MINDLIN,
+                                               DEM_TANGENT_MINDLIN_RESCALED};
         size_t i, j;
         for (i = 0; i < 6; i++) for (j = 0; j < 3; j++) {
             const double angle = rows[i][0]*pi/180, r = 2.5e-3;
@@ -301,8 +316,10 @@ int main(int argc, char **argv) {
             CHECK_REL(atan2(o.tangent - r*o.spin, o.normal)*180/pi, rows[i][3], 1e-3);
         }
     }
-    TEST("MFiX DEM05: oblique impacts of a linear spring give its tangential restitution from 5 to 60 degrees") {
-        static const double rows[][4] = { /* degrees, converged solution, MFiX, share of MFiX allowed */
+    TEST("MFiX DEM05: oblique impacts of a linear spring give its tangential restitution from 5 to "
+         "60 degrees") {
+        /* degrees, converged solution, MFiX, share of MFiX allowed */
+        static const double rows[][4] = {
             {5, 0.8064, 0.7981, 0.01}, {10, 0.6518, 0.6556, 0.01}, {15, 0.5941, 0.5971, 0.004},
             {20, 0.5931, 0.5946, 0.004}, {25, 0.6217, 0.6219, 5e-4}, {30, 0.6813, 0.6813, 5e-4},
             {45, 0.8160, 0.8160, 5e-4}, {60, 0.8938, 0.8938, 5e-4}};
@@ -319,10 +336,12 @@ int main(int argc, char **argv) {
             s.steps = 4000;                   /* the solution is the one for dt -> 0 */
             e_t = fire(s).tangent/s.tangent;
             CHECK_NEAR(e_t, rows[i][1], 5e-4);
-            CHECK_NEAR(e_t, rows[i][2], rows[i][3] < 0.001 ? 6e-4 : rows[i][3]); /* 5e-4 and the rounding */
+            /* beyond 20 degrees 5e-4, and the rounding of the figure */
+            CHECK_NEAR(e_t, rows[i][2], rows[i][3] < 0.001 ? 6e-4 : rows[i][3]);
         }
     }
-    TEST("Chung & Ooi test 5: beyond x = 7 a steel sphere slides through: spin 5, slip x - 7 in units of mu v_n") {
+    TEST("Chung & Ooi test 5: beyond x = 7 a steel sphere slides through: spin 5, slip x - 7 in "
+         "units of mu v_n") {
         static const double x[] = {7, 8, 10, 15, 20};
         size_t i;
         for (i = 0; i < 5; i++) {
@@ -340,41 +359,51 @@ int main(int argc, char **argv) {
         static const double s[] = {0.2, 0.3, 0.5, 0.7, 0.9};
         size_t i, k;
         for (i = 0; i < 5; i++) for (k = 0; k < 2; k++) {
-            double e, beta = spin_beta(k ? nylon : al_alloy, s[i], DEM_TANGENT_SPRING, 1, DEM_TENSION_CLIPPED, &e);
+            double e, beta = spin_beta(k ? nylon : al_alloy, s[i], DEM_TANGENT_SPRING, 1,
+                                       DEM_TENSION_CLIPPED, &e);
             CHECK_NEAR(beta, s[i]*(1 + e)/1.5 - 1, 2e-3); /* s with the restitution as realised */
-            /* tension kept: no friction while the contact pulls, and until then (1 + .550283) m v_n came */
-            beta = spin_beta(k ? nylon : al_alloy, s[i], DEM_TANGENT_SPRING, 1, DEM_TENSION_KEPT, &e);
+            /* tension kept: no friction while it pulls; until then came (1 + .550283) m v_n */
+            beta = spin_beta(k ? nylon : al_alloy, s[i], DEM_TANGENT_SPRING, 1,
+                             DEM_TENSION_KEPT, &e);
             CHECK_NEAR(e, 0.5, 1e-3);
             CHECK_NEAR(beta, s[i]*1.550283/1.5 - 1, 2e-3);
         }
     }
-    /* The digitised curve depends on the tangential dashpot. With Mindlin's stiffness and the dashpot 2 sqrt(5/6)
-       beta sqrt(8 G* sqrt(R) m) of the common codes it is met within the published band at these points; at
-       s = 2.09, 3.0, 7.8, 11.9 and 24 (.058 -.050 -.208 -.258 -.342) such a law gives .141 .047 -.071 -.077 -.081,
-       and no share of that dashpot from none to all meets every point: see the next test. */
-    TEST("Chung & Ooi test 6: a spinning sphere that sticks meets the digitised beta(s) at s = 1.19 to 1.74 and 4.5") {
-        static const double rows[][2] = {{1.19, 0.097}, {1.45, 0.119}, {1.74, 0.0996}, {4.5, -0.140}};
+    /* The digitised curve depends on the tangential dashpot. With Mindlin's stiffness and the
+       dashpot 2 sqrt(5/6) beta sqrt(8 G* sqrt(R) m) of the common codes it is met within the
+       published band at these points; at s = 2.09, 3.0, 7.8, 11.9 and 24 (.058 -.050 -.208 -.258
+       -.342) such a law gives .141 .047 -.071 -.077 -.081, and no share of that dashpot from none
+       to all meets every point. The next test is the exact one. */
+    TEST("Chung & Ooi test 6: a spinning sphere that sticks meets the digitised beta(s) at s = "
+         "1.19 to 1.74 and 4.5") {
+        static const double rows[][2] = {{1.19, 0.097}, {1.45, 0.119}, {1.74, 0.0996},
+                                         {4.5, -0.140}};
         size_t i;
         double e;
         for (i = 0; i < 4; i++)
-            CHECK_NEAR(spin_beta(al_alloy, rows[i][0], DEM_TANGENT_SPRING, 1, DEM_TENSION_CLIPPED, &e), rows[i][1], 0.08);
-        CHECK_NEAR(spin_beta(nylon, 24, DEM_TANGENT_SPRING, 1, DEM_TENSION_CLIPPED, &e), -0.1155, 0.08);
+            CHECK_NEAR(spin_beta(al_alloy, rows[i][0], DEM_TANGENT_SPRING, 1, DEM_TENSION_CLIPPED,
+                                 &e), rows[i][1], 0.08);
+        CHECK_NEAR(spin_beta(nylon, 24, DEM_TANGENT_SPRING, 1, DEM_TENSION_CLIPPED, &e),
+                   -0.1155, 0.08);
     }
-    TEST("Chung & Ooi test 6: a spinning sphere that sticks leaves as the contact's own equations say, for every law") {
+    TEST("Chung & Ooi test 6: a spinning sphere that sticks leaves as the contact's own equations "
+         "say, for every law") {
         static const double s[] = {1.19, 1.45, 1.74, 2.09, 3.0, 4.5, 7.8, 11.9, 24};
         size_t i;
         int law, half;
         double e;
         for (i = 0; i < 9; i++)
             for (law = DEM_TANGENT_SPRING; law <= DEM_TANGENT_MINDLIN_RESCALED; law++)
-                for (half = 0; half <= 2; half++) { /* without, with half, with the whole tangential dashpot */
+                /* without, with half and with the whole tangential dashpot */
+                for (half = 0; half <= 2; half++) {
                     const stuff of = (i + (size_t)law) % 2 ? nylon : al_alloy;
                     const double beta = spin_beta(of, s[i], (dem_tangent_law)law, 0.5*half,
                                                   DEM_TENSION_CLIPPED, &e);
-                    CHECK_NEAR(beta, integrate_beta(of, s[i], law, 0.5*half), 2e-3); /* as when sliding */
+                    CHECK_NEAR(beta, integrate_beta(of, s[i], law, 0.5*half), 2e-3);
                 }
     }
-    TEST("Chung & Ooi test 8: landing on a sphere of 5 times the radius and 1000 times the density is landing on a plane") {
+    TEST("Chung & Ooi test 8: landing on a sphere of 5 times the radius and 1000 times the density "
+         "is landing on a plane") {
         static const double s[] = {0.2, 0.3, 0.5, 0.7};
         size_t i;
         for (i = 0; i < 4; i++) {
@@ -394,9 +423,11 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("Schwager & Poeschel: tension kept gives the restitution set, tension clipped their closed form") {
-        static const double rows[][2] = {{0.98, 0.980081}, {0.9, 0.902026}, {0.8, 0.808099}, {0.7, 0.718201},
-                                         {0.5, 0.550283}, {0.3, 0.397141}, {0.1, 0.252729}};
+    TEST("Schwager & Poeschel: tension kept gives the restitution set, tension clipped their "
+         "closed form") {
+        static const double rows[][2] = {{0.98, 0.980081}, {0.9, 0.902026}, {0.8, 0.808099},
+                                         {0.7, 0.718201}, {0.5, 0.550283}, {0.3, 0.397141},
+                                         {0.1, 0.252729}};
         size_t i;
         int linear;
         for (i = 0; i < 7; i++) for (linear = 0; linear < 2; linear++) {

@@ -1,0 +1,353 @@
+/* Memory: where it comes from, that all of it goes back, that a warm step takes none, and that running out
+   of it at any moment leaves a world that goes on. The allocator counts, keeps the size in front of every
+   block, fills what it gives and what it takes back, and can refuse the k-th request. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "test.h"
+#include "scene.h"
+
+typedef struct counter {
+    long calls, blocks, wrong;                 /* requests so far, blocks out, wrong sizes on free */
+    size_t bytes, most;
+    long refuse;                               /* this request gets nothing; 0: none */
+    int refused;
+} counter;
+enum { FRONT = 32 };                           /* bytes in front of a block; keeps the alignment */
+
+static void *count_alloc(size_t size, void *user) {
+    counter *c = (counter *)user;
+    char *p;
+    c->calls++;
+    if (c->calls == c->refuse) { c->refused = 1; return 0; }
+    p = (char *)malloc(size + FRONT);
+    if (!p) return 0;
+    memcpy(p, &size, sizeof size);
+    memset(p + FRONT, 0xA5, size);             /* whoever counts on zeros finds none */
+    c->blocks++;
+    c->bytes += size;
+    if (c->bytes > c->most) c->most = c->bytes;
+    return p + FRONT;
+}
+static void count_free(void *memory, size_t size, void *user) {
+    counter *c = (counter *)user;
+    char *p = (char *)memory - FRONT;
+    size_t was;
+    memcpy(&was, p, sizeof was);
+    c->wrong += was != size;
+    c->blocks--;
+    c->bytes -= was;
+    memset(p, 0x5A, was + FRONT);              /* whoever looks again finds rubbish */
+    free(p);
+}
+static dem_world_desc counted(counter *c) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    memset(c, 0, sizeof *c);
+    desc.threads = 1;
+    desc.gravity = at(0, 0, -9.81);
+    desc.allocator.alloc_fn = count_alloc;
+    desc.allocator.free_fn = count_free;
+    desc.allocator.user = c;
+    return desc;
+}
+
+/* Whether the call that just failed may be made again: only when memory was refused, and then it must have
+   said so. */
+static int again(dem_world *world, counter *c, int failed, const char *call) {
+    if (!failed) {
+        if (c->refused) c->refused = 0;        /* it coped: fine */
+        return 0;
+    }
+    if (!c->refused) {
+        CHECK(!"a call failed though memory was there");
+        printf("        %s\n", dem_world_error(world));
+        return 0;
+    }
+    CHECK_STR(dem_world_error(world), call);
+    CHECK_STR(dem_world_error(world), "memory");
+    c->refused = 0;
+    return 1;
+}
+/* CALL: a dem_result; must be DEM_ERROR_MEMORY when it fails. ID: an id, null when it fails. */
+#define CALL(name, expression) do { \
+        const dem_result r_ = (expression); \
+        if (r_ != DEM_OK) CHECK_EQ(r_, DEM_ERROR_MEMORY); \
+        if (!again(world, c, r_ != DEM_OK, name)) break; } while (1)
+#define ID(name, value, expression) do { \
+        value = (expression); \
+        if (!again(world, c, value.id == 0, name)) break; } while (1)
+
+/* Every call that takes memory, once at least; a refused one is made again. */
+static void scenario(counter *c, dem_search search, long refuse, uint64_t *hash) {
+    static const char stl[] = "9 1\n0 0 0\n1 0 0\n0 1 0\n1 1 1\n2 1 1\n3 1 1\n4 1 1\n5 1 1\n6 1 1\n1 2 3\n";
+    static const dem_real beads[] = {DEM_R(0.05), 0, DEM_R(-0.02), DEM_R(0.052), 0, DEM_R(-0.02),
+        DEM_R(0.054), 0, DEM_R(-0.02), DEM_R(0.056), 0, DEM_R(-0.02), DEM_R(0.058), 0, DEM_R(-0.02)};
+    dem_world_desc desc = counted(c);
+    dem_world *world;
+    dem_material glass;
+    dem_wall plane, drum, mesh_wall;
+    dem_field_desc field_desc;
+    dem_field field;
+    dem_mesh mesh;
+    dem_mesh_health health;
+    dem_motion motion = DEM_MOTION;
+    dem_body body;
+    dem_balance b;
+    uint64_t present;
+    int i, n;
+    desc.search = search;
+    desc.ledger = 1;
+    desc.dt = DEM_R(1e-6);
+    c->refuse = refuse;
+    while (!(world = dem_world_create(&desc))) {
+        CHECK(c->refused);
+        CHECK_EQ(c->blocks, 0);
+        CHECK(*dem_create_error(&desc) == 0);
+        CHECK(*dem_world_error(world) != 0);
+        if (!c->refused) return;
+        c->refused = 0;
+    }
+    c->refused = 0;
+    ID("dem_material_add", glass, scene_material(world, 1e7, 0.5, 0.3, 0.1));
+    ID("dem_plane_add", plane, dem_plane_add(world, glass, at(0, 0, -0.03), at(0, 0, 1)));
+    ID("dem_cylinder_add", plane, dem_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 1), 1, 1));
+    ID("dem_profile_add", drum, scene_drum(world, glass, 0.1, 24));
+    ID("dem_mesh_add", mesh_wall, scene_floor(world, glass, -0.02, -0.02, 0.06, 0.06, 4, 4));
+    ID("dem_grains_wall_add", plane, dem_grains_wall_add(world, glass, 5, beads, DEM_R(1e-3), 1));
+    motion.kind = DEM_MOTION_ROTATING;
+    motion.axis = at(0, 0, 1);
+    motion.speed = 10;
+    CALL("dem_wall_motion", dem_wall_motion(world, mesh_wall, &motion));
+    memset(&field_desc, 0, sizeof field_desc);
+    field_desc.box = box_of(0, 0, 0, 0.02, 0.02, 0.02);
+    for (i = 0; i < 3; i++) field_desc.cells[i] = 3;
+    field_desc.interval = 1e-5;
+    for (i = 0; i < 5; i++) ID("dem_field_add", field, dem_field_add(world, &field_desc));
+    CALL("dem_spheres_add", scene_block(world, glass, 3, 3, 4, 2e-3, 1, 0.5, 3));
+    do n = dem_spheres_fill(world, glass, DEM_R(1e-3), box_of(0.02, 0, 0, 0.03, 0.01, 0.01), 9, 1);
+    while (again(world, c, n == 0, "dem_spheres_fill"));
+    CHECK_EQ(n, 9);
+    CALL("dem_world_step", dem_world_step(world, 3));
+    do {                                       /* while contacts have memory, and more than there is room for */
+        present = dem_balance_get(world).present;
+        n = dem_spheres_pack(world, glass, DEM_R(1e-3), 0, box_of(0, 0, 0.02, 0.01, 0.01, 0.03), 0, 0, 60);
+        CHECK_EQ(dem_balance_get(world).present, present + (uint64_t)n);
+        if (n < 60) CHECK_EQ(n, 0);            /* its sentence says that nothing was changed */
+    } while (again(world, c, n < 60, "dem_spheres_pack"));
+    CALL("dem_world_step", dem_world_step(world, 3));
+    body = dem_bodies_id(world, 5);
+    CALL("dem_body_remove", dem_body_remove(world, body));
+    CALL("dem_world_step", dem_world_step(world, 3));
+    ID("dem_plane_add", plane, dem_plane_add(world, glass, at(0, 0, -0.04), at(0, 0, 1)));
+    CALL("dem_world_step", dem_world_step(world, 1));
+    CALL("dem_wall_remove", dem_wall_remove(world, plane));
+    CALL("dem_search_now", dem_search_now(world));
+    CALL("dem_world_step", dem_world_step(world, 3));
+    CALL("dem_checkpoint_write", dem_checkpoint_write(world, "build/tmp/memory.ckpt"));
+    CALL("dem_checkpoint_read", dem_checkpoint_read(world, "build/tmp/memory.ckpt"));
+    CALL("dem_world_step", dem_world_step(world, 3));
+    CALL("dem_mesh_parse", dem_mesh_parse(world, "text", stl, sizeof stl - 1, &mesh, &health));
+    dem_mesh_free(world, &mesh);
+    CALL("dem_vtp_write", dem_vtp_write(world, "build/tmp/memory.vtp"));
+    CALL("dem_walls_vtp_write", dem_walls_vtp_write(world, "build/tmp/memory.vtp", 0, 1));
+    c->refuse = 0;
+    CHECK_EQ(dem_world_step(world, 100), DEM_OK);
+    b = dem_balance_get(world);
+    CHECK_EQ(b.inserted, b.present + b.removed + b.left);
+    CHECK_EQ(b.inserted, 36 + 9 + 60);
+    CHECK_EQ(b.removed, 1);
+    CHECK_EQ(b.present, dem_bodies_get(world).count);
+    CHECK(dem_counters_get(world).contacts > 10);
+    CHECK_EQ(dem_counters_get(world).memory, c->bytes);
+    *hash = dem_world_hash(world);
+    dem_world_destroy(world);
+    CHECK_EQ(c->blocks, 0);
+    CHECK_EQ(c->bytes, 0);
+    CHECK_EQ(c->wrong, 0);
+}
+
+static void refuse_each(dem_search search) {
+    counter c;
+    uint64_t hash;
+    long k, calls, step;
+    scenario(&c, search, 0, &hash);
+    calls = c.calls;
+    CHECK(calls > 50);
+    step = calls > 400 ? calls/400 : 1;
+    for (k = 1; k <= calls && test_now.wrong == 0; k += step) {
+        scenario(&c, search, k, &hash);
+        if (test_now.wrong) printf("        at request %ld of %ld\n", k, calls);
+    }
+}
+
+/* A packing at rest under gravity, in a box of planes over a mesh, with friction and rolling friction. */
+static dem_world *packing(counter *c, int threads, double skin, dem_search search) {
+    dem_world_desc desc = counted(c);
+    dem_world *world;
+    dem_material glass;
+    int k;
+    desc.threads = threads;
+    desc.skin = (dem_real)skin;
+    desc.search = search;
+    world = dem_world_create(&desc);
+    glass = scene_material(world, 1e6, 0.2, 0.5, 0.1);
+    for (k = 0; k < 4; k++)
+        dem_plane_add(world, glass, at(k == 1 ? 0.0257 : 0, k == 3 ? 0.0257 : 0, 0),
+                      at((k == 0) - (k == 1), (k == 2) - (k == 3), 0));
+    scene_floor(world, glass, -0.01, -0.01, 0.04, 0.04, 5, 5);
+    scene_block(world, glass, 6, 6, 6, 2.1e-3, 1, 0.1, 3);
+    return world;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("a warm step of a packing at rest takes no memory, with one thread and with two") {
+        int threads;
+        for (threads = 1; threads <= 2; threads++) {
+            counter c;
+            dem_world *world = packing(&c, threads, 0, DEM_SEARCH_AUTO);
+            long before;
+            CHECK_EQ(scene_step(world, 1500), DEM_OK);
+            before = c.calls;
+            CHECK_EQ(scene_step(world, 1000), DEM_OK);
+            CHECK_EQ(c.calls, before);
+            dem_world_destroy(world);
+            CHECK_EQ(c.blocks, 0);
+        }
+    }
+    TEST("a warm step takes no memory when the list is rebuilt every step, whatever the search") {
+        int search;
+        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LINKED_LIST; search++) {
+            counter c;
+            dem_world *world = packing(&c, 1, -1, (dem_search)search);
+            long before;
+            CHECK_EQ(scene_step(world, 500), DEM_OK);
+            before = c.calls;
+            CHECK_EQ(scene_step(world, 1000), DEM_OK);
+            CHECK_EQ(c.calls, before);
+            CHECK(dem_counters_get(world).rebuilds > 1000);
+            dem_world_destroy(world);
+            CHECK_EQ(c.blocks, 0);
+        }
+    }
+    TEST("all memory is of the allocator of the world, and all of it goes back, in the sizes it came") {
+        counter c;
+        uint64_t hash;
+        scenario(&c, DEM_SEARCH_AUTO, 0, &hash);
+        CHECK(c.most > 100000);
+    }
+    TEST("looking costs no memory: contacts, candidates, ledger, totals, report, hash") {
+        counter c;
+        dem_world *world = packing(&c, 1, 0, DEM_SEARCH_AUTO);
+        static dem_contact_info infos[2000];
+        static uint32_t slots[8000];
+        dem_advice advice;
+        FILE *nowhere = tmpfile();
+        long before;
+        scene_step(world, 10);
+        before = c.calls;
+        CHECK(dem_contacts_get(world, infos, 2000) > 0);
+        CHECK(dem_candidates_get(world, slots, 4000) > 0);
+        dem_ledger_get(world);
+        dem_totals_get(world);
+        dem_counters_get(world);
+        dem_world_hash(world);
+        dem_step_advice(world, &advice);
+        if (nowhere) { dem_world_report(world, nowhere); fclose(nowhere); }
+        CHECK_EQ(c.calls, before);
+        dem_world_destroy(world);
+    }
+    TEST("whichever request for memory fails, the call says so and the world goes on (grid)") {
+        refuse_each(DEM_SEARCH_GRID);
+    }
+    TEST("whichever request for memory fails, the call says so and the world goes on (linked list)") {
+        refuse_each(DEM_SEARCH_LINKED_LIST);
+    }
+    TEST("whichever request for memory fails in a step, repeating the step gives the run without failure") {
+        int search;
+        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LINKED_LIST; search++) {
+            uint64_t hash = 0;
+            long k, calls = 1;
+            for (k = 0; k <= calls && test_now.wrong == 0; k++) {
+                counter c;
+                dem_world_desc desc = counted(&c);
+                dem_world *world;
+                dem_material glass;
+                long before;
+                int i, tries = 0;
+                desc.dt = DEM_R(4e-6);
+                desc.search = (dem_search)search;
+                desc.gravity = at(0, 0, 0);
+                world = dem_world_create(&desc);
+                glass = scene_material(world, 1e7, 0.9, 0.3, 0);
+                for (i = 0; i < 60; i++) {     /* a swarm that falls in on itself: lists grow on the way */
+                    const double x = (i%4 - 1.5)*5e-3, y = (i/4%4 - 1.5)*5e-3, z = (i/16 - 1.5)*5e-3;
+                    dem_body b = dem_sphere_add(world, glass, DEM_R(1e-3), at(x, y, z));
+                    scene_move(world, b, at(-600*x, -600*y, -600*z), at(0, 0, 0));
+                }
+                before = c.calls;
+                c.refuse = k ? before + k : 0;
+                while (dem_world_steps(world) < 500 && tries < 1000) {
+                    const dem_result r = dem_world_step(world, 1);
+                    if (r != DEM_OK) { tries++; CHECK_EQ(r, DEM_ERROR_MEMORY); }
+                }
+                if (k == 0) { calls = c.calls - before; hash = dem_world_hash(world); }
+                CHECK(k == 0 || tries > 0);
+                CHECK((double)dem_counters_get(world).overlap_max > 0);
+                CHECK_EQ(dem_world_steps(world), 500);
+                CHECK_EQ(dem_world_hash(world), hash);
+                if (test_now.wrong) printf("        at request %ld of %ld\n", k, calls);
+                dem_world_destroy(world);
+                CHECK_EQ(c.blocks, 0);
+            }
+        }
+    }
+    TEST("a large checkpoint that runs out of memory while being read leaves the small world as it was") {
+        counter c, d;
+        dem_world_desc desc = counted(&c);
+        dem_world *big, *small;
+        dem_material glass;
+        uint64_t hash, end = 0;
+        long k;
+        int result = DEM_ERROR_MEMORY;
+        desc.gravity = at(0, 0, 0);
+        desc.dt = DEM_R(1e-6);
+        big = dem_world_create(&desc);
+        glass = scene_material(big, 1e7, 0.5, 0.3, 0);
+        scene_block(big, glass, 16, 16, 17, 1e-3, 1, 0.1, 1);  /* two domains */
+        CHECK_EQ(scene_step(big, 2), DEM_OK);
+        CHECK_EQ(dem_counters_get(big).domains, 2);
+        CHECK_EQ(dem_checkpoint_write(big, "build/tmp/memory.ckpt"), DEM_OK);
+        dem_world_destroy(big);
+        for (k = 1; k < 100 && result == DEM_ERROR_MEMORY && test_now.wrong == 0; k++) {
+            desc = counted(&d);
+            desc.gravity = at(0, 0, 0);
+            desc.dt = DEM_R(1e-6);
+            small = dem_world_create(&desc);
+            scene_material(small, 1e7, 0.5, 0.3, 0);
+            scene_block(small, glass, 3, 3, 3, 1e-3, 1, 0.1, 1);
+            scene_step(small, 2);
+            hash = dem_world_hash(small);
+            d.refuse = d.calls + k;
+            result = dem_checkpoint_read(small, "build/tmp/memory.ckpt");
+            d.refuse = 0;
+            if (result != DEM_OK) {
+                CHECK_EQ(result, DEM_ERROR_MEMORY);
+                CHECK_EQ(dem_world_hash(small), hash);
+                CHECK_EQ(scene_step(small, 50), DEM_OK);
+                if (k == 1) end = dem_world_hash(small);
+                CHECK_EQ(dem_world_hash(small), end);
+                CHECK_EQ(dem_bodies_get(small).count, 27);
+            } else CHECK_EQ(dem_bodies_get(small).count, 16*16*17);
+            dem_world_destroy(small);
+            CHECK_EQ(d.blocks, 0);
+            CHECK_EQ(d.wrong, 0);
+            if (test_now.wrong) printf("        at request %ld\n", k);
+        }
+        CHECK_EQ(result, DEM_OK);
+        CHECK(k > 10);
+        remove("build/tmp/memory.ckpt");
+        remove("build/tmp/memory.vtp");
+    }
+    return test_end();
+}
