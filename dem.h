@@ -498,7 +498,7 @@ typedef struct dem_bodies {
     const dem_real *forces;
     const dem_real *torques;    /* count x 4: x, y, z [N m], 0 */
     const dem_real *masses;     /* count: kg */
-    const uint32_t *slots;      /* count: slot of dem_body */
+    const uint32_t *slots;      /* count: slot of dem_body less 1; dem_bodies_id gives the id       */
     const int32_t *materials;   /* count: dem_material ids */
 } dem_bodies;
 DEM_API dem_bodies dem_bodies_get(const dem_world *world);
@@ -661,7 +661,8 @@ typedef struct dem_totals {
 DEM_API dem_totals dem_totals_get(const dem_world *world);
 
 /* Grain-grain contacts as they are now, for analysis. Calls the same law as the run, on a copy of
-   the memory. Returns how many there are; fills at most capacity. */
+   the memory. Returns how many there are; fills at most capacity. -1 with a sentence when bodies or
+   walls changed since the last step: dem_search_now makes a new list. */
 typedef struct dem_contact_info {
     dem_body a, b;
     int32_t wall;                        /* dem_wall id when b is a wall, then b is null */
@@ -671,7 +672,7 @@ typedef struct dem_contact_info {
 } dem_contact_info;
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
 /* The candidate pairs of the present list, slots of a and b (capacity x 2). Returns how many there
-   are. */
+   are; -1 as above. */
 DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capacity);
 /* Rebuilds the candidate list now (for tests and analysis; a run does it by itself). */
 DEM_API dem_result dem_search_now(dem_world *world);
@@ -2521,7 +2522,9 @@ static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
 static void demi_pair_coefs(const dem_world *w, demi_list *list, int k) {
     const int a = list->a[k], b = list->b[k];
     const double ra = (double)w->pos[4*a + 3], rb = (double)w->pos[4*b + 3];
-    const double inv = (double)w->inv_mass[a] + (double)w->inv_mass[b];
+    const int mill = w->desc.convention == DEM_CONVENTION_MILL;  /* there a fixed grain has mass too */
+    const double inv = mill ? 1/(double)w->mass[a] + 1/(double)w->mass[b]
+                            : (double)w->inv_mass[a] + (double)w->inv_mass[b];
     demi_coefficients(w, w->body_material[a] - 1, w->body_material[b] - 1, ra*rb/(ra + rb), 1/inv,
                       0,
                       list->coef + (size_t)k*DEMI_COEFS);
@@ -3146,9 +3149,15 @@ static dem_result demi_rebuild(dem_world *w) {
     return DEM_OK;
 }
 
+/* Answers -1 with a sentence, for those who ask about a list that no longer fits. */
+static int demi_list_stale(const dem_world *world, const char *call) {
+    demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: bodies or walls changed since the "
+              "last step, so there is no list of contacts; call dem_search_now or dem_world_step first", call);
+    return -1;
+}
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
     int d, l, k, n = 0;
-    if (!w->list_valid) return 0;
+    if (!w->list_valid) return demi_list_stale(w, "dem_contacts_get");
     for (d = 0; d < w->domain_count; d++)
         for (l = 0; l < 2; l++) {
             const demi_list *list = l ? &w->cross : &w->own;
@@ -3620,7 +3629,7 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
             c.user = w->desc.law_user;
             law(&c, m, &f);
         } else {
-            demi_law_energy energies;
+            demi_law_energy energies = {0, 0, 0, 0, 0, 0};
             demi_law(&c, m, &f, normal, tangent, rolling, clipped, ledger, &energies);
             if (ledger) {
                 part[q] = energies.dashpot;
@@ -3907,13 +3916,13 @@ static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
     const double r = (double)w->pos[4*c->body + 3];
     const double r_eff = wall->kind == DEMI_WALL_GRAINS
         ? r*(double)wall->radius/(r + (double)wall->radius) : r;
+    const int grains = wall->kind == DEMI_WALL_GRAINS;
+    const int mill = w->desc.convention == DEM_CONVENTION_MILL;  /* there a grain of a wall has mass */
     demi_coefficients(w, w->body_material[c->body] - 1, wall->material, r_eff,
-                      (double)w->mass[c->body],
-                      wall->kind != DEMI_WALL_GRAINS, c->coef);
+                      (double)w->mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
 }
 
 /* Touching elements of one wall for one grain, from its candidates first .. last - 1. */
-enum { DEMI_TOUCH_MOST = 64 };
 static int demi_wall_collect(const dem_world *w, int d, int first, int last,
                              demi_wall_contact *out) {
     const int base = d*w->wall_stride, body = w->wall_body[base + first], id =
@@ -3922,7 +3931,7 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last,
     const dem_real r = w->pos[4*body + 3], *R = wall->pose.rotation;
     const dem_vec3 x = demi_unturn(R, demi_sub(demi_at(w->pos + 4*body), wall->pose.position));
     int k, count = 0;
-    for (k = first; k < last && count < DEMI_TOUCH_MOST; k++) {
+    for (k = first; k < last; k++) {
         demi_wall_contact *c = &out[count];
         dem_vec3 n, p;
         int feature = 0;
@@ -4888,7 +4897,7 @@ static void demi_contact_force(const dem_world *w, const demi_list *list, int k,
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
     const demi_periods p = demi_periods_of(w);
     int d, l, k, n = 0;
-    if (!w->list_valid) return 0;
+    if (!w->list_valid) return demi_list_stale(w, "dem_candidates_get");
     for (d = 0; d < w->domain_count; d++) {
         for (l = 0; l < 2; l++) {
             const demi_list *list = l ? &w->cross : &w->own;
