@@ -1091,7 +1091,7 @@ struct dem_world {
     demi_array carry_start_, carry_partner_, carry_memory_;
     int32_t *carry_start, *carry_partner;
     dem_real *carry_memory;
-    int carry_count;
+    int carry_count, carry_rows;   /* entries; slots there were when they were filed */
     int wall_stride;               /* wall candidates per domain */
     int wall_now_stride;           /* wall contacts per domain */
     demi_array wall_body_, wall_id_, wall_element_, wall_now_, wall_next_, wall_sums_;
@@ -1466,6 +1466,7 @@ static int demi_carry_collect(dem_world *w) {
         }
     }
     w->carry_count = total;
+    w->carry_rows = w->slot_count;
     return 1;
 }
 
@@ -1577,6 +1578,7 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->body_slot[i] = (uint32_t)slot;
     w->body_material[i] = material + 1;
     w->slot_index[slot] = i;
+    w->lll_valid = 0;
     w->balance.inserted++;
     w->balance.present++;
     return (uint32_t)slot;
@@ -1663,6 +1665,7 @@ static void demi_body_take_out(dem_world *w, int i) {
     w->slot_index[slot] = -2 - w->slot_pending;
     w->slot_pending = slot;
     w->slot_generation[slot]++;
+    w->lll_valid = 0;
     w->count = last;
     w->balance.present--;
 }
@@ -2509,7 +2512,7 @@ static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
     const int32_t sa = (int32_t)w->body_slot[a], sb = (int32_t)w->body_slot[b];
     const int32_t row = DEMI_MIN(sa, sb), other = DEMI_MAX(sa, sb);
     int k;
-    if (!w->carry_count) return -1;
+    if (!w->carry_count || row >= w->carry_rows) return -1;
     for (k = w->carry_start[row]; k < w->carry_start[row + 1]; k++) {
         const int32_t p = w->carry_partner[k];
         if (p == other) { *flip = sa > sb; return k; }
@@ -2789,9 +2792,10 @@ static int demi_int_compare(const void *x, const void *y) {
 static int demi_lll_rows(dem_world *w) {
     int32_t *start, *rows;
     size_t i;
-    int k, pass;
-    if (!w->lll_valid || w->lll_boxes != w->count) { if (!demi_lll_start(w)) return 0; }
-    else if (!demi_lll_update(w)) return 0;
+    int k, pass, fresh;
+    fresh = !w->lll_valid;
+    w->lll_valid = 0;                           /* until it is whole again */
+    if (fresh ? !demi_lll_start(w) : !demi_lll_update(w)) return 0;
     w->lll_valid = 1;
     if (!demi_array_grow(w, &w->lll_row_start_, sizeof(int32_t), (size_t)w->count + 2) ||
         !demi_array_grow(w, &w->lll_rows_, sizeof(int32_t), (size_t)w->lll_size)) return 0;
@@ -4586,7 +4590,6 @@ static dem_result demi_outflow(dem_world *w) {
             if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
             demi_body_take_out(w, i--);
             w->balance.left++;
-            w->lll_valid = 0;
             break;
         }
     return DEM_OK;

@@ -1,0 +1,437 @@
+/* bench.c - how fast dem.h is, and what each choice costs. MIT licence.
+
+   make bench                    all of it in under three minutes, in double, in single and built with -O2
+   build/bench --scene bed       one scene: rate, threads, memory, ledger
+   build/bench --scene prices    what other laws, searches, integrators and lists cost
+   build/bench --settle bed      makes a start state anew (minutes), as build/out/bench/bed_20k.txt
+
+   Wall time of loops of steps after 100 untimed ones; what is compared runs in turns, A B A B, and
+   medians are told, with half the range beside them. Ratios need a quiet machine: `spread` says how
+   quiet it was. --cpu counts processor time instead, for looking at one thread while others work. */
+#define DEM_IMPLEMENTATION
+#define DEM_STATIC
+#include "dem.h"
+#include "examples/study.h"
+#include "bench/scenes.h"
+
+#ifndef BENCH_FLAGS
+#define BENCH_FLAGS "unknown"
+#endif
+#ifndef BENCH_LABEL             /* after the precision in names: ".O2"                          */
+#define BENCH_LABEL ""
+#endif
+#if defined(__clang__)
+#define BENCH_COMPILER "clang " __clang_version__
+#elif defined(__GNUC__)
+#define BENCH_COMPILER "gcc " __VERSION__
+#else
+#define BENCH_COMPILER "unknown"
+#endif
+
+enum { WARM_UP = 100, MOST_LOOPS = 99 };
+
+static const char *scene_name = "all", *data_folder = "bench/data", *out = "", *settle = "", *codes = "";
+static int steps_asked, repeat_asked, threads_asked = 2, quick, full, cpu, raw, brief;
+static double skin_asked;
+
+/* ---- timing ---- */
+
+static double now(void) { return cpu ? (double)clock()/CLOCKS_PER_SEC : study_clock(); }
+
+static int compare(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+static double median(const double *values, int count) {
+    double sorted[MOST_LOOPS];
+    memcpy(sorted, values, (size_t)count*sizeof *values);
+    qsort(sorted, (size_t)count, sizeof *sorted, compare);
+    return count & 1 ? sorted[count/2] : (sorted[count/2 - 1] + sorted[count/2])/2;
+}
+static double spread(const double *values, int count) { /* half the range over the median, %        */
+    double lo = values[0], hi = values[0];
+    int i;
+    for (i = 1; i < count; i++) { lo = fmin(lo, values[i]); hi = fmax(hi, values[i]); }
+    return 50*(hi - lo)/median(values, count);
+}
+
+static int steps_of(const bench_scene *s) { /* of one timed loop                                   */
+    const int steps = bench_is(s, "gas") ? 200 : 60;
+    return steps_asked ? steps_asked : full ? 10*steps : steps;
+}
+static int repeats(void) { return repeat_asked ? repeat_asked : full ? 9 : 5; }
+
+/* Seconds of one loop; -1 and a sentence when the run breaks. */
+static double loop(const char *what, dem_world *world, int steps) {
+    const double begun = now();
+    if (dem_world_step(world, steps) == DEM_OK) return now() - begun;
+    study_fail("%s: %s", what, dem_world_error(world));
+    return -1;
+}
+static dem_world *warm(const char *what, const bench_scene *s, const bench_choice *o) {
+    dem_world *world = bench_world(s, o);
+    if (world && loop(what, world, WARM_UP) < 0) { dem_world_destroy(world); world = 0; }
+    return world;
+}
+
+/* Loops of two worlds in turns; b may be null. 0 when one of them broke. */
+static int take_turns(const char *what, dem_world *a, dem_world *b, int steps, double *ta, double *tb) {
+    int r;
+    for (r = 0; r < repeats(); r++) {
+        if ((ta[r] = loop(what, a, steps)) < 0) return 0;
+        if (b && (tb[r] = loop(what, b, steps)) < 0) return 0;
+    }
+    return 1;
+}
+
+static const char *join(const char *a, const char *b, const char *c, const char *d) {
+    static char text[4][128];
+    static int next;
+    next = (next + 1)%4;
+    snprintf(text[next], sizeof text[next], "%s%s%s%s", a, b, c, d);
+    return text[next];
+}
+static void result_rate(const char *name, double rate) { /* with the exponent one reads rates in     */
+    char text[64];
+    snprintf(text, sizeof text, "%.2fe6", 1e-6*rate);
+    study_result_text(name, text, "particle-steps/s");
+}
+static void result_short(const char *name, double value, const char *unit) { /* three digits          */
+    char text[64];
+    snprintf(text, sizeof text, "%.3g", value);
+    study_result_text(name, text, unit);
+}
+static const char *precision(void) { return sizeof(dem_real) == sizeof(float) ? "single" : "double"; }
+
+/* ---- one scene: rate, threads, ledger, memory ---- */
+
+static void measure(const bench_scene *s) {
+    const char *key = join(s->name, ".", precision(), BENCH_LABEL);
+    bench_choice choice = BENCH_CHOICE;
+    dem_world *one, *other;
+    dem_counters c;
+    double ta[MOST_LOOPS], tb[MOST_LOOPS], names = s->count;
+    const int steps = steps_of(s);
+    uint64_t begun;
+    char word[32];
+    choice.skin = skin_asked*s->radius;
+    one = warm(s->name, s, &choice);
+    if (!one) return;
+    begun = dem_counters_get(one).rebuilds;
+    if (take_turns(s->name, one, 0, steps, ta, 0)) {
+        result_rate(join(key, ".rate", "", ""), names*steps/median(ta, repeats()));
+        result_short(join(key, ".rate_spread", "", ""), spread(ta, repeats()), "%");
+        c = dem_counters_get(one);
+        if (!brief) {
+            result_short(join(key, ".contacts_per_bead", "", ""), 2.0*c.contacts/names, "");
+            result_short(join(key, ".candidates_per_bead", "", ""), c.candidates/names, "(pairs)");
+            result_short(join(key, ".steps_per_rebuild", "", ""), (double)steps*repeats()/
+                         (double)(c.rebuilds > begun ? c.rebuilds - begun : 1), "");
+            result_short(join(key, ".skin", "", ""), 1e3*(double)c.skin, "mm");
+            if (bench_is(s, "bed"))
+                result_short(join(key, ".memory_per_bead", "", ""), (double)c.memory/names, "byte");
+        }
+    }
+    choice.threads = threads_asked;
+    other = threads_asked > 1 ? warm(s->name, s, &choice) : 0;
+    if (other && dem_counters_get(other).threads != threads_asked)
+        printf("SKIP: built without OpenMP, no rates on %d threads\n", threads_asked);
+    else if (other && !cpu) {
+        while (dem_world_steps(other) < dem_world_steps(one)) /* both at the same state              */
+            if (loop(s->name, other, steps) < 0) break;
+        if (take_turns(s->name, one, other, steps, ta, tb)) {
+            snprintf(word, sizeof word, ".threads%d", threads_asked);
+            result_rate(join(key, word, ".rate", ""), names*steps/median(tb, repeats()));
+            result_short(join(key, word, ".speedup", ""), median(ta, repeats())/median(tb, repeats()), "");
+            result_short(join(key, word, ".rate_spread", ""), spread(tb, repeats()), "%");
+            if (dem_world_hash(one) != dem_world_hash(other))
+                study_fail("%s: 1 and %d threads do not agree to the last bit", s->name, threads_asked);
+        }
+    }
+    if (other) dem_world_destroy(other);
+    choice.threads = 0;
+    choice.ledger = 1;
+    other = brief ? 0 : warm(s->name, s, &choice);
+    if (other) {
+        if (take_turns(s->name, one, other, steps, ta, tb))
+            result_short(join(key, ".ledger_cost", "", ""), median(tb, repeats())/median(ta, repeats()), "");
+        dem_world_destroy(other);
+    }
+    dem_world_destroy(one);
+}
+
+/* ---- what a choice costs: time of a step with it over that without, on the same scene in turns ---- */
+
+static void price(const char *name, const bench_scene *s, const bench_choice *base, const bench_choice *with) {
+    double ta[MOST_LOOPS], tb[MOST_LOOPS], ratio[MOST_LOOPS];
+    dem_world *a = warm(name, s, base), *b = a ? warm(name, s, with) : 0;
+    const int many = s->count/(base->every > 1 ? base->every : 1), full_loop = steps_of(s)/2 + 1;
+    const int steps = many < 5000 && !steps_asked ? 4*full_loop : full_loop;
+    int r;
+    char unit[64];
+    if (b && take_turns(name, a, b, steps, ta, tb)) {
+        for (r = 0; r < repeats(); r++) ratio[r] = tb[r]/ta[r];
+        snprintf(unit, sizeof unit, "of the default (%s, %d, +- %.0f %%)", s->name, many, spread(ratio, repeats()));
+        result_short(name, median(tb, repeats())/median(ta, repeats()), unit);
+    }
+    if (a) dem_world_destroy(a);
+    if (b) dem_world_destroy(b);
+}
+
+static void prices(void) {
+    static const struct { const char *name; dem_integrator integrator; } integrators[] = {
+        {"price.integrator.leapfrog", DEM_LEAPFROG},
+        {"price.integrator.position_verlet", DEM_POSITION_VERLET},
+        {"price.integrator.symplectic_euler", DEM_SYMPLECTIC_EULER},
+        {"price.integrator.forward_euler", DEM_FORWARD_EULER}};
+    static const struct { const char *name; dem_tangent_law law; } tangents[] = {
+        {"price.tangent.none", DEM_TANGENT_NONE}, {"price.tangent.viscous", DEM_TANGENT_VISCOUS},
+        {"price.tangent.step", DEM_TANGENT_STEP}, {"price.tangent.mindlin", DEM_TANGENT_MINDLIN},
+        {"price.tangent.mindlin_rescaled", DEM_TANGENT_MINDLIN_RESCALED}};
+    static const struct { const char *name; dem_rolling_law law; } rollings[] = {
+        {"price.rolling.step", DEM_ROLLING_STEP}, {"price.rolling.constant", DEM_ROLLING_CONSTANT},
+        {"price.rolling.epsd", DEM_ROLLING_EPSD}};
+    const bench_choice zero = BENCH_CHOICE;
+    bench_choice base = BENCH_CHOICE, with;
+    bench_scene bed = bench_scene_read(data_folder, "bed"), drum = bench_scene_read(data_folder, "drum");
+    size_t i;
+    with = zero; with.mixed = 1;
+    price("price.mixed_radii", &bed, &base, &with);
+    with = zero; with.ledger = 1;
+    price("price.ledger", &bed, &base, &with);
+    with = zero; with.normal = DEM_NORMAL_LINEAR;
+    price("price.linear", &bed, &base, &with);
+    for (i = 0; i < sizeof tangents/sizeof *tangents; i++) {
+        with = zero; with.tangent = tangents[i].law;
+        price(tangents[i].name, &bed, &base, &with);
+    }
+    for (i = 0; i < sizeof rollings/sizeof *rollings; i++) {
+        with = zero; with.rolling = rollings[i].law; with.rolling_friction = 0.1;
+        price(rollings[i].name, &bed, &base, &with);
+    }
+    for (i = 0; i < sizeof integrators/sizeof *integrators; i++) {
+        with = zero; with.integrator = integrators[i].integrator;
+        price(integrators[i].name, &bed, &base, &with);
+    }
+    with = zero; with.skin = -1;
+    price("price.skin0", &bed, &base, &with);
+    with = zero; with.search = DEM_SEARCH_LINKED_LIST;
+    price("price.search.linked_list", &drum, &base, &with);
+    base.every = with.every = 18;       /* 1000 beads: every pair is looked at                      */
+    with.search = DEM_SEARCH_ALL_PAIRS;
+    price("price.search.all_pairs", &drum, &base, &with);
+    bench_scene_free(&bed);
+    bench_scene_free(&drum);
+}
+
+/* ---- start states, made with dem.h itself ---- */
+
+static double uniform(void) { /* 0..1; splitmix64 */
+    static uint64_t state = 20000;
+    uint64_t z = (state += UINT64_C(0x9E3779B97F4A7C15));
+    z = (z ^ (z >> 30))*UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27))*UINT64_C(0x94D049BB133111EB);
+    return (double)((z ^ (z >> 31)) >> 11)/9007199254740992.0;
+}
+static double gaussian(void) { return sqrt(-2*log(1 - uniform()))*cos(2*3.14159265358979323846*uniform()); }
+
+typedef struct drag { double rate; } drag; /* 1/s */
+static dem_vec3 drag_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
+    const dem_real c = -mass*(dem_real)((const drag *)user)->rate;
+    (void)x; (void)radius; (void)time;
+    return dem_vec3_make(c*v.x, c*v.y, c*v.z);
+}
+
+/* Runs in pieces, with a progress line. */
+static int run(dem_world *world, const char *what, int steps) {
+    int done;
+    study_progress(what, 0, 0);
+    for (done = 0; done < steps; done += 200) {
+        if (loop(what, world, steps - done < 200 ? steps - done : 200) < 0) return 0;
+        study_progress(what, (done + 200.0)/steps < 1 ? (done + 200.0)/steps : 1,
+                       (double)dem_balance_get(world).present*(done + 200.0));
+    }
+    return 1;
+}
+
+static void settle_scene(const char *name) {
+    bench_choice choice = BENCH_CHOICE;
+    drag brake = {0};
+    bench_scene s = bench_scene_make(name, !strcmp(name, "bed") ? 20000 : !strcmp(name, "drum") ? 18000 : 32768);
+    const double r = s.radius, spin_up = 0.302;
+    dem_world *world;
+    int i, c, count = 0, layer, x, y, z;
+    double mean[3] = {0, 0, 0};
+    choice.threads = threads_asked;
+    if (bench_is(&s, "bed")) {          /* a loose lattice, shaken, dropped, at last with drag      */
+        const double gap = BENCH_BED_SIDE/27;
+        choice.force = drag_force;
+        choice.force_user = &brake;
+        for (i = 0; i < s.count; i++) {
+            s.x[3*i] = (i%27 + 0.5)*gap + 0.05*r*(2*uniform() - 1);
+            s.x[3*i + 1] = (i/27%27 + 0.5)*gap + 0.05*r*(2*uniform() - 1);
+            s.x[3*i + 2] = r + (i/(27*27) + 0.05)*2.15*r + 0.05*r*(2*uniform() - 1);
+            for (c = 0; c < 3; c++) s.v[3*i + c] = 0.2*(2*uniform() - 1);
+        }
+    } else if (bench_is(&s, "drum")) {  /* layers between the bars, then 0.302 s of turning         */
+        const double dy = BENCH_DRUM_LENGTH/19, dx = 2.1*r;
+        for (layer = 0; count < s.count && layer < 1000; layer++)
+            for (x = -30; x <= 30; x++)
+                for (y = 0; y < 19 && count < s.count; y++) {
+                    const double px = x*dx, pz = -0.066 + r + layer*2.1*r;
+                    if (sqrt(px*px + pz*pz) > 0.066 - r) continue;
+                    s.x[3*count] = px + 0.03*r*(2*uniform() - 1);
+                    s.x[3*count + 1] = (y + 0.5)*dy;
+                    s.x[3*count + 2] = pz + 0.03*r*(2*uniform() - 1);
+                    count++;
+                }
+        if (count < s.count) { study_fail("the drum holds %d beads, fewer than %d", count, s.count); return; }
+    } else                              /* a lattice, and time to forget it                         */
+        for (z = 0; z < 32; z++)
+            for (y = 0; y < 32; y++)
+                for (x = 0; x < 32; x++, count++) {
+                    const double gap = BENCH_GAS_SIDE/32;
+                    s.x[3*count] = (x + 0.5)*gap;
+                    s.x[3*count + 1] = (y + 0.5)*gap;
+                    s.x[3*count + 2] = (z + 0.5)*gap;
+                    for (c = 0; c < 3; c++) mean[c] += s.v[3*count + c] = gaussian();
+                }
+    for (i = 0; i < s.count; i++) for (c = 0; c < 3; c++) s.v[3*i + c] -= mean[c]/s.count;
+    world = bench_world_at(&s, &choice, BENCH_DRUM_ANGLE - BENCH_DRUM_SPEED*spin_up*180/3.14159265358979323846);
+    if (!world) return;
+    if (bench_is(&s, "bed")) {
+        i = run(world, "bed falls", 32000);
+        brake.rate = 100;
+        i = i && run(world, "bed comes to rest", 12000);
+    } else i = bench_is(&s, "drum") ? run(world, "drum turns", (int)(spin_up/s.dt + 0.5)) : run(world, "gas mixes", 12100);
+    if (i) {
+        const dem_totals t = dem_totals_get(world);
+        bench_scene_take(&s, world);
+        bench_scene_write(&s, study_path(bench_file(name)));
+        study_result(join(name, ".kinetic", "", ""), t.kinetic, "J");
+        study_result(join(name, ".contacts_per_bead", "", ""), 2.0*dem_counters_get(world).contacts/s.count, "");
+        study_result_text(join(name, ".file", "", ""), study_path(bench_file(name)), "");
+    }
+    dem_world_destroy(world);
+    bench_scene_free(&s);
+}
+
+/* ---- for bench/peers.sh ---- */
+
+/* The scene as LAMMPS and LIGGGHTS read it: name.data, and the drum's mesh. */
+static void write_for_codes(const char *folder, const char *name) {
+    const bench_scene s = bench_scene_read(data_folder, name);
+    char path[512];
+    FILE *file;
+    int i;
+    study_make_folder(folder);
+    snprintf(path, sizeof path, "%s/%s.data", folder, name);
+    file = fopen(path, "w");
+    if (!file) { study_fail("cannot write %s: %s", path, strerror(errno)); return; }
+    fprintf(file, "%s\n\n%d atoms\n1 atom types\n\n", name, s.count);
+    if (bench_is(&s, "bed"))
+        fprintf(file, "0 %.17g xlo xhi\n0 %.17g ylo yhi\n0 %.17g zlo zhi\n", BENCH_BED_SIDE, BENCH_BED_SIDE, BENCH_BED_HEIGHT);
+    else if (bench_is(&s, "drum"))
+        fprintf(file, "-0.08 0.08 xlo xhi\n0 %.17g ylo yhi\n-0.08 0.08 zlo zhi\n", BENCH_DRUM_LENGTH);
+    else
+        fprintf(file, "0 %.17g xlo xhi\n0 %.17g ylo yhi\n0 %.17g zlo zhi\n", BENCH_GAS_SIDE, BENCH_GAS_SIDE, BENCH_GAS_SIDE);
+    fprintf(file, "\nAtoms\n\n");       /* id, type, diameter, density, place                        */
+    for (i = 0; i < s.count; i++)
+        fprintf(file, "%d 1 %.17g %.17g %.10g %.10g %.10g\n", i + 1, 2*s.radius, BENCH_DENSITY, s.x[3*i],
+                s.x[3*i + 1], s.x[3*i + 2]);
+    fprintf(file, "\nVelocities\n\n");  /* id, velocity, spin                                        */
+    for (i = 0; i < s.count; i++)
+        fprintf(file, "%d %.9g %.9g %.9g %.9g %.9g %.9g\n", i + 1, s.v[3*i], s.v[3*i + 1], s.v[3*i + 2],
+                s.spin[3*i], s.spin[3*i + 1], s.spin[3*i + 2]);
+    if (fclose(file)) study_fail("%s was not written in full: is the disk full?", path);
+    snprintf(path, sizeof path, "%s/drum.stl", folder);
+    if (bench_is(&s, "drum")) bench_drum_stl(path, BENCH_DRUM_ANGLE);
+}
+
+/* One line: seconds of the loop, contacts per bead and kinetic energy (J) at its end, bytes a bead. */
+static void measure_raw(const bench_scene *s) {
+    bench_choice choice = BENCH_CHOICE;
+    dem_world *world;
+    int r;
+    choice.threads = threads_asked;
+    choice.skin = skin_asked*s->radius;
+    world = warm(s->name, s, &choice);
+    for (r = 0; world && r < repeats(); r++) {
+        const double seconds = loop(s->name, world, steps_of(s));
+        const dem_counters c = dem_counters_get(world);
+        if (seconds < 0) break;
+        printf("raw %.6f %.5f %.6g %.0f\n", seconds, 2.0*c.contacts/s->count, dem_totals_get(world).kinetic,
+               (double)c.memory/s->count);
+    }
+    if (world) dem_world_destroy(world);
+}
+
+/* ---- what it ran on ---- */
+
+static void machine(void) {
+    char line[512], name[256] = "unknown processor";
+    int cores = 0;
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    while (file && fgets(line, sizeof line, file)) {
+        const char *colon = strchr(line, ':');
+        if (!strncmp(line, "processor", 9)) cores++;
+        if (strncmp(line, "model name", 10) || !colon) continue;
+        snprintf(name, sizeof name, "%.200s", colon + 2);
+        name[strcspn(name, "\n")] = 0;
+    }
+    if (file) fclose(file);
+    snprintf(line, sizeof line, "%s, %d logical processors", name, cores);
+    study_result_text("machine", line, "");
+    study_result_text("compiler", BENCH_COMPILER, "");
+    study_result_text("flags", BENCH_FLAGS, "");
+    if (cpu) study_result_text("clock", "processor time: not for threads, not for comparing with others", "");
+}
+
+int main(int argc, char **argv) {
+    static const study_option table[] = {
+        {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|prices", "what to measure"},
+        {"steps", STUDY_INT, &steps_asked, 0, 1e8, "", "steps of one timed loop, 0: by scene"},
+        {"repeat", STUDY_INT, &repeat_asked, 0, MOST_LOOPS, "", "timed loops, 0: 5, or 9 in full"},
+        {"threads", STUDY_INT, &threads_asked, 1, 64, "", "threads to compare one thread with"},
+        {"skin", STUDY_REAL, &skin_asked, -1, 10, "radii", "margin of the list, 0: the library's choice"},
+        {"quick", STUDY_FLAG, &quick, 0, 0, "", "short loops (the default)"},
+        {"full", STUDY_FLAG, &full, 0, 0, "", "loops ten times as long, and more of them"},
+        {"brief", STUDY_FLAG, &brief, 0, 0, "", "rates only"},
+        {"cpu", STUDY_FLAG, &cpu, 0, 0, "", "processor time instead of wall time"},
+        {"settle", STUDY_CHOICE, &settle, 0, 0, "bed|drum|gas", "make a start state anew"},
+        {"codes", STUDY_TEXT, &codes, 0, 0, "", "write the scenes for other codes into this folder"},
+        {"raw", STUDY_FLAG, &raw, 0, 0, "", "bare numbers, for bench/peers.sh"},
+        {"data", STUDY_TEXT, &data_folder, 0, 0, "", "where the start states are"},
+        {"out", STUDY_TEXT, &out, 0, 0, "", "folder of results"},
+    };
+    static const char *const names[3] = {"bed", "drum", "gas"};
+    char folder[256];
+    int i;
+    study_options(argc, argv, "How fast dem.h is, and what each choice costs.", table, (int)(sizeof table/sizeof *table));
+    if (quick && full) { study_fail("--quick or --full, not both"); return 2; }
+    if (raw) {
+        for (i = 0; i < 3; i++)
+            if (!strcmp(scene_name, names[i])) {
+                bench_scene s = bench_scene_read(data_folder, names[i]);
+                measure_raw(&s);
+                bench_scene_free(&s);
+            }
+        return study.failures ? 1 : 0;
+    }
+    if (*codes) {
+        for (i = 0; i < 3; i++) write_for_codes(codes, names[i]);
+        return study.failures ? 1 : 0;
+    }
+    snprintf(folder, sizeof folder, "build/out/%s", study.program);
+    study_begin(*out ? out : folder);
+    machine();
+    if (*settle) { settle_scene(settle); return study_end(); }
+    for (i = 0; i < 3; i++)
+        if (!strcmp(scene_name, names[i]) || !strcmp(scene_name, "all")) {
+            bench_scene s = bench_scene_read(data_folder, names[i]);
+            measure(&s);
+            bench_scene_free(&s);
+        }
+    if (!strcmp(scene_name, "prices") || (!strcmp(scene_name, "all") && !brief)) prices();
+    return study_end();
+}

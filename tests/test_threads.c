@@ -1,0 +1,153 @@
+/* The same bits for any number of threads, for the kernels made for one set of effects and the one that
+   asks at run time, and however many steps are asked for at a time. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "test.h"
+#include "scene.h"
+
+/* Everything a result could differ in. */
+typedef struct outcome { uint64_t hash; dem_ledger ledger; dem_channels floor; int domains; } outcome;
+
+/* About 6000 grains, mixed, with friction and rolling friction, on a plane and in a turning mesh. */
+static outcome bed(int threads, int steps, int at_once) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material glass;
+    dem_motion motion = DEM_MOTION;
+    dem_wall wall, plane;
+    outcome out;
+    int done;
+    desc.threads = threads;
+    desc.gravity = at(0, 0, -9.81);
+    desc.dt = DEM_R(4e-6);
+    desc.ledger = 1;
+    desc.rolling_law = DEM_ROLLING_EPSD;
+    desc.skin = DEM_R(2e-4);
+    world = dem_world_create(&desc);
+    glass = scene_material(world, 1e7, 0.7, 0.3, 0.1);
+    scene_block(world, glass, 19, 18, 18, 1e-3, 1, 2, 7);
+    plane = dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    wall = scene_floor(world, glass, -0.02, -0.02, 0.06, 0.06, 12, 12);
+    motion.kind = DEM_MOTION_ROTATING;
+    motion.axis = at(0, 0, 1);
+    motion.point = at(0.018, 0.018, 0);
+    motion.speed = 100;
+    dem_wall_motion(world, wall, &motion);
+    for (done = 0; done < steps; done += at_once) CHECK_EQ(scene_step(world, at_once), DEM_OK);
+    memset(&out, 0, sizeof out);
+    out.hash = dem_world_hash(world);
+    out.ledger = dem_ledger_get(world);
+    dem_wall_channels(world, plane, &out.floor);
+    out.domains = dem_counters_get(world).domains;
+    CHECK(dem_counters_get(world).contacts > 6000);
+    CHECK(dem_counters_get(world).wall_contacts > 300);
+    CHECK(dem_counters_get(world).rebuilds > 2);
+    dem_world_destroy(world);
+    return out;
+}
+static void check_same(const outcome *a, const outcome *b) {
+    CHECK_EQ(a->hash, b->hash);
+    CHECK(memcmp(&a->ledger, &b->ledger, sizeof a->ledger) == 0);
+    CHECK(memcmp(&a->floor.force, &b->floor.force, sizeof a->floor.force) == 0);
+    CHECK(memcmp(a->floor.impulse, b->floor.impulse, sizeof a->floor.impulse) == 0);
+    CHECK(memcmp(&a->floor.work, &b->floor.work, sizeof a->floor.work) == 0);
+}
+
+/* A block of grains between planes or in a periodic box; `any`: the run-time kernel at every step. */
+static uint64_t kernels(dem_normal_law normal, int friction, int mixed, int periodic, int any, int *special) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material glass;
+    uint64_t hash;
+    int i, k;
+    desc.threads = 1;
+    desc.normal_law = normal;
+    desc.dt = DEM_R(2e-6);
+    desc.allow_large_dt = 1;
+    desc.skin = DEM_R(1.5e-3);                 /* wide: one list for the run, after the first */
+    for (k = 0; k < 3 && periodic; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+    desc.domain = box_of(0, 0, 0, 7*1.97e-3, 7*1.97e-3, 7*1.97e-3);
+    world = dem_world_create(&desc);
+    glass = scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, 0);
+    if (!periodic) dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    scene_block(world, glass, 7, 7, 7, 1e-3, mixed, 1, 5);
+    *special = 0;
+    for (i = 0; i < 100; i++) {
+        if (any && world->kernel) world->kernel = demi_pairs_any;
+        CHECK_EQ(scene_step(world, 1), DEM_OK);
+        *special += i > 0 && world->kernel != demi_pairs_any;   /* the first step chooses */
+    }
+    CHECK_EQ(dem_counters_get(world).rebuilds, 1);
+    hash = dem_world_hash(world);
+    dem_world_destroy(world);
+    return hash;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("a bed of 6000 grains has one hash, ledger and wall force for 1, 2, 3, 4 and 8 threads") {
+        static const int threads[] = {2, 3, 4, 8};
+        const outcome one = bed(1, 60, 60);
+        size_t i;
+        CHECK_EQ(one.domains, 3);
+        for (i = 0; i < 4; i++) {
+            const outcome many = bed(threads[i], 60, 60);
+            check_same(&one, &many);
+        }
+    }
+    TEST("sixty steps at once, one by one and seven at a time are the same sixty-three steps") {
+        const outcome a = bed(2, 63, 63), b = bed(2, 63, 1), c = bed(2, 63, 7);
+        check_same(&a, &b);
+        check_same(&a, &c);
+    }
+    TEST("kernels made for a set of effects give the bits of the run-time kernel") {
+        int normal, friction, mixed, periodic, special, none;
+        for (normal = DEM_NORMAL_HERTZ; normal <= DEM_NORMAL_LINEAR; normal++)
+            for (friction = 0; friction < 2; friction++)
+                for (mixed = 0; mixed < 2; mixed++)
+                    for (periodic = 0; periodic < 2; periodic++) {
+                        const dem_normal_law law = (dem_normal_law)normal;
+                        const uint64_t made = kernels(law, friction, mixed, periodic, 0, &special);
+                        const uint64_t asks = kernels(law, friction, mixed, periodic, 1, &none);
+                        CHECK_EQ(made, asks);
+                        CHECK_EQ(none, 0);
+                        if (normal == DEM_NORMAL_HERTZ && !mixed) CHECK_EQ(special, 99);
+                    }
+    }
+    TEST("a time step that the library chooses anew falls on the same step however the steps are asked for") {
+        uint64_t hash[3] = {0, 0, 0};
+        int k;
+        for (k = 0; k < 3; k++) {              /* a wall at 5 m/s kicks grains that were slow */
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material glass;
+            dem_motion motion = DEM_MOTION;
+            dem_wall wall;
+            dem_real first;
+            int i;
+            desc.threads = 1;
+            desc.skin = DEM_R(2e-4);
+            world = dem_world_create(&desc);
+            glass = scene_material(world, 1e7, 1, 0.3, 0);
+            scene_block(world, glass, 4, 4, 4, 1e-3, 1, 0.01, 2);
+            wall = scene_floor(world, glass, -0.01, -0.01, 0.02, 0.02, 1, 1);
+            motion.kind = DEM_MOTION_OSCILLATING;
+            motion.velocity = at(0, 0, 1);
+            motion.amplitude = DEM_R(2e-3);
+            motion.frequency = 400;
+            motion.phase = DEM_R(-1.5707963267948966);      /* starts at its lowest, at rest */
+            dem_wall_motion(world, wall, &motion);
+            scene_step(world, 1);
+            first = dem_counters_get(world).dt;
+            if (k == 0) CHECK_EQ(scene_step(world, 400), DEM_OK);
+            else for (i = 0; i < 400; i += 4*k - 3) CHECK_EQ(scene_step(world, 4*k - 3), DEM_OK);
+            CHECK((double)dem_counters_get(world).dt < 0.9*(double)first);
+            hash[k] = dem_world_hash(world);
+            dem_world_destroy(world);
+        }
+        CHECK_EQ(hash[1], hash[0]);
+        CHECK_EQ(hash[2], hash[0]);
+    }
+    return test_end();
+}
