@@ -84,13 +84,6 @@ static int take_turns(const char *what, dem_world *a, dem_world *b, int steps, d
     return 1;
 }
 
-static const char *join(const char *a, const char *b, const char *c, const char *d) {
-    static char text[4][128];
-    static int next;
-    next = (next + 1)%4;
-    snprintf(text[next], sizeof text[next], "%s%s%s%s", a, b, c, d);
-    return text[next];
-}
 static void result_rate(const char *name, double rate) { /* with the exponent one reads rates in     */
     char text[64];
     snprintf(text, sizeof text, "%.2fe6", 1e-6*rate);
@@ -101,49 +94,56 @@ static void result_short(const char *name, double value, const char *unit) { /* 
     snprintf(text, sizeof text, "%.3g", value);
     study_result_text(name, text, unit);
 }
-static const char *precision(void) { return sizeof(dem_real) == sizeof(float) ? "single" : "double"; }
+/* Names of results begin with scene, precision and build: bed.double.O2. */
+static void names_begin(const char *scene) {
+    const char *precision = sizeof(dem_real) == sizeof(float) ? "single" : "double";
+    if (*scene) snprintf(study.prefix, sizeof study.prefix, "%s.%s%s.", scene, precision, BENCH_LABEL);
+    else study.prefix[0] = 0;
+}
 
 /* ---- one scene: rate, threads, ledger, memory ---- */
 
 static void measure(const bench_scene *s) {
-    const char *key = join(s->name, ".", precision(), BENCH_LABEL);
     bench_choice choice = BENCH_CHOICE;
     dem_world *one, *other;
     dem_counters c;
-    double ta[MOST_LOOPS], tb[MOST_LOOPS], names = s->count;
+    double ta[MOST_LOOPS], tb[MOST_LOOPS], work;
     const int steps = steps_of(s);
-    uint64_t begun;
-    char word[32];
+    uint64_t before;
+    char name[64];
+    names_begin(s->name);
+    work = (double)s->count*steps;
     choice.skin = skin_asked*s->radius;
     one = warm(s->name, s, &choice);
     if (!one) return;
-    begun = dem_counters_get(one).rebuilds;
+    before = dem_counters_get(one).rebuilds;
     if (take_turns(s->name, one, 0, steps, ta, 0)) {
-        result_rate(join(key, ".rate", "", ""), names*steps/median(ta, repeats()));
-        result_short(join(key, ".rate_spread", "", ""), spread(ta, repeats()), "%");
+        result_rate("rate", work/median(ta, repeats()));
+        result_short("rate_spread", spread(ta, repeats()), "%");
         c = dem_counters_get(one);
         if (!brief) {
-            result_short(join(key, ".contacts_per_bead", "", ""), 2.0*c.contacts/names, "");
-            result_short(join(key, ".candidates_per_bead", "", ""), c.candidates/names, "(pairs)");
-            result_short(join(key, ".steps_per_rebuild", "", ""), (double)steps*repeats()/
-                         (double)(c.rebuilds > begun ? c.rebuilds - begun : 1), "");
-            result_short(join(key, ".skin", "", ""), 1e3*(double)c.skin, "mm");
-            if (bench_is(s, "bed"))
-                result_short(join(key, ".memory_per_bead", "", ""), (double)c.memory/names, "byte");
+            result_short("contacts_per_bead", 2.0*c.contacts/s->count, "");
+            result_short("pairs_per_bead", (double)c.candidates/s->count, "");
+            result_short("steps_per_rebuild", (double)steps*repeats()/
+                         (double)(c.rebuilds > before ? c.rebuilds - before : 1), "");
+            result_short("skin", 1e3*(double)c.skin, "mm");
+            if (bench_is(s, "bed")) result_short("memory_per_bead", (double)c.memory/s->count, "byte");
         }
     }
     choice.threads = threads_asked;
-    other = threads_asked > 1 ? warm(s->name, s, &choice) : 0;
+    other = threads_asked > 1 && !cpu ? warm(s->name, s, &choice) : 0;
     if (other && dem_counters_get(other).threads != threads_asked)
         printf("SKIP: built without OpenMP, no rates on %d threads\n", threads_asked);
-    else if (other && !cpu) {
+    else if (other) {
         while (dem_world_steps(other) < dem_world_steps(one)) /* both at the same state              */
             if (loop(s->name, other, steps) < 0) break;
         if (take_turns(s->name, one, other, steps, ta, tb)) {
-            snprintf(word, sizeof word, ".threads%d", threads_asked);
-            result_rate(join(key, word, ".rate", ""), names*steps/median(tb, repeats()));
-            result_short(join(key, word, ".speedup", ""), median(ta, repeats())/median(tb, repeats()), "");
-            result_short(join(key, word, ".rate_spread", ""), spread(tb, repeats()), "%");
+            snprintf(name, sizeof name, "threads%d.rate", threads_asked);
+            result_rate(name, work/median(tb, repeats()));
+            snprintf(name, sizeof name, "threads%d.speedup", threads_asked);
+            result_short(name, median(ta, repeats())/median(tb, repeats()), "");
+            snprintf(name, sizeof name, "threads%d.rate_spread", threads_asked);
+            result_short(name, spread(tb, repeats()), "%");
             if (dem_world_hash(one) != dem_world_hash(other))
                 study_fail("%s: 1 and %d threads do not agree to the last bit", s->name, threads_asked);
         }
@@ -154,10 +154,11 @@ static void measure(const bench_scene *s) {
     other = brief ? 0 : warm(s->name, s, &choice);
     if (other) {
         if (take_turns(s->name, one, other, steps, ta, tb))
-            result_short(join(key, ".ledger_cost", "", ""), median(tb, repeats())/median(ta, repeats()), "");
+            result_short("ledger_cost", median(tb, repeats())/median(ta, repeats()), "of the default");
         dem_world_destroy(other);
     }
     dem_world_destroy(one);
+    names_begin("");
 }
 
 /* ---- what a choice costs: time of a step with it over that without, on the same scene in turns ---- */
@@ -308,9 +309,9 @@ static void settle_scene(const char *name) {
         const dem_totals t = dem_totals_get(world);
         bench_scene_take(&s, world);
         bench_scene_write(&s, study_path(bench_file(name)));
-        study_result(join(name, ".kinetic", "", ""), t.kinetic, "J");
-        study_result(join(name, ".contacts_per_bead", "", ""), 2.0*dem_counters_get(world).contacts/s.count, "");
-        study_result_text(join(name, ".file", "", ""), study_path(bench_file(name)), "");
+        study_result("kinetic", t.kinetic, "J");
+        study_result("contacts_per_bead", 2.0*dem_counters_get(world).contacts/s.count, "");
+        study_result_text("file", study_path(bench_file(name)), "");
     }
     dem_world_destroy(world);
     bench_scene_free(&s);

@@ -256,18 +256,19 @@ static int site_note(dem_vec3 c, dem_real radius, void *user) { /* notes where t
     memcpy(list->at + 3*list->count++, &c, sizeof c);
     return 0;
 }
-static int site_lower(const void *a, const void *b) {
+static int site_lower(const void *a, const void *b) { /* below a surface that rises to the right, by 30 degrees */
     const dem_real *p = (const dem_real *)a, *q = (const dem_real *)b;
-    int axis = p[1] != q[1] ? 1 : p[0] != q[0] ? 0 : 2;
-    return p[axis] < q[axis] ? -1 : p[axis] > q[axis];
+    double high = (p[1] - q[1])*cos(PI/6) - (p[0] - q[0])*sin(PI/6);
+    return high < 0 ? -1 : high > 0 ? 1 : p[2] < q[2] ? -1 : p[2] > q[2];
 }
 
-/* The lowest places of a hexagonal packing with some padding; each grain is shoved about within the padding, without
-   which rows stay rows for long. */
+/* The lowest places of a hexagonal packing with some padding, turning with the mill; each grain is shoved about within
+   the padding, without which rows stay rows for long. */
 static int charge_add(mill *m) {
     double R = m->o.diameter/2, L = m->o.length, r = m->o.radius, padding = 0.05*r;
     dem_box box = dem_box_make(-R, -R, -L/2, R, R, L/2);
     uint32_t random = 1;
+    dem_real *velocity = 0;
     int i, bad = 1;
     site_list list;
     memset(&list, 0, sizeof list);
@@ -281,8 +282,14 @@ static int charge_add(mill *m) {
             random = random*1664525u + 1013904223u;
             list.at[i] += 0.4*padding*((random >> 8)/16777216.0 - 0.5);
         }
-        bad = refused(m->world, dem_spheres_add(m->world, m->glass, m->grains, list.at, 0, 0, r));
+        velocity = (dem_real *)study_alloc(3*(size_t)m->grains, sizeof *velocity);
+        for (i = 0; i < m->grains; i++) {
+            velocity[3*i] = -m->omega*list.at[3*i + 1];
+            velocity[3*i + 1] = m->omega*list.at[3*i];
+        }
+        bad = refused(m->world, dem_spheres_add(m->world, m->glass, m->grains, list.at, velocity, 0, r));
     }
+    free(velocity);
     free(list.at);
     return bad;
 }
