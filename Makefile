@@ -18,6 +18,7 @@ LESSONS  := $(patsubst examples/%.c,build/%,$(wildcard examples/[0-9][0-9]_*.c))
 STUDIES  := $(filter-out $(LESSONS),$(patsubst examples/%.c,build/%,$(wildcard examples/*.c)))
 FUZZERS  := $(patsubst tests/%.c,build/%,$(wildcard tests/fuzz_*.c))
 BENCHES  := $(patsubst bench/%.c,build/%,$(wildcard bench/*.c))
+BENCH_ALSO := $(if $(wildcard bench/bench.c),build/bench_single build/bench_O2)
 
 hash := \#
 
@@ -60,16 +61,16 @@ examples: $(LESSONS) snippets ## build and run the numbered examples, compile th
 
 studies: $(STUDIES) ## build the studies into build/: each takes --help
 
-all: $(STUDIES) $(LESSONS) $(TESTS) $(BENCHES) ## build everything, run nothing
+all: $(STUDIES) $(LESSONS) $(TESTS) $(BENCHES) $(BENCH_ALSO) ## build everything, run nothing
 
 check: ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
 	@JOBS=$(JOBS) sh tests/check.sh
 
-bench: $(BENCHES) ## measure what the README claims
-	@if test -x build/bench; then build/bench; else echo "SKIP: there is no bench/bench.c"; fi
+bench: $(BENCHES) $(BENCH_ALSO) ## how fast, and what choices cost, in under 3 minutes; build/bench --help
+	@build/bench && build/bench_single --brief && build/bench_O2 --brief --scene bed
 
-bench-peers: $(BENCHES) ## the same scenes in other codes, where those are installed
-	@if test -f bench/peers.sh; then sh bench/peers.sh; else echo "SKIP: there is no bench/peers.sh"; fi
+bench-peers: $(BENCHES) $(BENCH_ALSO) ## the same scenes in LAMMPS and LIGGGHTS, where those are installed
+	@sh bench/peers.sh
 
 fuzz: ## FUZZ_SECONDS (600) per reader under clang's fuzzer and sanitizers
 	@FUZZ_CC="$(FUZZ_CC)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
@@ -107,6 +108,12 @@ build/write_files: tests/write_files.c
 $(TESTS) $(LESSONS) build/write_files: LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
 $(TESTS) $(LESSONS) $(STUDIES) $(BENCHES) build/write_files: dem.h build/flags
 	$(COMPILE) $(LEVEL) -o $@ $(filter %.c,$^) $(LINK)
+# benches say how they were built; bench.c also in single precision, and as plain as can be
+$(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'
+build/bench_single: bench/bench.c $(wildcard examples/study.h bench/*.h) dem.h build/flags
+	$(COMPILE) -DDEM_REAL=float -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP)) -DDEM_REAL=float"' -o $@ $< $(LINK)
+build/bench_O2: bench/bench.c $(wildcard examples/study.h bench/*.h) dem.h build/flags
+	$(CC) -std=c99 -O2 $(CPPFLAGS) -I. -DBENCH_LABEL='".O2"' -DBENCH_FLAGS='"-std=c99 -O2 $(OMP)"' -o $@ $< $(LINK)
 ifeq ($(wildcard examples/mill.c),)
 build/mill:
 	@echo "examples/mill.c is not there"; exit 1

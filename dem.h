@@ -1007,6 +1007,7 @@ typedef struct demi_wall {
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
     dem_real reach;                /* m, farthest vertex from the frame's origin; < 0: endless */
     dem_pose home, pose;           /* pose at motion start, pose now */
+    dem_pose first;                /* as it was added */
     dem_pose mid;                  /* in the middle of the step just taken */
     dem_motion motion;
     int symmetric;                 /* its motion leaves its surface in place: no search needed */
@@ -1035,7 +1036,7 @@ struct dem_world {
     char error[512];
     size_t bytes;
 
-    int material_count, pair_given;
+    int material_count, pairs_changed;
     dem_material_desc materials[DEMI_MATERIALS];
     dem_pair *pairs;               /* DEMI_MATERIALS x DEMI_MATERIALS */
 
@@ -1071,6 +1072,7 @@ struct dem_world {
 
     /* search */
     int list_valid;                /* candidate list fits the bodies */
+    double wall_fastest;           /* m/s, fastest wall point of the step */
     double skin, reach, wall_reach;/* m: margin, farthest a body / a wall point went since */
     double skin_auto;              /* m: what the cost model proposes; 0: nothing yet */
     uint64_t last_rebuild;         /* step */
@@ -1092,6 +1094,7 @@ struct dem_world {
     int32_t *carry_start, *carry_partner;
     dem_real *carry_memory;
     int carry_count, carry_rows;   /* entries; slots there were when they were filed */
+    int carry_stride;              /* reals per entry */
     int wall_stride;               /* wall candidates per domain */
     int wall_now_stride;           /* wall contacts per domain */
     demi_array wall_body_, wall_id_, wall_element_, wall_now_, wall_next_, wall_sums_;
@@ -1109,6 +1112,7 @@ struct dem_world {
     dem_real dt;
     double assumed_speed;          /* m/s, behind dt */
     int dt_valid, forces_valid, synced, primed;
+    int moved;                     /* a step has moved and lacks its forces: memory ran out in it */
     uint32_t stamp;
     double overlap_max, speed_max;
     double energy[DEMI_ENERGIES], energy_inserted, energy_removed, energy_opening;
@@ -1247,7 +1251,6 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
     for (i = 0; i <= n; i++)
         w->pairs[i*DEMI_MATERIALS + n] = w->pairs[n*DEMI_MATERIALS + i] =
             demi_mix(&w->materials[i], desc);
-    w->list_valid = w->dt_valid = 0;
     id.id = n + 1;
     return id;
 }
@@ -1284,7 +1287,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     if (!bad && (!demi_finite(p->field) || !(good))) { \
         bad = #field; value = p->field; limit = text; \
     }
-    DEMI_BAD(young_eff, p->young_eff > 0 || p->stiffness > 0, "> 0 Pa")
+    DEMI_BAD(young_eff, p->young_eff > 0 || (p->young_eff >= 0 && p->stiffness > 0 &&
+             w->desc.normal_law == DEM_NORMAL_LINEAR), "> 0 Pa")
     DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
     DEMI_BAD(restitution, p->restitution > 0 && p->restitution <= 1, "> 0 and <= 1")
     DEMI_BAD(friction, p->friction >= 0, ">= 0")
@@ -1300,8 +1304,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
                          "from dem_pair_get and change what differs", bad, i + 1, j + 1,
                          (double)value, limit);
     w->pairs[i*DEMI_MATERIALS + j] = w->pairs[j*DEMI_MATERIALS + i] = *p;
-    w->pair_given = 1;
-    w->list_valid = w->dt_valid = 0;
+    w->pairs_changed = 1;                       /* the next step makes a new list of it */
+    w->dt_valid = 0;
     return DEM_OK;
 }
 
@@ -1427,6 +1431,18 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
    filed by slot and finds its way into the next list.
    --------------------------------------------------------------------------------------------- */
 
+/* Room for filed memory. 0 when memory ran out. */
+static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
+    if (!demi_array_grow(w, &w->carry_start_, sizeof(int32_t), (size_t)rows + 2) ||
+        !demi_array_grow(w, &w->carry_partner_, sizeof(int32_t), (size_t)count) ||
+        !demi_array_grow(w, &w->carry_memory_, sizeof(dem_real), (size_t)count*(size_t)stride))
+        return 0;
+    w->carry_start = (int32_t *)w->carry_start_.data;
+    w->carry_partner = (int32_t *)w->carry_partner_.data;
+    w->carry_memory = (dem_real *)w->carry_memory_.data;
+    return 1;
+}
+
 /* Files the memory of all touching pairs by slot: row = lower slot; partner = higher slot, or its
    complement when body a of the pair was the higher one. 0 when memory ran out. */
 static int demi_carry_collect(dem_world *w) {
@@ -1434,8 +1450,7 @@ static int demi_carry_collect(dem_world *w) {
     int d, l, k, total = 0, pass;
     w->carry_count = 0;
     if (!stride || !w->domain_count) return 1;
-    if (!demi_array_grow(w, &w->carry_start_, sizeof(int32_t), (size_t)w->slot_count + 2)) return 0;
-    w->carry_start = (int32_t *)w->carry_start_.data;
+    if (!demi_carry_reserve(w, w->slot_count, 0, stride)) return 0;
     memset(w->carry_start, 0, ((size_t)w->slot_count + 2)*sizeof(int32_t));
     for (pass = 0; pass < 2; pass++) {          /* count by row, then fill */
         for (l = 0; l < lists; l++) {
@@ -1457,16 +1472,13 @@ static int demi_carry_collect(dem_world *w) {
             }
         }
         if (pass == 0) {
-            if (!demi_array_grow(w, &w->carry_partner_, sizeof(int32_t), (size_t)total) ||
-                !demi_array_grow(w, &w->carry_memory_, sizeof(dem_real),
-                                 (size_t)total*(size_t)stride)) return 0;
-            w->carry_partner = (int32_t *)w->carry_partner_.data;
-            w->carry_memory = (dem_real *)w->carry_memory_.data;
+            if (!demi_carry_reserve(w, w->slot_count, total, stride)) return 0;
             for (k = 2; k < w->slot_count + 2; k++) w->carry_start[k] += w->carry_start[k - 1];
         }
     }
     w->carry_count = total;
     w->carry_rows = w->slot_count;
+    w->carry_stride = stride;
     return 1;
 }
 
@@ -1571,6 +1583,7 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
                                                               4*sizeof(dem_real));
     memset(w->half_spin + 4*i, 0, 4*sizeof(dem_real));
     demi_put(w->pos + 4*i, x);
+    if (w->desc.planar) w->pos[4*i + 2] = 0;
     w->pos[4*i + 3] = radius;
     w->mass[i] = (dem_real)m;
     w->inv_mass[i] = (dem_real)(1/m);
@@ -1615,6 +1628,7 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
         const int k = w->slot_index[slot];
         if (velocities) demi_put(w->vel + 4*k, demi_at(velocities + 3*i));
         if (w->desc.planar) w->vel[4*k + 2] = 0;
+        demi_put(w->half_vel + 4*k, demi_at(w->vel + 4*k));
         w->energy_inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
@@ -1711,7 +1725,8 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     demi_put(w->pos + 4*i, s->position);
     demi_put(w->vel + 4*i, s->velocity);
     demi_put(w->spin + 4*i, s->spin);
-    if (w->desc.planar) w->vel[4*i + 2] = w->spin[4*i] = w->spin[4*i + 1] = 0;
+    if (w->desc.planar)
+        w->pos[4*i + 2] = w->vel[4*i + 2] = w->spin[4*i] = w->spin[4*i + 1] = 0;
     w->inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->inv_inertia[i] = s->fixed ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
         (double)w->pos[4*i + 3]));
@@ -1861,7 +1876,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
                              dem_box box, dem_inside_fn inside, void *user, int count) {
     const double r = (double)radius + (double)padding/2, slack = 1e-9*r;
     double size[3];
-    int i, j, k, n[3], m = 0, done = 0;
+    int i, j, k, n[3], m = 0, done = 0, pass;
     if (demi_material_index(w, "dem_spheres_pack", material, &m) != DEM_OK) return 0;
     if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
         count < 0 ||
@@ -1877,23 +1892,26 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     size[2] = w->desc.planar ? 0 : (double)(box.hi.z - box.lo.z) - 2*(double)radius;
     for (k = 0; k < 3; k++) n[k] = size[k] < 0 ? 0 : (int)DEMI_MIN(size[k]/r + 2, 1e8);
     if (w->desc.planar) n[2] = 1;
-    for (k = 0; k < n[2]; k++)
-        for (j = 0; j < n[1]; j++)
-            for (i = 0; i < n[0]; i++) {
-                dem_vec3 s = demi_pack_site(i, j, k, r), x;
-                if ((double)s.x > size[0] + slack) break;
-                if ((double)s.y > size[1] + slack || (double)s.z > size[2] + slack) break;
-                x = demi_v(box.lo.x + radius + s.x, box.lo.y + radius + s.y,
-                           w->desc.planar ? 0 : box.lo.z + radius + s.z);
-                if (inside && !inside(x, radius, user)) continue;
-                if (!demi_bodies_reserve(w, (size_t)w->count + 1)) {
-                    demi_no_memory(w, "dem_spheres_pack");
-                    demi_scene_changed(w);
-                    return done;
+    for (pass = 0; pass < 2; pass++) {          /* count, make room, add: all or nothing */
+        done = 0;
+        for (k = 0; k < n[2]; k++)
+            for (j = 0; j < n[1]; j++)
+                for (i = 0; i < n[0]; i++) {
+                    const dem_vec3 s = demi_pack_site(i, j, k, r);
+                    dem_vec3 x;
+                    if ((double)s.x > size[0] + slack || (double)s.y > size[1] + slack ||
+                        (double)s.z > size[2] + slack) break;
+                    x = demi_v(box.lo.x + radius + s.x, box.lo.y + radius + s.y,
+                               w->desc.planar ? 0 : box.lo.z + radius + s.z);
+                    if ((count && done == count) || (inside && !inside(x, radius, user))) continue;
+                    if (pass) demi_body_append(w, m, radius, x);
+                    done++;
                 }
-                demi_body_append(w, m, radius, x);
-                if (++done == count) { demi_scene_changed(w); return done; }
-            }
+        if (!pass && !demi_bodies_reserve(w, (size_t)w->count + (size_t)done)) {
+            demi_no_memory(w, "dem_spheres_pack");
+            return 0;
+        }
+    }
     demi_scene_changed(w);
     return done;
 }
@@ -1954,6 +1972,12 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     }
     case DEM_MOTION_USER: m->function(time, pose, m->user); break;
     }
+}
+
+static int demi_pose_finite(const dem_pose *p) {
+    int i, ok = demi_finite3(p->position) && demi_finite3(p->velocity) && demi_finite3(p->spin);
+    for (i = 0; i < 9; i++) ok = ok && demi_finite(p->rotation[i]);
+    return ok;
 }
 
 /* An upper bound of the speed of the wall's surface (m/s); 0 when its motion leaves the surface in
@@ -2074,7 +2098,7 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
 static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
     dem_wall id;
     id.id = 0;
-    wall->pose = wall->mid = wall->home;
+    wall->pose = wall->mid = wall->first = wall->home;
     if (!demi_list_drop(w)) { demi_wall_free(w, wall); demi_no_memory(w, call); return id; }
     if (w->wall_count == w->wall_capacity) {
         const size_t room = (size_t)w->wall_capacity*2 + 8;
@@ -2324,6 +2348,7 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
         !demi_finite3(motion->axis) ||
         !demi_finite(motion->speed) || !demi_finite(motion->amplitude) ||
         !demi_finite(motion->frequency) ||
+        !demi_finite(motion->phase) || !(motion->start > -1e300 && motion->start < 1e300) ||
         (int)motion->kind < 0 || motion->kind > DEM_MOTION_USER)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: a number in the motion of wall "
                          "%d is not finite, or "
@@ -2968,6 +2993,18 @@ static int demi_cross_index(dem_world *w) {
     return 1;
 }
 
+/* Writes the coefficients of a grain's contact with a wall. */
+static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
+    const demi_wall *wall = &w->walls[c->wall];
+    const double r = (double)w->pos[4*c->body + 3];
+    const double r_eff = wall->kind == DEMI_WALL_GRAINS
+        ? r*(double)wall->radius/(r + (double)wall->radius) : r;
+    const int grains = wall->kind == DEMI_WALL_GRAINS;
+    const int mill = w->desc.convention == DEM_CONVENTION_MILL;  /* there a grain of a wall has mass */
+    demi_coefficients(w, w->body_material[c->body] - 1, wall->material, r_eff,
+                      (double)w->mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
+}
+
 /* Contacts with walls that still last, from the last list (by slot) into the domains of the new
    one. */
 static int demi_wall_contacts_move(dem_world *w, int stride) {
@@ -2983,7 +3020,9 @@ static int demi_wall_contacts_move(dem_world *w, int stride) {
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             demi_wall_contact c = w->wall_now[d*w->wall_now_stride + k];
             c.body = w->slot_index[c.body];
-            if (c.body >= 0 && w->walls[c.wall].kind != DEMI_WALL_NONE) w->wall_next[e++] = c;
+            if (c.body < 0 || w->walls[c.wall].kind == DEMI_WALL_NONE) continue;
+            demi_wall_coefs(w, &c);
+            w->wall_next[e++] = c;
         }
         w->domains[d].wall_contacts = 0;
     }
@@ -3084,11 +3123,9 @@ static void demi_skin_choose(dem_world *w) {
 static dem_result demi_rebuild(dem_world *w) {
     int d, k, stride, again;
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
-    k = w->memory_stride;
     demi_effects(w);
     demi_skin_choose(w);
-    /* other laws than before: their memory means nothing */
-    if (k != w->memory_stride) w->carry_count = 0;
+    if (w->carry_stride != w->memory_stride) w->carry_count = 0;  /* other laws: memory means nothing */
     demi_wrap(w);
     for (k = 0; k < 3; k++) {
         const demi_periods p = demi_periods_of(w);
@@ -3915,17 +3952,6 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     c->user = w->desc.law_user;
 }
 
-static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
-    const demi_wall *wall = &w->walls[c->wall];
-    const double r = (double)w->pos[4*c->body + 3];
-    const double r_eff = wall->kind == DEMI_WALL_GRAINS
-        ? r*(double)wall->radius/(r + (double)wall->radius) : r;
-    const int grains = wall->kind == DEMI_WALL_GRAINS;
-    const int mill = w->desc.convention == DEM_CONVENTION_MILL;  /* there a grain of a wall has mass */
-    demi_coefficients(w, w->body_material[c->body] - 1, wall->material, r_eff,
-                      (double)w->mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
-}
-
 /* Touching elements of one wall for one grain, from its candidates first .. last - 1. */
 static int demi_wall_collect(const dem_world *w, int d, int first, int last,
                              demi_wall_contact *out) {
@@ -4344,37 +4370,60 @@ static double demi_speed_estimate(const dem_world *w) {
 
 /* Shortest contact among all material pairs and walls there are, for their smallest grains. */
 static void demi_advise(const dem_world *w, dem_advice *out) {
-    double smallest[DEMI_MATERIALS], speed = demi_speed_estimate(w), best = 1e300, rayleigh = 1e300;
-    int i, j, at_i = -1, at_j = -1, at_wall = 0;
-    for (i = 0; i < DEMI_MATERIALS; i++) smallest[i] = 0;
+    double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];     /* moving; largest that is fixed */
+    double speed = demi_speed_estimate(w), best = 1e300, rayleigh = 1e300, other_radius = 0;
+    int many[DEMI_MATERIALS], i, j, at_i = -1, at_j = -1, at_wall = 0;
+    for (i = 0; i < DEMI_MATERIALS; i++) { smallest[i] = peg[i] = 0; many[i] = 0; }
     for (i = 0; i < w->count; i++) {
-        double *s = &smallest[w->body_material[i] - 1], r = (double)w->pos[4*i + 3];
-        if (w->inv_mass[i] <= 0) continue;
-        if (*s <= 0 || r < *s) *s = r;
+        const int m = w->body_material[i] - 1;
+        const double r = (double)w->pos[4*i + 3];
+        if (w->inv_mass[i] <= 0) { peg[m] = DEMI_MAX(peg[m], r); continue; }
+        if (!many[m]++ || r < smallest[m]) smallest[m] = r;
     }
     for (i = 0; i < w->material_count; i++) {
         const double r = smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r) : 0;
-        const double nu = (double)w->materials[i].poisson, G =
-            (double)w->materials[i].young/(2*(1 + nu));
+        const double nu = (double)w->materials[i].poisson;
+        const double G = (double)w->materials[i].young/(2*(1 + nu));
+        const int kinds = 2*w->material_count + w->wall_count;  /* moving grains, fixed ones, walls */
         dem_real coef[DEMI_COEFS];
         if (r <= 0) continue;
-        if (G > 0) rayleigh = DEMI_MIN(rayleigh,
-                                       DEMI_PI*r*sqrt((double)w->materials[i].density/G)/(0.1631*nu + 0.8766));
-        for (j = 0; j < w->material_count + w->wall_count; j++) {
-            const int wall = j - w->material_count, other = wall < 0 ? j : w->walls[wall].material;
-            double m_eff = m, r_eff = r, t;
+        if (G > 0)
+            rayleigh = DEMI_MIN(rayleigh, DEMI_PI*r*sqrt((double)w->materials[i].density/G)/
+                                          (0.1631*nu + 0.8766));
+        for (j = 0; j < kinds; j++) {
+            const int wall = j - 2*w->material_count;
+            const int other = wall >= 0 ? w->walls[wall].material : j%w->material_count;
+            double m_eff = m, r_eff = r, partner = 0, t;
             if (wall >= 0 && w->walls[wall].kind == DEMI_WALL_NONE) continue;
             if (wall < 0) {
-                if (smallest[j] <= 0) continue;
-                m_eff = 1/(1/m + 1/demi_sphere_mass(w, j, smallest[j]));
-                r_eff = r*smallest[j]/(r + smallest[j]);
+                const int fixed = j >= w->material_count;
+                partner = fixed ? peg[other] : smallest[other];
+                if (partner <= 0 || (!fixed && other == i && many[i] < 2)) continue;
+                if (!fixed) m_eff = 1/(1/m + 1/demi_sphere_mass(w, other, partner));
+                r_eff = r*partner/(r + partner);
             }
             demi_coefficients(w, i, other, r_eff, m_eff, wall >= 0, coef);
-            if (w->desc.law && w->desc.law_stiffness > 0) t =
-                DEMI_PI*sqrt(m_eff/(double)w->desc.law_stiffness);
+            if (w->desc.law && w->desc.law_stiffness > 0)
+                t = DEMI_PI*sqrt(m_eff/(double)w->desc.law_stiffness);
             else t = demi_contact_time(w, coef, m_eff, speed);
-            if (t < best) { best = t; at_i = i; at_j = other; at_wall = wall + 1; }
+            if (t >= best) continue;
+            best = t;
+            at_i = i;
+            at_j = other;
+            at_wall = wall >= 0 ? wall + 1 : 0;
+            other_radius = partner;
         }
+    }
+    for (i = 0; i < w->material_count && at_i < 0; i++) {     /* one grain alone: meets its like */
+        const double m = smallest[i] > 0 ? demi_sphere_mass(w, i, smallest[i])/2 : 0;
+        dem_real coef[DEMI_COEFS];
+        if (m <= 0) continue;
+        demi_coefficients(w, i, i, smallest[i]/2, m, 0, coef);
+        best = demi_contact_time(w, coef, m, speed);
+        if (w->desc.law && w->desc.law_stiffness > 0)
+            best = DEMI_PI*sqrt(m/(double)w->desc.law_stiffness);
+        at_i = at_j = i;
+        other_radius = smallest[i];
     }
     memset(out, 0, sizeof *out);
     out->speed = (dem_real)speed;
@@ -4387,7 +4436,7 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
     else
         snprintf(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g m, "
                  "at %.3g m/s", at_i + 1,
-                 at_j + 1, smallest[at_i], smallest[at_j], speed);
+                 at_j + 1, smallest[at_i], other_radius, speed);
     out->contact_time = (dem_real)best;
     out->dt = (dem_real)(best/50);
     out->dt_max = (dem_real)(best/20);
@@ -4420,6 +4469,7 @@ static dem_result demi_dt_settle(dem_world *w) {
         if (!(w->dt > 0)) w->dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
         return DEM_OK;
     }
+    demi_finish(w);                             /* speeds are those of now, whoever asks */
     demi_advise(w, &a);
     if (w->desc.dt > 0) {
         if (!w->desc.allow_large_dt && a.contact_time > 0 && w->desc.dt > a.dt_max)
@@ -4498,8 +4548,12 @@ static void demi_domain_respond(dem_world *w, int d) {
     w->kernel(w, d);
 }
 static void demi_domain_gather(dem_world *w, int d) {
+    int i;
     if (w->cross_entries) demi_cross_gather(w, d);
     demi_walls_respond(w, d);
+    if (!w->desc.planar) return;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++)  /* nothing pushes a disc out of its plane */
+        w->force[4*i + 2] = w->torque[4*i] = w->torque[4*i + 1] = 0;
 }
 /* Forces at the present positions and velocities; wall channels. */
 static void demi_forces(dem_world *w) {
@@ -4597,14 +4651,11 @@ static dem_result demi_outflow(dem_world *w) {
 
 static void demi_fields_sample(dem_world *w);
 
-/* One step. Numbers as in the manual. */
-static dem_result demi_step_once(dem_world *w) {
-    double speed2 = 0, wall_speed = 0, overlap = 0;
-    dem_result result;
-    int d, i, look;
+/* 1 move: first half kick, drift, predicted velocities; walls follow. */
+static dem_result demi_step_move(dem_world *w) {
+    double speed2 = 0;
+    int d, i;
     w->half_kick = (double)w->dt/2;
-
-    /* 1 move: first half kick, drift, predicted velocities; walls follow */
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
     w->synced = 0;
     w->time += (double)w->dt;
@@ -4615,6 +4666,7 @@ static dem_result demi_step_once(dem_world *w) {
         speed2 = DEMI_MAX(speed2, w->domains[d].speed2);
     }
     w->speed_max = sqrt(speed2);
+    w->reach += w->speed_max*(double)w->dt;
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->energy[DEMI_E_GRAVITY] += work;
@@ -4622,65 +4674,95 @@ static dem_result demi_step_once(dem_world *w) {
     }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
-        double s;
+        double speed;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(wall, w->time, &wall->pose);
         demi_wall_pose_at(wall, w->time - w->half_kick, &wall->mid);
-        s = demi_wall_speed(wall);
-        wall_speed = s < 0 || wall_speed < 0 ? -1 : DEMI_MAX(wall_speed, s);
+        if (!demi_pose_finite(&wall->pose) || !demi_pose_finite(&wall->mid))
+            return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: the motion of wall %d gave a "
+                             "pose that is not finite at %g s; check the motion function",
+                             (unsigned long long)w->steps, i + 1, w->time);
+        speed = demi_wall_speed(wall);
+        if (speed < 0) w->wall_reach = 1e300;   /* no bound: look anew */
+        else w->wall_fastest = DEMI_MAX(w->wall_fastest, speed);
+    }
+    w->wall_reach += w->wall_fastest*(double)w->dt;
+    w->wall_fastest = 0;
+    return DEM_OK;
+}
+
+/* One step. Numbers as in the manual. A step that ran out of memory after its move goes on from there. */
+static dem_result demi_step_once(dem_world *w) {
+    double overlap = 0;
+    dem_result result;
+    int d;
+    if (!w->moved) {
+        result = demi_step_move(w);
+        if (result != DEM_OK) return result;
+        w->moved = 1;
     }
     result = demi_outflow(w);
     if (result != DEM_OK) return result;
 
     /* 2 search: when something may have come near that is not in the list */
-    w->reach += w->speed_max*(double)w->dt;
-    w->wall_reach += DEMI_MAX(wall_speed, 0)*(double)w->dt;
-    look = !w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach +
-        w->wall_reach > w->skin || wall_speed < 0;
-    if (look) {
+    if (!w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach + w->wall_reach > w->skin) {
         result = demi_rebuild(w);
         if (result != DEM_OK) return result;
         demi_kernel_choose(w);
-        /* faster than thought: ask again */
-        if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;
+        if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;     /* faster than thought: ask again */
     }
 
     /* 3 touch, 4 respond, 5 gather */
     demi_forces(w);
+    w->moved = 0;
 
-    /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish)
-       */
+    /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish) */
     for (d = 0; d < w->domain_count; d++) overlap = DEMI_MAX(overlap, w->domains[d].overlap);
     if (!(overlap < 1)) return demi_unstable(w);
     return DEM_OK;
 }
 
+/* Something changed since the last step: forces at t, by a new list if need be; memory stays. */
+static dem_result demi_refresh(dem_world *w) {
+    dem_result result;
+    demi_finish(w);
+    if (w->pairs_changed && !demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+    if (!w->list_valid) {
+        result = demi_rebuild(w);
+        if (result != DEM_OK) return result;
+    }
+    w->pairs_changed = 0;
+    demi_kernel_choose(w);
+    w->forces_valid = 0;
+    demi_forces(w);
+    w->forces_valid = 1;
+    return DEM_OK;
+}
+
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     dem_result result = DEM_OK;
-    int i, f;
-    if (steps < 0) return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be "
-                                    ">= 0", steps);
+    int i, f, whole = 1;
+    if (steps < 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         int sampling = 0;
-        result = demi_dt_settle(w);
-        if (result != DEM_OK) break;
-        /* something changed since: forces at t, no memory moved */
-        if (!w->forces_valid || !w->list_valid) {
-            demi_finish(w);
-            if (!w->list_valid) result = demi_rebuild(w);
+        if (!w->moved) {
+            result = demi_dt_settle(w);
+            if (result == DEM_OK && (!w->forces_valid || !w->list_valid || w->pairs_changed))
+                result = demi_refresh(w);
             if (result != DEM_OK) break;
-            demi_kernel_choose(w);
-            w->forces_valid = 0;
-            demi_forces(w);
-            w->forces_valid = 1;
+            if (!w->primed) { demi_finish(w); demi_prime(w); }
         }
-        if (!w->primed) { demi_finish(w); demi_prime(w); }
         result = demi_step_once(w);
-        for (f = 0; f < w->field_count; f++) sampling |= w->fields[f].used &&
-            w->time >= w->fields[f].next;
-        if (sampling && result == DEM_OK) { demi_finish(w); demi_fields_sample(w); }
+        whole = result == DEM_OK;
+        for (f = 0; f < w->field_count; f++)
+            sampling |= w->fields[f].used && w->time >= w->fields[f].next;
+        if (sampling && whole) { demi_finish(w); demi_fields_sample(w); }
     }
-    if (result != DEM_ERROR_UNSTABLE && w->domain_count && w->list_valid) demi_finish(w);
+    if (!whole) return result;                  /* half a step: its velocities stay as predicted */
+    demi_finish(w);
+    for (i = 0; i < w->count; i++)              /* a law or field may spoil the last half kick */
+        if (!demi_finite3(demi_at(w->vel + 4*i))) return demi_unstable(w);
     return result;
 }
 
@@ -5970,6 +6052,7 @@ typedef struct demi_shape {         /* how large the arrays are */
     int32_t count, slots, domains, walls, fields, own_stride, cross_stride, wall_stride,
         wall_now_stride, memory_stride;
     int32_t list_valid, own_total, cross_total, candidate_total, contact_total;
+    int32_t carry_count, carry_rows, carry_stride;
 } demi_shape;
 static demi_shape demi_shape_of(const dem_world *w) {
     demi_shape s;
@@ -5981,6 +6064,9 @@ static demi_shape demi_shape_of(const dem_world *w) {
     s.wall_stride = w->wall_stride; s.wall_now_stride = w->wall_now_stride;
     s.memory_stride = w->memory_stride;
     s.list_valid = w->list_valid;
+    s.carry_count = w->list_valid ? 0 : w->carry_count;      /* memory between two lists */
+    s.carry_rows = s.carry_count ? w->carry_rows : 0;
+    s.carry_stride = s.carry_count ? w->carry_stride : 0;
     for (d = 0; d < w->domain_count; d++) {
         s.own_total += w->domains[d].own;
         s.cross_total += w->domains[d].cross;
@@ -5999,7 +6085,9 @@ static size_t demi_state_size(const dem_world *w, const demi_shape *s) {
     int i;
     size += pairs*(12 + (size_t)s->memory_stride*r) + (size_t)s->candidate_total*12;
     size += (size_t)s->contact_total*sizeof(demi_wall_contact);
-    size += (size_t)s->walls*(3*sizeof(dem_pose) + sizeof(dem_channels) + 4*sizeof(dem_vec3));
+    size += (size_t)s->walls*(3*sizeof(dem_pose) + sizeof(dem_channels) + sizeof(dem_motion));
+    if (s->carry_count)
+        size += ((size_t)s->carry_rows + 2)*4 + (size_t)s->carry_count*(4 + (size_t)s->carry_stride*r);
     for (i = 0; i < w->field_count; i++) size += 16 +
         5*sizeof(double)*demi_field_cells(&w->fields[i]);
     return size;
@@ -6020,8 +6108,10 @@ static void demi_state_scalars(dem_world *w, demi_stream *s) {
         sizeof w->assumed_speed);
     demi_visit(s, &w->dt_valid, sizeof w->dt_valid);         demi_visit(s, &w->forces_valid,
         sizeof w->forces_valid);
-    demi_visit(s, &w->synced, sizeof w->synced);             demi_visit(s, &w->primed,
-        sizeof w->primed);
+    demi_visit(s, &w->synced, sizeof w->synced);
+    demi_visit(s, &w->primed, sizeof w->primed);
+    demi_visit(s, &w->moved, sizeof w->moved);
+    demi_visit(s, &w->pairs_changed, sizeof w->pairs_changed);
     demi_visit(s, &w->stamp, sizeof w->stamp);               demi_visit(s, &w->overlap_max,
         sizeof w->overlap_max);
     demi_visit(s, &w->speed_max, sizeof w->speed_max);       demi_visit(s, w->energy,
@@ -6036,7 +6126,7 @@ static void demi_state_scalars(dem_world *w, demi_stream *s) {
 static size_t demi_scalars_size(dem_world *w) {
     return sizeof w->balance + 4*sizeof(double) + 3*sizeof(uint64_t) + sizeof(double) +
         sizeof(dem_real) + sizeof(double) +
-           4*sizeof(int) + sizeof(uint32_t) + 2*sizeof(double) + sizeof w->energy +
+           6*sizeof(int) + sizeof(uint32_t) + 2*sizeof(double) + sizeof w->energy +
                4*sizeof(double) + 2*sizeof(int);
 }
 static void demi_state_visit(dem_world *w, demi_stream *s) {
@@ -6071,17 +6161,22 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_now + d*w->wall_now_stride,
                    (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
     }
+    if (!w->list_valid && w->carry_count) {
+        demi_visit(s, w->carry_start, ((size_t)w->carry_rows + 2)*4);
+        demi_visit(s, w->carry_partner, (size_t)w->carry_count*4);
+        demi_visit(s, w->carry_memory, (size_t)w->carry_count*(size_t)w->carry_stride*r);
+    }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
+        dem_motion motion = wall->motion;
         demi_visit(s, &wall->home, sizeof wall->home);
         demi_visit(s, &wall->pose, sizeof wall->pose);
         demi_visit(s, &wall->mid, sizeof wall->mid);
         demi_visit(s, &wall->channels, sizeof wall->channels);
-        demi_visit(s, &wall->motion.velocity, sizeof(dem_vec3));
-        demi_visit(s, &wall->motion.point, sizeof(dem_vec3));
-        demi_visit(s, &wall->motion.axis, sizeof(dem_vec3));
-        demi_visit(s, &wall->motion.speed, sizeof(dem_real));
-        demi_visit(s, &wall->motion.amplitude, 2*sizeof(dem_real));
+        demi_visit(s, &motion, sizeof motion);
+        motion.function = wall->motion.function;             /* pointers are the reader's own */
+        motion.user = wall->motion.user;
+        wall->motion = motion;
     }
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
@@ -6120,14 +6215,26 @@ static uint64_t demi_scene_digest(const dem_world *w) {
         const demi_wall *wall = &w->walls[i];
         const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule,
                             wall->vertex_count,
-                            wall->element_count, (int)wall->motion.kind};
+                            wall->element_count, wall->motion.kind == DEM_MOTION_USER};
         h = demi_hash(h, what, sizeof what);
         h = demi_hash(h, &wall->radius, sizeof(dem_real));
+        h = demi_hash(h, &wall->share, sizeof(dem_real));
+        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_CYLINDER)
+            h = demi_hash(h, &wall->first, sizeof wall->first);
+        if (wall->corners)
+            h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
+                          (wall->kind == DEMI_WALL_MESH ? 3 : 2));
         if (wall->vertices) h = demi_hash(h, wall->vertices,
                                           (size_t)wall->vertex_count*3*sizeof(dem_real));
     }
-    for (i = 0; i < w->field_count; i++) h = demi_hash(h, w->fields[i].desc.cells,
-                                                       sizeof w->fields[i].desc.cells);
+    for (i = 0; i < w->field_count; i++) {
+        const dem_field_desc *f = &w->fields[i].desc;
+        h = demi_hash(h, &f->box, sizeof f->box);
+        h = demi_hash(h, f->cells, sizeof f->cells);
+        h = demi_hash(h, &f->start, sizeof f->start);
+        h = demi_hash(h, &f->end, sizeof f->end);
+        h = demi_hash(h, &f->interval, sizeof f->interval);
+    }
     return h;
 }
 
@@ -6143,7 +6250,9 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     demi_out out;
     demi_stream s;
     uint64_t sum;
-    if (demi_out_open(&out, w, "dem_checkpoint_write", path) != DEM_OK) return DEM_ERROR_FILE;
+    dem_result result;
+    result = demi_out_open(&out, w, "dem_checkpoint_write", path);
+    if (result != DEM_OK) return result;
     memset(&head, 0, sizeof head);
     memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
     head.version = DEMI_CHECKPOINT_VERSION;
@@ -6248,6 +6357,7 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     w->wall_now = (demi_wall_contact *)w->wall_now_.data;
     w->wall_next = (demi_wall_contact *)w->wall_next_.data;
     w->wall_sums = (demi_wall_sum *)w->wall_sums_.data;
+    room = room && demi_carry_reserve(w, shape->carry_rows, shape->carry_count, shape->carry_stride);
     if (!room) {
         w->own.stride = own; w->cross.stride = cross; w->wall_stride = walls;
         w->domain_count = domains; w->memory_stride = stride; w->uniform = uniform;
@@ -6257,6 +6367,10 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     w->count = shape->count;
     w->slot_count = shape->slots;
     w->wall_now_stride = shape->wall_now_stride;
+    w->list_valid = shape->list_valid;
+    w->carry_count = shape->carry_count;
+    w->carry_rows = shape->carry_rows;
+    w->carry_stride = shape->carry_stride;
     for (d = 0; d < DEMI_DOMAINS; d++) memset(&w->domains[d], 0, sizeof w->domains[d]);
     s.file = 0;
     s.from = (const char *)bytes.data + sizeof head;
@@ -6269,9 +6383,7 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     demi_state_visit(w, &s);
     demi_array_free(w, &bytes);
     demi_effects(w);
-    w->list_valid = shape->list_valid;
     w->lll_valid = 0;
-    w->carry_count = 0;
     if (!w->uniform)
         for (d = 0; d < w->domain_count; d++) {
             for (k = 0; k < w->domains[d].own; k++) demi_pair_coefs(w, &w->own, d*w->own.stride +
@@ -6336,6 +6448,10 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         d->rolling_law > DEM_ROLLING_EPSD)
         return "dem_world_create: a contact law is unknown, must be one of the enum values; start "
             "from DEM_WORLD_DESC";
+    if ((int)d->tension < 0 || d->tension > DEM_TENSION_CLIPPED || (int)d->convention < 0 ||
+        d->convention > DEM_CONVENTION_MILL)
+        return "dem_world_create: tension or convention is unknown, must be one of the enum values; "
+               "start from DEM_WORLD_DESC";
     if ((int)d->integrator < 0 || d->integrator > DEM_LEAPFROG || (int)d->search < 0 ||
         d->search > DEM_SEARCH_LINKED_LIST)
         return "dem_world_create: integrator or search is unknown, must be one of the enum values; "

@@ -9,7 +9,6 @@
    medians are told, with half the range beside them. Ratios need a quiet machine: `spread` says how
    quiet it was. --cpu counts processor time instead, for looking at one thread while others work. */
 #define DEM_IMPLEMENTATION
-#define DEM_STATIC
 #include "dem.h"
 #include "examples/study.h"
 #include "bench/scenes.h"
@@ -56,7 +55,7 @@ static double spread(const double *values, int count) { /* half the range over t
 }
 
 static int steps_of(const bench_scene *s) { /* of one timed loop                                   */
-    const int steps = bench_is(s, "gas") ? 200 : 60;
+    const int steps = bench_is(s, "gas") ? 300 : 80;
     return steps_asked ? steps_asked : full ? 10*steps : steps;
 }
 static int repeats(void) { return repeat_asked ? repeat_asked : full ? 9 : 5; }
@@ -74,14 +73,17 @@ static dem_world *warm(const char *what, const bench_scene *s, const bench_choic
     return world;
 }
 
-/* Loops of two worlds in turns; b may be null. 0 when one of them broke. */
+/* Loops of two worlds in turns; b may be null. Answers how many turns: fewer than asked, but no fewer than
+   three, when they take long (a busy machine); 0 when a run broke. */
 static int take_turns(const char *what, dem_world *a, dem_world *b, int steps, double *ta, double *tb) {
+    const double begun = study_clock();
     int r;
     for (r = 0; r < repeats(); r++) {
+        if (r >= 3 && !repeat_asked && !full && study_clock() - begun > 4) break;
         if ((ta[r] = loop(what, a, steps)) < 0) return 0;
         if (b && (tb[r] = loop(what, b, steps)) < 0) return 0;
     }
-    return 1;
+    return r;
 }
 
 static void result_rate(const char *name, double rate) { /* with the exponent one reads rates in     */
@@ -109,6 +111,7 @@ static void measure(const bench_scene *s) {
     dem_counters c;
     double ta[MOST_LOOPS], tb[MOST_LOOPS], work;
     const int steps = steps_of(s);
+    int turns;
     uint64_t before;
     char name[64];
     names_begin(s->name);
@@ -116,47 +119,45 @@ static void measure(const bench_scene *s) {
     choice.skin = skin_asked*s->radius;
     one = warm(s->name, s, &choice);
     if (!one) return;
+    choice.threads = threads_asked;
+    other = threads_asked > 1 && !cpu ? warm(s->name, s, &choice) : 0;
+    if (other && dem_counters_get(other).threads != threads_asked) {
+        printf("SKIP: built without OpenMP, no rates on %d threads\n", threads_asked);
+        dem_world_destroy(other);
+        other = 0;
+    }
     before = dem_counters_get(one).rebuilds;
-    if (take_turns(s->name, one, 0, steps, ta, 0)) {
-        result_rate("rate", work/median(ta, repeats()));
-        result_short("rate_spread", spread(ta, repeats()), "%");
+    turns = take_turns(s->name, one, other, steps, ta, tb);
+    if (turns) {
+        result_rate("rate", work/median(ta, turns));
+        result_short("rate_spread", spread(ta, turns), "%");
         c = dem_counters_get(one);
         if (!brief) {
             result_short("contacts_per_bead", 2.0*c.contacts/s->count, "");
             result_short("pairs_per_bead", (double)c.candidates/s->count, "");
-            result_short("steps_per_rebuild", (double)steps*repeats()/
+            result_short("steps_per_rebuild", (double)steps*turns/
                          (double)(c.rebuilds > before ? c.rebuilds - before : 1), "");
             result_short("skin", 1e3*(double)c.skin, "mm");
             if (bench_is(s, "bed")) result_short("memory_per_bead", (double)c.memory/s->count, "byte");
         }
     }
-    choice.threads = threads_asked;
-    other = threads_asked > 1 && !cpu ? warm(s->name, s, &choice) : 0;
-    if (other && dem_counters_get(other).threads != threads_asked)
-        printf("SKIP: built without OpenMP, no rates on %d threads\n", threads_asked);
-    else if (other) {
-        while (dem_world_steps(other) < dem_world_steps(one)) /* both at the same state              */
-            if (loop(s->name, other, steps) < 0) break;
-        if (take_turns(s->name, one, other, steps, ta, tb)) {
-            snprintf(name, sizeof name, "threads%d.rate", threads_asked);
-            result_rate(name, work/median(tb, repeats()));
-            snprintf(name, sizeof name, "threads%d.speedup", threads_asked);
-            result_short(name, median(ta, repeats())/median(tb, repeats()), "");
-            snprintf(name, sizeof name, "threads%d.rate_spread", threads_asked);
-            result_short(name, spread(tb, repeats()), "%");
-            if (dem_world_hash(one) != dem_world_hash(other))
-                study_fail("%s: 1 and %d threads do not agree to the last bit", s->name, threads_asked);
-        }
+    if (turns && other) {
+        snprintf(name, sizeof name, "threads%d.rate", threads_asked);
+        result_rate(name, work/median(tb, turns));
+        snprintf(name, sizeof name, "threads%d.speedup", threads_asked);
+        result_short(name, median(ta, turns)/median(tb, turns), "");
+        snprintf(name, sizeof name, "threads%d.rate_spread", threads_asked);
+        result_short(name, spread(tb, turns), "%");
+        if (dem_world_hash(one) != dem_world_hash(other))
+            study_fail("%s: 1 and %d threads do not agree to the last bit", s->name, threads_asked);
     }
     if (other) dem_world_destroy(other);
     choice.threads = 0;
     choice.ledger = 1;
     other = brief ? 0 : warm(s->name, s, &choice);
-    if (other) {
-        if (take_turns(s->name, one, other, steps, ta, tb))
-            result_short("ledger_cost", median(tb, repeats())/median(ta, repeats()), "of the default");
-        dem_world_destroy(other);
-    }
+    if (other && (turns = take_turns(s->name, one, other, steps, ta, tb)) > 0)
+        result_short("ledger_cost", median(tb, turns)/median(ta, turns), "of the default");
+    if (other) dem_world_destroy(other);
     dem_world_destroy(one);
     names_begin("");
 }
@@ -168,12 +169,12 @@ static void price(const char *name, const bench_scene *s, const bench_choice *ba
     dem_world *a = warm(name, s, base), *b = a ? warm(name, s, with) : 0;
     const int many = s->count/(base->every > 1 ? base->every : 1), full_loop = steps_of(s)/2 + 1;
     const int steps = many < 5000 && !steps_asked ? 4*full_loop : full_loop;
-    int r;
+    int r, turns;
     char unit[64];
-    if (b && take_turns(name, a, b, steps, ta, tb)) {
-        for (r = 0; r < repeats(); r++) ratio[r] = tb[r]/ta[r];
-        snprintf(unit, sizeof unit, "of the default (%s, %d, +- %.0f %%)", s->name, many, spread(ratio, repeats()));
-        result_short(name, median(tb, repeats())/median(ta, repeats()), unit);
+    if (b && (turns = take_turns(name, a, b, steps, ta, tb)) > 0) {
+        for (r = 0; r < turns; r++) ratio[r] = tb[r]/ta[r];
+        snprintf(unit, sizeof unit, "of the default (%s, %d, +- %.0f %%)", s->name, many, spread(ratio, turns));
+        result_short(name, median(ratio, turns), unit);
     }
     if (a) dem_world_destroy(a);
     if (b) dem_world_destroy(b);
@@ -372,6 +373,7 @@ static void measure_raw(const bench_scene *s) {
 static void machine(void) {
     char line[512], name[256] = "unknown processor";
     int cores = 0;
+    double load = 0;
     FILE *file = fopen("/proc/cpuinfo", "r");
     while (file && fgets(line, sizeof line, file)) {
         const char *colon = strchr(line, ':');
@@ -380,6 +382,10 @@ static void machine(void) {
         snprintf(name, sizeof name, "%.200s", colon + 2);
         name[strcspn(name, "\n")] = 0;
     }
+    if (file) fclose(file);
+    file = fopen("/proc/loadavg", "r");
+    if (file && fscanf(file, "%lf", &load) == 1 && load > 0.5)
+        printf("# load %.1f: other work runs here, which is worst for what runs on threads\n", load);
     if (file) fclose(file);
     snprintf(line, sizeof line, "%s, %d logical processors", name, cores);
     study_result_text("machine", line, "");

@@ -15,12 +15,13 @@
    carries the charge up on the right. Critical speed is that of the thesis: 42.3/sqrt(D) turns a minute.
    What is measured, over the last --revolutions:
      rate                  particle-steps per second of wall time
-     solidicity_bulk       mean solid fraction of the cells (64 x 64) that are above 0.4 with all their 8 neighbours
-     shell_speed_ratio     speed of the grains whose centre is within 1.5 diameters of the shell, between toe and
-                           shoulder, over omega times the radius of the shell
+     solidicity_bulk       mean solid fraction of the cells (64 x 64) in which it is above 0.4
+     shell_speed_ratio     speed of the grains whose centre is within 1.5 diameters of the shell, from 20 degrees after
+                           the toe to 20 before the shoulder, over omega times the radius of the shell
      overlap_max           largest overlap of the whole run, over the radius
      torque_mean           N m, of the mill on the charge of the slice
-     torque_balance_error  |T - M g x|/(M g x), x: mean horizontal offset of the charge's centre of mass
+     torque_balance_error  |T - M g x - dL/dt|/(M g x), x: mean horizontal offset of the charge's centre of mass,
+                           L: its angular momentum, of which it may have a little more or less at the end
      power_balance_error   |T omega - D|/(T omega), D: rate of dissipation and of growth of the energy stored,
                            elevation included. The ledger sums the dissipation contact by contact
      ledger_residual       energy that the ledger cannot account for, over all that was put through, whole run
@@ -45,7 +46,7 @@ static struct mill_options {
     const char *ends, *profile, *wall, *stiffness, *law, *integrator, *tangent, *study, *out;
     const char *checkpoint, *resume, *write_profile;
     int threads, frames, quick;
-} options = {0.3, 0.0064, 0.0015, 0.7, 0.3743, 0.154, 0.32, 600, 0, 0.75, 0.75, "periodic", "lifters", "mesh", "soft",
+} options = {0.3, 0.0064, 0.0015, 0.7, 0.3743, 0.154, 0.32, 500, 0, 0.5, 0.6, "periodic", "lifters", "mesh", "soft",
              "hertz", "verlet", "auto", "mill", "build/out/mill", 0, 0, 0, 0, 4, 0};
 
 #define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"          /* in the order of dem_integrator */
@@ -63,7 +64,7 @@ static const study_option table[] = {
     {"wall-friction", STUDY_REAL, &options.wall_friction, 0, 5, "", "between beads and mill"},
     {"stiffness", STUDY_CHOICE, &options.stiffness, 0, 0, "true|soft", "of beads and mill"},
     {"soften", STUDY_REAL, &options.soften, 1, 1e6, "", "soft: nothing is stiffer than glass over this"},
-    {"dt", STUDY_REAL, &options.dt, 0, 1, "s", "time step; 0: a 32nd of the shortest contact at shell speed"},
+    {"dt", STUDY_REAL, &options.dt, 0, 1, "s", "time step; 0: a 28th of the shortest contact at shell speed"},
     {"law", STUDY_CHOICE, &options.law, 0, 0, "hertz|linear", "normal force"},
     {"integrator", STUDY_CHOICE, &options.integrator, 0, 0, INTEGRATORS, "scheme"},
     {"tangent", STUDY_CHOICE, &options.tangent, 0, 0, TANGENTS, "friction law"},
@@ -243,18 +244,9 @@ static int shell_add(mill *m) {
 
 /* ---- the charge ---- */
 
-typedef struct site_list { const mill *m; int count, capacity; dem_real *at; } site_list;
-
-static int site_note(dem_vec3 c, dem_real radius, void *user) { /* notes where the packing has room; takes none */
-    site_list *list = (site_list *)user;
-    if (fabs(c.z) + 1.02*radius > list->m->o.length/2 || !has_room(list->m, c.x, c.y, 1.02*radius)) return 0;
-    if (list->count == list->capacity) {
-        list->capacity = 2*list->capacity + 1000;
-        list->at = (dem_real *)realloc(list->at, 3*(size_t)list->capacity*sizeof *list->at);
-        if (!list->at) { study_fail("no memory for %d grains", list->capacity); exit(1); }
-    }
-    memcpy(list->at + 3*list->count++, &c, sizeof c);
-    return 0;
+static int is_site(dem_vec3 c, dem_real radius, void *user) {
+    const mill *m = (const mill *)user;
+    return fabs(c.z) + 1.02*radius <= m->o.length/2 && has_room(m, c.x, c.y, 1.02*radius);
 }
 static int site_lower(const void *a, const void *b) { /* below a surface that rises to the right, by 30 degrees */
     const dem_real *p = (const dem_real *)a, *q = (const dem_real *)b;
@@ -262,35 +254,36 @@ static int site_lower(const void *a, const void *b) { /* below a surface that ri
     return high < 0 ? -1 : high > 0 ? 1 : p[2] < q[2] ? -1 : p[2] > q[2];
 }
 
-/* The lowest places of a hexagonal packing with some padding, turning with the mill; each grain is shoved about within
-   the padding, without which rows stay rows for long. */
+/* The mill is packed hexagonally, with some padding, in a world of its own; the lowest places get a grain that turns
+   with the mill. Each is shoved about within the padding, without which rows stay rows for long. */
 static int charge_add(mill *m) {
     double R = m->o.diameter/2, L = m->o.length, r = m->o.radius, padding = 0.05*r;
-    dem_box box = dem_box_make(-R, -R, -L/2, R, R, L/2);
+    dem_box box = dem_box_make(-R, -R, -L/2 + padding/2, R, R, L/2 - padding/2);
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_bodies sites;
+    dem_real *at, *velocity;
     uint32_t random = 1;
-    dem_real *velocity = 0;
-    int i, bad = 1;
-    site_list list;
-    memset(&list, 0, sizeof list);
-    list.m = m;
+    int i, bad;
+    mill packed = *m;
+    if (world_create(&packed, &desc) || materials_add(&packed)) return 1;
+    dem_spheres_pack(packed.world, packed.glass, r, padding, box, is_site, m, 0);
+    sites = dem_bodies_get(packed.world);
+    at = (dem_real *)study_alloc(3*(size_t)sites.count, sizeof *at);
+    velocity = (dem_real *)study_alloc(3*(size_t)sites.count, sizeof *velocity);
+    for (i = 0; i < 3*sites.count; i++) at[i] = sites.positions[i/3*4 + i%3];
+    qsort(at, (size_t)sites.count, 3*sizeof *at, site_lower);
     m->grains = (int)(m->o.fill*0.6*PI*m->shell*m->shell*L/(4*PI*r*r*r/3) + 0.5);
-    dem_spheres_pack(m->world, m->glass, r, padding, box, site_note, &list, 0);
-    if (list.count < m->grains) study_fail("%d grains were asked for, but only %d fit into the mill", m->grains, list.count);
-    else {
-        qsort(list.at, (size_t)list.count, 3*sizeof *list.at, site_lower);
-        for (i = 0; i < 3*m->grains; i++) {
-            random = random*1664525u + 1013904223u;
-            list.at[i] += 0.4*padding*((random >> 8)/16777216.0 - 0.5);
-        }
-        velocity = (dem_real *)study_alloc(3*(size_t)m->grains, sizeof *velocity);
-        for (i = 0; i < m->grains; i++) {
-            velocity[3*i] = -m->omega*list.at[3*i + 1];
-            velocity[3*i + 1] = m->omega*list.at[3*i];
-        }
-        bad = refused(m->world, dem_spheres_add(m->world, m->glass, m->grains, list.at, velocity, 0, r));
+    bad = m->grains > sites.count;
+    if (bad) study_fail("%d grains were asked for, but only %d fit into the mill", m->grains, sites.count);
+    for (i = 0; i < 3*sites.count; i++) {
+        random = random*1664525u + 1013904223u;
+        at[i] += 0.4*padding*((random >> 8)/16777216.0 - 0.5);
+        velocity[i] = i%3 == 0 ? -m->omega*at[i + 1] : i%3 == 1 ? m->omega*at[i - 1] : 0;
     }
+    bad = bad || refused(m->world, dem_spheres_add(m->world, m->glass, m->grains, at, velocity, 0, r));
+    free(at);
     free(velocity);
-    free(list.at);
+    dem_world_destroy(packed.world);
     return bad;
 }
 
@@ -341,7 +334,7 @@ static int mill_begin(mill *m) {
         int bad = mill_create(m, 0) || refused(m->world, dem_step_advice(m->world, &advice));
         mill_destroy(m);
         if (bad) return 1;
-        wanted = advice.contact_time/32;
+        wanted = advice.contact_time/28;
     }
     m->sample_steps = (int)ceil(m->period/SAMPLES/wanted);
     m->dt = m->o.dt > 0 ? m->o.dt : m->period/SAMPLES/m->sample_steps;
@@ -446,15 +439,10 @@ static map map_make(const dem_field_data *d, int n) { /* cells of the field summ
     return a;
 }
 
-static double map_bulk(const map *a) { /* mean over the cells above 0.4 with all their neighbours */
-    double sum = 0;
-    int i, j, k, count = 0;
-    for (j = 1; j + 1 < a->n; j++)
-        for (i = 1; i + 1 < a->n; i++) {
-            int well = 1;
-            for (k = 0; k < 9; k++) well &= a->solid[i - 1 + k%3 + a->n*(j - 1 + k/3)] > 0.4;
-            if (well) { sum += a->solid[i + a->n*j]; count++; }
-        }
+static double map_bulk(const map *a) { /* mean over the cells above 0.4 */
+    double sum = 0, count = 0;
+    int i;
+    for (i = 0; i < a->n*a->n; i++) if (a->solid[i] > 0.4) { sum += a->solid[i]; count++; }
     return sum/count;
 }
 
@@ -482,7 +470,8 @@ static double map_shell_speed(const mill *m, const map *a) {
     for (i = 0; i < a->n*a->n; i++) {
         double x = ((2*(i%a->n) + 1.0)/a->n - 1)*m->o.diameter/2, y = ((2*(i/a->n) + 1.0)/a->n - 1)*m->o.diameter/2;
         double angle = atan2(x, -y)*180/PI;
-        if (hypot(x, y) < m->shell - 3*m->o.radius || angle < m->toe || angle > m->shoulder || !(a->mass[i] > 0)) continue;
+        if (hypot(x, y) < m->shell - 3*m->o.radius || angle < m->toe + 20 || angle > m->shoulder - 20) continue;
+        if (!(a->mass[i] > 0)) continue;
         momentum += hypot(a->u[i], a->v[i])*a->mass[i];
         mass += a->mass[i];
     }
@@ -599,7 +588,7 @@ static void torque_write(mill *m) {
     m->power = m->torque*m->omega;
     for (steady = n; steady >= half && fabs(window_torque(s + steady - half, s + steady)/m->torque - 1) < 0.05;) steady--;
     study_result("torque_mean", m->torque, "N m");
-    study_result("torque_balance_error", fabs(m->torque - weight)/fabs(weight), "");
+    study_result("torque_balance_error", fabs(m->torque - weight - (b->angular - a->angular)/span)/fabs(weight), "");
     study_result("centre_of_mass_x", x, "m");
     study_result("power_mean", m->power, "W");
     study_result("dissipation_rate", loss/span, "W");
@@ -838,10 +827,11 @@ int main(int argc, char **argv) {
     mill m;
     program_path = argv[0];
     study_options(argc, argv, about, table, count);
-    if (options.quick) { /* half the size; what was asked for by name stays */
-        options.diameter = 0.15;
-        options.settle = 1;
-        options.revolutions = 1;
+    if (options.quick) { /* a smaller mill of softer beads; what was asked for by name stays */
+        options.diameter = 0.12;
+        options.soften = 1000;
+        options.settle = 0.5;
+        options.revolutions = 0.75;
         study_options(argc, argv, about, table, count);
     }
     if (options.write_profile) return profile_write(options.write_profile);

@@ -55,9 +55,10 @@ static inline dem_result scene_step(dem_world *world, int steps) {
     return result;
 }
 
-/* A lattice of grains that overlap slightly, radii within 3 % of each other (mixed) or all alike, with
-   random velocities of up to `speed`: contacts everywhere from the first step on. */
-static inline dem_result scene_block(dem_world *world, dem_material material, int nx, int ny, int nz,
+/* A lattice of grains that overlap slightly, radii within 3 % of each other (mixed) or all alike,
+   with random velocities of up to `speed`: contacts everywhere from the first step on. */
+static inline dem_result scene_block(dem_world *world, dem_material material, int nx, int ny,
+                                     int nz,
                                      double radius, int mixed, double speed, uint64_t seed) {
     const int count = nx*ny*nz;
     const double pitch = 1.97*radius;
@@ -113,15 +114,16 @@ static inline dem_wall scene_floor(dem_world *world, dem_material material, doub
     return wall;
 }
 
-/* A drum about the z axis as a profile of n segments. */
-static inline dem_wall scene_drum(dem_world *world, dem_material material, double radius, int n) {
+/* A drum about an axis along z through (x, y), as a profile of n segments. */
+static inline dem_wall scene_drum(dem_world *world, dem_material material, double x, double y,
+                                  double radius, int n) {
     dem_real vertices[2*128];
     int32_t segments[2*128];
     dem_profile profile;
     int i;
     for (i = 0; i < n; i++) {
-        vertices[2*i] = (dem_real)(radius*cos(6.283185307179586*i/n));
-        vertices[2*i + 1] = (dem_real)(radius*sin(6.283185307179586*i/n));
+        vertices[2*i] = (dem_real)(x + radius*cos(6.283185307179586*i/n));
+        vertices[2*i + 1] = (dem_real)(y + radius*sin(6.283185307179586*i/n));
         segments[2*i] = i;
         segments[2*i + 1] = (i + 1)%n;
     }

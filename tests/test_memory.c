@@ -1,13 +1,15 @@
-/* Memory: where it comes from, that all of it goes back, that a warm step takes none, and that running out
-   of it at any moment leaves a world that goes on. The allocator counts, keeps the size in front of every
-   block, fills what it gives and what it takes back, and can refuse the k-th request. */
+/* Memory: where it comes from, that all of it goes back, that a warm step takes none, and that
+   running out of it at any moment leaves a world that goes on. The allocator counts, keeps the size
+   in front of every block, fills what it gives and what it takes back, and can refuse the k-th
+   request. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "test.h"
 #include "scene.h"
 
 typedef struct counter {
-    long calls, blocks, wrong;                 /* requests so far, blocks out, wrong sizes on free */
+    /* requests so far, blocks out, wrong sizes on free */
+    long calls, blocks, wrong;
     size_t bytes, most;
     long refuse;                               /* this request gets nothing; 0: none */
     int refused;
@@ -50,8 +52,8 @@ static dem_world_desc counted(counter *c) {
     return desc;
 }
 
-/* Whether the call that just failed may be made again: only when memory was refused, and then it must have
-   said so. */
+/* Whether the call that just failed may be made again: only when memory was refused, and then it
+   must have said so. */
 static int again(dem_world *world, counter *c, int failed, const char *call) {
     if (!failed) {
         if (c->refused) c->refused = 0;        /* it coped: fine */
@@ -78,9 +80,11 @@ static int again(dem_world *world, counter *c, int failed, const char *call) {
 
 /* Every call that takes memory, once at least; a refused one is made again. */
 static void scenario(counter *c, dem_search search, long refuse, uint64_t *hash) {
-    static const char stl[] = "9 1\n0 0 0\n1 0 0\n0 1 0\n1 1 1\n2 1 1\n3 1 1\n4 1 1\n5 1 1\n6 1 1\n1 2 3\n";
+    static const char stl[] =
+        "9 1\n0 0 0\n1 0 0\n0 1 0\n1 1 1\n2 1 1\n3 1 1\n4 1 1\n5 1 1\n6 1 1\n1 2 3\n";
     static const dem_real beads[] = {DEM_R(0.05), 0, DEM_R(-0.02), DEM_R(0.052), 0, DEM_R(-0.02),
-        DEM_R(0.054), 0, DEM_R(-0.02), DEM_R(0.056), 0, DEM_R(-0.02), DEM_R(0.058), 0, DEM_R(-0.02)};
+        DEM_R(0.054), 0, DEM_R(-0.02), DEM_R(0.056), 0, DEM_R(-0.02), DEM_R(0.058), 0,
+            DEM_R(-0.02)};
     dem_world_desc desc = counted(c);
     dem_world *world;
     dem_material glass;
@@ -110,7 +114,7 @@ static void scenario(counter *c, dem_search search, long refuse, uint64_t *hash)
     ID("dem_material_add", glass, scene_material(world, 1e7, 0.5, 0.3, 0.1));
     ID("dem_plane_add", plane, dem_plane_add(world, glass, at(0, 0, -0.03), at(0, 0, 1)));
     ID("dem_cylinder_add", plane, dem_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 1), 1, 1));
-    ID("dem_profile_add", drum, scene_drum(world, glass, 0.1, 24));
+    ID("dem_profile_add", drum, scene_drum(world, glass, 0, 0, 0.1, 24));
     ID("dem_mesh_add", mesh_wall, scene_floor(world, glass, -0.02, -0.02, 0.06, 0.06, 4, 4));
     ID("dem_grains_wall_add", plane, dem_grains_wall_add(world, glass, 5, beads, DEM_R(1e-3), 1));
     motion.kind = DEM_MOTION_ROTATING;
@@ -127,9 +131,11 @@ static void scenario(counter *c, dem_search search, long refuse, uint64_t *hash)
     while (again(world, c, n == 0, "dem_spheres_fill"));
     CHECK_EQ(n, 9);
     CALL("dem_world_step", dem_world_step(world, 3));
-    do {                                       /* while contacts have memory, and more than there is room for */
+    /* while contacts have memory, and more than there is room for */
+    do {
         present = dem_balance_get(world).present;
-        n = dem_spheres_pack(world, glass, DEM_R(1e-3), 0, box_of(0, 0, 0.02, 0.01, 0.01, 0.03), 0, 0, 60);
+        n = dem_spheres_pack(world, glass, DEM_R(1e-3), 0, box_of(0, 0, 0.02, 0.01, 0.01, 0.03), 0,
+                             0, 60);
         CHECK_EQ(dem_balance_get(world).present, present + (uint64_t)n);
         if (n < 60) CHECK_EQ(n, 0);            /* its sentence says that nothing was changed */
     } while (again(world, c, n < 60, "dem_spheres_pack"));
@@ -179,7 +185,8 @@ static void refuse_each(dem_search search) {
     }
 }
 
-/* A packing at rest under gravity, in a box of planes over a mesh, with friction and rolling friction. */
+/* A packing at rest under gravity, in a box of planes over a mesh, with friction and rolling
+   friction. */
 static dem_world *packing(counter *c, int threads, double skin, dem_search search) {
     dem_world_desc desc = counted(c);
     dem_world *world;
@@ -230,7 +237,8 @@ int main(int argc, char **argv) {
             CHECK_EQ(c.blocks, 0);
         }
     }
-    TEST("all memory is of the allocator of the world, and all of it goes back, in the sizes it came") {
+    TEST("all memory is of the allocator of the world, and all of it goes back, in the sizes it "
+         "came") {
         counter c;
         uint64_t hash;
         scenario(&c, DEM_SEARCH_AUTO, 0, &hash);
@@ -260,10 +268,12 @@ int main(int argc, char **argv) {
     TEST("whichever request for memory fails, the call says so and the world goes on (grid)") {
         refuse_each(DEM_SEARCH_GRID);
     }
-    TEST("whichever request for memory fails, the call says so and the world goes on (linked list)") {
+    TEST("whichever request for memory fails, the call says so and the world goes on (linked "
+         "list)") {
         refuse_each(DEM_SEARCH_LINKED_LIST);
     }
-    TEST("whichever request for memory fails in a step, repeating the step gives the run without failure") {
+    TEST("whichever request for memory fails in a step, repeating the step gives the run without "
+         "failure") {
         int search;
         for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LINKED_LIST; search++) {
             uint64_t hash = 0;
@@ -280,8 +290,10 @@ int main(int argc, char **argv) {
                 desc.gravity = at(0, 0, 0);
                 world = dem_world_create(&desc);
                 glass = scene_material(world, 1e7, 0.9, 0.3, 0);
-                for (i = 0; i < 60; i++) {     /* a swarm that falls in on itself: lists grow on the way */
-                    const double x = (i%4 - 1.5)*5e-3, y = (i/4%4 - 1.5)*5e-3, z = (i/16 - 1.5)*5e-3;
+                /* a swarm that falls in on itself: lists grow on the way */
+                for (i = 0; i < 60; i++) {
+                    const double x = (i%4 - 1.5)*5e-3, y = (i/4%4 - 1.5)*5e-3, z =
+                        (i/16 - 1.5)*5e-3;
                     dem_body b = dem_sphere_add(world, glass, DEM_R(1e-3), at(x, y, z));
                     scene_move(world, b, at(-600*x, -600*y, -600*z), at(0, 0, 0));
                 }
@@ -303,7 +315,8 @@ int main(int argc, char **argv) {
             }
         }
     }
-    TEST("a large checkpoint that runs out of memory while being read leaves the small world as it was") {
+    TEST("a large checkpoint that runs out of memory while being read leaves the small world as "
+         "it was") {
         counter c, d;
         dem_world_desc desc = counted(&c);
         dem_world *big, *small;

@@ -1,6 +1,6 @@
-/* Neighbour search: all pairs, grid and linked linear list against a brute-force oracle of their own.
-   The oracle looks at every pair of bodies with the shortest image, in double precision, and knows
-   nothing of cells, sorting or skins. */
+/* Neighbour search: all pairs, grid and linked linear list against a brute-force oracle of their
+   own. The oracle looks at every pair of bodies with the shortest image, in double precision, and
+   knows nothing of cells, sorting or skins. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "test.h"
@@ -28,11 +28,13 @@ static double gap_of(const dem_world_desc *desc, const dem_real *x, const dem_re
     return sqrt(square) - (double)x[3] - (double)y[3];
 }
 
-/* Holds the candidate list against the oracle. Answers how many pairs are wrong: touching and not listed,
-   listed twice, or, when the list is fresh, within the skin and not listed or listed and beyond it.
-   *contacts: how many touch. Round-off decides pairs within `slack` of a limit. */
-static int wrong_pairs(const dem_world *world, const dem_world_desc *desc, int fresh, int *contacts) {
-    const double slack = 1e-12, skin = (double)dem_counters_get(world).skin; /* m; positions are < .2 m */
+/* Holds the candidate list against the oracle. Answers how many pairs are wrong: touching and not
+   listed, listed twice, or, when the list is fresh, within the skin and not listed or listed and
+   beyond it. *contacts: how many touch. Round-off decides pairs within `slack` of a limit. */
+static int wrong_pairs(const dem_world *world, const dem_world_desc *desc, int fresh,
+                       int *contacts) {
+    /* m; positions are < .2 m */
+    const double slack = 1e-12, skin = (double)dem_counters_get(world).skin;
     const dem_bodies b = dem_bodies_get(world);
     const int n = dem_candidates_get(world, pairs, MOST*(MOST - 1)/2);
     int i, j, wrong = 0;
@@ -89,8 +91,9 @@ static dem_world *churn_world(const churn *c, dem_search method, dem_world_desc 
     }
     return world;
 }
-/* Adds up to `count` grains of radii 1 to 10 mm where there is room (by the oracle), mostly small ones,
-   with a speed of up to 2 m/s along each axis. All worlds are alike, so one place serves them all. */
+/* Adds up to `count` grains of radii 1 to 10 mm where there is room (by the oracle), mostly small
+   ones, with a speed of up to 2 m/s along each axis. All worlds are alike, so one place serves them
+   all. */
 static int churn_add(dem_world **world, const dem_world_desc *desc, const churn *c, int count,
                      uint64_t *seed) {
     int added = 0, tries, i, m;
@@ -145,7 +148,8 @@ static void churn_run(churn c, uint64_t seed) {
         for (m = 0; m < METHODS; m++) {
             dem_counters now;
             int fresh;
-            if (scene_step(world[m], 1) != DEM_OK) { CHECK(!"the step failed"); step = c.steps; break; }
+            if (scene_step(world[m], 1) != DEM_OK) { CHECK(!"the step failed"); step = c.steps;
+                break; }
             now = dem_counters_get(world[m]);
             fresh = now.rebuilds != rebuilds[m];
             rebuilds[m] = now.rebuilds;
@@ -198,7 +202,8 @@ static dem_vec3 brake_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real ma
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("all pairs, grid and linked list give one list and one hash in a closed box, for every skin") {
+    TEST("all pairs, grid and linked list give one list and one hash in a closed box, for every "
+         "skin") {
         churn_skins(0, 0, 0, 0);
     }
     TEST("all pairs, grid and linked list give one list and one hash with one periodic axis") {
@@ -214,7 +219,8 @@ int main(int argc, char **argv) {
         churn_skins(0, 0, 0, 1);
         churn_skins(1, 0, 0, 1);
     }
-    TEST("one grain out and one in, the same number as before: the linked list forgets the one gone") {
+    TEST("one grain out and one in, the same number as before: the linked list forgets the one "
+         "gone") {
         churn c = {{0, 0, 0}, 0, 1e-3, 0.08, 60, 0};
         dem_world *world[METHODS];
         dem_world_desc desc[METHODS];
@@ -246,11 +252,13 @@ int main(int argc, char **argv) {
             for (m = 0; m < METHODS; m++) {
                 world[m] = churn_world(&c, methods[m], &desc[m]);
                 dem_sphere_add(world[m], grain, DEM_R(0.02), at(0.05, 0.05, 0.05));
-                dem_sphere_add(world[m], grain, DEM_R(0.02), at(0.0, 0.0, 0.05)); /* over a corner */
+                /* over a corner */
+                dem_sphere_add(world[m], grain, DEM_R(0.02), at(0.0, 0.0, 0.05));
             }
             for (i = 0; i < 400; i++) {         /* dust on and around the big ones */
                 const double u = 2*scene_random(&seed) - 1, phi = 6.28*scene_random(&seed);
-                const double d = 0.02 + 4e-4*scene_random(&seed), s = sqrt(1 - u*u), c0 = i%2 ? 0.05 : 0;
+                const double d = 0.02 + 4e-4*scene_random(&seed), s = sqrt(1 - u*u), c0 =
+                    i%2 ? 0.05 : 0;
                 double x = c0 + d*s*cos(phi), y = c0 + d*s*sin(phi);
                 if (periodic) { x += x < 0 ? 0.1 : 0; y += y < 0 ? 0.1 : 0; }
                 for (m = 0; m < METHODS; m++)
@@ -323,7 +331,8 @@ int main(int argc, char **argv) {
                 dem_world_destroy(world);
             }
     }
-    TEST("a skin that the library chooses never makes a periodic box too short that was long enough") {
+    TEST("a skin that the library chooses never makes a periodic box too short that was long "
+         "enough") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
         dem_material grain;

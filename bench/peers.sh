@@ -1,0 +1,101 @@
+# sh bench/peers.sh: the scenes of bench/scenes.h in dem.h, LAMMPS and LIGGGHTS, in turns, from the same
+# start states. Prints medians and the ratios dem.h : other code. A code that is missing is skipped, loudly.
+# What is compared is each code's own time of its loop of steps, after 100 untimed ones; every turn is a
+# process of its own. One core: all on processor 0. Two: two threads of dem.h against two ranks of the others.
+#   STEPS=N    steps of bed and drum; gas takes five times as many        ROUNDS=N    turns
+ROUNDS=${ROUNDS:-5}
+STEPS=${STEPS:-200}
+dir=build/peers
+mkdir -p $dir
+rm -f $dir/*.times $dir/*.out
+
+found() { command -v "$1" >/dev/null 2>&1; }
+codes=
+for code in lammps liggghts; do
+    program=$code; [ $code = lammps ] && program=lmp
+    if found $program; then codes="$codes $code"; else echo "SKIP: $code not found (Debian package $code)"; fi
+done
+[ "$codes" ] || exit 0
+pin=; if found taskset; then pin="taskset -c 0"; else echo "SKIP: taskset not found, processes may wander"; fi
+two=2
+if [ "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)" -lt 2 ]; then echo "SKIP: one processor, no threads2"; two=
+elif ! found mpirun; then echo "SKIP: mpirun not found (Debian package openmpi-bin), no threads2"; two=; fi
+[ -x build/bench ] || { echo "build/bench is missing: run make bench-peers"; exit 1; }
+build/bench --codes $dir || exit 1
+
+# one turn: SCENE CODE CORES; appends "seconds contacts kinetic bytes" to a file of times
+turn() {
+    scene=$1; code=$2; cores=$3; steps=$STEPS; grid="1 1 1"
+    [ $scene = gas ] && steps=$((5*STEPS))
+    if [ $cores = 2 ]; then grid="2 1 1"; [ $scene = drum ] && grid="1 2 1"; fi
+    set -- $grid
+    screen=$dir/$scene.$code.$cores.out
+    out=$dir/$scene.$code.$cores.times
+    start=$pin; [ $cores = 2 ] && start=
+    case $code in
+    lammps|liggghts)
+        program=liggghts; [ $code = lammps ] && program=lmp
+        [ $cores = 2 ] && start="mpirun --allow-run-as-root --oversubscribe --bind-to core -np 2"
+        OMP_NUM_THREADS=1 $start $program -in bench/peers/${code}_$scene.in -log none -var data $dir/$scene.data \
+            -var stl $dir/drum.stl -var steps $steps -var px $1 -var py $2 -var pz $3 >$screen 2>&1 </dev/null
+        # the last loop: its time, and the line of numbers before it
+        awk '/^Loop time/ { time = $4; kinetic = k; touches = c } NF == 3 && $1 ~ /^[0-9]+$/ { k = $2; c = $3 }
+            /atoms$/ && !atoms { atoms = $1 } /[Mm]emory .*Mbytes/ { sub(/.*= */, ""); bytes = $1*1048576 }
+            END { if (time == "") exit 1; printf "%s %.5f %.6g %.0f\n", time, touches, kinetic, bytes/(atoms ? atoms : 1) }' \
+            $screen >>$out ;;
+    *)
+        program=build/bench_$code; [ $code = double ] && program=build/bench
+        $start $program --raw --scene $scene --threads $cores --steps $steps --repeat 1 >$screen 2>&1 &&
+        awk '$1 == "raw" { print $2, $3, $4, $5; n++ } END { exit !n }' $screen >>$out ;;
+    esac || { echo "$scene: $code broke; its output is $screen"; return 1; }
+}
+
+# middle of a column of a file of times
+middle() { awk -v c=$2 '{ print $c }' "$1" | sort -g | awk '{ v[NR] = $1 } END { print (v[int((NR + 1)/2)] + v[int(NR/2) + 1])/2 }'; }
+
+failed=
+for cores in 1 $two; do
+    suffix=; [ $cores = 2 ] && suffix=.threads2
+    for scene in bed drum gas; do
+        others=
+        for code in $codes; do [ -f bench/peers/${code}_$scene.in ] && others="$others $code"; done
+        [ "$others" ] || continue
+        ours="double single"; [ $scene = bed ] && ours="double single O2"
+        for c in $ours; do
+            [ $c = double ] || [ -x build/bench_$c ] || ours=$(echo "$ours" | sed "s/ *$c//")
+        done
+        bad=
+        for round in $(seq $ROUNDS); do
+            for code in $others $ours; do turn $scene $code $cores || bad="$bad $code"; done
+            [ "$bad" ] && break
+        done
+        [ "$bad" ] && { failed="$failed $scene:$bad"; continue; }
+        atoms=$(awk '/ atoms$/ { print $1; exit }' $dir/$scene.data)
+        steps=$STEPS; [ $scene = gas ] && steps=$((5*STEPS))
+        for code in $others $ours; do
+            t=$dir/$scene.$code.$cores.times
+            awk -v name="$scene.$code$suffix" -v s=$(middle $t 1) -v n=$atoms -v k=$steps -v c=$(middle $t 2) -v e=$(middle $t 3) \
+                -v lo=$(sort -g $t | head -1 | cut -d" " -f1) -v hi=$(sort -g $t | tail -1 | cut -d" " -f1) \
+                'BEGIN { printf "# %-26s %7.2f M particle-steps/s (+- %.0f %%)  contacts/bead %.4f  kinetic %.5g J\n",
+                    name, 1e-6*n*k/s, 50*(hi - lo)/s, c, e }'
+        done
+        for code in $ours; do for other in $others; do
+            label=$code; [ $code = O2 ] && label=double.O2
+            echo "$scene.$label.vs_$other$suffix = $(awk -v a=$(middle $dir/$scene.$other.$cores.times 1) \
+                -v b=$(middle $dir/$scene.$code.$cores.times 1) 'BEGIN { printf "%.2f", a/b }')"
+        done; done
+        [ $scene$cores = bed1 ] && for code in $others double; do
+            echo "bed.$code.memory_per_bead = $(middle $dir/bed.$code.1.times 4) byte"
+        done
+        # one scene, or not: contacts within 3 % (settling differs by law), energy within 10 % where it is not a remainder
+        for code in $others; do
+            awk -v s=$scene -v o=$code -v a=$(middle $dir/$scene.$code.$cores.times 2) -v b=$(middle $dir/$scene.double.$cores.times 2) \
+                -v c=$(middle $dir/$scene.$code.$cores.times 3) -v d=$(middle $dir/$scene.double.$cores.times 3) 'BEGIN {
+                bad = a/b > 1.03 || a/b < 0.97 || (s != "bed" && (c/d > 1.1 || c/d < 0.9))
+                printf "# %s: %s and dem.h %s\n", s, o, bad ? "ARE NOT ON THE SAME SCENE" : "are on the same scene"
+                exit bad }' || failed="$failed $scene:$code"
+        done
+    done
+done
+[ "$failed" ] && { echo "failed:$failed"; exit 1; }
+exit 0

@@ -1,0 +1,526 @@
+/* Checkpoints: run(2N) = run(N) + checkpoint + run(N) bit for bit, hash, ledger, fields and
+   channels; and files that must be refused by name, with the world as it was. Files go to
+   build/tmp/. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "test.h"
+#include "scene.h"
+
+static const char path[] = "build/tmp/state.ckpt";
+enum { LAW_SPRING, LAW_MINDLIN, LAW_RESCALED, LAW_EPSD, LAW_OWN, LAWS };
+
+/* A law of one's own: linear spring and dashpot, a spring in the tangent plane, a count of steps.
+   */
+static void own_law(const dem_contact *c, dem_real *memory, dem_push *push) {
+    dem_vec3 s = dem_memory_turn(c, dem_vec3_make(memory[0], memory[1], memory[2]));
+    const dem_real k = 2000;
+    s = dem_vec3_make(s.x + c->dt*c->slip.x, s.y + c->dt*c->slip.y, s.z + c->dt*c->slip.z);
+    push->normal = k*c->overlap + c->closing_speed/100;
+    push->tangent = dem_vec3_make(-k/4*s.x, -k/4*s.y, -k/4*s.z);
+    memory[0] = s.x; memory[1] = s.y; memory[2] = s.z;
+    if (c->dt > 0) memory[3] += 1;
+}
+static dem_vec3 swirl(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time,
+                      void *user) {
+    const double s = 20*(double)mass*cos(300*time);
+    (void)radius; (void)user;
+    return at(s - (double)v.x*1e-6, -s*(double)x.x*100, 0);
+}
+
+typedef struct play {
+    dem_integrator integrator;
+    /* late: grains come and go in the second half too */
+    int law, steps, nx, ny, nz, threads, late;
+    double dt;                                   /* 0: chosen */
+    dem_search search;
+} play;
+static play play_make(int integrator, int law) {
+    play p = {DEM_VELOCITY_VERLET, 0, 60, 4, 4, 3, 1, 1, 5e-6, DEM_SEARCH_AUTO};
+    p.integrator = (dem_integrator)integrator;
+    p.law = law;
+    return p;
+}
+
+static dem_world *play_world(const play *p) {
+    static const dem_tangent_law tangents[] = {DEM_TANGENT_SPRING, DEM_TANGENT_MINDLIN,
+        DEM_TANGENT_MINDLIN_RESCALED, DEM_TANGENT_SPRING, DEM_TANGENT_AUTO};
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material glass;
+    dem_motion motion = DEM_MOTION;
+    dem_field_desc field;
+    dem_wall wall;
+    const double middle = 1.97e-3*p->nx/2, radius = sqrt(2.0)*1.97e-3*(p->nx - 1)/2 + 1.05e-3;
+    int k;
+    desc.threads = p->threads;
+    desc.integrator = p->integrator;
+    desc.search = p->search;
+    desc.gravity = at(0, 0, -500);              /* keeps the heap together in a short time */
+    desc.tangent_law = tangents[p->law];
+    if (p->law == LAW_EPSD) desc.rolling_law = DEM_ROLLING_EPSD;
+    if (p->law == LAW_OWN) {
+        desc.law = own_law;
+        desc.law_memory = 4;
+        desc.law_vectors = 1;
+        desc.law_stiffness = 2000;
+    }
+    desc.dt = (dem_real)p->dt;
+    desc.allow_large_dt = 1;
+    desc.force = swirl;
+    desc.ledger = 1;
+    desc.domain = box_of(-0.02, -0.02, -0.02, 0.05, 0.05, 0.05);
+    desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+    desc.boundary[2] = DEM_BOUNDARY_OUTFLOW;
+    world = dem_world_create(&desc);
+    glass = scene_material(world, 1e7, 0.3, 0.3, p->law == LAW_EPSD ? 0.1 : 0);
+    wall = scene_floor(world, glass, -0.01, -0.01, 0.03, 0.03, 5, 5);
+    motion.kind = DEM_MOTION_ROTATING;
+    motion.axis = at(0.1, 0, 1);
+    motion.point = at(0.006, 0.006, 0);
+    motion.speed = 60;
+    dem_wall_motion(world, wall, &motion);
+    wall = scene_drum(world, glass, middle, middle, radius, 40);
+    motion.axis = at(0, 0, 1);
+    motion.point = at(middle, middle, 0);
+    motion.speed = -40;
+    dem_wall_motion(world, wall, &motion);
+    wall = dem_cylinder_add(world, glass, at(middle, middle, 0), at(0, 0, 1), (dem_real)radius, 1);
+    dem_wall_motion(world, wall, &motion);
+    wall = dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    motion.kind = DEM_MOTION_OSCILLATING;
+    motion.velocity = at(0, 0, 1);
+    motion.amplitude = DEM_R(1e-4);
+    motion.frequency = 300;
+    motion.phase = DEM_R(0.5);
+    dem_wall_motion(world, wall, &motion);
+    scene_block(world, glass, p->nx, p->ny, p->nz, 1e-3, 1, 0.2, 7);
+    memset(&field, 0, sizeof field);
+    field.box = box_of(0, 0, 0, 0.01, 0.01, 0.01);
+    for (k = 0; k < 3; k++) field.cells[k] = 4;
+    field.interval = 3.3e-5;
+    dem_field_add(world, &field);
+    return world;
+}
+/* On to step `to`; grains come and go on the way, never at the step of a checkpoint. */
+static void play_on(dem_world *world, const play *p, int to) {
+    const int events[] = {p->steps/3, p->steps*4/3};
+    int i;
+    for (i = 0; i < 2; i++) {
+        const int now = (int)dem_world_steps(world);
+        dem_material glass;
+        dem_body b;
+        if (now >= events[i] || to <= events[i] || (i && !p->late)) continue;
+        CHECK_EQ(scene_step(world, events[i] - now), DEM_OK);
+        glass.id = 1;
+        b = dem_sphere_add(world, glass, DEM_R(1e-3),
+                           at(0.004, 0.004, 1.97e-3*p->nz + 1.2e-3 + 0.003*i));
+        scene_move(world, b, at(0, 0.1, -2), at(5, 0, 0));
+        b = dem_bodies_id(world, 10);
+        CHECK_EQ(dem_body_remove(world, b), DEM_OK);
+    }
+    CHECK_EQ(scene_step(world, to - (int)dem_world_steps(world)), DEM_OK);
+}
+static void check_same(const dem_world *a, const dem_world *b) {
+    const dem_ledger la = dem_ledger_get(a), lb = dem_ledger_get(b);
+    const dem_balance ba = dem_balance_get(a), bb = dem_balance_get(b);
+    const dem_counters ca = dem_counters_get(a), cb = dem_counters_get(b);
+    dem_field_data fa, fb;
+    dem_field field;
+    int i;
+    field.id = 1;
+    CHECK_EQ(dem_world_hash(a), dem_world_hash(b));
+    CHECK_EQ(dem_world_steps(a), dem_world_steps(b));
+    CHECK(dem_world_time(a) >= dem_world_time(b) && dem_world_time(a) <= dem_world_time(b));
+    CHECK(memcmp(&la, &lb, sizeof la) == 0);
+    CHECK(memcmp(&ba, &bb, sizeof ba) == 0);
+    CHECK_EQ(ca.contacts, cb.contacts);
+    CHECK_EQ(ca.candidates, cb.candidates);
+    CHECK_EQ(ca.rebuilds, cb.rebuilds);
+    CHECK(memcmp(&ca.overlap_max, &cb.overlap_max, sizeof ca.overlap_max) == 0);
+    CHECK(memcmp(&ca.dt, &cb.dt, sizeof ca.dt) == 0);
+    if (dem_field_get(a, field, &fa) == DEM_OK && dem_field_get(b, field, &fb) == DEM_OK) {
+        const size_t n = (size_t)(fa.cells[0]*fa.cells[1]*fa.cells[2])*sizeof(double);
+        CHECK_EQ(fa.samples, fb.samples);
+        CHECK(memcmp(fa.solid, fb.solid, n) == 0);
+        CHECK(memcmp(fa.mass, fb.mass, n) == 0);
+        CHECK(memcmp(fa.momentum, fb.momentum, 3*n) == 0);
+    }
+    for (i = 1; i <= 4; i++) {
+        dem_channels wa, wb;
+        dem_pose pa, pb;
+        dem_wall wall;
+        wall.id = i;
+        if (dem_wall_channels(a, wall, &wa) || dem_wall_channels(b, wall, &wb)) continue;
+        CHECK(memcmp(wa.impulse, wb.impulse, sizeof wa.impulse) == 0);
+        CHECK(memcmp(&wa.force, &wb.force, sizeof wa.force) == 0);
+        CHECK(memcmp(&wa.work, &wb.work, sizeof wa.work) == 0);
+        dem_wall_pose(a, wall, &pa);
+        dem_wall_pose(b, wall, &pb);
+        CHECK(memcmp(&pa.position, &pb.position, sizeof pa.position) == 0);
+        CHECK(memcmp(pa.rotation, pb.rotation, sizeof pa.rotation) == 0);
+    }
+}
+/* Straight through; interrupted and gone on with; read into a new world; read into one that has
+   lived. */
+static void play_both(const play *p) {
+    dem_world *straight = play_world(p), *first = play_world(p), *second = play_world(p);
+    play_on(straight, p, 2*p->steps);
+    play_on(first, p, p->steps);
+    CHECK(dem_counters_get(first).contacts > 10);
+    CHECK(dem_counters_get(first).wall_contacts > 0);
+    CHECK_EQ(dem_checkpoint_write(first, path), DEM_OK);
+    CHECK_EQ(dem_checkpoint_read(second, path), DEM_OK);
+    check_same(first, second);
+    play_on(first, p, 2*p->steps);
+    play_on(second, p, 2*p->steps);
+    check_same(straight, first);
+    check_same(straight, second);
+    CHECK_EQ(dem_checkpoint_read(second, path), DEM_OK);
+    play_on(second, p, 2*p->steps);
+    check_same(straight, second);
+    dem_world_destroy(straight);
+    dem_world_destroy(first);
+    dem_world_destroy(second);
+    remove(path);
+}
+
+static char *file_get(const char *name, size_t *size) {
+    FILE *f = fopen(name, "rb");
+    char *data = 0;
+    *size = 0;
+    if (!f) return 0;
+    fseek(f, 0, SEEK_END);
+    *size = (size_t)ftell(f);
+    rewind(f);
+    data = (char *)malloc(*size + 1);
+    if (data && fread(data, 1, *size, f) != *size) *size = 0;
+    fclose(f);
+    return data;
+}
+static void file_put(const char *name, const char *data, size_t size) {
+    FILE *f = fopen(name, "wb");
+    CHECK(f != 0);
+    if (!f) return;
+    CHECK(fwrite(data, 1, size, f) == size);
+    fclose(f);
+}
+/* Two grains on a plane with friction. */
+static dem_world *tiny_world(double density) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc stuff = scene_stuff(1e7, 0.7, 0.3, 0);
+    dem_material glass;
+    dem_world *world;
+    desc.threads = 1;
+    desc.dt = DEM_R(1e-6);
+    desc.gravity = at(0, 0, -9.81);
+    world = dem_world_create(&desc);
+    stuff.density = (dem_real)density;
+    glass = dem_material_add(world, &stuff);
+    dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    dem_sphere_add(world, glass, DEM_R(1e-3), at(0, 0, 0.99e-3));
+    dem_sphere_add(world, glass, DEM_R(1e-3), at(1.98e-3, 0, 0.99e-3));
+    scene_step(world, 5);
+    return world;
+}
+/* The file at `path` must be refused, with the file's name and `why`, and the world as it was. */
+static void refused(dem_world *world, dem_result code, const char *why) {
+    const uint64_t hash = dem_world_hash(world);
+    const uint64_t steps = dem_world_steps(world);
+    CHECK_EQ(dem_checkpoint_read(world, path), code);
+    CHECK_STR(dem_world_error(world), "dem_checkpoint_read: ");
+    CHECK_STR(dem_world_error(world), path);
+    CHECK_STR(dem_world_error(world), why);
+    CHECK_EQ(dem_world_hash(world), hash);
+    CHECK_EQ(dem_world_steps(world), steps);
+}
+
+/* Another scene: what of it differs from that of the file. */
+enum { SAME, DENSITY, PAIR, GRAVITY, INTEGRATOR, WALL_MORE, TRIANGLES, SHARE, MOTION_KIND,
+    FIELD_BOX,
+       FIELD_CELLS, EDGE_RULE, OTHERS };
+static dem_world *other_world(int what) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc stuff = scene_stuff(1e7, 0.7, 0.3, 0);
+    dem_material glass;
+    dem_world *world;
+    dem_motion motion = DEM_MOTION;
+    dem_wall wall;
+    dem_field_desc field;
+    dem_mesh mesh;
+    dem_profile profile;
+    dem_real corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, line[] = {0, 0, 1, 0, 2, 0};
+    int32_t triangles[] = {0, 1, 2, 1, 3, 2}, segments[] = {0, 1, 1, 2};
+    int k;
+    desc.threads = 1;
+    desc.gravity = at(0, 0, what == GRAVITY ? -9.80 : -9.81);
+    if (what == INTEGRATOR) desc.integrator = DEM_LEAPFROG;
+    world = dem_world_create(&desc);
+    if (what == DENSITY) stuff.density = 2501;
+    glass = dem_material_add(world, &stuff);
+    if (what == PAIR) {
+        dem_pair pair;
+        dem_pair_get(world, glass, glass, &pair);
+        pair.tangent_damping = DEM_R(0.5);
+        dem_pair_set(world, glass, glass, &pair);
+    }
+    mesh.vertex_count = 4; mesh.triangle_count = 2;
+    mesh.vertices = corners; mesh.triangles = triangles;
+    if (what == TRIANGLES) triangles[2] = 3;
+    wall = dem_mesh_add(world, glass, &mesh);
+    motion.kind = what == MOTION_KIND ? DEM_MOTION_TRANSLATING : DEM_MOTION_OSCILLATING;
+    motion.velocity = at(0, 0, 1);
+    motion.amplitude = DEM_R(1e-3);
+    motion.frequency = 10;
+    dem_wall_motion(world, wall, &motion);
+    dem_grains_wall_add(world, glass, 4, corners, DEM_R(0.1), what == SHARE ? DEM_R(0.5) : 1);
+    profile.vertex_count = 3; profile.segment_count = 2;
+    profile.vertices = line; profile.segments = segments;
+    dem_profile_add(world, glass, &profile,
+                    what == EDGE_RULE ? DEM_EDGE_FRACTION : DEM_EDGE_RESOLVED);
+    if (what == WALL_MORE) dem_plane_add(world, glass, at(0, 0, -1), at(0, 0, 1));
+    memset(&field, 0, sizeof field);
+    field.box = box_of(0, 0, 0, what == FIELD_BOX ? 2 : 1, 1, 1);
+    for (k = 0; k < 3; k++) field.cells[k] = what == FIELD_CELLS && k == 0 ? 3 : 2;
+    dem_field_add(world, &field);
+    return world;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("2N steps are N steps, a checkpoint and N steps, for every integrator and law with "
+         "memory") {
+        int integrator, law;
+        for (integrator = DEM_VELOCITY_VERLET; integrator <= DEM_LEAPFROG; integrator++)
+            for (law = 0; law < LAWS; law++) {
+                const play p = play_make(integrator, law);
+                play_both(&p);
+                if (test_now.wrong) {
+                    printf("        first with integrator %d, law %d\n", integrator, law);
+                    law = LAWS; integrator = DEM_LEAPFROG;
+                }
+            }
+    }
+    TEST("2N steps are N, a checkpoint and N, when the time step and the skin are chosen by the "
+         "library") {
+        play p = play_make(DEM_VELOCITY_VERLET, LAW_MINDLIN);
+        p.dt = 0;
+        play_both(&p);
+    }
+    TEST("2N steps are N, a checkpoint and N, for every search") {
+        int search;
+        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LINKED_LIST; search++) {
+            play p = play_make(DEM_VELOCITY_VERLET, LAW_SPRING);
+            p.search = (dem_search)search;
+            play_both(&p);
+        }
+    }
+    TEST("2N steps are N, a checkpoint and N, with several domains and threads") {
+        play p = play_make(DEM_VELOCITY_VERLET, LAW_EPSD);
+        dem_world *world;
+        p.nx = p.ny = 16; p.nz = 17;
+        p.steps = 9;
+        p.threads = 2;
+        world = play_world(&p);
+        scene_step(world, 1);
+        CHECK(dem_counters_get(world).domains > 1);
+        dem_world_destroy(world);
+        play_both(&p);
+    }
+    TEST("a checkpoint between an insertion and the next step keeps the memory of the other "
+         "contacts") {
+        int removal;
+        for (removal = 0; removal < 2; removal++) {
+            play p = play_make(DEM_VELOCITY_VERLET, LAW_SPRING);
+            dem_world *first, *second;
+            dem_material glass;
+            glass.id = 1;
+            p.late = 0;
+            first = play_world(&p);
+            second = play_world(&p);
+            play_on(first, &p, p.steps);
+            if (removal) dem_body_remove(first, dem_bodies_id(first, 3));
+            else dem_sphere_add(first, glass, DEM_R(1e-3), at(0.004, 0.004, 0.0085));
+            CHECK_EQ(dem_checkpoint_write(first, path), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(second, path), DEM_OK);
+            CHECK_EQ(dem_world_hash(first), dem_world_hash(second));
+            play_on(first, &p, 2*p.steps);
+            play_on(second, &p, 2*p.steps);
+            check_same(first, second);
+            dem_world_destroy(first);
+            dem_world_destroy(second);
+        }
+        remove(path);
+    }
+    TEST("a motion given while the world runs goes on from a checkpoint as without") {
+        int kind;
+        for (kind = DEM_MOTION_TRANSLATING; kind <= DEM_MOTION_OSCILLATING; kind++) {
+            dem_world *w[2];
+            dem_wall wall;
+            int i;
+            wall.id = 2;
+            for (i = 0; i < 2; i++) {
+                dem_motion motion = DEM_MOTION;
+                dem_material glass;
+                w[i] = tiny_world(2500);
+                glass.id = 1;
+                scene_floor(w[i], glass, -0.01, -0.01, 0.01, 0.01, 1, 1);
+                motion.kind = (dem_motion_kind)kind;
+                motion.velocity = motion.axis = at(0, 0, 1);
+                motion.speed = 5;
+                motion.amplitude = DEM_R(1e-5);
+                motion.frequency = 500;
+                motion.phase = i ? 0 : 1;
+                scene_step(w[i], i ? 5 : 50);  /* the same motion, given at another time */
+                CHECK_EQ(dem_wall_motion(w[i], wall, &motion), DEM_OK);
+            }
+            scene_step(w[0], 20);
+            CHECK_EQ(dem_checkpoint_write(w[0], path), DEM_OK);
+            if (dem_checkpoint_read(w[1], path) == DEM_OK) {   /* refusing would be right as well */
+                scene_step(w[0], 50);
+                scene_step(w[1], 50);
+                CHECK_EQ(dem_world_hash(w[0]), dem_world_hash(w[1]));
+            } else CHECK_STR(dem_world_error(w[1]), "another scene");
+            dem_world_destroy(w[0]);
+            dem_world_destroy(w[1]);
+        }
+        remove(path);
+    }
+    TEST("a checkpoint of a world without grains, or before its first step, is read back") {
+        play p = play_make(DEM_LEAPFROG, LAW_SPRING);
+        dem_world *a = play_world(&p), *b = play_world(&p), *c;
+        CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
+        scene_step(b, 30);
+        CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
+        play_on(a, &p, p.steps);
+        play_on(b, &p, p.steps);
+        check_same(a, b);
+        dem_world_destroy(a);
+        p.nz = 0;
+        a = play_world(&p);
+        c = play_world(&p);
+        CHECK_EQ(scene_step(a, 3), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(c, path), DEM_OK);
+        CHECK_EQ(scene_step(a, 3), DEM_OK);
+        CHECK_EQ(scene_step(b, 3), DEM_OK);
+        CHECK_EQ(scene_step(c, 3), DEM_OK);
+        check_same(a, c);
+        CHECK_EQ(dem_world_hash(a), dem_world_hash(b));
+        dem_world_destroy(a);
+        dem_world_destroy(b);
+        dem_world_destroy(c);
+        remove(path);
+    }
+    TEST("a checkpoint cut at any byte is refused by name, the world as it was") {
+        dem_world *world = tiny_world(2500);
+        size_t size, n;
+        char *data;
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        data = file_get(path, &size);
+        CHECK(size > 500);
+        scene_step(world, 1);
+        for (n = 0; n < size && test_now.wrong == 0; n++) {
+            file_put(path, data, n);
+            refused(world, DEM_ERROR_FORMAT, n < 8 ? "is not a checkpoint" : "cut short");
+        }
+        data[size] = 0;
+        file_put(path, data, size + 1);
+        refused(world, DEM_ERROR_FORMAT, "appended");
+        file_put(path, data, size);
+        CHECK_EQ(dem_checkpoint_read(world, path), DEM_OK);
+        CHECK_EQ(dem_world_steps(world), 5);
+        free(data);
+        dem_world_destroy(world);
+        remove(path);
+    }
+    TEST("a checkpoint with any byte changed is refused by name, the world as it was") {
+        dem_world *world = tiny_world(2500);
+        size_t size, n;
+        char *data;
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        data = file_get(path, &size);
+        scene_step(world, 1);
+        for (n = 0; n < size && test_now.wrong == 0; n++) {
+            const int bit = 1 << n%8;
+            data[n] = (char)(data[n] ^ bit);
+            file_put(path, data, size);
+            refused(world, DEM_ERROR_FORMAT, "");
+            data[n] = (char)(data[n] ^ bit);
+        }
+        free(data);
+        dem_world_destroy(world);
+        remove(path);
+    }
+    TEST("a checkpoint of another version, precision or byte order, or none at all, is refused by "
+         "name") {
+        dem_world *world = tiny_world(2500);
+        size_t size;
+        char *data;
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        data = file_get(path, &size);
+        data[8]++;
+        file_put(path, data, size);
+        refused(world, DEM_ERROR_FORMAT, "version 2, must be 1");
+        data[8]--;
+        data[12] = (char)(12 - data[12]);      /* 8 and 4 change places */
+        file_put(path, data, size);
+        refused(world, DEM_ERROR_FORMAT, "DEM_REAL");
+        data[12] = (char)(12 - data[12]);
+        data[16] = data[19];
+        file_put(path, data, size);
+        refused(world, DEM_ERROR_FORMAT, "byte order");
+        file_put(path, "solid bunny", 11);
+        refused(world, DEM_ERROR_FORMAT, "is not a checkpoint");
+        remove(path);
+        refused(world, DEM_ERROR_FILE, "cannot read");
+        CHECK_EQ(dem_checkpoint_read(world, 0), DEM_ERROR_ARGUMENT);
+        free(data);
+        dem_world_destroy(world);
+    }
+    TEST("a checkpoint of another scene is refused by name, whatever of it differs") {
+        dem_world *world = other_world(SAME);
+        int what;
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(world, path), DEM_OK);
+        dem_world_destroy(world);
+        for (what = DENSITY; what < OTHERS; what++) {
+            const int before = test_now.wrong;
+            world = other_world(what);
+            refused(world, DEM_ERROR_FORMAT, "another scene");
+            if (test_now.wrong > before) printf("        with difference %d\n", what);
+            dem_world_destroy(world);
+        }
+        remove(path);
+    }
+    TEST("a checkpoint that cannot be written leaves the older file whole, and says why") {
+        char longest[300] = "build/tmp/";
+        dem_world *world = tiny_world(2500);
+        const uint64_t hash = dem_world_hash(world);
+        size_t before, after;
+        char *old, *present;
+        CHECK_EQ(dem_checkpoint_write(world, "build/tmp/no such folder/a.ckpt"), DEM_ERROR_FILE);
+        CHECK_STR(dem_world_error(world), "dem_checkpoint_write: ");
+        CHECK_STR(dem_world_error(world), "no such folder");
+        CHECK_EQ(dem_checkpoint_write(world, 0), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "path is null");
+        /* a name as long as file systems take: the temporary one, 4 longer, cannot be opened */
+        memset(longest + 10, 'n', 253);
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        CHECK_EQ(rename(path, longest), 0);
+        old = file_get(longest, &before);
+        scene_step(world, 3);
+        CHECK_EQ(dem_checkpoint_write(world, longest), DEM_ERROR_FILE);
+        present = file_get(longest, &after);
+        CHECK_EQ(before, after);
+        CHECK(old && present && memcmp(old, present, after) == 0);
+        CHECK_EQ(dem_checkpoint_read(world, longest), DEM_OK);
+        CHECK_EQ(dem_world_hash(world), hash);
+        remove(longest);
+        free(old);
+        free(present);
+        dem_world_destroy(world);
+    }
+    return test_end();
+}
