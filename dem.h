@@ -498,7 +498,8 @@ typedef struct dem_bodies {
     const dem_real *forces;
     const dem_real *torques;    /* count x 4: x, y, z [N m], 0 */
     const dem_real *masses;     /* count: kg */
-    const uint32_t *slots;      /* count: slot of dem_body less 1; dem_bodies_id gives the id       */
+    /* count: slot of dem_body less 1; dem_bodies_id gives the id       */
+    const uint32_t *slots;
     const int32_t *materials;   /* count: dem_material ids */
 } dem_bodies;
 DEM_API dem_bodies dem_bodies_get(const dem_world *world);
@@ -1228,8 +1229,12 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
     p.tangent_damping = 1;
     /* springs in series; equal materials: their own value */
+    /* springs in series; equal materials: their own value */
     if (a->stiffness > 0 && b->stiffness > 0)
         p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
+    /* one has a modulus only, the other a stiffness only */
+    else if (p.young_eff <= 0)
+        p.stiffness = DEMI_MAX(a->stiffness, b->stiffness);
     if (a->stiffness_ratio > 0 && b->stiffness_ratio > 0)
         p.stiffness_ratio = DEMI_SQRT(a->stiffness_ratio*b->stiffness_ratio);
     else                                        /* Mindlin's ratio 2(1-nu)/(2-nu), of the mean nu */
@@ -1433,14 +1438,14 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
 
 /* Room for filed memory. 0 when memory ran out. */
 static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
-    if (!demi_array_grow(w, &w->carry_start_, sizeof(int32_t), (size_t)rows + 2) ||
-        !demi_array_grow(w, &w->carry_partner_, sizeof(int32_t), (size_t)count) ||
-        !demi_array_grow(w, &w->carry_memory_, sizeof(dem_real), (size_t)count*(size_t)stride))
-        return 0;
+    const size_t reals = (size_t)count*(size_t)stride;
+    const int ok = demi_array_grow(w, &w->carry_start_, sizeof(int32_t), (size_t)rows + 2) &&
+                   demi_array_grow(w, &w->carry_partner_, sizeof(int32_t), (size_t)count) &&
+                   demi_array_grow(w, &w->carry_memory_, sizeof(dem_real), reals);
     w->carry_start = (int32_t *)w->carry_start_.data;
     w->carry_partner = (int32_t *)w->carry_partner_.data;
     w->carry_memory = (dem_real *)w->carry_memory_.data;
-    return 1;
+    return ok;
 }
 
 /* Files the memory of all touching pairs by slot: row = lower slot; partner = higher slot, or its
@@ -1727,6 +1732,11 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     demi_put(w->spin + 4*i, s->spin);
     if (w->desc.planar)
         w->pos[4*i + 2] = w->vel[4*i + 2] = w->spin[4*i] = w->spin[4*i + 1] = 0;
+    /* never moves, whatever it is told */
+    if (s->fixed) demi_put(w->vel + 4*i, demi_v(0, 0, 0));
+    if (s->fixed) demi_put(w->spin + 4*i, demi_v(0, 0, 0));
+    demi_put(w->half_vel + 4*i, demi_at(w->vel + 4*i));
+    demi_put(w->half_spin + 4*i, demi_at(w->spin + 4*i));
     w->inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->inv_inertia[i] = s->fixed ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
         (double)w->pos[4*i + 3]));
@@ -2550,7 +2560,8 @@ static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
 static void demi_pair_coefs(const dem_world *w, demi_list *list, int k) {
     const int a = list->a[k], b = list->b[k];
     const double ra = (double)w->pos[4*a + 3], rb = (double)w->pos[4*b + 3];
-    const int mill = w->desc.convention == DEM_CONVENTION_MILL;  /* there a fixed grain has mass too */
+    /* there a fixed grain has mass too */
+    const int mill = w->desc.convention == DEM_CONVENTION_MILL;
     const double inv = mill ? 1/(double)w->mass[a] + 1/(double)w->mass[b]
                             : (double)w->inv_mass[a] + (double)w->inv_mass[b];
     demi_coefficients(w, w->body_material[a] - 1, w->body_material[b] - 1, ra*rb/(ra + rb), 1/inv,
@@ -2925,47 +2936,61 @@ static void demi_domain_walls(dem_world *w, int d) {
     }
 }
 
+/* Room for a list. 0 when memory ran out; what did grow is pointed at all the same. */
 static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
-    if (n > (size_t)INT_MAX/8) return 0;
-    if (!demi_array_grow(w, &list->a_, sizeof(int32_t), n) ||
-        !demi_array_grow(w, &list->b_, sizeof(int32_t), n) ||
-        !demi_array_grow(w, &list->stamp_, sizeof(uint32_t), n) ||
-        !demi_array_grow(w, &list->memory_, sizeof(dem_real), m) ||
-        (!w->uniform && !demi_array_grow(w, &list->coef_, sizeof(dem_real),
-                                         n*DEMI_COEFS))) return 0;
+    const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &list->a_, sizeof(int32_t), n) &&
+                   demi_array_grow(w, &list->b_, sizeof(int32_t), n) &&
+                   demi_array_grow(w, &list->stamp_, sizeof(uint32_t), n) &&
+                   demi_array_grow(w, &list->memory_, sizeof(dem_real), m) &&
+                   (w->uniform || demi_array_grow(w, &list->coef_, sizeof(dem_real), n*DEMI_COEFS));
     list->a = (int32_t *)list->a_.data;
     list->b = (int32_t *)list->b_.data;
     list->stamp = (uint32_t *)list->stamp_.data;
     list->memory = (dem_real *)list->memory_.data;
     list->coef = (dem_real *)list->coef_.data;
-    list->stride = stride;
-    return 1;
+    if (ok) list->stride = stride;
+    return ok;
 }
 static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const size_t n = (size_t)w->domain_count*(size_t)stride;
-    if (n > (size_t)INT_MAX/8) return 0;
-    if (!demi_array_grow(w, &w->wall_body_, sizeof(int32_t), n) ||
-        !demi_array_grow(w, &w->wall_id_, sizeof(int32_t), n) ||
-        !demi_array_grow(w, &w->wall_element_, sizeof(int32_t), n)) return 0;
+    const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &w->wall_body_, sizeof(int32_t),
+                                                             n) &&
+                   demi_array_grow(w, &w->wall_id_, sizeof(int32_t), n) &&
+                   demi_array_grow(w, &w->wall_element_, sizeof(int32_t), n);
     w->wall_body = (int32_t *)w->wall_body_.data;
     w->wall_id = (int32_t *)w->wall_id_.data;
     w->wall_element = (int32_t *)w->wall_element_.data;
-    w->wall_stride = stride;
-    return 1;
+    if (ok) w->wall_stride = stride;
+    return ok;
+}
+static int demi_cross_reserve(dem_world *w, size_t entries) {
+    const int ok = demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), entries) &&
+                   demi_array_grow(w, &w->cross_hit_, sizeof(int32_t), entries) &&
+                   demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 9*(entries + 1));
+    w->cross_incoming = (int32_t *)w->cross_incoming_.data;
+    w->cross_hit = (int32_t *)w->cross_hit_.data;
+    w->cross_push = (dem_real *)w->cross_push_.data;
+    return ok;
+}
+/* Room for contacts with walls, now and next, and for the walls' sums. */
+static int demi_wall_contacts_reserve(dem_world *w, size_t now, size_t next) {
+    const size_t sums = (size_t)w->domain_count*(size_t)w->wall_count;
+    const int ok = demi_array_grow(w, &w->wall_now_, sizeof(demi_wall_contact), now) &&
+                   demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact), next) &&
+                   demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum), sums);
+    w->wall_now = (demi_wall_contact *)w->wall_now_.data;
+    w->wall_next = (demi_wall_contact *)w->wall_next_.data;
+    w->wall_sums = (demi_wall_sum *)w->wall_sums_.data;
+    return ok;
 }
 
 /* Entries of the cross lists by the domain of b, so that each domain can add what reaches in from
    before it. */
 static int demi_cross_index(dem_world *w) {
     int d, k, e, entries = w->domain_count*w->cross.stride;
-    if (!demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), (size_t)entries) ||
-        !demi_array_grow(w, &w->cross_hit_, sizeof(int32_t), (size_t)entries)) return 0;
-    w->cross_incoming = (int32_t *)w->cross_incoming_.data;
-    w->cross_hit = (int32_t *)w->cross_hit_.data;
+    if (!demi_cross_reserve(w, (size_t)entries)) return 0;
     w->cross_push_stride = (size_t)entries + 1;  /* slot 0: the push of what does not touch */
-    if (!demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 9*w->cross_push_stride)) return 0;
-    w->cross_push = (dem_real *)w->cross_push_.data;
     for (k = 0; k < 9; k++) w->cross_push[(size_t)k*w->cross_push_stride] = 0;
     for (d = 0; d <= w->domain_count; d++) w->cross_incoming_start[d] = 0;
     for (d = 0; d < w->domain_count; d++)
@@ -3000,7 +3025,8 @@ static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
     const double r_eff = wall->kind == DEMI_WALL_GRAINS
         ? r*(double)wall->radius/(r + (double)wall->radius) : r;
     const int grains = wall->kind == DEMI_WALL_GRAINS;
-    const int mill = w->desc.convention == DEM_CONVENTION_MILL;  /* there a grain of a wall has mass */
+    /* there a grain of a wall has mass */
+    const int mill = w->desc.convention == DEM_CONVENTION_MILL;
     demi_coefficients(w, w->body_material[c->body] - 1, wall->material, r_eff,
                       (double)w->mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
 }
@@ -3011,11 +3037,7 @@ static int demi_wall_contacts_move(dem_world *w, int stride) {
     const size_t n = (size_t)w->domain_count*(size_t)stride;
     int d, k, e = 0, total = 0;
     for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
-    if (!demi_array_grow(w, &w->wall_now_, sizeof(demi_wall_contact), n)) return 0;
-    w->wall_now = (demi_wall_contact *)w->wall_now_.data;
-    if (!demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact),
-                         DEMI_MAX(n, (size_t)total))) return 0;
-    w->wall_next = (demi_wall_contact *)w->wall_next_.data;
+    if (!demi_wall_contacts_reserve(w, n, DEMI_MAX(n, (size_t)total))) return 0;
     for (d = 0; d < DEMI_DOMAINS; d++) {  /* gather all in wall_next, slots turned to indices */
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             demi_wall_contact c = w->wall_now[d*w->wall_now_stride + k];
@@ -3125,7 +3147,8 @@ static dem_result demi_rebuild(dem_world *w) {
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
     demi_effects(w);
     demi_skin_choose(w);
-    if (w->carry_stride != w->memory_stride) w->carry_count = 0;  /* other laws: memory means nothing */
+    /* other laws: memory means nothing */
+    if (w->carry_stride != w->memory_stride) w->carry_count = 0;
     demi_wrap(w);
     for (k = 0; k < 3; k++) {
         const demi_periods p = demi_periods_of(w);
@@ -3171,10 +3194,6 @@ static dem_result demi_rebuild(dem_world *w) {
         if (again && !demi_wall_lists_reserve(w, w->wall_stride/2*3 +
                                               64)) return demi_no_memory(w, "dem_world_step");
     } while (again);
-    if (!demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum),
-                         (size_t)w->domain_count*(size_t)w->wall_count))
-        return demi_no_memory(w, "dem_world_step");
-    w->wall_sums = (demi_wall_sum *)w->wall_sums_.data;
     if (!demi_wall_contacts_move(w, w->wall_stride)) return demi_no_memory(w, "dem_world_step");
     while (w->slot_pending >= 0) {  /* slots freed since the last list may be used again */
         const int slot = w->slot_pending;
@@ -3193,7 +3212,8 @@ static dem_result demi_rebuild(dem_world *w) {
 /* Answers -1 with a sentence, for those who ask about a list that no longer fits. */
 static int demi_list_stale(const dem_world *world, const char *call) {
     demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: bodies or walls changed since the "
-              "last step, so there is no list of contacts; call dem_search_now or dem_world_step first", call);
+              "last step, so there is no list of contacts; call dem_search_now or dem_world_step "
+              "first", call);
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
@@ -4384,7 +4404,8 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
         const double r = smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r) : 0;
         const double nu = (double)w->materials[i].poisson;
         const double G = (double)w->materials[i].young/(2*(1 + nu));
-        const int kinds = 2*w->material_count + w->wall_count;  /* moving grains, fixed ones, walls */
+        /* moving grains, fixed ones, walls */
+        const int kinds = 2*w->material_count + w->wall_count;
         dem_real coef[DEMI_COEFS];
         if (r <= 0) continue;
         if (G > 0)
@@ -4530,6 +4551,7 @@ static void demi_domain_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
     int i;
+    if (!n) return;
     memset(w->force + 4*domain->begin, 0, n);
     memset(w->torque + 4*domain->begin, 0, n);
     if (!w->desc.force) return;
@@ -4551,8 +4573,15 @@ static void demi_domain_gather(dem_world *w, int d) {
     int i;
     if (w->cross_entries) demi_cross_gather(w, d);
     demi_walls_respond(w, d);
+    if (w->desc.law || w->desc.force) {         /* those of your own may answer anything */
+        double sum = 0;
+        for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
+            sum += fabs((double)w->force[i]) + fabs((double)w->torque[i]);
+        w->domains[d].check = sum;
+    }
     if (!w->desc.planar) return;
-    for (i = w->domains[d].begin; i < w->domains[d].end; i++)  /* nothing pushes a disc out of its plane */
+    /* nothing pushes a disc out of its plane */
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++)
         w->force[4*i + 2] = w->torque[4*i] = w->torque[4*i + 1] = 0;
 }
 /* Forces at the present positions and velocities; wall channels. */
@@ -4602,7 +4631,8 @@ static dem_result demi_unstable(dem_world *w) {
     double deepest = 0;
     for (i = 0; i < w->count; i++)
         if (!demi_finite3(demi_at(w->pos + 4*i)) || !demi_finite3(demi_at(w->vel + 4*i)) ||
-            !demi_finite3(demi_at(w->spin + 4*i)))
+            !demi_finite3(demi_at(w->spin + 4*i)) || !demi_finite3(demi_at(w->force + 4*i)) ||
+            !demi_finite3(demi_at(w->torque + 4*i)))
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its "
                              "position, velocity or spin is no "
                              "longer a finite number; likely a law, force field or motion of your "
@@ -4679,7 +4709,8 @@ static dem_result demi_step_move(dem_world *w) {
         demi_wall_pose_at(wall, w->time, &wall->pose);
         demi_wall_pose_at(wall, w->time - w->half_kick, &wall->mid);
         if (!demi_pose_finite(&wall->pose) || !demi_pose_finite(&wall->mid))
-            return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: the motion of wall %d gave a "
+            return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: the motion of wall "
+                             "%d gave a "
                              "pose that is not finite at %g s; check the motion function",
                              (unsigned long long)w->steps, i + 1, w->time);
         speed = demi_wall_speed(wall);
@@ -4691,7 +4722,8 @@ static dem_result demi_step_move(dem_world *w) {
     return DEM_OK;
 }
 
-/* One step. Numbers as in the manual. A step that ran out of memory after its move goes on from there. */
+/* One step. Numbers as in the manual. A step that ran out of memory after its move goes on from
+   there. */
 static dem_result demi_step_once(dem_world *w) {
     double overlap = 0;
     dem_result result;
@@ -4705,18 +4737,23 @@ static dem_result demi_step_once(dem_world *w) {
     if (result != DEM_OK) return result;
 
     /* 2 search: when something may have come near that is not in the list */
-    if (!w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach + w->wall_reach > w->skin) {
+    if (!w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach +
+        w->wall_reach > w->skin) {
         result = demi_rebuild(w);
         if (result != DEM_OK) return result;
         demi_kernel_choose(w);
-        if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;     /* faster than thought: ask again */
+        /* faster than thought: ask again */
+        if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;
     }
 
     /* 3 touch, 4 respond, 5 gather */
     demi_forces(w);
     w->moved = 0;
+    for (d = 0; d < w->domain_count && (w->desc.law || w->desc.force); d++)
+        if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
 
-    /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish) */
+    /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish)
+       */
     for (d = 0; d < w->domain_count; d++) overlap = DEMI_MAX(overlap, w->domains[d].overlap);
     if (!(overlap < 1)) return demi_unstable(w);
     return DEM_OK;
@@ -4761,8 +4798,6 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     }
     if (!whole) return result;                  /* half a step: its velocities stay as predicted */
     demi_finish(w);
-    for (i = 0; i < w->count; i++)              /* a law or field may spoil the last half kick */
-        if (!demi_finite3(demi_at(w->vel + 4*i))) return demi_unstable(w);
     return result;
 }
 
@@ -6087,7 +6122,8 @@ static size_t demi_state_size(const dem_world *w, const demi_shape *s) {
     size += (size_t)s->contact_total*sizeof(demi_wall_contact);
     size += (size_t)s->walls*(3*sizeof(dem_pose) + sizeof(dem_channels) + sizeof(dem_motion));
     if (s->carry_count)
-        size += ((size_t)s->carry_rows + 2)*4 + (size_t)s->carry_count*(4 + (size_t)s->carry_stride*r);
+        size += ((size_t)s->carry_rows + 2)*4 + (size_t)s->carry_count*(4 +
+            (size_t)s->carry_stride*r);
     for (i = 0; i < w->field_count; i++) size += 16 +
         5*sizeof(double)*demi_field_cells(&w->fields[i]);
     return size;
@@ -6215,7 +6251,7 @@ static uint64_t demi_scene_digest(const dem_world *w) {
         const demi_wall *wall = &w->walls[i];
         const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule,
                             wall->vertex_count,
-                            wall->element_count, wall->motion.kind == DEM_MOTION_USER};
+                            wall->element_count, (int)wall->motion.kind};
         h = demi_hash(h, what, sizeof what);
         h = demi_hash(h, &wall->radius, sizeof(dem_real));
         h = demi_hash(h, &wall->share, sizeof(dem_real));
@@ -6342,22 +6378,10 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
            demi_list_reserve(w, &w->own, shape->domains, shape->own_stride) &&
            demi_list_reserve(w, &w->cross, shape->domains, shape->cross_stride) &&
            demi_wall_lists_reserve(w, shape->wall_stride) &&
-           demi_array_grow(w, &w->wall_now_, sizeof(demi_wall_contact),
-                           (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
-           demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact),
-                           (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
-           demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum),
-                           (size_t)shape->domains*(size_t)shape->walls) &&
-           demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t),
-                           (size_t)shape->domains*(size_t)shape->cross_stride) &&
-           demi_array_grow(w, &w->cross_hit_, sizeof(int32_t),
-                           (size_t)shape->domains*(size_t)shape->cross_stride) &&
-           demi_array_grow(w, &w->cross_push_, sizeof(dem_real),
-                           9*((size_t)shape->domains*(size_t)shape->cross_stride + 1));
-    w->wall_now = (demi_wall_contact *)w->wall_now_.data;
-    w->wall_next = (demi_wall_contact *)w->wall_next_.data;
-    w->wall_sums = (demi_wall_sum *)w->wall_sums_.data;
-    room = room && demi_carry_reserve(w, shape->carry_rows, shape->carry_count, shape->carry_stride);
+           demi_wall_contacts_reserve(w, (size_t)shape->domains*(size_t)shape->wall_now_stride,
+                                      (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
+           demi_cross_reserve(w, (size_t)shape->domains*(size_t)shape->cross_stride) &&
+           demi_carry_reserve(w, shape->carry_rows, shape->carry_count, shape->carry_stride);
     if (!room) {
         w->own.stride = own; w->cross.stride = cross; w->wall_stride = walls;
         w->domain_count = domains; w->memory_stride = stride; w->uniform = uniform;
@@ -6450,7 +6474,8 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
             "from DEM_WORLD_DESC";
     if ((int)d->tension < 0 || d->tension > DEM_TENSION_CLIPPED || (int)d->convention < 0 ||
         d->convention > DEM_CONVENTION_MILL)
-        return "dem_world_create: tension or convention is unknown, must be one of the enum values; "
+        return "dem_world_create: tension or convention is unknown, must be one of the enum "
+            "values; "
                "start from DEM_WORLD_DESC";
     if ((int)d->integrator < 0 || d->integrator > DEM_LEAPFROG || (int)d->search < 0 ||
         d->search > DEM_SEARCH_LINKED_LIST)
