@@ -24,7 +24,7 @@ hash := \#
 
 # ---- what the compiler can do; asked only when something is to be compiled ----
 ifneq ($(filter-out help clean tags check fuzz docs,$(or $(MAKECMDGOALS),help)),)
-$(shell mkdir -p build)
+$(shell mkdir -p build/tmp)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
         $(CC) $$f build/probe.c -o build/probe >build/probe.log 2>&1 && test ! -s build/probe.log && echo $$f; done)

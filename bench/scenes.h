@@ -77,7 +77,7 @@ STUDY_FN int bench_is(const bench_scene *s, const char *name) { return !strcmp(s
 /* Metres, m/s and rad/s of one unit of a file; 0: the file does not have it. */
 STUDY_FN void bench_units(const char *name, double unit[3]) {
     const int drum = !strcmp(name, "drum"), gas = !strcmp(name, "gas");
-    unit[0] = gas ? 1e-6 : drum ? 1e-8 : 1e-9;  /* far below an overlap, see docs                */
+    unit[0] = gas ? 1e-6 : drum ? 1e-8 : 1e-9;  /* far below an overlap */
     unit[1] = gas || drum ? 1e-4 : 0;
     unit[2] = drum ? 1e-2 : 0;
 }
@@ -167,7 +167,7 @@ STUDY_FN void bench_scene_take(bench_scene *s, const dem_world *world) {
     const int axes = bench_is(s, "gas") ? 3 : bench_is(s, "bed") ? 2 : 0;
     int i, c;
     for (i = 0; i < b.count; i++) {
-        const size_t to = 3*(size_t)(b.slots[i] - 1);
+        const size_t to = 3*(size_t)(dem_bodies_id(world, i).slot - 1);
         for (c = 0; c < 3; c++) {
             s->x[to + (size_t)c] = (double)b.positions[4*i + c];
             s->v[to + (size_t)c] = (double)b.velocities[4*i + c];

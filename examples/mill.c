@@ -1,46 +1,47 @@
 /* mill.c - a tumbling mill: glass beads in a rotating drum with lifters.
 
-   The machine is that of [MIL], a thesis on tumbling mills on a GPU: a drum of 300 mm with 3 mm glass
-   beads (its Fig 5.24). What differs, so that the default run ends in a minute or so on two cores:
+   The machine is that of [MIL], a thesis on tumbling mills on a GPU: a drum of 300 mm with glass
+   beads of 3 mm (its Fig 5.24). So that the default run ends soon, it differs from the thesis:
      - a thin slice, periodic along the axis;
      - a charge of 30 % of the volume; --fill 0.3743 is as many beads per length as in the thesis,
        303156 in 270 mm;
-     - softer beads: --soften F lowers every Young's modulus above that of glass over F to that value;
-       --stiffness true simulates the glass of the thesis;
-     - half a turn to settle and half a turn measured; the thesis gave it three and one or more.
-   The lifters of the thesis are printed as a picture only, of 259 points and 259 lines. Our profile,
-   examples/data/mill_300mm.profile, has as many of each, with 12 trapezoidal lifters of our own choice:
-   9 mm high, 16 mm wide at the foot, 8 mm at the top (made by --write-profile).
+     - softer beads: --soften F lowers every Young's modulus above that of glass over F to that
+       value; --stiffness true simulates the glass of the thesis;
+     - half a turn to settle, half a turn measured: there it was three, and one or more.
+   The lifters of the thesis are printed as a picture only, of 259 points and 259 lines. Our
+   examples/data/mill_300mm.profile has as many of each, with 12 trapezoidal lifters of our own
+   choice: 9 mm high, 16 mm wide at the foot, 8 mm at the top (made by --write-profile).
 
-   build:  cc -O2 -std=c99 -fopenmp examples/mill.c -o build/mill -lm       (-fopenmp if you like)
+   build:  cc -O2 -std=c99 -fopenmp examples/mill.c -o build/mill -lm    (-fopenmp if you like)
    run:    build/mill, build/mill --quick, build/mill --help
 
-   The axis is z, gravity points to -y, the mill turns about +z: with x to the right it turns to the
-   left, and carries the charge up on the right. Critical speed is that of the thesis: 42.3/sqrt(D)
-   turns a minute. What is measured, over the last --revolutions:
-     rate                  particle-steps per second of wall time
-     solidicity_bulk       mean solid fraction of the cells (64 x 64) in which it is above 0.4
-     shell_speed_ratio     speed of the grains whose centre is within 1.5 diameters of the shell, from
-                           20 degrees after the toe to 20 before the shoulder, over omega times the
-                           radius of the shell
-     overlap_max           largest overlap of the whole run, over the radius
-     torque_mean           N m, of the mill on the charge of the slice
-     torque_balance_error  |T - M g x|/(M g x), x: mean horizontal offset of the charge's centre of mass
-     momentum_balance_error  the same with what the charge's angular momentum grew by: exact but for
-                           the sampling of x
-     power_balance_error   |T omega - D|/(T omega), D: rate of dissipation and of growth of the energy
-                           stored, elevation included. The ledger sums dissipation contact by contact
-     ledger_residual       energy that the ledger cannot account for, over all that was put through,
-                           whole run; falls with the square of the time step
-     toe, shoulder         degrees from straight down, positive the way the mill turns: where, on a ring
-                           at 0.84 to 0.92 of the shell's radius (inside the lifters), solidicity falls
-                           below half the bulk's
-     steady_after          revolutions after which the torque, averaged over half a turn, stays within
-                           5 % of its mean
-     grains_missing        inserted - present + those found outside the shell
-     hash                  of the final state: the same for any number of threads
-   Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG); torque.csv,
-   ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
+   The axis is z, gravity points to -y, the mill turns about +z: with x to the right it turns to
+   the left, and carries the charge up on the right. Critical speed is that of the thesis:
+   42.3/sqrt(D) turns a minute. What is measured, over the last --revolutions:
+     rate                 particle-steps per second of wall time
+     solidicity_bulk      mean solid fraction of the cells (64 x 64) in which it is above 0.4
+     shell_speed_ratio    speed of the grains whose centre is within 1.5 diameters of the shell,
+                          from 20 degrees after the toe to 20 before the shoulder, over omega
+                          times the radius of the shell
+     overlap_max          largest overlap of the whole run, over the radius
+     torque_mean          N m, of the mill on the charge of the slice
+     torque_balance_error |T - M g x|/(M g x), x: mean horizontal offset of the charge's centre
+     momentum_balance_error  the same, less what the charge's angular momentum grew by: an
+                          identity, exact but for the sampling of x
+     power_balance_error  |T omega - D|/(T omega), D: rate of dissipation and of growth of the
+                          energy stored, elevation included. The ledger sums the dissipation
+                          contact by contact
+     ledger_residual      energy that the ledger cannot account for, over all that was put
+                          through, whole run; falls with the square of the time step
+     toe, shoulder        degrees from straight down, positive the way the mill turns: where, on
+                          a ring at 0.84 to 0.92 of the shell's radius (inside the lifters),
+                          solidicity falls below half the bulk's
+     steady_after         revolutions after which the torque, averaged over half a turn, stays
+                          within 5 % of its mean
+     grains_missing       inserted - present + those found outside the shell
+     hash                 of the final state: the same for any number of threads
+   Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG);
+   torque.csv, ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "study.h"
@@ -51,31 +52,39 @@
 #define SAMPLES 240        /* of torque and energy, per revolution */
 
 static struct mill_options {
-    double diameter, length, radius, speed, fill, friction, wall_friction, soften, dt, contact_steps;
-    double revolutions, settle;
+    double diameter, length, radius, speed, fill, friction, wall_friction, soften, dt;
+    double contact_steps, revolutions, settle;
     const char *ends, *profile, *wall, *stiffness, *law, *integrator, *tangent, *study, *out;
     const char *checkpoint, *resume, *write_profile;
     int threads, frames, quick;
-} options = {0.3, 0.0064, 0.0015, 0.7, 0.3, 0.154, 0.32, 500, 0, 30, 0.5, 0.5, "periodic", "lifters", "mesh", "soft",
-             "hertz", "verlet", "auto", "mill", "build/out/mill", 0, 0, 0, 0, 4, 0};
+} options = {0.3, 0.0064, 0.0015, 0.7, 0.3, 0.154, 0.32, 500, 0, 30, 0.5, 0.5,
+             "periodic", "lifters", "mesh", "soft", "hertz", "verlet", "auto", "mill",
+             "build/out/mill", 0, 0, 0, 0, 4, 0};
 
-#define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"          /* in the order of dem_integrator */
-#define TANGENTS "auto|none|viscous|step|spring|mindlin|rescaled"        /* in the order of dem_tangent_law */
+/* in the order of dem_integrator and dem_tangent_law */
+#define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"
+#define TANGENTS "auto|none|viscous|step|spring|mindlin|rescaled"
 static const study_option table[] = {
-    {"diameter", STUDY_REAL, &options.diameter, 0.02, 20, "m", "of the drum; lifters scale with it"},
+    {"diameter", STUDY_REAL, &options.diameter, 0.02, 20, "m",
+        "of the drum; lifters scale with it"},
     {"length", STUDY_REAL, &options.length, 0.003, 20, "m", "of the slice simulated"},
     {"ends", STUDY_CHOICE, &options.ends, 0, 0, "periodic|flat", "of the slice"},
     {"radius", STUDY_REAL, &options.radius, 1e-4, 0.5, "m", "of the beads"},
     {"speed", STUDY_REAL, &options.speed, 0.05, 3, "of critical", "of the mill"},
-    {"fill", STUDY_REAL, &options.fill, 0.01, 0.9, "of the volume", "charge, at a solid fraction of 0.6"},
-    {"profile", STUDY_TEXT, &options.profile, 0, 0, "", "lifters (of examples/data), none (smooth), or a file"},
-    {"wall", STUDY_CHOICE, &options.wall, 0, 0, "mesh|grains", "grains: a smooth drum lined with beads"},
+    {"fill", STUDY_REAL, &options.fill, 0.01, 0.9, "of the volume",
+        "charge, at a solid fraction of 0.6"},
+    {"profile", STUDY_TEXT, &options.profile, 0, 0, "",
+        "lifters (of examples/data), none (smooth), or a file"},
+    {"wall", STUDY_CHOICE, &options.wall, 0, 0, "mesh|grains",
+        "grains: a smooth drum lined with beads"},
     {"friction", STUDY_REAL, &options.friction, 0, 5, "", "between beads"},
     {"wall-friction", STUDY_REAL, &options.wall_friction, 0, 5, "", "between beads and mill"},
     {"stiffness", STUDY_CHOICE, &options.stiffness, 0, 0, "true|soft", "of beads and mill"},
-    {"soften", STUDY_REAL, &options.soften, 1, 1e6, "", "soft: nothing is stiffer than glass over this"},
+    {"soften", STUDY_REAL, &options.soften, 1, 1e6, "",
+        "soft: nothing is stiffer than glass over this"},
     {"dt", STUDY_REAL, &options.dt, 0, 1, "s", "time step; 0: from --contact-steps"},
-    {"contact-steps", STUDY_REAL, &options.contact_steps, 20, 1e6, "", "steps in the shortest contact at shell speed"},
+    {"contact-steps", STUDY_REAL, &options.contact_steps, 20, 1e6, "",
+        "steps in the shortest contact at shell speed"},
     {"law", STUDY_CHOICE, &options.law, 0, 0, "hertz|linear", "normal force"},
     {"integrator", STUDY_CHOICE, &options.integrator, 0, 0, INTEGRATORS, "scheme"},
     {"tangent", STUDY_CHOICE, &options.tangent, 0, 0, TANGENTS, "friction law"},
@@ -84,11 +93,16 @@ static const study_option table[] = {
     {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "a smaller mill, under 20 s on two cores"},
-    {"frames", STUDY_INT, &options.frames, 0, 100000, "", "VTP files of grains and mill over the run"},
-    {"checkpoint", STUDY_TEXT, &options.checkpoint, 0, 0, "", "file written every quarter revolution"},
-    {"resume", STUDY_TEXT, &options.resume, 0, 0, "", "such a file, of a run with the same options"},
-    {"study", STUDY_CHOICE, &options.study, 0, 0, "mill|drop|overlap|speeds|friction", "what to run"},
-    {"write-profile", STUDY_TEXT, &options.write_profile, 0, 0, "", "write the lifters' profile to a file, and stop"},
+    {"frames", STUDY_INT, &options.frames, 0, 100000, "",
+        "VTP files of grains and mill over the run"},
+    {"checkpoint", STUDY_TEXT, &options.checkpoint, 0, 0, "",
+        "file written every quarter revolution"},
+    {"resume", STUDY_TEXT, &options.resume, 0, 0, "",
+        "such a file, of a run with the same options"},
+    {"study", STUDY_CHOICE, &options.study, 0, 0, "mill|drop|overlap|speeds|friction",
+        "what to run"},
+    {"write-profile", STUDY_TEXT, &options.write_profile, 0, 0, "",
+        "write the lifters' profile to a file, and stop"},
 };
 
 typedef struct sample {    /* sums since the start, so that any window is a difference */
@@ -113,7 +127,7 @@ static const char *program_path; /* argv[0]: the data lie relative to it */
 
 static int is(const char *a, const char *b) { return !strcmp(a, b); }
 
-static int place_of(const char *word, const char *list) { /* in "one|another", which the option made sure of */
+static int place_of(const char *word, const char *list) { /* in "one|another"; it is there */
     int place = 0;
     const char *at = strstr(list, word);
     while (at > list) place += *--at == '|';
@@ -138,10 +152,11 @@ static void mill_destroy(mill *m) {
     m->world = 0;
 }
 
-/* Fig 5.24 of [MIL]. What it says of beads against the mill ("ps") is set for the pair, moduli mixed by Hertz. A
-   lining of beads is of glass, as in its section 5.2.1: one set of coefficients only. */
+/* Fig 5.24 of [MIL]. What it says of beads against the mill ("ps") is set for the pair, moduli mixed
+   by Hertz. A lining of beads is of glass, as in its section 5.2.1: one set of coefficients only. */
 static int materials_add(mill *m) {
-    static const double density[2] = {2500, 950}, shear[2] = {26e9, 0.31e9}, poisson[2] = {0.23, 0.42};
+    static const double density[2] = {2500, 950}, poisson[2] = {0.23, 0.42};
+    static const double shear[2] = {26e9, 0.31e9};
     double limit = is(m->o.stiffness, "soft") ? 2*shear[0]*(1 + poisson[0])/m->o.soften : 1e300;
     dem_material made[2];
     dem_pair pair;
@@ -166,7 +181,8 @@ static int materials_add(mill *m) {
 
 /* ---- the shell ---- */
 
-/* 12 lifters on a circle of 300 mm: 48 corners, and 211 points on the arcs between them: 259, as in [MIL]. */
+/* 12 lifters on a circle of 300 mm: 48 corners and 211 points on the arcs between them, 259 as in
+   [MIL]. */
 static int profile_write(const char *path) {
     static const double corner[4][2] = {{0, -0.008}, {0.141, -0.004}, {0.141, 0.004}, {0, 0.008}};
     FILE *file = fopen(path, "wb");
@@ -191,7 +207,8 @@ static int profile_write(const char *path) {
     return 0;
 }
 
-static int profile_load(mill *m) { /* ours is looked for here, then beside the program's folder, and scaled */
+/* Ours is looked for here, then beside the program's folder, and scaled to the drum. */
+static int profile_load(mill *m) {
     static const char *const place = "examples/data/mill_300mm.profile";
     char path[1024];
     const char *slash = strrchr(program_path, '/');
@@ -200,22 +217,26 @@ static int profile_load(mill *m) { /* ours is looked for here, then beside the p
     if (file) fclose(file);
     if (!ours) snprintf(path, sizeof path, "%s", m->o.profile);
     else if (file || !slash) snprintf(path, sizeof path, "%s", place);
-    else snprintf(path, sizeof path, "%.*s/../%s", (int)(slash - program_path), program_path, place);
+    else snprintf(path, sizeof path, "%.*s/../%s", (int)(slash - program_path), program_path,
+                  place);
     if (refused(m->world, dem_profile_read(m->world, path, &m->profile))) return 1;
-    for (i = 0; ours && i < 2*m->profile.vertex_count; i++) m->profile.vertices[i] *= m->o.diameter/0.3;
+    for (i = 0; ours && i < 2*m->profile.vertex_count; i++)
+        m->profile.vertices[i] *= m->o.diameter/0.3;
     return 0;
 }
 
-/* Is a disc at (x, y) inside the shell? Its centre is inside when a ray to the right leaves an odd number of times. */
+/* Is a disc at (x, y) inside the shell and clear of it? Its centre is inside when a ray to the right
+   crosses the profile an odd number of times. */
 static int has_room(const mill *m, double x, double y, double radius) {
     const dem_profile *p = &m->profile;
     int i, inside = 0;
     if (hypot(x, y) + radius > m->shell) return 0;
     if (!p->segment_count || hypot(x, y) < 0.7*m->shell) return 1;
     for (i = 0; i < p->segment_count; i++) {
-        const dem_real *a = p->vertices + 2*p->segments[2*i], *b = p->vertices + 2*p->segments[2*i + 1];
-        double dx = b[0] - a[0], dy = b[1] - a[1], t = ((x - a[0])*dx + (y - a[1])*dy)/(dx*dx + dy*dy);
-        t = fmin(fmax(t, 0), 1);
+        const dem_real *a = p->vertices + 2*p->segments[2*i];
+        const dem_real *b = p->vertices + 2*p->segments[2*i + 1];
+        double dx = b[0] - a[0], dy = b[1] - a[1];
+        double t = fmin(fmax(((x - a[0])*dx + (y - a[1])*dy)/(dx*dx + dy*dy), 0), 1);
         if (hypot(x - a[0] - t*dx, y - a[1] - t*dy) < radius) return 0;
         if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1])*dx/dy) inside = !inside;
     }
@@ -228,21 +249,27 @@ static int shell_add(mill *m) {
     dem_vec3 centre = dem_vec3_make(0, 0, 0), axis = dem_vec3_make(0, 0, 1);
     int i, count;
     m->wall_count = 1;
-    if (is(m->o.wall, "grains")) { /* layers r sqrt(3) apart; mill_begin made a periodic slice an even number of them */
-        double lining = is(m->o.ends, "flat") ? L : L + 2*r - 1.001*sqrt(3.0)*r;
+    if (is(m->o.wall, "grains")) {
+        /* grains of a wall are not seen across a periodic end, so the lining goes on beyond it: its
+           layers are r sqrt(3) apart, and mill_begin made the slice an even number of them */
+        double lining = is(m->o.ends, "flat") ? L : L + 12*r;
         dem_real *at;
         count = dem_drum_grains(R, lining, r, 0, 0);
         at = (dem_real *)study_alloc(3*(size_t)count, sizeof *at);
         dem_drum_grains(R, lining, r, 0, at);
         m->walls[0] = dem_grains_wall_add(m->world, m->lining, count, at, r, 1);
         free(at);
-    } else if (is(m->o.profile, "none")) m->walls[0] = dem_cylinder_add(m->world, m->lining, centre, axis, R, 1);
-    else {
+    } else if (is(m->o.profile, "none")) {
+        m->walls[0] = dem_cylinder_add(m->world, m->lining, centre, axis, R, 1);
+    } else {
         if (profile_load(m)) return 1;
         m->walls[0] = dem_profile_add(m->world, m->lining, &m->profile, DEM_EDGE_RESOLVED);
     }
-    for (i = -1; i <= 1 && is(m->o.ends, "flat"); i += 2)
-        m->walls[m->wall_count++] = dem_plane_add(m->world, m->lining, dem_vec3_make(0, 0, i*L/2), dem_vec3_make(0, 0, -i));
+    for (i = -1; i <= 1 && is(m->o.ends, "flat"); i += 2) {
+        centre.z = i*L/2;
+        m->walls[m->wall_count++] = dem_plane_add(m->world, m->lining, centre,
+                                                  dem_vec3_make(0, 0, -i));
+    }
     turning.kind = DEM_MOTION_ROTATING;
     turning.axis = axis;
     turning.speed = m->omega;
@@ -259,14 +286,16 @@ static int is_site(dem_vec3 c, dem_real radius, void *user) {
     const mill *m = (const mill *)user;
     return fabs(c.z) + 1.02*radius <= m->o.length/2 && has_room(m, c.x, c.y, 1.02*radius);
 }
-static int site_lower(const void *a, const void *b) { /* below a surface that rises to the right, by 30 degrees */
+/* Which is deeper below a surface that rises by 30 degrees to the right? */
+static int site_lower(const void *a, const void *b) {
     const dem_real *p = (const dem_real *)a, *q = (const dem_real *)b;
     double high = (p[1] - q[1])*cos(PI/6) - (p[0] - q[0])*sin(PI/6);
     return high < 0 ? -1 : high > 0 ? 1 : p[2] < q[2] ? -1 : p[2] > q[2];
 }
 
-/* The mill is packed hexagonally, with some padding, in a world of its own; the lowest places get a grain that turns
-   with the mill. Each is shoved about within the padding, without which rows stay rows for long. */
+/* The mill is packed hexagonally, with some padding, in a world of its own; the lowest places get a
+   grain that turns with the mill. Each is shoved about within the padding, without which rows stay
+   rows for long. */
 static int charge_add(mill *m) {
     double R = m->o.diameter/2, L = m->o.length, r = m->o.radius, padding = 0.05*r;
     dem_box box = dem_box_make(-R, -R, -L/2 + padding/2, R, R, L/2 - padding/2);
@@ -285,13 +314,15 @@ static int charge_add(mill *m) {
     qsort(at, (size_t)sites.count, 3*sizeof *at, site_lower);
     m->grains = (int)(m->o.fill*0.6*PI*m->shell*m->shell*L/(4*PI*r*r*r/3) + 0.5);
     bad = m->grains > sites.count;
-    if (bad) study_fail("%d grains were asked for, but only %d fit into the mill", m->grains, sites.count);
+    if (bad) study_fail("--fill %g asks for %d grains, but only %d fit into the mill", m->o.fill,
+                        m->grains, sites.count);
     for (i = 0; i < 3*sites.count; i++) {
         random = random*1664525u + 1013904223u;
         at[i] += 0.4*padding*((random >> 8)/16777216.0 - 0.5);
         velocity[i] = i%3 == 0 ? -m->omega*at[i + 1] : i%3 == 1 ? m->omega*at[i - 1] : 0;
     }
-    bad = bad || refused(m->world, dem_spheres_add(m->world, m->glass, m->grains, at, velocity, 0, r));
+    if (!bad)
+        bad = refused(m->world, dem_spheres_add(m->world, m->glass, m->grains, at, velocity, 0, r));
     free(at);
     free(velocity);
     dem_world_destroy(packed.world);
@@ -327,15 +358,17 @@ static int mill_create(mill *m, double dt) {
     return m->field.id ? 0 : refused(m->world, DEM_ERROR_ARGUMENT);
 }
 
-/* Chooses the time step so that samples fall on whole steps: the scene is built twice, first to ask for advice. */
+/* Chooses the time step so that samples fall on whole steps: the scene is built twice, first to ask
+   for advice. */
 static int mill_begin(mill *m) {
     dem_advice advice;
     double wanted = m->o.dt, pair = 2*sqrt(3.0)*m->o.radius;
     m->shell = m->o.diameter/2;
-    if (is(m->o.wall, "grains")) { /* no lifters; and layers of the lining meet across a periodic end */
+    if (is(m->o.wall, "grains")) { /* no lifters; layers of the lining meet across a periodic end */
         m->shell -= 2*m->o.radius;
         m->o.profile = "none";
-        if (is(m->o.ends, "periodic")) m->o.length = pair*fmax(2, floor(m->o.length/pair + 0.5));
+        if (is(m->o.ends, "periodic"))
+            m->o.length = pair*fmax(2, floor(m->o.length/pair + 0.5));
     }
     m->critical = 42.3/sqrt(m->o.diameter)*2*PI/60;
     m->omega = m->o.speed*m->critical;
@@ -374,14 +407,18 @@ static void sample_take(const mill *m, sample *s) {
 static int samples_file(mill *m, const char *path, int writing, int *count) {
     char name[1024];
     FILE *file;
+    size_t size = sizeof(sample);
     int good;
     snprintf(name, sizeof name, "%s.samples", path);
     file = fopen(name, writing ? "wb" : "rb");
     if (!file) { study_fail("cannot open %s: %s", name, strerror(errno)); return 1; }
-    if (writing) good = fwrite(count, sizeof *count, 1, file) == 1
-                     && fwrite(m->samples, sizeof(sample), (size_t)*count, file) == (size_t)*count;
-    else good = fread(count, sizeof *count, 1, file) == 1 && *count > 0 && *count <= m->sample_count + 1
-             && fread(m->samples, sizeof(sample), (size_t)*count, file) == (size_t)*count;
+    if (writing)
+        good = fwrite(count, sizeof *count, 1, file) == 1 &&
+               fwrite(m->samples, size, (size_t)*count, file) == (size_t)*count;
+    else
+        good = fread(count, sizeof *count, 1, file) == 1 && *count > 0 &&
+               *count <= m->sample_count + 1 &&
+               fread(m->samples, size, (size_t)*count, file) == (size_t)*count;
     if (fclose(file) || !good) { study_fail("%s is not whole, or of another run", name); return 1; }
     return 0;
 }
@@ -391,31 +428,38 @@ static void frame_write(mill *m, int number) {
     double z = m->o.length/2;
     snprintf(name, sizeof name, "grains_%04d.vtp", number);
     study.files += !refused(m->world, dem_vtp_write(m->world, study_path(name)));
+    if (!m->profile.segment_count) return;
     snprintf(name, sizeof name, "mill_%04d.vtp", number);
-    if (m->profile.segment_count) study.files += !refused(m->world, dem_walls_vtp_write(m->world, study_path(name), -z, z));
+    study.files += !refused(m->world, dem_walls_vtp_write(m->world, study_path(name), -z, z));
 }
 
 static int mill_turn(mill *m) { /* the run itself */
-    int k = 0, first, count, frames = m->o.frames;
+    int k = 0, first, total, count, frames = m->o.frames;
     double begun, work = (double)m->grains*m->sample_steps;
     char what[64];
     m->sample_count = m->settled + (int)(m->o.revolutions*SAMPLES + 0.5);
     m->samples = (sample *)study_alloc((size_t)m->sample_count + 1, sizeof *m->samples);
     sample_take(m, &m->samples[0]);
     if (m->o.resume) {
-        if (refused(m->world, dem_checkpoint_read(m->world, m->o.resume)) || samples_file(m, m->o.resume, 0, &count)) return 1;
+        if (refused(m->world, dem_checkpoint_read(m->world, m->o.resume))) return 1;
+        if (samples_file(m, m->o.resume, 0, &count)) return 1;
         k = count - 1;
     }
-    snprintf(what, sizeof what, "mill: %d grains, %.3g revolutions", m->grains, m->sample_count/(double)SAMPLES);
+    total = m->sample_count;
+    snprintf(what, sizeof what, "mill: %d grains, %.3g revolutions", m->grains,
+             total/(double)SAMPLES);
     study_progress(what, 0, 0);
-    for (begun = study_clock(), first = k; k < m->sample_count; k++) {
-        if (frames && (int64_t)k*frames%m->sample_count < frames) frame_write(m, (int)((int64_t)k*frames/m->sample_count));
+    for (begun = study_clock(), first = k; k < total; k++) {
+        if (frames && (int64_t)k*frames%total < frames)
+            frame_write(m, (int)((int64_t)k*frames/total));
         if (refused(m->world, dem_world_step(m->world, m->sample_steps))) return 1;
         sample_take(m, &m->samples[k + 1]);
         count = k + 2;
-        if (m->o.checkpoint && ((k + 1)%(SAMPLES/4) == 0 || k + 1 == m->sample_count))
-            if (samples_file(m, m->o.checkpoint, 1, &count) || refused(m->world, dem_checkpoint_write(m->world, m->o.checkpoint))) return 1;
-        study_progress(what, (k + 1 - first)/(double)(m->sample_count - first), work*(k + 1 - first));
+        if (m->o.checkpoint && ((k + 1)%(SAMPLES/4) == 0 || k + 1 == total)) {
+            if (samples_file(m, m->o.checkpoint, 1, &count)) return 1;
+            if (refused(m->world, dem_checkpoint_write(m->world, m->o.checkpoint))) return 1;
+        }
+        study_progress(what, (k + 1 - first)/(double)(total - first), work*(k + 1 - first));
     }
     study_result("rate", work*(k - first)/fmax(study_clock() - begun, 1e-3), "particle-steps/s");
     if (frames) frame_write(m, frames);
@@ -424,7 +468,8 @@ static int mill_turn(mill *m) { /* the run itself */
 
 /* ---- maps ---- */
 
-typedef struct map { int n; double *solid, *u, *v, *mass; } map; /* n x n cells; not a number where nothing was */
+/* n x n cells; not a number where nothing was. */
+typedef struct map { int n; double *solid, *u, *v, *mass; } map;
 
 static map map_make(const dem_field_data *d, int n) { /* cells of the field summed to n x n */
     map a;
@@ -453,7 +498,8 @@ static map map_make(const dem_field_data *d, int n) { /* cells of the field summ
 static double map_bulk(const map *a) { /* mean over the cells above 0.4 */
     double sum = 0, count = 0;
     int i;
-    for (i = 0; i < a->n*a->n; i++) if (a->solid[i] > 0.4) { sum += a->solid[i]; count++; }
+    for (i = 0; i < a->n*a->n; i++)
+        if (a->solid[i] > 0.4) { sum += a->solid[i]; count++; }
     return sum/count;
 }
 
@@ -463,33 +509,36 @@ static double map_ring(const mill *m, const map *a, double degrees) {
     int k;
     for (k = 0; k < 81; k++) {
         double angle = (degrees - 2 + 0.5*(k%9))*PI/180, r = m->shell*(0.84 + 0.01*(k/9));
-        double cell = a->solid[(int)((1 + r*sin(angle)/R)*a->n/2) + a->n*(int)((1 - r*cos(angle)/R)*a->n/2)];
-        if (cell > 0) sum += cell/81;
+        int i = (int)((1 + r*sin(angle)/R)*a->n/2), j = (int)((1 - r*cos(angle)/R)*a->n/2);
+        if (a->mass[i + a->n*j] > 0) sum += a->solid[i + a->n*j]/81;
     }
     return sum;
 }
 static void map_toe_shoulder(mill *m, const map *a) { /* both ways from where the ring is fullest */
-    double at, best = 0;
+    double best = 0, edge = m->solidicity/2, at;
     for (at = -180; at < 180; at++) if (map_ring(m, a, at) > map_ring(m, a, best)) best = at;
-    for (m->toe = best; m->toe > best - 360 && map_ring(m, a, m->toe) > m->solidicity/2;) m->toe -= 0.5;
-    for (m->shoulder = best; m->shoulder < best + 360 && map_ring(m, a, m->shoulder) > m->solidicity/2;) m->shoulder += 0.5;
+    for (at = best; at > best - 360 && map_ring(m, a, at) > edge;) at -= 0.5;
+    m->toe = at;
+    for (at = best; at < best + 360 && map_ring(m, a, at) > edge;) at += 0.5;
+    m->shoulder = at;
 }
 
 static double map_shell_speed(const mill *m, const map *a) {
     double momentum = 0, mass = 0;
     int i;
     for (i = 0; i < a->n*a->n; i++) {
-        double x = ((2*(i%a->n) + 1.0)/a->n - 1)*m->o.diameter/2, y = ((2*(i/a->n) + 1.0)/a->n - 1)*m->o.diameter/2;
-        double angle = atan2(x, -y)*180/PI;
-        if (hypot(x, y) < m->shell - 3*m->o.radius || angle < m->toe + 20 || angle > m->shoulder - 20) continue;
-        if (!(a->mass[i] > 0)) continue;
+        double x = ((2*(i%a->n) + 1.0)/a->n - 1)*m->o.diameter/2;
+        double y = ((2*(i/a->n) + 1.0)/a->n - 1)*m->o.diameter/2, angle = atan2(x, -y)*180/PI;
+        if (hypot(x, y) < m->shell - 3*m->o.radius || !(a->mass[i] > 0)) continue;
+        if (angle < m->toe + 20 || angle > m->shoulder - 20) continue;
         momentum += hypot(a->u[i], a->v[i])*a->mass[i];
         mass += a->mass[i];
     }
     return momentum/mass/(m->omega*m->shell);
 }
 
-static study_figure section_figure(const mill *m, const char *title, const char *bar_label) { /* of the mill, end on */
+/* The mill, end on. */
+static study_figure section_figure(const mill *m, const char *title, const char *bar_label) {
     study_figure f;
     memset(&f, 0, sizeof f);
     f.title = title;
@@ -523,9 +572,11 @@ static void maps_write(mill *m) {
         mark[k/2][0][k%2] = r*sin(angle);
         mark[k/2][1][k%2] = -r*cos(angle);
     }
-    for (k = 0; k < 64*64; k++) if (maps[0].mass[k] > 0) fastest = fmax(fastest, hypot(maps[0].u[k], maps[0].v[k]));
+    for (k = 0; k < 64*64; k++)
+        if (maps[0].mass[k] > 0) fastest = fmax(fastest, hypot(maps[0].u[k], maps[0].v[k]));
     for (i = 0; i < 6; i++) {
         int n = 64 << i/2;
+        const char *of = i%2 ? "Velocity" : "Solidicity";
         study_figure f = section_figure(m, title, i%2 ? "speed (m/s)" : "solidicity");
         f.x1 = f.y1 = R;
         f.x0 = f.y0 = -R;
@@ -536,11 +587,14 @@ static void maps_write(mill *m) {
         if (i%2) f.size = fmax(620, 4.84*n); /* room for the darts */
         study_curve(&f, 0, STUDY_OUTLINE, 361, circle[0], circle[1]);
         for (k = 0; k < 2; k++) study_curve(&f, 0, STUDY_OUTLINE, 2, mark[k][0], mark[k][1]);
-        snprintf(title, sizeof title, "%s at %.0f %% of critical, %d x %d cells", i%2 ? "Velocity" : "Solidicity", 100*m->o.speed, n, n);
+        snprintf(title, sizeof title, "%s at %.0f %% of critical, %d x %d cells", of,
+                 100*m->o.speed, n, n);
         snprintf(name, sizeof name, "%s_%d.svg", i%2 ? "velocity" : "solidicity", n);
         study_figure_write(&f, name);
     }
-    for (i = 0; i < 3; i++) { free(maps[i].solid); free(maps[i].u); free(maps[i].v); free(maps[i].mass); }
+    for (i = 0; i < 3; i++) {
+        free(maps[i].solid); free(maps[i].u); free(maps[i].v); free(maps[i].mass);
+    }
 }
 
 static void grains_draw(mill *m) { /* all grains of the slice, as they are at the end */
@@ -550,15 +604,18 @@ static void grains_draw(mill *m) { /* all grains of the slice, as they are at th
     dem_pose pose;
     study_figure f = section_figure(m, "The charge at the end of the run", "speed (m/s)");
     if (refused(m->world, dem_wall_pose(m->world, m->walls[0], &pose))) return;
-    for (k = 0; k < 6; k++) v[k] = (double *)study_alloc((size_t)(k < 4 ? b.count : points), sizeof(double));
+    for (k = 0; k < 6; k++)
+        v[k] = (double *)study_alloc((size_t)(k < 4 ? b.count : points), sizeof(double));
     for (i = 0; i < b.count; i++) {
         const dem_real *u = b.velocities + 4*i;
         for (k = 0; k < 3; k++) v[k][i] = b.positions[4*i + (k < 2 ? k : 3)];
         v[3][i] = sqrt(u[0]*u[0] + u[1]*u[1] + u[2]*u[2]);
     }
     for (i = 0; i < 2*points; i++) { /* the shell, turned */
-        const dem_real *p = m->profile.vertices + 2*(i/2%(points - 1)), *row = pose.rotation + 3*(i%2);
-        v[4 + i%2][i/2] = m->profile.segment_count ? row[0]*p[0] + row[1]*p[1] : m->shell*sin((i/2 + 90*(i%2))*PI/180);
+        const dem_real *p = m->profile.vertices + 2*(i/2%(points - 1));
+        const dem_real *row = pose.rotation + 3*(i%2);
+        if (m->profile.segment_count) v[4 + i%2][i/2] = row[0]*p[0] + row[1]*p[1];
+        else v[4 + i%2][i/2] = m->shell*sin((i/2 + 90*(i%2))*PI/180);
     }
     f.disc_count = b.count;
     f.disc_x = v[0]; f.disc_y = v[1]; f.disc_r = v[2]; f.disc_value = v[3];
@@ -578,9 +635,13 @@ static study_figure line_figure(const char *title, const char *x_label, const ch
     return f;
 }
 
-static double window_torque(const sample *from, const sample *to) { return (to->impulse - from->impulse)/(to->time - from->time); }
-static double dissipated(const sample *s) { return s->ledger.normal + s->ledger.slide + s->ledger.tangent + s->ledger.rolling; }
-static double stored(const sample *s) { /* elevation included: it is the work of gravity, turned round */
+static double window_torque(const sample *from, const sample *to) {
+    return (to->impulse - from->impulse)/(to->time - from->time);
+}
+static double dissipated(const sample *s) {
+    return s->ledger.normal + s->ledger.slide + s->ledger.tangent + s->ledger.rolling;
+}
+static double stored(const sample *s) { /* elevation is the work of gravity, turned round */
     return s->ledger.kinetic + s->ledger.rotational + s->ledger.elastic - s->ledger.gravity;
 }
 
@@ -588,7 +649,7 @@ static void torque_write(mill *m) {
     enum { COLUMNS = 16, TORQUE = 7 };
     int n = m->sample_count, half = SAMPLES/2, k, c, steady;
     const sample *s = m->samples, *a = s + m->settled, *b = s + n;
-    double span = b->time - a->time, x = 0, weight, loss, *column[COLUMNS];
+    double span = b->time - a->time, x = 0, weight, turned, loss, *column[COLUMNS];
     study_figure f;
 
     /* results */
@@ -597,14 +658,17 @@ static void torque_write(mill *m) {
     loss = dissipated(b) - dissipated(a);
     m->torque = window_torque(a, b);
     m->power = m->torque*m->omega;
-    for (steady = n; steady >= half && fabs(window_torque(s + steady - half, s + steady)/m->torque - 1) < 0.05;) steady--;
+    turned = (b->angular - a->angular)/span;
+    for (steady = n; steady >= half; steady--)
+        if (!(fabs(window_torque(s + steady - half, s + steady)/m->torque - 1) < 0.05)) break;
     study_result("torque_mean", m->torque, "N m");
     study_result("torque_balance_error", fabs(m->torque - weight)/fabs(weight), "");
-    study_result("momentum_balance_error", fabs(m->torque - weight - (b->angular - a->angular)/span)/fabs(weight), "");
+    study_result("momentum_balance_error", fabs(m->torque - weight - turned)/fabs(weight), "");
     study_result("centre_of_mass_x", x, "m");
     study_result("power_mean", m->power, "W");
     study_result("dissipation_rate", loss/span, "W");
-    study_result("power_balance_error", fabs(m->power - (loss + stored(b) - stored(a))/span)/fabs(m->power), "");
+    loss += stored(b) - stored(a);
+    study_result("power_balance_error", fabs(m->power - loss/span)/fabs(m->power), "");
     study_result("steady_after", steady/(double)SAMPLES, "revolutions");
 
     /* files */
@@ -613,15 +677,19 @@ static void torque_write(mill *m) {
         const sample *p = s + k, *q = p + 1;
         const dem_ledger *l = &q->ledger;
         double step = q->time - p->time;
-        const double row[COLUMNS] = {q->time, q->time/m->period, window_torque(p, q), window_torque(s + (k + 1 < half ? 0 : k + 1 - half), q),
+        int begin = k + 1 < half ? 0 : k + 1 - half;
+        const double row[COLUMNS] = {
+            q->time, q->time/m->period, window_torque(p, q), window_torque(s + begin, q),
             m->mass*GRAVITY*q->x, (q->work - p->work)/step, (dissipated(q) - dissipated(p))/step,
-            q->time, l->kinetic, l->rotational, l->elastic, l->gravity, l->walls, l->normal, l->slide + l->tangent + l->rolling, l->residual};
+            q->time, l->kinetic, l->rotational, l->elastic, l->gravity, l->walls, l->normal,
+            l->slide + l->tangent + l->rolling, l->residual};
         for (c = 0; c < COLUMNS; c++) column[c][k] = row[c];
     }
-    study_csv("torque.csv", "time_s,revolutions,torque_Nm,torque_over_half_a_turn_Nm,mass_g_x_Nm,power_W,dissipation_W",
-              n, TORQUE, (const double *const *)column);
-    study_csv("ledger.csv", "time_s,kinetic_J,rotational_J,elastic_J,gravity_J,walls_J,dashpot_J,friction_J,residual_J",
-              n, COLUMNS - TORQUE, (const double *const *)(column + TORQUE));
+    study_csv("torque.csv", "time_s,revolutions,torque_Nm,torque_over_half_a_turn_Nm,mass_g_x_Nm,"
+              "power_W,dissipation_W", n, TORQUE, (const double *const *)column);
+    study_csv("ledger.csv", "time_s,kinetic_J,rotational_J,elastic_J,gravity_J,walls_J,dashpot_J,"
+              "friction_J,residual_J", n, COLUMNS - TORQUE,
+              (const double *const *)(column + TORQUE));
     f = line_figure("Torque of the mill on its charge", "revolutions", "torque (N m)");
     study_curve(&f, "at once", STUDY_FAINT, n, column[1], column[2]);
     study_curve(&f, "over the last half turn", STUDY_LINE, n, column[1], column[3]);
@@ -642,7 +710,8 @@ static void state_write(mill *m) { /* what the whole run left behind */
     FILE *report;
     int i;
     double missing = (double)balance.inserted - (double)balance.present;
-    for (i = 0; i < b.count; i++) missing += hypot(b.positions[4*i], b.positions[4*i + 1]) > m->o.diameter/2;
+    for (i = 0; i < b.count; i++)
+        if (hypot(b.positions[4*i], b.positions[4*i + 1]) > m->o.diameter/2) missing++;
     study_result("overlap_max", dem_counters_get(m->world).overlap_max, "");
     study_result("ledger_residual", fabs(ledger.residual)/ledger.throughput, "");
     study_result("grains_missing", missing, "");
@@ -669,8 +738,8 @@ static int mill_run(mill *m) {
     return bad;
 }
 
-/* Several mills: 60, 70, 80 % of critical (Fig 6.7 to 6.12), or beads of three frictions in a smooth drum lined with
-   beads at 50 % (Fig 6.13). */
+/* Several mills: 60, 70, 80 % of critical (Fig 6.7 to 6.12), or beads of three frictions in a smooth
+   drum lined with beads at 50 % (Fig 6.13). */
 static int study_several(int friction) {
     double column[6][3];
     const double *columns[6] = {column[0], column[1], column[2], column[3], column[4], column[5]};
@@ -686,34 +755,44 @@ static int study_several(int friction) {
         snprintf(part, sizeof part, "%s_%.0f", friction ? "friction" : "speed", 100*column[0][i]);
         study_part(part);
         if (mill_run(&m)) return 1;
-        column[1][i] = m.torque; column[2][i] = m.power; column[3][i] = m.toe; column[4][i] = m.shoulder; column[5][i] = m.solidicity;
+        column[1][i] = m.torque;
+        column[2][i] = m.power;
+        column[3][i] = m.toe;
+        column[4][i] = m.shoulder;
+        column[5][i] = m.solidicity;
     }
     study_part("");
-    study_csv("comparison.csv", friction ? "friction,torque_Nm,power_W,toe_deg,shoulder_deg,solidicity" :
-              "speed,torque_Nm,power_W,toe_deg,shoulder_deg,solidicity", 3, 6, columns);
+    study_csv("comparison.csv", "speed_or_friction,torque_Nm,power_W,toe_deg,shoulder_deg,solidicity",
+              3, 6, columns);
     return 0;
 }
 
 /* ---- one bead ---- */
 
-static dem_body bead_add(mill *m, double y, double vx, double vy) {
+static dem_body bead_add(mill *m, double y, double vx, double vy, int fixed) {
     dem_body bead = dem_sphere_add(m->world, m->glass, m->o.radius, dem_vec3_make(0, y, 0));
     dem_body_state s;
     if (!bead.slot || refused(m->world, dem_body_get(m->world, bead, &s))) return bead;
     s.velocity = dem_vec3_make(vx, vy, 0);
+    s.fixed = fixed;
     refused(m->world, dem_body_set(m->world, bead, &s));
     return bead;
 }
 
-/* Throws a bead of true stiffness onto a sheet of the same glass. The thesis's mode is its arithmetic: E* = E, R/2 and
-   m/2 at walls, forward Euler, steps of 1e-6 s, friction without memory. log: time, height, velocities, spin. */
+/* Throws a bead of true stiffness onto a sheet of the same glass. The thesis's mode is its
+   arithmetic: E* = E, half overlaps; friction without memory; steps of 1e-6 s, in which its program
+   moves with the velocity just updated (its text says forward Euler, which gains energy). Straight
+   falls end on a fixed bead there, which gives its restitution of .656 to .659; on a sheet, with its
+   R/2, a contact lasts 12 steps only and restitution comes out higher.
+   log: time, height, vertical and horizontal velocity, spin. */
 typedef struct throw_of { const char *title; double height, vx, vy, time; } throw_of;
 enum { ROWS = 2000 };
 
-static int throw_bead(const throw_of *t, int figure, int thesis, double *const *log, double worst[3]) {
+static int throw_bead(const throw_of *t, int figure, int thesis, double *const *log,
+                      double worst[3]) {
     dem_world_desc desc = DEM_WORLD_DESC;
     double before_gap = 0, before_v = 0, in = 0;
-    int k, steps, bounces = 0, stride;
+    int k, steps, bounces = 0, stride, straight = !(fabs(t->vx) > 0);
     char name[64];
     dem_body bead;
     mill m;
@@ -726,13 +805,14 @@ static int throw_bead(const throw_of *t, int figure, int thesis, double *const *
     desc.dt = thesis ? 1e-6 : 1e-7;
     if (thesis) {
         desc.convention = DEM_CONVENTION_MILL;
-        desc.integrator = DEM_FORWARD_EULER;
+        desc.integrator = DEM_SYMPLECTIC_EULER;
         desc.tangent_law = DEM_TANGENT_STEP;
         desc.allow_large_dt = 1;
     }
     if (world_create(&m, &desc) || materials_add(&m)) return 1;
-    dem_plane_add(m.world, m.glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
-    bead = bead_add(&m, m.o.radius + t->height, t->vx, t->vy);
+    if (thesis && straight) bead_add(&m, -m.o.radius, 0, 0, 1);
+    else dem_plane_add(m.world, m.glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
+    bead = bead_add(&m, m.o.radius + t->height, t->vx, t->vy, 0);
     steps = (int)(t->time/desc.dt + 0.5);
     stride = steps/ROWS;
     for (k = 0; k < steps; k++) {
@@ -744,14 +824,17 @@ static int throw_bead(const throw_of *t, int figure, int thesis, double *const *
         if (k && gap < 0 && before_gap >= 0) in = sqrt(before_v*before_v + 2*GRAVITY*before_gap);
         if (gap >= 0 && before_gap < 0 && ++bounces <= 3) { /* speeds are those at height 0 */
             double e = sqrt(v*v + 2*GRAVITY*gap)/in;
-            snprintf(name, sizeof name, "restitution_6_%d_bounce_%d_%s", figure, bounces, thesis ? "thesis" : "standard");
+            snprintf(name, sizeof name, "restitution_6_%d_bounce_%d_%s", figure, bounces,
+                     thesis ? "thesis" : "standard");
             study_result(name, e, "");
             if (!thesis) worst[0] = fmax(worst[0], fabs(e - 0.66));
         }
         before_gap = gap;
         before_v = v;
-        if (t->vx == 0) worst[1] = fmax(worst[1], fabs(s.velocity.x) + fabs(s.velocity.z));
-        if (t->vx == 0) worst[2] = fmax(worst[2], fabs(s.spin.x) + fabs(s.spin.y) + fabs(s.spin.z));
+        if (straight) {
+            worst[1] = fmax(worst[1], fabs(s.velocity.x) + fabs(s.velocity.z));
+            worst[2] = fmax(worst[2], fabs(s.spin.x) + fabs(s.spin.y) + fabs(s.spin.z));
+        }
         if (k%stride == 0 && k/stride < ROWS) {
             const double row[5] = {k*desc.dt, s.position.y, v, s.velocity.x, s.spin.z};
             int c;
@@ -764,11 +847,14 @@ static int throw_bead(const throw_of *t, int figure, int thesis, double *const *
 }
 
 static int study_drop(void) { /* Fig 6.1 to 6.6 */
-    static const throw_of throws[6] = {{"dropped from rest", 0.005, 0, 0, 0.2}, {"thrown up", 0.005, 0, 0.2, 0.2},
+    static const throw_of throws[6] = {
+        {"dropped from rest", 0.005, 0, 0, 0.2}, {"thrown up", 0.005, 0, 0.2, 0.2},
         {"thrown down", 0.005, 0, -0.2, 0.2}, {"thrown to the right", 0.005, 0.2, 0, 0.2},
-        {"thrown to the left", 0.005, -0.2, 0, 0.2}, {"thrown to the right from higher up", 0.02, 0.5, 0, 0.4}};
-    static const char *const names[4] = {"height", "vertical_velocity", "horizontal_velocity", "spin"};
-    static const char *const labels[4] = {"height of the centre (m)", "vertical velocity (m/s)", "horizontal velocity (m/s)", "spin (rad/s)"};
+        {"thrown to the left", 0.005, -0.2, 0, 0.2},
+        {"thrown to the right from higher up", 0.02, 0.5, 0, 0.4}};
+    static const char *const names[4] = {"height", "vertical", "horizontal", "spin"};
+    static const char *const labels[4] = {"height of the centre (m)", "vertical velocity (m/s)",
+                                          "horizontal velocity (m/s)", "spin (rad/s)"};
     double *log[10], worst[3] = {0, 0, 0};
     char name[96], title[96];
     int t, c;
@@ -777,7 +863,8 @@ static int study_drop(void) { /* Fig 6.1 to 6.6 */
         for (c = 0; c < 2; c++) {
             if (throw_bead(&throws[t], t + 1, c, log + 5*c, worst)) return 1;
             snprintf(name, sizeof name, "drop_6_%d_%s.csv", t + 1, c ? "thesis" : "standard");
-            study_csv(name, "time_s,height_m,vertical_m_s,horizontal_m_s,spin_rad_s", ROWS, 5, (const double *const *)(log + 5*c));
+            study_csv(name, "time_s,height_m,vertical_m_s,horizontal_m_s,spin_rad_s", ROWS, 5,
+                      (const double *const *)(log + 5*c));
         }
         for (c = 0; c < (t < 3 ? 2 : 4); c++) {
             study_figure f = line_figure(title, "time (s)", labels[c]);
@@ -792,24 +879,27 @@ static int study_drop(void) { /* Fig 6.1 to 6.6 */
     study_result("sideways_max", worst[1], "m/s");
     study_result("spin_max", worst[2], "rad/s");
     if (worst[0] > 0.002) study_fail("restitution is off by %g", worst[0]);
-    if (worst[1] > 0 || worst[2] > 0) study_fail("a bead that falls straight moved sideways or spun");
+    if (worst[1] > 0 || worst[2] > 0) study_fail("a bead that fell straight went sideways or spun");
     for (c = 0; c < 10; c++) free(log[c]);
     return 0;
 }
 
 static int study_overlap(void) { /* Fig 6.0: a bead hits another, or the mill, head on */
-    static const char *const names[4] = {"bead on bead, true", "bead on mill, true", "bead on bead, softened", "bead on mill, softened"};
-    static const char *const results[4] = {"overlap_bead_true", "overlap_mill_true", "overlap_bead_soft", "overlap_mill_soft"};
+    static const char *const names[4] = {"bead on bead, true", "bead on mill, true",
+                                         "bead on bead, softened", "bead on mill, softened"};
+    static const char *const results[4] = {"overlap_bead_true", "overlap_mill_true",
+                                           "overlap_bead_soft", "overlap_mill_soft"};
     enum { SPEEDS = 25 };
     double column[5][SPEEDS];
     const double *columns[5] = {column[0], column[1], column[2], column[3], column[4]};
-    study_figure f = line_figure("Largest overlap against impact speed", "impact speed (m/s)", "overlap (% of the radius)");
+    study_figure f = line_figure("Largest overlap against impact speed", "impact speed (m/s)",
+                                 "overlap (% of the radius)");
     int i, k;
     for (k = 0; k < 4; k++) {
         for (i = 0; i < SPEEDS; i++) {
             dem_world_desc desc = DEM_WORLD_DESC;
             dem_advice advice;
-            double v = column[0][i] = 0.1*(i + 1), r = 1.001*options.radius;
+            double v = column[0][i] = 0.1*(i + 1), r = 1.001*options.radius, span;
             mill m;
             memset(&m, 0, sizeof m);
             m.o = options;
@@ -817,18 +907,21 @@ static int study_overlap(void) { /* Fig 6.0: a bead hits another, or the mill, h
             desc.impact_speed = v;
             desc.threads = 1;
             if (world_create(&m, &desc) || materials_add(&m)) return 1;
-            bead_add(&m, r, 0, k%2 ? -v : -v/2);
-            if (k%2) dem_plane_add(m.world, m.lining, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
-            else bead_add(&m, -r, 0, v/2);
+            bead_add(&m, r, 0, k%2 ? -v : -v/2, 0);
+            if (!(k%2)) bead_add(&m, -r, 0, v/2, 0);
+            else dem_plane_add(m.world, m.lining, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
             if (refused(m.world, dem_step_advice(m.world, &advice))) return 1;
-            if (refused(m.world, dem_world_run(m.world, 2*advice.contact_time + 0.003*r/v, 0, 0))) return 1;
+            span = 2*advice.contact_time + 0.003*r/v;
+            if (refused(m.world, dem_world_run(m.world, span, 0, 0))) return 1;
             column[k + 1][i] = 100*dem_counters_get(m.world).overlap_max;
             mill_destroy(&m);
         }
-        study_curve(&f, names[k], k < 2 ? STUDY_LINE : STUDY_DASHED, SPEEDS, column[0], column[k + 1]);
+        study_curve(&f, names[k], k < 2 ? STUDY_LINE : STUDY_DASHED, SPEEDS, column[0],
+                    column[k + 1]);
         study_result(results[k], column[k + 1][11]/100, "at 1.2 m/s");
     }
-    study_csv("overlap.csv", "speed_m_s,bead_true_percent,mill_true_percent,bead_soft_percent,mill_soft_percent", SPEEDS, 5, columns);
+    study_csv("overlap.csv", "speed_m_s,bead_true_percent,mill_true_percent,bead_soft_percent,"
+              "mill_soft_percent", SPEEDS, 5, columns);
     study_figure_write(&f, "overlap.svg");
     return 0;
 }
