@@ -2062,7 +2062,12 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
         if (n == 1) extent += 2*(double)wall->radius;
     }
     size = demi_sub(wall->box.hi, wall->box.lo);
-    wall->cell = (dem_real)DEMI_MAX(extent/wall->element_count, 1e-6*(double)demi_length(size));
+    {                                           /* and each cell holds few, long triangles or not */
+        const double volume = (double)size.x*(double)size.y*(double)size.z;
+        const double mean = extent/wall->element_count;
+        const double fine = volume > 0 ? pow(volume/(16.0*wall->element_count), 1.0/3) : mean;
+        wall->cell = (dem_real)DEMI_MAX(DEMI_MIN(mean, fine), 1e-6*(double)demi_length(size));
+    }
     for (;; wall->cell *= DEM_R(1.26)) {
         wall->cells[0] = (int)DEMI_MIN(size.x/wall->cell, DEM_R(1e6)) + 1;
         wall->cells[1] = (int)DEMI_MIN(size.y/wall->cell, DEM_R(1e6)) + 1;
@@ -2888,7 +2893,7 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_id[k] = wall;
     w->wall_element[k] = element;
 }
-static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local);
+static int demi_wall_near(const demi_wall *wall, int element, dem_vec3 local, dem_real distance);
 static void demi_domain_walls(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     int i, j, k, x, y, z, f[3], l[3];
@@ -2907,7 +2912,7 @@ static void demi_domain_walls(dem_world *w, int d) {
             if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
             if (wall->element_count <= 4) {
                 for (k = 0; k < wall->element_count; k++)
-                    if (demi_wall_distance(wall, k, at) < near_by) demi_wall_offer(w, domain, d,
+                    if (demi_wall_near(wall, k, at, near_by)) demi_wall_offer(w, domain, d,
                         i, j, k);
                 continue;
             }
@@ -2922,7 +2927,7 @@ static void demi_domain_walls(dem_world *w, int d) {
                             int q, seen = 0, base = d*w->wall_stride;
                             for (q = first; q < domain->walls && !seen; q++) seen =
                                 w->wall_element[base + q] == element;
-                            if (!seen && demi_wall_distance(wall, element, at) < near_by)
+                            if (!seen && demi_wall_near(wall, element, at, near_by))
                                 demi_wall_offer(w, domain, d, i, j, element);
                         }
                     }
@@ -3140,6 +3145,11 @@ static void demi_skin_choose(dem_world *w) {
     w->skin = w->skin_auto;
 }
 
+/* Do spins matter in this scene? */
+static int demi_spins(const dem_world *w) {
+    return w->desc.law || w->tangent != DEM_TANGENT_NONE || w->rolling != DEM_ROLLING_NONE;
+}
+
 /* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
    they were (the next call tries again). */
 static dem_result demi_rebuild(dem_world *w) {
@@ -3326,11 +3336,20 @@ static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, 
     *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
     return r + edge - l;
 }
-/* Distance of a point from an element's surface, for the candidate list. */
-static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local) {
+/* Is a point within a distance of an element's surface? For the candidate list: a triangle whose
+   plane is too far off is dropped at once. */
+static int demi_wall_near(const demi_wall *wall, int element, dem_vec3 local, dem_real distance) {
     dem_vec3 n, p;
     int feature;
-    return -demi_wall_touch(wall, element, local, 0, &n, &p, &feature);
+    if (wall->kind == DEMI_WALL_MESH) {
+        dem_vec3 c[3];
+        dem_real h;
+        demi_wall_corners(wall, element, c);
+        n = demi_cross(demi_sub(c[1], c[0]), demi_sub(c[2], c[0]));
+        h = demi_dot(n, demi_sub(local, c[0]));
+        if (h*h >= distance*distance*demi_dot(n, n) && demi_dot(n, n) > 0) return 0;
+    }
+    return -demi_wall_touch(wall, element, local, 0, &n, &p, &feature) < distance;
 }
 
 /* [MIL] Fig 5.19: the segment acts as its whole line, with the fraction a^2(3-2a) of the force, a =
@@ -3809,8 +3828,7 @@ DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rol
 static void demi_cross_gather(dem_world *w, int d) {
     const size_t stride = w->cross_push_stride;
     const dem_real *push = w->cross_push;
-    const int turning = w->desc.law || w->tangent != DEM_TANGENT_NONE ||
-        w->rolling != DEM_ROLLING_NONE;
+    const int turning = demi_spins(w);
     int k;
     for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
         const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
@@ -4514,8 +4532,7 @@ static dem_result demi_dt_settle(dem_world *w) {
 
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const int turning = w->desc.law || w->tangent != DEM_TANGENT_NONE ||
-        w->rolling != DEM_ROLLING_NONE;
+    const int turning = demi_spins(w);
     const dem_real *DEMI_RESTRICT v = w->half_vel;
     dem_real most = 0, sum = 0;
     int i;
@@ -4553,7 +4570,7 @@ static void demi_domain_clear(dem_world *w, int d) {
     int i;
     if (!n) return;
     memset(w->force + 4*domain->begin, 0, n);
-    memset(w->torque + 4*domain->begin, 0, n);
+    if (demi_spins(w) || !w->forces_valid) memset(w->torque + 4*domain->begin, 0, n);
     if (!w->desc.force) return;
     for (i = domain->begin; i < domain->end; i++) {
         const dem_vec3 f = w->desc.force(demi_at(w->pos + 4*i), demi_at(w->vel + 4*i),

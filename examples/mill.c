@@ -152,8 +152,8 @@ static void mill_destroy(mill *m) {
     m->world = 0;
 }
 
-/* Fig 5.24 of [MIL]. What it says of beads against the mill ("ps") is set for the pair, moduli mixed
-   by Hertz. A lining of beads is of glass, as in its section 5.2.1: one set of coefficients only. */
+/* Fig 5.24 of [MIL]. What it says of beads against the mill ("ps") is set for the pair, with moduli
+   mixed by Hertz. A lining of beads is of glass, as in its 5.2.1: one set of coefficients only. */
 static int materials_add(mill *m) {
     static const double density[2] = {2500, 950}, poisson[2] = {0.23, 0.42};
     static const double shear[2] = {26e9, 0.31e9};
@@ -225,8 +225,8 @@ static int profile_load(mill *m) {
     return 0;
 }
 
-/* Is a disc at (x, y) inside the shell and clear of it? Its centre is inside when a ray to the right
-   crosses the profile an odd number of times. */
+/* Is a disc at (x, y) inside the shell and clear of it? Its centre is inside when a ray to the
+   right crosses the profile an odd number of times. */
 static int has_room(const mill *m, double x, double y, double radius) {
     const dem_profile *p = &m->profile;
     int i, inside = 0;
@@ -738,8 +738,8 @@ static int mill_run(mill *m) {
     return bad;
 }
 
-/* Several mills: 60, 70, 80 % of critical (Fig 6.7 to 6.12), or beads of three frictions in a smooth
-   drum lined with beads at 50 % (Fig 6.13). */
+/* Several mills: 60, 70, 80 % of critical (Fig 6.7 to 6.12), or beads of three frictions in a
+   smooth drum lined with beads at 50 % (Fig 6.13). */
 static int study_several(int friction) {
     double column[6][3];
     const double *columns[6] = {column[0], column[1], column[2], column[3], column[4], column[5]};
@@ -762,8 +762,8 @@ static int study_several(int friction) {
         column[5][i] = m.solidicity;
     }
     study_part("");
-    study_csv("comparison.csv", "speed_or_friction,torque_Nm,power_W,toe_deg,shoulder_deg,solidicity",
-              3, 6, columns);
+    study_csv("comparison.csv", "speed_or_friction,torque_Nm,power_W,toe_deg,shoulder_deg,"
+              "solidicity", 3, 6, columns);
     return 0;
 }
 
@@ -782,8 +782,8 @@ static dem_body bead_add(mill *m, double y, double vx, double vy, int fixed) {
 /* Throws a bead of true stiffness onto a sheet of the same glass. The thesis's mode is its
    arithmetic: E* = E, half overlaps; friction without memory; steps of 1e-6 s, in which its program
    moves with the velocity just updated (its text says forward Euler, which gains energy). Straight
-   falls end on a fixed bead there, which gives its restitution of .656 to .659; on a sheet, with its
-   R/2, a contact lasts 12 steps only and restitution comes out higher.
+   falls end on a fixed bead there, which gives its restitution of .656 to .659; on a sheet, with
+   its R/2, a contact lasts 12 steps only and restitution comes out higher.
    log: time, height, vertical and horizontal velocity, spin. */
 typedef struct throw_of { const char *title; double height, vx, vy, time; } throw_of;
 enum { ROWS = 2000 };

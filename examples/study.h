@@ -1,15 +1,15 @@
-/* study.h - what the studies and benches share: options, progress, results, CSV, pictures (SVG). MIT licence.
-   Needs libc and libm only; dem.h never needs it. Include it in one file of a program. A study in short:
+/* study.h - what the studies and benches share: options, progress, results, CSV, pictures (SVG).
+   MIT licence. Needs libc and libm only; dem.h never needs it. Include it in one file of a program.
 
-       static double speed = 0.7;                                   // the default is the variable's value
+       static double speed = 0.7;                            // its value is the option's default
        static const study_option table[] = {
            {"speed", STUDY_REAL, &speed, 0.01, 3, "of critical", "speed of the mill"},
        };
-       study_options(argc, argv, "what this study does", table, 1); // --help; exit code 2 on a mistake
-       study_begin("build/results");                                // makes the folder, empties summary.txt
-       study_progress("mill", 0.1, particle_steps);                 // as often as you like; on stderr
-       study_result("torque_mean", 0.031, "N m");                   // on stdout and in summary.txt
-       return study_end();                                          // 0, or 1 when something went wrong
+       study_options(argc, argv, "what it does", table, 1);  // --help; exit code 2 on a mistake
+       study_begin("build/results");                         // makes folder and summary.txt
+       study_progress("mill", 0.1, particle_steps);          // as often as you like; on stderr
+       study_result("torque_mean", 0.031, "N m");            // on stdout and in summary.txt
+       return study_end();                                   // 0, or 1 when something went wrong
 */
 #ifndef STUDY_H
 #define STUDY_H
@@ -37,13 +37,13 @@
 #endif
 
 typedef struct study_state {
-    const char *program;          /* name in messages                                                   */
-    char root[400], folder[480];  /* results of the whole study; of the present part of it              */
-    char prefix[64];              /* put before the names of results                                    */
-    int files, failures;          /* written; things that went wrong                                    */
-    double begun, shown;          /* s, wall clock: of this progress line                               */
-    int tenths, open;             /* tenths told; a line that \r can still rewrite is on the terminal   */
-    char told[64];                /* what the line is about                                             */
+    const char *program;          /* name in messages */
+    char root[400], folder[480];  /* results of the whole study; of the present part of it */
+    char prefix[64];              /* put before the names of results */
+    int files, failures;          /* written; things that went wrong */
+    double begun, shown;          /* s, wall clock: of this progress line */
+    int tenths, open;             /* tenths told; a line is open on the terminal */
+    char told[64];                /* what the line is about */
 } study_state;
 static study_state study;
 
@@ -71,7 +71,8 @@ STUDY_FN void study_fail(const char *sentence, ...) {
     fputc('\n', stderr);
 }
 
-STUDY_FN void *study_alloc(size_t count, size_t size) { /* zeros; ends the program when there is no memory */
+/* Zeroed memory; ends the program when there is none. */
+STUDY_FN void *study_alloc(size_t count, size_t size) {
     void *memory = calloc(count ? count : 1, size);
     if (!memory) { study_fail("no memory for %.0f bytes", (double)count*(double)size); exit(1); }
     return memory;
@@ -81,11 +82,11 @@ STUDY_FN void *study_alloc(size_t count, size_t size) { /* zeros; ends the progr
 
 typedef enum study_kind { STUDY_FLAG, STUDY_INT, STUDY_REAL, STUDY_TEXT, STUDY_CHOICE } study_kind;
 typedef struct study_option {
-    const char *name;             /* without the dashes                                                 */
+    const char *name;             /* without the dashes */
     study_kind kind;
-    void *value;                  /* int *, int *, double *, const char **, const char **               */
-    double lo, hi;                /* limits of numbers                                                  */
-    const char *unit;             /* unit; of a choice: "one|another"                                   */
+    void *value;                  /* int *, int *, double *, const char **, const char ** */
+    double lo, hi;                /* limits of numbers */
+    const char *unit;             /* unit; of a choice: "one|another" */
     const char *help;
 } study_option;
 
@@ -96,22 +97,23 @@ STUDY_FN void study_help(const char *about, const study_option *table, int count
     for (i = 0; i < count; i++) {
         const study_option *o = &table[i];
         char left[64], now[128] = "";
-        const char *text = o->kind >= STUDY_TEXT && *(const char **)o->value ? *(const char **)o->value : "";
+        const char *text = o->kind >= STUDY_TEXT ? *(const char **)o->value : 0;
         snprintf(left, sizeof left, "--%s%s", o->name, kinds[o->kind]);
         if (o->kind == STUDY_INT) snprintf(now, sizeof now, " [%d", *(int *)o->value);
         if (o->kind == STUDY_REAL) snprintf(now, sizeof now, " [%g", *(double *)o->value);
-        if (*text) snprintf(now, sizeof now, " [%s", text);
+        if (text && *text) snprintf(now, sizeof now, " [%s", text);
         printf("  %-20s %s%s%s%s%s%s%s\n", left, o->help, o->kind == STUDY_CHOICE ? ": " : "",
-               o->kind == STUDY_CHOICE ? o->unit : "", now, *now && *o->unit && !*text ? " " : "",
-               *now && !*text ? o->unit : "", *now ? "]" : "");
+               o->kind == STUDY_CHOICE ? o->unit : "", now, *now && *o->unit && !text ? " " : "",
+               *now && !text ? o->unit : "", *now ? "]" : "");
     }
     printf("  %-20s this text\n", "--help");
 }
 
-/* Reads --name value, --name=value and --flag into the table's variables. --help prints and exits with 0; a
-   mistake is told in one sentence and exits with 2. */
-STUDY_FN void study_options(int argc, char **argv, const char *about, const study_option *table, int count) {
-    int i, k;
+/* Reads --name value, --name=value and --flag into the table's variables. --help prints and exits
+   with 0; a mistake is told in one sentence and exits with 2. */
+STUDY_FN void study_options(int argc, char **argv, const char *about, const study_option *table,
+                            int count) {
+    int i, k, bad;
     const char *slash = strrchr(argv[0], '/');
     study.program = slash ? slash + 1 : argv[0];
     for (i = 1; i < argc; i++)
@@ -130,15 +132,18 @@ STUDY_FN void study_options(int argc, char **argv, const char *about, const stud
         value = equal ? equal + 1 : i + 1 < argc ? argv[++i] : 0;
         snprintf(list, sizeof list, "|%s|", o->unit);
         snprintf(sought, sizeof sought, "|%s|", value ? value : "");
-        number = o->kind == STUDY_INT || o->kind == STUDY_REAL ? strtod(value ? value : "", &end) : 0;
+        number = o->kind == STUDY_INT || o->kind == STUDY_REAL ? strtod(value ? value : "", &end)
+                                                               : 0;
+        bad = end && (end == value || *end || !(number >= o->lo && number <= o->hi) ||
+                      (o->kind == STUDY_INT && floor(number) != number));
         if (o->kind == STUDY_FLAG) study_fail("--%s takes no value", o->name);
         else if (!value) study_fail("--%s needs a value", o->name);
         else if (o->kind == STUDY_CHOICE && !strstr(list, sought))
             study_fail("--%s is one of %s, not '%s'", o->name, o->unit, value);
-        else if (end && (end == value || *end || !(number >= o->lo && number <= o->hi) ||
-                         (o->kind == STUDY_INT && floor(number) != number)))
-            study_fail("--%s needs a %snumber from %g to %g%s%s, not '%s'", o->name, o->kind == STUDY_INT ? "whole " : "",
-                       o->lo, o->hi, *o->unit ? " " : "", o->unit, value);
+        else if (bad)
+            study_fail("--%s needs a %s from %g to %g%s%s, not '%s'", o->name,
+                       o->kind == STUDY_INT ? "whole number" : "number", o->lo, o->hi,
+                       *o->unit ? " " : "", o->unit, value);
         if (study.failures) exit(2);
         if (o->kind >= STUDY_TEXT) *(const char **)o->value = value;
         else if (o->kind == STUDY_INT) *(int *)o->value = (int)number;
@@ -148,7 +153,8 @@ STUDY_FN void study_options(int argc, char **argv, const char *about, const stud
 
 /* ---- folders, files, results ---- */
 
-STUDY_FN void study_make_folder(const char *path) { /* and those above it; failure shows when files are opened */
+/* And those above it; failure shows when files are opened. */
+STUDY_FN void study_make_folder(const char *path) {
     char part[512] = "mkdir ";
     size_t i;
     for (i = 0; path[i] && i + 7 < sizeof part; i++) {
@@ -162,7 +168,8 @@ STUDY_FN void study_make_folder(const char *path) { /* and those above it; failu
     }
 }
 
-STUDY_FN const char *study_path(const char *name) { /* name in the present folder; holds until the next four calls */
+/* A name in the present folder. Holds until the next four calls. */
+STUDY_FN const char *study_path(const char *name) {
     static char paths[4][1024];
     static int next;
     next = (next + 1)%4;
@@ -177,7 +184,8 @@ STUDY_FN FILE *study_open(const char *name) {
 STUDY_FN void study_close(FILE *file, const char *name) {
     int bad = file && ferror(file);
     if (!file) return;
-    if (fclose(file) || bad) study_fail("%s was not written in full: is the disk full?", study_path(name));
+    bad |= fclose(file);
+    if (bad) study_fail("%s was not written in full: is the disk full?", study_path(name));
     else study.files++;
 }
 
@@ -187,7 +195,8 @@ STUDY_FN void study_begin(const char *folder) {
     study_make_folder(folder);
     study_close(study_open("summary.txt"), "summary.txt");
 }
-/* From here on files go to a folder inside the study's, and names of results begin with its name; "": back. */
+/* From here on files go to a folder inside the study's, and names of results begin with its name;
+   "": back. */
 STUDY_FN void study_part(const char *name) {
     snprintf(study.folder, sizeof study.folder, "%s%s%s", study.root, *name ? "/" : "", name);
     snprintf(study.prefix, sizeof study.prefix, "%s%s", name, *name ? "_" : "");
@@ -199,14 +208,17 @@ STUDY_FN void study_result_text(const char *name, const char *value, const char 
     FILE *file;
     snprintf(text, sizeof text, "%s/summary.txt", study.root);
     file = fopen(text, "ab");
-    snprintf(text, sizeof text, "%s%s = %s%s%s\n", study.prefix, name, value, *unit ? " " : "", unit);
+    snprintf(text, sizeof text, "%s%s = %s%s%s\n", study.prefix, name, value, *unit ? " " : "",
+             unit);
     fputs(text, stdout);
     fflush(stdout);
-    if (!file || fputs(text, file) < 0 || fclose(file)) study_fail("cannot write summary.txt in %s", study.root);
+    if (!file || fputs(text, file) < 0 || fclose(file))
+        study_fail("cannot write summary.txt in %s", study.root);
 }
 STUDY_FN void study_result(const char *name, double value, const char *unit) {
     char text[64];
-    snprintf(text, sizeof text, floor(value) == value && fabs(value) < 1e15 ? "%.0f" : "%.6g", value);
+    const int whole = floor(value) >= value && fabs(value) < 1e15;
+    snprintf(text, sizeof text, whole ? "%.0f" : "%.6g", value);
     study_result_text(name, text, unit);
     if (value != value) study_fail("%s%s could not be measured", study.prefix, name);
 }
@@ -218,20 +230,23 @@ STUDY_FN int study_end(void) { /* exit code */
 }
 
 /* A table: columns of `rows` numbers each under a heading "time_s,torque_Nm". */
-STUDY_FN void study_csv(const char *name, const char *heading, int rows, int columns, const double *const *column) {
+STUDY_FN void study_csv(const char *name, const char *heading, int rows, int columns,
+                        const double *const *column) {
     FILE *file = study_open(name);
     int r, c;
     if (!file) return;
     fprintf(file, "%s\n", heading);
     for (r = 0; r < rows; r++)
-        for (c = 0; c < columns; c++) fprintf(file, "%.9g%c", column[c][r], c + 1 < columns ? ',' : '\n');
+        for (c = 0; c < columns; c++)
+            fprintf(file, "%.9g%c", column[c][r], c + 1 < columns ? ',' : '\n');
     study_close(file, name);
 }
 
 /* ---- progress ---- */
 
-/* How far `what` is: done 0..1, work in particle-steps since it began. The first call for a new `what` starts its
-   clock; the one with done = 1 ends the line. A terminal sees one line rewritten, a file a line every 10 %. */
+/* How far `what` is: done 0..1, work in particle-steps since it began. The first call for a new
+   `what` starts its clock; the one with done = 1 ends the line. A terminal sees one line rewritten,
+   a file a line every 10 %. */
 STUDY_FN void study_progress(const char *what, double done, double work) {
     double now = study_clock(), spent, left;
     int terminal = study_terminal();
@@ -241,14 +256,15 @@ STUDY_FN void study_progress(const char *what, double done, double work) {
         study.tenths = (int)(10*done + 1e-9);
         return;
     }
-    if (terminal ? now - study.shown < 0.2 && done < 1 : (int)(10*done + 1e-9) <= study.tenths) return;
+    if (terminal ? now - study.shown < 0.2 && done < 1 : (int)(10*done + 1e-9) <= study.tenths)
+        return;
     study.shown = now;
     study.tenths = (int)(10*done + 1e-9);
     spent = now - study.begun;
     left = done < 1 ? spent*(1 - done)/(done > 0 ? done : 1) : spent;
-    fprintf(stderr, "%s%s %3.0f %%  %6.2f M particle-steps/s  %d:%02d %s%s", terminal ? "\r" : "", what, 100*done,
-            spent > 0 ? 1e-6*work/spent : 0, (int)left/60, (int)left%60, done < 1 ? "left " : "spent",
-            terminal && done < 1 ? "" : "\n");
+    fprintf(stderr, "%s%s %3.0f %%  %6.2f M particle-steps/s  %d:%02d %s%s", terminal ? "\r" : "",
+            what, 100*done, spent > 0 ? 1e-6*work/spent : 0, (int)left/60, (int)left%60,
+            done < 1 ? "left " : "spent", terminal && done < 1 ? "" : "\n");
     fflush(stderr);
     study.open = terminal && done < 1;
     if (done >= 1) study.told[0] = 0;
@@ -256,51 +272,59 @@ STUDY_FN void study_progress(const char *what, double done, double work) {
 
 /* ---- pictures ---- */
 
-typedef enum study_style { STUDY_LINE, STUDY_DASHED, STUDY_FAINT, STUDY_DOTS, STUDY_OUTLINE } study_style;
+typedef enum study_style {
+    STUDY_LINE, STUDY_DASHED, STUDY_FAINT, STUDY_DOTS, STUDY_OUTLINE
+} study_style;
 typedef struct study_series {
-    const char *name;             /* in the legend; null: not there                                     */
+    const char *name;             /* in the legend; null: not there */
     study_style style;
     int count;
     const double *x, *y;
 } study_series;
 
-/* Zeroed, then filled in. Curves over one of: map (value), quiver (u, v), discs (disc_*), nothing. */
+/* Zeroed, then filled in. Curves, over a map (value), a quiver (u, v) or discs (disc_*). */
 #define STUDY_CURVES 16
 typedef struct study_figure {
     const char *title, *x_label, *y_label;
-    double size;                  /* width of the plot; 0: 620                                          */
-    double x0, x1, y0, y1;        /* range; equal: that of the curves                                   */
-    int equal, log_x, log_y;      /* one scale for both axes; logarithmic axes                          */
+    double size;                  /* width of the plot; 0: 620 */
+    double x0, x1, y0, y1;        /* range; equal: that of the curves */
+    int equal, log_x, log_y;      /* one scale for both axes; logarithmic axes */
     int curve_count;
     study_series curves[STUDY_CURVES];
-    int nx, ny;                   /* cells over the range                                               */
-    const double *value;          /* map, nx x ny; what is not a number stays white                     */
-    const double *u, *v;          /* quiver, nx x ny: darts coloured by length                          */
+    int nx, ny;                   /* cells over the range */
+    const double *value;          /* map, nx x ny; what is not a number stays white */
+    const double *u, *v;          /* quiver, nx x ny: darts coloured by length */
     int disc_count;
     const double *disc_x, *disc_y, *disc_r, *disc_value;
     const char *bar_label;
-    double lo, hi;                /* range of the colours; equal: 0 to the largest                      */
+    double lo, hi;                /* range of the colours; equal: 0 to the largest */
 } study_figure;
 
-STUDY_FN void study_curve(study_figure *f, const char *name, study_style style, int count, const double *x,
-                          const double *y) {
+STUDY_FN void study_curve(study_figure *f, const char *name, study_style style, int count,
+                          const double *x, const double *y) {
     study_series s;
     s.name = name; s.style = style; s.count = count; s.x = x; s.y = y;
     if (f->curve_count < STUDY_CURVES) f->curves[f->curve_count++] = s;
 }
 
-STUDY_FN const char *study_colour(double t) { /* viridis, 0..1: even in lightness, also for the colour-blind */
-    static const unsigned char anchor[11][3] = {{68, 1, 84}, {72, 36, 117}, {65, 68, 135}, {53, 95, 141},
-        {42, 120, 142}, {33, 145, 140}, {34, 168, 132}, {68, 191, 112}, {122, 209, 81}, {189, 223, 38}, {253, 231, 37}};
+/* Viridis, 0..1: even in lightness, also for the colour-blind. Holds until the next call. */
+STUDY_FN const char *study_colour(double t) {
+    static const unsigned char anchor[11][3] = {
+        {68, 1, 84}, {72, 36, 117}, {65, 68, 135}, {53, 95, 141}, {42, 120, 142}, {33, 145, 140},
+        {34, 168, 132}, {68, 191, 112}, {122, 209, 81}, {189, 223, 38}, {253, 231, 37}};
     static char text[8];
     double at = 10*(t > 0 ? t < 1 ? t : 1 : 0);
     unsigned i = at < 10 ? (unsigned)at : 9, c, rgb[3];
-    for (c = 0; c < 3; c++) rgb[c] = (unsigned)(anchor[i][c] + (at - i)*(anchor[i + 1][c] - anchor[i][c]) + 0.5);
+    for (c = 0; c < 3; c++)
+        rgb[c] = (unsigned)(anchor[i][c] + (at - i)*(anchor[i + 1][c] - anchor[i][c]) + 0.5) & 255u;
     snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
     return text;
 }
-STUDY_FN void study_text(FILE *f, double x, double y, const char *anchor, int size, int turn, const char *text) {
-    fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" font-size=\"%d\"", x, y, anchor, size);
+
+STUDY_FN void study_text(FILE *f, double x, double y, const char *anchor, int size, int turn,
+                         const char *text) {
+    fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" font-size=\"%d\"", x, y, anchor,
+            size);
     if (size > 16) fputs(" font-weight=\"bold\"", f);
     if (turn) fprintf(f, " transform=\"rotate(-90 %.1f %.1f)\"", x, y);
     for (fputc('>', f); *text; text++)
@@ -309,46 +333,51 @@ STUDY_FN void study_text(FILE *f, double x, double y, const char *anchor, int si
     fputs("</text>\n", f);
 }
 
-/* Where the ticks go: about `most`, at 1, 2 or 5 times a power of ten; of a logarithmic axis, at powers of ten. */
+/* Where the ticks go: about `most`, at 1, 2 or 5 times a power of ten; of a logarithmic axis, at
+   powers of ten. */
 STUDY_FN int study_ticks(double lo, double hi, int logarithmic, int most, double at[20]) {
     int count = 0, k;
     double step = 1, power, want = (hi - lo)/most;
     if (!logarithmic) {
         power = pow(10, floor(log10(want)));
-        step = want <= power ? power : want <= 2*power ? 2*power : want <= 5*power ? 5*power : 10*power;
+        step = power*(want <= power ? 1 : want <= 2*power ? 2 : want <= 5*power ? 5 : 10);
     }
-    for (k = (int)ceil(lo/step - 1e-6); k*step <= hi + 1e-6*step && count < 20; k++) at[count++] = k*step;
+    for (k = (int)ceil(lo/step - 1e-6); k*step <= hi + 1e-6*step && count < 20; k++)
+        at[count++] = k*step;
     return count;
 }
 
 /* Level of colour of a cell, of 64; -1 where there is nothing. */
 STUDY_FN int study_level(const study_figure *f, int cell, const double *range) {
-    double at = 64*((f->value ? f->value[cell] : hypot(f->u[cell], f->v[cell])) - range[0])/(range[1] - range[0]);
+    double value = f->value ? f->value[cell] : hypot(f->u[cell], f->v[cell]);
+    double at = 64*(value - range[0])/(range[1] - range[0]);
     return at != at ? -1 : at < 0 ? 0 : at >= 64 ? 63 : (int)at;
 }
 
-/* Cells as runs of equal colour (map) or as darts (quiver), one path per colour: files stay small. */
-STUDY_FN void study_cells(FILE *file, const study_figure *f, double left, double top, double w, double h,
-                          const double *range) {
+/* Cells as runs of equal colour (map) or as darts (quiver), one path per colour for small files. */
+STUDY_FN void study_cells(FILE *file, const study_figure *f, double left, double top, double w,
+                          double h, const double *range) {
     double dx = w/f->nx, dy = h/f->ny, a, b, n, wide;
     int level, k, from;
     for (level = 0; level < 64; level++) {
-        fprintf(file, "<path%s fill=\"%s\" d=\"M0 0", f->value ? " shape-rendering=\"crispEdges\"" : "",
-                study_colour((level + 0.5)/64));
+        fprintf(file, "<path fill=\"%s\"%s d=\"M0 0", study_colour((level + 0.5)/64),
+                f->value ? " shape-rendering=\"crispEdges\"" : "");
         for (k = 0; k < f->nx*f->ny; k++) {
             double x = left + (k%f->nx)*dx, y = top + h - (k/f->nx + 1)*dy; /* corner of the cell */
             if (study_level(f, k, range) != level) continue;
             if (f->value) { /* as far as the colour stays the same */
                 for (from = k; (k + 1)%f->nx && study_level(f, k + 1, range) == level;) k++;
-                fprintf(file, "M%.2f %.2fh%.2fv%.2fh%.2fz", x, y, (k + 1 - from)*dx, dy, -(k + 1 - from)*dx);
+                a = (k + 1 - from)*dx;
+                fprintf(file, "M%.2f %.2fh%.2fv%.2fh%.2fz", x, y, a, dy, -a);
             } else { /* tip, barb, notch, barb; a dart of full speed is two cells and a half long */
                 a = 2.5*dx*f->u[k]/range[1];
                 b = -2.5*dx*f->v[k]/range[1];
                 n = hypot(a, b);
                 wide = n < 0.9*dx ? 0.30 : 0.16;
                 if (n < 0.5*dx && n > 0) { a *= 0.5*dx/n; b *= 0.5*dx/n; }
-                fprintf(file, "M%.2f %.2fl%.2f %.2fl%.2f %.2fl%.2f %.2fz", x + (dx + a)/2, y + (dy + b)/2, -a - wide*b,
-                        -b + wide*a, 0.22*a + wide*b, 0.22*b - wide*a, -0.22*a + wide*b, -0.22*b - wide*a);
+                fprintf(file, "M%.2f %.2fl%.2f %.2fl%.2f %.2fl%.2f %.2fz", x + (dx + a)/2,
+                        y + (dy + b)/2, -a - wide*b, -b + wide*a, 0.22*a + wide*b,
+                        0.22*b - wide*a, -0.22*a + wide*b, -0.22*b - wide*a);
             }
         }
         fputs("\"/>\n", file);
@@ -373,39 +402,55 @@ STUDY_FN void study_ranges(const study_figure *f, double r[6]) {
                 count++;
                 dots |= f->curves[c].style == STUDY_DOTS;
             }
-        if (!(*hi > *lo)) { room = *lo != 0 ? 0.1*fabs(*lo) : 0.5; *lo -= room; *hi += room; continue; }
+        if (!(*hi > *lo)) { /* a constant */
+            room = *lo < 0 || *lo > 0 ? 0.1*fabs(*lo) : 0.5;
+            *lo -= room;
+            *hi += room;
+            continue;
+        }
         room = axis ? 0.06*(*hi - *lo) : dots ? 0.03*(*hi - *lo) : 0;
         *hi += room;
         if (axis && !logarithmic && *lo >= 0 && *lo < 0.3**hi) *lo = 0;
         else *lo -= room;
     }
     if (r[4] != r[5]) return;
-    for (i = 0; i < f->nx*f->ny; i++) r[5] = fmax(r[5], f->value ? f->value[i] : hypot(f->u[i], f->v[i]));
+    for (i = 0; i < f->nx*f->ny; i++)
+        r[5] = fmax(r[5], f->value ? f->value[i] : hypot(f->u[i], f->v[i]));
     for (i = 0; i < f->disc_count; i++) r[5] = fmax(r[5], f->disc_value[i]);
     if (r[5] == r[4]) r[5] = r[4] + 1;
 }
 
 /* Where a value lies between lo and hi, on a stretch of the paper. */
-STUDY_FN double study_place(double p, int logarithmic, const double *range, double from, double length) {
+STUDY_FN double study_place(double p, int logarithmic, const double *range, double from,
+                            double length) {
     return from + length*((logarithmic ? log10(p) : p) - range[0])/(range[1] - range[0]);
 }
 
 /* The beginning of a line's path; a dot. */
 STUDY_FN void study_stroke(FILE *file, study_style style, const char *colour) {
-    fprintf(file, "<path fill=\"none\" clip-path=\"url(#plot)\" stroke=\"%s\" stroke-width=\"%s\"%s d=\"", colour,
-            style >= STUDY_FAINT ? "1.2" : "2", style == STUDY_DASHED ? " stroke-dasharray=\"7 4\"" : "");
+    fprintf(file, "<path fill=\"none\" clip-path=\"url(#plot)\" stroke=\"%s\" "
+            "stroke-width=\"%s\"%s d=\"", colour, style >= STUDY_FAINT ? "1.2" : "2",
+            style == STUDY_DASHED ? " stroke-dasharray=\"7 4\"" : "");
 }
 STUDY_FN void study_dot(FILE *file, double x, double y, double radius, const char *colour) {
-    fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.2f\" fill=\"%s\" stroke=\"#fff\" stroke-width=\".4\"/>\n",
-            x, y, radius, colour);
+    fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.2f\" fill=\"%s\" stroke=\"#fff\" "
+            "stroke-width=\".4\"/>\n", x, y, radius, colour);
+}
+
+STUDY_FN void study_rectangle(FILE *file, double x, double y, double w, double h,
+                              const char *more) {
+    fprintf(file, "<rect x=\"%.1f\" y=\"%.2f\" width=\"%.1f\" height=\"%.2f\" %s/>\n", x, y, w, h,
+            more);
 }
 
 STUDY_FN void study_figure_write(const study_figure *f, const char *name) {
-    static const char *const inks[6] = {"#1b6ca8", "#d1495b", "#2a9d5c", "#8e5ea2", "#e08e0b", "#5b5b5b"};
+    static const char *const inks[6] = {"#1b6ca8", "#d1495b", "#2a9d5c", "#8e5ea2", "#e08e0b",
+                                        "#5b5b5b"};
     FILE *file = study_open(name);
-    double r[6], at[20], left = 86, top = 52, w = f->size > 0 ? f->size : 620, h = 0.62*w, right = 40, bottom = 64;
+    double r[6], at[20], left = 86, top = 52, w = f->size > 0 ? f->size : 620, h = 0.62*w;
+    double right = 40, bottom = 64;
     int bar = f->value || f->u || f->disc_count, c, i, count, ink = 0, entry = 0;
-    char text[32];
+    char text[96];
     if (!file) return;
     study_ranges(f, r);
     if (f->equal) h = w*(r[3] - r[2])/(r[1] - r[0]);
@@ -414,38 +459,46 @@ STUDY_FN void study_figure_write(const study_figure *f, const char *name) {
     if (bar) right += right > 40 ? 90 : 64;
 
     /* paper, grid, ticks, labels */
-    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" font-family=\"Helvetica, "
-            "Arial, sans-serif\" fill=\"#222\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
-            left + w + right, top + h + bottom);
+    fprintf(file, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" height=\"%.0f\" "
+            "font-family=\"Helvetica, Arial, sans-serif\" fill=\"#222\">\n", left + w + right,
+            top + h + bottom);
+    study_rectangle(file, 0, 0, left + w + right, top + h + bottom, "fill=\"#fff\"");
     study_text(file, left, 32, "start", 18, 0, f->title);
     for (c = 0; c < 2; c++) { /* the axes: 0 x, 1 y */
         int logarithmic = c ? f->log_y : f->log_x;
         count = study_ticks(r[2*c], r[2*c + 1], logarithmic, c ? 7 : 8, at);
         for (i = 0; i < count; i++) {
-            double p = study_place(at[i], 0, r + 2*c, c ? top + h : left, c ? -h : w), x = c ? left : p, y = c ? p : top + h;
-            if (!bar) fprintf(file, "<path d=\"M%.1f %.1f%c%.1f\" stroke=\"#e4e4e4\"/>\n", x, y, c ? 'h' : 'v', c ? w : -h);
-            fprintf(file, "<path d=\"M%.1f %.1f%c%d\" stroke=\"#222\"/>\n", x, y, c ? 'h' : 'v', c ? -5 : 5);
+            double p = study_place(at[i], 0, r + 2*c, c ? top + h : left, c ? -h : w);
+            double x = c ? left : p, y = c ? p : top + h;
+            char along = c ? 'h' : 'v';
+            if (!bar)
+                fprintf(file, "<path d=\"M%.1f %.1f%c%.1f\" stroke=\"#e4e4e4\"/>\n", x, y, along,
+                        c ? w : -h);
+            fprintf(file, "<path d=\"M%.1f %.1f%c%d\" stroke=\"#222\"/>\n", x, y, along,
+                    c ? -5 : 5);
             snprintf(text, sizeof text, "%.6g", logarithmic ? pow(10, at[i]) : at[i]);
             study_text(file, c ? x - 9 : x, c ? y + 5 : y + 21, c ? "end" : "middle", 14, 0, text);
         }
     }
     study_text(file, left + w/2, top + h + 48, "middle", 15, 0, f->x_label);
     study_text(file, 22, top + h/2, "middle", 15, 1, f->y_label);
-    fprintf(file, "<clipPath id=\"plot\"><rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/></clipPath>\n",
-            left, top, w, h);
+    fputs("<clipPath id=\"plot\">\n", file);
+    study_rectangle(file, left, top, w, h, "");
+    fputs("</clipPath>\n", file);
 
     /* map or darts, discs, frame */
     if (f->value || f->u) study_cells(file, f, left, top, w, h, r + 4);
     for (i = 0; i < f->disc_count; i++)
-        study_dot(file, study_place(f->disc_x[i], 0, r, left, w), study_place(f->disc_y[i], 0, r + 2, top + h, -h),
-                  w*f->disc_r[i]/(r[1] - r[0]), study_colour((f->disc_value[i] - r[4])/(r[5] - r[4])));
-    fprintf(file, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"none\" stroke=\"#222\"/>\n",
-            left, top, w, h);
+        study_dot(file, study_place(f->disc_x[i], 0, r, left, w),
+                  study_place(f->disc_y[i], 0, r + 2, top + h, -h), w*f->disc_r[i]/(r[1] - r[0]),
+                  study_colour((f->disc_value[i] - r[4])/(r[5] - r[4])));
+    study_rectangle(file, left, top, w, h, "fill=\"none\" stroke=\"#222\"");
 
     /* curves and legend */
     for (c = 0; c < f->curve_count; c++) {
         const study_series *s = &f->curves[c];
-        const char *colour = s->style == STUDY_OUTLINE ? "#222" : s->style == STUDY_FAINT ? "#b9c4cd" : inks[ink++%6];
+        const char *colour = s->style == STUDY_OUTLINE ? "#222" :
+                             s->style == STUDY_FAINT ? "#b9c4cd" : inks[ink++%6];
         double x, y, px = 0, py = 0;
         int down = 0;
         if (s->style != STUDY_DOTS) study_stroke(file, s->style, colour);
@@ -465,20 +518,27 @@ STUDY_FN void study_figure_write(const study_figure *f, const char *name) {
         x = left + w + 16 + (bar ? 90 : 0);
         y = top + 12 + 22*entry++;
         if (s->style == STUDY_DOTS) study_dot(file, x + 12, y, 3.5, colour);
-        else { study_stroke(file, s->style, colour); fprintf(file, "M%.1f %.1fh24\" style=\"clip-path:none\"/>\n", x, y); }
+        else {
+            study_stroke(file, s->style, colour);
+            fprintf(file, "M%.1f %.1fh24\" style=\"clip-path:none\"/>\n", x, y);
+        }
         study_text(file, x + 31, y + 5, "start", 14, 0, s->name);
     }
 
     /* colour bar */
-    for (i = 0; i < 64 && bar; i++)
-        fprintf(file, "<rect x=\"%.1f\" y=\"%.2f\" width=\"16\" height=\"%.2f\" fill=\"%s\" shape-rendering=\"crispEdges\"/>\n",
-                left + w + 18, top + h*(63 - i)/64, h/64 + 0.5, study_colour((i + 0.5)/64));
+    for (i = 0; i < 64 && bar; i++) {
+        snprintf(text, sizeof text, "fill=\"%s\" shape-rendering=\"crispEdges\"",
+                 study_colour((i + 0.5)/64));
+        study_rectangle(file, left + w + 18, top + h*(63 - i)/64, 16, h/64 + 0.5, text);
+    }
     count = bar ? study_ticks(r[4], r[5], 0, 7, at) : 0;
     for (i = 0; i < count; i++) {
         snprintf(text, sizeof text, "%.6g", at[i]);
-        study_text(file, left + w + 40, study_place(at[i], 0, r + 4, top + h, -h) + 5, "start", 14, 0, text);
+        study_text(file, left + w + 40, study_place(at[i], 0, r + 4, top + h, -h) + 5, "start", 14,
+                   0, text);
     }
-    if (bar) study_text(file, left + w + 92, top + h/2, "middle", 15, 1, f->bar_label ? f->bar_label : "");
+    if (bar && f->bar_label)
+        study_text(file, left + w + 92, top + h/2, "middle", 15, 1, f->bar_label);
     fputs("</svg>\n", file);
     study_close(file, name);
 }
