@@ -237,14 +237,14 @@ typedef enum dem_rolling_law {
 
 typedef enum dem_tension {
     DEM_TENSION_KEPT = 0,  /* the dashpot may pull at the end of a contact: restitution is as set */
-    DEM_TENSION_CLIPPED     /* never pull: the contact ends at zero force; restitution comes out higher
-                               (.66 gives about .69) [SP07] */
+    DEM_TENSION_CLIPPED     /* never pull: the contact ends at zero force; restitution comes out
+                               higher (.66 gives about .69) [SP07] */
 } dem_tension;
 
 typedef enum dem_convention {
     DEM_CONVENTION_STANDARD = 0, /* E*, G*, R*, m* and overlap as in the contact literature */
-    DEM_CONVENTION_MILL          /* [MIL] Fig 5.23: E* = E, 8 G, half overlaps between grains, R/2 and
-                                    m/2 against walls. For reproducing that thesis only */
+    DEM_CONVENTION_MILL          /* [MIL] Fig 5.23: E* = E, 8 G, half overlaps between grains, R/2
+                                    and m/2 against walls. For reproducing that thesis only */
 } dem_convention;
 
 typedef enum dem_integrator {
@@ -370,11 +370,11 @@ typedef struct dem_world_desc {
     dem_integrator integrator;
     dem_real dt;                   /* s; 0: chosen from the live scene, see dem_step_advice */
     int allow_large_dt;  /* 1: run even when dt exceeds t_c/20. For showing what happens */
-    dem_real impact_speed;         /* m/s, typical: for linear stiffness and the time step; 0: estimated
-                                      from gravity, walls and grains (linear stiffness: 1 m/s) */
+    dem_real impact_speed;         /* m/s, typical: for linear stiffness and the time step; 0: from
+                                      gravity, walls and grains (linear stiffness: 1 m/s) */
     dem_search search;
-    dem_real skin;                 /* m, margin of the candidate list; 0: chosen; < 0: none, the list is
-                                      rebuilt every step */
+    dem_real skin;                 /* m, margin of the candidate list; 0: chosen; < 0: none, the
+                                      list is rebuilt every step */
     int ledger;                    /* 1: account for energy: dem_ledger_get */
     int threads;                   /* 0: as many as OpenMP offers; 1..64 */
     dem_allocator allocator;
@@ -535,11 +535,11 @@ static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0
 
 /* How a wall of segments shares the force where a grain straddles two of them. */
 typedef enum dem_edge_rule {
-    DEM_EDGE_RESOLVED = 0,    /* faces first, then edges and corners not already accounted for: a flat
-                                 mesh gives exactly the plane's force */
-    DEM_EDGE_FRACTION         /* [MIL] Fig 5.19: every segment pushes along its own line's normal with
-                                 the fraction a^2(3-2a), a = share of the chord inside. Profiles
-                                 only */
+    DEM_EDGE_RESOLVED = 0,    /* faces first, then edges and corners not already accounted for: a
+                                 flat mesh gives exactly the plane's force */
+    DEM_EDGE_FRACTION         /* [MIL] Fig 5.19: every segment pushes along its own line's normal
+                                 with the fraction a^2(3-2a), a = share of the chord inside.
+                                 Profiles only */
 } dem_edge_rule;
 
 /* Triangles: vertices (vertex_count x 3), triangles (triangle_count x 3, counted from 0).
@@ -831,7 +831,8 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 #define DEMI_POW(x, y) ((dem_real)pow((double)(x), (double)(y)))
 #define DEMI_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define DEMI_MAX(a, b) ((a) > (b) ? (a) : (b))
-#define DEMI_TINY (DEMI_SINGLE ? DEM_R(1e-30) : DEM_R(1e-200))   /* added to a length before dividing */
+/* Added to a length before dividing by it. */
+#define DEMI_TINY (DEMI_SINGLE ? DEM_R(1e-30) : DEM_R(1e-200))
 #define DEMI_PI 3.14159265358979323846
 
 /* Calls task(world, i) for i = 0 .. count-1. Tasks must not depend on each other. */
@@ -930,7 +931,9 @@ static uint64_t demi_random(uint64_t *state) {
     z = (z ^ (z >> 27))*UINT64_C(0x94D049BB133111EB);
     return z ^ (z >> 31);
 }
-static double demi_uniform(uint64_t *state) { return (double)(demi_random(state) >> 11)/9007199254740992.0; }
+static double demi_uniform(uint64_t *state) {                    /* 0 <= u < 1 */
+    return (double)(demi_random(state) >> 11)/9007199254740992.0;
+}
 
 /* FNV-1a, 64 bits: check sums and state hashes. */
 #define DEMI_HASH_START UINT64_C(14695981039346656037)
@@ -1132,8 +1135,7 @@ static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
 }
 static dem_result demi_no_memory(dem_world *w, const char *call) {
     return demi_fail(w, DEM_ERROR_MEMORY, "%s: out of memory with %.1f MB held; use fewer bodies "
-                     "or a smaller "
-                     "skin; nothing was changed", call, (double)w->bytes/1e6);
+                     "or a smaller skin; nothing was changed", call, (double)w->bytes/1e6);
 }
 
 static void *demi_raw_alloc(const dem_allocator *a, size_t size) {
@@ -1214,8 +1216,8 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
    the rest. */
 static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b) {
     dem_pair p;
-    const double Ea = (double)a->young, Eb = (double)b->young, na = (double)a->poisson, nb =
-        (double)b->poisson;
+    const double Ea = (double)a->young, Eb = (double)b->young, na = (double)a->poisson;
+    const double nb = (double)b->poisson;
     const double sa = (double)(a->friction_static > 0 ? a->friction_static : a->friction);
     const double sb = (double)(b->friction_static > 0 ? b->friction_static : b->friction);
     memset(&p, 0, sizeof p);
@@ -1263,8 +1265,7 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
 static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
     if (m.id < 1 || m.id > w->material_count)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; add "
-                         "it with "
-                         "dem_material_add and check what that returned", call, (int)m.id,
+                         "it with dem_material_add and check what that returned", call, (int)m.id,
                          w->material_count);
     *index = m.id - 1;
     return DEM_OK;
@@ -1405,8 +1406,8 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
     out->r_eff = (dem_real)r; out->m_eff = (dem_real)m;
     out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT];
     out->ct = coef[DEMI_CT];
-    out->damping_ratio = (dem_real)demi_damping_ratio((double)w->pairs[i*DEMI_MATERIALS +
-        j].restitution);
+    out->damping_ratio =
+        (dem_real)demi_damping_ratio((double)w->pairs[i*DEMI_MATERIALS + j].restitution);
     out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0
                                                     ? (double)w->desc.impact_speed : 1);
     return DEM_OK;
@@ -1778,8 +1779,8 @@ static int demi_bucket_of(const demi_buckets *g, dem_vec3 x) {
     return c[0] + g->n[0]*(c[1] + g->n[1]*c[2]);
 }
 static int demi_bucket_free(const dem_world *w, const demi_buckets *g, dem_vec3 x, dem_real r) {
-    const int home = demi_bucket_of(g, x), hx = home%g->n[0], hy = home/g->n[0]%g->n[1], hz =
-        home/g->n[0]/g->n[1];
+    const int home = demi_bucket_of(g, x), hx = home%g->n[0], hy = home/g->n[0]%g->n[1];
+    const int hz = home/g->n[0]/g->n[1];
     int i, j, k, b;
     for (k = DEMI_MAX(hz - 1, 0); k <= DEMI_MIN(hz + 1, g->n[2] - 1); k++)
         for (j = DEMI_MAX(hy - 1, 0); j <= DEMI_MIN(hy + 1, g->n[1] - 1); j++)
@@ -1814,8 +1815,7 @@ DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radiu
     if (!(size[0] >= 0 && size[1] >= 0 && size[2] >= 0) || !demi_finite3(box.lo) ||
         !demi_finite3(box.hi)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_fill: the box is smaller than one sphere of "
-                  "radius %g m; "
-                  "give lo below hi by at least a diameter", (double)radius);
+                  "radius %g m; give lo below hi by at least a diameter", (double)radius);
         return 0;
     }
     if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count)) {
@@ -1975,8 +1975,8 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     case DEM_MOTION_OSCILLATING: {
         const dem_vec3 way = demi_unit(m->velocity);
         const double w = 2*DEMI_PI*(double)m->frequency, phase = w*t + (double)m->phase;
-        pose->position = demi_add(pose->position, demi_scale(way,
-                                                             (dem_real)((double)m->amplitude*sin(phase))));
+        const dem_real way_out = (dem_real)((double)m->amplitude*sin(phase));
+        pose->position = demi_add(pose->position, demi_scale(way, way_out));
         pose->velocity = demi_scale(way, (dem_real)((double)m->amplitude*w*cos(phase)));
         break;
     }
@@ -2029,8 +2029,8 @@ static void demi_wall_cells(const demi_wall *wall, dem_vec3 lo, dem_vec3 hi, int
     b[0] = (double)hi.x; b[1] = (double)hi.y; b[2] = (double)hi.z;
     o[0] = (double)wall->box.lo.x; o[1] = (double)wall->box.lo.y; o[2] = (double)wall->box.lo.z;
     for (k = 0; k < 3; k++) {
-        const double f = floor((a[k] - o[k])/(double)wall->cell), l =
-            floor((b[k] - o[k])/(double)wall->cell);
+        const double f = floor((a[k] - o[k])/(double)wall->cell);
+        const double l = floor((b[k] - o[k])/(double)wall->cell);
         first[k] = f < 0 ? 0 : f > wall->cells[k] ? wall->cells[k] : (int)f;
         last[k] = l >= wall->cells[k] ? wall->cells[k] - 1 : l < -1 ? -1 : (int)l;
     }
@@ -2803,8 +2803,8 @@ static int demi_lll_update(dem_world *w) {
     int axis, k, j;
     for (axis = 0; axis < 3; axis++) {
         demi_end *ends = (demi_end *)w->lll_ends_[axis].data;
-        for (k = 0; k < 2*w->lll_boxes; k++) ends[k].value =
-            demi_box_end(w, ends[k].box, axis, ends[k].upper);
+        for (k = 0; k < 2*w->lll_boxes; k++)
+            ends[k].value = demi_box_end(w, ends[k].box, axis, ends[k].upper);
         for (k = 1; k < 2*w->lll_boxes; k++) {
             const demi_end e = ends[k];
             for (j = k; j > 0 && demi_end_before(&e, &ends[j - 1]); j--) {
@@ -2861,8 +2861,8 @@ static int demi_lll_rows(dem_world *w) {
 }
 static void demi_rows_linked(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
-    const int32_t *start = (const int32_t *)w->lll_row_start_.data, *rows =
-        (const int32_t *)w->lll_rows_.data;
+    const int32_t *start = (const int32_t *)w->lll_row_start_.data;
+    const int32_t *rows = (const int32_t *)w->lll_rows_.data;
     int a, k;
     for (a = w->domains[d].begin; a < w->domains[d].end; a++)
         for (k = start[a]; k < start[a + 1]; k++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a,
@@ -2925,8 +2925,8 @@ static void demi_domain_walls(dem_world *w, int d) {
                         for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
                             const int element = wall->cell_items[k];
                             int q, seen = 0, base = d*w->wall_stride;
-                            for (q = first; q < domain->walls && !seen; q++) seen =
-                                w->wall_element[base + q] == element;
+                            for (q = first; q < domain->walls && !seen; q++)
+                                seen = w->wall_element[base + q] == element;
                             if (!seen && demi_wall_near(wall, element, at, near_by))
                                 demi_wall_offer(w, domain, d, i, j, element);
                         }
@@ -3006,8 +3006,8 @@ static int demi_cross_index(dem_world *w) {
             while (w->cross.b[d*w->cross.stride + k] < w->domains[e].begin) e--;
             w->cross_incoming_start[e + 1]++;
         }
-    for (d = 0; d < w->domain_count; d++) w->cross_incoming_start[d +
-        1] += w->cross_incoming_start[d];
+    for (d = 0; d < w->domain_count; d++)
+        w->cross_incoming_start[d + 1] += w->cross_incoming_start[d];
     w->cross_entries = w->cross_incoming_start[w->domain_count];
     for (d = w->domain_count - 1; d >= 0; d--)
         for (k = w->domains[d].cross - 1; k >= 0; k--) {
@@ -3017,8 +3017,8 @@ static int demi_cross_index(dem_world *w) {
             while (w->cross.b[entry] < w->domains[e].begin) e--;
             w->cross_incoming[--w->cross_incoming_start[e + 1]] = entry;
         }
-    for (d = 0; d < w->domain_count; d++) w->cross_incoming_start[d] =
-        w->cross_incoming_start[d + 1];
+    for (d = 0; d < w->domain_count; d++)
+        w->cross_incoming_start[d] = w->cross_incoming_start[d + 1];
     w->cross_incoming_start[w->domain_count] = w->cross_entries;
     return 1;
 }
@@ -3064,8 +3064,8 @@ static int demi_wall_contacts_move(dem_world *w, int stride) {
         /* cannot be: every contact is a candidate */
         if (w->domains[d].wall_contacts == stride) continue;
         to = w->wall_now + d*stride;
-        for (i = w->domains[d].wall_contacts++; i > 0 && to[i - 1].body > c.body; i--) to[i] =
-            to[i - 1];
+        for (i = w->domains[d].wall_contacts++; i > 0 && to[i - 1].body > c.body; i--)
+            to[i] = to[i - 1];
         to[i] = c;
     }
     return 1;
@@ -3117,15 +3117,15 @@ static void demi_effects(dem_world *w) {
    costs 40 per body (bench/ measures both); candidates grow with the skin, rebuilds shrink with it.
    */
 static void demi_skin_choose(dem_world *w) {
-    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1), steps =
-        (double)(w->steps - w->last_rebuild);
+    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1);
+    const double steps = (double)(w->steps - w->last_rebuild);
     int k;
     if (w->desc.skin > 0) { w->skin = (double)w->desc.skin; return; }
     if (w->desc.skin < 0) { w->skin = 0; return; }
     if (w->skin_auto <= 0) w->skin_auto = 0.1*r;
     else if (steps > 0 && w->rebuilds > 1 && w->count > 0) {
-        double n = 0, hits = 0, slope, best, per_step =
-            DEMI_MAX(2*w->reach, w->reach + w->wall_reach)/steps;
+        double n = 0, hits = 0, slope, best;
+        double per_step = DEMI_MAX(2*w->reach, w->reach + w->wall_reach)/steps;
         int d;
         for (d = 0; d < w->domain_count; d++) {
             n += w->domains[d].own + w->domains[d].cross;
@@ -3252,10 +3252,10 @@ DEM_API dem_result dem_search_now(dem_world *w) { return demi_rebuild(w); }
 /* Closest point on triangle abc to p [ERI05] 5.1.5; *feature 0 face, 1 edge, 2 corner. [MIL]
    Algorithm 5.6 is the same with a misprint in line 17 (d1 <= 0 for d3 <= 0). */
 static dem_vec3 demi_triangle_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3 c, int *feature) {
-    const dem_vec3 ab = demi_sub(b, a), ac = demi_sub(c, a), ap = demi_sub(p, a), bp =
-        demi_sub(p, b), cp = demi_sub(p, c);
-    const dem_real d1 = demi_dot(ab, ap), d2 = demi_dot(ac, ap), d3 = demi_dot(ab, bp), d4 =
-        demi_dot(ac, bp);
+    const dem_vec3 ab = demi_sub(b, a), ac = demi_sub(c, a), ap = demi_sub(p, a);
+    const dem_vec3 bp = demi_sub(p, b), cp = demi_sub(p, c);
+    const dem_real d1 = demi_dot(ab, ap), d2 = demi_dot(ac, ap), d3 = demi_dot(ab, bp);
+    const dem_real d4 = demi_dot(ac, bp);
     const dem_real d5 = demi_dot(ab, cp), d6 = demi_dot(ac, cp);
     const dem_real va = d3*d6 - d5*d4, vb = d5*d2 - d1*d6, vc = d1*d4 - d3*d2;
     dem_vec3 normal, foot;
@@ -3269,7 +3269,7 @@ static dem_vec3 demi_triangle_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3
     if (vb <= 0 && d2 >= 0 && d6 <= 0) return demi_add(a, demi_scale(ac, d2/(d2 - d6)));
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
         return demi_add(b, demi_scale(demi_sub(c, b), (d4 - d3)/((d4 - d3) + (d5 - d6))));
-    *feature = 0;                               /* face: drop the part along the normal, which keeps the
+    *feature = 0;                               /* face: drop the part along the normal, keeping the
                                                    normal exact however large the triangle is */
     normal = demi_cross(ab, ac);
     nn = demi_dot(normal, normal);
@@ -3537,8 +3537,8 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
             push->moment = cut < 1 ? m : demi_sub(m, demi_scale(w, cr));
         /* [ZHO99], eased near rest: never turns round */
         } else if (rolling == DEM_ROLLING_CONSTANT) {
-            const dem_real size = DEMI_SQRT(demi_dot(w, w)), stop =
-                2*c->m_eff*c->r_eff*c->r_eff/5*size;
+            const dem_real size = DEMI_SQRT(demi_dot(w, w));
+            const dem_real stop = 2*c->m_eff*c->r_eff*c->r_eff/5*size;
             most = most*c->dt > stop && c->dt > 0 ? stop/(c->dt + DEMI_TINY) : most;
             push->moment = demi_scale(w, -most/(size + DEMI_TINY));
         } else {                                            /* [MIL] 4.5, as printed */
@@ -3571,8 +3571,8 @@ DEM_INLINE void demi_filter(const dem_world *w, const demi_list *list, int begin
     const dem_real *DEMI_RESTRICT x = w->pos;
     const int32_t *DEMI_RESTRICT la = list->a + begin, *DEMI_RESTRICT lb = list->b + begin;
     const dem_real both = 4*w->uniform_radius*w->uniform_radius;
-    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py =
-        p->period[1], pz = p->period[2];
+    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0];
+    const dem_real py = p->period[1], pz = p->period[2];
     int k, m = 0;
     DEMI_VECTOR
     for (k = 0; k < count; k++) {
@@ -3622,8 +3622,8 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
     const int keep = law ? w->memory_stride : tangent >= DEM_TANGENT_SPRING
         ? (rolling == DEM_ROLLING_EPSD ? 8 : 4)
                                             : rolling == DEM_ROLLING_EPSD ? 8 : 0;
-    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0], py =
-        p->period[1], pz = p->period[2];
+    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0];
+    const dem_real py = p->period[1], pz = p->period[2];
     dem_real part[6*DEMI_BLOCK];
     dem_real kept[DEMI_MEMORY*DEMI_BLOCK];
     int q;
@@ -3671,16 +3671,16 @@ DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const de
         f.normal = 0;
         for (e = 0; e < 8; e++) m[e] = 0;
         if (turning) {
-            const dem_vec3 wa = demi_v(s[i], s[i + 1], s[i + 2]), wb =
-                demi_v(s[j], s[j + 1], s[j + 2]);
+            const dem_vec3 wa = demi_v(s[i], s[i + 1], s[i + 2]);
+            const dem_vec3 wb = demi_v(s[j], s[j + 1], s[j + 2]);
             const dem_vec3 t = demi_sub(rate, demi_scale(c.normal, c.closing_speed));
             around = demi_add(demi_scale(wa, la), demi_scale(wb, lb));
             c.slip = demi_add(t, demi_cross(around, c.normal));
             c.spin = demi_sub(wa, wb);
         } else c.slip = c.spin = demi_v(0, 0, 0);
         if (law || keep) {
-            const dem_vec3 wa = demi_v(sh[i], sh[i + 1], sh[i + 2]), wb =
-                demi_v(sh[j], sh[j + 1], sh[j + 2]);
+            const dem_vec3 wa = demi_v(sh[i], sh[i + 1], sh[i + 2]);
+            const dem_vec3 wb = demi_v(sh[j], sh[j + 1], sh[j + 2]);
             const dem_vec3 gone = demi_v(uh[i] - uh[j], uh[i + 1] - uh[j + 1], uh[i + 2] -
                                          uh[j + 2]);
             c.normal_rate = demi_scale(demi_sub(gone, demi_scale(c.normal,
@@ -3795,8 +3795,8 @@ DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rol
         size_t slot = (size_t)d*(size_t)w->cross.stride + 1;
         const size_t stride = w->cross_push_stride;
         for (begin = 0; begin < domain->cross; begin += DEMI_BLOCK) {
-            const int first = d*w->cross.stride + begin, count =
-                DEMI_MIN((int)DEMI_BLOCK, domain->cross - begin);
+            const int first = d*w->cross.stride + begin;
+            const int count = DEMI_MIN((int)DEMI_BLOCK, domain->cross - begin);
             dem_real *DEMI_RESTRICT out = w->cross_push + slot;
             demi_filter(w, &w->cross, first, count, &p, uniform, periodic, &hits);
             demi_respond(w, &w->cross, &hits, &p, out, stride, deep, domain->energy, dt, normal,
@@ -3952,8 +3952,8 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
                                    dem_contact *c, dem_vec3 *surface) {
     const demi_wall *wall = &w->walls[k->wall];
     const dem_real *x = w->pos + 4*k->body, r = x[3];
-    const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body), at =
-        demi_add(demi_at(x), demi_scale(n, r));
+    const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body);
+    const dem_vec3 at = demi_add(demi_at(x), demi_scale(n, r));
     const dem_vec3 arm = demi_sub(at, wall->pose.position);
     const dem_vec3 mid = demi_add(wall->mid.velocity, demi_cross(wall->mid.spin,
         demi_sub(at, wall->mid.position)));
@@ -3993,8 +3993,8 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
 /* Touching elements of one wall for one grain, from its candidates first .. last - 1. */
 static int demi_wall_collect(const dem_world *w, int d, int first, int last,
                              demi_wall_contact *out) {
-    const int base = d*w->wall_stride, body = w->wall_body[base + first], id =
-        w->wall_id[base + first];
+    const int base = d*w->wall_stride, body = w->wall_body[base + first];
+    const int id = w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
     const dem_real r = w->pos[4*body + 3], *R = wall->pose.rotation;
     const dem_vec3 x = demi_unturn(R, demi_sub(demi_at(w->pos + 4*body), wall->pose.position));
@@ -4637,8 +4637,8 @@ static void demi_forces(dem_world *w) {
         c->work += power*dt;
         c->time += dt;
     }
-    for (d = 0; d < w->domain_count; d++) w->overlap_max =
-        DEMI_MAX(w->overlap_max, w->domains[d].overlap);
+    for (d = 0; d < w->domain_count; d++)
+        w->overlap_max = DEMI_MAX(w->overlap_max, w->domains[d].overlap);
     if (w->desc.ledger) demi_ledger_book(w);
 }
 
@@ -4727,8 +4727,7 @@ static dem_result demi_step_move(dem_world *w) {
         demi_wall_pose_at(wall, w->time - w->half_kick, &wall->mid);
         if (!demi_pose_finite(&wall->pose) || !demi_pose_finite(&wall->mid))
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: the motion of wall "
-                             "%d gave a "
-                             "pose that is not finite at %g s; check the motion function",
+                             "%d gave a pose that is not finite at %g s; check the motion function",
                              (unsigned long long)w->steps, i + 1, w->time);
         speed = demi_wall_speed(wall);
         if (speed < 0) w->wall_reach = 1e300;   /* no bound: look anew */
@@ -6200,8 +6199,8 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
         const demi_domain *domain = &w->domains[d];
         for (i = 0; i < 2; i++) {
             demi_list *list = i ? &w->cross : &w->own;
-            const size_t from = (size_t)d*(size_t)list->stride, pairs =
-                (size_t)(i ? domain->cross : domain->own);
+            const size_t from = (size_t)d*(size_t)list->stride;
+            const size_t pairs = (size_t)(i ? domain->cross : domain->own);
             const size_t per = (size_t)w->memory_stride;
             demi_visit(s, list->a + from, 4*pairs);
             demi_visit(s, list->b + from, 4*pairs);
@@ -6336,8 +6335,7 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: %s; write checkpoints with "
                          "dem_checkpoint_write", call, path,
                          size >= 8 && !memcmp(data, DEMI_CHECKPOINT_MAGIC, 8)
-                         ? "is cut short within its head"
-                                                                             : "is not a checkpoint");
+                         ? "is cut short within its head" : "is not a checkpoint");
     memcpy(head, data, sizeof *head);
     if (head->byte_order != 0x01020304u || head->version != DEMI_CHECKPOINT_VERSION)
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: is of checkpoint version %u%s, must be "
@@ -6375,8 +6373,8 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     demi_checkpoint_head head;
     const demi_shape *shape = &head.shape;
     demi_array bytes = {0, 0, 0};
-    const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride, domains =
-        w->domain_count;
+    const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride;
+    const int domains = w->domain_count;
     const int stride = w->memory_stride, uniform = w->uniform;
     size_t size = 0;
     demi_stream s;
@@ -6492,8 +6490,7 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     if ((int)d->tension < 0 || d->tension > DEM_TENSION_CLIPPED || (int)d->convention < 0 ||
         d->convention > DEM_CONVENTION_MILL)
         return "dem_world_create: tension or convention is unknown, must be one of the enum "
-            "values; "
-               "start from DEM_WORLD_DESC";
+               "values; start from DEM_WORLD_DESC";
     if ((int)d->integrator < 0 || d->integrator > DEM_LEAPFROG || (int)d->search < 0 ||
         d->search > DEM_SEARCH_LINKED_LIST)
         return "dem_world_create: integrator or search is unknown, must be one of the enum values; "
@@ -6647,8 +6644,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     if (w->desc.ledger) {
         const dem_ledger l = dem_ledger_get(w);
         fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
-                "%.6g\n"
-                "           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
+                "%.6g\n           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
                 "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n"
                 "           residual %.3g (%.2g of the throughput)\n", l.gravity, l.walls,
                 l.force, l.inserted, l.removed,
