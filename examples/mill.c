@@ -935,9 +935,8 @@ int main(int argc, char **argv) {
     if (options.quick) { /* a smaller mill of softer beads; what was asked for by name stays */
         options.diameter = 0.12;
         options.soften = 1000;
-        options.contact_steps = 38;
-        options.settle = 0.5;
-        options.revolutions = 0.75;
+        options.contact_steps = 42;
+        options.revolutions = 0.6;
         study_options(argc, argv, about, table, count);
     }
     if (options.write_profile) return profile_write(options.write_profile);

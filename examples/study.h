@@ -194,6 +194,7 @@ STUDY_FN void study_begin(const char *folder) {
     snprintf(study.folder, sizeof study.folder, "%s", folder);
     study_make_folder(folder);
     study_close(study_open("summary.txt"), "summary.txt");
+    if (study.failures) exit(1);
 }
 /* From here on files go to a folder inside the study's, and names of results begin with its name;
    "": back. */
@@ -373,8 +374,8 @@ STUDY_FN void study_cells(FILE *file, const study_figure *f, double left, double
                 a = 2.5*dx*f->u[k]/range[1];
                 b = -2.5*dx*f->v[k]/range[1];
                 n = hypot(a, b);
-                wide = n < 0.9*dx ? 0.30 : 0.16;
-                if (n < 0.5*dx && n > 0) { a *= 0.5*dx/n; b *= 0.5*dx/n; }
+                wide = n < 1.1*dx ? 0.3 : 0.16;
+                if (n < 0.7*dx && n > 0) { a *= 0.7*dx/n; b *= 0.7*dx/n; }
                 fprintf(file, "M%.2f %.2fl%.2f %.2fl%.2f %.2fl%.2f %.2fz", x + (dx + a)/2,
                         y + (dy + b)/2, -a - wide*b, -b + wide*a, 0.22*a + wide*b,
                         0.22*b - wide*a, -0.22*a + wide*b, -0.22*b - wide*a);
