@@ -4,7 +4,7 @@
 # "N passed, N failed, N skipped" and a non-zero code when anything failed.
 JOBS=${JOBS:-1}
 dir=build/check
-rm -rf $dir; mkdir -p $dir
+rm -rf $dir; mkdir -p $dir build/tmp
 number=1000; skipped=0
 
 found() { command -v "$1" >/dev/null 2>&1; }
