@@ -995,7 +995,6 @@ typedef struct demi_domain {
     int overflow;                  /* a list ran out of room while being built */
     double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
     double energy[DEMI_ENERGIES];
-    double mass_in_flow;
 } demi_domain;
 
 enum { DEMI_WALL_NONE = 0, DEMI_WALL_PLANE, DEMI_WALL_CYLINDER, DEMI_WALL_PROFILE, DEMI_WALL_MESH,
@@ -1070,7 +1069,7 @@ struct dem_world {
     int normal, tangent, rolling;  /* laws in force */
     int uniform;                   /* one radius, one mass, one material, nothing fixed */
     int memory_stride, vector_mask;/* reals per contact; which of them are vectors */
-    dem_real uniform_coef[DEMI_COEFS], uniform_radius, uniform_inv_mass, uniform_inv_inertia;
+    dem_real uniform_coef[DEMI_COEFS], uniform_radius, uniform_inv_mass;
     dem_real radius_min, radius_max;
     int fixed_count;
 
@@ -1107,7 +1106,6 @@ struct dem_world {
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     demi_array lll_ends_[3], lll_table_, lll_rows_, lll_row_start_;
     int lll_valid, lll_boxes, lll_size;
-    uint64_t lll_exchanges;
 
     /* step */
     void (*kernel)(dem_world *w, int domain);
@@ -1119,7 +1117,7 @@ struct dem_world {
     int moved;                     /* a step has moved and lacks its forces: memory ran out in it */
     uint32_t stamp;
     double overlap_max, speed_max;
-    double energy[DEMI_ENERGIES], energy_inserted, energy_removed, energy_opening;
+    double energy[DEMI_ENERGIES], energy_inserted, energy_removed;
     double throughput;
     double half_kick;              /* s, of the step under way */
 };
@@ -2809,7 +2807,6 @@ static int demi_lll_update(dem_world *w) {
             const demi_end e = ends[k];
             for (j = k; j > 0 && demi_end_before(&e, &ends[j - 1]); j--) {
                 const demi_end *f = &ends[j - 1];
-                w->lll_exchanges++;
                 if (e.upper != f->upper && e.box != f->box &&
                     w->desc.boundary[axis] != DEM_BOUNDARY_PERIODIC) {
                     /* [f e] -> e before f: apart */
@@ -3107,7 +3104,6 @@ static void demi_effects(dem_world *w) {
     if (w->uniform) {
         w->uniform_radius = w->pos[3];
         w->uniform_inv_mass = w->inv_mass[0];
-        w->uniform_inv_inertia = w->inv_inertia[0];
         demi_coefficients(w, w->body_material[0] - 1, w->body_material[0] - 1, (double)w->pos[3]/2,
                           1/((double)w->inv_mass[0]*2), 0, w->uniform_coef);
     }
