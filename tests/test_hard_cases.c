@@ -530,18 +530,20 @@ int main(int argc, char **argv) {
        is of second order, .4 (angle)^2 per turn. */
     TEST("co-rotation (ON-DEM shear test): the tangential force of a law of one's own turns with "
          "its contact, without work") {
-        const dem_vec3 axes[] = {at(0, 1, 0), at(0, 0, 1), at(0, 2, -1), at(1, 2, 3), at(2, 0, 1),
-                                 at(1, 0, 0)};
+        static const double axes[][3] = {{0, 1, 0}, {0, 0, 1}, {0, 2, -1}, {1, 2, 3}, {2, 0, 1},
+                                         {1, 0, 0}};
         size_t i;
         for (i = 0; i < sizeof axes/sizeof *axes; i++)
-            check_turned(turn_once(axes[i], 1, 20000), fabs((double)axes[i].x) > 0);
+            check_turned(turn_once(at(axes[i][0], axes[i][1], axes[i][2]), 1, 20000),
+                         fabs(axes[i][0]) > 0);
     }
     TEST("co-rotation (ON-DEM shear test): the frozen spring of friction turns with its contact, "
          "without work") {
-        const dem_vec3 axes[] = {at(0, 1, 0), at(0, 0, 1), at(1, 2, 3)};
+        static const double axes[][3] = {{0, 1, 0}, {0, 0, 1}, {1, 2, 3}};
         size_t i;
         for (i = 0; i < sizeof axes/sizeof *axes; i++)
-            check_turned(turn_once(axes[i], 0, 20000), fabs((double)axes[i].x) > 0);
+            check_turned(turn_once(at(axes[i][0], axes[i][1], axes[i][2]), 0, 20000),
+                         fabs(axes[i][0]) > 0);
     }
 
     TEST("size ratio 1:100 (Ogarko & Luding): every search finds the pairs that brute force "
