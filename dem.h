@@ -465,9 +465,9 @@ DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real r
                              dem_box box, int count,
                              uint64_t seed);
 /* Hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, those for
-   which inside(centre, radius, user) is not 0 (null: all whose centre keeps a radius from the box),
-   at most count
-   (0: all that fit), in layers along z. Returns how many were added. */
+   which inside(centre, radius, user) is not 0 (null: all whose centre keeps a radius from the box;
+   it is called twice a place), at most count (0: all that fit), in layers along z. Returns how many
+   were added. */
 typedef int (*dem_inside_fn)(dem_vec3 centre, dem_real radius, void *user);
 DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real radius,
                              dem_real padding,
@@ -3499,7 +3499,7 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
             memory[3] = kt;
             if (ledger) {
                 const dem_vec3 e = demi_v(memory[0], memory[1], memory[2]), q = demi_sub(e, s);
-                out->slide = cut < 1 ? demi_dot(push->tangent, q)/(kt + DEMI_TINY) : 0;
+                out->slide = cut < 1 ? -demi_dot(push->tangent, q)/(kt + DEMI_TINY) : 0;
                 out->shear_stored = demi_dot(e, e)/(2*kt + DEMI_TINY);
             }
         }
