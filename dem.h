@@ -820,6 +820,17 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 #define DEMI_VECTOR
 #endif
 
+/* In a loop that copies: keeps compilers from making gathers of it, which are slower. */
+#if defined(__GNUC__) && !defined(__TINYC__)
+#define DEMI_ONE_BY_ONE(i) __asm__ __volatile__("" : "+r"(i))
+#else
+#define DEMI_ONE_BY_ONE(i) ((void)0)
+#endif
+
+/* Loops over the components of a row, written out: compilers leave them as loops at -O2. */
+#define DEMI_THREE(DO) do { DO(0); DO(1); DO(2); } while (0)
+#define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
+
 #ifndef DEM_ASSERT
 #define DEM_ASSERT(x) ((void)0)
 #endif
@@ -951,8 +962,8 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    array that grows is a field here; demi_array_grow keeps what it holds, or leaves it alone and
    says so.
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_BLOCK = 256, DEMI_DOMAIN_BODIES = 2048,
-      DEMI_DOMAINS = 256 };
+enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_TILE = 64, DEMI_LANES = 16,
+      DEMI_DOMAIN_BODIES = 2048, DEMI_DOMAINS = 256 };
 
 /* Coefficients of one contact, resolved: what the built-in laws need. */
 enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
@@ -966,9 +977,10 @@ typedef struct demi_list {
     int stride;                    /* capacity per domain */
     int32_t *a, *b;                /* body indices, a < b */
     uint32_t *stamp;               /* evaluation at which memory was last written */
+    unsigned char *image;          /* which entry of image_shift leads from a to b */
     dem_real *memory;              /* x w->memory_stride */
     dem_real *coef;                /* x DEMI_COEFS when bodies differ */
-    demi_array a_, b_, stamp_, memory_, coef_;
+    demi_array a_, b_, stamp_, image_, memory_, coef_;
 } demi_list;
 
 /* Sums of one domain over one step; combined in the order of domains. */
@@ -1079,6 +1091,7 @@ struct dem_world {
     double skin, reach, wall_reach;/* m: margin, farthest a body / a wall point went since */
     double skin_auto;              /* m: what the cost model proposes; 0: nothing yet */
     uint64_t last_rebuild;         /* step */
+    dem_real image_shift[27*4];    /* m, from a body to another's image; 0: none */
     int domain_count;
     demi_domain *domains;
     demi_list own, cross;
@@ -1086,8 +1099,7 @@ struct dem_world {
     demi_array cross_incoming_, cross_hit_, cross_push_;
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
     int32_t *cross_hit;            /* entry -> slot of its push, 0 when not touching */
-    dem_real *cross_push;
-    size_t cross_push_stride;
+    dem_real *cross_push;          /* x 6: force and torque on the far end */
     int cross_entries;
     demi_array cell_start_;
     int cells[3];
@@ -1143,19 +1155,28 @@ static void demi_raw_free(const dem_allocator *a, void *p, size_t size) {
     if (!p) return;
     if (a->free_fn) a->free_fn(p, size, a->user); else free(p);
 }
-/* count items of size bytes, cleared; null when there is no room or the product overflows. */
+/* count items of size bytes, cleared; null when there is no room or the product overflows. Begins
+   on a cache line, so that no row of four reals lies across two: the byte before says how far in. */
+enum { DEMI_LINE = 64 };
 static void *demi_alloc(dem_world *w, size_t count, size_t size) {
-    void *p;
+    unsigned char *p;
+    size_t bytes, in;
     if (size && count > (size_t)-1/2/size) return 0;
     if (count*size == 0) return 0;
-    p = demi_raw_alloc(&w->desc.allocator, count*size);
-    if (p) { memset(p, 0, count*size); w->bytes += count*size; }
-    return p;
+    bytes = count*size + DEMI_LINE;
+    p = (unsigned char *)demi_raw_alloc(&w->desc.allocator, bytes);
+    if (!p) return 0;
+    memset(p, 0, bytes);
+    w->bytes += bytes;
+    in = DEMI_LINE - (size_t)((uintptr_t)p%DEMI_LINE);
+    p[in - 1] = (unsigned char)in;
+    return p + in;
 }
-static void demi_free(dem_world *w, void *p, size_t count, size_t size) {
+static void demi_free(dem_world *w, void *data, size_t count, size_t size) {
+    unsigned char *p = (unsigned char *)data;
     if (!p) return;
-    w->bytes -= count*size;
-    demi_raw_free(&w->desc.allocator, p, count*size);
+    w->bytes -= count*size + DEMI_LINE;
+    demi_raw_free(&w->desc.allocator, p - p[-1], count*size + DEMI_LINE);
 }
 /* Makes room for count items, keeping those there. 0 when memory ran out; then nothing has changed.
    */
@@ -2572,6 +2593,27 @@ static void demi_pair_coefs(const dem_world *w, demi_list *list, int k) {
                       list->coef + (size_t)k*DEMI_COEFS);
 }
 
+/* Notes which image of b is nearest to a. It stays so until the next list: positions are brought
+   back into the periodic box only then, and a period holds more than two candidates' lengths. */
+static void demi_pair_image(const dem_world *w, const demi_periods *p, demi_list *list, int k) {
+    const dem_real *x = w->pos + 4*list->a[k], *y = w->pos + 4*list->b[k];
+    int code = 0, e, weight = 4;
+    for (e = 0; e < 3; e++, weight *= 3) {
+        const dem_real d = y[e] - x[e];
+        code += d < -p->half[e] ? weight : d > p->half[e] ? 2*weight : 0;
+    }
+    list->image[k] = (unsigned char)code;
+}
+static void demi_image_shifts(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    int code, e;
+    for (code = 0; code < 27; code++)
+        for (e = 0; e < 3; e++) {
+            const int c = code/(e == 0 ? 1 : e == 1 ? 3 : 9)%3;
+            w->image_shift[4*code + e] = c == 0 ? 0 : c == 1 ? p.period[e] : -p.period[e];
+        }
+}
+
 /* Tests one pair (a < b) and, if near enough, enters it in the list of a's domain. */
 static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
                             int b) {
@@ -2593,6 +2635,7 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     list->a[k] = a;
     list->b[k] = b;
     list->stamp[k] = w->stamp - 1;
+    demi_pair_image(w, p, list, k);
     if (!w->uniform) demi_pair_coefs(w, list, k);
     if (!w->memory_stride || (from = demi_carry_find(w, a, b, &flip)) < 0) return;
     list->stamp[k] = w->stamp;
@@ -2944,11 +2987,13 @@ static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int str
     const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &list->a_, sizeof(int32_t), n) &&
                    demi_array_grow(w, &list->b_, sizeof(int32_t), n) &&
                    demi_array_grow(w, &list->stamp_, sizeof(uint32_t), n) &&
+                   demi_array_grow(w, &list->image_, 1, n) &&
                    demi_array_grow(w, &list->memory_, sizeof(dem_real), m) &&
                    (w->uniform || demi_array_grow(w, &list->coef_, sizeof(dem_real), n*DEMI_COEFS));
     list->a = (int32_t *)list->a_.data;
     list->b = (int32_t *)list->b_.data;
     list->stamp = (uint32_t *)list->stamp_.data;
+    list->image = (unsigned char *)list->image_.data;
     list->memory = (dem_real *)list->memory_.data;
     list->coef = (dem_real *)list->coef_.data;
     if (ok) list->stride = stride;
@@ -2969,7 +3014,7 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
 static int demi_cross_reserve(dem_world *w, size_t entries) {
     const int ok = demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), entries) &&
                    demi_array_grow(w, &w->cross_hit_, sizeof(int32_t), entries) &&
-                   demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 9*(entries + 1));
+                   demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 6*(entries + 1));
     w->cross_incoming = (int32_t *)w->cross_incoming_.data;
     w->cross_hit = (int32_t *)w->cross_hit_.data;
     w->cross_push = (dem_real *)w->cross_push_.data;
@@ -2992,8 +3037,7 @@ static int demi_wall_contacts_reserve(dem_world *w, size_t now, size_t next) {
 static int demi_cross_index(dem_world *w) {
     int d, k, e, entries = w->domain_count*w->cross.stride;
     if (!demi_cross_reserve(w, (size_t)entries)) return 0;
-    w->cross_push_stride = (size_t)entries + 1;  /* slot 0: the push of what does not touch */
-    for (k = 0; k < 9; k++) w->cross_push[(size_t)k*w->cross_push_stride] = 0;
+    for (k = 0; k < 6; k++) w->cross_push[k] = 0;           /* slot 0: what does not touch */
     for (d = 0; d <= w->domain_count; d++) w->cross_incoming_start[d] = 0;
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].cross; k++) {
@@ -3068,6 +3112,12 @@ static int demi_wall_contacts_move(dem_world *w, int stride) {
     return 1;
 }
 
+/* Reals of memory that the built-in laws keep per contact: see >>laws. */
+DEM_INLINE int demi_memory_of(int tangent, int rolling) {
+    return rolling == DEM_ROLLING_EPSD ? 7 : tangent >= DEM_TANGENT_MINDLIN ? 4
+        : tangent == DEM_TANGENT_SPRING ? 3 : 0;
+}
+
 /* The effects of the live scene: which laws act, whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, j, friction = 0, rolling = 0;
@@ -3083,11 +3133,10 @@ static void demi_effects(dem_world *w) {
     if (w->rolling == DEM_ROLLING_AUTO) w->rolling = DEM_ROLLING_EPSD;
     if (!friction) w->tangent = DEM_TANGENT_NONE;
     if (!rolling) w->rolling = DEM_ROLLING_NONE;
-    w->memory_stride = w->tangent >= DEM_TANGENT_SPRING ? 4 : 0;
-    if (w->rolling == DEM_ROLLING_EPSD) w->memory_stride = 8;
+    w->memory_stride = demi_memory_of(w->tangent, w->rolling);
     w->vector_mask = 0x77;
     if (w->desc.law) {
-        w->memory_stride = w->desc.law_memory == 0 ? 0 : w->desc.law_memory <= 4 ? 4 : 8;
+        w->memory_stride = w->desc.law_memory;
         w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
     }
     w->uniform = w->count > 0;
@@ -3169,6 +3218,7 @@ static dem_result demi_rebuild(dem_world *w) {
     if (!demi_grid_lay(w, 2*(double)w->radius_max + w->skin + 1e-300)) return demi_no_memory(w,
         "dem_world_step");
     demi_bodies_sort(w);
+    demi_image_shifts(w);
     w->domain_count = DEMI_MAX(1, DEMI_MIN(w->count/DEMI_DOMAIN_BODIES, (int)DEMI_DOMAINS));
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->count*d/w->domain_count);
@@ -3411,6 +3461,10 @@ static int demi_wall_resolve(demi_wall_contact *c, int count, dem_real r) {
     return kept;
 }
 
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("no-trapping-math")
+#endif
 /* ---------------------------------------------------------------------------------------------
    >>laws
    One contact in, force and torque out. A law sees a dem_contact, its memory and its answer,
@@ -3447,9 +3501,9 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
         ct = c->ct;
         fn = elastic + c->cn*c->closing_speed;
     }
-    if (clipped) fn = fn > 0 ? fn : 0;          /* no pull at the end of a contact */
-    push->normal = fn;
     limit = fn > 0 ? fn : 0;
+    fn = clipped ? limit : fn;                  /* no pull at the end of a contact */
+    push->normal = fn;
     if (ledger) {
         out->dashpot = (fn - elastic)*c->closing_speed*c->dt;
         out->elastic = normal == DEM_NORMAL_HERTZ ? elastic*c->overlap*2/5 : elastic*c->overlap/2;
@@ -3458,8 +3512,9 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
 
     /* tangential: a trial force, capped by Coulomb; what is cut off is sliding */
     if (tangent != DEM_TANGENT_NONE) {
-        dem_vec3 s = demi_v(0, 0, 0), t;
-        dem_real size, most, cut, old = kt;
+        dem_vec3 s = demi_v(0, 0, 0), t, held;
+        dem_real size, cap, cut, old = kt;
+        int slides;
         if (tangent >= DEM_TANGENT_SPRING) s = dem_memory_turn(c, demi_at(memory));
         if (tangent == DEM_TANGENT_SPRING) {                /* s: displacement; [CS79] */
             s = demi_add(s, demi_scale(c->slip_step, c->dt));
@@ -3477,35 +3532,30 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
             t = demi_v(-k*v.x, -k*v.y, -k*v.z);
         }
         size = DEMI_SQRT(demi_dot(t, t));
-        most = limit*c->friction_static;
-        cut = limit*c->friction/(size + DEMI_TINY);
-        cut = size > most ? cut : 1;
+        cap = limit*c->friction;
+        cut = size > limit*c->friction_static ? size : cap;
+        cut = (cap + DEMI_TINY)/(cut + DEMI_TINY);
+        slides = cut < 1;
         push->tangent = demi_scale(t, cut);
-        if (tangent == DEM_TANGENT_SPRING) {  /* while sliding the spring holds what friction can */
-            const dem_real back = -cut/(kt + DEMI_TINY);
-            memory[0] = cut < 1 ? back*t.x : s.x;
-            memory[1] = cut < 1 ? back*t.y : s.y;
-            memory[2] = cut < 1 ? back*t.z : s.z;
-            if (ledger) {
-                const dem_vec3 e = demi_v(memory[0], memory[1], memory[2]), q = demi_sub(s, e);
-                out->slide = cut < 1 ? -demi_dot(push->tangent, q) : 0;
-                out->shear_stored = kt*demi_dot(e, e)/2;
-            }
-        }
-        if (tangent >= DEM_TANGENT_MINDLIN) {
-            memory[0] = cut < 1 ? push->tangent.x : s.x;
-            memory[1] = cut < 1 ? push->tangent.y : s.y;
-            memory[2] = cut < 1 ? push->tangent.z : s.z;
-            memory[3] = kt;
-            if (ledger) {
-                const dem_vec3 e = demi_v(memory[0], memory[1], memory[2]), q = demi_sub(e, s);
-                out->slide = cut < 1 ? -demi_dot(push->tangent, q)/(kt + DEMI_TINY) : 0;
-                out->shear_stored = demi_dot(e, e)/(2*kt + DEMI_TINY);
-            }
+        if (tangent >= DEM_TANGENT_SPRING) {  /* while sliding, memory holds what friction can */
+            held = tangent == DEM_TANGENT_SPRING
+                ? demi_scale(push->tangent, -1/(kt + DEMI_TINY)) : push->tangent;
+            memory[0] = slides ? held.x : s.x;
+            memory[1] = slides ? held.y : s.y;
+            memory[2] = slides ? held.z : s.z;
+            if (tangent >= DEM_TANGENT_MINDLIN) memory[3] = kt;
         }
         if (ledger) {
+            const dem_vec3 e = demi_at(memory);
             out->shear_work = -demi_dot(push->tangent, v)*c->dt;
-            if (tangent < DEM_TANGENT_SPRING) out->slide = cut < 1 ? out->shear_work : 0;
+            if (tangent == DEM_TANGENT_SPRING) {
+                out->slide = -demi_dot(push->tangent, demi_sub(s, e));
+                out->shear_stored = kt*demi_dot(e, e)/2;
+            } else if (tangent >= DEM_TANGENT_MINDLIN) {
+                out->slide = -demi_dot(push->tangent, demi_sub(e, s))/(kt + DEMI_TINY);
+                out->shear_stored = demi_dot(e, e)/(2*kt + DEMI_TINY);
+            } else out->slide = out->shear_work;
+            out->slide = slides ? out->slide : 0;
         }
     }
 
@@ -3526,11 +3576,10 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
                                                 demi_scale(n, demi_dot(c->spin_step, n))),
                                                 kr*c->dt));
             size = DEMI_SQRT(demi_dot(m, m));
-            cut = most/(size + DEMI_TINY);
-            cut = size > most ? cut : 1;
-            m = demi_scale(m, cut);
+            cut = size > most ? size : most;
+            m = demi_scale(m, (most + DEMI_TINY)/(cut + DEMI_TINY));
             memory[4] = m.x; memory[5] = m.y; memory[6] = m.z;
-            push->moment = cut < 1 ? m : demi_sub(m, demi_scale(w, cr));
+            push->moment = demi_sub(m, demi_scale(w, size > most ? 0 : cr));
         /* [ZHO99], eased near rest: never turns round */
         } else if (rolling == DEM_ROLLING_CONSTANT) {
             const dem_real size = DEMI_SQRT(demi_dot(w, w));
@@ -3547,45 +3596,143 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
 
 /* ---------------------------------------------------------------------------------------------
    >>respond
-   The loops that bring candidates, touch and law together. Grain-grain: blocks of candidates go
-   through a filter without branches that packs the touching ones, the law runs over the packed ones
-   (vectorised where the compiler can), pushes are added to both bodies. Pairs that lead out of a
-   domain leave their push in a slot of its own; the other domain fetches it after all are done, in
-   the order of the list. So every body's sum has one order whatever the number of threads.
-   Grain-wall follows, per grain.
+   The loops that bring candidates, touch and law together. Grain-grain, 64 contacts at a time (a
+   tile): candidates are filtered without a branch, touching ones fill the tile; what the law needs
+   of the two bodies is copied into rows, one after the other (two rows of a body lie together, and
+   a copy of three numbers is cheaper than three gathers); the law runs over the rows (vectorised:
+   groups of a constant length, which compilers turn into vectors at -O2 too); pushes are added to
+   both bodies. Pairs that lead out of a domain leave their push in a slot of its own; the other
+   domain fetches it after all are done, in the order of the list. So every body's sum has one order
+   whatever the number of threads. Grain-wall follows, per grain.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FX, DEMI_FY, DEMI_FZ, DEMI_AX, DEMI_AY, DEMI_AZ, DEMI_BX, DEMI_BY, DEMI_BZ, DEMI_PUSH };
-/* Touching candidates of one block, packed: bodies, place in the list. */
-typedef struct demi_hits { int count; int32_t a[DEMI_BLOCK], b[DEMI_BLOCK], k[DEMI_BLOCK];
-                          } demi_hits;
+/* Contacts under work. Sums and differences are of the two bodies, a plus b and a minus b. */
+typedef struct demi_tile {
+    int count;
+    int32_t a[DEMI_TILE], b[DEMI_TILE], k[DEMI_TILE];     /* bodies, place in the list */
+    dem_real gap[3][DEMI_TILE];                           /* m, from a to b */
+    dem_real rate[3][DEMI_TILE], gone[3][DEMI_TILE];      /* m/s, difference: full step, mean */
+    dem_real around[3][DEMI_TILE], turned[3][DEMI_TILE];  /* rad/s, sum of spins: the same */
+    dem_real apart[3][DEMI_TILE], parted[3][DEMI_TILE];   /* rad/s, difference of spins: the same */
+    dem_real radius[2][DEMI_TILE], m_eff[DEMI_TILE], coef[DEMI_COEFS][DEMI_TILE];
+    dem_real memory[DEMI_MEMORY][DEMI_TILE];
+    dem_real push[DEMI_PUSH][DEMI_TILE], deep[DEMI_TILE]; /* answers; overlap over radius */
+    dem_real part[6][DEMI_TILE];                          /* energies */
+} demi_tile;
 
-/* Packs those of `count` candidates from `begin` that overlap. */
-DEM_INLINE void demi_filter(const dem_world *w, const demi_list *list, int begin, int count,
-                            const demi_periods *p,
-                             int uniform, int periodic, demi_hits *hits) {
-    dem_real gap[DEMI_BLOCK];
-    const dem_real *DEMI_RESTRICT x = w->pos;
-    const int32_t *DEMI_RESTRICT la = list->a + begin, *DEMI_RESTRICT lb = list->b + begin;
+/* What is switched on, and what is the same for all contacts of a run. Literals in a specialised
+   kernel. */
+typedef struct demi_run {
+    int normal, tangent, rolling, uniform, ledger, keep;  /* keep: reals of memory */
+    int turning, parting;          /* are spins, differences of spins wanted? */
+    int clipped;
+    dem_law_fn law;
+    dem_real dt, radius, inv_radius, m_eff, coef[DEMI_COEFS];
+} demi_run;
+DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int rolling,
+                                int uniform, int ledger, dem_law_fn law, dem_real dt) {
+    demi_run r;
+    int e;
+    r.normal = normal; r.tangent = tangent; r.rolling = rolling;
+    r.uniform = uniform; r.ledger = ledger && !law; r.law = law;
+    r.keep = law ? w->memory_stride : demi_memory_of(tangent, rolling);
+    r.turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
+    r.parting = law || rolling != DEM_ROLLING_NONE || (r.turning && !uniform);
+    r.clipped = w->desc.tension == DEM_TENSION_CLIPPED;
+    r.dt = dt;
+    r.radius = w->uniform_radius;
+    r.inv_radius = 1/w->uniform_radius;
+    r.m_eff = 1/(2*w->uniform_inv_mass);
+    for (e = 0; e < DEMI_COEFS; e++) r.coef[e] = w->uniform_coef[e];
+    return r;
+}
+
+/* Fills the tile with touching pairs among candidates from..end-1; answers where it stopped. */
+DEM_INLINE int demi_tile_fill(const dem_world *w, const demi_list *list, int from, int end,
+                              int uniform, demi_tile *DEMI_RESTRICT t) {
+    const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT shift = w->image_shift;
+    const int32_t *DEMI_RESTRICT la = list->a, *DEMI_RESTRICT lb = list->b;
+    const unsigned char *DEMI_RESTRICT image = list->image;
     const dem_real both = 4*w->uniform_radius*w->uniform_radius;
-    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0];
-    const dem_real py = p->period[1], pz = p->period[2];
     int k, m = 0;
-    DEMI_VECTOR
-    for (k = 0; k < count; k++) {
-        const int i = 4*la[k], j = 4*lb[k];
-        dem_real dx = x[j] - x[i], dy = x[j + 1] - x[i + 1], dz = x[j + 2] - x[i + 2], cut = both;
-        if (periodic) { dx = demi_image(dx, hx, px); dy = demi_image(dy, hy, py);
-                       dz = demi_image(dz, hz, pz); }
+    for (k = from; k < end && m < DEMI_TILE; k++) {
+        const int a = la[k], b = lb[k], i = 4*a, j = 4*b, s = image[k];
+        const dem_real dx = x[j] - x[i] + shift[s];
+        const dem_real dy = x[j + 1] - x[i + 1] + shift[s + 1];
+        const dem_real dz = x[j + 2] - x[i + 2] + shift[s + 2];
+        dem_real cut = both;
         if (!uniform) { cut = x[i + 3] + x[j + 3]; cut *= cut; }
-        gap[k] = dx*dx + dy*dy + dz*dz - cut;
+        t->a[m] = a;
+        t->b[m] = b;
+        t->k[m] = k;
+        t->gap[0][m] = dx; t->gap[1][m] = dy; t->gap[2][m] = dz;
+        m += dx*dx + dy*dy + dz*dz < cut;
     }
-    for (k = 0; k < count; k++) {
-        hits->a[m] = la[k];
-        hits->b[m] = lb[k];
-        hits->k[m] = begin + k;
-        m += gap[k] < 0;
+    t->count = m;
+    return k;
+}
+
+/* Copies what the law will see of bodies and memory into the rows, and fills the last group up with
+   copies of the last contact. Answers the number of rows to compute. */
+DEM_INLINE int demi_tile_fetch(const dem_world *w, const demi_list *list, const demi_run *r,
+                               demi_tile *DEMI_RESTRICT t) {
+    const dem_real *DEMI_RESTRICT u = w->vel, *DEMI_RESTRICT s = w->spin;
+    const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
+    const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT inv_mass = w->inv_mass;
+    const dem_real *DEMI_RESTRICT memory = list->memory, *DEMI_RESTRICT coef = list->coef;
+    const uint32_t now = w->stamp;
+    const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES, last = t->count - 1;
+    int q, e;
+    for (q = t->count; q < full; q++) {
+        t->a[q] = t->a[last]; t->b[q] = t->b[last]; t->k[q] = t->k[last];
+        for (e = 0; e < 3; e++) t->gap[e][q] = t->gap[e][last];
     }
-    hits->count = m;
+    for (q = 0; q < full; q++) {
+        int i, j;
+        DEMI_ONE_BY_ONE(q);
+        i = 4*t->a[q]; j = 4*t->b[q];
+#define DEMI_RATE(e) t->rate[e][q] = u[i + e] - u[j + e]
+#define DEMI_AROUND(e) t->around[e][q] = s[i + e] + s[j + e]
+#define DEMI_APART(e) t->apart[e][q] = s[i + e] - s[j + e]
+#define DEMI_GONE(e) t->gone[e][q] = uh[i + e] - uh[j + e]
+#define DEMI_TURNED(e) t->turned[e][q] = sh[i + e] + sh[j + e]
+#define DEMI_PARTED(e) t->parted[e][q] = sh[i + e] - sh[j + e]
+#define DEMI_COEF(e) if (e < most) t->coef[e][q] = c[e]
+#define DEMI_RECALL(e) if (e < r->keep) t->memory[e][q] = m[e]
+#define DEMI_FORGET(e) if (e < r->keep) t->memory[e][q] = 0
+        DEMI_THREE(DEMI_RATE);
+        if (r->turning) DEMI_THREE(DEMI_AROUND);
+        if (r->parting) DEMI_THREE(DEMI_APART);
+        if (r->law || r->keep) {
+            DEMI_THREE(DEMI_GONE);
+            DEMI_THREE(DEMI_TURNED);
+            if (r->parting) DEMI_THREE(DEMI_PARTED);
+        }
+        if (!r->uniform) {
+            const dem_real *c = coef + (size_t)DEMI_COEFS*(size_t)t->k[q];
+            const int most = r->law || r->rolling != DEM_ROLLING_NONE ? DEMI_COEFS
+                : r->turning ? DEMI_MU_ROLL : DEMI_KT;
+            t->radius[0][q] = x[i + 3];
+            t->radius[1][q] = x[j + 3];
+            DEMI_EIGHT(DEMI_COEF);
+            if (most == DEMI_COEFS) t->m_eff[q] = 1/(inv_mass[i/4] + inv_mass[j/4]);
+        }
+        if (r->keep) {                          /* memory counts when written in the step before */
+            const dem_real *m = memory + (size_t)r->keep*(size_t)t->k[q];
+            if (list->stamp[t->k[q]] == now) DEMI_EIGHT(DEMI_RECALL);
+            else DEMI_EIGHT(DEMI_FORGET);
+        }
+#undef DEMI_RATE
+#undef DEMI_AROUND
+#undef DEMI_APART
+#undef DEMI_GONE
+#undef DEMI_TURNED
+#undef DEMI_PARTED
+#undef DEMI_COEF
+#undef DEMI_RECALL
+#undef DEMI_FORGET
+    }
+    return full;
 }
 
 /* Slip over the step just taken, in the tangent plane of now: velocity and spin (times arm) are
@@ -3596,307 +3743,268 @@ DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone,
     const dem_vec3 slip = demi_add(t, demi_cross(around, mid));
     return demi_sub(slip, demi_scale(normal, demi_dot(slip, normal)));
 }
+DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_TILE], int q) {
+    return demi_v(rows[0][q], rows[1][q], rows[2][q]);
+}
 
-/* The law over packed contacts; pushes go to push[component*stride + contact], overlaps over radius
-   to `deep`, energies are summed in order. Everything after `energy` is a literal in a specialised
-   kernel. */
-DEM_INLINE void demi_respond(const dem_world *w, const demi_list *list, const demi_hits *hits,
-                             const demi_periods *p,
-                              dem_real *DEMI_RESTRICT push, size_t stride,
-                              dem_real *DEMI_RESTRICT deep, double *energy,
-                              dem_real dt, int normal, int tangent, int rolling, int uniform,
-                              int periodic, int ledger, dem_law_fn law) {
-    const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT u = w->vel, *DEMI_RESTRICT s = w->spin;
-    const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
-    const dem_real *DEMI_RESTRICT inv_mass = w->inv_mass, *DEMI_RESTRICT coef = list->coef;
-    dem_real *DEMI_RESTRICT memory = list->memory;
-    uint32_t *DEMI_RESTRICT stamp = list->stamp;
-    const uint32_t now = w->stamp;
-    const dem_real diameter = 2*w->uniform_radius, each = w->uniform_radius;
-    const int clipped = w->desc.tension == DEM_TENSION_CLIPPED;
-    const int turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
-    const int keep = law ? w->memory_stride : tangent >= DEM_TANGENT_SPRING
-        ? (rolling == DEM_ROLLING_EPSD ? 8 : 4)
-                                            : rolling == DEM_ROLLING_EPSD ? 8 : 0;
-    const dem_real hx = p->half[0], hy = p->half[1], hz = p->half[2], px = p->period[0];
-    const dem_real py = p->period[1], pz = p->period[2];
-    dem_real part[6*DEMI_BLOCK];
-    dem_real kept[DEMI_MEMORY*DEMI_BLOCK];
-    int q;
-    DEMI_VECTOR
-    for (q = 0; q < hits->count; q++) {
-        const int i = 4*hits->a[q], j = 4*hits->b[q], k = hits->k[q];
-        dem_real dx = x[j] - x[i], dy = x[j + 1] - x[i + 1], dz = x[j + 2] - x[i + 2], d, over_d,
-            la, lb, sum, m[8];
-        dem_contact c;
-        dem_push f;
-        dem_vec3 rate, around, across;
-        int e;
-        if (periodic) { dx = demi_image(dx, hx, px); dy = demi_image(dy, hy, py);
-                       dz = demi_image(dz, hz, pz); }
-        d = DEMI_SQRT(dx*dx + dy*dy + dz*dz);
-        over_d = 1/(d + DEMI_TINY);
-        c.normal = demi_v(dx*over_d, dy*over_d, dz*over_d);
-        c.dt = dt;
-        if (uniform) {
-            sum = diameter;
-            la = lb = d/2;
-            c.kn = w->uniform_coef[DEMI_KN]; c.cn = w->uniform_coef[DEMI_CN];
-            c.kt = w->uniform_coef[DEMI_KT]; c.ct = w->uniform_coef[DEMI_CT];
-            c.friction = w->uniform_coef[DEMI_MU]; c.friction_static =
-                w->uniform_coef[DEMI_MU_STATIC];
-            c.rolling_friction = w->uniform_coef[DEMI_MU_ROLL];
-            c.r_eff = w->uniform_coef[DEMI_R_EFF];
-            c.m_eff = 1/(2*w->uniform_inv_mass);
-            deep[q] = (sum - d)/each;
-        } else {
-            const dem_real ra = x[i + 3], rb = x[j + 3], *r = coef + DEMI_COEFS*k;
-            sum = ra + rb;
-            la = ra*d/sum;  /* the contact point divides the distance as the radii do */
-            lb = d - la;
-            c.kn = r[DEMI_KN]; c.cn = r[DEMI_CN]; c.kt = r[DEMI_KT]; c.ct = r[DEMI_CT];
-            c.friction = r[DEMI_MU]; c.friction_static = r[DEMI_MU_STATIC];
-            c.rolling_friction = r[DEMI_MU_ROLL]; c.r_eff = r[DEMI_R_EFF];
-            c.m_eff = 1/(inv_mass[i/4] + inv_mass[j/4]);
-            deep[q] = (sum - d)/(ra < rb ? ra : rb);
-        }
-        c.overlap = sum - d;
-        rate = demi_v(u[i] - u[j], u[i + 1] - u[j + 1], u[i + 2] - u[j + 2]);
-        c.closing_speed = demi_dot(rate, c.normal);
-        f.tangent = f.moment = demi_v(0, 0, 0);
-        f.normal = 0;
-        for (e = 0; e < 8; e++) m[e] = 0;
-        if (turning) {
-            const dem_vec3 wa = demi_v(s[i], s[i + 1], s[i + 2]);
-            const dem_vec3 wb = demi_v(s[j], s[j + 1], s[j + 2]);
-            const dem_vec3 t = demi_sub(rate, demi_scale(c.normal, c.closing_speed));
-            around = demi_add(demi_scale(wa, la), demi_scale(wb, lb));
-            c.slip = demi_add(t, demi_cross(around, c.normal));
-            c.spin = demi_sub(wa, wb);
-        } else c.slip = c.spin = demi_v(0, 0, 0);
-        if (law || keep) {
-            const dem_vec3 wa = demi_v(sh[i], sh[i + 1], sh[i + 2]);
-            const dem_vec3 wb = demi_v(sh[j], sh[j + 1], sh[j + 2]);
-            const dem_vec3 gone = demi_v(uh[i] - uh[j], uh[i + 1] - uh[j + 1], uh[i + 2] -
-                                         uh[j + 2]);
-            c.normal_rate = demi_scale(demi_sub(gone, demi_scale(c.normal,
-                demi_dot(gone, c.normal))), -over_d);
-            around = demi_add(demi_scale(wa, la), demi_scale(wb, lb));
-            c.slip_step = demi_slip_step(c.normal, demi_sub(c.normal,
-                                                            demi_scale(c.normal_rate, dt/2)),
-                                                            gone, around);
-            c.spin_step = demi_sub(wa, wb);
-            c.twist = demi_dot(demi_add(wa, wb), c.normal)/2;
-        } else {
-            c.slip_step = c.spin_step = c.normal_rate = demi_v(0, 0, 0);
-            c.twist = 0;
-        }
-        if (keep) {  /* memory counts only when written in the step before */
-            const int valid = stamp[k] == now;
-            for (e = 0; e < keep; e++) {
-                const dem_real last = memory[keep*k + e];
-                m[e] = valid ? last : 0;
-            }
-        }
-        if (law) {
-            c.material_a = w->body_material[i/4];
-            c.material_b = w->body_material[j/4];
-            c.wall = 0;
-            c.user = w->desc.law_user;
-            law(&c, m, &f);
-        } else {
-            demi_law_energy energies = {0, 0, 0, 0, 0, 0};
-            demi_law(&c, m, &f, normal, tangent, rolling, clipped, ledger, &energies);
-            if (ledger) {
-                part[q] = energies.dashpot;
-                part[DEMI_BLOCK + q] = energies.elastic;
-                part[2*DEMI_BLOCK + q] = energies.shear_work;
-                part[3*DEMI_BLOCK + q] = energies.slide;
-                part[4*DEMI_BLOCK + q] = energies.shear_stored;
-                part[5*DEMI_BLOCK + q] = energies.roll;
-            }
-        }
-        if (keep) {
-            for (e = 0; e < keep; e++) kept[e*DEMI_BLOCK + q] = m[e];
-        }
-        push[DEMI_FX*stride + (size_t)q] = f.tangent.x - f.normal*c.normal.x;
-        push[DEMI_FY*stride + (size_t)q] = f.tangent.y - f.normal*c.normal.y;
-        push[DEMI_FZ*stride + (size_t)q] = f.tangent.z - f.normal*c.normal.z;
-        if (turning) {
-            across = demi_cross(c.normal, f.tangent);
-            push[DEMI_AX*stride + (size_t)q] = la*across.x + f.moment.x;
-            push[DEMI_AY*stride + (size_t)q] = la*across.y + f.moment.y;
-            push[DEMI_AZ*stride + (size_t)q] = la*across.z + f.moment.z;
-            push[DEMI_BX*stride + (size_t)q] = lb*across.x - f.moment.x;
-            push[DEMI_BY*stride + (size_t)q] = lb*across.y - f.moment.y;
-            push[DEMI_BZ*stride + (size_t)q] = lb*across.z - f.moment.z;
+/* Touch and law of one contact of a tile: rows in, rows out. */
+DEM_INLINE void demi_tile_contact(const dem_world *w, demi_tile *DEMI_RESTRICT t, int q,
+                                  const demi_run *r) {
+    const dem_vec3 gap = demi_row(t->gap, q), rate = demi_row(t->rate, q);
+    const dem_real d = DEMI_SQRT(demi_dot(gap, gap)), over_d = 1/(d + DEMI_TINY);
+    dem_real sum = 2*r->radius, la = d/2, lb = la, m[DEMI_MEMORY];
+    dem_contact c;
+    dem_push f;
+    c.normal = demi_scale(gap, over_d);
+    c.dt = r->dt;
+    if (r->uniform) {
+        c.kn = r->coef[DEMI_KN]; c.cn = r->coef[DEMI_CN];
+        c.kt = r->coef[DEMI_KT]; c.ct = r->coef[DEMI_CT];
+        c.friction = r->coef[DEMI_MU]; c.friction_static = r->coef[DEMI_MU_STATIC];
+        c.rolling_friction = r->coef[DEMI_MU_ROLL];
+        c.r_eff = r->coef[DEMI_R_EFF];
+        c.m_eff = r->m_eff;
+        t->deep[q] = (sum - d)*r->inv_radius;
+    } else {
+        const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
+        sum = ra + rb;
+        la = ra*d/sum;      /* the contact point divides the distance as the radii do */
+        lb = d - la;
+        c.kn = t->coef[DEMI_KN][q]; c.cn = t->coef[DEMI_CN][q];
+        c.kt = t->coef[DEMI_KT][q]; c.ct = t->coef[DEMI_CT][q];
+        c.friction = t->coef[DEMI_MU][q]; c.friction_static = t->coef[DEMI_MU_STATIC][q];
+        c.rolling_friction = t->coef[DEMI_MU_ROLL][q];
+        c.r_eff = t->coef[DEMI_R_EFF][q];
+        c.m_eff = t->m_eff[q];
+        t->deep[q] = (sum - d)/(ra < rb ? ra : rb);
+    }
+    c.overlap = sum - d;
+    c.closing_speed = demi_dot(rate, c.normal);
+    c.slip = c.spin = c.slip_step = c.spin_step = c.normal_rate = demi_v(0, 0, 0);
+    c.twist = 0;
+    if (r->turning) {       /* la wa + lb wb, from sum and difference */
+        dem_vec3 arm = demi_scale(demi_row(t->around, q), d/2);
+        if (!r->uniform) arm = demi_add(arm, demi_scale(demi_row(t->apart, q), (la - lb)/2));
+        c.slip = demi_add(demi_sub(rate, demi_scale(c.normal, c.closing_speed)),
+                          demi_cross(arm, c.normal));
+        if (r->parting) c.spin = demi_row(t->apart, q);
+    }
+    if (r->law || r->keep) {
+        const dem_vec3 gone = demi_row(t->gone, q), turned = demi_row(t->turned, q);
+        dem_vec3 arm = demi_scale(turned, d/2);
+        if (!r->uniform) arm = demi_add(arm, demi_scale(demi_row(t->parted, q), (la - lb)/2));
+        c.normal_rate = demi_scale(demi_sub(gone, demi_scale(c.normal, demi_dot(gone, c.normal))),
+                                   -over_d);
+        c.slip_step = demi_slip_step(c.normal, demi_sub(c.normal, demi_scale(c.normal_rate,
+                                                                             r->dt/2)), gone, arm);
+        if (r->parting) c.spin_step = demi_row(t->parted, q);
+        c.twist = demi_dot(turned, c.normal)/2;
+    }
+#define DEMI_RECALL(e) m[e] = e < r->keep ? t->memory[e][q] : 0
+#define DEMI_KEEP(e) if (e < r->keep) t->memory[e][q] = m[e]
+    DEMI_EIGHT(DEMI_RECALL);
+    f.tangent = f.moment = demi_v(0, 0, 0);
+    f.normal = 0;
+    if (r->law) {
+        c.material_a = w->body_material[t->a[q]];
+        c.material_b = w->body_material[t->b[q]];
+        c.wall = 0;
+        c.user = w->desc.law_user;
+        r->law(&c, m, &f);
+    } else {
+        demi_law_energy part = {0, 0, 0, 0, 0, 0};
+        demi_law(&c, m, &f, r->normal, r->tangent, r->rolling, r->clipped, r->ledger, &part);
+        if (r->ledger) {
+            t->part[0][q] = part.dashpot;    t->part[1][q] = part.elastic;
+            t->part[2][q] = part.shear_work; t->part[3][q] = part.slide;
+            t->part[4][q] = part.shear_stored; t->part[5][q] = part.roll;
         }
     }
-    if (keep)                                   /* compilers scatter badly: one by one */
-        for (q = 0; q < hits->count; q++) {
-            const int k = hits->k[q];
-            int e;
-            for (e = 0; e < keep; e++) memory[keep*k + e] = kept[e*DEMI_BLOCK + q];
-            stamp[k] = now + 1;
+    DEMI_EIGHT(DEMI_KEEP);
+#undef DEMI_RECALL
+#undef DEMI_KEEP
+    t->push[DEMI_FX][q] = f.tangent.x - f.normal*c.normal.x;
+    t->push[DEMI_FY][q] = f.tangent.y - f.normal*c.normal.y;
+    t->push[DEMI_FZ][q] = f.tangent.z - f.normal*c.normal.z;
+    if (r->turning) {
+        const dem_vec3 across = demi_cross(c.normal, f.tangent);
+        t->push[DEMI_AX][q] = la*across.x + f.moment.x;
+        t->push[DEMI_AY][q] = la*across.y + f.moment.y;
+        t->push[DEMI_AZ][q] = la*across.z + f.moment.z;
+        if (!r->parting) return;                /* alike and not rolling: the same on both */
+        t->push[DEMI_BX][q] = lb*across.x - f.moment.x;
+        t->push[DEMI_BY][q] = lb*across.y - f.moment.y;
+        t->push[DEMI_BZ][q] = lb*across.z - f.moment.z;
+    }
+}
+
+/* The whole tile; memory goes back to the list, energies are summed in order. */
+DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_list *list, const demi_run *r,
+                                  demi_tile *DEMI_RESTRICT t, double *energy) {
+    dem_real *DEMI_RESTRICT memory = list->memory;
+    int q, l;
+    if (!t->count) return;
+    if (r->law) {
+        demi_tile_fetch(w, list, r, t);
+        for (q = 0; q < t->count; q++) demi_tile_contact(w, t, q, r);
+    } else {
+        const int full = demi_tile_fetch(w, list, r, t);
+        for (q = 0; q < full; q += DEMI_LANES) {
+            DEMI_VECTOR
+            for (l = 0; l < DEMI_LANES; l++) demi_tile_contact(w, t, q + l, r);
         }
-    if (ledger && !law)
-        for (q = 0; q < hits->count; q++) {
-            energy[DEMI_E_DASHPOT] += (double)part[q];
-            energy[DEMI_E_ELASTIC] += (double)part[DEMI_BLOCK + q];
-            energy[DEMI_E_SHEAR_WORK] += (double)part[2*DEMI_BLOCK + q];
-            energy[DEMI_E_SLIDE] += (double)part[3*DEMI_BLOCK + q];
-            energy[DEMI_E_SHEAR_STORED] += (double)part[4*DEMI_BLOCK + q];
-            energy[DEMI_E_ROLL] += (double)part[5*DEMI_BLOCK + q];
+    }
+    if (r->keep)
+        for (q = 0; q < t->count; q++) {
+            const int k = t->k[q];
+            dem_real *m = memory + (size_t)r->keep*(size_t)k;
+#define DEMI_KEEP(e) if (e < r->keep) m[e] = t->memory[e][q]
+            DEMI_EIGHT(DEMI_KEEP);
+#undef DEMI_KEEP
+            list->stamp[k] = w->stamp + 1;
+        }
+    if (r->ledger)
+        for (q = 0; q < t->count; q++) {
+            energy[DEMI_E_DASHPOT] += (double)t->part[0][q];
+            energy[DEMI_E_ELASTIC] += (double)t->part[1][q];
+            energy[DEMI_E_SHEAR_WORK] += (double)t->part[2][q];
+            energy[DEMI_E_SLIDE] += (double)t->part[3][q];
+            energy[DEMI_E_SHEAR_STORED] += (double)t->part[4][q];
+            energy[DEMI_E_ROLL] += (double)t->part[5][q];
         }
 }
 
-/* All pairs of one domain. */
+/* Adds a tile's pushes to both bodies; answers the largest of `deep`. */
+DEM_INLINE dem_real demi_tile_scatter(const demi_tile *DEMI_RESTRICT t, const demi_run *r,
+                                      dem_real *DEMI_RESTRICT force, dem_real *DEMI_RESTRICT torque,
+                                      dem_real deepest) {
+    const int second = r->parting ? DEMI_BX : DEMI_AX;
+    int q;
+    for (q = 0; q < t->count; q++) {
+        const int i = 4*t->a[q], j = 4*t->b[q];
+#define DEMI_FORCE(e) force[i + e] += t->push[DEMI_FX + e][q]; \
+                      force[j + e] -= t->push[DEMI_FX + e][q]
+#define DEMI_TORQUE(e) torque[i + e] += t->push[DEMI_AX + e][q]; \
+                       torque[j + e] += t->push[second + e][q]
+        DEMI_THREE(DEMI_FORCE);
+        if (r->turning) DEMI_THREE(DEMI_TORQUE);
+#undef DEMI_FORCE
+#undef DEMI_TORQUE
+        deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
+    }
+    return deepest;
+}
+/* The same for pairs that lead out: the far ends' pushes stay in slots, six reals each. */
+DEM_INLINE dem_real demi_tile_send(dem_world *w, const demi_tile *DEMI_RESTRICT t,
+                                   const demi_run *r, int slot, dem_real deepest) {
+    const int second = r->parting ? DEMI_BX : DEMI_AX;
+    int q, e;
+    for (q = 0; q < t->count; q++) {
+        const int i = 4*t->a[q];
+        dem_real *out = w->cross_push + 6*(size_t)(slot + q);
+        w->cross_hit[t->k[q]] = slot + q;
+        for (e = 0; e < 3; e++) {
+            w->force[i + e] += t->push[DEMI_FX + e][q];
+            out[e] = -t->push[DEMI_FX + e][q];
+            if (!r->turning) continue;
+            w->torque[i + e] += t->push[DEMI_AX + e][q];
+            out[3 + e] = t->push[second + e][q];
+        }
+        deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
+    }
+    return deepest;
+}
+
+/* All pairs of one domain: those inside it, then those that lead out. */
 DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rolling, int uniform,
-                           int periodic,
-                            int ledger, dem_law_fn law) {
+                           int ledger, dem_law_fn law) {
     demi_domain *domain = &w->domains[d];
-    const demi_periods p = demi_periods_of(w);
-    const int turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
-    const dem_real dt = w->forces_valid ? w->dt : 0;          /* 0: looking only, memory stays */
-    dem_real push[DEMI_PUSH*DEMI_BLOCK], deep[DEMI_BLOCK], deepest = 0;
-    dem_real *DEMI_RESTRICT force = w->force, *DEMI_RESTRICT torque = w->torque;
-    demi_hits hits;
-    int begin, q, contacts = 0;
-    for (begin = 0; begin < domain->own; begin += DEMI_BLOCK) {
-        demi_filter(w, &w->own, d*w->own.stride + begin,
-                    DEMI_MIN((int)DEMI_BLOCK, domain->own - begin), &p, uniform,
-                    periodic, &hits);
-        demi_respond(w, &w->own, &hits, &p, push, DEMI_BLOCK, deep, domain->energy, dt, normal,
-                     tangent, rolling, uniform,
-                     periodic, ledger, law);
-        for (q = 0; q < hits.count; q++) {
-            const int i = 4*hits.a[q], j = 4*hits.b[q];
-            const dem_real fx = push[DEMI_FX*DEMI_BLOCK + q], fy = push[DEMI_FY*DEMI_BLOCK + q],
-                fz = push[DEMI_FZ*DEMI_BLOCK + q];
-            force[i] += fx; force[i + 1] += fy; force[i + 2] += fz;
-            force[j] -= fx; force[j + 1] -= fy; force[j + 2] -= fz;
-            deepest = deep[q] > deepest ? deep[q] : deepest;
-            if (turning) {
-                torque[i] += push[DEMI_AX*DEMI_BLOCK + q];
-                torque[i + 1] += push[DEMI_AY*DEMI_BLOCK + q];
-                torque[i + 2] += push[DEMI_AZ*DEMI_BLOCK + q];
-                torque[j] += push[DEMI_BX*DEMI_BLOCK + q];
-                torque[j + 1] += push[DEMI_BY*DEMI_BLOCK + q];
-                torque[j + 2] += push[DEMI_BZ*DEMI_BLOCK + q];
-            }
-        }
-        contacts += hits.count;
-    }
-    if (domain->cross) {
-        size_t slot = (size_t)d*(size_t)w->cross.stride + 1;
-        const size_t stride = w->cross_push_stride;
-        for (begin = 0; begin < domain->cross; begin += DEMI_BLOCK) {
-            const int first = d*w->cross.stride + begin;
-            const int count = DEMI_MIN((int)DEMI_BLOCK, domain->cross - begin);
-            dem_real *DEMI_RESTRICT out = w->cross_push + slot;
-            demi_filter(w, &w->cross, first, count, &p, uniform, periodic, &hits);
-            demi_respond(w, &w->cross, &hits, &p, out, stride, deep, domain->energy, dt, normal,
-                         tangent, rolling, uniform,
-                         periodic, ledger, law);
-            for (q = 0; q < count; q++) w->cross_hit[first + q] = 0;
-            for (q = 0; q < hits.count; q++) {
-                const int i = 4*hits.a[q];
-                w->cross_hit[hits.k[q]] = (int32_t)(slot + (size_t)q);
-                force[i] += out[DEMI_FX*stride + (size_t)q];
-                force[i + 1] += out[DEMI_FY*stride + (size_t)q];
-                force[i + 2] += out[DEMI_FZ*stride + (size_t)q];
-                deepest = deep[q] > deepest ? deep[q] : deepest;
-                if (turning) {
-                    torque[i] += out[DEMI_AX*stride + (size_t)q];
-                    torque[i + 1] += out[DEMI_AY*stride + (size_t)q];
-                    torque[i + 2] += out[DEMI_AZ*stride + (size_t)q];
-                }
-            }
-            contacts += hits.count;
-            slot += (size_t)hits.count;
+    const demi_run r = demi_run_of(w, normal, tangent, rolling, uniform, ledger, law,
+                                   w->forces_valid ? w->dt : 0);  /* 0: looking only */
+    dem_real deepest = 0;
+    demi_tile tile;
+    int l, slot = d*w->cross.stride + 1;
+    domain->contacts = 0;
+    for (l = 0; l < 2; l++) {
+        const demi_list *list = l ? &w->cross : &w->own;
+        int k = d*list->stride;
+        const int end = k + (l ? domain->cross : domain->own);
+        if (l && end > k) memset(w->cross_hit + k, 0, (size_t)(end - k)*sizeof *w->cross_hit);
+        while (k < end) {
+            k = demi_tile_fill(w, list, k, end, uniform, &tile);
+            demi_tile_respond(w, list, &r, &tile, domain->energy);
+            if (!l) deepest = demi_tile_scatter(&tile, &r, w->force, w->torque, deepest);
+            else deepest = demi_tile_send(w, &tile, &r, slot, deepest);
+            if (l) slot += tile.count;
+            domain->contacts += tile.count;
         }
     }
-    domain->contacts = contacts;
     domain->overlap = DEMI_MAX(domain->overlap, (double)deepest);
 }
 
 /* The far ends of pairs that lead into domain d from domains before it. */
 static void demi_cross_gather(dem_world *w, int d) {
-    const size_t stride = w->cross_push_stride;
-    const dem_real *push = w->cross_push;
     const int turning = demi_spins(w);
-    int k;
+    int k, e;
     for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
         const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
-        const size_t slot = (size_t)w->cross_hit[entry];
-        w->force[j] -= push[DEMI_FX*stride + slot];
-        w->force[j + 1] -= push[DEMI_FY*stride + slot];
-        w->force[j + 2] -= push[DEMI_FZ*stride + slot];
-        if (!turning) continue;
-        w->torque[j] += push[DEMI_BX*stride + slot];
-        w->torque[j + 1] += push[DEMI_BY*stride + slot];
-        w->torque[j + 2] += push[DEMI_BZ*stride + slot];
+        const dem_real *push = w->cross_push + 6*(size_t)w->cross_hit[entry];
+        for (e = 0; e < 3; e++) {
+            w->force[j + e] += push[e];
+            if (turning) w->torque[j + e] += push[3 + e];
+        }
     }
 }
 
 /* Kernels: one line per effect set, and one that asks at run time. Same source, same bits. */
 static void demi_pairs_any(dem_world *w, int d) {
-    demi_pairs(w, d, w->normal, w->tangent, w->rolling, w->uniform, 1, w->desc.ledger, w->desc.law);
+    demi_pairs(w, d, w->normal, w->tangent, w->rolling, w->uniform, w->desc.ledger, w->desc.law);
 }
-#ifndef DEM_NO_SPECIALIZE
-#define DEMI_KERNEL(NAME, NORMAL, TANGENT, UNIFORM, PERIODIC, LEDGER) \
-    static void NAME(dem_world *w, int d) { \
-        demi_pairs(w, d, NORMAL, TANGENT, DEM_ROLLING_NONE, UNIFORM, PERIODIC, LEDGER, 0); \
-    }
-DEMI_KERNEL(demi_pairs_hertz,               DEM_NORMAL_HERTZ,  DEM_TANGENT_NONE,   1, 1, 0)
-DEMI_KERNEL(demi_pairs_hertz_spring,        DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 0, 0)
-DEMI_KERNEL(demi_pairs_hertz_spring_image,  DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 1, 0)
-DEMI_KERNEL(demi_pairs_hertz_spring_mixed,  DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 0, 1, 0)
-DEMI_KERNEL(demi_pairs_hertz_spring_ledger, DEM_NORMAL_HERTZ,  DEM_TANGENT_SPRING, 1, 1, 1)
-DEMI_KERNEL(demi_pairs_linear,              DEM_NORMAL_LINEAR, DEM_TANGENT_NONE,   1, 1, 0)
-DEMI_KERNEL(demi_pairs_linear_mixed,        DEM_NORMAL_LINEAR, DEM_TANGENT_NONE,   0, 1, 0)
-DEMI_KERNEL(demi_pairs_linear_spring,       DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1, 0)
-DEMI_KERNEL(demi_pairs_linear_spring_mixed, DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 0, 1, 0)
-#endif
 #ifdef DEM_LAW
 static void demi_pairs_own_law(dem_world *w, int d) {
-    demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 1, 0,
-               DEM_LAW);
+    demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 0, DEM_LAW);
 }
 #endif
 #ifndef DEM_NO_SPECIALIZE
-/* A kernel for alike bodies serves only those; one for periodic axes serves open ones too. First
-   fit wins. */
+/* Name of the function, normal law, tangent law, rolling law, all bodies alike?, ledger?, name in
+   reports. A kernel for alike bodies serves only those. First fit wins. */
+#define DEMI_KERNELS(X) \
+    X(hertz,                HERTZ,  NONE,    NONE, 1, 0, "hertz, alike") \
+    X(hertz_mixed,          HERTZ,  NONE,    NONE, 0, 0, "hertz, mixed") \
+    X(hertz_spring,         HERTZ,  SPRING,  NONE, 1, 0, "hertz + spring, alike") \
+    X(hertz_spring_mixed,   HERTZ,  SPRING,  NONE, 0, 0, "hertz + spring, mixed") \
+    X(hertz_spring_ledger,  HERTZ,  SPRING,  NONE, 1, 1, "hertz + spring, alike, ledger") \
+    X(hertz_mixed_ledger,   HERTZ,  SPRING,  NONE, 0, 1, "hertz + spring, mixed, ledger") \
+    X(hertz_roll,           HERTZ,  SPRING,  EPSD, 1, 0, "hertz + spring + rolling, alike") \
+    X(hertz_roll_mixed,     HERTZ,  SPRING,  EPSD, 0, 0, "hertz + spring + rolling, mixed") \
+    X(hertz_mindlin,        HERTZ,  MINDLIN, NONE, 1, 0, "hertz + mindlin, alike") \
+    X(hertz_mindlin_mixed,  HERTZ,  MINDLIN, NONE, 0, 0, "hertz + mindlin, mixed") \
+    X(linear,               LINEAR, NONE,    NONE, 1, 0, "linear, alike") \
+    X(linear_mixed,         LINEAR, NONE,    NONE, 0, 0, "linear, mixed") \
+    X(linear_spring,        LINEAR, SPRING,  NONE, 1, 0, "linear + spring, alike") \
+    X(linear_spring_mixed,  LINEAR, SPRING,  NONE, 0, 0, "linear + spring, mixed")
+#define DEMI_KERNEL_DEFINE(NAME, NORMAL, TANGENT, ROLLING, UNIFORM, LEDGER, TEXT) \
+    static void demi_pairs_##NAME(dem_world *w, int d) { \
+        demi_pairs(w, d, DEM_NORMAL_##NORMAL, DEM_TANGENT_##TANGENT, DEM_ROLLING_##ROLLING, \
+                   UNIFORM, LEDGER, 0); \
+    }
+#define DEMI_KERNEL_ROW(NAME, NORMAL, TANGENT, ROLLING, UNIFORM, LEDGER, TEXT) \
+    {DEM_NORMAL_##NORMAL, DEM_TANGENT_##TANGENT, DEM_ROLLING_##ROLLING, UNIFORM, LEDGER, \
+     demi_pairs_##NAME, TEXT},
+DEMI_KERNELS(DEMI_KERNEL_DEFINE)
 typedef struct demi_kernel_row {
-    int normal, tangent, uniform, periodic, ledger;
+    int normal, tangent, rolling, uniform, ledger;
     void (*kernel)(dem_world *, int);
     const char *name;
 } demi_kernel_row;
-static const demi_kernel_row demi_kernel_rows[] = {
-    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 0, 0, demi_pairs_hertz_spring,
-     "hertz + spring, alike"},
-    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 1, 0, demi_pairs_hertz_spring_image,
-     "hertz + spring, alike, periodic"},
-    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 0, 1, 0, demi_pairs_hertz_spring_mixed,
-     "hertz + spring, mixed"},
-    {DEM_NORMAL_HERTZ, DEM_TANGENT_SPRING, 1, 1, 1, demi_pairs_hertz_spring_ledger,
-     "hertz + spring, alike, ledger"},
-    {DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, 1, 1, 0, demi_pairs_hertz, "hertz, alike"},
-    {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 1, 1, 0, demi_pairs_linear, "linear, alike"},
-    {DEM_NORMAL_LINEAR, DEM_TANGENT_NONE, 0, 1, 0, demi_pairs_linear_mixed, "linear, mixed"},
-    {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 1, 1, 0, demi_pairs_linear_spring,
-     "linear + spring, alike"},
-    {DEM_NORMAL_LINEAR, DEM_TANGENT_SPRING, 0, 1, 0, demi_pairs_linear_spring_mixed,
-     "linear + spring, mixed"}};
+static const demi_kernel_row demi_kernel_rows[] = {DEMI_KERNELS(DEMI_KERNEL_ROW)
+    {0, 0, 0, 0, 0, 0, 0}};
 #endif
 
 /* Sets the kernel for the effects in force; answers its name. */
 static const char *demi_kernel_choose(dem_world *w) {
 #ifndef DEM_NO_SPECIALIZE
-    size_t i;
-    const dem_boundary *b = w->desc.boundary;
-    const int periodic = b[0] == DEM_BOUNDARY_PERIODIC || b[1] == DEM_BOUNDARY_PERIODIC ||
-                         b[2] == DEM_BOUNDARY_PERIODIC;
+    const demi_kernel_row *r;
 #endif
     w->kernel = demi_pairs_any;
 #ifdef DEM_LAW
@@ -3906,11 +4014,9 @@ static const char *demi_kernel_choose(dem_world *w) {
     }
 #endif
 #ifndef DEM_NO_SPECIALIZE
-    for (i = 0; i < sizeof demi_kernel_rows/sizeof *demi_kernel_rows; i++) {
-        const demi_kernel_row *r = &demi_kernel_rows[i];
-        if (!w->desc.law && w->rolling == DEM_ROLLING_NONE && r->ledger == (w->desc.ledger != 0) &&
-            r->normal == w->normal && r->tangent == w->tangent && r->uniform <= w->uniform &&
-            r->periodic >= periodic) {
+    for (r = demi_kernel_rows; r->kernel && !w->desc.law; r++) {
+        if (r->ledger == (w->desc.ledger != 0) && r->normal == w->normal &&
+            r->tangent == w->tangent && r->rolling == w->rolling && r->uniform <= w->uniform) {
             w->kernel = r->kernel;
             return r->name;
         }
@@ -3919,6 +4025,9 @@ static const char *demi_kernel_choose(dem_world *w) {
     return "run-time kernel";
 }
 
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
 /* --- walls --- */
 
 /* The old contact that a new one continues: same element; else one on the same wall that nothing
@@ -4994,37 +5103,26 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
 }
 DEM_API void dem_overlap_reset(dem_world *w) { w->overlap_max = 0; }
 
-/* One contact by slots, its force by the law of the run on a copy of its memory. */
-static void demi_contact_force(const dem_world *w, const demi_list *list, int k,
+/* One contact, its force by the law of the run on a copy of its memory. */
+static void demi_contact_force(const dem_world *w, const demi_list *list, int k, dem_vec3 gap,
                                dem_contact_info *out) {
-    const demi_periods p = demi_periods_of(w);
-    demi_hits hits;
-    dem_real push[DEMI_PUSH], deep[1], copy[DEMI_MEMORY];
-    uint32_t stamp = list->stamp[k];
-    double energy[DEMI_ENERGIES];
-    demi_list one = *list;
-    const int a = list->a[k], b = list->b[k], stride = w->memory_stride;
-    dem_vec3 d = demi_sub(demi_at(w->pos + 4*b), demi_at(w->pos + 4*a));
-    dem_real l, ra = w->pos[4*a + 3], rb = w->pos[4*b + 3];
-    int e;
-    for (e = 0; e < stride; e++) copy[e] = list->memory[(size_t)k*(size_t)stride + (size_t)e];
-    one.memory = copy;
-    one.stamp = &stamp;
-    one.coef = list->coef ? list->coef + (size_t)k*DEMI_COEFS : 0;
-    hits.count = 1;
-    hits.a[0] = a; hits.b[0] = b; hits.k[0] = 0;
-    demi_respond(w, &one, &hits, &p, push, 1, deep, energy, 0, w->normal, w->tangent, w->rolling,
-                 w->uniform, 1, 0, w->desc.law);
-    d = demi_v(demi_image(d.x, p.half[0], p.period[0]), demi_image(d.y, p.half[1], p.period[1]),
-               demi_image(d.z, p.half[2], p.period[2]));
-    l = demi_length(d);
+    const demi_run r = demi_run_of(w, w->normal, w->tangent, w->rolling, w->uniform, 0,
+                                   w->desc.law, 0);
+    const int a = list->a[k], b = list->b[k];
+    const dem_real ra = w->pos[4*a + 3], rb = w->pos[4*b + 3], l = demi_length(gap);
+    demi_tile tile;
+    tile.count = 1;
+    tile.a[0] = a; tile.b[0] = b; tile.k[0] = k;
+    tile.gap[0][0] = gap.x; tile.gap[1][0] = gap.y; tile.gap[2][0] = gap.z;
+    demi_tile_fetch(w, list, &r, &tile);
+    demi_tile_contact(w, &tile, 0, &r);
     out->a = dem_bodies_id(w, a);
     out->b = dem_bodies_id(w, b);
     out->wall = 0;
-    out->normal = demi_scale(d, 1/(l + DEMI_TINY));
+    out->normal = demi_scale(gap, 1/(l + DEMI_TINY));
     out->overlap = ra + rb - l;
-    out->point = demi_add(demi_at(w->pos + 4*a), demi_scale(d, ra/(ra + rb)));
-    out->force = demi_v(push[DEMI_FX], push[DEMI_FY], push[DEMI_FZ]);
+    out->point = demi_add(demi_at(w->pos + 4*a), demi_scale(gap, ra/(ra + rb)));
+    out->force = demi_v(tile.push[DEMI_FX][0], tile.push[DEMI_FY][0], tile.push[DEMI_FZ][0]);
 }
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
     const demi_periods p = demi_periods_of(w);
@@ -5040,7 +5138,8 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
                 const dem_real dy = demi_image(y[1] - x[1], p.half[1], p.period[1]);
                 const dem_real dz = demi_image(y[2] - x[2], p.half[2], p.period[2]);
                 if (!(dx*dx + dy*dy + dz*dz < (x[3] + y[3])*(x[3] + y[3]))) continue;
-                if (n < capacity && out) demi_contact_force(w, list, k, &out[n]);
+                if (n < capacity && out)
+                    demi_contact_force(w, list, k, demi_v(dx, dy, dz), &out[n]);
                 n++;
             }
         }
@@ -6372,10 +6471,11 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride;
     const int domains = w->domain_count;
     const int stride = w->memory_stride, uniform = w->uniform;
+    const demi_periods p = demi_periods_of(w);
     size_t size = 0;
     demi_stream s;
     dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
-    int d, k, room;
+    int d, k, l, room;
     if (result == DEM_OK) result = demi_checkpoint_check(w, path, (const char *)bytes.data, size,
                                                          &head);
     if (result != DEM_OK) {
@@ -6418,13 +6518,16 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     demi_state_visit(w, &s);
     demi_array_free(w, &bytes);
     demi_effects(w);
+    demi_image_shifts(w);
     w->lll_valid = 0;
-    if (!w->uniform)
-        for (d = 0; d < w->domain_count; d++) {
-            for (k = 0; k < w->domains[d].own; k++) demi_pair_coefs(w, &w->own, d*w->own.stride +
-                k);
-            for (k = 0; k < w->domains[d].cross; k++) demi_pair_coefs(w, &w->cross,
-                d*w->cross.stride + k);
+    for (d = 0; d < w->domain_count; d++)       /* what follows from the rest is not stored */
+        for (l = 0; l < 2; l++) {
+            demi_list *list = l ? &w->cross : &w->own;
+            const int first = d*list->stride, count = l ? w->domains[d].cross : w->domains[d].own;
+            for (k = first; k < first + count; k++) {
+                demi_pair_image(w, &p, list, k);
+                if (!w->uniform) demi_pair_coefs(w, list, k);
+            }
         }
     for (k = 0; k < w->wall_count; k++) {
         w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
@@ -6545,6 +6648,7 @@ DEM_API void dem_world_destroy(dem_world *w) {
     for (i = 0; i < 2; i++) {
         demi_list *list = i ? &w->cross : &w->own;
         arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->stamp_;
+        arrays[k++] = &list->image_;
         arrays[k++] = &list->memory_; arrays[k++] = &list->coef_;
     }
     arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_hit_; arrays[k++] = &w->cross_push_;
