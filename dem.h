@@ -805,10 +805,12 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 
 #if defined(__GNUC__) && !defined(__TINYC__)
 #define DEMI_NOINLINE static __attribute__((noinline))
+#define DEMI_ALIGNED __attribute__((aligned(64)))           /* to a cache line */
 #define DEMI_RESTRICT __restrict__
 #define DEMI_FORMAT(f, a) __attribute__((format(printf, f, a)))
 #else
 #define DEMI_NOINLINE static
+#define DEMI_ALIGNED
 #define DEMI_RESTRICT
 #define DEMI_FORMAT(f, a)
 #endif
@@ -3606,18 +3608,27 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
    whatever the number of threads. Grain-wall follows, per grain.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FX, DEMI_FY, DEMI_FZ, DEMI_AX, DEMI_AY, DEMI_AZ, DEMI_BX, DEMI_BY, DEMI_BZ, DEMI_PUSH };
-/* Contacts under work. Sums and differences are of the two bodies, a plus b and a minus b. */
+/* Contacts under work. Sums and differences are of the two bodies, a plus b and a minus b. A row has
+   room to spare so that rows do not lie a power of two apart, which caches take badly. */
+enum { DEMI_ROW = DEMI_TILE + 16 };
 typedef struct demi_tile {
+    /* fetched */
+    dem_real gap[3][DEMI_ROW];                            /* m, from a to b */
+    dem_real rate[3][DEMI_ROW];    /* m/s, difference of velocities; then slip */
+    dem_real gone[3][DEMI_ROW];    /* m/s, the same over the step just taken */
+    dem_real around[3][DEMI_ROW], turned[3][DEMI_ROW];    /* rad/s, sum of spins: now, step */
+    dem_real apart[3][DEMI_ROW], parted[3][DEMI_ROW];     /* rad/s, difference of spins */
+    dem_real radius[2][DEMI_ROW], m_eff[DEMI_ROW], coef[DEMI_COEFS][DEMI_ROW];
+    dem_real memory[DEMI_MEMORY][DEMI_ROW];
+    /* worked out */
+    dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
+    dem_real normal[3][DEMI_ROW], turn[3][DEMI_ROW];      /* unit, 1/s */
+    dem_real lean[DEMI_ROW];       /* m, from the middle to the contact, towards b */
+    dem_real closing[DEMI_ROW], twist[DEMI_ROW];
+    dem_real push[DEMI_PUSH][DEMI_ROW];
+    dem_real part[6][DEMI_ROW];                           /* energies */
+    int32_t a[DEMI_ROW], b[DEMI_ROW], k[DEMI_ROW];        /* bodies, place in the list */
     int count;
-    int32_t a[DEMI_TILE], b[DEMI_TILE], k[DEMI_TILE];     /* bodies, place in the list */
-    dem_real gap[3][DEMI_TILE];                           /* m, from a to b */
-    dem_real rate[3][DEMI_TILE], gone[3][DEMI_TILE];      /* m/s, difference: full step, mean */
-    dem_real around[3][DEMI_TILE], turned[3][DEMI_TILE];  /* rad/s, sum of spins: the same */
-    dem_real apart[3][DEMI_TILE], parted[3][DEMI_TILE];   /* rad/s, difference of spins: the same */
-    dem_real radius[2][DEMI_TILE], m_eff[DEMI_TILE], coef[DEMI_COEFS][DEMI_TILE];
-    dem_real memory[DEMI_MEMORY][DEMI_TILE];
-    dem_real push[DEMI_PUSH][DEMI_TILE], deep[DEMI_TILE]; /* answers; overlap over radius */
-    dem_real part[6][DEMI_TILE];                          /* energies */
 } demi_tile;
 
 /* What is switched on, and what is the same for all contacts of a run. Literals in a specialised
@@ -3710,8 +3721,8 @@ DEM_INLINE int demi_tile_fetch(const dem_world *w, const demi_list *list, const 
         }
         if (!r->uniform) {
             const dem_real *c = coef + (size_t)DEMI_COEFS*(size_t)t->k[q];
-            const int most = r->law || r->rolling != DEM_ROLLING_NONE ? DEMI_COEFS
-                : r->turning ? DEMI_MU_ROLL : DEMI_KT;
+            const int most = r->law || r->rolling != DEM_ROLLING_NONE ? (int)DEMI_COEFS
+                : r->turning ? (int)DEMI_MU_ROLL : (int)DEMI_KT;
             t->radius[0][q] = x[i + 3];
             t->radius[1][q] = x[j + 3];
             DEMI_EIGHT(DEMI_COEF);
@@ -3743,20 +3754,75 @@ DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone,
     const dem_vec3 slip = demi_add(t, demi_cross(around, mid));
     return demi_sub(slip, demi_scale(normal, demi_dot(slip, normal)));
 }
-DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_TILE], int q) {
+DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROW], int q) {
     return demi_v(rows[0][q], rows[1][q], rows[2][q]);
 }
 
-/* Touch and law of one contact of a tile: rows in, rows out. */
-DEM_INLINE void demi_tile_contact(const dem_world *w, demi_tile *DEMI_RESTRICT t, int q,
-                                  const demi_run *r) {
-    const dem_vec3 gap = demi_row(t->gap, q), rate = demi_row(t->rate, q);
+DEM_INLINE void demi_row_put(dem_real rows[3][DEMI_ROW], int q, dem_vec3 v) {
+    rows[0][q] = v.x; rows[1][q] = v.y; rows[2][q] = v.z;
+}
+
+/* One contact of a tile, in three short steps. Each runs over all contacts before the next begins:
+   processors then have several contacts under way at once, where one long chain of roots and
+   quotients would keep them waiting.
+   1 touch: distance, normal, overlap */
+DEM_INLINE void demi_tile_touch(demi_tile *DEMI_RESTRICT t, int q, const demi_run *r) {
+    const dem_vec3 gap = demi_row(t->gap, q);
     const dem_real d = DEMI_SQRT(demi_dot(gap, gap)), over_d = 1/(d + DEMI_TINY);
-    dem_real sum = 2*r->radius, la = d/2, lb = la, m[DEMI_MEMORY];
+    t->length[q] = d;
+    t->over_d[q] = over_d;
+    demi_row_put(t->normal, q, demi_scale(gap, over_d));
+    if (r->uniform) {
+        t->overlap[q] = 2*r->radius - d;
+        t->deep[q] = t->overlap[q]*r->inv_radius;
+    } else {
+        const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
+        t->overlap[q] = ra + rb - d;
+        t->deep[q] = t->overlap[q]/(ra < rb ? ra : rb);
+        t->lean[q] = (ra - rb)/(ra + rb)*d/2;   /* the contact divides d as the radii do */
+    }
+}
+/* 2 motion: how the two move at the contact, now and over the step just taken */
+DEM_INLINE void demi_tile_motion(demi_tile *DEMI_RESTRICT t, int q, const demi_run *r) {
+    const dem_vec3 n = demi_row(t->normal, q), rate = demi_row(t->rate, q);
+    const dem_real d = t->length[q], closing = demi_dot(rate, n);
+    t->closing[q] = closing;
+    if (r->turning) {       /* la wa + lb wb, from sum and difference */
+        dem_vec3 arm = demi_scale(demi_row(t->around, q), d/2);
+        if (!r->uniform) arm = demi_add(arm, demi_scale(demi_row(t->apart, q), t->lean[q]));
+        demi_row_put(t->rate, q, demi_add(demi_sub(rate, demi_scale(n, closing)),
+                                          demi_cross(arm, n)));
+    }
+    if (r->law || r->keep) {
+        const dem_vec3 gone = demi_row(t->gone, q), turned = demi_row(t->turned, q);
+        const dem_vec3 turn = demi_scale(demi_sub(gone, demi_scale(n, demi_dot(gone, n))),
+                                         -t->over_d[q]);
+        dem_vec3 arm = demi_scale(turned, d/2);
+        if (!r->uniform) arm = demi_add(arm, demi_scale(demi_row(t->parted, q), t->lean[q]));
+        demi_row_put(t->turn, q, turn);
+        demi_row_put(t->gone, q, demi_slip_step(n, demi_sub(n, demi_scale(turn, r->dt/2)), gone,
+                                                arm));
+        t->twist[q] = demi_dot(turned, n)/2;
+    }
+}
+/* 3 law: force and torque */
+DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, int q,
+                              const demi_run *r) {
+    const int whole = r->law || r->rolling != DEM_ROLLING_NONE;
+    const dem_vec3 none = demi_v(0, 0, 0);
+    dem_real m[DEMI_MEMORY];
     dem_contact c;
     dem_push f;
-    c.normal = demi_scale(gap, over_d);
+    c.normal = demi_row(t->normal, q);
+    c.overlap = t->overlap[q];
+    c.closing_speed = t->closing[q];
     c.dt = r->dt;
+    c.slip = r->turning ? demi_row(t->rate, q) : none;
+    c.slip_step = r->law || r->keep ? demi_row(t->gone, q) : none;
+    c.normal_rate = r->law || r->keep ? demi_row(t->turn, q) : none;
+    c.twist = r->law || r->keep ? t->twist[q] : 0;
+    c.spin = whole ? demi_row(t->apart, q) : none;
+    c.spin_step = whole && (r->law || r->keep) ? demi_row(t->parted, q) : none;
     if (r->uniform) {
         c.kn = r->coef[DEMI_KN]; c.cn = r->coef[DEMI_CN];
         c.kt = r->coef[DEMI_KT]; c.ct = r->coef[DEMI_CT];
@@ -3764,46 +3830,20 @@ DEM_INLINE void demi_tile_contact(const dem_world *w, demi_tile *DEMI_RESTRICT t
         c.rolling_friction = r->coef[DEMI_MU_ROLL];
         c.r_eff = r->coef[DEMI_R_EFF];
         c.m_eff = r->m_eff;
-        t->deep[q] = (sum - d)*r->inv_radius;
     } else {
-        const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
-        sum = ra + rb;
-        la = ra*d/sum;      /* the contact point divides the distance as the radii do */
-        lb = d - la;
         c.kn = t->coef[DEMI_KN][q]; c.cn = t->coef[DEMI_CN][q];
-        c.kt = t->coef[DEMI_KT][q]; c.ct = t->coef[DEMI_CT][q];
-        c.friction = t->coef[DEMI_MU][q]; c.friction_static = t->coef[DEMI_MU_STATIC][q];
-        c.rolling_friction = t->coef[DEMI_MU_ROLL][q];
-        c.r_eff = t->coef[DEMI_R_EFF][q];
-        c.m_eff = t->m_eff[q];
-        t->deep[q] = (sum - d)/(ra < rb ? ra : rb);
-    }
-    c.overlap = sum - d;
-    c.closing_speed = demi_dot(rate, c.normal);
-    c.slip = c.spin = c.slip_step = c.spin_step = c.normal_rate = demi_v(0, 0, 0);
-    c.twist = 0;
-    if (r->turning) {       /* la wa + lb wb, from sum and difference */
-        dem_vec3 arm = demi_scale(demi_row(t->around, q), d/2);
-        if (!r->uniform) arm = demi_add(arm, demi_scale(demi_row(t->apart, q), (la - lb)/2));
-        c.slip = demi_add(demi_sub(rate, demi_scale(c.normal, c.closing_speed)),
-                          demi_cross(arm, c.normal));
-        if (r->parting) c.spin = demi_row(t->apart, q);
-    }
-    if (r->law || r->keep) {
-        const dem_vec3 gone = demi_row(t->gone, q), turned = demi_row(t->turned, q);
-        dem_vec3 arm = demi_scale(turned, d/2);
-        if (!r->uniform) arm = demi_add(arm, demi_scale(demi_row(t->parted, q), (la - lb)/2));
-        c.normal_rate = demi_scale(demi_sub(gone, demi_scale(c.normal, demi_dot(gone, c.normal))),
-                                   -over_d);
-        c.slip_step = demi_slip_step(c.normal, demi_sub(c.normal, demi_scale(c.normal_rate,
-                                                                             r->dt/2)), gone, arm);
-        if (r->parting) c.spin_step = demi_row(t->parted, q);
-        c.twist = demi_dot(turned, c.normal)/2;
+        c.kt = r->turning ? t->coef[DEMI_KT][q] : 0;
+        c.ct = r->turning ? t->coef[DEMI_CT][q] : 0;
+        c.friction = r->turning ? t->coef[DEMI_MU][q] : 0;
+        c.friction_static = r->turning ? t->coef[DEMI_MU_STATIC][q] : 0;
+        c.rolling_friction = whole ? t->coef[DEMI_MU_ROLL][q] : 0;
+        c.r_eff = whole ? t->coef[DEMI_R_EFF][q] : 0;
+        c.m_eff = whole ? t->m_eff[q] : 0;
     }
 #define DEMI_RECALL(e) m[e] = e < r->keep ? t->memory[e][q] : 0
 #define DEMI_KEEP(e) if (e < r->keep) t->memory[e][q] = m[e]
     DEMI_EIGHT(DEMI_RECALL);
-    f.tangent = f.moment = demi_v(0, 0, 0);
+    f.tangent = f.moment = none;
     f.normal = 0;
     if (r->law) {
         c.material_a = w->body_material[t->a[q]];
@@ -3828,6 +3868,8 @@ DEM_INLINE void demi_tile_contact(const dem_world *w, demi_tile *DEMI_RESTRICT t
     t->push[DEMI_FZ][q] = f.tangent.z - f.normal*c.normal.z;
     if (r->turning) {
         const dem_vec3 across = demi_cross(c.normal, f.tangent);
+        dem_real la = t->length[q]/2, lb = la;
+        if (!r->uniform) { la += t->lean[q]; lb -= t->lean[q]; }
         t->push[DEMI_AX][q] = la*across.x + f.moment.x;
         t->push[DEMI_AY][q] = la*across.y + f.moment.y;
         t->push[DEMI_AZ][q] = la*across.z + f.moment.z;
@@ -3846,12 +3888,24 @@ DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_list *list, con
     if (!t->count) return;
     if (r->law) {
         demi_tile_fetch(w, list, r, t);
-        for (q = 0; q < t->count; q++) demi_tile_contact(w, t, q, r);
+        for (q = 0; q < t->count; q++) {
+            demi_tile_touch(t, q, r);
+            demi_tile_motion(t, q, r);
+            demi_tile_law(w, t, q, r);
+        }
     } else {
         const int full = demi_tile_fetch(w, list, r, t);
         for (q = 0; q < full; q += DEMI_LANES) {
             DEMI_VECTOR
-            for (l = 0; l < DEMI_LANES; l++) demi_tile_contact(w, t, q + l, r);
+            for (l = 0; l < DEMI_LANES; l++) demi_tile_touch(t, q + l, r);
+        }
+        for (q = 0; q < full; q += DEMI_LANES) {
+            DEMI_VECTOR
+            for (l = 0; l < DEMI_LANES; l++) demi_tile_motion(t, q + l, r);
+        }
+        for (q = 0; q < full; q += DEMI_LANES) {
+            DEMI_VECTOR
+            for (l = 0; l < DEMI_LANES; l++) demi_tile_law(w, t, q + l, r);
         }
     }
     if (r->keep)
@@ -3922,7 +3976,7 @@ DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rol
     const demi_run r = demi_run_of(w, normal, tangent, rolling, uniform, ledger, law,
                                    w->forces_valid ? w->dt : 0);  /* 0: looking only */
     dem_real deepest = 0;
-    demi_tile tile;
+    DEMI_ALIGNED demi_tile tile;
     int l, slot = d*w->cross.stride + 1;
     domain->contacts = 0;
     for (l = 0; l < 2; l++) {
@@ -5115,7 +5169,9 @@ static void demi_contact_force(const dem_world *w, const demi_list *list, int k,
     tile.a[0] = a; tile.b[0] = b; tile.k[0] = k;
     tile.gap[0][0] = gap.x; tile.gap[1][0] = gap.y; tile.gap[2][0] = gap.z;
     demi_tile_fetch(w, list, &r, &tile);
-    demi_tile_contact(w, &tile, 0, &r);
+    demi_tile_touch(&tile, 0, &r);
+    demi_tile_motion(&tile, 0, &r);
+    demi_tile_law(w, &tile, 0, &r);
     out->a = dem_bodies_id(w, a);
     out->b = dem_bodies_id(w, b);
     out->wall = 0;
