@@ -829,8 +829,7 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 #define DEMI_ONE_BY_ONE(i) ((void)0)
 #endif
 
-/* Loops over the components of a row, written out: compilers leave them as loops at -O2. */
-#define DEMI_THREE(DO) do { DO(0); DO(1); DO(2); } while (0)
+/* Statements for 0 to 7, written out: compilers leave loops as loops at -O2. */
 #define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
 
 #ifndef DEM_ASSERT
@@ -3607,7 +3606,6 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
    domain fetches it after all are done, in the order of the list. So every body's sum has one order
    whatever the number of threads. Grain-wall follows, per grain.
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_FX, DEMI_FY, DEMI_FZ, DEMI_AX, DEMI_AY, DEMI_AZ, DEMI_BX, DEMI_BY, DEMI_BZ, DEMI_PUSH };
 /* Contacts under work. Sums and differences are of the two bodies, a plus b and a minus b. A row has
    room to spare so that rows do not lie a power of two apart, which caches take badly. */
 enum { DEMI_ROW = DEMI_TILE + 16 };
@@ -3625,11 +3623,26 @@ typedef struct demi_tile {
     dem_real normal[3][DEMI_ROW], turn[3][DEMI_ROW];      /* unit, 1/s */
     dem_real lean[DEMI_ROW];       /* m, from the middle to the contact, towards b */
     dem_real closing[DEMI_ROW], twist[DEMI_ROW];
-    dem_real push[DEMI_PUSH][DEMI_ROW];
     dem_real part[6][DEMI_ROW];                           /* energies */
+    dem_real force[3][DEMI_ROW], torque[2][3][DEMI_ROW];  /* answers; torque on a, on b */
     int32_t a[DEMI_ROW], b[DEMI_ROW], k[DEMI_ROW];        /* bodies, place in the list */
     int count;
 } demi_tile;
+
+DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROW], int q) {
+    return demi_v(rows[0][q], rows[1][q], rows[2][q]);
+}
+DEM_INLINE void demi_row_put(dem_real rows[3][DEMI_ROW], int q, dem_vec3 v) {
+    rows[0][q] = v.x; rows[1][q] = v.y; rows[2][q] = v.z;
+}
+DEM_INLINE void demi_rows_minus(dem_real rows[3][DEMI_ROW], size_t q, const dem_real *a,
+                                const dem_real *b) {
+    rows[0][q] = a[0] - b[0]; rows[1][q] = a[1] - b[1]; rows[2][q] = a[2] - b[2];
+}
+DEM_INLINE void demi_rows_plus(dem_real rows[3][DEMI_ROW], size_t q, const dem_real *a,
+                               const dem_real *b) {
+    rows[0][q] = a[0] + b[0]; rows[1][q] = a[1] + b[1]; rows[2][q] = a[2] + b[2];
+}
 
 /* What is switched on, and what is the same for all contacts of a run. Literals in a specialised
    kernel. */
@@ -3658,6 +3671,9 @@ DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int
     return r;
 }
 
+/* Row of a body in an array of four reals each; unsigned, which spares a sign to extend. */
+#define DEMI_AT(array, body) ((array) + 4*(size_t)(uint32_t)(body))
+
 /* Fills the tile with touching pairs among candidates from..end-1; answers where it stopped. */
 DEM_INLINE int demi_tile_fill(const dem_world *w, const demi_list *list, int from, int end,
                               int uniform, demi_tile *DEMI_RESTRICT t) {
@@ -3665,22 +3681,18 @@ DEM_INLINE int demi_tile_fill(const dem_world *w, const demi_list *list, int fro
     const int32_t *DEMI_RESTRICT la = list->a, *DEMI_RESTRICT lb = list->b;
     const unsigned char *DEMI_RESTRICT image = list->image;
     const dem_real both = 4*w->uniform_radius*w->uniform_radius;
-    int k, m = 0;
-    for (k = from; k < end && m < DEMI_TILE; k++) {
-        const int a = la[k], b = lb[k], i = 4*a, j = 4*b, s = image[k];
-        const dem_real dx = x[j] - x[i] + shift[s];
-        const dem_real dy = x[j + 1] - x[i + 1] + shift[s + 1];
-        const dem_real dz = x[j + 2] - x[i + 2] + shift[s + 2];
+    size_t k, m = 0;
+    for (k = (size_t)from; k < (size_t)end && m < DEMI_TILE; k++) {
+        const dem_real *a = DEMI_AT(x, la[k]), *b = DEMI_AT(x, lb[k]), *s = shift + image[k];
+        const dem_real dx = b[0] - a[0] + s[0], dy = b[1] - a[1] + s[1], dz = b[2] - a[2] + s[2];
         dem_real cut = both;
-        if (!uniform) { cut = x[i + 3] + x[j + 3]; cut *= cut; }
-        t->a[m] = a;
-        t->b[m] = b;
-        t->k[m] = k;
+        if (!uniform) { cut = a[3] + b[3]; cut *= cut; }
+        t->k[m] = (int32_t)k;
         t->gap[0][m] = dx; t->gap[1][m] = dy; t->gap[2][m] = dz;
         m += dx*dx + dy*dy + dz*dz < cut;
     }
-    t->count = m;
-    return k;
+    t->count = (int)m;
+    return (int)k;
 }
 
 /* Copies what the law will see of bodies and memory into the rows, and fills the last group up with
@@ -3691,54 +3703,46 @@ DEM_INLINE int demi_tile_fetch(const dem_world *w, const demi_list *list, const 
     const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
     const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT inv_mass = w->inv_mass;
     const dem_real *DEMI_RESTRICT memory = list->memory, *DEMI_RESTRICT coef = list->coef;
+    const int32_t *DEMI_RESTRICT la = list->a, *DEMI_RESTRICT lb = list->b;
     const uint32_t now = w->stamp;
     const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES, last = t->count - 1;
-    int q, e;
-    for (q = t->count; q < full; q++) {
-        t->a[q] = t->a[last]; t->b[q] = t->b[last]; t->k[q] = t->k[last];
-        for (e = 0; e < 3; e++) t->gap[e][q] = t->gap[e][last];
+    int n;
+    for (n = t->count; n < full; n++) {
+        t->k[n] = t->k[last];
+        demi_row_put(t->gap, n, demi_row(t->gap, last));
     }
-    for (q = 0; q < full; q++) {
-        int i, j;
+    for (n = 0; n < full; n++) {
+        size_t q = (size_t)n, k;
+        uint32_t i, j;
         DEMI_ONE_BY_ONE(q);
-        i = 4*t->a[q]; j = 4*t->b[q];
-#define DEMI_RATE(e) t->rate[e][q] = u[i + e] - u[j + e]
-#define DEMI_AROUND(e) t->around[e][q] = s[i + e] + s[j + e]
-#define DEMI_APART(e) t->apart[e][q] = s[i + e] - s[j + e]
-#define DEMI_GONE(e) t->gone[e][q] = uh[i + e] - uh[j + e]
-#define DEMI_TURNED(e) t->turned[e][q] = sh[i + e] + sh[j + e]
-#define DEMI_PARTED(e) t->parted[e][q] = sh[i + e] - sh[j + e]
+        k = (size_t)t->k[q];
+        i = (uint32_t)la[k]; j = (uint32_t)lb[k];
+        t->a[q] = (int32_t)i; t->b[q] = (int32_t)j;
+        demi_rows_minus(t->rate, q, DEMI_AT(u, i), DEMI_AT(u, j));
+        if (r->turning) demi_rows_plus(t->around, q, DEMI_AT(s, i), DEMI_AT(s, j));
+        if (r->parting) demi_rows_minus(t->apart, q, DEMI_AT(s, i), DEMI_AT(s, j));
+        if (r->law || r->keep) {
+            demi_rows_minus(t->gone, q, DEMI_AT(uh, i), DEMI_AT(uh, j));
+            demi_rows_plus(t->turned, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
+            if (r->parting) demi_rows_minus(t->parted, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
+        }
 #define DEMI_COEF(e) if (e < most) t->coef[e][q] = c[e]
 #define DEMI_RECALL(e) if (e < r->keep) t->memory[e][q] = m[e]
 #define DEMI_FORGET(e) if (e < r->keep) t->memory[e][q] = 0
-        DEMI_THREE(DEMI_RATE);
-        if (r->turning) DEMI_THREE(DEMI_AROUND);
-        if (r->parting) DEMI_THREE(DEMI_APART);
-        if (r->law || r->keep) {
-            DEMI_THREE(DEMI_GONE);
-            DEMI_THREE(DEMI_TURNED);
-            if (r->parting) DEMI_THREE(DEMI_PARTED);
-        }
         if (!r->uniform) {
-            const dem_real *c = coef + (size_t)DEMI_COEFS*(size_t)t->k[q];
+            const dem_real *c = coef + DEMI_COEFS*k;
             const int most = r->law || r->rolling != DEM_ROLLING_NONE ? (int)DEMI_COEFS
                 : r->turning ? (int)DEMI_MU_ROLL : (int)DEMI_KT;
-            t->radius[0][q] = x[i + 3];
-            t->radius[1][q] = x[j + 3];
+            t->radius[0][q] = DEMI_AT(x, i)[3];
+            t->radius[1][q] = DEMI_AT(x, j)[3];
             DEMI_EIGHT(DEMI_COEF);
-            if (most == DEMI_COEFS) t->m_eff[q] = 1/(inv_mass[i/4] + inv_mass[j/4]);
+            if (most == DEMI_COEFS) t->m_eff[q] = 1/(inv_mass[i] + inv_mass[j]);
         }
         if (r->keep) {                          /* memory counts when written in the step before */
-            const dem_real *m = memory + (size_t)r->keep*(size_t)t->k[q];
-            if (list->stamp[t->k[q]] == now) DEMI_EIGHT(DEMI_RECALL);
+            const dem_real *m = memory + (size_t)r->keep*k;
+            if (list->stamp[k] == now) DEMI_EIGHT(DEMI_RECALL);
             else DEMI_EIGHT(DEMI_FORGET);
         }
-#undef DEMI_RATE
-#undef DEMI_AROUND
-#undef DEMI_APART
-#undef DEMI_GONE
-#undef DEMI_TURNED
-#undef DEMI_PARTED
 #undef DEMI_COEF
 #undef DEMI_RECALL
 #undef DEMI_FORGET
@@ -3754,13 +3758,7 @@ DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone,
     const dem_vec3 slip = demi_add(t, demi_cross(around, mid));
     return demi_sub(slip, demi_scale(normal, demi_dot(slip, normal)));
 }
-DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROW], int q) {
-    return demi_v(rows[0][q], rows[1][q], rows[2][q]);
-}
 
-DEM_INLINE void demi_row_put(dem_real rows[3][DEMI_ROW], int q, dem_vec3 v) {
-    rows[0][q] = v.x; rows[1][q] = v.y; rows[2][q] = v.z;
-}
 
 /* One contact of a tile, in three short steps. Each runs over all contacts before the next begins:
    processors then have several contacts under way at once, where one long chain of roots and
@@ -3863,20 +3861,14 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
     DEMI_EIGHT(DEMI_KEEP);
 #undef DEMI_RECALL
 #undef DEMI_KEEP
-    t->push[DEMI_FX][q] = f.tangent.x - f.normal*c.normal.x;
-    t->push[DEMI_FY][q] = f.tangent.y - f.normal*c.normal.y;
-    t->push[DEMI_FZ][q] = f.tangent.z - f.normal*c.normal.z;
+    demi_row_put(t->force, q, demi_sub(f.tangent, demi_scale(c.normal, f.normal)));
     if (r->turning) {
         const dem_vec3 across = demi_cross(c.normal, f.tangent);
-        dem_real la = t->length[q]/2, lb = la;
-        if (!r->uniform) { la += t->lean[q]; lb -= t->lean[q]; }
-        t->push[DEMI_AX][q] = la*across.x + f.moment.x;
-        t->push[DEMI_AY][q] = la*across.y + f.moment.y;
-        t->push[DEMI_AZ][q] = la*across.z + f.moment.z;
-        if (!r->parting) return;                /* alike and not rolling: the same on both */
-        t->push[DEMI_BX][q] = lb*across.x - f.moment.x;
-        t->push[DEMI_BY][q] = lb*across.y - f.moment.y;
-        t->push[DEMI_BZ][q] = lb*across.z - f.moment.z;
+        const dem_real half = t->length[q]/2, lean = r->uniform ? 0 : t->lean[q];
+        if (r->parting) {
+            demi_row_put(t->torque[0], q, demi_add(demi_scale(across, half + lean), f.moment));
+            demi_row_put(t->torque[1], q, demi_sub(demi_scale(across, half - lean), f.moment));
+        } else demi_row_put(t->torque[0], q, demi_scale(across, half));  /* the same on both */
     }
 }
 
@@ -3929,40 +3921,44 @@ DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_list *list, con
 }
 
 /* Adds a tile's pushes to both bodies; answers the largest of `deep`. */
-DEM_INLINE dem_real demi_tile_scatter(const demi_tile *DEMI_RESTRICT t, const demi_run *r,
+DEM_INLINE dem_real demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_run *r,
                                       dem_real *DEMI_RESTRICT force, dem_real *DEMI_RESTRICT torque,
                                       dem_real deepest) {
-    const int second = r->parting ? DEMI_BX : DEMI_AX;
-    int q;
-    for (q = 0; q < t->count; q++) {
-        const int i = 4*t->a[q], j = 4*t->b[q];
-#define DEMI_FORCE(e) force[i + e] += t->push[DEMI_FX + e][q]; \
-                      force[j + e] -= t->push[DEMI_FX + e][q]
-#define DEMI_TORQUE(e) torque[i + e] += t->push[DEMI_AX + e][q]; \
-                       torque[j + e] += t->push[second + e][q]
-        DEMI_THREE(DEMI_FORCE);
-        if (r->turning) DEMI_THREE(DEMI_TORQUE);
-#undef DEMI_FORCE
-#undef DEMI_TORQUE
+    const int second = r->parting ? 1 : 0;
+    int n;
+    for (n = 0; n < t->count; n++) {
+        const size_t q = (size_t)n;
+        dem_real *fa = DEMI_AT(force, t->a[q]), *fb = DEMI_AT(force, t->b[q]);
+        const dem_real fx = t->force[0][q], fy = t->force[1][q], fz = t->force[2][q];
+        fa[0] += fx; fa[1] += fy; fa[2] += fz;
+        fb[0] -= fx; fb[1] -= fy; fb[2] -= fz;
+        if (r->turning) {
+            dem_real *ma = DEMI_AT(torque, t->a[q]), *mb = DEMI_AT(torque, t->b[q]);
+            ma[0] += t->torque[0][0][q]; ma[1] += t->torque[0][1][q]; ma[2] += t->torque[0][2][q];
+            mb[0] += t->torque[second][0][q]; mb[1] += t->torque[second][1][q];
+            mb[2] += t->torque[second][2][q];
+        }
         deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
     }
     return deepest;
 }
 /* The same for pairs that lead out: the far ends' pushes stay in slots, six reals each. */
-DEM_INLINE dem_real demi_tile_send(dem_world *w, const demi_tile *DEMI_RESTRICT t,
-                                   const demi_run *r, int slot, dem_real deepest) {
-    const int second = r->parting ? DEMI_BX : DEMI_AX;
-    int q, e;
-    for (q = 0; q < t->count; q++) {
-        const int i = 4*t->a[q];
-        dem_real *out = w->cross_push + 6*(size_t)(slot + q);
+DEM_INLINE dem_real demi_tile_send(dem_world *w, demi_tile *DEMI_RESTRICT t, const demi_run *r,
+                                   int slot, dem_real deepest) {
+    const int second = r->parting ? 1 : 0;
+    dem_real *DEMI_RESTRICT force = w->force, *DEMI_RESTRICT torque = w->torque;
+    dem_real *DEMI_RESTRICT out = w->cross_push + 6*(size_t)slot;
+    int q;
+    for (q = 0; q < t->count; q++, out += 6) {
+        dem_real *fa = DEMI_AT(force, t->a[q]), *ma = DEMI_AT(torque, t->a[q]);
+        const dem_vec3 f = demi_row(t->force, q);
         w->cross_hit[t->k[q]] = slot + q;
-        for (e = 0; e < 3; e++) {
-            w->force[i + e] += t->push[DEMI_FX + e][q];
-            out[e] = -t->push[DEMI_FX + e][q];
-            if (!r->turning) continue;
-            w->torque[i + e] += t->push[DEMI_AX + e][q];
-            out[3 + e] = t->push[second + e][q];
+        fa[0] += f.x; fa[1] += f.y; fa[2] += f.z;
+        out[0] = -f.x; out[1] = -f.y; out[2] = -f.z;
+        if (r->turning) {
+            const dem_vec3 m = demi_row(t->torque[0], q);
+            ma[0] += m.x; ma[1] += m.y; ma[2] += m.z;
+            demi_put(out + 3, demi_row(t->torque[second], q));
         }
         deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
     }
@@ -5166,7 +5162,7 @@ static void demi_contact_force(const dem_world *w, const demi_list *list, int k,
     const dem_real ra = w->pos[4*a + 3], rb = w->pos[4*b + 3], l = demi_length(gap);
     demi_tile tile;
     tile.count = 1;
-    tile.a[0] = a; tile.b[0] = b; tile.k[0] = k;
+    tile.k[0] = k;
     tile.gap[0][0] = gap.x; tile.gap[1][0] = gap.y; tile.gap[2][0] = gap.z;
     demi_tile_fetch(w, list, &r, &tile);
     demi_tile_touch(&tile, 0, &r);
@@ -5178,7 +5174,7 @@ static void demi_contact_force(const dem_world *w, const demi_list *list, int k,
     out->normal = demi_scale(gap, 1/(l + DEMI_TINY));
     out->overlap = ra + rb - l;
     out->point = demi_add(demi_at(w->pos + 4*a), demi_scale(gap, ra/(ra + rb)));
-    out->force = demi_v(tile.push[DEMI_FX][0], tile.push[DEMI_FY][0], tile.push[DEMI_FZ][0]);
+    out->force = demi_row(tile.force, 0);
 }
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
     const demi_periods p = demi_periods_of(w);
