@@ -977,12 +977,23 @@ typedef struct demi_array { void *data; size_t capacity, item; } demi_array;
 typedef struct demi_list {
     int stride;                    /* capacity per domain */
     int32_t *a, *b;                /* body indices, a < b */
-    uint32_t *stamp;               /* evaluation at which memory was last written */
     unsigned char *image;          /* which entry of image_shift leads from a to b */
-    dem_real *memory;              /* x w->memory_stride */
-    dem_real *coef;                /* x DEMI_COEFS when bodies differ */
-    demi_array a_, b_, stamp_, image_, memory_, coef_;
+    demi_array a_, b_, image_;
 } demi_list;
+
+/* Near pairs of all domains: those candidates that touch or might before long. Domain d owns
+   entries d*stride .. as above: pairs inside it, then, from a multiple of DEMI_LANES on, those that
+   lead out. Numbers of a pair stand in columns: value e of the domain's entry p at
+   memory[(d*columns + e)*stride + p]. */
+typedef struct demi_near {
+    int stride;                    /* capacity per domain, a multiple of DEMI_LANES */
+    int32_t *a, *b, *k;            /* bodies, and their entry in the list of candidates */
+    unsigned char *image;
+    dem_real *memory;              /* w->memory_stride columns; zeros while a pair does not touch */
+    dem_real *coef;                /* DEMI_PAIR_COLUMNS columns, when bodies differ */
+    demi_array a_, b_, k_, image_, memory_, coef_;
+} demi_near;
+enum { DEMI_M_EFF = DEMI_COEFS, DEMI_PAIR_COLUMNS };
 
 /* Sums of one domain over one step; combined in the order of domains. */
 enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED,
@@ -1004,6 +1015,8 @@ typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; 
 typedef struct demi_domain {
     int begin, end;                /* bodies */
     int own, cross, walls;         /* candidates: pairs inside, pairs leading out, wall elements */
+    int near_own, near_cross, near_end;    /* near: end of pairs inside; begin, end of the others */
+    int near_next_own, near_next_cross, near_next_end;     /* of the list being made */
     int contacts, wall_contacts;   /* touching now */
     int overflow;                  /* a list ran out of room while being built */
     double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
@@ -1096,10 +1109,14 @@ struct dem_world {
     int domain_count;
     demi_domain *domains;
     demi_list own, cross;
+    demi_near near, near_last;     /* in use, and the one before: swapped when made anew */
+    double near_skin, near_reach;  /* m: margin of the near list, farthest a body went since */
+    uint64_t near_step;            /* step it was made in */
+    int near_fresh;                /* being made after a search */
     int *cross_incoming_start;     /* domain_count + 1 */
     demi_array cross_incoming_, cross_hit_, cross_push_;
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
-    int32_t *cross_hit;            /* entry -> slot of its push, 0 when not touching */
+    int32_t *cross_hit;            /* entry -> slot of its push, 0 when not near */
     dem_real *cross_push;          /* x 6: force and torque on the far end */
     int cross_entries;
     demi_array cell_start_;
@@ -1128,7 +1145,6 @@ struct dem_world {
     double assumed_speed;          /* m/s, behind dt */
     int dt_valid, forces_valid, synced, primed;
     int moved;                     /* a step has moved and lacks its forces: memory ran out in it */
-    uint32_t stamp;
     double overlap_max, speed_max;
     double energy[DEMI_ENERGIES], energy_inserted, energy_removed;
     double throughput;
@@ -1469,32 +1485,51 @@ static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
     return ok;
 }
 
+/* Does a near pair remember anything? */
+static int demi_near_remembers(const dem_world *w, int d, int p) {
+    const dem_real *m = w->near.memory + (size_t)d*(size_t)w->memory_stride*(size_t)w->near.stride;
+    int e;
+    for (e = 0; e < w->memory_stride; e++) {
+        const dem_real value = m[(size_t)e*(size_t)w->near.stride + (size_t)p];
+        if (value < 0 || value > 0) return 1;
+    }
+    return 0;
+}
+/* The pairs of domain d in the near list are p = 0 .. near_own - 1, then near_cross .. near_end - 1:
+   the one after p. */
+DEM_INLINE int demi_near_next(const demi_domain *domain, int p) {
+    return p + 1 == domain->near_own ? domain->near_cross : p + 1;
+}
+DEM_INLINE int demi_near_first(const demi_domain *domain) {
+    return domain->near_own ? 0 : domain->near_cross;
+}
+
 /* Files the memory of all touching pairs by slot: row = lower slot; partner = higher slot, or its
    complement when body a of the pair was the higher one. 0 when memory ran out. */
 static int demi_carry_collect(dem_world *w) {
-    const int stride = w->memory_stride, lists = 2;
-    int d, l, k, total = 0, pass;
+    const int stride = w->memory_stride;
+    int d, p, e, k, total = 0, pass;
     w->carry_count = 0;
     if (!stride || !w->domain_count) return 1;
     if (!demi_carry_reserve(w, w->slot_count, 0, stride)) return 0;
     memset(w->carry_start, 0, ((size_t)w->slot_count + 2)*sizeof(int32_t));
     for (pass = 0; pass < 2; pass++) {          /* count by row, then fill */
-        for (l = 0; l < lists; l++) {
-            const demi_list *list = l ? &w->cross : &w->own;
-            for (d = 0; d < w->domain_count; d++) {
-                const int count = l ? w->domains[d].cross : w->domains[d].own;
-                for (k = d*list->stride; k < d*list->stride + count; k++) {
-                    int32_t a, b, row;
-                    if (list->stamp[k] != w->stamp) continue;
-                    a = (int32_t)w->body_slot[list->a[k]];
-                    b = (int32_t)w->body_slot[list->b[k]];
-                    row = DEMI_MIN(a, b);
-                    if (pass == 0) { w->carry_start[row + 2]++; total++; continue; }
-                    w->carry_partner[w->carry_start[row + 1]] = a < b ? b : ~a;
-                    memcpy(w->carry_memory + (size_t)w->carry_start[row + 1]++*(size_t)stride,
-                           list->memory + (size_t)k*(size_t)stride,
-                           (size_t)stride*sizeof(dem_real));
-                }
+        for (d = 0; d < w->domain_count; d++) {
+            const demi_domain *domain = &w->domains[d];
+            const dem_real *m = w->near.memory + (size_t)d*(size_t)stride*(size_t)w->near.stride;
+            for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+                const int at = d*w->near.stride + p;
+                int32_t a, b, row;
+                dem_real *to;
+                if (!demi_near_remembers(w, d, p)) continue;
+                a = (int32_t)w->body_slot[w->near.a[at]];
+                b = (int32_t)w->body_slot[w->near.b[at]];
+                row = DEMI_MIN(a, b);
+                if (pass == 0) { w->carry_start[row + 2]++; total++; continue; }
+                w->carry_partner[w->carry_start[row + 1]] = a < b ? b : ~a;
+                to = w->carry_memory + (size_t)w->carry_start[row + 1]++*(size_t)stride;
+                for (e = 0; e < stride; e++)
+                    to[e] = m[(size_t)e*(size_t)w->near.stride + (size_t)p];
             }
         }
         if (pass == 0) {
@@ -2581,29 +2616,16 @@ static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
     return -1;
 }
 
-/* Writes the coefficients of a candidate pair; only needed when bodies differ. */
-static void demi_pair_coefs(const dem_world *w, demi_list *list, int k) {
-    const int a = list->a[k], b = list->b[k];
-    const double ra = (double)w->pos[4*a + 3], rb = (double)w->pos[4*b + 3];
-    /* there a fixed grain has mass too */
-    const int mill = w->desc.convention == DEM_CONVENTION_MILL;
-    const double inv = mill ? 1/(double)w->mass[a] + 1/(double)w->mass[b]
-                            : (double)w->inv_mass[a] + (double)w->inv_mass[b];
-    demi_coefficients(w, w->body_material[a] - 1, w->body_material[b] - 1, ra*rb/(ra + rb), 1/inv,
-                      0,
-                      list->coef + (size_t)k*DEMI_COEFS);
-}
-
 /* Notes which image of b is nearest to a. It stays so until the next list: positions are brought
    back into the periodic box only then, and a period holds more than two candidates' lengths. */
-static void demi_pair_image(const dem_world *w, const demi_periods *p, demi_list *list, int k) {
-    const dem_real *x = w->pos + 4*list->a[k], *y = w->pos + 4*list->b[k];
+static unsigned char demi_pair_image(const dem_world *w, const demi_periods *p, int a, int b) {
+    const dem_real *x = w->pos + 4*a, *y = w->pos + 4*b;
     int code = 0, e, weight = 4;
     for (e = 0; e < 3; e++, weight *= 3) {
         const dem_real d = y[e] - x[e];
         code += d < -p->half[e] ? weight : d > p->half[e] ? 2*weight : 0;
     }
-    list->image[k] = (unsigned char)code;
+    return (unsigned char)code;
 }
 static void demi_image_shifts(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
@@ -2625,7 +2647,7 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     const dem_real cut = x[3] + y[3] + skin;
     demi_domain *domain = &w->domains[d];
     demi_list *list;
-    int k, from, flip = 0, m;
+    int k;
     if (!(dx*dx + dy*dy + dz*dz < cut*cut)) return;
     if (w->fixed_count && w->inv_mass[a] <= 0 && w->inv_mass[b] <= 0) return;
     list = b < domain->end ? &w->own : &w->cross;
@@ -2635,16 +2657,7 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     k += d*list->stride;
     list->a[k] = a;
     list->b[k] = b;
-    list->stamp[k] = w->stamp - 1;
-    demi_pair_image(w, p, list, k);
-    if (!w->uniform) demi_pair_coefs(w, list, k);
-    if (!w->memory_stride || (from = demi_carry_find(w, a, b, &flip)) < 0) return;
-    list->stamp[k] = w->stamp;
-    for (m = 0; m < w->memory_stride; m++) {
-        const dem_real value = w->carry_memory[(size_t)from*(size_t)w->memory_stride + (size_t)m];
-        list->memory[(size_t)k*(size_t)w->memory_stride + (size_t)m] = flip &&
-            (w->vector_mask >> m & 1) ? -value : value;
-    }
+    list->image[k] = demi_pair_image(w, p, a, b);
 }
 
 /* --- methods: each offers, for every body a of domain d in turn, its possible partners b > a in
@@ -2984,20 +2997,32 @@ static void demi_domain_walls(dem_world *w, int d) {
 
 /* Room for a list. 0 when memory ran out; what did grow is pointed at all the same. */
 static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int stride) {
-    const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
+    const size_t n = (size_t)domains*(size_t)stride;
     const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &list->a_, sizeof(int32_t), n) &&
                    demi_array_grow(w, &list->b_, sizeof(int32_t), n) &&
-                   demi_array_grow(w, &list->stamp_, sizeof(uint32_t), n) &&
-                   demi_array_grow(w, &list->image_, 1, n) &&
-                   demi_array_grow(w, &list->memory_, sizeof(dem_real), m) &&
-                   (w->uniform || demi_array_grow(w, &list->coef_, sizeof(dem_real), n*DEMI_COEFS));
+                   demi_array_grow(w, &list->image_, 1, n);
     list->a = (int32_t *)list->a_.data;
     list->b = (int32_t *)list->b_.data;
-    list->stamp = (uint32_t *)list->stamp_.data;
     list->image = (unsigned char *)list->image_.data;
-    list->memory = (dem_real *)list->memory_.data;
-    list->coef = (dem_real *)list->coef_.data;
     if (ok) list->stride = stride;
+    return ok;
+}
+static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int stride) {
+    const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
+    const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &near->a_, sizeof(int32_t), n) &&
+                   demi_array_grow(w, &near->b_, sizeof(int32_t), n) &&
+                   demi_array_grow(w, &near->k_, sizeof(int32_t), n) &&
+                   demi_array_grow(w, &near->image_, 1, n) &&
+                   demi_array_grow(w, &near->memory_, sizeof(dem_real), m) &&
+                   (w->uniform || demi_array_grow(w, &near->coef_, sizeof(dem_real),
+                                                  n*DEMI_PAIR_COLUMNS));
+    near->a = (int32_t *)near->a_.data;
+    near->b = (int32_t *)near->b_.data;
+    near->k = (int32_t *)near->k_.data;
+    near->image = (unsigned char *)near->image_.data;
+    near->memory = (dem_real *)near->memory_.data;
+    near->coef = (dem_real *)near->coef_.data;
+    if (ok) near->stride = stride;
     return ok;
 }
 static int demi_wall_lists_reserve(dem_world *w, int stride) {
@@ -3015,7 +3040,7 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
 static int demi_cross_reserve(dem_world *w, size_t entries) {
     const int ok = demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), entries) &&
                    demi_array_grow(w, &w->cross_hit_, sizeof(int32_t), entries) &&
-                   demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 6*(entries + 1));
+                   demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 6*(entries + DEMI_LANES + 1));
     w->cross_incoming = (int32_t *)w->cross_incoming_.data;
     w->cross_hit = (int32_t *)w->cross_hit_.data;
     w->cross_push = (dem_real *)w->cross_push_.data;
@@ -3119,6 +3144,182 @@ DEM_INLINE int demi_memory_of(int tangent, int rolling) {
         : tangent == DEM_TANGENT_SPRING ? 3 : 0;
 }
 
+/* --- the near list: candidates within near_skin of touching. Forces are worked out for all of it,
+       touching or not, so that a step neither looks at candidates nor packs them; what does not
+       touch answers zero. Made anew, from the candidates, when something moved half of near_skin;
+       memory comes from the list before or, after a search, from where it was filed. Numbers do not
+       depend on near_skin: a zero more or less does not change a sum. --- */
+
+/* Coefficients of a pair, into its columns; only needed when bodies differ. */
+static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
+    const double ra = (double)w->pos[4*a + 3], rb = (double)w->pos[4*b + 3];
+    const double sum = (double)w->inv_mass[a] + (double)w->inv_mass[b];
+    /* there a fixed grain has mass too */
+    const double inv = w->desc.convention == DEM_CONVENTION_MILL
+        ? 1/(double)w->mass[a] + 1/(double)w->mass[b] : sum;
+    dem_real coef[DEMI_PAIR_COLUMNS], *to;
+    int e;
+    demi_coefficients(w, w->body_material[a] - 1, w->body_material[b] - 1, ra*rb/(ra + rb), 1/inv,
+                      0, coef);
+    coef[DEMI_M_EFF] = (dem_real)(1/sum);
+    to = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride + (size_t)p;
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) to[(size_t)e*(size_t)near->stride] = coef[e];
+}
+/* Copies the columns of entry `from` of one list to entry `to` of another. */
+static void demi_columns_copy(const dem_real *source, int source_stride, int from, dem_real *out,
+                              int out_stride, int to, int columns) {
+    int e;
+    for (e = 0; e < columns; e++)
+        out[(size_t)e*(size_t)out_stride + (size_t)to] =
+            source[(size_t)e*(size_t)source_stride + (size_t)from];
+}
+/* Enters candidate k of domain d as entry p; `from` is its entry in the list before, or -1. */
+static void demi_near_enter(dem_world *w, const demi_list *list, int k, int d, int p, int from) {
+    demi_near *near = &w->near;
+    const demi_near *last = &w->near_last;
+    const int a = list->a[k], b = list->b[k], at = d*near->stride + p, keep = w->memory_stride;
+    dem_real *m = near->memory + (size_t)d*(size_t)keep*(size_t)near->stride + (size_t)p;
+    int e, flip = 0;
+    near->a[at] = a;
+    near->b[at] = b;
+    near->k[at] = k;
+    near->image[at] = list->image[k];
+    if (from >= 0) {
+        demi_columns_copy(last->memory + (size_t)d*(size_t)keep*(size_t)last->stride, last->stride,
+                          from, m, near->stride, 0, keep);
+        if (!w->uniform)
+            demi_columns_copy(last->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)last->stride,
+                              last->stride, from,
+                              near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride,
+                              near->stride, p, DEMI_PAIR_COLUMNS);
+        return;
+    }
+    if (!w->uniform) demi_near_coefs(w, near, d, p, a, b);
+    for (e = 0; e < keep; e++) m[(size_t)e*(size_t)near->stride] = 0;
+    if (!keep || w->near_fresh == 0 || (from = demi_carry_find(w, a, b, &flip)) < 0) return;
+    for (e = 0; e < keep; e++) {
+        const dem_real value = w->carry_memory[(size_t)from*(size_t)keep + (size_t)e];
+        m[(size_t)e*(size_t)near->stride] = flip && (w->vector_mask >> e & 1) ? -value : value;
+    }
+}
+/* What follows from the near list of a domain: groups are filled up with copies of their last pair,
+   whose answers nobody reads (then no group is cut short), and pairs that lead out get their slots.
+   */
+static void demi_near_adopt(dem_world *w, int d) {
+    demi_near *near = &w->near;
+    const demi_domain *domain = &w->domains[d];
+    const size_t stride = (size_t)near->stride;
+    dem_real *memory = near->memory + (size_t)d*(size_t)w->memory_stride*stride;
+    dem_real *coef = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride;
+    int l, p, e;
+    for (l = 0; l < 2; l++) {
+        const int end = l ? domain->near_end : domain->near_own, at = d*near->stride;
+        if (end == (l ? domain->near_cross : 0)) continue;
+        for (p = end; p%DEMI_LANES; p++) {
+            near->a[at + p] = near->a[at + end - 1];
+            near->b[at + p] = near->b[at + end - 1];
+            near->k[at + p] = near->k[at + end - 1];
+            near->image[at + p] = near->image[at + end - 1];
+            for (e = 0; e < w->memory_stride; e++) memory[(size_t)e*stride + (size_t)p] = 0;
+            for (e = 0; e < DEMI_PAIR_COLUMNS && !w->uniform; e++)
+                coef[(size_t)e*stride + (size_t)p] = coef[(size_t)e*stride + (size_t)end - 1];
+        }
+    }
+    if (!domain->cross) return;
+    memset(w->cross_hit + d*w->cross.stride, 0, (size_t)domain->cross*sizeof *w->cross_hit);
+    for (p = domain->near_cross; p < domain->near_end; p++)
+        w->cross_hit[near->k[d*near->stride + p]] = d*w->cross.stride + 1 + p - domain->near_cross;
+}
+static void demi_domain_adopt(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    domain->near_own = domain->near_next_own;
+    domain->near_cross = domain->near_next_cross;
+    domain->near_end = domain->near_next_end;
+    demi_near_adopt(w, d);
+}
+
+/* Near pairs of one domain. */
+static void demi_domain_near(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const demi_near *last = &w->near_last;
+    const dem_real *x = w->pos;
+    const int stride = w->near.stride - DEMI_LANES;
+    int l, k, p = 0, old, old_end;
+    domain->overflow &= ~8;
+    for (l = 0; l < 2; l++) {
+        const demi_list *list = l ? &w->cross : &w->own;
+        const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
+        old = l ? domain->near_cross : 0;
+        old_end = w->near_fresh ? old : l ? domain->near_end : domain->near_own;
+        for (k = begin; k < end; k++) {
+            const dem_real *a = x + 4*list->a[k], *b = x + 4*list->b[k];
+            const dem_real *s = w->image_shift + list->image[k];
+            const dem_real dx = b[0] - a[0] + s[0], dy = b[1] - a[1] + s[1], dz = b[2] - a[2] + s[2];
+            const dem_real cut = a[3] + b[3] + (dem_real)w->near_skin;
+            int from = -1;
+            if (!(dx*dx + dy*dy + dz*dz < cut*cut)) continue;
+            if (p >= stride) { domain->overflow |= 8; return; }
+            while (old < old_end && last->k[d*last->stride + old] < k) old++;
+            if (old < old_end && last->k[d*last->stride + old] == k) from = old;
+            demi_near_enter(w, list, k, d, p, from);
+            p++;
+        }
+        if (l) domain->near_next_end = p;
+        else domain->near_next_own = p;
+        p = (p + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+        if (!l) domain->near_next_cross = p;
+    }
+}
+/* near_skin from counted work, so that it is the same on every run: a force costs 1, looking at a
+   candidate 0.2 (bench/ measures both); forces grow with near_skin, looks shrink with it. */
+static void demi_near_choose(dem_world *w) {
+    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1);
+    const double steps = (double)(w->steps - w->near_step);
+    const double per_step = steps > 0 ? 2*w->near_reach/steps : 0;
+    double near = 0, touching = 0, candidates = 0, best = 0;
+    int d;
+    if (w->near_skin <= 0) w->near_skin = 0.01*r;
+    else if (per_step > 0) {
+        for (d = 0; d < w->domain_count; d++) {
+            const demi_domain *domain = &w->domains[d];
+            near += domain->near_own + domain->near_end - domain->near_cross;
+            touching += domain->contacts;
+            candidates += domain->own + domain->cross;
+        }
+        best = sqrt(0.2*candidates*per_step*w->near_skin/DEMI_MAX(near - touching,
+                                                                  0.01*w->count));
+        best = DEMI_MIN(DEMI_MAX(best, 0.5*w->near_skin), 2*w->near_skin);
+        w->near_skin = DEMI_MAX(sqrt(best*w->near_skin), 1e-6*r);
+    }
+    w->near_skin = DEMI_MIN(w->near_skin, w->skin);
+}
+/* Makes the near list; fresh: after a search. 0 when memory ran out: the list before is in use. */
+static int demi_near_make(dem_world *w, int fresh) {
+    const demi_near swap = w->near;
+    int d, again, stride;
+    w->near = w->near_last;
+    w->near_last = swap;
+    w->near_fresh = fresh;
+    stride = DEMI_MAX(w->near_last.stride, DEMI_MAX(64, w->count/w->domain_count*5/2));
+    stride = (stride + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    do {                                        /* until every domain's pairs fit */
+        again = 0;
+        if (demi_near_reserve(w, &w->near, w->domain_count, stride)) {
+            demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_near);
+            for (d = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 8;
+            stride = stride/4*5/DEMI_LANES*DEMI_LANES + 4*DEMI_LANES;
+            continue;
+        }
+        w->near_last = w->near;
+        w->near = swap;
+        return 0;
+    } while (again);
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_adopt);
+    w->near_reach = 0;
+    w->near_step = w->steps;
+    return 1;
+}
+
 /* The effects of the live scene: which laws act, whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, j, friction = 0, rolling = 0;
@@ -3159,9 +3360,9 @@ static void demi_effects(dem_world *w) {
     }
 }
 
-/* Skin from counted work, so that it is the same on every run: one candidate costs 1, rebuilding
-   costs 40 per body (bench/ measures both); candidates grow with the skin, rebuilds shrink with it.
-   */
+/* Skin from counted work, so that it is the same on every run: looking at a candidate costs 1, a
+   search 40 per body (bench/ measures both); candidates, looked at whenever the near list is made,
+   grow with the skin, searches shrink with it. */
 static void demi_skin_choose(dem_world *w) {
     const double r = (double)(w->radius_min > 0 ? w->radius_min : 1);
     const double steps = (double)(w->steps - w->last_rebuild);
@@ -3171,14 +3372,15 @@ static void demi_skin_choose(dem_world *w) {
     if (w->skin_auto <= 0) w->skin_auto = 0.1*r;
     else if (steps > 0 && w->rebuilds > 1 && w->count > 0) {
         double n = 0, hits = 0, slope, best;
-        double per_step = DEMI_MAX(2*w->reach, w->reach + w->wall_reach)/steps;
+        const double per_step = DEMI_MAX(2*w->reach, w->reach + w->wall_reach)/steps;
+        const double looks = DEMI_MIN(DEMI_MAX(w->near_skin/DEMI_MAX(per_step, 1e-300), 1), 100);
         int d;
         for (d = 0; d < w->domain_count; d++) {
             n += w->domains[d].own + w->domains[d].cross;
             hits += w->domains[d].contacts;
         }
         slope = DEMI_MAX((n - hits)/w->count, 0.02)/w->skin_auto;
-        best = sqrt(40*per_step/slope);
+        best = sqrt(40*per_step*looks/slope);
         best = DEMI_MIN(DEMI_MAX(best, 0.5*w->skin_auto), 2*w->skin_auto);
         w->skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->skin_auto), 0.01*r), 2*r);
     }
@@ -3243,6 +3445,8 @@ static dem_result demi_rebuild(dem_world *w) {
             return demi_no_memory(w, "dem_world_step");
     } while (again);
     if (!demi_cross_index(w)) return demi_no_memory(w, "dem_world_step");
+    demi_near_choose(w);
+    if (!demi_near_make(w, 1)) return demi_no_memory(w, "dem_world_step");
     if (!demi_wall_lists_reserve(w, DEMI_MAX(w->wall_stride, 64))) return demi_no_memory(w,
         "dem_world_step");
     do {
@@ -3275,7 +3479,7 @@ static int demi_list_stale(const dem_world *world, const char *call) {
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
     int d, l, k, n = 0;
-    if (!w->list_valid) return demi_list_stale(w, "dem_contacts_get");
+    if (!w->list_valid) return demi_list_stale(w, "dem_candidates_get");
     for (d = 0; d < w->domain_count; d++)
         for (l = 0; l < 2; l++) {
             const demi_list *list = l ? &w->cross : &w->own;
@@ -3597,16 +3801,15 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
 
 /* ---------------------------------------------------------------------------------------------
    >>respond
-   The loops that bring candidates, touch and law together. Grain-grain, 64 contacts at a time (a
-   tile): candidates are filtered without a branch, touching ones fill the tile; what the law needs
-   of the two bodies is copied into rows, one after the other (two rows of a body lie together, and
-   a copy of three numbers is cheaper than three gathers); the law runs over the rows (vectorised:
-   groups of a constant length, which compilers turn into vectors at -O2 too); pushes are added to
-   both bodies. Pairs that lead out of a domain leave their push in a slot of its own; the other
+   The loops that bring near pairs, touch and law together. Grain-grain, 64 pairs at a time (a
+   tile): what the law needs of the two bodies is copied into rows, pair after pair (a copy of three
+   numbers that lie together is cheaper than three gathers); touch and law run over the rows
+   (vectorised: groups of a constant length, which compilers turn into vectors at -O2 too); pushes
+   are added to both bodies. Pairs that lead out of a domain leave their push in a slot of its own; the other
    domain fetches it after all are done, in the order of the list. So every body's sum has one order
    whatever the number of threads. Grain-wall follows, per grain.
    --------------------------------------------------------------------------------------------- */
-/* Contacts under work. Sums and differences are of the two bodies, a plus b and a minus b. A row has
+/* Pairs under work. Sums and differences are of the two bodies, a plus b and a minus b. A row has
    room to spare so that rows do not lie a power of two apart, which caches take badly. */
 enum { DEMI_ROW = DEMI_TILE + 16 };
 typedef struct demi_tile {
@@ -3616,18 +3819,38 @@ typedef struct demi_tile {
     dem_real gone[3][DEMI_ROW];    /* m/s, the same over the step just taken */
     dem_real around[3][DEMI_ROW], turned[3][DEMI_ROW];    /* rad/s, sum of spins: now, step */
     dem_real apart[3][DEMI_ROW], parted[3][DEMI_ROW];     /* rad/s, difference of spins */
-    dem_real radius[2][DEMI_ROW], m_eff[DEMI_ROW], coef[DEMI_COEFS][DEMI_ROW];
-    dem_real memory[DEMI_MEMORY][DEMI_ROW];
+    dem_real radius[2][DEMI_ROW];
     /* worked out */
     dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
+    dem_real touch[DEMI_ROW];      /* 1 where the two touch, else 0 */
     dem_real normal[3][DEMI_ROW], turn[3][DEMI_ROW];      /* unit, 1/s */
     dem_real lean[DEMI_ROW];       /* m, from the middle to the contact, towards b */
     dem_real closing[DEMI_ROW], twist[DEMI_ROW];
     dem_real part[6][DEMI_ROW];                           /* energies */
     dem_real force[3][DEMI_ROW], torque[2][3][DEMI_ROW];  /* answers; torque on a, on b */
-    int32_t a[DEMI_ROW], b[DEMI_ROW], k[DEMI_ROW];        /* bodies, place in the list */
-    int count;
 } demi_tile;
+/* Where the pairs of a tile stand in the near list. */
+typedef struct demi_span {
+    const int32_t *a, *b;
+    const unsigned char *image;
+    dem_real *memory;              /* column e of pair q: memory[e*stride + q] */
+    const dem_real *coef;          /* the same */
+    size_t stride;
+    int count;
+} demi_span;
+static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
+    const demi_near *near = &w->near;
+    const size_t stride = (size_t)near->stride, at = (size_t)d*stride + (size_t)p;
+    demi_span s;
+    s.a = near->a + at;
+    s.b = near->b + at;
+    s.image = near->image + at;
+    s.memory = near->memory ? near->memory + (size_t)d*(size_t)w->memory_stride*stride + p : 0;
+    s.coef = near->coef ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
+    s.stride = stride;
+    s.count = count;
+    return s;
+}
 
 DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROW], int q) {
     return demi_v(rows[0][q], rows[1][q], rows[2][q]);
@@ -3674,50 +3897,26 @@ DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int
 /* Row of a body in an array of four reals each; unsigned, which spares a sign to extend. */
 #define DEMI_AT(array, body) ((array) + 4*(size_t)(uint32_t)(body))
 
-/* Fills the tile with touching pairs among candidates from..end-1; answers where it stopped. */
-DEM_INLINE int demi_tile_fill(const dem_world *w, const demi_list *list, int from, int end,
-                              int uniform, demi_tile *DEMI_RESTRICT t) {
+/* Copies what touch and law will see of the bodies into the rows. */
+DEM_INLINE void demi_tile_fetch(const dem_world *w, const demi_span *span, int count,
+                                const demi_run *r, demi_tile *DEMI_RESTRICT t) {
     const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT shift = w->image_shift;
-    const int32_t *DEMI_RESTRICT la = list->a, *DEMI_RESTRICT lb = list->b;
-    const unsigned char *DEMI_RESTRICT image = list->image;
-    const dem_real both = 4*w->uniform_radius*w->uniform_radius;
-    size_t k, m = 0;
-    for (k = (size_t)from; k < (size_t)end && m < DEMI_TILE; k++) {
-        const dem_real *a = DEMI_AT(x, la[k]), *b = DEMI_AT(x, lb[k]), *s = shift + image[k];
-        const dem_real dx = b[0] - a[0] + s[0], dy = b[1] - a[1] + s[1], dz = b[2] - a[2] + s[2];
-        dem_real cut = both;
-        if (!uniform) { cut = a[3] + b[3]; cut *= cut; }
-        t->k[m] = (int32_t)k;
-        t->gap[0][m] = dx; t->gap[1][m] = dy; t->gap[2][m] = dz;
-        m += dx*dx + dy*dy + dz*dz < cut;
-    }
-    t->count = (int)m;
-    return (int)k;
-}
-
-/* Copies what the law will see of bodies and memory into the rows, and fills the last group up with
-   copies of the last contact. Answers the number of rows to compute. */
-DEM_INLINE int demi_tile_fetch(const dem_world *w, const demi_list *list, const demi_run *r,
-                               demi_tile *DEMI_RESTRICT t) {
     const dem_real *DEMI_RESTRICT u = w->vel, *DEMI_RESTRICT s = w->spin;
     const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
-    const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT inv_mass = w->inv_mass;
-    const dem_real *DEMI_RESTRICT memory = list->memory, *DEMI_RESTRICT coef = list->coef;
-    const int32_t *DEMI_RESTRICT la = list->a, *DEMI_RESTRICT lb = list->b;
-    const uint32_t now = w->stamp;
-    const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES, last = t->count - 1;
+    const int32_t *DEMI_RESTRICT la = span->a, *DEMI_RESTRICT lb = span->b;
+    const unsigned char *DEMI_RESTRICT image = span->image;
     int n;
-    for (n = t->count; n < full; n++) {
-        t->k[n] = t->k[last];
-        demi_row_put(t->gap, n, demi_row(t->gap, last));
-    }
-    for (n = 0; n < full; n++) {
-        size_t q = (size_t)n, k;
+    for (n = 0; n < count; n++) {
+        size_t q = (size_t)n;
+        const dem_real *a, *b, *c;
         uint32_t i, j;
         DEMI_ONE_BY_ONE(q);
-        k = (size_t)t->k[q];
-        i = (uint32_t)la[k]; j = (uint32_t)lb[k];
-        t->a[q] = (int32_t)i; t->b[q] = (int32_t)j;
+        i = (uint32_t)la[q]; j = (uint32_t)lb[q];
+        a = DEMI_AT(x, i); b = DEMI_AT(x, j); c = shift + image[q];
+        t->gap[0][q] = b[0] - a[0] + c[0];
+        t->gap[1][q] = b[1] - a[1] + c[1];
+        t->gap[2][q] = b[2] - a[2] + c[2];
+        if (!r->uniform) { t->radius[0][q] = a[3]; t->radius[1][q] = b[3]; }
         demi_rows_minus(t->rate, q, DEMI_AT(u, i), DEMI_AT(u, j));
         if (r->turning) demi_rows_plus(t->around, q, DEMI_AT(s, i), DEMI_AT(s, j));
         if (r->parting) demi_rows_minus(t->apart, q, DEMI_AT(s, i), DEMI_AT(s, j));
@@ -3726,28 +3925,7 @@ DEM_INLINE int demi_tile_fetch(const dem_world *w, const demi_list *list, const 
             demi_rows_plus(t->turned, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
             if (r->parting) demi_rows_minus(t->parted, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
         }
-#define DEMI_COEF(e) if (e < most) t->coef[e][q] = c[e]
-#define DEMI_RECALL(e) if (e < r->keep) t->memory[e][q] = m[e]
-#define DEMI_FORGET(e) if (e < r->keep) t->memory[e][q] = 0
-        if (!r->uniform) {
-            const dem_real *c = coef + DEMI_COEFS*k;
-            const int most = r->law || r->rolling != DEM_ROLLING_NONE ? (int)DEMI_COEFS
-                : r->turning ? (int)DEMI_MU_ROLL : (int)DEMI_KT;
-            t->radius[0][q] = DEMI_AT(x, i)[3];
-            t->radius[1][q] = DEMI_AT(x, j)[3];
-            DEMI_EIGHT(DEMI_COEF);
-            if (most == DEMI_COEFS) t->m_eff[q] = 1/(inv_mass[i] + inv_mass[j]);
-        }
-        if (r->keep) {                          /* memory counts when written in the step before */
-            const dem_real *m = memory + (size_t)r->keep*k;
-            if (list->stamp[k] == now) DEMI_EIGHT(DEMI_RECALL);
-            else DEMI_EIGHT(DEMI_FORGET);
-        }
-#undef DEMI_COEF
-#undef DEMI_RECALL
-#undef DEMI_FORGET
     }
-    return full;
 }
 
 /* Slip over the step just taken, in the tangent plane of now: velocity and spin (times arm) are
@@ -3767,18 +3945,21 @@ DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone,
 DEM_INLINE void demi_tile_touch(demi_tile *DEMI_RESTRICT t, int q, const demi_run *r) {
     const dem_vec3 gap = demi_row(t->gap, q);
     const dem_real d = DEMI_SQRT(demi_dot(gap, gap)), over_d = 1/(d + DEMI_TINY);
+    dem_real overlap;
     t->length[q] = d;
     t->over_d[q] = over_d;
     demi_row_put(t->normal, q, demi_scale(gap, over_d));
     if (r->uniform) {
-        t->overlap[q] = 2*r->radius - d;
-        t->deep[q] = t->overlap[q]*r->inv_radius;
+        overlap = 2*r->radius - d;
+        t->deep[q] = overlap*r->inv_radius;
     } else {
         const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
-        t->overlap[q] = ra + rb - d;
-        t->deep[q] = t->overlap[q]/(ra < rb ? ra : rb);
+        overlap = ra + rb - d;
+        t->deep[q] = overlap/(ra < rb ? ra : rb);
         t->lean[q] = (ra - rb)/(ra + rb)*d/2;   /* the contact divides d as the radii do */
     }
+    t->touch[q] = overlap > 0 ? DEM_R(1) : DEM_R(0);
+    t->overlap[q] = overlap > 0 ? overlap : 0;
 }
 /* 2 motion: how the two move at the contact, now and over the step just taken */
 DEM_INLINE void demi_tile_motion(demi_tile *DEMI_RESTRICT t, int q, const demi_run *r) {
@@ -3803,12 +3984,13 @@ DEM_INLINE void demi_tile_motion(demi_tile *DEMI_RESTRICT t, int q, const demi_r
         t->twist[q] = demi_dot(turned, n)/2;
     }
 }
-/* 3 law: force and torque */
+/* 3 law: force and torque. What does not touch answers zero and forgets. */
 DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, int q,
-                              const demi_run *r) {
+                              const demi_span *span, const demi_run *r) {
     const int whole = r->law || r->rolling != DEM_ROLLING_NONE;
     const dem_vec3 none = demi_v(0, 0, 0);
-    dem_real m[DEMI_MEMORY];
+    const dem_real touch = t->touch[q];
+    dem_real *memory = span->memory + q, m[DEMI_MEMORY];
     dem_contact c;
     dem_push f;
     c.normal = demi_row(t->normal, q);
@@ -3829,23 +4011,23 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
         c.r_eff = r->coef[DEMI_R_EFF];
         c.m_eff = r->m_eff;
     } else {
-        c.kn = t->coef[DEMI_KN][q]; c.cn = t->coef[DEMI_CN][q];
-        c.kt = r->turning ? t->coef[DEMI_KT][q] : 0;
-        c.ct = r->turning ? t->coef[DEMI_CT][q] : 0;
-        c.friction = r->turning ? t->coef[DEMI_MU][q] : 0;
-        c.friction_static = r->turning ? t->coef[DEMI_MU_STATIC][q] : 0;
-        c.rolling_friction = whole ? t->coef[DEMI_MU_ROLL][q] : 0;
-        c.r_eff = whole ? t->coef[DEMI_R_EFF][q] : 0;
-        c.m_eff = whole ? t->m_eff[q] : 0;
+        const dem_real *coef = span->coef + q;
+        const size_t stride = span->stride;
+        c.kn = coef[DEMI_KN*stride]; c.cn = coef[DEMI_CN*stride];
+        c.kt = coef[DEMI_KT*stride]; c.ct = coef[DEMI_CT*stride];
+        c.friction = coef[DEMI_MU*stride]; c.friction_static = coef[DEMI_MU_STATIC*stride];
+        c.rolling_friction = coef[DEMI_MU_ROLL*stride];
+        c.r_eff = coef[DEMI_R_EFF*stride];
+        c.m_eff = coef[DEMI_M_EFF*stride];
     }
-#define DEMI_RECALL(e) m[e] = e < r->keep ? t->memory[e][q] : 0
-#define DEMI_KEEP(e) if (e < r->keep) t->memory[e][q] = m[e]
+#define DEMI_RECALL(e) m[e] = e < r->keep ? memory[(e)*span->stride] : 0
+#define DEMI_KEEP(e) if (e < r->keep) memory[(e)*span->stride] = m[e]*touch
     DEMI_EIGHT(DEMI_RECALL);
     f.tangent = f.moment = none;
     f.normal = 0;
     if (r->law) {
-        c.material_a = w->body_material[t->a[q]];
-        c.material_b = w->body_material[t->b[q]];
+        c.material_a = w->body_material[span->a[q]];
+        c.material_b = w->body_material[span->b[q]];
         c.wall = 0;
         c.user = w->desc.law_user;
         r->law(&c, m, &f);
@@ -3853,64 +4035,59 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
         demi_law_energy part = {0, 0, 0, 0, 0, 0};
         demi_law(&c, m, &f, r->normal, r->tangent, r->rolling, r->clipped, r->ledger, &part);
         if (r->ledger) {
-            t->part[0][q] = part.dashpot;    t->part[1][q] = part.elastic;
-            t->part[2][q] = part.shear_work; t->part[3][q] = part.slide;
-            t->part[4][q] = part.shear_stored; t->part[5][q] = part.roll;
+            t->part[0][q] = part.dashpot*touch;      t->part[1][q] = part.elastic*touch;
+            t->part[2][q] = part.shear_work*touch;   t->part[3][q] = part.slide*touch;
+            t->part[4][q] = part.shear_stored*touch; t->part[5][q] = part.roll*touch;
         }
     }
     DEMI_EIGHT(DEMI_KEEP);
 #undef DEMI_RECALL
 #undef DEMI_KEEP
-    demi_row_put(t->force, q, demi_sub(f.tangent, demi_scale(c.normal, f.normal)));
+    f.tangent = demi_scale(f.tangent, touch);
+    demi_row_put(t->force, q, demi_sub(f.tangent, demi_scale(c.normal, f.normal*touch)));
     if (r->turning) {
         const dem_vec3 across = demi_cross(c.normal, f.tangent);
         const dem_real half = t->length[q]/2, lean = r->uniform ? 0 : t->lean[q];
         if (r->parting) {
+            f.moment = demi_scale(f.moment, touch);
             demi_row_put(t->torque[0], q, demi_add(demi_scale(across, half + lean), f.moment));
             demi_row_put(t->torque[1], q, demi_sub(demi_scale(across, half - lean), f.moment));
         } else demi_row_put(t->torque[0], q, demi_scale(across, half));  /* the same on both */
     }
 }
+/* For a law that is called: only what touches, one by one. */
+DEM_INLINE void demi_tile_call(const dem_world *w, demi_tile *DEMI_RESTRICT t, int q,
+                               const demi_span *span, const demi_run *r) {
+    int e;
+    if (t->touch[q] > 0) { demi_tile_law(w, t, q, span, r); return; }
+    demi_row_put(t->force, q, demi_v(0, 0, 0));
+    demi_row_put(t->torque[0], q, demi_v(0, 0, 0));
+    demi_row_put(t->torque[1], q, demi_v(0, 0, 0));
+    for (e = 0; e < r->keep; e++) span->memory[(size_t)e*span->stride + (size_t)q] = 0;
+}
 
-/* The whole tile; memory goes back to the list, energies are summed in order. */
-DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_list *list, const demi_run *r,
+/* The whole tile; energies are summed in order. */
+DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_span *span, const demi_run *r,
                                   demi_tile *DEMI_RESTRICT t, double *energy) {
-    dem_real *DEMI_RESTRICT memory = list->memory;
+    const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     int q, l;
-    if (!t->count) return;
-    if (r->law) {
-        demi_tile_fetch(w, list, r, t);
-        for (q = 0; q < t->count; q++) {
-            demi_tile_touch(t, q, r);
-            demi_tile_motion(t, q, r);
-            demi_tile_law(w, t, q, r);
-        }
-    } else {
-        const int full = demi_tile_fetch(w, list, r, t);
-        for (q = 0; q < full; q += DEMI_LANES) {
-            DEMI_VECTOR
-            for (l = 0; l < DEMI_LANES; l++) demi_tile_touch(t, q + l, r);
-        }
-        for (q = 0; q < full; q += DEMI_LANES) {
-            DEMI_VECTOR
-            for (l = 0; l < DEMI_LANES; l++) demi_tile_motion(t, q + l, r);
-        }
-        for (q = 0; q < full; q += DEMI_LANES) {
-            DEMI_VECTOR
-            for (l = 0; l < DEMI_LANES; l++) demi_tile_law(w, t, q + l, r);
-        }
+    demi_tile_fetch(w, span, full, r, t);
+    for (q = 0; q < full; q += DEMI_LANES) {
+        DEMI_VECTOR
+        for (l = 0; l < DEMI_LANES; l++) demi_tile_touch(t, q + l, r);
     }
-    if (r->keep)
-        for (q = 0; q < t->count; q++) {
-            const int k = t->k[q];
-            dem_real *m = memory + (size_t)r->keep*(size_t)k;
-#define DEMI_KEEP(e) if (e < r->keep) m[e] = t->memory[e][q]
-            DEMI_EIGHT(DEMI_KEEP);
-#undef DEMI_KEEP
-            list->stamp[k] = w->stamp + 1;
+    for (q = 0; q < full; q += DEMI_LANES) {
+        DEMI_VECTOR
+        for (l = 0; l < DEMI_LANES; l++) demi_tile_motion(t, q + l, r);
+    }
+    if (r->law) for (q = 0; q < span->count; q++) demi_tile_call(w, t, q, span, r);
+    else
+        for (q = 0; q < full; q += DEMI_LANES) {
+            DEMI_VECTOR
+            for (l = 0; l < DEMI_LANES; l++) demi_tile_law(w, t, q + l, span, r);
         }
     if (r->ledger)
-        for (q = 0; q < t->count; q++) {
+        for (q = 0; q < span->count; q++) {
             energy[DEMI_E_DASHPOT] += (double)t->part[0][q];
             energy[DEMI_E_ELASTIC] += (double)t->part[1][q];
             energy[DEMI_E_SHEAR_WORK] += (double)t->part[2][q];
@@ -3920,39 +4097,44 @@ DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_list *list, con
         }
 }
 
-/* Adds a tile's pushes to both bodies; answers the largest of `deep`. */
-DEM_INLINE dem_real demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_run *r,
-                                      dem_real *DEMI_RESTRICT force, dem_real *DEMI_RESTRICT torque,
-                                      dem_real deepest) {
+/* What a tile adds up to besides forces. */
+typedef struct demi_tally { dem_real deepest, contacts; } demi_tally;
+DEM_INLINE void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_tally *sum) {
+    int q;
+    for (q = 0; q < count; q++) {
+        sum->deepest = t->deep[q] > sum->deepest ? t->deep[q] : sum->deepest;
+        sum->contacts += t->touch[q];
+    }
+}
+/* Adds a tile's pushes to both bodies. */
+DEM_INLINE void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                                  const demi_run *r, dem_real *DEMI_RESTRICT force,
+                                  dem_real *DEMI_RESTRICT torque) {
     const int second = r->parting ? 1 : 0;
     int n;
-    for (n = 0; n < t->count; n++) {
+    for (n = 0; n < span->count; n++) {
         const size_t q = (size_t)n;
-        dem_real *fa = DEMI_AT(force, t->a[q]), *fb = DEMI_AT(force, t->b[q]);
+        dem_real *fa = DEMI_AT(force, span->a[q]), *fb = DEMI_AT(force, span->b[q]);
         const dem_real fx = t->force[0][q], fy = t->force[1][q], fz = t->force[2][q];
         fa[0] += fx; fa[1] += fy; fa[2] += fz;
         fb[0] -= fx; fb[1] -= fy; fb[2] -= fz;
         if (r->turning) {
-            dem_real *ma = DEMI_AT(torque, t->a[q]), *mb = DEMI_AT(torque, t->b[q]);
+            dem_real *ma = DEMI_AT(torque, span->a[q]), *mb = DEMI_AT(torque, span->b[q]);
             ma[0] += t->torque[0][0][q]; ma[1] += t->torque[0][1][q]; ma[2] += t->torque[0][2][q];
             mb[0] += t->torque[second][0][q]; mb[1] += t->torque[second][1][q];
             mb[2] += t->torque[second][2][q];
         }
-        deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
     }
-    return deepest;
 }
 /* The same for pairs that lead out: the far ends' pushes stay in slots, six reals each. */
-DEM_INLINE dem_real demi_tile_send(dem_world *w, demi_tile *DEMI_RESTRICT t, const demi_run *r,
-                                   int slot, dem_real deepest) {
+DEM_INLINE void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                               const demi_run *r, dem_real *DEMI_RESTRICT force,
+                               dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT out) {
     const int second = r->parting ? 1 : 0;
-    dem_real *DEMI_RESTRICT force = w->force, *DEMI_RESTRICT torque = w->torque;
-    dem_real *DEMI_RESTRICT out = w->cross_push + 6*(size_t)slot;
     int q;
-    for (q = 0; q < t->count; q++, out += 6) {
-        dem_real *fa = DEMI_AT(force, t->a[q]), *ma = DEMI_AT(torque, t->a[q]);
+    for (q = 0; q < span->count; q++, out += 6) {
+        dem_real *fa = DEMI_AT(force, span->a[q]), *ma = DEMI_AT(torque, span->a[q]);
         const dem_vec3 f = demi_row(t->force, q);
-        w->cross_hit[t->k[q]] = slot + q;
         fa[0] += f.x; fa[1] += f.y; fa[2] += f.z;
         out[0] = -f.x; out[1] = -f.y; out[2] = -f.z;
         if (r->turning) {
@@ -3960,9 +4142,7 @@ DEM_INLINE dem_real demi_tile_send(dem_world *w, demi_tile *DEMI_RESTRICT t, con
             ma[0] += m.x; ma[1] += m.y; ma[2] += m.z;
             demi_put(out + 3, demi_row(t->torque[second], q));
         }
-        deepest = t->deep[q] > deepest ? t->deep[q] : deepest;
     }
-    return deepest;
 }
 
 /* All pairs of one domain: those inside it, then those that lead out. */
@@ -3971,25 +4151,25 @@ DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rol
     demi_domain *domain = &w->domains[d];
     const demi_run r = demi_run_of(w, normal, tangent, rolling, uniform, ledger, law,
                                    w->forces_valid ? w->dt : 0);  /* 0: looking only */
-    dem_real deepest = 0;
     DEMI_ALIGNED demi_tile tile;
-    int l, slot = d*w->cross.stride + 1;
-    domain->contacts = 0;
+    demi_tally tally = {0, 0};
+    int l, p;
     for (l = 0; l < 2; l++) {
-        const demi_list *list = l ? &w->cross : &w->own;
-        int k = d*list->stride;
-        const int end = k + (l ? domain->cross : domain->own);
-        if (l && end > k) memset(w->cross_hit + k, 0, (size_t)(end - k)*sizeof *w->cross_hit);
-        while (k < end) {
-            k = demi_tile_fill(w, list, k, end, uniform, &tile);
-            demi_tile_respond(w, list, &r, &tile, domain->energy);
-            if (!l) deepest = demi_tile_scatter(&tile, &r, w->force, w->torque, deepest);
-            else deepest = demi_tile_send(w, &tile, &r, slot, deepest);
-            if (l) slot += tile.count;
-            domain->contacts += tile.count;
+        const int begin = l ? domain->near_cross : 0;
+        const int end = l ? domain->near_end : domain->near_own;
+        for (p = begin; p < end; p += DEMI_TILE) {
+            const int count = DEMI_MIN((int)DEMI_TILE, end - p);
+            const demi_span span = demi_span_of(w, d, p, count);
+            demi_tile_respond(w, &span, &r, &tile, domain->energy);
+            demi_tile_tally(&tile, count, &tally);
+            if (!l) demi_tile_scatter(&tile, &span, &r, w->force, w->torque);
+            else demi_tile_send(&tile, &span, &r, w->force, w->torque,
+                                w->cross_push + 6*((size_t)d*(size_t)w->cross.stride + 1 +
+                                                   (size_t)(p - begin)));
         }
     }
-    domain->overlap = DEMI_MAX(domain->overlap, (double)deepest);
+    domain->contacts = (int)tally.contacts;
+    domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
 }
 
 /* The far ends of pairs that lead into domain d from domains before it. */
@@ -4770,7 +4950,6 @@ static void demi_forces(dem_world *w) {
     swap = w->wall_now_; w->wall_now_ = w->wall_next_; w->wall_next_ = swap;
     w->wall_now = (demi_wall_contact *)w->wall_now_.data;
     w->wall_next = (demi_wall_contact *)w->wall_next_.data;
-    w->stamp++;
     for (i = 0; i < w->wall_count; i++) {  /* domains in order: one order whatever the threads */
         dem_channels *c = &w->walls[i].channels;
         const dem_vec3 axis = w->walls[i].motion.axis;
@@ -4869,6 +5048,7 @@ static dem_result demi_step_move(dem_world *w) {
     }
     w->speed_max = sqrt(speed2);
     w->reach += w->speed_max*(double)w->dt;
+    w->near_reach += w->speed_max*(double)w->dt;
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->energy[DEMI_E_GRAVITY] += work;
@@ -4915,6 +5095,9 @@ static dem_result demi_step_once(dem_world *w) {
         demi_kernel_choose(w);
         /* faster than thought: ask again */
         if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;
+    } else if (2*w->near_reach > w->near_skin) {
+        demi_near_choose(w);
+        if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
     }
 
     /* 3 touch, 4 respond, 5 gather */
@@ -5153,48 +5336,44 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
 }
 DEM_API void dem_overlap_reset(dem_world *w) { w->overlap_max = 0; }
 
-/* One contact, its force by the law of the run on a copy of its memory. */
-static void demi_contact_force(const dem_world *w, const demi_list *list, int k, dem_vec3 gap,
-                               dem_contact_info *out) {
+/* One near pair, if it touches: its force by the law of the run on a copy of its memory. */
+static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out) {
     const demi_run r = demi_run_of(w, w->normal, w->tangent, w->rolling, w->uniform, 0,
                                    w->desc.law, 0);
-    const int a = list->a[k], b = list->b[k];
-    const dem_real ra = w->pos[4*a + 3], rb = w->pos[4*b + 3], l = demi_length(gap);
+    demi_span span = demi_span_of(w, d, p, 1);
+    const int a = span.a[0], b = span.b[0];
+    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
     demi_tile tile;
-    tile.count = 1;
-    tile.k[0] = k;
-    tile.gap[0][0] = gap.x; tile.gap[1][0] = gap.y; tile.gap[2][0] = gap.z;
-    demi_tile_fetch(w, list, &r, &tile);
+    dem_vec3 gap;
+    if (r.keep) demi_columns_copy(span.memory, w->near.stride, 0, memory, 1, 0, r.keep);
+    if (!r.uniform) demi_columns_copy(span.coef, w->near.stride, 0, coef, 1, 0, DEMI_PAIR_COLUMNS);
+    span.memory = memory;
+    span.coef = coef;
+    span.stride = 1;
+    demi_tile_fetch(w, &span, 1, &r, &tile);
+    gap = demi_row(tile.gap, 0);
     demi_tile_touch(&tile, 0, &r);
+    if (!(tile.touch[0] > 0)) return 0;
+    if (!out) return 1;
     demi_tile_motion(&tile, 0, &r);
-    demi_tile_law(w, &tile, 0, &r);
+    demi_tile_law(w, &tile, 0, &span, &r);
     out->a = dem_bodies_id(w, a);
     out->b = dem_bodies_id(w, b);
     out->wall = 0;
-    out->normal = demi_scale(gap, 1/(l + DEMI_TINY));
-    out->overlap = ra + rb - l;
-    out->point = demi_add(demi_at(w->pos + 4*a), demi_scale(gap, ra/(ra + rb)));
+    out->normal = demi_row(tile.normal, 0);
+    out->overlap = tile.overlap[0];
+    out->point = demi_add(demi_at(w->pos + 4*a),
+                          demi_scale(gap, w->pos[4*a + 3]/(w->pos[4*a + 3] + w->pos[4*b + 3])));
     out->force = demi_row(tile.force, 0);
+    return 1;
 }
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
-    const demi_periods p = demi_periods_of(w);
-    int d, l, k, n = 0;
-    if (!w->list_valid) return demi_list_stale(w, "dem_candidates_get");
+    int d, k, n = 0;
+    if (!w->list_valid) return demi_list_stale(w, "dem_contacts_get");
     for (d = 0; d < w->domain_count; d++) {
-        for (l = 0; l < 2; l++) {
-            const demi_list *list = l ? &w->cross : &w->own;
-            const int count = l ? w->domains[d].cross : w->domains[d].own;
-            for (k = d*list->stride; k < d*list->stride + count; k++) {
-                const dem_real *x = w->pos + 4*list->a[k], *y = w->pos + 4*list->b[k];
-                const dem_real dx = demi_image(y[0] - x[0], p.half[0], p.period[0]);
-                const dem_real dy = demi_image(y[1] - x[1], p.half[1], p.period[1]);
-                const dem_real dz = demi_image(y[2] - x[2], p.half[2], p.period[2]);
-                if (!(dx*dx + dy*dy + dz*dz < (x[3] + y[3])*(x[3] + y[3]))) continue;
-                if (n < capacity && out)
-                    demi_contact_force(w, list, k, demi_v(dx, dy, dz), &out[n]);
-                n++;
-            }
-        }
+        const demi_domain *domain = &w->domains[d];
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
+            n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0);
         for (k = 0; k < w->domains[d].wall_contacts; k++, n++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
             if (n >= capacity || !out) continue;
@@ -5214,7 +5393,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
    contact memory as a sum over contacts of their own digests, for the same reason. */
 DEM_API uint64_t dem_world_hash(const dem_world *w) {
     uint64_t h = DEMI_HASH_START, sum = 0;
-    int i, d, l, k;
+    int i, d, k;
     h = demi_hash(h, &w->time, sizeof w->time);
     for (i = 0; i < w->slot_count; i++) {
         const int b = w->slot_index[i];
@@ -5230,24 +5409,22 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
             h = demi_hash(h, w->walls[i].pose.rotation, sizeof w->walls[i].pose.rotation);
         }
     for (d = 0; d < w->domain_count && w->list_valid; d++) {
-        for (l = 0; l < 2 && w->memory_stride; l++) {
-            const demi_list *list = l ? &w->cross : &w->own;
-            const int count = l ? w->domains[d].cross : w->domains[d].own;
-            for (k = d*list->stride; k < d*list->stride + count; k++) {
-                uint64_t one = DEMI_HASH_START;
-                const uint32_t sa = w->body_slot[list->a[k]], sb = w->body_slot[list->b[k]];
-                const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
-                if (list->stamp[k] != w->stamp) continue;
-                one = demi_hash(one, &lo, sizeof lo);
-                one = demi_hash(one, &hi, sizeof hi);
-                for (i = 0; i < w->memory_stride; i++) {
-                    dem_real m = list->memory[k*w->memory_stride + i];
-                    if (sa > sb && (w->vector_mask >> i & 1)) m = -m;
-                    if (!(m < 0) && !(m > 0)) m = 0;               /* -0 is 0 */
-                    one = demi_hash(one, &m, sizeof m);
-                }
-                sum += one;
+        const demi_domain *domain = &w->domains[d];
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
+            const demi_span span = demi_span_of(w, d, k, 1);
+            const uint32_t sa = w->body_slot[span.a[0]], sb = w->body_slot[span.b[0]];
+            const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
+            uint64_t one = DEMI_HASH_START;
+            if (!demi_near_remembers(w, d, k)) continue;
+            one = demi_hash(one, &lo, sizeof lo);
+            one = demi_hash(one, &hi, sizeof hi);
+            for (i = 0; i < w->memory_stride; i++) {
+                dem_real m = span.memory[(size_t)i*span.stride];
+                if (sa > sb && (w->vector_mask >> i & 1)) m = -m;
+                if (!(m < 0) && !(m > 0)) m = 0;                   /* -0 is 0 */
+                one = demi_hash(one, &m, sizeof m);
             }
+            sum += one;
         }
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
@@ -6230,7 +6407,7 @@ DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char 
    checks all of that first, then makes room, then copies: until then the world is as it was.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 1 };
+enum { DEMI_CHECKPOINT_VERSION = 2 };
 
 /* from: reading */
 typedef struct demi_stream { FILE *file; const char *from; uint64_t sum; } demi_stream;
@@ -6248,8 +6425,8 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
 
 typedef struct demi_shape {         /* how large the arrays are */
     int32_t count, slots, domains, walls, fields, own_stride, cross_stride, wall_stride,
-        wall_now_stride, memory_stride;
-    int32_t list_valid, own_total, cross_total, candidate_total, contact_total;
+        wall_now_stride, memory_stride, near_stride;
+    int32_t list_valid, own_total, cross_total, near_total, candidate_total, contact_total;
     int32_t carry_count, carry_rows, carry_stride;
 } demi_shape;
 static demi_shape demi_shape_of(const dem_world *w) {
@@ -6260,7 +6437,7 @@ static demi_shape demi_shape_of(const dem_world *w) {
     s.walls = w->wall_count; s.fields = w->field_count;
     s.own_stride = w->own.stride; s.cross_stride = w->cross.stride;
     s.wall_stride = w->wall_stride; s.wall_now_stride = w->wall_now_stride;
-    s.memory_stride = w->memory_stride;
+    s.memory_stride = w->memory_stride; s.near_stride = w->near.stride;
     s.list_valid = w->list_valid;
     s.carry_count = w->list_valid ? 0 : w->carry_count;      /* memory between two lists */
     s.carry_rows = s.carry_count ? w->carry_rows : 0;
@@ -6268,6 +6445,7 @@ static demi_shape demi_shape_of(const dem_world *w) {
     for (d = 0; d < w->domain_count; d++) {
         s.own_total += w->domains[d].own;
         s.cross_total += w->domains[d].cross;
+        s.near_total += w->domains[d].near_end;
         s.candidate_total += w->domains[d].walls;
         s.contact_total += w->domains[d].wall_contacts;
     }
@@ -6281,7 +6459,8 @@ static size_t demi_state_size(const dem_world *w, const demi_shape *s) {
     size_t size = n*((w->desc.integrator == DEM_POSITION_VERLET ? 35 : 31)*r + 8) +
         (size_t)s->slots*8 + (size_t)s->domains*sizeof(demi_domain);
     int i;
-    size += pairs*(12 + (size_t)s->memory_stride*r) + (size_t)s->candidate_total*12;
+    size += pairs*8 + (size_t)s->near_total*(12 + (size_t)s->memory_stride*r) +
+        (size_t)s->candidate_total*12;
     size += (size_t)s->contact_total*sizeof(demi_wall_contact);
     size += (size_t)s->walls*(3*sizeof(dem_pose) + sizeof(dem_channels) + sizeof(dem_motion));
     if (s->carry_count)
@@ -6311,7 +6490,9 @@ static void demi_state_scalars(dem_world *w, demi_stream *s) {
     demi_visit(s, &w->primed, sizeof w->primed);
     demi_visit(s, &w->moved, sizeof w->moved);
     demi_visit(s, &w->pairs_changed, sizeof w->pairs_changed);
-    demi_visit(s, &w->stamp, sizeof w->stamp);               demi_visit(s, &w->overlap_max,
+    demi_visit(s, &w->near_skin, sizeof w->near_skin);
+    demi_visit(s, &w->near_reach, sizeof w->near_reach);
+    demi_visit(s, &w->near_step, sizeof w->near_step);       demi_visit(s, &w->overlap_max,
         sizeof w->overlap_max);
     demi_visit(s, &w->speed_max, sizeof w->speed_max);       demi_visit(s, w->energy,
         sizeof w->energy);
@@ -6323,9 +6504,9 @@ static void demi_state_scalars(dem_world *w, demi_stream *s) {
         sizeof w->slot_pending);
 }
 static size_t demi_scalars_size(dem_world *w) {
-    return sizeof w->balance + 4*sizeof(double) + 3*sizeof(uint64_t) + sizeof(double) +
+    return sizeof w->balance + 6*sizeof(double) + 4*sizeof(uint64_t) + sizeof(double) +
         sizeof(dem_real) + sizeof(double) +
-           6*sizeof(int) + sizeof(uint32_t) + 2*sizeof(double) + sizeof w->energy +
+           6*sizeof(int) + 2*sizeof(double) + sizeof w->energy +
                4*sizeof(double) + 2*sizeof(int);
 }
 static void demi_state_visit(dem_world *w, demi_stream *s) {
@@ -6348,11 +6529,18 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
             demi_list *list = i ? &w->cross : &w->own;
             const size_t from = (size_t)d*(size_t)list->stride;
             const size_t pairs = (size_t)(i ? domain->cross : domain->own);
-            const size_t per = (size_t)w->memory_stride;
             demi_visit(s, list->a + from, 4*pairs);
             demi_visit(s, list->b + from, 4*pairs);
-            demi_visit(s, list->stamp + from, 4*pairs);
-            if (per) demi_visit(s, list->memory + from*per, pairs*per*r);
+        }
+        {
+            const size_t from = (size_t)d*(size_t)w->near.stride;
+            const size_t pairs = (size_t)domain->near_end;
+            demi_visit(s, w->near.a + from, 4*pairs);
+            demi_visit(s, w->near.b + from, 4*pairs);
+            demi_visit(s, w->near.k + from, 4*pairs);
+            for (i = 0; i < w->memory_stride; i++)
+                demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
+                           (size_t)i*(size_t)w->near.stride), pairs*r);
         }
         demi_visit(s, w->wall_body + d*w->wall_stride, (size_t)domain->walls*4);
         demi_visit(s, w->wall_id + d*w->wall_stride, (size_t)domain->walls*4);
@@ -6521,6 +6709,7 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     const demi_shape *shape = &head.shape;
     demi_array bytes = {0, 0, 0};
     const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride;
+    const int near = w->near.stride;
     const int domains = w->domain_count;
     const int stride = w->memory_stride, uniform = w->uniform;
     const demi_periods p = demi_periods_of(w);
@@ -6543,10 +6732,12 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
            demi_wall_lists_reserve(w, shape->wall_stride) &&
            demi_wall_contacts_reserve(w, (size_t)shape->domains*(size_t)shape->wall_now_stride,
                                       (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
+           demi_near_reserve(w, &w->near, shape->domains, shape->near_stride) &&
            demi_cross_reserve(w, (size_t)shape->domains*(size_t)shape->cross_stride) &&
            demi_carry_reserve(w, shape->carry_rows, shape->carry_count, shape->carry_stride);
     if (!room) {
         w->own.stride = own; w->cross.stride = cross; w->wall_stride = walls;
+        w->near.stride = near;
         w->domain_count = domains; w->memory_stride = stride; w->uniform = uniform;
         demi_array_free(w, &bytes);
         return demi_no_memory(w, "dem_checkpoint_read");
@@ -6572,15 +6763,22 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     demi_effects(w);
     demi_image_shifts(w);
     w->lll_valid = 0;
-    for (d = 0; d < w->domain_count; d++)       /* what follows from the rest is not stored */
+    for (d = 0; d < w->domain_count; d++) {     /* what follows from the rest is not stored */
+        const demi_domain *domain = &w->domains[d];
+        const int first = d*w->near.stride;
         for (l = 0; l < 2; l++) {
             demi_list *list = l ? &w->cross : &w->own;
-            const int first = d*list->stride, count = l ? w->domains[d].cross : w->domains[d].own;
-            for (k = first; k < first + count; k++) {
-                demi_pair_image(w, &p, list, k);
-                if (!w->uniform) demi_pair_coefs(w, list, k);
-            }
+            const int begin = d*list->stride, count = l ? domain->cross : domain->own;
+            for (k = begin; k < begin + count; k++)
+                list->image[k] = demi_pair_image(w, &p, list->a[k], list->b[k]);
         }
+        for (k = 0; k < domain->near_end; k++) {
+            const int a = w->near.a[first + k], b = w->near.b[first + k];
+            w->near.image[first + k] = demi_pair_image(w, &p, a, b);
+            if (!w->uniform) demi_near_coefs(w, &w->near, d, k, a, b);
+        }
+        demi_near_adopt(w, d);
+    }
     for (k = 0; k < w->wall_count; k++) {
         w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
     }
@@ -6680,7 +6878,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
 
 DEM_API void dem_world_destroy(dem_world *w) {
     demi_room set[16];
-    demi_array *arrays[32];
+    demi_array *arrays[48];
     int i, n, k = 0;
     dem_allocator allocator;
     if (!w) return;
@@ -6699,9 +6897,10 @@ DEM_API void dem_world_destroy(dem_world *w) {
     demi_free(w, w->fields, (size_t)w->field_capacity, sizeof(demi_field));
     for (i = 0; i < 2; i++) {
         demi_list *list = i ? &w->cross : &w->own;
-        arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->stamp_;
-        arrays[k++] = &list->image_;
-        arrays[k++] = &list->memory_; arrays[k++] = &list->coef_;
+        demi_near *near = i ? &w->near_last : &w->near;
+        arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->image_;
+        arrays[k++] = &near->a_; arrays[k++] = &near->b_; arrays[k++] = &near->k_;
+        arrays[k++] = &near->image_; arrays[k++] = &near->memory_; arrays[k++] = &near->coef_;
     }
     arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_hit_; arrays[k++] = &w->cross_push_;
     arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
