@@ -3820,6 +3820,7 @@ typedef struct demi_tile {
     dem_real around[3][DEMI_ROW], turned[3][DEMI_ROW];    /* rad/s, sum of spins: now, step */
     dem_real apart[3][DEMI_ROW], parted[3][DEMI_ROW];     /* rad/s, difference of spins */
     dem_real radius[2][DEMI_ROW];
+    dem_real memory[DEMI_MEMORY][DEMI_ROW], coef[DEMI_PAIR_COLUMNS][DEMI_ROW];
     /* worked out */
     dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
     dem_real touch[DEMI_ROW];      /* 1 where the two touch, else 0 */
@@ -3897,7 +3898,7 @@ DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int
 /* Row of a body in an array of four reals each; unsigned, which spares a sign to extend. */
 #define DEMI_AT(array, body) ((array) + 4*(size_t)(uint32_t)(body))
 
-/* Copies what touch and law will see of the bodies into the rows. */
+/* Copies what touch and law will see of bodies and memory into the rows. */
 DEM_INLINE void demi_tile_fetch(const dem_world *w, const demi_span *span, int count,
                                 const demi_run *r, demi_tile *DEMI_RESTRICT t) {
     const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT shift = w->image_shift;
@@ -3905,7 +3906,11 @@ DEM_INLINE void demi_tile_fetch(const dem_world *w, const demi_span *span, int c
     const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
     const int32_t *DEMI_RESTRICT la = span->a, *DEMI_RESTRICT lb = span->b;
     const unsigned char *DEMI_RESTRICT image = span->image;
-    int n;
+    int n, e;
+    for (e = 0; e < r->keep; e++)
+        memcpy(t->memory[e], span->memory + (size_t)e*span->stride, (size_t)count*sizeof(dem_real));
+    for (e = 0; e < DEMI_PAIR_COLUMNS && !r->uniform; e++)
+        memcpy(t->coef[e], span->coef + (size_t)e*span->stride, (size_t)count*sizeof(dem_real));
     for (n = 0; n < count; n++) {
         size_t q = (size_t)n;
         const dem_real *a, *b, *c;
@@ -3990,7 +3995,7 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
     const int whole = r->law || r->rolling != DEM_ROLLING_NONE;
     const dem_vec3 none = demi_v(0, 0, 0);
     const dem_real touch = t->touch[q];
-    dem_real *memory = span->memory + q, m[DEMI_MEMORY];
+    dem_real m[DEMI_MEMORY];
     dem_contact c;
     dem_push f;
     c.normal = demi_row(t->normal, q);
@@ -4011,17 +4016,15 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
         c.r_eff = r->coef[DEMI_R_EFF];
         c.m_eff = r->m_eff;
     } else {
-        const dem_real *coef = span->coef + q;
-        const size_t stride = span->stride;
-        c.kn = coef[DEMI_KN*stride]; c.cn = coef[DEMI_CN*stride];
-        c.kt = coef[DEMI_KT*stride]; c.ct = coef[DEMI_CT*stride];
-        c.friction = coef[DEMI_MU*stride]; c.friction_static = coef[DEMI_MU_STATIC*stride];
-        c.rolling_friction = coef[DEMI_MU_ROLL*stride];
-        c.r_eff = coef[DEMI_R_EFF*stride];
-        c.m_eff = coef[DEMI_M_EFF*stride];
+        c.kn = t->coef[DEMI_KN][q]; c.cn = t->coef[DEMI_CN][q];
+        c.kt = t->coef[DEMI_KT][q]; c.ct = t->coef[DEMI_CT][q];
+        c.friction = t->coef[DEMI_MU][q]; c.friction_static = t->coef[DEMI_MU_STATIC][q];
+        c.rolling_friction = t->coef[DEMI_MU_ROLL][q];
+        c.r_eff = t->coef[DEMI_R_EFF][q];
+        c.m_eff = t->coef[DEMI_M_EFF][q];
     }
-#define DEMI_RECALL(e) m[e] = e < r->keep ? memory[(e)*span->stride] : 0
-#define DEMI_KEEP(e) if (e < r->keep) memory[(e)*span->stride] = m[e]*touch
+#define DEMI_RECALL(e) m[e] = e < r->keep ? t->memory[e][q] : 0
+#define DEMI_KEEP(e) if (e < r->keep) t->memory[e][q] = m[e]*touch
     DEMI_EIGHT(DEMI_RECALL);
     f.tangent = f.moment = none;
     f.normal = 0;
@@ -4063,7 +4066,7 @@ DEM_INLINE void demi_tile_call(const dem_world *w, demi_tile *DEMI_RESTRICT t, i
     demi_row_put(t->force, q, demi_v(0, 0, 0));
     demi_row_put(t->torque[0], q, demi_v(0, 0, 0));
     demi_row_put(t->torque[1], q, demi_v(0, 0, 0));
-    for (e = 0; e < r->keep; e++) span->memory[(size_t)e*span->stride + (size_t)q] = 0;
+    for (e = 0; e < r->keep; e++) t->memory[e][q] = 0;
 }
 
 /* The whole tile; energies are summed in order. */
@@ -4086,6 +4089,9 @@ DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_span *span, con
             DEMI_VECTOR
             for (l = 0; l < DEMI_LANES; l++) demi_tile_law(w, t, q + l, span, r);
         }
+    for (q = 0; q < r->keep; q++)
+        memcpy(span->memory + (size_t)q*span->stride, t->memory[q],
+               (size_t)span->count*sizeof(dem_real));
     if (r->ledger)
         for (q = 0; q < span->count; q++) {
             energy[DEMI_E_DASHPOT] += (double)t->part[0][q];
