@@ -977,8 +977,9 @@ typedef struct demi_array { void *data; size_t capacity, item; } demi_array;
 typedef struct demi_list {
     int stride;                    /* capacity per domain */
     int32_t *a, *b;                /* body indices, a < b */
+    int32_t *place;                /* 1 + its entry in the near list, 0 when not near */
     unsigned char *image;          /* which entry of image_shift leads from a to b */
-    demi_array a_, b_, image_;
+    demi_array a_, b_, place_, image_;
 } demi_list;
 
 /* Near pairs of all domains: those candidates that touch or might before long. Domain d owns
@@ -1114,9 +1115,8 @@ struct dem_world {
     uint64_t near_step;            /* step it was made in */
     int near_fresh;                /* being made after a search */
     int *cross_incoming_start;     /* domain_count + 1 */
-    demi_array cross_incoming_, cross_hit_, cross_push_;
+    demi_array cross_incoming_, cross_push_;
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
-    int32_t *cross_hit;            /* entry -> slot of its push, 0 when not near */
     dem_real *cross_push;          /* x 6: force and torque on the far end */
     int cross_entries;
     demi_array cell_start_;
@@ -2478,6 +2478,9 @@ DEM_API dem_result dem_wall_channels_reset(dem_world *w, dem_wall id) {
    memory over, and lists the wall elements near each grain.
    --------------------------------------------------------------------------------------------- */
 
+/* Row of a body in an array of four reals each; unsigned, which spares a sign to extend. */
+#define DEMI_AT(array, body) ((array) + 4*(size_t)(uint32_t)(body))
+
 /* Shortest image of a distance d in a period: valid for |d| < 1.5 period. half = huge: not
    periodic. */
 DEM_INLINE dem_real demi_image(dem_real d, dem_real half, dem_real period) {
@@ -3000,7 +3003,9 @@ static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int str
     const size_t n = (size_t)domains*(size_t)stride;
     const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &list->a_, sizeof(int32_t), n) &&
                    demi_array_grow(w, &list->b_, sizeof(int32_t), n) &&
+                   demi_array_grow(w, &list->place_, sizeof(int32_t), n) &&
                    demi_array_grow(w, &list->image_, 1, n);
+    list->place = (int32_t *)list->place_.data;
     list->a = (int32_t *)list->a_.data;
     list->b = (int32_t *)list->b_.data;
     list->image = (unsigned char *)list->image_.data;
@@ -3039,10 +3044,8 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
 }
 static int demi_cross_reserve(dem_world *w, size_t entries) {
     const int ok = demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), entries) &&
-                   demi_array_grow(w, &w->cross_hit_, sizeof(int32_t), entries) &&
                    demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 6*(entries + DEMI_LANES + 1));
     w->cross_incoming = (int32_t *)w->cross_incoming_.data;
-    w->cross_hit = (int32_t *)w->cross_hit_.data;
     w->cross_push = (dem_real *)w->cross_push_.data;
     return ok;
 }
@@ -3063,7 +3066,6 @@ static int demi_wall_contacts_reserve(dem_world *w, size_t now, size_t next) {
 static int demi_cross_index(dem_world *w) {
     int d, k, e, entries = w->domain_count*w->cross.stride;
     if (!demi_cross_reserve(w, (size_t)entries)) return 0;
-    for (k = 0; k < 6; k++) w->cross_push[k] = 0;           /* slot 0: what does not touch */
     for (d = 0; d <= w->domain_count; d++) w->cross_incoming_start[d] = 0;
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].cross; k++) {
@@ -3165,46 +3167,53 @@ static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, i
     to = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride + (size_t)p;
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) to[(size_t)e*(size_t)near->stride] = coef[e];
 }
-/* Copies the columns of entry `from` of one list to entry `to` of another. */
-static void demi_columns_copy(const dem_real *source, int source_stride, int from, dem_real *out,
-                              int out_stride, int to, int columns) {
-    int e;
-    for (e = 0; e < columns; e++)
-        out[(size_t)e*(size_t)out_stride + (size_t)to] =
-            source[(size_t)e*(size_t)source_stride + (size_t)from];
+/* Picks near ones from the candidates of one list, without a branch; their entries from p on. Answers
+   where they end, or -1 when there is no room. */
+static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
+    const dem_real *x = w->pos, *shift = w->image_shift, skin = (dem_real)w->near_skin;
+    const int room = w->near.stride - DEMI_LANES;
+    int32_t *out = w->near.k + d*w->near.stride;
+    int k;
+    for (k = begin; k < end && p < room; k++) {
+        const dem_real *a = DEMI_AT(x, list->a[k]), *b = DEMI_AT(x, list->b[k]);
+        const dem_real *s = shift + list->image[k], cut = a[3] + b[3] + skin;
+        const dem_real dx = b[0] - a[0] + s[0], dy = b[1] - a[1] + s[1], dz = b[2] - a[2] + s[2];
+        out[p] = k;
+        p += dx*dx + dy*dy + dz*dz < cut*cut;
+    }
+    return k < end ? -1 : p;
 }
-/* Enters candidate k of domain d as entry p; `from` is its entry in the list before, or -1. */
-static void demi_near_enter(dem_world *w, const demi_list *list, int k, int d, int p, int from) {
+/* Memory and coefficients of the domain's entry p, which is new or was entry `from` before. */
+static void demi_near_recall(dem_world *w, int d, int p, int from) {
     demi_near *near = &w->near;
     const demi_near *last = &w->near_last;
-    const int a = list->a[k], b = list->b[k], at = d*near->stride + p, keep = w->memory_stride;
-    dem_real *m = near->memory + (size_t)d*(size_t)keep*(size_t)near->stride + (size_t)p;
-    int e, flip = 0;
-    near->a[at] = a;
-    near->b[at] = b;
-    near->k[at] = k;
-    near->image[at] = list->image[k];
+    const size_t keep = (size_t)w->memory_stride, stride = (size_t)near->stride;
+    const size_t last_stride = (size_t)last->stride, columns = DEMI_PAIR_COLUMNS;
+    const int at = d*near->stride + p;
+    dem_real *m = near->memory + (size_t)d*keep*stride + (size_t)p;
+    size_t e;
+    int flip = 0;
     if (from >= 0) {
-        demi_columns_copy(last->memory + (size_t)d*(size_t)keep*(size_t)last->stride, last->stride,
-                          from, m, near->stride, 0, keep);
-        if (!w->uniform)
-            demi_columns_copy(last->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)last->stride,
-                              last->stride, from,
-                              near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride,
-                              near->stride, p, DEMI_PAIR_COLUMNS);
+        const dem_real *old = last->memory + (size_t)d*keep*last_stride + (size_t)from;
+        for (e = 0; e < keep; e++) m[e*stride] = old[e*last_stride];
+        if (w->uniform) return;
+        m = near->coef + (size_t)d*columns*stride + (size_t)p;
+        old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
+        for (e = 0; e < columns; e++) m[e*stride] = old[e*last_stride];
         return;
     }
-    if (!w->uniform) demi_near_coefs(w, near, d, p, a, b);
-    for (e = 0; e < keep; e++) m[(size_t)e*(size_t)near->stride] = 0;
-    if (!keep || w->near_fresh == 0 || (from = demi_carry_find(w, a, b, &flip)) < 0) return;
+    if (!w->uniform) demi_near_coefs(w, near, d, p, near->a[at], near->b[at]);
+    for (e = 0; e < keep; e++) m[e*stride] = 0;
+    if (!keep || !w->near_fresh ||
+        (from = demi_carry_find(w, near->a[at], near->b[at], &flip)) < 0) return;
     for (e = 0; e < keep; e++) {
-        const dem_real value = w->carry_memory[(size_t)from*(size_t)keep + (size_t)e];
-        m[(size_t)e*(size_t)near->stride] = flip && (w->vector_mask >> e & 1) ? -value : value;
+        const dem_real value = w->carry_memory[(size_t)from*keep + e];
+        m[e*stride] = flip && (w->vector_mask >> e & 1) ? -value : value;
     }
 }
+
 /* What follows from the near list of a domain: groups are filled up with copies of their last pair,
-   whose answers nobody reads (then no group is cut short), and pairs that lead out get their slots.
-   */
+   whose answers nobody reads (then no group is cut short), and candidates learn their entries. */
 static void demi_near_adopt(dem_world *w, int d) {
     demi_near *near = &w->near;
     const demi_domain *domain = &w->domains[d];
@@ -3225,10 +3234,13 @@ static void demi_near_adopt(dem_world *w, int d) {
                 coef[(size_t)e*stride + (size_t)p] = coef[(size_t)e*stride + (size_t)end - 1];
         }
     }
-    if (!domain->cross) return;
-    memset(w->cross_hit + d*w->cross.stride, 0, (size_t)domain->cross*sizeof *w->cross_hit);
-    for (p = domain->near_cross; p < domain->near_end; p++)
-        w->cross_hit[near->k[d*near->stride + p]] = d*w->cross.stride + 1 + p - domain->near_cross;
+    for (l = 0; l < 2; l++) {
+        demi_list *list = l ? &w->cross : &w->own;
+        const int count = l ? domain->cross : domain->own;
+        if (count) memset(list->place + d*list->stride, 0, (size_t)count*sizeof *list->place);
+        for (p = l ? domain->near_cross : 0; p < (l ? domain->near_end : domain->near_own); p++)
+            list->place[near->k[d*near->stride + p]] = p + 1;
+    }
 }
 static void demi_domain_adopt(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -3241,28 +3253,22 @@ static void demi_domain_adopt(dem_world *w, int d) {
 /* Near pairs of one domain. */
 static void demi_domain_near(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const demi_near *last = &w->near_last;
-    const dem_real *x = w->pos;
-    const int stride = w->near.stride - DEMI_LANES;
-    int l, k, p = 0, old, old_end;
+    demi_near *near = &w->near;
+    int l, q, p = 0;
     domain->overflow &= ~8;
     for (l = 0; l < 2; l++) {
         const demi_list *list = l ? &w->cross : &w->own;
         const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
-        old = l ? domain->near_cross : 0;
-        old_end = w->near_fresh ? old : l ? domain->near_end : domain->near_own;
-        for (k = begin; k < end; k++) {
-            const dem_real *a = x + 4*list->a[k], *b = x + 4*list->b[k];
-            const dem_real *s = w->image_shift + list->image[k];
-            const dem_real dx = b[0] - a[0] + s[0], dy = b[1] - a[1] + s[1], dz = b[2] - a[2] + s[2];
-            const dem_real cut = a[3] + b[3] + (dem_real)w->near_skin;
-            int from = -1;
-            if (!(dx*dx + dy*dy + dz*dz < cut*cut)) continue;
-            if (p >= stride) { domain->overflow |= 8; return; }
-            while (old < old_end && last->k[d*last->stride + old] < k) old++;
-            if (old < old_end && last->k[d*last->stride + old] == k) from = old;
-            demi_near_enter(w, list, k, d, p, from);
-            p++;
+        const int first = p;
+        p = demi_near_pick(w, list, begin, end, d, p);
+        if (p < 0) { domain->overflow |= 8; return; }
+        for (q = first; q < p; q++) {
+            const int at = d*near->stride + q, k = near->k[at];
+            near->a[at] = list->a[k];
+            near->b[at] = list->b[k];
+            near->image[at] = list->image[k];
+            if (w->memory_stride || !w->uniform)
+                demi_near_recall(w, d, q, w->near_fresh ? -1 : list->place[k] - 1);
         }
         if (l) domain->near_next_end = p;
         else domain->near_next_own = p;
@@ -3270,8 +3276,9 @@ static void demi_domain_near(dem_world *w, int d) {
         if (!l) domain->near_next_cross = p;
     }
 }
-/* near_skin from counted work, so that it is the same on every run: a force costs 1, looking at a
-   candidate 0.2 (bench/ measures both); forces grow with near_skin, looks shrink with it. */
+/* near_skin from counted work, so that it is the same on every run: a force costs 1; making the list,
+   0.15 for each candidate and 1 for each near pair (bench/ measures both). Forces grow with
+   near_skin, how often the list is made shrinks with it. */
 static void demi_near_choose(dem_world *w) {
     const double r = (double)(w->radius_min > 0 ? w->radius_min : 1);
     const double steps = (double)(w->steps - w->near_step);
@@ -3286,8 +3293,8 @@ static void demi_near_choose(dem_world *w) {
             touching += domain->contacts;
             candidates += domain->own + domain->cross;
         }
-        best = sqrt(0.2*candidates*per_step*w->near_skin/DEMI_MAX(near - touching,
-                                                                  0.01*w->count));
+        best = sqrt((0.15*candidates + near)*per_step*w->near_skin/
+                    DEMI_MAX(near - touching, 0.01*w->count));
         best = DEMI_MIN(DEMI_MAX(best, 0.5*w->near_skin), 2*w->near_skin);
         w->near_skin = DEMI_MAX(sqrt(best*w->near_skin), 1e-6*r);
     }
@@ -3398,6 +3405,14 @@ static int demi_spins(const dem_world *w) {
     return w->desc.law || w->tangent != DEM_TANGENT_NONE || w->rolling != DEM_ROLLING_NONE;
 }
 
+/* How many domains: of the number of bodies alone, so that bits do not depend on threads; 1, 2, 4, or
+   a multiple of 8, which most numbers of threads share fairly. */
+static int demi_domains_for(int count) {
+    int n = 1;
+    while (n < 8 && n*DEMI_DOMAIN_BODIES < count) n *= 2;
+    return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEMI_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
+}
+
 /* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
    they were (the next call tries again). */
 static dem_result demi_rebuild(dem_world *w) {
@@ -3422,7 +3437,7 @@ static dem_result demi_rebuild(dem_world *w) {
         "dem_world_step");
     demi_bodies_sort(w);
     demi_image_shifts(w);
-    w->domain_count = DEMI_MAX(1, DEMI_MIN(w->count/DEMI_DOMAIN_BODIES, (int)DEMI_DOMAINS));
+    w->domain_count = demi_domains_for(w->count);
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->count*d/w->domain_count);
         w->domains[d].end = (int)((int64_t)w->count*(d + 1)/w->domain_count);
@@ -3895,9 +3910,6 @@ DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int
     return r;
 }
 
-/* Row of a body in an array of four reals each; unsigned, which spares a sign to extend. */
-#define DEMI_AT(array, body) ((array) + 4*(size_t)(uint32_t)(body))
-
 /* Copies what touch and law will see of bodies and memory into the rows. */
 DEM_INLINE void demi_tile_fetch(const dem_world *w, const demi_span *span, int count,
                                 const demi_run *r, demi_tile *DEMI_RESTRICT t) {
@@ -4170,7 +4182,7 @@ DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rol
             demi_tile_tally(&tile, count, &tally);
             if (!l) demi_tile_scatter(&tile, &span, &r, w->force, w->torque);
             else demi_tile_send(&tile, &span, &r, w->force, w->torque,
-                                w->cross_push + 6*((size_t)d*(size_t)w->cross.stride + 1 +
+                                w->cross_push + 6*((size_t)d*(size_t)w->cross.stride +
                                                    (size_t)(p - begin)));
         }
     }
@@ -4181,10 +4193,15 @@ DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rol
 /* The far ends of pairs that lead into domain d from domains before it. */
 static void demi_cross_gather(dem_world *w, int d) {
     const int turning = demi_spins(w);
-    int k, e;
+    const int stride = w->cross.stride;
+    int k, e, from = 0;
     for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
         const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
-        const dem_real *push = w->cross_push + 6*(size_t)w->cross_hit[entry];
+        const dem_real *push;
+        while (entry >= (from + 1)*stride) from++;
+        if (!w->cross.place[entry]) continue;
+        push = w->cross_push + 6*(size_t)(from*stride + w->cross.place[entry] - 1 -
+                                          w->domains[from].near_cross);
         for (e = 0; e < 3; e++) {
             w->force[j + e] += push[e];
             if (turning) w->torque[j + e] += push[3 + e];
@@ -4871,32 +4888,42 @@ static dem_result demi_dt_settle(dem_world *w) {
 
 /* --- the parts of a step, per domain --- */
 
-static void demi_domain_move(dem_world *w, int d) {
-    demi_domain *domain = &w->domains[d];
-    const int turning = demi_spins(w);
+/* Moves some bodies and clears their forces; while they are at hand: how fast the fastest is, and a
+   sum that keeps what is not finite (a maximum loses it). */
+static void demi_some_move(dem_world *w, int begin, int end, int turning, dem_real *most,
+                           dem_real *sum) {
     const dem_real *DEMI_RESTRICT v = w->half_vel;
-    dem_real most = 0, sum = 0;
+    const size_t bytes = (size_t)(end - begin)*4*sizeof(dem_real);
     int i;
-    demi_integrator_rows[w->desc.integrator].move(w, domain->begin, domain->end, turning);
+    demi_integrator_rows[w->desc.integrator].move(w, begin, end, turning);
     if (w->desc.planar)
-        for (i = domain->begin; i < domain->end; i++) {
+        for (i = begin; i < end; i++) {
             w->pos[4*i + 2] = w->vel[4*i + 2] = 0;
             w->spin[4*i] = w->spin[4*i + 1] = 0;
             w->half_vel[4*i + 2] = w->half_spin[4*i] = w->half_spin[4*i + 1] = 0;
         }
-    /* a sum keeps what is not finite, a maximum loses it */
-    for (i = domain->begin; i < domain->end; i++) {
+    for (i = begin; i < end; i++) {
         const dem_real s = v[4*i]*v[4*i] + v[4*i + 1]*v[4*i + 1] + v[4*i + 2]*v[4*i + 2];
-        most = s > most ? s : most;
-        sum += s;
+        *most = s > *most ? s : *most;
+        *sum += s;
     }
+    memset(w->force + 4*begin, 0, bytes);
+    if (turning) memset(w->torque + 4*begin, 0, bytes);
+}
+static void demi_domain_move(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const int turning = demi_spins(w), some = 64;   /* these stay in the nearest cache */
+    dem_real most = 0, sum = 0;
+    int i;
+    domain->energy[DEMI_E_GRAVITY] = 0;
+    for (i = domain->begin; i < domain->end; i += some)
+        demi_some_move(w, i, DEMI_MIN(i + some, domain->end), turning, &most, &sum);
     domain->speed2 = (double)most;
     domain->check = (double)sum;
-    domain->energy[DEMI_E_GRAVITY] = 0;
     if (w->desc.ledger) {
         const dem_vec3 g = w->desc.gravity;
         for (i = domain->begin; i < domain->end; i++) {
-            const dem_real *u = v + 4*i;
+            const dem_real *u = w->half_vel + 4*i;
             if (w->inv_mass[i] <= 0) continue;
             domain->energy[DEMI_E_GRAVITY] += (double)w->mass[i]*(double)(g.x*u[0] + g.y*u[1] +
                 g.z*u[2])*(double)w->dt;
@@ -4904,14 +4931,15 @@ static void demi_domain_move(dem_world *w, int d) {
     }
 }
 
-/* force field, or nothing, to start the sums with */
+/* Force field, or nothing, to start the sums with; after a move forces are clear already. */
 static void demi_domain_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
     int i;
-    if (!n) return;
-    memset(w->force + 4*domain->begin, 0, n);
-    if (demi_spins(w) || !w->forces_valid) memset(w->torque + 4*domain->begin, 0, n);
+    if (n && !w->moved) {
+        memset(w->force + 4*domain->begin, 0, n);
+        memset(w->torque + 4*domain->begin, 0, n);
+    }
     if (!w->desc.force) return;
     for (i = domain->begin; i < domain->end; i++) {
         const dem_vec3 f = w->desc.force(demi_at(w->pos + 4*i), demi_at(w->vel + 4*i),
@@ -5351,8 +5379,9 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
     demi_tile tile;
     dem_vec3 gap;
-    if (r.keep) demi_columns_copy(span.memory, w->near.stride, 0, memory, 1, 0, r.keep);
-    if (!r.uniform) demi_columns_copy(span.coef, w->near.stride, 0, coef, 1, 0, DEMI_PAIR_COLUMNS);
+    int e;
+    for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
+    for (e = 0; e < DEMI_PAIR_COLUMNS && !r.uniform; e++) coef[e] = span.coef[(size_t)e*span.stride];
     span.memory = memory;
     span.coef = coef;
     span.stride = 1;
@@ -6908,7 +6937,8 @@ DEM_API void dem_world_destroy(dem_world *w) {
         arrays[k++] = &near->a_; arrays[k++] = &near->b_; arrays[k++] = &near->k_;
         arrays[k++] = &near->image_; arrays[k++] = &near->memory_; arrays[k++] = &near->coef_;
     }
-    arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_hit_; arrays[k++] = &w->cross_push_;
+    arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
+    arrays[k++] = &w->own.place_; arrays[k++] = &w->cross.place_;
     arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
     arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
     arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_now_; arrays[k++] = &w->wall_next_;
