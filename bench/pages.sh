@@ -13,9 +13,9 @@ splice() {
         $0 == begin { while ((getline line < file) > 0) print line; skip = 1 }' "docs/$1" > build/page.new &&
     cp build/page.new "docs/$1" && echo "docs/$1: $2"
 }
-# picture SVG PNG
+# picture SVG PNG FILE: converts it, and adds it to the file that is to be spliced
 picture() {
-    if command -v rsvg-convert >/dev/null 2>&1; then rsvg-convert "$1" -o "docs/images/$2"
+    if command -v rsvg-convert >/dev/null 2>&1; then rsvg-convert "$1" -o "docs/images/$2" && printf '\n![](images/%s)\n' "$2" >> "$3"
     else echo "SKIP: rsvg-convert not found (Debian package librsvg2-bin): docs/images/$2 stays as it was"; fi
 }
 # a row a scene: rates of the three builds, from their summaries
@@ -29,23 +29,29 @@ rates() {
                 printf "| %s | %.1f | %.1f | %.2f | %s |\n", scene[i], d, s, d ? s/d : 0, o ? sprintf("%.1f", o) : "" } }'
 }
 
+at=build/out
 for page in "$@"; do
     case $page in
     accuracy)
-        build/bench --scene prices && splice accuracy.md prices build/out/bench/page.md || exit 1
-        build/accuracy && splice accuracy.md integrators build/out/accuracy/page.md || exit 1
+        build/bench --scene prices && splice accuracy.md prices $at/bench/page.md || exit 1
+        build/accuracy || exit 1
+        for s in restitution energy; do picture $at/accuracy/bounce_$s.svg accuracy_$s.png $at/accuracy/page.md; done
+        splice accuracy.md integrators $at/accuracy/page.md
         build/bench --brief && build/bench_single --brief && build/bench_O2 --brief || exit 1
-        rates > build/rates.md && splice accuracy.md precision build/rates.md
-        picture build/out/accuracy/bounce_restitution.svg accuracy_restitution.png
-        picture build/out/accuracy/bounce_energy.svg accuracy_energy.png ;;
+        rates > build/rates.md && splice accuracy.md precision build/rates.md ;;
     roofline)
-        build/roofline && splice roofline.md roofline build/out/roofline/page.md || exit 1
-        for s in bed drum gas; do picture build/out/roofline/roofline_$s.svg roofline_$s.png; done ;;
+        build/roofline || exit 1
+        for s in bed drum gas; do picture $at/roofline/roofline_$s.svg roofline_$s.png $at/roofline/page.md; done
+        splice roofline.md roofline $at/roofline/page.md ;;
     clusters)
-        build/parallel && splice clusters.md measured build/out/parallel/page.md || exit 1
-        build/parallel --model && splice clusters.md model build/out/model/page.md || exit 1
-        for s in speedup scaling searches; do picture build/out/parallel/$s.svg parallel_$s.png; done
-        picture build/out/model/model.svg clusters_model.png ;;
+        rm -f $at/parallel/*.svg
+        build/parallel --threads ${THREADS:-8} && build/parallel --model || exit 1
+        for s in speedup speedup_tables scaling searches; do
+            [ -f $at/parallel/$s.svg ] && picture $at/parallel/$s.svg parallel_$s.png $at/parallel/page.md
+        done
+        picture $at/model/model.svg clusters_model.png $at/model/page.md
+        splice clusters.md measured $at/parallel/page.md
+        splice clusters.md model $at/model/page.md ;;
     *) echo "no page $page: accuracy, roofline or clusters"; exit 1 ;;
     esac
 done

@@ -461,13 +461,13 @@ static dem_world *discs_world_at(const discs *d, int threads, double dt) {
 static dem_world *discs_world(const subject *s, int threads) {
     return discs_world_at((const discs *)s->scene, threads, DISC_DT);
 }
-/* Lets them fall for a while, in steps five times as long. */
+/* Lets them fall for a while, in longer steps: t_c is 1.8 ms. */
 static int discs_fall(discs *d, double seconds) {
-    dem_world *world = discs_world_at(d, 1, 5*DISC_DT);
+    dem_world *world = discs_world_at(d, 1, 8*DISC_DT);
     dem_bodies b;
     int i;
     if (!world) return 0;
-    if (dem_world_step(world, (int)(seconds/(5*DISC_DT) + 0.5)) != DEM_OK) {
+    if (dem_world_step(world, (int)(seconds/(8*DISC_DT) + 0.5)) != DEM_OK) {
         study_fail("discs: %s", dem_world_error(world));
         dem_world_destroy(world);
         return 0;
@@ -522,26 +522,22 @@ static const struct { dem_search search; const char *name, *about; } searches[SE
     {DEM_SEARCH_LINKED_LIST, "linked_list", "linked linear list"},
     {DEM_SEARCH_ALL_PAIRS, "verlet_all_pairs", "Verlet list, all pairs asked: that of [FEN]"}};
 
-/* Seconds of wall time per simulated second, medians of three; --full: the whole 4 s once. */
-static int search_group(int count, double seconds[SEARCHES], double rebuilds[SEARCHES]) {
-    const int steps = (int)((full_form ? 4 : span_asked > 0 ? span_asked : short_form ? 0.005 : 0.02)/DISC_DT + 0.5);
-    const int turns = full_form ? 1 : 3;
+/* Seconds of wall time per simulated second of each search, from here on; medians of several turns. */
+static int search_here(discs *d, int steps, int turns, double seconds[SEARCHES], double rebuilds[SEARCHES]) {
     double t[SEARCHES][BENCH_MOST_LOOPS];
-    discs d = discs_make(count, 1);
     dem_world *worlds[SEARCHES] = {0, 0, 0};
-    int k, r, ok = full_form || discs_fall(&d, 0.5);             /* in the thick of it */
+    int k, r, done, ok = 1;
     for (k = 0; k < SEARCHES && ok; k++) {
-        d.search = searches[k].search;
-        worlds[k] = discs_world_at(&d, 1, DISC_DT);
+        d->search = searches[k].search;
+        worlds[k] = discs_world_at(d, 1, DISC_DT);
         ok = worlds[k] && (full_form || dem_world_step(worlds[k], 50) == DEM_OK);
     }
     for (r = 0; r < turns && ok; r++)
         for (k = 0; k < SEARCHES && ok; k++) {
             const double begun = study_clock();
-            int done;
             for (done = 0; done < steps && ok; done += 500) {
                 ok = dem_world_step(worlds[k], steps - done < 500 ? steps - done : 500) == DEM_OK;
-                if (full_form) study_progress(searches[k].name, fmin(1, (done + 500.0)/steps), (double)count*(done + 500));
+                if (full_form) study_progress(searches[k].name, fmin(1, (done + 500.0)/steps), (double)d->count*(done + 500));
             }
             t[k][r] = (study_clock() - begun)/(steps*DISC_DT);
         }
@@ -553,6 +549,25 @@ static int search_group(int count, double seconds[SEARCHES], double rebuilds[SEA
             rebuilds[k] = (double)c.steps/(double)(c.rebuilds ? c.rebuilds : 1);
         }
         if (worlds[k]) dem_world_destroy(worlds[k]);
+    }
+    d->search = DEM_SEARCH_AUTO;
+    return ok;
+}
+/* The mean of spans after 0.5, 1 and 2 s; --full: the whole 4 s, as in [FEN]. */
+static int search_group(int count, double seconds[SEARCHES], double rebuilds[SEARCHES]) {
+    static const double falls[3] = {0.5, 0.5, 1};
+    const int spans = short_form ? 1 : 3;
+    const int steps = (int)((span_asked > 0 ? span_asked : short_form ? 0.005 : 0.03)/spans/DISC_DT + 0.5);
+    discs d = discs_make(count, 1);
+    double t[SEARCHES], n[SEARCHES];
+    int i, k, ok = 1;
+    if (full_form) ok = search_here(&d, (int)(4/DISC_DT + 0.5), 1, seconds, rebuilds);
+    else {
+        for (k = 0; k < SEARCHES; k++) seconds[k] = rebuilds[k] = 0;
+        for (i = 0; i < spans && ok; i++) {
+            ok = discs_fall(&d, falls[i]) && search_here(&d, steps, 3, t, n);
+            for (k = 0; k < SEARCHES && ok; k++) { seconds[k] += t[k]/spans; rebuilds[k] += n[k]/spans; }
+        }
     }
     discs_free(&d);
     return ok;
@@ -729,22 +744,22 @@ static void scaling_part(void) {
     study_figure_write(&f, "scaling.svg");
 }
 
-/* ---- the picture of all speedups ---- */
+/* ---- pictures of the speedups: the discs of the tables beside what was printed, and all other scenes ---- */
 
-static void speedups_draw(void) {
+static void speedups_draw(int tables) {
     static double x[STUDY_CURVES][64], y[STUDY_CURVES][64], ideal[2][2] = {{1, 25}, {1, 25}};
     static char names[STUDY_CURVES][40];
-    static const int tables[4] = {916, 9000, 14884, 144400};
     study_figure f;
-    int i, k, n;
+    size_t k;
+    int i, n;
     memset(&f, 0, sizeof f);
-    f.title = "Speedup: dem.h on this machine, and Tables 3.2 to 3.4 of [FEN] (dashed)";
-    f.x_label = "workers (threads here; processors of several machines there)";
+    f.title = tables ? "Speedup: discs here, and Tables 3.2 to 3.4 of [FEN] (dashed)" : "Speedup";
+    f.x_label = tables ? "workers (here of one machine, there of several)" : "workers";
     f.y_label = "speedup";
     f.log_x = f.log_y = 1;
-    f.x1 = log10(30);
+    f.x1 = tables ? log10(30) : 1;
     f.y0 = log10(0.3);
-    f.y1 = log10(300);
+    f.y1 = tables ? log10(300) : 1;
     study_curve(&f, "as many times faster", STUDY_FAINT, 2, ideal[0], ideal[1]);
     for (i = 0; i < point_count && f.curve_count + 4 < STUDY_CURVES;) {
         double *px = x[f.curve_count], *py = y[f.curve_count];
@@ -754,18 +769,24 @@ static void speedups_draw(void) {
             px[n] = points[i].workers;
             py[n] = points[i].speedup;
         }
+        if (tables != !strncmp(p->scene, "discs", 5)) continue;
         snprintf(names[f.curve_count], sizeof *names, "%s, %ss", p->scene, p->how->worker);
         study_curve(&f, names[f.curve_count], STUDY_LINE, n, px, py);
     }
-    for (k = 0; k < 4; k++) {
+    if (f.curve_count < 2) return;
+    while (tables && f.curve_count%6 != 1) study_curve(&f, 0, STUDY_LINE, 0, 0, 0); /* so that colours agree */
+    for (k = 0; k < sizeof printed_serial/sizeof *printed_serial && tables; k++) {
         double *px = x[f.curve_count], *py = y[f.curve_count];
         px[0] = py[0] = 1;
         for (i = 0, n = 1; i < PRINTED; i++)
-            if (printed[i].count == tables[k] && printed[i].several > 0) { px[n] = printed[i].workers; py[n++] = printed[i].several; }
-        snprintf(names[f.curve_count], sizeof *names, "[FEN] %d", tables[k]);
+            if (printed[i].count == printed_serial[k].count && printed[i].several > 0) {
+                px[n] = printed[i].workers;
+                py[n++] = printed[i].several;
+            }
+        snprintf(names[f.curve_count], sizeof *names, "[FEN], %d", printed_serial[k].count);
         study_curve(&f, names[f.curve_count], STUDY_DASHED, n, px, py);
     }
-    study_figure_write(&f, "speedup.svg");
+    study_figure_write(&f, tables ? "speedup_tables.svg" : "speedup.svg");
 }
 
 /* ---- the model of a cluster ---- */
@@ -887,7 +908,8 @@ int main(int argc, char **argv) {
         if (wanted("gas")) scene_part("gas");
         if (wanted("mill")) mill_part();
         if (wanted("tables")) tables_part();
-        if (point_count) speedups_draw();
+        speedups_draw(0);
+        speedups_draw(1);
         if (wanted("searches")) searches_part();
         if (wanted("scaling")) scaling_part();
     }
