@@ -108,7 +108,7 @@ static void measure(const bench_scene *s) {
         snprintf(name, sizeof name, "threads%d.rate", threads_asked);
         bench_result_rate(name, work/bench_median(tb, turns));
         snprintf(name, sizeof name, "threads%d.speedup", threads_asked);
-        bench_result_short(name, bench_median(ta, turns)/bench_median(tb, turns), "");
+        bench_result_short(name, bench_median_ratio(ta, tb, turns), "");
         snprintf(name, sizeof name, "threads%d.rate_spread", threads_asked);
         bench_result_short(name, bench_spread(tb, turns), "%");
         if (dem_world_hash(one) != dem_world_hash(other))
@@ -119,7 +119,7 @@ static void measure(const bench_scene *s) {
     choice.ledger = 1;
     other = brief ? 0 : warm(s->name, s, &choice);
     if (other && (turns = take_turns(s->name, one, other, steps, ta, tb)) > 0)
-        bench_result_short("ledger_cost", bench_median(tb, turns)/bench_median(ta, turns), "of the default");
+        bench_result_short("ledger_cost", bench_median_ratio(tb, ta, turns), "of the default");
     if (other) dem_world_destroy(other);
     dem_world_destroy(one);
     names_begin("");

@@ -34,6 +34,13 @@ STUDY_FN double bench_median(const double *values, int count) {
     qsort(sorted, (size_t)count, sizeof *sorted, bench_compare);
     return count & 1 ? sorted[count/2] : (sorted[count/2 - 1] + sorted[count/2])/2;
 }
+/* Of a[i]/b[i], of the same turn: what disturbs a turn disturbs both. */
+STUDY_FN double bench_median_ratio(const double *a, const double *b, int count) {
+    double ratio[BENCH_MOST_LOOPS];
+    int i;
+    for (i = 0; i < count; i++) ratio[i] = a[i]/b[i];
+    return bench_median(ratio, count);
+}
 STUDY_FN double bench_spread(const double *values, int count) { /* half the range over the median, % */
     double lo = values[0], hi = values[0];
     int i;

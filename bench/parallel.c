@@ -11,7 +11,8 @@
        efficiency  eta = tau/P
        cost        nu  = P t_p/t_s = 1/eta       ("normalised cost")
        overhead    nu - 1
-   All that is compared on a scene runs in turns, A B C A B C; medians are told, with half the range.
+   All that is compared on a scene runs in turns, A B C A B C; medians are told (of ratios: turn by turn), with half
+   the range.
 
    Parts:
      bed, drum, gas   the scenes of bench/scenes.h
@@ -158,8 +159,8 @@ static int point_count;
 
 static void tell_run(const subject *s, const run *serial, const run *r, int turns, int steps) {
     static const char *const names[4] = {"speedup", "efficiency", "cost", "overhead"};
-    const double ts = bench_median(serial->seconds, turns), tp = bench_median(r->seconds, turns), P = r->workers;
-    const double values[4] = {ts/tp, ts/tp/P, P*tp/ts, P*tp/ts - 1};
+    const double tau = bench_median_ratio(serial->seconds, r->seconds, turns), P = r->workers;
+    const double tp = bench_median(r->seconds, turns), values[4] = {tau, tau/P, P/tau, P/tau - 1};
     char name[64], unit[200], text[160];
     int k;
     snprintf(name, sizeof name, "%s%d.rate", r->how->name, r->workers);
@@ -168,7 +169,8 @@ static void tell_run(const subject *s, const run *serial, const run *r, int turn
         printed_text(text, sizeof text, s->count, r->workers, k);
         snprintf(name, sizeof name, "%s%d.%s", r->how->name, r->workers, names[k]);
         snprintf(unit, sizeof unit, "%s%s%s%s", *text ? "(" : "", text, *text ? ")" : "",
-                 processors && r->workers > processors ? " (more workers than processors)" : "");
+                 processors && r->workers > processors ? *text ? " (more workers than processors)"
+                 : "(more workers than processors)" : "");
         bench_result_short(name, values[k], unit);
     }
     snprintf(name, sizeof name, "%s%d.spread", r->how->name, r->workers);
@@ -682,7 +684,7 @@ static void scaling_part(void) {
         run runs[1 + MOST_RUNS]; /* the first is the bed of 20000, for comparison in turns */
         int count = 0, steps = 0, turns = 0, t, reference_steps;
         char name[64], fastest[64] = "";
-        double tau = 0, ns[1 + MOST_RUNS];
+        double tau = 0, speedup, ns[1 + MOST_RUNS], growth = 0;
         if (short_form && (beds[i].asked < 20000 || beds[i].asked > 100000)) continue;
         s = beds[i].nx ? bed_tile(&bed, beds[i].nx, beds[i].ny) : bed_cut(&bed, sqrt(beds[i].asked/(double)bed.count));
         of = scene_subject("bed", &s, i < 5 ? 100 : 40);
@@ -702,6 +704,7 @@ static void scaling_part(void) {
             }
         for (r = 0; r < count && steps; r++)
             ns[r] = 1e9*bench_median(runs[r].seconds, turns)/((double)(r ? steps : reference_steps)*(r ? s.count : bed.count));
+        if (steps) growth = bench_median_ratio(runs[1].seconds, runs[0].seconds, turns)*reference_steps*bed.count/((double)steps*s.count);
         for (r = 1; r < count && steps; r++) {
             cost[r - 1][done] = ns[r];
             if (r - 1 >= lines) snprintf(legend[lines++], sizeof *legend, r > 1 ? "%d %ss" : "serial", runs[r].workers, runs[r].how->worker);
@@ -714,14 +717,15 @@ static void scaling_part(void) {
                 snprintf(name, sizeof name, "bed.n%d.time", beds[i].asked);
                 bench_result_short(name, ns[1], "ns a bead and step");
                 snprintf(name, sizeof name, "bed.n%d.cost_growth", beds[i].asked);
-                bench_result_short(name, ns[1]/ns[0], "ratio to 2e4");
-                if (page) fprintf(page, "| %d | %.2f | %.1f | %.2f |", s.count, touches, ns[1], ns[1]/ns[0]);
+                bench_result_short(name, growth, "ratio to 2e4");
+                if (page) fprintf(page, "| %d | %.2f | %.1f | %.2f |", s.count, touches, ns[1], growth);
                 continue;
             }
             snprintf(name, sizeof name, "bed.n%d.%s%d.speedup", beds[i].asked, runs[r].how->name, runs[r].workers);
-            bench_result_short(name, ns[1]/ns[r], processors && runs[r].workers > processors ? "(more workers than processors)" : "");
-            if (ns[1]/ns[r] > tau) {
-                tau = ns[1]/ns[r];
+            speedup = bench_median_ratio(runs[1].seconds, runs[r].seconds, turns);
+            bench_result_short(name, speedup, processors && runs[r].workers > processors ? "(more workers than processors)" : "");
+            if (speedup > tau) {
+                tau = speedup;
                 snprintf(fastest, sizeof fastest, "%.2f x on %d %ss", tau, runs[r].workers, runs[r].how->worker);
             }
         }

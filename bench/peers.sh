@@ -75,6 +75,12 @@ turn() {
 # middle of a column of a file of times
 middle() { awk -v c=$2 '{ print $c }' "$1" | sort -g | awk '{ v[NR] = $1 } END { print (v[int((NR + 1)/2)] + v[int(NR/2) + 1])/2 }'; }
 
+# middle of the ratios of times, turn by turn, and half their range: what disturbs a turn disturbs both
+ratio() { paste -d" " "$1" "$2" | awk '{ print $1/$5 }' | sort -g | awk '{ v[NR] = $1 } END {
+    m = (v[int((NR + 1)/2)] + v[int(NR/2) + 1])/2; printf "%.2f (+- %.0f %%)", m, 50*(v[NR] - v[1])/m }'; }
+
+load=$(cut -d" " -f1 /proc/loadavg 2>/dev/null)
+case $load in ""|0.[0-4]*) ;; *) echo "# load $load: other work runs here, these figures are preliminary" ;; esac
 failed=
 for cores in $one $two; do
     suffix=; [ $cores = 2 ] && suffix=.threads2
@@ -103,8 +109,7 @@ for cores in $one $two; do
         done
         for code in $ours; do for other in $others; do
             label=$code; [ $code = O2 ] && label=double.O2
-            echo "$scene.$label.vs_$other$suffix = $(awk -v a=$(middle $dir/$scene.$other.$cores.times 1) \
-                -v b=$(middle $dir/$scene.$code.$cores.times 1) 'BEGIN { printf "%.2f", a/b }')"
+            echo "$scene.$label.vs_$other$suffix = $(ratio $dir/$scene.$other.$cores.times $dir/$scene.$code.$cores.times)"
         done; done
         [ $scene$cores = bed1 ] && for code in $others double; do
             echo "bed.$code.memory_per_bead = $(middle $dir/bed.$code.1.times 4) byte"
