@@ -41,11 +41,11 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run test examples studies check bench bench-peers fuzz docs readers tags snippets clean
+.PHONY: help all run test examples studies check bench bench-parallel bench-peers bench-pages fuzz docs readers tags snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
 
 run: build/mill ## the tumbling mill: progress on the terminal, pictures in build/out/mill
 	@mkdir -p build/out/mill
@@ -66,11 +66,20 @@ all: $(STUDIES) $(LESSONS) $(TESTS) $(BENCHES) $(BENCH_ALSO) ## build everything
 check: ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
 	@JOBS=$(JOBS) sh tests/check.sh
 
-bench: $(BENCHES) $(BENCH_ALSO) ## how fast, and what choices cost, in under 3 minutes; build/bench --help
-	@build/bench && build/bench_single --brief && build/bench_O2 --brief --scene bed
+# threads stay on cores of their own
+BIND := OMP_PROC_BIND=true OMP_PLACES=cores
+bench: $(BENCHES) $(BENCH_ALSO) ## the quick form of all benches, in under 3 minutes; each takes --help
+	@$(BIND) build/bench && build/bench_single --brief && build/bench_O2 --brief --scene bed && \
+	    $(BIND) build/parallel --short --threads 2 --settle 0 && STEPS=60 ROUNDS=3 CORES=1 sh bench/peers.sh
+
+bench-parallel: build/parallel ## threads, sizes, searches beside published figures, in minutes
+	@$(BIND) build/parallel
 
 bench-peers: $(BENCHES) $(BENCH_ALSO) ## the same scenes in LAMMPS and LIGGGHTS, where those are installed
 	@sh bench/peers.sh
+
+bench-pages: $(BENCHES) $(BENCH_ALSO) ## measure anew what docs/ tells of speed; PAGES=roofline: one page
+	@sh bench/pages.sh $(PAGES)
 
 fuzz: ## FUZZ_SECONDS (600) per reader under clang's fuzzer and sanitizers
 	@FUZZ_CC="$(FUZZ_CC)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
@@ -103,11 +112,12 @@ $(TESTS): build/%: tests/%.c $(wildcard tests/*.h)
 $(LESSONS): build/%: examples/%.c
 $(STUDIES): build/%: examples/%.c $(wildcard examples/study.h)
 $(BENCHES): build/%: bench/%.c $(wildcard examples/study.h bench/*.h)
+build/parallel: examples/mill.c
 build/write_files: tests/write_files.c
 # -O3 takes three times as long to compile as -O2 and is for those that run long
 $(TESTS) $(LESSONS) build/write_files: LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
 $(TESTS) $(LESSONS) $(STUDIES) $(BENCHES) build/write_files: dem.h build/flags
-	$(COMPILE) $(LEVEL) -o $@ $(filter %.c,$^) $(LINK)
+	$(COMPILE) $(LEVEL) -o $@ $(filter %/$(@F).c,$^) $(LINK)
 # benches say how they were built; bench.c also in single precision, and as plain as can be
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'
 build/bench_single: bench/bench.c $(wildcard examples/study.h bench/*.h) dem.h build/flags

@@ -11,23 +11,13 @@
 #define DEM_IMPLEMENTATION
 #include "dem.h"
 #include "examples/study.h"
+#include "bench/measure.h"
 #include "bench/scenes.h"
 
-#ifndef BENCH_FLAGS
-#define BENCH_FLAGS "unknown"
-#endif
 #ifndef BENCH_LABEL             /* after the precision in names: ".O2"                          */
 #define BENCH_LABEL ""
 #endif
-#if defined(__clang__)
-#define BENCH_COMPILER "clang " __clang_version__
-#elif defined(__GNUC__)
-#define BENCH_COMPILER "gcc " __VERSION__
-#else
-#define BENCH_COMPILER "unknown"
-#endif
-
-enum { WARM_UP = 100, MOST_LOOPS = 99 };
+enum { WARM_UP = 100, MOST_LOOPS = BENCH_MOST_LOOPS };
 
 static const char *scene_name = "all", *data_folder = "bench/data", *out = "", *settle = "", *codes = "";
 static int steps_asked, repeat_asked, threads_asked = 2, quick, full, cpu, raw, brief;
@@ -36,23 +26,6 @@ static double skin_asked;
 /* ---- timing ---- */
 
 static double now(void) { return cpu ? (double)clock()/CLOCKS_PER_SEC : study_clock(); }
-
-static int compare(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-static double median(const double *values, int count) {
-    double sorted[MOST_LOOPS];
-    memcpy(sorted, values, (size_t)count*sizeof *values);
-    qsort(sorted, (size_t)count, sizeof *sorted, compare);
-    return count & 1 ? sorted[count/2] : (sorted[count/2 - 1] + sorted[count/2])/2;
-}
-static double spread(const double *values, int count) { /* half the range over the median, %        */
-    double lo = values[0], hi = values[0];
-    int i;
-    for (i = 1; i < count; i++) { lo = fmin(lo, values[i]); hi = fmax(hi, values[i]); }
-    return 50*(hi - lo)/median(values, count);
-}
 
 static int steps_of(const bench_scene *s) { /* of one timed loop                                   */
     const int steps = bench_is(s, "gas") ? 300 : 80;
@@ -86,16 +59,6 @@ static int take_turns(const char *what, dem_world *a, dem_world *b, int steps, d
     return r;
 }
 
-static void result_rate(const char *name, double rate) { /* with the exponent one reads rates in     */
-    char text[64];
-    snprintf(text, sizeof text, "%.2fe6", 1e-6*rate);
-    study_result_text(name, text, "particle-steps/s");
-}
-static void result_short(const char *name, double value, const char *unit) { /* three digits          */
-    char text[64];
-    snprintf(text, sizeof text, "%.3g", value);
-    study_result_text(name, text, unit);
-}
 /* Names of results begin with scene, precision and build: bed.double.O2. */
 static void names_begin(const char *scene) {
     const char *precision = sizeof(dem_real) == sizeof(float) ? "single" : "double";
@@ -120,34 +83,30 @@ static void measure(const bench_scene *s) {
     one = warm(s->name, s, &choice);
     if (!one) return;
     choice.threads = threads_asked;
-    other = threads_asked > 1 && !cpu ? warm(s->name, s, &choice) : 0;
-    if (other && dem_counters_get(other).threads != threads_asked) {
-        printf("SKIP: built without OpenMP, no rates on %d threads\n", threads_asked);
-        dem_world_destroy(other);
-        other = 0;
-    }
+    if (threads_asked > 1 && !DEMI_OPENMP) printf("SKIP: built without OpenMP, no rates on %d threads\n", threads_asked);
+    other = threads_asked > 1 && DEMI_OPENMP && !cpu ? warm(s->name, s, &choice) : 0;
     before = dem_counters_get(one).rebuilds;
     turns = take_turns(s->name, one, other, steps, ta, tb);
     if (turns) {
-        result_rate("rate", work/median(ta, turns));
-        result_short("rate_spread", spread(ta, turns), "%");
+        bench_result_rate("rate", work/bench_median(ta, turns));
+        bench_result_short("rate_spread", bench_spread(ta, turns), "%");
         c = dem_counters_get(one);
         if (!brief) {
-            result_short("contacts_per_bead", 2.0*c.contacts/s->count, "");
-            result_short("pairs_per_bead", (double)c.candidates/s->count, "");
-            result_short("steps_per_rebuild", (double)steps*turns/
+            bench_result_short("contacts_per_bead", 2.0*c.contacts/s->count, "");
+            bench_result_short("pairs_per_bead", (double)c.candidates/s->count, "");
+            bench_result_short("steps_per_rebuild", (double)steps*turns/
                          (double)(c.rebuilds > before ? c.rebuilds - before : 1), "");
-            result_short("skin", 1e3*(double)c.skin, "mm");
-            if (bench_is(s, "bed")) result_short("memory_per_bead", (double)c.memory/s->count, "byte");
+            bench_result_short("skin", 1e3*(double)c.skin, "mm");
+            if (bench_is(s, "bed")) bench_result_short("memory_per_bead", (double)c.memory/s->count, "byte");
         }
     }
     if (turns && other) {
         snprintf(name, sizeof name, "threads%d.rate", threads_asked);
-        result_rate(name, work/median(tb, turns));
+        bench_result_rate(name, work/bench_median(tb, turns));
         snprintf(name, sizeof name, "threads%d.speedup", threads_asked);
-        result_short(name, median(ta, turns)/median(tb, turns), "");
+        bench_result_short(name, bench_median_ratio(ta, tb, turns), "");
         snprintf(name, sizeof name, "threads%d.rate_spread", threads_asked);
-        result_short(name, spread(tb, turns), "%");
+        bench_result_short(name, bench_spread(tb, turns), "%");
         if (dem_world_hash(one) != dem_world_hash(other))
             study_fail("%s: 1 and %d threads do not agree to the last bit", s->name, threads_asked);
     }
@@ -156,7 +115,7 @@ static void measure(const bench_scene *s) {
     choice.ledger = 1;
     other = brief ? 0 : warm(s->name, s, &choice);
     if (other && (turns = take_turns(s->name, one, other, steps, ta, tb)) > 0)
-        result_short("ledger_cost", median(tb, turns)/median(ta, turns), "of the default");
+        bench_result_short("ledger_cost", bench_median_ratio(tb, ta, turns), "of the default");
     if (other) dem_world_destroy(other);
     dem_world_destroy(one);
     names_begin("");
@@ -164,64 +123,59 @@ static void measure(const bench_scene *s) {
 
 /* ---- what a choice costs: time of a step with it over that without, on the same scene in turns ---- */
 
-static void price(const char *name, const bench_scene *s, const bench_choice *base, const bench_choice *with) {
+typedef struct price_row { const char *name, *scene, *buys; bench_choice with; } price_row;
+static const price_row price_rows[] = {
+    {"mixed_radii", "bed", "grains that differ in size or material", {.mixed = 1}},
+    {"ledger", "bed", "where the energy went, watched at every step", {.ledger = 1}},
+    {"linear", "bed", "a linear spring in place of Hertz: contact time independent of speed", {.normal = DEM_NORMAL_LINEAR}},
+    {"tangent.none", "bed", "no friction", {.tangent = DEM_TANGENT_NONE}},
+    {"tangent.viscous", "bed", "friction without memory: heaps creep", {.tangent = DEM_TANGENT_VISCOUS}},
+    {"tangent.step", "bed", "spring of one step, as in [MIL]: heaps creep", {.tangent = DEM_TANGENT_STEP}},
+    {"tangent.mindlin", "bed", "stiffness that follows the overlap", {.tangent = DEM_TANGENT_MINDLIN}},
+    {"tangent.mindlin_rescaled", "bed", "and no energy gained while unloading", {.tangent = DEM_TANGENT_MINDLIN_RESCALED}},
+    {"rolling.step", "bed", "rolling resistance as in [MIL]", {.rolling = DEM_ROLLING_STEP, .rolling_friction = 0.1}},
+    {"rolling.constant", "bed", "a constant rolling torque", {.rolling = DEM_ROLLING_CONSTANT, .rolling_friction = 0.1}},
+    {"rolling.epsd", "bed", "rolling resistance that holds a grain on a slope", {.rolling = DEM_ROLLING_EPSD, .rolling_friction = 0.1}},
+    {"integrator.leapfrog", "bed", "the path of velocity Verlet", {.integrator = DEM_LEAPFROG}},
+    {"integrator.position_verlet", "bed", "the path of velocity Verlet", {.integrator = DEM_POSITION_VERLET}},
+    {"integrator.symplectic_euler", "bed", "first order, energy bounded", {.integrator = DEM_SYMPLECTIC_EULER}},
+    {"integrator.forward_euler", "bed", "first order, gains energy", {.integrator = DEM_FORWARD_EULER}},
+    {"skin0", "bed", "nothing: a new list at every step", {.skin = -1}},
+    {"search.linked_list", "drum", "nothing here: pays at wide size ranges [FEN]", {.search = DEM_SEARCH_LINKED_LIST}},
+    {"search.all_pairs", "drum", "nothing: the oracle of the tests", {.search = DEM_SEARCH_ALL_PAIRS, .every = 18}}, /* of 1000 */
+};
+
+static void price(const price_row *row, const bench_scene *s, FILE *page) {
     double ta[MOST_LOOPS], tb[MOST_LOOPS], ratio[MOST_LOOPS];
-    dem_world *a = warm(name, s, base), *b = a ? warm(name, s, with) : 0;
-    const int many = s->count/(base->every > 1 ? base->every : 1), full_loop = steps_of(s)/2 + 1;
+    const bench_choice base = {.every = row->with.every};
+    const int many = s->count/(base.every > 1 ? base.every : 1), full_loop = steps_of(s)/2 + 1;
     const int steps = many < 5000 && !steps_asked ? 4*full_loop : full_loop;
+    dem_world *a = warm(row->name, s, &base), *b = a ? warm(row->name, s, &row->with) : 0;
     int r, turns;
-    char unit[64];
-    if (b && (turns = take_turns(name, a, b, steps, ta, tb)) > 0) {
+    char unit[64], name[64];
+    if (b && (turns = take_turns(row->name, a, b, steps, ta, tb)) > 0) {
         for (r = 0; r < turns; r++) ratio[r] = tb[r]/ta[r];
-        snprintf(unit, sizeof unit, "of the default (%s, %d, +- %.0f %%)", s->name, many, spread(ratio, turns));
-        result_short(name, median(ratio, turns), unit);
+        snprintf(unit, sizeof unit, "of the default (%s, %d, +- %.0f %%)", s->name, many, bench_spread(ratio, turns));
+        snprintf(name, sizeof name, "price.%s", row->name);
+        bench_result_short(name, bench_median(ratio, turns), unit);
+        if (page) fprintf(page, "| `%s` | %s | %s, %d | %.2f | %.0f %% |\n", row->name, row->buys, s->name, many,
+                          bench_median(ratio, turns), bench_spread(ratio, turns));
     }
     if (a) dem_world_destroy(a);
     if (b) dem_world_destroy(b);
 }
 
-static void prices(void) {
-    static const struct { const char *name; dem_integrator integrator; } integrators[] = {
-        {"price.integrator.leapfrog", DEM_LEAPFROG},
-        {"price.integrator.position_verlet", DEM_POSITION_VERLET},
-        {"price.integrator.symplectic_euler", DEM_SYMPLECTIC_EULER},
-        {"price.integrator.forward_euler", DEM_FORWARD_EULER}};
-    static const struct { const char *name; dem_tangent_law law; } tangents[] = {
-        {"price.tangent.none", DEM_TANGENT_NONE}, {"price.tangent.viscous", DEM_TANGENT_VISCOUS},
-        {"price.tangent.step", DEM_TANGENT_STEP}, {"price.tangent.mindlin", DEM_TANGENT_MINDLIN},
-        {"price.tangent.mindlin_rescaled", DEM_TANGENT_MINDLIN_RESCALED}};
-    static const struct { const char *name; dem_rolling_law law; } rollings[] = {
-        {"price.rolling.step", DEM_ROLLING_STEP}, {"price.rolling.constant", DEM_ROLLING_CONSTANT},
-        {"price.rolling.epsd", DEM_ROLLING_EPSD}};
-    const bench_choice zero = BENCH_CHOICE;
-    bench_choice base = BENCH_CHOICE, with;
+static void prices(double load) {
     bench_scene bed = bench_scene_read(data_folder, "bed"), drum = bench_scene_read(data_folder, "drum");
+    FILE *page = bench_page_open();
     size_t i;
-    with = zero; with.mixed = 1;
-    price("price.mixed_radii", &bed, &base, &with);
-    with = zero; with.ledger = 1;
-    price("price.ledger", &bed, &base, &with);
-    with = zero; with.normal = DEM_NORMAL_LINEAR;
-    price("price.linear", &bed, &base, &with);
-    for (i = 0; i < sizeof tangents/sizeof *tangents; i++) {
-        with = zero; with.tangent = tangents[i].law;
-        price(tangents[i].name, &bed, &base, &with);
+    if (page) {
+        bench_page_machine(page, load);
+        fprintf(page, "| choice | what it buys | scene, grains | time of a step, default = 1 | +- |\n|---|---|---|---|---|\n");
     }
-    for (i = 0; i < sizeof rollings/sizeof *rollings; i++) {
-        with = zero; with.rolling = rollings[i].law; with.rolling_friction = 0.1;
-        price(rollings[i].name, &bed, &base, &with);
-    }
-    for (i = 0; i < sizeof integrators/sizeof *integrators; i++) {
-        with = zero; with.integrator = integrators[i].integrator;
-        price(integrators[i].name, &bed, &base, &with);
-    }
-    with = zero; with.skin = -1;
-    price("price.skin0", &bed, &base, &with);
-    with = zero; with.search = DEM_SEARCH_LINKED_LIST;
-    price("price.search.linked_list", &drum, &base, &with);
-    base.every = with.every = 18;       /* 1000 beads: every pair is looked at                      */
-    with.search = DEM_SEARCH_ALL_PAIRS;
-    price("price.search.all_pairs", &drum, &base, &with);
+    for (i = 0; i < sizeof price_rows/sizeof *price_rows; i++)
+        price(&price_rows[i], strcmp(price_rows[i].scene, "bed") ? &drum : &bed, page);
+    study_close(page, "page.md");
     bench_scene_free(&bed);
     bench_scene_free(&drum);
 }
@@ -368,32 +322,6 @@ static void measure_raw(const bench_scene *s) {
     if (world) dem_world_destroy(world);
 }
 
-/* ---- what it ran on ---- */
-
-static void machine(void) {
-    char line[512], name[256] = "unknown processor";
-    int cores = 0;
-    double load = 0;
-    FILE *file = fopen("/proc/cpuinfo", "r");
-    while (file && fgets(line, sizeof line, file)) {
-        const char *colon = strchr(line, ':');
-        if (!strncmp(line, "processor", 9)) cores++;
-        if (strncmp(line, "model name", 10) || !colon) continue;
-        snprintf(name, sizeof name, "%.200s", colon + 2);
-        name[strcspn(name, "\n")] = 0;
-    }
-    if (file) fclose(file);
-    file = fopen("/proc/loadavg", "r");
-    if (file && fscanf(file, "%lf", &load) == 1 && load > 0.5)
-        printf("# load %.1f: other work runs here, which is worst for what runs on threads\n", load);
-    if (file) fclose(file);
-    snprintf(line, sizeof line, "%s, %d logical processors", name, cores);
-    study_result_text("machine", line, "");
-    study_result_text("compiler", BENCH_COMPILER, "");
-    study_result_text("flags", BENCH_FLAGS, "");
-    if (cpu) study_result_text("clock", "processor time: not for threads, not for comparing with others", "");
-}
-
 int main(int argc, char **argv) {
     static const study_option table[] = {
         {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|prices", "what to measure"},
@@ -413,6 +341,7 @@ int main(int argc, char **argv) {
     };
     static const char *const names[3] = {"bed", "drum", "gas"};
     char folder[256];
+    double load;
     int i;
     study_options(argc, argv, "How fast dem.h is, and what each choice costs.", table, (int)(sizeof table/sizeof *table));
     if (quick && full) { study_fail("--quick or --full, not both"); return 2; }
@@ -431,7 +360,9 @@ int main(int argc, char **argv) {
     }
     snprintf(folder, sizeof folder, "build/out/%s", study.program);
     study_begin(*out ? out : folder);
-    machine();
+    load = bench_load();
+    bench_machine();
+    if (cpu) study_result_text("clock", "processor time: not for threads, not for comparing with others", "");
     if (*settle) { settle_scene(settle); return study_end(); }
     for (i = 0; i < 3; i++)
         if (!strcmp(scene_name, names[i]) || !strcmp(scene_name, "all")) {
@@ -439,6 +370,6 @@ int main(int argc, char **argv) {
             measure(&s);
             bench_scene_free(&s);
         }
-    if (!strcmp(scene_name, "prices") || (!strcmp(scene_name, "all") && !brief)) prices();
+    if (!strcmp(scene_name, "prices") || (!strcmp(scene_name, "all") && !brief)) prices(load);
     return study_end();
 }

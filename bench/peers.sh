@@ -1,25 +1,46 @@
 # sh bench/peers.sh: the scenes of bench/scenes.h in dem.h, LAMMPS and LIGGGHTS, in turns, from the same
 # start states. Prints medians and the ratios dem.h : other code. A code that is missing is skipped, loudly.
 # What is compared is each code's own time of its loop of steps, after 100 untimed ones; every turn is a
-# process of its own. One core: all on processor 0. Two: two threads of dem.h against two ranks of the others.
+# process of its own. One core: all on processor PROCESSOR. Two: two threads of dem.h, bound to cores, against
+# two ranks of the others, bound to cores. Inputs are bench/peers/CODE_SCENE.in, each with the skin, newton
+# setting and style that made that code fastest. Start states are bench/data/*.txt (made anew, in minutes, by
+# build/bench --settle bed, drum or gas); the others read them from build/peers/*.data, written here by
+# build/bench --codes build/peers. A code compiled for the machine is up to a quarter faster than a
+# distribution's package: name yours with LAMMPS= and LIGGGHTS=.
 #   STEPS=N    steps of bed and drum; gas takes five times as many        ROUNDS=N    turns
+#   CORES="1 2"   SCENES="bed drum gas"   PROCESSOR=0   LAMMPS=lmp   LIGGGHTS=liggghts
 ROUNDS=${ROUNDS:-5}
-STEPS=${STEPS:-200}
+STEPS=${STEPS:-500}
+CORES=${CORES:-1 2}
+SCENES=${SCENES:-bed drum gas}
+LAMMPS=${LAMMPS:-lmp}
+LIGGGHTS=${LIGGGHTS:-liggghts}
 dir=build/peers
 mkdir -p $dir
 rm -f $dir/*.times $dir/*.out
 
 found() { command -v "$1" >/dev/null 2>&1; }
-codes=
-for code in lammps liggghts; do
-    program=$code; [ $code = lammps ] && program=lmp
-    if found $program; then codes="$codes $code"; else echo "SKIP: $code not found (Debian package $code)"; fi
-done
+codes=; suffix_omp=
+if found $LAMMPS; then
+    codes=lammps
+    echo "# $($LAMMPS -h </dev/null 2>/dev/null | awk '/Simulator/ { sub(/.*Simulator - */, "LAMMPS "); print; exit }')"
+    # its threaded styles are the faster ones in bed, also on one thread
+    $LAMMPS -h </dev/null 2>/dev/null | grep -qw OPENMP && suffix_omp="-sf omp -pk omp 1"
+else echo "SKIP: $LAMMPS not found (Debian package lammps): no vs_lammps"; fi
+if found $LIGGGHTS; then
+    codes="$codes liggghts"
+    echo "# $($LIGGGHTS -help </dev/null 2>/dev/null | awk '/LIGGGHTS/ { print; exit }')"
+else echo "SKIP: $LIGGGHTS not found (Debian package liggghts): no vs_liggghts"; fi
 [ "$codes" ] || exit 0
-pin=; if found taskset; then pin="taskset -c 0"; else echo "SKIP: taskset not found, processes may wander"; fi
-two=2
-if [ "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)" -lt 2 ]; then echo "SKIP: one processor, no threads2"; two=
-elif ! found mpirun; then echo "SKIP: mpirun not found (Debian package openmpi-bin), no threads2"; two=; fi
+pin=; if found taskset; then pin="taskset -c ${PROCESSOR:-0}"; else echo "SKIP: taskset not found, processes may wander"; fi
+two=
+case " $CORES " in *" 2 "*)
+    two=2
+    if [ "$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)" -lt 2 ]; then echo "SKIP: one processor, no threads2"; two=
+    elif ! found mpirun; then echo "SKIP: mpirun not found (Debian package openmpi-bin), no threads2"; two=; fi
+esac
+case " $CORES " in *" 1 "*) one=1 ;; *) one= ;; esac
+for c in single O2; do [ -x build/bench_$c ] || echo "SKIP: build/bench_$c is missing (make bench-peers builds it)"; done
 [ -x build/bench ] || { echo "build/bench is missing: run make bench-peers"; exit 1; }
 build/bench --codes $dir || exit 1
 
@@ -31,12 +52,13 @@ turn() {
     set -- $grid
     screen=$dir/$scene.$code.$cores.out
     out=$dir/$scene.$code.$cores.times
-    start=$pin; [ $cores = 2 ] && start=
+    start=$pin; [ $cores = 2 ] && start="env OMP_PROC_BIND=true OMP_PLACES=cores"
     case $code in
     lammps|liggghts)
-        program=liggghts; [ $code = lammps ] && program=lmp
+        program=$LIGGGHTS; options=
+        [ $code = lammps ] && program=$LAMMPS && [ $scene = bed ] && options=$suffix_omp
         [ $cores = 2 ] && start="mpirun --allow-run-as-root --oversubscribe --bind-to core -np 2"
-        OMP_NUM_THREADS=1 $start $program -in bench/peers/${code}_$scene.in -log none -var data $dir/$scene.data \
+        OMP_NUM_THREADS=1 $start $program $options -in bench/peers/${code}_$scene.in -log none -var data $dir/$scene.data \
             -var stl $dir/drum.stl -var steps $steps -var px $1 -var py $2 -var pz $3 >$screen 2>&1 </dev/null
         # the last loop: its time, and the line of numbers before it
         awk '/^Loop time/ { time = $4; kinetic = k; touches = c } NF == 3 && $1 ~ /^[0-9]+$/ { k = $2; c = $3 }
@@ -53,10 +75,16 @@ turn() {
 # middle of a column of a file of times
 middle() { awk -v c=$2 '{ print $c }' "$1" | sort -g | awk '{ v[NR] = $1 } END { print (v[int((NR + 1)/2)] + v[int(NR/2) + 1])/2 }'; }
 
+# middle of the ratios of times, turn by turn, and half their range: what disturbs a turn disturbs both
+ratio() { paste -d" " "$1" "$2" | awk '{ print $1/$5 }' | sort -g | awk '{ v[NR] = $1 } END {
+    m = (v[int((NR + 1)/2)] + v[int(NR/2) + 1])/2; printf "%.2f (+- %.0f %%)", m, 50*(v[NR] - v[1])/m }'; }
+
+load=$(cut -d" " -f1 /proc/loadavg 2>/dev/null)
+case $load in ""|0.[0-4]*) ;; *) echo "# load $load: other work runs here, these figures are preliminary" ;; esac
 failed=
-for cores in 1 $two; do
+for cores in $one $two; do
     suffix=; [ $cores = 2 ] && suffix=.threads2
-    for scene in bed drum gas; do
+    for scene in $SCENES; do
         others=
         for code in $codes; do [ -f bench/peers/${code}_$scene.in ] && others="$others $code"; done
         [ "$others" ] || continue
@@ -81,8 +109,7 @@ for cores in 1 $two; do
         done
         for code in $ours; do for other in $others; do
             label=$code; [ $code = O2 ] && label=double.O2
-            echo "$scene.$label.vs_$other$suffix = $(awk -v a=$(middle $dir/$scene.$other.$cores.times 1) \
-                -v b=$(middle $dir/$scene.$code.$cores.times 1) 'BEGIN { printf "%.2f", a/b }')"
+            echo "$scene.$label.vs_$other$suffix = $(ratio $dir/$scene.$other.$cores.times $dir/$scene.$code.$cores.times)"
         done; done
         [ $scene$cores = bed1 ] && for code in $others double; do
             echo "bed.$code.memory_per_bead = $(middle $dir/bed.$code.1.times 4) byte"

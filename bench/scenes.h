@@ -47,6 +47,7 @@ typedef struct bench_scene {
     char name[16];              /* bed, drum, gas                                              */
     int count;
     double radius, dt;          /* m, s                                                        */
+    double side[3];             /* m, periodic along BED's x and y and GAS's x, y and z; else 0 */
     double *x, *v, *spin;       /* count x 3: m, m/s, rad/s                                    */
 } bench_scene;
 
@@ -89,6 +90,8 @@ STUDY_FN bench_scene bench_scene_make(const char *name, int count) {
     s.count = count;
     s.radius = !strcmp(name, "gas") ? BENCH_GAS_RADIUS : BENCH_RADIUS;
     s.dt = !strcmp(name, "gas") ? BENCH_GAS_DT : BENCH_DT;
+    if (!strcmp(name, "bed")) s.side[0] = s.side[1] = BENCH_BED_SIDE;
+    if (!strcmp(name, "gas")) s.side[0] = s.side[1] = s.side[2] = BENCH_GAS_SIDE;
     s.x = (double *)study_alloc((size_t)count*3, sizeof(double));
     s.v = (double *)study_alloc((size_t)count*3, sizeof(double));
     s.spin = (double *)study_alloc((size_t)count*3, sizeof(double));
@@ -162,9 +165,6 @@ STUDY_FN void bench_scene_write(const bench_scene *s, const char *path) {
    positions brought back into the box. */
 STUDY_FN void bench_scene_take(bench_scene *s, const dem_world *world) {
     const dem_bodies b = dem_bodies_get(world);
-    const double side[3] = {bench_is(s, "gas") ? BENCH_GAS_SIDE : BENCH_BED_SIDE,
-                            bench_is(s, "gas") ? BENCH_GAS_SIDE : BENCH_BED_SIDE, BENCH_GAS_SIDE};
-    const int axes = bench_is(s, "gas") ? 3 : bench_is(s, "bed") ? 2 : 0;
     int i, c;
     for (i = 0; i < b.count; i++) {
         const size_t to = 3*(size_t)(dem_bodies_id(world, i).slot - 1);
@@ -172,7 +172,7 @@ STUDY_FN void bench_scene_take(bench_scene *s, const dem_world *world) {
             s->x[to + (size_t)c] = (double)b.positions[4*i + c];
             s->v[to + (size_t)c] = (double)b.velocities[4*i + c];
             s->spin[to + (size_t)c] = (double)b.spins[4*i + c];
-            if (c < axes) s->x[to + (size_t)c] -= side[c]*floor(s->x[to + (size_t)c]/side[c]);
+            if (s->side[c] > 0) s->x[to + (size_t)c] -= s->side[c]*floor(s->x[to + (size_t)c]/s->side[c]);
         }
     }
 }
@@ -290,7 +290,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     if (!gas && o->normal == DEM_NORMAL_LINEAR) desc.impact_speed = DEM_R(0.03); /* as stiff as the bed's contacts */
     if (bed) {
         desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
-        desc.domain = dem_box_make(0, 0, 0, (dem_real)BENCH_BED_SIDE, (dem_real)BENCH_BED_SIDE,
+        desc.domain = dem_box_make(0, 0, 0, (dem_real)s->side[0], (dem_real)s->side[1],
                                    (dem_real)BENCH_BED_HEIGHT);
     }
     if (gas) {

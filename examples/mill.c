@@ -488,7 +488,7 @@ static map map_make(const dem_field_data *d, int n) { /* cells of the field summ
             a.v[k] += d->momentum[3*from + 1];
         }
     for (k = 0; k < n*n; k++) {
-        if (!(a.mass[k] > 0)) a.solid[k] = NAN;
+        if (!(a.mass[k] > 0)) a.solid[k] = (double)NAN;
         a.u[k] /= a.mass[k];
         a.v[k] /= a.mass[k];
     }

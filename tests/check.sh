@@ -51,6 +51,9 @@ for cc in gcc clang tcc; do
         try "$cc${real:+ float}: strict, DEM_STATIC"        "$cc -std=c99 -I. $real $strict -DDEM_STATIC -c dem.c -o \$bin.o"
         try "$cc${real:+ float}: strict, DEM_NO_SPECIALIZE" "$cc -std=c99 -I. $real $strict -DDEM_NO_SPECIALIZE -c dem.c -o \$bin.o"
     done
+    for source in bench/*.c; do
+        try "$cc: strict, $source"                  "$cc -std=c99 -I. $strict $openmp -fsyntax-only $source"
+    done
     for level in -O0 -O1 -O2 -O3 "-O3 -ffast-math"; do
         try "$cc $level: run"                      "$cc -std=c99 -I. $level $one_file -o \$bin -lm && \$bin"
     done

@@ -1,0 +1,110 @@
+/* measure.h - what the benches share: clocks, medians, how numbers are told, what they ran on. MIT licence.
+
+   Needs examples/study.h before it. BENCH_FLAGS is the compiler's flags, from the Makefile.
+
+       bench_machine();                              // processor, compiler, flags, load: the first lines
+       bench_result_rate("rate", 1.2e7);             // rate = 12.00e6 particle-steps/s
+       bench_result_short("speedup", 1.8342, "");    // speedup = 1.83
+*/
+#ifndef BENCH_MEASURE_H
+#define BENCH_MEASURE_H
+
+#ifndef BENCH_FLAGS
+#define BENCH_FLAGS "unknown"
+#endif
+#if defined(__clang__)
+#define BENCH_COMPILER "clang " __clang_version__
+#elif defined(__GNUC__)
+#define BENCH_COMPILER "gcc " __VERSION__
+#else
+#define BENCH_COMPILER "unknown"
+#endif
+
+enum { BENCH_MOST_LOOPS = 99 };
+
+/* ---- of several turns ---- */
+
+STUDY_FN int bench_compare(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+STUDY_FN double bench_median(const double *values, int count) {
+    double sorted[BENCH_MOST_LOOPS];
+    memcpy(sorted, values, (size_t)count*sizeof *values);
+    qsort(sorted, (size_t)count, sizeof *sorted, bench_compare);
+    return count & 1 ? sorted[count/2] : (sorted[count/2 - 1] + sorted[count/2])/2;
+}
+/* Of a[i]/b[i], of the same turn: what disturbs a turn disturbs both. */
+STUDY_FN double bench_median_ratio(const double *a, const double *b, int count) {
+    double ratio[BENCH_MOST_LOOPS];
+    int i;
+    for (i = 0; i < count; i++) ratio[i] = a[i]/b[i];
+    return bench_median(ratio, count);
+}
+STUDY_FN double bench_spread(const double *values, int count) { /* half the range over the median, % */
+    double lo = values[0], hi = values[0];
+    int i;
+    for (i = 1; i < count; i++) { lo = fmin(lo, values[i]); hi = fmax(hi, values[i]); }
+    return 50*(hi - lo)/bench_median(values, count);
+}
+
+/* ---- how numbers are told ---- */
+
+STUDY_FN void bench_result_rate(const char *name, double rate) { /* with the exponent one reads rates in */
+    char text[64];
+    snprintf(text, sizeof text, "%.2fe6", 1e-6*rate);
+    study_result_text(name, text, "particle-steps/s");
+}
+STUDY_FN void bench_result_short(const char *name, double value, const char *unit) { /* three digits    */
+    char text[64];
+    snprintf(text, sizeof text, fabs(value) < 1000 ? "%.3g" : "%.0f", value);
+    study_result_text(name, text, unit);
+}
+/* What study.h does not know: a page in markdown, beside the results; bench/pages.sh copies it into docs. */
+STUDY_FN FILE *bench_page_open(void) { return study_open("page.md"); }
+
+/* ---- what it ran on ---- */
+
+STUDY_FN int bench_processors(char *name, size_t room) { /* how many; 0: not known                     */
+    char line[512];
+    int count = 0;
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    snprintf(name, room, "unknown processor");
+    while (file && fgets(line, sizeof line, file)) {
+        const char *colon = strchr(line, ':');
+        if (!strncmp(line, "processor", 9)) count++;
+        if (strncmp(line, "model name", 10) || !colon) continue;
+        snprintf(name, room, "%.200s", colon + 2);
+        name[strcspn(name, "\n")] = 0;
+    }
+    if (file) fclose(file);
+    return count;
+}
+STUDY_FN double bench_load(void) { /* processes that ran, of the last minute; 0: not known              */
+    double load = 0;
+    FILE *file = fopen("/proc/loadavg", "r");
+    if (file && fscanf(file, "%lf", &load) != 1) load = 0;
+    if (file) fclose(file);
+    return load;
+}
+/* The load is asked at the beginning only: later it is our own. */
+STUDY_FN int bench_machine(void) { /* answers how many processors                                      */
+    char line[512], name[256];
+    const double load = bench_load();
+    const int count = bench_processors(name, sizeof name);
+    if (load > 0.5) printf("# load %.1f: other work runs here, which is worst for what runs on threads\n", load);
+    snprintf(line, sizeof line, "%s, %d logical processors", name, count);
+    study_result_text("machine", line, "");
+    study_result_text("compiler", BENCH_COMPILER, "");
+    study_result_text("flags", BENCH_FLAGS, "");
+    return count;
+}
+/* The same as one line of a page; a busy machine marks its figures. */
+STUDY_FN void bench_page_machine(FILE *page, double load) {
+    char name[256];
+    const int count = bench_processors(name, sizeof name);
+    fprintf(page, "%s%s, %d logical processors; %s; `%s`.\n\n",
+            load > 0.5 ? "**Preliminary: the machine was busy.** " : "", name, count, BENCH_COMPILER, BENCH_FLAGS);
+}
+
+#endif /* BENCH_MEASURE_H */

@@ -1,0 +1,57 @@
+# sh bench/pages.sh [accuracy] [roofline] [clusters]: measures anew what stands in those pages of docs/, all of
+# them when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in
+# the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
+[ "$1" ] || set -- accuracy roofline clusters
+export OMP_PROC_BIND=true OMP_PLACES=cores
+
+# splice PAGE NAME FILE
+splice() {
+    grep -q "<!-- $2: begin -->" "docs/$1" || { echo "docs/$1 has no place for $2"; exit 1; }
+    awk -v begin="<!-- $2: begin -->" -v end="<!-- $2: end -->" -v file="$3" '
+        $0 == end { skip = 0 }
+        !skip { print }
+        $0 == begin { while ((getline line < file) > 0) print line; skip = 1 }' "docs/$1" > build/page.new &&
+    cp build/page.new "docs/$1" && echo "docs/$1: $2"
+}
+# picture SVG PNG FILE: converts it, and adds it to the file that is to be spliced
+picture() {
+    if command -v rsvg-convert >/dev/null 2>&1; then rsvg-convert "$1" -o "docs/images/$2" && printf '\n![](images/%s)\n' "$2" >> "$3"
+    else echo "SKIP: rsvg-convert not found (Debian package librsvg2-bin): docs/images/$2 stays as it was"; fi
+}
+# a row a scene: rates of the three builds, from their summaries
+rates() {
+    cat build/out/bench/summary.txt build/out/bench_single/summary.txt build/out/bench_O2/summary.txt | awk '
+        / = / && $1 ~ /^(bed|drum|gas)\.(double|single|double\.O2)\.rate$/ {
+            split($1, part, "."); build = part[2] (part[3] == "O2" ? ".O2" : ""); rate[part[1], build] = $3 + 0 }
+        END { print "| scene | double | single | single : double | double, `-O2` without `-march=native` |"; print "|---|---|---|---|---|"
+            n = split("bed drum gas", scene, " ")
+            for (i = 1; i <= n; i++) { d = rate[scene[i], "double"]; s = rate[scene[i], "single"]; o = rate[scene[i], "double.O2"]
+                printf "| %s | %.1f | %.1f | %.2f | %s |\n", scene[i], d, s, d ? s/d : 0, o ? sprintf("%.1f", o) : "" } }'
+}
+
+at=build/out
+for page in "$@"; do
+    case $page in
+    accuracy)
+        build/bench --scene prices && splice accuracy.md prices $at/bench/page.md || exit 1
+        build/accuracy || exit 1
+        for s in restitution energy; do picture $at/accuracy/bounce_$s.svg accuracy_$s.png $at/accuracy/page.md; done
+        splice accuracy.md integrators $at/accuracy/page.md
+        build/bench --brief && build/bench_single --brief && build/bench_O2 --brief || exit 1
+        rates > build/rates.md && splice accuracy.md precision build/rates.md ;;
+    roofline)
+        build/roofline || exit 1
+        for s in bed drum gas; do picture $at/roofline/roofline_$s.svg roofline_$s.png $at/roofline/page.md; done
+        splice roofline.md roofline $at/roofline/page.md ;;
+    clusters)
+        rm -f $at/parallel/*.svg
+        build/parallel --threads ${THREADS:-8} && build/parallel --model || exit 1
+        for s in speedup speedup_tables scaling searches; do
+            [ -f $at/parallel/$s.svg ] && picture $at/parallel/$s.svg parallel_$s.png $at/parallel/page.md
+        done
+        picture $at/model/model.svg clusters_model.png $at/model/page.md
+        splice clusters.md measured $at/parallel/page.md
+        splice clusters.md model $at/model/page.md ;;
+    *) echo "no page $page: accuracy, roofline or clusters"; exit 1 ;;
+    esac
+done
