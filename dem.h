@@ -1130,8 +1130,9 @@ struct dem_world {
     int carry_stride;              /* reals per entry */
     int wall_stride;               /* wall candidates per domain */
     int wall_now_stride;           /* wall contacts per domain */
-    demi_array wall_body_, wall_id_, wall_element_, wall_now_, wall_next_, wall_sums_;
+    demi_array wall_body_, wall_id_, wall_element_, wall_gap_, wall_now_, wall_next_, wall_sums_;
     int32_t *wall_body, *wall_id, *wall_element;
+    dem_real *wall_gap;            /* m, between grain and element when the list was made */
     demi_wall_contact *wall_now, *wall_next;
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     demi_array lll_ends_[3], lll_table_, lll_rows_, lll_row_start_;
@@ -2941,7 +2942,7 @@ static void demi_domain_search(dem_world *w, int d) {
 
 /* Wall elements near a grain, ascending; offered to the domain's list of wall candidates. */
 static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
-                            int element) {
+                            int element, dem_real gap) {
     int k = domain->walls;
     if (k >= w->wall_stride) { domain->overflow |= 4; return; }
     domain->walls++;
@@ -2949,8 +2950,10 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_body[k] = body;
     w->wall_id[k] = wall;
     w->wall_element[k] = element;
+    w->wall_gap[k] = gap;
 }
-static int demi_wall_near(const demi_wall *wall, int element, dem_vec3 local, dem_real distance);
+static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
+                                   dem_real enough);
 static void demi_domain_walls(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     int i, j, k, x, y, z, f[3], l[3];
@@ -2960,17 +2963,19 @@ static void demi_domain_walls(dem_world *w, int d) {
         if (w->fixed_count && w->inv_mass[i] <= 0) continue;
         for (j = 0; j < w->wall_count; j++) {
             const demi_wall *wall = &w->walls[j];
-            const dem_real near_by = w->pos[4*i + 3] + (dem_real)w->skin;
+            const dem_real r = w->pos[4*i + 3], near_by = r + (dem_real)w->skin;
             const int first = domain->walls;
+            dem_real away;
             dem_vec3 at;
             if (wall->kind == DEMI_WALL_NONE) continue;
             at = demi_unturn(wall->pose.rotation, demi_sub(demi_at(w->pos + 4*i),
                                                            wall->pose.position));
             if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
             if (wall->element_count <= 4) {
-                for (k = 0; k < wall->element_count; k++)
-                    if (demi_wall_near(wall, k, at, near_by)) demi_wall_offer(w, domain, d,
-                        i, j, k);
+                for (k = 0; k < wall->element_count; k++) {
+                    away = demi_wall_distance(wall, k, at, near_by);
+                    if (away < near_by) demi_wall_offer(w, domain, d, i, j, k, away - r);
+                }
                 continue;
             }
             demi_wall_cells(wall, demi_sub(at, demi_v(near_by, near_by, near_by)),
@@ -2984,15 +2989,22 @@ static void demi_domain_walls(dem_world *w, int d) {
                             int q, seen = 0, base = d*w->wall_stride;
                             for (q = first; q < domain->walls && !seen; q++)
                                 seen = w->wall_element[base + q] == element;
-                            if (!seen && demi_wall_near(wall, element, at, near_by))
-                                demi_wall_offer(w, domain, d, i, j, element);
+                            if (seen) continue;
+                            away = demi_wall_distance(wall, element, at, near_by);
+                            if (away < near_by)
+                                demi_wall_offer(w, domain, d, i, j, element, away - r);
                         }
                     }
             /* ascending: the order must not hang on cells */
             for (k = first + 1; k < domain->walls; k++) {
                 int32_t *e = w->wall_element + d*w->wall_stride, t = e[k];
-                for (x = k; x > first && e[x - 1] > t; x--) e[x] = e[x - 1];
+                dem_real *gap = w->wall_gap + d*w->wall_stride, g = gap[k];
+                for (x = k; x > first && e[x - 1] > t; x--) {
+                    e[x] = e[x - 1];
+                    gap[x] = gap[x - 1];
+                }
                 e[x] = t;
+                gap[x] = g;
             }
         }
     }
@@ -3035,10 +3047,12 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &w->wall_body_, sizeof(int32_t),
                                                              n) &&
                    demi_array_grow(w, &w->wall_id_, sizeof(int32_t), n) &&
+                   demi_array_grow(w, &w->wall_gap_, sizeof(dem_real), n) &&
                    demi_array_grow(w, &w->wall_element_, sizeof(int32_t), n);
     w->wall_body = (int32_t *)w->wall_body_.data;
     w->wall_id = (int32_t *)w->wall_id_.data;
     w->wall_element = (int32_t *)w->wall_element_.data;
+    w->wall_gap = (dem_real *)w->wall_gap_.data;
     if (ok) w->wall_stride = stride;
     return ok;
 }
@@ -3604,7 +3618,9 @@ static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, 
 }
 /* Is a point within a distance of an element's surface? For the candidate list: a triangle whose
    plane is too far off is dropped at once. */
-static int demi_wall_near(const demi_wall *wall, int element, dem_vec3 local, dem_real distance) {
+/* Distance from a point to an element; `enough` or more is not worked out. */
+static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
+                                   dem_real enough) {
     dem_vec3 n, p;
     int feature;
     if (wall->kind == DEMI_WALL_MESH) {
@@ -3613,9 +3629,9 @@ static int demi_wall_near(const demi_wall *wall, int element, dem_vec3 local, de
         demi_wall_corners(wall, element, c);
         n = demi_cross(demi_sub(c[1], c[0]), demi_sub(c[2], c[0]));
         h = demi_dot(n, demi_sub(local, c[0]));
-        if (h*h >= distance*distance*demi_dot(n, n) && demi_dot(n, n) > 0) return 0;
+        if (h*h >= enough*enough*demi_dot(n, n) && demi_dot(n, n) > 0) return enough;
     }
-    return -demi_wall_touch(wall, element, local, 0, &n, &p, &feature) < distance;
+    return -demi_wall_touch(wall, element, local, 0, &n, &p, &feature);
 }
 
 /* [MIL] Fig 5.19: the segment acts as its whole line, with the fraction a^2(3-2a) of the force, a =
@@ -3874,6 +3890,13 @@ DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROW], int q) {
 DEM_INLINE void demi_row_put(dem_real rows[3][DEMI_ROW], int q, dem_vec3 v) {
     rows[0][q] = v.x; rows[1][q] = v.y; rows[2][q] = v.z;
 }
+/* count: whole groups */
+DEM_INLINE void demi_row_copy(dem_real *DEMI_RESTRICT to, const dem_real *DEMI_RESTRICT from,
+                              int count) {
+    int q, l;
+    for (q = 0; q < count; q += DEMI_LANES)
+        for (l = 0; l < DEMI_LANES; l++) to[q + l] = from[q + l];
+}
 DEM_INLINE void demi_rows_minus(dem_real rows[3][DEMI_ROW], size_t q, const dem_real *a,
                                 const dem_real *b) {
     rows[0][q] = a[0] - b[0]; rows[1][q] = a[1] - b[1]; rows[2][q] = a[2] - b[2];
@@ -3920,9 +3943,9 @@ DEM_INLINE void demi_tile_fetch(const dem_world *w, const demi_span *span, int c
     const unsigned char *DEMI_RESTRICT image = span->image;
     int n, e;
     for (e = 0; e < r->keep; e++)
-        memcpy(t->memory[e], span->memory + (size_t)e*span->stride, (size_t)count*sizeof(dem_real));
+        demi_row_copy(t->memory[e], span->memory + (size_t)e*span->stride, count);
     for (e = 0; e < DEMI_PAIR_COLUMNS && !r->uniform; e++)
-        memcpy(t->coef[e], span->coef + (size_t)e*span->stride, (size_t)count*sizeof(dem_real));
+        demi_row_copy(t->coef[e], span->coef + (size_t)e*span->stride, count);
     for (n = 0; n < count; n++) {
         size_t q = (size_t)n;
         const dem_real *a, *b, *c;
@@ -4102,8 +4125,7 @@ DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_span *span, con
             for (l = 0; l < DEMI_LANES; l++) demi_tile_law(w, t, q + l, span, r);
         }
     for (q = 0; q < r->keep; q++)
-        memcpy(span->memory + (size_t)q*span->stride, t->memory[q],
-               (size_t)span->count*sizeof(dem_real));
+        demi_row_copy(span->memory + (size_t)q*span->stride, t->memory[q], full);
     if (r->ledger)
         for (q = 0; q < span->count; q++) {
             energy[DEMI_E_DASHPOT] += (double)t->part[0][q];
@@ -4355,13 +4377,19 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last,
     const int id = w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
     const dem_real r = w->pos[4*body + 3], *R = wall->pose.rotation;
-    const dem_vec3 x = demi_unturn(R, demi_sub(demi_at(w->pos + 4*body), wall->pose.position));
+    /* as far as any grain and any wall have come since the list was made, and a little for rounding */
+    const dem_real gone = (dem_real)(w->reach + w->wall_reach) + r/10000;
+    dem_vec3 x;
     int k, count = 0;
+    while (first < last && w->wall_gap[base + first] > gone) first++;
+    if (first == last) return 0;
+    x = demi_unturn(R, demi_sub(demi_at(w->pos + 4*body), wall->pose.position));
     for (k = first; k < last; k++) {
         demi_wall_contact *c = &out[count];
         dem_vec3 n, p;
         int feature = 0;
         dem_real overlap, share = wall->share;
+        if (w->wall_gap[base + k] > gone) continue;
         if (wall->kind == DEMI_WALL_PROFILE && wall->rule == DEM_EDGE_FRACTION) {
             share = demi_segment_share(wall, w->wall_element[base + k], x, r, &n, &p, &overlap);
             if (!(share > 0)) continue;
@@ -6495,7 +6523,7 @@ static size_t demi_state_size(const dem_world *w, const demi_shape *s) {
         (size_t)s->slots*8 + (size_t)s->domains*sizeof(demi_domain);
     int i;
     size += pairs*8 + (size_t)s->near_total*(12 + (size_t)s->memory_stride*r) +
-        (size_t)s->candidate_total*12;
+        (size_t)s->candidate_total*(12 + r);
     size += (size_t)s->contact_total*sizeof(demi_wall_contact);
     size += (size_t)s->walls*(3*sizeof(dem_pose) + sizeof(dem_channels) + sizeof(dem_motion));
     if (s->carry_count)
@@ -6580,6 +6608,7 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_body + d*w->wall_stride, (size_t)domain->walls*4);
         demi_visit(s, w->wall_id + d*w->wall_stride, (size_t)domain->walls*4);
         demi_visit(s, w->wall_element + d*w->wall_stride, (size_t)domain->walls*4);
+        demi_visit(s, w->wall_gap + d*w->wall_stride, (size_t)domain->walls*r);
         demi_visit(s, w->wall_now + d*w->wall_now_stride,
                    (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
     }
@@ -6941,7 +6970,7 @@ DEM_API void dem_world_destroy(dem_world *w) {
     arrays[k++] = &w->own.place_; arrays[k++] = &w->cross.place_;
     arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
     arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
-    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_now_; arrays[k++] = &w->wall_next_;
+    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_; arrays[k++] = &w->wall_next_;
     arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
     arrays[k++] = &w->lll_row_start_;
     for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
