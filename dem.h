@@ -1021,6 +1021,7 @@ typedef struct demi_domain {
     int contacts, wall_contacts;   /* touching now */
     int overflow;                  /* a list ran out of room while being built */
     double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
+    double acceleration2;          /* max |a|^2 */
     double energy[DEMI_ENERGIES];
 } demi_domain;
 
@@ -1111,8 +1112,10 @@ struct dem_world {
     demi_domain *domains;
     demi_list own, cross;
     demi_near near, near_last;     /* in use, and the one before: swapped when made anew */
-    double near_skin, near_reach;  /* m: margin of the near list, farthest a body went since */
-    uint64_t near_step;            /* step it was made in */
+    double near_span, near_age;    /* s: how long the near list is meant to last, lasts already */
+    double near_margin;            /* m: what velocities may bring by having changed since */
+    double near_drift, near_kick;  /* m/s: how much a velocity may have changed since; last step */
+    double near_creep;             /* m: what that may have brought two bodies together */
     int near_fresh;                /* being made after a search */
     int *cross_incoming_start;     /* domain_count + 1 */
     demi_array cross_incoming_, cross_push_;
@@ -3160,11 +3163,15 @@ DEM_INLINE int demi_memory_of(int tangent, int rolling) {
         : tangent == DEM_TANGENT_SPRING ? 3 : 0;
 }
 
-/* --- the near list: candidates within near_skin of touching. Forces are worked out for all of it,
-       touching or not, so that a step neither looks at candidates nor packs them; what does not
-       touch answers zero. Made anew, from the candidates, when something moved half of near_skin;
-       memory comes from the list before or, after a search, from where it was filed. Numbers do not
-       depend on near_skin: a zero more or less does not change a sum. --- */
+/* --- the near list: candidates that touch or may within near_span, were they to meet head-on at
+       the speed they have now; and near_margin more, because speeds change. Forces are worked out
+       for all of it, touching or not, so that a step neither looks at candidates nor packs them;
+       what does not touch answers zero. It is made anew, from the candidates, when the time is over
+       or accelerations may have used up the margin: two bodies have come nearer than their speeds
+       of then say by at most near_creep, the sum over steps of 2 dt times near_drift, itself the
+       sum of dt times the largest acceleration. Memory comes from the list before or, after a
+       search, from where it was filed. Numbers do not depend on how long a list lasts: a zero more
+       or less does not change a sum. --- */
 
 /* Coefficients of a pair, into its columns; only needed when bodies differ. */
 static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
@@ -3184,14 +3191,18 @@ static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, i
 /* Picks near ones from the candidates of one list, without a branch; their entries from p on. Answers
    where they end, or -1 when there is no room. */
 static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
-    const dem_real *x = w->pos, *shift = w->image_shift, skin = (dem_real)w->near_skin;
+    const dem_real *x = w->pos, *u = w->half_vel, *shift = w->image_shift;
+    const dem_real margin = (dem_real)w->near_margin, span = (dem_real)w->near_span;
     const int room = w->near.stride - DEMI_LANES;
     int32_t *out = w->near.k + d*w->near.stride;
     int k;
     for (k = begin; k < end && p < room; k++) {
         const dem_real *a = DEMI_AT(x, list->a[k]), *b = DEMI_AT(x, list->b[k]);
-        const dem_real *s = shift + list->image[k], cut = a[3] + b[3] + skin;
+        const dem_real *s = shift + list->image[k];
+        const dem_real *ua = DEMI_AT(u, list->a[k]), *ub = DEMI_AT(u, list->b[k]);
         const dem_real dx = b[0] - a[0] + s[0], dy = b[1] - a[1] + s[1], dz = b[2] - a[2] + s[2];
+        const dem_real ux = ub[0] - ua[0], uy = ub[1] - ua[1], uz = ub[2] - ua[2];
+        const dem_real cut = a[3] + b[3] + margin + span*DEMI_SQRT(ux*ux + uy*uy + uz*uz);
         out[p] = k;
         p += dx*dx + dy*dy + dz*dz < cut*cut;
     }
@@ -3290,29 +3301,30 @@ static void demi_domain_near(dem_world *w, int d) {
         if (!l) domain->near_next_cross = p;
     }
 }
-/* near_skin from counted work, so that it is the same on every run: a force costs 1; making the list,
-   0.15 for each candidate and 1 for each near pair (bench/ measures both). Forces grow with
-   near_skin, how often the list is made shrinks with it. */
+/* How long the next near list is to last, from counted work, so that it is the same on every run: a
+   force costs 1; making the list, 0.15 for each candidate and 1 for each near pair (bench/ measures
+   both). Pairs that do not touch grow with the span, how often the list is made shrinks with it. */
 static void demi_near_choose(dem_world *w) {
-    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1);
-    const double steps = (double)(w->steps - w->near_step);
-    const double per_step = steps > 0 ? 2*w->near_reach/steps : 0;
-    double near = 0, touching = 0, candidates = 0, best = 0;
+    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1), dt = (double)w->dt;
+    double near = 0, touching = 0, candidates = 0, longer = 1, span = w->near_span;
     int d;
-    if (w->near_skin <= 0) w->near_skin = 0.01*r;
-    else if (per_step > 0) {
+    if (span < dt) span = dt;                   /* the first of all */
+    if (w->near_age > 0) {
         for (d = 0; d < w->domain_count; d++) {
             const demi_domain *domain = &w->domains[d];
             near += domain->near_own + domain->near_end - domain->near_cross;
             touching += domain->contacts;
             candidates += domain->own + domain->cross;
         }
-        best = sqrt((0.15*candidates + near)*per_step*w->near_skin/
-                    DEMI_MAX(near - touching, 0.01*w->count));
-        best = DEMI_MIN(DEMI_MAX(best, 0.5*w->near_skin), 2*w->near_skin);
-        w->near_skin = DEMI_MAX(sqrt(best*w->near_skin), 1e-6*r);
+        longer = sqrt((0.15*candidates + near)*dt/
+                      (w->near_age*DEMI_MAX(near - touching, 0.01*w->count)));
+        longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));
+        span = DEMI_MIN(DEMI_MAX(w->near_age*longer, 2*dt), 1000*dt);
+        /* creep grows with the square of time */
+        w->near_margin = w->near_creep*span*span/(w->near_age*w->near_age)*1.2;
     }
-    w->near_skin = DEMI_MIN(w->near_skin, w->skin);
+    w->near_margin = DEMI_MIN(DEMI_MAX(w->near_margin, 1e-5*r), 0.1*r);
+    w->near_span = span;
 }
 /* Makes the near list; fresh: after a search. 0 when memory ran out: the list before is in use. */
 static int demi_near_make(dem_world *w, int fresh) {
@@ -3336,8 +3348,8 @@ static int demi_near_make(dem_world *w, int fresh) {
         return 0;
     } while (again);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_adopt);
-    w->near_reach = 0;
-    w->near_step = w->steps;
+    w->near_age = w->near_creep = 0;
+    w->near_drift = w->near_kick;               /* forward Euler feels it one step later */
     return 1;
 }
 
@@ -3394,7 +3406,7 @@ static void demi_skin_choose(dem_world *w) {
     else if (steps > 0 && w->rebuilds > 1 && w->count > 0) {
         double n = 0, hits = 0, slope, best;
         const double per_step = DEMI_MAX(2*w->reach, w->reach + w->wall_reach)/steps;
-        const double looks = DEMI_MIN(DEMI_MAX(w->near_skin/DEMI_MAX(per_step, 1e-300), 1), 100);
+        const double looks = DEMI_MIN(DEMI_MAX(w->near_span/(double)w->dt, 1), 100);
         int d;
         for (d = 0; d < w->domain_count; d++) {
             n += w->domains[d].own + w->domains[d].cross;
@@ -4916,13 +4928,26 @@ static dem_result demi_dt_settle(dem_world *w) {
 
 /* --- the parts of a step, per domain --- */
 
-/* Moves some bodies and clears their forces; while they are at hand: how fast the fastest is, and a
-   sum that keeps what is not finite (a maximum loses it). */
-static void demi_some_move(dem_world *w, int begin, int end, int turning, dem_real *most,
-                           dem_real *sum) {
-    const dem_real *DEMI_RESTRICT v = w->half_vel;
+/* How fast the fastest is, how much the most accelerated, and a sum that keeps what is not finite (a
+   maximum loses it). In groups, each place of which has its own maximum and sum: that is what makes
+   vectors of it. */
+typedef struct demi_pace {
+    dem_real speed2[DEMI_LANES], acceleration2[DEMI_LANES], sum[DEMI_LANES];
+} demi_pace;
+DEM_INLINE void demi_pace_look(const dem_world *w, int i, demi_pace *DEMI_RESTRICT pace, int l) {
+    const dem_real *v = w->half_vel + 4*i, *f = w->force + 4*i, inv = w->inv_mass[i];
+    const dem_vec3 g = w->desc.gravity;
+    const dem_real s = v[0]*v[0] + v[1]*v[1] + v[2]*v[2];
+    const dem_real x = f[0]*inv + g.x, y = f[1]*inv + g.y, z = f[2]*inv + g.z;
+    const dem_real a = x*x + y*y + z*z;
+    pace->speed2[l] = s > pace->speed2[l] ? s : pace->speed2[l];
+    pace->acceleration2[l] = a > pace->acceleration2[l] ? a : pace->acceleration2[l];
+    pace->sum[l] += s;
+}
+/* Moves some bodies, looks at their pace, clears their forces. */
+static void demi_some_move(dem_world *w, int begin, int end, int turning, demi_pace *pace) {
     const size_t bytes = (size_t)(end - begin)*4*sizeof(dem_real);
-    int i;
+    int i, l;
     demi_integrator_rows[w->desc.integrator].move(w, begin, end, turning);
     if (w->desc.planar)
         for (i = begin; i < end; i++) {
@@ -4930,24 +4955,29 @@ static void demi_some_move(dem_world *w, int begin, int end, int turning, dem_re
             w->spin[4*i] = w->spin[4*i + 1] = 0;
             w->half_vel[4*i + 2] = w->half_spin[4*i] = w->half_spin[4*i + 1] = 0;
         }
-    for (i = begin; i < end; i++) {
-        const dem_real s = v[4*i]*v[4*i] + v[4*i + 1]*v[4*i + 1] + v[4*i + 2]*v[4*i + 2];
-        *most = s > *most ? s : *most;
-        *sum += s;
+    for (i = begin; i + DEMI_LANES <= end; i += DEMI_LANES) {
+        DEMI_VECTOR
+        for (l = 0; l < DEMI_LANES; l++) demi_pace_look(w, i + l, pace, l);
     }
+    for (; i < end; i++) demi_pace_look(w, i, pace, 0);
     memset(w->force + 4*begin, 0, bytes);
     if (turning) memset(w->torque + 4*begin, 0, bytes);
 }
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const int turning = demi_spins(w), some = 64;   /* these stay in the nearest cache */
-    dem_real most = 0, sum = 0;
+    demi_pace pace;
     int i;
+    memset(&pace, 0, sizeof pace);
     domain->energy[DEMI_E_GRAVITY] = 0;
     for (i = domain->begin; i < domain->end; i += some)
-        demi_some_move(w, i, DEMI_MIN(i + some, domain->end), turning, &most, &sum);
-    domain->speed2 = (double)most;
-    domain->check = (double)sum;
+        demi_some_move(w, i, DEMI_MIN(i + some, domain->end), turning, &pace);
+    domain->speed2 = domain->acceleration2 = domain->check = 0;
+    for (i = 0; i < DEMI_LANES; i++) {
+        domain->speed2 = DEMI_MAX(domain->speed2, (double)pace.speed2[i]);
+        domain->acceleration2 = DEMI_MAX(domain->acceleration2, (double)pace.acceleration2[i]);
+        domain->check += (double)pace.sum[i];
+    }
     if (w->desc.ledger) {
         const dem_vec3 g = w->desc.gravity;
         for (i = domain->begin; i < domain->end; i++) {
@@ -5096,7 +5126,7 @@ static void demi_fields_sample(dem_world *w);
 
 /* 1 move: first half kick, drift, predicted velocities; walls follow. */
 static dem_result demi_step_move(dem_world *w) {
-    double speed2 = 0;
+    double speed2 = 0, acceleration2 = 0;
     int d, i;
     w->half_kick = (double)w->dt/2;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
@@ -5107,10 +5137,14 @@ static dem_result demi_step_move(dem_world *w) {
         const double s = w->domains[d].check;
         if (!(s < 1e300) || (DEMI_SINGLE && !(s < 1e37))) return demi_unstable(w);
         speed2 = DEMI_MAX(speed2, w->domains[d].speed2);
+        acceleration2 = DEMI_MAX(acceleration2, w->domains[d].acceleration2);
     }
     w->speed_max = sqrt(speed2);
     w->reach += w->speed_max*(double)w->dt;
-    w->near_reach += w->speed_max*(double)w->dt;
+    w->near_kick = sqrt(acceleration2)*(double)w->dt;
+    w->near_drift += w->near_kick;
+    w->near_creep += 2*w->near_drift*(double)w->dt;
+    w->near_age += (double)w->dt;
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->energy[DEMI_E_GRAVITY] += work;
@@ -5157,7 +5191,7 @@ static dem_result demi_step_once(dem_world *w) {
         demi_kernel_choose(w);
         /* faster than thought: ask again */
         if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;
-    } else if (2*w->near_reach > w->near_skin) {
+    } else if (w->near_age > w->near_span*(1 - 1e-9) || w->near_creep > w->near_margin) {
         demi_near_choose(w);
         if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
     }
@@ -6553,9 +6587,12 @@ static void demi_state_scalars(dem_world *w, demi_stream *s) {
     demi_visit(s, &w->primed, sizeof w->primed);
     demi_visit(s, &w->moved, sizeof w->moved);
     demi_visit(s, &w->pairs_changed, sizeof w->pairs_changed);
-    demi_visit(s, &w->near_skin, sizeof w->near_skin);
-    demi_visit(s, &w->near_reach, sizeof w->near_reach);
-    demi_visit(s, &w->near_step, sizeof w->near_step);       demi_visit(s, &w->overlap_max,
+    demi_visit(s, &w->near_span, sizeof w->near_span);
+    demi_visit(s, &w->near_age, sizeof w->near_age);
+    demi_visit(s, &w->near_margin, sizeof w->near_margin);
+    demi_visit(s, &w->near_drift, sizeof w->near_drift);
+    demi_visit(s, &w->near_kick, sizeof w->near_kick);
+    demi_visit(s, &w->near_creep, sizeof w->near_creep);     demi_visit(s, &w->overlap_max,
         sizeof w->overlap_max);
     demi_visit(s, &w->speed_max, sizeof w->speed_max);       demi_visit(s, w->energy,
         sizeof w->energy);
@@ -6567,7 +6604,7 @@ static void demi_state_scalars(dem_world *w, demi_stream *s) {
         sizeof w->slot_pending);
 }
 static size_t demi_scalars_size(dem_world *w) {
-    return sizeof w->balance + 6*sizeof(double) + 4*sizeof(uint64_t) + sizeof(double) +
+    return sizeof w->balance + 10*sizeof(double) + 3*sizeof(uint64_t) + sizeof(double) +
         sizeof(dem_real) + sizeof(double) +
            6*sizeof(int) + 2*sizeof(double) + sizeof w->energy +
                4*sizeof(double) + 2*sizeof(int);
