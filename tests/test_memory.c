@@ -328,9 +328,9 @@ int main(int argc, char **argv) {
         desc.dt = DEM_R(1e-6);
         big = dem_world_create(&desc);
         glass = scene_material(big, 1e7, 0.5, 0.3, 0);
-        scene_block(big, glass, 16, 16, 17, 1e-3, 1, 0.1, 1);  /* two domains */
+        scene_block(big, glass, 16, 16, 17, 1e-3, 1, 0.1, 1);  /* four domains */
         CHECK_EQ(scene_step(big, 2), DEM_OK);
-        CHECK_EQ(dem_counters_get(big).domains, 2);
+        CHECK_EQ(dem_counters_get(big).domains, 4);
         CHECK_EQ(dem_checkpoint_write(big, "build/tmp/memory.ckpt"), DEM_OK);
         dem_world_destroy(big);
         for (k = 1; k < 100 && result == DEM_ERROR_MEMORY && test_now.wrong == 0; k++) {
