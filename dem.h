@@ -797,7 +797,8 @@ DEM_API void dem_slabs_destroy(dem_slabs *slabs);
 DEM_API dem_result dem_slabs_step(dem_slabs *slabs, int steps);
 /* Writes the state of all slabs into a world of the same scene, in every process: grains, contact
    memory, walls, channels, fields, ledger, time. The world may then be looked at, written, stepped,
-   or dealt to slabs anew; the slabs go on unaware of it. */
+   or dealt to slabs anew; the slabs go on unaware of it. It has no list of contacts until
+   dem_search_now; after that it steps on as the slabs would. */
 DEM_API dem_result dem_slabs_collect(dem_slabs *slabs, dem_world *world);
 /* Begins the walls' sums over time and the largest overlap anew. */
 DEM_API void dem_slabs_channels_reset(dem_slabs *slabs);
@@ -8099,8 +8100,8 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
         int sampling = 0;
         if (!h->moved) {
             result = demi_slabs_settle(s);
-            if (result == DEM_OK && (!h->forces_valid || !h->list_valid))
-                result = demi_slabs_refresh(s);
+            if (result == DEM_OK && !h->forces_valid) result = demi_slabs_refresh(s);
+            else if (result == DEM_OK && !h->list_valid) result = demi_slabs_rebuild(s);
             if (result != DEM_OK) break;
             if (!h->primed) { demi_slabs_phase(s, demi_slab_prime); h->primed = 1; }
         }
@@ -8236,8 +8237,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->assumed_speed = from->assumed_speed;                       w->primed = from->primed;
     w->overlap_max = from->overlap_max;                           w->speed_max = from->speed_max;
     w->balance = from->balance;     w->energy_removed = from->energy_removed;
-    w->throughput = from->throughput;
-    w->half_kick = from->half_kick;
+    w->throughput = from->throughput;                             w->half_kick = from->half_kick;
+    w->forces_valid = from->forces_valid && !from->pairs_changed;
     memcpy(w->energy, from->energy, sizeof w->energy);
     if (index > 0) demi_slab_sums_clear(w);
     w->balance.left = 0;
@@ -8332,7 +8333,6 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
 static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     dem_world *h = &s->head;
     const size_t most = 3*DEMI_MATERIALS, n = (size_t)s->count;
-    h->desc = w->desc;
     h->asked = w->asked;
     h->synced = 1;
     h->slot_free = h->slot_pending = -1;
@@ -8344,6 +8344,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->last_rebuild = w->steps;  h->skin_auto = w->skin_auto; h->skin = w->skin;
     h->dt = w->dt;               h->dt_valid = w->dt_valid;   h->primed = w->primed;
     h->assumed_speed = w->assumed_speed;
+    h->forces_valid = w->forces_valid && !w->pairs_changed;
     h->pairs = (dem_pair *)demi_alloc(h, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
     h->pos = (dem_real *)demi_alloc(h, most, 4*sizeof(dem_real));
     h->vel = (dem_real *)demi_alloc(h, most, 4*sizeof(dem_real));
@@ -8422,6 +8423,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     s = (dem_slabs *)demi_raw_alloc(&w->desc.allocator, sizeof *s);
     if (!s) { demi_no_memory(w, "dem_slabs_create"); return 0; }
     memset(s, 0, sizeof *s);
+    s->head.desc = w->desc;
     s->desc = *desc;
     s->axis = desc->axis;
     s->count = desc->count;
@@ -8677,6 +8679,8 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
                 w->energy_removed = removed;
             }
         w->balance.left = w->balance.inserted - w->balance.present - w->balance.removed;
+        demi_effects(w);                        /* the world may never have taken a step itself */
+        demi_kernel_choose(w);
     }
     demi_array_free(w, &add);
     demi_array_free(&s->head, &seen);
