@@ -109,7 +109,8 @@
    Threads. Different worlds may be used from different threads. Within a world, `threads` of the
    desc sets the OpenMP threads; the same input gives the same bits for any number of them: bodies
    are dealt to domains that depend on the number of bodies only, and every sum runs in a fixed
-   order. To compare bits between builds, compile with -ffp-contract=off.
+   order. To compare bits between builds, compile with -ffp-contract=off. Slabs (dem_slabs_create)
+   deal a scene to processes, over MPI or what you have: docs/parallel.md.
 
    Extending. A contact law is one function (>>add-law), a wall a function and a table row
    (>>add-wall), an integrator likewise (>>add-integrator). docs/extending.md walks through each.
@@ -8241,7 +8242,6 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->forces_valid = from->forces_valid && !from->pairs_changed;
     memcpy(w->energy, from->energy, sizeof w->energy);
     if (index > 0) demi_slab_sums_clear(w);
-    w->balance.left = 0;
     return w;
 }
 static int demi_slab_ready(const dem_world *w, const dem_world *from) {
@@ -8678,7 +8678,6 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
                 demi_body_take_out(w, i);
                 w->energy_removed = removed;
             }
-        w->balance.left = w->balance.inserted - w->balance.present - w->balance.removed;
         demi_effects(w);                        /* the world may never have taken a step itself */
         demi_kernel_choose(w);
     }

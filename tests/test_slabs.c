@@ -237,7 +237,7 @@ static dem_world *gas(int periodic, int threads) {
     dem_material glass;
     uint64_t seed = 11;
     int i, k;
-    desc.dt = DEM_R(5e-6);
+    desc.dt = DEM_R(8e-6);
     desc.threads = threads;
     desc.impact_speed = 1;
     for (k = 0; k < 3 && periodic; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
@@ -253,22 +253,28 @@ static dem_world *gas(int periodic, int threads) {
                          (uint64_t)k + 1);
     for (i = 0; i < world->count; i++)
         scene_move(world, dem_bodies_id(world, i),
-                   at(2*scene_random(&seed) - 1, 2*scene_random(&seed) - 1,
-                      2*scene_random(&seed) - 1), at(0, 0, 0));
+                   at(scene_random(&seed) - 0.5, scene_random(&seed) - 0.5,
+                      scene_random(&seed) - 0.5), at(0, 0, 0));
     return world;
 }
-/* The bits of a gas, or of a drum, in so many slabs after so many steps. */
-static uint64_t gas_bits(int periodic, int threads, int count, int steps, int drums) {
-    drum_desc d = DRUM;
-    dem_world *world;
+/* Where bits are compared: a gas, whose sums are of one or two forces and hide their order, and a
+   heap that runs to one side, whose borders move. */
+static dem_world *bits_world(int heap, int threads) {
+    dem_world *world = heap ? box(-30, -1, DEM_BOUNDARY_OPEN, 200, 0) : gas(1, threads);
+    world->desc.threads = threads;
+    return world;
+}
+static uint64_t bits_of(int heap, int threads, int count, int steps) {
+    dem_world *world = bits_world(heap, threads);
+    dem_slabs_desc desc = DEM_SLABS_DESC;
     dem_slabs *slabs;
     uint64_t hash;
-    d.periodic = periodic;
-    d.threads = threads;
-    world = drums ? drum(&d) : gas(periodic, threads);
-    slabs = deal(world, 0, count);
+    desc.count = count;
+    desc.balance_interval = 1;
+    slabs = dem_slabs_create(world, &desc);
     CHECK_EQ(go(slabs, steps), DEM_OK);
-    CHECK(drums || dem_slabs_counters_get(slabs).migrated > 0);
+    CHECK(dem_slabs_counters_get(slabs).migrated > 0);
+    CHECK(!heap || dem_slabs_counters_get(slabs).border_moves > 0);
     CHECK_EQ(collect(slabs, world), DEM_OK);
     hash = digest(world);
     dem_slabs_destroy(slabs);
@@ -315,18 +321,19 @@ static int ring_reduce(double *values, int count, int sum, void *user) {
     if (count <= 512) memcpy(values, all, (size_t)count*sizeof(double));
     return count > 512;
 }
-/* A gas whose slabs are held by three processes; all must come to the same world. */
-static uint64_t ring_bits(int periodic, int count, int steps, int *ranks) {
+/* Slabs held by three processes; all must come to the same world. */
+static uint64_t ring_bits(int heap, int count, int steps, int *ranks) {
     uint64_t hash[RANKS] = {0, 0, 0};
     int good[RANKS] = {0, 0, 0}, team = 0;
     #pragma omp parallel num_threads(RANKS)
     {
         const int rank = omp_get_thread_num();
         if (omp_get_num_threads() == RANKS) {
-            dem_world *world = gas(periodic, 1);
+            dem_world *world = bits_world(heap, 1);
             dem_slabs_desc desc = DEM_SLABS_DESC;
             dem_slabs *slabs;
             desc.count = count;
+            desc.balance_interval = 1;
             desc.first = rank*count/RANKS;
             desc.local = (rank + 1)*count/RANKS - desc.first;
             desc.transport.exchange_fn = ring_exchange;
@@ -389,10 +396,10 @@ int main(int argc, char **argv) {
             }
     }
     TEST("a drum in slabs is the drum in one world but for the order of sums") {
-        /* sums of about eight forces differ by round-off, which collisions then multiply: bounds
-           are ten times what was measured */
+        /* sums of about eight forces differ by round-off (of positions: 7e-18 m), which collisions
+           then multiply; measured: 0, 9e-19, 7e-18 and 1.5e-15 m */
         static const int after[] = {1, 10, 100, 1000};
-        static const double bound[] = {1e-17, 2e-16, 2e-14, 1e-8};
+        static const double bound[] = {1e-17, 1e-16, 1e-15, 1e-12};
         int periodic, count, k;
         for (periodic = 0; periodic < 2; periodic++)
             for (count = 2; count <= 4; count++) {
@@ -523,24 +530,21 @@ int main(int argc, char **argv) {
         }
     }
     TEST("as many slabs give the same bits on one, two, three and four threads") {
-        int periodic, threads;
-        for (periodic = 0; periodic < 2; periodic++) {
-            const uint64_t one = gas_bits(periodic, 1, 4, 3000, 0);
-            const uint64_t two = gas_bits(periodic, 1, 4, 600, 1);
-            for (threads = 2; threads <= 4; threads++) {
-                CHECK_EQ(gas_bits(periodic, threads, 4, 3000, 0), one);
-                CHECK_EQ(gas_bits(periodic, threads, 4, 600, 1), two);
-            }
-            CHECK(gas_bits(periodic, 1, 3, 600, 1) != two);    /* the digest sees the order */
+        int heap, threads;
+        for (heap = 0; heap < 2; heap++) {
+            const uint64_t one = bits_of(heap, 1, 4, 3000);
+            for (threads = 2; threads <= 4; threads++)
+                CHECK_EQ(bits_of(heap, threads, 4, 3000), one);
+            if (heap) CHECK(bits_of(heap, 1, 3, 3000) != one);         /* the order is seen */
         }
     }
 #if DEMI_OPENMP
     TEST("slabs in three processes give the bits of the same slabs in one") {
-        int periodic, count, ranks = 0;
-        for (periodic = 0; periodic < 2; periodic++)
+        int heap, count, ranks = 0;
+        for (heap = 0; heap < 2; heap++)
             for (count = 3; count <= 5; count++) {
-                const uint64_t here = gas_bits(periodic, 1, count, 2000, 0);
-                const uint64_t there = ring_bits(periodic, count, 2000, &ranks);
+                const uint64_t here = bits_of(heap, 1, count, 2000);
+                const uint64_t there = ring_bits(heap, count, 2000, &ranks);
                 if (ranks == RANKS) CHECK_EQ(there, here);
             }
     }
@@ -643,6 +647,7 @@ int main(int argc, char **argv) {
             dem_slabs_destroy(slabs);
             dem_world_destroy(world);
         }
+        if (getenv("SLABS_NUMBERS")) printf("work, most over mean: %.3f, %.3f\n", worst[0], worst[1]);
         CHECK(worst[0] < 1.3);
         CHECK(worst[1] > 1.6);
     }
@@ -713,7 +718,7 @@ int main(int argc, char **argv) {
         long k, calls = 0;
         int tries;
         for (k = 0; k == 0 || (k <= calls && test_now.wrong == 0); k++) {
-            dem_world *world = box(-10, -2, DEM_BOUNDARY_PERIODIC, 60, &c);
+            dem_world *world = box(-30, -2, DEM_BOUNDARY_OPEN, 90, &c);
             dem_slabs_desc desc = DEM_SLABS_DESC;
             dem_slabs *slabs = 0;
             dem_result result = DEM_OK;
@@ -730,17 +735,17 @@ int main(int argc, char **argv) {
                 CHECK_EQ(dem_world_hash(world), was);
             }
             for (tries = 0; tries < 3; tries++) {
-                const int left = 600 - (int)dem_slabs_counters_get(slabs).steps;
+                const int left = 1500 - (int)dem_slabs_counters_get(slabs).steps;
                 result = dem_slabs_step(slabs, left + (slabs->head.moved != 0));
                 if (result == DEM_OK) break;
                 CHECK_EQ(result, DEM_ERROR_MEMORY);
                 CHECK_STR(dem_slabs_error(slabs), "out of memory");
                 CHECK_STR(dem_slabs_error(slabs), "dem_slabs_step: slab");
                 CHECK_EQ(dem_slabs_collect(slabs, world), DEM_OK);     /* nothing was lost */
-                CHECK_EQ(dem_bodies_get(world).count, 60);
+                CHECK_EQ(dem_bodies_get(world).count, 90);
             }
             CHECK_EQ(result, DEM_OK);
-            CHECK(whole(slabs, 60));
+            CHECK(whole(slabs, 90));
             for (tries = 0; tries < 3; tries++)
                 if ((result = dem_slabs_collect(slabs, world)) == DEM_OK) break;
             CHECK_EQ(result, DEM_OK);
