@@ -647,7 +647,8 @@ int main(int argc, char **argv) {
             dem_slabs_destroy(slabs);
             dem_world_destroy(world);
         }
-        if (getenv("SLABS_NUMBERS")) printf("work, most over mean: %.3f, %.3f\n", worst[0], worst[1]);
+        if (getenv("SLABS_NUMBERS"))
+            printf("work, most over mean: %.3f, %.3f\n", worst[0], worst[1]);
         CHECK(worst[0] < 1.3);
         CHECK(worst[1] > 1.6);
     }
