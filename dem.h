@@ -7154,7 +7154,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
    them: its visitors. Slots are those of the whole scene, so that contact memory, filed by slot,
    finds its pair in any slab. One step:
        move     home grains; visitors stand still
-       decide   a new list? one maximum over all slabs
+       decide   a new list? a new near list? one maximum over all slabs
        send up  state of the grains that visit the upper neighbour
        respond  home - home, home - visitor, home - wall; visitor - visitor belongs to the owner
        return   forces on visitors go down to their owners, who add them
@@ -7435,7 +7435,7 @@ static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int
 /* Looks at the results of the last phases. When one is bad, all processes return it; the sentence
    is that of the lowest slab concerned. flags (count): replaced by their maxima over processes. */
 static dem_result demi_slabs_agree(dem_slabs *s, double *flags, int count) {
-    double v[4] = {0, 0, 0, 0};
+    double v[5] = {0, 0, 0, 0, 0};
     dem_result result;
     int k, index;
     for (k = 0; k < s->local; k++) {
@@ -7571,12 +7571,13 @@ static dem_result demi_slabs_balance(dem_slabs *s) {
 /* The skin of a rebuild, by the model that serves a single world, from totals over all slabs; and
    with it the thinnest slab there may be. */
 static dem_result demi_slabs_skin(dem_slabs *s) {
-    double sums[3] = {0, 0, 0}, radii[2] = {0, -1e300};
+    double sums[3] = {0, 0, 0}, radii[3] = {0, -1e300, 0};    /* largest, -smallest; near_skin */
     dem_world *h = &s->head;
     dem_result result;
     int k, i, d;
     for (k = 0; k < s->local; k++) {
         const dem_world *w = s->slabs[k].world;
+        radii[2] = DEMI_MAX(radii[2], w->near_skin);
         for (d = 0; d < w->domain_count; d++) {
             sums[0] += w->domains[d].own + w->domains[d].cross;
             sums[1] += w->domains[d].contacts;
@@ -7590,7 +7591,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
         }
     }
     result = demi_slabs_reduce(s, sums, 3, 1);
-    if (result == DEM_OK) result = demi_slabs_reduce(s, radii, 2, 0);
+    if (result == DEM_OK) result = demi_slabs_reduce(s, radii, 3, 0);
     if (result != DEM_OK) return result;
     h->domain_count = 1;
     s->total.own = (int)DEMI_MIN(sums[0], (double)INT_MAX);
@@ -7598,6 +7599,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     h->count = (int)sums[2];
     h->radius_max = (dem_real)radii[0];
     h->radius_min = (dem_real)(h->count ? -radii[1] : 0);
+    h->near_skin = radii[2];
     demi_skin_choose(h);
     if (s->ring && h->desc.skin >= 0 && h->desc.skin <= 0) {
         const double room = s->period/s->count/(1 + 2e-6) - 2*radii[0];
@@ -7848,7 +7850,11 @@ static void demi_slab_move(dem_slabs *s, demi_slab *b) {
         demi_put(w->force + 4*i, demi_v(0, 0, 0));    demi_put(w->torque + 4*i, demi_v(0, 0, 0));
         if (w->last_pos) demi_put(w->last_pos + 4*i, demi_at(w->pos + 4*i));
     }
-    if (!s->head.moved) b->result = demi_step_move(w);
+    if (!s->head.moved) {
+        const double near = w->near_reach;      /* grows by what the fastest of all slabs went */
+        b->result = demi_step_move(w);
+        w->near_reach = near;
+    }
     if (b->result == DEM_OK) b->result = demi_outflow(w);
 }
 /* What the walls did, for those slabs whose walls do not move by themselves. */
@@ -7878,15 +7884,13 @@ static void demi_slab_send(dem_slabs *s, demi_slab *b) {
         memcpy(out + 12, w->half_spin + i, three);
     }
 }
-/* 3 touch, 4 respond, 5 gather, here; forces on visitors go into the lower outbox. */
-static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
+/* Visitors are where their owners say. */
+static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
-    const size_t three = 3*sizeof(dem_real), up = demi_slab_up(w), down = demi_slab_down(w);
+    const size_t three = 3*sizeof(dem_real), up = demi_slab_up(w);
     const dem_real *in = b->guest_count ? (const dem_real *)demi_slab_inbox(s, b, 0)->bytes.data
         : 0;
-    dem_real *out = (dem_real *)b->out[0].bytes.data;
-    double deepest = 0;
-    int k, d, finite = 1;
+    int k;
     for (k = 0; k < b->guest_count; k++, in += up) {
         const int i = b->guest[k];
         memcpy(w->pos + 4*i, in, three);
@@ -7898,6 +7902,23 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
         memcpy(w->half_vel + 4*i, in + 9, three);
         memcpy(w->half_spin + 4*i, in + 12, three);
     }
+}
+/* The near list, where something went half its margin. */
+static void demi_slab_near(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    demi_slab_receive(s, b);
+    if (!(2*w->near_reach > w->near_skin)) return;
+    demi_near_choose(w);
+    if (!demi_near_make(w, 0)) b->result = demi_no_memory(w, "dem_slabs_step");
+}
+/* 3 touch, 4 respond, 5 gather, here; forces on visitors go into the lower outbox. */
+static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    const size_t three = 3*sizeof(dem_real), down = demi_slab_down(w);
+    dem_real *out = (dem_real *)b->out[0].bytes.data;
+    double deepest = 0;
+    int k, d, finite = 1;
+    demi_slab_receive(s, b);
     demi_forces(w);
     for (k = 0; k < b->guest_count; k++, out += down) {
         memcpy(out, w->force + 4*b->guest[k], three);
@@ -7922,11 +7943,17 @@ static void demi_slab_add(dem_slabs *s, demi_slab *b) {
             if (down == 6) w->torque[4*b->halo[k] + e] += in[3 + e];
         }
 }
-static dem_result demi_slabs_forces(dem_slabs *s) {
+/* near: some slab's near list may have to be made anew first. */
+static dem_result demi_slabs_forces(dem_slabs *s, int near) {
     dem_result result = DEM_OK;
     if (s->count > 1) {
         demi_slabs_phase(s, demi_slab_send);
         result = demi_slabs_exchange(s, DEMI_UP, 1);
+        if (result != DEM_OK) return result;
+    }
+    if (near) {
+        demi_slabs_phase(s, demi_slab_near);
+        result = demi_slabs_agree(s, 0, 0);
         if (result != DEM_OK) return result;
     }
     demi_slabs_phase(s, demi_slab_forces);
@@ -8039,7 +8066,7 @@ static dem_result demi_slabs_refresh(dem_slabs *s) {
     if (result == DEM_OK && stale > 0) result = demi_slabs_rebuild(s);
     if (result != DEM_OK) return result;
     demi_slabs_phase(s, demi_slab_refresh);
-    result = demi_slabs_forces(s);
+    result = demi_slabs_forces(s, 0);
     if (result != DEM_OK) return result;
     for (k = 0; k < s->local; k++) s->slabs[k].world->forces_valid = 1;
     s->head.forces_valid = 1;
@@ -8050,13 +8077,15 @@ static dem_result demi_slabs_refresh(dem_slabs *s) {
 static dem_result demi_slabs_step_once(dem_slabs *s) {
     dem_world *h = &s->head;
     const dem_world *first = s->slabs[0].world;
-    double flags[3] = {0, 0, 0};                /* speed, list stale, how far walls went */
+    double flags[4] = {0, 0, 0, -1e300};  /* speed, list stale, walls' reach, near lists' excess */
     dem_result result;
-    int k;
+    int k, near;
     demi_slabs_phase(s, demi_slab_move);
     for (k = 0; k < s->local; k++) {
-        flags[0] = DEMI_MAX(flags[0], s->slabs[k].world->speed_max);
-        flags[1] = DEMI_MAX(flags[1], !s->slabs[k].world->list_valid);
+        const dem_world *w = s->slabs[k].world;
+        flags[0] = DEMI_MAX(flags[0], w->speed_max);
+        flags[1] = DEMI_MAX(flags[1], !w->list_valid);
+        flags[3] = DEMI_MAX(flags[3], 2*w->near_reach - w->near_skin);
     }
     flags[2] = first->wall_reach;
     if (!h->moved) {
@@ -8064,11 +8093,15 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         h->time = first->time;
         h->steps++;
         demi_slabs_poses(s);
-        result = demi_slabs_agree(s, flags, 3);
+        result = demi_slabs_agree(s, flags, 4);
         h->speed_max = flags[0];
         h->reach += h->speed_max*(double)h->dt;
-    } else result = demi_slabs_agree(s, flags, 3);
+        for (k = 0; k < s->local; k++)
+            s->slabs[k].world->near_reach += h->speed_max*(double)h->dt;
+        flags[3] += 2*h->speed_max*(double)h->dt;
+    } else result = demi_slabs_agree(s, flags, 4);
     if (result != DEM_OK) return result;
+    near = s->count == 1 || flags[3] > -1e-6*h->skin;         /* each looks for itself again */
     if (s->count == 1) h->reach = first->reach;
     h->wall_reach = flags[2];
     if (flags[1] > 0 || !h->list_valid || h->skin <= 0 || 2*h->reach > h->skin ||
@@ -8076,9 +8109,10 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         result = demi_slabs_rebuild(s);
         if (result != DEM_OK) return result;
         if (h->speed_max > 1.5*h->assumed_speed) h->dt_valid = 0;
+        near = 0;
     }
-    result = demi_slabs_forces(s);
-    h->moved = 0;
+    result = demi_slabs_forces(s, near);
+    if (result == DEM_OK) h->moved = 0;
     return result;
 }
 
@@ -8234,7 +8268,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->time = from->time;           w->steps = from->steps;       w->rebuilds = from->rebuilds;
     w->last_rebuild = from->steps;  w->skin_auto = from->skin_auto;
     w->skin = from->skin;           w->dt = from->dt;             w->dt_valid = from->dt_valid;
-    w->wall_fastest = from->wall_fastest;                         w->stamp = from->stamp;
+    w->wall_fastest = from->wall_fastest;                         w->near_skin = from->near_skin;
+    w->near_step = from->steps;
     w->assumed_speed = from->assumed_speed;                       w->primed = from->primed;
     w->overlap_max = from->overlap_max;                           w->speed_max = from->speed_max;
     w->balance = from->balance;     w->energy_removed = from->energy_removed;

@@ -439,7 +439,8 @@ int main(int argc, char **argv) {
                     CHECK_NEAR(e.work, c.work, 1e-3*fabs(c.work));
                     CHECK_NEAR(e.time, c.time, 1e-12);
                 }
-                CHECK_EQ(dem_slabs_counters_get(slabs).rebuilds, dem_counters_get(one).rebuilds);
+                CHECK_REL(dem_slabs_counters_get(slabs).rebuilds, dem_counters_get(one).rebuilds,
+                          0.2);                /* one skin, by the same model */
                 CHECK_EQ(dem_search_now(other), DEM_OK);       /* what was collected goes on */
                 CHECK_EQ(scene_step(one, 10), DEM_OK);
                 CHECK_EQ(scene_step(other, 10), DEM_OK);
