@@ -8104,6 +8104,10 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
     near = s->count == 1 || flags[3] > -1e-6*h->skin;         /* each looks for itself again */
     if (s->count == 1) h->reach = first->reach;
     h->wall_reach = flags[2];
+    for (k = 0; k < s->local && s->count > 1; k++) {           /* what lists count on */
+        s->slabs[k].world->reach = h->reach;
+        s->slabs[k].world->wall_reach = h->wall_reach;
+    }
     if (flags[1] > 0 || !h->list_valid || h->skin <= 0 || 2*h->reach > h->skin ||
         h->reach + h->wall_reach > h->skin) {
         result = demi_slabs_rebuild(s);
