@@ -9,6 +9,8 @@ LDLIBS       ?= -lm
 PYTHON       ?= /usr/bin/python3
 FUZZ_CC      ?= clang
 FUZZ_SECONDS ?= 600
+MPICC        ?= mpicc
+MPIRUN       ?= mpirun --oversubscribe $(if $(filter 0,$(shell id -u)),--allow-run-as-root)
 FILTER       ?=
 JOBS         ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 
@@ -41,7 +43,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run test examples studies check bench bench-parallel bench-peers bench-pages fuzz docs readers tags snippets clean
+.PHONY: help all run test examples studies mpi check bench bench-parallel bench-peers bench-pages fuzz docs readers tags snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -60,6 +62,16 @@ examples: $(LESSONS) snippets ## build and run the numbered examples, compile th
 	if test -n "$$failed"; then echo "examples failed:$$failed"; exit 1; fi; echo "all examples as expected"
 
 studies: $(STUDIES) ## build the studies into build/: each takes --help
+
+mpi: ## build examples/mpi and run it on 1, 2 and 3 processes, where mpicc and its headers are found
+	@printf '%s\n' '$(hash)include <mpi.h>' 'int main(void) { return MPI_Finalize(); }' > build/probe.c; \
+	if ! command -v $(MPICC) >/dev/null; then \
+	    echo "SKIP: $(MPICC) not found (Debian package libopenmpi-dev)"; \
+	elif ! $(MPICC) build/probe.c -o build/probe >build/probe.log 2>&1; then \
+	    echo "SKIP: $(MPICC) lacks mpi.h or its library (Debian package libopenmpi-dev)"; \
+	else set -e; echo "$(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mpi_slabs examples/mpi/slabs.c $(LDLIBS)"; \
+	    $(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mpi_slabs examples/mpi/slabs.c $(LDFLAGS) $(LDLIBS); \
+	    for n in 1 2 3; do echo "== $$n"; $(MPIRUN) -n $$n build/mpi_slabs; done; fi
 
 all: $(STUDIES) $(LESSONS) $(TESTS) $(BENCHES) $(BENCH_ALSO) ## build everything, run nothing
 
@@ -98,7 +110,7 @@ tags: ## every part named in dem.h's contents stands there once and in order
 # the program in dem.h's manual and the C blocks of the pages: taken out and compiled, programs linked too
 snippets: build/flags
 	@rm -rf build/snippets && mkdir -p build/snippets
-	@awk -v out=build/snippets -f tests/snippets.awk dem.h README.md CONTRIBUTING.md docs/extending.md
+	@awk -v out=build/snippets -f tests/snippets.awk dem.h README.md CONTRIBUTING.md docs/extending.md docs/parallel.md
 	@for f in build/snippets/*_program.c; do test -f $$f || continue; echo "$$f"; \
 	    $(COMPILE) -O0 -o $${f%.c} $$f $(LINK) || exit 1; done
 	@for f in build/snippets/*_part.c; do test -f $$f || continue; echo "$$f"; \

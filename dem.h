@@ -29,6 +29,7 @@
        >>files       meshes in; VTP, VTK, XYZ, CSV out
        >>checkpoint  everything, to the last bit
        >>world       create, destroy, report
+       >>slabs       one scene dealt to threads or processes, slab by slab
 */
 
 /* ---------------------------------------------------------------------------------------------
@@ -108,7 +109,8 @@
    Threads. Different worlds may be used from different threads. Within a world, `threads` of the
    desc sets the OpenMP threads; the same input gives the same bits for any number of them: bodies
    are dealt to domains that depend on the number of bodies only, and every sum runs in a fixed
-   order. To compare bits between builds, compile with -ffp-contract=off.
+   order. To compare bits between builds, compile with -ffp-contract=off. Slabs (dem_slabs_create)
+   deal a scene to processes, over MPI or what you have: docs/parallel.md.
 
    Extending. A contact law is one function (>>add-law), a wall a function and a table row
    (>>add-wall), an integrator likewise (>>add-integrator). docs/extending.md walks through each.
@@ -754,6 +756,73 @@ DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char 
 DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 
+/* ---- slabs: one scene on many processors ---- */
+
+/* How slabs in different processes reach each other; all zero: there is one process. Processes
+   stand in a ring in the order of their slabs, the last below the first, and all make the same
+   calls in the same order. Both functions answer 0, or anything else to stop the run.
+   docs/parallel.md has them for MPI. */
+typedef struct dem_transport {
+    /* Sends to the process below and to the one above, receives from both; sizes in bytes, known on
+       both ends. The two may be one and the same process: then what it sends up arrives from
+       below. A size may be 0. */
+    int (*exchange_fn)(const void *to_lower, size_t to_lower_size,
+                       void *from_lower, size_t from_lower_size,
+                       const void *to_upper, size_t to_upper_size,
+                       void *from_upper, size_t from_upper_size, void *user);
+    /* Replaces each of count values by its sum (sum = 1) or maximum (sum = 0) over processes. */
+    int (*reduce_fn)(double *values, int count, int sum, void *user);
+    void *user;
+} dem_transport;
+
+typedef struct dem_slabs_desc {
+    int axis;                  /* 0, 1, 2: borders are planes x, y, z = const */
+    int count;                 /* slabs in all, required, 1..1024; the bits of a run hang on it */
+    int first, local;          /* this process holds slabs first .. first + local - 1; local = 0:
+                                  all of them */
+    dem_transport transport;   /* needed when some are elsewhere */
+    dem_real balance;          /* borders move when the busiest slab's work is this many times the
+                                  mean; 0: 1.1; < 0: borders stay where they are laid first */
+    int balance_interval;      /* rebuilds from one look at the balance to the next; 0: 8 */
+} dem_slabs_desc;
+static const dem_slabs_desc DEM_SLABS_DESC_ZERO = {0, 0, 0, 0, {0, 0, 0}, 0, 0};
+#define DEM_SLABS_DESC DEM_SLABS_DESC_ZERO
+
+typedef struct dem_slabs dem_slabs;
+
+/* Deals the grains of a world to slabs, which take along everything a step needs; the world itself
+   stays as it is and may even be destroyed. Every process builds the same world and asks for its
+   own slabs. Null on bad values or when memory runs out; dem_world_error(world) says why. */
+DEM_API dem_slabs *dem_slabs_create(dem_world *world, const dem_slabs_desc *desc);
+DEM_API void dem_slabs_destroy(dem_slabs *slabs);
+DEM_API dem_result dem_slabs_step(dem_slabs *slabs, int steps);
+/* Writes the state of all slabs into a world of the same scene, in every process: grains, contact
+   memory, walls, channels, fields, ledger, time. The world may then be looked at, written, stepped,
+   or dealt to slabs anew; the slabs go on unaware of it. It has no list of contacts until
+   dem_search_now; after that it steps on as the slabs would. */
+DEM_API dem_result dem_slabs_collect(dem_slabs *slabs, dem_world *world);
+/* Begins the walls' sums over time and the largest overlap anew. */
+DEM_API void dem_slabs_channels_reset(dem_slabs *slabs);
+/* The sentence of the last failed call; "" when none failed yet. */
+DEM_API const char *dem_slabs_error(const dem_slabs *slabs);
+
+typedef struct dem_slab {
+    int grains, visitors;      /* at home; copies of the lower neighbour's grains */
+    double lo, hi;             /* m, its borders; an outermost one is +-1e300 */
+    double work;               /* counted: candidates + 4 per body, at the last rebuild */
+    double seconds;            /* of wall time spent on it so far */
+    uint64_t bytes;            /* sent to neighbours so far, had they been elsewhere */
+} dem_slab;
+/* Slabs of this process only. */
+DEM_API dem_result dem_slab_get(const dem_slabs *slabs, int index, dem_slab *slab);
+typedef struct dem_slabs_counters {
+    double time;               /* s */
+    uint64_t steps, rebuilds, border_moves;
+    uint64_t migrated;         /* grains that changed slabs, those of this process */
+    dem_real skin, dt;         /* m, s, in force */
+} dem_slabs_counters;
+DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *slabs);
+
 /* ---- report ---- */
 
 /* Effects active and their price, time step and what binds it, search, balance, ledger. */
@@ -1084,6 +1153,7 @@ struct dem_world {
     int slot_count, slot_capacity; /* slots used so far, room */
     /* chains of free slots (-1: none); pending ones rest until a rebuild */
     int slot_free, slot_pending;
+    uint8_t *visitor;              /* by slot; null outside >>slabs: 1: a copy, at home elsewhere */
     dem_real *scratch;             /* x 4, for permuting */
     int32_t *order, *cell_of;      /* permutation, cell of each body */
     dem_balance balance;
@@ -1476,6 +1546,11 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
    calls demi_list_drop first (it stands here because everyone needs it): contact memory is then
    filed by slot and finds its way into the next list.
    --------------------------------------------------------------------------------------------- */
+
+/* Is this body a copy of one that is at home in another slab? (>>slabs; never elsewhere) */
+DEM_INLINE int demi_visits(const dem_world *w, int i) {
+    return w->visitor && w->visitor[w->body_slot[i]] == 1;
+}
 
 /* Room for filed memory. 0 when memory ran out. */
 static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
@@ -2657,6 +2732,7 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     int k;
     if (!(dx*dx + dy*dy + dz*dz < cut*cut)) return;
     if (w->fixed_count && w->inv_mass[a] <= 0 && w->inv_mass[b] <= 0) return;
+    if (demi_visits(w, a) && demi_visits(w, b)) return;
     list = b < domain->end ? &w->own : &w->cross;
     k = list == &w->own ? domain->own : domain->cross;
     if (k >= list->stride) { domain->overflow |= list == &w->own ? 1 : 2; return; }
@@ -2963,7 +3039,7 @@ static void demi_domain_walls(dem_world *w, int d) {
     domain->walls = 0;
     domain->overflow &= ~4;
     for (i = domain->begin; i < domain->end; i++) {
-        if (w->fixed_count && w->inv_mass[i] <= 0) continue;
+        if ((w->fixed_count && w->inv_mass[i] <= 0) || demi_visits(w, i)) continue;
         for (j = 0; j < w->wall_count; j++) {
             const demi_wall *wall = &w->walls[j];
             const dem_real r = w->pos[4*i + 3], near_by = r + (dem_real)w->skin;
@@ -5000,6 +5076,7 @@ static void demi_domain_clear(dem_world *w, int d) {
     }
     if (!w->desc.force) return;
     for (i = domain->begin; i < domain->end; i++) {
+        if (demi_visits(w, i)) continue;
         const dem_vec3 f = w->desc.force(demi_at(w->pos + 4*i), demi_at(w->vel + 4*i),
                                          w->pos[4*i + 3], w->mass[i],
                                          w->time, w->desc.force_user);
@@ -5327,7 +5404,7 @@ static void demi_fields_sample(dem_world *w) {
                 in = in && t >= 0 && t < d->cells[k];
                 cell = cell*(size_t)d->cells[k] + (in ? (size_t)t : 0);
             }
-            if (!in) continue;
+            if (!in || demi_visits(w, i)) continue;
             field->solid[cell] += (w->desc.planar ? DEMI_PI*r*r*size[2] : 4*DEMI_PI/3*r*r*r)/volume;
             field->mass[cell] += m;
             for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->vel[4*i +
@@ -7105,6 +7182,1629 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
                 l.residual,
                 l.throughput > 0 ? l.residual/l.throughput : 0);
     }
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>slabs
+   Spatial decomposition along one axis, after [FEN] 3.5. Each slab is a world of its own: the walls
+   of the scene, its home grains, and copies of those grains of its lower neighbour that may touch
+   them: its visitors. Slots are those of the whole scene, so that contact memory, filed by slot,
+   finds its pair in any slab. One step:
+       move     home grains; visitors stand still
+       decide   a new list? a new near list? one maximum over all slabs
+       send up  state of the grains that visit the upper neighbour
+       respond  home - home, home - visitor, home - wall; visitor - visitor belongs to the owner
+       return   forces on visitors go down to their owners, who add them
+   [FEN] sends copies down; up is the mirror image. At a rebuild grains that crossed a border
+   migrate, with a copy of every entry of contact memory that names them: so whichever slab computes
+   a pair next has its memory. (It is the upper of the pair's two homes; the pair was computed where
+   one of them was, and that one either stays or passes through.) Then visitors are chosen anew.
+   A slab is never thinner than two grains and the skin, so that only neighbours touch.
+
+   Work is done in phases: one function per slab, all slabs of this process in demi_parallel; a
+   phase writes only to its own slab and reads its neighbours' outboxes, which rest meanwhile.
+   Between phases outboxes that lead to other processes are exchanged. What is reduced over
+   processes is maxima, and sums of whole numbers, which are exact in any order: so bits hang on the
+   number of slabs alone, not on threads or processes.
+
+   All slabs but the first of a process see walls that never move by themselves: the poses are
+   copied, so that a motion of the user's own is called as often as ever.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_SLABS = 1024, DEMI_SLAB_BINS = 32, DEMI_UP = 1, DEMI_DOWN = 2, DEMI_ALL = 0,
+       DEMI_VISITOR = 1, DEMI_GOES_DOWN = 2, DEMI_GOES_UP = 3, DEMI_GOES_VISITING = 4 };
+
+/* A message: bytes that grow. */
+typedef struct demi_parcel { demi_array bytes; size_t size; } demi_parcel;
+
+typedef struct demi_slab {
+    dem_world *world;
+    int index;                     /* among all */
+    dem_result result;             /* of the last phases; looked at by demi_slabs_agree */
+    demi_parcel out[2];            /* to the lower, to the upper neighbour */
+    demi_parcel in[2];             /* from them, when they are in another process */
+    demi_array halo_, guest_, guest_inv_, add_;
+    int32_t *halo, *guest;         /* indices of home grains that visit above; of visitors here */
+    dem_real *guest_inv;           /* x 2: 1/mass, 1/inertia of visitors */
+    int halo_count, guest_count, leavers;
+    uint64_t bytes, migrated;
+    double work, seconds;
+} demi_slab;
+
+/* The head is a world without grains of its own: it holds what the slabs have in common (time,
+   step, skin, errors), and lends itself to functions that ask a world for totals. It comes first,
+   so that a task finds its slabs. */
+struct dem_slabs {
+    dem_world head;
+    dem_slabs_desc desc;
+    int axis, count, first, local, ring, broken;
+    double period, cut;            /* m: along the axis; thinnest slab there may be */
+    double *borders;               /* count + 1 */
+    double *values;                /* for reductions: value_room */
+    size_t value_room;
+    demi_slab *slabs;              /* local */
+    demi_domain total;             /* the head's only domain */
+    demi_parcel mine, all;         /* for dem_slabs_collect */
+    uint64_t border_moves;
+    void (*phase)(struct dem_slabs *s, demi_slab *b);
+};
+
+/* --- parcels --- */
+
+static int demi_parcel_put(dem_world *w, demi_parcel *p, const void *data, size_t size) {
+    if (!demi_array_grow(w, &p->bytes, 1, p->size + size)) return 0;
+    if (size) memcpy((char *)p->bytes.data + p->size, data, size);
+    p->size += size;
+    return 1;
+}
+static void demi_take(const char **from, void *to, size_t size) {
+    if (size) memcpy(to, *from, size);
+    *from += size;
+}
+
+/* One grain with all it has. */
+typedef struct demi_grain {
+    uint32_t slot;
+    int32_t material;
+    dem_real pos[4], vel[3], spin[3], half_vel[3], half_spin[3], force[3], torque[3], last[3];
+    dem_real mass, inv_mass, inv_inertia;
+} demi_grain;
+static void demi_grain_of(const dem_world *w, int i, demi_grain *g) {
+    const size_t three = 3*sizeof(dem_real);
+    memset(g, 0, sizeof *g);
+    g->slot = w->body_slot[i];
+    g->material = w->body_material[i];
+    memcpy(g->pos, w->pos + 4*i, sizeof g->pos);
+    memcpy(g->vel, w->vel + 4*i, three);           memcpy(g->spin, w->spin + 4*i, three);
+    memcpy(g->half_vel, w->half_vel + 4*i, three); memcpy(g->half_spin, w->half_spin + 4*i, three);
+    memcpy(g->force, w->force + 4*i, three);       memcpy(g->torque, w->torque + 4*i, three);
+    if (w->last_pos) memcpy(g->last, w->last_pos + 4*i, three);
+    g->mass = w->mass[i];
+    g->inv_mass = w->inv_mass[i];
+    g->inv_inertia = w->inv_inertia[i];
+}
+static void demi_grain_to(dem_world *w, int i, const demi_grain *g) {
+    const size_t three = 3*sizeof(dem_real);
+    w->body_material[i] = g->material;
+    memcpy(w->pos + 4*i, g->pos, sizeof g->pos);
+    memcpy(w->vel + 4*i, g->vel, three);           memcpy(w->spin + 4*i, g->spin, three);
+    memcpy(w->half_vel + 4*i, g->half_vel, three); memcpy(w->half_spin + 4*i, g->half_spin, three);
+    memcpy(w->force + 4*i, g->force, three);       memcpy(w->torque + 4*i, g->torque, three);
+    if (w->last_pos) memcpy(w->last_pos + 4*i, g->last, three);
+    w->mass[i] = g->mass;
+    w->inv_mass[i] = g->inv_mass;
+    w->inv_inertia[i] = g->inv_inertia;
+}
+/* Room has been seen to. */
+static void demi_grain_append(dem_world *w, const demi_grain *g) {
+    const int i = w->count++;
+    memset(w->vel + 4*i, 0, 4*sizeof(dem_real));      memset(w->spin + 4*i, 0, 4*sizeof(dem_real));
+    memset(w->half_vel + 4*i, 0, 4*sizeof(dem_real));
+    memset(w->half_spin + 4*i, 0, 4*sizeof(dem_real));
+    memset(w->force + 4*i, 0, 4*sizeof(dem_real));    memset(w->torque + 4*i, 0,
+                                                             4*sizeof(dem_real));
+    if (w->last_pos) memset(w->last_pos + 4*i, 0, 4*sizeof(dem_real));
+    demi_grain_to(w, i, g);
+    w->body_slot[i] = g->slot;
+    w->slot_index[g->slot] = i;
+    w->lll_valid = 0;
+}
+/* Takes a grain out of a slab without its having left the scene. */
+static void demi_grain_forget(dem_world *w, int i) {
+    const int slot = (int)w->body_slot[i], pending = w->slot_pending;
+    const double removed = w->energy_removed;
+    demi_body_take_out(w, i);
+    w->slot_pending = pending;
+    w->slot_index[slot] = -1;
+    w->slot_generation[slot]--;
+    w->energy_removed = removed;
+    w->visitor[slot] = 0;
+}
+
+/* Grains whose mark is `mark`; with them, when asked, the filed memory of pairs that name one of
+   them and their contacts with walls (all there are, for mark DEMI_ALL). shift: added along axis.
+   Memory must be filed: after demi_list_drop or demi_carry_collect. */
+typedef struct demi_parcel_head { int32_t grains, pairs, contacts, stride; } demi_parcel_head;
+static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, int mark,
+                     int memory, int axis, dem_real shift, demi_parcel *out) {
+    const size_t start = out->size;
+    const int stride = w->carry_stride;
+    demi_parcel_head head = {0, 0, 0, 0};
+    demi_grain g;
+    int i, k, d, ok = demi_parcel_put(host, out, &head, sizeof head);
+    head.stride = stride;
+    for (i = 0; i < w->count && ok; i++) {
+        if (marks[w->body_slot[i]] != mark) continue;
+        demi_grain_of(w, i, &g);
+        g.pos[axis] += shift;
+        g.last[axis] += shift;
+        ok = demi_parcel_put(host, out, &g, sizeof g);
+        head.grains++;
+    }
+    for (i = 0; memory && w->carry_count && i < w->carry_rows && ok; i++)
+        for (k = w->carry_start[i]; k < w->carry_start[i + 1] && ok; k++) {
+            const int32_t p = w->carry_partner[k], other = p < 0 ? ~p : p, row = i;
+            if (mark != DEMI_ALL && marks[row] != mark && marks[other] != mark) continue;
+            ok = demi_parcel_put(host, out, &row, sizeof row) &&
+                 demi_parcel_put(host, out, &p, sizeof p) &&
+                 demi_parcel_put(host, out, w->carry_memory + (size_t)k*(size_t)stride,
+                                 (size_t)stride*sizeof(dem_real));
+            head.pairs++;
+        }
+    for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
+        for (k = 0; k < w->domains[d].wall_contacts && ok; k++) {
+            demi_wall_contact c = w->wall_now[d*w->wall_now_stride + k];
+            if (w->list_valid) c.body = (int32_t)w->body_slot[c.body];
+            if (mark != DEMI_ALL && marks[c.body] != mark) continue;
+            ok = demi_parcel_put(host, out, &c, sizeof c);
+            head.contacts++;
+        }
+    if (ok) memcpy((char *)out->bytes.data + start, &head, sizeof head);
+    return ok;
+}
+
+/* Room for pairs and contacts with walls that are to arrive, beside those filed already; `add` for
+   demi_pairs_take. The contacts there are move to the first domain. 0 when memory ran out. */
+static int demi_filed_reserve(dem_world *w, demi_array *add, int stride, int pairs, int contacts) {
+    const int had = w->carry_count;
+    int d, total = 0, rows = w->slot_count;
+    demi_wall_contact *to;
+    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
+    if (!demi_carry_reserve(w, rows, had + pairs, stride) ||
+        !demi_array_grow(w, add, sizeof(int32_t), (size_t)rows + 1) ||
+        !demi_wall_contacts_reserve(w, (size_t)(total + contacts), (size_t)(total + contacts)))
+        return 0;
+    if (!had) memset(w->carry_start, 0, ((size_t)rows + 2)*sizeof(int32_t));
+    for (d = had ? w->carry_rows : rows; d < rows; d++) w->carry_start[d + 1] = w->carry_start[d];
+    w->carry_rows = rows;
+    w->carry_stride = stride;
+    to = w->wall_now;
+    for (d = 0; d < DEMI_DOMAINS; d++) {
+        const int n = w->domains[d].wall_contacts;
+        if (n && d) memmove(to, w->wall_now + d*w->wall_now_stride, (size_t)n*sizeof *to);
+        to += n;
+        w->domains[d].wall_contacts = 0;
+    }
+    w->domains[0].wall_contacts = total;
+    w->wall_now_stride = total + contacts;
+    return 1;
+}
+/* Files pairs that arrived behind those already in their rows. */
+static void demi_pairs_take(dem_world *w, int32_t *add, const char *from, int pairs) {
+    const size_t per = (size_t)w->carry_stride*sizeof(dem_real), item = 2*sizeof(int32_t) + per;
+    int32_t *start = w->carry_start, row, shift = pairs;
+    int k;
+    if (!pairs) return;
+    memset(add, 0, ((size_t)w->carry_rows + 1)*sizeof(int32_t));
+    for (k = 0; k < pairs; k++) {
+        memcpy(&row, from + (size_t)k*item, sizeof row);
+        add[row]++;
+    }
+    for (row = w->carry_rows - 1; row >= 0; row--) {          /* make gaps, from the far end on */
+        const int32_t begin = start[row], n = start[row + 1] - begin;
+        start[row + 1] += shift;
+        shift -= add[row];
+        if (!n || !shift) continue;
+        memmove(w->carry_partner + begin + shift, w->carry_partner + begin,
+                (size_t)n*sizeof(int32_t));
+        memmove(w->carry_memory + (size_t)(begin + shift)*(size_t)w->carry_stride,
+                w->carry_memory + (size_t)begin*(size_t)w->carry_stride, (size_t)n*per);
+    }
+    for (k = 0; k < pairs; k++) {
+        int32_t to;
+        demi_take(&from, &row, sizeof row);
+        to = start[row + 1] - add[row]--;
+        demi_take(&from, &w->carry_partner[to], sizeof(int32_t));
+        demi_take(&from, w->carry_memory + (size_t)to*(size_t)w->carry_stride, per);
+    }
+    w->carry_count += pairs;
+}
+static void demi_wall_contacts_take(dem_world *w, const char *from, int contacts) {
+    memcpy(w->wall_now + w->domains[0].wall_contacts, from,
+           (size_t)contacts*sizeof(demi_wall_contact));
+    w->domains[0].wall_contacts += contacts;
+}
+/* Where the parts of a packed message begin. */
+static const char *demi_parcel_pairs(const demi_parcel_head *h, const char *grains) {
+    return grains + (size_t)h->grains*sizeof(demi_grain);
+}
+static const char *demi_parcel_contacts(const demi_parcel_head *h, const char *grains) {
+    return demi_parcel_pairs(h, grains) +
+           (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
+}
+
+/* --- phases, neighbours, agreement --- */
+
+static void demi_slab_task(dem_world *w, int k) {
+    dem_slabs *s = (dem_slabs *)(void *)w;      /* the head comes first */
+    const double begun = demi_clock();
+    s->phase(s, &s->slabs[k]);
+    s->slabs[k].seconds += demi_clock() - begun;
+}
+static void demi_slabs_phase(dem_slabs *s, void (*phase)(dem_slabs *, demi_slab *)) {
+    s->phase = phase;
+    demi_parallel(&s->head, s->head.desc.threads, s->local, demi_slab_task);
+}
+
+/* Is there a slab above (side 1) or below (side 0)? */
+static int demi_slab_has(const dem_slabs *s, const demi_slab *b, int side) {
+    return s->ring || (side ? b->index + 1 < s->count : b->index > 0);
+}
+/* What the neighbour on one side sent here. */
+static const demi_parcel *demi_slab_inbox(const dem_slabs *s, const demi_slab *b, int side) {
+    int k = b->index - s->first + (side ? 1 : -1);
+    if (s->local == s->count) k = (k + s->count)%s->count;
+    return k >= 0 && k < s->local ? &s->slabs[k].out[!side] : &b->in[side];
+}
+
+static dem_result demi_slabs_transport_failed(dem_slabs *s, const char *what, int answer) {
+    s->broken = 1;
+    return demi_fail(&s->head, DEM_ERROR_STOPPED, "dem_slabs_step: the transport's %s answered %d, "
+                     "must be 0; the slabs cannot go on: mend the connection and create them anew "
+                     "from the last collected world or checkpoint", what, answer);
+}
+static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int sum) {
+    int answer;
+    if (s->local == s->count) return DEM_OK;
+    answer = s->desc.transport.reduce_fn(values, count, sum, s->desc.transport.user);
+    return answer ? demi_slabs_transport_failed(s, "reduce_fn", answer) : DEM_OK;
+}
+
+/* Looks at the results of the last phases. When one is bad, all processes return it; the sentence
+   is that of the lowest slab concerned. flags (count): replaced by their maxima over processes. */
+static dem_result demi_slabs_agree(dem_slabs *s, double *flags, int count) {
+    double v[5] = {0, 0, 0, 0, 0};
+    dem_result result;
+    int k, index;
+    for (k = 0; k < s->local; k++) {
+        demi_slab *b = &s->slabs[k];
+        if (b->result == DEM_OK) continue;
+        v[0] = DEMI_MAX(v[0], (s->count - b->index)*16.0 + (double)b->result);
+    }
+    for (k = 0; k < count; k++) v[1 + k] = flags[k];
+    result = demi_slabs_reduce(s, v, 1 + count, 0);
+    if (result != DEM_OK) return result;
+    for (k = 0; k < count; k++) flags[k] = v[1 + k];
+    for (k = 0; k < s->local; k++) s->slabs[k].result = DEM_OK;
+    if (!(v[0] > 0)) return DEM_OK;
+    index = s->count - (int)v[0]/16;
+    result = (dem_result)((int)v[0]%16);
+    if (index >= s->first && index < s->first + s->local)
+        return demi_fail(&s->head, result, "dem_slabs_step: slab %d: %.440s", index,
+                         s->slabs[index - s->first].world->error);
+    return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
+                     "holds it has the sentence", index, dem_result_name(result));
+}
+
+/* Outboxes that lead to other processes, up, down or both ways. Sizes are told first unless both
+   ends know them. */
+static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
+    demi_slab *low = &s->slabs[0], *top = &s->slabs[s->local - 1];
+    const dem_transport *t = &s->desc.transport;
+    uint64_t send[2] = {0, 0}, get[2] = {0, 0};
+    dem_result result;
+    int k, answer;
+    for (k = 0; k < s->local; k++) {
+        demi_slab *b = &s->slabs[k];
+        if (ways & DEMI_DOWN && demi_slab_has(s, b, 0)) b->bytes += b->out[0].size;
+        if (ways & DEMI_UP && demi_slab_has(s, b, 1)) b->bytes += b->out[1].size;
+    }
+    if (s->local == s->count) return DEM_OK;
+    if (ways & DEMI_DOWN) send[0] = low->out[0].size;
+    if (ways & DEMI_UP) send[1] = top->out[1].size;
+    if (sized) {
+        if (ways & DEMI_DOWN) get[1] = top->in[1].size;
+        if (ways & DEMI_UP) get[0] = low->in[0].size;
+    } else {
+        answer = t->exchange_fn(&send[0], 8, &get[0], 8, &send[1], 8, &get[1], 8, t->user);
+        if (answer) return demi_slabs_transport_failed(s, "exchange_fn", answer);
+        if (!demi_array_grow(low->world, &low->in[0].bytes, 1, (size_t)get[0]) ||
+            !demi_array_grow(top->world, &top->in[1].bytes, 1, (size_t)get[1]))
+            low->result = demi_no_memory(low->world, "dem_slabs_step");
+        result = demi_slabs_agree(s, 0, 0);
+        if (result != DEM_OK) return result;
+        low->in[0].size = (size_t)get[0];
+        top->in[1].size = (size_t)get[1];
+    }
+    answer = t->exchange_fn(low->out[0].bytes.data, (size_t)send[0],
+                            low->in[0].bytes.data, (size_t)get[0],
+                            top->out[1].bytes.data, (size_t)send[1],
+                            top->in[1].bytes.data, (size_t)get[1], t->user);
+    return answer ? demi_slabs_transport_failed(s, "exchange_fn", answer) : DEM_OK;
+}
+
+/* --- borders --- */
+
+/* Borders that share the weight in `bins` (n of them over lo..hi) out evenly. */
+static void demi_slabs_lay(dem_slabs *s, const double *bins, int n, double lo, double hi) {
+    double total = 0, sum = 0;
+    int i, j = 1;
+    for (i = 0; i < n; i++) total += bins[i];
+    for (i = 0; i < n; i++) {
+        for (; j < s->count && bins[i] > 0 && sum + bins[i] >= total*j/s->count; j++)
+            s->borders[j] = lo + (hi - lo)*(i + (total*j/s->count - sum)/bins[i])/n;
+        sum += bins[i];
+    }
+    for (; j < s->count; j++) s->borders[j] = hi;
+}
+/* No slab thinner than the cut. Outermost slabs of an open axis have no end. */
+static void demi_slabs_space(dem_slabs *s) {
+    double *b = s->borders;
+    int j;
+    for (j = s->ring ? 1 : 2; j < s->count; j++) b[j] = DEMI_MAX(b[j], b[j - 1] + s->cut);
+    for (j = s->count - 1; s->ring && j > 0; j--) b[j] = DEMI_MIN(b[j], b[j + 1] - s->cut);
+}
+/* Adds a slab's home grains to bins. */
+static void demi_slabs_bin(const dem_slabs *s, const dem_world *w, double weight, double *bins,
+                           int n, double lo, double hi) {
+    int i;
+    for (i = 0; i < w->count; i++) {
+        const double t = ((double)w->pos[4*i + s->axis] - lo)/(hi - lo)*n;
+        if (!demi_visits(w, i)) bins[t > 0 ? t < n ? (int)t : n - 1 : 0] += weight;
+    }
+}
+static void demi_slabs_extent(const dem_slabs *s, const dem_world *w, double *ends) {
+    int i;
+    for (i = 0; i < w->count; i++) {
+        const double x = (double)w->pos[4*i + s->axis];
+        if (demi_visits(w, i)) continue;
+        ends[0] = DEMI_MAX(ends[0], x);
+        ends[1] = DEMI_MAX(ends[1], -x);
+    }
+}
+/* Moves the borders when counted work is shared too unevenly: each grain weighs what a grain of its
+   slab costs on average, in whole numbers, so that sums are the same in any order. */
+static dem_result demi_slabs_balance(dem_slabs *s) {
+    const int n = DEMI_SLAB_BINS*s->count;
+    const int every = s->desc.balance_interval > 0 ? s->desc.balance_interval : 8;
+    const double limit = s->desc.balance > 0 ? (double)s->desc.balance : 1.1;
+    double *v = s->values, ends[2] = {-1e300, -1e300}, most = 0, total = 0;
+    dem_result result;
+    int k;
+    if (s->desc.balance < 0 || s->head.rebuilds == 0 || s->head.rebuilds%(uint64_t)every)
+        return DEM_OK;
+    for (k = 0; k < s->count; k++) v[k] = 0;
+    for (k = 0; k < s->local; k++) v[s->first + k] = s->slabs[k].work;
+    result = demi_slabs_reduce(s, v, s->count, 0);
+    for (k = 0; k < s->count; k++) { total += v[k]; most = DEMI_MAX(most, v[k]); }
+    if (result != DEM_OK || !(most*s->count > limit*total)) return result;
+    for (k = 0; k < s->local; k++) demi_slabs_extent(s, s->slabs[k].world, ends);
+    result = demi_slabs_reduce(s, ends, 2, 0);
+    if (result != DEM_OK || !(ends[0] > -ends[1])) return result;
+    if (s->ring) { ends[0] = s->borders[s->count]; ends[1] = -s->borders[0]; }
+    for (k = 0; k < n; k++) v[k] = 0;
+    for (k = 0; k < s->local; k++) {
+        const dem_world *w = s->slabs[k].world;
+        const int home = w->count - s->slabs[k].guest_count;
+        const double each = home > 0 ? floor(16*s->slabs[k].work/home + 0.5) : 1;
+        demi_slabs_bin(s, w, DEMI_MAX(each, 1), v, n, -ends[1], ends[0]);
+    }
+    result = demi_slabs_reduce(s, v, n, 1);
+    if (result != DEM_OK) return result;
+    demi_slabs_lay(s, v, n, -ends[1], ends[0]);
+    s->border_moves++;
+    return DEM_OK;
+}
+
+/* The skin of a rebuild, by the model that serves a single world, from totals over all slabs; and
+   with it the thinnest slab there may be. */
+static dem_result demi_slabs_skin(dem_slabs *s) {
+    double sums[3] = {0, 0, 0}, radii[3] = {0, -1e300, 0};    /* largest, -smallest; near_skin */
+    dem_world *h = &s->head;
+    dem_result result;
+    int k, i, d;
+    for (k = 0; k < s->local; k++) {
+        const dem_world *w = s->slabs[k].world;
+        radii[2] = DEMI_MAX(radii[2], w->near_skin);
+        for (d = 0; d < w->domain_count; d++) {
+            sums[0] += w->domains[d].own + w->domains[d].cross;
+            sums[1] += w->domains[d].contacts;
+        }
+        for (i = 0; i < w->count; i++) {
+            const double r = (double)w->pos[4*i + 3];
+            if (demi_visits(w, i)) continue;
+            sums[2]++;
+            radii[0] = DEMI_MAX(radii[0], r);
+            radii[1] = DEMI_MAX(radii[1], -r);
+        }
+    }
+    result = demi_slabs_reduce(s, sums, 3, 1);
+    if (result == DEM_OK) result = demi_slabs_reduce(s, radii, 3, 0);
+    if (result != DEM_OK) return result;
+    h->domain_count = 1;
+    s->total.own = (int)DEMI_MIN(sums[0], (double)INT_MAX);
+    s->total.contacts = (int)DEMI_MIN(sums[1], (double)INT_MAX);
+    h->count = (int)sums[2];
+    h->radius_max = (dem_real)radii[0];
+    h->radius_min = (dem_real)(h->count ? -radii[1] : 0);
+    h->near_skin = radii[2];
+    demi_skin_choose(h);
+    if (s->ring && h->desc.skin >= 0 && h->desc.skin <= 0) {
+        const double room = s->period/s->count/(1 + 2e-6) - 2*radii[0];
+        if (room > 0) h->skin = h->skin_auto = DEMI_MIN(h->skin, room);
+    }
+    h->skin = (double)(dem_real)h->skin;        /* as the slabs get it */
+    s->cut = (2*radii[0] + h->skin)*(1 + 1e-6); /* rounding must not cost a visitor */
+    if (s->ring && s->cut*s->count > s->period)
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
+                         "%g m thick, must be at least %g m (two grains and the skin); use at most "
+                         "%d slabs or a smaller skin", s->count, s->period, s->period/s->count,
+                         s->cut, (int)(s->period/s->cut));
+    return DEM_OK;
+}
+
+/* --- a rebuild, phase by phase --- */
+
+/* Memory is filed, visitors go home. */
+static void demi_slab_drop(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    int i;
+    (void)s;
+    if (!demi_list_drop(w)) { b->result = demi_no_memory(w, "dem_slabs_step"); return; }
+    for (i = w->count - 1; i >= 0; i--) if (demi_visits(w, i)) demi_grain_forget(w, i);
+    b->guest_count = b->halo_count = 0;
+}
+/* Where a grain belongs: -1 below, 0 here, 1 above; *shift: what its position changes by on the
+   way. A grain that a whole period would put back on the same border stays. */
+static int demi_slab_side(const dem_slabs *s, const demi_slab *b, dem_real x, dem_real *shift) {
+    const dem_real period = (dem_real)s->period;
+    *shift = 0;
+    if ((double)x < s->borders[b->index]) {
+        if (b->index == 0) *shift = period;
+        return b->index == 0 && (double)(x + period) >= s->borders[s->count] ? 0 : -1;
+    }
+    if ((double)x >= s->borders[b->index + 1]) {
+        if (b->index == s->count - 1) *shift = -period;
+        return 1;
+    }
+    return 0;
+}
+static dem_real demi_slab_shift(const dem_slabs *s, const demi_slab *b, int side) {
+    if (side && b->index == s->count - 1) return -(dem_real)s->period;
+    return !side && b->index == 0 ? (dem_real)s->period : 0;
+}
+/* Those that crossed a border go into the outboxes; they stay here until there is room for them. */
+static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    dem_real shift;
+    int i, side, ok = 1, going[2] = {0, 0};
+    for (i = 0; i < w->count; i++) {
+        side = demi_slab_side(s, b, w->pos[4*i + s->axis], &shift);
+        if (!side) continue;
+        w->visitor[w->body_slot[i]] = side < 0 ? DEMI_GOES_DOWN : DEMI_GOES_UP;
+        going[side > 0]++;
+    }
+    b->leavers = going[0] + going[1];
+    for (side = 0; side < 2; side++) {
+        b->out[side].size = 0;
+        ok = ok && demi_pack(w, w, w->visitor, side ? DEMI_GOES_UP : DEMI_GOES_DOWN,
+                             going[side] > 0, s->axis, demi_slab_shift(s, b, side), &b->out[side]);
+    }
+    for (i = 0; b->leavers && i < w->count; i++) w->visitor[w->body_slot[i]] = 0;
+    if (!ok) b->result = demi_no_memory(w, "dem_slabs_step");
+}
+static demi_parcel_head demi_slab_head(const dem_slabs *s, const demi_slab *b, int side,
+                                       const char **grains) {
+    demi_parcel_head head = {0, 0, 0, 0};
+    if (demi_slab_has(s, b, side)) {
+        *grains = (const char *)demi_slab_inbox(s, b, side)->bytes.data;
+        demi_take(grains, &head, sizeof head);
+    }
+    return head;
+}
+static void demi_slab_room(dem_slabs *s, demi_slab *b) {
+    const char *from = 0;
+    const demi_parcel_head l = demi_slab_head(s, b, 0, &from);
+    const demi_parcel_head u = demi_slab_head(s, b, 1, &from);
+    dem_world *w = b->world;
+    const int stride = l.pairs ? l.stride : u.pairs ? u.stride : w->carry_stride;
+    if (!demi_bodies_reserve(w, (size_t)w->count + (size_t)l.grains + (size_t)u.grains) ||
+        !demi_filed_reserve(w, &b->add_, stride, l.pairs + u.pairs, l.contacts + u.contacts))
+        b->result = demi_no_memory(w, "dem_slabs_step");
+}
+/* Leavers go, arrivals come in: nothing can fail any more. */
+static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    dem_real shift;
+    int i, side;
+    for (i = w->count - 1; i >= 0; i--)
+        if (demi_slab_side(s, b, w->pos[4*i + s->axis], &shift)) demi_grain_forget(w, i);
+    b->migrated += (uint64_t)b->leavers;
+    for (side = 0; side < 2; side++) {
+        const char *grains = 0, *from;
+        const demi_parcel_head h = demi_slab_head(s, b, side, &grains);
+        demi_grain g;
+        from = grains;
+        for (i = 0; i < h.grains; i++) {
+            demi_take(&from, &g, sizeof g);
+            demi_grain_append(w, &g);
+        }
+        if (h.pairs)
+            demi_pairs_take(w, (int32_t *)b->add_.data, demi_parcel_pairs(&h, grains), h.pairs);
+        if (h.contacts)
+            demi_wall_contacts_take(w, demi_parcel_contacts(&h, grains), h.contacts);
+    }
+}
+/* Grains near enough to the upper border to touch something beyond it. */
+static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    int i, n = 0;
+    b->out[1].size = 0;
+    if (!demi_slab_has(s, b, 1)) return;
+    if (!demi_array_grow(w, &b->halo_, sizeof(int32_t), (size_t)w->count)) {
+        b->result = demi_no_memory(w, "dem_slabs_step");
+        return;
+    }
+    b->halo = (int32_t *)b->halo_.data;
+    for (i = 0; i < w->count; i++) {
+        const double x = (double)w->pos[4*i + s->axis], r = (double)w->pos[4*i + 3];
+        if (!(x + s->cut - (double)s->head.radius_max + r > s->borders[b->index + 1])) continue;
+        w->visitor[w->body_slot[i]] = DEMI_GOES_VISITING;
+        b->halo[n++] = (int32_t)w->body_slot[i];
+    }
+    if (!demi_pack(w, w, w->visitor, DEMI_GOES_VISITING, 0, s->axis, demi_slab_shift(s, b, 1),
+                   &b->out[1])) b->result = demi_no_memory(w, "dem_slabs_step");
+    for (i = 0; i < n; i++) w->visitor[b->halo[i]] = 0;
+    b->halo_count = n;
+}
+/* Reals sent up and down per visitor and step. */
+static size_t demi_slab_up(const dem_world *w) { return demi_spins(w) ? 15 : 6; }
+static size_t demi_slab_down(const dem_world *w) { return demi_spins(w) ? 6 : 3; }
+
+/* Visitors come in; then the list is made as in any world, and steps get their room. */
+static void demi_slab_list(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    const char *from = 0;
+    const demi_parcel_head h = demi_slab_head(s, b, 0, &from);
+    const size_t real = sizeof(dem_real);
+    demi_grain g;
+    int i, d, ok;
+    ok = demi_bodies_reserve(w, (size_t)w->count + (size_t)h.grains) &&
+         demi_array_grow(w, &b->guest_, sizeof(int32_t), (size_t)h.grains) &&
+         demi_array_grow(w, &b->guest_inv_, 2*real, (size_t)h.grains);
+    if (!ok) { b->result = demi_no_memory(w, "dem_slabs_step"); return; }
+    b->guest = (int32_t *)b->guest_.data;
+    b->guest_inv = (dem_real *)b->guest_inv_.data;
+    for (i = 0; i < h.grains; i++) {
+        demi_take(&from, &g, sizeof g);
+        demi_grain_append(w, &g);
+        w->visitor[g.slot] = DEMI_VISITOR;
+        b->guest[i] = (int32_t)g.slot;
+        b->guest_inv[2*i] = g.inv_mass;
+        b->guest_inv[2*i + 1] = g.inv_inertia;
+    }
+    b->guest_count = h.grains;
+    if (s->count > 1) w->desc.skin = s->head.skin > 0 ? (dem_real)s->head.skin : -1;
+    b->result = demi_rebuild(w);
+    if (b->result != DEM_OK) return;
+    demi_kernel_choose(w);
+    for (i = 0; i < b->guest_count; i++) b->guest[i] = w->slot_index[b->guest[i]];
+    for (i = 0; i < b->halo_count; i++) b->halo[i] = w->slot_index[b->halo[i]];
+    b->in[0].size = (size_t)b->guest_count*demi_slab_up(w)*real;
+    b->in[1].size = (size_t)b->halo_count*demi_slab_down(w)*real;
+    b->out[0].size = (size_t)b->guest_count*demi_slab_down(w)*real;
+    b->work = 4.0*w->count;
+    for (d = 0; d < w->domain_count; d++)
+        b->work += w->domains[d].own + w->domains[d].cross + w->domains[d].walls;
+}
+/* The outboxes rest until everybody has taken from them; only then are they given their room. */
+static void demi_slab_settle(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    (void)s;
+    b->out[1].size = (size_t)b->halo_count*demi_slab_up(w)*sizeof(dem_real);
+    if (!demi_array_grow(w, &b->in[0].bytes, 1, b->in[0].size) ||
+        !demi_array_grow(w, &b->in[1].bytes, 1, b->in[1].size) ||
+        !demi_array_grow(w, &b->out[0].bytes, 1, b->out[0].size) ||
+        !demi_array_grow(w, &b->out[1].bytes, 1, b->out[1].size))
+        b->result = demi_no_memory(w, "dem_slabs_step");
+}
+
+/* Migration: round by round, since a grain moves on by one slab at a time. */
+static dem_result demi_slabs_migrate(dem_slabs *s) {
+    dem_result result;
+    for (;;) {
+        double leavers = 0;
+        int k;
+        demi_slabs_phase(s, demi_slab_leave);
+        for (k = 0; k < s->local; k++) leavers = DEMI_MAX(leavers, s->slabs[k].leavers);
+        result = demi_slabs_agree(s, &leavers, 1);
+        if (result != DEM_OK || !(leavers > 0)) return result;
+        result = demi_slabs_exchange(s, DEMI_UP | DEMI_DOWN, 0);
+        if (result != DEM_OK) return result;
+        demi_slabs_phase(s, demi_slab_room);
+        result = demi_slabs_agree(s, 0, 0);
+        if (result != DEM_OK) return result;
+        demi_slabs_phase(s, demi_slab_migrate);
+    }
+}
+/* DEM_ERROR_MEMORY leaves every grain in one slab and its memory beside it: the next call begins
+   again. */
+static dem_result demi_slabs_rebuild(dem_slabs *s) {
+    dem_world *h = &s->head;
+    const double skin_before = h->skin_auto;
+    dem_result result;
+    h->list_valid = 0;
+    demi_slabs_phase(s, demi_slab_drop);
+    result = demi_slabs_agree(s, 0, 0);
+    if (s->count > 1) {
+        if (result == DEM_OK) result = demi_slabs_skin(s);
+        if (result == DEM_OK) result = demi_slabs_balance(s);
+        if (result == DEM_OK) { demi_slabs_space(s); result = demi_slabs_migrate(s); }
+        if (result == DEM_OK) {
+            demi_slabs_phase(s, demi_slab_invite);
+            result = demi_slabs_agree(s, 0, 0);
+        }
+        if (result == DEM_OK) result = demi_slabs_exchange(s, DEMI_UP, 0);
+    }
+    if (result == DEM_OK) {
+        demi_slabs_phase(s, demi_slab_list);
+        result = demi_slabs_agree(s, 0, 0);
+    }
+    if (result == DEM_OK) {
+        demi_slabs_phase(s, demi_slab_settle);
+        result = demi_slabs_agree(s, 0, 0);
+    }
+    if (result != DEM_OK) { h->skin_auto = skin_before; return result; }
+    if (s->count == 1) h->skin = s->slabs[0].world->skin;
+    h->reach = h->wall_reach = 0;
+    h->last_rebuild = h->steps;
+    h->rebuilds++;
+    h->list_valid = 1;
+    return DEM_OK;
+}
+
+/* --- a step --- */
+
+/* 1 move. Visitors stand still, weightless: their owner moves them. */
+static void demi_slab_move(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    int k;
+    if (b->result != DEM_OK) return;            /* from the forces before: told with this step */
+    for (k = 0; k < b->guest_count && !s->head.moved; k++) {
+        const int i = b->guest[k];
+        w->inv_mass[i] = w->inv_inertia[i] = 0;
+        demi_put(w->vel + 4*i, demi_v(0, 0, 0));      demi_put(w->half_vel + 4*i, demi_v(0, 0, 0));
+        demi_put(w->spin + 4*i, demi_v(0, 0, 0));     demi_put(w->half_spin + 4*i, demi_v(0, 0, 0));
+        demi_put(w->force + 4*i, demi_v(0, 0, 0));    demi_put(w->torque + 4*i, demi_v(0, 0, 0));
+        if (w->last_pos) demi_put(w->last_pos + 4*i, demi_at(w->pos + 4*i));
+    }
+    if (!s->head.moved) {
+        const double near = w->near_reach;      /* grows by what the fastest of all slabs went */
+        b->result = demi_step_move(w);
+        w->near_reach = near;
+    }
+    if (b->result == DEM_OK) b->result = demi_outflow(w);
+}
+/* What the walls did, for those slabs whose walls do not move by themselves. */
+static void demi_slabs_poses(dem_slabs *s) {
+    const dem_world *from = s->slabs[0].world;
+    int k, i;
+    for (i = 0; i < from->wall_count; i++)
+        for (k = 1; k < s->local && from->walls[i].motion.kind != DEM_MOTION_FIXED; k++) {
+            s->slabs[k].world->walls[i].pose = from->walls[i].pose;
+            s->slabs[k].world->walls[i].mid = from->walls[i].mid;
+        }
+}
+static void demi_slab_send(dem_slabs *s, demi_slab *b) {
+    const dem_world *w = b->world;
+    const size_t three = 3*sizeof(dem_real), reals = demi_slab_up(w);
+    const dem_real shift = demi_slab_shift(s, b, 1);
+    dem_real *out = (dem_real *)b->out[1].bytes.data;
+    int k;
+    for (k = 0; k < b->halo_count; k++, out += reals) {
+        const int i = 4*b->halo[k];
+        memcpy(out, w->pos + i, three);
+        out[s->axis] += shift;
+        memcpy(out + 3, w->vel + i, three);
+        if (reals == 6) continue;
+        memcpy(out + 6, w->spin + i, three);
+        memcpy(out + 9, w->half_vel + i, three);
+        memcpy(out + 12, w->half_spin + i, three);
+    }
+}
+/* Visitors are where their owners say. */
+static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    const size_t three = 3*sizeof(dem_real), up = demi_slab_up(w);
+    const dem_real *in = b->guest_count ? (const dem_real *)demi_slab_inbox(s, b, 0)->bytes.data
+        : 0;
+    int k;
+    for (k = 0; k < b->guest_count; k++, in += up) {
+        const int i = b->guest[k];
+        memcpy(w->pos + 4*i, in, three);
+        memcpy(w->vel + 4*i, in + 3, three);
+        w->inv_mass[i] = b->guest_inv[2*k];
+        w->inv_inertia[i] = b->guest_inv[2*k + 1];
+        if (up == 6) continue;
+        memcpy(w->spin + 4*i, in + 6, three);
+        memcpy(w->half_vel + 4*i, in + 9, three);
+        memcpy(w->half_spin + 4*i, in + 12, three);
+    }
+}
+/* The near list, where something went half its margin. */
+static void demi_slab_near(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    demi_slab_receive(s, b);
+    if (!(2*w->near_reach > w->near_skin)) return;
+    demi_near_choose(w);
+    if (!demi_near_make(w, 0)) b->result = demi_no_memory(w, "dem_slabs_step");
+}
+/* 3 touch, 4 respond, 5 gather, here; forces on visitors go into the lower outbox. */
+static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    const size_t three = 3*sizeof(dem_real), down = demi_slab_down(w);
+    dem_real *out = (dem_real *)b->out[0].bytes.data;
+    double deepest = 0;
+    int k, d, finite = 1;
+    demi_slab_receive(s, b);
+    demi_forces(w);
+    for (k = 0; k < b->guest_count; k++, out += down) {
+        memcpy(out, w->force + 4*b->guest[k], three);
+        if (down == 6) memcpy(out + 3, w->torque + 4*b->guest[k], three);
+    }
+    if (!w->forces_valid) return;               /* only looking */
+    for (d = 0; d < w->domain_count; d++) {
+        deepest = DEMI_MAX(deepest, w->domains[d].overlap);
+        if (w->desc.law || w->desc.force) finite &= w->domains[d].check < 1e300;
+    }
+    if (!finite || !(deepest < 1)) b->result = demi_unstable(w);
+}
+static void demi_slab_add(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    const size_t down = demi_slab_down(w);
+    const dem_real *in = b->halo_count ? (const dem_real *)demi_slab_inbox(s, b, 1)->bytes.data
+        : 0;
+    int k, e;
+    for (k = 0; k < b->halo_count; k++, in += down)
+        for (e = 0; e < 3; e++) {
+            w->force[4*b->halo[k] + e] += in[e];
+            if (down == 6) w->torque[4*b->halo[k] + e] += in[3 + e];
+        }
+}
+/* near: some slab's near list may have to be made anew first. */
+static dem_result demi_slabs_forces(dem_slabs *s, int near) {
+    dem_result result = DEM_OK;
+    if (s->count > 1) {
+        demi_slabs_phase(s, demi_slab_send);
+        result = demi_slabs_exchange(s, DEMI_UP, 1);
+        if (result != DEM_OK) return result;
+    }
+    if (near) {
+        demi_slabs_phase(s, demi_slab_near);
+        result = demi_slabs_agree(s, 0, 0);
+        if (result != DEM_OK) return result;
+    }
+    demi_slabs_phase(s, demi_slab_forces);
+    if (s->count == 1) return DEM_OK;
+    result = demi_slabs_exchange(s, DEMI_DOWN, 1);
+    if (result == DEM_OK) demi_slabs_phase(s, demi_slab_add);
+    return result;
+}
+
+static void demi_slab_finish(dem_slabs *s, demi_slab *b) { (void)s; demi_finish(b->world); }
+static void demi_slab_prime(dem_slabs *s, demi_slab *b) {
+    (void)s;
+    demi_finish(b->world);
+    demi_prime(b->world);
+}
+static void demi_slab_refresh(dem_slabs *s, demi_slab *b) {
+    (void)s;
+    demi_kernel_choose(b->world);
+    b->world->forces_valid = 0;
+}
+static void demi_slab_sample(dem_slabs *s, demi_slab *b) {
+    (void)s;
+    demi_finish(b->world);
+    demi_fields_sample(b->world);
+}
+
+/* The head stands in for the whole scene when a time step is chosen: of each material the smallest
+   grains that move and the largest that does not; all at the highest speed, and two of them at the
+   ends of the fall there is. */
+static dem_result demi_slabs_stand_in(dem_slabs *s) {
+    dem_world *h = &s->head;
+    const dem_real g = demi_length(h->desc.gravity);
+    const dem_vec3 down = g > 0 ? demi_unit(h->desc.gravity) : demi_v(0, 0, 0);
+    const int m = h->material_count;
+    double *v = s->values, many[DEMI_MATERIALS];
+    dem_result result;
+    int k, i, j;
+    for (i = 0; i < 2*m; i++) v[i] = i < m ? -1e300 : 0;       /* minus smallest; largest fixed */
+    v[2*m] = 0;                                                /* speed; lowest, highest */
+    v[2*m + 1] = v[2*m + 2] = -1e300;
+    memset(many, 0, sizeof many);
+    for (k = 0; k < s->local; k++) {
+        const dem_world *w = s->slabs[k].world;
+        for (i = 0; i < w->count; i++) {
+            const double x = (double)demi_dot(demi_at(w->pos + 4*i), down);
+            const double r = (double)w->pos[4*i + 3];
+            if (demi_visits(w, i)) continue;
+            j = w->body_material[i] - 1;
+            if (w->inv_mass[i] > 0) { v[j] = DEMI_MAX(v[j], -r); many[j]++; }
+            else v[m + j] = DEMI_MAX(v[m + j], r);
+            v[2*m] = DEMI_MAX(v[2*m], (double)demi_length(demi_at(w->vel + 4*i)));
+            v[2*m + 1] = DEMI_MAX(v[2*m + 1], r - x);
+            v[2*m + 2] = DEMI_MAX(v[2*m + 2], r + x);
+        }
+    }
+    result = demi_slabs_reduce(s, v, 2*m + 3, 0);
+    if (result == DEM_OK) result = demi_slabs_reduce(s, many, m, 1);
+    h->count = 0;
+    for (j = 0; j < m && result == DEM_OK; j++)
+        for (k = 0; k < 3; k++) {
+            const double r = k < 2 ? -v[j] : v[m + j];
+            const double at = h->count == 0 ? r - v[2*m + 1] : v[2*m + 2] - r;
+            if (k < 2 ? many[j] <= k : !(r > 0)) continue;
+            i = h->count++;
+            demi_put(h->pos + 4*i, demi_scale(down, (dem_real)at));
+            h->pos[4*i + 3] = (dem_real)r;
+            demi_put(h->vel + 4*i, demi_v((dem_real)v[2*m], 0, 0));
+            h->inv_mass[i] = k < 2 ? DEM_R(1) : DEM_R(0);
+            h->body_material[i] = j + 1;
+        }
+    return result;
+}
+static dem_result demi_slabs_settle(dem_slabs *s) {
+    dem_world *h = &s->head, *w = s->slabs[0].world;
+    const dem_real before = h->dt;
+    dem_result result;
+    int k;
+    if (h->dt_valid) return DEM_OK;
+    if (s->count == 1) {
+        w->dt_valid = 0;
+        result = demi_dt_settle(w);
+        memcpy(h->error, w->error, sizeof h->error);
+        h->dt = w->dt;
+        h->dt_valid = w->dt_valid;
+        h->assumed_speed = w->assumed_speed;
+        h->primed = w->primed;
+        return result;
+    }
+    demi_slabs_phase(s, demi_slab_finish);
+    result = demi_slabs_stand_in(s);
+    h->walls = w->walls;
+    if (result == DEM_OK) result = demi_dt_settle(h);
+    h->walls = 0;
+    if (h->dt < before || h->dt > before) h->primed = 0;
+    for (k = 0; k < s->local; k++) {
+        s->slabs[k].world->dt = h->dt;
+        s->slabs[k].world->assumed_speed = h->assumed_speed;
+        s->slabs[k].world->dt_valid = 1;
+    }
+    return result;
+}
+
+static dem_result demi_slabs_refresh(dem_slabs *s) {
+    dem_result result;
+    double stale = !s->head.list_valid;
+    int k;
+    demi_slabs_phase(s, demi_slab_finish);
+    for (k = 0; k < s->local; k++) stale = DEMI_MAX(stale, !s->slabs[k].world->list_valid);
+    result = demi_slabs_agree(s, &stale, 1);
+    if (result == DEM_OK && stale > 0) result = demi_slabs_rebuild(s);
+    if (result != DEM_OK) return result;
+    demi_slabs_phase(s, demi_slab_refresh);
+    result = demi_slabs_forces(s, 0);
+    if (result != DEM_OK) return result;
+    for (k = 0; k < s->local; k++) s->slabs[k].world->forces_valid = 1;
+    s->head.forces_valid = 1;
+    return DEM_OK;
+}
+
+/* One step, in the order of demi_step_once. */
+static dem_result demi_slabs_step_once(dem_slabs *s) {
+    dem_world *h = &s->head;
+    const dem_world *first = s->slabs[0].world;
+    double flags[4] = {0, 0, 0, -1e300};  /* speed, list stale, walls' reach, near lists' excess */
+    dem_result result;
+    int k, near;
+    demi_slabs_phase(s, demi_slab_move);
+    for (k = 0; k < s->local; k++) {
+        const dem_world *w = s->slabs[k].world;
+        flags[0] = DEMI_MAX(flags[0], w->speed_max);
+        flags[1] = DEMI_MAX(flags[1], !w->list_valid);
+        flags[3] = DEMI_MAX(flags[3], 2*w->near_reach - w->near_skin);
+    }
+    flags[2] = first->wall_reach;
+    if (!h->moved) {
+        h->moved = 1;
+        h->time = first->time;
+        h->steps++;
+        demi_slabs_poses(s);
+        result = demi_slabs_agree(s, flags, 4);
+        h->speed_max = flags[0];
+        h->reach += h->speed_max*(double)h->dt;
+        for (k = 0; k < s->local; k++)
+            s->slabs[k].world->near_reach += h->speed_max*(double)h->dt;
+        flags[3] += 2*h->speed_max*(double)h->dt;
+    } else result = demi_slabs_agree(s, flags, 4);
+    if (result != DEM_OK) return result;
+    near = s->count == 1 || flags[3] > -1e-6*h->skin;         /* each looks for itself again */
+    if (s->count == 1) h->reach = first->reach;
+    h->wall_reach = flags[2];
+    for (k = 0; k < s->local && s->count > 1; k++) {           /* what lists count on */
+        s->slabs[k].world->reach = h->reach;
+        s->slabs[k].world->wall_reach = h->wall_reach;
+    }
+    if (flags[1] > 0 || !h->list_valid || h->skin <= 0 || 2*h->reach > h->skin ||
+        h->reach + h->wall_reach > h->skin) {
+        result = demi_slabs_rebuild(s);
+        if (result != DEM_OK) return result;
+        if (h->speed_max > 1.5*h->assumed_speed) h->dt_valid = 0;
+        near = 0;
+    }
+    result = demi_slabs_forces(s, near);
+    if (result == DEM_OK) h->moved = 0;
+    return result;
+}
+
+static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
+    if (!s->broken) return DEM_OK;
+    return demi_fail(&s->head, DEM_ERROR_STOPPED, "%s: the transport failed before, so slabs may "
+                     "have lost step; create them anew from the last collected world or checkpoint",
+                     call);
+}
+DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
+    dem_result result = demi_slabs_usable(s, "dem_slabs_step");
+    dem_world *h = &s->head;
+    int i, f, whole = 1;
+    if (result != DEM_OK) return result;
+    if (steps < 0)
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: steps is %d, must be >= 0",
+                         steps);
+    for (i = 0; i < steps && result == DEM_OK; i++) {
+        const dem_world *w = s->slabs[0].world;
+        int sampling = 0;
+        if (!h->moved) {
+            result = demi_slabs_settle(s);
+            if (result == DEM_OK && !h->forces_valid) result = demi_slabs_refresh(s);
+            else if (result == DEM_OK && !h->list_valid) result = demi_slabs_rebuild(s);
+            if (result != DEM_OK) break;
+            if (!h->primed) { demi_slabs_phase(s, demi_slab_prime); h->primed = 1; }
+        }
+        result = demi_slabs_step_once(s);
+        whole = result == DEM_OK;
+        for (f = 0; f < w->field_count; f++)
+            sampling |= w->fields[f].used && w->time >= w->fields[f].next;
+        if (sampling && whole) demi_slabs_phase(s, demi_slab_sample);
+    }
+    if (!whole) return result;
+    if (result == DEM_OK) result = demi_slabs_agree(s, 0, 0);  /* of the last forces */
+    if (!h->moved) demi_slabs_phase(s, demi_slab_finish);
+    return result;
+}
+
+/* --- create, destroy --- */
+
+static void *demi_slabs_alloc(size_t size, void *user) {
+    const dem_allocator *a = (const dem_allocator *)user;
+    void *p;
+#if DEMI_OPENMP
+    #pragma omp critical(demi_slabs)            /* the user's may be called by one at a time */
+#endif
+    p = a->alloc_fn(size, a->user);
+    return p;
+}
+static void demi_slabs_free(void *memory, size_t size, void *user) {
+    const dem_allocator *a = (const dem_allocator *)user;
+#if DEMI_OPENMP
+    #pragma omp critical(demi_slabs)
+#endif
+    a->free_fn(memory, size, a->user);
+}
+
+/* Copies the walls; slabs after the first share the geometry of the first. */
+static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world *first) {
+    const size_t n = (size_t)from->wall_count;
+    int i;
+    to->walls = (demi_wall *)demi_alloc(to, n, sizeof *to->walls);
+    if (!n) return 1;
+    if (!to->walls) return 0;
+    to->wall_capacity = from->wall_count;
+    for (i = 0; i < from->wall_count; i++) {
+        const demi_wall *a = &from->walls[i];
+        demi_wall *b = &to->walls[i];
+        const size_t per = a->kind == DEMI_WALL_MESH ? 3 : 2, real = sizeof(dem_real);
+        const size_t cells = (size_t)a->cells[0]*(size_t)a->cells[1]*(size_t)a->cells[2] + 1;
+        const size_t sizes[4] = {(size_t)a->vertex_count*3*real, (size_t)a->element_count*per*4,
+                                 cells*4, (size_t)a->cell_item_count*4};
+        const void *data[4];
+        void *copy[4] = {0, 0, 0, 0};
+        int k, ok = 1;
+        data[0] = a->vertices; data[1] = a->corners; data[2] = a->cell_start;
+        data[3] = a->cell_items;
+        for (k = 0; k < 4 && !first; k++) {
+            if (!data[k] || !sizes[k]) continue;
+            copy[k] = demi_alloc(to, sizes[k], 1);
+            ok = ok && copy[k];
+            if (copy[k]) memcpy(copy[k], data[k], sizes[k]);
+        }
+        if (!ok) {
+            for (k = 0; k < 4; k++) demi_free(to, copy[k], sizes[k], 1);
+            return 0;
+        }
+        *b = *a;
+        b->vertices = first ? first->walls[i].vertices : (dem_real *)copy[0];
+        b->corners = first ? first->walls[i].corners : (int32_t *)copy[1];
+        b->cell_start = first ? first->walls[i].cell_start : (int32_t *)copy[2];
+        b->cell_items = first ? first->walls[i].cell_items : (int32_t *)copy[3];
+        if (first) b->motion.kind = DEM_MOTION_FIXED;
+        to->wall_count = i + 1;
+    }
+    return 1;
+}
+/* Sums over time begin in slab 0 where the world has got to, elsewhere at nothing. */
+static void demi_slab_sums_clear(dem_world *w) {
+    int i;
+    memset(w->energy, 0, sizeof w->energy);
+    w->energy_removed = w->throughput = w->energy_inserted = 0;
+    w->balance.left = 0;
+    for (i = 0; i < w->wall_count; i++) {
+        const double time = w->walls[i].channels.time;
+        memset(&w->walls[i].channels, 0, sizeof w->walls[i].channels);
+        w->walls[i].channels.time = time;
+    }
+}
+static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
+    int i;
+    for (i = 0; i < from->field_count; i++) {
+        const demi_field *a = &from->fields[i];
+        const size_t n = demi_field_cells(a)*sizeof(double);
+        if (dem_field_add(to, &a->desc).id != i + 1) return 0;
+        to->fields[i].next = a->next;
+        to->fields[i].samples = a->samples;
+        if (!inherit) continue;
+        memcpy(to->fields[i].solid, a->solid, n);
+        memcpy(to->fields[i].mass, a->mass, n);
+        memcpy(to->fields[i].momentum, a->momentum, 3*n);
+    }
+    return 1;
+}
+/* A slab's world: everything of the scene but the grains. */
+static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index,
+                                  const dem_world *first, dem_allocator *allocator) {
+    dem_world_desc desc = from->asked;
+    const size_t slots = (size_t)from->slot_count;
+    dem_world *w;
+    desc.threads = s->local == 1 ? from->desc.threads : 1;
+    if (s->ring) desc.boundary[s->axis] = DEM_BOUNDARY_OPEN;
+    if (desc.allocator.alloc_fn) {
+        desc.allocator.alloc_fn = demi_slabs_alloc;
+        desc.allocator.free_fn = demi_slabs_free;
+        desc.allocator.user = allocator;
+    }
+    w = dem_world_create(&desc);
+    if (!w) return 0;
+    memcpy(w->materials, from->materials, sizeof w->materials);
+    memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(dem_pair));
+    w->material_count = from->material_count;
+    w->visitor = (uint8_t *)demi_alloc(w, slots + 1, 1);
+    w->slot_index = (int32_t *)demi_alloc(w, slots + 1, sizeof(int32_t));
+    w->slot_generation = (uint32_t *)demi_alloc(w, slots + 1, sizeof(uint32_t));
+    w->slot_capacity = (int)slots + 1;
+    w->slot_count = (int)slots;
+    if (!w->visitor || !w->slot_index || !w->slot_generation ||
+        !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0)) return w;
+    memset(w->slot_index, 0xff, slots*sizeof(int32_t));
+    if (slots) memcpy(w->slot_generation, from->slot_generation, slots*sizeof(uint32_t));
+    w->time = from->time;           w->steps = from->steps;       w->rebuilds = from->rebuilds;
+    w->last_rebuild = from->steps;  w->skin_auto = from->skin_auto;
+    w->skin = from->skin;           w->dt = from->dt;             w->dt_valid = from->dt_valid;
+    w->wall_fastest = from->wall_fastest;                         w->near_skin = from->near_skin;
+    w->near_step = from->steps;
+    w->assumed_speed = from->assumed_speed;                       w->primed = from->primed;
+    w->overlap_max = from->overlap_max;                           w->speed_max = from->speed_max;
+    w->balance = from->balance;     w->energy_removed = from->energy_removed;
+    w->throughput = from->throughput;                             w->half_kick = from->half_kick;
+    w->forces_valid = from->forces_valid && !from->pairs_changed;
+    memcpy(w->energy, from->energy, sizeof w->energy);
+    if (index > 0) demi_slab_sums_clear(w);
+    return w;
+}
+static int demi_slab_ready(const dem_world *w, const dem_world *from) {
+    return w && w->visitor && w->slot_index && w->slot_generation &&
+           w->wall_count == from->wall_count && w->field_count == from->field_count;
+}
+/* The grains of one slab, from the world. */
+static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uint8_t *marks) {
+    dem_world *w = b->world;
+    const char *at;
+    demi_parcel_head h;
+    demi_grain g;
+    int i;
+    for (i = 0; i < from->count; i++) {
+        const double x = (double)from->pos[4*i + s->axis];
+        marks[from->body_slot[i]] = (b->index == 0 || x >= s->borders[b->index]) &&
+            (b->index == s->count - 1 || x < s->borders[b->index + 1]);
+    }
+    b->out[0].size = 0;
+    if (!demi_pack(w, from, marks, 1, 1, s->axis, 0, &b->out[0])) return 0;
+    at = (const char *)b->out[0].bytes.data;
+    demi_take(&at, &h, sizeof h);
+    if (!demi_bodies_reserve(w, (size_t)h.grains) ||
+        !demi_filed_reserve(w, &b->add_, h.stride, h.pairs, h.contacts)) return 0;
+    demi_pairs_take(w, (int32_t *)b->add_.data, demi_parcel_pairs(&h, at), h.pairs);
+    if (h.contacts) demi_wall_contacts_take(w, demi_parcel_contacts(&h, at), h.contacts);
+    for (i = 0; i < h.grains; i++) {
+        demi_take(&at, &g, sizeof g);
+        demi_grain_append(w, &g);
+    }
+    return 1;
+}
+
+/* What is wrong with a desc, as a sentence in the world; DEM_OK when nothing is. */
+static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
+    const char *call = "dem_slabs_create";
+    const int local = d->local ? d->local : d->count;
+    if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
+                         "one along which the scene is longest", call, d->axis,
+                         w->desc.planar ? " (discs live at z = 0: 0 or 1)" : "");
+    if (d->count < 1 || d->count > DEMI_SLABS)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to %d (required); one "
+                         "slab per processor is a good number", call, d->count, (int)DEMI_SLABS);
+    if (d->first < 0 || local < 1 || d->first > d->count - local || (!d->local && d->first))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: slabs %d to %d are asked for, must lie in 0 "
+                         "to %d; set first and local, or leave both 0 for all", call, d->first,
+                         d->first + local - 1, d->count - 1);
+    if (!d->transport.exchange_fn != !d->transport.reduce_fn ||
+        (local < d->count && !d->transport.exchange_fn))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d slabs are here and the transport "
+                         "lacks exchange_fn or reduce_fn; give both, or hold all slabs", call,
+                         local, d->count);
+    if (!demi_finite(d->balance) || (d->balance > 0 && d->balance < 1) || d->balance_interval < 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval %d, must "
+                         "be 0, >= 1 or < 0 (never), and >= 0", call, (double)d->balance,
+                         d->balance_interval);
+    if (w->moved)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world stands in the middle of a step that "
+                         "ran out of memory; finish it with dem_world_step first", call);
+    return DEM_OK;
+}
+/* Do all processes hold the same scene, have they got their memory, and all slabs between them?
+   Digests travel as whole numbers of 32 bits. */
+static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
+    const uint64_t digest = demi_scene_digest(w) ^ (dem_world_hash(w) << 1);
+    double v[9], slabs = s->local;
+    dem_result result;
+    int k, differ = 0;
+    v[0] = (double)(digest >> 32);
+    v[2] = (double)(digest & 0xffffffffu);
+    v[4] = s->count;
+    v[6] = s->axis;
+    for (k = 1; k < 8; k += 2) v[k] = -v[k - 1];
+    v[8] = !ok;
+    result = demi_slabs_reduce(s, v, 9, 0);
+    if (result == DEM_OK) result = demi_slabs_reduce(s, &slabs, 1, 1);
+    if (result != DEM_OK) return demi_fail(w, result, "%s", s->head.error);
+    if (v[8] > 0) return demi_no_memory(w, "dem_slabs_create");
+    for (k = 0; k < 8; k += 2) differ |= v[k] + v[k + 1] > 0;
+    if (!differ && (int)slabs == s->count) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_slabs_create: processes %s, %d slabs of %d are "
+                     "asked for; build the same world from the same numbers in every process and "
+                     "ask for every slab once", differ ? "built different scenes"
+                     : "do not fit together", (int)slabs, s->count);
+}
+
+/* The head's share of a world. 0 when memory ran out. */
+static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
+    dem_world *h = &s->head;
+    const size_t most = 3*DEMI_MATERIALS, n = (size_t)s->count;
+    h->asked = w->asked;
+    h->synced = 1;
+    h->slot_free = h->slot_pending = -1;
+    h->domains = &s->total;
+    h->material_count = w->material_count;
+    h->wall_count = w->wall_count;
+    memcpy(h->materials, w->materials, sizeof h->materials);
+    h->time = w->time;           h->steps = w->steps;         h->rebuilds = w->rebuilds;
+    h->last_rebuild = w->steps;  h->skin_auto = w->skin_auto; h->skin = w->skin;
+    h->dt = w->dt;               h->dt_valid = w->dt_valid;   h->primed = w->primed;
+    h->assumed_speed = w->assumed_speed;
+    h->forces_valid = w->forces_valid && !w->pairs_changed;
+    h->pairs = (dem_pair *)demi_alloc(h, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
+    h->pos = (dem_real *)demi_alloc(h, most, 4*sizeof(dem_real));
+    h->vel = (dem_real *)demi_alloc(h, most, 4*sizeof(dem_real));
+    h->inv_mass = (dem_real *)demi_alloc(h, most, sizeof(dem_real));
+    h->body_material = (int32_t *)demi_alloc(h, most, sizeof(int32_t));
+    s->value_room = n*DEMI_SLAB_BINS + 2*DEMI_MATERIALS + 8;
+    s->values = (double *)demi_alloc(h, s->value_room, sizeof(double));
+    s->borders = (double *)demi_alloc(h, n + 1, sizeof(double));
+    s->slabs = (demi_slab *)demi_alloc(h, (size_t)s->local, sizeof(demi_slab));
+    if (!h->pairs || !h->pos || !h->vel || !h->inv_mass || !h->body_material || !s->values ||
+        !s->borders || !s->slabs) return 0;
+    memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(dem_pair));
+    return 1;
+}
+/* First borders: the same number of grains in every slab. */
+static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
+    const int n = DEMI_SLAB_BINS*s->count;
+    double ends[2] = {-1e300, -1e300}, lo[3], hi[3];
+    int k;
+    demi_domain_limits(w, lo, hi);
+    s->borders[0] = s->ring ? lo[s->axis] : -1e300;
+    s->borders[s->count] = s->ring ? hi[s->axis] : 1e300;
+    demi_slabs_extent(s, w, ends);
+    if (s->ring) { ends[0] = hi[s->axis]; ends[1] = -lo[s->axis]; }
+    if (!(ends[0] > -ends[1])) { ends[0] = w->count ? ends[0] + 1e-3 : 1; ends[1] = 0; }
+    for (k = 0; k < n; k++) s->values[k] = 0;
+    demi_slabs_bin(s, w, 1, s->values, n, -ends[1], ends[0]);
+    demi_slabs_lay(s, s->values, n, -ends[1], ends[0]);
+}
+
+static void demi_slab_destroy(demi_slab *b, int shares) {
+    dem_world *w = b->world;
+    int k;
+    if (!w) return;
+    for (k = 0; k < 2; k++) {
+        demi_array_free(w, &b->out[k].bytes);
+        demi_array_free(w, &b->in[k].bytes);
+    }
+    demi_array_free(w, &b->halo_);
+    demi_array_free(w, &b->guest_);
+    demi_array_free(w, &b->guest_inv_);
+    demi_array_free(w, &b->add_);
+    demi_free(w, w->visitor, (size_t)w->slot_count + 1, 1);
+    if (shares) w->wall_count = 0;              /* their geometry is the first slab's */
+    dem_world_destroy(w);
+}
+DEM_API void dem_slabs_destroy(dem_slabs *s) {
+    const size_t most = 3*DEMI_MATERIALS;
+    dem_allocator allocator;
+    dem_world *h;
+    int k;
+    if (!s) return;
+    h = &s->head;
+    for (k = s->slabs ? s->local - 1 : -1; k >= 0; k--) demi_slab_destroy(&s->slabs[k], k > 0);
+    demi_array_free(h, &s->mine.bytes);
+    demi_array_free(h, &s->all.bytes);
+    demi_free(h, h->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
+    demi_free(h, h->pos, most, 4*sizeof(dem_real));
+    demi_free(h, h->vel, most, 4*sizeof(dem_real));
+    demi_free(h, h->inv_mass, most, sizeof(dem_real));
+    demi_free(h, h->body_material, most, sizeof(int32_t));
+    demi_free(h, s->values, s->value_room, sizeof(double));
+    demi_free(h, s->borders, (size_t)s->count + 1, sizeof(double));
+    demi_free(h, s->slabs, (size_t)s->local, sizeof(demi_slab));
+    allocator = h->desc.allocator;
+    demi_raw_free(&allocator, s, sizeof *s);
+}
+DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
+    const size_t slots = (size_t)w->slot_count + 1;
+    dem_slabs *s;
+    uint8_t *marks;
+    int k, ok;
+    if (demi_slabs_check(w, desc) != DEM_OK) return 0;
+    demi_finish(w);
+    if (!demi_list_drop(w)) { demi_no_memory(w, "dem_slabs_create"); return 0; }
+    s = (dem_slabs *)demi_raw_alloc(&w->desc.allocator, sizeof *s);
+    if (!s) { demi_no_memory(w, "dem_slabs_create"); return 0; }
+    memset(s, 0, sizeof *s);
+    s->head.desc = w->desc;
+    s->desc = *desc;
+    s->axis = desc->axis;
+    s->count = desc->count;
+    s->first = desc->first;
+    s->local = desc->local ? desc->local : desc->count;
+    s->ring = s->count > 1 && w->desc.boundary[s->axis] == DEM_BOUNDARY_PERIODIC;
+    s->period = (double)demi_periods_of(w).period[s->axis];
+    marks = (uint8_t *)demi_alloc(w, slots, 1);
+    ok = marks && demi_slabs_head(s, w);
+    if (ok) demi_slabs_first_borders(s, w);
+    for (k = 0; k < s->local && ok; k++) {
+        demi_slab *b = &s->slabs[k];
+        b->index = s->first + k;
+        b->world = demi_slab_world(s, w, b->index, k ? s->slabs[0].world : 0,
+                                   &s->head.desc.allocator);
+        ok = demi_slab_ready(b->world, w) && demi_slab_fill(s, b, w, marks);
+    }
+    demi_free(w, marks, slots, 1);
+    if (demi_slabs_same(s, w, ok) == DEM_OK) return s;
+    dem_slabs_destroy(s);
+    return 0;
+}
+
+/* --- collect --- */
+
+/* What a slab has besides grains and memory; then come the walls' channels, fields, a parcel. */
+typedef struct demi_slab_sums {
+    int32_t index, walls;
+    uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
+    double energy[DEMI_ENERGIES], removed, throughput, overlap_max;
+} demi_slab_sums;
+
+static int demi_slab_report(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world, *h = &s->head;
+    demi_parcel *out = &s->mine;
+    const size_t start = out->size;
+    demi_slab_sums sums;
+    int i, ok;
+    memset(&sums, 0, sizeof sums);
+    sums.index = b->index;
+    sums.walls = w->wall_count;
+    sums.left = w->balance.left;
+    memcpy(sums.energy, w->energy, sizeof sums.energy);
+    sums.removed = w->energy_removed;
+    sums.throughput = w->throughput;
+    sums.overlap_max = w->overlap_max;
+    ok = demi_parcel_put(h, out, &sums, sizeof sums);
+    for (i = 0; i < w->wall_count && ok; i++)
+        ok = demi_parcel_put(h, out, &w->walls[i].channels, sizeof(dem_channels));
+    for (i = 0; i < w->field_count && ok; i++) {
+        const demi_field *f = &w->fields[i];
+        const size_t n = demi_field_cells(f)*sizeof(double);
+        ok = demi_parcel_put(h, out, f->solid, n) && demi_parcel_put(h, out, f->mass, n) &&
+             demi_parcel_put(h, out, f->momentum, 3*n);
+    }
+    ok = ok && (!w->list_valid || demi_carry_collect(w)) &&
+         demi_pack(h, w, w->visitor, DEMI_ALL, 1, s->axis, 0, out);
+    if (!ok) return 0;
+    sums.size = out->size - start;
+    memcpy((char *)out->bytes.data + start, &sums, sizeof sums);
+    return 1;
+}
+/* Reports of all processes, passed round the ring: each hands on what it got from below. */
+static dem_result demi_slabs_gather(dem_slabs *s) {
+    demi_slab *low = &s->slabs[0], *top = &s->slabs[s->local - 1];
+    double processes = 1;
+    dem_result result = demi_slabs_reduce(s, &processes, 1, 1);
+    int round, k;
+    s->mine.size = s->all.size = 0;
+    for (k = 0; k < s->local; k++)
+        if (s->slabs[k].result == DEM_OK && !demi_slab_report(s, &s->slabs[k]))
+            s->slabs[k].result = demi_no_memory(s->slabs[k].world, "dem_slabs_collect");
+    top->out[1].size = 0;
+    if (!demi_parcel_put(&s->head, &s->all, s->mine.bytes.data, s->mine.size) ||
+        !demi_parcel_put(top->world, &top->out[1], s->mine.bytes.data, s->mine.size))
+        top->result = demi_no_memory(top->world, "dem_slabs_collect");
+    if (result == DEM_OK) result = demi_slabs_agree(s, 0, 0);
+    for (round = 1; round < (int)processes && result == DEM_OK; round++) {
+        result = demi_slabs_exchange(s, DEMI_UP, 0);
+        if (result != DEM_OK) break;
+        top->out[1].size = 0;
+        if (!demi_parcel_put(&s->head, &s->all, low->in[0].bytes.data, low->in[0].size) ||
+            !demi_parcel_put(top->world, &top->out[1], low->in[0].bytes.data, low->in[0].size))
+            top->result = demi_no_memory(top->world, "dem_slabs_collect");
+        result = demi_slabs_agree(s, 0, 0);
+    }
+    return result;
+}
+/* The report of one slab; null when it is missing. */
+static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums *sums) {
+    const char *from = (const char *)s->all.bytes.data, *end = from + s->all.size;
+    for (; from < end; from += sums->size) {
+        memcpy(sums, from, sizeof *sums);
+        if (sums->index == index) return from + sizeof *sums;
+    }
+    return 0;
+}
+/* Adds a slab's sums to the world's, which were cleared before. Answers where its parcel begins. */
+static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
+    int i, k;
+    for (i = 0; i < DEMI_ENERGIES; i++) w->energy[i] += sums->energy[i];
+    w->energy_removed += sums->removed;
+    w->throughput += sums->throughput;
+    w->balance.left += sums->left;
+    w->overlap_max = DEMI_MAX(w->overlap_max, sums->overlap_max);
+    for (i = 0; i < sums->walls; i++) {
+        dem_channels *c = &w->walls[i].channels, part;
+        demi_take(&from, &part, sizeof part);
+        c->force = demi_add(c->force, part.force);
+        c->torque = demi_add(c->torque, part.torque);
+        c->torque_axial += part.torque_axial;
+        c->power += part.power;
+        c->contacts += part.contacts;
+        for (k = 0; k < 3; k++) c->impulse[k] += part.impulse[k];
+        c->torque_impulse += part.torque_impulse;
+        c->work += part.work;
+        c->time = part.time;
+    }
+    for (i = 0; i < w->field_count; i++) {
+        demi_field *f = &w->fields[i];
+        const size_t cells = demi_field_cells(f);
+        size_t n;
+        for (n = 0; n < 5*cells; n++) {
+            double part;
+            demi_take(&from, &part, sizeof part);
+            if (n < cells) f->solid[n] += part;
+            else if (n < 2*cells) f->mass[n - cells] += part;
+            else f->momentum[n - 2*cells] += part;
+        }
+    }
+    return from;
+}
+static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sums,
+                                   const char *from) {
+    int i;
+    from += (size_t)sums->walls*sizeof(dem_channels);
+    for (i = 0; i < w->field_count; i++) from += 5*demi_field_cells(&w->fields[i])*sizeof(double);
+    return from;
+}
+/* Time, step, and what else is the same in all slabs. */
+static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
+    const dem_world *h = &s->head, *from = s->slabs[0].world;
+    int i;
+    w->time = h->time;           w->steps = h->steps;         w->rebuilds = h->rebuilds;
+    w->last_rebuild = h->last_rebuild;                        w->skin_auto = h->skin_auto;
+    if (s->count == 1) w->skin_auto = from->skin_auto;
+    w->skin = h->skin;           w->dt = h->dt;               w->dt_valid = h->dt_valid;
+    w->assumed_speed = h->assumed_speed;                      w->primed = h->primed;
+    w->speed_max = h->speed_max; w->moved = h->moved;         w->synced = from->synced;
+    w->half_kick = from->half_kick;
+    w->reach = h->reach;         w->wall_reach = h->wall_reach;
+    w->forces_valid = h->forces_valid;
+    w->balance.left = 0;
+    w->energy_removed = w->throughput = w->overlap_max = 0;
+    memset(w->energy, 0, sizeof w->energy);
+    for (i = 0; i < w->wall_count; i++) {
+        memset(&w->walls[i].channels, 0, sizeof w->walls[i].channels);
+        w->walls[i].pose = from->walls[i].pose;
+        w->walls[i].mid = from->walls[i].mid;
+    }
+    for (i = 0; i < w->field_count; i++) {
+        demi_field *f = &w->fields[i];
+        const size_t n = demi_field_cells(f)*sizeof(double);
+        memset(f->solid, 0, n);
+        memset(f->mass, 0, n);
+        memset(f->momentum, 0, 3*n);
+        f->samples = from->fields[i].samples;
+        f->next = from->fields[i].next;
+    }
+}
+/* Grains, memory and contacts of one slab. */
+static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const char *from) {
+    demi_parcel_head head;
+    demi_grain g;
+    const char *grains;
+    int i;
+    demi_take(&from, &head, sizeof head);
+    grains = from;
+    for (i = 0; i < head.grains; i++) {
+        demi_take(&from, &g, sizeof g);
+        demi_grain_to(w, w->slot_index[g.slot], &g);
+        seen[g.slot] = 1;
+    }
+    demi_pairs_take(w, add, demi_parcel_pairs(&head, grains), head.pairs);
+    if (head.contacts)
+        demi_wall_contacts_take(w, demi_parcel_contacts(&head, grains), head.contacts);
+}
+/* Room for all that was gathered, and whether the world can hold it. */
+static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, demi_array *add, demi_array *seen) {
+    const char *call = "dem_slabs_collect";
+    dem_world *h = &s->head;
+    demi_slab_sums sums;
+    int k, i, pairs = 0, contacts = 0, stride = 0;
+    if (w->slot_count != s->slabs[0].world->slot_count || w->wall_count != h->wall_count ||
+        w->material_count != h->material_count ||
+        w->field_count != s->slabs[0].world->field_count)
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
+                         "materials, the slabs %d, %d, %d; collect into the world they were "
+                         "created from, unchanged, or one built like it", call, w->slot_count,
+                         w->wall_count, w->material_count, s->slabs[0].world->slot_count,
+                         h->wall_count, h->material_count);
+    for (k = 0; k < s->count; k++) {
+        const char *from = demi_slabs_find(s, k, &sums);
+        demi_parcel_head head;
+        demi_grain g;
+        if (!from)
+            return demi_fail(h, DEM_ERROR_STOPPED, "%s: slab %d did not report; see that every "
+                             "process makes the call and the ring is closed", call, k);
+        from = demi_slabs_skip(w, &sums, from);
+        demi_take(&from, &head, sizeof head);
+        pairs += head.pairs;
+        contacts += head.contacts;
+        if (head.pairs) stride = head.stride;
+        for (i = 0; i < head.grains; i++) {
+            demi_take(&from, &g, sizeof g);
+            if (w->slot_index[g.slot] < 0)
+                return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u is in slab %d, but no longer "
+                                 "in the world; collect before removing grains, or create the "
+                                 "slabs anew after it", call, (unsigned)g.slot + 1, k);
+        }
+    }
+    if (!demi_list_drop(w)) return demi_no_memory(h, call);
+    if (!demi_array_grow(h, seen, 1, (size_t)w->slot_count + 1) ||
+        !demi_carry_reserve(w, w->slot_count, pairs, stride) ||
+        !demi_wall_contacts_reserve(w, (size_t)contacts, (size_t)contacts) ||
+        !demi_filed_reserve(w, add, stride, pairs, contacts)) return demi_no_memory(h, call);
+    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].wall_contacts = 0;
+    memset(w->carry_start, 0, ((size_t)w->slot_count + 2)*sizeof(int32_t));
+    w->carry_count = 0;
+    w->carry_rows = w->slot_count;
+    w->carry_stride = stride;
+    memset(seen->data, 0, (size_t)w->slot_count + 1);
+    return DEM_OK;
+}
+DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
+    demi_array add = {0, 0, 0}, seen = {0, 0, 0};
+    dem_result result = demi_slabs_usable(s, "dem_slabs_collect");
+    demi_slab_sums sums;
+    int k, i;
+    if (result == DEM_OK) result = demi_slabs_gather(s);
+    if (result == DEM_OK) result = demi_slabs_room(s, w, &add, &seen);
+    if (result == DEM_OK) {
+        demi_slabs_common(s, w);
+        for (k = 0; k < s->count; k++) {
+            const char *from = demi_slabs_find(s, k, &sums);
+            from = demi_slabs_add(w, &sums, from);
+            demi_slabs_write(w, (int32_t *)add.data, (uint8_t *)seen.data, from);
+        }
+        for (i = w->count - 1; i >= 0; i--)     /* in no slab: left through an outflow boundary */
+            if (!((const uint8_t *)seen.data)[w->body_slot[i]]) {
+                const double removed = w->energy_removed;
+                demi_body_take_out(w, i);
+                w->energy_removed = removed;
+            }
+        demi_effects(w);                        /* the world may never have taken a step itself */
+        demi_kernel_choose(w);
+    }
+    demi_array_free(w, &add);
+    demi_array_free(&s->head, &seen);
+    return result;
+}
+DEM_API void dem_slabs_channels_reset(dem_slabs *s) {
+    int k, i;
+    for (k = 0; k < s->local; k++) {
+        dem_world *w = s->slabs[k].world;
+        w->overlap_max = 0;
+        for (i = 0; i < w->wall_count; i++) {
+            dem_channels *c = &w->walls[i].channels;
+            memset(c->impulse, 0, sizeof c->impulse);
+            c->torque_impulse = c->work = c->time = 0;
+        }
+    }
+}
+
+DEM_API const char *dem_slabs_error(const dem_slabs *s) {
+    return s ? s->head.error : "dem_slabs_create: returned null; dem_world_error(world) says why";
+}
+DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
+    const demi_slab *b;
+    if (index < s->first || index >= s->first + s->local)
+        return demi_fail((dem_world *)&s->head, DEM_ERROR_ARGUMENT, "dem_slab_get: slab %d is not "
+                         "here, this process holds %d to %d of %d; ask the process that holds it",
+                         index, s->first, s->first + s->local - 1, s->count);
+    b = &s->slabs[index - s->first];
+    out->grains = b->world->count - b->guest_count;
+    out->visitors = b->guest_count;
+    out->lo = s->borders[index];
+    out->hi = s->borders[index + 1];
+    out->work = b->work;
+    out->seconds = b->seconds;
+    out->bytes = b->bytes;
+    return DEM_OK;
+}
+DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
+    dem_slabs_counters c;
+    int k;
+    memset(&c, 0, sizeof c);
+    c.time = s->head.time;
+    c.steps = s->head.steps;
+    c.rebuilds = s->head.rebuilds;
+    c.border_moves = s->border_moves;
+    for (k = 0; k < s->local; k++) c.migrated += s->slabs[k].migrated;
+    c.skin = (dem_real)s->head.skin;
+    c.dt = s->head.dt;
+    return c;
 }
 
 #endif /* DEM_IMPLEMENTATION */
