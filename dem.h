@@ -1186,7 +1186,7 @@ struct dem_world {
     double near_margin;            /* m: what velocities may bring by having changed since */
     double near_drift, near_kick;  /* m/s: how much a velocity may have changed since; last step */
     double near_creep;             /* m: what that may have brought two bodies together */
-    int near_fresh;                /* being made after a search */
+    int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
     int *cross_incoming_start;     /* domain_count + 1 */
     demi_array cross_incoming_, cross_push_;
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
@@ -3267,7 +3267,7 @@ static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, i
 /* Picks near ones from the candidates of one list, without a branch; their entries from p on. Answers
    where they end, or -1 when there is no room. */
 static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
-    const dem_real *x = w->pos, *u = w->half_vel, *shift = w->image_shift;
+    const dem_real *x = w->pos, *u = w->vel, *shift = w->image_shift;
     const dem_real margin = (dem_real)w->near_margin, span = (dem_real)w->near_span;
     const int room = w->near.stride - DEMI_LANES;
     int32_t *out = w->near.k + d*w->near.stride;
@@ -3402,6 +3402,16 @@ static void demi_near_choose(dem_world *w) {
     w->near_margin = DEMI_MIN(DEMI_MAX(w->near_margin, 1e-5*r), 0.1*r);
     w->near_span = span;
 }
+/* A step has gone by, in which no velocity changed by more than kick. */
+static void demi_near_pass(dem_world *w, double kick) {
+    w->near_kick = kick;
+    w->near_drift += kick;
+    w->near_creep += 2*w->near_drift*(double)w->dt;
+    w->near_age += (double)w->dt;
+}
+static int demi_near_due(const dem_world *w) {
+    return w->near_age > w->near_span*(1 - 1e-9) || w->near_creep > w->near_margin;
+}
 /* Makes the near list; fresh: after a search. 0 when memory ran out: the list before is in use. */
 static int demi_near_make(dem_world *w, int fresh) {
     const demi_near swap = w->near;
@@ -3425,7 +3435,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     } while (again);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_adopt);
     w->near_age = w->near_creep = 0;
-    w->near_drift = w->near_kick;               /* forward Euler feels it one step later */
+    w->near_drift = w->near_kick;  /* speeds now, and those that move, are as much as this apart */
     return 1;
 }
 
@@ -4021,7 +4031,7 @@ DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int
     return r;
 }
 
-/* Copies what touch and law will see of bodies and memory into the rows. */
+/* Copies what touch and law will see of the bodies into the rows. */
 DEM_INLINE void demi_tile_fetch(const dem_world *w, const demi_span *span, int count,
                                 const demi_run *r, demi_tile *DEMI_RESTRICT t) {
     const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT shift = w->image_shift;
@@ -4029,11 +4039,7 @@ DEM_INLINE void demi_tile_fetch(const dem_world *w, const demi_span *span, int c
     const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
     const int32_t *DEMI_RESTRICT la = span->a, *DEMI_RESTRICT lb = span->b;
     const unsigned char *DEMI_RESTRICT image = span->image;
-    int n, e;
-    for (e = 0; e < r->keep; e++)
-        demi_row_copy(t->memory[e], span->memory + (size_t)e*span->stride, count);
-    for (e = 0; e < DEMI_PAIR_COLUMNS && !r->uniform; e++)
-        demi_row_copy(t->coef[e], span->coef + (size_t)e*span->stride, count);
+    int n;
     for (n = 0; n < count; n++) {
         size_t q = (size_t)n;
         const dem_real *a, *b, *c;
@@ -4197,6 +4203,10 @@ DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_span *span, con
                                   demi_tile *DEMI_RESTRICT t, double *energy) {
     const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     int q, l;
+    for (q = 0; q < r->keep; q++)
+        demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
+    for (q = 0; q < DEMI_PAIR_COLUMNS && !r->uniform; q++)
+        demi_row_copy(t->coef[q], span->coef + (size_t)q*span->stride, full);
     demi_tile_fetch(w, span, full, r, t);
     for (q = 0; q < full; q += DEMI_LANES) {
         DEMI_VECTOR
@@ -5219,9 +5229,6 @@ static dem_result demi_step_move(dem_world *w) {
     w->speed_max = sqrt(speed2);
     w->reach += w->speed_max*(double)w->dt;
     w->near_kick = sqrt(acceleration2)*(double)w->dt;
-    w->near_drift += w->near_kick;
-    w->near_creep += 2*w->near_drift*(double)w->dt;
-    w->near_age += (double)w->dt;
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->energy[DEMI_E_GRAVITY] += work;
@@ -5255,6 +5262,7 @@ static dem_result demi_step_once(dem_world *w) {
     if (!w->moved) {
         result = demi_step_move(w);
         if (result != DEM_OK) return result;
+        demi_near_pass(w, w->near_kick);
         w->moved = 1;
     }
     result = demi_outflow(w);
@@ -5268,7 +5276,7 @@ static dem_result demi_step_once(dem_world *w) {
         demi_kernel_choose(w);
         /* faster than thought: ask again */
         if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;
-    } else if (w->near_age > w->near_span*(1 - 1e-9) || w->near_creep > w->near_margin) {
+    } else if (demi_near_due(w)) {
         demi_near_choose(w);
         if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
     }
@@ -5513,17 +5521,14 @@ DEM_API void dem_overlap_reset(dem_world *w) { w->overlap_max = 0; }
 static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out) {
     const demi_run r = demi_run_of(w, w->normal, w->tangent, w->rolling, w->uniform, 0,
                                    w->desc.law, 0);
-    demi_span span = demi_span_of(w, d, p, 1);
+    const demi_span span = demi_span_of(w, d, p, 1);
     const int a = span.a[0], b = span.b[0];
-    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
     demi_tile tile;
     dem_vec3 gap;
     int e;
-    for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
-    for (e = 0; e < DEMI_PAIR_COLUMNS && !r.uniform; e++) coef[e] = span.coef[(size_t)e*span.stride];
-    span.memory = memory;
-    span.coef = coef;
-    span.stride = 1;
+    for (e = 0; e < r.keep; e++) tile.memory[e][0] = span.memory[(size_t)e*span.stride];
+    for (e = 0; e < DEMI_PAIR_COLUMNS && !r.uniform; e++)
+        tile.coef[e][0] = span.coef[(size_t)e*span.stride];
     demi_tile_fetch(w, &span, 1, &r, &tile);
     gap = demi_row(tile.gap, 0);
     demi_tile_touch(&tile, 0, &r);
@@ -7472,7 +7477,7 @@ static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int
 /* Looks at the results of the last phases. When one is bad, all processes return it; the sentence
    is that of the lowest slab concerned. flags (count): replaced by their maxima over processes. */
 static dem_result demi_slabs_agree(dem_slabs *s, double *flags, int count) {
-    double v[5] = {0, 0, 0, 0, 0};
+    double v[8] = {0, 0, 0, 0, 0, 0, 0, 0};
     dem_result result;
     int k, index;
     for (k = 0; k < s->local; k++) {
@@ -7608,13 +7613,13 @@ static dem_result demi_slabs_balance(dem_slabs *s) {
 /* The skin of a rebuild, by the model that serves a single world, from totals over all slabs; and
    with it the thinnest slab there may be. */
 static dem_result demi_slabs_skin(dem_slabs *s) {
-    double sums[3] = {0, 0, 0}, radii[3] = {0, -1e300, 0};    /* largest, -smallest; near_skin */
+    double sums[3] = {0, 0, 0}, radii[3] = {0, -1e300, 0};    /* largest, -smallest; near_span */
     dem_world *h = &s->head;
     dem_result result;
     int k, i, d;
     for (k = 0; k < s->local; k++) {
         const dem_world *w = s->slabs[k].world;
-        radii[2] = DEMI_MAX(radii[2], w->near_skin);
+        radii[2] = DEMI_MAX(radii[2], w->near_span);
         for (d = 0; d < w->domain_count; d++) {
             sums[0] += w->domains[d].own + w->domains[d].cross;
             sums[1] += w->domains[d].contacts;
@@ -7636,7 +7641,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     h->count = (int)sums[2];
     h->radius_max = (dem_real)radii[0];
     h->radius_min = (dem_real)(h->count ? -radii[1] : 0);
-    h->near_skin = radii[2];
+    h->near_span = radii[2];
     demi_skin_choose(h);
     if (s->ring && h->desc.skin >= 0 && h->desc.skin <= 0) {
         const double room = s->period/s->count/(1 + 2e-6) - 2*radii[0];
@@ -7887,11 +7892,7 @@ static void demi_slab_move(dem_slabs *s, demi_slab *b) {
         demi_put(w->force + 4*i, demi_v(0, 0, 0));    demi_put(w->torque + 4*i, demi_v(0, 0, 0));
         if (w->last_pos) demi_put(w->last_pos + 4*i, demi_at(w->pos + 4*i));
     }
-    if (!s->head.moved) {
-        const double near = w->near_reach;      /* grows by what the fastest of all slabs went */
-        b->result = demi_step_move(w);
-        w->near_reach = near;
-    }
+    if (!s->head.moved) b->result = demi_step_move(w);
     if (b->result == DEM_OK) b->result = demi_outflow(w);
 }
 /* What the walls did, for those slabs whose walls do not move by themselves. */
@@ -7940,11 +7941,11 @@ static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
         memcpy(w->half_spin + 4*i, in + 12, three);
     }
 }
-/* The near list, where something went half its margin. */
+/* The near list, where it is due. */
 static void demi_slab_near(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     demi_slab_receive(s, b);
-    if (!(2*w->near_reach > w->near_skin)) return;
+    if (!demi_near_due(w)) return;
     demi_near_choose(w);
     if (!demi_near_make(w, 0)) b->result = demi_no_memory(w, "dem_slabs_step");
 }
@@ -8114,7 +8115,9 @@ static dem_result demi_slabs_refresh(dem_slabs *s) {
 static dem_result demi_slabs_step_once(dem_slabs *s) {
     dem_world *h = &s->head;
     const dem_world *first = s->slabs[0].world;
-    double flags[4] = {0, 0, 0, -1e300};  /* speed, list stale, walls' reach, near lists' excess */
+    /* speed, list stale, walls' reach, kick; near lists' creep and age over what they allow */
+    double flags[6] = {0, 0, 0, 0, -1e300, -1e300};
+    const double dt = (double)h->dt;
     dem_result result;
     int k, near;
     demi_slabs_phase(s, demi_slab_move);
@@ -8122,7 +8125,9 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         const dem_world *w = s->slabs[k].world;
         flags[0] = DEMI_MAX(flags[0], w->speed_max);
         flags[1] = DEMI_MAX(flags[1], !w->list_valid);
-        flags[3] = DEMI_MAX(flags[3], 2*w->near_reach - w->near_skin);
+        flags[3] = DEMI_MAX(flags[3], w->near_kick);
+        flags[4] = DEMI_MAX(flags[4], w->near_creep + 2*w->near_drift*dt - w->near_margin);
+        flags[5] = DEMI_MAX(flags[5], w->near_age + dt - w->near_span*(1 - 1e-9));
     }
     flags[2] = first->wall_reach;
     if (!h->moved) {
@@ -8130,15 +8135,14 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         h->time = first->time;
         h->steps++;
         demi_slabs_poses(s);
-        result = demi_slabs_agree(s, flags, 4);
+        result = demi_slabs_agree(s, flags, 6);
         h->speed_max = flags[0];
-        h->reach += h->speed_max*(double)h->dt;
-        for (k = 0; k < s->local; k++)
-            s->slabs[k].world->near_reach += h->speed_max*(double)h->dt;
-        flags[3] += 2*h->speed_max*(double)h->dt;
-    } else result = demi_slabs_agree(s, flags, 4);
+        h->reach += h->speed_max*dt;
+        for (k = 0; k < s->local; k++) demi_near_pass(s->slabs[k].world, flags[3]);
+        h->near_due = flags[4] + 2*flags[3]*dt > -1e-6*h->skin || flags[5] > -1e-6*dt;
+    } else result = demi_slabs_agree(s, flags, 6);
     if (result != DEM_OK) return result;
-    near = s->count == 1 || flags[3] > -1e-6*h->skin;         /* each looks for itself again */
+    near = s->count == 1 || h->near_due;        /* each looks for itself again */
     if (s->count == 1) h->reach = first->reach;
     h->wall_reach = flags[2];
     for (k = 0; k < s->local && s->count > 1; k++) {           /* what lists count on */
@@ -8309,8 +8313,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->time = from->time;           w->steps = from->steps;       w->rebuilds = from->rebuilds;
     w->last_rebuild = from->steps;  w->skin_auto = from->skin_auto;
     w->skin = from->skin;           w->dt = from->dt;             w->dt_valid = from->dt_valid;
-    w->wall_fastest = from->wall_fastest;                         w->near_skin = from->near_skin;
-    w->near_step = from->steps;
+    w->wall_fastest = from->wall_fastest;                         w->near_span = from->near_span;
+    w->near_margin = from->near_margin;
     w->assumed_speed = from->assumed_speed;                       w->primed = from->primed;
     w->overlap_max = from->overlap_max;                           w->speed_max = from->speed_max;
     w->balance = from->balance;     w->energy_removed = from->energy_removed;
