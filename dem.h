@@ -1032,7 +1032,7 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    array that grows is a field here; demi_array_grow keeps what it holds, or leaves it alone and
    says so.
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_TILE = 64, DEMI_LANES = 16,
+enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_TILE = 64, DEMI_LANES = 16, DEMI_SOME = 16,
       DEMI_DOMAIN_BODIES = 2048, DEMI_DOMAINS = 256 };
 
 /* Coefficients of one contact, resolved: what the built-in laws need. */
@@ -1186,6 +1186,7 @@ struct dem_world {
     double near_margin;            /* m: what velocities may bring by having changed since */
     double near_drift, near_kick;  /* m/s: how much a velocity may have changed since; last step */
     double near_creep;             /* m: what that may have brought two bodies together */
+    demi_array quiet_;             /* what may push each few bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
     int *cross_incoming_start;     /* domain_count + 1 */
     demi_array cross_incoming_, cross_push_;
@@ -3377,6 +3378,37 @@ static void demi_domain_near(dem_world *w, int d) {
         if (!l) domain->near_next_cross = p;
     }
 }
+/* --- quiet bodies: where nothing but near pairs and walls can push (no gravity, no force field,
+       no other slab), bodies in none of those fly straight on until the next near list: only positions change. Told
+       for DEMI_SOME bodies at a time. Skipping writes what was there, so bits are the same. --- */
+typedef struct demi_quiet {
+    int restless;                  /* 2: something may push; 1: not now, but did; 0: quiet */
+    dem_real speed2;               /* the largest |v|^2 when last looked at */
+} demi_quiet;
+DEM_INLINE demi_quiet *demi_quiet_at(const dem_world *w, int d, int i) {
+    return (demi_quiet *)w->quiet_.data + d + i/DEMI_SOME;     /* no two domains share one */
+}
+static int demi_quiet_possible(const dem_world *w) {
+    const dem_vec3 g = w->desc.gravity;
+    return !(demi_dot(g, g) > 0) && !w->desc.force && !w->visitor &&
+           w->desc.integrator != DEM_POSITION_VERLET;
+}
+static void demi_domain_quiet(dem_world *w, int d) {
+    const demi_domain *domain = &w->domains[d];
+    const demi_near *near = &w->near;
+    int i, p, k;
+    for (i = domain->begin; i < domain->end; i++) demi_quiet_at(w, d, i)->restless = 1;
+    for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+        demi_quiet_at(w, d, near->a[d*near->stride + p])->restless = 2;
+        if (p < domain->near_own) demi_quiet_at(w, d, near->b[d*near->stride + p])->restless = 2;
+    }
+    for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++)
+        if (w->cross.place[w->cross_incoming[k]])
+            demi_quiet_at(w, d, w->cross.b[w->cross_incoming[k]])->restless = 2;
+    for (k = 0; k < domain->walls; k++)
+        demi_quiet_at(w, d, w->wall_body[d*w->wall_stride + k])->restless = 2;
+}
+
 /* How long the next near list is to last, from counted work, so that it is the same on every run: a
    force costs 1; making the list, 0.15 for each candidate and 1 for each near pair (bench/ measures
    both). Pairs that do not touch grow with the span, how often the list is made shrinks with it. */
@@ -3419,6 +3451,12 @@ static int demi_near_make(dem_world *w, int fresh) {
     w->near = w->near_last;
     w->near_last = swap;
     w->near_fresh = fresh;
+    if (!demi_array_grow(w, &w->quiet_, sizeof(demi_quiet),
+                         (size_t)(w->count/DEMI_SOME + w->domain_count + 1))) {
+        w->near_last = w->near;
+        w->near = swap;
+        return 0;
+    }
     stride = DEMI_MAX(w->near_last.stride, DEMI_MAX(64, w->count/w->domain_count*5/2));
     stride = (stride + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     do {                                        /* until every domain's pairs fit */
@@ -3434,6 +3472,8 @@ static int demi_near_make(dem_world *w, int fresh) {
         return 0;
     } while (again);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_adopt);
+    if (!fresh && demi_quiet_possible(w))
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
     w->near_age = w->near_creep = 0;
     w->near_drift = w->near_kick;  /* speeds now, and those that move, are as much as this apart */
     return 1;
@@ -3583,6 +3623,8 @@ static dem_result demi_rebuild(dem_world *w) {
                                               64)) return demi_no_memory(w, "dem_world_step");
     } while (again);
     if (!demi_wall_contacts_move(w, w->wall_stride)) return demi_no_memory(w, "dem_world_step");
+    if (demi_quiet_possible(w))
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
     while (w->slot_pending >= 0) {  /* slots freed since the last list may be used again */
         const int slot = w->slot_pending;
         w->slot_pending = -2 - w->slot_index[slot];
@@ -4639,20 +4681,34 @@ DEM_INLINE demi_lane demi_lane_turn(const dem_world *w, int i) {
     return b;
 }
 
-/* x(t+dt) = x + dt (v + a dt/2): kick half, drift, predict, later kick half */
+/* x(t+dt) = x + dt (v + a dt/2): kick half, drift, predict, later kick half. By rows of four, the
+   last of which stays zero (in pos: the radius, which zero does not move): rows make vectors. */
 static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->dt, h = (dem_real)w->half_kick;
+    const int synced = w->synced;
+    dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT v = w->vel, *DEMI_RESTRICT u = w->half_vel;
+    const dem_real *DEMI_RESTRICT f = w->force, *DEMI_RESTRICT inv = w->inv_mass;
+    dem_real g[4];
     int i, k;
+    g[0] = w->desc.gravity.x; g[1] = w->desc.gravity.y; g[2] = w->desc.gravity.z; g[3] = 0;
     for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_move(w, i);
-        demi_kick_verlet(&b, h, w->synced);
-        for (k = 0; k < 3; k++) w->pos[4*i + k] += b.half[k]*dt;
+        const dem_real m = inv[i], free_fall = m > 0 ? DEM_R(1) : DEM_R(0);
+        for (k = 4*i; k < 4*i + 4; k++) {
+            const dem_real kick = (f[k]*m + g[k - 4*i]*free_fall)*h;
+            const dem_real half = (synced ? v[k] : u[k] + kick) + kick;
+            u[k] = half;
+            v[k] = half + kick;
+            x[k] += half*dt;
+        }
     }
     if (!turning) return;
-    for (i = begin; i < end; i++) {
-        const demi_lane b = demi_lane_turn(w, i);
-        demi_kick_verlet(&b, h, w->synced);
-    }
+    v = w->spin; u = w->half_spin; f = w->torque; inv = w->inv_inertia;
+    for (i = begin; i < end; i++)
+        for (k = 4*i; k < 4*i + 4; k++) {
+            const dem_real kick = f[k]*inv[i]*h, half = (synced ? v[k] : u[k] + kick) + kick;
+            u[k] = half;
+            v[k] = half + kick;
+        }
 }
 /* v(t+dt/2) = v(t-dt/2) + a dt, x(t+dt) = x + v(t+dt/2) dt */
 static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
@@ -5049,6 +5105,30 @@ static void demi_some_move(dem_world *w, int begin, int end, int turning, demi_p
     memset(w->force + 4*begin, 0, bytes);
     if (turning) memset(w->torque + 4*begin, 0, bytes);
 }
+/* The same for a domain in which some bodies may be quiet. */
+static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
+    const demi_domain *domain = &w->domains[d];
+    const dem_real *DEMI_RESTRICT u = w->half_vel, dt = w->dt;
+    dem_real *DEMI_RESTRICT x = w->pos;
+    int i, k, end, l;
+    for (i = domain->begin; i < domain->end; i = end) {
+        demi_quiet *q = demi_quiet_at(w, d, i);
+        end = DEMI_MIN((i/DEMI_SOME + 1)*DEMI_SOME, domain->end);
+        if (q->restless) {
+            demi_pace own;
+            memset(&own, 0, sizeof own);
+            demi_some_move(w, i, end, turning, &own);
+            q->speed2 = 0;
+            for (l = 0; l < DEMI_LANES; l++) {
+                q->speed2 = DEMI_MAX(q->speed2, own.speed2[l]);
+                pace->acceleration2[l] = DEMI_MAX(pace->acceleration2[l], own.acceleration2[l]);
+                pace->sum[l] += own.sum[l];
+            }
+            if (q->restless == 1) q->restless = 0;
+        } else for (k = 4*i; k < 4*end; k++) x[k] += u[k]*dt;
+        pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
+    }
+}
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const int turning = demi_spins(w), some = 64;   /* these stay in the nearest cache */
@@ -5056,7 +5136,8 @@ static void demi_domain_move(dem_world *w, int d) {
     int i;
     memset(&pace, 0, sizeof pace);
     domain->energy[DEMI_E_GRAVITY] = 0;
-    for (i = domain->begin; i < domain->end; i += some)
+    if (demi_quiet_possible(w)) demi_quiet_move(w, d, turning, &pace);
+    else for (i = domain->begin; i < domain->end; i += some)
         demi_some_move(w, i, DEMI_MIN(i + some, domain->end), turning, &pace);
     domain->speed2 = domain->acceleration2 = domain->check = 0;
     for (i = 0; i < DEMI_LANES; i++) {
@@ -6916,6 +6997,8 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
            demi_wall_contacts_reserve(w, (size_t)shape->domains*(size_t)shape->wall_now_stride,
                                       (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
            demi_near_reserve(w, &w->near, shape->domains, shape->near_stride) &&
+           demi_array_grow(w, &w->quiet_, sizeof(demi_quiet),
+                           (size_t)(shape->count/DEMI_SOME + shape->domains + 1)) &&
            demi_cross_reserve(w, (size_t)shape->domains*(size_t)shape->cross_stride) &&
            demi_carry_reserve(w, shape->carry_rows, shape->carry_count, shape->carry_stride);
     if (!room) {
@@ -6965,7 +7048,10 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     for (k = 0; k < w->wall_count; k++) {
         w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
     }
-    if (w->list_valid && w->count) demi_cross_index(w);      /* its room is there already */
+    if (w->list_valid && w->count) {
+        demi_cross_index(w);                    /* its room is there already */
+        for (d = 0; d < w->domain_count; d++) demi_domain_quiet(w, d);
+    }
     demi_kernel_choose(w);
     return DEM_OK;
 }
@@ -7085,7 +7171,7 @@ DEM_API void dem_world_destroy(dem_world *w) {
         arrays[k++] = &near->a_; arrays[k++] = &near->b_; arrays[k++] = &near->k_;
         arrays[k++] = &near->image_; arrays[k++] = &near->memory_; arrays[k++] = &near->coef_;
     }
-    arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
+    arrays[k++] = &w->quiet_; arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
     arrays[k++] = &w->own.place_; arrays[k++] = &w->cross.place_;
     arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
     arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
