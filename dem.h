@@ -1276,7 +1276,7 @@ static int demi_array_grow(dem_world *w, demi_array *array, size_t item, size_t 
     void *p;
     size_t room = array->capacity;
     if (count <= room) return 1;
-    room = count + count/4 + 16;
+    room = DEMI_MAX(count, room + room/4 + 16); /* bulk: what it takes; bit by bit: in steps */
     p = demi_alloc(w, room, item);
     if (!p) return 0;
     if (array->data) memcpy(p, array->data, array->capacity*item);
@@ -1427,7 +1427,10 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
 }
 
 /* beta = -ln e / sqrt(pi^2 + ln^2 e), the share of critical damping that gives restitution e */
-static double demi_damping_ratio(double e) { return -log(e)/sqrt(DEMI_PI*DEMI_PI + log(e)*log(e)); }
+static double demi_damping_ratio(double e) {
+    const double l = log(e);
+    return -l/sqrt(DEMI_PI*DEMI_PI + l*l);
+}
 
 /* The coefficients of one contact.
      Hertz   F = kn d^(3/2) + cn d^(1/4) v,  kn = 4/3 E* sqrt(R*),  cn = 2 sqrt(5/6) beta sqrt(2 E*
@@ -1453,11 +1456,15 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
         if (wall) { R /= 2; m /= 2; }
     }
     if (w->desc.normal_law == DEM_NORMAL_HERTZ) {
-        const double root = sqrt(R), half = mill && !wall ? 0.5 : 1;
-        kn = 4*E*root/3*pow(half, 1.5);
-        cn = 2*sqrt(5.0/6)*beta*sqrt(2*E*root*m)*pow(half, 0.25);
-        kt = 8*G*root*sqrt(half);
-        ct = 2*sqrt(5.0/6)*beta*sqrt(8*G*root*m)*pow(half, 0.25);
+        const double root = sqrt(R);
+        kn = 4*E*root/3;
+        cn = 2*sqrt(5.0/6)*beta*sqrt(2*E*root*m);
+        kt = 8*G*root;
+        ct = 2*sqrt(5.0/6)*beta*sqrt(8*G*root*m);
+        if (mill && !wall) {                    /* of half the overlap */
+            kn *= pow(0.5, 1.5); kt *= sqrt(0.5);
+            cn *= pow(0.5, 0.25); ct *= pow(0.5, 0.25);
+        }
     } else {
         const double v = w->desc.impact_speed > 0 ? (double)w->desc.impact_speed : 1;
         kn = p->stiffness > 0 ? (double)p->stiffness : pow(320.0/81*m*v*v*E*E*E*E*R*R, 0.2);
@@ -1681,7 +1688,7 @@ static int demi_body_rooms(dem_world *w, demi_room *set) {
 }
 static int demi_bodies_reserve(dem_world *w, size_t count) {
     demi_room set[16];
-    size_t room = count + count/4 + 16;
+    const size_t old = (size_t)w->capacity, room = DEMI_MAX(count, old + old/4 + 16);
     int n = demi_body_rooms(w, set);
     if (count > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->capacity) {
