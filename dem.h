@@ -94,6 +94,7 @@
        DEM_LAW            name of your contact law, to have it inlined (see >>add-law)
        DEM_NO_OPENMP      never use OpenMP, even when the compiler offers it
        DEM_NO_SPECIALIZE  one run-time kernel instead of one per effect set: slower, same bits
+       DEM_DOMAIN_BODIES  bodies per domain, about (2048); another number gives other bits
        DEM_ASSERT(x)      what checks for our own bugs; default: nothing
 
    Memory. All of it comes from the allocator of the world desc (default malloc and free). A step
@@ -901,6 +902,9 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 /* Statements for 0 to 7, written out: compilers leave loops as loops at -O2. */
 #define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
 
+#ifndef DEM_DOMAIN_BODIES
+#define DEM_DOMAIN_BODIES 2048
+#endif
 #ifndef DEM_ASSERT
 #define DEM_ASSERT(x) ((void)0)
 #endif
@@ -1032,8 +1036,9 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    array that grows is a field here; demi_array_grow keeps what it holds, or leaves it alone and
    says so.
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_TILE = 64, DEMI_LANES = 16, DEMI_SOME = 16,
-      DEMI_DOMAIN_BODIES = 2048, DEMI_DOMAINS = 256 };
+enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_SOME = 16, DEMI_DOMAINS = 256,
+      DEMI_LANES = 64/(int)sizeof(dem_real),    /* pairs computed together: widest vectors */
+      DEMI_TILE = 4*DEMI_LANES };               /* pairs under work at a time */
 
 /* Coefficients of one contact, resolved: what the built-in laws need. */
 enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
@@ -3568,8 +3573,8 @@ static int demi_spins(const dem_world *w) {
    a multiple of 8, which most numbers of threads share fairly. */
 static int demi_domains_for(int count) {
     int n = 1;
-    while (n < 8 && n*DEMI_DOMAIN_BODIES < count) n *= 2;
-    return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEMI_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
+    while (n < 8 && n*DEM_DOMAIN_BODIES < count) n *= 2;
+    return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
 }
 
 /* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
@@ -3979,8 +3984,8 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
 
 /* ---------------------------------------------------------------------------------------------
    >>respond
-   The loops that bring near pairs, touch and law together. Grain-grain, 64 pairs at a time (a
-   tile): what the law needs of the two bodies is copied into rows, pair after pair (a copy of three
+   The loops that bring near pairs, touch and law together. Grain-grain, a tile of pairs at a
+   time: what the law needs of the two bodies is copied into rows, pair after pair (a copy of three
    numbers that lie together is cheaper than three gathers); touch and law run over the rows
    (vectorised: groups of a constant length, which compilers turn into vectors at -O2 too); pushes
    are added to both bodies. Pairs that lead out of a domain leave their push in a slot of its own; the other
