@@ -94,6 +94,7 @@
        DEM_LAW            name of your contact law, to have it inlined (see >>add-law)
        DEM_NO_OPENMP      never use OpenMP, even when the compiler offers it
        DEM_NO_SPECIALIZE  one run-time kernel instead of one per effect set: slower, same bits
+       DEM_NO_CLONES      kernels for the compiler's target only, not also for wider vectors
        DEM_DOMAIN_BODIES  bodies per domain, about (2048); another number gives other bits
        DEM_ASSERT(x)      what checks for our own bugs; default: nothing
 
@@ -901,6 +902,17 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 
 /* Statements for 0 to 7, written out: compilers leave loops as loops at -O2. */
 #define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
+
+/* Kernels are compiled twice where that costs the user nothing: for any processor of the target, and
+   for those with wider vectors, which the loader finds out. "avx2" does not bring fused multiplying
+   and adding along, so both give the same bits. */
+#if defined(__GNUC__) && !defined(__clang__) && defined(__GLIBC__) && defined(__x86_64__) && \
+    !defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(DEM_NO_CLONES)
+#define DEMI_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define DEMI_CLONES
+#endif
 
 #ifndef DEM_DOMAIN_BODIES
 #define DEM_DOMAIN_BODIES 2048
@@ -4388,7 +4400,7 @@ static void demi_pairs_any(dem_world *w, int d) {
     demi_pairs(w, d, w->normal, w->tangent, w->rolling, w->uniform, w->desc.ledger, w->desc.law);
 }
 #ifdef DEM_LAW
-static void demi_pairs_own_law(dem_world *w, int d) {
+DEMI_CLONES static void demi_pairs_own_law(dem_world *w, int d) {
     demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 0, DEM_LAW);
 }
 #endif
@@ -4411,7 +4423,7 @@ static void demi_pairs_own_law(dem_world *w, int d) {
     X(linear_spring,        LINEAR, SPRING,  NONE, 1, 0, "linear + spring, alike") \
     X(linear_spring_mixed,  LINEAR, SPRING,  NONE, 0, 0, "linear + spring, mixed")
 #define DEMI_KERNEL_DEFINE(NAME, NORMAL, TANGENT, ROLLING, UNIFORM, LEDGER, TEXT) \
-    static void demi_pairs_##NAME(dem_world *w, int d) { \
+    DEMI_CLONES static void demi_pairs_##NAME(dem_world *w, int d) { \
         demi_pairs(w, d, DEM_NORMAL_##NORMAL, DEM_TANGENT_##TANGENT, DEM_ROLLING_##ROLLING, \
                    UNIFORM, LEDGER, 0); \
     }
