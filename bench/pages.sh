@@ -1,5 +1,5 @@
-# sh bench/pages.sh [accuracy] [roofline] [clusters]: measures anew what stands in those pages of docs/, all of
-# them when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in
+# sh bench/pages.sh [accuracy] [roofline] [clusters] [peers]: measures anew what stands in those pages of docs/
+# (peers: the table in README.md), the first three when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in
 # the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
 [ "$1" ] || set -- accuracy roofline clusters
 export OMP_PROC_BIND=true OMP_PLACES=cores
@@ -22,11 +22,22 @@ picture() {
 rates() {
     cat build/out/bench/summary.txt build/out/bench_single/summary.txt build/out/bench_O2/summary.txt | awk '
         / = / && $1 ~ /^(bed|drum|gas)\.(double|single|double\.O2)\.rate$/ {
-            split($1, part, "."); build = part[2] (part[3] == "O2" ? ".O2" : ""); rate[part[1], build] = $3 + 0 }
+            split($1, part, "."); build = part[2] (part[3] == "O2" ? ".O2" : ""); rate[part[1], build] = 1e-6*$3 }
         END { print "| scene | double | single | single : double | double, `-O2` without `-march=native` |"; print "|---|---|---|---|---|"
             n = split("bed drum gas", scene, " ")
             for (i = 1; i <= n; i++) { d = rate[scene[i], "double"]; s = rate[scene[i], "single"]; o = rate[scene[i], "double.O2"]
                 printf "| %s | %.1f | %.1f | %.2f | %s |\n", scene[i], d, s, d ? s/d : 0, o ? sprintf("%.1f", o) : "" } }'
+}
+# a row a scene and code, from what bench/peers.sh prints; empty where a code or a second core was missing
+peers() {
+    awk '/ = / && $1 ~ /^(bed|drum|gas)\.(double|single)\.vs_/ { value = $0; sub(/.* = /, "", value); ratio[$1] = value }
+        END { print "| scene | against | one core | two cores | one core, dem.h in single precision |"; print "|---|---|---|---|---|"
+            about["bed"] = "bed, 20,000 beads at rest"; about["drum"] = "drum with lifters, 18,000 beads"
+            about["gas"] = "gas, 32,768 spheres"; name["lammps"] = "LAMMPS"; name["liggghts"] = "LIGGGHTS"
+            n = split("bed.lammps bed.liggghts drum.liggghts gas.lammps", row, " ")
+            for (i = 1; i <= n; i++) { split(row[i], p, ".")
+                printf "| %s | %s | %s | %s | %s |\n", about[p[1]], name[p[2]], ratio[p[1] ".double.vs_" p[2]],
+                    ratio[p[1] ".double.vs_" p[2] ".threads2"], ratio[p[1] ".single.vs_" p[2]] } }' "$1"
 }
 
 at=build/out
@@ -52,6 +63,11 @@ for page in "$@"; do
         picture $at/model/model.svg clusters_model.png $at/model/page.md
         splice clusters.md measured $at/parallel/page.md
         splice clusters.md model $at/model/page.md ;;
-    *) echo "no page $page: accuracy, roofline or clusters"; exit 1 ;;
+    peers)
+        sh bench/peers.sh > build/peers.out || { cat build/peers.out; exit 1; }
+        cat build/peers.out
+        grep -q ' = ' build/peers.out || { echo "neither code was found: README.md stays as it was"; exit 1; }
+        peers build/peers.out > build/peers.md && splice ../README.md peers build/peers.md || exit 1 ;;
+    *) echo "no page $page: accuracy, roofline, clusters or peers"; exit 1 ;;
     esac
 done

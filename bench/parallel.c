@@ -1,9 +1,9 @@
-/* parallel.c - what threads gain, how the cost of a grain grows with their number, and how the searches
-   compare: beside the figures that [FEN] and [MIL] printed. MIT licence.
+/* parallel.c - what threads and slabs gain, how the cost of a grain grows with their number, and how the
+   searches compare: beside the figures that [FEN] and [MIL] printed. MIT licence.
 
    make bench-parallel                      the default: a few minutes
    build/parallel --part bed --threads 2    one part of it; --short for a first look, --full for all there is
-   build/parallel --model                   what a cluster might do, from the sizes of messages: a model
+   build/parallel --model                   what a cluster might do, from what slabs send: a model
 
    The measures are those of [FEN] eq 3.22 to 3.24, with t_s the time of the sequential program (dem.h on
    one thread opens no parallel region at all), t_p that on P workers, both of the same steps:
@@ -11,6 +11,10 @@
        efficiency  eta = tau/P
        cost        nu  = P t_p/t_s = 1/eta       ("normalised cost")
        overhead    nu - 1
+   The ways to run on several workers: threads of one world, which must give the bits of the serial run; and slabs
+   (dem_slabs_create), one thread each, cut along the scene's longest or periodic axis, which after the warm-up
+   must stand where the serial run does but for round-off, and keep all grains. Of slabs it also tells what they
+   send: grains of a halo, bytes a border and step.
    All that is compared on a scene runs in turns, A B C A B C; medians are told (of ratios: turn by turn), with half
    the range.
 
@@ -41,42 +45,95 @@ static FILE *page;
 
 typedef struct subject {
     const char *name;            /* of the results */
-    int count, warm_up;          /* grains; untimed steps */
+    int count, warm_up, axis;    /* grains; untimed steps; slabs are cut along 0, 1, 2: x, y, z */
     const void *scene;
     dem_world *(*world)(const struct subject *s, int threads); /* null and a sentence when refused */
 } subject;
 
-/* A way to run a subject on several workers. `slabs` (decomposition of space) will be one more row: start
-   builds them for a subject, steps runs them, hash tells whether all agree. */
+/* A way to run a subject on several workers. start builds what runs, null and a sentence when it cannot; steps runs
+   it; world answers its state as one world, to be looked at, or null. */
 typedef struct way {
     const char *name, *worker;
-    int same_bits;               /* as the serial run, promised */
+    int same_bits;               /* as the serial run, promised; else the same but for round-off */
     void *(*start)(const subject *s, int workers);
     dem_result (*steps)(void *run, int count);
     const char *(*error)(const void *run);
-    uint64_t (*hash)(const void *run);
+    const dem_world *(*world)(void *run);
     void (*stop)(void *run);
 } way;
 
+static int threads_missing(int workers, const char *worker) {
+    if (workers > 1 && !DEMI_OPENMP) printf("SKIP: built without OpenMP, nothing on %d %ss\n", workers, worker);
+    return workers > 1 && !DEMI_OPENMP;
+}
 static void *threads_start(const subject *s, int workers) {
-    if (workers > 1 && !DEMI_OPENMP) {
-        printf("SKIP: built without OpenMP, nothing on %d threads\n", workers);
-        return 0;
-    }
-    return s->world(s, workers);
+    return threads_missing(workers, "thread") ? 0 : s->world(s, workers);
 }
 static dem_result threads_steps(void *run, int count) { return dem_world_step((dem_world *)run, count); }
 static const char *threads_error(const void *run) { return dem_world_error((const dem_world *)run); }
-static uint64_t threads_hash(const void *run) { return dem_world_hash((const dem_world *)run); }
+static const dem_world *threads_world(void *run) { return (const dem_world *)run; }
 static void threads_stop(void *run) { dem_world_destroy((dem_world *)run); }
 
+/* Slabs, and the world they were dealt from and are collected into. */
+typedef struct dealt {
+    dem_slabs *slabs;
+    dem_world *world;
+    int count;
+    double steps, lists, bytes;  /* at the end of the warm-up */
+} dealt;
+
+static double slabs_bytes(const dealt *d) { /* sent so far, by all */
+    double sum = 0;
+    dem_slab slab;
+    int k;
+    memset(&slab, 0, sizeof slab);
+    for (k = 0; k < d->count; k++) if (dem_slab_get(d->slabs, k, &slab) == DEM_OK) sum += (double)slab.bytes;
+    return sum;
+}
+static void slabs_stop(void *run) {
+    dealt *d = (dealt *)run;
+    dem_slabs_destroy(d->slabs);
+    dem_world_destroy(d->world);
+    free(d);
+}
+static void *slabs_start(const subject *s, int workers) {
+    dem_slabs_desc desc = DEM_SLABS_DESC;
+    dealt *d;
+    if (threads_missing(workers, "slab")) return 0;
+    d = (dealt *)study_alloc(1, sizeof *d);
+    d->count = desc.count = workers;
+    desc.axis = s->axis;
+    d->world = s->world(s, workers);
+    d->slabs = d->world ? dem_slabs_create(d->world, &desc) : 0;
+    if (d->slabs) return d;
+    if (d->world) printf("SKIP: %s: %s\n", s->name, dem_world_error(d->world));
+    slabs_stop(d);
+    return 0;
+}
+static dem_result slabs_steps(void *run, int count) {
+    dealt *d = (dealt *)run;
+    const dem_result result = dem_slabs_step(d->slabs, count);
+    if (!(d->steps > 0)) { /* what is sent is counted from the warm-up on */
+        d->steps = (double)dem_slabs_counters_get(d->slabs).steps;
+        d->lists = (double)dem_slabs_counters_get(d->slabs).rebuilds;
+        d->bytes = slabs_bytes(d);
+    }
+    return result;
+}
+static const char *slabs_error(const void *run) { return dem_slabs_error(((const dealt *)run)->slabs); }
+static const dem_world *slabs_world(void *run) {
+    dealt *d = (dealt *)run;
+    return dem_slabs_collect(d->slabs, d->world) == DEM_OK ? d->world : 0;
+}
+
 static const way ways[] = {
-    {"threads", "thread", 1, threads_start, threads_steps, threads_error, threads_hash, threads_stop},
+    {"threads", "thread", 1, threads_start, threads_steps, threads_error, threads_world, threads_stop},
+    {"slabs", "slab", 0, slabs_start, slabs_steps, slabs_error, slabs_world, slabs_stop},
 };
 enum { WAYS = (int)(sizeof ways/sizeof *ways), MOST_RUNS = 1 + 4*WAYS };
 static const int worker_counts[4] = {2, 3, 4, 8};
 
-typedef struct run { const way *how; int workers, dead; void *self; double seconds[BENCH_MOST_LOOPS]; } run;
+typedef struct run { const way *how; int workers; void *self; double seconds[BENCH_MOST_LOOPS]; } run;
 
 static double run_steps(const subject *s, run *r, int steps) { /* seconds; -1 and a sentence when it breaks */
     const double begun = study_clock();
@@ -85,11 +142,18 @@ static double run_steps(const subject *s, run *r, int steps) { /* seconds; -1 an
     return -1;
 }
 static int run_start(const subject *s, run *r, const way *how, int workers) {
+    dem_result result;
     memset(r, 0, sizeof *r);
     r->how = how;
     r->workers = workers;
     r->self = how->start(s, workers);
-    if (r->self && run_steps(s, r, s->warm_up) < 0) { how->stop(r->self); r->self = 0; }
+    if (r->self && (result = how->steps(r->self, s->warm_up)) != DEM_OK) {
+        if (result == DEM_ERROR_ARGUMENT && !how->same_bits) /* more slabs than fit */
+            printf("SKIP: %s: %s\n", s->name, how->error(r->self));
+        else study_fail("%s: %s", s->name, how->error(r->self));
+        how->stop(r->self);
+        r->self = 0;
+    }
     return r->self != 0;
 }
 /* Steps of one timed loop: about a fifth of a second of the first run, no fewer than `least`. */
@@ -105,6 +169,66 @@ static int runs_turn(const subject *s, run *runs, int count, int steps) {
         for (r = 0; r < count; r++)
             if ((runs[r].seconds[t] = run_steps(s, &runs[r], steps)) < 0) return 0;
     return turns;
+}
+
+/* ---- do two runs agree, and what do slabs send ---- */
+
+/* Largest distance between the same grains of two worlds, nearest image; 1e300 when one is missing. */
+static double grains_apart(const dem_world *a, const dem_world *b) {
+    const demi_periods p = demi_periods_of(a);
+    double most = 0;
+    int k, e;
+    if (a->count != b->count || a->slot_count != b->slot_count) return 1e300;
+    for (k = 0; k < a->slot_count; k++) {
+        const int i = a->slot_index[k], j = b->slot_index[k];
+        if ((i < 0) != (j < 0)) return 1e300;
+        for (e = 0; e < 3 && i >= 0; e++)
+            most = fmax(most, fabs((double)demi_image(b->pos[4*j + e] - a->pos[4*i + e], p.half[e], p.period[e])));
+    }
+    return most;
+}
+/* After the same steps. early: soon after the start, when round-off has not been multiplied yet; answers how far
+   apart grains are then, m. */
+static double runs_agree(const subject *s, run *serial, run *r, int early) {
+    const dem_world *a = serial->how->world(serial->self), *b = r->how->world(r->self);
+    double apart = 0;
+    if (!b) study_fail("%s: %s", s->name, r->how->error(r->self));
+    else if (r->how->same_bits) {
+        if (!early && dem_world_hash(a) != dem_world_hash(b))
+            study_fail("%s: 1 and %d %ss do not agree to the last bit", s->name, r->workers, r->how->worker);
+    } else if (early) {
+        apart = grains_apart(a, b);
+        if (!(apart < (sizeof(dem_real) == 4 ? 1e-2 : 1e-9)*(double)a->radius_max))
+            study_fail("%s: after %d steps on %d %ss a grain is %g m from where it is on one thread", s->name, s->warm_up,
+                       r->workers, r->how->worker, apart);
+    } else if (a->count != b->count)
+        study_fail("%s: %d grains on one thread, %d on %d %ss", s->name, a->count, b->count, r->workers, r->how->worker);
+    return apart;
+}
+/* What slabs send to each other, from the end of the warm-up on, to be counted between processes too. */
+typedef struct sent { double halo, bytes, lists, uneven, apart; } sent; /* grains, byte: a border, both ways, and step;
+                                                                     steps of a list; busiest over mean; m */
+static sent slabs_sent(const dealt *d) {
+    const dem_slabs_counters c = dem_slabs_counters_get(d->slabs);
+    double borders = 0, busiest = 0, busy = 0;
+    dem_slab slab;
+    sent of;
+    int k;
+    memset(&of, 0, sizeof of);
+    memset(&slab, 0, sizeof slab);
+    for (k = 0; k < d->count; k++) {
+        if (dem_slab_get(d->slabs, k, &slab) != DEM_OK) continue;
+        borders += slab.lo > -1e299;         /* in a ring all slabs have one below */
+        of.halo += slab.visitors;
+        busiest = fmax(busiest, slab.seconds);
+        busy += slab.seconds/d->count;
+    }
+    if (!(borders > 0)) return of;
+    of.halo /= borders;
+    of.bytes = (slabs_bytes(d) - d->bytes)/fmax(1, (double)c.steps - d->steps)/borders;
+    of.lists = ((double)c.steps - d->steps)/fmax(1, (double)c.rebuilds - d->lists);
+    of.uneven = busiest/busy;
+    return of;
 }
 
 /* ---- what [FEN] printed: Tables 3.2 to 3.4, hours and speedups ---- */
@@ -151,11 +275,39 @@ static void printed_text(char *text, size_t room, int count, int workers, int me
 
 /* ---- one subject, all ways, all numbers of workers ---- */
 
-typedef struct point { const char *scene; const way *how; double workers, speedup; } point;
+typedef struct point { const char *scene; const way *how; double workers, speedup; sent of; } point;
 static point points[200];
 static int point_count;
 
-static void tell_run(const subject *s, const run *serial, const run *r, int turns, int steps) {
+static void tell_sent(int workers, const sent *of) {
+    char name[64];
+    snprintf(name, sizeof name, "slabs%d.halo", workers);
+    bench_result_short(name, of->halo, "grains a border");
+    snprintf(name, sizeof name, "slabs%d.message", workers);
+    bench_result_short(name, 1e-3*of->bytes, "kB a border and step, there and back");
+    snprintf(name, sizeof name, "slabs%d.grain_message", workers);
+    bench_result_short(name, of->halo > 0 ? of->bytes/of->halo : 0, "byte a grain of a halo and step");
+    snprintf(name, sizeof name, "slabs%d.lists", workers);
+    bench_result_short(name, of->lists, "steps of a list");
+    snprintf(name, sizeof name, "slabs%d.uneven", workers);
+    bench_result_short(name, of->uneven, "time of the busiest over the mean");
+    snprintf(name, sizeof name, "slabs%d.apart", workers);
+    bench_result_short(name, of->apart, "m from the serial run, the farthest grain after the warm-up");
+}
+/* What slabs sent, of all points. */
+static void tell_page_sent(void) {
+    int i, any = 0;
+    for (i = 0; i < point_count && page; i++) {
+        const sent *of = &points[i].of;
+        if (points[i].how->start != slabs_start) continue;
+        if (!any++) fprintf(page, "\nWhat slabs send, counted as if each were a process of its own:\n\n| scene | slabs | halo, grains "
+                            "a border | kB a border and step, there and back | byte a grain of the halo and step | steps of a list | "
+                            "busiest slab over the mean | farthest grain from the serial run, m |\n|---|---|---|---|---|---|---|---|\n");
+        fprintf(page, "| %s | %.0f | %.0f | %.1f | %.0f | %.0f | %.2f | %.0e |\n", points[i].scene, points[i].workers, of->halo,
+                1e-3*of->bytes, of->halo > 0 ? of->bytes/of->halo : 0, of->lists, of->uneven, of->apart);
+    }
+}
+static void tell_run(const subject *s, const run *serial, const run *r, int turns, int steps, double apart) {
     static const char *const names[4] = {"speedup", "efficiency", "cost", "overhead"};
     const double tau = bench_median_ratio(serial->seconds, r->seconds, turns), P = r->workers;
     const double tp = bench_median(r->seconds, turns), values[4] = {tau, tau/P, P/tau, P/tau - 1};
@@ -180,6 +332,11 @@ static void tell_run(const subject *s, const run *serial, const run *r, int turn
     if (point_count < (int)(sizeof points/sizeof *points)) {
         point *p = &points[point_count++];
         p->scene = s->name; p->how = r->how; p->workers = P; p->speedup = values[0];
+        memset(&p->of, 0, sizeof p->of);
+        if (r->how->start != slabs_start) return;
+        p->of = slabs_sent((const dealt *)r->self);
+        p->of.apart = apart;
+        tell_sent(r->workers, &p->of);
     }
 }
 /* What [FEN] took for the whole run, and what these steps would: extrapolated from the time of a step. */
@@ -194,13 +351,17 @@ static void tell_span(const subject *s, double step, double dt) {
 }
 static int compare_ways(const subject *s, double dt) { /* answers 0 when something broke */
     run runs[MOST_RUNS];
+    double apart[MOST_RUNS] = {0};
     int count = 0, turns = 0, steps = 0, w, k, r;
     snprintf(study.prefix, sizeof study.prefix, "%s.", s->name);
     if (run_start(s, &runs[0], &ways[0], 1)) {
         count = 1;
         for (w = 0; w < WAYS; w++)
             for (k = 0; k < 4; k++)
-                if (worker_counts[k] <= most_workers) count += run_start(s, &runs[count], &ways[w], worker_counts[k]);
+                if (worker_counts[k] <= most_workers && run_start(s, &runs[count], &ways[w], worker_counts[k])) {
+                    apart[count] = runs_agree(s, &runs[0], &runs[count], 1);
+                    count++;
+                }
         steps = loop_steps(s, &runs[0], short_form ? 10 : 20);
         for (r = 1; r < count && steps; r++)                     /* all take the same steps */
             if (run_steps(s, &runs[r], short_form ? 10 : 20) < 0) steps = 0;
@@ -214,9 +375,8 @@ static int compare_ways(const subject *s, double dt) { /* answers 0 when somethi
         tell_span(s, ts/steps, dt);
     }
     for (r = 1; r < count && turns; r++) {
-        tell_run(s, &runs[0], &runs[r], turns, steps);
-        if (runs[r].how->same_bits && runs[r].how->hash(runs[r].self) != runs[0].how->hash(runs[0].self))
-            study_fail("%s: 1 and %d %ss do not agree to the last bit", s->name, runs[r].workers, runs[r].how->worker);
+        tell_run(s, &runs[0], &runs[r], turns, steps, apart[r]);
+        runs_agree(s, &runs[0], &runs[r], 0);
     }
     for (r = 0; r < count; r++) runs[r].how->stop(runs[r].self);
     study.prefix[0] = 0;
@@ -233,6 +393,7 @@ static dem_world *scene_world(const subject *s, int threads) {
 static subject scene_subject(const char *name, const bench_scene *scene, int warm_up) {
     subject s;
     s.name = name; s.count = scene->count; s.warm_up = warm_up; s.scene = scene; s.world = scene_world;
+    s.axis = bench_is(scene, "drum"); /* the drum's own axis is y */
     return s;
 }
 static void scene_part(const char *name) {
@@ -340,11 +501,13 @@ static void mill_part(void) {
     int most = most_workers;
     if (!slices_settle(&s)) return;
     of.name = "mill"; of.count = s.one.grains; of.warm_up = 200; of.scene = &s; of.world = slices_world;
+    of.axis = 0; /* across the slice: it is too short for slabs along the mill's axis, z */
     s.count = s.whole = 1;
     compare_ways(&of, s.one.dt);
     if (!short_form) {
         if (!full_form) most_workers = most < 2 ? most : 2;
         of.name = "mill253125"; of.count = 45*s.one.grains; of.warm_up = 40; s.count = 45; s.whole = 0;
+        of.axis = 2;
         study_result_text("mill253125.published", "18.35e6", "particle-steps/s ([MIL] Fig 6.16, GTX 560 Ti, single precision; "
                           "others there 2.02e4 to 4.74e6)");
         compare_ways(&of, s.one.dt);
@@ -507,6 +670,7 @@ static void tables_part(void) {
         if (discs_fall(&one, 0.5)) {
             all = discs_tile(&one, sizes[i].tiles);
             s.name = sizes[i].name; s.count = all.count; s.warm_up = 100; s.scene = &all; s.world = discs_world;
+            s.axis = 0;
             compare_ways(&s, DISC_DT);
             discs_free(&all);
         }
@@ -753,7 +917,7 @@ static void speedups_draw(int tables) {
     static char names[STUDY_CURVES][40];
     study_figure f;
     size_t k;
-    int i, n;
+    int i, n, w;
     memset(&f, 0, sizeof f);
     f.title = tables ? "Speedup: discs here, and Tables 3.2 to 3.4 of [FEN] (dashed)" : "Speedup";
     f.x_label = tables ? "workers (here of one machine, there of several)" : "workers";
@@ -763,20 +927,23 @@ static void speedups_draw(int tables) {
     f.y0 = log10(0.3);
     f.y1 = tables ? log10(300) : 1;
     study_curve(&f, "as many times faster", STUDY_FAINT, 2, ideal[0], ideal[1]);
-    for (i = 0; i < point_count && f.curve_count + 4 < STUDY_CURVES;) {
-        double *px = x[f.curve_count], *py = y[f.curve_count];
-        const point *p = &points[i];
-        px[0] = py[0] = 1;
-        for (n = 1; i < point_count && n < 64 && !strcmp(points[i].scene, p->scene) && points[i].how == p->how; i++, n++) {
-            px[n] = points[i].workers;
-            py[n] = points[i].speedup;
+    for (w = 0; w < WAYS; w++) {
+        while (w && f.curve_count%6 != 1) study_curve(&f, 0, STUDY_LINE, 0, 0, 0); /* so that colours agree */
+        for (i = 0; i < point_count && f.curve_count + 4 < STUDY_CURVES;) {
+            double *px = x[f.curve_count], *py = y[f.curve_count];
+            const point *p = &points[i];
+            px[0] = py[0] = 1;
+            for (n = 1; i < point_count && n < 64 && !strcmp(points[i].scene, p->scene) && points[i].how == p->how; i++, n++) {
+                px[n] = points[i].workers;
+                py[n] = points[i].speedup;
+            }
+            if (p->how != &ways[w] || tables != !strncmp(p->scene, "discs", 5)) continue;
+            snprintf(names[f.curve_count], sizeof *names, "%s, %ss", p->scene, p->how->worker);
+            study_curve(&f, names[f.curve_count], w ? STUDY_DOTS : STUDY_LINE, n, px, py);
         }
-        if (tables != !strncmp(p->scene, "discs", 5)) continue;
-        snprintf(names[f.curve_count], sizeof *names, "%s, %ss", p->scene, p->how->worker);
-        study_curve(&f, names[f.curve_count], STUDY_LINE, n, px, py);
     }
     if (f.curve_count < 2) return;
-    while (tables && f.curve_count%6 != 1) study_curve(&f, 0, STUDY_LINE, 0, 0, 0); /* so that colours agree */
+    while (tables && f.curve_count%6 != 1) study_curve(&f, 0, STUDY_LINE, 0, 0, 0);
     for (k = 0; k < sizeof printed_serial/sizeof *printed_serial && tables; k++) {
         double *px = x[f.curve_count], *py = y[f.curve_count];
         px[0] = py[0] = 1;
@@ -793,68 +960,78 @@ static void speedups_draw(int tables) {
 
 /* ---- the model of a cluster ---- */
 
-/* Slices, as in [FEN] 3.5: a border's halo is a layer as thick as a diameter and the skin. Per step a rank sends
-   and receives, at each of two borders, the state of h grains (15 reals and an id) and the forces on them (6
-   reals); all agree on one number (largest displacement). Every `life` steps lists are renewed, and a share of
-   the halo changes hands with its contacts. Assumed, not measured: the networks. */
+/* Slabs, as in [FEN] 3.5, with messages as dem.h's slabs send them: measured on the bed of 1e5 beads in two slabs, as
+   grains of a halo for a border of one square diameter, and bytes a grain of the halo and step, there and back,
+   with the share of renewed lists and migrants. Per step a rank exchanges up and down at each of its borders, and
+   all agree on one maximum. Assumed, not measured: the networks, and copies into and out of messages. */
 typedef struct network { const char *name, *about; double latency, bandwidth; } network; /* s, byte/s */
 static const network networks[] = {
     {"ethernet", "10 GbE, TCP", 25e-6, 1.1e9}, {"infiniband", "InfiniBand HDR", 1.5e-6, 12e9}};
-#define MODEL_UP (15*8 + 4)      /* byte a grain of a halo */
-#define MODEL_BACK (6*8)
-#define MODEL_MIGRANT (28*8 + 5*(4*8 + 4)) /* byte: its state, and five contacts' memory */
-#define MODEL_MOVED 0.05         /* of a halo, changes hands at a renewal */
-#define MODEL_LIFE 50            /* steps of a list */
-#define MODEL_SKIN 0.1           /* diameters */
-#define MODEL_COPY 5e9           /* byte/s, into and out of messages */
+#define MODEL_COPY 5e9           /* byte/s */
+#define MODEL_PACKED 1.146       /* grains a cubic diameter, at packing 0.6 */
+static double model_layer, model_bytes; /* grains a square diameter of border; bytes a grain of the halo and step */
 
-static double model_side(double grains) { return pow(grains/1.146, 1.0/3); } /* diameters, of a cube at packing 0.6 */
-static double model_halo(double grains) { const double S = model_side(grains); return 1.146*S*S*(1 + MODEL_SKIN); }
+static double model_side(double grains) { return pow(grains/MODEL_PACKED, 1.0/3); } /* diameters, of a cube */
+static double model_halo(double grains) { const double S = model_side(grains); return model_layer*S*S; }
 /* Seconds a step on P ranks; *share: of them spent on messages. */
 static double model_step(double grains, double P, double grain_cost, const network *net, double *share) {
     const double h = model_halo(grains), work = grains/P*grain_cost;
-    const double bytes = h*(MODEL_UP + MODEL_BACK) + MODEL_MOVED*h*MODEL_MIGRANT/MODEL_LIFE;
-    const double border = 2*net->latency + bytes*(1/net->bandwidth + 2/MODEL_COPY);
+    const double border = 2*net->latency + h*model_bytes*(1/net->bandwidth + 2/MODEL_COPY);
     const double talk = P > 1 ? (P > 2 ? 2 : 1)*border + 2*ceil(log(P)/log(2) - 1e-9)*net->latency : 0;
     if (share) *share = talk/(work + talk);
     return work + talk;
 }
-static double model_measure(void) { /* ns a bead and step on one core, of the bed of 1e5 beads */
+/* Messages, and ns a bead and step on one core, of the bed of 1e5 beads; 0 when something broke. */
+static double model_measure(void) {
     bench_scene bed = bench_scene_read(data_folder, "bed"), s = bed_tile(&bed, 5, 1);
     const subject of = scene_subject("bed", &s, 40);
-    run r;
-    int steps, turns = 0;
-    double ns = 0;
-    if (run_start(&of, &r, &ways[0], 1)) {
-        steps = loop_steps(&of, &r, 10);
-        turns = steps ? runs_turn(&of, &r, 1, steps) : 0;
-        if (turns) ns = 1e9*bench_median(r.seconds, turns)/((double)steps*s.count);
-        r.how->stop(r.self);
+    run serial, slabs;
+    double ns = cost_asked;
+    int steps, turns;
+    if (!(ns > 0) && run_start(&of, &serial, &ways[0], 1)) {
+        steps = loop_steps(&of, &serial, 10);
+        turns = steps ? runs_turn(&of, &serial, 1, steps) : 0;
+        if (turns) ns = 1e9*bench_median(serial.seconds, turns)/((double)steps*s.count);
+        serial.how->stop(serial.self);
+    }
+    if (run_start(&of, &slabs, &ways[1], 2)) {
+        const double length = s.side[0]/(2*s.radius), border = s.count/(MODEL_PACKED*length); /* diameters, their square */
+        if (run_steps(&of, &slabs, short_form ? 60 : 200) >= 0) {
+            const sent messages = slabs_sent((const dealt *)slabs.self);
+            tell_sent(2, &messages);
+            model_layer = messages.halo/border;
+            model_bytes = messages.halo > 0 ? messages.bytes/messages.halo : 0;
+        }
+        slabs.how->stop(slabs.self);
     }
     bench_scene_free(&bed);
     bench_scene_free(&s);
-    return ns;
+    return model_layer > 0 ? ns : 0;
 }
 static void model_part(void) {
     static const double sizes[3] = {1e5, 1e6, 1e7};
     static double x[6][16], y[6][16];
     static char names[6][48];
-    const double ns = cost_asked > 0 ? cost_asked : model_measure();
+    const double ns = model_measure();
     double ideal[2][2] = {{1, 256}, {1, 256}};
     study_figure f;
     int i, k, n, P;
     char name[64];
     bench_result_short("model.grain_cost", ns, cost_asked > 0 ? "ns (given)" : "ns (measured: bed, 1e5 beads, one thread)");
     if (!(ns > 0)) return;
+    bench_result_short("model.halo", model_layer, "grains a square diameter of a border (measured)");
+    bench_result_short("model.bytes", model_bytes, "a grain of the halo and step, there and back (measured)");
     memset(&f, 0, sizeof f);
     f.title = "A model, not a measurement: speedup in slices";
     f.x_label = "ranks";
     f.y_label = "speedup";
     f.log_x = f.log_y = 1;
     study_curve(&f, "as many times faster", STUDY_FAINT, 2, ideal[0], ideal[1]);
-    if (page) fprintf(page, "Cost of a grain and step: %.1f ns (%s).\n\n| grains | network | halo, grains | message up, kB | ranks | "
-                      "time of a step, ms | speedup | efficiency | share of messages |\n|---|---|---|---|---|---|---|---|---|\n",
-                      ns, cost_asked > 0 ? "given" : "measured on one thread");
+    if (page) fprintf(page, "Cost of a grain and step `c`: %.1f ns (%s). Measured on the bed of 1e5 beads in two slabs: `a` = %.2f "
+                      "grains of a halo to a square diameter of border, `b` = %.0f bytes each a step, there and back.\n\n| grains | "
+                      "network | halo, grains | kB a border and step | ranks | time of a step, ms | speedup | efficiency | share of "
+                      "messages |\n|---|---|---|---|---|---|---|---|---|\n",
+                      ns, cost_asked > 0 ? "given" : "measured on one thread", model_layer, model_bytes);
     for (i = 0; i < 3; i++)
         for (k = 0; k < 2; k++) {
             const double serial = model_step(sizes[i], 1, 1e-9*ns, &networks[k], 0);
@@ -868,7 +1045,7 @@ static void model_part(void) {
                 bench_result_short(name, py[n], "");
                 if (page && (P == 2 || P == 8 || P == 32 || P == 64))
                     fprintf(page, "| %.0e | %s | %.0f | %.0f | %d | %.3g | %.1f | %.2f | %.0f %% |\n", sizes[i], networks[k].about,
-                            model_halo(sizes[i]), 1e-3*MODEL_UP*model_halo(sizes[i]), P, 1e3*t, py[n], py[n]/P, 100*share);
+                            model_halo(sizes[i]), 1e-3*model_bytes*model_halo(sizes[i]), P, 1e3*t, py[n], py[n]/P, 100*share);
             }
             snprintf(names[2*i + k], sizeof *names, "%.0e, %s", sizes[i], networks[k].about);
             study_curve(&f, names[2*i + k], k ? STUDY_DASHED : STUDY_LINE, n, px, py);
@@ -883,7 +1060,7 @@ static int wanted(const char *name) { return !strcmp(part, "all") || !strcmp(par
 int main(int argc, char **argv) {
     static const study_option choices[] = {
         {"part", STUDY_CHOICE, &part, 0, 0, "all|bed|drum|gas|mill|tables|searches|scaling", "what to measure"},
-        {"threads", STUDY_INT, &most_workers, 1, 64, "", "the most, of 2, 3, 4, 8"},
+        {"threads", STUDY_INT, &most_workers, 1, 64, "", "and slabs, the most: of 2, 3, 4, 8"},
         {"short", STUDY_FLAG, &short_form, 0, 0, "", "a first look: shorter loops, fewer turns, no million"},
         {"full", STUDY_FLAG, &full_form, 0, 0, "", "long loops, all threads, the whole 4 s of the tank: an hour"},
         {"span", STUDY_REAL, &span_asked, 1e-4, 100, "s", "simulated, of each search; 0: .02"},
@@ -894,7 +1071,7 @@ int main(int argc, char **argv) {
         {"out", STUDY_TEXT, &out_folder, 0, 0, "", "folder of results"},
     };
     const double load = bench_load();
-    study_options(argc, argv, "What threads gain, how cost grows with the number of grains, how the searches compare.",
+    study_options(argc, argv, "What threads and slabs gain, how cost grows with the number of grains, how the searches compare.",
                   choices, (int)(sizeof choices/sizeof *choices));
     if (short_form && full_form) { study_fail("--short or --full, not both"); return 2; }
     study_begin(*out_folder ? out_folder : model_only ? "build/out/model" : "build/out/parallel");
@@ -910,6 +1087,7 @@ int main(int argc, char **argv) {
         if (wanted("gas")) scene_part("gas");
         if (wanted("mill")) mill_part();
         if (wanted("tables")) tables_part();
+        tell_page_sent();
         speedups_draw(0);
         speedups_draw(1);
         if (wanted("searches")) searches_part();

@@ -6,10 +6,11 @@
    Measures, in the same run: bandwidth (triad a = b + s c, 24 bytes an element) with arrays that fit the first,
    second and third cache and none; the peak of fused multiply-adds; exact 1/sqrt. Then runs bed, drum and gas
    step by step with a clock around each phase:
-     respond   candidates filtered, law of those that touch, pushes added to both bodies (w->kernel)
-     rest      forces cleared, pushes across domains fetched, walls, sums (demi_forces without the kernel)
-     move      half kicks, drift, largest speed (demi_step_move)
-     search    bodies sorted, a new list, contact memory carried over (demi_rebuild), spread over its steps
+     respond   near pairs: bodies copied into rows, touch, motion, law, pushes added to both (w->kernel)
+     rest      pushes across domains fetched, walls, sums (demi_forces without the kernel)
+     move      half kicks, drift, pace, forces cleared (demi_step_move)
+     near      a new near list out of the candidates (demi_near_make), spread over its steps
+     search    bodies sorted, a new list, a near list, contact memory carried over (demi_rebuild), spread likewise
    and divides by the flops and bytes counted in the table below. A bench may look inside dem.h: this one does,
    at the names above and at what demi_step_once asks before it rebuilds.
 
@@ -25,34 +26,48 @@
 
 #define R ((double)sizeof(dem_real))
 typedef struct work { double flops, bytes; } work;
-typedef struct counted { work candidate, contact, bead, wall; } counted; /* each, in one step */
+/* each, in one step (near, search: when made): a candidate, a near pair, one of those that lead out of a domain, a
+   contact, a bead, a wall contact */
+typedef struct counted { work candidate, near, cross, contact, bead, wall; } counted;
+enum { REALS = sizeof(dem_real) };
 
-/* respond, Hertz with a spring (bed, drum). The filter: 3 differences, 6 for d^2 - 4 r^2; two indices of 4 bytes.
-   A contact: touch 18 (root and division among them), velocities 38, those of the step 80, Hertz 10, memory
-   turned 51, spring and Coulomb 33, pushes 21, added to both 13; memory of 4 reals and a stamp read and
-   written. A bead: place, velocity, spin, half velocity, half spin read (4 reals each), force and torque read
-   and written. */
-static const counted respond_friction = {{9, 8}, {264, 8*sizeof(dem_real) + 8}, {0, 36*sizeof(dem_real)}, {0, 0}};
-/* the same without friction, linear (gas): touch 18, velocity 8, law 4, push 3, added 7. A bead: its place. Velocity
-   and force only of the few that touch: 4 reals read, 4 read and written, of both */
-static const counted respond_smooth = {{9, 8}, {40, 24*sizeof(dem_real)}, {0, 4*sizeof(dem_real)}, {0, 0}};
-/* rest: force and torque set to zero; a wall contact: about 300 flops, its record read and written */
-static const counted rest_friction = {{0, 0}, {0, 0}, {0, 8*sizeof(dem_real)}, {300, 2*sizeof(demi_wall_contact)}};
-static const counted rest_smooth = {{0, 0}, {0, 0}, {0, 4*sizeof(dem_real)}, {0, 0}};
-/* move: 6 a component to kick, of velocity and spin; 6 to drift; 7 for the largest speed. Place and half velocity
-   read and written, velocity written, force read, inverse mass; half spin, spin, torque, inverse inertia */
-static const counted move_friction = {{0, 0}, {0, 0}, {49, (4*11 - 2)*sizeof(dem_real)}, {0, 0}};
-static const counted move_smooth = {{0, 0}, {0, 0}, {31, (4*6 + 1)*sizeof(dem_real)}, {0, 0}};
-/* search, of one rebuild: 13 rows of 4 reals permuted (read, written, and again through scratch), indices; 9
-   flops for each pair asked (below); a candidate's indices, stamp and memory written, a contact's memory carried
-   there and back */
-static const counted search_friction = {{0, 12 + 4*sizeof(dem_real)}, {0, 16*sizeof(dem_real) + 16},
-                                        {0, 13*4*4*sizeof(dem_real) + 24}, {0, 0}};
-static const counted search_smooth = {{0, 12}, {0, 0}, {0, 13*4*4*sizeof(dem_real) + 24}, {0, 0}};
-#define IMAGE_FLOPS 6 /* nearest image across three periodic axes, of a candidate and of a contact */
+/* respond, Hertz with a spring, alike (bed, drum). The work is that of a near pair, whether it touches or not:
+     fetch    18: 3 across, 3 to the image; differences of velocity and sums of spin, now and of the step, 12
+     touch    14: length 6, 1/length 2, normal 3, overlap and depth 2, does it touch 1
+     motion   90: closing 5, slip 21; of the step: turn of the normal 14, arm 4, slip_step 40, twist 6
+     law      95: Hertz 10, memory turned 49, spring and Coulomb 36
+     answers  29: memory 3 and pushes 8 that count only where it touches; force 6, torque 12
+     tally     2, scatter 12
+   Indices of 4 bytes and an image of 1, three reals of memory read and written. Rows (demi_tile) stay in the first
+   cache and are not counted. A bead: place, velocity, spin, half velocity, half spin read (4 reals each), force and
+   torque read and written. One that leads out leaves six reals. */
+static const counted respond_friction = {{0, 0}, {260, 9 + 6*REALS}, {0, 6*REALS}, {0, 0}, {0, 36*REALS}, {0, 0}};
+/* the same without friction, linear (gas): fetch 9, touch 14, motion 5, law 4, answers 7, tally 2, scatter 6. No
+   bead but those of near pairs, few: place and velocity read, force read and written, of both */
+static const counted respond_smooth = {{0, 0}, {47, 9 + 32*REALS}, {0, 3*REALS}, {0, 0}, {0, 0}, {0, 0}};
+/* rest: a push that leads out, added at its other end; a wall contact: about 300 flops, its record read and written */
+static const counted rest_friction = {{0, 0}, {0, 0}, {6, 12 + 18*REALS}, {0, 0}, {0, 0}, {300, 2*sizeof(demi_wall_contact)}};
+static const counted rest_smooth = {{0, 0}, {0, 0}, {3, 12 + 9*REALS}, {0, 0}, {0, 0}, {0, 0}};
+/* move: to kick and drift 9 a component, to kick spin 5; pace 19. Place, half velocity, force read and written (force:
+   cleared), velocity written, inverse mass; the same for spin and torque. A quiet bead: 6; place read and written, half
+   velocity read */
+static const counted move_friction = {{0, 0}, {0, 0}, {0, 0}, {0, 0}, {61, 50*REALS}, {0, 0}};
+static const counted move_smooth = {{0, 0}, {0, 0}, {0, 0}, {0, 0}, {46, 29*REALS}, {0, 0}};
+static const counted move_quiet = {{0, 0}, {0, 0}, {0, 0}, {0, 0}, {6, 12*REALS}, {0, 0}};
+/* near, when it is made. A candidate: 6 to the image, 3 differences of velocity, 5 and 6 for their lengths, 6 to compare;
+   indices, image and entry read, entry cleared. A near pair: bodies, image, candidate and entry written, memory
+   copied. A bead: place and velocity */
+static const counted near_friction = {{26, 17}, {0, 17 + 6*REALS}, {0, 0}, {0, 0}, {0, 8*REALS}, {0, 0}};
+static const counted near_smooth = {{26, 17}, {0, 17}, {0, 0}, {0, 0}, {0, 8*REALS}, {0, 0}};
+/* search, of one rebuild: 13 rows of 4 reals permuted (read, written, and again through scratch), indices; 9 flops for
+   each pair asked (below); a candidate's indices and image written; a contact's memory filed and fetched; and a
+   near list */
+static const counted search_friction = {{26, 9 + 17}, {0, 17 + 3*REALS}, {0, 0}, {0, 9*REALS + 16},
+                                        {0, (13*4*4 + 8)*REALS + 24}, {0, 0}};
+static const counted search_smooth = {{26, 9 + 17}, {0, 17}, {0, 0}, {0, 0}, {0, (13*4*4 + 8)*REALS + 24}, {0, 0}};
 
-enum { RESPOND, REST, MOVE, SEARCH, WHOLE, PHASES };
-static const char *const phase_names[PHASES] = {"respond", "rest", "move", "search", "whole"};
+enum { RESPOND, REST, MOVE, NEAR, SEARCH, WHOLE, PHASES };
+static const char *const phase_names[PHASES] = {"respond", "rest", "move", "near", "search", "whole"};
 
 /* ---- limits of the machine, one core ---- */
 
@@ -144,23 +159,34 @@ static void kernel_choose(dem_world *w) {
     kernel = w->kernel;
     w->kernel = kernel_timed;
 }
+static double near_made, search_made;  /* how often, so far */
 /* demi_step_once with clocks; time[] grows. 0: the run broke. */
 static int step_timed(dem_world *w, double time[PHASES]) {
     const double begun = study_clock();
     double moved, found, done;
+    int phase = MOVE;
     if (demi_step_move(w) != DEM_OK) return 0;
+    demi_near_pass(w, w->near_kick);
+    w->moved = 1;
     moved = found = study_clock();
     if (!w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach + w->wall_reach > w->skin) {
         if (demi_rebuild(w) != DEM_OK) return 0;
         kernel_choose(w);
-        found = study_clock();
+        phase = SEARCH;
+        search_made++;
+    } else if (demi_near_due(w)) {
+        demi_near_choose(w);
+        if (!demi_near_make(w, 0)) return 0;
+        phase = NEAR;
+        near_made++;
     }
+    if (phase != MOVE) found = study_clock();
     kernel_time = 0;
     demi_forces(w);
     w->moved = 0;
     done = study_clock();
     time[MOVE] += moved - begun;
-    time[SEARCH] += found - moved;
+    time[phase] += found - moved;
     time[RESPOND] += kernel_time;
     time[REST] += done - found - kernel_time;
     time[WHOLE] += done - begun;
@@ -173,24 +199,53 @@ static FILE *page;
 static int turns_asked = 5, steps_asked;
 static double second_kib = 1024, third_kib = 32768;
 
+/* What there is of each a bead, means of looks at the scene; rebuilds and near lists a step. */
+typedef struct tallies { double candidates, near, cross, contacts, walls, quiet, rebuilds, nears; int looks; } tallies;
+
+static void look(const dem_world *w, tallies *t) {
+    const dem_counters c = dem_counters_get(w);
+    const double n = w->count;
+    int d, i, k = t->looks++;
+    double near = 0, cross = 0, quiet = 0;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        cross += domain->near_end - domain->near_cross;
+        near += domain->near_own + domain->near_end - domain->near_cross;
+        for (i = domain->begin; i < domain->end && demi_quiet_possible(w); i++) quiet += !demi_quiet_at(w, d, i)->restless;
+    }
+    t->candidates += (c.candidates/n - t->candidates)/(k + 1);
+    t->contacts += (c.contacts/n - t->contacts)/(k + 1);
+    t->walls += (c.wall_contacts/n - t->walls)/(k + 1);
+    t->near += (near/n - t->near)/(k + 1);
+    t->cross += (cross/n - t->cross)/(k + 1);
+    t->quiet += (quiet/n - t->quiet)/(k + 1);
+}
+static void add_work(work *sum, work each, double count) { sum->flops += count*each.flops; sum->bytes += count*each.bytes; }
+
 /* Flops and bytes of a phase per bead and step. */
-static work count_work(int phase, const bench_scene *s, const dem_counters *c, double rebuilds) {
-    const int smooth = bench_is(s, "gas"), periodic = s->side[0] > 0;
-    const counted *t = phase == RESPOND ? (smooth ? &respond_smooth : &respond_friction)
+static work count_work(int phase, const bench_scene *s, const tallies *t, double skin) {
+    const int smooth = bench_is(s, "gas");
+    const counted *c = phase == RESPOND ? (smooth ? &respond_smooth : &respond_friction)
                      : phase == REST ? (smooth ? &rest_smooth : &rest_friction)
                      : phase == MOVE ? (smooth ? &move_smooth : &move_friction)
+                     : phase == NEAR ? (smooth ? &near_smooth : &near_friction)
                                      : (smooth ? &search_smooth : &search_friction);
-    const double n = s->count, image = phase == RESPOND && periodic ? IMAGE_FLOPS : 0;
-    const double candidates = c->candidates/n, contacts = c->contacts/n, walls = c->wall_contacts/n;
-    work sum;
-    sum.flops = candidates*(t->candidate.flops + image) + contacts*(t->contact.flops + image) + t->bead.flops + walls*t->wall.flops;
-    sum.bytes = candidates*t->candidate.bytes + contacts*t->contact.bytes + t->bead.bytes + walls*t->wall.bytes;
+    const double often = phase == SEARCH ? t->rebuilds : phase == NEAR ? t->nears : 1;
+    const double quiet = phase == MOVE ? t->quiet : 0;
+    work sum = {0, 0};
+    add_work(&sum, c->candidate, t->candidates);
+    add_work(&sum, c->near, t->near);
+    add_work(&sum, c->cross, t->cross);
+    add_work(&sum, c->contact, t->contacts);
+    add_work(&sum, c->bead, 1 - quiet);
+    add_work(&sum, move_quiet.bead, quiet);
+    add_work(&sum, c->wall, t->walls);
     if (phase == SEARCH) { /* pairs asked: 13 1/2 cells of a diameter and a skin, at the scene's solid fraction */
-        const double edge = 2 + (double)c->skin/s->radius, solid = smooth ? 0.058 : 0.6;
+        const double edge = 2 + skin/s->radius, solid = smooth ? 0.058 : 0.6;
         sum.flops += 9*13.5*solid*edge*edge*edge/(4*3.14159265/3);
-        sum.flops *= rebuilds;
-        sum.bytes *= rebuilds;
     }
+    sum.flops *= often;
+    sum.bytes *= often;
     return sum;
 }
 static void roofs_draw(const bench_scene *s, const double x[PHASES], const double y[PHASES]) {
@@ -216,7 +271,7 @@ static void roofs_draw(const bench_scene *s, const double x[PHASES], const doubl
     study_figure_write(&f, name);
 }
 static void tell_scene(const bench_scene *s, const dem_counters *c, double times[PHASES][BENCH_MOST_LOOPS], int turns,
-                       double rebuilds) {
+                       const tallies *t) {
     const double kib = (double)c->memory/1024;
     const int level = kib < second_kib ? L2 : kib < third_kib ? L3 : MEMORY;
     double x[PHASES], y[PHASES];
@@ -225,13 +280,17 @@ static void tell_scene(const bench_scene *s, const dem_counters *c, double times
     char name[64], unit[64];
     snprintf(study.prefix, sizeof study.prefix, "%s.", s->name);
     bench_result_short("memory", kib/1024, "MiB");
-    bench_result_short("steps_per_rebuild", 1/rebuilds, "");
-    bench_result_short("pairs_per_bead", (double)c->candidates/s->count, "");
-    bench_result_short("contacts_per_bead", 2.0*c->contacts/s->count, "");
+    bench_result_short("steps_per_rebuild", 1/t->rebuilds, "");
+    if (t->nears > 0) bench_result_short("steps_per_near_list", 1/(t->nears + t->rebuilds), "");
+    bench_result_short("pairs_per_bead", t->candidates, "");
+    bench_result_short("near_pairs_per_bead", t->near, "");
+    bench_result_short("contacts_per_bead", 2*t->contacts, "");
+    if (t->quiet > 0) bench_result_short("quiet", 100*t->quiet, "% of the beads");
     for (p = 0; p < PHASES; p++) {
         const double ns = 1e9*bench_median(times[p], turns);
-        work here = p == WHOLE ? sum : count_work(p, s, c, rebuilds);
+        work here = p == WHOLE ? sum : count_work(p, s, t, (double)c->skin);
         double roof;
+        if (!(ns > 0) || !(here.bytes > 0)) { x[p] = y[p] = 1e-9; continue; } /* did not happen; off the picture */
         if (p != WHOLE) { sum.flops += here.flops; sum.bytes += here.bytes; }
         roof = 1e9*fmax(here.flops/peak, here.bytes/bandwidth[level]); /* ns */
         x[p] = here.flops/here.bytes;
@@ -258,19 +317,22 @@ static void tell_scene(const bench_scene *s, const dem_counters *c, double times
     study.prefix[0] = 0;
     roofs_draw(s, x, y);
 }
-/* When turns hold few rebuilds or none, a median says nothing: the mean of all, or one forced rebuild spread over
-   all steps taken (which is then an upper bound). Answers rebuilds per step. */
-static double search_rare(dem_world *w, double *times, int turns, double rebuilds, int steps) {
-    double sum = 0, begun;
+/* When turns hold few of them or none, a median says nothing: the mean of all. */
+static void mean_of_turns(double *times, int turns, double sum) {
     int k;
     for (k = 0; k < turns; k++) sum += times[k];
+    for (k = 0; k < turns; k++) times[k] = sum/turns;
+}
+/* Or one forced rebuild spread over all steps taken, which is then an upper bound. Answers rebuilds per step. */
+static double search_rare(dem_world *w, double *times, int turns, double rebuilds, int steps) {
+    double spent = 0, begun;
     if (!(rebuilds > 0)) {
         begun = study_clock();
         if (demi_rebuild(w) != DEM_OK) study_fail("%s", dem_world_error(w));
-        sum = (study_clock() - begun)/steps/w->count;
+        spent = (study_clock() - begun)/steps/w->count;
         rebuilds = 1.0/(steps*turns);
     }
-    for (k = 0; k < turns; k++) times[k] = sum/turns;
+    mean_of_turns(times, turns, spent);
     return rebuilds;
 }
 static void scene_place(const char *folder, const char *name) {
@@ -279,21 +341,28 @@ static void scene_place(const char *folder, const char *name) {
     bench_scene s = bench_scene_read(folder, name);
     dem_world *w = bench_world(&s, &choice);
     const int steps = steps_asked ? steps_asked : bench_is(&s, "gas") ? 600 : 150;
-    double time[PHASES], rebuilds;
+    double time[PHASES];
+    tallies t;
     int turn, p, k, ok = w && dem_world_step(w, 100) == DEM_OK;
     if (ok) {
         kernel_choose(w);
-        rebuilds = (double)w->rebuilds;
+        near_made = search_made = 0;
+        memset(&t, 0, sizeof t);
         for (turn = 0; turn < turns_asked && ok; turn++) {
             for (p = 0; p < PHASES; p++) time[p] = 0;
-            for (k = 0; k < steps && ok; k++) ok = step_timed(w, time);
+            for (k = 0; k < steps && ok; k++) {
+                ok = step_timed(w, time);
+                if (k%16 == 15 || steps < 16) look(w, &t);
+            }
             for (p = 0; p < PHASES; p++) times[p][turn] = time[p]/steps/s.count;
         }
         if (ok) {
             const dem_counters c = dem_counters_get(w);
-            rebuilds = ((double)w->rebuilds - rebuilds)/(steps*turns_asked);
-            if (rebuilds*steps < 3) rebuilds = search_rare(w, times[SEARCH], turns_asked, rebuilds, steps);
-            tell_scene(&s, &c, times, turns_asked, rebuilds);
+            t.rebuilds = search_made/(steps*turns_asked);
+            t.nears = near_made/(steps*turns_asked);
+            if (t.nears*steps < 3) mean_of_turns(times[NEAR], turns_asked, 0);
+            if (t.rebuilds*steps < 3) t.rebuilds = search_rare(w, times[SEARCH], turns_asked, t.rebuilds, steps);
+            tell_scene(&s, &c, times, turns_asked, &t);
         }
     }
     if (!ok) study_fail("%s: %s", name, w ? dem_world_error(w) : "no world");

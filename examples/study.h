@@ -284,7 +284,7 @@ typedef struct study_series {
 } study_series;
 
 /* Zeroed, then filled in. Curves, over a map (value), a quiver (u, v) or discs (disc_*). */
-#define STUDY_CURVES 16
+#define STUDY_CURVES 20
 typedef struct study_figure {
     const char *title, *x_label, *y_label;
     double size;                  /* width of the plot; 0: 620 */

@@ -50,6 +50,7 @@ for cc in gcc clang tcc; do
         try "$cc${real:+ float}: strict, DEM_NO_OPENMP"     "$cc -std=c99 -I. $real $strict $openmp -DDEM_NO_OPENMP -c dem.c -o \$bin.o"
         try "$cc${real:+ float}: strict, DEM_STATIC"        "$cc -std=c99 -I. $real $strict -DDEM_STATIC -c dem.c -o \$bin.o"
         try "$cc${real:+ float}: strict, DEM_NO_SPECIALIZE" "$cc -std=c99 -I. $real $strict -DDEM_NO_SPECIALIZE -c dem.c -o \$bin.o"
+        try "$cc${real:+ float}: strict, DEM_NO_CLONES"     "$cc -std=c99 -I. $real $strict -DDEM_NO_CLONES -O1 -c dem.c -o \$bin.o"
     done
     for source in bench/*.c; do
         try "$cc: strict, $source"                  "$cc -std=c99 -I. $strict $openmp -fsyntax-only $source"
