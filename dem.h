@@ -8697,6 +8697,8 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
     demi_slab *low = &s->slabs[0], *top = &s->slabs[s->local - 1];
     double processes = 1;
     dem_result result = demi_slabs_reduce(s, &processes, 1, 1);
+    /* of a step, to be put back */
+    const size_t sent = top->out[1].size, below = low->in[0].size, above = top->in[1].size;
     int round, k;
     s->mine.size = s->all.size = 0;
     for (k = 0; k < s->local; k++)
@@ -8716,6 +8718,9 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
             top->result = demi_no_memory(top->world, "dem_slabs_collect");
         result = demi_slabs_agree(s, 0, 0);
     }
+    top->out[1].size = sent;
+    low->in[0].size = below;
+    top->in[1].size = above;
     return result;
 }
 /* The report of one slab; null when it is missing. */
