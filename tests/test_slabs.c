@@ -288,20 +288,30 @@ static uint64_t bits_of(int heap, int threads, int count, int steps) {
 enum { RANKS = 3 };
 typedef struct ring {
     const void *lower[RANKS], *upper[RANKS];
+    size_t lower_size[RANKS], upper_size[RANKS];
     double *values[RANKS];
+    int surprises;                  /* sizes that were not as awaited */
 } ring;
 static ring ring_now;
 static int ring_exchange(const void *to_lower, size_t to_lower_size, void *from_lower,
                          size_t from_lower_size, const void *to_upper, size_t to_upper_size,
                          void *from_upper, size_t from_upper_size, void *user) {
     const int rank = omp_get_thread_num();
-    (void)to_lower_size; (void)to_upper_size; (void)user;
+    const int below = (rank + RANKS - 1)%RANKS, above = (rank + 1)%RANKS;
+    (void)user;
     ring_now.lower[rank] = to_lower;
     ring_now.upper[rank] = to_upper;
+    ring_now.lower_size[rank] = to_lower_size;
+    ring_now.upper_size[rank] = to_upper_size;
     #pragma omp barrier
+    if (ring_now.upper_size[below] != from_lower_size ||
+        ring_now.lower_size[above] != from_upper_size) {
+        #pragma omp atomic
+        ring_now.surprises++;
+    }
     if (from_lower_size)
-        memcpy(from_lower, ring_now.upper[(rank + RANKS - 1)%RANKS], from_lower_size);
-    if (from_upper_size) memcpy(from_upper, ring_now.lower[(rank + 1)%RANKS], from_upper_size);
+        memcpy(from_lower, ring_now.upper[below], from_lower_size);
+    if (from_upper_size) memcpy(from_upper, ring_now.lower[above], from_upper_size);
     #pragma omp barrier
     return 0;
 }
@@ -339,7 +349,9 @@ static uint64_t ring_bits(int heap, int count, int steps, int *ranks) {
             desc.transport.exchange_fn = ring_exchange;
             desc.transport.reduce_fn = ring_reduce;
             slabs = dem_slabs_create(world, &desc);
-            good[rank] = slabs && dem_slabs_step(slabs, steps) == DEM_OK &&
+            good[rank] = slabs && dem_slabs_step(slabs, steps/2) == DEM_OK &&
+                         dem_slabs_collect(slabs, world) == DEM_OK &&   /* in passing */
+                         dem_slabs_step(slabs, steps - steps/2) == DEM_OK &&
                          dem_slabs_collect(slabs, world) == DEM_OK;
             hash[rank] = digest(world);
             dem_slabs_destroy(slabs);
@@ -349,6 +361,7 @@ static uint64_t ring_bits(int heap, int count, int steps, int *ranks) {
     }
     *ranks = team;
     if (team == RANKS) CHECK(good[0] && good[1] && good[2]);
+    CHECK_EQ(ring_now.surprises, 0);
     CHECK(hash[1] == hash[0] && hash[2] == hash[0]);
     return hash[0];
 }
