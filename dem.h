@@ -2856,12 +2856,13 @@ static void demi_rows_grid(dem_world *w, int d) {
 }
 
 /* --- levels: a hierarchical grid [OGA12] for bodies of very different radii, where the cells of
-       one grid, as wide as the largest body, would each hold thousands of small ones. Radii are put in
-       classes; every class has a grid of its own, whose cells hold one or two of its bodies. A body
-       looks at each class in turn, no farther than it reaches: at few cells of the coarser ones, at
-       those that its surface crosses of the finer ones. It keeps the partners that stand after it
-       and puts them in order; so each pair is found from one side, whichever stands first (there,
-       small ones look for large ones only; rows here must come in order, in any domain). --- */
+       one grid, as wide as the largest body, would each hold thousands of small ones. Radii are put
+       in classes; every class has a grid of its own, whose cells hold one or two of its bodies. A
+       body looks at each class in turn, no farther than it reaches: at few cells of the coarser
+       ones, at those that its surface crosses of the finer ones. It keeps the partners that stand
+       after it and puts them in order; so each pair is found from one side, whichever stands first
+       (there, small ones look for large ones only; here rows must come in order, in any domain).
+       --- */
 
 /* Estimated work of a search, in distance tests, for one level of `count` bodies of up to `radius`
    among a packing of volume `room`, with `finer` bodies in the levels below it. Bodies of the level
