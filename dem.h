@@ -18,7 +18,7 @@
        >>materials   materials, the pair table, coefficients
        >>bodies      grains: slots, arrays, insertion, removal
        >>walls       planes, cylinders, profiles, meshes, walls of grains, their motions
-       >>search      all pairs, grid, linked linear list; the candidate list
+       >>search      all pairs, grid, levels, linked linear list; the candidate list
        >>touch       candidate pairs -> contacts: geometry only
        >>laws        contact -> force and torque
        >>respond     the loops that bring touch and law together, grain-grain and grain-wall
@@ -126,6 +126,7 @@
      [FEN]     seed 004 of the project: tumbling screening machine, MOLDYN
      [HER82]   Hertz, J. reine angew. Math. 92 (1882) 156
      [MIL]     seed 003 of the project: tumbling mill on a GPU
+     [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
      [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
      [THO13]   Thornton, Cummins & Cleary, Powder Technol. 233 (2013) 30: rescaling on unloading
      [TSU92]   Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239: delta^(1/4) damping
@@ -260,10 +261,12 @@ typedef enum dem_integrator {
 } dem_integrator;
 
 typedef enum dem_search {
-    DEM_SEARCH_AUTO = 0,     /* the library decides; dem_world_report says what */
+    DEM_SEARCH_AUTO = 0,     /* grid, or levels where radii differ so much that they pay; which and
+                                why is in dem_world_report */
     DEM_SEARCH_ALL_PAIRS,    /* every pair; the oracle for the others */
     DEM_SEARCH_GRID,         /* uniform grid of cells */
-    DEM_SEARCH_LINKED_LIST   /* linked linear list [FEN] 2.3.2: sorted box ends on three axes */
+    DEM_SEARCH_LINKED_LIST,  /* linked linear list [FEN] 2.3.2: sorted box ends on three axes */
+    DEM_SEARCH_LEVELS        /* hierarchical grid [OGA12]: each class of radii has its own cells */
 } dem_search;
 
 typedef enum dem_boundary {
@@ -1144,6 +1147,15 @@ typedef struct demi_field {
     double *solid, *mass, *momentum;
 } demi_field;
 
+/* One level of the hierarchical grid: the bodies of a class of radii, and cells of their own. */
+typedef struct demi_level {
+    double radius;                 /* m, largest of the class */
+    double size[3];                /* m, of a cell */
+    int cells[3], first;           /* cells stand from `first` on in w->cell_start_ */
+    int count;                     /* bodies */
+} demi_level;
+enum { DEMI_LEVELS = 24 };         /* classes of radii a factor sqrt 2 wide, before they are joined */
+
 /* Box ends of the linked linear list on one axis. */
 typedef struct demi_end { dem_real value; int32_t box; int32_t upper; } demi_end;
 
@@ -1213,6 +1225,10 @@ struct dem_world {
     demi_array cell_start_;
     int cells[3];
     double cell_origin[3], cell_size[3];
+    int level_count, wide;         /* wide: radii differ so much that levels pay */
+    demi_level levels[DEMI_LEVELS];/* the coarsest first; none in use: level_count is 0 */
+    double level_fine;             /* m, largest radius of the finest class */
+    double level_looks[2];         /* estimated work of a search per body: by one grid, by levels */
     /* contact memory on its way to a new list */
     demi_array carry_start_, carry_partner_, carry_memory_;
     int32_t *carry_start, *carry_partner;
@@ -2636,8 +2652,27 @@ static void demi_wrap(dem_world *w) {
     }
 }
 
-/* Lays the grid: cells no smaller than `least`, no more than about 4 per body; then the cell of
-   each body. */
+/* Divides a box into cells no smaller than `least`, no more than about 4 for each of `count`. */
+static void demi_cells_lay(const double *lo, const double *hi, double least, int count, int *cells,
+                           double *size) {
+    int k;
+    for (;; least *= 1.26) {
+        for (k = 0; k < 3; k++) cells[k] = (int)DEMI_MAX(1, DEMI_MIN((hi[k] - lo[k])/least, 1e6));
+        if ((double)cells[0]*cells[1]*cells[2] <= 4.0*count + 64) break;
+    }
+    for (k = 0; k < 3; k++) size[k] = DEMI_MAX((hi[k] - lo[k])/cells[k], least*1e-9);
+}
+static int demi_cell_of(const double *origin, const double *size, const int *cells,
+                        const dem_real *x) {
+    int c[3], k;
+    for (k = 0; k < 3; k++) {
+        const double t = ((double)x[k] - origin[k])/size[k];
+        c[k] = t <= 0 ? 0 : t >= cells[k] ? cells[k] - 1 : (int)t;
+    }
+    return c[0] + cells[0]*(c[1] + cells[1]*c[2]);
+}
+
+/* Lays the grid that bodies are sorted by; then the cell of each body. 0 when memory ran out. */
 static int demi_grid_lay(dem_world *w, double least) {
     double lo[3], hi[3];
     int i, k, n;
@@ -2653,25 +2688,12 @@ static int demi_grid_lay(dem_world *w, double least) {
             hi[k] = DEMI_MAX(hi[k], x);
         }
     }
-    for (;; least *= 1.26) {
-        for (k = 0; k < 3; k++) w->cells[k] = (int)DEMI_MAX(1,
-                                                            DEMI_MIN((hi[k] - lo[k])/least, 1e6));
-        if ((double)w->cells[0]*w->cells[1]*w->cells[2] <= 4.0*w->count + 64) break;
-    }
-    for (k = 0; k < 3; k++) {
-        w->cell_origin[k] = lo[k];
-        w->cell_size[k] = DEMI_MAX((hi[k] - lo[k])/w->cells[k], least*1e-9);
-    }
+    demi_cells_lay(lo, hi, least, w->count, w->cells, w->cell_size);
+    for (k = 0; k < 3; k++) w->cell_origin[k] = lo[k];
     n = w->cells[0]*w->cells[1]*w->cells[2];
     if (!demi_array_grow(w, &w->cell_start_, sizeof(int32_t), (size_t)n + 2)) return 0;
-    for (i = 0; i < w->count; i++) {
-        int c[3];
-        for (k = 0; k < 3; k++) {
-            const double t = ((double)w->pos[4*i + k] - w->cell_origin[k])/w->cell_size[k];
-            c[k] = t <= 0 ? 0 : t >= w->cells[k] ? w->cells[k] - 1 : (int)t;
-        }
-        w->cell_of[i] = c[0] + w->cells[0]*(c[1] + w->cells[1]*c[2]);
-    }
+    for (i = 0; i < w->count; i++)
+        w->cell_of[i] = demi_cell_of(w->cell_origin, w->cell_size, w->cells, w->pos + 4*i);
     return 1;
 }
 
@@ -2680,9 +2702,9 @@ static void demi_permute4(const dem_world *w, dem_real *x) {
     for (i = 0; i < w->count; i++) memcpy(w->scratch + 4*i, x + 4*w->order[i], 4*sizeof(dem_real));
     memcpy(x, w->scratch, (size_t)w->count*4*sizeof(dem_real));
 }
-/* Sorts bodies by cell; within a cell they keep their order. */
-static void demi_bodies_sort(dem_world *w) {
-    const int n = w->cells[0]*w->cells[1]*w->cells[2];
+/* Puts the bodies of cell c, in their order, at order[start[c]] .. order[start[c + 1] - 1]. Answers
+   whether they stood so already. */
+static int demi_cells_fill(dem_world *w, int n) {
     int32_t *start = (int32_t *)w->cell_start_.data;
     int i, sorted = 1;
     memset(start, 0, ((size_t)n + 2)*sizeof(int32_t));
@@ -2692,7 +2714,12 @@ static void demi_bodies_sort(dem_world *w) {
     }
     for (i = 2; i < n + 2; i++) start[i] += start[i - 1];
     for (i = 0; i < w->count; i++) w->order[start[w->cell_of[i] + 1]++] = i;
-    if (sorted) return;
+    return sorted;
+}
+/* Sorts bodies by cell; within a cell they keep their order. */
+static void demi_bodies_sort(dem_world *w) {
+    int i;
+    if (demi_cells_fill(w, w->cells[0]*w->cells[1]*w->cells[2])) return;
     demi_permute4(w, w->pos); demi_permute4(w, w->vel); demi_permute4(w, w->spin);
     demi_permute4(w, w->half_vel); demi_permute4(w, w->half_spin);
     demi_permute4(w, w->force); demi_permute4(w, w->torque);
@@ -2825,6 +2852,247 @@ static void demi_rows_grid(dem_world *w, int d) {
         for (k = 0; k < ranges; k++)
             for (b = DEMI_MAX(from[k], a + 1); b < to[k];
                  b++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a, b);
+    }
+}
+
+/* --- levels: a hierarchical grid [OGA12] for bodies of very different radii, where the cells of
+       one grid, as wide as the largest body, would each hold thousands of small ones. Radii are put
+       in classes; every class has a grid of its own, whose cells hold one or two of its bodies. A
+       body looks at each class in turn, no farther than it reaches: at few cells of the coarser
+       ones, at those that its surface crosses of the finer ones. It keeps the partners that stand
+       after it and puts them in order; so each pair is found from one side, whichever stands first
+       (there, small ones look for large ones only; here rows must come in order, in any domain).
+       --- */
+
+/* Estimated work of a search, in distance tests, for one level of `count` bodies of up to `radius`
+   among a packing of volume `room`, with `finer` bodies in the levels below it. Bodies of the level
+   look at 27 of its cells (9 in a plane), half of it for partners that stand after them; the finer
+   ones and it find each other in about half of that; and whoever looks at a level at all pays for
+   some 10 tests. */
+static double demi_level_work(const dem_world *w, double radius, double room, double count,
+                              double finer) {
+    const double side = 2*radius + w->skin, all = w->desc.planar ? 9 : 27;
+    const double cell = w->desc.planar ? side*side : side*side*side;
+    const double part = DEMI_MIN(cell/DEMI_MAX(room, 1e-300), 1/all);
+    return count*part*(0.5*all*count + 0.25*all*finer) + 10*(count + finer);
+}
+
+/* Counts bodies by radius: class k holds those from radius_max/2^(k/2) down to sqrt 2 less; then
+   top[k] is the largest of them and below[k] how many are in classes k and on. Answers the volume
+   that all fill when each has a cube (square) of its own. */
+static double demi_radii_count(const dem_world *w, double *top, int *below) {
+    double limit[DEMI_LEVELS], room = 0;
+    int i, k;
+    for (k = 0; k < DEMI_LEVELS; k++) {
+        limit[k] = k < 2 ? (double)w->radius_max*(k ? 0.70710678118654752 : 1) : limit[k - 2]/2;
+        top[k] = 0;
+        below[k] = 0;
+    }
+    for (i = 0, k = 0; i < w->count; i++) {     /* neighbours are often alike: from where k is */
+        const double r = (double)w->pos[4*i + 3], side = 2*r;
+        while (k > 0 && r > limit[k]) k--;
+        while (k < DEMI_LEVELS - 1 && r <= limit[k + 1]) k++;
+        below[k]++;
+        top[k] = DEMI_MAX(top[k], r);
+        room += w->desc.planar ? side*side : side*side*side;
+    }
+    for (k = DEMI_LEVELS - 1; k >= 0; k--) below[k] += below[k + 1];
+    return room;
+}
+
+/* Works out which classes to join into levels so that a search costs least, whether levels pay, and
+   with that the method when the choice is ours. All of it follows from radii and skin alone, and
+   what bodies are sorted by is the same for every method: then so are all bits. */
+static void demi_levels_choose(dem_world *w) {
+    double top[DEMI_LEVELS], least[DEMI_LEVELS + 1], room, one;
+    int below[DEMI_LEVELS + 1], next[DEMI_LEVELS + 1], i, k;
+    const int alike = w->radius_max <= 2*w->radius_min;    /* enough for one grid */
+    const int by_name = w->desc.search == DEM_SEARCH_LEVELS && w->asked.search != DEM_SEARCH_AUTO;
+    w->wide = w->level_count = 0;
+    w->level_looks[0] = w->level_looks[1] = 0;
+    if (w->asked.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
+    if (!w->count || (alike && !by_name)) return;
+    below[DEMI_LEVELS] = 0;
+    room = demi_radii_count(w, top, below);
+    least[DEMI_LEVELS] = 0;
+    for (i = DEMI_LEVELS - 1; i >= 0; i--) {  /* best way to divide classes i and on */
+        least[i] = least[i + 1];
+        next[i] = i + 1;
+        if (below[i] == below[i + 1]) continue;
+        for (k = i + 1; k <= DEMI_LEVELS; k++) {
+            const double work = least[k] + demi_level_work(w, top[i], room, below[i] - below[k],
+                                                           below[k]);
+            if (k > i + 1 && !(work < least[i])) continue;
+            least[i] = work;
+            next[i] = k;
+        }
+    }
+    for (i = 0; i < DEMI_LEVELS; i = next[i]) {
+        if (below[i] == below[next[i]]) continue;
+        w->levels[w->level_count].radius = w->level_fine = top[i];
+        w->levels[w->level_count++].count = below[i] - below[next[i]];
+    }
+    one = demi_level_work(w, (double)w->radius_max, room, w->count, 0);
+    w->wide = !alike && w->level_count > 1 && 2*least[0] < one;
+    w->level_looks[0] = one/w->count;
+    w->level_looks[1] = least[0]/w->count;
+    if (w->asked.search == DEM_SEARCH_AUTO && w->wide) w->desc.search = DEM_SEARCH_LEVELS;
+    if (w->desc.search == DEM_SEARCH_LEVELS) return;
+    /* bodies are sorted by finer cells than those of the grid asked for: one level is that grid */
+    w->level_count = w->wide && w->desc.search == DEM_SEARCH_GRID;
+    w->levels[0].radius = (double)w->radius_max;
+    w->levels[0].count = w->count;
+}
+
+/* Lays the cells of all levels and deals the bodies, sorted by now, to them; the arrays that the
+   sorting needed serve again. 0 when memory ran out. */
+static int demi_levels_lay(dem_world *w) {
+    double hi[3];
+    int i, k, l, n = 0;
+    for (k = 0; k < 3; k++) hi[k] = w->cell_origin[k] + w->cell_size[k]*w->cells[k];
+    for (l = 0; l < w->level_count; l++) {
+        demi_level *level = &w->levels[l];
+        demi_cells_lay(w->cell_origin, hi, 2*level->radius + w->skin + 1e-300, level->count,
+                       level->cells, level->size);
+        level->first = n;
+        n += level->cells[0]*level->cells[1]*level->cells[2];
+    }
+    if (!demi_array_grow(w, &w->cell_start_, sizeof(int32_t), (size_t)n + 2)) return 0;
+    for (i = 0; i < w->count; i++) {
+        const demi_level *level = w->levels;
+        while (level < w->levels + w->level_count - 1 && (double)w->pos[4*i + 3] <= level[1].radius)
+            level++;
+        w->cell_of[i] = level->first + demi_cell_of(w->cell_origin, level->size, level->cells,
+                                                    w->pos + 4*i);
+    }
+    demi_cells_fill(w, n);
+    return 1;
+}
+
+/* Cells of a level along one axis within `reach` of x. On a periodic axis they may lie beyond its
+   ends, and when they go all the way round, each is there once and `round` is set. */
+typedef struct demi_reach { int first, last, round; } demi_reach;
+static demi_reach demi_level_span(const dem_world *w, const demi_level *level, int axis, double x,
+                                 double reach) {
+    const int n = level->cells[axis];
+    const double at = (x - w->cell_origin[axis])/level->size[axis], far = reach/level->size[axis];
+    demi_reach s;
+    s.round = 0;
+    if (w->desc.boundary[axis] != DEM_BOUNDARY_PERIODIC) {
+        s.first = (int)DEMI_MIN(DEMI_MAX(at - far, 0), n - 1);
+        s.last = (int)DEMI_MIN(DEMI_MAX(at + far, 0), n - 1);
+        return s;
+    }
+    s.round = 2*far + 2 >= n;
+    s.first = s.round ? 0 : (int)(at - far + n) - n;       /* rounds down: at - far > -n */
+    s.last = s.round ? n - 1 : (int)(at + far);
+    return s;
+}
+/* Distance along one axis from x to the cell `c`, squared. */
+DEM_INLINE double demi_level_gap2(const dem_world *w, const demi_level *level, int axis, double x,
+                                  int c) {
+    const double from = w->cell_origin[axis] + level->size[axis]*c - x;
+    const double to = from + level->size[axis], gap = from > 0 ? from : to < 0 ? to : 0;
+    return gap*gap;
+}
+/* Offers a the bodies after it in cells `first` to `last` of a row of cells along x. */
+static void demi_level_offer(dem_world *w, int d, const demi_periods *p, int a, int row,
+                             int first, int last) {
+    const int32_t *start = (const int32_t *)w->cell_start_.data;
+    const int end = start[row + last + 1];
+    int i;
+    for (i = start[row + first]; i < end; i++)
+        if (w->order[i] > a) demi_pair_offer(w, d, p, (dem_real)w->skin, a, w->order[i]);
+}
+/* Offers a what it can reach in one level. */
+static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
+                           const demi_level *level) {
+    const double x = (double)w->pos[4*a], y = (double)w->pos[4*a + 1], z = (double)w->pos[4*a + 2];
+    const int *n = level->cells;
+    /* what round-off of distances over a whole period may add */
+    const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
+        w->cell_size[1]*w->cells[1] + w->cell_size[2]*w->cells[2]);
+    const double reach = ((double)w->pos[4*a + 3] + level->radius + w->skin)*(1 + 1e-5) + slack;
+    const demi_reach sx = demi_level_span(w, level, 0, x, reach);
+    const demi_reach sy = demi_level_span(w, level, 1, y, reach);
+    const demi_reach sz = demi_level_span(w, level, 2, z, reach);
+    int j, k;
+    for (k = sz.first; k <= sz.last; k++) {
+        const double left = reach*reach - (sz.round ? 0 : demi_level_gap2(w, level, 2, z, k));
+        const int slice = level->first + n[0]*n[1]*(k < 0 ? k + n[2] : k >= n[2] ? k - n[2] : k);
+        for (j = sy.first; j <= sy.last; j++) {
+            const double still = left - (sy.round ? 0 : demi_level_gap2(w, level, 1, y, j));
+            const int row = slice + n[0]*(j < 0 ? j + n[1] : j >= n[1] ? j - n[1] : j);
+            demi_reach s = sx;
+            if (still < 0) continue;
+            /* the row leaves the sphere of reach before it leaves the cube around it */
+            if (s.last - s.first > 3 && !s.round) s = demi_level_span(w, level, 0, x, sqrt(still));
+            if (s.first < 0) {
+                demi_level_offer(w, d, p, a, row, s.first + n[0], n[0] - 1);
+                s.first = 0;
+            }
+            if (s.last >= n[0]) {
+                demi_level_offer(w, d, p, a, row, 0, s.last - n[0]);
+                s.last = n[0] - 1;
+            }
+            demi_level_offer(w, d, p, a, row, s.first, s.last);
+        }
+    }
+}
+
+/* Sorts few numbers by insertion, many as a heap: no memory, no bad case. */
+static void demi_heap_sink(int32_t *v, int at, int n) {
+    const int32_t t = v[at];
+    int child;
+    for (; (child = 2*at + 1) < n; at = child) {
+        if (child + 1 < n && v[child + 1] > v[child]) child++;
+        if (v[child] <= t) break;
+        v[at] = v[child];
+    }
+    v[at] = t;
+}
+static void demi_ints_sort(int32_t *v, int n) {
+    int i, j;
+    if (n <= 32) {
+        for (i = 1; i < n; i++) {
+            const int32_t t = v[i];
+            for (j = i; j > 0 && v[j - 1] > t; j--) v[j] = v[j - 1];
+            v[j] = t;
+        }
+        return;
+    }
+    for (i = n/2 - 1; i >= 0; i--) demi_heap_sink(v, i, n);
+    for (i = n - 1; i > 0; i--) {
+        const int32_t t = v[0];
+        v[0] = v[i];
+        v[i] = t;
+        demi_heap_sink(v, 0, i);
+    }
+}
+/* Puts the partners of one body, entries `from` to `to` of the domain, in order. Partner and image
+   travel as one number: there are fewer than INT_MAX/64 bodies, and 27 images, told in fours. */
+static void demi_row_sort(const demi_list *list, int d, int from, int to) {
+    int32_t *b = list->b + d*list->stride;
+    unsigned char *image = list->image + d*list->stride;
+    int k;
+    for (k = from + 1; k < to && b[k - 1] < b[k]; k++) {}
+    if (k >= to) return;
+    for (k = from; k < to; k++) b[k] = 32*b[k] + image[k]/4;
+    demi_ints_sort(b + from, to - from);
+    for (k = from; k < to; k++) {
+        image[k] = (unsigned char)(b[k]%32*4);
+        b[k] /= 32;
+    }
+}
+static void demi_rows_levels(dem_world *w, int d) {
+    const demi_periods p = demi_periods_of(w);
+    const demi_domain *domain = &w->domains[d];
+    int a, l;
+    for (a = domain->begin; a < domain->end; a++) {
+        const int own = domain->own, cross = domain->cross;
+        for (l = 0; l < w->level_count; l++) demi_row_level(w, d, &p, a, &w->levels[l]);
+        demi_row_sort(&w->own, d, own, domain->own);
+        demi_row_sort(&w->cross, d, cross, domain->cross);
     }
 }
 
@@ -3040,7 +3308,8 @@ static void demi_domain_search(dem_world *w, int d) {
     switch (w->desc.search) {
     case DEM_SEARCH_ALL_PAIRS: demi_rows_all_pairs(w, d); break;
     case DEM_SEARCH_LINKED_LIST: demi_rows_linked(w, d); break;
-    default: demi_rows_grid(w, d); break;
+    default:
+        if (w->level_count) demi_rows_levels(w, d); else demi_rows_grid(w, d);
     }
 }
 
@@ -3609,9 +3878,11 @@ static dem_result demi_rebuild(dem_world *w) {
                              "the grains smaller",
                              (double)p.period[k], k, need);
     }
-    if (!demi_grid_lay(w, 2*(double)w->radius_max + w->skin + 1e-300)) return demi_no_memory(w,
-        "dem_world_step");
+    demi_levels_choose(w);
+    if (!demi_grid_lay(w, 2*(w->wide ? w->level_fine : (double)w->radius_max) + w->skin + 1e-300))
+        return demi_no_memory(w, "dem_world_step");
     demi_bodies_sort(w);
+    if (w->level_count && !demi_levels_lay(w)) return demi_no_memory(w, "dem_world_step");
     demi_image_shifts(w);
     w->domain_count = demi_domains_for(w->count);
     for (d = 0; d < w->domain_count; d++) {
@@ -7150,7 +7421,7 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         return "dem_world_create: tension or convention is unknown, must be one of the enum "
                "values; start from DEM_WORLD_DESC";
     if ((int)d->integrator < 0 || d->integrator > DEM_LEAPFROG || (int)d->search < 0 ||
-        d->search > DEM_SEARCH_LINKED_LIST)
+        d->search > DEM_SEARCH_LEVELS)
         return "dem_world_create: integrator or search is unknown, must be one of the enum values; "
             "start from DEM_WORLD_DESC";
     if (!d->allocator.alloc_fn != !d->allocator.free_fn)
@@ -7171,6 +7442,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
+    /* until bodies are there to decide */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
     w->slot_free = w->slot_pending = -1;
@@ -7239,8 +7511,26 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
 
 static const char *demi_search_name(const dem_world *w) {
     return w->desc.search == DEM_SEARCH_ALL_PAIRS ? "all pairs"
-        : w->desc.search == DEM_SEARCH_LINKED_LIST
-         ? "linked linear list" : "uniform grid";
+        : w->desc.search == DEM_SEARCH_LINKED_LIST ? "linked linear list"
+        : w->desc.search == DEM_SEARCH_LEVELS ? "levels (hierarchical grid)" : "uniform grid";
+}
+
+/* How many levels there are, of which radii, and why. */
+static void demi_levels_report(const dem_world *w, FILE *out) {
+    const int auto_ = w->asked.search == DEM_SEARCH_AUTO;
+    int i;
+    if (w->desc.search == DEM_SEARCH_LEVELS && w->level_count) {
+        fprintf(out, "           %d level%s for radii 1 : %.3g, of up to", w->level_count,
+                w->level_count == 1 ? "" : "s",
+                (double)w->radius_max/DEMI_MAX((double)w->radius_min, 1e-300));
+        for (i = 0; i < w->level_count; i++)
+            fprintf(out, "%s %.3g m (%d)", i ? "," : "", w->levels[i].radius, w->levels[i].count);
+        fprintf(out, "\n");
+    }
+    if (w->level_looks[0] > 0)
+        fprintf(out, "           %s: about %.3g tests per body and search by levels, %.3g on one "
+                "grid\n", auto_ ? "chosen" : "by levels or not", w->level_looks[1],
+                w->level_looks[0]);
 }
 
 DEM_API void dem_world_report(const dem_world *world, FILE *out) {
@@ -7252,7 +7542,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     const double per = w->count ? 1.0/w->count : 0;
     dem_advice a;
     int i;
-    if (!w->list_valid) demi_effects(w);
+    if (!w->list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
     fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s, %d domain%s, %.1f MB\n",
             DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
@@ -7277,6 +7567,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             demi_search_name(w), w->skin, (unsigned long long)w->rebuilds, w->rebuilds
             ? (double)w->steps/(double)w->rebuilds : 0,
             per*c.candidates, per*c.contacts);
+    demi_levels_report(w, out);
     fprintf(out, "effects    normal: %s%s\n", w->desc.law ? "your own law"
             : w->normal == DEM_NORMAL_HERTZ ? "Hertz" : "linear",
             w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped" : "");

@@ -3,6 +3,7 @@
    make bench                    all of it in under three minutes, in double, in single and built with -O2
    build/bench --scene bed       one scene: rate, threads, memory, ledger
    build/bench --scene prices    what other laws, searches, integrators and lists cost
+   build/bench --scene sizes     what a grain costs among much larger ones, by levels and on one grid
    build/bench --settle bed      makes a start state anew (minutes), as build/out/bench/bed_20k.txt
 
    Wall time of loops of steps after 100 untimed ones; what is compared runs in turns, A B A B, and
@@ -180,6 +181,132 @@ static void prices(double load) {
     bench_scene_free(&drum);
 }
 
+/* ---- what a grain costs among much larger ones ---- */
+
+/* As many small grains in each world, shaken, in a close packing with gaps of 1 %: alone in a periodic
+   cube; there with 20 ten times as large, half of what is solid; and between three a hundred times as
+   large, in the open. */
+enum { SIZES_SMALL = 20000, SIZES_LARGE = 20, SIZES_WORLDS = 5 };
+typedef struct sizes_place { int large; double x[SIZES_LARGE][3], radius, centre[3], reach; } sizes_place;
+static int sizes_inside(dem_vec3 c, dem_real radius, void *user) {
+    const sizes_place *p = (const sizes_place *)user;
+    const double x[3] = {(double)c.x, (double)c.y, (double)c.z};
+    double d2 = 0;
+    int i, k;
+    for (k = 0; k < 3; k++) d2 += (x[k] - p->centre[k])*(x[k] - p->centre[k]);
+    if (p->reach > 0 && d2 > p->reach*p->reach) return 0;
+    for (i = 0; i < p->large; i++) {
+        const double apart = p->radius + 1.01*(double)radius;
+        for (d2 = 0, k = 0; k < 3; k++) d2 += (x[k] - p->x[i][k])*(x[k] - p->x[i][k]);
+        if (d2 < apart*apart) return 0;
+    }
+    return 1;
+}
+/* Where the large ones stand, and the edge of the box (m) that leaves room for the small ones. */
+static double sizes_lay(sizes_place *p, int ratio) {
+    const double r = BENCH_RADIUS, each = pow(2*1.01*r, 3)/sqrt(2.0);
+    double side = pow(SIZES_SMALL*each*(ratio == 10 ? 2.3 : 1.13), 1.0/3);
+    int i, k;
+    memset(p, 0, sizeof *p);
+    p->radius = ratio*r;
+    p->large = ratio == 10 ? SIZES_LARGE : ratio == 100 ? 3 : 0;
+    for (i = 0; i < p->large && ratio == 10; i++) {    /* 20 of the 27 places of a lattice */
+        const int at[3] = {i%3, i/3%3, i/9};
+        for (k = 0; k < 3; k++) p->x[i][k] = (at[k] + 0.5)*side/3;
+    }
+    if (ratio == 100) side = 4*p->radius;
+    for (i = 0; i < p->large && ratio == 100; i++) {   /* a triangle, a hair apart; small ones in the middle */
+        const double angle = 2*3.14159265358979323846*i/3;
+        for (k = 0; k < 3; k++) p->centre[k] = side/2;
+        for (k = 0; k < 3; k++)
+            p->x[i][k] = p->centre[k] + (k == 2 ? 0 : 1.17*p->radius*(k ? sin(angle) : cos(angle)));
+        p->reach = 0.5*p->radius;
+    }
+    return side;
+}
+static dem_world *sizes_world(int ratio, int mixed, dem_search search) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc m = DEM_MATERIAL_DESC;
+    dem_material material;
+    dem_world *world;
+    sizes_place place;
+    const double r = BENCH_RADIUS, side = sizes_lay(&place, ratio);
+    uint64_t seed = 7;
+    int i, k;
+    desc.threads = 1;
+    desc.search = search;
+    desc.dt = (dem_real)BENCH_DT;
+    desc.domain = dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)side);
+    for (k = 0; k < 3 && ratio < 100; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+    world = dem_world_create(&desc);
+    if (!world) { study_fail("sizes: %s", dem_create_error(&desc)); return 0; }
+    m.density = (dem_real)BENCH_DENSITY;
+    m.young = (dem_real)BENCH_YOUNG;
+    m.poisson = (dem_real)BENCH_POISSON;
+    m.restitution = DEM_R(0.9);
+    m.friction = (dem_real)BENCH_FRICTION;
+    material = dem_material_add(world, &m);
+    k = dem_spheres_pack(world, material, (dem_real)r, (dem_real)(0.02*r), desc.domain, sizes_inside, &place,
+                         SIZES_SMALL);
+    if (k < SIZES_SMALL) study_fail("sizes: only %d of %d small grains found a place", k, (int)SIZES_SMALL);
+    for (i = 0; i < k; i++) {
+        dem_body_state state;
+        const dem_body body = dem_bodies_id(world, i);
+        dem_body_get(world, body, &state);
+        state.velocity = dem_vec3_make((dem_real)(0.2*demi_uniform(&seed) - 0.1), (dem_real)(0.2*demi_uniform(&seed) - 0.1),
+                                       (dem_real)(0.2*demi_uniform(&seed) - 0.1));
+        dem_body_set(world, body, &state);
+    }
+    for (i = 0; i < place.large; i++)
+        dem_sphere_add(world, material, (dem_real)place.radius, dem_vec3_make((dem_real)place.x[i][0],
+                       (dem_real)place.x[i][1], (dem_real)place.x[i][2]));
+    if (mixed)                          /* one smaller by a thousandth: no longer all alike         */
+        dem_sphere_add(world, material, (dem_real)(0.999*r), dem_vec3_make((dem_real)side - (dem_real)r/4,
+                       (dem_real)side - (dem_real)r/4, (dem_real)side - (dem_real)r/4));
+    if (loop("sizes", world, WARM_UP) < 0) { dem_world_destroy(world); return 0; }
+    return world;
+}
+
+static void sizes(void) {
+    static const struct { const char *name; int ratio, mixed; dem_search search; } row[SIZES_WORLDS] = {
+        {"alike", 1, 0, DEM_SEARCH_AUTO}, {"mixed_kernel", 1, 1, DEM_SEARCH_AUTO},
+        {"ratio10", 10, 0, DEM_SEARCH_AUTO}, {"ratio100", 100, 0, DEM_SEARCH_AUTO},
+        {"ratio10.grid", 10, 0, DEM_SEARCH_GRID}}; /* slow: two turns tell enough */
+    static double t[SIZES_WORLDS][MOST_LOOPS];
+    dem_world *world[SIZES_WORLDS];
+    const int steps = steps_asked ? steps_asked : full ? 800 : 160;
+    int i, k, turns = repeats(), ok = 1;
+    for (i = 0; i < SIZES_WORLDS; i++) ok = (world[i] = sizes_world(row[i].ratio, row[i].mixed, row[i].search)) != 0 && ok;
+    for (k = 0; k < turns && ok; k++)
+        for (i = 0; i < SIZES_WORLDS && ok; i++) {
+            if (row[i].search == DEM_SEARCH_GRID && k > 1) continue;
+            t[i][k] = loop(row[i].name, world[i], steps);
+            ok = t[i][k] >= 0;
+            t[i][k] /= (double)dem_balance_get(world[i]).present*steps;
+        }
+    names_begin("sizes");
+    for (i = 0; i < SIZES_WORLDS && ok; i++) {
+        const dem_counters c = dem_counters_get(world[i]);
+        const double count = (double)dem_balance_get(world[i]).present;
+        char name[64];
+        if (row[i].search == DEM_SEARCH_GRID && turns > 2) turns = 2;  /* the last row */
+        snprintf(name, sizeof name, "%s.rate", row[i].name);
+        bench_result_rate(name, 1/bench_median(t[i], turns));
+        snprintf(name, sizeof name, "%s.cost", row[i].name);
+        if (i) bench_result_short(name, bench_median_ratio(t[i], t[0], turns), "of monodisperse, per grain");
+        snprintf(name, sizeof name, "%s.cost_in_kernel", row[i].name);
+        if (i > 1) bench_result_short(name, bench_median_ratio(t[i], t[1], turns),
+                                      "of monodisperse in the same kernel, per grain");
+        if (brief || i > 3) continue;
+        snprintf(name, sizeof name, "%s.contacts_per_grain", row[i].name);
+        bench_result_short(name, 2*c.contacts/count, "");
+        snprintf(name, sizeof name, "%s.steps_per_rebuild", row[i].name);
+        bench_result_short(name, (double)c.steps/(double)c.rebuilds, "");
+    }
+    names_begin("");
+    for (i = 0; i < SIZES_WORLDS; i++) if (world[i]) dem_world_destroy(world[i]);
+}
+
 /* ---- start states, made with dem.h itself ---- */
 
 static double uniform(void) { /* 0..1; splitmix64 */
@@ -324,7 +451,7 @@ static void measure_raw(const bench_scene *s) {
 
 int main(int argc, char **argv) {
     static const study_option table[] = {
-        {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|prices", "what to measure"},
+        {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|prices|sizes", "what to measure"},
         {"steps", STUDY_INT, &steps_asked, 0, 1e8, "", "steps of one timed loop, 0: by scene"},
         {"repeat", STUDY_INT, &repeat_asked, 0, MOST_LOOPS, "", "timed loops, 0: 5, or 9 in full"},
         {"threads", STUDY_INT, &threads_asked, 1, 64, "", "threads to compare one thread with"},
@@ -370,6 +497,7 @@ int main(int argc, char **argv) {
             measure(&s);
             bench_scene_free(&s);
         }
+    if (!strcmp(scene_name, "sizes") || (!strcmp(scene_name, "all") && !brief)) sizes();
     if (!strcmp(scene_name, "prices") || (!strcmp(scene_name, "all") && !brief)) prices(load);
     return study_end();
 }

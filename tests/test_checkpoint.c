@@ -309,7 +309,7 @@ int main(int argc, char **argv) {
     }
     TEST("2N steps are N, a checkpoint and N, for every search") {
         int search;
-        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LINKED_LIST; search++) {
+        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
             play p = play_make(DEM_VELOCITY_VERLET, LAW_SPRING);
             p.search = (dem_search)search;
             play_both(&p);

@@ -550,7 +550,7 @@ int main(int argc, char **argv) {
          "finds") {
         static uint32_t found[2*20000], right[2*20000];
         int method;
-        for (method = DEM_SEARCH_ALL_PAIRS; method <= DEM_SEARCH_LINKED_LIST; method++) {
+        for (method = DEM_SEARCH_ALL_PAIRS; method <= DEM_SEARCH_LEVELS; method++) {
             const dem_material_desc stuff = hertz_stuff(2500, 1e7, 0.25, 0.8, 0.3);
             dem_world_desc desc = one_thread(1e-6);
             uint64_t random = 7;

@@ -224,7 +224,7 @@ int main(int argc, char **argv) {
     }
     TEST("a warm step takes no memory when the list is rebuilt every step, whatever the search") {
         int search;
-        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LINKED_LIST; search++) {
+        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
             counter c;
             dem_world *world = packing(&c, 1, -1, (dem_search)search);
             long before;
@@ -272,10 +272,13 @@ int main(int argc, char **argv) {
          "list)") {
         refuse_each(DEM_SEARCH_LINKED_LIST);
     }
+    TEST("whichever request for memory fails, the call says so and the world goes on (levels)") {
+        refuse_each(DEM_SEARCH_LEVELS);
+    }
     TEST("whichever request for memory fails in a step, repeating the step gives the run without "
          "failure") {
         int search;
-        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LINKED_LIST; search++) {
+        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
             uint64_t hash = 0;
             long k, calls = 1;
             for (k = 0; k <= calls && test_now.wrong == 0; k++) {

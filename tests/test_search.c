@@ -1,14 +1,14 @@
-/* Neighbour search: all pairs, grid and linked linear list against a brute-force oracle of their
-   own. The oracle looks at every pair of bodies with the shortest image, in double precision, and
-   knows nothing of cells, sorting or skins. */
+/* Neighbour search: all pairs, grid, linked linear list and levels against a brute-force oracle of
+   their own. The oracle looks at every pair of bodies with the shortest image, in double precision,
+   and knows nothing of cells, sorting or skins. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "test.h"
 #include "scene.h"
 
-enum { METHODS = 3, MOST = 700 };
+enum { METHODS = 4, MOST = 900 };
 static const dem_search methods[METHODS] = {DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_GRID,
-                                            DEM_SEARCH_LINKED_LIST};
+                                            DEM_SEARCH_LINKED_LIST, DEM_SEARCH_LEVELS};
 static uint32_t listed[MOST][MOST], mark;      /* pairs of slots seen under the present mark */
 static uint32_t pairs[2*MOST*(MOST - 1)/2];
 
@@ -138,7 +138,7 @@ static void churn_remove(dem_world **world, uint64_t *seed) {
 static void churn_run(churn c, uint64_t seed) {
     dem_world *world[METHODS];
     dem_world_desc desc[METHODS];
-    uint64_t rebuilds[METHODS] = {0, 0, 0};
+    uint64_t rebuilds[METHODS] = {0, 0, 0, 0};
     int step, m, k, wrong = 0, miscounted = 0, apart = 0, fresh_lists = 0, touched = 0;
     for (m = 0; m < METHODS; m++) world[m] = churn_world(&c, methods[m], &desc[m]);
     CHECK(churn_add(world, &desc[0], &c, c.count, &seed) > c.count/2);
@@ -189,6 +189,100 @@ static void churn_skins(int x, int y, int z, int planar) {
     churn_run(c, 3);
 }
 
+/* Random places for bodies whose radii span 1 : ratio, about half of the box filled, overlaps and
+   all: for looking, not for stepping. share: volume of the large ones over that of all; below 0:
+   radii all the way between. */
+typedef struct mix { double ratio, share; int count, periodic, planar, threads; } mix;
+static dem_world *mix_world(const mix *x, dem_search method) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material grain;
+    dem_real *place = (dem_real *)malloc((size_t)x->count*4*sizeof(dem_real));
+    dem_real *r = place + 3*x->count;
+    uint64_t seed = 17;
+    double room = 0, side, least;
+    const double large = pow(x->ratio, x->planar ? 2 : 3);
+    int i, k, big;
+    /* how many large ones have that share of the volume, one at least */
+    big = x->share > 0 ? (int)(x->count*x->share/(1 - x->share)/large + 1) : 0;
+    for (i = 0; i < x->count; i++) {
+        double radius = 1e-3;
+        if (x->share < 0) radius *= pow(x->ratio, pow(scene_random(&seed), 4));
+        if (i%(x->count/(big + 1) + 1) == 1 && big) radius *= x->ratio;
+        r[i] = (dem_real)radius;
+        room += pow(radius, x->planar ? 2 : 3)*(x->planar ? 3.14 : 4.19);
+    }
+    side = pow(2*room, x->planar ? 1.0/2 : 1.0/3);
+    least = 4.5e-3*x->ratio;                    /* two of the largest and the skin, twice */
+    if (x->periodic && side < least) side = least;
+    desc.threads = x->threads;
+    desc.planar = x->planar;
+    desc.search = method;
+    desc.skin = DEM_R(2e-4);
+    desc.domain = box_of(0, 0, 0, side, side, side);
+    for (k = 0; k < 3; k++) if (x->periodic >> k & 1) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+    world = dem_world_create(&desc);
+    grain = scene_material(world, 1e7, 1, 0.3, 0);
+    for (i = 0; i < 3*x->count; i++)
+        place[i] = (dem_real)(x->planar && i%3 == 2 ? 0 : side*scene_random(&seed));
+    CHECK_EQ(dem_spheres_add(world, grain, x->count, place, 0, r, 0), DEM_OK);
+    free(place);
+    CHECK_EQ(dem_search_now(world), DEM_OK);
+    return world;
+}
+/* Do two worlds have the same candidates, in the same order? */
+static int mix_same(const dem_world *a, const dem_world *b) {
+    const int n = dem_candidates_get(a, 0, 0), m = dem_candidates_get(b, 0, 0);
+    uint32_t *p = (uint32_t *)malloc((size_t)n*4*sizeof *p + 1), *q = p + 2*n;
+    int same = n == m && n > 100;
+    if (same) {
+        dem_candidates_get(a, p, n);
+        dem_candidates_get(b, q, n);
+        same = memcmp(p, q, (size_t)n*2*sizeof *p) == 0;
+    }
+    free(p);
+    return same && dem_world_hash(a) == dem_world_hash(b);
+}
+static void mix_compare(mix x, int levels) {
+    dem_world *right, *world;
+    int m;
+    x.threads = 1;
+    right = mix_world(&x, DEM_SEARCH_ALL_PAIRS);
+    for (m = 1; m < METHODS; m++) {
+        x.threads = 1 + m%2;
+        world = mix_world(&x, methods[m]);
+        CHECK(mix_same(right, world));
+        if (methods[m] == DEM_SEARCH_LEVELS) CHECK(world->level_count >= levels);
+        dem_world_destroy(world);
+    }
+    dem_world_destroy(right);
+}
+static dem_search mix_chosen(double ratio, double share) {
+    mix x = {1, 0, 3000, 0, 0, 1};
+    dem_world *world;
+    dem_search chosen;
+    char text[4000];
+    FILE *out = tmpfile();
+    x.ratio = ratio;
+    x.share = share;
+    world = mix_world(&x, DEM_SEARCH_AUTO);
+    chosen = dem_counters_get(world).search;
+    if (out) {
+        size_t n;
+        dem_world_report(world, out);
+        rewind(out);
+        n = fread(text, 1, sizeof text - 1, out);
+        text[n] = 0;
+        CHECK_STR(text, chosen == DEM_SEARCH_LEVELS ? "levels (hierarchical grid)"
+                  : "uniform grid");
+        if (chosen == DEM_SEARCH_LEVELS) CHECK_STR(text, "levels for radii 1 : ");
+        if (ratio > 2.5) CHECK_STR(text, "chosen: about");
+        fclose(out);
+    }
+    dem_world_destroy(world);
+    return chosen;
+}
+
 /* A drag that stops everything within the step after `start`. */
 typedef struct brake { double start, dt; } brake;
 static dem_vec3 brake_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time,
@@ -202,20 +296,20 @@ static dem_vec3 brake_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real ma
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("all pairs, grid and linked list give one list and one hash in a closed box, for every "
+    TEST("every method gives one list and one hash in a closed box, for every "
          "skin") {
         churn_skins(0, 0, 0, 0);
     }
-    TEST("all pairs, grid and linked list give one list and one hash with one periodic axis") {
+    TEST("every method gives one list and one hash with one periodic axis") {
         churn_skins(1, 0, 0, 0);
     }
-    TEST("all pairs, grid and linked list give one list and one hash with two periodic axes") {
+    TEST("every method gives one list and one hash with two periodic axes") {
         churn_skins(0, 1, 1, 0);
     }
-    TEST("all pairs, grid and linked list give one list and one hash with three periodic axes") {
+    TEST("every method gives one list and one hash with three periodic axes") {
         churn_skins(1, 1, 1, 0);
     }
-    TEST("all pairs, grid and linked list give one list and one hash for discs in a plane") {
+    TEST("every method gives one list and one hash for discs in a plane") {
         churn_skins(0, 0, 0, 1);
         churn_skins(1, 0, 0, 1);
     }
@@ -274,6 +368,41 @@ int main(int argc, char **argv) {
             }
             for (m = 0; m < METHODS; m++) dem_world_destroy(world[m]);
         }
+    }
+    TEST("mixtures of 1 : 10 and 1 : 100, periodic or not, in space and in a plane: every method "
+         "gives the list of all pairs, entry by entry") {
+        static const mix all[] = {
+            {10, 0.5, 2600, 0, 0, 1}, {10, 0.5, 2600, 1, 0, 1}, {10, 0.5, 2600, 6, 0, 1},
+            {10, 0.5, 2600, 7, 0, 1}, {10, 0.3, 2600, 0, 1, 1}, {10, 0.3, 2600, 3, 1, 1},
+            {100, 0.99, 2600, 0, 0, 1}, {100, 0.9, 2600, 5, 0, 1}, {100, 0.9, 2600, 7, 0, 1},
+            {100, 0.6, 2600, 0, 1, 1}, {100, 0.6, 2600, 2, 1, 1},
+            {10, -1, 2600, 0, 0, 1}, {10, -1, 2600, 7, 0, 1}, {100, -1, 2600, 0, 0, 1},
+            {100, -1, 2600, 3, 0, 1}, {30, -1, 2600, 0, 1, 1}, {30, -1, 2600, 1, 1, 1},
+            {2, 0.5, 3000, 0, 0, 1}, {1, 0, 3000, 7, 0, 1}};
+        size_t i;
+        for (i = 0; i < sizeof all/sizeof *all; i++)
+            mix_compare(all[i], all[i].ratio < 3 ? 1 : all[i].share < 0 && !all[i].planar ? 3 : 2);
+    }
+    TEST("levels give one list for any number of threads") {
+        mix x = {30, -1, 20000, 3, 0, 1};
+        dem_world *one = mix_world(&x, DEM_SEARCH_LEVELS), *other;
+        CHECK(dem_counters_get(one).domains > 4);
+        for (x.threads = 2; x.threads <= 8; x.threads++) {
+            other = mix_world(&x, DEM_SEARCH_LEVELS);
+            CHECK(mix_same(one, other));
+            dem_world_destroy(other);
+        }
+        dem_world_destroy(one);
+    }
+    TEST("the library takes levels for mixtures of 1 : 10 and 1 : 100, and the grid for grains "
+         "alike or 1 : 2, and says so") {
+        CHECK_EQ(mix_chosen(10, 0.5), DEM_SEARCH_LEVELS);
+        CHECK_EQ(mix_chosen(10, 0.1), DEM_SEARCH_LEVELS);
+        CHECK_EQ(mix_chosen(100, 0.9), DEM_SEARCH_LEVELS);
+        CHECK_EQ(mix_chosen(100, -1), DEM_SEARCH_LEVELS);
+        CHECK_EQ(mix_chosen(1, 0), DEM_SEARCH_GRID);
+        CHECK_EQ(mix_chosen(2, 0.5), DEM_SEARCH_GRID);
+        CHECK_EQ(mix_chosen(2, 0.01), DEM_SEARCH_GRID);
     }
     TEST("two swarms a kilometre apart are searched without a grid that spans the void") {
         churn c = {{0, 0, 0}, 0, 1e-3, 0.08, 0, 0};

@@ -481,6 +481,7 @@ int main(int argc, char **argv) {
             else if (k < 14) d.integrator = k - 9;
             else if (k < 16) d.search = k - 13;        /* all pairs, grid */
             if (k == 16) d.search = DEM_SEARCH_LINKED_LIST;
+            if (k == 19) d.search = DEM_SEARCH_LEVELS;
             if (k == 17) { d.force = updraught; d.ledger = 1; }
             if (k == 18 || k == 19) d.law = own_law;
             if (k == 15) d.normal = DEM_NORMAL_LINEAR;
