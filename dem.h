@@ -989,7 +989,7 @@ static dem_vec3 demi_unit(dem_vec3 a) {                   /* not for null vector
     double x = (double)a.x, y = (double)a.y, z = (double)a.z, l = sqrt(x*x + y*y + z*z);
     return demi_v((dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
 }
-static void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
+DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
 
 static int demi_finite(dem_real x) {
     double d = (double)x;
