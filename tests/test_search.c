@@ -425,6 +425,34 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
+    TEST("how long a near list lasts does not change a bit: made in every step, or when it is due") {
+        int integrator, late, k;
+        for (integrator = DEM_VELOCITY_VERLET; integrator <= DEM_LEAPFROG; integrator++) {
+            uint64_t hash[2], makes[2] = {0, 0};
+            for (late = 0; late < 2; late++) {
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_world *world;
+                uint64_t contacts = 0;
+                desc.integrator = (dem_integrator)integrator;
+                desc.dt = DEM_R(1e-6);
+                desc.skin = DEM_R(2e-4);       /* searches come at the same steps */
+                world = dem_world_create(&desc);
+                scene_block(world, scene_material(world, 1e7, 0.7, 0.4, 0), 6, 6, 6, 1e-3, 1,
+                            0.3, 7);
+                for (k = 0; k < 1500; k++) {
+                    if (!late) world->near_span = 0;
+                    CHECK_EQ(scene_step(world, 1), DEM_OK);
+                    makes[late] += world->near_age <= 0;
+                    contacts += (uint64_t)dem_counters_get(world).contacts;
+                }
+                CHECK(contacts > 50000);
+                hash[late] = dem_world_hash(world);
+                dem_world_destroy(world);
+            }
+            CHECK(makes[0] > 3*makes[1]);
+            CHECK_EQ(hash[0], hash[1]);
+        }
+    }
     TEST("the list stays safe with every integrator when all grains brake within one step") {
         int i, m;
         for (i = DEM_VELOCITY_VERLET; i <= DEM_LEAPFROG; i++)
