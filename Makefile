@@ -51,7 +51,7 @@ help: ## this list
 
 run: build/mill ## the tumbling mill: progress on the terminal, pictures in build/out/mill
 	@mkdir -p build/out/mill
-	build/mill --out build/out/mill
+	build/mill --threads 1 --out build/out/mill
 
 test: $(TESTS) ## build and run all tests; FILTER=words runs the sentences that contain them
 	@sh tests/run.sh "$(FILTER)" $(TESTS)

@@ -75,9 +75,8 @@
    One step, in the order in which data flows (the same numbers stand in demi_step_once):
        1 move      first half kick, drift, predicted velocity; walls follow their motion
        2 search    if something moved half the skin: sort bodies by cell, rebuild the candidate
-                   list,
-                   carry contact memory over
-       3 touch     candidate pairs -> contacts: who, where, normal, overlap
+                   list, carry contact memory over; when due, pick the near pairs from it
+       3 touch     near pairs -> contacts: who, where, normal, overlap
        4 respond   contact -> force and torque, by the law chosen
        5 gather    forces are summed per body in a fixed order
        6 kick      second half kick; ledger, counters, time
@@ -906,9 +905,9 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 /* Statements for 0 to 7, written out: compilers leave loops as loops at -O2. */
 #define DEMI_EIGHT(DO) do { DO(0); DO(1); DO(2); DO(3); DO(4); DO(5); DO(6); DO(7); } while (0)
 
-/* Kernels are compiled twice where that costs the user nothing: for any processor of the target, and
-   for those with wider vectors, which the loader finds out. "avx2" does not bring fused multiplying
-   and adding along, so both give the same bits. */
+/* Kernels are compiled twice where that costs the user nothing: for any processor of the target,
+   and for those with wider vectors, which the loader finds out. "avx2" does not bring fused
+   multiplying and adding along, so both give the same bits. */
 #if defined(__GNUC__) && !defined(__clang__) && defined(__GLIBC__) && defined(__x86_64__) && \
     !defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
     !defined(DEM_NO_CLONES)
@@ -1154,7 +1153,8 @@ typedef struct demi_level {
     int cells[3], first;           /* cells stand from `first` on in w->cell_start_ */
     int count;                     /* bodies */
 } demi_level;
-enum { DEMI_LEVELS = 24 };         /* classes of radii a factor sqrt 2 wide, before they are joined */
+/* classes of radii a factor sqrt 2 wide, before they are joined */
+enum { DEMI_LEVELS = 24 };
 
 /* Box ends of the linked linear list on one axis. */
 typedef struct demi_end { dem_real value; int32_t box; int32_t upper; } demi_end;
@@ -1281,7 +1281,8 @@ static void demi_raw_free(const dem_allocator *a, void *p, size_t size) {
     if (a->free_fn) a->free_fn(p, size, a->user); else free(p);
 }
 /* count items of size bytes, cleared; null when there is no room or the product overflows. Begins
-   on a cache line, so that no row of four reals lies across two: the byte before says how far in. */
+   on a cache line, so that no row of four reals lies across two: the byte before says how far in.
+   */
 enum { DEMI_LINE = 64 };
 static void *demi_alloc(dem_world *w, size_t count, size_t size) {
     unsigned char *p;
@@ -1615,8 +1616,8 @@ static int demi_near_remembers(const dem_world *w, int d, int p) {
     }
     return 0;
 }
-/* The pairs of domain d in the near list are p = 0 .. near_own - 1, then near_cross .. near_end - 1:
-   the one after p. */
+/* The pairs of domain d in the near list are p = 0 .. near_own - 1, then near_cross .. near_end -
+   1: the one after p. */
 DEM_INLINE int demi_near_next(const demi_domain *domain, int p) {
     return p + 1 == domain->near_own ? domain->near_cross : p + 1;
 }
@@ -3431,7 +3432,8 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
 }
 static int demi_cross_reserve(dem_world *w, size_t entries) {
     const int ok = demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), entries) &&
-                   demi_array_grow(w, &w->cross_push_, sizeof(dem_real), 6*(entries + DEMI_LANES + 1));
+                   demi_array_grow(w, &w->cross_push_, sizeof(dem_real),
+                                   6*(entries + DEMI_LANES + 1));
     w->cross_incoming = (int32_t *)w->cross_incoming_.data;
     w->cross_push = (dem_real *)w->cross_push_.data;
     return ok;
@@ -3558,8 +3560,8 @@ static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, i
     to = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride + (size_t)p;
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) to[(size_t)e*(size_t)near->stride] = coef[e];
 }
-/* Picks near ones from the candidates of one list, without a branch; their entries from p on. Answers
-   where they end, or -1 when there is no room. */
+/* Picks near ones from the candidates of one list, without a branch; their entries from p on.
+   Answers where they end, or -1 when there is no room. */
 static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
     const dem_real *x = w->pos, *u = w->vel, *shift = w->image_shift;
     const dem_real margin = (dem_real)w->near_margin, span = (dem_real)w->near_span;
@@ -3672,8 +3674,9 @@ static void demi_domain_near(dem_world *w, int d) {
     }
 }
 /* --- quiet bodies: where nothing but near pairs and walls can push (no gravity, no force field,
-       no other slab), bodies in none of those fly straight on until the next near list: only positions change. Told
-       for DEMI_SOME bodies at a time. Skipping writes what was there, so bits are the same. --- */
+       no other slab), bodies in none of those fly straight on until the next near list: only
+       positions change. Told for DEMI_SOME bodies at a time. Skipping writes what was there, so
+       bits are the same. --- */
 typedef struct demi_quiet {
     int restless;                  /* 2: something may push; 1: not now, but did; 0: quiet */
     dem_real speed2;               /* the largest |v|^2 when last looked at */
@@ -3850,8 +3853,8 @@ static int demi_spins(const dem_world *w) {
     return w->desc.law || w->tangent != DEM_TANGENT_NONE || w->rolling != DEM_ROLLING_NONE;
 }
 
-/* How many domains: of the number of bodies alone, so that bits do not depend on threads; 1, 2, 4, or
-   a multiple of 8, which most numbers of threads share fairly. */
+/* How many domains: of the number of bodies alone, so that bits do not depend on threads; 1, 2, 4,
+   or a multiple of 8, which most numbers of threads share fairly. */
 static int demi_domains_for(int count) {
     int n = 1;
     while (n < 8 && n*DEM_DOMAIN_BODIES < count) n *= 2;
@@ -3961,7 +3964,7 @@ DEM_API dem_result dem_search_now(dem_world *w) { return demi_rebuild(w); }
 /* ---------------------------------------------------------------------------------------------
    >>touch
    Geometry only: where a sphere meets a wall element, and which of the elements it overlaps count.
-   (Where two spheres meet is three lines in demi_pairs.) Knows no law and no material.
+   (Where two spheres meet is demi_tile_touch.) Knows no law and no material.
    --------------------------------------------------------------------------------------------- */
 
 /* Closest point on triangle abc to p [ERI05] 5.1.5; *feature 0 face, 1 edge, 2 corner. [MIL]
@@ -4271,15 +4274,15 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
    time: what the law needs of the two bodies is copied into rows, pair after pair (a copy of three
    numbers that lie together is cheaper than three gathers); touch and law run over the rows
    (vectorised: groups of a constant length, which compilers turn into vectors at -O2 too); pushes
-   are added to both bodies. Pairs that lead out of a domain leave their push in a slot of its own; the other
-   domain fetches it after all are done, in the order of the list. So every body's sum has one order
-   whatever the number of threads. Grain-wall follows, per grain.
+   are added to both bodies. Pairs that lead out of a domain leave their push in a slot of its own;
+   the other domain fetches it after all are done, in the order of the list. So every body's sum has
+   one order whatever the number of threads. Grain-wall follows, per grain.
    --------------------------------------------------------------------------------------------- */
 /* Pairs under work. Sums and differences are of the two bodies, a plus b and a minus b. A row has
    room to spare so that rows do not lie a power of two apart, which caches take badly. */
 enum { DEMI_ROW = DEMI_TILE + 16 };
-/* What is copied one by one. For gcc with x and y side by side, which one instruction moves (5 % of a
-   step in single precision, 2 in double); clang takes such rows apart badly. */
+/* What is copied one by one. For gcc with x and y side by side, which one instruction moves (5 % of
+   a step in single precision, 2 in double); clang takes such rows apart badly. */
 #if defined(__GNUC__) && !defined(__clang__)
 typedef struct demi_rows { dem_real xy[DEMI_ROW][2], z[DEMI_ROW]; } demi_rows;
 #define DEMI_XY(rows, e, q) (rows)->xy[q][e]
@@ -4466,7 +4469,8 @@ DEM_INLINE void demi_tile_motion(demi_tile *DEMI_RESTRICT t, int q, const demi_r
         dem_vec3 arm = demi_scale(turned, d/2);
         if (!r->uniform) arm = demi_add(arm, demi_scale(demi_rows_at(&t->parted, q), t->lean[q]));
         demi_row_put(t->turn, q, turn);
-        demi_row_put(t->slip_step, q, demi_slip_step(n, demi_sub(n, demi_scale(turn, r->dt/2)), gone,
+        demi_row_put(t->slip_step, q, demi_slip_step(n, demi_sub(n, demi_scale(turn, r->dt/2)),
+                                                     gone,
                                                 arm));
         t->twist[q] = demi_dot(turned, n)/2;
     }
@@ -4828,7 +4832,8 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last,
     const int id = w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
     const dem_real r = w->pos[4*body + 3], *R = wall->pose.rotation;
-    /* as far as any grain and any wall have come since the list was made, and a little for rounding */
+    /* as far as any grain and any wall have come since the list was made, and a little for rounding
+       */
     const dem_real gone = (dem_real)(w->reach + w->wall_reach) + r/10000;
     dem_vec3 x;
     int k, count = 0;
@@ -5381,9 +5386,9 @@ static dem_result demi_dt_settle(dem_world *w) {
 
 /* --- the parts of a step, per domain --- */
 
-/* How fast the fastest is, how much the most accelerated, and a sum that keeps what is not finite (a
-   maximum loses it). In groups, each place of which has its own maximum and sum: that is what makes
-   vectors of it. */
+/* How fast the fastest is, how much the most accelerated, and a sum that keeps what is not finite
+   (a maximum loses it). In groups, each place of which has its own maximum and sum: that is what
+   makes vectors of it. */
 typedef struct demi_pace {
     dem_real speed2[DEMI_LANES], acceleration2[DEMI_LANES], sum[DEMI_LANES];
 } demi_pace;
@@ -7487,7 +7492,8 @@ DEM_API void dem_world_destroy(dem_world *w) {
     arrays[k++] = &w->own.place_; arrays[k++] = &w->cross.place_;
     arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
     arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
-    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_; arrays[k++] = &w->wall_next_;
+    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_;
+    arrays[k++] = &w->wall_next_;
     arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
     arrays[k++] = &w->lll_row_start_;
     for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
