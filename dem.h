@@ -877,12 +877,10 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 #endif
 
 #if defined(__GNUC__) && !defined(__TINYC__)
-#define DEMI_NOINLINE static __attribute__((noinline))
 #define DEMI_ALIGNED __attribute__((aligned(64)))           /* to a cache line */
 #define DEMI_RESTRICT __restrict__
 #define DEMI_FORMAT(f, a) __attribute__((format(printf, f, a)))
 #else
-#define DEMI_NOINLINE static
 #define DEMI_ALIGNED
 #define DEMI_RESTRICT
 #define DEMI_FORMAT(f, a)
@@ -927,7 +925,6 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 #define DEMI_SINGLE (sizeof(dem_real) == sizeof(float))
 #define DEMI_SQRT(x) (DEMI_SINGLE ? (dem_real)sqrtf((float)(x)) : (dem_real)sqrt((double)(x)))
 #define DEMI_ABS(x) (DEMI_SINGLE ? (dem_real)fabsf((float)(x)) : (dem_real)fabs((double)(x)))
-#define DEMI_POW(x, y) ((dem_real)pow((double)(x), (double)(y)))
 #define DEMI_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define DEMI_MAX(a, b) ((a) > (b) ? (a) : (b))
 /* Added to a length before dividing by it. */
@@ -4955,17 +4952,6 @@ typedef struct demi_lane {           /* one body's translation or rotation */
     dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces */
 } demi_lane;
 
-/* v(t) -> half, predicted v(t+dt); dt and half kick as reals. Answers nothing; drift uses half. */
-DEM_INLINE void demi_kick_verlet(const demi_lane *b, dem_real h, int synced) {
-    int k;
-    for (k = 0; k < 3; k++) {
-        const dem_real kick = (b->f[k]*b->inv + b->g[k])*h;
-        const dem_real v = synced ? b->v[k] : b->half[k] + kick;
-        const dem_real half = v + kick;
-        b->half[k] = half;
-        b->v[k] = half + kick;
-    }
-}
 DEM_INLINE void demi_kick_leapfrog(const demi_lane *b, dem_real h) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -7485,11 +7471,11 @@ DEM_API void dem_world_destroy(dem_world *w) {
         demi_list *list = i ? &w->cross : &w->own;
         demi_near *near = i ? &w->near_last : &w->near;
         arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->image_;
+        arrays[k++] = &list->place_;
         arrays[k++] = &near->a_; arrays[k++] = &near->b_; arrays[k++] = &near->k_;
         arrays[k++] = &near->image_; arrays[k++] = &near->memory_; arrays[k++] = &near->coef_;
     }
     arrays[k++] = &w->quiet_; arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
-    arrays[k++] = &w->own.place_; arrays[k++] = &w->cross.place_;
     arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
     arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
     arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_;

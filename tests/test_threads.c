@@ -11,14 +11,12 @@ typedef struct outcome { uint64_t hash; dem_ledger ledger; dem_channels floor; i
 
 /* About 6000 grains, mixed, with friction and rolling friction, on a plane and in a turning mesh.
    */
-static outcome bed(int threads, int steps, int at_once) {
+static dem_world *bed_world(int threads, dem_wall *plane) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world;
     dem_material glass;
     dem_motion motion = DEM_MOTION;
-    dem_wall wall, plane;
-    outcome out;
-    int done;
+    dem_wall wall;
     desc.threads = threads;
     desc.gravity = at(0, 0, -9.81);
     desc.dt = DEM_R(4e-6);
@@ -28,13 +26,20 @@ static outcome bed(int threads, int steps, int at_once) {
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e7, 0.7, 0.3, 0.1);
     scene_block(world, glass, 19, 18, 18, 1e-3, 1, 2, 7);
-    plane = dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    *plane = dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
     wall = scene_floor(world, glass, -0.02, -0.02, 0.06, 0.06, 12, 12);
     motion.kind = DEM_MOTION_ROTATING;
     motion.axis = at(0, 0, 1);
     motion.point = at(0.018, 0.018, 0);
     motion.speed = 100;
     dem_wall_motion(world, wall, &motion);
+    return world;
+}
+static outcome bed(int threads, int steps, int at_once) {
+    dem_wall plane;
+    dem_world *world = bed_world(threads, &plane);
+    outcome out;
+    int done;
     for (done = 0; done < steps; done += at_once) CHECK_EQ(scene_step(world, at_once), DEM_OK);
     memset(&out, 0, sizeof out);
     out.hash = dem_world_hash(world);
@@ -58,7 +63,7 @@ static void check_same(const outcome *a, const outcome *b) {
 /* A block of grains between planes or in a periodic box; `any`: the run-time kernel at every step.
    */
 static uint64_t kernels(dem_normal_law normal, int friction, int mixed, int periodic, int any,
-                        int *special) {
+                        dem_tangent_law tangent, int rolling, int ledger, int *special) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world;
     dem_material glass;
@@ -66,13 +71,15 @@ static uint64_t kernels(dem_normal_law normal, int friction, int mixed, int peri
     int i, k;
     desc.threads = 1;
     desc.normal_law = normal;
+    desc.tangent_law = tangent;
+    desc.ledger = ledger;
     desc.dt = DEM_R(2e-6);
     desc.allow_large_dt = 1;
     desc.skin = DEM_R(1.5e-3);                 /* wide: one list for the run, after the first */
     for (k = 0; k < 3 && periodic; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
     desc.domain = box_of(0, 0, 0, 7*1.97e-3, 7*1.97e-3, 7*1.97e-3);
     world = dem_world_create(&desc);
-    glass = scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, 0);
+    glass = scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, rolling ? 0.1 : 0);
     if (!periodic) dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
     scene_block(world, glass, 7, 7, 7, 1e-3, mixed, 1, 5);
     *special = 0;
@@ -100,24 +107,64 @@ int main(int argc, char **argv) {
             check_same(&one, &many);
         }
     }
+    TEST("threads, a checkpoint in between and a second world beside it leave the one hash") {
+        static const int threads[] = {1, 2, 3, 4, 8};
+        static const char path[] = "build/tmp/threads.ckpt";
+        const outcome one = bed(1, 40, 40);
+        size_t i;
+        for (i = 0; i < 5; i++) {
+            dem_wall plane;
+            dem_world *first = bed_world(threads[i], &plane), *second;
+            int k;
+            CHECK_EQ(scene_step(first, 20), DEM_OK);
+            CHECK_EQ(dem_checkpoint_write(first, path), DEM_OK);
+            second = bed_world(threads[4 - i], &plane);     /* goes on with other threads */
+            CHECK_EQ(dem_checkpoint_read(second, path), DEM_OK);
+            for (k = 0; k < 20; k++) {                      /* step by step, side by side */
+                CHECK_EQ(scene_step(first, 1), DEM_OK);
+                CHECK_EQ(scene_step(second, 1), DEM_OK);
+            }
+            CHECK_EQ(dem_world_hash(first), one.hash);
+            CHECK_EQ(dem_world_hash(second), one.hash);
+            dem_world_destroy(first);
+            dem_world_destroy(second);
+        }
+        remove(path);
+    }
     TEST("forty-two steps at once, one by one and seven at a time are the same forty-two steps") {
         const outcome a = bed(2, 42, 42), b = bed(2, 42, 1), c = bed(2, 42, 7);
         check_same(&a, &b);
         check_same(&a, &c);
     }
     TEST("kernels made for a set of effects give the bits of the run-time kernel") {
-        int normal, friction, mixed, periodic, special, none;
-        for (normal = DEM_NORMAL_HERTZ; normal <= DEM_NORMAL_LINEAR; normal++)
-            for (friction = 0; friction < 2; friction++)
-                for (mixed = 0; mixed < 2; mixed++)
-                    for (periodic = 0; periodic < 2; periodic++) {
-                        const dem_normal_law law = (dem_normal_law)normal;
-                        const uint64_t made = kernels(law, friction, mixed, periodic, 0, &special);
-                        const uint64_t asks = kernels(law, friction, mixed, periodic, 1, &none);
-                        CHECK_EQ(made, asks);
-                        CHECK_EQ(none, 0);
-                        if (normal == DEM_NORMAL_HERTZ && !mixed) CHECK_EQ(special, 99);
-                    }
+        static const struct {
+            dem_normal_law normal;
+            int friction;
+            dem_tangent_law tangent;
+            int rolling, ledger;
+        } sets[] = {
+            {DEM_NORMAL_HERTZ, 0, DEM_TANGENT_AUTO, 0, 0},
+            {DEM_NORMAL_HERTZ, 1, DEM_TANGENT_AUTO, 0, 0},
+            {DEM_NORMAL_HERTZ, 1, DEM_TANGENT_AUTO, 0, 1},
+            {DEM_NORMAL_HERTZ, 1, DEM_TANGENT_AUTO, 1, 0},
+            {DEM_NORMAL_HERTZ, 1, DEM_TANGENT_MINDLIN, 0, 0},
+            {DEM_NORMAL_LINEAR, 0, DEM_TANGENT_AUTO, 0, 0},
+            {DEM_NORMAL_LINEAR, 1, DEM_TANGENT_AUTO, 0, 0}};
+        size_t i;
+        int mixed, periodic, special, none;
+        for (i = 0; i < sizeof sets/sizeof *sets; i++)
+            for (mixed = 0; mixed < 2; mixed++)
+                for (periodic = 0; periodic < 2; periodic++) {
+                    const uint64_t made = kernels(sets[i].normal, sets[i].friction, mixed,
+                                                  periodic, 0, sets[i].tangent, sets[i].rolling,
+                                                  sets[i].ledger, &special);
+                    const uint64_t asks = kernels(sets[i].normal, sets[i].friction, mixed,
+                                                  periodic, 1, sets[i].tangent, sets[i].rolling,
+                                                  sets[i].ledger, &none);
+                    CHECK_EQ(made, asks);
+                    CHECK_EQ(none, 0);
+                    CHECK_EQ(special, 99);
+                }
     }
     TEST("a time step that the library chooses anew falls on the same step however the steps are "
          "asked for") {
