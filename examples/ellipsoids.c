@@ -648,7 +648,8 @@ static study_figure figure(const char *title, const char *x, const char *y) {
     return f;
 }
 
-/* Curves of the gases chosen: 0 T_tr(t), 1 T_tr/T_rot(t), 2 T_tr(tau), 3 T_tot(tau). */
+/* Curves: 0 T_tr(t), 1 T_tr/T_rot(t), both of one e; 2 T_tr(tau), 3 T_tot(tau); of many gases, 2
+   from xi = 2 on and 3 below, as in [GAS]. */
 static void curves_draw(gas *gases, int count, int kind, double e) {
     static const char *const titles[4] = {
         "Translational temperature", "Translational over rotational temperature",
@@ -669,6 +670,7 @@ static void curves_draw(gas *gases, int count, int kind, double e) {
         const int n = g->sample_count - 1;
         if (kind < 2 && fabs(g->e - e) > 1e-9) continue;
         if (kind == 1 && g->spheres) continue;
+        if (kind > 1 && options.all && (kind == 2) != (g->xi >= 2)) continue;
         x[drawn] = (double *)study_alloc((size_t)n, sizeof(double));
         y[drawn] = (double *)study_alloc((size_t)n, sizeof(double));
         for (i = 0; i < n; i++) {
@@ -776,7 +778,7 @@ static void cases_run(void) {
     }
     study_csv("cases.csv", "xi,e,T_ratio,T_ratio_theory,zeta_star,zeta_star_theory,S_c,root_mean",
               count, 8, (const double *const *)data);
-    for (k = 0; k < 4; k++) curves_draw(gases, count, k, gases[0].e);
+    for (k = 0; k < 4; k++) curves_draw(gases, count, k, options.all ? 0.95 : gases[0].e);
     elongation_draw(gases, count, 0);
     elongation_draw(gases, count, 1);
     for (drawn = 0; drawn + 1 < count && gases[drawn].xi < 2; drawn++) {}

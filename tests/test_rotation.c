@@ -256,15 +256,21 @@ int main(int argc, char **argv) {
     }
 
     TEST("Dzhanibekov's wing nut [PRI]: moments 3, 5, 9 flip over every 59.0554 s") {
-        const double inertia[3] = {3, 5, 9}, w[3] = {0, 0.4, 0.01/9};
+        /* No matter has these moments, 9 > 3 + 5, and they are refused. But L moves in the body as
+           it does when all 1/I grow alike (L x L/I does not see it): .1 makes a body of them. */
+        const double L[3] = {0, 2, 0.01}, inertia[3] = {1/(1/3.0 + 0.1), 1/(1/5.0 + 0.1),
+                                                        1/(1/9.0 + 0.1)};
+        const double w[3] = {0, L[1]/inertia[1], L[2]/inertia[2]};
         int r, i;
         for (r = 0; r < 3; r++) {
             double when[4] = {0, 0, 0, 0};
             CHECK_EQ(flips(rotations[r], inertia, w, 0.01, 215, when, 4), 4);
             CHECK_NEAR(when[0], 118.110887046/4, 0.3); /* one per cent, as published */
             for (i = 1; i < 4; i++) CHECK_NEAR(when[i] - when[i - 1], 59.0554435, 0.59);
-            CHECK_NEAR(fly(rotations[r], inertia, w, 0, 0.01, 50).w[1], -.39989666, 1e-3);
-            CHECK_NEAR(fly(rotations[r], inertia, w, 0, 0.01, 100).w[1], .39449710, 1e-3);
+            CHECK_NEAR(fly(rotations[r], inertia, w, 0, 0.01, 50).w[1]*inertia[1], -.39989666*5,
+                       1e-3);                          /* there L2 hardly changes */
+            CHECK_NEAR(fly(rotations[r], inertia, w, 0, 0.01, 100).w[1]*inertia[1], .39449710*5,
+                       5e-3);
         }
     }
 
@@ -273,7 +279,8 @@ int main(int argc, char **argv) {
         int r, i;
         for (r = 0; r < 3; r++) {
             double when[4] = {0, 0, 0, 0};
-            CHECK_EQ(flips(rotations[r], inertia, w, 1e-3, 26, when, 4), 4);
+            /* Fincham gains energy, so that flips come later each time: 1.3 % at a step of 1 ms */
+            CHECK_EQ(flips(rotations[r], inertia, w, 5e-4, 26, when, 4), 4);
             for (i = 1; i < 4; i++) CHECK_NEAR(when[i] - when[i - 1], 12.334945809/2, 0.062);
         }
     }
