@@ -12,14 +12,15 @@
        .003 of the time between two, so that few collisions overlap each other;
      - restitution is the one set, whatever the bodies' inertia at the contact: the damping of [GAS]
        takes the reduced mass m/2 where the mass that counts is 1/(n.K n), less by 1 + D for bodies
-       that may turn, so that its ellipsoids lose more than e_n says. --damping seed is its law;
+       that may turn, so that its ellipsoids lose more than e_n says. --damping seed is its law and
+       its overlap;
      - by default 512 ellipsoids, at the same volume fraction: --count 4096 is the whole gas.
    Hard bodies have no time of their own, so --hold doubles all energies whenever half is lost, and
    counts time and temperature as if it had not: a step is as good in a cold gas as in a hot one.
 
    build:  cc -O3 -march=native -std=c99 examples/ellipsoids.c -o build/ellipsoids -lm
    run:    build/ellipsoids, build/ellipsoids --quick, --xi 2 --restitution 0.9 --count 4096,
-           --all (hours of CPU), --theory (no gas), --speeds (Table 2), --help
+           --all (hours), --theory (no gas), --direct, --speeds (Table 2), --help
 
    Theory, by quadrature over isotropic orientations of two bodies that touch at a normal n. Support
    h = sqrt(n.Mn), M = R diag(b2, b2, a2) R^T; the contact point is at Mn/h; the curvature of h is
@@ -71,9 +72,9 @@ static const double restitutions[RESTITUTIONS] = {0.9, 0.95, 0.98};
 static struct gas_options {
     double xi, restitution, overlap, collisions, run_in, dt, seconds;
     const char *damping, *hold, *out;
-    int count, seed, threads, quick, all, theory, speeds;
+    int count, seed, threads, quick, all, theory, direct, speeds;
 } options = {0, 0, 0.003, 40, 8, 0, 3, "exact", "true", "build/out/ellipsoids",
-             512, 1, 1, 0, 0, 0, 0};
+             512, 1, 1, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
     {"xi", STUDY_REAL, &options.xi, 0, 10, "", "elongation; 1: spheres; 0: 1, 1.5, 2, 3"},
@@ -93,6 +94,7 @@ static const study_option table[] = {
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "one case, of fewer collisions"},
     {"all", STUDY_FLAG, &options.all, 0, 0, "", "Table 1's elongations at .90, .95, .98"},
     {"theory", STUDY_FLAG, &options.theory, 0, 0, "", "S_c, <D>_c, theta, zeta*, and no gas"},
+    {"direct", STUDY_FLAG, &options.direct, 0, 0, "", "the theory by drawing collisions, no gas"},
     {"speeds", STUDY_FLAG, &options.speeds, 0, 0, "", "Table 2: 64 to 262144 bodies"},
     {"seconds", STUDY_REAL, &options.seconds, 0.1, 1000, "s", "speeds: for each size"},
 };
@@ -293,6 +295,7 @@ static int gas_create(gas *g, double xi, double e, int count) {
         desc.law = seed_law;
         desc.law_user = &seed_gamma;
         desc.law_stiffness = STIFFNESS;
+        desc.ellipsoid_overlap = DEM_OVERLAP_SEED;
     }
     seed_gamma = 0;
     g->world = dem_world_create(&desc);
@@ -606,6 +609,130 @@ static int gas_case(gas *g, double xi, double e) {
     return 0;
 }
 
+/* ---- the theory without its assumptions on velocities: collisions drawn at random ---- */
+
+/* A body is a velocity, a spin and the axis across it; b = m = 1. Pairs and normals are drawn at
+   random and accepted in proportion to det(A1 + A2) times the speed of approach; between two
+   collisions a body turns about its spin by any angle. Dilute, homogeneous: no places. */
+typedef struct draw { double v[3], w[3], u[3]; } draw;
+
+static double dot3(const double *a, const double *b) { return a[0]*b[0] + a[1]*b[1] + a[2]*b[2]; }
+static void cross3(const double *a, const double *b, double *c) {
+    c[0] = a[1]*b[2] - a[2]*b[1];
+    c[1] = a[2]*b[0] - a[0]*b[2];
+    c[2] = a[0]*b[1] - a[1]*b[0];
+}
+static void unit3(double *a) {
+    const double l = sqrt(dot3(a, a));
+    int k;
+    for (k = 0; k < 3; k++) a[k] /= l;
+}
+
+/* What one body brings to a meeting at n (outward): arm x n, p, q, and its axis across n. */
+typedef struct side { double lever[3], p, q, e[3], speed; } side;
+static void side_of(gas *g, draw *d, const double *n, double sign, side *o) {
+    const double more = g->xi*g->xi - 1, spin = sqrt(dot3(d->w, d->w));
+    double turned[3], x, h, l = 0;
+    int k;
+    if (spin > 0) { /* the axis to anywhere on its circle */
+        const double angle = 2*PI*uniform(g), c = cos(angle), s = sin(angle)/spin;
+        cross3(d->w, d->u, turned);
+        for (k = 0; k < 3; k++) d->u[k] = c*d->u[k] + s*turned[k];
+        unit3(d->u);
+    }
+    x = dot3(d->u, n);
+    h = sqrt(1 + more*x*x);
+    cross3(d->u, n, o->lever);
+    for (k = 0; k < 3; k++) {
+        o->lever[k] *= sign*more*x/h;              /* (M n/h) x n, M n = n + more x u */
+        o->e[k] = d->u[k] - x*n[k];
+        l += o->e[k]*o->e[k];
+    }
+    for (k = 0; k < 3; k++) o->e[k] /= sqrt(l) + 1e-300;
+    o->p = g->xi*g->xi/(h*h*h);
+    o->q = 1/h;
+    o->speed = dot3(d->v, n) + dot3(d->w, o->lever);
+}
+
+static void direct_case(double xi, double e) {
+    enum { COUNT = 20000 };
+    static draw bodies[COUNT];
+    static gas g;
+    const double inertia = (1 + xi*xi)/5;
+    double theta, zeta, s = 0, bound = 0, tr = 1, sum = 0, weight = 0, from = 0, start = 0;
+    double wait, end, e_now = 0, ratio;
+    int i, k, round;
+    memset(&g, 0, sizeof g);
+    g.xi = xi;
+    g.e = e;
+    g.random = (uint64_t)options.seed;
+    theory_make(xi, &g.t);
+    theory_state(&g.t, e, 0, &theta, &zeta);
+    wait = settling(&g, 0, theta) + 2;
+    end = wait + options.collisions;
+    for (i = 0; i < COUNT; i++) {
+        draw *d = &bodies[i];
+        double any[3];
+        for (k = 0; k < 3; k++) { d->v[k] = normal(&g); d->u[k] = normal(&g); any[k] = normal(&g); }
+        unit3(d->u);
+        cross3(d->u, any, d->w);
+        for (k = 0; k < 3; k++) d->w[k] /= sqrt(inertia);
+    }
+    g.scale = 0;                                   /* ln of what energies were divided by */
+    for (round = 0; s < end; round++) {
+        double kinetic = 0, turning = 0, mean[3] = {0, 0, 0}, by;
+        for (i = 0; i < COUNT; i++)
+            for (k = 0; k < 3; k++) mean[k] += bodies[i].v[k]/COUNT;
+        for (i = 0; i < COUNT; i++)
+            for (k = 0; k < 3; k++) {
+                bodies[i].v[k] -= mean[k];
+                kinetic += bodies[i].v[k]*bodies[i].v[k]/2;
+                turning += inertia*bodies[i].w[k]*bodies[i].w[k]/2;
+            }
+        tr = kinetic/(1.5*COUNT);
+        ratio = kinetic/1.5/turning;
+        e_now = log(kinetic + turning) + g.scale;
+        if (s >= wait && from <= 0) { from = s; start = e_now; }
+        if (from > 0) { sum += log(ratio); weight++; }
+        by = sqrt(tr);                             /* back to T_tr = 1: no units of time in it */
+        g.scale += log(tr);
+        for (i = 0; i < COUNT; i++)
+            for (k = 0; k < 3; k++) { bodies[i].v[k] /= by; bodies[i].w[k] /= by; }
+        if (round == 0 || round == 20)             /* rare excess is cut: 1e-4 of collisions */
+            bound = 4*(xi > 1 ? xi*xi : 1)*7*sqrt(1 + g.t.d_mean*theta);
+        for (i = 0; i < COUNT; i++) {              /* candidates */
+            draw *a = &bodies[(int)(uniform(&g)*COUNT)], *b = &bodies[(int)(uniform(&g)*COUNT)];
+            double n[3], det, close, along, push;
+            side A, B;
+            s += g.t.area/sqrt(PI)/(COUNT*2*PI*bound);
+            if (a == b) continue;
+            for (k = 0; k < 3; k++) n[k] = normal(&g);
+            unit3(n);
+            side_of(&g, a, n, 1, &A);
+            side_of(&g, b, n, -1, &B);
+            /* b's outward normal is -n: its contact point is at -(M n/h), and so is its lever */
+            close = A.speed - (dot3(b->v, n) + dot3(b->w, B.lever));
+            if (close <= 0) continue;
+            along = dot3(A.e, B.e);
+            along *= along;
+            det = A.p*A.q + B.p*B.q + (A.p*B.q + A.q*B.p)*along +
+                  (A.p*B.p + A.q*B.q)*(1 - along);
+            if (uniform(&g)*bound > det*close) continue;
+            push = (1 + e)*close/(2 + (dot3(A.lever, A.lever) + dot3(B.lever, B.lever))/inertia);
+            for (k = 0; k < 3; k++) {
+                a->v[k] -= push*n[k];
+                b->v[k] += push*n[k];
+                a->w[k] -= push*A.lever[k]/inertia;
+                b->w[k] += push*B.lever[k]/inertia;
+            }
+        }
+    }
+    if (xi > 1) tell(&g, "T_ratio_direct", exp(sum/weight), "");
+    if (xi > 1) tell(&g, "T_ratio_theory", 1/theta, "");
+    tell(&g, "zeta_star_direct", -(e_now - start)/(s - from), "");
+    tell(&g, "zeta_star_theory", zeta, "");
+}
+
 /* ---- what is told ---- */
 
 static void theory_tell(void) {
@@ -748,20 +875,34 @@ static void velocities_draw(const gas *g) {
     study_figure_write(&f, "fig11_velocities.svg");
 }
 
+/* Elongations and restitutions asked for. */
+typedef struct choice { const double *xi, *e; int rows, pairs; } choice;
+static choice chosen(void) {
+    static const double few[4] = {1, 1.5, 2, 3};
+    choice c;
+    c.xi = options.xi > 0 ? &options.xi : options.all ? elongations : few;
+    c.rows = options.xi > 0 ? 1 : options.all ? ELONGATIONS : 4;
+    c.e = options.restitution > 0 ? &options.restitution : restitutions;
+    c.pairs = options.restitution > 0 || !options.all ? 1 : RESTITUTIONS;
+    return c;
+}
+
+static void direct_run(void) {
+    const choice c = chosen();
+    int i, k;
+    for (k = 0; k < c.pairs; k++)
+        for (i = 0; i < c.rows; i++) direct_case(c.xi[i], c.e[k]);
+}
+
 static void cases_run(void) {
     static gas gases[CASES];
-    static const double few[4] = {1, 1.5, 2, 3};
-    const double *xi = options.all ? elongations : few;
-    int rows = options.all ? ELONGATIONS : 4, pairs = options.all ? RESTITUTIONS : 1;
+    const choice c = chosen();
     int i, k, count = 0, drawn;
     double *data[8];
-    if (options.xi > 0) { xi = &options.xi; rows = 1; }
-    if (options.restitution > 0) pairs = 1;
     study_result("count", pow((int)(cbrt(options.count) + 0.5), 3), "");
-    for (k = 0; k < pairs; k++)
-        for (i = 0; i < rows; i++) {
-            const double e = options.restitution > 0 ? options.restitution : restitutions[k];
-            if (gas_case(&gases[count], xi[i], e)) { gas_destroy(&gases[count]); return; }
+    for (k = 0; k < c.pairs; k++)
+        for (i = 0; i < c.rows; i++) {
+            if (gas_case(&gases[count], c.xi[i], c.e[k])) { gas_destroy(&gases[count]); return; }
             count++;
         }
     for (k = 0; k < 8; k++) data[k] = (double *)study_alloc((size_t)count, sizeof(double));
@@ -846,6 +987,7 @@ int main(int argc, char **argv) {
     }
     study_begin(options.out);
     if (options.theory) theory_tell();
+    else if (options.direct) direct_run();
     else if (options.speeds) speeds_run();
     else cases_run();
     return study_end();
