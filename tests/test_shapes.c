@@ -15,6 +15,11 @@ static double normal_of(uint64_t *seed) {
     const double u = 1 - scene_random(seed);
     return sqrt(-2*log(u))*cos(2*pi*scene_random(seed));
 }
+/* of Gaussian parts; one after the other: the order of arguments is the compiler's choice */
+static dem_vec3 any_vector(uint64_t *seed, double size) {
+    const double x = normal_of(seed), y = normal_of(seed), z = normal_of(seed);
+    return at(size*x, size*y, size*z);
+}
 static dem_quat random_quat(uint64_t *seed) {
     double q[4], l = 0;
     int i;
@@ -272,7 +277,7 @@ static void random_pair(dem_ellipsoid *a, dem_ellipsoid *b, double aspect, doubl
         e[i]->orientation = random_quat(seed);
     }
     a->position = at(0.1, -0.2, 0.3);
-    b->position = plus(a->position, at(normal_of(seed), normal_of(seed), normal_of(seed)), 1);
+    b->position = plus(a->position, any_vector(seed, 1), 1);
     now = scale_by_force(a, b);
     b->position = plus(a->position, plus(b->position, a->position, -1), W0/now);
 }
@@ -332,7 +337,7 @@ static void meeting_tests(void) {
             int k;
             e[0] = &a;
             e[1] = &b;
-            random_pair(&a, &b, i%2 ? 3 : 10, 0.95, &seed);
+            random_pair(&a, &b, i%2 ? 3 : 10, 0.999, &seed);
             m = dem_ellipsoids_meet(&a, &b, 0);
             for (k = 0; k < 2; k++) {
                 const dem_vec3 x = dem_quat_unturn(e[k]->orientation,
@@ -352,7 +357,7 @@ static void meeting_tests(void) {
                 CHECK_REL(m.depth_conservative, ell*(1 - (double)m.scale), SINGLE ? 1e-3 : 1e-9);
                 CHECK_REL(m.depth_normal, along*(1/(double)m.scale - 1), SINGLE ? 1e-3 : 1e-9);
             }
-            CHECK((double)m.depth_seed > 0.98*(double)m.depth_normal); /* more, to first order */
+            CHECK((double)m.depth_seed > 0.99*(double)m.depth_normal); /* more, to first order */
         }
     }
 
@@ -363,13 +368,13 @@ static void meeting_tests(void) {
         if (SINGLE) { CHECK(1); continue; }            /* its double root loses half the digits */
         if (sizeof(wide) == sizeof(double)) { CHECK(1); continue; }
         for (i = 0; i < 24; i++) {
-            static const double etas[2] = {1e-3, 1e-5};
             dem_ellipsoid a, b;
             dem_meeting m;
             random_pair(&a, &b, i%2 ? 3 : 1.5, 0.98, &seed);
             m = dem_ellipsoids_meet(&a, &b, 0);
             for (k = 0; k < 2; k++) {
-                const literal l = construct(&a, &b, (double)m.scale, (double)m.lambda, etas[k]);
+                const literal l = construct(&a, &b, (double)m.scale, (double)m.lambda,
+                                            k ? 1e-5 : 1e-3);
                 const dem_vec3 n = at(l.normal[0], l.normal[1], l.normal[2]);
                 CHECK(l.found);
                 error[k][0] += apart(m.normal, n);
@@ -423,7 +428,7 @@ static void meeting_tests(void) {
             a.orientation = random_quat(&seed);
             b.semi_axes = at(0.3, 0.35, 0.4);
             b.orientation = random_quat(&seed);
-            b.position = at(0.2*normal_of(&seed), 0.2*normal_of(&seed), 0.2*normal_of(&seed));
+            b.position = any_vector(&seed, 0.2);
             m = dem_ellipsoids_meet(&a, &b, 0);
             CHECK_REL(m.scale, scale_by_force(&a, &b), SINGLE ? 1e-4 : 1e-10);
             CHECK(m.scale < 1);
@@ -532,11 +537,12 @@ static shot shoot(uint64_t seed, double steps_per_contact, double friction, int 
     for (i = 0; i < 2; i++) {
         const double side = i ? 1 : -1;
         dem_body_state s;
-        body[i] = dem_body_add(world, m, shape, at(side*0.021, 0.004*normal_of(&seed),
-                                                   0.004*normal_of(&seed)), random_quat(&seed));
+        const dem_vec3 off = any_vector(&seed, 0.004), way = any_vector(&seed, 0.2);
+        body[i] = dem_body_add(world, m, shape, at(side*0.021, (double)off.y, (double)off.z),
+                               random_quat(&seed));
         s = scene_state(world, body[i]);
-        s.velocity = at(-side, 0.2*normal_of(&seed), 0.2*normal_of(&seed));
-        s.spin = at(30*normal_of(&seed), 30*normal_of(&seed), 30*normal_of(&seed));
+        s.velocity = at(-side, (double)way.y, (double)way.z);
+        s.spin = any_vector(&seed, 30);
         dem_body_set(world, body[i], &s);
     }
     before = dem_totals_get(world);
@@ -805,7 +811,7 @@ static void cluster_tests(void) {
         scene_move(world, body, at(0.1, 0, 0), at(0, 0, 0));
         scene_step(world, 1000);
         s = scene_state(world, body);
-        CHECK_NEAR(s.velocity.x, 0.1, 0);
+        CHECK_NEAR(s.velocity.x, DEM_R(0.1), 0);
         CHECK_NEAR(sqrt(dot(s.spin, s.spin)), 0, 0);
         CHECK_NEAR(sqrt(dot(s.force, s.force)), 0, 0);
         dem_world_destroy(world);
@@ -920,7 +926,7 @@ static void wall_tests(void) {
                 (dem_real)(pi/2)) : dem_quat_about(at(0, 1, 0), (dem_real)(pi/2));
             const bounce b = drop(make_ellipsoid, lowest[i], how, 1e5, 0.7, 400);
             CHECK_NEAR(b.e, 0.7, 2e-3);                /* instant of touch: 400 steps a contact */
-            CHECK_NEAR(b.spin, 0, 1e-6);
+            CHECK_NEAR(b.spin, 0, SINGLE ? 1e-3 : 1e-6);
         }
     }
 
@@ -1111,8 +1117,8 @@ static void contact_tests(void) {
             desc.tangent_law = laws[k];
             desc.rolling_law = rolls[k];
             desc.rotation = (dem_rotation)k;
-            world = mixture(&desc, 2);
-            CHECK_EQ(dem_world_run(world, 1.2, 0, 0), DEM_OK);
+            world = mixture(&desc, 1);
+            CHECK_EQ(dem_world_run(world, 0.9, 0, 0), DEM_OK);
             t = dem_totals_get(world);
             CHECK(t.kinetic + t.rotational < 1e-3*t.mass*9.81*0.01);
             CHECK(t.centre[2] > 0.004 && t.centre[2] < 0.03);
@@ -1159,7 +1165,8 @@ static cloud cloud_make(double xi, int side, double fraction, double overlap, do
     w = v + 3*c.count;
     for (i = 0; i < c.count; i++) {
         const dem_quat turned = random_quat(&seed);
-        const dem_vec3 across = dem_quat_turn(turned, at(normal_of(&seed), normal_of(&seed), 0));
+        const dem_vec3 free = any_vector(&seed, 1);
+        const dem_vec3 across = dem_quat_turn(turned, at((double)free.x, (double)free.y, 0));
         x[3*i] = (dem_real)(c.cube/side*(i%side + 0.5));
         x[3*i + 1] = (dem_real)(c.cube/side*(i/side%side + 0.5));
         x[3*i + 2] = (dem_real)(c.cube/side*(i/side/side + 0.5));
@@ -1217,7 +1224,7 @@ static void gas_tests(void) {
     TEST("a dilute gas of ellipsoids, xi 2, e .8, cools at the rate of kinetic theory") {
         /* theta 1.0405, zeta* .08834, S_c 90.8317 b2: docs/ellipsoids.md, as g at .02 */
         const double area = 90.8317, g = 1.0562;
-        cloud c = cloud_make(2, 7, 0.02, 0.03, 0.8, 1.04);
+        cloud c = cloud_make(2, 10, 0.02, 0.03, 0.8, 1.04);
         double s = 0, rot = 0, tr = 0, t0, e0, e1;
         double dt;
         int i;
@@ -1236,9 +1243,9 @@ static void gas_tests(void) {
         }
         e1 = dem_totals_get(c.world).kinetic + dem_totals_get(c.world).rotational;
         CHECK(s > 5);
-        /* about 2000 collisions, each of which takes what it likes: 1/sqrt(2000), three times */
-        CHECK_REL(log(e0/e1)/s, 0.08834, 0.08);
-        CHECK_NEAR(exp((rot - tr)/300), 1.0405, 0.15); /* .07 a look, hardly two are independent */
+        /* some 3000 collisions, each of which takes what it likes: three times 1/sqrt(3000) */
+        CHECK_REL(log(e0/e1)/s, 0.08834, 0.055);
+        CHECK_NEAR(exp((rot - tr)/300), 1.0405, 0.1);  /* .04 a look, a few are independent */
         dem_world_destroy(c.world);
     }
 
@@ -1259,10 +1266,10 @@ static void gas_tests(void) {
         stuff.stiffness = 1000;
         m = dem_material_add(world, &stuff);
         CHECK_EQ(dem_spheres_fill(world, m, DEM_R(0.005), desc.domain, 195, 1), 195);
-        for (i = 0; i < 195; i++)
-            scene_move(world, dem_bodies_id(world, i),
-                       at(0.02*normal_of(&seed), 0.02*normal_of(&seed), 0.02*normal_of(&seed)),
-                       at(normal_of(&seed), normal_of(&seed), normal_of(&seed)));
+        for (i = 0; i < 195; i++) {
+            const dem_vec3 v = any_vector(&seed, 0.02);
+            scene_move(world, dem_bodies_id(world, i), v, any_vector(&seed, 1));
+        }
         first = dem_totals_get(world);
         scene_step(world, (int)(5/dt));
         last = dem_totals_get(world);
@@ -1341,7 +1348,7 @@ static void promise_tests(void) {
         CHECK_STR(dem_world_error(world), "dem_shape_ellipsoid_add");
         CHECK_EQ(dem_shape_ellipsoid_add(world, at(1, -1, 1)).id, 0);
         CHECK_EQ(dem_shape_ellipsoid_add(world, at(1, 1, 1001)).id, 0);
-        CHECK_EQ(dem_shape_ellipsoid_add(world, at(NAN, 1, 1)).id, 0);
+        CHECK_EQ(dem_shape_ellipsoid_add(world, at((double)NAN, 1, 1)).id, 0);
         CHECK_EQ(dem_shape_cluster_add(world, &desc).id, 0);       /* nothing in it */
         CHECK_STR(dem_world_error(world), "dem_shape_cluster_add");
         desc.count = 1;
@@ -1463,7 +1470,7 @@ static int rebound(uint64_t seed, double e, double *measured) {
     int i, step, count = 0, touched = 0;
     for (i = 0; i < 2; i++) {
         dem_ellipsoid a, b;
-        const dem_vec3 way = at(1, 0.3*normal_of(&seed), 0.3*normal_of(&seed));
+        const dem_vec3 some = any_vector(&seed, 0.3), way = at(1, (double)some.y, (double)some.z);
         dem_body_state s;
         if (i == 0) {
             body[0] = dem_body_add(world, m, shape, at(0, 0, 0), random_quat(&seed));
@@ -1483,7 +1490,7 @@ static int rebound(uint64_t seed, double e, double *measured) {
             s = scene_state(world, body[1]);
         }
         s.velocity = at((i ? -1 : 1)*(double)way.x, (i ? -1 : 1)*(double)way.y, 0.1);
-        s.spin = at(5*normal_of(&seed), 5*normal_of(&seed), 5*normal_of(&seed));
+        s.spin = any_vector(&seed, 5);
         dem_body_set(world, body[i], &s);
     }
     memset(&c, 0, sizeof c);
@@ -1560,8 +1567,9 @@ static void more_tests(void) {
                 m = soft_stuff(world, stiffness, 1, 0);
                 shape = dem_shape_ellipsoid_add(world, at(0.01, 0.012, 0.02));
                 for (j = 0; j < 2; j++) {
+                    const dem_vec3 off = any_vector(&seed, 0.003);
                     const dem_body b = dem_body_add(world, m, shape, at(j ? 0.021 : -0.021,
-                        0.003*normal_of(&seed), 0.003*normal_of(&seed)), random_quat(&seed));
+                        (double)off.y, (double)off.z), random_quat(&seed));
                     scene_move(world, b, at(j ? -1 : 1, 0, 0), at(0, 0, 0));
                 }
                 before = dem_totals_get(world).kinetic;
@@ -1638,7 +1646,7 @@ static void more_tests(void) {
                 after = dem_totals_get(world);
                 for (k = 0; k < 3; k++) {
                     CHECK_NEAR(after.momentum[k] - before.momentum[k], 0, SINGLE ? 1e-6 : 1e-15);
-                    CHECK_NEAR(after.angular[k] - before.angular[k], 0, SINGLE ? 1e-7 : 1e-15);
+                    CHECK_NEAR(after.angular[k] - before.angular[k], 0, SINGLE ? 1e-6 : 1e-15);
                 }
                 CHECK(after.kinetic + after.rotational < 0.99*(before.kinetic + before.rotational));
                 CHECK(dem_counters_get(world).contacts == 0);  /* met and parted */
@@ -1668,8 +1676,8 @@ static void more_tests(void) {
         for (i = 0; i < b.count; i++) {
             const dem_body id = dem_bodies_id(world, i);
             const dem_quat q = scene_state(world, id).orientation;
-            scene_move(world, id, at(normal_of(&seed), normal_of(&seed), normal_of(&seed)),
-                       dem_quat_turn(q, at(90*normal_of(&seed), 90*normal_of(&seed), 0)));
+            const dem_vec3 v = any_vector(&seed, 1), w = any_vector(&seed, 90);
+            scene_move(world, id, v, dem_quat_turn(q, at((double)w.x, (double)w.y, 0)));
         }
         scene_step(world, 1);
         first = dem_ledger_get(world);
