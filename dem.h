@@ -1360,7 +1360,7 @@ struct dem_world {
     int orienting;                 /* the next four exist */
     dem_real *orient;              /* x 4: w x y z, principal axes -> world */
     dem_real *angular;             /* x 4: angular momentum at the half step; shaped bodies only */
-    dem_real *moment;              /* x 4: principal moments of inertia, kg m2 */
+    dem_real *moment;              /* x 4: principal moments of inertia, kg m2; lever, m */
     int32_t *body_shape;           /* dem_shape ids; 0: a sphere */
     int shaped_count;              /* bodies that are not spheres */
     uint32_t *body_slot;
@@ -2689,6 +2689,7 @@ static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_
     w->inv_mass[i] = (dem_real)(1/m);
     w->inv_inertia[i] = 0;
     demi_put(w->moment + 4*i, demi_moments_of(w, i));
+    w->moment[4*i + 3] = form->lever*scale;
     demi_quat_put(w->orient + 4*i, demi_quat_unit(dem_quat_times(orientation, form->frame)));
     w->shaped_count++;
 }
@@ -6882,15 +6883,20 @@ static void demi_prime(dem_world *w) {
        predicted with the last torque. All are of second order under torques. Checked by tests of
        rotation (free flight against elliptic functions, order, tops). --- */
 
-/* q turned by the rotation vector v of the body's frame (rad), |v| < 2: q exp(v/2) by series to 1e-12,
-   made a unit one again. */
+/* q turned by the rotation vector v of the body's frame (rad), |v| < 2: q exp(v/2), by series to
+   1e-12; and made a unit one again. */
 DEM_INLINE dem_quat demi_quat_spin(dem_quat q, dem_vec3 v) {
-    const dem_real x = demi_dot(v, v)/4;        /* (half angle)^2 */
-    const dem_real c = 1 - x/2*(1 - x/12*(1 - x/30*(1 - x/56*(1 - x/90*(1 - x/132)))));
-    const dem_real s = (1 - x/6*(1 - x/20*(1 - x/42*(1 - x/72*(1 - x/110*(1 - x/156))))))/2;
-    const dem_quat r = dem_quat_times(q, dem_quat_make(c, s*v.x, s*v.y, s*v.z));
-    const dem_real l = 1/DEMI_SQRT(r.w*r.w + r.x*r.x + r.y*r.y + r.z*r.z);
-    return dem_quat_make(r.w*l, r.x*l, r.y*l, r.z*l);
+    const dem_real x = demi_dot(v, v)*DEM_R(0.25);         /* (half angle)^2 */
+    /* cos and half of sin x/x; products with constants, which quotients would not become */
+    const dem_real c = 1 + x*(DEM_R(-1.0/2) + x*(DEM_R(1.0/24) + x*(DEM_R(-1.0/720) +
+        x*(DEM_R(1.0/40320) + x*(DEM_R(-1.0/3628800) + x*DEM_R(1.0/479001600))))));
+    const dem_real s = DEM_R(0.5) + x*(DEM_R(-1.0/12) + x*(DEM_R(1.0/240) + x*(DEM_R(-1.0/10080) +
+        x*(DEM_R(1.0/725760) + x*(DEM_R(-1.0/79833600) + x*DEM_R(1.0/12454041600.0))))));
+    return dem_quat_times(q, dem_quat_make(c, s*v.x, s*v.y, s*v.z));
+}
+DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
+    const dem_real l = 1/DEMI_SQRT(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z);
+    return dem_quat_make(q.w*l, q.x*l, q.y*l, q.z*l);
 }
 /* SPIRAL [SPI24], with angular momentum kept. There w goes from one half step to the next by a third
    order Runge-Kutta step with the torque in it, and q by q exp(dt w/2); both lose L a little every
@@ -6900,11 +6906,12 @@ DEM_INLINE dem_quat demi_quat_spin(dem_quat q, dem_vec3 v) {
    q goes by the mean and the first term of Magnus, h (w x end)/12; then by the small rotation that
    puts I end where R^T L is: two of three errors of q are gone, and L, |q| are exact. Free flight: order
    3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times (docs/accuracy.md).
-   I: principal moments; answers the mean, in the body's frame. */
-DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
+   I, inv: principal moments, their inverses; answers the mean, in the body's frame. */
+DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
+                                       dem_real h) {
     const dem_vec3 m = dem_quat_unturn(*q, L);
-    const dem_vec3 w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
-    const dem_vec3 a = demi_v((I.y - I.z)/I.x, (I.z - I.x)/I.y, (I.x - I.y)/I.z);
+    const dem_vec3 w = demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z);
+    const dem_vec3 a = demi_v((I.y - I.z)*inv.x, (I.z - I.x)*inv.y, (I.x - I.y)*inv.z);
     const dem_vec3 w1 = demi_v(a.x*w.y*w.z, a.y*w.z*w.x, a.z*w.x*w.y);
     const dem_vec3 w2 = demi_v(a.x*(w1.y*w.z + w.y*w1.z), a.y*(w1.z*w.x + w.z*w1.x),
                                a.z*(w1.x*w.y + w.x*w1.y));
@@ -6913,16 +6920,16 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
                                a.z*(w2.x*w.y + 2*w1.x*w1.y + w.x*w2.y));
     const dem_real ll = demi_dot(L, L);
     dem_vec3 mean, end, g, c, magnus;
-    end = demi_add(demi_scale(w1, h), demi_scale(demi_add(w2, demi_scale(w3, h/3)), h*h/2));
-    mean = demi_add(demi_scale(w1, h/2), demi_scale(demi_add(w2, demi_scale(w3, h/4)), h*h/6));
-    end = demi_add(w, end);
-    mean = demi_add(w, mean);
-    magnus = demi_scale(demi_cross(w, end), h/12);
+    end = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(1.0/3))), h*h*DEM_R(0.5));
+    mean = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(0.25))), h*h*DEM_R(1.0/6));
+    end = demi_add(w, demi_add(demi_scale(w1, h), end));
+    mean = demi_add(w, demi_add(demi_scale(w1, h*DEM_R(0.5)), mean));
+    magnus = demi_scale(demi_cross(w, end), h*DEM_R(1.0/12));
     *q = demi_quat_spin(*q, demi_scale(demi_add(mean, magnus), h));
     end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
     g = dem_quat_unturn(*q, L);
-    c = demi_scale(demi_cross(end, g), 1/(ll + DEMI_TINY));
-    *q = demi_quat_spin(*q, c);
+    c = demi_scale(demi_cross(end, g), DEM_R(0.5)/(ll + DEMI_TINY));
+    *q = demi_quat_again(dem_quat_times(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
 }
 /* [FIN92], which [GAS] eq 17 to 21 uses with w for L (the same for spheroids that do not spin about
@@ -6964,84 +6971,89 @@ static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_r
     return demi_scale(demi_add(w0, dem_quat_unturn(start, dem_quat_turn(*q, w1))), DEM_R(0.5));
 }
 /* Spin of a body with angular momentum L. */
-DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 I) {
+DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 inv) {
     const dem_vec3 m = dem_quat_unturn(q, L);
-    return dem_quat_turn(q, demi_v(m.x/I.x, m.y/I.y, m.z/I.z));
+    return dem_quat_turn(q, demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z));
 }
 
-/* Bodies that turn, DEMI_LANES at a time: rows of numbers, so that compilers make vectors of it. */
+/* Bodies that turn, a tile at a time: rows of numbers, so that compilers make vectors of it. */
 typedef struct demi_turning {
-    dem_real q[4][DEMI_LANES], L[3][DEMI_LANES], T[3][DEMI_LANES], I[3][DEMI_LANES];
-    dem_real half[3][DEMI_LANES], spin[3][DEMI_LANES];
+    dem_real q[4][DEMI_ROW], L[3][DEMI_ROW], T[3][DEMI_ROW], I[4][DEMI_ROW];
+    dem_real half[3][DEMI_ROW], spin[3][DEMI_ROW];
+    dem_real speed2[DEMI_ROW], change2[DEMI_ROW];        /* (m/s)^2, at the lever's end */
 } demi_turning;
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real dt) {
     dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
     const dem_vec3 T = demi_v(t->T[0][l], t->T[1][l], t->T[2][l]);
     const dem_vec3 I = demi_v(t->I[0][l], t->I[1][l], t->I[2][l]);
+    const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z);
     const dem_vec3 L = demi_v(t->L[0][l] + T.x*dt, t->L[1][l] + T.y*dt, t->L[2][l] + T.z*dt);
-    const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, dt)
+    const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
         : rotation == DEM_ROTATION_FINCHAM ? demi_flight_fincham(&q, L, I, dt)
         : demi_flight_splitting(&q, L, I, dt);
     const dem_vec3 half = dem_quat_turn(start, mean);
-    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, dt/2)), I);
+    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, dt/2)), inv);
+    const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
+    t->speed2[l] = demi_dot(half, half)*t->I[3][l]*t->I[3][l];
+    t->change2[l] = 4*demi_dot(by, by)*t->I[3][l]*t->I[3][l];
     t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
     t->L[0][l] = L.x; t->L[1][l] = L.y; t->L[2][l] = L.z;
     t->half[0][l] = half.x; t->half[1][l] = half.y; t->half[2][l] = half.z;
     t->spin[0][l] = spin.x; t->spin[1][l] = spin.y; t->spin[2][l] = spin.z;
 }
-DEMI_CLONES static void demi_turning_spiral(demi_turning *t, dem_real dt) {
-    int l;
-    DEMI_VECTOR
-    for (l = 0; l < DEMI_LANES; l++) demi_turning_fly(t, l, DEM_ROTATION_SPIRAL, dt);
+DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real dt) {
+    int l, q;
+    for (q = 0; q < count; q += DEMI_LANES) {
+        DEMI_VECTOR
+        for (l = 0; l < DEMI_LANES; l++) demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, dt);
+    }
 }
-/* Turns the bodies listed, at most DEMI_LANES; notes how fast and by how much they changed. */
+/* Turns the bodies listed, at most a tile; notes how fast and by how much they changed. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count) {
     const dem_real dt = w->dt;
     demi_turning t;
     int l, e;
-    for (l = 0; l < DEMI_LANES; l++) {          /* filled up with the last one */
-        const int i = who[DEMI_MIN(l, count - 1)];
-        for (e = 0; e < 4; e++) t.q[e][l] = w->orient[4*i + e];
-        for (e = 0; e < 3; e++) {
-            t.L[e][l] = w->angular[4*i + e];
-            t.T[e][l] = w->torque[4*i + e];
-            t.I[e][l] = w->moment[4*i + e];
-        }
+    const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    dem_real turn = 0, speed = 0, check = 0;
+    for (l = 0; l < full; l++) {                /* groups filled up with the last one */
+        size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
+        DEMI_ONE_BY_ONE(i);
+        for (e = 0; e < 4; e++) t.q[e][l] = w->orient[i + (size_t)e];
+        for (e = 0; e < 4; e++) t.I[e][l] = w->moment[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.L[e][l] = w->angular[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.T[e][l] = w->torque[i + (size_t)e];
     }
-    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(&t, dt);
+    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(&t, full, dt);
     else for (l = 0; l < count; l++) demi_turning_fly(&t, l, (int)w->desc.rotation, dt);
     for (l = 0; l < count; l++) {
-        const int i = who[l];
-        const demi_form *form = demi_form_of(w, i);
-        const double lever = (double)(form->lever*demi_scale_of(w, i, form));
-        double change = 0, speed = 0;
-        for (e = 0; e < 3; e++) {
-            const double by = 2*((double)t.spin[e][l] - (double)t.half[e][l]);   /* a whole step's */
-            change += by*by;
-            speed += (double)t.half[e][l]*(double)t.half[e][l];
-            w->angular[4*i + e] = t.L[e][l];
-            w->half_spin[4*i + e] = t.half[e][l];
-            w->spin[4*i + e] = t.spin[e][l];
-        }
-        for (e = 0; e < 4; e++) w->orient[4*i + e] = t.q[e][l];
-        domain->turn = DEMI_MAX(domain->turn, change*lever*lever);
-        domain->turn_speed = DEMI_MAX(domain->turn_speed, speed*lever*lever);
-        domain->check += speed;
+        size_t i = 4*(size_t)who[l];
+        DEMI_ONE_BY_ONE(i);
+        for (e = 0; e < 4; e++) w->orient[i + (size_t)e] = t.q[e][l];
+        for (e = 0; e < 3; e++) w->angular[i + (size_t)e] = t.L[e][l];
+        for (e = 0; e < 3; e++) w->half_spin[i + (size_t)e] = t.half[e][l];
+        for (e = 0; e < 3; e++) w->spin[i + (size_t)e] = t.spin[e][l];
+        turn = DEMI_MAX(turn, t.change2[l]);
+        speed = DEMI_MAX(speed, t.speed2[l]);
+        check += t.speed2[l];
     }
+    domain->turn = DEMI_MAX(domain->turn, (double)turn);
+    domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
+    domain->check += (double)check;
 }
 /* Orientations of bodies begin .. end - 1 over one step, and spins of those that are not spheres. */
 static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
     const dem_real dt = w->dt;
-    int who[DEMI_LANES], count = 0, i;
+    int who[DEMI_TILE], count = 0, i;
     for (i = begin; i < end; i++) {
         if (w->inv_mass[i] <= 0) continue;
         if (w->body_shape[i]) {
             who[count++] = i;
-            if (count == DEMI_LANES) { demi_orient_some(w, domain, who, count); count = 0; }
+            if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count); count = 0; }
         } else if (w->desc.orientations) {
             const dem_quat q = demi_quat_at(w->orient + 4*i);
             const dem_vec3 by = demi_scale(demi_at(w->half_spin + 4*i), dt);
-            demi_quat_put(w->orient + 4*i, demi_quat_spin(q, dem_quat_unturn(q, by)));
+            demi_quat_put(w->orient + 4*i,
+                          demi_quat_again(demi_quat_spin(q, dem_quat_unturn(q, by))));
         }
     }
     if (count) demi_orient_some(w, domain, who, count);
@@ -7051,10 +7063,12 @@ static void demi_orient_finish(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->half_kick;
     int i;
     for (i = begin; i < end; i++)
-        if (w->body_shape[i] && w->inv_mass[i] > 0)
+        if (w->body_shape[i] && w->inv_mass[i] > 0) {
+            const dem_vec3 I = demi_at(w->moment + 4*i);
             demi_put(w->spin + 4*i, demi_spin_of(demi_quat_at(w->orient + 4*i),
                 demi_add(demi_at(w->angular + 4*i), demi_scale(demi_at(w->torque + 4*i), h)),
-                demi_at(w->moment + 4*i)));
+                demi_v(1/I.x, 1/I.y, 1/I.z)));
+        }
 }
 
 typedef struct demi_integrator_row {
