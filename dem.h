@@ -2257,25 +2257,37 @@ static double demi_meet_start(const double *A, const double *B, const double *r)
     hb = sqrt(demi_dot3(r, t));
     return ha + hb > 0 ? ha/(ha + hb) : 0.5;
 }
-/* Finds the maximum from m->l on; stops early where f(l) exceeds `enough`. */
+/* The last step is so small that s may follow it along ds/dl = K^-1 (QA - QB) s = (s - v)/(1 - l),
+   v = K^-1 QB s, and f to second order, f' = fA - fB, f'' = -2 C: what a whole evaluation more would
+   add is of the order of the step squared. */
+static void demi_meet_finish(const double *A, const double *B, double C, double step,
+                             demi_meet *m) {
+    const double rate = step/(1 - m->l);
+    int k;
+    m->f += ((m->fa - m->fb) - C*step)*step;
+    for (k = 0; k < 3; k++) m->s[k] += rate*(m->s[k] - m->v[k]);
+    m->l += step;
+    demi_sym_times(A, m->s, m->a);
+    demi_sym_times(B, m->s, m->b);
+    m->fa = (1 - m->l)*(1 - m->l)*demi_dot3(m->s, m->a);
+    m->fb = m->l*m->l*demi_dot3(m->s, m->b);
+}
+/* Finds the maximum from m->l on, until fA and fB are as near as `near` says; stops early where f(l)
+   exceeds `enough`. DEMI_MEET_NEAR: normals to 1e-10 (aspect ratio 2) to 4e-6 at worst (100), and as
+   cheap as it gets; docs/accuracy.md has the numbers. */
+#define DEMI_MEET_NEAR 1e-4
 static void demi_meet_solve(const double *A, const double *B, const double *r, double enough,
-                            demi_meet *m) {
+                            double near, demi_meet *m) {
     double lo = 0, hi = 1, l = m->l;
     int k;
     for (m->looks = 1;; m->looks++) {
-        double K[6], d0, d1, d2, l1, l2, l3, t, y0, y1, y2, C, u, g, step;
+        double K[6], J[6], t, C, u, sum, step;
         for (k = 0; k < 6; k++) K[k] = (1 - l)*A[k] + l*B[k];
-        d0 = 1/K[0];                            /* K = L D L^T */
-        l1 = K[3]*d0;
-        l2 = K[4]*d0;
-        d1 = 1/(K[1] - l1*K[3]);
-        t = K[5] - l2*K[3];
-        l3 = t*d1;
-        d2 = 1/(K[2] - l2*K[4] - l3*t);
-        y0 = r[0]; y1 = r[1] - l1*y0; y2 = r[2] - l2*y0 - l3*y1;
-        m->s[2] = y2*d2;
-        m->s[1] = y1*d1 - l3*m->s[2];
-        m->s[0] = y0*d0 - l1*m->s[1] - l2*m->s[2];
+        J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
+        J[1] = K[0]*K[2] - K[4]*K[4]; J[5] = K[3]*K[4] - K[0]*K[5]; J[2] = K[0]*K[1] - K[3]*K[3];
+        t = 1/(K[0]*J[0] + K[3]*J[3] + K[4]*J[4]);
+        for (k = 0; k < 6; k++) J[k] *= t;      /* K^-1, by cofactors: one quotient */
+        demi_sym_times(J, r, m->s);
         m->l = l;
         m->f = l*(1 - l)*demi_dot3(r, m->s);
         demi_sym_times(A, m->s, m->a);
@@ -2283,17 +2295,19 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
         m->fa = (1 - l)*(1 - l)*demi_dot3(m->s, m->a);
         m->fb = l*l*demi_dot3(m->s, m->b);
         if (m->f > enough) return;
-        y0 = m->b[0]; y1 = m->b[1] - l1*y0; y2 = m->b[2] - l2*y0 - l3*y1;
-        m->v[2] = y2*d2;
-        m->v[1] = y1*d1 - l3*m->v[2];
-        m->v[0] = y0*d0 - l1*m->v[1] - l2*m->v[2];
-        u = (m->fa - m->fb)/(m->fa + m->fb);
-        if (fabs(u) < 1e-9 || !(m->fa + m->fb > 0) || m->looks >= 100 || hi - lo < 1e-15) return;
+        demi_sym_times(J, m->b, m->v);
+        sum = m->fa + m->fb;
+        if (!(sum > 0)) return;
+        u = (m->fa - m->fb)/sum;
         if (u > 0) lo = l; else hi = l;
-        /* ln(fa/fb)/2 = atanh u */
-        g = fabs(u) < 0.1 ? u*(1 + u*u*(1.0/3 + u*u*(0.2 + u*u/7))) : log(m->fa/m->fb)/2;
+        /* ln(fa/fb)/2 = atanh u, which is about u (15 - 4 u^2)/(15 - 9 u^2) */
         C = demi_dot3(m->a, m->v);
-        step = g/(C*((1 - l)/m->fa + l/m->fb));
+        step = u*(15 - 4*u*u)*m->fa*m->fb/
+            ((15 - 9*u*u)*C*((1 - l)*m->fb + l*m->fa));
+        if (fabs(u) < near || m->looks >= 100 || hi - lo < 1e-15) {
+            demi_meet_finish(A, B, C, step, m);
+            return;
+        }
         l += step;
         if (!(l > lo && l < hi)) l = (lo + hi)/2;
     }
@@ -2336,7 +2350,7 @@ DEM_API dem_meeting dem_ellipsoids_meet(const dem_ellipsoid *a, const dem_ellips
         r[2] = 1e-12*((double)a->semi_axes.z + (double)b->semi_axes.z);
     }
     m.l = lambda > 0 && lambda < 1 ? (double)lambda : demi_meet_start(A, B, r);
-    demi_meet_solve(A, B, r, 1e300, &m);
+    demi_meet_solve(A, B, r, 1e300, 1e-12, &m);
     demi_meet_heights(&m, n, &ha, &hb);
     w0 = sqrt(m.f);
     out.scale = (dem_real)w0;
@@ -2414,7 +2428,7 @@ static dem_real demi_parts_gap(const demi_part *p, const demi_part *q, dem_vec3 
     demi_part_matrix(p, A);
     demi_part_matrix(q, B);
     m.l = demi_meet_start(A, B, r);
-    demi_meet_solve(A, B, r, 1e300, &m);
+    demi_meet_solve(A, B, r, 1e300, DEMI_MEET_NEAR, &m);
     demi_meet_heights(&m, n, &ha, &hb);
     return (dem_real)((sqrt(m.f) - 1)*(ha + hb));
 }
@@ -6155,7 +6169,7 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
         c->deep = c->overlap/DEMI_MIN(p->radius, q->radius);
         c->r_eff = p->radius*q->radius/sum;
         c->arm_a = demi_add(p->centre, demi_scale(c->normal, d*p->radius/sum));
-        c->arm_b = demi_sub(q->centre, demi_scale(c->normal, d*q->radius/sum));
+        c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
         return 1;
     }
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
@@ -6163,7 +6177,7 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
     demi_part_matrix(p, A);
     demi_part_matrix(q, B);
     m.l = lambda > 0 ? lambda : demi_meet_start(A, B, r);
-    demi_meet_solve(A, B, r, 1, &m);
+    demi_meet_solve(A, B, r, 1, DEMI_MEET_NEAR, &m);
     if (!(m.f < 1)) return 0;
     w0 = sqrt(m.f);
     demi_meet_heights(&m, n, &ha, &hb);
@@ -6182,8 +6196,8 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
     c->arm_a = demi_add(p->centre, demi_v((dem_real)((1 - m.l)*m.a[0]),
         (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
-    c->arm_b = demi_sub(q->centre, demi_v((dem_real)(m.l*m.b[0]), (dem_real)(m.l*m.b[1]),
-                                          (dem_real)(m.l*m.b[2])));
+    /* from b's centre to the same point, to the bit: angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
 
@@ -6407,7 +6421,7 @@ static dem_real demi_wall_ellipsoid(const demi_wall *wall, int element, const de
         r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
         if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
         m.l = demi_meet_start(Q, B, r);
-        demi_meet_solve(Q, B, r, 1, &m);
+        demi_meet_solve(Q, B, r, 1, DEMI_MEET_NEAR, &m);
         if (!(m.f < 1)) return -1;
         demi_meet_heights(&m, m3, &ha, &hb);
         c->normal = demi_v((dem_real)m3[0], (dem_real)m3[1], (dem_real)m3[2]);
