@@ -6624,10 +6624,13 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
         *surface = demi_v(0, 0, 0);
     } else {
         const demi_wall *wall = &w->walls[k->wall];
-        const dem_vec3 at = demi_add(demi_at(w->pos + 4*a), k->arm_a);
-        *surface = demi_surface_at(&wall->pose, at);
+        const dem_vec3 x = demi_at(w->pos + 4*a);
+        /* where the contact was in the middle of the step */
+        const dem_vec3 was = demi_add(mid_a, demi_sub(x, demi_scale(demi_at(w->half_vel + 4*a),
+                                                                    dt/2)));
+        *surface = demi_surface_at(&wall->pose, demi_add(x, k->arm_a));
         u = demi_sub(u, *surface);
-        gone = demi_sub(gone, demi_surface_at(&wall->mid, at));
+        gone = demi_sub(gone, demi_surface_at(&wall->mid, was));
         spin = wall->pose.spin;
         spin_step = wall->mid.spin;
     }
