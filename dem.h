@@ -218,7 +218,9 @@ typedef struct dem_world dem_world;
 /* ---- choices ---- */
 typedef enum dem_normal_law {
     DEM_NORMAL_HERTZ = 0,  /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92] */
-    DEM_NORMAL_LINEAR      /* F = kn delta + cn v; kn given, or from Young's modulus and a speed */
+    DEM_NORMAL_LINEAR,     /* F = kn delta + cn v; kn given, or from Young's modulus and a speed */
+    DEM_NORMAL_HYSTERETIC  /* [FEN] eq 2.47: loads along kn delta, unloads and reloads with slope
+                              kun, pulls by at most kad delta; needs no dashpot */
 } dem_normal_law;
 
 typedef enum dem_tangent_law {
@@ -295,6 +297,7 @@ typedef struct dem_contact {
     dem_real dt;             /* s, to integrate memory with; 0: memory must be left as it is */
     dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear) */
     dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear) */
+    dem_real kun, kad;       /* N/m, hysteretic law: unloading, adhesion; otherwise 0 */
     dem_real friction, friction_static, rolling_friction;
     int32_t material_a, material_b; /* dem_material ids */
     int32_t wall;            /* 0: b is a grain; otherwise the dem_wall id */
@@ -408,30 +411,41 @@ typedef struct dem_material_desc {
     dem_real density;          /* kg/m3, required, > 0 */
     dem_real young;            /* Pa, required, > 0 (for a linear law with stiffness: not needed) */
     dem_real poisson;          /* 0 <= nu < 0.5; 0 is a physical value */
-    dem_real restitution;  /* required, 0 < e <= 1: speed after over speed before a normal impact */
+    /* required, 0 < e <= 1: speed after over speed before a normal impact. Hysteretic law: either
+       this or stiffness_unloading; e = sqrt(kn/kun), of a contact that does not stick */
+    dem_real restitution;
     dem_real friction;         /* sliding friction mu, >= 0; 0: none */
     dem_real friction_static;  /* >= friction; 0: the same as friction */
     dem_real rolling_friction; /* mu_r, >= 0, of the effective radius; 0: none */
-    dem_real stiffness;        /* N/m, linear law only; 0: from young and impact_speed [DIM04] */
-    dem_real stiffness_ratio;  /* kt/kn of the linear law; 0: 2(1-nu)/(2-nu) */
+    /* N/m, linear and hysteretic law (there of loading); 0: from young and impact_speed [DIM04] */
+    dem_real stiffness;
+    dem_real stiffness_ratio;  /* kt/kn of these two laws; 0: 2(1-nu)/(2-nu) */
+    dem_real stiffness_unloading; /* N/m, hysteretic law: kun >= stiffness; 0: from restitution */
+    dem_real stiffness_adhesion;  /* N/m, hysteretic law: kad >= 0 (the seed has it negative);
+                                     0: never pulls */
 } dem_material_desc;
-static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 #define DEM_MATERIAL_DESC DEM_MATERIAL_DESC_ZERO
 
 /* Adds a material. At most 64. Null id on bad values. */
 DEM_API dem_material dem_material_add(dem_world *world, const dem_material_desc *desc);
 
 /* What holds between two materials. Mixed from both when not set: restitution, friction, static
-   friction and rolling friction by the geometric mean; moduli by Hertz (1/E* = sum (1-nu^2)/E, 1/G*
-   = sum (2-nu)/G); given stiffnesses in series. Walls follow the same rule as grains. */
+   friction, rolling friction and stiffness of adhesion by the geometric mean; moduli by Hertz (1/E*
+   = sum (1-nu^2)/E, 1/G* = sum (2-nu)/G); given stiffnesses in series. Walls follow the same rule
+   as grains. */
 typedef struct dem_pair {
     dem_real young_eff;        /* E*, Pa */
     dem_real shear_eff;        /* G*, Pa */
     dem_real restitution, friction, friction_static, rolling_friction;
-    dem_real stiffness;        /* N/m, linear law; 0: from E* and impact speed, per pair of radii */
-    dem_real stiffness_ratio;  /* kt/kn, linear law */
+    /* N/m, linear and hysteretic law; 0: from E* and impact speed, per pair of radii */
+    dem_real stiffness;
+    dem_real stiffness_ratio;  /* kt/kn, linear and hysteretic law */
     /* >= 0, factor on the tangential dashpot; 1 when mixed, 0: no dashpot */
     dem_real tangent_damping;
+    dem_real stiffness_adhesion; /* N/m, hysteretic law; its kun is stiffness/restitution^2 */
+    dem_real normal_damping;   /* N s/m, linear and hysteretic law: the dashpot itself, whatever the
+                                  masses; 0: linear: from restitution, hysteretic: none */
 } dem_pair;
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
                                 dem_pair *pair);
@@ -443,8 +457,9 @@ DEM_API dem_result dem_pair_set(dem_world *world, dem_material a, dem_material b
 typedef struct dem_coefficients {
     dem_real r_eff, m_eff;     /* m, kg */
     dem_real kn, cn, kt, ct;  /* as in dem_contact: F = kn d^(3/2) + cn d^(1/4) v, or kn d + cn v */
+    dem_real kun, kad;         /* N/m, hysteretic law; otherwise 0 */
     dem_real damping_ratio;    /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
-    dem_real contact_time;     /* s, at the world's impact speed */
+    dem_real contact_time;     /* s, at the world's impact speed; hysteretic law: [FEN] eq 2.45 */
 } dem_coefficients;
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
@@ -1053,6 +1068,7 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_SOME = 16, DEMI_DOMAINS = 256,
 
 /* Coefficients of one contact, resolved: what the built-in laws need. */
 enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
+      DEMI_K_UN, DEMI_K_AD,                     /* hysteretic law */
       DEMI_COEFS };
 
 /* A growing array: items of one size. Never holds less than before. */
@@ -1329,15 +1345,18 @@ static void demi_array_free(dem_world *w, demi_array *array) {
    numbers a law multiplies with. Restitution comes first, damping is derived from it.
    --------------------------------------------------------------------------------------------- */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
-    const int linear_k = w->desc.normal_law == DEM_NORMAL_LINEAR && d->stiffness > 0;
-    struct { const char *name; dem_real value; int ok; const char *limit; } rows[9];
+    const int linear_k = w->desc.normal_law != DEM_NORMAL_HERTZ && d->stiffness > 0;
+    /* restitution may then be left to the two stiffnesses */
+    const int two_k = w->desc.normal_law == DEM_NORMAL_HYSTERETIC && d->stiffness_unloading > 0;
+    struct { const char *name; dem_real value; int ok; const char *limit; } rows[11];
     int i;
 #define DEMI_ROW(k, field, good, text) \
     rows[k].name = #field; rows[k].value = d->field; rows[k].ok = (good); rows[k].limit = text
     DEMI_ROW(0, density, d->density > 0, "> 0 kg/m3 (required)");
     DEMI_ROW(1, young, d->young > 0 || (linear_k && DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
     DEMI_ROW(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
-    DEMI_ROW(3, restitution, d->restitution > 0 && d->restitution <= 1, "> 0 and <= 1 (required)");
+    DEMI_ROW(3, restitution, (d->restitution > 0 || (two_k && DEMI_ABS(d->restitution) <= 0)) &&
+             d->restitution <= 1, "> 0 and <= 1 (required)");
     DEMI_ROW(4, friction, d->friction >= 0, ">= 0");
     DEMI_ROW(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
              d->friction_static >= d->friction,
@@ -1345,12 +1364,23 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     DEMI_ROW(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
     DEMI_ROW(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
     DEMI_ROW(8, stiffness_ratio, d->stiffness_ratio >= 0, ">= 0");
+    DEMI_ROW(9, stiffness_unloading, DEMI_ABS(d->stiffness_unloading) <= 0 ||
+             (d->stiffness > 0 && d->stiffness_unloading >= d->stiffness),
+             "0 or at least the stiffness of loading, which is to be given then, in N/m");
+    DEMI_ROW(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (its size, not its "
+             "slope)");
 #undef DEMI_ROW
-    for (i = 0; i < 9; i++)
+    for (i = 0; i < 11; i++)
         if (!rows[i].ok || !demi_finite(rows[i].value))
             return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s; set it in the desc "
                              "before the call",
                              call, rows[i].name, (double)rows[i].value, rows[i].limit);
+    if (two_k && d->restitution > 0 && fabs((double)d->restitution*(double)d->restitution*
+        (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: restitution is %g, but sqrt(stiffness/"
+                         "stiffness_unloading) is %g; give one of the two and leave the other 0",
+                         call, (double)d->restitution,
+                         sqrt((double)d->stiffness/(double)d->stiffness_unloading));
     return DEM_OK;
 }
 
@@ -1372,6 +1402,8 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     p.friction_static = (dem_real)sqrt(sa*sb);
     p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
     p.tangent_damping = 1;
+    p.stiffness_adhesion =
+        (dem_real)sqrt((double)a->stiffness_adhesion*(double)b->stiffness_adhesion);
     /* springs in series; equal materials: their own value */
     /* springs in series; equal materials: their own value */
     if (a->stiffness > 0 && b->stiffness > 0)
@@ -1396,10 +1428,12 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
         return id;
     }
     w->materials[n] = *desc;
+    if (!(desc->restitution > 0))               /* hysteretic law: left to the stiffnesses */
+        w->materials[n].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     w->material_count = n + 1;
     for (i = 0; i <= n; i++)
         w->pairs[i*DEMI_MATERIALS + n] = w->pairs[n*DEMI_MATERIALS + i] =
-            demi_mix(&w->materials[i], desc);
+            demi_mix(&w->materials[i], &w->materials[n]);
     id.id = n + 1;
     return id;
 }
@@ -1436,7 +1470,7 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
         bad = #field; value = p->field; limit = text; \
     }
     DEMI_BAD(young_eff, p->young_eff > 0 || (p->young_eff >= 0 && p->stiffness > 0 &&
-             w->desc.normal_law == DEM_NORMAL_LINEAR), "> 0 Pa")
+             w->desc.normal_law != DEM_NORMAL_HERTZ), "> 0 Pa")
     DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
     DEMI_BAD(restitution, p->restitution > 0 && p->restitution <= 1, "> 0 and <= 1")
     DEMI_BAD(friction, p->friction >= 0, ">= 0")
@@ -1445,6 +1479,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     DEMI_BAD(stiffness, p->stiffness >= 0, ">= 0 N/m")
     DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, ">= 0")
     DEMI_BAD(tangent_damping, p->tangent_damping >= 0, ">= 0")
+    DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, ">= 0 N/m")
+    DEMI_BAD(normal_damping, p->normal_damping >= 0, ">= 0 N s/m")
 #undef DEMI_BAD
     if (bad)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
@@ -1471,6 +1507,8 @@ static double demi_damping_ratio(double e) {
      linear  F = kn d + cn v,  kn = (320/81 m* v^2 E*^4 R*^2)^(1/5) [DIM04] unless given, cn = 2
              beta sqrt(kn m*)
              kt = ratio kn,  ct = 2 beta sqrt(kt m*)
+     hysteretic  kn, kt, ct as linear, kun = kn/e^2 ([FEN] eq 2.43), kad as given, cn = 0; both laws
+             take normal_damping for cn when it is given
    DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
    between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff, m_eff: the
    standard ones. Checked by "the thesis's eight coefficients". */
@@ -1499,7 +1537,8 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
     } else {
         const double v = w->desc.impact_speed > 0 ? (double)w->desc.impact_speed : 1;
         kn = p->stiffness > 0 ? (double)p->stiffness : pow(320.0/81*m*v*v*E*E*E*E*R*R, 0.2);
-        cn = 2*beta*sqrt(kn*m);
+        cn = w->desc.normal_law == DEM_NORMAL_HYSTERETIC ? 0 : 2*beta*sqrt(kn*m);
+        if (p->normal_damping > 0) cn = (double)p->normal_damping;
         kt = kn*(double)p->stiffness_ratio;
         ct = 2*beta*sqrt(kt*m);
     }
@@ -1510,15 +1549,21 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
     out[DEMI_MU_STATIC] = DEMI_MAX(p->friction, p->friction_static);
     out[DEMI_MU_ROLL] = p->rolling_friction;
     out[DEMI_R_EFF] = (dem_real)r_eff;
+    out[DEMI_K_UN] = out[DEMI_K_AD] = 0;
+    if (w->desc.normal_law != DEM_NORMAL_HYSTERETIC) return;
+    out[DEMI_K_UN] = (dem_real)(kn/((double)p->restitution*(double)p->restitution));
+    out[DEMI_K_AD] = p->stiffness_adhesion;
 }
 
 /* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi
    sqrt(m/k)
-   (with damping pi/sqrt(k/m - (c/2m)^2) [FEN] eq 2.21). */
+   (with damping pi/sqrt(k/m - (c/2m)^2) [FEN] eq 2.21). Hysteretic: that of its steepest branch,
+   kun, which is what a time step has to follow; the contact itself lasts longer, eq 2.45. */
 static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff,
                                 double speed) {
-    const double k = (double)coef[DEMI_KN], c = (double)coef[DEMI_CN];
-    if (w->desc.normal_law == DEM_NORMAL_LINEAR) {
+    const int hysteretic = w->desc.normal_law == DEM_NORMAL_HYSTERETIC;
+    const double k = (double)coef[hysteretic ? DEMI_K_UN : DEMI_KN], c = (double)coef[DEMI_CN];
+    if (w->desc.normal_law != DEM_NORMAL_HERTZ) {
         const double eta = c/(2*m_eff);
         return DEMI_PI/sqrt(DEMI_MAX(k/m_eff - eta*eta, 1e-12*k/m_eff));
     }
@@ -1555,10 +1600,14 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
     out->r_eff = (dem_real)r; out->m_eff = (dem_real)m;
     out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT];
     out->ct = coef[DEMI_CT];
+    out->kun = coef[DEMI_K_UN]; out->kad = coef[DEMI_K_AD];
     out->damping_ratio =
         (dem_real)demi_damping_ratio((double)w->pairs[i*DEMI_MATERIALS + j].restitution);
     out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0
                                                     ? (double)w->desc.impact_speed : 1);
+    if (w->desc.normal_law == DEM_NORMAL_HYSTERETIC)
+        out->contact_time = (dem_real)(DEMI_PI/2*(sqrt(m/(double)out->kn) +
+                                                  sqrt(m/(double)out->kun)));
     return DEM_OK;
 }
 
@@ -3526,10 +3575,14 @@ static int demi_wall_contacts_move(dem_world *w, int stride) {
     return 1;
 }
 
-/* Reals of memory that the built-in laws keep per contact: see >>laws. */
-DEM_INLINE int demi_memory_of(int tangent, int rolling) {
+/* Reals of memory that the built-in laws keep per contact: see >>laws. The hysteretic law's comes
+   after those of friction and rolling. */
+DEM_INLINE int demi_memory_shear(int tangent, int rolling) {
     return rolling == DEM_ROLLING_EPSD ? 7 : tangent >= DEM_TANGENT_MINDLIN ? 4
         : tangent == DEM_TANGENT_SPRING ? 3 : 0;
+}
+DEM_INLINE int demi_memory_of(int normal, int tangent, int rolling) {
+    return demi_memory_shear(tangent, rolling) + (normal == DEM_NORMAL_HYSTERETIC);
 }
 
 /* --- the near list: candidates that touch or may within near_span, were they to meet head-on at
@@ -3787,8 +3840,10 @@ static void demi_effects(dem_world *w) {
     if (w->rolling == DEM_ROLLING_AUTO) w->rolling = DEM_ROLLING_EPSD;
     if (!friction) w->tangent = DEM_TANGENT_NONE;
     if (!rolling) w->rolling = DEM_ROLLING_NONE;
-    w->memory_stride = demi_memory_of(w->tangent, w->rolling);
+    w->memory_stride = demi_memory_of(w->normal, w->tangent, w->rolling);
     w->vector_mask = 0x77;
+    if (w->normal == DEM_NORMAL_HYSTERETIC)     /* a depth has no direction */
+        w->vector_mask &= ~(1 << demi_memory_shear(w->tangent, w->rolling));
     if (w->desc.law) {
         w->memory_stride = w->desc.law_memory;
         w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
@@ -4142,7 +4197,8 @@ static int demi_wall_resolve(demi_wall_contact *c, int count, dem_real r) {
    nothing else. demi_law is the built-in one; its first arguments are literals where a kernel is
    specialised, so that what a scene does not call for is not there. It has no branches that depend
    on the contact: compilers turn it into vector code. memory: [0..2] spring or force in the tangent
-   plane, [3] kt of the last step; [4..6] rolling moment. `out` gets the energies of the ledger,
+   plane, [3] kt of the last step; [4..6] rolling moment; after those in use, the hysteretic law's
+   depth. `out` gets the energies of the ledger,
    when there is one. >>add-law: (1) an enum value in >>api, (2) a case here, (3) its memory in
    demi_effects,
    (4) a sentence in tests/, (5) a line in docs/theory.md.
@@ -4156,8 +4212,38 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
     const dem_vec3 n = c->normal, v = c->slip;
     dem_real root, fn, elastic, kt, ct, limit, kn;
 
-    /* normal: Hertz F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], or linear F = kn d + cn v */
-    if (normal == DEM_NORMAL_HERTZ) {
+    /* normal: Hertz F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], or linear F = kn d + cn v, or
+       hysteretic [FEN] eq 2.41 to 2.49:
+           F = kun d - (kun - kn) D,  D: depth, N/m and m
+       loading (d = D): F = kn d; un- and reloading: slope kun, zero at d0 = (1 - kn/kun) D [2.44];
+       pulling: F = -kad d, on which D shrinks with d, so that reloading from any point of it, at
+       slope kun, meets kn d again at the D that belongs to that point. D is all there is to
+       remember: the larger of D and d, but at most d (kun + kad)/(kun - kn). The branches meet at
+       d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun. That is eq 2.49
+       with kad as a size; with the negative slope the seed defines it as, its 2.48 and 2.49 have
+       the wrong sign, and its text calls d_ad a deformation and a force. Friction is what
+       F + kad d can hold, which is 0 at the pulling line; the seed takes |F|, which is 0 where
+       nothing pulls or pushes and large where the two are torn apart.
+       Along the slope kun nothing is lost: a grain at rest on one swings there for ever unless
+       normal_damping calms it. Stored is F^2/(2 kun); a D that changes dissipates F (1 - kn/kun) dD, summed exactly along
+       either line. Tests: "a hysteretic contact dissipates the area of its loop". */
+    dem_real hold = 0, sag = 0;
+    if (normal == DEM_NORMAL_HYSTERETIC) {
+        const int place = demi_memory_shear(tangent, rolling);
+        const dem_real kun = c->kun, kad = c->kad, soft = kun - c->kn, before = memory[place];
+        const dem_real loaded = c->overlap > before ? c->overlap : before;
+        const dem_real most = c->overlap*(kun + kad)/(soft + DEMI_TINY);
+        const dem_real depth = most < loaded ? most : loaded;
+        kn = c->kn;
+        kt = c->kt;
+        ct = c->ct;
+        memory[place] = depth;
+        elastic = kun*c->overlap - soft*depth;
+        fn = elastic + c->cn*c->closing_speed;
+        hold = kad*c->overlap;
+        sag = soft/(2*kun)*(kn*(loaded*loaded - before*before) +
+                            kad*soft/(kun + kad)*(loaded*loaded - depth*depth));
+    } else if (normal == DEM_NORMAL_HERTZ) {
         root = DEMI_SQRT(c->overlap);
         kn = c->kn*root;
         elastic = kn*c->overlap;
@@ -4173,11 +4259,16 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
         fn = elastic + c->cn*c->closing_speed;
     }
     limit = fn > 0 ? fn : 0;
-    fn = clipped ? limit : fn;                  /* no pull at the end of a contact */
+    if (normal == DEM_NORMAL_HYSTERETIC) {      /* the dashpot may not pull, adhesion may */
+        const dem_real least = elastic < 0 ? elastic : 0;
+        limit = fn + hold > 0 ? fn + hold : 0;
+        fn = clipped && fn < least ? least : fn;
+    } else fn = clipped ? limit : fn;           /* no pull at the end of a contact */
     push->normal = fn;
     if (ledger) {
-        out->dashpot = (fn - elastic)*c->closing_speed*c->dt;
-        out->elastic = normal == DEM_NORMAL_HERTZ ? elastic*c->overlap*2/5 : elastic*c->overlap/2;
+        out->dashpot = (fn - elastic)*c->closing_speed*c->dt + sag;
+        out->elastic = normal == DEM_NORMAL_HYSTERETIC ? elastic*elastic/(2*c->kun)
+            : normal == DEM_NORMAL_HERTZ ? elastic*c->overlap*2/5 : elastic*c->overlap/2;
         out->shear_work = out->slide = out->shear_stored = out->roll = 0;
     }
 
@@ -4371,7 +4462,7 @@ DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int
     int e;
     r.normal = normal; r.tangent = tangent; r.rolling = rolling;
     r.uniform = uniform; r.ledger = ledger && !law; r.law = law;
-    r.keep = law ? w->memory_stride : demi_memory_of(tangent, rolling);
+    r.keep = law ? w->memory_stride : demi_memory_of(normal, tangent, rolling);
     r.turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
     r.parting = law || rolling != DEM_ROLLING_NONE || (r.turning && !uniform);
     r.clipped = w->desc.tension == DEM_TENSION_CLIPPED;
@@ -4498,6 +4589,7 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
         c.rolling_friction = r->coef[DEMI_MU_ROLL];
         c.r_eff = r->coef[DEMI_R_EFF];
         c.m_eff = r->m_eff;
+        c.kun = r->coef[DEMI_K_UN]; c.kad = r->coef[DEMI_K_AD];
     } else {
         c.kn = t->coef[DEMI_KN][q]; c.cn = t->coef[DEMI_CN][q];
         c.kt = t->coef[DEMI_KT][q]; c.ct = t->coef[DEMI_CT][q];
@@ -4505,6 +4597,8 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
         c.rolling_friction = t->coef[DEMI_MU_ROLL][q];
         c.r_eff = t->coef[DEMI_R_EFF][q];
         c.m_eff = t->coef[DEMI_M_EFF][q];
+        c.kun = r->normal == DEM_NORMAL_HYSTERETIC ? t->coef[DEMI_K_UN][q] : 0;
+        c.kad = r->normal == DEM_NORMAL_HYSTERETIC ? t->coef[DEMI_K_AD][q] : 0;
     }
 #define DEMI_RECALL(e) m[e] = e < r->keep ? t->memory[e][q] : 0
 #define DEMI_KEEP(e) if (e < r->keep) t->memory[e][q] = m[e]*touch
@@ -4560,7 +4654,8 @@ DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_span *span, con
     for (q = 0; q < r->keep; q++)
         demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
     for (q = 0; q < DEMI_PAIR_COLUMNS && !r->uniform; q++)
-        demi_row_copy(t->coef[q], span->coef + (size_t)q*span->stride, full);
+        if (r->normal == DEM_NORMAL_HYSTERETIC || q < DEMI_K_UN || q > DEMI_K_AD)
+            demi_row_copy(t->coef[q], span->coef + (size_t)q*span->stride, full);
     demi_tile_fetch(w, span, full, r, t);
     for (q = 0; q < full; q += DEMI_LANES) {
         DEMI_VECTOR
@@ -4709,7 +4804,11 @@ DEMI_CLONES static void demi_pairs_own_law(dem_world *w, int d) {
     X(linear,               LINEAR, NONE,    NONE, 1, 0, "linear, alike") \
     X(linear_mixed,         LINEAR, NONE,    NONE, 0, 0, "linear, mixed") \
     X(linear_spring,        LINEAR, SPRING,  NONE, 1, 0, "linear + spring, alike") \
-    X(linear_spring_mixed,  LINEAR, SPRING,  NONE, 0, 0, "linear + spring, mixed")
+    X(linear_spring_mixed,  LINEAR, SPRING,  NONE, 0, 0, "linear + spring, mixed") \
+    X(hysteretic,           HYSTERETIC, NONE,   NONE, 1, 0, "hysteretic, alike") \
+    X(hysteretic_mixed,     HYSTERETIC, NONE,   NONE, 0, 0, "hysteretic, mixed") \
+    X(hysteretic_spring,    HYSTERETIC, SPRING, NONE, 1, 0, "hysteretic + spring, alike") \
+    X(hysteretic_spring_mixed, HYSTERETIC, SPRING, NONE, 0, 0, "hysteretic + spring, mixed")
 #define DEMI_KERNEL_DEFINE(NAME, NORMAL, TANGENT, ROLLING, UNIFORM, LEDGER, TEXT) \
     DEMI_CLONES static void demi_pairs_##NAME(dem_world *w, int d) { \
         demi_pairs(w, d, DEM_NORMAL_##NORMAL, DEM_TANGENT_##TANGENT, DEM_ROLLING_##ROLLING, \
@@ -4814,6 +4913,7 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     c->m_eff = w->mass[k->body];
     c->kn = k->coef[DEMI_KN]; c->cn = k->coef[DEMI_CN]; c->kt = k->coef[DEMI_KT];
     c->ct = k->coef[DEMI_CT];
+    c->kun = k->coef[DEMI_K_UN]; c->kad = k->coef[DEMI_K_AD];
     c->friction = k->coef[DEMI_MU]; c->friction_static = k->coef[DEMI_MU_STATIC];
     c->rolling_friction = k->coef[DEMI_MU_ROLL];
     c->material_a = w->body_material[k->body];
@@ -6969,7 +7069,7 @@ DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char 
    checks all of that first, then makes room, then copies: until then the world is as it was.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 2 };
+enum { DEMI_CHECKPOINT_VERSION = 3 };
 
 /* from: reading */
 typedef struct demi_stream { FILE *file; const char *from; uint64_t sum; } demi_stream;
@@ -7402,7 +7502,8 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     if (d->law_vectors < 0 || 3*d->law_vectors > d->law_memory)
         return "dem_world_create: law_vectors is more than fits into law_memory, must be at most "
             "law_memory/3";
-    if ((int)d->normal_law < 0 || d->normal_law > DEM_NORMAL_LINEAR || (int)d->tangent_law < 0 ||
+    if ((int)d->normal_law < 0 || d->normal_law > DEM_NORMAL_HYSTERETIC ||
+        (int)d->tangent_law < 0 ||
         d->tangent_law > DEM_TANGENT_MINDLIN_RESCALED || (int)d->rolling_law < 0 ||
         d->rolling_law > DEM_ROLLING_EPSD)
         return "dem_world_create: a contact law is unknown, must be one of the enum values; start "
@@ -7561,7 +7662,9 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     fprintf(out, "effects    normal: %s%s\n", w->desc.law ? "your own law"
-            : w->normal == DEM_NORMAL_HERTZ ? "Hertz" : "linear",
+            : w->normal == DEM_NORMAL_HERTZ ? "Hertz"
+            : w->normal == DEM_NORMAL_LINEAR ? "linear"
+            : "hysteretic (8 bytes of memory per candidate)",
             w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped" : "");
     fprintf(out, "           tangential: %s%s\n", tangents[w->tangent],
             w->tangent == DEM_TANGENT_NONE
