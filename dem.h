@@ -4886,8 +4886,12 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body);
     const dem_vec3 at = demi_add(demi_at(x), demi_scale(n, r));
     const dem_vec3 arm = demi_sub(at, wall->pose.position);
+    /* where the contact was in the middle of the step: taken where it is now instead, a grain that
+       is carried round creeps outwards by w^2 R dt/2 */
+    const dem_vec3 was = demi_sub(demi_add(demi_at(x), demi_scale(demi_add(n, normal_before), r/2)),
+                                  demi_scale(demi_at(w->half_vel + 4*k->body), dt/2));
     const dem_vec3 mid = demi_add(wall->mid.velocity, demi_cross(wall->mid.spin,
-        demi_sub(at, wall->mid.position)));
+        demi_sub(was, wall->mid.position)));
     const dem_vec3 spin_step = demi_at(w->half_spin + 4*k->body);
     dem_vec3 u;
     *surface = demi_add(wall->pose.velocity, demi_cross(wall->pose.spin, arm));

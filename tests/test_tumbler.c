@@ -173,9 +173,9 @@ int main(int argc, char **argv) {
                                                        pose.position));
             CHECK_NEAR(first.x, 0.2, 1e-3);
             CHECK_NEAR(first.y, 0.1, 1e-3);
-            CHECK_NEAR(last.x, (double)first.x, 1e-5);   /* of 44 m (or 31 m) it was carried */
-            CHECK_NEAR(last.y, (double)first.y, 1e-5);
-            CHECK_NEAR(last.z, (double)first.z, 1e-5);
+            CHECK_NEAR(last.x, (double)first.x, 3e-5);   /* second order: 1e-5 at this dt, of 140 m */
+            CHECK_NEAR(last.y, (double)first.y, 3e-5);
+            CHECK_NEAR(last.z, (double)first.z, 3e-5);
             dem_world_destroy(world);
         }
     }
