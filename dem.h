@@ -589,6 +589,47 @@ DEM_API dem_wall dem_mesh_add(dem_world *world, dem_material material, const dem
 DEM_API dem_wall dem_grains_wall_add(dem_world *world, dem_material material, int count,
                                      const dem_real *positions,
                                      dem_real radius, dem_real share);
+
+/* A sieve: a plane with holes, whose rows go on without end, or as far as a disc reaches. What a
+   grain costs does not depend on how many holes there are. */
+typedef enum dem_sieve_kind {
+    DEM_SIEVE_NONE = 0,
+    DEM_SIEVE_WIRES,          /* square weave of round wires */
+    DEM_SIEVE_BARS,           /* parallel round wires, across `along` */
+    DEM_SIEVE_SQUARE,         /* plate with square holes */
+    DEM_SIEVE_ROUND,          /* plate with round holes */
+    DEM_SIEVE_SLOTS,          /* plate with slots, longer along `along` */
+    DEM_SIEVE_REDUCED         /* [FEN] 4.3.3: a plane; a grain whose centre is above the reduced part
+                                 of a square hole falls through, without touching. Cheaper, and never
+                                 blinded; but what passes is what clearance says */
+} dem_sieve_kind;
+typedef struct dem_sieve_desc {
+    dem_sieve_kind kind;      /* required */
+    dem_vec3 point;           /* m, middle of a hole, half way through */
+    dem_vec3 normal;          /* across the sieve; 0: along z */
+    dem_vec3 along;           /* rows of holes go this way; 0: along x, or whatever is across */
+    dem_real aperture;        /* m, required, > 0: clear width, side or diameter of a hole */
+    dem_real bar;             /* m, required, > 0: diameter of a wire, or solid between two holes */
+    dem_real length;          /* m, of slots; 0: without end */
+    dem_real thickness;       /* m, of plates; 0: a sheet with sharp rims */
+    dem_real lift;            /* m, between the axes of the two layers of wires; 0: all in one plane,
+                                 bar: laid on each other. Real wires wind between the two */
+    int staggered;            /* 1: round holes in a triangular pattern */
+    dem_real radius;          /* m, of the disc it is cut from; 0: without end */
+    int model;                /* reduced: 1 (or 0): the whole grain above the reduced hole, 2: its
+                                 centre only */
+    dem_real clearance;       /* reduced: zeta of eq 4.20 or 4.21, 0 (open) to 1 (closed) */
+} dem_sieve_desc;
+static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = {DEM_SIEVE_NONE, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+                                                   0, 0, 0, 0, 0, 0, 0, 0, 0};
+#define DEM_SIEVE_DESC DEM_SIEVE_DESC_ZERO
+DEM_API dem_wall dem_sieve_add(dem_world *world, dem_material material, const dem_sieve_desc *desc);
+/* Grains that blind a sieve of wires or a plate: stuck in a hole, that is touching it on opposite
+   sides, with the wedge between the two so narrow that friction holds it. Those moving faster than
+   speed (m/s; 0: any) against the sieve are not counted. -1 with a sentence when there is no list of
+   contacts (see dem_contacts_get) or the wall is no sieve. */
+DEM_API int dem_sieve_blinded(const dem_world *world, dem_wall sieve, dem_real speed);
+
 /* Centres (count x 3, written to out, which may be null) of a drum lined with touching spheres
    along z: [MIL] Algorithm 5.2 (shell) and 5.3 (ends: hexagonal sheet at +-length/2, layers
    inside). Returns count. */
@@ -1127,13 +1168,15 @@ typedef struct demi_domain {
 } demi_domain;
 
 enum { DEMI_WALL_NONE = 0, DEMI_WALL_PLANE, DEMI_WALL_CYLINDER, DEMI_WALL_PROFILE, DEMI_WALL_MESH,
-      DEMI_WALL_GRAINS };
+      DEMI_WALL_GRAINS, DEMI_WALL_SIEVE,
+      DEMI_SIEVE_MOST = 12 };                   /* contacts of a grain with a sieve */
 
 typedef struct demi_wall {
     int kind, material;            /* DEMI_WALL_..., index */
     int inside;                    /* cylinder */
     dem_edge_rule rule;
     dem_real radius, share;        /* cylinder; grains */
+    dem_sieve_desc sieve;
     int vertex_count, element_count;
     dem_real *vertices;            /* vertex_count x 3, in the wall's own frame */
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
@@ -2501,6 +2544,64 @@ DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int co
     return demi_wall_adopt(w, "dem_grains_wall_add", &wall);
 }
 
+DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
+    demi_wall wall;
+    dem_wall none;
+    const char *bad = 0, *limit = "";
+    dem_real value = 0;
+    dem_vec3 n = d->normal, t = d->along;
+    dem_real *R = wall.home.rotation;
+    const int plate = d->kind == DEM_SIEVE_SQUARE || d->kind == DEM_SIEVE_ROUND ||
+                      d->kind == DEM_SIEVE_SLOTS;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
+#define DEMI_BAD(field, good, text) \
+    if (!bad && (!demi_finite((dem_real)d->field) || !(good))) { \
+        bad = #field; value = (dem_real)d->field; limit = text; \
+    }
+    DEMI_BAD(kind, (int)d->kind > 0 && d->kind <= DEM_SIEVE_REDUCED, "a DEM_SIEVE_ value (required)")
+    DEMI_BAD(aperture, d->aperture > 0, "> 0 m (required)")
+    DEMI_BAD(bar, d->bar > 0, "> 0 m (required)")
+    DEMI_BAD(length, DEMI_ABS(d->length) <= 0 || (d->kind == DEM_SIEVE_SLOTS &&
+             d->length >= d->aperture), "0, or of slots at least the aperture, in m")
+    DEMI_BAD(thickness, DEMI_ABS(d->thickness) <= 0 || (plate && d->thickness > 0),
+             ">= 0 m, and 0 but for plates")
+    DEMI_BAD(lift, DEMI_ABS(d->lift) <= 0 || (d->kind == DEM_SIEVE_WIRES && d->lift > 0),
+             ">= 0 m, and 0 but for a weave of wires")
+    DEMI_BAD(radius, d->radius >= 0, ">= 0 m")
+    DEMI_BAD(model, d->model >= 0 && d->model <= 2, "1 or 2")
+    DEMI_BAD(clearance, d->clearance >= 0 && d->clearance <= 1, "0 to 1")
+#undef DEMI_BAD
+    if (bad) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: %s is %g, must be %s; start from "
+                  "DEM_SIEVE_DESC and set what differs", bad, (double)value, limit);
+        return none;
+    }
+    if (!demi_finite3(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: point, normal or along is not finite; "
+                  "check how it was computed");
+        return none;
+    }
+    n = demi_dot(n, n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
+    t = demi_sub(t, demi_scale(n, demi_dot(t, n)));
+    if (!(demi_dot(t, t) > 0)) {                /* not said, or across the sieve: x, else y */
+        const dem_vec3 x = DEMI_ABS(n.x) < DEM_R(0.9) ? demi_v(1, 0, 0) : demi_v(0, 1, 0);
+        t = demi_sub(x, demi_scale(n, demi_dot(x, n)));
+    }
+    t = demi_unit(t);
+    R[0] = t.x; R[3] = t.y; R[6] = t.z;
+    R[2] = n.x; R[5] = n.y; R[8] = n.z;
+    t = demi_cross(n, t);
+    R[1] = t.x; R[4] = t.y; R[7] = t.z;
+    wall.sieve = *d;
+    wall.element_count = 1;
+    wall.radius = d->radius;
+    wall.home.position = wall.motion.point = d->point;
+    wall.motion.axis = n;
+    wall.reach = d->radius > 0 ? d->radius + d->thickness + d->lift + d->bar : -1;
+    return demi_wall_adopt(w, "dem_sieve_add", &wall);
+}
+
 /* [MIL] Algorithm 5.2: circles of touching spheres at R - r, layers r sqrt(3) apart, every other
    one turned by half a place. Algorithm 5.3: hexagonal sheets over both ends, spheres that show at
    least in part. Printed: layers from z = -L/2 + r(1 + z sqrt 3) with z itself stepping by r sqrt
@@ -3527,12 +3628,17 @@ static int demi_cross_index(dem_world *w) {
     return 1;
 }
 
-/* Writes the coefficients of a grain's contact with a wall. */
+/* Writes the coefficients of a grain's contact with a wall. On a round wire the two radii of Hertz's
+   contact differ, r and r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's ellipse
+   for a wire as thick as the grain, 7 % for one of a fifth. */
 static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
     const demi_wall *wall = &w->walls[c->wall];
-    const double r = (double)w->pos[4*c->body + 3];
+    const double r = (double)w->pos[4*c->body + 3], q = (double)wall->sieve.bar/2;
     const double r_eff = wall->kind == DEMI_WALL_GRAINS
-        ? r*(double)wall->radius/(r + (double)wall->radius) : r;
+        ? r*(double)wall->radius/(r + (double)wall->radius)
+        : wall->kind == DEMI_WALL_SIEVE && (wall->sieve.kind == DEM_SIEVE_WIRES ||
+                                            wall->sieve.kind == DEM_SIEVE_BARS)
+        ? r*sqrt(q/(r + q)) : r;
     const int grains = wall->kind == DEMI_WALL_GRAINS;
     /* there a grain of a wall has mass */
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
@@ -3540,6 +3646,13 @@ static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
                       (double)w->mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
 }
 
+/* Contacts that one wall candidate may give: a sieve is a candidate of its own. */
+static int demi_wall_most(const dem_world *w) {
+    int i, most = 1;
+    for (i = 0; i < w->wall_count; i++) if (w->walls[i].kind == DEMI_WALL_SIEVE)
+            most = DEMI_SIEVE_MOST;
+    return most;
+}
 /* Contacts with walls that still last, from the last list (by slot) into the domains of the new
    one. */
 static int demi_wall_contacts_move(dem_world *w, int stride) {
@@ -3565,7 +3678,7 @@ static int demi_wall_contacts_move(dem_world *w, int stride) {
         d = (int)((int64_t)c.body*w->domain_count/w->count);
         while (c.body >= w->domains[d].end) d++;
         while (c.body < w->domains[d].begin) d--;
-        /* cannot be: every contact is a candidate */
+        /* cannot be: every contact is of a candidate */
         if (w->domains[d].wall_contacts == stride) continue;
         to = w->wall_now + d*stride;
         for (i = w->domains[d].wall_contacts++; i > 0 && to[i - 1].body > c.body; i--)
@@ -3972,7 +4085,7 @@ static dem_result demi_rebuild(dem_world *w) {
         if (again && !demi_wall_lists_reserve(w, w->wall_stride/2*3 +
                                               64)) return demi_no_memory(w, "dem_world_step");
     } while (again);
-    if (!demi_wall_contacts_move(w, w->wall_stride)) return demi_no_memory(w, "dem_world_step");
+    if (!demi_wall_contacts_move(w, w->wall_stride*demi_wall_most(w))) return demi_no_memory(w, "dem_world_step");
     if (demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
     while (w->slot_pending >= 0) {  /* slots freed since the last list may be used again */
@@ -4058,6 +4171,190 @@ static dem_vec3 demi_segment_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, int *feat
     return demi_sub(p, demi_scale(normal, demi_dot(normal, demi_sub(p, a))/ll));
 }
 
+/* --- sieves: a sphere against all of a sieve, in the sieve's frame: z across, a hole in the
+       middle, wires and holes in rows along x and y. Only what is near is looked at, found from the
+       sphere's place: the cost does not depend on how many holes there are. Every wire, and every
+       side of every hole, has an element number of its own, for contact memory.
+         wires   axes at (i + 1/2)(aperture + bar): distance to the axis of each within reach,
+                 exact for straight wires
+         plates  above the solid part: the face. Above a hole: the nearest point of each of its
+                 sides (square, slots), which is a rim or, within the thickness, a wall. Round holes:
+                 the nearest point and the one across, so that a grain too large for the hole sits on
+                 it. Exact for one contact; the inner corners of a square hole need no more
+       Where two wires cross, or two rims meet, a grain touches both at what is one place. demi_share
+       sorts that out. Tests: tests/test_sieve.c. --- */
+enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1 };
+
+/* Half of how thick it is. */
+static dem_real demi_sieve_half(const dem_sieve_desc *s) {
+    return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS ? (s->bar + s->lift)/2
+        : s->thickness/2;
+}
+/* A number that tells rows and holes apart; far ones repeat, which does no harm. */
+static int32_t demi_sieve_number(double i, double j, int side) {
+    const int32_t a = (int32_t)(i - floor(i/16384)*16384), b = (int32_t)(j - floor(j/8192)*8192);
+    return (int32_t)(((uint32_t)a << 16) | ((uint32_t)b << 3) | (uint32_t)side);
+}
+/* Adds the contact with what lies `edge` around foot, if there is one. */
+static int demi_sieve_put(demi_wall_contact *out, int count, int32_t element, dem_vec3 x, dem_real r,
+                          dem_vec3 foot, dem_real edge) {
+    const dem_vec3 d = demi_sub(foot, x);
+    const dem_real l = demi_length(d), overlap = r + edge - l;
+    demi_wall_contact *c = &out[count];
+    if (!(overlap > 0) || count == DEMI_SIEVE_MOST) return count;
+    c->element = element;
+    c->feature = 1;
+    c->normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
+    c->point = demi_add(x, demi_scale(c->normal, l - edge));
+    c->overlap = overlap;
+    c->share = 1;
+    return count + 1;
+}
+/* Wires of one set: across x (set 0) or across y (set 1). */
+static int demi_sieve_wires(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real r,
+                            demi_wall_contact *out, int count) {
+    const dem_real q = s->bar/2, h = set ? -s->lift/2 : s->lift/2, pitch = s->aperture + s->bar;
+    const dem_real u = set ? x.y : x.x, v = set ? x.x : x.y, R = s->radius;
+    const dem_real far2 = (r + q)*(r + q) - (x.z - h)*(x.z - h);
+    const double home = floor((double)(u/pitch));
+    int k;
+    if (!(far2 > 0)) return count;
+    for (k = -2; k <= 3; k++) {                 /* a grain far larger than holes lies on these */
+        const dem_real at = (dem_real)(home + k + 0.5)*pitch, off = u - at;
+        dem_real along = v;
+        if (off*off >= far2) continue;
+        if (R > 0) {                            /* ends of the wire */
+            const dem_real end = R*R > at*at ? DEMI_SQRT(R*R - at*at) : 0;
+            if (!(end > 0)) continue;
+            along = v > end ? end : v < -end ? -end : v;
+        }
+        count = demi_sieve_put(out, count, demi_sieve_number(home + k, 0, set), x, r,
+                               set ? demi_v(along, at, h) : demi_v(at, along, h), q);
+    }
+    return count;
+}
+static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_wall_contact *out) {
+    const dem_real up = x.z >= 0 ? DEM_R(1) : DEM_R(-1);
+    out->element = DEMI_SIEVE_FACE;
+    out->feature = 0;
+    out->normal = demi_v(0, 0, -up);
+    out->point = demi_v(x.x, x.y, up*s->thickness/2);
+    out->overlap = r + s->thickness/2 - up*x.z;
+    out->share = 1;
+    return out->overlap > 0;
+}
+static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_wall_contact *out) {
+    const dem_real half = s->thickness/2, z = x.z > half ? half : x.z < -half ? -half : x.z;
+    const dem_real a = s->aperture/2, R = s->radius, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const int endless = s->kind == DEM_SIEVE_SLOTS && !(s->length > 0);
+    dem_real step[2], wide[2], off[2], mid[2];
+    double i[2];
+    int k, side, count = 0;
+    if (R > 0 && S > R)                         /* off the disc: its edge */
+        return demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r, demi_v(x.x*R/S, x.y*R/S, z), 0);
+    if (s->kind == DEM_SIEVE_ROUND) {
+        const dem_real pitch = s->aperture + s->bar;
+        const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
+        dem_real best = -1, l;
+        dem_vec3 way, centre = x, to;
+        int32_t number = 0;
+        for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
+            const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
+            const double ix = floor((double)(x.x/pitch - shift) + 0.5);
+            const double iy = floor((double)(x.y/rows - shift) + 0.5);
+            const dem_vec3 c = demi_v(((dem_real)ix + shift)*pitch, ((dem_real)iy + shift)*rows, 0);
+            l = (x.x - c.x)*(x.x - c.x) + (x.y - c.y)*(x.y - c.y);
+            if (best >= 0 && l >= best) continue;
+            best = l;
+            centre = c;
+            number = demi_sieve_number(ix, iy, 4*k);
+        }
+        if (best >= a*a) return demi_sieve_face(s, x, r, out);
+        l = DEMI_SQRT(best);
+        way = l > 0 ? demi_v((x.x - centre.x)/l, (x.y - centre.y)/l, 0) : demi_v(1, 0, 0);
+        for (side = 0; side < 2; side++) {      /* nearest, and across */
+            to = demi_add(demi_v(centre.x, centre.y, z), demi_scale(way, side ? -a : a));
+            if (R > 0 && to.x*to.x + to.y*to.y > R*R) continue;
+            count = demi_sieve_put(out, count, number + side, x, r, to, 0);
+        }
+        return count;
+    }
+    wide[0] = s->kind == DEM_SIEVE_SLOTS ? s->length/2 : a;
+    wide[1] = a;
+    for (k = 0; k < 2; k++) {
+        const dem_real at = k ? x.y : x.x;
+        step[k] = 2*wide[k] + s->bar;
+        i[k] = k == 0 && endless ? 0 : floor((double)(at/step[k]) + 0.5);
+        mid[k] = (dem_real)i[k]*step[k];
+        off[k] = k == 0 && endless ? 0 : at - mid[k];
+    }
+    if ((!endless && DEMI_ABS(off[0]) >= wide[0]) || DEMI_ABS(off[1]) >= wide[1])
+        return demi_sieve_face(s, x, r, out);
+    for (side = endless ? 2 : 0; side < 4; side++) {
+        const dem_real at = mid[side/2] + (side & 1 ? -wide[side/2] : wide[side/2]);
+        const dem_vec3 to = side < 2 ? demi_v(at, x.y, z) : demi_v(x.x, at, z);
+        if (R > 0 && to.x*to.x + to.y*to.y > R*R) continue;
+        count = demi_sieve_put(out, count, demi_sieve_number(i[0], i[1], side), x, r, to, 0);
+    }
+    return count;
+}
+/* Contacts that are in truth one, where wires cross or rims meet: each counts as far as its point
+   stands out of the plane that touches at the other, towards the grain. L_a: how far a's point
+   stands out of b's plane.
+       share_a = max(L_a/(L_a + L_b), min(1, L_a/overlap_a))
+   On top of a wire the one across is not felt (its L is 0), half way between the two each bears
+   half, and in the corner of a hole, where L is far more than the overlap, each bears all: no jump on
+   the way. The rule for meshes (demi_wall_resolve) drops outright what lies in the plane of a face;
+   here neither is a face. */
+static void demi_share(demi_wall_contact *c, int count) {
+    int a, b;
+    for (a = 0; a < count; a++)
+        for (b = a + 1; b < count; b++) {
+            const dem_vec3 d = demi_sub(c[b].point, c[a].point);
+            dem_real la = demi_dot(c[b].normal, d), lb = -demi_dot(c[a].normal, d), sa, sb;
+            la = la > 0 ? la : 0;
+            lb = lb > 0 ? lb : 0;
+            sa = la + lb > 0 ? la/(la + lb) : 1;
+            sb = 1 - sa;
+            la /= c[a].overlap;
+            lb /= c[b].overlap;
+            c[a].share *= DEMI_MAX(sa, DEMI_MIN(la, DEM_R(1)));
+            c[b].share *= DEMI_MAX(sb, DEMI_MIN(lb, DEM_R(1)));
+        }
+}
+/* [FEN] eq 4.20 to 4.25: 1 when a grain over (x, y) falls through. Half a hole is w, the reduced
+   one w - b, b = zeta (w - r) or zeta w; model 1 wants the grain's edge within, model 2 its centre
+   and r < w. The seed leaves open what "c_x" does for grains that fit in no hole: here they never
+   fall. */
+static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
+    const dem_real w = s->aperture/2, pitch = s->aperture + s->bar;
+    const dem_real room = (1 - s->clearance)*(s->model == 2 ? w : w - r);
+    const dem_real u = x.x - (dem_real)floor((double)(x.x/pitch) + 0.5)*pitch;
+    const dem_real v = x.y - (dem_real)floor((double)(x.y/pitch) + 0.5)*pitch;
+    return r < w && DEMI_ABS(u) < room && DEMI_ABS(v) < room;
+}
+/* All contacts of a sphere at x of radius r with a sieve: at most DEMI_SIEVE_MOST; body and wall are
+   the caller's to fill in. One of share 0 pushes nobody: a grain under way through a reduced hole.
+   */
+static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_wall_contact *out) {
+    int count = 0;
+    switch (s->kind) {
+    case DEM_SIEVE_WIRES:
+        count = demi_sieve_wires(s, 0, x, r, out, count);
+        count = demi_sieve_wires(s, 1, x, r, out, count);
+        break;
+    case DEM_SIEVE_BARS: count = demi_sieve_wires(s, 0, x, r, out, count); break;
+    case DEM_SIEVE_REDUCED:
+        if (s->radius > 0 && x.x*x.x + x.y*x.y > s->radius*s->radius) return 0;
+        count = demi_sieve_face(s, x, r, out);
+        if (count && demi_sieve_passes(s, x, r)) out->share = 0;
+        return count;
+    default: count = demi_sieve_plate(s, x, r, out);
+    }
+    if (count > 1) demi_share(out, count);
+    return count;
+}
+
 /* One sphere against one element, all in the wall's frame. Fills in normal (grain -> wall), point
    and feature; answers the overlap (negative: apart). */
 static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
@@ -4077,6 +4374,12 @@ static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, 
         *point = demi_v(d.x*wall->radius, d.y*wall->radius, x.z);
         *normal = wall->inside ? d : demi_scale(d, -1);
         return wall->inside ? r + l - wall->radius : r + wall->radius - l;
+    case DEMI_WALL_SIEVE:  /* the sheet it lies in, holes or not: for candidates. See demi_sieve */
+        l = DEMI_ABS(x.z) - demi_sieve_half(&wall->sieve);
+        if (wall->radius > 0) l = DEMI_MAX(l, DEMI_SQRT(x.x*x.x + x.y*x.y) - wall->radius);
+        *normal = demi_v(0, 0, x.z > 0 ? DEM_R(-1) : DEM_R(1));
+        *point = demi_v(x.x, x.y, 0);
+        return r - l;
     case DEMI_WALL_PROFILE:
         x.z = 0;
         demi_wall_corners(wall, element, c);
@@ -4926,13 +5229,14 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     c->user = w->desc.law_user;
 }
 
-/* Touching elements of one wall for one grain, from its candidates first .. last - 1. */
-static int demi_wall_collect(const dem_world *w, int d, int first, int last,
+/* Touching elements of one wall for a sphere at `at` of radius r, from the candidates first .. last
+   - 1 of the body it is, or is part of. */
+static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at, dem_real r,
                              demi_wall_contact *out) {
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
     const int id = w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
-    const dem_real r = w->pos[4*body + 3], *R = wall->pose.rotation;
+    const dem_real *R = wall->pose.rotation;
     /* as far as any grain and any wall have come since the list was made, and a little for rounding
        */
     const dem_real gone = (dem_real)(w->reach + w->wall_reach) + r/10000;
@@ -4940,7 +5244,17 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last,
     int k, count = 0;
     while (first < last && w->wall_gap[base + first] > gone) first++;
     if (first == last) return 0;
-    x = demi_unturn(R, demi_sub(demi_at(w->pos + 4*body), wall->pose.position));
+    x = demi_unturn(R, demi_sub(at, wall->pose.position));
+    if (wall->kind == DEMI_WALL_SIEVE) {        /* one candidate, as many contacts as there are */
+        count = demi_sieve_touch(&wall->sieve, x, r, out);
+        for (k = 0; k < count; k++) {
+            out[k].body = body;
+            out[k].wall = id;
+            out[k].normal = demi_turn(R, out[k].normal);
+            out[k].point = demi_add(wall->pose.position, demi_turn(R, out[k].point));
+        }
+        return count;
+    }
     for (k = first; k < last; k++) {
         demi_wall_contact *c = &out[count];
         dem_vec3 n, p;
@@ -4986,7 +5300,7 @@ static void demi_walls_respond(dem_world *w, int d) {
         int n;
         for (last = k + 1; last < domain->walls && w->wall_body[base + last] == body &&
              w->wall_id[base + last] == wall;) last++;
-        n = demi_wall_collect(w, d, k, last, out + count);
+        n = demi_wall_collect(w, d, k, last, demi_at(w->pos + 4*body), r, out + count);
         if (!n) continue;
         while (o < domain->wall_contacts && old[o].body < body) o++;
         for (o_end = o; o_end < domain->wall_contacts && old[o_end].body == body;) o_end++;
@@ -5006,6 +5320,10 @@ static void demi_walls_respond(dem_world *w, int d) {
             } else {
                 demi_wall_coefs(w, c);
                 memset(c->memory, 0, sizeof c->memory);
+            }
+            if (w->walls[wall].sieve.kind == DEM_SIEVE_REDUCED) {   /* under way through: to the end */
+                if (from && !(from->share > 0)) c->share = 0;
+                if (!(c->share > 0)) c->overlap = 0;
             }
             demi_wall_contact_fill(w, c, from ? from->normal : c->normal, dt, &contact, &surface);
             if (w->desc.law) w->desc.law(&contact, c->memory, &f);
@@ -6053,6 +6371,48 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
         }
     }
     return n;
+}
+
+/* Contacts of one grain with a sieve follow each other. Stuck: two of them push against each other
+   in the sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
+   |n_z| <= mu |n_xy|. */
+DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed) {
+    const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded", sieve);
+    const demi_wall *wall = id < 0 ? 0 : &w->walls[id];
+    dem_vec3 across;
+    int d, k, j, count = 0;
+    if (!wall) return -1;
+    if (wall->kind != DEMI_WALL_SIEVE) {
+        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded: wall %d is not a sieve; "
+                  "give what dem_sieve_add returned", (int)sieve.id);
+        return -1;
+    }
+    if (!w->list_valid) return demi_list_stale(w, "dem_sieve_blinded");
+    across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_wall_contact *c = w->wall_now + d*w->wall_now_stride;
+        int last = -1;                          /* the grain counted last: once is enough */
+        for (k = 0; k < w->domains[d].wall_contacts; k++) {
+            const int body = c[k].body;
+            const dem_vec3 v = demi_sub(demi_at(w->vel + 4*body), demi_add(wall->pose.velocity,
+                demi_cross(wall->pose.spin, demi_sub(demi_at(w->pos + 4*body),
+                                                     wall->pose.position))));
+            const dem_real nk = demi_dot(c[k].normal, across);
+            const dem_vec3 flat = demi_sub(c[k].normal, demi_scale(across, nk));
+            const dem_real mu = c[k].coef[DEMI_MU_STATIC];
+            if (c[k].wall != id || body == last || (speed > 0 && demi_length(v) > speed) ||
+                nk*nk > mu*mu*(1 - nk*nk)) continue;
+            for (j = k + 1; j < w->domains[d].wall_contacts && c[j].body == body; j++) {
+                const dem_real nj = demi_dot(c[j].normal, across);
+                if (c[j].wall != id || nj*nj > mu*mu*(1 - nj*nj) ||
+                    demi_dot(flat, c[j].normal) >= DEM_R(-0.25)) continue;
+                count++;
+                last = body;
+                break;
+            }
+        }
+    }
+    return count;
 }
 
 /* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;
@@ -7276,8 +7636,17 @@ static uint64_t demi_scene_digest(const dem_world *w) {
         h = demi_hash(h, what, sizeof what);
         h = demi_hash(h, &wall->radius, sizeof(dem_real));
         h = demi_hash(h, &wall->share, sizeof(dem_real));
-        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_CYLINDER)
+        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_CYLINDER ||
+            wall->kind == DEMI_WALL_SIEVE)
             h = demi_hash(h, &wall->first, sizeof wall->first);
+        if (wall->kind == DEMI_WALL_SIEVE) {
+            const dem_sieve_desc *s = &wall->sieve;
+            const int which[] = {(int)s->kind, s->staggered, s->model};
+            const dem_real sizes[] = {s->aperture, s->bar, s->length, s->thickness, s->lift,
+                                      s->radius, s->clearance};
+            h = demi_hash(h, which, sizeof which);
+            h = demi_hash(h, sizes, sizeof sizes);
+        }
         if (wall->corners)
             h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
                           (wall->kind == DEMI_WALL_MESH ? 3 : 2));
