@@ -937,8 +937,10 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
 DEM_API void dem_profile_free(dem_world *world, dem_profile *profile);
 
 /* Pictures for ParaView (VTP, legacy VTK: points with radius, velocity, spin, id, material) and
-   OVITO
-   (extended XYZ). Written to a temporary name and renamed, so that a file is whole or absent. */
+   OVITO (extended XYZ). Where bodies have orientations, these too (VTK: w x y z; XYZ: x y z w) with
+   semi-axes; a cluster is one point for each of its spheres, all of its id. ParaView: Glyph, sphere
+   of radius 1, scaled by semi_axes, turned by orientation (quaternion). Written to a temporary name
+   and renamed, so that a file is whole or absent. */
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path);
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path);
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
@@ -9233,21 +9235,88 @@ static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
     }
 }
 
-enum { DEMI_GRAIN_COLUMNS = 8 };
+enum { DEMI_GRAIN_COLUMNS = 10 };
+
+/* What is drawn of the bodies: the arrays as they are or, where there are clusters and ellipsoids,
+   one row for each part, in arrays of its own. */
+typedef struct demi_drawing {
+    int count;
+    const dem_real *pos, *vel, *spin;              /* count x 4 */
+    const dem_real *orient, *axes;                 /* count x 4; null: no orientations */
+    const uint32_t *slots;
+    const int32_t *materials;
+    dem_real *own;                                 /* count x 20 */
+    int32_t *own_ids;                              /* count x 2 */
+} demi_drawing;
+/* 0 when memory ran out. */
+static int demi_drawing_make(dem_world *w, demi_drawing *g) {
+    dem_real *row;
+    int i, k, e, n = 0;
+    memset(g, 0, sizeof *g);
+    g->count = w->count;
+    g->pos = w->pos; g->vel = w->vel; g->spin = w->spin;
+    g->slots = w->body_slot; g->materials = w->body_material;
+    if (!w->orienting) return 1;
+    g->count = 0;
+    for (i = 0; i < w->count; i++) g->count += demi_parts_count(w, i);
+    g->own = (dem_real *)demi_alloc(w, 20*(size_t)g->count + 1, sizeof(dem_real));
+    g->own_ids = (int32_t *)demi_alloc(w, 2*(size_t)g->count + 1, sizeof(int32_t));
+    if (!g->own || !g->own_ids) return 0;
+    for (i = 0; i < w->count; i++)
+        for (k = 0; k < demi_parts_count(w, i); k++, n++) {
+            const demi_part p = demi_part_of(w, i, k);
+            row = g->own + 4*n;
+            demi_put(row, demi_add(demi_at(w->pos + 4*i), p.centre));
+            row[3] = p.radius;
+            row += 4*(size_t)g->count;
+            demi_put(row, demi_velocity_at(w->vel, w->spin, i, p.centre));
+            row += 4*(size_t)g->count;
+            demi_put(row, demi_at(w->spin + 4*i));
+            row += 4*(size_t)g->count;
+            for (e = 0; e < 4; e++) row[e] = w->orient[4*i + e];
+            row += 4*(size_t)g->count;
+            demi_put(row, p.ball ? demi_v(p.radius, p.radius, p.radius) : p.axes);
+            g->own_ids[n] = (int32_t)w->body_slot[i];
+            g->own_ids[n + g->count] = w->body_material[i];
+        }
+    g->pos = g->own;
+    g->vel = g->own + 4*(size_t)g->count;
+    g->spin = g->own + 8*(size_t)g->count;
+    g->orient = g->own + 12*(size_t)g->count;
+    g->axes = g->own + 16*(size_t)g->count;
+    g->slots = (const uint32_t *)g->own_ids;
+    g->materials = g->own_ids + g->count;
+    return 1;
+}
+static void demi_drawing_free(dem_world *w, demi_drawing *g) {
+    if (!w->orienting) return;
+    demi_free(w, g->own, 20*(size_t)g->count + 1, sizeof(dem_real));
+    demi_free(w, g->own_ids, 2*(size_t)g->count + 1, sizeof(int32_t));
+}
+static dem_result demi_drawing_fails(dem_world *w, const char *call, demi_drawing *g) {
+    demi_drawing_free(w, g);
+    return demi_fail(w, DEM_ERROR_MEMORY, "%s: no memory for the %d parts of the bodies; free some",
+                     call, g->count);
+}
 
 /* What is told of grains; the last two make a cell of every point, so that it is drawn. */
-static void demi_grain_columns(const dem_world *w, demi_column *columns) {
-    dem_bodies b = dem_bodies_get(w);
+/* Answers how many columns there are; the last two hold no data. */
+static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
     const demi_column all[DEMI_GRAIN_COLUMNS] = {
-        {"Points",    "position",     'r', 3, b.count, 4, 0, b.positions},
-        {"PointData", "radius",       'r', 1, b.count, 4, 3, b.positions},
-        {"PointData", "velocity",     'r', 3, b.count, 4, 0, b.velocities},
-        {"PointData", "spin",         'r', 3, b.count, 4, 0, b.spins},
-        {"PointData", "id",           'u', 1, b.count, 1, 0, b.slots},
-        {"PointData", "material",     'i', 1, b.count, 1, 0, b.materials},
-        {"Verts",     "connectivity", 'i', 1, b.count, 1, 0, 0},
-        {"Verts",     "offsets",      'i', 1, b.count, 1, 1, 0}};
-    memcpy(columns, all, sizeof all);
+        {"Points",    "position",     'r', 3, g->count, 4, 0, g->pos},
+        {"PointData", "radius",       'r', 1, g->count, 4, 3, g->pos},
+        {"PointData", "velocity",     'r', 3, g->count, 4, 0, g->vel},
+        {"PointData", "spin",         'r', 3, g->count, 4, 0, g->spin},
+        {"PointData", "id",           'u', 1, g->count, 1, 0, g->slots},
+        {"PointData", "material",     'i', 1, g->count, 1, 0, g->materials},
+        {"PointData", "orientation",  'r', 4, g->count, 4, 0, g->orient},
+        {"PointData", "semi_axes",    'r', 3, g->count, 4, 0, g->axes},
+        {"Verts",     "connectivity", 'i', 1, g->count, 1, 0, 0},
+        {"Verts",     "offsets",      'i', 1, g->count, 1, 1, 0}};
+    const int skip = g->orient ? 0 : 2;
+    memcpy(columns, all, 6*sizeof *all);
+    memcpy(columns + 6, all + 6 + skip, (size_t)(4 - skip)*sizeof *all);
+    return DEMI_GRAIN_COLUMNS - skip;
 }
 
 /* VTK's XML format: the tree tells what there is; the numbers follow as they lie in memory, each
@@ -9291,8 +9360,14 @@ static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
 
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
     demi_column column[DEMI_GRAIN_COLUMNS];
-    demi_grain_columns(world, column);
-    return demi_vtp(world, "dem_vtp_write", path, column, DEMI_GRAIN_COLUMNS, column[0].count, 0);
+    demi_drawing g;
+    dem_result result;
+    int n;
+    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_vtp_write", &g);
+    n = demi_grain_columns(&g, column);
+    result = demi_vtp(world, "dem_vtp_write", path, column, n, column[0].count, 0);
+    demi_drawing_free(world, &g);
+    return result;
 }
 
 /* Legacy VTK, in its binary form: numbers are big-endian. */
@@ -9301,10 +9376,13 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
     demi_out o;
     const char *real = sizeof(dem_real) == 4 ? "float" : "double";
     double time = dem_world_time(world);
-    int i, count, turn = demi_is_little_endian();
-    dem_result result = demi_out_open(&o, world, "dem_vtk_write", path);
-    if (result != DEM_OK) return result;
-    demi_grain_columns(world, column);
+    int i, n, count, turn = demi_is_little_endian();
+    demi_drawing g;
+    dem_result result;
+    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_vtk_write", &g);
+    result = demi_out_open(&o, world, "dem_vtk_write", path);
+    if (result != DEM_OK) { demi_drawing_free(world, &g); return result; }
+    n = demi_grain_columns(&g, column);
     count = column[0].count;
     fputs("# vtk DataFile Version 3.0\ndem.h\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\n"
           "TIME 1 1 double\n", o.file);
@@ -9320,14 +9398,17 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
         demi_out_number(&o, cell + 1, 4, turn);
     }
     fprintf(o.file, "\nPOINT_DATA %d\n", count);
-    for (i = 1; i < DEMI_GRAIN_COLUMNS - 2; i++) {
+    for (i = 1; i < n - 2; i++) {
         const demi_column *c = column + i;
         const char *type = c->type == 'u' ? "unsigned_int" : c->type == 'i' ? "int" : real;
-        if (c->components == 3) fprintf(o.file, "VECTORS %s %s\n", c->name, type);
+        if (c->components == 4)
+            fprintf(o.file, "SCALARS %s %s 4\nLOOKUP_TABLE default\n", c->name, type);
+        else if (c->components == 3) fprintf(o.file, "VECTORS %s %s\n", c->name, type);
         else fprintf(o.file, "SCALARS %s %s 1\nLOOKUP_TABLE default\n", c->name, type);
         demi_column_write(&o, c, turn);
         fputs("\n", o.file);
     }
+    demi_drawing_free(world, &g);
     return demi_out_close(&o);
 }
 
@@ -9337,19 +9418,21 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     static const char elements[] =
         "H HeLiBeB C N O F NeNaMgAlSiP S ClArK CaScTiV CrMnFeCoNiCuZnGaGe"
         "AsSeBrKrRbSrY ZrNbMoTcRuRhPdAgCdInSnSbTeI XeCsBaLaCePrNdPmSmEuGd";
-    dem_bodies b = dem_bodies_get(world);
+    demi_drawing g;
     dem_world_desc desc = dem_world_desc_get(world);
     dem_box d = desc.domain;
     double length[3];
     char text[3][32];
     demi_out o;
     int i, k;
-    dem_result result = demi_out_open(&o, world, "dem_xyz_write", path);
-    if (result != DEM_OK) return result;
+    dem_result result;
+    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_xyz_write", &g);
+    result = demi_out_open(&o, world, "dem_xyz_write", path);
+    if (result != DEM_OK) { demi_drawing_free(world, &g); return result; }
     length[0] = (double)(d.hi.x - d.lo.x);
     length[1] = (double)(d.hi.y - d.lo.y);
     length[2] = (double)(d.hi.z - d.lo.z);
-    fprintf(o.file, "%d\n", b.count);
+    fprintf(o.file, "%d\n", g.count);
     if (length[0] > 0 || length[1] > 0 || length[2] > 0) {
         for (k = 0; k < 3; k++) demi_format_real(text[k], length[k] > 0 ? length[k] : 1, 9);
         fprintf(o.file, "Lattice=\"%s 0 0 0 %s 0 0 0 %s\" ", text[0], text[1], text[2]);
@@ -9361,17 +9444,24 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
             fprintf(o.file, desc.boundary[k] == DEM_BOUNDARY_PERIODIC ? "T%s" : "F%s",
                     k < 2 ? " " : "\" ");
     }
-    fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:id:I:1 Time=%s\n",
+    fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:%sid:I:1 Time=%s\n",
+            g.orient ? "orientation:R:4:aspherical_shape:R:3:" : "",
             demi_format_real(text[0], dem_world_time(world), 12));
-    for (i = 0; i < b.count; i++) {
-        const char *element = elements + 2*((b.materials[i] - 1) & 63);
+    for (i = 0; i < g.count; i++) {
+        const char *element = elements + 2*((g.materials[i] - 1) & 63);
         fprintf(o.file, "%.*s", element[1] == ' ' ? 1 : 2, element);
         for (k = 0; k < 7; k++) {
-            const dem_real *row = (k < 4 ? b.positions : b.velocities) + 4*(size_t)i;
+            const dem_real *row = (k < 4 ? g.pos : g.vel) + 4*(size_t)i;
             fprintf(o.file, " %s", demi_format_real(text[0], (double)row[k < 4 ? k : k - 4], 9));
         }
-        fprintf(o.file, " %lu\n", (unsigned long)b.slots[i]);
+        for (k = 0; k < 7 && g.orient; k++) {   /* x y z w, then the axes */
+            const dem_real *row = (k < 4 ? g.orient : g.axes) + 4*(size_t)i;
+            fprintf(o.file, " %s", demi_format_real(text[0],
+                    (double)row[k < 4 ? (k + 1)%4 : k - 4], 9));
+        }
+        fprintf(o.file, " %lu\n", (unsigned long)g.slots[i]);
     }
+    demi_drawing_free(world, &g);
     return demi_out_close(&o);
 }
 
@@ -10124,7 +10214,14 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
                 w->level_looks[0]);
 }
 
+static int demi_shaped_total(const dem_world *w) {
+    int d, n = 0;
+    for (d = 0; d < w->domain_count; d++) n += w->domains[d].shaped;
+    return n;
+}
 DEM_API void dem_world_report(const dem_world *world, FILE *out) {
+    static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
+    static const char *overlaps[] = {"conservative", "seed 002's", "along the normal"};
     static const char *tangents[] = {"auto", "none", "viscous", "step", "spring", "Mindlin",
                                      "Mindlin, rescaled"};
     static const char *rollings[] = {"auto", "none", "step", "constant torque", "EPSD"};
@@ -10170,6 +10267,14 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             : w->tangent >= DEM_TANGENT_SPRING
             ? " (32 bytes of memory per candidate)" : "");
     fprintf(out, "           rolling: %s\n", rollings[w->rolling]);
+    if (w->shaped_count)
+        fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap %s; a "
+                "cluster's contacts %s; %.2f contacts per body\n", w->shaped_count,
+                rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
+                w->desc.cluster_contacts == DEM_SHARING_ONE ? "are shared" : "add up",
+                w->count ? (double)demi_shaped_total(w)/w->count : 0);
+    else if (w->orienting)
+        fprintf(out, "           orientations of spheres are followed, because you asked\n");
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->uniform ? "all alike (coefficients once per run)"
             : "differ (coefficients per candidate)", w->wall_count,
