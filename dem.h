@@ -252,7 +252,9 @@ typedef struct dem_world dem_world;
 /* ---- choices ---- */
 typedef enum dem_normal_law {
     DEM_NORMAL_HERTZ = 0,  /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92] */
-    DEM_NORMAL_LINEAR      /* F = kn delta + cn v; kn given, or from Young's modulus and a speed */
+    DEM_NORMAL_LINEAR,     /* F = kn delta + cn v; kn given, or from Young's modulus and a speed */
+    DEM_NORMAL_HYSTERETIC  /* [FEN] eq 2.47: loads along kn delta, unloads and reloads with slope
+                              kun, pulls by at most kad delta; needs no dashpot */
 } dem_normal_law;
 
 typedef enum dem_tangent_law {
@@ -354,6 +356,7 @@ typedef struct dem_contact {
     dem_real dt;             /* s, to integrate memory with; 0: memory must be left as it is */
     dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear) */
     dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear) */
+    dem_real kun, kad;       /* N/m, hysteretic law: unloading, adhesion; otherwise 0 */
     dem_real friction, friction_static, rolling_friction;
     int32_t material_a, material_b; /* dem_material ids */
     int32_t wall;            /* 0: b is a grain; otherwise the dem_wall id */
@@ -472,30 +475,41 @@ typedef struct dem_material_desc {
     dem_real density;          /* kg/m3, required, > 0 */
     dem_real young;            /* Pa, required, > 0 (for a linear law with stiffness: not needed) */
     dem_real poisson;          /* 0 <= nu < 0.5; 0 is a physical value */
-    dem_real restitution;  /* required, 0 < e <= 1: speed after over speed before a normal impact */
+    /* required, 0 < e <= 1: speed after over speed before a normal impact. Hysteretic law: either
+       this or stiffness_unloading; e = sqrt(kn/kun), of a contact that does not stick */
+    dem_real restitution;
     dem_real friction;         /* sliding friction mu, >= 0; 0: none */
     dem_real friction_static;  /* >= friction; 0: the same as friction */
     dem_real rolling_friction; /* mu_r, >= 0, of the effective radius; 0: none */
-    dem_real stiffness;        /* N/m, linear law only; 0: from young and impact_speed [DIM04] */
-    dem_real stiffness_ratio;  /* kt/kn of the linear law; 0: 2(1-nu)/(2-nu) */
+    /* N/m, linear and hysteretic law (there of loading); 0: from young and impact_speed [DIM04] */
+    dem_real stiffness;
+    dem_real stiffness_ratio;  /* kt/kn of these two laws; 0: 2(1-nu)/(2-nu) */
+    dem_real stiffness_unloading; /* N/m, hysteretic law: kun >= stiffness; 0: from restitution */
+    dem_real stiffness_adhesion;  /* N/m, hysteretic law: kad >= 0 (the seed has it negative);
+                                     0: never pulls */
 } dem_material_desc;
-static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 #define DEM_MATERIAL_DESC DEM_MATERIAL_DESC_ZERO
 
 /* Adds a material. At most 64. Null id on bad values. */
 DEM_API dem_material dem_material_add(dem_world *world, const dem_material_desc *desc);
 
 /* What holds between two materials. Mixed from both when not set: restitution, friction, static
-   friction and rolling friction by the geometric mean; moduli by Hertz (1/E* = sum (1-nu^2)/E, 1/G*
-   = sum (2-nu)/G); given stiffnesses in series. Walls follow the same rule as grains. */
+   friction, rolling friction and stiffness of adhesion by the geometric mean; moduli by Hertz (1/E*
+   = sum (1-nu^2)/E, 1/G* = sum (2-nu)/G); given stiffnesses in series. Walls follow the same rule
+   as grains. */
 typedef struct dem_pair {
     dem_real young_eff;        /* E*, Pa */
     dem_real shear_eff;        /* G*, Pa */
     dem_real restitution, friction, friction_static, rolling_friction;
-    dem_real stiffness;        /* N/m, linear law; 0: from E* and impact speed, per pair of radii */
-    dem_real stiffness_ratio;  /* kt/kn, linear law */
+    /* N/m, linear and hysteretic law; 0: from E* and impact speed, per pair of radii */
+    dem_real stiffness;
+    dem_real stiffness_ratio;  /* kt/kn, linear and hysteretic law */
     /* >= 0, factor on the tangential dashpot; 1 when mixed, 0: no dashpot */
     dem_real tangent_damping;
+    dem_real stiffness_adhesion; /* N/m, hysteretic law; its kun is stiffness/restitution^2 */
+    dem_real normal_damping;   /* N s/m, linear and hysteretic law: the dashpot itself, whatever the
+                                  masses; 0: linear: from restitution, hysteretic: none */
 } dem_pair;
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
                                 dem_pair *pair);
@@ -507,8 +521,9 @@ DEM_API dem_result dem_pair_set(dem_world *world, dem_material a, dem_material b
 typedef struct dem_coefficients {
     dem_real r_eff, m_eff;     /* m, kg */
     dem_real kn, cn, kt, ct;  /* as in dem_contact: F = kn d^(3/2) + cn d^(1/4) v, or kn d + cn v */
+    dem_real kun, kad;         /* N/m, hysteretic law; otherwise 0 */
     dem_real damping_ratio;    /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
-    dem_real contact_time;     /* s, at the world's impact speed */
+    dem_real contact_time;     /* s, at the world's impact speed; hysteretic law: [FEN] eq 2.45 */
 } dem_coefficients;
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
@@ -716,6 +731,47 @@ DEM_API dem_wall dem_mesh_add(dem_world *world, dem_material material, const dem
 DEM_API dem_wall dem_grains_wall_add(dem_world *world, dem_material material, int count,
                                      const dem_real *positions,
                                      dem_real radius, dem_real share);
+
+/* A sieve: a plane with holes, whose rows go on without end, or as far as a disc reaches. What a
+   grain costs does not depend on how many holes there are. */
+typedef enum dem_sieve_kind {
+    DEM_SIEVE_NONE = 0,
+    DEM_SIEVE_WIRES,          /* square weave of round wires */
+    DEM_SIEVE_BARS,           /* parallel round wires, across `along` */
+    DEM_SIEVE_SQUARE,         /* plate with square holes */
+    DEM_SIEVE_ROUND,          /* plate with round holes */
+    DEM_SIEVE_SLOTS,          /* plate with slots, longer along `along` */
+    DEM_SIEVE_REDUCED         /* [FEN] 4.3.3: a plane; a grain whose centre is above the reduced part
+                                 of a square hole falls through, without touching. Cheaper, and never
+                                 blinded; but what passes is what clearance says */
+} dem_sieve_kind;
+typedef struct dem_sieve_desc {
+    dem_sieve_kind kind;      /* required */
+    dem_vec3 point;           /* m, middle of a hole, half way through */
+    dem_vec3 normal;          /* across the sieve; 0: along z */
+    dem_vec3 along;           /* rows of holes go this way; 0: along x, or whatever is across */
+    dem_real aperture;        /* m, required, > 0: clear width, side or diameter of a hole */
+    dem_real bar;             /* m, required, > 0: diameter of a wire, or solid between two holes */
+    dem_real length;          /* m, of slots; 0: without end */
+    dem_real thickness;       /* m, of plates; 0: a sheet with sharp rims */
+    dem_real lift;            /* m, between the axes of the two layers of wires; 0: all in one plane,
+                                 bar: laid on each other. Real wires wind between the two */
+    int staggered;            /* 1: round holes in a triangular pattern */
+    dem_real radius;          /* m, of the disc it is cut from; 0: without end */
+    int model;                /* reduced: 1 (or 0): the whole grain above the reduced hole, 2: its
+                                 centre only */
+    dem_real clearance;       /* reduced: zeta of eq 4.20 or 4.21, 0 (open) to 1 (closed) */
+} dem_sieve_desc;
+static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = {DEM_SIEVE_NONE, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+                                                   0, 0, 0, 0, 0, 0, 0, 0, 0};
+#define DEM_SIEVE_DESC DEM_SIEVE_DESC_ZERO
+DEM_API dem_wall dem_sieve_add(dem_world *world, dem_material material, const dem_sieve_desc *desc);
+/* Grains that blind a sieve of wires or a plate: stuck in a hole, that is touching it on opposite
+   sides, with the wedge between the two so narrow that friction holds it. Those moving faster than
+   speed (m/s; 0: any) against the sieve are not counted. -1 with a sentence when there is no list of
+   contacts (see dem_contacts_get) or the wall is no sieve. */
+DEM_API int dem_sieve_blinded(const dem_world *world, dem_wall sieve, dem_real speed);
+
 /* Centres (count x 3, written to out, which may be null) of a drum lined with touching spheres
    along z: [MIL] Algorithm 5.2 (shell) and 5.3 (ends: hexagonal sheet at +-length/2, layers
    inside). Returns count. */
@@ -881,8 +937,10 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
 DEM_API void dem_profile_free(dem_world *world, dem_profile *profile);
 
 /* Pictures for ParaView (VTP, legacy VTK: points with radius, velocity, spin, id, material) and
-   OVITO
-   (extended XYZ). Written to a temporary name and renamed, so that a file is whole or absent. */
+   OVITO (extended XYZ). Where bodies have orientations, these too (VTK: w x y z; XYZ: x y z w) with
+   semi-axes; a cluster is one point for each of its spheres, all of its id. ParaView: Glyph, sphere
+   of radius 1, scaled by semi_axes, turned by orientation (quaternion). Written to a temporary name
+   and renamed, so that a file is whole or absent. */
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path);
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path);
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
@@ -1195,6 +1253,7 @@ enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_SOME = 16, DEMI_DOMAINS = 256,
 
 /* Coefficients of one contact, resolved: what the built-in laws need. */
 enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
+      DEMI_K_UN, DEMI_K_AD,                     /* hysteretic law */
       DEMI_COEFS };
 
 /* A growing array: items of one size. Never holds less than before. */
@@ -1293,13 +1352,15 @@ typedef struct demi_domain {
 } demi_domain;
 
 enum { DEMI_WALL_NONE = 0, DEMI_WALL_PLANE, DEMI_WALL_CYLINDER, DEMI_WALL_PROFILE, DEMI_WALL_MESH,
-      DEMI_WALL_GRAINS };
+      DEMI_WALL_GRAINS, DEMI_WALL_SIEVE,
+      DEMI_SIEVE_MOST = 12 };                   /* contacts of a grain with a sieve */
 
 typedef struct demi_wall {
     int kind, material;            /* DEMI_WALL_..., index */
     int inside;                    /* cylinder */
     dem_edge_rule rule;
     dem_real radius, share;        /* cylinder; grains */
+    dem_sieve_desc sieve;
     int vertex_count, element_count;
     dem_real *vertices;            /* vertex_count x 3, in the wall's own frame */
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
@@ -1360,7 +1421,7 @@ struct dem_world {
     int orienting;                 /* the next four exist */
     dem_real *orient;              /* x 4: w x y z, principal axes -> world */
     dem_real *angular;             /* x 4: angular momentum at the half step; shaped bodies only */
-    dem_real *moment;              /* x 4: principal moments of inertia, kg m2 */
+    dem_real *moment;              /* x 4: principal moments of inertia, kg m2; lever, m */
     int32_t *body_shape;           /* dem_shape ids; 0: a sphere */
     int shaped_count;              /* bodies that are not spheres */
     uint32_t *body_slot;
@@ -1524,15 +1585,18 @@ static void demi_array_free(dem_world *w, demi_array *array) {
    numbers a law multiplies with. Restitution comes first, damping is derived from it.
    --------------------------------------------------------------------------------------------- */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
-    const int linear_k = w->desc.normal_law == DEM_NORMAL_LINEAR && d->stiffness > 0;
-    struct { const char *name; dem_real value; int ok; const char *limit; } rows[9];
+    const int linear_k = w->desc.normal_law != DEM_NORMAL_HERTZ && d->stiffness > 0;
+    /* restitution may then be left to the two stiffnesses */
+    const int two_k = w->desc.normal_law == DEM_NORMAL_HYSTERETIC && d->stiffness_unloading > 0;
+    struct { const char *name; dem_real value; int ok; const char *limit; } rows[11];
     int i;
 #define DEMI_ROW(k, field, good, text) \
     rows[k].name = #field; rows[k].value = d->field; rows[k].ok = (good); rows[k].limit = text
     DEMI_ROW(0, density, d->density > 0, "> 0 kg/m3 (required)");
     DEMI_ROW(1, young, d->young > 0 || (linear_k && DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
     DEMI_ROW(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
-    DEMI_ROW(3, restitution, d->restitution > 0 && d->restitution <= 1, "> 0 and <= 1 (required)");
+    DEMI_ROW(3, restitution, (d->restitution > 0 || (two_k && DEMI_ABS(d->restitution) <= 0)) &&
+             d->restitution <= 1, "> 0 and <= 1 (required)");
     DEMI_ROW(4, friction, d->friction >= 0, ">= 0");
     DEMI_ROW(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
              d->friction_static >= d->friction,
@@ -1540,12 +1604,23 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     DEMI_ROW(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
     DEMI_ROW(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
     DEMI_ROW(8, stiffness_ratio, d->stiffness_ratio >= 0, ">= 0");
+    DEMI_ROW(9, stiffness_unloading, DEMI_ABS(d->stiffness_unloading) <= 0 ||
+             (d->stiffness > 0 && d->stiffness_unloading >= d->stiffness),
+             "0 or at least the stiffness of loading, which is to be given then, in N/m");
+    DEMI_ROW(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (its size, not its "
+             "slope)");
 #undef DEMI_ROW
-    for (i = 0; i < 9; i++)
+    for (i = 0; i < 11; i++)
         if (!rows[i].ok || !demi_finite(rows[i].value))
             return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s; set it in the desc "
                              "before the call",
                              call, rows[i].name, (double)rows[i].value, rows[i].limit);
+    if (two_k && d->restitution > 0 && fabs((double)d->restitution*(double)d->restitution*
+        (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: restitution is %g, but sqrt(stiffness/"
+                         "stiffness_unloading) is %g; give one of the two and leave the other 0",
+                         call, (double)d->restitution,
+                         sqrt((double)d->stiffness/(double)d->stiffness_unloading));
     return DEM_OK;
 }
 
@@ -1567,6 +1642,8 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     p.friction_static = (dem_real)sqrt(sa*sb);
     p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
     p.tangent_damping = 1;
+    p.stiffness_adhesion =
+        (dem_real)sqrt((double)a->stiffness_adhesion*(double)b->stiffness_adhesion);
     /* springs in series; equal materials: their own value */
     /* springs in series; equal materials: their own value */
     if (a->stiffness > 0 && b->stiffness > 0)
@@ -1591,10 +1668,12 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
         return id;
     }
     w->materials[n] = *desc;
+    if (!(desc->restitution > 0))               /* hysteretic law: left to the stiffnesses */
+        w->materials[n].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     w->material_count = n + 1;
     for (i = 0; i <= n; i++)
         w->pairs[i*DEMI_MATERIALS + n] = w->pairs[n*DEMI_MATERIALS + i] =
-            demi_mix(&w->materials[i], desc);
+            demi_mix(&w->materials[i], &w->materials[n]);
     id.id = n + 1;
     return id;
 }
@@ -1631,7 +1710,7 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
         bad = #field; value = p->field; limit = text; \
     }
     DEMI_BAD(young_eff, p->young_eff > 0 || (p->young_eff >= 0 && p->stiffness > 0 &&
-             w->desc.normal_law == DEM_NORMAL_LINEAR), "> 0 Pa")
+             w->desc.normal_law != DEM_NORMAL_HERTZ), "> 0 Pa")
     DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
     DEMI_BAD(restitution, p->restitution > 0 && p->restitution <= 1, "> 0 and <= 1")
     DEMI_BAD(friction, p->friction >= 0, ">= 0")
@@ -1640,6 +1719,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     DEMI_BAD(stiffness, p->stiffness >= 0, ">= 0 N/m")
     DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, ">= 0")
     DEMI_BAD(tangent_damping, p->tangent_damping >= 0, ">= 0")
+    DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, ">= 0 N/m")
+    DEMI_BAD(normal_damping, p->normal_damping >= 0, ">= 0 N s/m")
 #undef DEMI_BAD
     if (bad)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
@@ -1666,6 +1747,8 @@ static double demi_damping_ratio(double e) {
      linear  F = kn d + cn v,  kn = (320/81 m* v^2 E*^4 R*^2)^(1/5) [DIM04] unless given, cn = 2
              beta sqrt(kn m*)
              kt = ratio kn,  ct = 2 beta sqrt(kt m*)
+     hysteretic  kn, kt, ct as linear, kun = kn/e^2 ([FEN] eq 2.43), kad as given, cn = 0; both laws
+             take normal_damping for cn when it is given
    DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
    between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff, m_eff: the
    standard ones. Checked by "the thesis's eight coefficients". */
@@ -1694,7 +1777,8 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
     } else {
         const double v = w->desc.impact_speed > 0 ? (double)w->desc.impact_speed : 1;
         kn = p->stiffness > 0 ? (double)p->stiffness : pow(320.0/81*m*v*v*E*E*E*E*R*R, 0.2);
-        cn = 2*beta*sqrt(kn*m);
+        cn = w->desc.normal_law == DEM_NORMAL_HYSTERETIC ? 0 : 2*beta*sqrt(kn*m);
+        if (p->normal_damping > 0) cn = (double)p->normal_damping;
         kt = kn*(double)p->stiffness_ratio;
         ct = 2*beta*sqrt(kt*m);
     }
@@ -1705,15 +1789,21 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
     out[DEMI_MU_STATIC] = DEMI_MAX(p->friction, p->friction_static);
     out[DEMI_MU_ROLL] = p->rolling_friction;
     out[DEMI_R_EFF] = (dem_real)r_eff;
+    out[DEMI_K_UN] = out[DEMI_K_AD] = 0;
+    if (w->desc.normal_law != DEM_NORMAL_HYSTERETIC) return;
+    out[DEMI_K_UN] = (dem_real)(kn/((double)p->restitution*(double)p->restitution));
+    out[DEMI_K_AD] = p->stiffness_adhesion;
 }
 
 /* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi
    sqrt(m/k)
-   (with damping pi/sqrt(k/m - (c/2m)^2) [FEN] eq 2.21). */
+   (with damping pi/sqrt(k/m - (c/2m)^2) [FEN] eq 2.21). Hysteretic: that of its steepest branch,
+   kun, which is what a time step has to follow; the contact itself lasts longer, eq 2.45. */
 static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff,
                                 double speed) {
-    const double k = (double)coef[DEMI_KN], c = (double)coef[DEMI_CN];
-    if (w->desc.normal_law == DEM_NORMAL_LINEAR) {
+    const int hysteretic = w->desc.normal_law == DEM_NORMAL_HYSTERETIC;
+    const double k = (double)coef[hysteretic ? DEMI_K_UN : DEMI_KN], c = (double)coef[DEMI_CN];
+    if (w->desc.normal_law != DEM_NORMAL_HERTZ) {
         const double eta = c/(2*m_eff);
         return DEMI_PI/sqrt(DEMI_MAX(k/m_eff - eta*eta, 1e-12*k/m_eff));
     }
@@ -1750,10 +1840,14 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
     out->r_eff = (dem_real)r; out->m_eff = (dem_real)m;
     out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT];
     out->ct = coef[DEMI_CT];
+    out->kun = coef[DEMI_K_UN]; out->kad = coef[DEMI_K_AD];
     out->damping_ratio =
         (dem_real)demi_damping_ratio((double)w->pairs[i*DEMI_MATERIALS + j].restitution);
     out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0
                                                     ? (double)w->desc.impact_speed : 1);
+    if (w->desc.normal_law == DEM_NORMAL_HYSTERETIC)
+        out->contact_time = (dem_real)(DEMI_PI/2*(sqrt(m/(double)out->kn) +
+                                                  sqrt(m/(double)out->kun)));
     return DEM_OK;
 }
 
@@ -2257,25 +2351,37 @@ static double demi_meet_start(const double *A, const double *B, const double *r)
     hb = sqrt(demi_dot3(r, t));
     return ha + hb > 0 ? ha/(ha + hb) : 0.5;
 }
-/* Finds the maximum from m->l on; stops early where f(l) exceeds `enough`. */
+/* The last step is so small that s may follow it along ds/dl = K^-1 (QA - QB) s = (s - v)/(1 - l),
+   v = K^-1 QB s, and f to second order, f' = fA - fB, f'' = -2 C: what a whole evaluation more would
+   add is of the order of the step squared. */
+static void demi_meet_finish(const double *A, const double *B, double C, double step,
+                             demi_meet *m) {
+    const double rate = step/(1 - m->l);
+    int k;
+    m->f += ((m->fa - m->fb) - C*step)*step;
+    for (k = 0; k < 3; k++) m->s[k] += rate*(m->s[k] - m->v[k]);
+    m->l += step;
+    demi_sym_times(A, m->s, m->a);
+    demi_sym_times(B, m->s, m->b);
+    m->fa = (1 - m->l)*(1 - m->l)*demi_dot3(m->s, m->a);
+    m->fb = m->l*m->l*demi_dot3(m->s, m->b);
+}
+/* Finds the maximum from m->l on, until fA and fB are as near as `near` says; stops early where f(l)
+   exceeds `enough`. DEMI_MEET_NEAR: normals to 1e-10 (aspect ratio 2) to 4e-6 at worst (100), and as
+   cheap as it gets; docs/accuracy.md has the numbers. */
+#define DEMI_MEET_NEAR 1e-4
 static void demi_meet_solve(const double *A, const double *B, const double *r, double enough,
-                            demi_meet *m) {
+                            double near, demi_meet *m) {
     double lo = 0, hi = 1, l = m->l;
     int k;
     for (m->looks = 1;; m->looks++) {
-        double K[6], d0, d1, d2, l1, l2, l3, t, y0, y1, y2, C, u, g, step;
+        double K[6], J[6], t, C, u, sum, step;
         for (k = 0; k < 6; k++) K[k] = (1 - l)*A[k] + l*B[k];
-        d0 = 1/K[0];                            /* K = L D L^T */
-        l1 = K[3]*d0;
-        l2 = K[4]*d0;
-        d1 = 1/(K[1] - l1*K[3]);
-        t = K[5] - l2*K[3];
-        l3 = t*d1;
-        d2 = 1/(K[2] - l2*K[4] - l3*t);
-        y0 = r[0]; y1 = r[1] - l1*y0; y2 = r[2] - l2*y0 - l3*y1;
-        m->s[2] = y2*d2;
-        m->s[1] = y1*d1 - l3*m->s[2];
-        m->s[0] = y0*d0 - l1*m->s[1] - l2*m->s[2];
+        J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
+        J[1] = K[0]*K[2] - K[4]*K[4]; J[5] = K[3]*K[4] - K[0]*K[5]; J[2] = K[0]*K[1] - K[3]*K[3];
+        t = 1/(K[0]*J[0] + K[3]*J[3] + K[4]*J[4]);
+        for (k = 0; k < 6; k++) J[k] *= t;      /* K^-1, by cofactors: one quotient */
+        demi_sym_times(J, r, m->s);
         m->l = l;
         m->f = l*(1 - l)*demi_dot3(r, m->s);
         demi_sym_times(A, m->s, m->a);
@@ -2283,17 +2389,19 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
         m->fa = (1 - l)*(1 - l)*demi_dot3(m->s, m->a);
         m->fb = l*l*demi_dot3(m->s, m->b);
         if (m->f > enough) return;
-        y0 = m->b[0]; y1 = m->b[1] - l1*y0; y2 = m->b[2] - l2*y0 - l3*y1;
-        m->v[2] = y2*d2;
-        m->v[1] = y1*d1 - l3*m->v[2];
-        m->v[0] = y0*d0 - l1*m->v[1] - l2*m->v[2];
-        u = (m->fa - m->fb)/(m->fa + m->fb);
-        if (fabs(u) < 1e-9 || !(m->fa + m->fb > 0) || m->looks >= 100 || hi - lo < 1e-15) return;
+        demi_sym_times(J, m->b, m->v);
+        sum = m->fa + m->fb;
+        if (!(sum > 0)) return;
+        u = (m->fa - m->fb)/sum;
         if (u > 0) lo = l; else hi = l;
-        /* ln(fa/fb)/2 = atanh u */
-        g = fabs(u) < 0.1 ? u*(1 + u*u*(1.0/3 + u*u*(0.2 + u*u/7))) : log(m->fa/m->fb)/2;
+        /* ln(fa/fb)/2 = atanh u, which is about u (15 - 4 u^2)/(15 - 9 u^2) */
         C = demi_dot3(m->a, m->v);
-        step = g/(C*((1 - l)/m->fa + l/m->fb));
+        step = u*(15 - 4*u*u)*m->fa*m->fb/
+            ((15 - 9*u*u)*C*((1 - l)*m->fb + l*m->fa));
+        if (fabs(u) < near || m->looks >= 100 || hi - lo < 1e-15) {
+            demi_meet_finish(A, B, C, step, m);
+            return;
+        }
         l += step;
         if (!(l > lo && l < hi)) l = (lo + hi)/2;
     }
@@ -2336,7 +2444,7 @@ DEM_API dem_meeting dem_ellipsoids_meet(const dem_ellipsoid *a, const dem_ellips
         r[2] = 1e-12*((double)a->semi_axes.z + (double)b->semi_axes.z);
     }
     m.l = lambda > 0 && lambda < 1 ? (double)lambda : demi_meet_start(A, B, r);
-    demi_meet_solve(A, B, r, 1e300, &m);
+    demi_meet_solve(A, B, r, 1e300, 1e-12, &m);
     demi_meet_heights(&m, n, &ha, &hb);
     w0 = sqrt(m.f);
     out.scale = (dem_real)w0;
@@ -2414,7 +2522,7 @@ static dem_real demi_parts_gap(const demi_part *p, const demi_part *q, dem_vec3 
     demi_part_matrix(p, A);
     demi_part_matrix(q, B);
     m.l = demi_meet_start(A, B, r);
-    demi_meet_solve(A, B, r, 1e300, &m);
+    demi_meet_solve(A, B, r, 1e300, DEMI_MEET_NEAR, &m);
     demi_meet_heights(&m, n, &ha, &hb);
     return (dem_real)((sqrt(m.f) - 1)*(ha + hb));
 }
@@ -2689,6 +2797,7 @@ static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_
     w->inv_mass[i] = (dem_real)(1/m);
     w->inv_inertia[i] = 0;
     demi_put(w->moment + 4*i, demi_moments_of(w, i));
+    w->moment[4*i + 3] = form->lever*scale;
     demi_quat_put(w->orient + 4*i, demi_quat_unit(dem_quat_times(orientation, form->frame)));
     w->shaped_count++;
 }
@@ -3483,6 +3592,64 @@ DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int co
     if (!demi_wall_load(w, "dem_grains_wall_add", &wall, count, positions, 3, count, 0,
                         0)) return none;
     return demi_wall_adopt(w, "dem_grains_wall_add", &wall);
+}
+
+DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
+    demi_wall wall;
+    dem_wall none;
+    const char *bad = 0, *limit = "";
+    dem_real value = 0;
+    dem_vec3 n = d->normal, t = d->along;
+    dem_real *R = wall.home.rotation;
+    const int plate = d->kind == DEM_SIEVE_SQUARE || d->kind == DEM_SIEVE_ROUND ||
+                      d->kind == DEM_SIEVE_SLOTS;
+    none.id = 0;
+    if (!demi_wall_begin(w, "dem_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
+#define DEMI_BAD(field, good, text) \
+    if (!bad && (!demi_finite((dem_real)d->field) || !(good))) { \
+        bad = #field; value = (dem_real)d->field; limit = text; \
+    }
+    DEMI_BAD(kind, (int)d->kind > 0 && d->kind <= DEM_SIEVE_REDUCED, "a DEM_SIEVE_ value (required)")
+    DEMI_BAD(aperture, d->aperture > 0, "> 0 m (required)")
+    DEMI_BAD(bar, d->bar > 0, "> 0 m (required)")
+    DEMI_BAD(length, DEMI_ABS(d->length) <= 0 || (d->kind == DEM_SIEVE_SLOTS &&
+             d->length >= d->aperture), "0, or of slots at least the aperture, in m")
+    DEMI_BAD(thickness, DEMI_ABS(d->thickness) <= 0 || (plate && d->thickness > 0),
+             ">= 0 m, and 0 but for plates")
+    DEMI_BAD(lift, DEMI_ABS(d->lift) <= 0 || (d->kind == DEM_SIEVE_WIRES && d->lift > 0),
+             ">= 0 m, and 0 but for a weave of wires")
+    DEMI_BAD(radius, d->radius >= 0, ">= 0 m")
+    DEMI_BAD(model, d->model >= 0 && d->model <= 2, "1 or 2")
+    DEMI_BAD(clearance, d->clearance >= 0 && d->clearance <= 1, "0 to 1")
+#undef DEMI_BAD
+    if (bad) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: %s is %g, must be %s; start from "
+                  "DEM_SIEVE_DESC and set what differs", bad, (double)value, limit);
+        return none;
+    }
+    if (!demi_finite3(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: point, normal or along is not finite; "
+                  "check how it was computed");
+        return none;
+    }
+    n = demi_dot(n, n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
+    t = demi_sub(t, demi_scale(n, demi_dot(t, n)));
+    if (!(demi_dot(t, t) > 0)) {                /* not said, or across the sieve: x, else y */
+        const dem_vec3 x = DEMI_ABS(n.x) < DEM_R(0.9) ? demi_v(1, 0, 0) : demi_v(0, 1, 0);
+        t = demi_sub(x, demi_scale(n, demi_dot(x, n)));
+    }
+    t = demi_unit(t);
+    R[0] = t.x; R[3] = t.y; R[6] = t.z;
+    R[2] = n.x; R[5] = n.y; R[8] = n.z;
+    t = demi_cross(n, t);
+    R[1] = t.x; R[4] = t.y; R[7] = t.z;
+    wall.sieve = *d;
+    wall.element_count = 1;
+    wall.radius = d->radius;
+    wall.home.position = wall.motion.point = d->point;
+    wall.motion.axis = n;
+    wall.reach = d->radius > 0 ? d->radius + d->thickness + d->lift + d->bar : -1;
+    return demi_wall_adopt(w, "dem_sieve_add", &wall);
 }
 
 /* [MIL] Algorithm 5.2: circles of touching spheres at R - r, layers r sqrt(3) apart, every other
@@ -4528,12 +4695,17 @@ static int demi_cross_index(dem_world *w) {
     return 1;
 }
 
-/* Writes the coefficients of a grain's contact with a wall. */
+/* Writes the coefficients of a grain's contact with a wall. On a round wire the two radii of Hertz's
+   contact differ, r and r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's ellipse
+   for a wire as thick as the grain, 7 % for one of a fifth. */
 static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
     const demi_wall *wall = &w->walls[c->wall];
-    const double r = (double)w->pos[4*c->body + 3];
+    const double r = (double)w->pos[4*c->body + 3], q = (double)wall->sieve.bar/2;
     const double r_eff = wall->kind == DEMI_WALL_GRAINS
-        ? r*(double)wall->radius/(r + (double)wall->radius) : r;
+        ? r*(double)wall->radius/(r + (double)wall->radius)
+        : wall->kind == DEMI_WALL_SIEVE && (wall->sieve.kind == DEM_SIEVE_WIRES ||
+                                            wall->sieve.kind == DEM_SIEVE_BARS)
+        ? r*sqrt(q/(r + q)) : r;
     const int grains = wall->kind == DEMI_WALL_GRAINS;
     /* there a grain of a wall has mass */
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
@@ -4541,6 +4713,13 @@ static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
                       (double)w->mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
 }
 
+/* Contacts that one wall candidate may give: a sieve is a candidate of its own. */
+static int demi_wall_most(const dem_world *w) {
+    int i, most = 1;
+    for (i = 0; i < w->wall_count; i++) if (w->walls[i].kind == DEMI_WALL_SIEVE)
+            most = DEMI_SIEVE_MOST;
+    return most;
+}
 /* Contacts with walls that still last, from the last list (by slot) into the domains of the new
    one. */
 static int demi_wall_contacts_move(dem_world *w, int stride) {
@@ -4564,7 +4743,7 @@ static int demi_wall_contacts_move(dem_world *w, int stride) {
         demi_wall_contact *to;
         int i;
         d = demi_domain_of(w, c.body);
-        /* cannot be: every contact is a candidate */
+        /* cannot be: every contact is of a candidate */
         if (w->domains[d].wall_contacts == stride) continue;
         to = w->wall_now + d*stride;
         for (i = w->domains[d].wall_contacts++; i > 0 && to[i - 1].body > c.body; i--)
@@ -4634,10 +4813,14 @@ static int demi_shaped_move(dem_world *w) {
     return 1;
 }
 
-/* Reals of memory that the built-in laws keep per contact: see >>laws. */
-DEM_INLINE int demi_memory_of(int tangent, int rolling) {
+/* Reals of memory that the built-in laws keep per contact: see >>laws. The hysteretic law's comes
+   after those of friction and rolling. */
+DEM_INLINE int demi_memory_shear(int tangent, int rolling) {
     return rolling == DEM_ROLLING_EPSD ? 7 : tangent >= DEM_TANGENT_MINDLIN ? 4
         : tangent == DEM_TANGENT_SPRING ? 3 : 0;
+}
+DEM_INLINE int demi_memory_of(int normal, int tangent, int rolling) {
+    return demi_memory_shear(tangent, rolling) + (normal == DEM_NORMAL_HYSTERETIC);
 }
 
 /* --- the near list: candidates that touch or may within near_span, were they to meet head-on at
@@ -4948,8 +5131,10 @@ static void demi_effects(dem_world *w) {
     if (w->rolling == DEM_ROLLING_AUTO) w->rolling = DEM_ROLLING_EPSD;
     if (!friction) w->tangent = DEM_TANGENT_NONE;
     if (!rolling) w->rolling = DEM_ROLLING_NONE;
-    w->memory_stride = demi_memory_of(w->tangent, w->rolling);
+    w->memory_stride = demi_memory_of(w->normal, w->tangent, w->rolling);
     w->vector_mask = 0x77;
+    if (w->normal == DEM_NORMAL_HYSTERETIC)     /* a depth has no direction */
+        w->vector_mask &= ~(1 << demi_memory_shear(w->tangent, w->rolling));
     if (w->desc.law) {
         w->memory_stride = w->desc.law_memory;
         w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
@@ -5026,6 +5211,23 @@ static int demi_domains_for(int count) {
     return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
 }
 
+/* Sieves know spheres and clusters of them; says so when there is an ellipsoid. */
+static int demi_sieve_refuses(dem_world *w) {
+    int i, j;
+    for (j = 0; j < w->wall_count && w->shaped_count; j++) {
+        if (w->walls[j].kind != DEMI_WALL_SIEVE) continue;
+        for (i = 0; i < w->count; i++) {
+            const demi_form *form = demi_form_of(w, i);
+            if (!form || form->count) continue;
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: wall %d is a sieve and body %u an "
+                      "ellipsoid, which sieves do not know; make it a cluster of spheres, or the "
+                      "sieve a mesh", j + 1, (unsigned)w->body_slot[i] + 1);
+            return 1;
+        }
+    }
+    return 0;
+}
+
 /* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
    they were (the next call tries again). */
 static dem_result demi_rebuild(dem_world *w) {
@@ -5046,6 +5248,7 @@ static dem_result demi_rebuild(dem_world *w) {
                              "the grains smaller",
                              (double)p.period[k], k, need);
     }
+    if (demi_sieve_refuses(w)) return DEM_ERROR_ARGUMENT;
     demi_levels_choose(w);
     if (!demi_grid_lay(w, 2*(w->wide ? w->level_fine : (double)w->radius_max) + w->skin + 1e-300))
         return demi_no_memory(w, "dem_world_step");
@@ -5085,7 +5288,7 @@ static dem_result demi_rebuild(dem_world *w) {
         if (again && !demi_wall_lists_reserve(w, w->wall_stride/2*3 +
                                               64)) return demi_no_memory(w, "dem_world_step");
     } while (again);
-    if (!demi_wall_contacts_move(w, w->wall_stride) || !demi_shaped_move(w))
+    if (!demi_wall_contacts_move(w, w->wall_stride*demi_wall_most(w)) || !demi_shaped_move(w))
         return demi_no_memory(w, "dem_world_step");
     if (demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
@@ -5172,6 +5375,190 @@ static dem_vec3 demi_segment_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, int *feat
     return demi_sub(p, demi_scale(normal, demi_dot(normal, demi_sub(p, a))/ll));
 }
 
+/* --- sieves: a sphere against all of a sieve, in the sieve's frame: z across, a hole in the
+       middle, wires and holes in rows along x and y. Only what is near is looked at, found from the
+       sphere's place: the cost does not depend on how many holes there are. Every wire, and every
+       side of every hole, has an element number of its own, for contact memory.
+         wires   axes at (i + 1/2)(aperture + bar): distance to the axis of each within reach,
+                 exact for straight wires
+         plates  above the solid part: the face. Above a hole: the nearest point of each of its
+                 sides (square, slots), which is a rim or, within the thickness, a wall. Round holes:
+                 the nearest point and the one across, so that a grain too large for the hole sits on
+                 it. Exact for one contact; the inner corners of a square hole need no more
+       Where two wires cross, or two rims meet, a grain touches both at what is one place. demi_share
+       sorts that out. Tests: tests/test_sieve.c. --- */
+enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1 };
+
+/* Half of how thick it is. */
+static dem_real demi_sieve_half(const dem_sieve_desc *s) {
+    return s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS ? (s->bar + s->lift)/2
+        : s->thickness/2;
+}
+/* A number that tells rows and holes apart; far ones repeat, which does no harm. */
+static int32_t demi_sieve_number(double i, double j, int side) {
+    const int32_t a = (int32_t)(i - floor(i/16384)*16384), b = (int32_t)(j - floor(j/8192)*8192);
+    return (int32_t)(((uint32_t)a << 16) | ((uint32_t)b << 3) | (uint32_t)side);
+}
+/* Adds the contact with what lies `edge` around foot, if there is one. */
+static int demi_sieve_put(demi_wall_contact *out, int count, int32_t element, dem_vec3 x, dem_real r,
+                          dem_vec3 foot, dem_real edge) {
+    const dem_vec3 d = demi_sub(foot, x);
+    const dem_real l = demi_length(d), overlap = r + edge - l;
+    demi_wall_contact *c = &out[count];
+    if (!(overlap > 0) || count == DEMI_SIEVE_MOST) return count;
+    c->element = element;
+    c->feature = 1;
+    c->normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
+    c->point = demi_add(x, demi_scale(c->normal, l - edge));
+    c->overlap = overlap;
+    c->share = 1;
+    return count + 1;
+}
+/* Wires of one set: across x (set 0) or across y (set 1). */
+static int demi_sieve_wires(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real r,
+                            demi_wall_contact *out, int count) {
+    const dem_real q = s->bar/2, h = set ? -s->lift/2 : s->lift/2, pitch = s->aperture + s->bar;
+    const dem_real u = set ? x.y : x.x, v = set ? x.x : x.y, R = s->radius;
+    const dem_real far2 = (r + q)*(r + q) - (x.z - h)*(x.z - h);
+    const double home = floor((double)(u/pitch));
+    int k;
+    if (!(far2 > 0)) return count;
+    for (k = -2; k <= 3; k++) {                 /* a grain far larger than holes lies on these */
+        const dem_real at = (dem_real)(home + k + 0.5)*pitch, off = u - at;
+        dem_real along = v;
+        if (off*off >= far2) continue;
+        if (R > 0) {                            /* ends of the wire */
+            const dem_real end = R*R > at*at ? DEMI_SQRT(R*R - at*at) : 0;
+            if (!(end > 0)) continue;
+            along = v > end ? end : v < -end ? -end : v;
+        }
+        count = demi_sieve_put(out, count, demi_sieve_number(home + k, 0, set), x, r,
+                               set ? demi_v(along, at, h) : demi_v(at, along, h), q);
+    }
+    return count;
+}
+static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_wall_contact *out) {
+    const dem_real up = x.z >= 0 ? DEM_R(1) : DEM_R(-1);
+    out->element = DEMI_SIEVE_FACE;
+    out->feature = 0;
+    out->normal = demi_v(0, 0, -up);
+    out->point = demi_v(x.x, x.y, up*s->thickness/2);
+    out->overlap = r + s->thickness/2 - up*x.z;
+    out->share = 1;
+    return out->overlap > 0;
+}
+static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_wall_contact *out) {
+    const dem_real half = s->thickness/2, z = x.z > half ? half : x.z < -half ? -half : x.z;
+    const dem_real a = s->aperture/2, R = s->radius, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const int endless = s->kind == DEM_SIEVE_SLOTS && !(s->length > 0);
+    dem_real step[2], wide[2], off[2], mid[2];
+    double i[2];
+    int k, side, count = 0;
+    if (R > 0 && S > R)                         /* off the disc: its edge */
+        return demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r, demi_v(x.x*R/S, x.y*R/S, z), 0);
+    if (s->kind == DEM_SIEVE_ROUND) {
+        const dem_real pitch = s->aperture + s->bar;
+        const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
+        dem_real best = -1, l;
+        dem_vec3 way, centre = x, to;
+        int32_t number = 0;
+        for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
+            const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
+            const double ix = floor((double)(x.x/pitch - shift) + 0.5);
+            const double iy = floor((double)(x.y/rows - shift) + 0.5);
+            const dem_vec3 c = demi_v(((dem_real)ix + shift)*pitch, ((dem_real)iy + shift)*rows, 0);
+            l = (x.x - c.x)*(x.x - c.x) + (x.y - c.y)*(x.y - c.y);
+            if (best >= 0 && l >= best) continue;
+            best = l;
+            centre = c;
+            number = demi_sieve_number(ix, iy, 4*k);
+        }
+        if (best >= a*a) return demi_sieve_face(s, x, r, out);
+        l = DEMI_SQRT(best);
+        way = l > 0 ? demi_v((x.x - centre.x)/l, (x.y - centre.y)/l, 0) : demi_v(1, 0, 0);
+        for (side = 0; side < 2; side++) {      /* nearest, and across */
+            to = demi_add(demi_v(centre.x, centre.y, z), demi_scale(way, side ? -a : a));
+            if (R > 0 && to.x*to.x + to.y*to.y > R*R) continue;
+            count = demi_sieve_put(out, count, number + side, x, r, to, 0);
+        }
+        return count;
+    }
+    wide[0] = s->kind == DEM_SIEVE_SLOTS ? s->length/2 : a;
+    wide[1] = a;
+    for (k = 0; k < 2; k++) {
+        const dem_real at = k ? x.y : x.x;
+        step[k] = 2*wide[k] + s->bar;
+        i[k] = k == 0 && endless ? 0 : floor((double)(at/step[k]) + 0.5);
+        mid[k] = (dem_real)i[k]*step[k];
+        off[k] = k == 0 && endless ? 0 : at - mid[k];
+    }
+    if ((!endless && DEMI_ABS(off[0]) >= wide[0]) || DEMI_ABS(off[1]) >= wide[1])
+        return demi_sieve_face(s, x, r, out);
+    for (side = endless ? 2 : 0; side < 4; side++) {
+        const dem_real at = mid[side/2] + (side & 1 ? -wide[side/2] : wide[side/2]);
+        const dem_vec3 to = side < 2 ? demi_v(at, x.y, z) : demi_v(x.x, at, z);
+        if (R > 0 && to.x*to.x + to.y*to.y > R*R) continue;
+        count = demi_sieve_put(out, count, demi_sieve_number(i[0], i[1], side), x, r, to, 0);
+    }
+    return count;
+}
+/* Contacts that are in truth one, where wires cross or rims meet: each counts as far as its point
+   stands out of the plane that touches at the other, towards the grain. L_a: how far a's point
+   stands out of b's plane.
+       share_a = max(L_a/(L_a + L_b), min(1, L_a/overlap_a))
+   On top of a wire the one across is not felt (its L is 0), half way between the two each bears
+   half, and in the corner of a hole, where L is far more than the overlap, each bears all: no jump on
+   the way. The rule for meshes (demi_wall_resolve) drops outright what lies in the plane of a face;
+   here neither is a face. */
+static void demi_share(demi_wall_contact *c, int count) {
+    int a, b;
+    for (a = 0; a < count; a++)
+        for (b = a + 1; b < count; b++) {
+            const dem_vec3 d = demi_sub(c[b].point, c[a].point);
+            dem_real la = demi_dot(c[b].normal, d), lb = -demi_dot(c[a].normal, d), sa, sb;
+            la = la > 0 ? la : 0;
+            lb = lb > 0 ? lb : 0;
+            sa = la + lb > 0 ? la/(la + lb) : 1;
+            sb = 1 - sa;
+            la /= c[a].overlap;
+            lb /= c[b].overlap;
+            c[a].share *= DEMI_MAX(sa, DEMI_MIN(la, DEM_R(1)));
+            c[b].share *= DEMI_MAX(sb, DEMI_MIN(lb, DEM_R(1)));
+        }
+}
+/* [FEN] eq 4.20 to 4.25: 1 when a grain over (x, y) falls through. Half a hole is w, the reduced
+   one w - b, b = zeta (w - r) or zeta w; model 1 wants the grain's edge within, model 2 its centre
+   and r < w. The seed leaves open what "c_x" does for grains that fit in no hole: here they never
+   fall. */
+static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
+    const dem_real w = s->aperture/2, pitch = s->aperture + s->bar;
+    const dem_real room = (1 - s->clearance)*(s->model == 2 ? w : w - r);
+    const dem_real u = x.x - (dem_real)floor((double)(x.x/pitch) + 0.5)*pitch;
+    const dem_real v = x.y - (dem_real)floor((double)(x.y/pitch) + 0.5)*pitch;
+    return r < w && DEMI_ABS(u) < room && DEMI_ABS(v) < room;
+}
+/* All contacts of a sphere at x of radius r with a sieve: at most DEMI_SIEVE_MOST; body and wall are
+   the caller's to fill in. One of share 0 pushes nobody: a grain under way through a reduced hole.
+   */
+static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_wall_contact *out) {
+    int count = 0;
+    switch (s->kind) {
+    case DEM_SIEVE_WIRES:
+        count = demi_sieve_wires(s, 0, x, r, out, count);
+        count = demi_sieve_wires(s, 1, x, r, out, count);
+        break;
+    case DEM_SIEVE_BARS: count = demi_sieve_wires(s, 0, x, r, out, count); break;
+    case DEM_SIEVE_REDUCED:
+        if (s->radius > 0 && x.x*x.x + x.y*x.y > s->radius*s->radius) return 0;
+        count = demi_sieve_face(s, x, r, out);
+        if (count && demi_sieve_passes(s, x, r)) out->share = 0;
+        return count;
+    default: count = demi_sieve_plate(s, x, r, out);
+    }
+    if (count > 1) demi_share(out, count);
+    return count;
+}
+
 /* One sphere against one element, all in the wall's frame. Fills in normal (grain -> wall), point
    and feature; answers the overlap (negative: apart). */
 static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
@@ -5191,6 +5578,12 @@ static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, 
         *point = demi_v(d.x*wall->radius, d.y*wall->radius, x.z);
         *normal = wall->inside ? d : demi_scale(d, -1);
         return wall->inside ? r + l - wall->radius : r + wall->radius - l;
+    case DEMI_WALL_SIEVE:  /* the sheet it lies in, holes or not: for candidates. See demi_sieve */
+        l = DEMI_ABS(x.z) - demi_sieve_half(&wall->sieve);
+        if (wall->radius > 0) l = DEMI_MAX(l, DEMI_SQRT(x.x*x.x + x.y*x.y) - wall->radius);
+        *normal = demi_v(0, 0, x.z > 0 ? DEM_R(-1) : DEM_R(1));
+        *point = demi_v(x.x, x.y, 0);
+        return r - l;
     case DEMI_WALL_PROFILE:
         x.z = 0;
         demi_wall_corners(wall, element, c);
@@ -5311,7 +5704,8 @@ static int demi_wall_resolve(demi_wall_contact *c, int count, dem_real r) {
    nothing else. demi_law is the built-in one; its first arguments are literals where a kernel is
    specialised, so that what a scene does not call for is not there. It has no branches that depend
    on the contact: compilers turn it into vector code. memory: [0..2] spring or force in the tangent
-   plane, [3] kt of the last step; [4..6] rolling moment. `out` gets the energies of the ledger,
+   plane, [3] kt of the last step; [4..6] rolling moment; after those in use, the hysteretic law's
+   depth. `out` gets the energies of the ledger,
    when there is one. >>add-law: (1) an enum value in >>api, (2) a case here, (3) its memory in
    demi_effects,
    (4) a sentence in tests/, (5) a line in docs/theory.md.
@@ -5325,8 +5719,38 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
     const dem_vec3 n = c->normal, v = c->slip;
     dem_real root, fn, elastic, kt, ct, limit, kn;
 
-    /* normal: Hertz F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], or linear F = kn d + cn v */
-    if (normal == DEM_NORMAL_HERTZ) {
+    /* normal: Hertz F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], or linear F = kn d + cn v, or
+       hysteretic [FEN] eq 2.41 to 2.49:
+           F = kun d - (kun - kn) D,  D: depth, N/m and m
+       loading (d = D): F = kn d; un- and reloading: slope kun, zero at d0 = (1 - kn/kun) D [2.44];
+       pulling: F = -kad d, on which D shrinks with d, so that reloading from any point of it, at
+       slope kun, meets kn d again at the D that belongs to that point. D is all there is to
+       remember: the larger of D and d, but at most d (kun + kad)/(kun - kn). The branches meet at
+       d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun. That is eq 2.49
+       with kad as a size; with the negative slope the seed defines it as, its 2.48 and 2.49 have
+       the wrong sign, and its text calls d_ad a deformation and a force. Friction is what
+       F + kad d can hold, which is 0 at the pulling line; the seed takes |F|, which is 0 where
+       nothing pulls or pushes and large where the two are torn apart.
+       Along the slope kun nothing is lost: a grain at rest on one swings there for ever unless
+       normal_damping calms it. Stored is F^2/(2 kun); a D that changes dissipates F (1 - kn/kun) dD, summed exactly along
+       either line. Tests: "a hysteretic contact dissipates the area of its loop". */
+    dem_real hold = 0, sag = 0;
+    if (normal == DEM_NORMAL_HYSTERETIC) {
+        const int place = demi_memory_shear(tangent, rolling);
+        const dem_real kun = c->kun, kad = c->kad, soft = kun - c->kn, before = memory[place];
+        const dem_real loaded = c->overlap > before ? c->overlap : before;
+        const dem_real most = c->overlap*(kun + kad)/(soft + DEMI_TINY);
+        const dem_real depth = most < loaded ? most : loaded;
+        kn = c->kn;
+        kt = c->kt;
+        ct = c->ct;
+        memory[place] = depth;
+        elastic = kun*c->overlap - soft*depth;
+        fn = elastic + c->cn*c->closing_speed;
+        hold = kad*c->overlap;
+        sag = soft/(2*kun)*(kn*(loaded*loaded - before*before) +
+                            kad*soft/(kun + kad)*(loaded*loaded - depth*depth));
+    } else if (normal == DEM_NORMAL_HERTZ) {
         root = DEMI_SQRT(c->overlap);
         kn = c->kn*root;
         elastic = kn*c->overlap;
@@ -5342,11 +5766,16 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
         fn = elastic + c->cn*c->closing_speed;
     }
     limit = fn > 0 ? fn : 0;
-    fn = clipped ? limit : fn;                  /* no pull at the end of a contact */
+    if (normal == DEM_NORMAL_HYSTERETIC) {      /* the dashpot may not pull, adhesion may */
+        const dem_real least = elastic < 0 ? elastic : 0;
+        limit = fn + hold > 0 ? fn + hold : 0;
+        fn = clipped && fn < least ? least : fn;
+    } else fn = clipped ? limit : fn;           /* no pull at the end of a contact */
     push->normal = fn;
     if (ledger) {
-        out->dashpot = (fn - elastic)*c->closing_speed*c->dt;
-        out->elastic = normal == DEM_NORMAL_HERTZ ? elastic*c->overlap*2/5 : elastic*c->overlap/2;
+        out->dashpot = (fn - elastic)*c->closing_speed*c->dt + sag;
+        out->elastic = normal == DEM_NORMAL_HYSTERETIC ? elastic*elastic/(2*c->kun)
+            : normal == DEM_NORMAL_HERTZ ? elastic*c->overlap*2/5 : elastic*c->overlap/2;
         out->shear_work = out->slide = out->shear_stored = out->roll = 0;
     }
 
@@ -5540,7 +5969,7 @@ DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int
     int e;
     r.normal = normal; r.tangent = tangent; r.rolling = rolling;
     r.uniform = uniform; r.ledger = ledger && !law; r.law = law;
-    r.keep = law ? w->memory_stride : demi_memory_of(tangent, rolling);
+    r.keep = law ? w->memory_stride : demi_memory_of(normal, tangent, rolling);
     r.turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
     r.parting = law || rolling != DEM_ROLLING_NONE || (r.turning && !uniform);
     r.clipped = w->desc.tension == DEM_TENSION_CLIPPED;
@@ -5667,6 +6096,7 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
         c.rolling_friction = r->coef[DEMI_MU_ROLL];
         c.r_eff = r->coef[DEMI_R_EFF];
         c.m_eff = r->m_eff;
+        c.kun = r->coef[DEMI_K_UN]; c.kad = r->coef[DEMI_K_AD];
     } else {
         c.kn = t->coef[DEMI_KN][q]; c.cn = t->coef[DEMI_CN][q];
         c.kt = t->coef[DEMI_KT][q]; c.ct = t->coef[DEMI_CT][q];
@@ -5674,6 +6104,8 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
         c.rolling_friction = t->coef[DEMI_MU_ROLL][q];
         c.r_eff = t->coef[DEMI_R_EFF][q];
         c.m_eff = t->coef[DEMI_M_EFF][q];
+        c.kun = r->normal == DEM_NORMAL_HYSTERETIC ? t->coef[DEMI_K_UN][q] : 0;
+        c.kad = r->normal == DEM_NORMAL_HYSTERETIC ? t->coef[DEMI_K_AD][q] : 0;
     }
 #define DEMI_RECALL(e) m[e] = e < r->keep ? t->memory[e][q] : 0
 #define DEMI_KEEP(e) if (e < r->keep) t->memory[e][q] = m[e]*touch
@@ -5729,7 +6161,8 @@ DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_span *span, con
     for (q = 0; q < r->keep; q++)
         demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
     for (q = 0; q < DEMI_PAIR_COLUMNS && !r->uniform; q++)
-        demi_row_copy(t->coef[q], span->coef + (size_t)q*span->stride, full);
+        if (r->normal == DEM_NORMAL_HYSTERETIC || q < DEMI_K_UN || q > DEMI_K_AD)
+            demi_row_copy(t->coef[q], span->coef + (size_t)q*span->stride, full);
     demi_tile_fetch(w, span, full, r, t);
     for (q = 0; q < full; q += DEMI_LANES) {
         DEMI_VECTOR
@@ -5880,7 +6313,11 @@ DEMI_CLONES static void demi_pairs_own_law(dem_world *w, int d) {
     X(linear,               LINEAR, NONE,    NONE, 1, 0, "linear, alike") \
     X(linear_mixed,         LINEAR, NONE,    NONE, 0, 0, "linear, mixed") \
     X(linear_spring,        LINEAR, SPRING,  NONE, 1, 0, "linear + spring, alike") \
-    X(linear_spring_mixed,  LINEAR, SPRING,  NONE, 0, 0, "linear + spring, mixed")
+    X(linear_spring_mixed,  LINEAR, SPRING,  NONE, 0, 0, "linear + spring, mixed") \
+    X(hysteretic,           HYSTERETIC, NONE,   NONE, 1, 0, "hysteretic, alike") \
+    X(hysteretic_mixed,     HYSTERETIC, NONE,   NONE, 0, 0, "hysteretic, mixed") \
+    X(hysteretic_spring,    HYSTERETIC, SPRING, NONE, 1, 0, "hysteretic + spring, alike") \
+    X(hysteretic_spring_mixed, HYSTERETIC, SPRING, NONE, 0, 0, "hysteretic + spring, mixed")
 #define DEMI_KERNEL_DEFINE(NAME, NORMAL, TANGENT, ROLLING, UNIFORM, LEDGER, TEXT) \
     DEMI_CLONES static void demi_pairs_##NAME(dem_world *w, int d) { \
         demi_pairs(w, d, DEM_NORMAL_##NORMAL, DEM_TANGENT_##TANGENT, DEM_ROLLING_##ROLLING, \
@@ -5958,8 +6395,12 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body);
     const dem_vec3 at = demi_add(demi_at(x), demi_scale(n, r));
     const dem_vec3 arm = demi_sub(at, wall->pose.position);
+    /* where the contact was in the middle of the step: taken where it is now instead, a grain that
+       is carried round creeps outwards by w^2 R dt/2 */
+    const dem_vec3 was = demi_sub(demi_add(demi_at(x), demi_scale(demi_add(n, normal_before), r/2)),
+                                  demi_scale(demi_at(w->half_vel + 4*k->body), dt/2));
     const dem_vec3 mid = demi_add(wall->mid.velocity, demi_cross(wall->mid.spin,
-        demi_sub(at, wall->mid.position)));
+        demi_sub(was, wall->mid.position)));
     const dem_vec3 spin_step = demi_at(w->half_spin + 4*k->body);
     dem_vec3 u;
     *surface = demi_add(wall->pose.velocity, demi_cross(wall->pose.spin, arm));
@@ -5985,6 +6426,7 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     c->m_eff = w->mass[k->body];
     c->kn = k->coef[DEMI_KN]; c->cn = k->coef[DEMI_CN]; c->kt = k->coef[DEMI_KT];
     c->ct = k->coef[DEMI_CT];
+    c->kun = k->coef[DEMI_K_UN]; c->kad = k->coef[DEMI_K_AD];
     c->friction = k->coef[DEMI_MU]; c->friction_static = k->coef[DEMI_MU_STATIC];
     c->rolling_friction = k->coef[DEMI_MU_ROLL];
     c->material_a = w->body_material[k->body];
@@ -5993,8 +6435,9 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
     c->user = w->desc.law_user;
 }
 
-/* Elements of one wall that a sphere touches, from candidates first .. last - 1 of its body. */
-static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 centre,
+/* Touching elements of one wall for a sphere at `at` of radius r, from the candidates first .. last
+   - 1 of the body it is, or is part of. */
+static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
                              dem_real r, demi_wall_contact *out) {
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
     const int id = w->wall_id[base + first];
@@ -6007,7 +6450,17 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem
     int k, count = 0;
     while (first < last && w->wall_gap[base + first] > gone) first++;
     if (first == last) return 0;
-    x = demi_unturn(R, demi_sub(centre, wall->pose.position));
+    x = demi_unturn(R, demi_sub(at, wall->pose.position));
+    if (wall->kind == DEMI_WALL_SIEVE) {        /* one candidate, as many contacts as there are */
+        count = demi_sieve_touch(&wall->sieve, x, r, out);
+        for (k = 0; k < count; k++) {
+            out[k].body = body;
+            out[k].wall = id;
+            out[k].normal = demi_turn(R, out[k].normal);
+            out[k].point = demi_add(wall->pose.position, demi_turn(R, out[k].point));
+        }
+        return count;
+    }
     for (k = first; k < last; k++) {
         demi_wall_contact *c = &out[count];
         dem_vec3 n, p;
@@ -6094,6 +6547,10 @@ static void demi_walls_respond(dem_world *w, int d) {
                 demi_wall_coefs(w, c);
                 memset(c->memory, 0, sizeof c->memory);
             }
+            if (w->walls[wall].sieve.kind == DEM_SIEVE_REDUCED) {   /* under way through: to the end */
+                if (from && !(from->share > 0)) c->share = 0;
+                if (!(c->share > 0)) c->overlap = 0;
+            }
             demi_wall_contact_fill(w, c, from ? from->normal : c->normal, dt, &contact, &surface);
             if (w->desc.law) w->desc.law(&contact, c->memory, &f);
             else demi_law(&contact, c->memory, &f, w->normal, w->tangent, w->rolling, clipped,
@@ -6154,7 +6611,7 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
         c->deep = c->overlap/DEMI_MIN(p->radius, q->radius);
         c->r_eff = p->radius*q->radius/sum;
         c->arm_a = demi_add(p->centre, demi_scale(c->normal, d*p->radius/sum));
-        c->arm_b = demi_sub(q->centre, demi_scale(c->normal, d*q->radius/sum));
+        c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
         return 1;
     }
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
@@ -6162,7 +6619,7 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
     demi_part_matrix(p, A);
     demi_part_matrix(q, B);
     m.l = lambda > 0 ? lambda : demi_meet_start(A, B, r);
-    demi_meet_solve(A, B, r, 1, &m);
+    demi_meet_solve(A, B, r, 1, DEMI_MEET_NEAR, &m);
     if (!(m.f < 1)) return 0;
     w0 = sqrt(m.f);
     demi_meet_heights(&m, n, &ha, &hb);
@@ -6181,8 +6638,8 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
     c->arm_a = demi_add(p->centre, demi_v((dem_real)((1 - m.l)*m.a[0]),
         (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
-    c->arm_b = demi_sub(q->centre, demi_v((dem_real)(m.l*m.b[0]), (dem_real)(m.l*m.b[1]),
-                                          (dem_real)(m.l*m.b[2])));
+    /* from b's centre to the same point, to the bit: angular momentum */
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
 
@@ -6406,7 +6863,7 @@ static dem_real demi_wall_ellipsoid(const demi_wall *wall, int element, const de
         r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
         if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
         m.l = demi_meet_start(Q, B, r);
-        demi_meet_solve(Q, B, r, 1, &m);
+        demi_meet_solve(Q, B, r, 1, DEMI_MEET_NEAR, &m);
         if (!(m.f < 1)) return -1;
         demi_meet_heights(&m, m3, &ha, &hb);
         c->normal = demi_v((dem_real)m3[0], (dem_real)m3[1], (dem_real)m3[2]);
@@ -6579,7 +7036,10 @@ static void demi_shaped_coefs(const dem_world *w, const demi_shaped *k, int a, i
     }
     memcpy(out, k->unit, sizeof k->unit);
     out[DEMI_KN] *= stiff*k->slope;
-    out[DEMI_CN] *= damp*k->slope;
+    out[DEMI_K_UN] *= stiff*k->slope;
+    out[DEMI_K_AD] *= k->slope;
+    out[DEMI_CN] *= (p->normal_damping > 0 && w->desc.normal_law != DEM_NORMAL_HERTZ ? 1 : damp)*
+        k->slope;
     out[DEMI_KT] *= stiff;
     out[DEMI_CT] *= damp;
     out[DEMI_R_EFF] = R;
@@ -6609,10 +7069,13 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
         *surface = demi_v(0, 0, 0);
     } else {
         const demi_wall *wall = &w->walls[k->wall];
-        const dem_vec3 at = demi_add(demi_at(w->pos + 4*a), k->arm_a);
-        *surface = demi_surface_at(&wall->pose, at);
+        const dem_vec3 x = demi_at(w->pos + 4*a);
+        /* where the contact was in the middle of the step */
+        const dem_vec3 was = demi_add(mid_a, demi_sub(x, demi_scale(demi_at(w->half_vel + 4*a),
+                                                                    dt/2)));
+        *surface = demi_surface_at(&wall->pose, demi_add(x, k->arm_a));
         u = demi_sub(u, *surface);
-        gone = demi_sub(gone, demi_surface_at(&wall->mid, at));
+        gone = demi_sub(gone, demi_surface_at(&wall->mid, was));
         spin = wall->pose.spin;
         spin_step = wall->mid.spin;
     }
@@ -6635,6 +7098,7 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     c->r_eff = k->r_eff;
     c->m_eff = k->m_eff;
     c->kn = coef[DEMI_KN]; c->cn = coef[DEMI_CN]; c->kt = coef[DEMI_KT]; c->ct = coef[DEMI_CT];
+    c->kun = coef[DEMI_K_UN]; c->kad = coef[DEMI_K_AD];
     c->friction = coef[DEMI_MU]; c->friction_static = coef[DEMI_MU_STATIC];
     c->rolling_friction = coef[DEMI_MU_ROLL];
     c->material_a = w->body_material[a];
@@ -6882,15 +7346,20 @@ static void demi_prime(dem_world *w) {
        predicted with the last torque. All are of second order under torques. Checked by tests of
        rotation (free flight against elliptic functions, order, tops). --- */
 
-/* q turned by the rotation vector v of the body's frame (rad), |v| < 2: q exp(v/2) by series to 1e-12,
-   made a unit one again. */
+/* q turned by the rotation vector v of the body's frame (rad), |v| < 2: q exp(v/2), by series to
+   1e-12; and made a unit one again. */
 DEM_INLINE dem_quat demi_quat_spin(dem_quat q, dem_vec3 v) {
-    const dem_real x = demi_dot(v, v)/4;        /* (half angle)^2 */
-    const dem_real c = 1 - x/2*(1 - x/12*(1 - x/30*(1 - x/56*(1 - x/90*(1 - x/132)))));
-    const dem_real s = (1 - x/6*(1 - x/20*(1 - x/42*(1 - x/72*(1 - x/110*(1 - x/156))))))/2;
-    const dem_quat r = dem_quat_times(q, dem_quat_make(c, s*v.x, s*v.y, s*v.z));
-    const dem_real l = 1/DEMI_SQRT(r.w*r.w + r.x*r.x + r.y*r.y + r.z*r.z);
-    return dem_quat_make(r.w*l, r.x*l, r.y*l, r.z*l);
+    const dem_real x = demi_dot(v, v)*DEM_R(0.25);         /* (half angle)^2 */
+    /* cos and half of sin x/x; products with constants, which quotients would not become */
+    const dem_real c = 1 + x*(DEM_R(-1.0/2) + x*(DEM_R(1.0/24) + x*(DEM_R(-1.0/720) +
+        x*(DEM_R(1.0/40320) + x*(DEM_R(-1.0/3628800) + x*DEM_R(1.0/479001600))))));
+    const dem_real s = DEM_R(0.5) + x*(DEM_R(-1.0/12) + x*(DEM_R(1.0/240) + x*(DEM_R(-1.0/10080) +
+        x*(DEM_R(1.0/725760) + x*(DEM_R(-1.0/79833600) + x*DEM_R(1.0/12454041600.0))))));
+    return dem_quat_times(q, dem_quat_make(c, s*v.x, s*v.y, s*v.z));
+}
+DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
+    const dem_real l = 1/DEMI_SQRT(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z);
+    return dem_quat_make(q.w*l, q.x*l, q.y*l, q.z*l);
 }
 /* SPIRAL [SPI24], with angular momentum kept. There w goes from one half step to the next by a third
    order Runge-Kutta step with the torque in it, and q by q exp(dt w/2); both lose L a little every
@@ -6900,11 +7369,12 @@ DEM_INLINE dem_quat demi_quat_spin(dem_quat q, dem_vec3 v) {
    q goes by the mean and the first term of Magnus, h (w x end)/12; then by the small rotation that
    puts I end where R^T L is: two of three errors of q are gone, and L, |q| are exact. Free flight: order
    3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times (docs/accuracy.md).
-   I: principal moments; answers the mean, in the body's frame. */
-DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
+   I, inv: principal moments, their inverses; answers the mean, in the body's frame. */
+DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
+                                       dem_real h) {
     const dem_vec3 m = dem_quat_unturn(*q, L);
-    const dem_vec3 w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
-    const dem_vec3 a = demi_v((I.y - I.z)/I.x, (I.z - I.x)/I.y, (I.x - I.y)/I.z);
+    const dem_vec3 w = demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z);
+    const dem_vec3 a = demi_v((I.y - I.z)*inv.x, (I.z - I.x)*inv.y, (I.x - I.y)*inv.z);
     const dem_vec3 w1 = demi_v(a.x*w.y*w.z, a.y*w.z*w.x, a.z*w.x*w.y);
     const dem_vec3 w2 = demi_v(a.x*(w1.y*w.z + w.y*w1.z), a.y*(w1.z*w.x + w.z*w1.x),
                                a.z*(w1.x*w.y + w.x*w1.y));
@@ -6913,16 +7383,16 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
                                a.z*(w2.x*w.y + 2*w1.x*w1.y + w.x*w2.y));
     const dem_real ll = demi_dot(L, L);
     dem_vec3 mean, end, g, c, magnus;
-    end = demi_add(demi_scale(w1, h), demi_scale(demi_add(w2, demi_scale(w3, h/3)), h*h/2));
-    mean = demi_add(demi_scale(w1, h/2), demi_scale(demi_add(w2, demi_scale(w3, h/4)), h*h/6));
-    end = demi_add(w, end);
-    mean = demi_add(w, mean);
-    magnus = demi_scale(demi_cross(w, end), h/12);
+    end = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(1.0/3))), h*h*DEM_R(0.5));
+    mean = demi_scale(demi_add(w2, demi_scale(w3, h*DEM_R(0.25))), h*h*DEM_R(1.0/6));
+    end = demi_add(w, demi_add(demi_scale(w1, h), end));
+    mean = demi_add(w, demi_add(demi_scale(w1, h*DEM_R(0.5)), mean));
+    magnus = demi_scale(demi_cross(w, end), h*DEM_R(1.0/12));
     *q = demi_quat_spin(*q, demi_scale(demi_add(mean, magnus), h));
     end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
     g = dem_quat_unturn(*q, L);
-    c = demi_scale(demi_cross(end, g), 1/(ll + DEMI_TINY));
-    *q = demi_quat_spin(*q, c);
+    c = demi_scale(demi_cross(end, g), DEM_R(0.5)/(ll + DEMI_TINY));
+    *q = demi_quat_again(dem_quat_times(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
 }
 /* [FIN92], which [GAS] eq 17 to 21 uses with w for L (the same for spheroids that do not spin about
@@ -6964,84 +7434,89 @@ static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_r
     return demi_scale(demi_add(w0, dem_quat_unturn(start, dem_quat_turn(*q, w1))), DEM_R(0.5));
 }
 /* Spin of a body with angular momentum L. */
-DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 I) {
+DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 inv) {
     const dem_vec3 m = dem_quat_unturn(q, L);
-    return dem_quat_turn(q, demi_v(m.x/I.x, m.y/I.y, m.z/I.z));
+    return dem_quat_turn(q, demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z));
 }
 
-/* Bodies that turn, DEMI_LANES at a time: rows of numbers, so that compilers make vectors of it. */
+/* Bodies that turn, a tile at a time: rows of numbers, so that compilers make vectors of it. */
 typedef struct demi_turning {
-    dem_real q[4][DEMI_LANES], L[3][DEMI_LANES], T[3][DEMI_LANES], I[3][DEMI_LANES];
-    dem_real half[3][DEMI_LANES], spin[3][DEMI_LANES];
+    dem_real q[4][DEMI_ROW], L[3][DEMI_ROW], T[3][DEMI_ROW], I[4][DEMI_ROW];
+    dem_real half[3][DEMI_ROW], spin[3][DEMI_ROW];
+    dem_real speed2[DEMI_ROW], change2[DEMI_ROW];        /* (m/s)^2, at the lever's end */
 } demi_turning;
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real dt) {
     dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
     const dem_vec3 T = demi_v(t->T[0][l], t->T[1][l], t->T[2][l]);
     const dem_vec3 I = demi_v(t->I[0][l], t->I[1][l], t->I[2][l]);
+    const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z);
     const dem_vec3 L = demi_v(t->L[0][l] + T.x*dt, t->L[1][l] + T.y*dt, t->L[2][l] + T.z*dt);
-    const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, dt)
+    const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
         : rotation == DEM_ROTATION_FINCHAM ? demi_flight_fincham(&q, L, I, dt)
         : demi_flight_splitting(&q, L, I, dt);
     const dem_vec3 half = dem_quat_turn(start, mean);
-    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, dt/2)), I);
+    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, dt/2)), inv);
+    const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
+    t->speed2[l] = demi_dot(half, half)*t->I[3][l]*t->I[3][l];
+    t->change2[l] = 4*demi_dot(by, by)*t->I[3][l]*t->I[3][l];
     t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
     t->L[0][l] = L.x; t->L[1][l] = L.y; t->L[2][l] = L.z;
     t->half[0][l] = half.x; t->half[1][l] = half.y; t->half[2][l] = half.z;
     t->spin[0][l] = spin.x; t->spin[1][l] = spin.y; t->spin[2][l] = spin.z;
 }
-DEMI_CLONES static void demi_turning_spiral(demi_turning *t, dem_real dt) {
-    int l;
-    DEMI_VECTOR
-    for (l = 0; l < DEMI_LANES; l++) demi_turning_fly(t, l, DEM_ROTATION_SPIRAL, dt);
+DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real dt) {
+    int l, q;
+    for (q = 0; q < count; q += DEMI_LANES) {
+        DEMI_VECTOR
+        for (l = 0; l < DEMI_LANES; l++) demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, dt);
+    }
 }
-/* Turns the bodies listed, at most DEMI_LANES; notes how fast and by how much they changed. */
+/* Turns the bodies listed, at most a tile; notes how fast and by how much they changed. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count) {
     const dem_real dt = w->dt;
     demi_turning t;
     int l, e;
-    for (l = 0; l < DEMI_LANES; l++) {          /* filled up with the last one */
-        const int i = who[DEMI_MIN(l, count - 1)];
-        for (e = 0; e < 4; e++) t.q[e][l] = w->orient[4*i + e];
-        for (e = 0; e < 3; e++) {
-            t.L[e][l] = w->angular[4*i + e];
-            t.T[e][l] = w->torque[4*i + e];
-            t.I[e][l] = w->moment[4*i + e];
-        }
+    const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    dem_real turn = 0, speed = 0, check = 0;
+    for (l = 0; l < full; l++) {                /* groups filled up with the last one */
+        size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
+        DEMI_ONE_BY_ONE(i);
+        for (e = 0; e < 4; e++) t.q[e][l] = w->orient[i + (size_t)e];
+        for (e = 0; e < 4; e++) t.I[e][l] = w->moment[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.L[e][l] = w->angular[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.T[e][l] = w->torque[i + (size_t)e];
     }
-    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(&t, dt);
+    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(&t, full, dt);
     else for (l = 0; l < count; l++) demi_turning_fly(&t, l, (int)w->desc.rotation, dt);
     for (l = 0; l < count; l++) {
-        const int i = who[l];
-        const demi_form *form = demi_form_of(w, i);
-        const double lever = (double)(form->lever*demi_scale_of(w, i, form));
-        double change = 0, speed = 0;
-        for (e = 0; e < 3; e++) {
-            const double by = 2*((double)t.spin[e][l] - (double)t.half[e][l]);   /* a whole step's */
-            change += by*by;
-            speed += (double)t.half[e][l]*(double)t.half[e][l];
-            w->angular[4*i + e] = t.L[e][l];
-            w->half_spin[4*i + e] = t.half[e][l];
-            w->spin[4*i + e] = t.spin[e][l];
-        }
-        for (e = 0; e < 4; e++) w->orient[4*i + e] = t.q[e][l];
-        domain->turn = DEMI_MAX(domain->turn, change*lever*lever);
-        domain->turn_speed = DEMI_MAX(domain->turn_speed, speed*lever*lever);
-        domain->check += speed;
+        size_t i = 4*(size_t)who[l];
+        DEMI_ONE_BY_ONE(i);
+        for (e = 0; e < 4; e++) w->orient[i + (size_t)e] = t.q[e][l];
+        for (e = 0; e < 3; e++) w->angular[i + (size_t)e] = t.L[e][l];
+        for (e = 0; e < 3; e++) w->half_spin[i + (size_t)e] = t.half[e][l];
+        for (e = 0; e < 3; e++) w->spin[i + (size_t)e] = t.spin[e][l];
+        turn = DEMI_MAX(turn, t.change2[l]);
+        speed = DEMI_MAX(speed, t.speed2[l]);
+        check += t.speed2[l];
     }
+    domain->turn = DEMI_MAX(domain->turn, (double)turn);
+    domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
+    domain->check += (double)check;
 }
 /* Orientations of bodies begin .. end - 1 over one step, and spins of those that are not spheres. */
 static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
     const dem_real dt = w->dt;
-    int who[DEMI_LANES], count = 0, i;
+    int who[DEMI_TILE], count = 0, i;
     for (i = begin; i < end; i++) {
         if (w->inv_mass[i] <= 0) continue;
         if (w->body_shape[i]) {
             who[count++] = i;
-            if (count == DEMI_LANES) { demi_orient_some(w, domain, who, count); count = 0; }
+            if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count); count = 0; }
         } else if (w->desc.orientations) {
             const dem_quat q = demi_quat_at(w->orient + 4*i);
             const dem_vec3 by = demi_scale(demi_at(w->half_spin + 4*i), dt);
-            demi_quat_put(w->orient + 4*i, demi_quat_spin(q, dem_quat_unturn(q, by)));
+            demi_quat_put(w->orient + 4*i,
+                          demi_quat_again(demi_quat_spin(q, dem_quat_unturn(q, by))));
         }
     }
     if (count) demi_orient_some(w, domain, who, count);
@@ -7051,10 +7526,12 @@ static void demi_orient_finish(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->half_kick;
     int i;
     for (i = begin; i < end; i++)
-        if (w->body_shape[i] && w->inv_mass[i] > 0)
+        if (w->body_shape[i] && w->inv_mass[i] > 0) {
+            const dem_vec3 I = demi_at(w->moment + 4*i);
             demi_put(w->spin + 4*i, demi_spin_of(demi_quat_at(w->orient + 4*i),
                 demi_add(demi_at(w->angular + 4*i), demi_scale(demi_at(w->torque + 4*i), h)),
-                demi_at(w->moment + 4*i)));
+                demi_v(1/I.x, 1/I.y, 1/I.z)));
+        }
 }
 
 typedef struct demi_integrator_row {
@@ -7968,6 +8445,48 @@ static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
     return h;
 }
 
+/* Contacts of one grain with a sieve follow each other. Stuck: two of them push against each other
+   in the sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
+   |n_z| <= mu |n_xy|. */
+DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed) {
+    const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded", sieve);
+    const demi_wall *wall = id < 0 ? 0 : &w->walls[id];
+    dem_vec3 across;
+    int d, k, j, count = 0;
+    if (!wall) return -1;
+    if (wall->kind != DEMI_WALL_SIEVE) {
+        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded: wall %d is not a sieve; "
+                  "give what dem_sieve_add returned", (int)sieve.id);
+        return -1;
+    }
+    if (!w->list_valid) return demi_list_stale(w, "dem_sieve_blinded");
+    across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_wall_contact *c = w->wall_now + d*w->wall_now_stride;
+        int last = -1;                          /* the grain counted last: once is enough */
+        for (k = 0; k < w->domains[d].wall_contacts; k++) {
+            const int body = c[k].body;
+            const dem_vec3 v = demi_sub(demi_at(w->vel + 4*body), demi_add(wall->pose.velocity,
+                demi_cross(wall->pose.spin, demi_sub(demi_at(w->pos + 4*body),
+                                                     wall->pose.position))));
+            const dem_real nk = demi_dot(c[k].normal, across);
+            const dem_vec3 flat = demi_sub(c[k].normal, demi_scale(across, nk));
+            const dem_real mu = c[k].coef[DEMI_MU_STATIC];
+            if (c[k].wall != id || body == last || (speed > 0 && demi_length(v) > speed) ||
+                nk*nk > mu*mu*(1 - nk*nk)) continue;
+            for (j = k + 1; j < w->domains[d].wall_contacts && c[j].body == body; j++) {
+                const dem_real nj = demi_dot(c[j].normal, across);
+                if (c[j].wall != id || nj*nj > mu*mu*(1 - nj*nj) ||
+                    demi_dot(flat, c[j].normal) >= DEM_R(-0.25)) continue;
+                count++;
+                last = body;
+                break;
+            }
+        }
+    }
+    return count;
+}
+
 /* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;
    contact memory as a sum over contacts of their own digests, for the same reason. */
 DEM_API uint64_t dem_world_hash(const dem_world *w) {
@@ -8716,21 +9235,88 @@ static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
     }
 }
 
-enum { DEMI_GRAIN_COLUMNS = 8 };
+enum { DEMI_GRAIN_COLUMNS = 10 };
+
+/* What is drawn of the bodies: the arrays as they are or, where there are clusters and ellipsoids,
+   one row for each part, in arrays of its own. */
+typedef struct demi_drawing {
+    int count;
+    const dem_real *pos, *vel, *spin;              /* count x 4 */
+    const dem_real *orient, *axes;                 /* count x 4; null: no orientations */
+    const uint32_t *slots;
+    const int32_t *materials;
+    dem_real *own;                                 /* count x 20 */
+    int32_t *own_ids;                              /* count x 2 */
+} demi_drawing;
+/* 0 when memory ran out. */
+static int demi_drawing_make(dem_world *w, demi_drawing *g) {
+    dem_real *row;
+    int i, k, e, n = 0;
+    memset(g, 0, sizeof *g);
+    g->count = w->count;
+    g->pos = w->pos; g->vel = w->vel; g->spin = w->spin;
+    g->slots = w->body_slot; g->materials = w->body_material;
+    if (!w->orienting) return 1;
+    g->count = 0;
+    for (i = 0; i < w->count; i++) g->count += demi_parts_count(w, i);
+    g->own = (dem_real *)demi_alloc(w, 20*(size_t)g->count + 1, sizeof(dem_real));
+    g->own_ids = (int32_t *)demi_alloc(w, 2*(size_t)g->count + 1, sizeof(int32_t));
+    if (!g->own || !g->own_ids) return 0;
+    for (i = 0; i < w->count; i++)
+        for (k = 0; k < demi_parts_count(w, i); k++, n++) {
+            const demi_part p = demi_part_of(w, i, k);
+            row = g->own + 4*n;
+            demi_put(row, demi_add(demi_at(w->pos + 4*i), p.centre));
+            row[3] = p.radius;
+            row += 4*(size_t)g->count;
+            demi_put(row, demi_velocity_at(w->vel, w->spin, i, p.centre));
+            row += 4*(size_t)g->count;
+            demi_put(row, demi_at(w->spin + 4*i));
+            row += 4*(size_t)g->count;
+            for (e = 0; e < 4; e++) row[e] = w->orient[4*i + e];
+            row += 4*(size_t)g->count;
+            demi_put(row, p.ball ? demi_v(p.radius, p.radius, p.radius) : p.axes);
+            g->own_ids[n] = (int32_t)w->body_slot[i];
+            g->own_ids[n + g->count] = w->body_material[i];
+        }
+    g->pos = g->own;
+    g->vel = g->own + 4*(size_t)g->count;
+    g->spin = g->own + 8*(size_t)g->count;
+    g->orient = g->own + 12*(size_t)g->count;
+    g->axes = g->own + 16*(size_t)g->count;
+    g->slots = (const uint32_t *)g->own_ids;
+    g->materials = g->own_ids + g->count;
+    return 1;
+}
+static void demi_drawing_free(dem_world *w, demi_drawing *g) {
+    if (!w->orienting) return;
+    demi_free(w, g->own, 20*(size_t)g->count + 1, sizeof(dem_real));
+    demi_free(w, g->own_ids, 2*(size_t)g->count + 1, sizeof(int32_t));
+}
+static dem_result demi_drawing_fails(dem_world *w, const char *call, demi_drawing *g) {
+    demi_drawing_free(w, g);
+    return demi_fail(w, DEM_ERROR_MEMORY, "%s: no memory for the %d parts of the bodies; free some",
+                     call, g->count);
+}
 
 /* What is told of grains; the last two make a cell of every point, so that it is drawn. */
-static void demi_grain_columns(const dem_world *w, demi_column *columns) {
-    dem_bodies b = dem_bodies_get(w);
+/* Answers how many columns there are; the last two hold no data. */
+static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
     const demi_column all[DEMI_GRAIN_COLUMNS] = {
-        {"Points",    "position",     'r', 3, b.count, 4, 0, b.positions},
-        {"PointData", "radius",       'r', 1, b.count, 4, 3, b.positions},
-        {"PointData", "velocity",     'r', 3, b.count, 4, 0, b.velocities},
-        {"PointData", "spin",         'r', 3, b.count, 4, 0, b.spins},
-        {"PointData", "id",           'u', 1, b.count, 1, 0, b.slots},
-        {"PointData", "material",     'i', 1, b.count, 1, 0, b.materials},
-        {"Verts",     "connectivity", 'i', 1, b.count, 1, 0, 0},
-        {"Verts",     "offsets",      'i', 1, b.count, 1, 1, 0}};
-    memcpy(columns, all, sizeof all);
+        {"Points",    "position",     'r', 3, g->count, 4, 0, g->pos},
+        {"PointData", "radius",       'r', 1, g->count, 4, 3, g->pos},
+        {"PointData", "velocity",     'r', 3, g->count, 4, 0, g->vel},
+        {"PointData", "spin",         'r', 3, g->count, 4, 0, g->spin},
+        {"PointData", "id",           'u', 1, g->count, 1, 0, g->slots},
+        {"PointData", "material",     'i', 1, g->count, 1, 0, g->materials},
+        {"PointData", "orientation",  'r', 4, g->count, 4, 0, g->orient},
+        {"PointData", "semi_axes",    'r', 3, g->count, 4, 0, g->axes},
+        {"Verts",     "connectivity", 'i', 1, g->count, 1, 0, 0},
+        {"Verts",     "offsets",      'i', 1, g->count, 1, 1, 0}};
+    const int skip = g->orient ? 0 : 2;
+    memcpy(columns, all, 6*sizeof *all);
+    memcpy(columns + 6, all + 6 + skip, (size_t)(4 - skip)*sizeof *all);
+    return DEMI_GRAIN_COLUMNS - skip;
 }
 
 /* VTK's XML format: the tree tells what there is; the numbers follow as they lie in memory, each
@@ -8774,8 +9360,14 @@ static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
 
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
     demi_column column[DEMI_GRAIN_COLUMNS];
-    demi_grain_columns(world, column);
-    return demi_vtp(world, "dem_vtp_write", path, column, DEMI_GRAIN_COLUMNS, column[0].count, 0);
+    demi_drawing g;
+    dem_result result;
+    int n;
+    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_vtp_write", &g);
+    n = demi_grain_columns(&g, column);
+    result = demi_vtp(world, "dem_vtp_write", path, column, n, column[0].count, 0);
+    demi_drawing_free(world, &g);
+    return result;
 }
 
 /* Legacy VTK, in its binary form: numbers are big-endian. */
@@ -8784,10 +9376,13 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
     demi_out o;
     const char *real = sizeof(dem_real) == 4 ? "float" : "double";
     double time = dem_world_time(world);
-    int i, count, turn = demi_is_little_endian();
-    dem_result result = demi_out_open(&o, world, "dem_vtk_write", path);
-    if (result != DEM_OK) return result;
-    demi_grain_columns(world, column);
+    int i, n, count, turn = demi_is_little_endian();
+    demi_drawing g;
+    dem_result result;
+    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_vtk_write", &g);
+    result = demi_out_open(&o, world, "dem_vtk_write", path);
+    if (result != DEM_OK) { demi_drawing_free(world, &g); return result; }
+    n = demi_grain_columns(&g, column);
     count = column[0].count;
     fputs("# vtk DataFile Version 3.0\ndem.h\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\n"
           "TIME 1 1 double\n", o.file);
@@ -8803,14 +9398,17 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
         demi_out_number(&o, cell + 1, 4, turn);
     }
     fprintf(o.file, "\nPOINT_DATA %d\n", count);
-    for (i = 1; i < DEMI_GRAIN_COLUMNS - 2; i++) {
+    for (i = 1; i < n - 2; i++) {
         const demi_column *c = column + i;
         const char *type = c->type == 'u' ? "unsigned_int" : c->type == 'i' ? "int" : real;
-        if (c->components == 3) fprintf(o.file, "VECTORS %s %s\n", c->name, type);
+        if (c->components == 4)
+            fprintf(o.file, "SCALARS %s %s 4\nLOOKUP_TABLE default\n", c->name, type);
+        else if (c->components == 3) fprintf(o.file, "VECTORS %s %s\n", c->name, type);
         else fprintf(o.file, "SCALARS %s %s 1\nLOOKUP_TABLE default\n", c->name, type);
         demi_column_write(&o, c, turn);
         fputs("\n", o.file);
     }
+    demi_drawing_free(world, &g);
     return demi_out_close(&o);
 }
 
@@ -8820,19 +9418,21 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     static const char elements[] =
         "H HeLiBeB C N O F NeNaMgAlSiP S ClArK CaScTiV CrMnFeCoNiCuZnGaGe"
         "AsSeBrKrRbSrY ZrNbMoTcRuRhPdAgCdInSnSbTeI XeCsBaLaCePrNdPmSmEuGd";
-    dem_bodies b = dem_bodies_get(world);
+    demi_drawing g;
     dem_world_desc desc = dem_world_desc_get(world);
     dem_box d = desc.domain;
     double length[3];
     char text[3][32];
     demi_out o;
     int i, k;
-    dem_result result = demi_out_open(&o, world, "dem_xyz_write", path);
-    if (result != DEM_OK) return result;
+    dem_result result;
+    if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_xyz_write", &g);
+    result = demi_out_open(&o, world, "dem_xyz_write", path);
+    if (result != DEM_OK) { demi_drawing_free(world, &g); return result; }
     length[0] = (double)(d.hi.x - d.lo.x);
     length[1] = (double)(d.hi.y - d.lo.y);
     length[2] = (double)(d.hi.z - d.lo.z);
-    fprintf(o.file, "%d\n", b.count);
+    fprintf(o.file, "%d\n", g.count);
     if (length[0] > 0 || length[1] > 0 || length[2] > 0) {
         for (k = 0; k < 3; k++) demi_format_real(text[k], length[k] > 0 ? length[k] : 1, 9);
         fprintf(o.file, "Lattice=\"%s 0 0 0 %s 0 0 0 %s\" ", text[0], text[1], text[2]);
@@ -8844,17 +9444,24 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
             fprintf(o.file, desc.boundary[k] == DEM_BOUNDARY_PERIODIC ? "T%s" : "F%s",
                     k < 2 ? " " : "\" ");
     }
-    fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:id:I:1 Time=%s\n",
+    fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:%sid:I:1 Time=%s\n",
+            g.orient ? "orientation:R:4:aspherical_shape:R:3:" : "",
             demi_format_real(text[0], dem_world_time(world), 12));
-    for (i = 0; i < b.count; i++) {
-        const char *element = elements + 2*((b.materials[i] - 1) & 63);
+    for (i = 0; i < g.count; i++) {
+        const char *element = elements + 2*((g.materials[i] - 1) & 63);
         fprintf(o.file, "%.*s", element[1] == ' ' ? 1 : 2, element);
         for (k = 0; k < 7; k++) {
-            const dem_real *row = (k < 4 ? b.positions : b.velocities) + 4*(size_t)i;
+            const dem_real *row = (k < 4 ? g.pos : g.vel) + 4*(size_t)i;
             fprintf(o.file, " %s", demi_format_real(text[0], (double)row[k < 4 ? k : k - 4], 9));
         }
-        fprintf(o.file, " %lu\n", (unsigned long)b.slots[i]);
+        for (k = 0; k < 7 && g.orient; k++) {   /* x y z w, then the axes */
+            const dem_real *row = (k < 4 ? g.orient : g.axes) + 4*(size_t)i;
+            fprintf(o.file, " %s", demi_format_real(text[0],
+                    (double)row[k < 4 ? (k + 1)%4 : k - 4], 9));
+        }
+        fprintf(o.file, " %lu\n", (unsigned long)g.slots[i]);
     }
+    demi_drawing_free(world, &g);
     return demi_out_close(&o);
 }
 
@@ -9223,8 +9830,17 @@ static uint64_t demi_scene_digest(const dem_world *w) {
         h = demi_hash(h, what, sizeof what);
         h = demi_hash(h, &wall->radius, sizeof(dem_real));
         h = demi_hash(h, &wall->share, sizeof(dem_real));
-        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_CYLINDER)
+        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_CYLINDER ||
+            wall->kind == DEMI_WALL_SIEVE)
             h = demi_hash(h, &wall->first, sizeof wall->first);
+        if (wall->kind == DEMI_WALL_SIEVE) {
+            const dem_sieve_desc *s = &wall->sieve;
+            const int which[] = {(int)s->kind, s->staggered, s->model};
+            const dem_real sizes[] = {s->aperture, s->bar, s->length, s->thickness, s->lift,
+                                      s->radius, s->clearance};
+            h = demi_hash(h, which, sizeof which);
+            h = demi_hash(h, sizes, sizeof sizes);
+        }
         if (wall->corners)
             h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
                           (wall->kind == DEMI_WALL_MESH ? 3 : 2));
@@ -9466,7 +10082,8 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     if (d->law_vectors < 0 || 3*d->law_vectors > d->law_memory)
         return "dem_world_create: law_vectors is more than fits into law_memory, must be at most "
             "law_memory/3";
-    if ((int)d->normal_law < 0 || d->normal_law > DEM_NORMAL_LINEAR || (int)d->tangent_law < 0 ||
+    if ((int)d->normal_law < 0 || d->normal_law > DEM_NORMAL_HYSTERETIC ||
+        (int)d->tangent_law < 0 ||
         d->tangent_law > DEM_TANGENT_MINDLIN_RESCALED || (int)d->rolling_law < 0 ||
         d->rolling_law > DEM_ROLLING_EPSD)
         return "dem_world_create: a contact law is unknown, must be one of the enum values; start "
@@ -9597,7 +10214,14 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
                 w->level_looks[0]);
 }
 
+static int demi_shaped_total(const dem_world *w) {
+    int d, n = 0;
+    for (d = 0; d < w->domain_count; d++) n += w->domains[d].shaped;
+    return n;
+}
 DEM_API void dem_world_report(const dem_world *world, FILE *out) {
+    static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
+    static const char *overlaps[] = {"conservative", "seed 002's", "along the normal"};
     static const char *tangents[] = {"auto", "none", "viscous", "step", "spring", "Mindlin",
                                      "Mindlin, rescaled"};
     static const char *rollings[] = {"auto", "none", "step", "constant torque", "EPSD"};
@@ -9633,7 +10257,9 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     fprintf(out, "effects    normal: %s%s\n", w->desc.law ? "your own law"
-            : w->normal == DEM_NORMAL_HERTZ ? "Hertz" : "linear",
+            : w->normal == DEM_NORMAL_HERTZ ? "Hertz"
+            : w->normal == DEM_NORMAL_LINEAR ? "linear"
+            : "hysteretic (8 bytes of memory per candidate)",
             w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped" : "");
     fprintf(out, "           tangential: %s%s\n", tangents[w->tangent],
             w->tangent == DEM_TANGENT_NONE
@@ -9641,6 +10267,14 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             : w->tangent >= DEM_TANGENT_SPRING
             ? " (32 bytes of memory per candidate)" : "");
     fprintf(out, "           rolling: %s\n", rollings[w->rolling]);
+    if (w->shaped_count)
+        fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap %s; a "
+                "cluster's contacts %s; %.2f contacts per body\n", w->shaped_count,
+                rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
+                w->desc.cluster_contacts == DEM_SHARING_ONE ? "are shared" : "add up",
+                w->count ? (double)demi_shaped_total(w)/w->count : 0);
+    else if (w->orienting)
+        fprintf(out, "           orientations of spheres are followed, because you asked\n");
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->uniform ? "all alike (coefficients once per run)"
             : "differ (coefficients per candidate)", w->wall_count,

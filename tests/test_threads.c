@@ -149,7 +149,9 @@ int main(int argc, char **argv) {
             {DEM_NORMAL_HERTZ, 1, DEM_TANGENT_AUTO, 1, 0},
             {DEM_NORMAL_HERTZ, 1, DEM_TANGENT_MINDLIN, 0, 0},
             {DEM_NORMAL_LINEAR, 0, DEM_TANGENT_AUTO, 0, 0},
-            {DEM_NORMAL_LINEAR, 1, DEM_TANGENT_AUTO, 0, 0}};
+            {DEM_NORMAL_LINEAR, 1, DEM_TANGENT_AUTO, 0, 0},
+            {DEM_NORMAL_HYSTERETIC, 0, DEM_TANGENT_AUTO, 0, 0},
+            {DEM_NORMAL_HYSTERETIC, 1, DEM_TANGENT_AUTO, 0, 0}};
         size_t i;
         int mixed, periodic, special, none;
         for (i = 0; i < sizeof sets/sizeof *sets; i++)

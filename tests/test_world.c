@@ -176,7 +176,7 @@ int main(int argc, char **argv) {
             case 11: d.threads = -1; break;
             case 12: d.law_memory = 9; break;
             case 13: d.law_memory = 5; d.law_vectors = 2; break;
-            case 14: d.normal_law = (dem_normal_law)2; break;
+            case 14: d.normal_law = (dem_normal_law)3; break;
             case 15: d.tangent_law = (dem_tangent_law)99; break;
             case 16: d.rolling_law = (dem_rolling_law)(-1); break;
             case 17: d.integrator = (dem_integrator)5; break;

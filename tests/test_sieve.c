@@ -1,0 +1,439 @@
+/* Sieves: wires and plates against their geometry and against probability, what must never pass,
+   what gets stuck, and the reduced hole of the screening machine's thesis.
+   The environment variable TEST_LONG has the leak tests go on for 1e7 contacts with wires. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "test.h"
+#include "scene.h"
+
+static dem_sieve_desc sieve_of(dem_sieve_kind kind, double aperture, double bar) {
+    dem_sieve_desc s = DEM_SIEVE_DESC;
+    s.kind = kind;
+    s.aperture = (dem_real)aperture;
+    s.bar = (dem_real)bar;
+    return s;
+}
+static dem_world *world_of(double g, double dt) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    desc.normal_law = DEM_NORMAL_LINEAR;
+    desc.gravity = at(0, 0, -g);
+    desc.dt = (dem_real)dt;
+    desc.threads = 1;
+    return dem_world_create(&desc);
+}
+static dem_material stiff(dem_world *world, double stiffness, double e, double mu) {
+    dem_material_desc m = DEM_MATERIAL_DESC;
+    m.density = 2500;
+    m.poisson = DEM_R(0.25);
+    m.stiffness = (dem_real)stiffness;
+    m.restitution = (dem_real)e;
+    m.friction = (dem_real)mu;
+    return dem_material_add(world, &m);
+}
+/* Share of spheres of radius r, placed at random over whole holes, that fit through: untouched half
+   way through, where the room is narrowest. */
+static double rain(const dem_sieve_desc *s, double r, int count, uint64_t seed) {
+    demi_wall_contact c[DEMI_SIEVE_MOST];
+    const double x = 10*(double)(s->aperture + s->bar);
+    int i, passed = 0;
+    for (i = 0; i < count; i++) {
+        const double a = x*scene_random(&seed), b = x*scene_random(&seed);
+        passed += demi_sieve_touch(s, at(a, b, 0), (dem_real)r, c) == 0;
+    }
+    return (double)passed/count;
+}
+static double sigma(double p, int count) { return sqrt(p*(1 - p)/count); }
+
+/* Sum of share*overlap*normal of a sphere: the force of springs of 1 N/m. */
+static dem_vec3 spring_force(const dem_sieve_desc *s, dem_vec3 x, double r) {
+    demi_wall_contact c[DEMI_SIEVE_MOST];
+    dem_vec3 f = at(0, 0, 0);
+    const int n = demi_sieve_touch(s, x, (dem_real)r, c);
+    int i;
+    for (i = 0; i < n; i++) f = demi_sub(f, demi_scale(c[i].normal, c[i].overlap*c[i].share));
+    return f;
+}
+
+/* Grains lie about on a shaking sieve, each alone (under a lid when lid > 0, m); answers how many are left above it after every
+   `period`, in out, and the number of contacts with the sieve that began. */
+static double shake(dem_sieve_desc s, double d, double mu, double amplitude, double frequency,
+                    int grains, int periods, double period, double stiffness, double lid, int *out) {
+    const double dt = stiffness > 5e4 ? 1e-5 : 2e-5;
+    dem_world *world = world_of(9.81, dt);
+    dem_material stuff = stiff(world, stiffness, 0.5, mu);
+    dem_motion motion = DEM_MOTION;
+    const double pitch = (double)(s.aperture + s.bar), apart = 3.7*d + pitch;
+    const int row = (int)ceil(sqrt(grains));
+    dem_wall wall;
+    double began = 0;
+    int i, k, before = 0;
+    uint64_t seed = 5;
+    s.radius = (dem_real)(apart*row + 20*pitch);
+    wall = dem_sieve_add(world, stuff, &s);
+    motion.kind = DEM_MOTION_OSCILLATING;
+    motion.velocity = at(0.3, 0.2, 1);
+    motion.amplitude = (dem_real)amplitude;
+    motion.frequency = (dem_real)frequency;
+    dem_wall_motion(world, wall, &motion);
+    if (lid > 0) dem_plane_add(world, stuff, at(0, 0, lid), at(0, 0, -1));
+    for (i = 0; i < 4; i++)                      /* a fence keeps them over it */
+        dem_plane_add(world, stuff, at(i == 0 ? -5*pitch : i == 1 ? apart*row : 0,
+                      i == 2 ? -5*pitch : i == 3 ? apart*row : 0, 0),
+                      at(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, 0));
+    for (i = 0; i < grains; i++) {
+        const double x = apart*(i%row) + pitch*scene_random(&seed);
+        const double y = apart*(i/row) + pitch*scene_random(&seed);
+        dem_sphere_add(world, stuff, (dem_real)(d/2),
+                       at(x, y, lid > 0 ? lid - 0.6*d : d/2 + (double)s.bar + pitch*(0.2 + scene_random(&seed))));
+    }
+    for (k = 0; k < periods; k++) {
+        const int steps = (int)(period/dt/10 + 0.5);
+        dem_bodies b;
+        for (i = 0; i < steps; i++) {            /* looked at every tenth step */
+            dem_counters c;
+            if (scene_step(world, 10) != DEM_OK) { CHECK(0); break; }
+            c = dem_counters_get(world);
+            began += c.wall_contacts > before ? c.wall_contacts - before : 0;
+            before = c.wall_contacts;
+        }
+        b = dem_bodies_get(world);
+        for (out[k] = 0, i = 0; i < b.count; i++) out[k] += (double)b.positions[4*i + 2] > -5*d;
+    }
+    dem_world_destroy(world);
+    return began;
+}
+
+int main(int argc, char **argv) {
+    const int n = 100000;
+    test_begin(argc, argv);
+
+    TEST("rain on a square weave: spheres pass untouched with ((a - d)/(a + w))^2 (references 7.1)") {
+        static const double rows[3][4] = {{1, 0.5, 0.5, 0.11111}, {1, 0.5, 0.8, 0.017778},
+                                          {2, 1, 1.5, 0.027778}};
+        int i;
+        for (i = 0; i < 3; i++) {
+            const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, rows[i][0], rows[i][1]);
+            CHECK_NEAR(rain(&s, rows[i][2]/2, n, 7), rows[i][3], 3*sigma(rows[i][3], n));
+        }
+    }
+
+    TEST("rain on slots, square and round holes passes with the open share of each (references "
+         "7.3)") {
+        const double a = 1, w = 0.5, d = 0.6, pi = 3.14159265358979;
+        dem_sieve_desc s = sieve_of(DEM_SIEVE_SLOTS, a, w);
+        double p = (a - d)/(a + w);
+        CHECK_NEAR(rain(&s, d/2, n, 8), p, 3*sigma(p, n));
+        s.length = DEM_R(4.5);
+        s.thickness = DEM_R(0.4);
+        p *= (4.5 - d)/(4.5 + w);
+        CHECK_NEAR(rain(&s, d/2, n, 9), p, 3*sigma(p, n));
+        s = sieve_of(DEM_SIEVE_SQUARE, a, w);
+        p = (a - d)*(a - d)/((a + w)*(a + w));
+        CHECK_NEAR(rain(&s, d/2, n, 10), p, 3*sigma(p, n));
+        s = sieve_of(DEM_SIEVE_BARS, a, w);
+        p = (a - d)/(a + w);
+        CHECK_NEAR(rain(&s, d/2, n, 11), p, 3*sigma(p, n));
+        s = sieve_of(DEM_SIEVE_ROUND, a, w);
+        p = pi*(a - d)*(a - d)/4/((a + w)*(a + w));
+        CHECK_NEAR(rain(&s, d/2, n, 12), p, 3*sigma(p, n));
+        s.staggered = 1;
+        p *= 2/sqrt(3.0);
+        CHECK_NEAR(rain(&s, d/2, n, 13), p, 3*sigma(p, n) + 0.01*p);   /* rows are cut */
+    }
+
+    TEST("what falls through a weave untouched in a run is what geometry says, grain by grain") {
+        const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.01, 0.004);
+        dem_world *world = world_of(9.81, 1e-5);
+        dem_material stuff = stiff(world, 1e4, 0.5, 0.3);
+        uint64_t seed = 3;
+        int i, k, touched[400] = {0}, agree = 0, pass = 0;
+        dem_bodies b;
+        dem_sieve_add(world, stuff, &s);
+        for (i = 0; i < 400; i++) {
+            const double x = 0.05*(i%20) + 0.014*scene_random(&seed);
+            const double y = 0.05*(i/20) + 0.014*scene_random(&seed);
+            dem_sphere_add(world, stuff, DEM_R(0.003), at(x, y, 0.008));
+        }
+        for (k = 0; k < 8000; k++) {
+            dem_contact_info info[800];
+            int m;
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            if (k%4) continue;
+            m = dem_contacts_get(world, info, 800);
+            for (i = 0; i < m && i < 800; i++) touched[info[i].a.slot - 1] = 1;
+        }
+        b = dem_bodies_get(world);
+        seed = 3;
+        {
+            demi_wall_contact c[DEMI_SIEVE_MOST];
+            int untouched[400];
+            for (i = 0; i < 400; i++) {
+                const double x = 0.05*(i%20) + 0.014*scene_random(&seed);
+                const double y = 0.05*(i/20) + 0.014*scene_random(&seed);
+                untouched[i] = demi_sieve_touch(&s, at(x, y, 0), DEM_R(0.003), c) == 0;
+            }
+            for (i = 0; i < b.count; i++) {
+                const int slot = (int)b.slots[i];
+                agree += untouched[slot] == !touched[slot];
+                pass += untouched[slot];
+                if (untouched[slot]) CHECK((double)b.positions[4*i + 2] < -0.01);
+            }
+        }
+        CHECK_EQ(agree, 400);
+        CHECK(pass > 15 && pass < 60);           /* 400 (4/14)^2 = 33 */
+        dem_world_destroy(world);
+    }
+
+    TEST("on a plate's solid part, between wires far apart, and above crossings a grain feels one "
+         "wall's force") {
+        dem_sieve_desc s = sieve_of(DEM_SIEVE_SQUARE, 1, 1);
+        dem_vec3 f;
+        s.thickness = DEM_R(0.2);
+        f = spring_force(&s, at(0.9, 0.3, 0.1 + 0.29), 0.3);           /* on a bar */
+        CHECK_NEAR(f.z, 0.01, 1e-6);
+        f = spring_force(&s, at(0.9, 0.9, 0.1 + 0.29), 0.3);           /* where bars meet */
+        CHECK_NEAR(f.z, 0.01, 1e-6);
+        f = spring_force(&s, at(0.9, 0.3, -0.1 - 0.29), 0.3);          /* from below */
+        CHECK_NEAR(f.z, -0.01, 1e-6);
+        s = sieve_of(DEM_SIEVE_WIRES, 1, 0.2);
+        f = spring_force(&s, at(0.6, 0.2, 0.39), 0.3);                 /* on a wire at x = .6 */
+        CHECK_NEAR(f.z, 0.01, 1e-6);
+        CHECK_NEAR(f.x, 0, 1e-9);
+        f = spring_force(&s, at(0.6, 0.6, 0.39), 0.3);                 /* on two that cross */
+        CHECK_NEAR(f.z, 0.01, 1e-6);
+        s.lift = DEM_R(0.2);
+        f = spring_force(&s, at(0.6, 0.6, 0.49), 0.3);                 /* one on the other */
+        CHECK_NEAR(f.z, 0.01, 1e-6);
+        s = sieve_of(DEM_SIEVE_ROUND, 1, 0.5);
+        f = spring_force(&s, at(0, 0, 0.4), 0.65);                     /* too large: sits on the rim */
+        CHECK(f.z > DEM_R(0.005));
+        CHECK_NEAR(f.x, 0, 1e-6);
+    }
+
+    TEST("the force on a grain has no jump on any way over wires, rims and crossings") {
+        static const dem_sieve_kind kinds[5] = {DEM_SIEVE_WIRES, DEM_SIEVE_SQUARE, DEM_SIEVE_ROUND,
+                                                DEM_SIEVE_SLOTS, DEM_SIEVE_BARS};
+        uint64_t seed = 2;
+        int i, k, way;
+        double worst = 0;
+        for (k = 0; k < 5; k++)
+            for (way = 0; way < 60; way++) {
+                dem_sieve_desc s = sieve_of(kinds[k], 1, 0.6);
+                const double r = 0.25 + 0.6*scene_random(&seed);
+                const double z = r + (k == 0 || k == 4 ? 0.3 : 0) - 0.02*r;
+                const double x0 = 3*scene_random(&seed), y0 = 3*scene_random(&seed);
+                const double a = 6.2831853*scene_random(&seed), h = 1e-5;
+                dem_vec3 before = at(0, 0, 0);
+                if (k == 3) s.length = 2;
+                for (i = 0; i < 20000; i++) {    /* pressed in by 2 %, along a line of .2 m */
+                    const dem_vec3 f = spring_force(&s, at(x0 + i*h*cos(a), y0 + i*h*sin(a), z), r);
+                    const double jump = (double)demi_length(demi_sub(f, before));
+                    if (i && jump > worst) worst = jump;
+                    before = f;
+                }
+            }
+        CHECK_NEAR(worst, 0, 1e-3);              /* of .02 r in all; h = 1e-5 in steep places */
+    }
+
+    TEST("grains larger than the holes never pass, however the sieve shakes (references 7.5)") {
+        static const struct { dem_sieve_kind kind; double amplitude, frequency, mu; } rows[5] = {
+            {DEM_SIEVE_WIRES, 0.002, 30, 0.3}, {DEM_SIEVE_WIRES, 0.0005, 150, 0},
+            {DEM_SIEVE_ROUND, 0.002, 30, 0.3}, {DEM_SIEVE_SQUARE, 0.002, 30, 0.1},
+            {DEM_SIEVE_SLOTS, 0.001, 60, 0.3}};
+        const int longer = getenv("TEST_LONG") != 0;
+        double contacts = 0;
+        int i;
+        for (i = 0; i < 5; i++) {
+            int left = 0;
+            dem_sieve_desc s = sieve_of(rows[i].kind, 0.01, 0.004);
+            do {
+                contacts += shake(s, 0.0104, rows[i].mu, rows[i].amplitude, rows[i].frequency, 100,
+                                  1, longer ? 20 : 0.5, 1e5, 0.0125, &left);
+                CHECK_EQ(left, 100);
+            } while (longer && contacts < 2e6*(i + 1));
+        }
+        CHECK(contacts > (longer ? 1e7 : 1e4));
+        if (longer) printf("%.3g contacts with sieves\n", contacts);
+    }
+
+    TEST("grains that only just fit pass in the end when nothing rubs (references 7.5)") {
+        const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.01, 0.004);
+        int left[8];
+        shake(s, 0.01*(1 - 1e-6), 0, 0.0003, 25, 36, 8, 0.25, 1e5, 0, left);
+        CHECK_EQ(left[7], 0);
+    }
+
+    TEST("grains that lie alone on a shaking weave are left behind in geometric numbers (references "
+         "7.6)") {
+        const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.01, 0.005);
+        int left[12], i, first = 0, m = 0;
+        double sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, r2;
+        shake(s, 0.0085, 0.2, 0.0015, 35, 900, 12, 0.12, 2e4, 0, left);
+        for (i = first; i < 12 && left[i] > 30; i++) {      /* until numbers are small */
+            const double x = i, y = log((double)left[i]);
+            sx += x; sy += y; sxx += x*x; sxy += x*y; syy += y*y; m++;
+        }
+        CHECK(m >= 5);
+        r2 = (m*sxy - sx*sy)*(m*sxy - sx*sy)/((m*sxx - sx*sx)*(m*syy - sy*sy));
+        CHECK(sxy*m < sx*sy);
+        CHECK_NEAR(r2, 1, 0.01);
+    }
+
+    TEST("a near-size grain pressed into a hole is stuck, and counted, only where friction can hold "
+         "it") {
+        static const double mu[2] = {0.5, 0};
+        int i;
+        for (i = 0; i < 2; i++) {
+            const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.01, 0.004);
+            dem_world *world = world_of(9.81, 1e-5);
+            dem_material stuff = stiff(world, 1e5, 0.4, mu[i]);
+            dem_wall wall = dem_sieve_add(world, stuff, &s);
+            dem_body grain = dem_sphere_add(world, stuff, DEM_R(0.0051), at(0, 0, 0.006));
+            dem_body rests = dem_sphere_add(world, stuff, DEM_R(0.009), at(0.07, 0.07, 0.0115));
+            CHECK_EQ(dem_sieve_blinded(world, wall, 0), -1);
+            scene_move(world, grain, at(0, 0, -1), at(0, 0, 0));
+            scene_step(world, 30000);
+            CHECK_EQ(dem_sieve_blinded(world, wall, DEM_R(0.05)), i == 0);
+            CHECK((double)scene_state(world, rests).position.z > 0.005);   /* rests on, not in */
+            CHECK_NEAR(scene_state(world, grain).position.z, 0.002, 0.002);
+            scene_move(world, grain, at(0, 0, 0.15), at(0, 0, 0));     /* a knock from below */
+            scene_step(world, 300);
+            CHECK((double)scene_state(world, grain).position.z > (i ? 0.002 : 0));
+            dem_world_destroy(world);
+        }
+    }
+
+    TEST("a grain that slides along a wire is braked as on a plane, over all crossings") {
+        const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.004, 0.002);
+        dem_real speed[2];
+        int i;
+        for (i = 0; i < 2; i++) {
+            dem_world *world = world_of(9.81, 2e-5);
+            dem_material stuff = stiff(world, 2e4, 0.5, 0.3);
+            dem_body grain;
+            if (i) dem_sieve_add(world, stuff, &s);
+            else dem_plane_add(world, stuff, at(0, 0, 0.001), at(0, 0, 1));
+            grain = dem_sphere_add(world, stuff, DEM_R(0.01), at(0.003, 0, 0.01 + 0.001 - 1e-6));
+            scene_move(world, grain, at(0, 1, 0), at(0, 0, 0));
+            scene_step(world, 5000);             /* 5 cm and more: 15 crossings */
+            speed[i] = scene_state(world, grain).velocity.y;
+            CHECK((double)scene_state(world, grain).position.y > 0.05);
+            CHECK_NEAR(scene_state(world, grain).position.x, 0.003, 1e-7);
+            dem_world_destroy(world);
+        }
+        CHECK_REL(speed[1], (double)speed[0], 2e-3);
+    }
+
+    TEST("reduced holes let through ((1 - zeta)(2w - 2r)/(2w + g))^2 of what falls on them, whole, "
+         "and nothing too large") {
+        static const struct { int model; double zeta, r; } rows[4] = {
+            {1, 0.2, 0.004}, {1, 0.8, 0.001}, {2, 0.6, 0.0049}, {2, 0.2, 0.0051}};
+        int i, k;
+        for (i = 0; i < 4; i++) {
+            dem_sieve_desc s = sieve_of(DEM_SIEVE_REDUCED, 0.01, 0.005);
+            dem_world *world = world_of(9.81, 2e-5);
+            const double w = 0.005, r = rows[i].r;
+            dem_material stuff = stiff(world, 1e4*pow(r/0.004, 3), 0.2, 0.5);
+            const double side = 2*(1 - rows[i].zeta)*(rows[i].model == 1 ? w - r : w);
+            const double p = r < w ? side*side/(0.015*0.015) : 0;
+            uint64_t seed = 4;
+            int passed = 0, said = 0;
+            dem_bodies b;
+            s.model = rows[i].model;
+            s.clearance = (dem_real)rows[i].zeta;
+            dem_sieve_add(world, stuff, &s);
+            for (k = 0; k < 900; k++) {
+                const double x = 0.030*(k%30) + 0.015*scene_random(&seed);
+                const double y = 0.030*(k/30) + 0.015*scene_random(&seed);
+                dem_sphere_add(world, stuff, (dem_real)r, at(x, y, r + 0.001));
+                said += demi_sieve_passes(&s, at(x, y, 0), (dem_real)r);
+            }
+            CHECK_EQ(scene_step(world, 4000), DEM_OK);
+            b = dem_bodies_get(world);
+            for (k = 0; k < b.count; k++) {
+                passed += (double)b.positions[4*k + 2] < -r;
+                CHECK((double)b.velocities[4*k + 2] > -9.81*0.08*1.01);    /* none was thrown */
+            }
+            CHECK_EQ(passed, said);
+            CHECK_NEAR(passed/900.0, p, 3*sigma(p, 900) + 1e-12);
+            dem_world_destroy(world);
+        }
+    }
+
+    TEST("a grain that moves sideways while it falls through a reduced hole is not caught half way") {
+        dem_sieve_desc s = sieve_of(DEM_SIEVE_REDUCED, 0.01, 0.005);
+        dem_world *world = world_of(9.81, 2e-5);
+        dem_material stuff = stiff(world, 1e4, 0.5, 0);
+        dem_body grain;
+        s.model = 2;
+        dem_sieve_add(world, stuff, &s);
+        grain = dem_sphere_add(world, stuff, DEM_R(0.004), at(0, 0, 0.0041));
+        scene_move(world, grain, at(0.5, 0, 0), at(0, 0, 0));      /* a pitch in .03 s; 8 mm take .04 */
+        CHECK_EQ(scene_step(world, 5000), DEM_OK);
+        CHECK_NEAR(scene_state(world, grain).velocity.z, -0.981, 1e-6);
+        CHECK_NEAR(scene_state(world, grain).velocity.x, 0.5, 1e-9);
+        dem_world_destroy(world);
+    }
+
+    TEST("a sieve of wires gives the same bits after a checkpoint, and another sieve refuses it") {
+        static const char path[] = "build/tmp/sieve.ckpt";
+        uint64_t hash[2] = {0, 1};
+        int i;
+        for (i = 0; i < 3; i++) {
+            dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, i == 2 ? 0.011 : 0.01, 0.004);
+            dem_world *world = world_of(9.81, 2e-5);
+            dem_material stuff = stiff(world, 1e4, 0.5, 0.3);
+            int k;
+            dem_sieve_add(world, stuff, &s);
+            if (i == 0)
+                for (k = 0; k < 60; k++)
+                    dem_sphere_add(world, stuff, DEM_R(0.0052), at(0.0107*(k%10), 0.0111*(k/10),
+                                                                   0.01 + 0.0001*k));
+            if (i == 0) {
+                scene_step(world, 4000);
+                CHECK(dem_counters_get(world).wall_contacts > 30);
+                CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+            } else if (i == 1) CHECK_EQ(dem_checkpoint_read(world, path), DEM_OK);
+            else {
+                CHECK_EQ(dem_checkpoint_read(world, path), DEM_ERROR_FORMAT);
+                CHECK_STR(dem_world_error(world), "another scene");
+            }
+            if (i < 2) {
+                scene_step(world, 1000);
+                hash[i] = dem_world_hash(world);
+            }
+            dem_world_destroy(world);
+        }
+        CHECK(hash[0] == hash[1]);
+        remove(path);
+    }
+
+    TEST("sieves with bad sizes are refused, by name") {
+        dem_world *world = world_of(0, 0);
+        dem_material stuff = stiff(world, 1e4, 0.5, 0.3);
+        dem_sieve_desc s = sieve_of(DEM_SIEVE_NONE, 1, 1);
+        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error(world), "kind is 0");
+        s = sieve_of(DEM_SIEVE_WIRES, 0, 1);
+        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error(world), "aperture is 0");
+        s = sieve_of(DEM_SIEVE_WIRES, 1, 1);
+        s.thickness = 1;
+        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error(world), "thickness is 1");
+        s = sieve_of(DEM_SIEVE_SLOTS, 1, 1);
+        s.length = DEM_R(0.5);
+        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error(world), "length is 0.5");
+        s = sieve_of(DEM_SIEVE_REDUCED, 1, 1);
+        s.clearance = DEM_R(1.5);
+        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error(world), "clearance is 1.5");
+        CHECK_EQ(dem_sieve_blinded(world, dem_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1)), 0),
+                 -1);
+        CHECK_STR(dem_world_error(world), "not a sieve");
+        dem_world_destroy(world);
+    }
+
+    return test_end();
+}
