@@ -60,7 +60,6 @@
 #include "study.h"
 
 #define PI 3.14159265358979323846
-#define FRACTION 0.058      /* of the volume */
 #define DENSITY 2000.0      /* kg/m3 */
 #define STIFFNESS 1e8       /* N/m */
 #define CUBE 2.0            /* m, of 4096 bodies */
@@ -70,15 +69,16 @@ static const double elongations[ELONGATIONS] = {1, 1.15, 1.25, 1.5, 1.75, 2, 2.2
 static const double restitutions[RESTITUTIONS] = {0.9, 0.95, 0.98};
 
 static struct gas_options {
-    double xi, restitution, overlap, collisions, run_in, dt, seconds;
+    double xi, restitution, fraction, overlap, collisions, run_in, dt, seconds;
     const char *damping, *hold, *out;
     int count, seed, threads, quick, all, theory, direct, speeds;
-} options = {0, 0, 0.003, 40, 8, 0, 3, "exact", "true", "build/out/ellipsoids",
+} options = {0, 0, 0.058, 0.003, 40, 8, 0, 3, "exact", "true", "build/out/ellipsoids",
              512, 1, 1, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
     {"xi", STUDY_REAL, &options.xi, 0, 10, "", "elongation; 1: spheres; 0: 1, 1.5, 2, 3"},
     {"restitution", STUDY_REAL, &options.restitution, 0, 1, "", "0: 0.9"},
+    {"fraction", STUDY_REAL, &options.fraction, 0.001, 0.1, "of the volume", "taken up by bodies"},
     {"count", STUDY_INT, &options.count, 27, 262144, "", "of bodies, made a cube"},
     {"overlap", STUDY_REAL, &options.overlap, 1e-5, 0.1, "of the radius",
         "of a typical first collision"},
@@ -273,7 +273,7 @@ static int gas_create(gas *g, double xi, double e, int count) {
     g->side = (int)(cbrt(count) + 0.5);
     g->count = g->side*g->side*g->side;
     g->cube = CUBE*cbrt(g->count/4096.0);
-    volume = FRACTION*g->cube*g->cube*g->cube/g->count;
+    volume = options.fraction*g->cube*g->cube*g->cube/g->count;
     g->radius = cbrt(volume*3/(4*PI));
     g->b = g->radius/cbrt(xi);
     g->a = xi*g->b;
@@ -282,7 +282,7 @@ static int gas_create(gas *g, double xi, double e, int count) {
     g->contact_time = PI*sqrt(g->mass/2/STIFFNESS);
     g->dt = options.dt > 0 ? options.dt : g->contact_time/50;
     theory_make(xi, &g->t);
-    g->rate = contact_value(g->t.alpha, FRACTION)*g->t.area*g->b*g->b/(volume/FRACTION)/
+    g->rate = contact_value(g->t.alpha, options.fraction)*g->t.area*g->b*g->b/(volume/options.fraction)/
               sqrt(PI*g->mass);
     g->scale = 1;
     g->random = (uint64_t)options.seed;
@@ -743,7 +743,7 @@ static void theory_tell(void) {
     const double *columns[COLUMNS];
     int i, k;
     for (k = 0; k < COLUMNS; k++) columns[k] = data[k];
-    printf("%5s %9s %8s %9s %7s %7s", "xi", "S_c/b2", "<D>_c", "<rt 1+D>", "alpha", "g(.058)");
+    printf("%5s %9s %8s %9s %7s %7s", "xi", "S_c/b2", "<D>_c", "<rt 1+D>", "alpha", "g");
     for (k = 0; k < RATIOS; k++) printf("   theta%.2f zeta%.2f", e[k], e[k]);
     printf("\n");
     for (i = 0; i < ROWS; i++) {
@@ -754,7 +754,7 @@ static void theory_tell(void) {
         data[2][i] = t.d_mean;
         data[3][i] = t.d_root;
         data[4][i] = t.alpha;
-        data[5][i] = contact_value(t.alpha, FRACTION);
+        data[5][i] = contact_value(t.alpha, options.fraction);
         printf("%5.2f %9.4f %8.5f %9.5f %7.4f %7.4f", t.xi, t.area, t.d_mean, t.d_root, t.alpha,
                data[5][i]);
         for (k = 0; k < RATIOS; k++) {

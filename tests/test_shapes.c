@@ -1,7 +1,7 @@
 /* Bodies that are not spheres: where two ellipsoids meet, against brute force and the literal
    construction of [GAS]; ellipsoids and clusters against walls and each other; mass properties of
    clusters; what a world of them promises (state, errors, threads, checkpoints).
-   [GAS] seed 002 of the project, sections 2 and 3; [PW] Perram & Wertheim, J. Comput. Phys. 58
+   [GAS] seed 002 of the project, sections 2 and 3; [PW85] Perram & Wertheim, J. Comput. Phys. 58
    (1985) 409; references of granular gases as in docs/ellipsoids.md. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
@@ -81,7 +81,7 @@ static void solve(wide *m, wide *x, int n) {
         x[k] /= m[n*k + k];
     }
 }
-/* [PW]: l (1-l) r.K^-1 r, K = (1-l) QA + l QB */
+/* [PW85]: l (1-l) r.K^-1 r, K = (1-l) QA + l QB */
 static wide pw(const dem_ellipsoid *a, const dem_ellipsoid *b, wide l) {
     wide A[9], B[9], K[9], r[3], s[3];
     int i;
@@ -310,7 +310,7 @@ static void meeting_tests(void) {
         CHECK_NEAR(m.depth_conservative, 0.2, 10*eps);
     }
 
-    TEST("the scale at which two ellipsoids touch is the largest of [PW]'s function, rooted") {
+    TEST("the scale at which two ellipsoids touch is the largest of [PW85]'s function, rooted") {
         static const double aspects[4] = {1.5, 3, 10, 100};
         static const double far[3] = {0.6, 0.97, 1.4};
         uint64_t seed = 11;
