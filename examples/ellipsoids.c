@@ -282,8 +282,8 @@ static int gas_create(gas *g, double xi, double e, int count) {
     g->contact_time = PI*sqrt(g->mass/2/STIFFNESS);
     g->dt = options.dt > 0 ? options.dt : g->contact_time/50;
     theory_make(xi, &g->t);
-    g->rate = contact_value(g->t.alpha, options.fraction)*g->t.area*g->b*g->b/(volume/options.fraction)/
-              sqrt(PI*g->mass);
+    g->rate = contact_value(g->t.alpha, options.fraction)*g->t.area*g->b*g->b*g->count/
+              pow(g->cube, 3)/sqrt(PI*g->mass);
     g->scale = 1;
     g->random = (uint64_t)options.seed;
     desc.domain = dem_box_make(0, 0, 0, g->cube, g->cube, g->cube);
@@ -307,8 +307,9 @@ static int gas_create(gas *g, double xi, double e, int count) {
     return g->material.id ? 0 : refused(g->world, DEM_ERROR_ARGUMENT);
 }
 
-/* A simple cubic lattice, or anywhere (for speeds: collisions from the first step on); orientations
-   anywhere on the sphere; velocities and spins across the axis of one temperature (J). */
+/* A simple cubic lattice, or anywhere (for speeds: collisions from the first step on; or where a
+   lattice has no room for all orientations); any orientation; velocities, and spins across the
+   axis, of one temperature (J). */
 static int gas_fill(gas *g, double temperature, int anywhere) {
     const size_t n = (size_t)g->count;
     const double pitch = g->cube/g->side, speed = sqrt(temperature/g->mass);
@@ -353,7 +354,7 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
         shape = dem_shape_ellipsoid_add(g->world, dem_vec3_make(g->b, g->b, g->a));
         bad = !shape.id && refused(g->world, DEM_ERROR_ARGUMENT);
     }
-    if (!bad && anywhere) { /* then speeds in the order they stand in */
+    if (!bad && (anywhere || 2*g->a > 1.001*pitch)) { /* then speeds in the order they stand in */
         const dem_box box = dem_box_make(0, 0, 0, g->cube, g->cube, g->cube);
         const int placed = g->spheres
             ? dem_spheres_fill(g->world, g->material, g->radius, box, g->count, 1)
