@@ -1,0 +1,401 @@
+/* shapes.c - what bodies that are not spheres cost: meetings of ellipsoids, rotation, whole steps. MIT licence.
+
+   build/shapes            about two minutes; results in build/out/shapes, page.md for docs/shapes.md among them
+   build/shapes --part meet|rotation|gas|pile
+
+   meet      Perram and Wertheim's function solved for 100,000 pairs of each aspect ratio, scaled distance W0 in
+             .98..1: from nothing (cold), from the solution of a moment ago (warm: turned by 1e-4 rad and moved by
+             1e-4 of the shortest axis); error against a bisection in long double; how many of pairs with W0 in 1..2
+             are told apart at the first look
+   rotation  a free body of moments 1, 2, 2.6 and |w| = 1.2 for 40 s: error of its orientation against the smallest
+             step, energy after 2000 s, and the time of a step, for every integrator
+   gas       particle-steps/s of the cooling gas of seed 002 (volume fraction .058, aspect ratio 2), ellipsoids and
+             spheres, beside the seed's graphics card
+   pile      a bed at rest of 2000 spheres, ellipsoids, tetrahedra of spheres: time of a step and body */
+#define DEM_IMPLEMENTATION
+#include "dem.h"
+#include "examples/study.h"
+#include "bench/measure.h"
+
+enum { PAIRS = 100000, CHECKED = 3000, TURNS = 5, RATIOS = 7 };
+static const double ratios[RATIOS] = {1.0001, 1.5, 2, 3, 10, 30, 100};
+static FILE *page;
+
+/* ---- meet ---- */
+
+typedef struct meeting { double A[6], B[6], r[3], l; } meeting;
+static meeting now[PAIRS], then[PAIRS];          /* and a moment ago */
+static uint64_t seed = 7;
+
+static void jog(double *x) { *x += 2e-4*(demi_uniform(&seed) - 0.5); }
+static void pair_make(int i, double ratio) {
+    const dem_vec3 e = dem_quat_turn(demi_quat_random(&seed), dem_vec3_make(0, 0, 1));
+    meeting *m = &now[i], *was = &then[i];
+    demi_meet found;
+    double s, by[3];
+    int k, n;
+    for (k = 0; k < 2; k++) {
+        const dem_quat q = demi_quat_random(&seed);
+        dem_vec3 a;
+        dem_quat p;
+        a.x = 1; a.y = (dem_real)pow(ratio, demi_uniform(&seed)); a.z = (dem_real)ratio;
+        demi_ellipsoid_matrix(q, a, k ? m->B : m->A);
+        for (n = 0; n < 3; n++) { by[n] = 0; jog(&by[n]); }
+        p = demi_quat_again(demi_quat_spin(q, dem_vec3_make((dem_real)by[0], (dem_real)by[1], (dem_real)by[2])));
+        demi_ellipsoid_matrix(p, a, k ? was->B : was->A);
+    }
+    m->r[0] = (double)e.x; m->r[1] = (double)e.y; m->r[2] = (double)e.z;
+    found.l = demi_meet_start(m->A, m->B, m->r);
+    demi_meet_solve(m->A, m->B, m->r, 1e300, 1e-12, &found);
+    s = (0.98 + 0.02*demi_uniform(&seed))/sqrt(found.f);
+    for (k = 0; k < 3; k++) { m->r[k] *= s; was->r[k] = m->r[k]; jog(&was->r[k]); }
+    found.l = demi_meet_start(was->A, was->B, was->r);
+    demi_meet_solve(was->A, was->B, was->r, 1e300, DEMI_MEET_NEAR, &found);
+    m->l = found.l;
+}
+/* W0 and normal by bisection in long double. */
+static void pair_exact(const meeting *m, long double *w0, long double *n) {
+    long double lo = 0, hi = 1, f = 0, s[3] = {0, 0, 0}, size = 0;
+    int k, turn;
+    for (turn = 0; turn < 64; turn++) {
+        const long double l = (lo + hi)/2;
+        long double K[6], J[6], det, fa = 0, fb = 0;
+        for (k = 0; k < 6; k++) K[k] = (1 - l)*m->A[k] + l*m->B[k];
+        J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
+        J[1] = K[0]*K[2] - K[4]*K[4]; J[5] = K[3]*K[4] - K[0]*K[5]; J[2] = K[0]*K[1] - K[3]*K[3];
+        det = K[0]*J[0] + K[3]*J[3] + K[4]*J[4];
+        s[0] = (J[0]*m->r[0] + J[3]*m->r[1] + J[4]*m->r[2])/det;
+        s[1] = (J[3]*m->r[0] + J[1]*m->r[1] + J[5]*m->r[2])/det;
+        s[2] = (J[4]*m->r[0] + J[5]*m->r[1] + J[2]*m->r[2])/det;
+        for (k = 0; k < 2; k++) {
+            const double *Q = k ? m->B : m->A;
+            const long double q = s[0]*(Q[0]*s[0] + 2*Q[3]*s[1] + 2*Q[4]*s[2]) + s[1]*(Q[1]*s[1] + 2*Q[5]*s[2]) +
+                s[2]*Q[2]*s[2];
+            if (k) fb = l*l*q; else fa = (1 - l)*(1 - l)*q;
+        }
+        f = l*(1 - l)*(m->r[0]*s[0] + m->r[1]*s[1] + m->r[2]*s[2]);
+        if (fa > fb) lo = l; else hi = l;
+    }
+    for (k = 0; k < 3; k++) size += s[k]*s[k];
+    for (k = 0; k < 3; k++) n[k] = s[k]/sqrtl(size);
+    *w0 = sqrtl(f);
+}
+static void meet_run(double ratio) {
+    double cold[TURNS], warm[TURNS], sum = 0, scale_error = 0, normal_error = 0, square = 0;
+    long looks[2] = {0, 0};
+    int worst[2] = {0, 0}, early = 0, i, k, turn;
+    demi_meet m;
+    char name[64];
+    for (i = 0; i < PAIRS; i++) pair_make(i, ratio);
+    for (turn = 0; turn < TURNS; turn++) {
+        double begun = study_clock();
+        for (i = 0; i < PAIRS; i++) {
+            m.l = demi_meet_start(now[i].A, now[i].B, now[i].r);
+            demi_meet_solve(now[i].A, now[i].B, now[i].r, 1, DEMI_MEET_NEAR, &m);
+            sum += m.s[0];
+            looks[0] += m.looks;
+            worst[0] = m.looks > worst[0] ? m.looks : worst[0];
+        }
+        cold[turn] = 1e9*(study_clock() - begun)/PAIRS;
+        begun = study_clock();
+        for (i = 0; i < PAIRS; i++) {
+            m.l = now[i].l;
+            demi_meet_solve(now[i].A, now[i].B, now[i].r, 1, DEMI_MEET_NEAR, &m);
+            sum += m.s[0];
+            looks[1] += m.looks;
+            worst[1] = m.looks > worst[1] ? m.looks : worst[1];
+        }
+        warm[turn] = 1e9*(study_clock() - begun)/PAIRS;
+    }
+    if (sum == 1.2345) puts("");                 /* so that nothing is left out */
+    for (i = 0; i < CHECKED; i++) {
+        double n[3], ha, hb, d = 0;
+        long double w0, e[3];
+        m.l = demi_meet_start(now[i].A, now[i].B, now[i].r);
+        demi_meet_solve(now[i].A, now[i].B, now[i].r, 1, DEMI_MEET_NEAR, &m);
+        demi_meet_heights(&m, n, &ha, &hb);
+        pair_exact(&now[i], &w0, e);
+        scale_error = fmax(scale_error, fabs((double)(sqrtl((long double)m.f) - w0)));
+        for (k = 0; k < 3; k++) d += (double)((n[k] - e[k])*(n[k] - e[k]));
+        normal_error = fmax(normal_error, sqrt(d));
+        square += d;
+    }
+    for (i = 0; i < PAIRS; i++) {
+        double r[3];
+        const double far = 1 + demi_uniform(&seed);
+        for (k = 0; k < 3; k++) r[k] = now[i].r[k]*far;
+        m.l = demi_meet_start(now[i].A, now[i].B, r);
+        demi_meet_solve(now[i].A, now[i].B, r, 1, DEMI_MEET_NEAR, &m);
+        early += m.looks == 1 && m.f > 1;
+    }
+    snprintf(name, sizeof name, "meet.ratio%g.cold", ratio < 1.01 ? 1 : ratio);
+    bench_result_short(name, bench_median(cold, TURNS), "ns");
+    snprintf(name, sizeof name, "meet.ratio%g.warm", ratio < 1.01 ? 1 : ratio);
+    bench_result_short(name, bench_median(warm, TURNS), "ns");
+    if (page)
+        fprintf(page, "| %g | %.0f | %.2f / %d | %.0f | %.2f / %d | %.0e | %.0e / %.0e | %.1f %% |\n",
+                ratio < 1.01 ? 1 : ratio, bench_median(cold, TURNS), (double)looks[0]/PAIRS/TURNS, worst[0],
+                bench_median(warm, TURNS), (double)looks[1]/PAIRS/TURNS, worst[1], scale_error,
+                sqrt(square/CHECKED), normal_error, 100.0*early/PAIRS);
+}
+static void meet_part(void) {
+    int i;
+    if (page)
+        fprintf(page, "\n### Two ellipsoids meet\n\n| aspect ratio | cold, ns | looks, mean / most | warm, ns | looks, "
+                "mean / most | error of W0 | error of the normal, rms / most | apart told at first look |\n"
+                "|---|---|---|---|---|---|---|---|\n");
+    for (i = 0; i < RATIOS; i++) meet_run(ratios[i]);
+}
+
+/* ---- rotation ---- */
+
+static const char *const rotations[3] = {"spiral", "fincham", "no_squish"};
+static dem_world *top_world(int rotation, double dt, int count) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc m = DEM_MATERIAL_DESC;
+    dem_cluster_desc c = DEM_CLUSTER_DESC;
+    const dem_real x[3] = {0, 0, 0};
+    dem_real *at = (dem_real *)study_alloc(3*(size_t)count, sizeof(dem_real));
+    dem_real *spin = (dem_real *)study_alloc(3*(size_t)count, sizeof(dem_real));
+    dem_world *w;
+    int i;
+    desc.rotation = (dem_rotation)rotation;
+    desc.dt = (dem_real)dt;
+    desc.allow_large_dt = 1;
+    desc.threads = 1;
+    w = dem_world_create(&desc);
+    m.density = 1;
+    m.young = (dem_real)1e6;
+    m.restitution = 1;
+    c.count = 1;
+    c.positions = x;
+    c.radius = (dem_real)0.1;
+    c.mass = DEM_CLUSTER_GIVEN;
+    c.volume = 1;
+    c.inertia[0] = 1; c.inertia[1] = 2; c.inertia[2] = (dem_real)2.6;
+    for (i = 0; i < count; i++) {
+        at[3*i] = (dem_real)(3*i);
+        spin[3*i] = (dem_real)0.4; spin[3*i + 1] = (dem_real)0.9; spin[3*i + 2] = (dem_real)0.7;
+    }
+    if (dem_bodies_add(w, dem_material_add(w, &m), dem_shape_cluster_add(w, &c), count, at, 0, 0, spin, 0) != DEM_OK)
+        study_fail("%s", dem_world_error(w));
+    free(at);
+    free(spin);
+    return w;
+}
+static dem_quat top_fly(int rotation, double dt, double time, double *energy) {
+    dem_world *w = top_world(rotation, dt, 1);
+    dem_body_state s;
+    const double first = dem_totals_get(w).rotational;
+    if (dem_world_step(w, (int)(time/dt + 0.5)) != DEM_OK) study_fail("%s", dem_world_error(w));
+    dem_body_get(w, dem_bodies_id(w, 0), &s);
+    *energy = dem_totals_get(w).rotational/first - 1;
+    dem_world_destroy(w);
+    return s.orientation;
+}
+static double quat_apart(dem_quat a, dem_quat b) {
+    const dem_quat d = dem_quat_times(dem_quat_make(a.w, -a.x, -a.y, -a.z), b);
+    return 2*sqrt((double)(d.x*d.x + d.y*d.y + d.z*d.z));
+}
+static double turn_price(int rotation) { /* ns of a step and body */
+    double times[TURNS];
+    dem_world *w = top_world(rotation, 1e-2, 4096);
+    int turn;
+    dem_world_step(w, 20);
+    for (turn = 0; turn < TURNS; turn++) {
+        const double begun = study_clock();
+        dem_world_step(w, 200);
+        times[turn] = 1e9*(study_clock() - begun)/200/4096;
+    }
+    dem_world_destroy(w);
+    return bench_median(times, TURNS);
+}
+static void rotation_part(void) {
+    const double steps[3] = {0.1, 0.025, 0.00625};
+    double energy;
+    const dem_quat exact = top_fly(DEM_ROTATION_SPIRAL, 1e-4, 40, &energy);
+    int i, k;
+    if (page)
+        fprintf(page, "\n### Rotation\n\n| `rotation` | error of orientation, rad: dt .1 | .025 | .00625 | order | energy "
+                "after 2000 s, dt .1 | .02 | a step and body, ns |\n|---|---|---|---|---|---|---|---|\n");
+    for (i = 0; i < 3; i++) {
+        double error[3], drift[2], price = turn_price(i);
+        char name[64];
+        for (k = 0; k < 3; k++) error[k] = quat_apart(exact, top_fly(i, steps[k], 40, &energy));
+        for (k = 0; k < 2; k++) (void)top_fly(i, k ? 0.02 : 0.1, 2000, &drift[k]);
+        for (k = 0; k < 3; k++) {
+            snprintf(name, sizeof name, "rotation.%s.error_dt%g", rotations[i], steps[k]);
+            bench_result_short(name, error[k], "rad");
+        }
+        snprintf(name, sizeof name, "rotation.%s.energy_drift", rotations[i]);
+        bench_result_short(name, drift[1], "");
+        snprintf(name, sizeof name, "rotation.%s.price", rotations[i]);
+        bench_result_short(name, price, "ns");
+        if (page)
+            fprintf(page, "| `%s` | %.1e | %.1e | %.1e | %.1f | %+.1e | %+.1e | %.0f |\n", rotations[i], error[0], error[1],
+                    error[2], log(error[1]/error[2])/log(4.0), drift[0], drift[1], price);
+    }
+}
+
+/* ---- gas ---- */
+
+static double normal_random(void) {
+    double s = -6;
+    int i;
+    for (i = 0; i < 12; i++) s += demi_uniform(&seed);
+    return s;
+}
+/* Seed 002, section 4: `side`^3 bodies on a lattice in a periodic cube, restitution .95, t_c/50. */
+static double gas_rate(int side, double ratio) {
+    const int count = side*side*side, steps = count > 100000 ? 100 : count > 10000 ? 400 : 2000000/count;
+    const double box = 0.125*side, b = cbrt(0.058*box*box*box/count*3/(4*DEMI_PI)/ratio), a = ratio*b;
+    const double mass = 2000*4/3.0*DEMI_PI*a*b*b, spin = sqrt(5/(a*a + b*b));
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc m = DEM_MATERIAL_DESC;
+    dem_real *x = (dem_real *)study_alloc(9*(size_t)count, sizeof(dem_real)), *v = x + 3*count, *w = v + 3*count;
+    double times[TURNS];
+    dem_world *world;
+    dem_material stuff;
+    dem_result result;
+    int i, k;
+    desc.normal_law = DEM_NORMAL_LINEAR;
+    desc.domain = dem_box_make(0, 0, 0, (dem_real)box, (dem_real)box, (dem_real)box);
+    for (k = 0; k < 3; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+    desc.dt = (dem_real)(DEMI_PI*sqrt(mass/2/1e8)/50);
+    desc.threads = 1;
+    world = dem_world_create(&desc);
+    m.density = 2000;
+    m.stiffness = (dem_real)1e8;
+    m.restitution = (dem_real)0.95;
+    stuff = dem_material_add(world, &m);
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) {
+            const int n = k == 0 ? i%side : k == 1 ? i/side%side : i/side/side;
+            x[3*i + k] = (dem_real)((n + 0.5)*box/side);
+            v[3*i + k] = (dem_real)normal_random();
+            w[3*i + k] = (dem_real)(k == 1 ? 0 : spin*normal_random());
+        }
+    result = ratio > 1 ? dem_bodies_add(world, stuff, dem_shape_ellipsoid_add(world, dem_vec3_make((dem_real)b, (dem_real)a,
+        (dem_real)b)), count, x, 0, v, w, 0) : dem_spheres_add(world, stuff, count, x, v, 0, (dem_real)b);
+    if (result == DEM_OK) result = dem_world_step(world, count > 100000 ? 1000 : 6000);   /* off the lattice */
+    for (k = 0; k < TURNS && result == DEM_OK; k++) {
+        const double begun = study_clock();
+        result = dem_world_step(world, steps);
+        times[k] = (double)count*steps/(study_clock() - begun);
+    }
+    if (result != DEM_OK) study_fail("%s", dem_world_error(world));
+    dem_world_destroy(world);
+    free(x);
+    return result == DEM_OK ? bench_median(times, TURNS) : 0;
+}
+static void gas_part(void) {
+    static const int sides[5] = {4, 8, 16, 32, 64};
+    static const double card[2][5] = {{1.1e5, 7.4e5, 3.9e6, 4.5e6, 4.2e6}, {2.4e5, 1.5e6, 5.8e6, 7.7e6, 8.2e6}};
+    char name[64];
+    int i, k;
+    if (page)
+        fprintf(page, "\n### The granular gas\n\n| bodies | ellipsoids, M/s | seed's card | ratio | spheres, M/s | seed's card "
+                "| ratio |\n|---|---|---|---|---|---|---|\n");
+    for (i = 0; i < 5; i++) {
+        double rate[2];
+        for (k = 0; k < 2; k++) {
+            rate[k] = gas_rate(sides[i], k ? 1 : 2);
+            snprintf(name, sizeof name, "gas.%s.%d.rate", k ? "spheres" : "ellipsoids", sides[i]*sides[i]*sides[i]);
+            bench_result_rate(name, rate[k]);
+        }
+        if (page)
+            fprintf(page, "| %d | %.1f | %.2f | %.1f | %.0f | %.2f | %.0f |\n", sides[i]*sides[i]*sides[i], 1e-6*rate[0],
+                    1e-6*card[0][i], rate[0]/card[0][i], 1e-6*rate[1], 1e-6*card[1][i], rate[1]/card[1][i]);
+    }
+}
+
+/* ---- pile ---- */
+
+static const char *const kinds[4] = {"spheres", "ellipsoids", "tetrahedra", "rods"};
+static dem_shape kind_shape(dem_world *w, int kind, double volume) {
+    const double r = cbrt(volume*3/(4*DEMI_PI));
+    dem_cluster_desc c = DEM_CLUSTER_DESC;
+    dem_real x[12];
+    int i;
+    if (kind == 1)
+        return dem_shape_ellipsoid_add(w, dem_vec3_make((dem_real)(r/cbrt(1.5)), (dem_real)(r/cbrt(1.5)),
+                                                        (dem_real)(1.5*r/cbrt(1.5))));
+    c.radius = (dem_real)(r/cbrt(kind == 2 ? 4.0 : 3.0));
+    c.count = kind == 2 ? 4 : 3;
+    for (i = 0; i < 12; i++) {                  /* touching spheres: corners of a tetrahedron, or in a row */
+        static const int corner[12] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
+        x[i] = kind == 2 ? c.radius*(dem_real)(corner[i]/sqrt(2.0)) : i%3 == 0 && i < 9 ? 2*c.radius*(dem_real)(i/3) : 0;
+    }
+    c.positions = x;
+    return dem_shape_cluster_add(w, &c);
+}
+static void pile_part(void) {
+    const double volume = 4/3.0*DEMI_PI*1e-9;
+    double first = 0;
+    char name[64];
+    int kind, k;
+    if (page)
+        fprintf(page, "\n### A bed at rest\n\n| 2000 | contacts per body | a step and body, ns | a contact, ns | spheres = 1 |\n"
+                "|---|---|---|---|---|\n");
+    for (kind = 0; kind < 4; kind++) {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_material_desc m = DEM_MATERIAL_DESC;
+        double times[TURNS], cost, contacts;
+        dem_material stuff;
+        dem_world *w;
+        dem_counters c;
+        int n;
+        desc.normal_law = DEM_NORMAL_LINEAR;
+        desc.gravity.z = (dem_real)-9.81;
+        desc.domain = dem_box_make(0, 0, -1, (dem_real)0.025, (dem_real)0.025, 1);
+        desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
+        desc.threads = 1;
+        w = dem_world_create(&desc);
+        m.density = 2500;
+        m.stiffness = 500;
+        m.restitution = (dem_real)0.3;
+        m.friction = (dem_real)0.5;
+        stuff = dem_material_add(w, &m);
+        dem_plane_add(w, stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+        n = kind ? dem_bodies_fill(w, stuff, kind_shape(w, kind, volume), dem_box_make(0, 0, 0, (dem_real)0.025,
+                (dem_real)0.025, (dem_real)0.4), 2000, 3)
+            : dem_spheres_fill(w, stuff, (dem_real)1e-3, dem_box_make(0, 0, 0, (dem_real)0.025, (dem_real)0.025, (dem_real)0.4),
+                               2000, 3);
+        if (n != 2000 || dem_world_run(w, 0.45, 0, 0) != DEM_OK) study_fail("%s", dem_world_error(w));
+        for (k = 0; k < TURNS; k++) {
+            const double begun = study_clock();
+            if (dem_world_step(w, 300) != DEM_OK) study_fail("%s", dem_world_error(w));
+            times[k] = 1e9*(study_clock() - begun)/300/2000;
+        }
+        c = dem_counters_get(w);
+        cost = bench_median(times, TURNS);
+        contacts = (c.contacts + c.wall_contacts)/2000.0;
+        if (!kind) first = cost;
+        snprintf(name, sizeof name, "pile.%s.step", kinds[kind]);
+        bench_result_short(name, cost, "ns");
+        if (page)
+            fprintf(page, "| %s | %.2f | %.0f | %.0f | %.1f |\n", kinds[kind], contacts, cost, cost/contacts, cost/first);
+        dem_world_destroy(w);
+    }
+}
+
+int main(int argc, char **argv) {
+    static const char *part = "all", *out = "build/out/shapes";
+    static const study_option table[] = {
+        {"part", STUDY_TEXT, &part, 0, 0, "", "meet, rotation, gas, pile or all"},
+        {"out", STUDY_TEXT, &out, 0, 0, "", "folder of results"},
+    };
+    const double load = bench_load();
+    const int all = 0 == (study_options(argc, argv, "What bodies that are not spheres cost.", table,
+                                        (int)(sizeof table/sizeof *table)), strcmp(part, "all"));
+    study_begin(out);
+    bench_machine();
+    page = bench_page_open();
+    if (page) bench_page_machine(page, load);
+    if (all || !strcmp(part, "meet")) meet_part();
+    if (all || !strcmp(part, "rotation")) rotation_part();
+    if (all || !strcmp(part, "gas")) gas_part();
+    if (all || !strcmp(part, "pile")) pile_part();
+    study_close(page, "page.md");
+    return study_end();
+}
