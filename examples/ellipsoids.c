@@ -677,7 +677,7 @@ static void direct_case(double xi, double e) {
         for (k = 0; k < 3; k++) { d->v[k] = normal(&g); d->u[k] = normal(&g); any[k] = normal(&g); }
         unit3(d->u);
         cross3(d->u, any, d->w);
-        for (k = 0; k < 3; k++) d->w[k] /= sqrt(inertia);
+        for (k = 0; k < 3; k++) d->w[k] *= xi > 1 ? 1/sqrt(inertia) : 0; /* spheres keep spins */
     }
     g.scale = 0;                                   /* ln of what energies were divided by */
     for (round = 0; s < end; round++) {
