@@ -1424,6 +1424,8 @@ struct dem_world {
     dem_real *moment;              /* x 4: principal moments of inertia, kg m2; lever, m */
     int32_t *body_shape;           /* dem_shape ids; 0: a sphere */
     int shaped_count;              /* bodies that are not spheres */
+    demi_array spot_, spot_start_; /* where the spheres of clusters are: x 4, from the body's centre */
+    int spots_valid;               /* they fit the bodies and their orientations */
     uint32_t *body_slot;
     int32_t *body_material;
     int32_t *slot_index;           /* slot -> index, -1 when free */
@@ -2354,17 +2356,14 @@ static double demi_meet_start(const double *A, const double *B, const double *r)
 /* The last step is so small that s may follow it along ds/dl = K^-1 (QA - QB) s = (s - v)/(1 - l),
    v = K^-1 QB s, and f to second order, f' = fA - fB, f'' = -2 C: what a whole evaluation more would
    add is of the order of the step squared. */
-static void demi_meet_finish(const double *A, const double *B, double C, double step,
-                             demi_meet *m) {
+static void demi_meet_finish(const double *A, double C, double step, demi_meet *m) {
     const double rate = step/(1 - m->l);
     int k;
     m->f += ((m->fa - m->fb) - C*step)*step;
     for (k = 0; k < 3; k++) m->s[k] += rate*(m->s[k] - m->v[k]);
     m->l += step;
+    m->fa = m->fb = m->f;
     demi_sym_times(A, m->s, m->a);
-    demi_sym_times(B, m->s, m->b);
-    m->fa = (1 - m->l)*(1 - m->l)*demi_dot3(m->s, m->a);
-    m->fb = m->l*m->l*demi_dot3(m->s, m->b);
 }
 /* Finds the maximum from m->l on, until fA and fB are as near as `near` says; stops early where f(l)
    exceeds `enough`. DEMI_MEET_NEAR: normals to 1e-10 (aspect ratio 2) to 4e-6 at worst (100), and as
@@ -2399,7 +2398,7 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
         step = u*(15 - 4*u*u)*m->fa*m->fb/
             ((15 - 9*u*u)*C*((1 - l)*m->fb + l*m->fa));
         if (fabs(u) < near || m->looks >= 100 || hi - lo < 1e-15) {
-            demi_meet_finish(A, B, C, step, m);
+            demi_meet_finish(A, C, step, m);
             return;
         }
         l += step;
@@ -2491,6 +2490,39 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
     }
     return p;
 }
+/* The spheres of a cluster, as they are turned now: rows of centre and radius. */
+static const dem_real *demi_spots_of(const dem_world *w, int body) {
+    return (const dem_real *)w->spot_.data + 4*((const int32_t *)w->spot_start_.data)[body];
+}
+static void demi_spots_turn(dem_world *w, int body) {
+    const demi_form *form = demi_form_of(w, body);
+    const dem_quat q = demi_quat_at(w->orient + 4*body);
+    const dem_real scale = demi_scale_of(w, body, form);
+    dem_real *spot = (dem_real *)w->spot_.data + 4*((const int32_t *)w->spot_start_.data)[body];
+    int k;
+    for (k = 0; k < form->count; k++, spot += 4) {
+        demi_put(spot, demi_scale(dem_quat_turn(q, demi_at(form->parts + 4*k)), scale));
+        spot[3] = form->parts[4*k + 3]*scale;
+    }
+}
+/* Lays all of them. 0 when memory ran out. */
+static int demi_spots_lay(dem_world *w) {
+    int32_t *start;
+    int i, n = 0;
+    if (!demi_array_grow(w, &w->spot_start_, sizeof(int32_t), (size_t)w->count + 1)) return 0;
+    start = (int32_t *)w->spot_start_.data;
+    for (i = 0; i < w->count; i++) {
+        const demi_form *form = demi_form_of(w, i);
+        start[i] = n;
+        if (form && n > INT_MAX/8 - form->count) return 0;
+        n += form ? form->count : 0;
+    }
+    if (!demi_array_grow(w, &w->spot_, 4*sizeof(dem_real), (size_t)n + 1)) return 0;
+    w->spots_valid = 1;
+    for (i = 0; i < w->count; i++)
+        if (demi_form_of(w, i) && demi_form_of(w, i)->count) demi_spots_turn(w, i);
+    return 1;
+}
 static void demi_part_matrix(const demi_part *p, double *Q) {
     if (p->ball) demi_ball_matrix(p->radius, Q);
     else demi_ellipsoid_matrix(p->q, p->axes, Q);
@@ -2509,6 +2541,20 @@ static double demi_part_curve(const demi_part *p, double h) {
         : (double)p->axes.x*(double)p->axes.y*(double)p->axes.z/(h*h);
 }
 
+/* Part k of a body as demi_part_of has it, from the spots. */
+DEM_INLINE demi_part demi_part_now(const dem_world *w, int body, int k) {
+    const demi_form *form = demi_form_of(w, body);
+    demi_part p;
+    const dem_real *spot;
+    if (!form || !form->count) return demi_part_of(w, body, k);
+    spot = demi_spots_of(w, body) + 4*k;
+    p.ball = 1;
+    p.centre = demi_at(spot);
+    p.radius = spot[3];
+    p.axes = demi_v(0, 0, 0);
+    p.q = dem_quat_make(1, 0, 0, 0);
+    return p;
+}
 /* A lower bound of the distance between two parts, gap = from centre to centre; not worked out
    beyond `enough`. */
 static dem_real demi_parts_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
@@ -2541,11 +2587,11 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
         if (first >= enough) return first;
     }
     for (i = 0; i < na; i++) {
-        const demi_part p = demi_part_of(w, a, i);
+        const demi_part p = demi_part_now(w, a, i);
         const dem_vec3 to = demi_sub(r, p.centre);
         if (na > 1 && demi_length(to) - p.radius - rb >= least) continue;
         for (j = 0; j < nb; j++) {
-            const demi_part q = demi_part_of(w, b, j);
+            const demi_part q = demi_part_now(w, b, j);
             least = DEMI_MIN(least, demi_parts_gap(&p, &q, demi_add(to, q.centre), least));
         }
     }
@@ -2639,6 +2685,7 @@ static int demi_carry_collect(dem_world *w) {
    then. */
 static int demi_list_drop(dem_world *w) {
     int d, k;
+    w->spots_valid = 0;
     if (!w->list_valid) return 1;
     if (!demi_carry_collect(w)) return 0;
     for (d = 0; d < w->domain_count; d++)
@@ -5253,6 +5300,7 @@ static dem_result demi_rebuild(dem_world *w) {
     if (!demi_grid_lay(w, 2*(w->wide ? w->level_fine : (double)w->radius_max) + w->skin + 1e-300))
         return demi_no_memory(w, "dem_world_step");
     demi_bodies_sort(w);
+    if (w->shaped_count && !demi_spots_lay(w)) return demi_no_memory(w, "dem_world_step");
     if (w->level_count && !demi_levels_lay(w)) return demi_no_memory(w, "dem_world_step");
     demi_image_shifts(w);
     w->domain_count = demi_domains_for(w->count);
@@ -6731,25 +6779,26 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
     int i, j;
     if (!(demi_length(r) < w->pos[4*a + 3] + rb)) return;
     for (i = 0; i < na; i++) {
-        const demi_part p = demi_part_of(w, a, i);
+        const demi_part p = demi_part_now(w, a, i);
         const dem_vec3 to = demi_sub(r, p.centre);
-        if (na > 1 && !(demi_length(to) < p.radius + rb)) continue;
+        const dem_real all = p.radius + rb;
+        if (na > 1 && !(demi_dot(to, to) < all*all)) continue;
         for (j = 0; j < nb; j++) {
-            const demi_part q = demi_part_of(w, b, j);
+            const demi_part q = demi_part_now(w, b, j);
+            const dem_vec3 gap = demi_add(to, q.centre);
+            const dem_real sum = p.radius + q.radius;
             const demi_shaped *before;
-            demi_shaped found, *c;
-            memset(&found, 0, sizeof found);
-            found.a = a; found.b = b; found.part_a = i; found.part_b = j;
-            found.wall = found.element = -1;
-            found.share = found.slope = 1;
-            found.send = send;
-            before = demi_shaped_match(old, olds, from, 0, &found);
-            if (!demi_parts_touch(w, &p, &q, demi_add(to, q.centre), before ? before->lambda : 0,
-                                  &found)) continue;
+            demi_shaped *c;
+            if (!(demi_dot(gap, gap) < sum*sum)) continue;
             c = demi_shaped_new(w, d);
             if (!c) return;
-            *c = found;
-            demi_shaped_recall(c, before);
+            c->a = a; c->b = b; c->part_a = i; c->part_b = j;
+            c->wall = c->element = -1;
+            c->send = send;
+            before = demi_shaped_match(old, olds, from, 0, c);
+            if (demi_parts_touch(w, &p, &q, gap, before ? before->lambda : 0, c))
+                demi_shaped_recall(c, before);
+            else w->domains[d].shaped_next--;
         }
     }
     demi_shaped_share(w, from, w->domains[d].shaped_next - first);
@@ -6891,7 +6940,7 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
     /* room that demi_walls_respond fills later, for the spheres */
     demi_wall_contact *found = w->wall_next + d*w->wall_now_stride;
     const dem_vec3 centre = demi_at(w->pos + 4*body);
-    demi_part p = demi_part_of(w, body, k), local = p;
+    demi_part p = demi_part_now(w, body, k), local = p;
     const dem_real gone = (dem_real)(w->reach + w->wall_reach) + w->pos[4*body + 3]/10000;
     dem_vec3 x;
     int i, e, count = 0;
@@ -7495,6 +7544,7 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
         for (e = 0; e < 3; e++) w->angular[i + (size_t)e] = t.L[e][l];
         for (e = 0; e < 3; e++) w->half_spin[i + (size_t)e] = t.half[e][l];
         for (e = 0; e < 3; e++) w->spin[i + (size_t)e] = t.spin[e][l];
+        if (w->spots_valid && w->forms[w->body_shape[who[l]] - 1].count) demi_spots_turn(w, who[l]);
         turn = DEMI_MAX(turn, t.change2[l]);
         speed = DEMI_MAX(speed, t.speed2[l]);
         check += t.speed2[l];
@@ -9620,7 +9670,7 @@ typedef struct demi_extent {         /* how large the arrays are */
         wall_now_stride, memory_stride, near_stride;
     int32_t list_valid, own_total, cross_total, near_total, candidate_total, contact_total;
     int32_t carry_count, carry_rows, carry_stride;
-    int32_t orienting, shaped_stride, shaped_total, near_remembered;
+    int32_t orienting, shaped_stride, shaped_total, near_remembered, spots;
 } demi_extent;
 static demi_extent demi_extent_of(const dem_world *w) {
     demi_extent s;
@@ -9629,6 +9679,7 @@ static demi_extent demi_extent_of(const dem_world *w) {
     s.count = w->count; s.slots = w->slot_count; s.domains = w->domain_count;
     s.walls = w->wall_count; s.fields = w->field_count;
     s.orienting = w->orienting; s.shaped_stride = w->shaped_stride;
+    for (d = 0; d < w->count; d++) s.spots += demi_form_of(w, d) ? demi_form_of(w, d)->count : 0;
     s.own_stride = w->own.stride; s.cross_stride = w->cross.stride;
     s.wall_stride = w->wall_stride; s.wall_now_stride = w->wall_now_stride;
     s.memory_stride = w->memory_stride; s.near_stride = w->near.stride;
@@ -9963,6 +10014,10 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     room = (!shape->orienting || demi_orient_begin(w)) &&
            demi_bodies_reserve(w, (size_t)DEMI_MAX(shape->count, shape->slots)) &&
            (!shape->orienting || demi_shaped_reserve(w, shape->shaped_stride)) &&
+           (!shape->orienting || (demi_array_grow(w, &w->spot_start_, sizeof(int32_t),
+                                                  (size_t)shape->count + 1) &&
+                                  demi_array_grow(w, &w->spot_, 4*sizeof(dem_real),
+                                                  (size_t)shape->spots + 1))) &&
            demi_list_reserve(w, &w->own, shape->domains, shape->own_stride) &&
            demi_list_reserve(w, &w->cross, shape->domains, shape->cross_stride) &&
            demi_wall_lists_reserve(w, shape->wall_stride) &&
@@ -9999,7 +10054,9 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     demi_state_scalars(w, &s);
     demi_state_visit(w, &s);
     demi_array_free(w, &bytes);
+    w->spots_valid = 0;
     if (!shape->orienting) w->shaped_count = 0;
+    if (w->shaped_count && w->list_valid) demi_spots_lay(w);          /* its room is there */
     for (k = 0; k < w->count && w->orienting && !shape->orienting; k++) {
         demi_quat_put(w->orient + 4*k, dem_quat_make(1, 0, 0, 0));
         w->body_shape[k] = 0;
@@ -10171,6 +10228,7 @@ DEM_API void dem_world_destroy(dem_world *w) {
     arrays[k++] = &w->wall_next_;
     arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
     arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
+    arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
     for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
     while (k) demi_array_free(w, arrays[--k]);
     demi_free(w, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
