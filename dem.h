@@ -9276,9 +9276,12 @@ static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
     size_t size = demi_column_size(c);
     int i, k;
     for (i = 0; i < c->count; i++) {
-        int32_t number = data ? 0 : c->first + i*c->stride;
-        if (!data) demi_out_number(o, &number, size, turn);
-        for (k = 0; data && k < c->components; k++) {
+        if (!data) {
+            const int32_t number = c->first + i*c->stride;
+            demi_out_number(o, &number, sizeof number, turn);
+            continue;
+        }
+        for (k = 0; k < c->components; k++) {
             size_t at = (size_t)i*(size_t)c->stride + (size_t)(c->first + k);
             demi_out_number(o, data + at*size, size, turn);
         }
