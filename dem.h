@@ -26,6 +26,7 @@
        >>shaped      contacts of bodies that are not spheres: touch and respond, one by one
        >>integrators kick, drift, predict; rotation
        >>ledger      where the energy went
+       >>feed        grains fed in, taken out and counted
        >>step        time step, advisor, one step after the other
        >>measure     fields on a grid, channels, balance
        >>files       meshes in; VTP, VTK, XYZ, CSV out
@@ -797,6 +798,72 @@ typedef struct dem_channels {
 DEM_API dem_result dem_wall_channels(const dem_world *world, dem_wall wall, dem_channels *channels);
 DEM_API dem_result dem_wall_channels_reset(dem_world *world, dem_wall wall);
 
+/* ---- feed and outlets ---- */
+enum { DEM_CLASSES = 16 };
+typedef struct dem_feed { int32_t id; } dem_feed;                            /* id counts from 1 */
+typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* id counts from 1 */
+
+/* Adds grains while the world runs: at random places in a region, of random sizes, at a rate, or all
+   at once. A grain that finds no free place waits, and is not lost. */
+typedef struct dem_feed_desc {
+    dem_material material;           /* required */
+    int class_count;                 /* required, 1..16: classes of size */
+    dem_real radius[DEM_CLASSES];    /* m, required */
+    /* > 0, how much of each class: shares of any sum, or with `limited` grains (kg with by_mass) */
+    double amount[DEM_CLASSES];
+    int limited;                     /* 1: `amount` is all there is, drawn without putting back */
+    int by_mass;                     /* 1: amount and rate are in kg and kg/s, not in grains */
+    double rate;                     /* grains/s; 0: all at once, as far as there is room */
+    double start, end;               /* s; end 0: no end */
+    dem_box box;                     /* m, required: centres are in it */
+    int round;                       /* 1: in the upright cylinder that fits in it */
+    dem_vec3 velocity;               /* m/s */
+    dem_real spread;                 /* m/s, each component of velocity +- up to this */
+    uint64_t seed;
+} dem_feed_desc;
+typedef struct dem_feed_state {
+    uint64_t fed[DEM_CLASSES], total; /* grains */
+    double mass;                      /* kg */
+    uint64_t waiting;                 /* grains that are due and have found no room; by mass: 0 or 1 */
+    int done;                         /* 1: nothing more will come */
+} dem_feed_state;
+DEM_API dem_feed dem_feed_add(dem_world *world, const dem_feed_desc *desc);
+DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_state *state);
+
+/* Takes out grains whose centre is in a region, and counts them; for the balance they have left. */
+typedef struct dem_outlet_desc {
+    dem_wall frame;                  /* the region moves with this wall; null: it stands still */
+    dem_box box;                     /* m, required, in that frame */
+    dem_real beyond;                 /* m, only those at least so far from the frame's z axis */
+    dem_real wanted_min, wanted_max; /* m, radii of those that ought to leave here; max 0: no limit */
+    int class_count;                 /* 0..16: classes to count by; a grain is of the nearest */
+    dem_real radius[DEM_CLASSES];    /* m, ascending */
+} dem_outlet_desc;
+typedef struct dem_outlet_state {
+    uint64_t count[DEM_CLASSES], total;
+    double mass[DEM_CLASSES], total_mass;   /* kg */
+    uint64_t sorted, gangue;         /* grains of the wanted radii; the others: [FEN] s_i, g_i */
+    double sorted_mass, gangue_mass; /* kg */
+    double since, last;              /* s, when counting began; when the last grain left */
+} dem_outlet_state;
+DEM_API dem_outlet dem_outlet_add(dem_world *world, const dem_outlet_desc *desc);
+DEM_API dem_result dem_outlet_get(const dem_world *world, dem_outlet outlet,
+                                  dem_outlet_state *state);
+/* Begins counting anew (grains that left stay in the balance). */
+DEM_API dem_result dem_outlet_reset(dem_world *world, dem_outlet outlet);
+
+/* How well several outlets sort, [FEN] eq 4.33 to 4.41. The efficiency is the mean over outlets of
+   sorted/(sorted + gangue), by number and by mass; one that nothing has left yet counts as 0, and
+   `silent` says how many these are. The seed takes 1 for the lowest deck from the start. */
+typedef struct dem_sorting {
+    double efficiency_number, efficiency_mass; /* 0..1 */
+    double gangue_number, gangue_mass;         /* 0..1, share of gangue in all that left */
+    double rate_number, rate_mass;             /* grains/s, kg/s since counting began */
+    int silent;
+} dem_sorting;
+DEM_API dem_result dem_sorting_get(const dem_world *world, const dem_outlet *outlets, int count,
+                                   dem_sorting *sorting);
+
 /* ---- run ---- */
 
 /* What limits the time step, worked out from the live scene. */
@@ -1386,6 +1453,17 @@ typedef struct demi_field {
     double *solid, *mass, *momentum;
 } demi_field;
 
+typedef struct demi_feed {
+    dem_feed_desc desc;
+    dem_feed_state state;
+    uint64_t random;
+    uint64_t limit[DEM_CLASSES];   /* grains of each class, when limited */
+    double mass[DEM_CLASSES];      /* kg, of a grain */
+    int64_t next;                  /* class of the next grain, -1: not drawn yet */
+    uint64_t again;                /* step at which one that found no room tries again */
+} demi_feed;
+typedef struct demi_outlet { dem_outlet_desc desc; dem_outlet_state state; } demi_outlet;
+
 /* One level of the hierarchical grid: the bodies of a class of radii, and cells of their own. */
 typedef struct demi_level {
     double radius;                 /* m, largest of the class */
@@ -1442,6 +1520,8 @@ struct dem_world {
     demi_wall *walls;
     int field_count, field_capacity;
     demi_field *fields;
+    int feed_count, outlet_count;
+    demi_array feeds_, outlets_;   /* demi_feed, demi_outlet */
 
     /* effects, worked out when the scene changes */
     int normal, tangent, rolling;  /* laws in force */
@@ -7689,6 +7769,321 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>feed
+   Grains come in between two steps, and go out in the middle of one, when all have moved: at the
+   place where an outflow boundary takes them too. What a feed draws comes from its own random state
+   in a fixed order: class, then place and velocity until a place is free. How much is due follows
+   from the time alone.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* places tried; steps until the next try */
+
+static demi_feed *demi_feed_at(const dem_world *w, int i) { return (demi_feed *)w->feeds_.data + i; }
+static demi_outlet *demi_outlet_at(const dem_world *w, int i) {
+    return (demi_outlet *)w->outlets_.data + i;
+}
+static int demi_box_bad(dem_box b, int planar) {
+    return !demi_finite3(b.lo) || !demi_finite3(b.hi) || !(b.hi.x >= b.lo.x) ||
+           !(b.hi.y >= b.lo.y) || (!planar && !(b.hi.z >= b.lo.z));
+}
+DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
+    const char *call = "dem_feed_add";
+    demi_feed feed;
+    dem_feed id;
+    int k, m = 0;
+    id.id = 0;
+    if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
+    if (d->class_count < 1 || d->class_count > DEM_CLASSES) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d (required)", call,
+                  d->class_count, (int)DEM_CLASSES);
+        return id;
+    }
+    memset(&feed, 0, sizeof feed);
+    feed.desc = *d;
+    for (k = 0; k < d->class_count; k++) {
+        if (!(d->radius[k] > 0) || !demi_finite(d->radius[k]) || !(d->amount[k] > 0) ||
+            !(d->amount[k] < 1e15)) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has radius %g m and amount %g, must be > "
+                      "0 and finite; leave out classes that do not occur", call, k,
+                      (double)d->radius[k], d->amount[k]);
+            return id;
+        }
+        feed.mass[k] = demi_sphere_mass(w, m, (double)d->radius[k]);
+        if (d->limited)
+            feed.limit[k] = (uint64_t)(d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5);
+    }
+    if (!(d->rate >= 0) || !(d->rate < 1e15) || !(d->start >= 0) || !(d->end >= 0) ||
+        !(d->spread >= 0) || !demi_finite(d->spread) || !demi_finite3(d->velocity) ||
+        (!(d->rate > 0) && !d->limited)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s; must "
+                  "be finite and >= 0, and all at once (rate 0) needs `limited`, or there is no end",
+                  call, d->rate, d->start, d->end, (double)d->spread);
+        return id;
+    }
+    if (demi_box_bad(d->box, w->desc.planar)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is not finite or lo is above hi; give the "
+                  "region where centres of new grains are", call);
+        return id;
+    }
+    if (!demi_array_grow(w, &w->feeds_, sizeof(demi_feed), (size_t)w->feed_count + 1)) {
+        demi_no_memory(w, call);
+        return id;
+    }
+    feed.random = d->seed;
+    feed.next = -1;
+    *demi_feed_at(w, w->feed_count++) = feed;
+    w->dt_valid = 0;                            /* for grains that are to come */
+    id.id = w->feed_count;
+    return id;
+}
+static int demi_feed_left(const demi_feed *f) {              /* is there anything more to come? */
+    int k, more = !f->desc.limited;
+    for (k = 0; k < f->desc.class_count && !more; k++) more = f->limit[k] > f->state.fed[k];
+    return more;
+}
+static void demi_feed_draw(demi_feed *f) {
+    double weight[DEM_CLASSES], sum = 0, at;
+    const int n = f->desc.class_count;
+    int k;
+    for (k = 0; k < n; k++) {
+        weight[k] = f->desc.limited ? (double)(f->limit[k] - f->state.fed[k])
+            : f->desc.by_mass ? f->desc.amount[k]/f->mass[k] : f->desc.amount[k];
+        sum += weight[k];
+    }
+    at = sum*demi_uniform(&f->random);
+    for (k = 0; k < n - 1 && at >= weight[k]; k++) at -= weight[k];
+    while (k > 0 && !(weight[k] > 0)) k--;      /* round-off at the end */
+    f->next = k;
+}
+/* Is there room for a sphere? */
+static int demi_feed_room(const dem_world *w, dem_vec3 x, dem_real r) {
+    const demi_periods p = demi_periods_of(w);
+    dem_real to[3];
+    int i, k;
+    demi_put(to, x);
+    for (i = 0; i < w->count; i++) {
+        const dem_real s = w->pos[4*i + 3] + r;
+        dem_real d2 = 0;
+        for (k = 0; k < 3; k++) {
+            dem_real d = DEMI_ABS(w->pos[4*i + k] - to[k]);
+            if (d > p.half[k]) d = p.period[k] - d;
+            d2 += d*d;
+        }
+        if (d2 < s*s) return 0;
+    }
+    return 1;
+}
+static void demi_finish(dem_world *w);                       /* >>step */
+/* Puts in one grain of the class drawn. 1: done, 0: no room, -1: no memory. */
+static int demi_feed_put(dem_world *w, demi_feed *f) {
+    const dem_feed_desc *d = &f->desc;
+    const dem_real r = d->radius[f->next];
+    dem_vec3 x, v;
+    int tries, i, free_place = 0;
+    for (tries = 0; tries < DEMI_FEED_TRIES && !free_place; tries++) {
+        double u[6];
+        int k, in = 1;
+        for (k = 0; k < 6; k++) u[k] = demi_uniform(&f->random);
+        if (d->round) in = (2*u[0] - 1)*(2*u[0] - 1) + (2*u[1] - 1)*(2*u[1] - 1) <= 1;
+        x = demi_v(d->box.lo.x + (dem_real)u[0]*(d->box.hi.x - d->box.lo.x),
+                   d->box.lo.y + (dem_real)u[1]*(d->box.hi.y - d->box.lo.y),
+                   d->box.lo.z + (dem_real)u[2]*(d->box.hi.z - d->box.lo.z));
+        v = demi_v(d->velocity.x + d->spread*(dem_real)(2*u[3] - 1),
+                   d->velocity.y + d->spread*(dem_real)(2*u[4] - 1),
+                   d->velocity.z + d->spread*(dem_real)(2*u[5] - 1));
+        if (w->desc.planar) x.z = v.z = 0;
+        free_place = in && demi_feed_room(w, x, r);
+    }
+    if (!free_place) return 0;
+    demi_finish(w);
+    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + 1)) return -1;
+    i = w->slot_index[demi_body_append(w, d->material.id - 1, r, x)];
+    demi_put(w->vel + 4*i, v);
+    demi_put(w->half_vel + 4*i, v);
+    w->energy_inserted += demi_body_energy(w, i);
+    demi_scene_changed(w);
+    f->state.fed[f->next]++;
+    f->state.total++;
+    f->state.mass += f->mass[f->next];
+    f->next = -1;
+    return 1;
+}
+/* All that is due now. */
+static dem_result demi_feeds_run(dem_world *w) {
+    int i;
+    for (i = 0; i < w->feed_count; i++) {
+        demi_feed *f = demi_feed_at(w, i);
+        const dem_feed_desc *d = &f->desc;
+        const double until = d->end > 0 && w->time > d->end ? d->end : w->time;
+        const double due = d->rate > 0 ? d->rate*(until - d->start) : 1e300;
+        f->state.done = !demi_feed_left(f) || (d->end > 0 && w->time > d->end);
+        while (w->time >= d->start && w->steps >= f->again && demi_feed_left(f)) {
+            const double rounded = 1e-9*(1 + due);           /* the third of 3/s is due at 1 s */
+            int done;
+            if (f->next < 0) {
+                const uint64_t random = f->random;
+                demi_feed_draw(f);
+                if (d->by_mass ? f->state.mass + f->mass[f->next] > due + rounded
+                    : (double)f->state.total + 1 > due + rounded) {
+                    f->random = random;         /* not yet: drawn again when it is */
+                    f->next = -1;
+                    break;
+                }
+            }
+            done = demi_feed_put(w, f);
+            if (done < 0) return demi_no_memory(w, "dem_world_step");
+            if (!done) f->again = w->steps + DEMI_FEED_REST;
+        }
+        f->state.waiting = 0;
+        if (f->next >= 0) {
+            double waits = d->by_mass || !(d->rate > 0) ? 1 : due - (double)f->state.total;
+            int k;
+            uint64_t most = 0;
+            for (k = 0; k < d->class_count; k++) most += f->limit[k] - f->state.fed[k];
+            if (!(d->rate > 0) || (d->limited && waits > (double)most)) waits = (double)most;
+            f->state.waiting = (uint64_t)(waits + 1e-9*waits);
+        }
+    }
+    return DEM_OK;
+}
+DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
+    if (id.id < 1 || id.id > w->feed_count)
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not exist, "
+                         "there are %d", (int)id.id, w->feed_count);
+    *state = demi_feed_at(w, id.id - 1)->state;
+    return DEM_OK;
+}
+
+DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
+    const char *call = "dem_outlet_add";
+    demi_outlet outlet;
+    dem_outlet id;
+    int k, bad = d->class_count < 0 || d->class_count > DEM_CLASSES || !(d->beyond >= 0) ||
+        !demi_finite(d->beyond) || !(d->wanted_min >= 0) || !(d->wanted_max >= 0) ||
+        (d->wanted_max > 0 && !(d->wanted_max > d->wanted_min));
+    id.id = 0;
+    for (k = 0; k < d->class_count && !bad; k++)
+        bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
+    if (bad) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, beyond %g m, wanted %g to %g m; "
+                  "must be 0 to %d classes with ascending radii, lengths >= 0, wanted_min below "
+                  "wanted_max", call, d->class_count, (double)d->beyond, (double)d->wanted_min,
+                  (double)d->wanted_max, (int)DEM_CLASSES);
+        return id;
+    }
+    if (demi_box_bad(d->box, 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is not finite or lo is above hi; give the "
+                  "region that takes grains out", call);
+        return id;
+    }
+    if (d->frame.id && demi_wall_find(w, call, d->frame) < 0) return id;
+    if (!demi_array_grow(w, &w->outlets_, sizeof(demi_outlet), (size_t)w->outlet_count + 1)) {
+        demi_no_memory(w, call);
+        return id;
+    }
+    memset(&outlet, 0, sizeof outlet);
+    outlet.desc = *d;
+    outlet.state.since = w->time;
+    *demi_outlet_at(w, w->outlet_count++) = outlet;
+    id.id = w->outlet_count;
+    return id;
+}
+static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
+    const dem_outlet_desc *d = &o->desc;
+    const dem_real r = w->pos[4*i + 3];
+    const double m = (double)w->mass[i];
+    const int wanted = r >= d->wanted_min && (!(d->wanted_max > 0) || r <= d->wanted_max);
+    int k = 0;
+    while (k + 1 < d->class_count && 2*r > d->radius[k] + d->radius[k + 1]) k++;
+    o->state.count[k]++;
+    o->state.mass[k] += m;
+    o->state.total++;
+    o->state.total_mass += m;
+    *(wanted ? &o->state.sorted : &o->state.gangue) += 1;
+    *(wanted ? &o->state.sorted_mass : &o->state.gangue_mass) += m;
+    o->state.last = w->time;
+}
+static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {
+    return x.x >= d->box.lo.x && x.x <= d->box.hi.x && x.y >= d->box.lo.y && x.y <= d->box.hi.y &&
+           x.z >= d->box.lo.z && x.z <= d->box.hi.z &&
+           x.x*x.x + x.y*x.y >= d->beyond*d->beyond;
+}
+/* After a move: the first outlet that a grain is in takes it. */
+static dem_result demi_outlets_run(dem_world *w) {
+    int i, k;
+    for (i = 0; i < w->count && w->outlet_count; i++) {
+        int frame = -1;
+        dem_vec3 x = demi_v(0, 0, 0);
+        for (k = 0; k < w->outlet_count; k++) {
+            demi_outlet *o = demi_outlet_at(w, k);
+            if (o->desc.frame.id != frame) {
+                frame = o->desc.frame.id;
+                x = demi_at(w->pos + 4*i);
+                if (frame) {
+                    const dem_pose *p = &w->walls[frame - 1].pose;
+                    if (w->walls[frame - 1].kind == DEMI_WALL_NONE) { frame = -1; continue; }
+                    x = demi_unturn(p->rotation, demi_sub(x, p->position));
+                }
+            }
+            if (!demi_outlet_has(&o->desc, x)) continue;
+            if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+            demi_outlet_book(w, o, i);
+            demi_body_take_out(w, i--);
+            w->balance.left++;
+            break;
+        }
+    }
+    return DEM_OK;
+}
+static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_outlet id) {
+    if (id.id >= 1 && id.id <= w->outlet_count) return demi_outlet_at(w, id.id - 1);
+    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, there are %d", call,
+              (int)id.id, w->outlet_count);
+    return 0;
+}
+DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
+    const demi_outlet *o = demi_outlet_find(w, "dem_outlet_get", id);
+    if (!o) return DEM_ERROR_ARGUMENT;
+    *state = o->state;
+    return DEM_OK;
+}
+DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
+    demi_outlet *o = demi_outlet_find(w, "dem_outlet_reset", id);
+    if (!o) return DEM_ERROR_ARGUMENT;
+    memset(&o->state, 0, sizeof o->state);
+    o->state.since = w->time;
+    return DEM_OK;
+}
+/* c = 1/M sum s_i/(s_i + g_i), by number eq 4.33 and by mass eq 4.35; G eq 4.41, of all outlets
+   together; rates eq 4.40. (Eq 4.36 has the density twice.) */
+DEM_API dem_result dem_sorting_get(const dem_world *w, const dem_outlet *outlets, int count,
+                                   dem_sorting *out) {
+    double number = 0, mass = 0, gangue = 0, gangue_mass = 0, since = w->time;
+    int i;
+    memset(out, 0, sizeof *out);
+    for (i = 0; i < count; i++) {
+        const demi_outlet *o = demi_outlet_find(w, "dem_sorting_get", outlets[i]);
+        if (!o) return DEM_ERROR_ARGUMENT;
+        since = DEMI_MIN(since, o->state.since);
+        if (!o->state.total) { out->silent++; continue; }
+        out->efficiency_number += (double)o->state.sorted/(double)o->state.total/count;
+        out->efficiency_mass += o->state.sorted_mass/o->state.total_mass/count;
+        number += (double)o->state.total;
+        mass += o->state.total_mass;
+        gangue += (double)o->state.gangue;
+        gangue_mass += o->state.gangue_mass;
+    }
+    if (number > 0) {
+        out->gangue_number = gangue/number;
+        out->gangue_mass = gangue_mass/mass;
+    }
+    if (w->time > since) {
+        out->rate_number = number/(w->time - since);
+        out->rate_mass = mass/(w->time - since);
+    }
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>step
    The time step (advised, checked), one step in the order of the manual, and runs of many. Errors
    of a run are found in the step that caused them and name the body.
@@ -7707,6 +8102,15 @@ static double demi_speed_estimate(const dem_world *w) {
         speed = DEMI_MAX(speed, (double)demi_length(v));
         lo = DEMI_MIN(lo, h - r);
         hi = DEMI_MAX(hi, h + r);
+    }
+    for (i = 0; i < w->feed_count; i++) {       /* grains that are to come */
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < 2; k++) {
+            const double h = (double)demi_dot(k ? d->box.hi : d->box.lo, down);
+            lo = DEMI_MIN(lo, h);
+            hi = DEMI_MAX(hi, h);
+        }
+        speed = DEMI_MAX(speed, (double)demi_length(d->velocity) + 1.7320508*(double)d->spread);
     }
     for (i = 0; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
@@ -7748,6 +8152,15 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
         const double r = demi_advise_radius(w, i);
         if (w->inv_mass[i] <= 0) { peg[m] = DEMI_MAX(peg[m], r); continue; }
         if (!many[m]++ || r < smallest[m]) smallest[m] = r;
+    }
+    for (i = 0; i < w->feed_count; i++) {       /* and those that are to come */
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        const int m = d->material.id - 1;
+        for (j = 0; j < d->class_count; j++) {
+            const double r = (double)d->radius[j];
+            if (!many[m] || r < smallest[m]) smallest[m] = r;
+            many[m] += 2;
+        }
     }
     for (i = 0; i < w->material_count; i++) {
         const double r = smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r) : 0;
@@ -7836,7 +8249,7 @@ static void demi_finish(dem_world *w) {
 static dem_result demi_dt_settle(dem_world *w) {
     dem_advice a;
     if (w->dt_valid) return DEM_OK;
-    if (!w->count) {                            /* nothing to limit it: walls still move */
+    if (!w->count && !w->feed_count) {          /* nothing to limit it: walls still move */
         if (!(w->dt > 0)) w->dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
         return DEM_OK;
     }
@@ -8159,6 +8572,7 @@ static dem_result demi_step_once(dem_world *w) {
         w->moved = 1;
     }
     result = demi_outflow(w);
+    if (result == DEM_OK && w->outlet_count) result = demi_outlets_run(w);
     if (result != DEM_OK) return result;
 
     /* 2 search: when something may have come near that is not in the list */
@@ -8215,6 +8629,10 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
         int sampling = 0;
         if (!w->moved) {
             result = demi_dt_settle(w);
+            if (result == DEM_OK && w->feed_count) {
+                result = demi_feeds_run(w);
+                if (result == DEM_OK) result = demi_dt_settle(w);   /* there may be new grains */
+            }
             if (result == DEM_OK && (!w->forces_valid || !w->list_valid || w->pairs_changed))
                 result = demi_refresh(w);
             if (result != DEM_OK) break;
@@ -9721,6 +10139,8 @@ static size_t demi_state_size(const dem_world *w, const demi_extent *s) {
             (size_t)s->carry_stride*r);
     for (i = 0; i < w->field_count; i++) size += 16 +
         5*sizeof(double)*demi_field_cells(&w->fields[i]);
+    size += (size_t)w->feed_count*(sizeof(dem_feed_state) + 3*sizeof(uint64_t)) +
+        (size_t)w->outlet_count*sizeof(dem_outlet_state);
     return size;
 }
 
@@ -9843,6 +10263,15 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
         demi_visit(s, f->mass, cells*sizeof(double));
         demi_visit(s, f->momentum, 3*cells*sizeof(double));
     }
+    for (i = 0; i < w->feed_count; i++) {
+        demi_feed *f = demi_feed_at(w, i);
+        demi_visit(s, &f->state, sizeof f->state);
+        demi_visit(s, &f->random, sizeof f->random);
+        demi_visit(s, &f->next, sizeof f->next);
+        demi_visit(s, &f->again, sizeof f->again);
+    }
+    for (i = 0; i < w->outlet_count; i++)
+        demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
 }
 
 /* What a checkpoint's world must have in common with the one that reads it. */
@@ -9856,7 +10285,8 @@ static uint64_t demi_scene_digest(const dem_world *w) {
                          d->law_memory, d->law_vectors, d->force != 0, (int)d->integrator,
                              (int)d->search, d->ledger, (int)d->rotation,
                              (int)d->ellipsoid_overlap, (int)d->cluster_contacts, d->orientations,
-                         w->material_count, w->wall_count, w->field_count, w->form_count};
+                         w->material_count, w->wall_count, w->field_count, w->form_count,
+                         w->feed_count, w->outlet_count};
     const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x,
                                 d->domain.lo.y, d->domain.lo.z,
                                 d->domain.hi.x, d->domain.hi.y, d->domain.hi.z, d->thickness,
@@ -9908,6 +10338,30 @@ static uint64_t demi_scene_digest(const dem_world *w) {
         h = demi_hash(h, &f->start, sizeof f->start);
         h = demi_hash(h, &f->end, sizeof f->end);
         h = demi_hash(h, &f->interval, sizeof f->interval);
+    }
+    for (i = 0; i < w->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(w, i);
+        const dem_feed_desc *f_desc = &f->desc;
+        const int what[] = {(int)f_desc->material.id, f_desc->class_count, f_desc->limited,
+                            f_desc->by_mass, f_desc->round};
+        const double when[] = {f_desc->rate, f_desc->start, f_desc->end};
+        h = demi_hash(h, what, sizeof what);
+        h = demi_hash(h, when, sizeof when);
+        h = demi_hash(h, f_desc->radius, sizeof f_desc->radius);
+        h = demi_hash(h, f_desc->amount, sizeof f_desc->amount);
+        h = demi_hash(h, &f_desc->box, sizeof f_desc->box);
+        h = demi_hash(h, &f_desc->velocity, sizeof f_desc->velocity);
+        h = demi_hash(h, &f_desc->spread, sizeof f_desc->spread);
+        h = demi_hash(h, &f_desc->seed, sizeof f_desc->seed);
+    }
+    for (i = 0; i < w->outlet_count; i++) {
+        const dem_outlet_desc *o = &demi_outlet_at(w, i)->desc;
+        const int what[] = {(int)o->frame.id, o->class_count};
+        const dem_real sizes[] = {o->beyond, o->wanted_min, o->wanted_max};
+        h = demi_hash(h, what, sizeof what);
+        h = demi_hash(h, sizes, sizeof sizes);
+        h = demi_hash(h, &o->box, sizeof o->box);
+        h = demi_hash(h, o->radius, sizeof o->radius);
     }
     return h;
 }
@@ -10197,7 +10651,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
 
 DEM_API void dem_world_destroy(dem_world *w) {
     demi_room set[20];
-    demi_array *arrays[48];
+    demi_array *arrays[64];
     int i, n, k = 0;
     dem_allocator allocator;
     if (!w) return;
@@ -10232,6 +10686,7 @@ DEM_API void dem_world_destroy(dem_world *w) {
     arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
     arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
     arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
+    arrays[k++] = &w->feeds_; arrays[k++] = &w->outlets_;
     for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
     while (k) demi_array_free(w, arrays[--k]);
     demi_free(w, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
@@ -10351,6 +10806,18 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
                 ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z,
                 (double)ch->torque_axial,
                 (double)ch->power);
+    }
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_state *f = &demi_feed_at(w, i)->state;
+        fprintf(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,
+                (unsigned long long)f->total, f->mass, (unsigned long long)f->waiting,
+                f->done ? "; done" : "");
+    }
+    for (i = 0; i < w->outlet_count; i++) {
+        const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
+        fprintf(out, "outlet %-3d %llu grains, %.6g kg, of them wanted %llu, %.6g kg\n", i + 1,
+                (unsigned long long)o->total, o->total_mass, (unsigned long long)o->sorted,
+                o->sorted_mass);
     }
     if (w->desc.ledger) {
         const dem_ledger l = dem_ledger_get(w);
@@ -11561,6 +12028,10 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     if (w->moved)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world stands in the middle of a step that "
                          "ran out of memory; finish it with dem_world_step first", call);
+    if (w->feed_count || w->outlet_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world has %d feeds and %d outlets, must "
+                         "have none, because slabs cannot feed yet; use dem_world_step", call,
+                         w->feed_count, w->outlet_count);
     return DEM_OK;
 }
 /* Do all processes hold the same scene, have they got their memory, and all slabs between them?

@@ -1,0 +1,393 @@
+/* Feeds and outlets: what comes in by number and by mass, what goes out, and that between the two
+   nothing is lost. TEST_LONG: an hour of machine time on the small machine. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "../examples/tumbler.h"
+#include "test.h"
+#include "scene.h"
+
+static dem_world *world_of(double g, double dt) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    desc.normal_law = DEM_NORMAL_LINEAR;
+    desc.gravity = at(0, 0, -g);
+    desc.dt = (dem_real)dt;
+    return dem_world_create(&desc);
+}
+static dem_material soft(dem_world *world, double stiffness) {
+    dem_material_desc m = DEM_MATERIAL_DESC;
+    m.density = 2500;
+    m.poisson = DEM_R(0.25);
+    m.stiffness = (dem_real)stiffness;
+    m.restitution = DEM_R(0.4);
+    m.friction = DEM_R(0.2);
+    return dem_material_add(world, &m);
+}
+static dem_feed_desc feed_of(dem_material material, double rate) {
+    dem_feed_desc f;
+    memset(&f, 0, sizeof f);
+    f.material = material;
+    f.class_count = 3;
+    f.radius[0] = DEM_R(0.002); f.radius[1] = DEM_R(0.003); f.radius[2] = DEM_R(0.004);
+    f.amount[0] = 30; f.amount[1] = 20; f.amount[2] = 10;
+    f.rate = rate;
+    f.box = box_of(-0.05, -0.05, 0.2, 0.05, 0.05, 0.25);
+    f.velocity = at(0, 0, -1);
+    f.spread = DEM_R(0.1);
+    f.seed = 11;
+    return f;
+}
+/* Grains of each class in the world. */
+static void present(const dem_world *world, const dem_feed_desc *f, int *count) {
+    const dem_bodies b = dem_bodies_get(world);
+    int i, k;
+    for (k = 0; k < f->class_count; k++) count[k] = 0;
+    for (i = 0; i < b.count; i++)
+        for (k = 0; k < f->class_count; k++)
+            count[k] += fabs((double)b.positions[4*i + 3] - (double)f->radius[k]) < 1e-6;
+}
+
+/* A tumbling machine of two decks: a weave above a floor, a ring of wall with an opening, outlets
+   beyond it. Steps; fed = present + left, by class, at every step. */
+typedef struct machine {
+    dem_world *world;
+    dem_feed feed;
+    dem_feed_desc desc;
+    dem_outlet outlet[2];
+    tumbler tumbler;
+    tumbler_part part[3];
+} machine;
+static void machine_build(machine *m, int threads) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_sieve_desc sieve = DEM_SIEVE_DESC;
+    dem_outlet_desc outlet;
+    dem_material stuff;
+    dem_motion motion;
+    dem_wall walls[3];
+    dem_real vertices[2*25];
+    int32_t segments[2*24];
+    dem_profile ring;
+    dem_mesh floor;
+    static dem_real corners[12] = {-.13, -.13, 0, .13, -.13, 0, .13, .13, 0, -.13, .13, 0};
+    static int32_t triangles[6] = {0, 1, 2, 0, 2, 3};
+    int i;
+    memset(m, 0, sizeof *m);
+    desc.normal_law = DEM_NORMAL_LINEAR;
+    desc.gravity = at(0, 0, -9.81);
+    desc.dt = DEM_R(1e-4);
+    desc.threads = threads;
+    m->world = dem_world_create(&desc);
+    stuff = soft(m->world, 100);
+    m->tumbler.speed = 15;
+    m->tumbler.alpha = 0.03;
+    m->tumbler.beta = 0.02;
+    m->tumbler.eccentricity = 0.01;
+    for (i = 0; i < 3; i++) m->part[i].machine = &m->tumbler;
+    m->part[1].place[2] = 0.05;
+    sieve.kind = DEM_SIEVE_WIRES;
+    sieve.aperture = DEM_R(0.0065);
+    sieve.bar = DEM_R(0.002);
+    sieve.radius = DEM_R(0.12);
+    floor.vertex_count = 4; floor.triangle_count = 2;
+    floor.vertices = corners; floor.triangles = triangles;
+    for (i = 0; i < 25; i++) {                   /* of 24 segments of the ring, 6 are missing */
+        vertices[2*i] = (dem_real)(0.12*cos(6.2831853*i/24));
+        vertices[2*i + 1] = (dem_real)(0.12*sin(6.2831853*i/24));
+    }
+    ring.vertex_count = 25;
+    ring.segment_count = 18;
+    for (i = 0; i < 18; i++) { segments[2*i] = i; segments[2*i + 1] = i + 1; }
+    ring.vertices = vertices; ring.segments = segments;
+    walls[0] = dem_mesh_add(m->world, stuff, &floor);
+    walls[1] = dem_sieve_add(m->world, stuff, &sieve);
+    walls[2] = dem_profile_add(m->world, stuff, &ring, DEM_EDGE_RESOLVED);
+    for (i = 0; i < 3; i++) {
+        motion = tumbler_motion(&m->part[i]);
+        CHECK_EQ(dem_wall_motion(m->world, walls[i], &motion), DEM_OK);
+    }
+    memset(&outlet, 0, sizeof outlet);
+    outlet.frame = walls[0];
+    outlet.beyond = DEM_R(0.123);
+    outlet.class_count = 3;
+    for (i = 0; i < 2; i++) {
+        outlet.box = box_of(-1, -1, i ? 0.05 : -1, 1, 1, i ? 1 : 0.05);
+        outlet.wanted_min = i ? DEM_R(0.0035) : 0;
+        outlet.wanted_max = i ? 0 : DEM_R(0.0035);
+        outlet.radius[0] = DEM_R(0.002); outlet.radius[1] = DEM_R(0.003);
+        outlet.radius[2] = DEM_R(0.004);
+        m->outlet[i] = dem_outlet_add(m->world, &outlet);
+    }
+    m->desc = feed_of(stuff, 40);
+    m->desc.box = box_of(-0.05, -0.05, 0.1, 0.05, 0.05, 0.12);
+    m->desc.round = 1;
+    m->feed = dem_feed_add(m->world, &m->desc);
+}
+static int machine_balanced(const machine *m) {
+    dem_feed_state f;
+    dem_outlet_state o[2];
+    const dem_balance b = dem_balance_get(m->world);
+    int here[3], k, ok = b.inserted == b.present + b.removed + b.left;
+    dem_feed_get(m->world, m->feed, &f);
+    dem_outlet_get(m->world, m->outlet[0], &o[0]);
+    dem_outlet_get(m->world, m->outlet[1], &o[1]);
+    present(m->world, &m->desc, here);
+    for (k = 0; k < 3; k++)
+        ok = ok && f.fed[k] == (uint64_t)here[k] + o[0].count[k] + o[1].count[k];
+    return ok && b.left == o[0].total + o[1].total && f.total == b.inserted;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("a feed of 100 grains/s has fed each when it is due, in random sizes by number") {
+        dem_world *world = world_of(0, 1e-3);
+        dem_material stuff = soft(world, 1);
+        const dem_feed_desc d = feed_of(stuff, 100);
+        dem_feed feed = dem_feed_add(world, &d);
+        dem_feed_state s;
+        double share, n = 3000;
+        int i, k;
+        for (i = 0; i < 30000; i++) {
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            if (i%1000 == 0) {
+                dem_feed_get(world, feed, &s);
+                CHECK_NEAR((double)s.total, 100*i*1e-3, 1e-9 + (i%10 ? 1 : 0));
+            }
+            /* they fly on without gravity: those far away are taken out */
+            while (dem_bodies_get(world).count > 20) {
+                dem_balance b;
+                dem_body_remove(world, dem_bodies_id(world, 0));
+                b = dem_balance_get(world);
+                CHECK(b.inserted == b.present + b.removed + b.left);
+            }
+        }
+        dem_feed_get(world, feed, &s);
+        CHECK_NEAR((double)s.total, n, 1);
+        for (k = 0; k < 3; k++) {                /* 30 : 20 : 10 */
+            share = (3 - k)/6.0;
+            CHECK_NEAR((double)s.fed[k]/n, share, 3*sqrt(share*(1 - share)/n));
+        }
+        dem_world_destroy(world);
+    }
+
+    TEST("a feed by mass keeps its rate in kg/s and its shares of mass") {
+        dem_world *world = world_of(0, 1e-3);
+        dem_material stuff = soft(world, 1);
+        dem_feed_desc d = feed_of(stuff, 0.03);
+        dem_feed feed;
+        dem_feed_state s;
+        double m, volume = 0;
+        int i, k;
+        d.by_mass = 1;
+        feed = dem_feed_add(world, &d);
+        for (i = 0; i < 20000; i++) {
+            scene_step(world, 1);
+            while (dem_bodies_get(world).count > 20)
+                dem_body_remove(world, dem_bodies_id(world, 0));
+        }
+        dem_feed_get(world, feed, &s);
+        CHECK_NEAR(s.mass, 0.03*20, 2500*4.19*0.004*0.004*0.004);      /* within a grain */
+        for (k = 0; k < 3; k++) volume += (double)s.fed[k]*pow((double)d.radius[k], 3);
+        for (k = 0; k < 3; k++) {
+            m = (double)s.fed[k]*pow((double)d.radius[k], 3)/volume;
+            CHECK_NEAR(m, (3 - k)/6.0, 0.04);    /* 750 of the large ones: 1/sqrt(750) */
+        }
+        dem_world_destroy(world);
+    }
+
+    TEST("a limited feed gives exactly what there is, all at once or at a rate, and then is done") {
+        int way;
+        for (way = 0; way < 2; way++) {
+            dem_world *world = world_of(9.81, 2e-5);
+            dem_material stuff = soft(world, 1000);
+            dem_feed_desc d = feed_of(stuff, way ? 2000 : 0);
+            dem_feed_state s;
+            dem_feed feed;
+            int here[3];
+            d.limited = 1;
+            d.round = way;
+            dem_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+            feed = dem_feed_add(world, &d);
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            dem_feed_get(world, feed, &s);
+            if (!way) CHECK(s.total > 40);
+            CHECK_EQ((int)s.total + (int)s.waiting, way ? 0 : 60);
+            CHECK_EQ(scene_step(world, 4000), DEM_OK);
+            dem_feed_get(world, feed, &s);
+            present(world, &d, here);
+            CHECK_EQ(here[0], 30);
+            CHECK_EQ(here[1], 20);
+            CHECK_EQ(here[2], 10);
+            CHECK_EQ(s.done, 1);
+            CHECK_EQ((int)s.waiting, 0);
+            CHECK(dem_counters_get(world).overlap_max < DEM_R(0.2));   /* nobody began inside another */
+            dem_world_destroy(world);
+        }
+    }
+
+    TEST("a feed without room keeps its grains until there is some") {
+        dem_world *world = world_of(0, 1e-4);
+        dem_material stuff = soft(world, 1);
+        dem_feed_desc d = feed_of(stuff, 1000);
+        dem_feed feed;
+        dem_feed_state s;
+        d.velocity = at(0, 0, 0);
+        d.spread = 0;
+        d.box = box_of(0, 0, 0, 0.01, 0.01, 0.01);
+        feed = dem_feed_add(world, &d);
+        scene_step(world, 1000);
+        dem_feed_get(world, feed, &s);
+        CHECK(s.total < 20);
+        CHECK_NEAR((double)(s.total + s.waiting), 100, 1);
+        while (dem_bodies_get(world).count) dem_body_remove(world, dem_bodies_id(world, 0));
+        scene_step(world, 20);
+        CHECK(dem_bodies_get(world).count > 0);
+        dem_world_destroy(world);
+    }
+
+    TEST("outlets count by class and by what is wanted, standing still and on a turning wall") {
+        dem_world *world = world_of(0, 1e-3);
+        dem_material stuff = soft(world, 1);
+        dem_wall wall = dem_plane_add(world, stuff, at(5, 0, -3), at(0, 0, 1));
+        dem_motion turn = DEM_MOTION;
+        dem_outlet_desc d;
+        dem_outlet outlet[2];
+        dem_outlet_state s;
+        dem_sorting sorting;
+        dem_body body;
+        int i;
+        turn.kind = DEM_MOTION_ROTATING;
+        turn.axis = at(0, 0, 1);
+        turn.point = at(5, 0, 0);
+        turn.speed = DEM_R(3.14159265358979/2);
+        dem_wall_motion(world, wall, &turn);
+        memset(&d, 0, sizeof d);
+        d.box = box_of(1, -1, -1, 2, 1, 1);
+        d.class_count = 2;
+        d.radius[0] = DEM_R(0.01); d.radius[1] = DEM_R(0.02);
+        d.wanted_min = DEM_R(0.015);
+        outlet[0] = dem_outlet_add(world, &d);
+        d.frame = wall;                          /* local x turns to y in a second */
+        d.box = box_of(1, -0.2, 2, 3, 0.2, 4);
+        d.beyond = DEM_R(1.5);
+        d.wanted_min = 0;
+        outlet[1] = dem_outlet_add(world, &d);
+        for (i = 0; i < 5; i++) {
+            body = dem_sphere_add(world, stuff, i < 3 ? DEM_R(0.01) : DEM_R(0.021),
+                                  at(0.5, 0.1*i, 0));
+            scene_move(world, body, at(1, 0, 0), at(0, 0, 0));
+        }
+        dem_sphere_add(world, stuff, DEM_R(0.02), at(5, 2, 0));        /* taken after a second */
+        dem_sphere_add(world, stuff, DEM_R(0.02), at(5, 1.4, 0));      /* not far enough out */
+        scene_step(world, 450);
+        dem_outlet_get(world, outlet[0], &s);
+        CHECK_EQ((int)s.total, 0);
+        scene_step(world, 100);
+        dem_outlet_get(world, outlet[0], &s);
+        CHECK_EQ((int)s.count[0], 3);
+        CHECK_EQ((int)s.count[1], 2);
+        CHECK_EQ((int)s.sorted, 2);
+        CHECK_EQ((int)s.gangue, 3);
+        CHECK_REL(s.gangue_mass, 3*2500*4/3.0*3.14159265358979e-6, 1e-6);
+        CHECK_EQ(dem_sorting_get(world, outlet, 2, &sorting), DEM_OK);
+        CHECK_EQ(sorting.silent, 1);
+        CHECK_REL(sorting.efficiency_number, 0.4/2, 1e-12);
+        scene_step(world, 600);
+        dem_outlet_get(world, outlet[1], &s);
+        CHECK_EQ((int)s.total, 1);
+        CHECK_EQ(dem_bodies_get(world).count, 1);
+        CHECK_EQ(dem_sorting_get(world, outlet, 2, &sorting), DEM_OK);
+        CHECK_REL(sorting.efficiency_number, (0.4 + 1)/2, 1e-12);      /* eq 4.33 */
+        CHECK_REL(sorting.gangue_number, 3/6.0, 1e-12);
+        CHECK_REL(sorting.rate_number, 6/dem_world_time(world), 1e-9);
+        dem_world_destroy(world);
+    }
+
+    TEST("fed = present + left, by class, at every step of a tumbling machine") {
+        const double seconds = getenv("TEST_LONG") ? 3600 : 6;
+        machine m;
+        dem_sorting sorting;
+        int i, bad = 0;
+        const int steps = (int)(seconds/1e-4);
+        machine_build(&m, 1);
+        for (i = 0; i < steps && !bad; i++) {
+            if (scene_step(m.world, 1) != DEM_OK) bad = 1;
+            if (!machine_balanced(&m)) bad = 1;
+        }
+        CHECK_EQ(bad, 0);
+        CHECK_EQ(dem_sorting_get(m.world, m.outlet, 2, &sorting), DEM_OK);
+        CHECK(dem_balance_get(m.world).left > 20);
+        CHECK_EQ(sorting.silent, 0);
+        CHECK(sorting.efficiency_number > 0.5);
+        if (getenv("TEST_LONG"))
+            printf("%d steps: %d left, efficiency %g\n", i, (int)dem_balance_get(m.world).left,
+                   sorting.efficiency_number);
+        dem_world_destroy(m.world);
+    }
+
+    TEST("a fed machine goes on from a checkpoint bit for bit, with any number of threads") {
+        static const char path[] = "build/tmp/feed.ckpt";
+        machine a, b;
+        dem_feed_state fa, fb;
+        dem_outlet_state oa, ob;
+        machine_build(&a, 1);
+        machine_build(&b, 4);
+        CHECK_EQ(scene_step(a.world, 15000), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(a.world, path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(b.world, path), DEM_OK);
+        CHECK_EQ(scene_step(a.world, 3000), DEM_OK);
+        CHECK_EQ(scene_step(b.world, 3000), DEM_OK);
+        CHECK(dem_world_hash(a.world) == dem_world_hash(b.world));
+        dem_feed_get(a.world, a.feed, &fa);
+        dem_feed_get(b.world, b.feed, &fb);
+        CHECK(memcmp(&fa, &fb, sizeof fa) == 0);
+        CHECK(fa.total > 60);
+        dem_outlet_get(a.world, a.outlet[1], &oa);
+        dem_outlet_get(b.world, b.outlet[1], &ob);
+        CHECK(memcmp(&oa, &ob, sizeof oa) == 0);
+        b.desc.seed = 12;
+        CHECK(dem_feed_add(b.world, &b.desc).id > 0);                  /* another scene now */
+        CHECK_EQ(dem_checkpoint_read(b.world, path), DEM_ERROR_FORMAT);
+        dem_world_destroy(a.world);
+        dem_world_destroy(b.world);
+        remove(path);
+    }
+
+    TEST("feeds and outlets with bad values, and slabs of a world that has some, are refused by name") {
+        dem_world *world = world_of(0, 1e-3);
+        dem_material stuff = soft(world, 1);
+        dem_feed_desc d = feed_of(stuff, 0);
+        dem_outlet_desc o;
+        dem_slabs_desc slabs = DEM_SLABS_DESC;
+        dem_outlet none;
+        dem_sorting sorting;
+        CHECK_EQ(dem_feed_add(world, &d).id, 0);
+        CHECK_STR(dem_world_error(world), "needs `limited`");
+        d.rate = 1;
+        d.class_count = 0;
+        CHECK_EQ(dem_feed_add(world, &d).id, 0);
+        CHECK_STR(dem_world_error(world), "class_count is 0");
+        d.class_count = 4;
+        CHECK_EQ(dem_feed_add(world, &d).id, 0);
+        CHECK_STR(dem_world_error(world), "class 3 has radius 0");
+        d.class_count = 3;
+        d.box.hi.x = -1;
+        CHECK_EQ(dem_feed_add(world, &d).id, 0);
+        CHECK_STR(dem_world_error(world), "lo is above hi");
+        memset(&o, 0, sizeof o);
+        o.wanted_min = 2;
+        o.wanted_max = 1;
+        CHECK_EQ(dem_outlet_add(world, &o).id, 0);
+        CHECK_STR(dem_world_error(world), "wanted 2 to 1");
+        none.id = 3;
+        CHECK_EQ(dem_sorting_get(world, &none, 1, &sorting), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "outlet 3 does not exist");
+        d = feed_of(stuff, 1);
+        CHECK(dem_feed_add(world, &d).id > 0);
+        slabs.count = 2;
+        CHECK(dem_slabs_create(world, &slabs) == 0);
+        CHECK_STR(dem_world_error(world), "1 feeds");
+        dem_world_destroy(world);
+    }
+
+    return test_end();
+}
