@@ -1019,6 +1019,62 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
    empty. */
 DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char *path);
 
+/* The files of MOLDYN, the program of [FEN] (its appendix). A scene given by the three it reads:
+       dem_moldyn m;
+       dem_moldyn_read(any, "a.cin", "a.pin", "a.win", &m);    any world: for memory and errors
+       desc = dem_moldyn_desc(&m);   world = dem_world_create(&desc);   dem_moldyn_add(world, &m);
+       dem_world_run(world, m.end - m.start, 0, 0);
+   In space, z is up and rows have 14 (grains) and 6 numbers (walls), as the appendix shows. In a
+   plane y is up, and rows have 8 (x y, velocity, angle, spin, radius, flag) and 4 (normal, centre):
+   the appendix shows none, so that is our reading. */
+typedef struct dem_moldyn {
+    double start, end, dt;           /* s; times.t0, tend, dt */
+    double gravity;                  /* m/s2, upwards; control.grav */
+    double density;                  /* kg/m3; control.rho */
+    double friction_static, friction;/* control.mue_s, mue_d */
+    /* N/m; sd.stiff_lo, stiff_k_un, stiff_adh (that one < 0 in the file). Unloading no stiffer than
+       loading: the linear law, which never pulls */
+    double stiffness, stiffness_unloading, stiffness_adhesion;
+    double damping_grain, damping_wall; /* N s/m; sd.damp_particle, damp_wall. 0: from restitution,
+                                        when the law is linear */
+    double restitution;              /* sd.e */
+    int planar;
+    int grain_count, wall_count;
+    dem_real *grains;                /* grain_count x 14: place, velocity, angles, spin, radius, 1 when
+                                        it may move; in our axes */
+    double wall_thickness;           /* m; surfaces lie half of it before the centres, eq 2.60 */
+    dem_real *walls;                 /* wall_count x 6: normal, centre */
+} dem_moldyn;
+static const dem_moldyn DEM_MOLDYN_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+#define DEM_MOLDYN DEM_MOLDYN_ZERO
+typedef enum dem_moldyn_file {
+    DEM_MOLDYN_CONTROL = 0,          /* .cin */
+    DEM_MOLDYN_PARTICLES,            /* .pin */
+    DEM_MOLDYN_WALLS                 /* .win */
+} dem_moldyn_file;
+/* Paths of .pin and .win may be null: no grains, no walls. Free with dem_moldyn_free. */
+DEM_API dem_result dem_moldyn_read(dem_world *world, const char *cin, const char *pin,
+                                   const char *win, dem_moldyn *moldyn);
+/* One of the three from memory, into what the others filled in already (begin with DEM_MOLDYN). */
+DEM_API dem_result dem_moldyn_parse(dem_world *world, const char *name, dem_moldyn_file file,
+                                    const void *data, size_t size, dem_moldyn *moldyn);
+DEM_API void dem_moldyn_free(dem_world *world, dem_moldyn *moldyn);
+DEM_API dem_world_desc dem_moldyn_desc(const dem_moldyn *moldyn);
+/* Materials, grains, walls and the time into an empty world made with that desc. */
+DEM_API dem_result dem_moldyn_add(dem_world *world, const dem_moldyn *moldyn);
+/* Takes the grains of a world as they are now in place of those of moldyn; angles are 0. */
+DEM_API dem_result dem_moldyn_take(dem_world *world, dem_moldyn *moldyn);
+/* Writes the three files; null paths are left out. Read back, they are the same numbers. */
+DEM_API dem_result dem_moldyn_write(dem_world *world, const dem_moldyn *moldyn, const char *cin,
+                                    const char *pin, const char *win);
+/* Appends a frame for XBALLS: a line with count, time and the corners of box, then a line per grain:
+   x, y (in space: z), their velocities, radius, spin. The text of the appendix calls these six
+   numbers place and velocity in space; its figures are those of a plane. */
+DEM_API dem_result dem_xb_append(dem_world *world, const char *path, dem_box box);
+/* Appends a frame for ANIM; a new file begins with interval, frames and bodies. A line per grain and
+   per wall: rotation matrix, place. Spheres have no orientation here: theirs is the identity. */
+DEM_API dem_result dem_str_append(dem_world *world, const char *path, double interval, int frames);
+
 /* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters.
    Reading replaces the state of a world that was created with the same desc, materials and walls
    (functions and user pointers cannot be stored), which then continues bit for bit. A file that is
@@ -10060,6 +10116,399 @@ DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char 
     return demi_fail(world, DEM_ERROR_FILE, "dem_channels_csv: cannot write %.200s: %s; check that "
                      "its folder exists, may be written to and has room", path,
                      cause ? strerror(cause) : "unknown cause");
+}
+
+/* ---- MOLDYN ---- */
+
+enum { DEMI_PIN = 14, DEMI_WIN = 6 };
+static void demi_moldyn_rows_free(dem_world *w, dem_moldyn *m, int walls) {
+    if (walls) {
+        demi_free(w, m->walls, (size_t)m->wall_count*DEMI_WIN, sizeof(dem_real));
+        m->walls = 0;
+        m->wall_count = 0;
+    } else {
+        demi_free(w, m->grains, (size_t)m->grain_count*DEMI_PIN, sizeof(dem_real));
+        m->grains = 0;
+        m->grain_count = 0;
+    }
+}
+DEM_API void dem_moldyn_free(dem_world *w, dem_moldyn *m) {
+    if (!m) return;
+    demi_moldyn_rows_free(w, m, 0);
+    demi_moldyn_rows_free(w, m, 1);
+    memset(m, 0, sizeof *m);
+}
+/* Keys of .cin, where their values go, and their limits. */
+typedef struct demi_cin_row { const char *key; size_t at; double lo, hi; int needed; } demi_cin_row;
+#define DEMI_CIN(key, field, lo, hi, needed) {key, offsetof(dem_moldyn, field), lo, hi, needed}
+static const demi_cin_row demi_cin_rows[] = {
+    DEMI_CIN("times.t0", start, 0, 1e15, 0),
+    DEMI_CIN("times.tend", end, 0, 1e15, 1),
+    DEMI_CIN("times.dt", dt, 1e-15, 1e15, 1),
+    DEMI_CIN("control.grav", gravity, -1e15, 1e15, 0),
+    DEMI_CIN("control.rho", density, 1e-15, 1e15, 1),
+    DEMI_CIN("control.mue_s", friction_static, 0, 1e6, 0),
+    DEMI_CIN("control.mue_d", friction, 0, 1e6, 0),
+    DEMI_CIN("sd.stiff_lo", stiffness, 1e-15, 1e15, 1),
+    DEMI_CIN("sd.stiff_k_un", stiffness_unloading, 0, 1e15, 0),
+    DEMI_CIN("sd.stiff_adh", stiffness_adhesion, -1e15, 0, 0),
+    DEMI_CIN("sd.damp_particle", damping_grain, 0, 1e15, 0),
+    DEMI_CIN("sd.damp_wall", damping_wall, 0, 1e15, 0),
+    DEMI_CIN("sd.e", restitution, 0, 1, 0)};
+#undef DEMI_CIN
+enum { DEMI_CIN_ROWS = (int)(sizeof demi_cin_rows/sizeof *demi_cin_rows) };
+
+static dem_result demi_cin_read(demi_text *t, dem_moldyn *m) {
+    dem_moldyn fresh = *m;
+    unsigned seen = 0;
+    char where[160];
+    int i;
+    while (demi_text_line(t)) {
+        const demi_cin_row *row = 0;
+        dem_real value = 0;
+        for (i = 0; i < DEMI_CIN_ROWS && !row; i++)
+            if (demi_text_is(t, demi_cin_rows[i].key)) row = &demi_cin_rows[i];
+        if (!row || seen >> (i - 1) & 1u)
+            return demi_text_fail(t, "a key such as times.dt or sd.stiff_lo is expected, each once; "
+                                  "see the appendix of the thesis");
+        seen |= 1u << (i - 1);
+        if (!demi_text_word(t) || demi_text_real(t, &value) != DEM_OK || (double)value < row->lo ||
+            (double)value > row->hi) {
+            snprintf(where, sizeof where, "the value of %s is expected, a number from %g to %g",
+                     row->key, row->lo, row->hi);
+            return demi_text_fail(t, where);
+        }
+        *(double *)((char *)&fresh + row->at) = (double)value;
+        if (demi_text_word(t)) return demi_text_fail(t, "the end of the line is expected: one value "
+                                                     "to a key");
+    }
+    fresh.stiffness_adhesion = -fresh.stiffness_adhesion;
+    if (fresh.stiffness_adhesion <= 0) fresh.stiffness_adhesion = 0;
+    for (i = 0; i < DEMI_CIN_ROWS; i++)
+        if (demi_cin_rows[i].needed && !(seen >> i & 1u)) {
+            snprintf(where, sizeof where, "a line with %s is expected, which has no default",
+                     demi_cin_rows[i].key);
+            return demi_text_fail(t, where);
+        }
+    if (fresh.friction_static < fresh.friction || fresh.end < fresh.start)
+        return demi_text_fail(t, "control.mue_s of at least control.mue_d and times.tend of at least "
+                              "times.t0 are expected; correct the file");
+    *m = fresh;
+    return DEM_OK;
+}
+
+/* Rows of numbers: `wide` of them in space, `flat` in a plane; the first row tells which. */
+static dem_result demi_moldyn_rows(demi_text *t, dem_moldyn *m, int walls) {
+    const int wide = walls ? DEMI_WIN : DEMI_PIN, flat = walls ? 4 : 8;
+    const int known = walls ? m->grain_count > 0 : m->wall_count > 0;
+    int32_t count = 0;
+    int columns = 0, i, k;
+    dem_real thickness = 0, *rows = 0;
+    const char *bad = 0;
+    dem_result result = DEM_OK;
+    char where[200];
+    if (!demi_text_line(t) || !demi_text_integer(t, t->length, &count) || count < 0)
+        return demi_text_fail(t, walls ? "the number of walls is expected"
+                              : "the number of grains is expected");
+    if (walls && (!demi_text_word(t) || demi_text_real(t, &thickness) != DEM_OK || thickness < 0))
+        return demi_text_fail(t, "the thickness of the walls is expected, a number >= 0 (m)");
+    if (demi_text_word(t)) return demi_text_fail(t, "the end of the line is expected");
+    if ((size_t)(t->end - t->next) < (size_t)count*(size_t)(2*flat - 1))   /* before memory is taken */
+        return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: found %d rows announced where "
+                         "the file has bytes for at most %.0f; was it cut short?", t->call, t->name,
+                         t->line, (int)count, (double)(t->end - t->next)/(2*flat - 1));
+    if (count) rows = (dem_real *)demi_alloc(t->world, (size_t)count*(size_t)wide, sizeof *rows);
+    if (count && !rows) return demi_text_memory(t);
+    for (i = 0; i < count && result == DEM_OK; i++) {
+        dem_real value[DEMI_PIN], *row = rows + (size_t)i*(size_t)wide;
+        int n = 0, more = demi_text_line(t);
+        memset(value, 0, sizeof value);
+        for (; more && n < wide; n++, more = demi_text_word(t))
+            if ((result = demi_text_real(t, &value[n])) != DEM_OK) break;
+        if (result != DEM_OK) break;
+        if (more || (n != wide && n != flat) || (columns && n != columns) ||
+            (known && m->planar != (n == flat))) {
+            snprintf(where, sizeof where, "row %d of %d is expected with %d numbers, %s", i + 1,
+                     (int)count, columns ? columns : known && m->planar ? flat : wide,
+                     columns ? "as the first" : known ? "as the other file" : "or fewer in a plane");
+            result = demi_text_fail(t, where);
+            break;
+        }
+        columns = n;
+        if (walls) {                            /* normal, centre */
+            const int d = n == flat ? 2 : 3;
+            for (k = 0; k < d; k++) { row[k] = value[k]; row[3 + k] = value[d + k]; }
+            if (!(row[0]*row[0] + row[1]*row[1] + row[2]*row[2] > 0)) bad = "a normal that is not 0";
+        } else if (n == flat) {                 /* x y u v angle spin radius flag */
+            row[0] = value[0]; row[1] = value[1]; row[3] = value[2]; row[4] = value[3];
+            row[8] = value[4]; row[11] = value[5]; row[12] = value[6]; row[13] = value[7];
+        } else memcpy(row, value, DEMI_PIN*sizeof *row);
+        if (!walls && !(row[12] > 0)) bad = "a radius > 0 (m) in the last column but one";
+        if (!walls && DEMI_ABS(row[13]) > 0 && DEMI_ABS(row[13] - 1) > 0)
+            bad = "1 (moves) or 0 (stands) in the last column";
+        if (bad) {
+            snprintf(where, sizeof where, "%s is expected", bad);
+            result = demi_text_fail(t, where);
+        }
+    }
+    if (result == DEM_OK && demi_text_line(t))
+        result = demi_text_fail(t, "the end of the file is expected: there are more rows than its "
+                                "first line says");
+    if (result != DEM_OK) {
+        demi_free(t->world, rows, (size_t)count*(size_t)wide, sizeof *rows);
+        return result;
+    }
+    demi_moldyn_rows_free(t->world, m, walls);
+    if (count) m->planar = columns == flat;
+    if (walls) { m->walls = rows; m->wall_count = count; m->wall_thickness = (double)thickness; }
+    else { m->grains = rows; m->grain_count = count; }
+    return DEM_OK;
+}
+static dem_result demi_moldyn_parse(dem_world *w, const char *call, const char *name,
+                                    dem_moldyn_file file, const char *data, size_t size,
+                                    dem_moldyn *m) {
+    demi_text t = demi_text_make(w, call, name, data, size);
+    if (file == DEM_MOLDYN_CONTROL) return demi_cin_read(&t, m);
+    return demi_moldyn_rows(&t, m, file == DEM_MOLDYN_WALLS);
+}
+DEM_API dem_result dem_moldyn_parse(dem_world *w, const char *name, dem_moldyn_file file,
+                                    const void *data, size_t size, dem_moldyn *m) {
+    if (!m || (!data && size) || (int)file < 0 || file > DEM_MOLDYN_WALLS)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_moldyn_parse: moldyn or data is null, or file "
+                         "%d is none of the three; give all", (int)file);
+    return demi_moldyn_parse(w, "dem_moldyn_parse", name, file, data ? (const char *)data : "", size,
+                             m);
+}
+DEM_API dem_result dem_moldyn_read(dem_world *w, const char *cin, const char *pin, const char *win,
+                                   dem_moldyn *m) {
+    const char *call = "dem_moldyn_read";
+    const char *paths[3];
+    dem_result result = DEM_OK;
+    int k;
+    if (!m) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: moldyn is null; give its address", call);
+    *m = DEM_MOLDYN;
+    paths[0] = cin; paths[1] = pin; paths[2] = win;
+    for (k = 0; k < 3 && result == DEM_OK; k++) {
+        demi_array bytes = {0, 0, 0};
+        size_t size = 0;
+        if (k && !paths[k]) continue;
+        result = demi_load(w, call, paths[k], &bytes, &size);
+        if (result == DEM_OK)
+            result = demi_moldyn_parse(w, call, paths[k], (dem_moldyn_file)k,
+                                       bytes.data ? (const char *)bytes.data : "", size, m);
+        demi_array_free(w, &bytes);
+    }
+    if (result != DEM_OK) dem_moldyn_free(w, m);
+    return result;
+}
+static int demi_moldyn_linear(const dem_moldyn *m) { return m->stiffness_unloading <= m->stiffness; }
+DEM_API dem_world_desc dem_moldyn_desc(const dem_moldyn *m) {
+    dem_world_desc d = DEM_WORLD_DESC;
+    d.planar = m->planar;
+    if (m->planar) d.gravity.y = (dem_real)m->gravity;
+    else d.gravity.z = (dem_real)m->gravity;
+    d.dt = (dem_real)m->dt;
+    d.normal_law = demi_moldyn_linear(m) ? DEM_NORMAL_LINEAR : DEM_NORMAL_HYSTERETIC;
+    return d;
+}
+DEM_API dem_result dem_moldyn_add(dem_world *w, const dem_moldyn *m) {
+    const char *call = "dem_moldyn_add";
+    const int linear = demi_moldyn_linear(m);
+    dem_material_desc d = DEM_MATERIAL_DESC;
+    dem_material grain, wall;
+    dem_pair pair;
+    int i;
+    if (w->count || w->wall_count || w->material_count || w->steps ||
+        !w->desc.planar != !m->planar ||
+        w->desc.normal_law != (linear ? DEM_NORMAL_LINEAR : DEM_NORMAL_HYSTERETIC))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world has %d grains, %d walls, %d materials "
+                         "or another law or dimension; make an empty one with dem_moldyn_desc", call,
+                         w->count, w->wall_count, w->material_count);
+    d.density = (dem_real)m->density;
+    d.poisson = DEM_R(0.25);                    /* kt/kn = .857; the files do not say */
+    d.stiffness = (dem_real)m->stiffness;
+    if (linear) d.restitution = m->restitution > 0 ? (dem_real)m->restitution : 1;
+    else {
+        d.stiffness_unloading = (dem_real)m->stiffness_unloading;
+        d.stiffness_adhesion = (dem_real)m->stiffness_adhesion;
+    }
+    d.friction = (dem_real)m->friction;
+    d.friction_static = (dem_real)m->friction_static;
+    grain = dem_material_add(w, &d);
+    wall = dem_material_add(w, &d);
+    if (!grain.id || !wall.id) return DEM_ERROR_ARGUMENT;
+    if (dem_pair_get(w, grain, grain, &pair) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    pair.normal_damping = (dem_real)m->damping_grain;
+    if (dem_pair_set(w, grain, grain, &pair) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    pair.normal_damping = (dem_real)m->damping_wall;
+    if (dem_pair_set(w, grain, wall, &pair) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    for (i = 0; i < m->wall_count; i++) {
+        const dem_vec3 n = demi_unit(demi_at(m->walls + DEMI_WIN*i));
+        const dem_vec3 at = demi_add(demi_at(m->walls + DEMI_WIN*i + 3),
+                                     demi_scale(n, (dem_real)(m->wall_thickness/2)));
+        if (!dem_plane_add(w, wall, at, n).id) return DEM_ERROR_MEMORY;
+    }
+    if (!demi_bodies_reserve(w, (size_t)m->grain_count)) return demi_no_memory(w, call);
+    for (i = 0; i < m->grain_count; i++) {
+        const dem_real *row = m->grains + (size_t)i*DEMI_PIN;
+        const dem_body body = dem_sphere_add(w, grain, row[12], demi_at(row));
+        dem_body_state s;
+        if (!body.slot || dem_body_get(w, body, &s) != DEM_OK) return DEM_ERROR_MEMORY;
+        s.velocity = demi_at(row + 3);
+        s.spin = demi_at(row + 9);
+        s.fixed = row[13] < DEM_R(0.5);
+        if (dem_body_set(w, body, &s) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    }
+    w->time = m->start;
+    return DEM_OK;
+}
+/* Index of the body in the k-th used slot, counting on from *slot. */
+static int demi_by_slot(const dem_world *w, int *slot) {
+    while (*slot < w->slot_count && w->slot_index[*slot] < 0) ++*slot;
+    return *slot < w->slot_count ? w->slot_index[(*slot)++] : -1;
+}
+DEM_API dem_result dem_moldyn_take(dem_world *w, dem_moldyn *m) {
+    dem_real *rows = 0;
+    int i = 0, slot = 0, b;
+    if (w->count) rows = (dem_real *)demi_alloc(w, (size_t)w->count*DEMI_PIN, sizeof *rows);
+    if (w->count && !rows) return demi_no_memory(w, "dem_moldyn_take");
+    for (; (b = demi_by_slot(w, &slot)) >= 0; i++) {
+        dem_real *row = rows + (size_t)i*DEMI_PIN;
+        memcpy(row, w->pos + 4*b, 3*sizeof *row);
+        memcpy(row + 3, w->vel + 4*b, 3*sizeof *row);
+        memcpy(row + 9, w->spin + 4*b, 3*sizeof *row);
+        row[12] = w->pos[4*b + 3];
+        row[13] = w->inv_mass[b] > 0 ? DEM_R(1) : DEM_R(0);
+    }
+    demi_moldyn_rows_free(w, m, 0);
+    m->grains = rows;
+    m->grain_count = w->count;
+    m->start = w->time;
+    if (m->end < m->start) m->end = m->start;
+    return DEM_OK;
+}
+static void demi_row_write(FILE *file, const dem_real *row, const int *which, int count) {
+    char number[32];
+    int k;
+    for (k = 0; k < count; k++)
+        fprintf(file, "%s%c", demi_format_real(number, (double)row[which[k]], 17),
+                k + 1 < count ? ' ' : '\n');
+}
+DEM_API dem_result dem_moldyn_write(dem_world *w, const dem_moldyn *m, const char *cin,
+                                    const char *pin, const char *win) {
+    static const int wide[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
+    static const int flat_grain[] = {0, 1, 3, 4, 8, 11, 12, 13}, flat_wall[] = {0, 1, 3, 4};
+    const char *call = "dem_moldyn_write";
+    demi_out o;
+    char number[32];
+    dem_result result = DEM_OK;
+    int i;
+    if (cin) {
+        result = demi_out_open(&o, w, call, cin);
+        if (result != DEM_OK) return result;
+        for (i = 0; i < DEMI_CIN_ROWS; i++) {
+            double value;
+            memcpy(&value, (const char *)m + demi_cin_rows[i].at, sizeof value);
+            if (demi_cin_rows[i].hi <= 0) value = -value;          /* adhesion: a slope there */
+            fprintf(o.file, "%-17s %s\n", demi_cin_rows[i].key, demi_format_real(number, value, 17));
+        }
+        result = demi_out_close(&o);
+    }
+    if (pin && result == DEM_OK) {
+        result = demi_out_open(&o, w, call, pin);
+        if (result != DEM_OK) return result;
+        fprintf(o.file, "%d\n", m->grain_count);
+        for (i = 0; i < m->grain_count; i++)
+            demi_row_write(o.file, m->grains + (size_t)i*DEMI_PIN, m->planar ? flat_grain : wide,
+                           m->planar ? 8 : DEMI_PIN);
+        result = demi_out_close(&o);
+    }
+    if (win && result == DEM_OK) {
+        result = demi_out_open(&o, w, call, win);
+        if (result != DEM_OK) return result;
+        fprintf(o.file, "%d %s\n", m->wall_count, demi_format_real(number, m->wall_thickness, 17));
+        for (i = 0; i < m->wall_count; i++)
+            demi_row_write(o.file, m->walls + (size_t)i*DEMI_WIN, m->planar ? flat_wall : wide,
+                           m->planar ? 4 : DEMI_WIN);
+        result = demi_out_close(&o);
+    }
+    return result;
+}
+
+/* With six decimals, and a point whatever the locale says. */
+static void demi_fixed_write(FILE *file, double value, char after) {
+    char raw[400], out[400];
+    size_t i, n = 0;
+    snprintf(raw, sizeof raw, "%.6f", value);
+    for (i = 0; raw[i]; i++) {
+        if ((raw[i] >= '0' && raw[i] <= '9') || raw[i] == '-') out[n++] = raw[i];
+        else if (n == 0 || out[n - 1] != '.') out[n++] = '.';
+    }
+    out[n] = 0;
+    fprintf(file, "%s%c", out, after);
+}
+static FILE *demi_append_open(dem_world *w, const char *call, const char *path, int *fresh) {
+    FILE *file = path ? fopen(path, "ab") : 0;
+    *fresh = file && fseek(file, 0, SEEK_END) == 0 && ftell(file) == 0;
+    if (!file) demi_fail(w, path ? DEM_ERROR_FILE : DEM_ERROR_ARGUMENT, "%s: cannot append to "
+                         "%.200s; check that its folder exists and may be written to", call,
+                         path ? path : "a null path");
+    return file;
+}
+static dem_result demi_append_close(dem_world *w, const char *call, const char *path, FILE *file) {
+    const int bad = ferror(file);
+    if (fclose(file) || bad)
+        return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s was not written in full; is the disk full?",
+                         call, path);
+    return DEM_OK;
+}
+DEM_API dem_result dem_xb_append(dem_world *w, const char *path, dem_box box) {
+    const int up = w->desc.planar ? 1 : 2;
+    const dem_real lo[3] = {box.lo.x, box.lo.y, box.lo.z}, hi[3] = {box.hi.x, box.hi.y, box.hi.z};
+    char number[32];
+    int fresh, slot = 0, b;
+    FILE *file = demi_append_open(w, "dem_xb_append", path, &fresh);
+    if (!file) return path ? DEM_ERROR_FILE : DEM_ERROR_ARGUMENT;
+    fprintf(file, "%d %s ", w->count, demi_format_real(number, w->time, 12));
+    demi_fixed_write(file, (double)lo[0], ' ');
+    demi_fixed_write(file, (double)lo[up], ' ');
+    demi_fixed_write(file, (double)hi[0], ' ');
+    demi_fixed_write(file, (double)hi[up], '\n');
+    while ((b = demi_by_slot(w, &slot)) >= 0) {
+        const dem_real *x = w->pos + 4*b, *v = w->vel + 4*b, *s = w->spin + 4*b;
+        demi_fixed_write(file, (double)x[0], ' ');
+        demi_fixed_write(file, (double)x[up], ' ');
+        demi_fixed_write(file, (double)v[0], ' ');
+        demi_fixed_write(file, (double)v[up], ' ');
+        demi_fixed_write(file, (double)x[3], ' ');
+        demi_fixed_write(file, (double)(up == 1 ? s[2] : -s[1]), '\n');   /* against the clock */
+    }
+    return demi_append_close(w, "dem_xb_append", path, file);
+}
+static void demi_str_row(FILE *file, const dem_real *R, dem_vec3 x) {
+    int k;
+    for (k = 0; k < 9; k++) {
+        if (DEMI_ABS(R[k]) <= 0 || DEMI_ABS(R[k] - 1) <= 0) fprintf(file, "%d ", (int)R[k]);
+        else demi_fixed_write(file, (double)R[k], ' ');
+    }
+    demi_fixed_write(file, (double)x.x, ' ');
+    demi_fixed_write(file, (double)x.y, ' ');
+    demi_fixed_write(file, (double)x.z, '\n');
+}
+DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interval, int frames) {
+    static const dem_real one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    char number[32];
+    int fresh, slot = 0, b, i, walls = 0;
+    FILE *file = demi_append_open(w, "dem_str_append", path, &fresh);
+    if (!file) return path ? DEM_ERROR_FILE : DEM_ERROR_ARGUMENT;
+    for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
+    if (fresh) fprintf(file, "%s %d %d\n", demi_format_real(number, interval, 12), frames,
+                       w->count + walls);
+    while ((b = demi_by_slot(w, &slot)) >= 0) demi_str_row(file, one, demi_at(w->pos + 4*b));
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE)
+            demi_str_row(file, w->walls[i].pose.rotation, w->walls[i].pose.position);
+    return demi_append_close(w, "dem_str_append", path, file);
 }
 
 /* ---------------------------------------------------------------------------------------------
