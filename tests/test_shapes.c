@@ -836,9 +836,9 @@ static void cluster_tests(void) {
             const double mass = mass_factor*(double)info_of(world, make(world)).volume;
             const double w = sqrt(k/mass), damped = w*sqrt(1 - beta*beta);
             const double depth = exp(-beta/sqrt(1 - beta*beta)*acos(beta))/w; /* at 1 m/s */
-            CHECK_NEAR(b.e, e, 5e-3);                  /* instant of touch; 400 steps a contact */
-            CHECK_REL(b.time, pi/damped, 1e-2);
-            CHECK_REL(b.depth, depth, 1e-2);
+            CHECK_NEAR(b.e, e, 1e-3);                  /* instant of touch; 400 steps a contact */
+            CHECK_REL(b.time, pi/damped, 1e-3);
+            CHECK_REL(b.depth, depth, 1e-3);
             CHECK_NEAR(b.spin, 0, 1e-3);
             CHECK_NEAR(b.sideways, 0, 1e-6);
             dem_world_destroy(world);
