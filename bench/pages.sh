@@ -1,4 +1,4 @@
-# sh bench/pages.sh [accuracy] [roofline] [clusters] [peers]: measures anew what stands in those pages of docs/
+# sh bench/pages.sh [accuracy] [roofline] [clusters] [shapes] [peers]: measures anew what stands in those pages of docs/
 # (peers: the table in README.md), the first three when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in
 # the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
 [ "$1" ] || set -- accuracy roofline clusters
@@ -63,11 +63,14 @@ for page in "$@"; do
         picture $at/model/model.svg clusters_model.png $at/model/page.md
         splice clusters.md measured $at/parallel/page.md
         splice clusters.md model $at/model/page.md ;;
+    shapes)
+        build/shapes || exit 1
+        splice shapes.md shapes $at/shapes/page.md ;;
     peers)
         sh bench/peers.sh > build/peers.out || { cat build/peers.out; exit 1; }
         cat build/peers.out
         grep -q ' = ' build/peers.out || { echo "neither code was found: README.md stays as it was"; exit 1; }
         peers build/peers.out > build/peers.md && splice ../README.md peers build/peers.md || exit 1 ;;
-    *) echo "no page $page: accuracy, roofline, clusters or peers"; exit 1 ;;
+    *) echo "no page $page: accuracy, roofline, clusters, shapes or peers"; exit 1 ;;
     esac
 done
