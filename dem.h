@@ -2891,19 +2891,23 @@ static int demi_body_rooms(dem_world *w, demi_room *set) {
 static int demi_bodies_reserve(dem_world *w, size_t count) {
     demi_room set[20];
     const size_t old = (size_t)w->capacity, room = DEMI_MAX(count, old + old/4 + 16);
+    /* slots of removed bodies rest until the next list: each body to come may need a new one */
+    const size_t more = count > (size_t)w->count ? count - (size_t)w->count : 0;
+    const size_t slots = (size_t)w->slot_count + more;
     int n = demi_body_rooms(w, set);
-    if (count > (size_t)(INT_MAX/64)) return 0;
+    if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->capacity) {
         if (!demi_room_grow(w, set, n, (size_t)w->count, (size_t)w->capacity, room)) return 0;
         w->capacity = (int)room;
     }
-    if (count > (size_t)w->slot_capacity) {
+    if (slots > (size_t)w->slot_capacity) {
+        const size_t slot_room = DEMI_MAX(slots, (size_t)w->slot_capacity*5/4 + 16);
         n = 0;
         demi_room_add(set, &n, &w->slot_index, sizeof(int32_t));
         demi_room_add(set, &n, &w->slot_generation, sizeof(uint32_t));
         if (!demi_room_grow(w, set, n, (size_t)w->slot_count, (size_t)w->slot_capacity,
-                            room)) return 0;
-        w->slot_capacity = (int)room;
+                            slot_room)) return 0;
+        w->slot_capacity = (int)slot_room;
     }
     return 1;
 }

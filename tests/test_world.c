@@ -156,6 +156,20 @@ static dem_world *one_wall_world(dem_material *glass) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
+    TEST("bodies may come and go any number of times between two steps") {
+        dem_world *world = dem_world_create(&DEM_WORLD_DESC);
+        const dem_material glass = scene_material(world, 1e7, 0.5, 0.3, 0);
+        const dem_body keep = dem_sphere_add(world, glass, DEM_R(1e-3), at(0, 0, 0));
+        int i;
+        for (i = 0; i < 1000; i++) {
+            const dem_body body = dem_sphere_add(world, glass, DEM_R(1e-3), at(0.01*i, 1, 0));
+            if (i%10) CHECK_EQ(dem_body_remove(world, body), DEM_OK);
+        }
+        CHECK_EQ(dem_balance_get(world).present, 101);
+        CHECK_EQ(scene_step(world, 1), DEM_OK);
+        CHECK_NEAR(scene_state(world, keep).radius, 1e-3, 1e-9);
+        dem_world_destroy(world);
+    }
     TEST("a world desc with a bad value is refused with one sentence, and a good one with none") {
         int what, refusals = 0;
         for (what = 0; what < 20; what++) {
