@@ -2176,7 +2176,7 @@ static void demi_form_principal(demi_form *form, const demi_moments *m) {
 
 /* What the search and the time step want to know of a form: how far it reaches, how far from the
    centre a contact's force may pass, its smallest radius, and how light and blunt it may seem in a
-   contact: mass 1/g over (l/h)^2 at worst, g = n.K n of algorithms for its own half of the contact.
+   contact: mass 1/g over (l/h)^2 at worst, g = n.K n of its own half.
    */
 static void demi_form_bounds(demi_form *form) {
     const double I[3] = {(double)form->inertia.x, (double)form->inertia.y, (double)form->inertia.z};
@@ -6966,9 +6966,9 @@ static double demi_ellipse_reach(const double *Q, double x, double y, int out, d
     }
 }
 /* Closest point of a segment or triangle to the ellipsoid about x, in its own measure: mapped to the
-   unit sphere, y = diag(1/a) R^T (v - x), there the closest point y to the origin (C.6 of our notes:
-   handles faces, edges and corners alike). Answers W0 = |y|; point: of the element; normal towards
-   it. */
+   unit sphere, y = diag(1/a) R^T (v - x), there the point closest to the
+   origin is where the two touch first, be it on a face, an edge or a corner. Answers W0 = |y|;
+   point: of the element; normal towards it. */
 static dem_real demi_ellipsoid_closest(const demi_part *p, dem_vec3 x, const dem_vec3 *c, int n,
                                        dem_vec3 *point, dem_vec3 *normal, int *feature) {
     const dem_vec3 a = p->axes;
@@ -8191,11 +8191,16 @@ static double demi_speed_estimate(const dem_world *w) {
 }
 
 /* The radius of the sphere that stands for a body when contact times are looked for. Not a sphere:
-   one as light as a contact may find the body at worst. */
+   one as light as a contact may find the body at worst; for Hertz, whose time goes with (m^2/R)^(1/5),
+   lighter still by the root of how much blunter the body is somewhere. */
 static double demi_advise_radius(const dem_world *w, int body) {
     const demi_form *form = demi_form_of(w, body);
-    const double r = (double)w->pos[4*body + 3];
-    return form ? (double)form->equal*r/(double)form->radius*pow(form->light, 1.0/3) : r;
+    double r = (double)w->pos[4*body + 3], scale, sharp;
+    if (!form) return r;
+    scale = r/(double)form->radius;
+    r = (double)form->equal*scale*pow(form->light, 1.0/3);
+    sharp = r/((double)form->blunt*scale);
+    return w->desc.normal_law == DEM_NORMAL_HERTZ && sharp < 1 ? r*pow(sharp, 1.0/6) : r;
 }
 /* Shortest contact among all material pairs and walls there are, for their smallest grains. */
 static void demi_advise(const dem_world *w, dem_advice *out) {

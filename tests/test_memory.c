@@ -85,7 +85,10 @@ static void scenario(counter *c, dem_search search, long refuse, uint64_t *hash)
     static const dem_real beads[] = {DEM_R(0.05), 0, DEM_R(-0.02), DEM_R(0.052), 0, DEM_R(-0.02),
         DEM_R(0.054), 0, DEM_R(-0.02), DEM_R(0.056), 0, DEM_R(-0.02), DEM_R(0.058), 0,
             DEM_R(-0.02)};
+    static const dem_real beads_high[] = {0, DEM_R(0.03), DEM_R(0.03), 0, DEM_R(0.031), DEM_R(0.0339)};
     dem_world_desc desc = counted(c);
+    dem_cluster_desc cluster = DEM_CLUSTER_DESC;
+    dem_shape egg, rod;
     dem_world *world;
     dem_material glass;
     dem_wall plane, drum, mesh_wall;
@@ -130,6 +133,15 @@ static void scenario(counter *c, dem_search search, long refuse, uint64_t *hash)
     do n = dem_spheres_fill(world, glass, DEM_R(1e-3), box_of(0.02, 0, 0, 0.03, 0.01, 0.01), 9, 1);
     while (again(world, c, n == 0, "dem_spheres_fill"));
     CHECK_EQ(n, 9);
+    ID("dem_shape_ellipsoid_add", egg, dem_shape_ellipsoid_add(world, at(1e-3, 1.5e-3, 2e-3)));
+    cluster.count = 5;
+    cluster.positions = beads;
+    cluster.radius = DEM_R(2e-3);
+    ID("dem_shape_cluster_add", rod, dem_shape_cluster_add(world, &cluster));
+    CALL("dem_bodies_add", dem_bodies_add(world, glass, rod, 2, beads_high, 0, 0, 0, 0));
+    do n = dem_bodies_fill(world, glass, egg, box_of(0.02, 0.01, 0, 0.03, 0.02, 0.01), 4, 1);
+    while (again(world, c, n == 0, "dem_bodies_fill"));
+    CHECK_EQ(n, 4);
     CALL("dem_world_step", dem_world_step(world, 3));
     /* while contacts have memory, and more than there is room for */
     do {
@@ -159,7 +171,7 @@ static void scenario(counter *c, dem_search search, long refuse, uint64_t *hash)
     CHECK_EQ(dem_world_step(world, 100), DEM_OK);
     b = dem_balance_get(world);
     CHECK_EQ(b.inserted, b.present + b.removed + b.left);
-    CHECK_EQ(b.inserted, 36 + 9 + 60);
+    CHECK_EQ(b.inserted, 36 + 9 + 6 + 60);
     CHECK_EQ(b.removed, 1);
     CHECK_EQ(b.present, dem_bodies_get(world).count);
     CHECK(dem_counters_get(world).contacts > 10);
@@ -298,6 +310,59 @@ int main(int argc, char **argv) {
                     const double x = (i%4 - 1.5)*5e-3, y = (i/4%4 - 1.5)*5e-3, z =
                         (i/16 - 1.5)*5e-3;
                     dem_body b = dem_sphere_add(world, glass, DEM_R(1e-3), at(x, y, z));
+                    scene_move(world, b, at(-600*x, -600*y, -600*z), at(0, 0, 0));
+                }
+                before = c.calls;
+                c.refuse = k ? before + k : 0;
+                while ((dem_world_steps(world) < 500 || failed) && tries < 1000) {
+                    const dem_result r = dem_world_step(world, 1);
+                    failed = r != DEM_OK;
+                    if (failed) { tries++; CHECK_EQ(r, DEM_ERROR_MEMORY); }
+                }
+                if (k == 0) { calls = c.calls - before; hash = dem_world_hash(world); }
+                CHECK(k == 0 || tries > 0);
+                CHECK((double)dem_counters_get(world).overlap_max > 0);
+                CHECK_EQ(dem_world_steps(world), 500);
+                CHECK_EQ(dem_world_hash(world), hash);
+                if (test_now.wrong) printf("        at request %ld of %ld\n", k, calls);
+                dem_world_destroy(world);
+                CHECK_EQ(c.blocks, 0);
+            }
+        }
+    }
+    TEST("whichever request for memory fails in a step, repeating the step gives the run without "
+         "failure, clusters and ellipsoids among the spheres") {
+        static const dem_real pair[6] = {0, 0, 0, DEM_R(1e-3), 0, 0};
+        int search;
+        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
+            uint64_t hash = 0;
+            long k, calls = 1;
+            for (k = 0; k <= calls && test_now.wrong == 0; k++) {
+                counter c;
+                dem_world_desc desc = counted(&c);
+                dem_world *world;
+                dem_material glass;
+                long before;
+                dem_cluster_desc two = DEM_CLUSTER_DESC;
+                dem_shape shapes[3] = {{0}, {0}, {0}};
+                int i, tries = 0, failed = 0;
+                desc.dt = DEM_R(4e-6);
+                desc.search = (dem_search)search;
+                desc.gravity = at(0, 0, 0);
+                world = dem_world_create(&desc);
+                glass = scene_material(world, 1e7, 0.9, 0.3, 0);
+                two.count = 2;
+                two.positions = pair;
+                two.radius = DEM_R(7e-4);
+                shapes[1] = dem_shape_cluster_add(world, &two);
+                shapes[2] = dem_shape_ellipsoid_add(world, at(8e-4, 1e-3, 1.3e-3));
+                /* a swarm that falls in on itself: lists grow on the way */
+                for (i = 0; i < 60; i++) {
+                    const double x = (i%4 - 1.5)*5e-3, y = (i/4%4 - 1.5)*5e-3, z =
+                        (i/16 - 1.5)*5e-3;
+                    dem_body b = i%3 ? dem_body_add(world, glass, shapes[i%3], at(x, y, z),
+                                                    dem_quat_about(at(1, i, 2), 1))
+                        : dem_sphere_add(world, glass, DEM_R(1e-3), at(x, y, z));
                     scene_move(world, b, at(-600*x, -600*y, -600*z), at(0, 0, 0));
                 }
                 before = c.calls;
