@@ -521,6 +521,9 @@ static void sweep_run(const sweep *w, const struct screener_options *base, const
         if (w->seed[i] >= 0) { sx[m] = w->value[i]; sy[m++] = w->seed[i]; }
     }
     study.prefix[0] = 0;
+    f.title = "Sorting efficiency";
+    t.title = "Sorting efficiency over time";
+    g.title = "Gangue over time";
     f.x_label = w->label;
     f.y_label = "efficiency [%]";
     f.y1 = 100;
