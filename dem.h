@@ -18,7 +18,7 @@
        >>materials   materials, the pair table, coefficients
        >>shapes      ellipsoids, clusters of spheres: mass properties, supports, meetings
        >>bodies      grains: slots, arrays, insertion, removal
-       >>walls       planes, cylinders, profiles, meshes, walls of grains, their motions
+       >>walls       planes, cylinders, profiles, meshes, walls of grains, sieves, their motions
        >>search      all pairs, grid, levels, linked linear list; the candidate list
        >>touch       candidate pairs -> contacts: geometry only
        >>laws        contact -> force and torque
@@ -29,7 +29,7 @@
        >>feed        grains fed in, taken out and counted
        >>step        time step, advisor, one step after the other
        >>measure     fields on a grid, channels, balance
-       >>files       meshes in; VTP, VTK, XYZ, CSV out
+       >>files       meshes and MOLDYN scenes in; VTP, VTK, XYZ, CSV, XBALLS and ANIM out
        >>checkpoint  everything, to the last bit
        >>world       create, destroy, report
        >>slabs       one scene dealt to threads or processes, slab by slab
@@ -742,9 +742,9 @@ typedef enum dem_sieve_kind {
     DEM_SIEVE_SQUARE,         /* plate with square holes */
     DEM_SIEVE_ROUND,          /* plate with round holes */
     DEM_SIEVE_SLOTS,          /* plate with slots, longer along `along` */
-    DEM_SIEVE_REDUCED         /* [FEN] 4.3.3: a plane; a grain whose centre is above the reduced part
-                                 of a square hole falls through, without touching. Cheaper, and never
-                                 blinded; but what passes is what clearance says */
+    /* [FEN] 4.3.3: a plane; a grain whose centre is above the reduced part of a square hole falls
+       through, without touching. Cheaper, never blinded; but what passes is what clearance says */
+    DEM_SIEVE_REDUCED
 } dem_sieve_kind;
 typedef struct dem_sieve_desc {
     dem_sieve_kind kind;      /* required */
@@ -755,7 +755,7 @@ typedef struct dem_sieve_desc {
     dem_real bar;             /* m, required, > 0: diameter of a wire, or solid between two holes */
     dem_real length;          /* m, of slots; 0: without end */
     dem_real thickness;       /* m, of plates; 0: a sheet with sharp rims */
-    dem_real lift;            /* m, between the axes of the two layers of wires; 0: all in one plane,
+    dem_real lift;            /* m, between the axes of the two layers of wires; 0: in one plane,
                                  bar: laid on each other. Real wires wind between the two */
     int staggered;            /* 1: round holes in a triangular pattern */
     dem_real radius;          /* m, of the disc it is cut from; 0: without end */
@@ -769,8 +769,8 @@ static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = {DEM_SIEVE_NONE, {0, 0, 0}, {0
 DEM_API dem_wall dem_sieve_add(dem_world *world, dem_material material, const dem_sieve_desc *desc);
 /* Grains that blind a sieve of wires or a plate: stuck in a hole, that is touching it on opposite
    sides, with the wedge between the two so narrow that friction holds it. Those moving faster than
-   speed (m/s; 0: any) against the sieve are not counted. -1 with a sentence when there is no list of
-   contacts (see dem_contacts_get) or the wall is no sieve. */
+   speed (m/s; 0: any) against the sieve are not counted. -1 with a sentence when there is no list
+   of contacts (see dem_contacts_get) or the wall is no sieve. */
 DEM_API int dem_sieve_blinded(const dem_world *world, dem_wall sieve, dem_real speed);
 
 /* Centres (count x 3, written to out, which may be null) of a drum lined with touching spheres
@@ -803,8 +803,8 @@ enum { DEM_CLASSES = 16 };
 typedef struct dem_feed { int32_t id; } dem_feed;                            /* id counts from 1 */
 typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* id counts from 1 */
 
-/* Adds grains while the world runs: at random places in a region, of random sizes, at a rate, or all
-   at once. A grain that finds no free place waits, and is not lost. */
+/* Adds grains while the world runs: at random places in a region, of random sizes, at a rate, or
+   all at once. A grain that finds no free place waits, and is not lost. */
 typedef struct dem_feed_desc {
     dem_material material;           /* required */
     int class_count;                 /* required, 1..16: classes of size */
@@ -824,7 +824,7 @@ typedef struct dem_feed_desc {
 typedef struct dem_feed_state {
     uint64_t fed[DEM_CLASSES], total; /* grains */
     double mass;                      /* kg */
-    uint64_t waiting;                 /* grains that are due and have found no room; by mass: 0 or 1 */
+    uint64_t waiting;                 /* grains that are due without room; by mass: 0 or 1 */
     int done;                         /* 1: nothing more will come */
 } dem_feed_state;
 DEM_API dem_feed dem_feed_add(dem_world *world, const dem_feed_desc *desc);
@@ -835,7 +835,7 @@ typedef struct dem_outlet_desc {
     dem_wall frame;                  /* the region moves with this wall; null: it stands still */
     dem_box box;                     /* m, required, in that frame */
     dem_real beyond;                 /* m, only those at least so far from the frame's z axis */
-    dem_real wanted_min, wanted_max; /* m, radii of those that ought to leave here; max 0: no limit */
+    dem_real wanted_min, wanted_max; /* m, radii that ought to leave here; max 0: no limit */
     int class_count;                 /* 0..16: classes to count by; a grain is of the nearest */
     dem_real radius[DEM_CLASSES];    /* m, ascending */
 } dem_outlet_desc;
@@ -1040,8 +1040,8 @@ typedef struct dem_moldyn {
     double restitution;              /* sd.e */
     int planar;
     int grain_count, wall_count;
-    dem_real *grains;                /* grain_count x 14: place, velocity, angles, spin, radius, 1 when
-                                        it may move; in our axes */
+    dem_real *grains;                /* grain_count x 14: place, velocity, angles, spin, radius, 1
+                                        when it may move; in our axes */
     double wall_thickness;           /* m; surfaces lie half of it before the centres, eq 2.60 */
     dem_real *walls;                 /* wall_count x 6: normal, centre */
 } dem_moldyn;
@@ -1067,12 +1067,12 @@ DEM_API dem_result dem_moldyn_take(dem_world *world, dem_moldyn *moldyn);
 /* Writes the three files; null paths are left out. Read back, they are the same numbers. */
 DEM_API dem_result dem_moldyn_write(dem_world *world, const dem_moldyn *moldyn, const char *cin,
                                     const char *pin, const char *win);
-/* Appends a frame for XBALLS: a line with count, time and the corners of box, then a line per grain:
+/* Appends a frame for XBALLS: a line with count, time and the corners of box, then one per grain:
    x, y (in space: z), their velocities, radius, spin. The text of the appendix calls these six
    numbers place and velocity in space; its figures are those of a plane. */
 DEM_API dem_result dem_xb_append(dem_world *world, const char *path, dem_box box);
-/* Appends a frame for ANIM; a new file begins with interval, frames and bodies. A line per grain and
-   per wall: rotation matrix, place. Spheres have no orientation here: theirs is the identity. */
+/* Appends a frame for ANIM; a new file begins with interval, frames and bodies. A line per grain
+   and wall: rotation matrix, place. Spheres have no orientation here: theirs is the identity. */
 DEM_API dem_result dem_str_append(dem_world *world, const char *path, double interval, int frames);
 
 /* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters.
@@ -3796,7 +3796,7 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
     if (!bad && (!demi_finite((dem_real)d->field) || !(good))) { \
         bad = #field; value = (dem_real)d->field; limit = text; \
     }
-    DEMI_BAD(kind, (int)d->kind > 0 && d->kind <= DEM_SIEVE_REDUCED, "a DEM_SIEVE_ value (required)")
+    DEMI_BAD(kind, (int)d->kind > 0 && d->kind <= DEM_SIEVE_REDUCED, "a DEM_SIEVE_ value")
     DEMI_BAD(aperture, d->aperture > 0, "> 0 m (required)")
     DEMI_BAD(bar, d->bar > 0, "> 0 m (required)")
     DEMI_BAD(length, DEMI_ABS(d->length) <= 0 || (d->kind == DEM_SIEVE_SLOTS &&
@@ -4882,9 +4882,9 @@ static int demi_cross_index(dem_world *w) {
     return 1;
 }
 
-/* Writes the coefficients of a grain's contact with a wall. On a round wire the two radii of Hertz's
-   contact differ, r and r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's ellipse
-   for a wire as thick as the grain, 7 % for one of a fifth. */
+/* Writes the coefficients of a grain's contact with a wall. On a round wire the two radii of the
+   contact differ, r and r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's
+   ellipse for a wire as thick as the grain, 7 % for one of a fifth. */
 static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
     const demi_wall *wall = &w->walls[c->wall];
     const double r = (double)w->pos[4*c->body + 3], q = (double)wall->sieve.bar/2;
@@ -5570,10 +5570,10 @@ static dem_vec3 demi_segment_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, int *feat
          wires   axes at (i + 1/2)(aperture + bar): distance to the axis of each within reach,
                  exact for straight wires
          plates  above the solid part: the face. Above a hole: the nearest point of each of its
-                 sides (square, slots), which is a rim or, within the thickness, a wall. Round holes:
-                 the nearest point and the one across, so that a grain too large for the hole sits on
+                 sides (square, slots), a rim or, within the thickness, a wall. Round holes: the
+                 nearest point and the one across, so that a grain too large for the hole sits on
                  it. Exact for one contact; the inner corners of a square hole need no more
-       Where two wires cross, or two rims meet, a grain touches both at what is one place. demi_share
+       Where two wires cross, or rims meet, a grain touches both at what is one place. demi_share
        sorts that out. Tests: tests/test_sieve.c. --- */
 enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1 };
 
@@ -5588,8 +5588,8 @@ static int32_t demi_sieve_number(double i, double j, int side) {
     return (int32_t)(((uint32_t)a << 16) | ((uint32_t)b << 3) | (uint32_t)side);
 }
 /* Adds the contact with what lies `edge` around foot, if there is one. */
-static int demi_sieve_put(demi_wall_contact *out, int count, int32_t element, dem_vec3 x, dem_real r,
-                          dem_vec3 foot, dem_real edge) {
+static int demi_sieve_put(demi_wall_contact *out, int count, int32_t element, dem_vec3 x,
+                          dem_real r, dem_vec3 foot, dem_real edge) {
     const dem_vec3 d = demi_sub(foot, x);
     const dem_real l = demi_length(d), overlap = r + edge - l;
     demi_wall_contact *c = &out[count];
@@ -5625,7 +5625,8 @@ static int demi_sieve_wires(const dem_sieve_desc *s, int set, dem_vec3 x, dem_re
     }
     return count;
 }
-static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_wall_contact *out) {
+static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
+                           demi_wall_contact *out) {
     const dem_real up = x.z >= 0 ? DEM_R(1) : DEM_R(-1);
     out->element = DEMI_SIEVE_FACE;
     out->feature = 0;
@@ -5635,7 +5636,8 @@ static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi
     out->share = 1;
     return out->overlap > 0;
 }
-static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_wall_contact *out) {
+static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
+                            demi_wall_contact *out) {
     const dem_real half = s->thickness/2, z = x.z > half ? half : x.z < -half ? -half : x.z;
     const dem_real a = s->aperture/2, R = s->radius, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
     const int endless = s->kind == DEM_SIEVE_SLOTS && !(s->length > 0);
@@ -5695,9 +5697,9 @@ static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r, dem
    stands out of b's plane.
        share_a = max(L_a/(L_a + L_b), min(1, L_a/overlap_a))
    On top of a wire the one across is not felt (its L is 0), half way between the two each bears
-   half, and in the corner of a hole, where L is far more than the overlap, each bears all: no jump on
-   the way. The rule for meshes (demi_wall_resolve) drops outright what lies in the plane of a face;
-   here neither is a face. */
+   half, and in the corner of a hole, where L is far more than the overlap, each bears all: no jump
+   on the way. The rule for meshes (demi_wall_resolve) drops outright what lies in the plane of a
+   face; here neither is a face. */
 static void demi_share(demi_wall_contact *c, int count) {
     int a, b;
     for (a = 0; a < count; a++)
@@ -5725,10 +5727,11 @@ static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
     const dem_real v = x.y - (dem_real)floor((double)(x.y/pitch) + 0.5)*pitch;
     return r < w && DEMI_ABS(u) < room && DEMI_ABS(v) < room;
 }
-/* All contacts of a sphere at x of radius r with a sieve: at most DEMI_SIEVE_MOST; body and wall are
-   the caller's to fill in. One of share 0 pushes nobody: a grain under way through a reduced hole.
-   */
-static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_wall_contact *out) {
+/* All contacts of a sphere at x of radius r with a sieve: at most DEMI_SIEVE_MOST; body and wall
+   are the caller's to fill in. One of share 0 pushes nobody: a grain under way through a reduced
+   hole. */
+static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
+                            demi_wall_contact *out) {
     int count = 0;
     switch (s->kind) {
     case DEM_SIEVE_WIRES:
@@ -5914,14 +5917,15 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
        pulling: F = -kad d, on which D shrinks with d, so that reloading from any point of it, at
        slope kun, meets kn d again at the D that belongs to that point. D is all there is to
        remember: the larger of D and d, but at most d (kun + kad)/(kun - kn). The branches meet at
-       d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun. That is eq 2.49
-       with kad as a size; with the negative slope the seed defines it as, its 2.48 and 2.49 have
-       the wrong sign, and its text calls d_ad a deformation and a force. Friction is what
+       d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun. That is eq
+       2.49 with kad as a size; with the negative slope the seed defines it as, its 2.48 and 2.49
+       have the wrong sign, and its text calls d_ad a deformation and a force. Friction is what
        F + kad d can hold, which is 0 at the pulling line; the seed takes |F|, which is 0 where
        nothing pulls or pushes and large where the two are torn apart.
        Along the slope kun nothing is lost: a grain at rest on one swings there for ever unless
-       normal_damping calms it. Stored is F^2/(2 kun); a D that changes dissipates F (1 - kn/kun) dD, summed exactly along
-       either line. Tests: "a hysteretic contact dissipates the area of its loop". */
+       normal_damping calms it. Stored is F^2/(2 kun); a D that changes dissipates
+       F (1 - kn/kun) dD, summed exactly along either line.
+       Tests: "a hysteretic contact dissipates the area of its loop". */
     dem_real hold = 0, sag = 0;
     if (normal == DEM_NORMAL_HYSTERETIC) {
         const int place = demi_memory_shear(tangent, rolling);
@@ -6735,7 +6739,7 @@ static void demi_walls_respond(dem_world *w, int d) {
                 demi_wall_coefs(w, c);
                 memset(c->memory, 0, sizeof c->memory);
             }
-            if (w->walls[wall].sieve.kind == DEM_SIEVE_REDUCED) {   /* under way through: to the end */
+            if (w->walls[wall].sieve.kind == DEM_SIEVE_REDUCED) {   /* under way: to the end */
                 if (from && !(from->share > 0)) c->share = 0;
                 if (!(c->share > 0)) c->overlap = 0;
             }
@@ -7837,7 +7841,9 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* places tried; steps until the next try */
 
-static demi_feed *demi_feed_at(const dem_world *w, int i) { return (demi_feed *)w->feeds_.data + i; }
+static demi_feed *demi_feed_at(const dem_world *w, int i) {
+    return (demi_feed *)w->feeds_.data + i;
+}
 static demi_outlet *demi_outlet_at(const dem_world *w, int i) {
     return (demi_outlet *)w->outlets_.data + i;
 }
@@ -7862,8 +7868,8 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     for (k = 0; k < d->class_count; k++) {
         if (!(d->radius[k] > 0) || !demi_finite(d->radius[k]) || !(d->amount[k] > 0) ||
             !(d->amount[k] < 1e15)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has radius %g m and amount %g, must be > "
-                      "0 and finite; leave out classes that do not occur", call, k,
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has radius %g m and amount %g, must be "
+                      "> 0 and finite; leave out classes that do not occur", call, k,
                       (double)d->radius[k], d->amount[k]);
             return id;
         }
@@ -7874,8 +7880,9 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     if (!(d->rate >= 0) || !(d->rate < 1e15) || !(d->start >= 0) || !(d->end >= 0) ||
         !(d->spread >= 0) || !demi_finite(d->spread) || !demi_finite3(d->velocity) ||
         (!(d->rate > 0) && !d->limited)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s; must "
-                  "be finite and >= 0, and all at once (rate 0) needs `limited`, or there is no end",
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s; "
+                  "must be finite and >= 0, and all at once (rate 0) needs `limited`, or it has no "
+                  "end",
                   call, d->rate, d->start, d->end, (double)d->spread);
         return id;
     }
@@ -8007,8 +8014,8 @@ static dem_result demi_feeds_run(dem_world *w) {
 }
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
     if (id.id < 1 || id.id > w->feed_count)
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not exist, "
-                         "there are %d", (int)id.id, w->feed_count);
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not "
+                         "exist, there are %d", (int)id.id, w->feed_count);
     *state = demi_feed_at(w, id.id - 1)->state;
     return DEM_OK;
 }
@@ -8096,8 +8103,8 @@ static dem_result demi_outlets_run(dem_world *w) {
 }
 static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_outlet id) {
     if (id.id >= 1 && id.id <= w->outlet_count) return demi_outlet_at(w, id.id - 1);
-    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, there are %d", call,
-              (int)id.id, w->outlet_count);
+    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, there are %d",
+              call, (int)id.id, w->outlet_count);
     return 0;
 }
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
@@ -10178,8 +10185,8 @@ static dem_result demi_cin_read(demi_text *t, dem_moldyn *m) {
         for (i = 0; i < DEMI_CIN_ROWS && !row; i++)
             if (demi_text_is(t, demi_cin_rows[i].key)) row = &demi_cin_rows[i];
         if (!row || seen >> (i - 1) & 1u)
-            return demi_text_fail(t, "a key such as times.dt or sd.stiff_lo is expected, each once; "
-                                  "see the appendix of the thesis");
+            return demi_text_fail(t, "a key such as times.dt or sd.stiff_lo is expected, each "
+                                  "once; see the appendix of the thesis");
         seen |= 1u << (i - 1);
         if (!demi_text_word(t) || demi_text_real(t, &value) != DEM_OK || (double)value < row->lo ||
             (double)value > row->hi) {
@@ -10188,8 +10195,8 @@ static dem_result demi_cin_read(demi_text *t, dem_moldyn *m) {
             return demi_text_fail(t, where);
         }
         *(double *)((char *)&fresh + row->at) = (double)value;
-        if (demi_text_word(t)) return demi_text_fail(t, "the end of the line is expected: one value "
-                                                     "to a key");
+        if (demi_text_word(t)) return demi_text_fail(t, "the end of the line is expected: one "
+                                                     "value to a key");
     }
     fresh.stiffness_adhesion = -fresh.stiffness_adhesion;
     if (fresh.stiffness_adhesion <= 0) fresh.stiffness_adhesion = 0;
@@ -10200,8 +10207,8 @@ static dem_result demi_cin_read(demi_text *t, dem_moldyn *m) {
             return demi_text_fail(t, where);
         }
     if (fresh.friction_static < fresh.friction || fresh.end < fresh.start)
-        return demi_text_fail(t, "control.mue_s of at least control.mue_d and times.tend of at least "
-                              "times.t0 are expected; correct the file");
+        return demi_text_fail(t, "control.mue_s of at least control.mue_d and times.tend of at "
+                              "least times.t0 are expected; correct the file");
     *m = fresh;
     return DEM_OK;
 }
@@ -10222,10 +10229,11 @@ static dem_result demi_moldyn_rows(demi_text *t, dem_moldyn *m, int walls) {
     if (walls && (!demi_text_word(t) || demi_text_real(t, &thickness) != DEM_OK || thickness < 0))
         return demi_text_fail(t, "the thickness of the walls is expected, a number >= 0 (m)");
     if (demi_text_word(t)) return demi_text_fail(t, "the end of the line is expected");
-    if ((size_t)(t->end - t->next) < (size_t)count*(size_t)(2*flat - 1))   /* before memory is taken */
-        return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: found %d rows announced where "
-                         "the file has bytes for at most %.0f; was it cut short?", t->call, t->name,
-                         t->line, (int)count, (double)(t->end - t->next)/(2*flat - 1));
+    /* before memory is taken */
+    if ((size_t)(t->end - t->next) < (size_t)count*(size_t)(2*flat - 1))
+        return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: found %d rows announced "
+                         "where the file has bytes for at most %.0f; was it cut short?", t->call,
+                         t->name, t->line, (int)count, (double)(t->end - t->next)/(2*flat - 1));
     if (count) rows = (dem_real *)demi_alloc(t->world, (size_t)count*(size_t)wide, sizeof *rows);
     if (count && !rows) return demi_text_memory(t);
     for (i = 0; i < count && result == DEM_OK; i++) {
@@ -10239,7 +10247,8 @@ static dem_result demi_moldyn_rows(demi_text *t, dem_moldyn *m, int walls) {
             (known && m->planar != (n == flat))) {
             snprintf(where, sizeof where, "row %d of %d is expected with %d numbers, %s", i + 1,
                      (int)count, columns ? columns : known && m->planar ? flat : wide,
-                     columns ? "as the first" : known ? "as the other file" : "or fewer in a plane");
+                     columns ? "as the first" : known ? "as the other file"
+                     : "or fewer in a plane");
             result = demi_text_fail(t, where);
             break;
         }
@@ -10247,7 +10256,8 @@ static dem_result demi_moldyn_rows(demi_text *t, dem_moldyn *m, int walls) {
         if (walls) {                            /* normal, centre */
             const int d = n == flat ? 2 : 3;
             for (k = 0; k < d; k++) { row[k] = value[k]; row[3 + k] = value[d + k]; }
-            if (!(row[0]*row[0] + row[1]*row[1] + row[2]*row[2] > 0)) bad = "a normal that is not 0";
+            if (!(row[0]*row[0] + row[1]*row[1] + row[2]*row[2] > 0))
+                bad = "a normal that is not 0";
         } else if (n == flat) {                 /* x y u v angle spin radius flag */
             row[0] = value[0]; row[1] = value[1]; row[3] = value[2]; row[4] = value[3];
             row[8] = value[4]; row[11] = value[5]; row[12] = value[6]; row[13] = value[7];
@@ -10285,8 +10295,8 @@ DEM_API dem_result dem_moldyn_parse(dem_world *w, const char *name, dem_moldyn_f
     if (!m || (!data && size) || (int)file < 0 || file > DEM_MOLDYN_WALLS)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_moldyn_parse: moldyn or data is null, or file "
                          "%d is none of the three; give all", (int)file);
-    return demi_moldyn_parse(w, "dem_moldyn_parse", name, file, data ? (const char *)data : "", size,
-                             m);
+    return demi_moldyn_parse(w, "dem_moldyn_parse", name, file, data ? (const char *)data : "",
+                             size, m);
 }
 DEM_API dem_result dem_moldyn_read(dem_world *w, const char *cin, const char *pin, const char *win,
                                    dem_moldyn *m) {
@@ -10310,7 +10320,9 @@ DEM_API dem_result dem_moldyn_read(dem_world *w, const char *cin, const char *pi
     if (result != DEM_OK) dem_moldyn_free(w, m);
     return result;
 }
-static int demi_moldyn_linear(const dem_moldyn *m) { return m->stiffness_unloading <= m->stiffness; }
+static int demi_moldyn_linear(const dem_moldyn *m) {
+    return m->stiffness_unloading <= m->stiffness;
+}
 DEM_API dem_world_desc dem_moldyn_desc(const dem_moldyn *m) {
     dem_world_desc d = DEM_WORLD_DESC;
     d.planar = m->planar;
@@ -10330,9 +10342,9 @@ DEM_API dem_result dem_moldyn_add(dem_world *w, const dem_moldyn *m) {
     if (w->count || w->wall_count || w->material_count || w->steps ||
         !w->desc.planar != !m->planar ||
         w->desc.normal_law != (linear ? DEM_NORMAL_LINEAR : DEM_NORMAL_HYSTERETIC))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world has %d grains, %d walls, %d materials "
-                         "or another law or dimension; make an empty one with dem_moldyn_desc", call,
-                         w->count, w->wall_count, w->material_count);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world has %d grains, %d walls, %d "
+                         "materials or another law or dimension; make an empty one with "
+                         "dem_moldyn_desc", call, w->count, w->wall_count, w->material_count);
     d.density = (dem_real)m->density;
     d.poisson = DEM_R(0.25);                    /* kt/kn = .857; the files do not say */
     d.stiffness = (dem_real)m->stiffness;
@@ -10419,7 +10431,8 @@ DEM_API dem_result dem_moldyn_write(dem_world *w, const dem_moldyn *m, const cha
             double value;
             memcpy(&value, (const char *)m + demi_cin_rows[i].at, sizeof value);
             if (demi_cin_rows[i].hi <= 0) value = -value;          /* adhesion: a slope there */
-            fprintf(o.file, "%-17s %s\n", demi_cin_rows[i].key, demi_format_real(number, value, 17));
+            fprintf(o.file, "%-17s %s\n", demi_cin_rows[i].key,
+                    demi_format_real(number, value, 17));
         }
         result = demi_out_close(&o);
     }

@@ -9,7 +9,7 @@
 
    Build:     cc -O2 07_clusters.c -lm
    Run:       07_clusters [count]                  (2000: five minutes on one core, 500: one)
-   Expected:  a slope of about 21 degrees for tetrahedra and 9 for spheres; heap_tetrahedra.svg and
+   Expected:  a slope of about 20 degrees for tetrahedra and 9 for spheres; heap_tetrahedra.svg and
               heap_spheres.svg to look at, and .vtp for ParaView */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"

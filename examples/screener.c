@@ -10,7 +10,7 @@
    What the thesis does not print is our choice, an option, and part of --study choices:
      density 2500 kg/m3, stiffness and restitution (it prints none for this machine): a linear spring
      and dashpot; softened, t_c is about 1.6 ms (large machine)
-     friction .2 between balls and with the machine. Its friction on a sieve (eq 4.27 to 4.30) looks
+     friction .2 between balls and with the machine (glass: .06 with the machine, its optimum). Its friction on a sieve (eq 4.27 to 4.30) looks
      at the ball's velocity without its spin: balls slide. On reduced holes, which are a plane, a
      rolling friction of 1 does that here; free balls would roll, and a ball that rolls on a turning
      plate is not flung out but runs in circles. Wires and plates brake rolling by themselves
@@ -58,8 +58,9 @@ static const study_option table[] = {
     {"eccentricity", STUDY_REAL, &options.eccentricity, 0, 1000, "mm", "of the shafts"},
     {"factor", STUDY_REAL, &options.factor, 0, 5, "", "K: barrel over machine; 1 free, 0 held"},
     {"period", STUDY_REAL, &options.period, 0, 10, "s", "of the barrel's swing; 0: it goes on"},
-    {"friction", STUDY_REAL, &options.friction, 0, 5, "", "between balls, and with the machine"},
-    {"wall-friction", STUDY_REAL, &options.wall_friction, -1, 5, "", "with the machine; -1: same"},
+    {"friction", STUDY_REAL, &options.friction, 0, 5, "", "between balls"},
+    {"wall-friction", STUDY_REAL, &options.wall_friction, -1, 5, "",
+        "with the machine; -1: the same (large), .06 (glass)"},
     {"rolling", STUDY_REAL, &options.rolling, -1, 5, "",
         "rolling friction with the machine; -1: 1 on reduced holes (balls slide), else 0"},
     {"feed", STUDY_CHOICE, &options.feed, 0, 0, "rate|batch|hopper", "how balls come"},
@@ -135,7 +136,7 @@ static void screener_settle(screener *s) {
     if (!(o->seconds > 0)) o->seconds = large ? 25 : 20;
     if (!(o->spacing > 0)) o->spacing = large ? 0.15 : 0.03;
     if (!(o->stiffness > 0)) o->stiffness = large ? 2e4 : 200;
-    if (o->wall_friction < 0) o->wall_friction = o->friction;
+    if (o->wall_friction < 0) o->wall_friction = large ? o->friction : 0.06;
     if (o->rolling < 0) o->rolling = strncmp(o->holes, "model", 5) ? 0 : 1;
     if (o->vane < 0) o->vane = s->R/8;
     if (!large && o->eccentricity >= 40) o->eccentricity *= s->R/0.8;
@@ -521,6 +522,9 @@ static void sweep_run(const sweep *w, const struct screener_options *base, const
         if (w->seed[i] >= 0) { sx[m] = w->value[i]; sy[m++] = w->seed[i]; }
     }
     study.prefix[0] = 0;
+    f.title = "Sorting efficiency";
+    t.title = "Sorting efficiency over time";
+    g.title = "Gangue over time";
     f.x_label = w->label;
     f.y_label = "efficiency [%]";
     f.y1 = 100;

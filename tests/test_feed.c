@@ -53,7 +53,7 @@ typedef struct machine {
     dem_feed feed;
     dem_feed_desc desc;
     dem_outlet outlet[2];
-    tumbler tumbler;
+    tumbler drive;
     tumbler_part part[3];
 } machine;
 static void machine_build(machine *m, int threads) {
@@ -77,11 +77,11 @@ static void machine_build(machine *m, int threads) {
     desc.threads = threads;
     m->world = dem_world_create(&desc);
     stuff = soft(m->world, 100);
-    m->tumbler.speed = 15;
-    m->tumbler.alpha = 0.03;
-    m->tumbler.beta = 0.02;
-    m->tumbler.eccentricity = 0.01;
-    for (i = 0; i < 3; i++) m->part[i].machine = &m->tumbler;
+    m->drive.speed = 15;
+    m->drive.alpha = 0.03;
+    m->drive.beta = 0.02;
+    m->drive.eccentricity = 0.01;
+    for (i = 0; i < 3; i++) m->part[i].machine = &m->drive;
     m->part[1].place[2] = 0.05;
     sieve.kind = DEM_SIEVE_WIRES;
     sieve.aperture = DEM_R(0.0065);

@@ -107,7 +107,7 @@ int main(int argc, char **argv) {
     const int n = 100000;
     test_begin(argc, argv);
 
-    TEST("rain on a square weave: spheres pass untouched with ((a - d)/(a + w))^2 (references 7.1)") {
+    TEST("rain on a square weave: spheres pass untouched with ((a - d)/(a + w))^2 (Gaudin)") {
         static const double rows[3][4] = {{1, 0.5, 0.5, 0.11111}, {1, 0.5, 0.8, 0.017778},
                                           {2, 1, 1.5, 0.027778}};
         int i;
@@ -117,8 +117,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("rain on slots, square and round holes passes with the open share of each (references "
-         "7.3)") {
+    TEST("rain on slots, square and round holes passes with the open share of each") {
         const double a = 1, w = 0.5, d = 0.6, pi = 3.14159265358979;
         dem_sieve_desc s = sieve_of(DEM_SIEVE_SLOTS, a, w);
         double p = (a - d)/(a + w);
@@ -235,7 +234,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(worst, 0, 1e-3);              /* of .02 r in all; h = 1e-5 in steep places */
     }
 
-    TEST("grains larger than the holes never pass, however the sieve shakes (references 7.5)") {
+    TEST("grains larger than the holes never pass, however the sieve shakes") {
         static const struct { dem_sieve_kind kind; double amplitude, frequency, mu; } rows[5] = {
             {DEM_SIEVE_WIRES, 0.002, 30, 0.3}, {DEM_SIEVE_WIRES, 0.0005, 150, 0},
             {DEM_SIEVE_ROUND, 0.002, 30, 0.3}, {DEM_SIEVE_SQUARE, 0.002, 30, 0.1},
@@ -256,15 +255,15 @@ int main(int argc, char **argv) {
         if (longer) printf("%.3g contacts with sieves\n", contacts);
     }
 
-    TEST("grains that only just fit pass in the end when nothing rubs (references 7.5)") {
+    TEST("grains that only just fit pass in the end when nothing rubs") {
         const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.01, 0.004);
         int left[8];
         shake(s, 0.01*(1 - 1e-6), 0, 0.0003, 25, 36, 8, 0.25, 1e5, 0, left);
         CHECK_EQ(left[7], 0);
     }
 
-    TEST("grains that lie alone on a shaking weave are left behind in geometric numbers (references "
-         "7.6)") {
+    TEST("grains that lie alone on a shaking weave are left behind in geometric numbers: first-order "
+         "sieving") {
         const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.01, 0.005);
         int left[12], i, first = 0, m = 0;
         double sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, r2;
