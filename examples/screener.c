@@ -473,7 +473,7 @@ static void set_friction(struct screener_options *o, double v) { o->wall_frictio
 
 static const sweep sweeps[] = {
     {"rpm", "machine [1/min]", 5, {10, 25, 50, 150, 250}, {40, -1, 78, 72, 58}, set_rpm},
-    {"rate", "feed [1/s], 0: batch", 5, {37, 74, 147, 294, 0}, {-1, -1, 78, -1, -1}, set_rate},
+    {"rate", "feed [1/s], 0: batch", 5, {0, 37, 74, 147, 294}, {-1, -1, -1, 78, -1}, set_rate},
     {"alpha", "alpha [deg]", 5, {0, 0.5, 1, 2, 4}, {76, -1, 78.2, -1, -1}, set_alpha},
     {"beta", "beta [deg]", 5, {0, 0.3, 0.65, 1.3, 2.6}, {-1, -1, 78.2, -1, -1}, set_beta},
     {"ecc", "eccentricity [mm]", 5, {0, 20, 40, 100, 300}, {-1, -1, 80, -1, -1}, set_eccentricity},
