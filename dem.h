@@ -3037,10 +3037,10 @@ DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real ra
     return dem_bodies_id(w, w->count - 1);
 }
 
-/* 0 with a sentence when an array that dem_bodies_add was given has a bad value. */
-static int demi_bodies_check(dem_world *w, int count, const dem_real *x, const dem_real *q,
-                             const dem_real *v, const dem_real *spin, const dem_real *scale) {
-    const char *call = "dem_bodies_add";
+/* 0 with a sentence when an array for bodies has a bad value. */
+static int demi_bodies_check(dem_world *w, const char *call, int count, const dem_real *x,
+                             const dem_real *q, const dem_real *v, const dem_real *spin,
+                             const dem_real *scale) {
     int i;
     if (count < 0 || (count > 0 && !x)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be >= 0 with positions "
@@ -3069,18 +3069,18 @@ static int demi_bodies_check(dem_world *w, int count, const dem_real *x, const d
     }
     return 1;
 }
-DEM_API dem_result dem_bodies_add(dem_world *w, dem_material material, dem_shape shape, int count,
-                                  const dem_real *positions, const dem_real *orientations,
-                                  const dem_real *velocities, const dem_real *spins,
-                                  const dem_real *scales) {
+static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material material,
+                                  dem_shape shape, int count, const dem_real *positions,
+                                  const dem_real *orientations, const dem_real *velocities,
+                                  const dem_real *spins, const dem_real *scales) {
     int i, m = 0, f;
-    if (demi_material_index(w, "dem_bodies_add", material, &m) != DEM_OK ||
-        (f = demi_form_index(w, "dem_bodies_add", shape)) < 0 ||
-        !demi_bodies_check(w, count, positions, orientations, velocities, spins, scales))
+    if (demi_material_index(w, call, material, &m) != DEM_OK ||
+        (f = demi_form_index(w, call, shape)) < 0 ||
+        !demi_bodies_check(w, call, count, positions, orientations, velocities, spins, scales))
         return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w) || !demi_orient_begin(w) ||
         !demi_bodies_reserve(w, (size_t)w->count + (size_t)count))
-        return demi_no_memory(w, "dem_bodies_add");
+        return demi_no_memory(w, call);
     for (i = 0; i < count; i++) {
         const uint32_t slot = demi_body_append(w, m, 1, demi_at(positions + 3*i));
         const int k = w->slot_index[slot];
@@ -3097,6 +3097,13 @@ DEM_API dem_result dem_bodies_add(dem_world *w, dem_material material, dem_shape
     demi_scene_changed(w);
     return DEM_OK;
 }
+DEM_API dem_result dem_bodies_add(dem_world *w, dem_material material, dem_shape shape, int count,
+                                  const dem_real *positions, const dem_real *orientations,
+                                  const dem_real *velocities, const dem_real *spins,
+                                  const dem_real *scales) {
+    return demi_bodies_add(w, "dem_bodies_add", material, shape, count, positions, orientations,
+                           velocities, spins, scales);
+}
 DEM_API dem_body dem_body_add(dem_world *w, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation) {
     dem_body id;
@@ -3104,7 +3111,7 @@ DEM_API dem_body dem_body_add(dem_world *w, dem_material material, dem_shape sha
     id.slot = id.generation = 0;
     demi_put(x, position);
     demi_quat_put(q, orientation);
-    if (dem_bodies_add(w, material, shape, 1, x, q, 0, 0, 0) != DEM_OK) return id;
+    if (demi_bodies_add(w, "dem_body_add", material, shape, 1, x, q, 0, 0, 0) != DEM_OK) return id;
     return dem_bodies_id(w, w->count - 1);
 }
 

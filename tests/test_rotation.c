@@ -318,10 +318,10 @@ int main(int argc, char **argv) {
         for (r = 0; r < 3; r++) {
             const turned a = fly(rotations[r], inertia, w, q, 1e-4, 20), b =
                 fly(rotations[r], inertia, w, q, 1e-4, 1e-4);
-            CHECK_NEAR(angle_between(a.q, y + 3), 0, SINGLE ? 1e-2 : 1e-6);  /* as published */
+            CHECK_NEAR(angle_between(a.q, y + 3), 0, SINGLE ? 3e-2 : 1e-6);  /* as published; single: 200,000 round-offs */
             for (i = 0; i < 3; i++)
                 CHECK_NEAR(a.angular[i], b.angular[i], SINGLE ? 1e-3 : 1e-11);
-            CHECK_REL(a.energy, energy, SINGLE ? 1e-3 : 1e-7);    /* (dt w)2 */
+            CHECK_REL(a.energy, energy, SINGLE ? 3e-3 : 1e-7);    /* (dt w)2 */
         }
     }
 

@@ -1373,7 +1373,7 @@ static void promise_tests(void) {
         CHECK_EQ(dem_shape_cluster_add(world, &desc).id, 0);
         CHECK_EQ(dem_body_add(world, m, none, at(0, 0, 0), upright()).slot, 0);
         CHECK_EQ(dem_body_add(world, m, good, at(0, 0, 0), dem_quat_make(0, 0, 0, 0)).slot, 0);
-        CHECK_STR(dem_world_error(world), "orientation");
+        CHECK_STR(dem_world_error(world), "dem_body_add: orientation");
         CHECK_EQ(dem_body_add(world, m, good, at(0, 0, 0), dem_quat_make(DEM_R(NAN), 0, 0, 0)).slot,
                  0);
         CHECK(dem_bodies_add(world, m, good, 2, x, 0, 0, 0, bad_scale) != DEM_OK);
