@@ -308,7 +308,8 @@ typedef enum dem_rotation {
    one point; hA, hB: their heights along the normal there. */
 typedef enum dem_overlap {
     DEM_OVERLAP_CONSERVATIVE = 0, /* l (1 - W0), l the sum of the radii of spheres of their volumes;
-                                     the force is its gradient: conserves energy */
+                                     the force is its gradient, with a radius of equal volume for
+                                     the stiffness: conserves energy (built-in laws) */
     DEM_OVERLAP_SEED,             /* [GAS] 3.2: the piece of the line V2 V3 that lies in both */
     DEM_OVERLAP_NORMAL            /* (hA + hB)(1 - W0): along the normal */
 } dem_overlap;
@@ -655,7 +656,7 @@ DEM_API dem_result dem_bodies_add(dem_world *world, dem_material material, dem_s
 DEM_API int dem_bodies_fill(dem_world *world, dem_material material, dem_shape shape, dem_box box,
                             int count, uint64_t seed);
 
-/* Two ellipsoids by themselves, for analysis. */
+/* Two ellipsoids by themselves, for analysis. orientation: of any length; 0: not turned. */
 typedef struct dem_ellipsoid { dem_vec3 position, semi_axes; dem_quat orientation; } dem_ellipsoid;
 typedef struct dem_meeting {
     dem_real scale;              /* W0: both scaled by this touch in one point; < 1: they overlap */
@@ -1471,6 +1472,7 @@ typedef struct demi_domain {
     double acceleration2;          /* max |a|^2 */
     double turn;                   /* m/s, max change of |spin| times lever in the step */
     double turn_speed;             /* m/s, max |spin| times lever */
+    double turn_rate;              /* rad/s, max |spin| of those that are not spheres */
     double energy[DEMI_ENERGIES];
 } demi_domain;
 
@@ -2026,10 +2028,17 @@ static dem_quat demi_quat_conjugate(dem_quat q) { return dem_quat_make(q.w, -q.x
 static int demi_quat_finite(dem_quat q) {
     return demi_finite(q.w) && demi_finite(q.x) && demi_finite(q.y) && demi_finite(q.z);
 }
+/* The largest of its components. */
+static double demi_quat_most(dem_quat q) {
+    const double a = fabs((double)q.w), b = fabs((double)q.x), c = fabs((double)q.y);
+    const double d = fabs((double)q.z), ab = DEMI_MAX(a, b), cd = DEMI_MAX(c, d);
+    return DEMI_MAX(ab, cd);
+}
 /* Made a unit one; not for zero. */
 static dem_quat demi_quat_unit(dem_quat q) {
-    const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
-    const double l = sqrt(w*w + x*x + y*y + z*z);
+    const double most = demi_quat_most(q);      /* first: squares may be too large or small */
+    const double w = (double)q.w/most, x = (double)q.x/most, y = (double)q.y/most;
+    const double z = (double)q.z/most, l = sqrt(w*w + x*x + y*y + z*z);
     return dem_quat_make((dem_real)(w/l), (dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
 }
 /* Of the rotation whose matrix has these columns (Shepperd): the largest component comes first, so
@@ -2262,9 +2271,19 @@ DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
     return demi_form_adopt(w, "dem_shape_ellipsoid_add", &form);
 }
 
+/* Do no two spheres overlap? Then there is nothing to count twice. */
+static int demi_cluster_apart(const demi_form *form) {
+    int i, j;
+    for (i = 0; i < form->count; i++)
+        for (j = i + 1; j < form->count; j++) {
+            const dem_real sum = form->parts[4*i + 3] + form->parts[4*j + 3];
+            const dem_vec3 d = demi_sub(demi_at(form->parts + 4*j), demi_at(form->parts + 4*i));
+            if (demi_dot(d, d) < sum*sum*DEM_R(0.999999)) return 0;
+        }
+    return 1;
+}
 /* Moments of a cluster, by the way its desc asks for. 0 when memory ran out. (Seed 003 gives its
-   tetrahedra the inertia of a sphere and updates the spin with world torques over body moments,
-   without the gyroscopic part: neither is right for a body that turns.) */
+   tetrahedra the inertia of a sphere, and updates spins without the gyroscopic part.) */
 static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, const demi_form *form,
                                 demi_moments *m) {
     int i, k;
@@ -2278,7 +2297,7 @@ static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, cons
         for (k = 3; k < 6; k++) m->xx[k] -= (double)desc->inertia[k];
         return 1;
     }
-    if (desc->mass == DEM_CLUSTER_SUM) {
+    if (desc->mass == DEM_CLUSTER_SUM || demi_cluster_apart(form)) {
         for (i = 0; i < form->count; i++) {
             const double r = (double)form->parts[4*i + 3], v = 4*DEMI_PI/3*r*r*r;
             double c[3];
@@ -2325,10 +2344,32 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
               "times it", call, (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
     return 0;
 }
+/* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
+static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const demi_form *form,
+                               dem_real least) {
+    const int rays = desc->rays > 0 ? desc->rays : 512;
+    double side = 0;
+    int i, j, e;
+    if (desc->mass != DEM_CLUSTER_UNION || demi_cluster_apart(form)) return 0;
+    for (i = 0; i < form->count; i++)
+        for (j = 0; j < form->count; j++)
+            for (e = 1; e < 3; e++) {
+                const double to = (double)(form->parts[4*i + e] + form->parts[4*i + 3]);
+                side = DEMI_MAX(side, to - (double)(form->parts[4*j + e] - form->parts[4*j + 3]));
+            }
+    if (side/rays <= (double)least/4) return 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: rays is %d, so that rays lie %.3g m "
+              "apart, more than a quarter of the smallest radius %g m; set rays to %.0f or more, "
+              "at most 4096, or give the moments", rays, side/rays, (double)least,
+              ceil(4*side/(double)least));
+    return 1;
+}
 DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *desc) {
     demi_form form;
     demi_moments m;
     dem_shape none;
+    dem_vec3 about = demi_v(0, 0, 0);
+    dem_real least = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
     int i;
     none.id = 0;
     if (demi_shape_planar(w, "dem_shape_cluster_add") || !demi_cluster_check(w, desc)) return none;
@@ -2336,10 +2377,13 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     form.count = desc->count;
     form.parts = (dem_real *)demi_alloc(w, 4*(size_t)form.count, sizeof(dem_real));
     if (!form.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
+    if (desc->mass != DEM_CLUSTER_GIVEN) about = demi_at(desc->positions);  /* a frame may be far off */
     for (i = 0; i < form.count; i++) {
-        demi_put(form.parts + 4*i, demi_at(desc->positions + 3*i));
+        demi_put(form.parts + 4*i, demi_sub(demi_at(desc->positions + 3*i), about));
         form.parts[4*i + 3] = desc->radii ? desc->radii[i] : desc->radius;
+        least = DEMI_MIN(least, form.parts[4*i + 3]);
     }
+    if (demi_cluster_coarse(w, desc, &form, least)) { demi_form_free(w, &form); return none; }
     if (!demi_cluster_moments(w, desc, &form, &m)) {
         demi_form_free(w, &form);
         demi_no_memory(w, "dem_shape_cluster_add");
@@ -2348,13 +2392,15 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     demi_form_principal(&form, &m);
     if (!(form.inertia.x > 0 && form.inertia.y > 0 && form.inertia.z > 0)) {
         demi_form_free(w, &form);
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: a principal moment of the inertia "
-                  "given is not > 0; its off-diagonal parts are too large");
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: a principal moment of inertia is "
+                  "not > 0; %s", desc->mass == DEM_CLUSTER_GIVEN
+                  ? "the off-diagonal parts given are too large" : "use more rays");
         return none;
     }
     for (i = 0; i < form.count; i++)
         demi_put(form.parts + 4*i, dem_quat_unturn(form.frame, demi_sub(demi_at(form.parts + 4*i),
                                                                         form.centre)));
+    form.centre = demi_add(form.centre, about);
     demi_form_bounds(&form);
     return demi_form_adopt(w, "dem_shape_cluster_add", &form);
 }
@@ -2448,7 +2494,7 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
        line V2 V3 has the direction QA K^-1 QB s. Checked by "the seed's construction" sentences. --- */
 typedef struct demi_meet {
     double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
-    double s[3], a[3], b[3], d[3]; /* s, QA s, QB s, QA K^-1 QB s */
+    double s[3], a[3], b[3];       /* s, QA s, QB s */
     double v[3];                   /* K^-1 QB s */
     int looks;
 } demi_meet;
@@ -2566,7 +2612,9 @@ static double demi_meet_seed(const demi_meet *m, const double *A) {
 }
 DEM_API dem_meeting dem_ellipsoids_meet(const dem_ellipsoid *a, const dem_ellipsoid *b,
                                         dem_real lambda) {
-    const dem_quat qa = demi_quat_unit(a->orientation), qb = demi_quat_unit(b->orientation);
+    const dem_quat none = dem_quat_make(1, 0, 0, 0);
+    const dem_quat qa = demi_quat_most(a->orientation) > 0 ? demi_quat_unit(a->orientation) : none;
+    const dem_quat qb = demi_quat_most(b->orientation) > 0 ? demi_quat_unit(b->orientation) : none;
     const dem_vec3 gap = demi_sub(b->position, a->position);
     double A[6], B[6], r[3], n[3], ha, hb, w0;
     dem_meeting out;
@@ -2676,6 +2724,13 @@ static double demi_part_curve(const demi_part *p, double h) {
     return p->ball ? (double)p->radius
         : (double)p->axes.x*(double)p->axes.y*(double)p->axes.z/(h*h);
 }
+/* The radius that a contact's stiffness is worked out with. A stiffness that changes as the two roll
+   would make or lose energy (Hertz: 1 % a collision at aspect ratio 3): where energy is to be
+   conserved it is that of equal volume. */
+static double demi_part_round(const dem_world *w, const demi_part *p, double h) {
+    return w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE ? demi_part_equal(p)
+        : demi_part_curve(p, h);
+}
 
 /* Part k of a body as demi_part_of has it, from the spots. */
 DEM_INLINE demi_part demi_part_now(const dem_world *w, int body, int k) {
@@ -2691,8 +2746,8 @@ DEM_INLINE demi_part demi_part_now(const dem_world *w, int body, int k) {
     p.q = dem_quat_make(1, 0, 0, 0);
     return p;
 }
-/* A lower bound of the distance between two parts, gap = from centre to centre; not worked out
-   beyond `enough`. */
+/* A lower bound of the distance between two parts, gap = from centre to centre; -`enough` where the
+   centres coincide. */
 static dem_real demi_parts_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
                                dem_real enough) {
     const dem_real d = demi_length(gap);
@@ -3055,7 +3110,7 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
                       "finite number; check the data it came from; no body was added", call, i);
             return 0;
         }
-        if (!demi_quat_finite(o) || !(o.w*o.w + o.x*o.x + o.y*o.y + o.z*o.z > 0)) {
+        if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: orientation of body %d is (%g, %g, %g, %g), must "
                       "be finite and not zero; (1, 0, 0, 0) does not turn it; no body was added",
                       call, i, (double)o.w, (double)o.x, (double)o.y, (double)o.z);
@@ -3078,9 +3133,8 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
         (f = demi_form_index(w, call, shape)) < 0 ||
         !demi_bodies_check(w, call, count, positions, orientations, velocities, spins, scales))
         return DEM_ERROR_ARGUMENT;
-    if (!demi_list_drop(w) || !demi_orient_begin(w) ||
-        !demi_bodies_reserve(w, (size_t)w->count + (size_t)count))
-        return demi_no_memory(w, call);
+    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count) ||
+        !demi_orient_begin(w)) return demi_no_memory(w, call);
     for (i = 0; i < count; i++) {
         const uint32_t slot = demi_body_append(w, m, 1, demi_at(positions + 3*i));
         const int k = w->slot_index[slot];
@@ -3200,8 +3254,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     double before, m;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     form = demi_form_of(w, i);
-    if (w->orienting && (!demi_quat_finite(q) ||
-                         !(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z > 0)))
+    if (w->orienting && (!demi_quat_finite(q) || !(demi_quat_most(q) > 0)))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: orientation of body %u is (%g, %g, "
                          "%g, %g), must be finite and not zero; fill the state with dem_body_get "
                          "first", (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y,
@@ -3363,9 +3416,11 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
         if (tries == 2000) break;
     }
     if (done < count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d spheres of radius %g m found a place in 2000 "
-                  "tries each; enlarge the box, or pack them with dem_spheres_pack", call, done,
-                  count, (double)radius);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a place in 2000 "
+                  "tries each; enlarge the box, or %s", call, done, count,
+                  form < 0 ? "spheres" : "bodies with bounding spheres", (double)radius,
+                  form < 0 ? "pack them with dem_spheres_pack"
+                  : "place them yourself with dem_bodies_add");
     demi_free(w, g.head, cells, sizeof(int32_t));
     demi_free(w, g.next, (size_t)g.next_room + 1, sizeof(int32_t));
     demi_scene_changed(w);
@@ -4996,13 +5051,19 @@ static int demi_shaped_move(dem_world *w) {
         w->domains[d].shaped = 0;
     }
     w->shaped_stride = stride;
+    /* deal out in the order of body a; `order` has done its work in the search and counts here */
+    memset(w->order, 0, (size_t)w->count*sizeof *w->order);
+    for (k = 0; k < e; k++) w->order[w->shaped_next[k].a]++;
+    for (d = 0; d < w->domain_count; d++)
+        for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
+            const int here = w->order[i];
+            w->order[i] = w->domains[d].shaped;
+            w->domains[d].shaped += here;
+        }
     for (k = 0; k < e; k++) {
-        const demi_shaped c = w->shaped_next[k];
-        demi_shaped *to;
-        d = demi_domain_of(w, c.a);
-        to = w->shaped_now + (size_t)d*(size_t)stride;
-        for (i = w->domains[d].shaped++; i > 0 && to[i - 1].a > c.a; i--) to[i] = to[i - 1];
-        to[i] = c;
+        const demi_shaped *c = &w->shaped_next[k];
+        w->shaped_now[(size_t)demi_domain_of(w, c->a)*(size_t)stride + (size_t)w->order[c->a]++] =
+            *c;
     }
     return 1;
 }
@@ -5405,17 +5466,21 @@ static int demi_domains_for(int count) {
     return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
 }
 
-/* Sieves know spheres and clusters of them; says so when there is an ellipsoid. */
-static int demi_sieve_refuses(dem_world *w) {
+/* Sieves, and segments that push with a fraction, know spheres and clusters of them; says so when
+   there is an ellipsoid. */
+static int demi_walls_refuse(dem_world *w) {
     int i, j;
     for (j = 0; j < w->wall_count && w->shaped_count; j++) {
-        if (w->walls[j].kind != DEMI_WALL_SIEVE) continue;
+        const int sieve = w->walls[j].kind == DEMI_WALL_SIEVE;
+        if (!sieve && (w->walls[j].kind != DEMI_WALL_PROFILE ||
+                       w->walls[j].rule != DEM_EDGE_FRACTION)) continue;
         for (i = 0; i < w->count; i++) {
             const demi_form *form = demi_form_of(w, i);
             if (!form || form->count) continue;
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: wall %d is a sieve and body %u an "
-                      "ellipsoid, which sieves do not know; make it a cluster of spheres, or the "
-                      "sieve a mesh", j + 1, (unsigned)w->body_slot[i] + 1);
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: wall %d is a %s and body %u an "
+                      "ellipsoid, which it does not know; make the body a cluster of spheres, or "
+                      "the wall %s", j + 1, sieve ? "sieve" : "profile of DEM_EDGE_FRACTION",
+                      (unsigned)w->body_slot[i] + 1, sieve ? "a mesh" : "DEM_EDGE_RESOLVED");
             return 1;
         }
     }
@@ -5442,7 +5507,7 @@ static dem_result demi_rebuild(dem_world *w) {
                              "the grains smaller",
                              (double)p.period[k], k, need);
     }
-    if (demi_sieve_refuses(w)) return DEM_ERROR_ARGUMENT;
+    if (demi_walls_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_levels_choose(w);
     if (!demi_grid_lay(w, 2*(w->wide ? w->level_fine : (double)w->radius_max) + w->skin + 1e-300))
         return demi_no_memory(w, "dem_world_step");
@@ -5811,9 +5876,8 @@ static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, 
     *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
     return r + edge - l;
 }
-/* Is a point within a distance of an element's surface? For the candidate list: a triangle whose
-   plane is too far off is dropped at once. */
-/* Distance from a point to an element; `enough` or more is not worked out. */
+/* Distance from a point to an element; `enough` or more is not worked out: a triangle whose plane is
+   too far off is dropped at once. */
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
                                    dem_real enough) {
     dem_vec3 n, p;
@@ -5908,8 +5972,10 @@ static int demi_wall_resolve(demi_wall_contact *c, int count, dem_real r) {
    demi_effects,
    (4) a sentence in tests/, (5) a line in docs/theory.md.
    --------------------------------------------------------------------------------------------- */
-typedef struct demi_law_energy { dem_real dashpot, elastic, shear_work, slide, shear_stored, roll;
-                                } demi_law_energy;
+/* sag: what a hysteretic spring keeps for itself; booked with the dashpot's */
+typedef struct demi_law_energy {
+    dem_real dashpot, sag, elastic, shear_work, slide, shear_stored, roll;
+} demi_law_energy;
 
 DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push, int normal,
                          int tangent, int rolling,
@@ -5972,7 +6038,8 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
     } else fn = clipped ? limit : fn;           /* no pull at the end of a contact */
     push->normal = fn;
     if (ledger) {
-        out->dashpot = (fn - elastic)*c->closing_speed*c->dt + sag;
+        out->dashpot = (fn - elastic)*c->closing_speed*c->dt;
+        out->sag = sag;
         out->elastic = normal == DEM_NORMAL_HYSTERETIC ? elastic*elastic/(2*c->kun)
             : normal == DEM_NORMAL_HERTZ ? elastic*c->overlap*2/5 : elastic*c->overlap/2;
         out->shear_work = out->slide = out->shear_stored = out->roll = 0;
@@ -6318,10 +6385,10 @@ DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, in
         c.user = w->desc.law_user;
         r->law(&c, m, &f);
     } else {
-        demi_law_energy part = {0, 0, 0, 0, 0, 0};
+        demi_law_energy part = {0, 0, 0, 0, 0, 0, 0};
         demi_law(&c, m, &f, r->normal, r->tangent, r->rolling, r->clipped, r->ledger, &part);
         if (r->ledger) {
-            t->part[0][q] = part.dashpot*touch;      t->part[1][q] = part.elastic*touch;
+            t->part[0][q] = (part.dashpot + part.sag)*touch; t->part[1][q] = part.elastic*touch;
             t->part[2][q] = part.shear_work*touch;   t->part[3][q] = part.slide*touch;
             t->part[4][q] = part.shear_stored*touch; t->part[5][q] = part.roll*touch;
         }
@@ -6702,7 +6769,7 @@ static void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, 
     sum->contacts++;
 }
 static void demi_energy_add(demi_domain *domain, const demi_law_energy *part, dem_real share) {
-    domain->energy[DEMI_E_DASHPOT] += (double)(share*part->dashpot);
+    domain->energy[DEMI_E_DASHPOT] += (double)(share*(part->dashpot + part->sag));
     domain->energy[DEMI_E_ELASTIC] += (double)(share*part->elastic);
     domain->energy[DEMI_E_SHEAR_WORK] += (double)(share*part->shear_work);
     domain->energy[DEMI_E_SLIDE] += (double)(share*part->slide);
@@ -6832,8 +6899,8 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
         c->slope = (dem_real)(l/(ha + hb));
     } else if (w->desc.ellipsoid_overlap == DEM_OVERLAP_SEED)
         c->overlap = (dem_real)demi_meet_seed(&m, A);
-    ra = demi_part_curve(p, ha);
-    rb = demi_part_curve(q, hb);
+    ra = demi_part_round(w, p, ha);
+    rb = demi_part_round(w, q, hb);
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
     c->arm_a = demi_add(p->centre, demi_v((dem_real)((1 - m.l)*m.a[0]),
         (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
@@ -6946,7 +7013,7 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
             c->a = a; c->b = b; c->part_a = i; c->part_b = j;
             c->wall = c->element = -1;
             c->send = send;
-            before = demi_shaped_match(old, olds, from, 0, c);
+            before = demi_shaped_match(old, olds, from, 0, c);     /* two balls do touch by now */
             if (demi_parts_touch(w, &p, &q, gap, before ? before->lambda : 0, c))
                 demi_shaped_recall(c, before);
             else w->domains[d].shaped_next--;
@@ -6957,26 +7024,27 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
 
 /* --- touch: an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
 
-/* Farthest (out = 1) or nearest (out = -1) distance of the ellipse of Q's first two rows about x
-   from the origin: max over angles of n.x + h or n.x - h, h = sqrt(n.Q n), n = (cos, sin), by
-   Newton's method from the direction of x. n: the direction there. */
-static double demi_ellipse_reach(const double *Q, double x, double y, int out, double *n) {
-    double angle = atan2(y, x), best;
+/* A largest value, near an angle, of n.x + h (out = 1: the farthest point from the origin) or n.x - h
+   (out = -1: the nearest, as a distance), h = sqrt(n.Q n), n = (cos, sin), for the ellipse of Q's
+   first two rows about x: by Newton's method, uphill where the curve bends up. n: the direction. */
+static double demi_ellipse_reach(const double *Q, double x, double y, int out, double angle,
+                                 double *n) {
     int k;
     for (k = 0;; k++) {
         const double c = cos(angle), s = sin(angle);
         const double qn0 = Q[0]*c + Q[3]*s, qn1 = Q[3]*c + Q[1]*s;
         const double h = sqrt(c*qn0 + s*qn1), cross = -s*qn0 + c*qn1;
+        const double best = c*x + s*y + out*h, size = fabs(x) + fabs(y) + h;
         const double slope = -s*x + c*y + out*cross/h;
         const double bend = -(c*x + s*y) +
             out*((Q[0] + Q[1])/h - 2*h - cross*cross/(h*h*h));
+        const int still = fabs(slope) < 1e-14*size;
         double step;
         n[0] = c;
         n[1] = s;
-        best = c*x + s*y + out*h;
-        if (k == 30 || fabs(slope) < 1e-14*(fabs(x) + fabs(y) + h)) return best;
-        /* uphill, whatever the bend; never more than half a radian */
-        step = bend < 0 ? -slope/bend : slope/(fabs(best) + h);
+        if (k == 60 || (still && bend < 1e-9*size)) return best;
+        /* where it bends up: away from the lowest point, never more than half a radian */
+        step = still ? 0.01 : bend < 0 ? -slope/bend : slope > 0 ? 0.3 : -0.3;
         angle += step > 0.5 ? 0.5 : step < -0.5 ? -0.5 : step;
     }
 }
@@ -7047,7 +7115,10 @@ static dem_real demi_wall_ellipsoid(const demi_wall *wall, int element, const de
         return *height - x.z;
     case DEMI_WALL_CYLINDER:
         demi_ellipsoid_matrix(p->q, p->axes, Q);
-        far = demi_ellipse_reach(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, n);
+        /* inside, either end of a long body may touch: element 0 and 1 */
+        far = demi_ellipse_reach(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
+                                 ? atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
+                                 : atan2((double)x.y, (double)x.x), n);
         c->normal = demi_v((dem_real)n[0], (dem_real)n[1], 0);
         if (!wall->inside) c->normal = demi_scale(c->normal, -1);
         *height = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
@@ -7098,25 +7169,27 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
     if (p.ball)
         count = demi_wall_collect(w, d, first, last, demi_add(centre, p.centre), p.radius, found);
     else {
+        const int two = wall->kind == DEMI_WALL_CYLINDER && wall->inside;
         double turn[3][3];
         dem_quat back;
         for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
         back = demi_quat_of(turn);
         local.q = demi_quat_unit(dem_quat_times(back, p.q));
         x = demi_unturn(R, demi_sub(centre, wall->pose.position));
-        for (i = first; i < last; i++) {
+        for (i = first; i < last + two; i++) {
             demi_wall_contact *c = &found[count];
+            const int element = i < last ? w->wall_element[base + i] : 1;
             demi_shaped one;
             dem_vec3 point;
             dem_real height, overlap;
-            if (w->wall_gap[base + i] > gone) continue;
+            if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
             memset(&one, 0, sizeof one);
-            overlap = demi_wall_ellipsoid(wall, w->wall_element[base + i], &local, x, &one, &point,
-                                          &height);
+            overlap = demi_wall_ellipsoid(wall, element, &local, x, &one, &point, &height);
             if (!(overlap > 0)) continue;
-            c->element = w->wall_element[base + i];
+            c->element = element;
             c->feature = one.feature;
             c->normal = demi_turn(R, one.normal);
+            if (two && count && demi_dot(c->normal, found->normal) > DEM_R(0.99)) continue;
             c->point = demi_add(wall->pose.position, demi_turn(R, point));
             c->overlap = overlap;
             c->share = wall->share;
@@ -7140,8 +7213,8 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
         c->deep = c->overlap/demi_part_thin(&p);
         c->r_eff = p.radius;
         if (p.ball) c->arm_a = demi_add(p.centre, demi_scale(c->normal, p.radius));
-        else c->r_eff = (dem_real)demi_part_curve(&p, (double)demi_ellipsoid_arm(&p, c->normal,
-                                                                                &c->arm_a));
+        else c->r_eff = (dem_real)demi_part_round(w, &p, (double)demi_ellipsoid_arm(&p, c->normal,
+                                                                                   &c->arm_a));
         if (wall->kind == DEMI_WALL_GRAINS)
             c->r_eff = c->r_eff*wall->radius/(c->r_eff + wall->radius);
         demi_shaped_recall(c, demi_shaped_match(old, olds, fresh, (int)(c - fresh), c));
@@ -7358,6 +7431,7 @@ static void demi_shaped_respond(dem_world *w, int d) {
         }
         domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
         part.elastic /= c->slope;               /* V = k overlap^2/2; the law was given k slope */
+        part.sag /= c->slope;
         demi_energy_add(domain, &part, c->share);
     }
 }
@@ -7547,7 +7621,7 @@ static void demi_prime(dem_world *w) {
        rotation (free flight against elliptic functions, order, tops). --- */
 
 /* q turned by the rotation vector v of the body's frame (rad), |v| < 2: q exp(v/2), by series to
-   1e-12; and made a unit one again. */
+   1e-12. */
 DEM_INLINE dem_quat demi_quat_spin(dem_quat q, dem_vec3 v) {
     const dem_real x = demi_dot(v, v)*DEM_R(0.25);         /* (half angle)^2 */
     /* cos and half of sin x/x; products with constants, which quotients would not become */
@@ -7557,6 +7631,7 @@ DEM_INLINE dem_quat demi_quat_spin(dem_quat q, dem_vec3 v) {
         x*(DEM_R(1.0/725760) + x*(DEM_R(-1.0/79833600) + x*DEM_R(1.0/12454041600.0))))));
     return dem_quat_times(q, dem_quat_make(c, s*v.x, s*v.y, s*v.z));
 }
+/* As demi_quat_unit, for what is nearly one, in kernels. */
 DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
     const dem_real l = 1/DEMI_SQRT(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z);
     return dem_quat_make(q.w*l, q.x*l, q.y*l, q.z*l);
@@ -7591,7 +7666,7 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     *q = demi_quat_spin(*q, demi_scale(demi_add(mean, magnus), h));
     end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
     g = dem_quat_unturn(*q, L);
-    c = demi_scale(demi_cross(end, g), DEM_R(0.5)/(ll + DEMI_TINY));
+    c = demi_scale(demi_cross(end, g), ll > 0 ? DEM_R(0.5)/ll : 0);
     *q = demi_quat_again(dem_quat_times(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
 }
@@ -7644,6 +7719,7 @@ typedef struct demi_turning {
     dem_real q[4][DEMI_ROW], L[3][DEMI_ROW], T[3][DEMI_ROW], I[4][DEMI_ROW];
     dem_real half[3][DEMI_ROW], spin[3][DEMI_ROW];
     dem_real speed2[DEMI_ROW], change2[DEMI_ROW];        /* (m/s)^2, at the lever's end */
+    dem_real rate2[DEMI_ROW];                            /* (rad/s)^2 */
 } demi_turning;
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real dt) {
     dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
@@ -7657,7 +7733,8 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
     const dem_vec3 half = dem_quat_turn(start, mean);
     const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, dt/2)), inv);
     const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
-    t->speed2[l] = demi_dot(half, half)*t->I[3][l]*t->I[3][l];
+    t->rate2[l] = demi_dot(half, half);
+    t->speed2[l] = t->rate2[l]*t->I[3][l]*t->I[3][l];
     t->change2[l] = 4*demi_dot(by, by)*t->I[3][l]*t->I[3][l];
     t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
     t->L[0][l] = L.x; t->L[1][l] = L.y; t->L[2][l] = L.z;
@@ -7677,7 +7754,7 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
     demi_turning t;
     int l, e;
     const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    dem_real turn = 0, speed = 0, check = 0;
+    dem_real turn = 0, speed = 0, rate = 0, check = 0;
     for (l = 0; l < full; l++) {                /* groups filled up with the last one */
         size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
         DEMI_ONE_BY_ONE(i);
@@ -7698,8 +7775,10 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
         if (w->spots_valid && w->forms[w->body_shape[who[l]] - 1].count) demi_spots_turn(w, who[l]);
         turn = DEMI_MAX(turn, t.change2[l]);
         speed = DEMI_MAX(speed, t.speed2[l]);
-        check += t.speed2[l];
+        rate = DEMI_MAX(rate, t.rate2[l]);
+        check += t.rate2[l];
     }
+    domain->turn_rate = DEMI_MAX(domain->turn_rate, (double)rate);
     domain->turn = DEMI_MAX(domain->turn, (double)turn);
     domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
     domain->check += (double)check;
@@ -8324,9 +8403,27 @@ static void demi_finish(dem_world *w) {
     w->synced = 1;
 }
 
+/* Says that a body that is not a sphere turns too far in a step. */
+static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call) {
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "%s: step %llu: a body that is not a sphere turns by "
+                     "%.3g rad in a step of %g s, must be at most 1; its spin is %.3g rad/s: use "
+                     "dt = 0 or at most %.2g s, or look for what spun it up", call,
+                     (unsigned long long)w->steps, rate*(double)w->dt, (double)w->dt, rate,
+                     0.1/rate);
+}
+/* The fastest spin among those bodies, rad/s. */
+static double demi_spin_fastest(const dem_world *w) {
+    double most = 0;
+    int i;
+    for (i = 0; i < w->count && w->shaped_count; i++)
+        if (w->body_shape[i])
+            most = DEMI_MAX(most, (double)demi_length(demi_at(w->spin + 4*i)));
+    return most;
+}
 /* Settles dt before stepping: chosen or checked. */
 static dem_result demi_dt_settle(dem_world *w) {
     dem_advice a;
+    double spin;
     if (w->dt_valid) return DEM_OK;
     if (!w->count && !w->feed_count) {          /* nothing to limit it: walls still move */
         if (!(w->dt > 0)) w->dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
@@ -8334,6 +8431,7 @@ static dem_result demi_dt_settle(dem_world *w) {
     }
     demi_finish(w);                             /* speeds are those of now, whoever asks */
     demi_advise(w, &a);
+    spin = demi_spin_fastest(w);
     if (w->desc.dt > 0) {
         if (!w->desc.allow_large_dt && a.contact_time > 0 && w->desc.dt > a.dt_max)
             return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most "
@@ -8341,8 +8439,11 @@ static dem_result demi_dt_settle(dem_world *w) {
                              "); use dt = 0, a softer material or a smaller dt",
                              (double)w->desc.dt, (double)a.dt_max, a.binds);
         w->dt = w->desc.dt;
+        if (!w->desc.allow_large_dt && spin*(double)w->dt > 1)
+            return demi_spins_refuse(w, spin, "dem_world_step");
     } else {
-        const dem_real dt = a.contact_time > 0 ? a.dt : DEM_R(1e-3);
+        const dem_real easy = a.contact_time > 0 ? a.dt : DEM_R(1e-3);
+        const dem_real dt = spin*(double)easy > 0.1 ? (dem_real)(0.1/spin) : easy;
         /* half steps were of the old dt */
         if (dt < w->dt || dt > w->dt) { demi_finish(w); w->primed = 0; }
         w->dt = dt;
@@ -8426,7 +8527,7 @@ static void demi_domain_move(dem_world *w, int d) {
     memset(&pace, 0, sizeof pace);
     domain->energy[DEMI_E_GRAVITY] = 0;
     domain->speed2 = domain->acceleration2 = domain->check = 0;
-    domain->turn = domain->turn_speed = 0;
+    domain->turn = domain->turn_speed = domain->turn_rate = 0;
     if (demi_quiet_possible(w)) demi_quiet_move(w, d, turning, &pace);
     else for (i = domain->begin; i < domain->end; i += some)
         demi_some_move(w, domain, i, DEMI_MIN(i + some, domain->end), turning, &pace);
@@ -8596,7 +8697,7 @@ static void demi_fields_sample(dem_world *w);
 
 /* 1 move: first half kick, drift, predicted velocities; walls follow. */
 static dem_result demi_step_move(dem_world *w) {
-    double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0;
+    double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
     w->half_kick = (double)w->dt/2;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
@@ -8610,7 +8711,10 @@ static dem_result demi_step_move(dem_world *w) {
         acceleration2 = DEMI_MAX(acceleration2, w->domains[d].acceleration2);
         turn = DEMI_MAX(turn, w->domains[d].turn);
         turn_speed = DEMI_MAX(turn_speed, w->domains[d].turn_speed);
+        turn_rate = DEMI_MAX(turn_rate, w->domains[d].turn_rate);
     }
+    if (sqrt(turn_rate)*(double)w->dt > (w->desc.allow_large_dt ? 2 : 1)) /* series end there */
+        return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
     w->speed_max = sqrt(speed2);
     w->reach += (w->speed_max + (w->tight ? sqrt(turn_speed) : 0))*(double)w->dt;
     w->near_kick = sqrt(acceleration2)*(double)w->dt + sqrt(turn);
@@ -10398,6 +10502,10 @@ static int demi_by_slot(const dem_world *w, int *slot) {
 DEM_API dem_result dem_moldyn_take(dem_world *w, dem_moldyn *m) {
     dem_real *rows = 0;
     int i = 0, slot = 0, b;
+    if (w->shaped_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_moldyn_take: %d bodies are not spheres, which "
+                         "MOLDYN's files cannot tell; use dem_vtp_write or a checkpoint",
+                         w->shaped_count);
     if (w->count) rows = (dem_real *)demi_alloc(w, (size_t)w->count*DEMI_PIN, sizeof *rows);
     if (w->count && !rows) return demi_no_memory(w, "dem_moldyn_take");
     for (; (b = demi_by_slot(w, &slot)) >= 0; i++) {
@@ -10533,7 +10641,16 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (fresh) fprintf(file, "%s %d %d\n", demi_format_real(number, interval, 12), frames,
                        w->count + walls);
-    while ((b = demi_by_slot(w, &slot)) >= 0) demi_str_row(file, one, demi_at(w->pos + 4*b));
+    while ((b = demi_by_slot(w, &slot)) >= 0) {
+        dem_real turned[9];
+        memcpy(turned, one, sizeof one);
+        for (i = 0; i < 3 && w->orienting; i++) {
+            const dem_vec3 e = dem_quat_turn(demi_quat_at(w->orient + 4*b),
+                                             demi_v(i == 0, i == 1, i == 2));
+            turned[i] = e.x; turned[3 + i] = e.y; turned[6 + i] = e.z;
+        }
+        demi_str_row(file, turned, demi_at(w->pos + 4*b));
+    }
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
             demi_str_row(file, w->walls[i].pose.rotation, w->walls[i].pose.position);
