@@ -51,7 +51,7 @@ static double walk(double from, double to, dem_real *memory, double *lost) {
         demi_law_energy part;
         const double x = from + (to - from)*i/n, f = force_at(x, memory, &part);
         work += (f + before)/2*(to - from)/n;
-        *lost += (double)part.dashpot;
+        *lost += (double)(part.dashpot + part.sag);
         before = f;
     }
     return work;
