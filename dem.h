@@ -296,8 +296,9 @@ typedef enum dem_integrator {
     DEM_LEAPFROG             /* velocities kept at half steps; same path as velocity Verlet */
 } dem_integrator;
 
-/* How bodies that are not spheres turn. All keep angular momentum to round-off while nothing pushes,
-   and are of second order in dt under torques; docs/accuracy.md has their errors and prices. */
+/* How bodies that are not spheres turn. All keep angular momentum to round-off while nothing
+   pushes, and are of second order in dt under torques; docs/shapes.md has their errors and
+   prices. */
 typedef enum dem_rotation {
     DEM_ROTATION_SPIRAL = 0,   /* [SPI24], with angular momentum kept: the most accurate */
     DEM_ROTATION_FINCHAM,      /* [FIN92], what [GAS] used: cheap, gains energy */
@@ -569,7 +570,7 @@ typedef struct dem_body_state {
                                             its bounding sphere, the smallest principal moment */
     dem_material material;
     int fixed;                           /* 1: never moves, whatever pushes it */
-    dem_quat orientation;  /* of the frame the shape was given in; dem_body_set: of any length but 0.
+    dem_quat orientation;  /* of the frame the shape was given in; dem_body_set: any length but 0.
                               Spheres: followed when the world desc asks for orientations */
     dem_shape shape;                     /* id 0: a sphere; ignored by dem_body_set */
     dem_vec3 moments;      /* kg m2, about the principal axes; ignored by dem_body_set */
@@ -641,8 +642,8 @@ typedef struct dem_shape_info {
 } dem_shape_info;
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info);
 
-/* Adds a body at rest: centre of mass at position (m), turned by orientation (any length but 0) from
-   the frame its shape was given in. Null id on bad values or when memory runs out. */
+/* Adds a body at rest: centre of mass at position (m), turned by orientation (any length but 0)
+   from the frame its shape was given in. Null id on bad values or when memory runs out. */
 DEM_API dem_body dem_body_add(dem_world *world, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation);
 /* Adds count bodies. Arrays but positions may be null: orientations (count x 4: w x y z; null: as
@@ -1560,7 +1561,8 @@ struct dem_world {
     dem_real *moment;              /* x 4: principal moments of inertia, kg m2; lever, m */
     int32_t *body_shape;           /* dem_shape ids; 0: a sphere */
     int shaped_count;              /* bodies that are not spheres */
-    demi_array spot_, spot_start_; /* where the spheres of clusters are: x 4, from the body's centre */
+    /* where the spheres of clusters are: x 4, from the body's centre */
+    demi_array spot_, spot_start_;
     int spots_valid;               /* they fit the bodies and their orientations */
     uint32_t *body_slot;
     int32_t *body_material;
@@ -2377,7 +2379,8 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     form.count = desc->count;
     form.parts = (dem_real *)demi_alloc(w, 4*(size_t)form.count, sizeof(dem_real));
     if (!form.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
-    if (desc->mass != DEM_CLUSTER_GIVEN) about = demi_at(desc->positions);  /* a frame may be far off */
+    /* a frame may be far off */
+    if (desc->mass != DEM_CLUSTER_GIVEN) about = demi_at(desc->positions);
     for (i = 0; i < form.count; i++) {
         demi_put(form.parts + 4*i, demi_sub(demi_at(desc->positions + 3*i), about));
         form.parts[4*i + 3] = desc->radii ? desc->radii[i] : desc->radius;
@@ -2488,10 +2491,11 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
              K = (1 - l) QA + l QB,  s = K^-1 r,  f(l) = l (1 - l) r.s
        has one maximum, W0^2: scaled by W0 the two touch in xA + (1 - l) QA s, with the normal
        s/|s|. There fA = (1 - l)^2 s.QA s and fB = l^2 s.QB s are equal. We solve ln(fA/fB)/2 = 0 by
-       Newton's method, with slope -C ((1 - l)/fA + l/fB), C = s.QA K^-1 QB s, kept in a bracket. Any
-       f(l) > 1 shows that the two are apart. No inverse of Q appears: needles and discs are safe.
-       Shrinking both by W until they part [GAS] 3.2 ends at this point and normal exactly, and its
-       line V2 V3 has the direction QA K^-1 QB s. Checked by "the seed's construction" sentences. --- */
+       Newton's method, with slope -C ((1 - l)/fA + l/fB), C = s.QA K^-1 QB s, kept in a bracket.
+       Any f(l) > 1 shows that the two are apart. No inverse of Q appears: needles and discs are
+       safe. Shrinking both by W until they part [GAS] 3.2 ends at this point and normal exactly,
+       and its line V2 V3 has the direction QA K^-1 QB s. Checked by "the seed's construction"
+       sentences. --- */
 typedef struct demi_meet {
     double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
     double s[3], a[3], b[3];       /* s, QA s, QB s */
@@ -2536,8 +2540,8 @@ static double demi_meet_start(const double *A, const double *B, const double *r)
     return ha + hb > 0 ? ha/(ha + hb) : 0.5;
 }
 /* The last step is so small that s may follow it along ds/dl = K^-1 (QA - QB) s = (s - v)/(1 - l),
-   v = K^-1 QB s, and f to second order, f' = fA - fB, f'' = -2 C: what a whole evaluation more would
-   add is of the order of the step squared. */
+   v = K^-1 QB s, and f to second order, f' = fA - fB, f'' = -2 C: what a whole evaluation more
+   would add is of the order of the step squared. */
 static void demi_meet_finish(const double *A, double C, double step, demi_meet *m) {
     const double rate = step/(1 - m->l);
     int k;
@@ -2547,9 +2551,9 @@ static void demi_meet_finish(const double *A, double C, double step, demi_meet *
     m->fa = m->fb = m->f;
     demi_sym_times(A, m->s, m->a);
 }
-/* Finds the maximum from m->l on, until fA and fB are as near as `near` says; stops early where f(l)
-   exceeds `enough`. DEMI_MEET_NEAR: normals to 1e-10 (aspect ratio 2) to 4e-6 at worst (100), and as
-   cheap as it gets; docs/accuracy.md has the numbers. */
+/* Finds the maximum from m->l on, until fA and fB are as near as `near` says; stops early where
+   f(l) exceeds `enough`. DEMI_MEET_NEAR: normals to 1e-10 (aspect ratio 2) to 4e-6 at worst (100),
+   and as cheap as it gets; docs/shapes.md has the numbers. */
 #define DEMI_MEET_NEAR 1e-4
 static void demi_meet_solve(const double *A, const double *B, const double *r, double enough,
                             double near, demi_meet *m) {
@@ -2595,8 +2599,8 @@ static void demi_meet_heights(const demi_meet *m, double *n, double *ha, double 
     *ha = sqrt(m->fa)/((1 - m->l)*l);
     *hb = sqrt(m->fb)/(m->l*l);
 }
-/* [GAS] 3.2: the piece of the line through the contact along V2 V3 that lies in both: it leaves A at
-   the larger root of (x + t d).QA^-1 (x + t d) = 1 and enters B at the smaller one of B's. */
+/* [GAS] 3.2: the piece of the line through the contact along V2 V3 that lies in both: it leaves A
+   at the larger root of (x + t d).QA^-1 (x + t d) = 1 and enters B at the smaller one of B's. */
 static double demi_meet_seed(const demi_meet *m, const double *A) {
     double d[3], u[3], ds, dv, du, out, in;
     int k;
@@ -2646,8 +2650,8 @@ DEM_API dem_meeting dem_ellipsoids_meet(const dem_ellipsoid *a, const dem_ellips
 
 /* --- parts of bodies, and how far apart they are --- */
 
-/* Parts of a body: the spheres of a cluster, or the one it is. ball: a sphere of that radius, centre
-   from the body's; else an ellipsoid. */
+/* Parts of a body: the spheres of a cluster, or the one it is. ball: a sphere of that radius,
+   centre from the body's; else an ellipsoid. */
 typedef struct demi_part {
     int ball;
     dem_real radius;
@@ -2724,8 +2728,8 @@ static double demi_part_curve(const demi_part *p, double h) {
     return p->ball ? (double)p->radius
         : (double)p->axes.x*(double)p->axes.y*(double)p->axes.z/(h*h);
 }
-/* The radius that a contact's stiffness is worked out with. A stiffness that changes as the two roll
-   would make or lose energy (Hertz: 1 % a collision at aspect ratio 3): where energy is to be
+/* The radius that a contact's stiffness is worked out with. A stiffness that changes as the two
+   roll would make or lose energy (Hertz: 1 % a collision at aspect ratio 3): where energy is to be
    conserved it is that of equal volume. */
 static double demi_part_round(const dem_world *w, const demi_part *p, double h) {
     return w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE ? demi_part_equal(p)
@@ -3344,7 +3348,8 @@ static dem_quat demi_quat_random(uint64_t *state) {
     return dem_quat_make((dem_real)(r*sin(a)), (dem_real)(r*cos(a)), (dem_real)(s*sin(b)),
                          (dem_real)(s*cos(b)));
 }
-/* Fills a box with spheres, or with bodies of a form (>= 0), whose bounding sphere has this radius. */
+/* Fills a box with spheres, or with bodies of a form (>= 0), whose bounding sphere has this radius.
+   */
 static int demi_fill(dem_world *w, const char *call, dem_material material, int form,
                      dem_real radius, dem_box box, int count, uint64_t seed) {
     demi_buckets g;
@@ -5876,8 +5881,8 @@ static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, 
     *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
     return r + edge - l;
 }
-/* Distance from a point to an element; `enough` or more is not worked out: a triangle whose plane is
-   too far off is dropped at once. */
+/* Distance from a point to an element; `enough` or more is not worked out: a triangle whose plane
+   is too far off is dropped at once. */
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
                                    dem_real enough) {
     dem_vec3 n, p;
@@ -6953,11 +6958,11 @@ static double demi_contact_give(const dem_world *w, int body, dem_vec3 arm, dem_
 
 /* Contacts of one pair (or of a body and a wall), c[0] .. c[n - 1]: what part of its force each
    gives, and the mass it feels. Those that push the same way (weight 1 within 25 degrees, 0 beyond
-   45) are one contact in all: each gives the fraction overlap over sum of overlaps, and all feel the
-   mass at their common middle, weighted likewise. One contact alone: share 1, its own arms. So
+   45) are one contact in all: each gives the fraction overlap over sum of overlaps, and all feel
+   the mass at their common middle, weighted likewise. One contact alone: share 1, its own arms. So
    stiffness, damping and restitution do not grow with the number of spheres that happen to touch
-   [BER23]. Steady as contacts come and go; not the gradient of an energy. Checked by "a cluster that
-   lands on one, two and three spheres". */
+   [BER23]. Steady as contacts come and go; not the gradient of an energy. Checked by "a cluster
+   that lands on one, two and three spheres". */
 static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
     const dem_real zero = DEM_R(0.7071067811865476), one = DEM_R(0.9063077870366499);
     int i, j;
@@ -7024,7 +7029,8 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
 
 /* --- touch: an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
 
-/* A largest value, near an angle, of n.x + h (out = 1: the farthest point from the origin) or n.x - h
+/* A largest value, near an angle, of n.x + h (out = 1: the farthest point from the origin) or n.x -
+   h
    (out = -1: the nearest, as a distance), h = sqrt(n.Q n), n = (cos, sin), for the ellipse of Q's
    first two rows about x: by Newton's method, uphill where the curve bends up. n: the direction. */
 static double demi_ellipse_reach(const double *Q, double x, double y, int out, double angle,
@@ -7048,8 +7054,8 @@ static double demi_ellipse_reach(const double *Q, double x, double y, int out, d
         angle += step > 0.5 ? 0.5 : step < -0.5 ? -0.5 : step;
     }
 }
-/* Closest point of a segment or triangle to the ellipsoid about x, in its own measure: mapped to the
-   unit sphere, y = diag(1/a) R^T (v - x), there the point closest to the
+/* Closest point of a segment or triangle to the ellipsoid about x, in its own measure: mapped to
+   the unit sphere, y = diag(1/a) R^T (v - x), there the point closest to the
    origin is where the two touch first, be it on a face, an edge or a corner. Answers W0 = |y|;
    point: of the element; normal towards it. */
 static dem_real demi_ellipsoid_closest(const demi_part *p, dem_vec3 x, const dem_vec3 *c, int n,
@@ -7147,7 +7153,8 @@ static dem_real demi_wall_ellipsoid(const demi_wall *wall, int element, const de
     k = demi_wall_corners(wall, element, corner);
     w0 = demi_ellipsoid_closest(p, x, corner, k, point, &c->normal, &c->feature);
     *height = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
-    if (c->feature == 0)                        /* the plane it lies in: exactly the plane's overlap */
+    /* the plane it lies in: exactly the plane's overlap */
+    if (c->feature == 0)
         return *height - demi_dot(c->normal, demi_sub(corner[0], x));
     return (1 - w0)**height;
 }
@@ -7230,7 +7237,8 @@ static void demi_shaped_wall(dem_world *w, int d, int first, int last, const dem
                       w->domains[d].shaped_next - from);
 }
 
-/* All of one domain, in the order of body a: its pairs inside, its pairs that lead out, its walls. */
+/* All of one domain, in the order of body a: its pairs inside, its pairs that lead out, its walls.
+   */
 static void demi_domain_shaped_touch(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const demi_shaped *old = w->shaped_now + (size_t)d*(size_t)w->shaped_stride;
@@ -7293,8 +7301,8 @@ static int demi_shaped_touch(dem_world *w) {
 
 /* --- respond --- */
 
-/* Coefficients for this contact's radius and mass from those of 1 m and 1 kg: their powers are those
-   in demi_coefficients. */
+/* Coefficients for this contact's radius and mass from those of 1 m and 1 kg: their powers are
+   those in demi_coefficients. */
 static void demi_shaped_coefs(const dem_world *w, const demi_shaped *k, int a, int b,
                               dem_real *out) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b];
@@ -7614,11 +7622,11 @@ static void demi_prime(dem_world *w) {
 }
 /* --- rotation. A sphere's spin runs along in the scheme of its translation; its orientation, when
        somebody asked for it, follows. A body that is not a sphere keeps its angular momentum in the
-       world's frame, L(t - dt/2), which torques kick: L(t + dt/2) = L(t - dt/2) + T(t) dt. In between
-       it flies free: from q(t) with L to q(t + dt), by one of the functions below; free flight
-       leaves L as it is, to the bit. What a law sees: half_spin, the mean over the flight, and spin,
-       predicted with the last torque. All are of second order under torques. Checked by tests of
-       rotation (free flight against elliptic functions, order, tops). --- */
+       world's frame, L(t - dt/2), which torques kick: L(t + dt/2) = L(t - dt/2) + T(t) dt. In
+       between it flies free: from q(t) with L to q(t + dt), by one of the functions below; free
+       flight leaves L as it is, to the bit. What a law sees: half_spin, the mean over the flight,
+       and spin, predicted with the last torque. All are of second order under torques. Checked by
+       tests of rotation (free flight against elliptic functions, order, tops). --- */
 
 /* q turned by the rotation vector v of the body's frame (rad), |v| < 2: q exp(v/2), by series to
    1e-12. */
@@ -7636,15 +7644,17 @@ DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
     const dem_real l = 1/DEMI_SQRT(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z);
     return dem_quat_make(q.w*l, q.x*l, q.y*l, q.z*l);
 }
-/* SPIRAL [SPI24], with angular momentum kept. There w goes from one half step to the next by a third
-   order Runge-Kutta step with the torque in it, and q by q exp(dt w/2); both lose L a little every
-   step. Here the torque is in the kick alone, and the flight is that of a free body: Taylor's series
-   of w to third order, w' = I^-1 (I w x w), give its mean and its end,
+/* SPIRAL [SPI24], with angular momentum kept. There w goes from one half step to the next by a
+   third order Runge-Kutta step with the torque in it, and q by q exp(dt w/2); both lose L a little
+   every step. Here the torque is in the kick alone, and the flight is that of a free body: Taylor's
+   series of w to third order, w' = I^-1 (I w x w), give its mean and its end,
        mean = w + h w'/2 + h^2 w''/6 + h^3 w'''/24,   end = w + h w' + h^2 w''/2 + h^3 w'''/6;
    q goes by the mean and the first term of Magnus, h (w x end)/12; then by the small rotation that
-   puts I end where R^T L is: two of three errors of q are gone, and L, |q| are exact. Free flight: order
-   3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times (docs/accuracy.md).
-   I, inv: principal moments, their inverses; answers the mean, in the body's frame. */
+   puts I end where R^T L is: two of three errors of q are gone, and L, |q| are exact. Free flight:
+   order
+   3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times
+   (docs/accuracy.md). I, inv: principal moments, their inverses; answers the mean, in the body's
+   frame. */
 DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
                                        dem_real h) {
     const dem_vec3 m = dem_quat_unturn(*q, L);
@@ -7783,7 +7793,8 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
     domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
     domain->check += (double)check;
 }
-/* Orientations of bodies begin .. end - 1 over one step, and spins of those that are not spheres. */
+/* Orientations of bodies begin .. end - 1 over one step, and spins of those that are not spheres.
+   */
 static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
     const dem_real dt = w->dt;
     int who[DEMI_TILE], count = 0, i;
@@ -8288,8 +8299,8 @@ static double demi_speed_estimate(const dem_world *w) {
 }
 
 /* The radius of the sphere that stands for a body when contact times are looked for. Not a sphere:
-   one as light as a contact may find the body at worst; for Hertz, whose time goes with (m^2/R)^(1/5),
-   lighter still by the root of how much blunter the body is somewhere. */
+   one as light as a contact may find the body at worst; for Hertz, whose time goes with
+   (m^2/R)^(1/5), lighter still by the root of how much blunter the body is somewhere. */
 static double demi_advise_radius(const dem_world *w, int body) {
     const demi_form *form = demi_form_of(w, body);
     double r = (double)w->pos[4*body + 3], scale, sharp;
@@ -11379,7 +11390,8 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             ? " (32 bytes of memory per candidate)" : "");
     fprintf(out, "           rolling: %s\n", rollings[w->rolling]);
     if (w->shaped_count)
-        fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap %s; a "
+        fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap "
+                "%s; a "
                 "cluster's contacts %s; %.2f contacts per body\n", w->shaped_count,
                 rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_SHARING_ONE ? "are shared" : "add up",
