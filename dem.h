@@ -7653,7 +7653,7 @@ DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
    puts I end where R^T L is: two of three errors of q are gone, and L, |q| are exact. Free flight:
    order
    3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times
-   (docs/accuracy.md). I, inv: principal moments, their inverses; answers the mean, in the body's
+   (docs/shapes.md). I, inv: principal moments, their inverses; answers the mean, in the body's
    frame. */
 DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
                                        dem_real h) {
