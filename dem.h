@@ -5187,8 +5187,9 @@ static void demi_near_adopt(dem_world *w, int d) {
     demi_near *near = &w->near;
     const demi_domain *domain = &w->domains[d];
     const size_t stride = (size_t)near->stride;
-    dem_real *memory = near->memory + (size_t)d*(size_t)w->memory_stride*stride;
-    dem_real *coef = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride;
+    dem_real *memory = w->memory_stride
+        ? near->memory + (size_t)d*(size_t)w->memory_stride*stride : 0;
+    dem_real *coef = w->uniform ? 0 : near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride;
     int l, p, e;
     for (l = 0; l < 2; l++) {
         const int end = l ? domain->near_end : domain->near_own, at = d*near->stride;
