@@ -5110,11 +5110,12 @@ static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, i
 }
 /* Picks near ones from the candidates of one list, without a branch; their entries from p on.
    Answers where they end, or -1 when there is no room. */
-static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
+DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
+                                 int p, int mixed) {
     const dem_real *x = w->pos, *u = w->vel, *shift = w->image_shift;
     const dem_real margin = (dem_real)w->near_margin, span = (dem_real)w->near_span;
     const int room = w->near.stride - DEMI_LANES;
-    const int32_t *shape = w->shaped_count ? w->body_shape : 0;
+    const int32_t *shape = w->body_shape;
     int32_t *out = w->near.k + d*w->near.stride;
     int k;
     for (k = begin; k < end && p < room; k++) {
@@ -5125,10 +5126,14 @@ static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int en
         const dem_real ux = ub[0] - ua[0], uy = ub[1] - ua[1], uz = ub[2] - ua[2];
         const dem_real cut = a[3] + b[3] + margin + span*DEMI_SQRT(ux*ux + uy*uy + uz*uz);
         out[p] = k;
-        p += dx*dx + dy*dy + dz*dz < cut*cut && !(shape && (shape[list->a[k]] ||
-                                                             shape[list->b[k]]));
+        if (mixed) p += (dx*dx + dy*dy + dz*dz < cut*cut) & !(shape[list->a[k]] | shape[list->b[k]]);
+        else p += dx*dx + dy*dy + dz*dz < cut*cut;
     }
     return k < end ? -1 : p;
+}
+static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
+    return w->shaped_count ? demi_near_pick_as(w, list, begin, end, d, p, 1)
+        : demi_near_pick_as(w, list, begin, end, d, p, 0);
 }
 /* The same for pairs that are not of two spheres: by the distance of their surfaces, and with what
    their spins may bring. */
