@@ -5126,8 +5126,8 @@ DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin,
         const dem_real ux = ub[0] - ua[0], uy = ub[1] - ua[1], uz = ub[2] - ua[2];
         const dem_real cut = a[3] + b[3] + margin + span*DEMI_SQRT(ux*ux + uy*uy + uz*uz);
         out[p] = k;
-        if (mixed) p += (dx*dx + dy*dy + dz*dz < cut*cut) & !(shape[list->a[k]] | shape[list->b[k]]);
-        else p += dx*dx + dy*dy + dz*dz < cut*cut;
+        p += (dx*dx + dy*dy + dz*dz < cut*cut) &
+            (!mixed || !(shape[list->a[k]] | shape[list->b[k]]));
     }
     return k < end ? -1 : p;
 }
