@@ -121,19 +121,20 @@
 
    References, by the keys used below:
      [AI11]    Ai, Chen, Rotter & Ooi, Powder Technol. 206 (2011) 269: rolling resistance
+     [ALK07]   Alkhaldi, Contact Investigations of Granular Mechanical Media in a Tumbling Sorting
+               Machine, thesis, Stuttgart 2007: screening, hysteresis, MOLDYN
      [BER23]   Berry, Zhang & Haeri (2023): what clusters of spheres count twice
      [CS79]    Cundall & Strack, Geotechnique 29 (1979) 47
      [DIM04]   Di Maio & Di Renzo, Chem. Eng. Sci. 59 (2004) 3461: linear stiffness for a speed
      [DIR05]   Di Renzo & Di Maio, Chem. Eng. Sci. 60 (2005) 1303: Mindlin by increments
-     [ERI05]   Ericson, Real-Time Collision Detection (2005): closest point on a triangle
      [DLM97]   Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840: splitting
-     [FEN]     seed 004 of the project: tumbling screening machine, MOLDYN
+     [ERI05]   Ericson, Real-Time Collision Detection (2005): closest point on a triangle
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
-     [GAS]     seed 002 of the project: granular gas of ellipsoids
      [HER82]   Hertz, J. reine angew. Math. 92 (1882) 156
-     [MIL]     seed 003 of the project: tumbling mill on a GPU
+     [MIL]     a thesis on tumbling mills on a GPU: laws by the step, meshes, segments
      [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
+     [RUB15]   Rubio-Largo, Lind, Maza & Hidalgo (2015): granular gas of ellipsoids on GPUs
      [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
      [SPI24]   del Valle et al., Comput. Phys. Commun. 297 (2024) 109077: SPIRAL
      [THO13]   Thornton, Cummins & Cleary, Powder Technol. 233 (2013) 30: rescaling on unloading
@@ -171,8 +172,8 @@ typedef DEM_REAL dem_real;
 #define DEM_API extern
 #endif
 
-/* For small functions that belong into kernels: contact laws named by DEM_LAW. Inlined whatever it
-   takes. */
+/* Inlined whatever it takes: contact laws named by DEM_LAW, and functions whose triples of numbers
+   would otherwise go through memory, which costs more than their arithmetic. */
 #if defined(__GNUC__) && !defined(__TINYC__)
 #define DEM_INLINE static inline __attribute__((always_inline))
 #else
@@ -254,7 +255,7 @@ typedef struct dem_world dem_world;
 typedef enum dem_normal_law {
     DEM_NORMAL_HERTZ = 0,  /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92] */
     DEM_NORMAL_LINEAR,     /* F = kn delta + cn v; kn given, or from Young's modulus and a speed */
-    DEM_NORMAL_HYSTERETIC  /* [FEN] eq 2.47: loads along kn delta, unloads and reloads with slope
+    DEM_NORMAL_HYSTERETIC  /* [ALK07] eq 2.47: loads along kn delta, unloads and reloads with slope
                               kun, pulls by at most kad delta; needs no dashpot */
 } dem_normal_law;
 
@@ -301,7 +302,7 @@ typedef enum dem_integrator {
    prices. */
 typedef enum dem_rotation {
     DEM_ROTATION_SPIRAL = 0,   /* [SPI24], with angular momentum kept: the most accurate */
-    DEM_ROTATION_FINCHAM,      /* [FIN92], what [GAS] used: cheap, gains energy */
+    DEM_ROTATION_FINCHAM,      /* [FIN92], what [RUB15] used: cheap, gains energy */
     DEM_ROTATION_NO_SQUISH     /* splitting [DLM97]: energy without drift, dearest */
 } dem_rotation;
 
@@ -311,7 +312,7 @@ typedef enum dem_overlap {
     DEM_OVERLAP_CONSERVATIVE = 0, /* l (1 - W0), l the sum of the radii of spheres of their volumes;
                                      the force is its gradient, with a radius of equal volume for
                                      the stiffness: conserves energy (built-in laws) */
-    DEM_OVERLAP_SEED,             /* [GAS] 3.2: the piece of the line V2 V3 that lies in both */
+    DEM_OVERLAP_CHORD,            /* [RUB15] 3.2: the piece of the line V2 V3 that lies in both */
     DEM_OVERLAP_NORMAL            /* (hA + hB)(1 - W0): along the normal */
 } dem_overlap;
 
@@ -328,7 +329,7 @@ typedef enum dem_search {
                                 why is in dem_world_report */
     DEM_SEARCH_ALL_PAIRS,    /* every pair; the oracle for the others */
     DEM_SEARCH_GRID,         /* uniform grid of cells */
-    DEM_SEARCH_LINKED_LIST,  /* linked linear list [FEN] 2.3.2: sorted box ends on three axes */
+    DEM_SEARCH_LINKED_LIST,  /* linked linear list [ALK07] 2.3.2: sorted box ends on three axes */
     DEM_SEARCH_LEVELS        /* hierarchical grid [OGA12]: each class of radii has its own cells */
 } dem_search;
 
@@ -488,7 +489,7 @@ typedef struct dem_material_desc {
     dem_real stiffness;
     dem_real stiffness_ratio;  /* kt/kn of these two laws; 0: 2(1-nu)/(2-nu) */
     dem_real stiffness_unloading; /* N/m, hysteretic law: kun >= stiffness; 0: from restitution */
-    dem_real stiffness_adhesion;  /* N/m, hysteretic law: kad >= 0 (the seed has it negative);
+    dem_real stiffness_adhesion;  /* N/m, hysteretic law: kad >= 0 ([ALK07] has it negative);
                                      0: never pulls */
 } dem_material_desc;
 static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
@@ -526,7 +527,7 @@ typedef struct dem_coefficients {
     dem_real kn, cn, kt, ct;  /* as in dem_contact: F = kn d^(3/2) + cn d^(1/4) v, or kn d + cn v */
     dem_real kun, kad;         /* N/m, hysteretic law; otherwise 0 */
     dem_real damping_ratio;    /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
-    dem_real contact_time;     /* s, at the world's impact speed; hysteretic law: [FEN] eq 2.45 */
+    dem_real contact_time;     /* s, at the world's impact speed; hysteretic law: [ALK07] eq 2.45 */
 } dem_coefficients;
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
@@ -663,8 +664,8 @@ typedef struct dem_meeting {
     dem_real scale;              /* W0: both scaled by this touch in one point; < 1: they overlap */
     dem_real lambda;             /* 0..1, where Perram and Wertheim's function is largest */
     dem_vec3 point, normal;      /* m, where they touch; unit, from a to b */
-    dem_real depth_normal, depth_seed, depth_conservative;   /* m, overlaps, see dem_overlap;
-                                    < 0: apart; depth_seed then is 0 */
+    dem_real depth_normal, depth_chord, depth_conservative;   /* m, overlaps, see dem_overlap;
+                                    < 0: apart; depth_chord then is 0 */
     int iterations;              /* evaluations it took */
 } dem_meeting;
 /* lambda: where to begin, from a meeting a little while ago; 0: unknown. */
@@ -744,7 +745,7 @@ typedef enum dem_sieve_kind {
     DEM_SIEVE_SQUARE,         /* plate with square holes */
     DEM_SIEVE_ROUND,          /* plate with round holes */
     DEM_SIEVE_SLOTS,          /* plate with slots, longer along `along` */
-    /* [FEN] 4.3.3: a plane; a grain whose centre is above the reduced part of a square hole falls
+    /* [ALK07] 4.3.3: a plane; a grain whose centre is above the reduced part of a square hole falls
        through, without touching. Cheaper, never blinded; but what passes is what clearance says */
     DEM_SIEVE_REDUCED
 } dem_sieve_kind;
@@ -772,7 +773,7 @@ DEM_API dem_wall dem_sieve_add(dem_world *world, dem_material material, const de
 /* Grains that blind a sieve of wires or a plate: stuck in a hole, that is touching it on opposite
    sides, with the wedge between the two so narrow that friction holds it. Those moving faster than
    speed (m/s; 0: any) against the sieve are not counted. -1 with a sentence when there is no list
-   of contacts (see dem_contacts_get) or the wall is no sieve. */
+   of contacts (see dem_contacts_get) or the wall is no sieve. Clusters count too. */
 DEM_API int dem_sieve_blinded(const dem_world *world, dem_wall sieve, dem_real speed);
 
 /* Centres (count x 3, written to out, which may be null) of a drum lined with touching spheres
@@ -844,7 +845,7 @@ typedef struct dem_outlet_desc {
 typedef struct dem_outlet_state {
     uint64_t count[DEM_CLASSES], total;
     double mass[DEM_CLASSES], total_mass;   /* kg */
-    uint64_t sorted, gangue;         /* grains of the wanted radii; the others: [FEN] s_i, g_i */
+    uint64_t sorted, gangue;         /* grains of the wanted radii; the others: [ALK07] s_i, g_i */
     double sorted_mass, gangue_mass; /* kg */
     double since, last;              /* s, when counting began; when the last grain left */
 } dem_outlet_state;
@@ -854,9 +855,9 @@ DEM_API dem_result dem_outlet_get(const dem_world *world, dem_outlet outlet,
 /* Begins counting anew (grains that left stay in the balance). */
 DEM_API dem_result dem_outlet_reset(dem_world *world, dem_outlet outlet);
 
-/* How well several outlets sort, [FEN] eq 4.33 to 4.41. The efficiency is the mean over outlets of
-   sorted/(sorted + gangue), by number and by mass; one that nothing has left yet counts as 0, and
-   `silent` says how many these are. The seed takes 1 for the lowest deck from the start. */
+/* How well several outlets sort, [ALK07] eq 4.33 to 4.41. The efficiency is the mean over outlets
+   of sorted/(sorted + gangue), by number and by mass; one that nothing has left yet counts as 0,
+   and `silent` says how many these are. [ALK07] takes 1 for the lowest deck from the start. */
 typedef struct dem_sorting {
     double efficiency_number, efficiency_mass; /* 0..1 */
     double gangue_number, gangue_mass;         /* 0..1, share of gangue in all that left */
@@ -871,7 +872,7 @@ DEM_API dem_result dem_sorting_get(const dem_world *world, const dem_outlet *out
 /* What limits the time step, worked out from the live scene. */
 typedef struct dem_advice {
     dem_real dt;              /* s, proposed: contact_time/50 */
-    dem_real dt_max;          /* s, beyond which a run is refused: contact_time/20 [FEN] eq 2.22 */
+    dem_real dt_max;          /* s, a larger one is refused: contact_time/20 [ALK07] eq 2.22 */
     dem_real contact_time;    /* s, of the shortest contact */
     dem_real rayleigh;        /* s, pi R sqrt(rho/G)/(.1631 nu + .8766), smallest; for comparison */
     dem_real speed;           /* m/s, impact speed assumed */
@@ -1021,7 +1022,7 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
    empty. */
 DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char *path);
 
-/* The files of MOLDYN, the program of [FEN] (its appendix). A scene given by the three it reads:
+/* The files of MOLDYN, the program of [ALK07] (its appendix). A scene given by the three it reads:
        dem_moldyn m;
        dem_moldyn_read(any, "a.cin", "a.pin", "a.win", &m);    any world: for memory and errors
        desc = dem_moldyn_desc(&m);   world = dem_world_create(&desc);   dem_moldyn_add(world, &m);
@@ -1062,7 +1063,8 @@ DEM_API dem_result dem_moldyn_parse(dem_world *world, const char *name, dem_mold
                                     const void *data, size_t size, dem_moldyn *moldyn);
 DEM_API void dem_moldyn_free(dem_world *world, dem_moldyn *moldyn);
 DEM_API dem_world_desc dem_moldyn_desc(const dem_moldyn *moldyn);
-/* Materials, grains, walls and the time into an empty world made with that desc. */
+/* Materials, grains, walls and the time into an empty world made with that desc. Checks all before
+   it adds any; if memory runs out, destroy the world. */
 DEM_API dem_result dem_moldyn_add(dem_world *world, const dem_moldyn *moldyn);
 /* Takes the grains of a world as they are now in place of those of moldyn; angles are 0. */
 DEM_API dem_result dem_moldyn_take(dem_world *world, dem_moldyn *moldyn);
@@ -1074,7 +1076,7 @@ DEM_API dem_result dem_moldyn_write(dem_world *world, const dem_moldyn *moldyn, 
    numbers place and velocity in space; its figures are those of a plane. */
 DEM_API dem_result dem_xb_append(dem_world *world, const char *path, dem_box box);
 /* Appends a frame for ANIM; a new file begins with interval, frames and bodies. A line per grain
-   and wall: rotation matrix, place. Spheres have no orientation here: theirs is the identity. */
+   and wall: rotation matrix, place; the identity for spheres that nothing turns. */
 DEM_API dem_result dem_str_append(dem_world *world, const char *path, double interval, int frames);
 
 /* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters.
@@ -1889,7 +1891,8 @@ static double demi_damping_ratio(double e) {
      linear  F = kn d + cn v,  kn = (320/81 m* v^2 E*^4 R*^2)^(1/5) [DIM04] unless given, cn = 2
              beta sqrt(kn m*)
              kt = ratio kn,  ct = 2 beta sqrt(kt m*)
-     hysteretic  kn, kt, ct as linear, kun = kn/e^2 ([FEN] eq 2.43), kad as given, cn = 0; both laws
+     hysteretic  kn, kt, ct as linear, kun = kn/e^2 ([ALK07] eq 2.43), kad as given, cn = 0; both
+                 laws
              take normal_damping for cn when it is given
    DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
    between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff, m_eff: the
@@ -1939,7 +1942,7 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
 
 /* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi
    sqrt(m/k)
-   (with damping pi/sqrt(k/m - (c/2m)^2) [FEN] eq 2.21). Hysteretic: that of its steepest branch,
+   (with damping pi/sqrt(k/m - (c/2m)^2) [ALK07] eq 2.21). Hysteretic: that of its steepest branch,
    kun, which is what a time step has to follow; the contact itself lasts longer, eq 2.45. */
 static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff,
                                 double speed) {
@@ -2284,7 +2287,7 @@ static int demi_cluster_apart(const demi_form *form) {
         }
     return 1;
 }
-/* Moments of a cluster, by the way its desc asks for. 0 when memory ran out. (Seed 003 gives its
+/* Moments of a cluster, by the way its desc asks for. 0 when memory ran out. ([MIL] gives its
    tetrahedra the inertia of a sphere, and updates spins without the gyroscopic part.) */
 static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, const demi_form *form,
                                 demi_moments *m) {
@@ -2493,9 +2496,9 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
        s/|s|. There fA = (1 - l)^2 s.QA s and fB = l^2 s.QB s are equal. We solve ln(fA/fB)/2 = 0 by
        Newton's method, with slope -C ((1 - l)/fA + l/fB), C = s.QA K^-1 QB s, kept in a bracket.
        Any f(l) > 1 shows that the two are apart. No inverse of Q appears: needles and discs are
-       safe. Shrinking both by W until they part [GAS] 3.2 ends at this point and normal exactly,
-       and its line V2 V3 has the direction QA K^-1 QB s. Checked by "the seed's construction"
-       sentences. --- */
+       safe. Shrinking both by W until they part [RUB15] 3.2 ends at this point and normal exactly,
+       and its line V2 V3 has the direction QA K^-1 QB s. Checked by the sentence on "quartic and
+       eigenvectors". --- */
 typedef struct demi_meet {
     double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
     double s[3], a[3], b[3];       /* s, QA s, QB s */
@@ -2599,9 +2602,9 @@ static void demi_meet_heights(const demi_meet *m, double *n, double *ha, double 
     *ha = sqrt(m->fa)/((1 - m->l)*l);
     *hb = sqrt(m->fb)/(m->l*l);
 }
-/* [GAS] 3.2: the piece of the line through the contact along V2 V3 that lies in both: it leaves A
+/* [RUB15] 3.2: the piece of the line through the contact along V2 V3 that lies in both: it leaves A
    at the larger root of (x + t d).QA^-1 (x + t d) = 1 and enters B at the smaller one of B's. */
-static double demi_meet_seed(const demi_meet *m, const double *A) {
+static double demi_meet_chord(const demi_meet *m, const double *A) {
     double d[3], u[3], ds, dv, du, out, in;
     int k;
     if (!(m->f < 1)) return 0;
@@ -2641,7 +2644,7 @@ DEM_API dem_meeting dem_ellipsoids_meet(const dem_ellipsoid *a, const dem_ellips
     out.point = demi_add(a->position, demi_v((dem_real)((1 - m.l)*m.a[0]),
         (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
     out.depth_normal = (dem_real)((1 - w0)*(ha + hb));
-    out.depth_seed = (dem_real)demi_meet_seed(&m, A);
+    out.depth_chord = (dem_real)demi_meet_chord(&m, A);
     out.depth_conservative = (dem_real)((1 - w0)*
         (pow((double)a->semi_axes.x*(double)a->semi_axes.y*(double)a->semi_axes.z, 1.0/3) +
          pow((double)b->semi_axes.x*(double)b->semi_axes.y*(double)b->semi_axes.z, 1.0/3)));
@@ -4563,8 +4566,8 @@ static void demi_rows_levels(dem_world *w, int d) {
     }
 }
 
-/* --- linked linear list [FEN] 2.3.2. On each axis the ends of all boxes stand in one sorted list.
-   A move
+/* --- linked linear list [ALK07] 2.3.2. On each axis the ends of all boxes stand in one sorted
+   list. A move
        sorts it again by exchanges of neighbours; when the lower end of one box passes the upper end
        of another, the two begin or cease to overlap on that axis, and the pair table is told. Boxes
        are those of radius + skin/2. Along a periodic axis every box counts as endless: correct, and
@@ -5609,7 +5612,8 @@ DEM_API dem_result dem_search_now(dem_world *w) { return demi_rebuild(w); }
 
 /* Closest point on triangle abc to p [ERI05] 5.1.5; *feature 0 face, 1 edge, 2 corner. [MIL]
    Algorithm 5.6 is the same with a misprint in line 17 (d1 <= 0 for d3 <= 0). */
-static dem_vec3 demi_triangle_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3 c, int *feature) {
+DEM_INLINE dem_vec3 demi_triangle_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3 c,
+                                        int *feature) {
     const dem_vec3 ab = demi_sub(b, a), ac = demi_sub(c, a), ap = demi_sub(p, a);
     const dem_vec3 bp = demi_sub(p, b), cp = demi_sub(p, c);
     const dem_real d1 = demi_dot(ab, ap), d2 = demi_dot(ac, ap), d3 = demi_dot(ab, bp);
@@ -5799,9 +5803,9 @@ static void demi_share(demi_wall_contact *c, int count) {
             c[b].share *= DEMI_MAX(sb, DEMI_MIN(lb, DEM_R(1)));
         }
 }
-/* [FEN] eq 4.20 to 4.25: 1 when a grain over (x, y) falls through. Half a hole is w, the reduced
+/* [ALK07] eq 4.20 to 4.25: 1 when a grain over (x, y) falls through. Half a hole is w, the reduced
    one w - b, b = zeta (w - r) or zeta w; model 1 wants the grain's edge within, model 2 its centre
-   and r < w. The seed leaves open what "c_x" does for grains that fit in no hole: here they never
+   and r < w. [ALK07] leaves open what "c_x" does for grains that fit in no hole: here they never
    fall. */
 static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
     const dem_real w = s->aperture/2, pitch = s->aperture + s->bar;
@@ -5835,7 +5839,7 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
 
 /* One sphere against one element, all in the wall's frame. Fills in normal (grain -> wall), point
    and feature; answers the overlap (negative: apart). */
-static dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+DEM_INLINE dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                 dem_vec3 *normal,
                                 dem_vec3 *point, int *feature) {
     dem_vec3 c[3], d;
@@ -5978,10 +5982,9 @@ static int demi_wall_resolve(demi_wall_contact *c, int count, dem_real r) {
    specialised, so that what a scene does not call for is not there. It has no branches that depend
    on the contact: compilers turn it into vector code. memory: [0..2] spring or force in the tangent
    plane, [3] kt of the last step; [4..6] rolling moment; after those in use, the hysteretic law's
-   depth. `out` gets the energies of the ledger,
-   when there is one. >>add-law: (1) an enum value in >>api, (2) a case here, (3) its memory in
-   demi_effects,
-   (4) a sentence in tests/, (5) a line in docs/theory.md.
+   depth. `out` gets the energies of the ledger, when there is one.
+   >>add-law: (1) an enum value in >>api, (2) a case here, (3) its memory in demi_effects, (4) a
+   sentence in tests/, (5) a line in docs/theory.md.
    --------------------------------------------------------------------------------------------- */
 /* sag: what a hysteretic spring keeps for itself; booked with the dashpot's */
 typedef struct demi_law_energy {
@@ -5989,22 +5992,22 @@ typedef struct demi_law_energy {
 } demi_law_energy;
 
 DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push, int normal,
-                         int tangent, int rolling,
-                          int clipped, int ledger, demi_law_energy *out) {
+                         int tangent, int rolling, int clipped, int ledger,
+                         demi_law_energy *out) {
     const dem_vec3 n = c->normal, v = c->slip;
     dem_real root, fn, elastic, kt, ct, limit, kn;
 
     /* normal: Hertz F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], or linear F = kn d + cn v, or
-       hysteretic [FEN] eq 2.41 to 2.49:
+       hysteretic [ALK07] eq 2.41 to 2.49:
            F = kun d - (kun - kn) D,  D: depth, N/m and m
        loading (d = D): F = kn d; un- and reloading: slope kun, zero at d0 = (1 - kn/kun) D [2.44];
        pulling: F = -kad d, on which D shrinks with d, so that reloading from any point of it, at
        slope kun, meets kn d again at the D that belongs to that point. D is all there is to
        remember: the larger of D and d, but at most d (kun + kad)/(kun - kn). The branches meet at
        d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun. That is eq
-       2.49 with kad as a size; with the negative slope the seed defines it as, its 2.48 and 2.49
+       2.49 with kad as a size; with the negative slope [ALK07] defines it as, its 2.48 and 2.49
        have the wrong sign, and its text calls d_ad a deformation and a force. Friction is what
-       F + kad d can hold, which is 0 at the pulling line; the seed takes |F|, which is 0 where
+       F + kad d can hold, which is 0 at the pulling line; [ALK07] takes |F|, which is 0 where
        nothing pulls or pushes and large where the two are torn apart.
        Along the slope kun nothing is lost: a grain at rest on one swings there for ever unless
        normal_damping calms it. Stored is F^2/(2 kun); a D that changes dissipates
@@ -6664,7 +6667,7 @@ static const demi_wall_contact *demi_wall_match(const demi_wall_contact *old, in
 }
 
 /* The contact between a grain and a wall as a law sees it. normal_before: of the step before. */
-static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *k,
+DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *k,
                                    dem_vec3 normal_before, dem_real dt,
                                    dem_contact *c, dem_vec3 *surface) {
     const demi_wall *wall = &w->walls[k->wall];
@@ -6714,7 +6717,7 @@ static void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *
 
 /* Touching elements of one wall for a sphere at `at` of radius r, from the candidates first .. last
    - 1 of the body it is, or is part of. */
-static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
+DEM_INLINE int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
                              dem_real r, demi_wall_contact *out) {
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
     const int id = w->wall_id[base + first];
@@ -6768,7 +6771,7 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem
 }
 
 /* What a push of `force` at a place, with a moment, adds to its wall's sums. */
-static void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
+DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
                               dem_vec3 force, dem_vec3 moment, dem_vec3 surface) {
     const dem_vec3 arm = demi_sub(at, w->walls[wall].motion.point);
     const dem_vec3 torque = demi_add(demi_cross(arm, force), moment);
@@ -6779,7 +6782,7 @@ static void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, 
     sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
     sum->contacts++;
 }
-static void demi_energy_add(demi_domain *domain, const demi_law_energy *part, dem_real share) {
+DEM_INLINE void demi_energy_add(demi_domain *domain, const demi_law_energy *part, dem_real share) {
     domain->energy[DEMI_E_DASHPOT] += (double)(share*(part->dashpot + part->sag));
     domain->energy[DEMI_E_ELASTIC] += (double)(share*part->elastic);
     domain->energy[DEMI_E_SHEAR_WORK] += (double)(share*part->shear_work);
@@ -6908,8 +6911,8 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
         const double l = demi_part_equal(p) + demi_part_equal(q);
         c->overlap = (dem_real)((1 - w0)*l);
         c->slope = (dem_real)(l/(ha + hb));
-    } else if (w->desc.ellipsoid_overlap == DEM_OVERLAP_SEED)
-        c->overlap = (dem_real)demi_meet_seed(&m, A);
+    } else if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CHORD)
+        c->overlap = (dem_real)demi_meet_chord(&m, A);
     ra = demi_part_round(w, p, ha);
     rb = demi_part_round(w, q, hb);
     c->r_eff = (dem_real)(ra*rb/(ra + rb));
@@ -7548,7 +7551,7 @@ static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
         demi_kick_leapfrog(&b, h);
     }
 }
-/* x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 [FEN] eq 2.3; v from differences, predicted with a */
+/* x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 [ALK07] eq 2.3; v from differences, predicted with a */
 static void demi_move_position_verlet(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->dt, h = (dem_real)w->half_kick;
     int i, k;
@@ -7686,8 +7689,9 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     *q = demi_quat_again(dem_quat_times(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
 }
-/* [FIN92], which [GAS] eq 17 to 21 uses with w for L (the same for spheroids that do not spin about
-   their axis): half an Euler step for q at the middle, w there from L, a whole step with that. */
+/* [FIN92], which [RUB15] eq 17 to 21 uses with w for L (the same for spheroids that do not spin
+   about their axis): half an Euler step for q at the middle, w there from L, a whole step with
+   that. */
 static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
     const dem_quat start = *q;
     dem_vec3 m = dem_quat_unturn(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
@@ -9113,14 +9117,34 @@ static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
     return h;
 }
 
-/* Contacts of one grain with a sieve follow each other. Stuck: two of them push against each other
-   in the sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
+/* Contact k of domain d: spheres' with walls first, then all of the other bodies. Whose it is; and
+   when it is one with this wall, 1, its normal and its friction. */
+static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body, dem_vec3 *normal,
+                           dem_real *mu) {
+    const int spheres = w->domains[d].wall_contacts;
+    if (k < spheres) {
+        const demi_wall_contact *c = w->wall_now + d*w->wall_now_stride + k;
+        *body = c->body;
+        *normal = c->normal;
+        *mu = c->coef[DEMI_MU_STATIC];
+        return c->wall == wall;
+    } else {
+        const demi_shaped *c = w->shaped_now + (size_t)d*(size_t)w->shaped_stride + (k - spheres);
+        *body = c->a;
+        *normal = c->normal;
+        *mu = c->unit[DEMI_MU_STATIC];
+        return c->b < 0 && c->wall == wall;
+    }
+}
+/* Contacts of one grain follow each other. Stuck: two of them push against each other in the
+   sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
    |n_z| <= mu |n_xy|. */
 DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed) {
     const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded", sieve);
     const demi_wall *wall = id < 0 ? 0 : &w->walls[id];
-    dem_vec3 across;
-    int d, k, j, count = 0;
+    dem_vec3 across, n, m;
+    dem_real mu, mu_m;
+    int d, k, j, body, same, count = 0;
     if (!wall) return -1;
     if (wall->kind != DEMI_WALL_SIEVE) {
         demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded: wall %d is not a sieve; "
@@ -9130,25 +9154,26 @@ DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed
     if (!w->list_valid) return demi_list_stale(w, "dem_sieve_blinded");
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
-        const demi_wall_contact *c = w->wall_now + d*w->wall_now_stride;
+        const int all = w->domains[d].wall_contacts + w->domains[d].shaped;
         int last = -1;                          /* the grain counted last: once is enough */
-        for (k = 0; k < w->domains[d].wall_contacts; k++) {
-            const int body = c[k].body;
-            const dem_vec3 v = demi_sub(demi_at(w->vel + 4*body), demi_add(wall->pose.velocity,
+        for (k = 0; k < all; k++) {
+            dem_vec3 v, flat;
+            dem_real z;
+            if (!demi_wall_press(w, d, k, id, &body, &n, &mu) || body == last) continue;
+            v = demi_sub(demi_at(w->vel + 4*body), demi_add(wall->pose.velocity,
                 demi_cross(wall->pose.spin, demi_sub(demi_at(w->pos + 4*body),
                                                      wall->pose.position))));
-            const dem_real nk = demi_dot(c[k].normal, across);
-            const dem_vec3 flat = demi_sub(c[k].normal, demi_scale(across, nk));
-            const dem_real mu = c[k].coef[DEMI_MU_STATIC];
-            if (c[k].wall != id || body == last || (speed > 0 && demi_length(v) > speed) ||
-                nk*nk > mu*mu*(1 - nk*nk)) continue;
-            for (j = k + 1; j < w->domains[d].wall_contacts && c[j].body == body; j++) {
-                const dem_real nj = demi_dot(c[j].normal, across);
-                if (c[j].wall != id || nj*nj > mu*mu*(1 - nj*nj) ||
-                    demi_dot(flat, c[j].normal) >= DEM_R(-0.25)) continue;
-                count++;
-                last = body;
-                break;
+            z = demi_dot(n, across);
+            flat = demi_sub(n, demi_scale(across, z));
+            if ((speed > 0 && demi_length(v) > speed) || z*z > mu*mu*(1 - z*z)) continue;
+            for (j = k + 1; j < all && last != body; j++) {
+                const int here = demi_wall_press(w, d, j, id, &same, &m, &mu_m);
+                if (same != body) break;
+                z = demi_dot(m, across);
+                if (here && z*z <= mu_m*mu_m*(1 - z*z) && demi_dot(flat, m) < DEM_R(-0.25)) {
+                    count++;
+                    last = body;
+                }
             }
         }
     }
@@ -10460,6 +10485,38 @@ DEM_API dem_world_desc dem_moldyn_desc(const dem_moldyn *m) {
     d.normal_law = demi_moldyn_linear(m) ? DEM_NORMAL_LINEAR : DEM_NORMAL_HYSTERETIC;
     return d;
 }
+/* What the files cannot hold but a dem_moldyn filled in by hand can: found before anything is
+   added. */
+static dem_result demi_moldyn_check(dem_world *w, const char *call, const dem_moldyn *m) {
+    int i, k;
+    for (i = 0; i < DEMI_CIN_ROWS; i++) {
+        const demi_cin_row *row = &demi_cin_rows[i];
+        double value;
+        memcpy(&value, (const char *)m + row->at, sizeof value);
+        if (row->hi <= 0) value = -value;                          /* adhesion: a slope there */
+        if (!(value >= row->lo && value <= row->hi))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %g to %g; mend it in "
+                             "moldyn", call, row->key, value, row->lo, row->hi);
+    }
+    for (i = 0; i < m->grain_count; i++) {
+        const dem_real *row = m->grains + (size_t)i*DEMI_PIN;
+        int ok = row[12] > 0;
+        for (k = 0; k < DEMI_PIN; k++) ok = ok && demi_finite(row[k]);
+        if (!ok)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grain %d has radius %g or a number that "
+                             "is not finite; mend its row in moldyn", call, i, (double)row[12]);
+    }
+    for (i = 0; i < m->wall_count; i++) {
+        const dem_real *row = m->walls + DEMI_WIN*i;
+        int ok = demi_dot(demi_at(row), demi_at(row)) > 0;
+        for (k = 0; k < DEMI_WIN; k++) ok = ok && demi_finite(row[k]);
+        if (!ok)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d has normal (%g, %g, %g), must be "
+                             "finite and not 0; mend its row in moldyn", call, i, (double)row[0],
+                             (double)row[1], (double)row[2]);
+    }
+    return DEM_OK;
+}
 DEM_API dem_result dem_moldyn_add(dem_world *w, const dem_moldyn *m) {
     const char *call = "dem_moldyn_add";
     const int linear = demi_moldyn_linear(m);
@@ -10473,6 +10530,7 @@ DEM_API dem_result dem_moldyn_add(dem_world *w, const dem_moldyn *m) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world has %d grains, %d walls, %d "
                          "materials or another law or dimension; make an empty one with "
                          "dem_moldyn_desc", call, w->count, w->wall_count, w->material_count);
+    if (demi_moldyn_check(w, call, m) != DEM_OK) return DEM_ERROR_ARGUMENT;
     d.density = (dem_real)m->density;
     d.poisson = DEM_R(0.25);                    /* kt/kn = .857; the files do not say */
     d.stiffness = (dem_real)m->stiffness;
@@ -11349,7 +11407,7 @@ static int demi_shaped_total(const dem_world *w) {
 }
 DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
-    static const char *overlaps[] = {"conservative", "seed 002's", "along the normal"};
+    static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
     static const char *tangents[] = {"auto", "none", "viscous", "step", "spring", "Mindlin",
                                      "Mindlin, rescaled"};
     static const char *rollings[] = {"auto", "none", "step", "constant torque", "EPSD"};
@@ -11447,16 +11505,16 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
 
 /* ---------------------------------------------------------------------------------------------
    >>slabs
-   Spatial decomposition along one axis, after [FEN] 3.5. Each slab is a world of its own: the walls
-   of the scene, its home grains, and copies of those grains of its lower neighbour that may touch
-   them: its visitors. Slots are those of the whole scene, so that contact memory, filed by slot,
-   finds its pair in any slab. One step:
+   Spatial decomposition along one axis, after [ALK07] 3.5. Each slab is a world of its own: the
+   walls of the scene, its home grains, and copies of those grains of its lower neighbour that may
+   touch them: its visitors. Slots are those of the whole scene, so that contact memory, filed by
+   slot, finds its pair in any slab. One step:
        move     home grains; visitors stand still
        decide   a new list? a new near list? one maximum over all slabs
        send up  state of the grains that visit the upper neighbour
        respond  home - home, home - visitor, home - wall; visitor - visitor belongs to the owner
        return   forces on visitors go down to their owners, who add them
-   [FEN] sends copies down; up is the mirror image. At a rebuild grains that crossed a border
+   [ALK07] sends copies down; up is the mirror image. At a rebuild grains that crossed a border
    migrate, with a copy of every entry of contact memory that names them: so whichever slab computes
    a pair next has its memory. (It is the upper of the pair's two homes; the pair was computed where
    one of them was, and that one either stays or passes through.) Then visitors are chosen anew.

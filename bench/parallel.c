@@ -1,11 +1,11 @@
 /* parallel.c - what threads and slabs gain, how the cost of a grain grows with their number, and how the
-   searches compare: beside the figures that [FEN] and [MIL] printed. MIT licence.
+   searches compare: beside the figures that [ALK07] and [MIL] printed. MIT licence.
 
    make bench-parallel                      the default: a few minutes
    build/parallel --part bed --threads 2    one part of it; --short for a first look, --full for all there is
    build/parallel --model                   what a cluster might do, from what slabs send: a model
 
-   The measures are those of [FEN] eq 3.22 to 3.24, with t_s the time of the sequential program (dem.h on
+   The measures are those of [ALK07] eq 3.22 to 3.24, with t_s the time of the sequential program (dem.h on
    one thread opens no parallel region at all), t_p that on P workers, both of the same steps:
        speedup     tau = t_s/t_p
        efficiency  eta = tau/P
@@ -22,7 +22,7 @@
      bed, drum, gas   the scenes of bench/scenes.h
      mill             examples/mill.c: its slice, with ledger and field as `make run` has them, and 253125
                       grains, as many as in [MIL] Fig 6.16: 45 slices side by side, without ledger and field
-     tables           916, 9000, 14884 and 144400 discs, the sizes of [FEN] Tables 3.2 to 3.4. What its text
+     tables           916, 9000, 14884 and 144400 discs, the sizes of [ALK07] Tables 3.2 to 3.4. What its text
                       says of the scene is kept: planar, alike along the width, cut into slices, 1e-5 s. What it
                       does not say is ours: the discs of its Fig 2.16 at rest in a box twice as wide as the
                       layer is high, periodic sideways
@@ -231,7 +231,7 @@ static sent slabs_sent(const dealt *d) {
     return of;
 }
 
-/* ---- what [FEN] printed: Tables 3.2 to 3.4, hours and speedups ---- */
+/* ---- what [ALK07] printed: Tables 3.2 to 3.4, hours and speedups ---- */
 
 typedef struct published { int count, workers; double single, several; const char *table; } published; /* 0: not printed */
 static const published printed[] = {
@@ -270,7 +270,7 @@ static void printed_text(char *text, size_t room, int count, int workers, int me
         used += (size_t)snprintf(text + used, room - used, "%s%.3g %s", any++ ? ", " : "published: ", measure == 0 ? tau[k]
                                  : measure == 1 ? tau[k]/P : measure == 2 ? P/tau[k] : P/tau[k] - 1, where[k]);
     }
-    if (any) snprintf(text + used, room - used, " ([FEN] Table %s)", p->table);
+    if (any) snprintf(text + used, room - used, " ([ALK07] Table %s)", p->table);
 }
 
 /* ---- one subject, all ways, all numbers of workers ---- */
@@ -339,7 +339,7 @@ static void tell_run(const subject *s, const run *serial, const run *r, int turn
         tell_sent(r->workers, &p->of);
     }
 }
-/* What [FEN] took for the whole run, and what these steps would: extrapolated from the time of a step. */
+/* What [ALK07] took for the whole run, and what these steps would: extrapolated from the time of a step. */
 static void tell_span(const subject *s, double step, double dt) {
     char unit[100];
     size_t i;
@@ -517,7 +517,7 @@ static void mill_part(void) {
     mill_destroy(&s.one);
 }
 
-/* ---- discs: [FEN] 2.3.2 and 3.6 ---- */
+/* ---- discs: [ALK07] 2.3.2 and 3.6 ---- */
 
 typedef struct discs {
     int count;
@@ -525,9 +525,9 @@ typedef struct discs {
     double width, tank;          /* m: of the periodic box on a floor; radius of the round tank; one is 0 */
     dem_search search;
 } discs;
-#define DISC_STIFFNESS 720.0     /* N/m [FEN] */
-#define DISC_RESTITUTION 0.2     /* [FEN] */
-#define DISC_DT 1e-5             /* s [FEN] */
+#define DISC_STIFFNESS 720.0     /* N/m [ALK07] */
+#define DISC_RESTITUTION 0.2     /* [ALK07] */
+#define DISC_DT 1e-5             /* s [ALK07] */
 #define DISC_THICKNESS 5e-4      /* m, of glass, 2500 kg/m3: ours */
 #define DISC_TANK 2.0            /* m, radius: ours */
 
@@ -678,13 +678,13 @@ static void tables_part(void) {
     }
 }
 
-/* ---- searches: time of a simulated second against the number of discs, [FEN] Fig 2.17 ---- */
+/* ---- searches: time of a simulated second against the number of discs, [ALK07] Fig 2.17 ---- */
 
 enum { SEARCHES = 3, GROUPS = 5 };
 static const struct { dem_search search; const char *name, *about; } searches[SEARCHES] = {
     {DEM_SEARCH_GRID, "verlet_grid", "Verlet list, found on a grid"},
     {DEM_SEARCH_LINKED_LIST, "linked_list", "linked linear list"},
-    {DEM_SEARCH_ALL_PAIRS, "verlet_all_pairs", "Verlet list, all pairs asked: that of [FEN]"}};
+    {DEM_SEARCH_ALL_PAIRS, "verlet_all_pairs", "Verlet list, all pairs asked: that of [ALK07]"}};
 
 /* Seconds of wall time per simulated second of each search, from here on; medians of several turns. */
 static int search_here(discs *d, int steps, int turns, double seconds[SEARCHES], double rebuilds[SEARCHES]) {
@@ -717,7 +717,7 @@ static int search_here(discs *d, int steps, int turns, double seconds[SEARCHES],
     d->search = DEM_SEARCH_AUTO;
     return ok;
 }
-/* The mean of spans after 0.5, 1 and 2 s; --full: the whole 4 s, as in [FEN]. */
+/* The mean of spans after 0.5, 1 and 2 s; --full: the whole 4 s, as in [ALK07]. */
 static int search_group(int count, double seconds[SEARCHES], double rebuilds[SEARCHES]) {
     static const double falls[3] = {0.5, 0.5, 1};
     const int spans = short_form ? 1 : 3;
@@ -919,7 +919,7 @@ static void speedups_draw(int tables) {
     size_t k;
     int i, n, w;
     memset(&f, 0, sizeof f);
-    f.title = tables ? "Speedup: discs here, and Tables 3.2 to 3.4 of [FEN] (dashed)" : "Speedup";
+    f.title = tables ? "Speedup: discs here, and Tables 3.2 to 3.4 of [ALK07] (dashed)" : "Speedup";
     f.x_label = tables ? "workers (here of one machine, there of several)" : "workers";
     f.y_label = "speedup";
     f.log_x = f.log_y = 1;
@@ -952,7 +952,7 @@ static void speedups_draw(int tables) {
                 px[n] = printed[i].workers;
                 py[n++] = printed[i].several;
             }
-        snprintf(names[f.curve_count], sizeof *names, "[FEN], %d", printed_serial[k].count);
+        snprintf(names[f.curve_count], sizeof *names, "[ALK07], %d", printed_serial[k].count);
         study_curve(&f, names[f.curve_count], STUDY_DASHED, n, px, py);
     }
     study_figure_write(&f, tables ? "speedup_tables.svg" : "speedup.svg");
@@ -960,7 +960,7 @@ static void speedups_draw(int tables) {
 
 /* ---- the model of a cluster ---- */
 
-/* Slabs, as in [FEN] 3.5, with messages as dem.h's slabs send them: measured on the bed of 1e5 beads in two slabs, as
+/* Slabs, as in [ALK07] 3.5, with messages as dem.h's slabs send them: measured on the bed of 1e5 beads in two slabs, as
    grains of a halo for a border of one square diameter, and bytes a grain of the halo and step, there and back,
    with the share of renewed lists and migrants. Per step a rank exchanges up and down at each of its borders, and
    all agree on one maximum. Assumed, not measured: the networks, and copies into and out of messages. */

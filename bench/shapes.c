@@ -9,8 +9,8 @@
              are told apart at the first look
    rotation  a free body of moments 1, 2, 2.6 and |w| = 1.2 for 40 s: error of its orientation against the smallest
              step, energy after 2000 s, and the time of a step, for every integrator
-   gas       particle-steps/s of the cooling gas of seed 002 (volume fraction .058, aspect ratio 2), ellipsoids and
-             spheres, beside the seed's graphics card
+   gas       particle-steps/s of the cooling gas of [RUB15] (volume fraction .058, aspect ratio 2), ellipsoids and
+             spheres, beside its graphics card
    pile      a bed at rest of 1000 spheres, ellipsoids, tetrahedra of spheres: time of a step and body */
 #define DEM_IMPLEMENTATION
 #include "dem.h"
@@ -294,7 +294,7 @@ static void gas_part(void) {
     char name[64];
     int i, k;
     if (page)
-        fprintf(page, "\n### The granular gas\n\n| bodies | ellipsoids, M/s | seed's card | ratio | spheres, M/s | seed's card "
+        fprintf(page, "\n### The granular gas\n\n| bodies | ellipsoids, M/s | card of [RUB15] | ratio | spheres, M/s | card of [RUB15] "
                 "| ratio |\n|---|---|---|---|---|---|---|\n");
     for (i = 0; i < 5; i++) {
         double rate[2];

@@ -1,6 +1,6 @@
 /* ellipsoids.c - a gas of ellipsoids that cools as they collide.
 
-   The gas is that of [GAS], a granular gas of ellipsoids on a GPU, section 4: frictionless prolate
+   The gas is that of [RUB15], a granular gas of ellipsoids on a GPU, section 4: frictionless prolate
    ellipsoids of elongation xi = a/b in a periodic cube of which they take up .058, 4096 of them in
    2 m, 2000 kg/m3, k = 1e8 N/m, restitution .90, .95, .98, time step t_c/50, cubic start, Gaussian
    velocities and spins, a run-in without damping. What differs, and why:
@@ -10,9 +10,9 @@
      - initial speeds are not told there: here a typical collision (root mean square of the speed of
        approach) overlaps by --overlap of the radius of the sphere of equal volume, .003; it lasts
        .003 of the time between two, so that few collisions overlap each other;
-     - restitution is the one set, whatever the bodies' inertia at the contact: the damping of [GAS]
+     - restitution is the one set, whatever the bodies' inertia at the contact: the damping of [RUB15]
        takes the reduced mass m/2 where the mass that counts is 1/(n.K n), less by 1 + D for bodies
-       that may turn, so that its ellipsoids lose more than e_n says. --damping seed is its law and
+       that may turn, so that its ellipsoids lose more than e_n says. --damping reduced is its law and
        its overlap;
      - by default 512 ellipsoids, at the same volume fraction: --count 4096 is the whole gas.
    Hard bodies have no time of their own, so --hold doubles all energies whenever half is lost, and
@@ -29,7 +29,7 @@
    g = (a2 - b2) x sqrt(1 - x^2): 1 + D is by how much turning eases a push. The mean over the angle
    between the two frames is exact: det -> p1 q1 + p2 q2 + (p1 + q1)(p2 + q2)/2.
      S_c = 4 pi <det>, area of the surface of centres at contact (spheres: 4 pi d^2)
-     <D>_c, <sqrt(1 + D)>_c: means over contacts. What [GAS] (28) calls <D>_c is the second: only
+     <D>_c, <sqrt(1 + D)>_c: means over contacts. What [RUB15] (28) calls <D>_c is the second: only
      so is its rate that of spheres at xi = 1
      a body's collisions: n g S_c <sqrt(1 + D theta)>_c sqrt(T_tr/(pi m)) a second, theta =
      T_rot/T_tr; each changes the energy of translation by
@@ -54,7 +54,7 @@
      overlap_max              of the run, over the radius dem.h takes
      run_in_drift             energy gained in the run-in, relative
      contact_share            duration of a collision over the time between two, at the start
-   [GAS] seed 002 of the project; [SON90] Song & Mason, Phys. Rev. A 41 (1990) 3121, eq 25. */
+   [RUB15] Rubio-Largo, Lind, Maza & Hidalgo (2015); [SON90] Song & Mason, Phys. Rev. A 41 (1990) 3121, eq 25. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "study.h"
@@ -85,8 +85,8 @@ static const study_option table[] = {
     {"collisions", STUDY_REAL, &options.collisions, 0, 1e5, "a body", "measured, about"},
     {"run-in", STUDY_REAL, &options.run_in, 0, 1e5, "collisions a body", "without damping"},
     {"dt", STUDY_REAL, &options.dt, 0, 1, "s", "time step; 0: t_c/50"},
-    {"damping", STUDY_CHOICE, &options.damping, 0, 0, "exact|seed",
-        "exact: restitution is as set; seed: gamma_n of the reduced mass"},
+    {"damping", STUDY_CHOICE, &options.damping, 0, 0, "exact|reduced",
+        "exact: restitution is as set; reduced: gamma_n of the reduced mass"},
     {"hold", STUDY_CHOICE, &options.hold, 0, 0, "true|false", "double energies as half is lost"},
     {"seed", STUDY_INT, &options.seed, 1, 1e9, "", "of the random start"},
     {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
@@ -166,22 +166,22 @@ static void theory_make(double xi, theory *t) {
     t->alpha = radius*surface/(4*PI*xi);
 }
 
-/* Of the damping of [GAS]: that of e for the reduced mass, at a contact of a mass less by 1 + D. */
-static double restitution_at(double e, double d, int seed_damping) {
+/* Of the damping of [RUB15]: that of e for the reduced mass, at a contact of a mass less by 1 + D. */
+static double restitution_at(double e, double d, int reduced_damping) {
     const double l = log(e), beta = -l/sqrt(PI*PI + l*l)*sqrt(1 + d);
-    if (!seed_damping) return e;
+    if (!reduced_damping) return e;
     return beta < 1 ? exp(-PI*beta/sqrt(1 - beta*beta)) : 0;
 }
 
 /* -d ln T_tr/ds and -d ln T_rot/ds, ds = n g S_c sqrt(T_tr/(pi m)) dt */
-static void theory_rates(const theory *t, double theta, double e, int seed_damping,
+static void theory_rates(const theory *t, double theta, double e, int reduced_damping,
                          double *translation, double *rotation) {
     double sum = 0, tr = 0, rot = 0;
     int i, j;
     for (i = 0; i < NODES; i++)
         for (j = 0; j < NODES; j++) {
             const double w = t->weight[i]*t->weight[j]*det_mean(t, i, j), d = t->d[i] + t->d[j];
-            const double a = 1 + restitution_at(e, d, seed_damping), total = 1 + d*theta;
+            const double a = 1 + restitution_at(e, d, reduced_damping), total = 1 + d*theta;
             const double often = w*sqrt(total), back = a*a*total/((1 + d)*(1 + d));
             sum += w;
             tr += often*(back - 2*a/(1 + d));
@@ -192,17 +192,17 @@ static void theory_rates(const theory *t, double theta, double e, int seed_dampi
 }
 
 /* theta = T_rot/T_tr that stays, and the rate at which both then fall. Spheres: 1. */
-static void theory_state(const theory *t, double e, int seed_damping, double *theta, double *zeta) {
+static void theory_state(const theory *t, double e, int reduced_damping, double *theta, double *zeta) {
     double lo = 0.01, hi = 1000, rotation;
     int i;
     *theta = 1;
     for (i = 0; i < 50 && t->d_mean > 1e-9; i++) {
         *theta = sqrt(lo*hi);
-        theory_rates(t, *theta, e, seed_damping, zeta, &rotation);
+        theory_rates(t, *theta, e, reduced_damping, zeta, &rotation);
         if (rotation > *zeta) hi = *theta;
         else lo = *theta;
     }
-    theory_rates(t, *theta, e, seed_damping, zeta, &rotation);
+    theory_rates(t, *theta, e, reduced_damping, zeta, &rotation);
     if (t->d_mean > 1e-9) return;
     { /* spheres: first Sonine polynomial, (1 + 3 a2/16) */
         const double a2 = 16*(1 - e)*(1 - 2*e*e)/(81 - 17*e + 30*e*e*(1 - e));
@@ -253,7 +253,7 @@ static void gas_destroy(gas *g) {
     g->samples = 0;
 }
 
-/* The damping of [GAS]: gamma = sqrt(4 k m12/(1 + (pi/ln e)^2)), whatever the inertia. */
+/* The damping of [RUB15]: gamma = sqrt(4 k m12/(1 + (pi/ln e)^2)), whatever the inertia. */
 static double seed_gamma;                     /* N s/m; 0 while running in */
 static void seed_law(const dem_contact *c, dem_real *memory, dem_push *push) {
     (void)memory;
@@ -291,11 +291,11 @@ static int gas_create(gas *g, double xi, double e, int count) {
     desc.normal_law = DEM_NORMAL_LINEAR;
     desc.threads = options.threads;
     desc.dt = g->dt;
-    if (is(options.damping, "seed")) {
+    if (is(options.damping, "reduced")) {
         desc.law = seed_law;
         desc.law_user = &seed_gamma;
         desc.law_stiffness = STIFFNESS;
-        desc.ellipsoid_overlap = DEM_OVERLAP_SEED;
+        desc.ellipsoid_overlap = DEM_OVERLAP_CHORD;
     }
     seed_gamma = 0;
     g->world = dem_world_create(&desc);
@@ -463,14 +463,14 @@ static int gas_run(gas *g, const char *what, double span, int window) {
 
 /* The theory's course from T_rot = T_tr on, in s: how long until theta is within 1 % of where it
    goes. */
-static double settling(const gas *g, int seed_damping, double theta_end) {
+static double settling(const gas *g, int reduced_damping, double theta_end) {
     double theta = 1, s = 0, translation, rotation;
     const double step = 0.05;
     while (fabs(log(theta/theta_end)) > 0.01 && s < 1000) {
         double middle;
-        theory_rates(&g->t, theta, g->e, seed_damping, &translation, &rotation);
+        theory_rates(&g->t, theta, g->e, reduced_damping, &translation, &rotation);
         middle = theta*exp((translation - rotation)*step/2);
-        theory_rates(&g->t, middle, g->e, seed_damping, &translation, &rotation);
+        theory_rates(&g->t, middle, g->e, reduced_damping, &translation, &rotation);
         theta *= exp((translation - rotation)*step);
         s += step;
     }
@@ -522,11 +522,11 @@ static void gas_measure(gas *g, int from) {
     tell(g, "zeta_star_theory", g->zeta_theory, "");
 }
 
-/* Haff's law as [GAS] has it, and the theory's own course, against the samples. */
+/* Haff's law as [RUB15] has it, and the theory's own course, against the samples. */
 static double total_of(const gas *g, const sample *a) { /* (26); spheres: T_tr */
     return g->spheres ? a->tr : 0.6*a->tr + 0.4*a->rot;
 }
-static void gas_compare(gas *g, int seed_damping) {
+static void gas_compare(gas *g, int reduced_damping) {
     const double total = total_of(g, &g->samples[0]);
     double haff = 0, course = 0, theta = g->samples[0].rot/g->samples[0].tr;
     double log_tr = log(g->samples[0].tr), translation, rotation;
@@ -537,7 +537,7 @@ static void gas_compare(gas *g, int seed_damping) {
         const sample *a = &g->samples[i];
         const double ds = a->s - g->samples[i - 1].s;
         const double tau = g->tau_rate*(a->time - g->samples[0].time);
-        theory_rates(&g->t, theta, g->e, seed_damping, &translation, &rotation);
+        theory_rates(&g->t, theta, g->e, reduced_damping, &translation, &rotation);
         log_tr -= translation*ds;
         if (!g->spheres) theta *= exp((translation - rotation)*ds);
         course += pow(log(a->tr) - log_tr, 2);
@@ -550,19 +550,19 @@ static void gas_compare(gas *g, int seed_damping) {
 }
 
 static int gas_case(gas *g, double xi, double e) {
-    const int seed_damping = is(options.damping, "seed");
+    const int reduced_damping = is(options.damping, "reduced");
     const double speed = options.overlap/2; /* over radius/sqrt(m12/k): <v_n2> = 4 T/m */
     double theta, zeta, wait, start, temperature;
     char what[64], name[64];
     dem_pair pair;
     int i, from = 0;
     if (gas_create(g, xi, e, options.count)) return 1;
-    theory_state(&g->t, e, seed_damping, &theta, &zeta);
+    theory_state(&g->t, e, reduced_damping, &theta, &zeta);
     g->ratio_theory = 1/theta;
     g->zeta_theory = zeta;
     temperature = g->mass*pow(speed*g->radius, 2)/(g->mass/2/STIFFNESS);
     if (gas_fill(g, temperature, 0)) return 1;
-    wait = g->spheres ? 2 : settling(g, seed_damping, theta) + 2;
+    wait = g->spheres ? 2 : settling(g, reduced_damping, theta) + 2;
     snprintf(what, sizeof what, "xi %.2f e %.2f run-in", xi, e);
     start = dem_totals_get(g->world).kinetic + dem_totals_get(g->world).rotational;
     if (options.run_in > 0 && gas_run(g, what, options.run_in/g->t.d_root, 0)) return 1;
@@ -586,7 +586,7 @@ static int gas_case(gas *g, double xi, double e) {
         if (gas_run(g, what, options.collisions/g->t.d_root/2, 2 + i)) return 1;
     }
     gas_measure(g, from);
-    gas_compare(g, seed_damping);
+    gas_compare(g, reduced_damping);
     tell(g, "kurtosis", g->fourth/g->fourth_sum/3 - 1, "");
     tell(g, "overlap_max", dem_counters_get(g->world).overlap_max, "");
     tell(g, "contact_share", g->contact_time*g->rate*g->t.d_root*sqrt(temperature), "at the start");
@@ -759,7 +759,7 @@ static void theory_tell(void) {
         printf("%5.2f %9.4f %8.5f %9.5f %7.4f %7.4f", t.xi, t.area, t.d_mean, t.d_root, t.alpha,
                data[5][i]);
         for (k = 0; k < RATIOS; k++) {
-            theory_state(&t, e[k], is(options.damping, "seed"), &data[6 + 2*k][i],
+            theory_state(&t, e[k], is(options.damping, "reduced"), &data[6 + 2*k][i],
                          &data[7 + 2*k][i]);
             printf("   %9.4f %8.5f", data[6 + 2*k][i], data[7 + 2*k][i]);
         }
@@ -777,7 +777,7 @@ static study_figure figure(const char *title, const char *x, const char *y) {
 }
 
 /* Curves: 0 T_tr(t), 1 T_tr/T_rot(t), both of one e; 2 T_tr(tau), 3 T_tot(tau); of many gases, 2
-   from xi = 2 on and 3 below, as in [GAS]. */
+   from xi = 2 on and 3 below, as in [RUB15]. */
 static void curves_draw(gas *gases, int count, int kind, double e) {
     static const char *const titles[4] = {
         "Translational temperature", "Translational over rotational temperature",
@@ -836,7 +836,7 @@ static void elongation_draw(const gas *gases, int count, int cooling) {
         theory_make(xi[i], &t);
         for (r = 0; r < RESTITUTIONS; r++) {
             double theta, zeta;
-            theory_state(&t, restitutions[r], is(options.damping, "seed"), &theta, &zeta);
+            theory_state(&t, restitutions[r], is(options.damping, "reduced"), &theta, &zeta);
             line[r][i] = cooling ? zeta/(1 - restitutions[r]*restitutions[r]) : 1/theta;
         }
     }
@@ -970,7 +970,7 @@ static void speeds_run(void) {
             study_result(name, steps*g.count/spent, "body-steps/s");
             snprintf(name, sizeof name, "speed.%s.%d.seed", kind ? "spheres" : "ellipsoids",
                      g.count);
-            study_result(name, seed[kind][size], "body-steps/s, of [GAS]");
+            study_result(name, seed[kind][size], "body-steps/s, of [RUB15]");
             data[1 + 2*kind][size] = steps*g.count/spent;
             data[2 + 2*kind][size] = seed[kind][size];
             gas_destroy(&g);

@@ -1,6 +1,6 @@
 /* screener.c - a tumbling screening machine: five decks, four sieves, balls of five sizes.
 
-   The machine is that of [FEN] (section 4.4), a thesis on contacts in a tumbling screening machine:
+   The machine is that of [ALK07] (section 4.4), a thesis on contacts in a tumbling screening machine:
    a barrel of radius 80 cm that tumbles at 50 turns a minute, plate inclined by 1 and .65 degrees,
    sieves with square holes of half width w = 17, 15, 13, 11 mm and bars g = w between them, 3483
    balls of radius 10 to 18 mm fed at 147 a second. Every deck lets its own size out at the rim; what
@@ -10,27 +10,34 @@
    What the thesis does not print is our choice, an option, and part of --study choices:
      density 2500 kg/m3, stiffness and restitution (it prints none for this machine): a linear spring
      and dashpot; softened, t_c is about 1.6 ms (large machine)
-     friction .2 between balls and with the machine (glass: .06 with the machine, its optimum). Its friction on a sieve (eq 4.27 to 4.30) looks
-     at the ball's velocity without its spin: balls slide. On reduced holes, which are a plane, a
-     rolling friction of 1 does that here; free balls would roll, and a ball that rolls on a turning
-     plate is not flung out but runs in circles. Wires and plates brake rolling by themselves
+     friction .2 between balls, .06 with the machine: the optimum of its friction study. Its friction
+     on a sieve (eq 4.27 to 4.30) looks at the ball's velocity without its spin: balls slide. On
+     reduced holes, which are a plane, a rolling friction of 1 does that here; free balls would roll,
+     and a ball that rolls on a turning plate is not flung out but runs in circles. Wires and plates
+     brake rolling by themselves
      decks .15 m (.03 m) apart; all of the rim is open (--open, --openings and --vane: a rim with
      openings, and deflectors that lead to them)
-     eccentricity 40 mm where the figure does not say (4.15, 4.19, 4.21), u = e = 0
+     eccentricity 40 mm where the figure does not say (all but 4.20), u = e = 0
      fed from a disc of .1 m in the middle, above the first sieve
 
    build:  cc -O2 -std=c99 examples/screener.c -o build/screener -lm
    run:    build/screener, build/screener --study speed, build/screener --help
 
-   Results, of one run (a sweep prints one such block per value, prefixed: rpm50.efficiency_number):
+   --machine small is no machine of the thesis: R = 15 cm, three decks, fed without end; --study hour
+   runs it for an hour of machine time and counts balls of each size at every step.
+
+   Results, of one run (a sweep prints one such block per value, prefixed: rpm50.efficiency_number;
+   with --repeats also blocks rpm50.seed2 and so on, and mean and spread over all of them):
      efficiency_number, efficiency_mass   %, eq 4.33 and 4.35: mean over decks of sorted/all that left
      deckN.sorted, deckN.gangue           balls that left deck N, 1 the lowest
+     deckN.rate                           kg/s that left it, over the last third, eq 4.40
      gangue_number, gangue_mass           %, of all that left, eq 4.41
      fed, present, left, missing          balls; missing = fed - present - left is 0
      rate                                 balls/s that left, over the last third
      blinded                              stuck in holes at the end (never with reduced holes)
      overlap                              largest over radius
-     compute                              s of wall time */
+     compute                              s of wall time
+     steps, unbalanced_steps              of --study hour: those at which a size was not in balance */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "tumbler.h"
@@ -43,47 +50,49 @@ static struct screener_options {
     double rpm, alpha, beta, eccentricity, factor, period, friction, wall_friction, zeta, rate;
     double seconds, stiffness, restitution, spacing, open, vane, steps, orifice, rolling, share;
     const char *machine, *holes, *feed, *barrel, *study, *out;
-    int openings, threads, frames, balls;
-} options = {0, -1, -1, 40, 1, 0, 0.2, -1, -1, 0, 0, 0, 0.5, 0, 1, -1, 22, 0.08, -1, 1,
-             "large", "model2", "rate", "uniform", "run", "build/out/screener", 6, 1, 0, 0};
+    int openings, threads, frames, balls, seed, repeats;
+} options = {0, -1, -1, -1, 1, 0, 0.2, 0.06, -1, 0, 0, 0, 0.5, 0, 1, -1, 22, 0.08, -1, 1,
+             "large", "model2", "rate", "uniform", "run", "build/out/screener", 6, 1, 0, 0, 1, 1};
 
 static const study_option table[] = {
-    {"machine", STUDY_CHOICE, &options.machine, 0, 0, "large|glass", "which example"},
+    {"machine", STUDY_CHOICE, &options.machine, 0, 0, "large|glass|small", "which example"},
     {"holes", STUDY_CHOICE, &options.holes, 0, 0, "model1|model2|wires|plate", "of the sieves"},
     {"zeta", STUDY_REAL, &options.zeta, -1, 1, "",
-        "clearance of reduced holes; -1: .8 (large), .6 (glass)"},
-    {"rpm", STUDY_REAL, &options.rpm, 0, 1000, "1/min", "machine; 0: 50 (large), 180 (glass)"},
-    {"alpha", STUDY_REAL, &options.alpha, -1, 20, "deg", "inclination; -1: 1 (large), .6 (glass)"},
-    {"beta", STUDY_REAL, &options.beta, -1, 20, "deg", "inclination; -1: .65 (large), .5 (glass)"},
-    {"eccentricity", STUDY_REAL, &options.eccentricity, 0, 1000, "mm", "of the shafts"},
+        "clearance of reduced holes; -1: .8 (large), .6 (others)"},
+    {"rpm", STUDY_REAL, &options.rpm, 0, 1000, "1/min", "machine; 0: 50 (large), 180 (others)"},
+    {"alpha", STUDY_REAL, &options.alpha, -1, 20, "deg", "inclination; -1: 1 (large), .6 (others)"},
+    {"beta", STUDY_REAL, &options.beta, -1, 20, "deg", "inclination; -1: .65 (large), .5 (others)"},
+    {"eccentricity", STUDY_REAL, &options.eccentricity, -1, 1000, "mm",
+        "of the shafts; -1: 40, 8 (small)"},
     {"factor", STUDY_REAL, &options.factor, 0, 5, "", "K: barrel over machine; 1 free, 0 held"},
     {"period", STUDY_REAL, &options.period, 0, 10, "s", "of the barrel's swing; 0: it goes on"},
     {"friction", STUDY_REAL, &options.friction, 0, 5, "", "between balls"},
-    {"wall-friction", STUDY_REAL, &options.wall_friction, -1, 5, "",
-        "with the machine; -1: the same (large), .06 (glass)"},
+    {"wall-friction", STUDY_REAL, &options.wall_friction, 0, 5, "", "with the machine"},
     {"rolling", STUDY_REAL, &options.rolling, -1, 5, "",
         "rolling friction with the machine; -1: 1 on reduced holes (balls slide), else 0"},
     {"feed", STUDY_CHOICE, &options.feed, 0, 0, "rate|batch|hopper", "how balls come"},
-    {"rate", STUDY_REAL, &options.rate, 0, 1e5, "1/s", "feed; 0: 147 (large), 357 (glass)"},
+    {"rate", STUDY_REAL, &options.rate, 0, 1e5, "1/s", "feed; 0: 147 (large), 357 (glass), 60 (small)"},
     {"orifice", STUDY_REAL, &options.orifice, 0.01, 1, "m", "radius of the hopper's"},
     {"balls", STUDY_INT, &options.balls, 0, 1000000, "",
         "glass: how many; 0: 775, of which 389 are small"},
-    {"seconds", STUDY_REAL, &options.seconds, 0, 1e5, "s", "of machine time; 0: 25 (large), 20"},
+    {"seconds", STUDY_REAL, &options.seconds, 0, 1e5, "s", "of machine time; 0: 25 (large), 20 (others)"},
     {"share", STUDY_REAL, &options.share, 0.001, 1, "", "of the balls and of their rate: for trying"},
     {"barrel", STUDY_CHOICE, &options.barrel, 0, 0, "uniform|stepped",
         "stepped: narrower below, by 15 % in all"},
-    {"spacing", STUDY_REAL, &options.spacing, 0, 1, "m", "of decks; 0: .15 (large), .03 (glass)"},
+    {"spacing", STUDY_REAL, &options.spacing, 0, 1, "m", "of decks; 0: .15 (large), .03 (others)"},
     {"openings", STUDY_INT, &options.openings, 1, 12, "", "in the rim of each deck"},
     {"open", STUDY_REAL, &options.open, 0.01, 1, "", "share of the rim that is open"},
     {"vane", STUDY_REAL, &options.vane, -1, 0.5, "m", "deflector at each opening; -1: R/8"},
-    {"stiffness", STUDY_REAL, &options.stiffness, 0, 1e9, "N/m", "0: 2e4 (large), 200 (glass)"},
+    {"stiffness", STUDY_REAL, &options.stiffness, 0, 1e9, "N/m", "0: 2e4 (large), 200 (glass), 2000 (small)"},
     {"restitution", STUDY_REAL, &options.restitution, 0.01, 1, "", "of balls and machine"},
     {"steps", STUDY_REAL, &options.steps, 20, 1000, "", "time steps in the shortest contact"},
     {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
+    {"seed", STUDY_INT, &options.seed, 1, 1000000, "", "of the feed"},
+    {"repeats", STUDY_INT, &options.repeats, 1, 20, "", "of each run of a sweep, with seeds on from that"},
     {"frames", STUDY_INT, &options.frames, 0, 100000, "", "VTP files of the balls over the run"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"study", STUDY_CHOICE, &options.study, 0, 0,
-        "run|speed|feed|inclination|eccentricity|oscillation|friction|size|holes|choices|check",
+        "run|speed|feed|inclination|eccentricity|oscillation|friction|size|holes|choices|hour|check",
         "what to run"},
 };
 
@@ -98,7 +107,7 @@ typedef struct screener {
     int levels, classes, samples;
     double R, w[LEVELS], bar[LEVELS], radius[LEVELS], number[LEVELS], dt;
     double time[SAMPLES], efficiency[SAMPLES], mass_efficiency[SAMPLES], gangue[SAMPLES];
-    double left[SAMPLES], present[SAMPLES], fed[SAMPLES];
+    double left[SAMPLES], present[SAMPLES], fed[SAMPLES], mass[SAMPLES][LEVELS];
     double compute;
 } screener;
 
@@ -113,16 +122,16 @@ static void screener_settle(screener *s) {
     static const double radius[5] = {0.010, 0.012, 0.014, 0.016, 0.018};
     static const double number[5] = {1210, 832, 611, 467, 363}, w[4] = {0.011, 0.013, 0.015, 0.017};
     struct screener_options *o = &s->o;
-    const int large = is(o->machine, "large");
+    const int large = is(o->machine, "large"), glass = is(o->machine, "glass");
     int i;
-    s->levels = s->classes = large ? 5 : 2;
-    s->R = large ? 0.8 : 0.3;
-    for (i = 0; i < s->levels && large; i++) {
-        s->radius[i] = radius[i];
+    s->levels = s->classes = large ? 5 : glass ? 2 : 3;
+    s->R = large ? 0.8 : glass ? 0.3 : 0.15;
+    for (i = 0; i < s->levels && !glass; i++) {  /* small: the lower part, at 3/10 */
+        s->radius[i] = radius[i]*(large ? 1 : 0.3);
         s->number[i] = number[i];
-        if (i) s->w[i] = s->bar[i] = w[i - 1];
+        if (i) s->w[i] = s->bar[i] = w[i - 1]*(large ? 1 : 0.3);
     }
-    if (!large) {
+    if (glass) {
         s->radius[0] = 0.0015; s->radius[1] = 0.002;
         s->number[0] = o->balls ? (o->balls + 1)/2 : 389;
         s->number[1] = o->balls ? o->balls/2 : 386;
@@ -132,14 +141,13 @@ static void screener_settle(screener *s) {
     if (o->alpha < 0) o->alpha = large ? 1 : 0.6;
     if (o->beta < 0) o->beta = large ? 0.65 : 0.5;
     if (o->zeta < 0) o->zeta = large ? 0.8 : 0.6;
-    if (!(o->rate > 0)) o->rate = large ? 147 : 357;
+    if (!(o->rate > 0)) o->rate = large ? 147 : glass ? 357 : 60;
     if (!(o->seconds > 0)) o->seconds = large ? 25 : 20;
     if (!(o->spacing > 0)) o->spacing = large ? 0.15 : 0.03;
-    if (!(o->stiffness > 0)) o->stiffness = large ? 2e4 : 200;
-    if (o->wall_friction < 0) o->wall_friction = large ? o->friction : 0.06;
+    if (!(o->stiffness > 0)) o->stiffness = large ? 2e4 : glass ? 200 : 2000;
     if (o->rolling < 0) o->rolling = strncmp(o->holes, "model", 5) ? 0 : 1;
     if (o->vane < 0) o->vane = s->R/8;
-    if (!large && o->eccentricity >= 40) o->eccentricity *= s->R/0.8;
+    if (o->eccentricity < 0) o->eccentricity = is(o->machine, "small") ? 8 : 40;
     for (i = 0; i < s->classes; i++) s->number[i] = ceil(s->number[i]*o->share);
     o->rate *= o->share;
     s->machine.speed = o->rpm*2*PI/60;
@@ -314,9 +322,9 @@ static int feed_add(screener *s, dem_material ball, dem_material wall) {
         d.amount[k] = s->number[k];
         total += s->number[k]*4*PI/3*pow(s->radius[k], 3);
     }
-    d.limited = 1;
+    d.limited = !is(s->o.machine, "small");
     d.round = 1;
-    d.seed = 1;
+    d.seed = (uint64_t)s->o.seed;
     d.rate = is(s->o.feed, "rate") ? s->o.rate : 0;
     if (is(s->o.feed, "batch")) wide = 0.7*s->R;
     if (is(s->o.feed, "hopper")) {
@@ -359,21 +367,64 @@ static int screener_create(screener *s, double dt) {
            rim_add(s, steel) || outlets_add(s) || feed_add(s, ball, steel);
 }
 
+static dem_feed_state fed(const screener *s) {
+    dem_feed_state state;
+    memset(&state, 0, sizeof state);
+    dem_feed_get(s->world, s->feed, &state);
+    return state;
+}
+static dem_outlet_state let_out(const screener *s, int deck) {
+    dem_outlet_state state;
+    memset(&state, 0, sizeof state);
+    dem_outlet_get(s->world, s->outlet[deck], &state);
+    return state;
+}
 static void sample_take(screener *s) {
     dem_sorting sorting;
-    dem_feed_state feed;
     const dem_balance balance = dem_balance_get(s->world);
     const int i = s->samples;
+    int k;
     if (i == SAMPLES || dem_sorting_get(s->world, s->outlet, s->levels, &sorting) != DEM_OK) return;
-    dem_feed_get(s->world, s->feed, &feed);
     s->time[i] = dem_world_time(s->world);
     s->efficiency[i] = 100*sorting.efficiency_number;
     s->mass_efficiency[i] = 100*sorting.efficiency_mass;
     s->gangue[i] = 100*sorting.gangue_mass;
     s->left[i] = (double)balance.left;
     s->present[i] = (double)balance.present;
-    s->fed[i] = (double)feed.total;
+    s->fed[i] = (double)fed(s).total;
+    for (k = 0; k < s->levels; k++) s->mass[i][k] = let_out(s, k).total_mass;
     s->samples++;
+}
+/* Balls/s that left, over the last third of the samples; through one deck (from 0): kg/s. */
+static double rate_late(const screener *s) {
+    const int last = s->samples - 1, late = 2*s->samples/3;
+    return last > late ? (s->left[last] - s->left[late])/(s->time[last] - s->time[late]) : 0;
+}
+static double deck_rate_late(const screener *s, int deck) {
+    const int last = s->samples - 1, late = 2*s->samples/3;
+    return last > late ? (s->mass[last][deck] - s->mass[late][deck])/
+        (s->time[last] - s->time[late]) : 0;
+}
+/* 1 when of each size as many balls were fed as are here and have left, and all sizes together are
+   the world's balance. */
+static int screener_balanced(const screener *s) {
+    const dem_bodies b = dem_bodies_get(s->world);
+    const dem_balance balance = dem_balance_get(s->world);
+    const dem_feed_state feed = fed(s);
+    uint64_t found[LEVELS] = {0}, left = 0;
+    int i, k, ok;
+    for (i = 0; i < b.count; i++)
+        for (k = 0; k < s->classes; k++)
+            found[k] += fabs((double)b.positions[4*i + 3]/s->radius[k] - 1) < 1e-3;
+    for (i = 0; i < s->levels; i++) {
+        const dem_outlet_state out = let_out(s, i);
+        for (k = 0; k < s->classes; k++) found[k] += out.count[k];
+        left += out.total;
+    }
+    ok = balance.left == left && feed.total == balance.inserted &&
+         balance.inserted == balance.present + balance.left;
+    for (k = 0; k < s->classes; k++) ok = ok && feed.fed[k] == found[k];
+    return ok;
 }
 static void frame_write(screener *s, int frame) {
     char name[64];
@@ -384,7 +435,8 @@ static void frame_write(screener *s, int frame) {
 /* One machine, run to its end; 0 when it went well. */
 static int screener_run(screener *s, const struct screener_options *o, const char *name) {
     dem_advice advice;
-    double next = 0, begun, work = 0;
+    const int counting = is(o->study, "hour");      /* balls, at every step */
+    double next = 0, begun, work = 0, unbalanced = 0;
     int i, frame = 0, bad;
     memset(s, 0, sizeof *s);
     s->o = *o;
@@ -398,8 +450,9 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
     begun = study_clock();
     while (!bad && dem_world_time(s->world) < s->o.seconds - s->dt/2) {
         const double left = (next - dem_world_time(s->world))/s->dt;
-        const int steps = left > 1 ? left < 500 ? (int)(left + 0.5) : 500 : 1;
+        const int steps = left > 1 && !counting ? left < 500 ? (int)(left + 0.5) : 500 : 1;
         bad = refused(s->world, dem_world_step(s->world, steps));
+        if (counting) unbalanced += !screener_balanced(s);
         work += (double)steps*(double)dem_balance_get(s->world).present;
         if (dem_world_time(s->world) >= next - s->dt/2) {
             sample_take(s);
@@ -412,21 +465,21 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
     s->compute = study_clock() - begun;
     if (!bad) {
         dem_sorting sorting;
-        dem_feed_state feed;
+        const dem_feed_state feed = fed(s);
         const dem_balance balance = dem_balance_get(s->world);
-        int blinded = 0, late = 2*s->samples/3, last = s->samples - 1;
+        int blinded = 0;
         char text[64];
         dem_sorting_get(s->world, s->outlet, s->levels, &sorting);
-        dem_feed_get(s->world, s->feed, &feed);
         study_result("efficiency_number", 100*sorting.efficiency_number, "%");
         study_result("efficiency_mass", 100*sorting.efficiency_mass, "%");
         for (i = 0; i < s->levels; i++) {
-            dem_outlet_state state;
-            dem_outlet_get(s->world, s->outlet[i], &state);
+            const dem_outlet_state out = let_out(s, i);
             snprintf(text, sizeof text, "deck%d.sorted", i + 1);
-            study_result(text, (double)state.sorted, "");
+            study_result(text, (double)out.sorted, "");
             snprintf(text, sizeof text, "deck%d.gangue", i + 1);
-            study_result(text, (double)state.gangue, "");
+            study_result(text, (double)out.gangue, "");
+            snprintf(text, sizeof text, "deck%d.rate", i + 1);
+            study_result(text, deck_rate_late(s, i), "kg/s");
             if (i) blinded += dem_sieve_blinded(s->world, s->sieve[i], DEM_R(0.1));
         }
         study_result("gangue_number", 100*sorting.gangue_number, "%");
@@ -435,12 +488,16 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
         study_result("present", (double)balance.present, "");
         study_result("left", (double)balance.left, "");
         study_result("missing", (double)feed.total - (double)(balance.present + balance.left), "");
-        study_result("rate", last > late ? (s->left[last] - s->left[late])/
-                     (s->time[last] - s->time[late]) : 0, "1/s");
+        study_result("rate", rate_late(s), "1/s");
         study_result("blinded", blinded, "");
         study_result("overlap", (double)dem_counters_get(s->world).overlap_max, "");
         study_result("compute", s->compute, "s");
-        if (feed.total != balance.present + balance.left) study_fail("balls are missing");
+        if (counting) {
+            study_result("steps", (double)dem_counters_get(s->world).steps, "");
+            study_result("unbalanced_steps", unbalanced, "");
+        }
+        if (feed.total != balance.present + balance.left || unbalanced > 0)
+            study_fail("balls are missing");
     }
     return bad;
 }
@@ -455,7 +512,7 @@ typedef struct sweep {
     const char *name, *label;          /* of the part; of the axis */
     int count;
     double value[12];
-    double seed[12];                   /* what the thesis found, < 0: not printed */
+    double thesis[12];                 /* its efficiency, < 0: not printed */
     void (*set)(struct screener_options *o, double value);
 } sweep;
 static void set_rpm(struct screener_options *o, double v) { o->rpm = v; }
@@ -482,75 +539,127 @@ static const sweep sweeps[] = {
      set_friction},
 };
 
-/* Runs one sweep; a picture of efficiency against its value and one of efficiency over time. */
-static void sweep_run(const sweep *w, const struct screener_options *base, const char *tag) {
-    static double time[12][SAMPLES], over[12][SAMPLES], gangue[12][SAMPLES];
-    static char names[12][32];
-    double x[12], number[12], mass[12], rate[12], bad_share[12], sx[12], sy[12];
-    const double *columns[5];
-    study_figure f, t, g;
-    char file[96];
-    int i, k, n = 0, m = 0;
-    memset(&f, 0, sizeof f);
-    memset(&t, 0, sizeof t);
-    memset(&g, 0, sizeof g);
-    for (i = 0; i < w->count; i++) {
-        static screener s;
+/* What a sweep keeps of each value: its columns in the CSV file. */
+enum { VALUE, NUMBER, MASS, GANGUE, RATE, SPREAD, GANGUE_SPREAD, DECK_RATE,
+       COLUMNS = DECK_RATE + LEVELS };
+static const char sweep_heading[] = "value,efficiency_number,efficiency_mass,gangue_mass,rate,"
+    "efficiency_spread,gangue_spread,rate1,rate2,rate3,rate4,rate5";
+
+typedef struct sweep_result {
+    int count, decks;
+    double column[COLUMNS][12];
+    double time[12][SAMPLES], efficiency[12][SAMPLES], gangue[12][SAMPLES];  /* of the first seed */
+    char name[12][32];
+} sweep_result;
+
+/* All runs of one value: the mean over seeds, and their spread (standard deviation of one). */
+static int value_run(const struct screener_options *base, const char *tag, sweep_result *r) {
+    static screener s;
+    double sum[COLUMNS] = {0}, square[2] = {0, 0};
+    const int n = r->count;
+    int i, k;
+    for (i = 0; i < base->repeats; i++) {
         struct screener_options o = *base;
-        w->set(&o, w->value[i]);
-        snprintf(names[n], sizeof names[n], "%s%g", w->name, w->value[i]);
-        if (is(w->name, "rate") && !(w->value[i] > 0)) snprintf(names[n], sizeof names[n], "batch");
-        snprintf(study.prefix, sizeof study.prefix, "%s%s%s.", tag, *tag ? "." : "", names[n]);
-        if (!screener_run(&s, &o, names[n])) {
-            x[n] = w->value[i];
-            number[n] = s.efficiency[s.samples - 1];
-            mass[n] = s.mass_efficiency[s.samples - 1];
-            bad_share[n] = s.gangue[s.samples - 1];
-            k = 2*s.samples/3;
-            rate[n] = (s.left[s.samples - 1] - s.left[k])/(s.time[s.samples - 1] - s.time[k]);
-            for (k = 0; k < SAMPLES; k++) {
-                const int at = k < s.samples ? k : s.samples - 1;
-                time[n][k] = s.time[at];
-                over[n][k] = s.efficiency[at];
-                gangue[n][k] = s.gangue[at];
-            }
-            study_curve(&t, names[n], STUDY_LINE, SAMPLES, time[n], over[n]);
-            study_curve(&g, names[n], STUDY_LINE, SAMPLES, time[n], gangue[n]);
-            n++;
+        char more[24] = "";
+        o.seed += i;
+        if (i) snprintf(more, sizeof more, ".seed%d", o.seed);
+        snprintf(study.prefix, sizeof study.prefix, "%s%s%s%s.", tag, *tag ? "." : "", r->name[n],
+                 more);
+        if (screener_run(&s, &o, r->name[n])) { screener_end(&s); return 1; }
+        k = s.samples - 1;
+        sum[NUMBER] += s.efficiency[k];
+        sum[MASS] += s.mass_efficiency[k];
+        sum[GANGUE] += s.gangue[k];
+        sum[RATE] += rate_late(&s);
+        square[0] += s.efficiency[k]*s.efficiency[k];
+        square[1] += s.gangue[k]*s.gangue[k];
+        r->decks = s.levels;
+        for (k = 0; k < s.levels; k++) sum[DECK_RATE + k] += deck_rate_late(&s, k);
+        for (k = 0; k < SAMPLES && i == 0; k++) {
+            const int at = k < s.samples ? k : s.samples - 1;
+            r->time[n][k] = s.time[at];
+            r->efficiency[n][k] = s.efficiency[at];
+            r->gangue[n][k] = s.gangue[at];
         }
         screener_end(&s);
-        if (w->seed[i] >= 0) { sx[m] = w->value[i]; sy[m++] = w->seed[i]; }
+    }
+    for (k = NUMBER; k < COLUMNS; k++) r->column[k][n] = sum[k]/base->repeats;
+    for (k = 0; k < 2 && base->repeats > 1; k++) {
+        const double mean = r->column[k ? GANGUE : NUMBER][n];
+        r->column[SPREAD + k][n] = sqrt(fmax(0, square[k] - base->repeats*mean*mean)/
+                                        (base->repeats - 1));
+    }
+    if (base->repeats > 1) {
+        snprintf(study.prefix, sizeof study.prefix, "%s%s%s.", tag, *tag ? "." : "", r->name[n]);
+        study_result("mean.efficiency_number", r->column[NUMBER][n], "%");
+        study_result("mean.efficiency_mass", r->column[MASS][n], "%");
+        study_result("mean.gangue_mass", r->column[GANGUE][n], "%");
+        study_result("spread.efficiency_number", r->column[SPREAD][n], "%");
+        study_result("spread.gangue_mass", r->column[GANGUE_SPREAD][n], "%");
     }
     study.prefix[0] = 0;
-    f.title = "Sorting efficiency";
-    t.title = "Sorting efficiency over time";
-    g.title = "Gangue over time";
-    f.x_label = w->label;
-    f.y_label = "efficiency [%]";
-    f.y1 = 100;
-    study_curve(&f, "by number", STUDY_LINE, n, x, number);
-    study_curve(&f, "by mass", STUDY_DASHED, n, x, mass);
-    study_curve(&f, "gangue share, mass", STUDY_FAINT, n, x, bad_share);
-    if (m) study_curve(&f, "[FEN]", STUDY_DOTS, m, sx, sy);
-    if (n) {
-        for (k = 0; k < n; k++) {
-            f.x0 = k ? fmin(f.x0, x[k]) : x[k];
-            f.x1 = k ? fmax(f.x1, x[k]) : x[k];
-        }
-        snprintf(file, sizeof file, "%s%s%s.svg", tag, *tag ? "_" : "", w->name);
-        study_figure_write(&f, file);
-        t.x_label = g.x_label = "time [s]";
-        t.y_label = "efficiency by number [%]";
-        g.y_label = "gangue, share of mass [%]";
-        snprintf(file, sizeof file, "%s%s%s_time.svg", tag, *tag ? "_" : "", w->name);
-        study_figure_write(&t, file);
-        snprintf(file, sizeof file, "%s%s%s_gangue.svg", tag, *tag ? "_" : "", w->name);
-        study_figure_write(&g, file);
-        columns[0] = x; columns[1] = number; columns[2] = mass; columns[3] = bad_share;
-        columns[4] = rate;
-        snprintf(file, sizeof file, "%s%s%s.csv", tag, *tag ? "_" : "", w->name);
-        study_csv(file, "value,efficiency_number,efficiency_mass,gangue_mass,rate", n, 5, columns);
+    r->count++;
+    return 0;
+}
+
+/* Runs one sweep. Pictures: efficiency and gangue against its value beside the thesis, the rate of
+   each deck against its value, and both over time. */
+static void sweep_run(const sweep *w, const struct screener_options *base, const char *tag) {
+    static sweep_result r;
+    static const char *const what[4] = {"", "_time", "_gangue", "_rates"};
+    double thesis_x[12], thesis_y[12];
+    const double *columns[COLUMNS];
+    study_figure figure[4];
+    char file[96], decks[LEVELS][16];
+    int i, k, known = 0;
+    memset(&r, 0, sizeof r);
+    memset(figure, 0, sizeof figure);
+    for (i = 0; i < w->count; i++) {
+        struct screener_options o = *base;
+        w->set(&o, w->value[i]);
+        r.column[VALUE][r.count] = w->value[i];
+        snprintf(r.name[r.count], sizeof r.name[0], "%s%g", w->name, w->value[i]);
+        if (is(w->name, "rate") && !(w->value[i] > 0))
+            snprintf(r.name[r.count], sizeof r.name[0], "batch");
+        value_run(&o, tag, &r);
+        if (w->thesis[i] >= 0) { thesis_x[known] = w->value[i]; thesis_y[known++] = w->thesis[i]; }
     }
+    if (!r.count) return;
+    figure[0].title = "Sorting efficiency";
+    figure[0].y_label = "efficiency [%]";
+    figure[0].y1 = 100;
+    figure[1].title = "Sorting efficiency over time";
+    figure[1].y_label = "efficiency by number [%]";
+    figure[2].title = "Gangue over time";
+    figure[2].y_label = "gangue, share of mass [%]";
+    figure[3].title = "Output rates";
+    figure[3].y_label = "rate of a deck [kg/s]";
+    figure[0].x_label = figure[3].x_label = w->label;
+    figure[1].x_label = figure[2].x_label = "time [s]";
+    figure[0].x0 = figure[3].x0 = r.column[VALUE][0];
+    figure[0].x1 = figure[3].x1 = r.column[VALUE][r.count - 1];
+    study_curve(&figure[0], "by number", STUDY_LINE, r.count, r.column[VALUE], r.column[NUMBER]);
+    study_curve(&figure[0], "by mass", STUDY_DASHED, r.count, r.column[VALUE], r.column[MASS]);
+    study_curve(&figure[0], "gangue, share of mass", STUDY_FAINT, r.count, r.column[VALUE],
+                r.column[GANGUE]);
+    if (known) study_curve(&figure[0], "[ALK07]", STUDY_DOTS, known, thesis_x, thesis_y);
+    for (i = 0; i < r.count; i++) {
+        study_curve(&figure[1], r.name[i], STUDY_LINE, SAMPLES, r.time[i], r.efficiency[i]);
+        study_curve(&figure[2], r.name[i], STUDY_LINE, SAMPLES, r.time[i], r.gangue[i]);
+    }
+    for (k = 0; k < r.decks; k++) {
+        snprintf(decks[k], sizeof decks[k], "deck %d", k + 1);
+        study_curve(&figure[3], decks[k], STUDY_LINE, r.count, r.column[VALUE],
+                    r.column[DECK_RATE + k]);
+    }
+    for (k = 0; k < 4; k++) {
+        snprintf(file, sizeof file, "%s%s%s%s.svg", tag, *tag ? "_" : "", w->name,
+                 what[k]);
+        study_figure_write(&figure[k], file);
+    }
+    for (k = 0; k < COLUMNS; k++) columns[k] = r.column[k];
+    snprintf(file, sizeof file, "%s%s%s.csv", tag, *tag ? "_" : "", w->name);
+    study_csv(file, sweep_heading, r.count, COLUMNS, columns);
 }
 static const sweep *sweep_of(const char *name) {
     size_t i;
@@ -569,7 +678,7 @@ static void also(const struct screener_options *o, const char *name) {
 int main(int argc, char **argv) {
     struct screener_options o;
     int i;
-    study_options(argc, argv, "A tumbling screening machine after [FEN] section 4.4.", table,
+    study_options(argc, argv, "A tumbling screening machine after [ALK07] section 4.4.", table,
                   (int)(sizeof table/sizeof *table));
     study_begin(options.out);
     o = options;
@@ -631,6 +740,10 @@ int main(int argc, char **argv) {
         o.vane = 0;                 also(&o, "no_vane");        o = options;
         o.eccentricity = 20;        also(&o, "eccentricity20"); o = options;
         o.barrel = "stepped";       also(&o, "stepped");
+    } else if (is(o.study, "hour")) {
+        o.machine = "small";
+        if (!(o.seconds > 0)) o.seconds = 3600;
+        also(&o, "hour");
     } else {                                    /* check: a small part of it all, for trying */
         o.share = 0.05;
         o.seconds = 3;

@@ -1,7 +1,7 @@
 /* tumbler.h - how a tumbling screening machine moves: the frames of its barrel and its plates, as a
    function for DEM_MOTION_USER. MIT licence. Include it after dem.h.
 
-   The machine is that of [FEN] section 4.2 and 4.3.2. A main shaft turns with `speed` about the
+   The machine is that of [ALK07] section 4.2 and 4.3.2. A main shaft turns with `speed` about the
    vertical; on it sits a plate inclined by alpha and beta; on the plate, out of the shaft's middle
    by `eccentricity`, an auxiliary shaft carries the barrel, which turns about its own axis by psi
    against the ground (or nearly so: about an axis that tumbles). With Z, C, B the rotations of the

@@ -251,6 +251,21 @@ int main(int argc, char **argv) {
         }
         CHECK_EQ(dem_moldyn_add(w, &m), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_world_error(w), "make an empty one with dem_moldyn_desc");
+        {                                        /* filled in by hand: found before any is added */
+            const dem_world_desc desc = dem_moldyn_desc(&m);
+            dem_world *fresh = dem_world_create(&desc);
+            m.grains[14*4 + 12] = -1;
+            CHECK_EQ(dem_moldyn_add(fresh, &m), DEM_ERROR_ARGUMENT);
+            CHECK_STR(dem_world_error(fresh), "grain 4 has radius -1");
+            m.grains[14*4 + 12] = 1;
+            m.density = 0;
+            CHECK_EQ(dem_moldyn_add(fresh, &m), DEM_ERROR_ARGUMENT);
+            CHECK_STR(dem_world_error(fresh), "control.rho is 0");
+            CHECK_EQ(dem_bodies_get(fresh).count, 0);
+            m.density = 2000;
+            CHECK_EQ(dem_moldyn_add(fresh, &m), DEM_OK);   /* the world is as it was */
+            dem_world_destroy(fresh);
+        }
         dem_moldyn_free(w, &m);
         CHECK_EQ(dem_moldyn_read(w, "build/tmp/none.cin", 0, 0, &m), DEM_ERROR_FILE);
         CHECK_EQ(m.grain_count, 0);

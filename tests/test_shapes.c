@@ -1,7 +1,7 @@
 /* Bodies that are not spheres: where two ellipsoids meet, against brute force and the literal
-   construction of [GAS]; ellipsoids and clusters against walls and each other; mass properties of
+   construction of [RUB15]; ellipsoids and clusters against walls and each other; mass properties of
    clusters; what a world of them promises (state, errors, threads, checkpoints).
-   [GAS] seed 002 of the project, sections 2 and 3; [PW85] Perram & Wertheim, J. Comput. Phys. 58
+   [RUB15] seed 002 of the project, sections 2 and 3; [PW85] Perram & Wertheim, J. Comput. Phys. 58
    (1985) 409; references of granular gases as in docs/ellipsoids.md. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
@@ -224,7 +224,7 @@ static wide crossing(const wide *M, const wide *p, const wide *d, int side) {
         }
     return (-b + side*sqrtl(b*b - a*c))/a;
 }
-/* [GAS] 3.2: shrunk to W0 (1 - eta); quartic, eigenvectors, plane V0 V1 C, line V2 V3. */
+/* [RUB15] 3.2: shrunk to W0 (1 - eta); quartic, eigenvectors, plane V0 V1 C, line V2 V3. */
 typedef struct literal { double point[3], normal[3], depth; int found; } literal;
 static literal construct(const dem_ellipsoid *a, const dem_ellipsoid *b, double W0, double lambda,
                          double eta) {
@@ -306,7 +306,7 @@ static void meeting_tests(void) {
         CHECK_NEAR(m.normal.z, 0, 10*eps);
         CHECK_NEAR(m.point.x, 1 + 0.6*0.5/1.2, 10*eps);
         CHECK_NEAR(m.depth_normal, 0.2, 10*eps);
-        CHECK_NEAR(m.depth_seed, 0.2, 10*eps);
+        CHECK_NEAR(m.depth_chord, 0.2, 10*eps);
         CHECK_NEAR(m.depth_conservative, 0.2, 10*eps);
     }
 
@@ -357,11 +357,11 @@ static void meeting_tests(void) {
                 CHECK_REL(m.depth_conservative, ell*(1 - (double)m.scale), SINGLE ? 1e-3 : 1e-9);
                 CHECK_REL(m.depth_normal, along*(1/(double)m.scale - 1), SINGLE ? 1e-3 : 1e-9);
             }
-            CHECK((double)m.depth_seed > 0.99*(double)m.depth_normal); /* more, to first order */
+            CHECK((double)m.depth_chord > 0.99*(double)m.depth_normal); /* more, to first order */
         }
     }
 
-    TEST("quartic and eigenvectors of [GAS], shrunk ever less, tend to the same meeting") {
+    TEST("quartic and eigenvectors of [RUB15], shrunk ever less, tend to the same meeting") {
         uint64_t seed = 21;
         double error[2][3] = {{0, 0, 0}, {0, 0, 0}};
         int i, k, pairs = 0;
@@ -383,7 +383,7 @@ static void meeting_tests(void) {
                 CHECK(l.found);
                 error[k][0] += apart(m.normal, n);
                 error[k][1] += apart(m.point, at(l.point[0], l.point[1], l.point[2]));
-                error[k][2] += fabs(l.depth/(double)m.depth_seed - 1);
+                error[k][2] += fabs(l.depth/(double)m.depth_chord - 1);
             }
             pairs++;
         }
@@ -421,7 +421,7 @@ static void meeting_tests(void) {
         CHECK(dot(m.normal, m.normal) < 1.01 && dot(m.normal, m.normal) > 0.99);
     }
 
-    TEST("an ellipsoid inside another overlaps it, which the sign test of [GAS] denies") {
+    TEST("an ellipsoid inside another overlaps it, which the sign test of [RUB15] denies") {
         dem_ellipsoid a, b;
         dem_meeting m;
         uint64_t seed = 2;
@@ -436,7 +436,7 @@ static void meeting_tests(void) {
             m = dem_ellipsoids_meet(&a, &b, 0);
             CHECK_REL(m.scale, scale_by_force(&a, &b), SINGLE ? 1e-4 : 1e-10);
             CHECK(m.scale < 1);
-            CHECK(m.depth_normal > 0 && m.depth_seed > 0 && m.depth_conservative > 0);
+            CHECK(m.depth_normal > 0 && m.depth_chord > 0 && m.depth_conservative > 0);
         }
     }
 
@@ -484,7 +484,7 @@ static void meeting_tests(void) {
             n = dem_ellipsoids_meet(&c, &d, 0);
             CHECK_REL(n.scale, m.scale, SINGLE ? 1e-3 : 1e-11);
             CHECK_NEAR(apart(n.normal, dem_quat_turn(q, m.normal)), 0, SINGLE ? 0.1 : 1e-6);
-            CHECK_REL(n.depth_seed, m.depth_seed, SINGLE ? 0.1 : 1e-6);
+            CHECK_REL(n.depth_chord, m.depth_chord, SINGLE ? 0.1 : 1e-6);
             n = dem_ellipsoids_meet(&b, &a, 0);
             CHECK_REL(n.scale, m.scale, SINGLE ? 1e-3 : 1e-11);
             CHECK_NEAR(n.lambda, 1 - (double)m.lambda, SINGLE ? 1e-2 : 1e-6);
@@ -1679,7 +1679,7 @@ static void more_tests(void) {
         CHECK_NEAR(sum/met, 0.8, 0.005);
     }
 
-    TEST("the overlap of [GAS] leaves a floor of energy error that the conservative one has not") {
+    TEST("the overlap of [RUB15] leaves a floor of energy error that the conservative one has not") {
         const double stiffness = 1e6, mass = mass_of(2500, 0.01, 0.012, 0.02);
         const double dt = pi*sqrt(mass/2/stiffness)/800;
         double floor_of[3] = {0, 0, 0};
