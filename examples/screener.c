@@ -432,12 +432,64 @@ static void frame_write(screener *s, int frame) {
     refused(s->world, dem_vtp_write(s->world, study_path(name)));
 }
 
+/* Balls coloured by radius, as they are: from the side with the decks, or those above the highest
+   sieve from above. */
+static void picture_draw(screener *s, int above, const char *title, const char *file) {
+    enum { RIM = 97 };
+    const dem_bodies b = dem_bodies_get(s->world);
+    const double high = s->levels*s->o.spacing;
+    double *v[4], x[LEVELS][RIM], y[LEVELS][RIM];
+    dem_pose pose;
+    study_figure f;
+    int i, k, n = 0;
+    memset(&f, 0, sizeof f);
+    memset(&pose, 0, sizeof pose);
+    for (k = 0; k < 4; k++) v[k] = (double *)study_alloc((size_t)b.count + 1, sizeof(double));
+    dem_wall_pose(s->world, s->sieve[s->levels - 1], &pose);
+    for (i = 0; i < b.count; i++) {
+        const dem_real *p = b.positions + 4*i;
+        const double up = (double)(p[2] - pose.position.z);
+        if (above && up < -0.05*s->R) continue;
+        v[0][n] = (double)p[0];
+        v[1][n] = (double)p[above ? 1 : 2];
+        v[2][n] = (double)p[3];
+        v[3][n++] = 1000*(double)p[3];
+    }
+    for (k = above ? s->levels - 1 : 0; k < s->levels; k++) {
+        dem_wall_pose(s->world, k ? s->sieve[k] : s->floor, &pose);
+        for (i = 0; i < RIM; i++) {              /* its rim, as a tilted circle */
+            const double a = level_radius(s, k)*cos(2*PI*i/(RIM - 1));
+            const double c = level_radius(s, k)*sin(2*PI*i/(RIM - 1));
+            x[k][i] = (double)pose.position.x + a*(double)pose.rotation[0] +
+                c*(double)pose.rotation[1];
+            y[k][i] = above ? (double)pose.position.y + a*(double)pose.rotation[3] +
+                c*(double)pose.rotation[4]
+                : (double)pose.position.z + a*(double)pose.rotation[6] +
+                c*(double)pose.rotation[7];
+        }
+        study_curve(&f, 0, STUDY_OUTLINE, RIM, x[k], y[k]);
+    }
+    f.title = title;
+    f.x_label = "x [m]";
+    f.y_label = above ? "y [m]" : "z [m]";
+    f.bar_label = "radius [mm]";
+    f.equal = 1;
+    f.size = 760;
+    f.x0 = -1.1*s->R; f.x1 = 1.1*s->R;
+    f.y0 = above ? -1.1*s->R : -0.1*high; f.y1 = above ? 1.1*s->R : 1.15*high;
+    f.lo = 1000*s->radius[0]; f.hi = 1000*s->radius[s->classes - 1];
+    f.disc_count = n;
+    f.disc_x = v[0]; f.disc_y = v[1]; f.disc_r = v[2]; f.disc_value = v[3];
+    study_figure_write(&f, file);
+    for (k = 0; k < 4; k++) free(v[k]);
+}
+
 /* One machine, run to its end; 0 when it went well. */
 static int screener_run(screener *s, const struct screener_options *o, const char *name) {
     dem_advice advice;
     const int counting = is(o->study, "hour");      /* balls, at every step */
     double next = 0, begun, work = 0, unbalanced = 0;
-    int i, frame = 0, bad;
+    int i, frame = 0, drawn = 0, bad;
     memset(s, 0, sizeof *s);
     s->o = *o;
     screener_settle(s);
@@ -457,6 +509,11 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
         if (dem_world_time(s->world) >= next - s->dt/2) {
             sample_take(s);
             next += s->o.seconds/(SAMPLES - 1);
+        }
+        if (!drawn && is(o->study, "run") && 2*dem_world_time(s->world) >= s->o.seconds) {
+            picture_draw(s, 0, "Half way through, from the side", "side.svg");
+            picture_draw(s, 1, "The highest deck, half way through", "top.svg");
+            drawn = 1;
         }
         if (frame < s->o.frames && dem_world_time(s->world) >= frame*s->o.seconds/s->o.frames)
             frame_write(s, frame++);
@@ -529,7 +586,8 @@ static void set_factor(struct screener_options *o, double v) {
 static void set_friction(struct screener_options *o, double v) { o->wall_friction = v; }
 
 static const sweep sweeps[] = {
-    {"rpm", "machine [1/min]", 5, {10, 25, 50, 150, 250}, {40, -1, 78, 72, 58}, set_rpm},
+    {"rpm", "machine [1/min]", 7, {10, 25, 50, 75, 100, 150, 250}, {40, -1, 78, -1, -1, 72, 58},
+     set_rpm},
     {"rate", "feed [1/s], 0: batch", 5, {0, 37, 74, 147, 294}, {-1, -1, -1, 78, -1}, set_rate},
     {"alpha", "alpha [deg]", 5, {0, 0.5, 1, 2, 4}, {76, -1, 78.2, -1, -1}, set_alpha},
     {"beta", "beta [deg]", 5, {0, 0.3, 0.65, 1.3, 2.6}, {-1, -1, 78.2, -1, -1}, set_beta},

@@ -12,7 +12,7 @@
                                 u sin b cos a + e sin a)                                  eq 4.1
        spin = phi' z + chi' A_lg^T z,   velocity = phi' z x r_oc
 
-   The seed prints derivatives of all nine elements of A_lg instead. Where it differs:
+   [ALK07] prints derivatives of all nine elements of A_lg instead. Where it differs:
      4.13  A11', A12', A22': "(w_b - w) cos(w_b - w)t cos(wt)" must have the sine of (w_b - w)t
      4.15  has ten lines for nine elements: the fifth, named A22', is A22 itself, and those after
            it are one name behind (what is named A23' is A22', and so on: A33' appears twice)

@@ -217,6 +217,66 @@ static dem_world *packing(counter *c, int threads, double skin, dem_search searc
     return world;
 }
 
+/* 60 bodies that fall in on their middle, so that lists grow on the way: spheres, or spheres, clusters
+   and ellipsoids in turn. */
+static void swarm_add(dem_world *world, int mixed) {
+    static const dem_real pair[6] = {0, 0, 0, DEM_R(1e-3), 0, 0};
+    const dem_material glass = scene_material(world, 1e7, 0.9, 0.3, 0);
+    dem_cluster_desc two = DEM_CLUSTER_DESC;
+    dem_shape shapes[3] = {{0}, {0}, {0}};
+    int i;
+    if (mixed) {
+        two.count = 2;
+        two.positions = pair;
+        two.radius = DEM_R(7e-4);
+        shapes[1] = dem_shape_cluster_add(world, &two);
+        shapes[2] = dem_shape_ellipsoid_add(world, at(8e-4, 1e-3, 1.3e-3));
+    }
+    for (i = 0; i < 60; i++) {
+        const double x = (i%4 - 1.5)*5e-3, y = (i/4%4 - 1.5)*5e-3, z = (i/16 - 1.5)*5e-3;
+        const dem_body b = mixed && i%3 ? dem_body_add(world, glass, shapes[i%3], at(x, y, z),
+                                                       dem_quat_about(at(1, i, 2), 1))
+            : dem_sphere_add(world, glass, DEM_R(1e-3), at(x, y, z));
+        scene_move(world, b, at(-600*x, -600*y, -600*z), at(0, 0, 0));
+    }
+}
+/* Runs the swarm with every search; then again for every request for memory, which is refused once.
+   The hash is that of the run in which none was. */
+static void swarm_each(int mixed) {
+    int search;
+    for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
+        uint64_t hash = 0;
+        long k, calls = 1;
+        for (k = 0; k <= calls && test_now.wrong == 0; k++) {
+            counter c;
+            dem_world_desc desc = counted(&c);
+            dem_world *world;
+            long before;
+            int tries = 0, failed = 0;
+            desc.dt = DEM_R(4e-6);
+            desc.search = (dem_search)search;
+            desc.gravity = at(0, 0, 0);
+            world = dem_world_create(&desc);
+            swarm_add(world, mixed);
+            before = c.calls;
+            c.refuse = k ? before + k : 0;
+            while ((dem_world_steps(world) < 500 || failed) && tries < 1000) {
+                const dem_result r = dem_world_step(world, 1);
+                failed = r != DEM_OK;
+                if (failed) { tries++; CHECK_EQ(r, DEM_ERROR_MEMORY); }
+            }
+            if (k == 0) { calls = c.calls - before; hash = dem_world_hash(world); }
+            CHECK(k == 0 || tries > 0);
+            CHECK((double)dem_counters_get(world).overlap_max > 0);
+            CHECK_EQ(dem_world_steps(world), 500);
+            CHECK_EQ(dem_world_hash(world), hash);
+            if (test_now.wrong) printf("        at request %ld of %ld\n", k, calls);
+            dem_world_destroy(world);
+            CHECK_EQ(c.blocks, 0);
+        }
+    }
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -289,99 +349,11 @@ int main(int argc, char **argv) {
     }
     TEST("whichever request for memory fails in a step, repeating the step gives the run without "
          "failure") {
-        int search;
-        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
-            uint64_t hash = 0;
-            long k, calls = 1;
-            for (k = 0; k <= calls && test_now.wrong == 0; k++) {
-                counter c;
-                dem_world_desc desc = counted(&c);
-                dem_world *world;
-                dem_material glass;
-                long before;
-                int i, tries = 0, failed = 0;
-                desc.dt = DEM_R(4e-6);
-                desc.search = (dem_search)search;
-                desc.gravity = at(0, 0, 0);
-                world = dem_world_create(&desc);
-                glass = scene_material(world, 1e7, 0.9, 0.3, 0);
-                /* a swarm that falls in on itself: lists grow on the way */
-                for (i = 0; i < 60; i++) {
-                    const double x = (i%4 - 1.5)*5e-3, y = (i/4%4 - 1.5)*5e-3, z =
-                        (i/16 - 1.5)*5e-3;
-                    dem_body b = dem_sphere_add(world, glass, DEM_R(1e-3), at(x, y, z));
-                    scene_move(world, b, at(-600*x, -600*y, -600*z), at(0, 0, 0));
-                }
-                before = c.calls;
-                c.refuse = k ? before + k : 0;
-                while ((dem_world_steps(world) < 500 || failed) && tries < 1000) {
-                    const dem_result r = dem_world_step(world, 1);
-                    failed = r != DEM_OK;
-                    if (failed) { tries++; CHECK_EQ(r, DEM_ERROR_MEMORY); }
-                }
-                if (k == 0) { calls = c.calls - before; hash = dem_world_hash(world); }
-                CHECK(k == 0 || tries > 0);
-                CHECK((double)dem_counters_get(world).overlap_max > 0);
-                CHECK_EQ(dem_world_steps(world), 500);
-                CHECK_EQ(dem_world_hash(world), hash);
-                if (test_now.wrong) printf("        at request %ld of %ld\n", k, calls);
-                dem_world_destroy(world);
-                CHECK_EQ(c.blocks, 0);
-            }
-        }
+        swarm_each(0);
     }
     TEST("whichever request for memory fails in a step, repeating the step gives the run without "
          "failure, clusters and ellipsoids among the spheres") {
-        static const dem_real pair[6] = {0, 0, 0, DEM_R(1e-3), 0, 0};
-        int search;
-        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
-            uint64_t hash = 0;
-            long k, calls = 1;
-            for (k = 0; k <= calls && test_now.wrong == 0; k++) {
-                counter c;
-                dem_world_desc desc = counted(&c);
-                dem_world *world;
-                dem_material glass;
-                long before;
-                dem_cluster_desc two = DEM_CLUSTER_DESC;
-                dem_shape shapes[3] = {{0}, {0}, {0}};
-                int i, tries = 0, failed = 0;
-                desc.dt = DEM_R(4e-6);
-                desc.search = (dem_search)search;
-                desc.gravity = at(0, 0, 0);
-                world = dem_world_create(&desc);
-                glass = scene_material(world, 1e7, 0.9, 0.3, 0);
-                two.count = 2;
-                two.positions = pair;
-                two.radius = DEM_R(7e-4);
-                shapes[1] = dem_shape_cluster_add(world, &two);
-                shapes[2] = dem_shape_ellipsoid_add(world, at(8e-4, 1e-3, 1.3e-3));
-                /* a swarm that falls in on itself: lists grow on the way */
-                for (i = 0; i < 60; i++) {
-                    const double x = (i%4 - 1.5)*5e-3, y = (i/4%4 - 1.5)*5e-3, z =
-                        (i/16 - 1.5)*5e-3;
-                    dem_body b = i%3 ? dem_body_add(world, glass, shapes[i%3], at(x, y, z),
-                                                    dem_quat_about(at(1, i, 2), 1))
-                        : dem_sphere_add(world, glass, DEM_R(1e-3), at(x, y, z));
-                    scene_move(world, b, at(-600*x, -600*y, -600*z), at(0, 0, 0));
-                }
-                before = c.calls;
-                c.refuse = k ? before + k : 0;
-                while ((dem_world_steps(world) < 500 || failed) && tries < 1000) {
-                    const dem_result r = dem_world_step(world, 1);
-                    failed = r != DEM_OK;
-                    if (failed) { tries++; CHECK_EQ(r, DEM_ERROR_MEMORY); }
-                }
-                if (k == 0) { calls = c.calls - before; hash = dem_world_hash(world); }
-                CHECK(k == 0 || tries > 0);
-                CHECK((double)dem_counters_get(world).overlap_max > 0);
-                CHECK_EQ(dem_world_steps(world), 500);
-                CHECK_EQ(dem_world_hash(world), hash);
-                if (test_now.wrong) printf("        at request %ld of %ld\n", k, calls);
-                dem_world_destroy(world);
-                CHECK_EQ(c.blocks, 0);
-            }
-        }
+        swarm_each(1);
     }
     TEST("a large checkpoint that runs out of memory while being read leaves the small world as "
          "it was") {
