@@ -10740,21 +10740,23 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
    checks all of that first, then makes room, then copies: until then the world is as it was.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 3 };
+enum { DEMI_CHECKPOINT_VERSION = 4 };
 
-/* from: reading */
-typedef struct demi_stream { FILE *file; const char *from; uint64_t sum; } demi_stream;
+/* Writes to file, or reads from memory, or (with neither) only counts bytes. */
+typedef struct demi_stream { FILE *file; const char *from; uint64_t sum; size_t size; } demi_stream;
 
 static void demi_visit(demi_stream *s, void *data, size_t size) {
+    s->size += size;
     if (!size) return;
     if (s->file) {
         s->sum = demi_hash(s->sum, data, size);
         fwrite(data, 1, size, s->file);
-    } else {
+    } else if (s->from) {
         memcpy(data, s->from, size);
         s->from += size;
     }
 }
+#define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
 
 typedef struct demi_extent {         /* how large the arrays are */
     int32_t count, slots, domains, walls, fields, own_stride, cross_stride, wall_stride,
@@ -10795,7 +10797,7 @@ static size_t demi_state_size(const dem_world *w, const demi_extent *s) {
     const size_t r = sizeof(dem_real), n = (size_t)s->count, pairs = (size_t)s->own_total +
         (size_t)s->cross_total;
     size_t size = n*((w->desc.integrator == DEM_POSITION_VERLET ? 35 : 31)*r + 8) +
-        (size_t)s->slots*8 + (size_t)s->domains*sizeof(demi_domain);
+        (size_t)s->slots*8;
     int i;
     if (s->orienting) size += n*(12*r + 4) + 2*sizeof(int);
     size += (size_t)s->shaped_total*sizeof(demi_shaped);
@@ -10814,46 +10816,47 @@ static size_t demi_state_size(const dem_world *w, const demi_extent *s) {
     return size;
 }
 
-/* Numbers that are not arrays. */
+/* Numbers that are not arrays, and the domains: what these count steers demi_state_visit. */
 static void demi_state_scalars(dem_world *w, demi_stream *s) {
-    demi_visit(s, &w->balance, sizeof w->balance);
-    demi_visit(s, &w->skin, sizeof w->skin);                 demi_visit(s, &w->reach,
-        sizeof w->reach);
-    demi_visit(s, &w->wall_reach, sizeof w->wall_reach);
-    demi_visit(s, &w->skin_auto, sizeof w->skin_auto);
-    demi_visit(s, &w->last_rebuild, sizeof w->last_rebuild);
-    demi_visit(s, &w->steps, sizeof w->steps);
-    demi_visit(s, &w->rebuilds, sizeof w->rebuilds);         demi_visit(s, &w->time,
-        sizeof w->time);
-    demi_visit(s, &w->dt, sizeof w->dt);                     demi_visit(s, &w->assumed_speed,
-        sizeof w->assumed_speed);
-    demi_visit(s, &w->dt_valid, sizeof w->dt_valid);         demi_visit(s, &w->forces_valid,
-        sizeof w->forces_valid);
-    demi_visit(s, &w->synced, sizeof w->synced);
-    demi_visit(s, &w->primed, sizeof w->primed);
-    demi_visit(s, &w->moved, sizeof w->moved);
-    demi_visit(s, &w->pairs_changed, sizeof w->pairs_changed);
-    demi_visit(s, &w->near_span, sizeof w->near_span);
-    demi_visit(s, &w->near_age, sizeof w->near_age);
-    demi_visit(s, &w->near_margin, sizeof w->near_margin);
-    demi_visit(s, &w->near_drift, sizeof w->near_drift);
-    demi_visit(s, &w->near_kick, sizeof w->near_kick);
-    demi_visit(s, &w->near_creep, sizeof w->near_creep);     demi_visit(s, &w->overlap_max,
-        sizeof w->overlap_max);
-    demi_visit(s, &w->speed_max, sizeof w->speed_max);       demi_visit(s, w->energy,
-        sizeof w->energy);
-    demi_visit(s, &w->energy_inserted, sizeof w->energy_inserted);
-    demi_visit(s, &w->energy_removed, sizeof w->energy_removed);
-    demi_visit(s, &w->throughput, sizeof w->throughput);
-    demi_visit(s, &w->half_kick, sizeof w->half_kick);
-    demi_visit(s, &w->slot_free, sizeof w->slot_free);       demi_visit(s, &w->slot_pending,
-        sizeof w->slot_pending);
+    DEMI_VISIT(s, w->balance);
+    DEMI_VISIT(s, w->skin);
+    DEMI_VISIT(s, w->reach);
+    DEMI_VISIT(s, w->wall_reach);
+    DEMI_VISIT(s, w->skin_auto);
+    DEMI_VISIT(s, w->last_rebuild);
+    DEMI_VISIT(s, w->steps);
+    DEMI_VISIT(s, w->rebuilds);
+    DEMI_VISIT(s, w->time);
+    DEMI_VISIT(s, w->dt);
+    DEMI_VISIT(s, w->assumed_speed);
+    DEMI_VISIT(s, w->dt_valid);
+    DEMI_VISIT(s, w->forces_valid);
+    DEMI_VISIT(s, w->synced);
+    DEMI_VISIT(s, w->primed);
+    DEMI_VISIT(s, w->moved);
+    DEMI_VISIT(s, w->pairs_changed);
+    DEMI_VISIT(s, w->near_span);
+    DEMI_VISIT(s, w->near_age);
+    DEMI_VISIT(s, w->near_margin);
+    DEMI_VISIT(s, w->near_drift);
+    DEMI_VISIT(s, w->near_kick);
+    DEMI_VISIT(s, w->near_creep);
+    DEMI_VISIT(s, w->overlap_max);
+    DEMI_VISIT(s, w->speed_max);
+    DEMI_VISIT(s, w->energy);
+    DEMI_VISIT(s, w->energy_inserted);
+    DEMI_VISIT(s, w->energy_removed);
+    DEMI_VISIT(s, w->throughput);
+    DEMI_VISIT(s, w->half_kick);
+    DEMI_VISIT(s, w->slot_free);
+    DEMI_VISIT(s, w->slot_pending);
+    demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
 }
-static size_t demi_scalars_size(dem_world *w) {
-    return sizeof w->balance + 10*sizeof(double) + 3*sizeof(uint64_t) + sizeof(double) +
-        sizeof(dem_real) + sizeof(double) +
-           6*sizeof(int) + 2*sizeof(double) + sizeof w->energy +
-               4*sizeof(double) + 2*sizeof(int);
+static size_t demi_scalars_size(dem_world *w, int domains) {
+    demi_stream counting = {0, 0, 0, 0};
+    demi_state_scalars(w, &counting);
+    return counting.size - (size_t)w->domain_count*sizeof(demi_domain) +
+        (size_t)domains*sizeof(demi_domain);
 }
 static void demi_state_visit(dem_world *w, demi_stream *s) {
     const size_t r = sizeof(dem_real), n = (size_t)w->count;
@@ -10868,7 +10871,6 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
     demi_visit(s, w->body_slot, 4*n);    demi_visit(s, w->body_material, 4*n);
     demi_visit(s, w->slot_index, (size_t)w->slot_count*4);
     demi_visit(s, w->slot_generation, (size_t)w->slot_count*4);
-    demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         for (i = 0; i < 2; i++) {
@@ -11060,10 +11062,11 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
                                sizeof(demi_shaped));
     head.scene = demi_scene_digest(w);
     head.shape = demi_extent_of(w);
-    head.body_size = demi_scalars_size(w) + demi_state_size(w, &head.shape);
+    head.body_size = demi_scalars_size(w, w->domain_count) + demi_state_size(w, &head.shape);
     s.file = out.file;
     s.from = 0;
     s.sum = DEMI_HASH_START;
+    s.size = 0;
     demi_visit(&s, &head, sizeof head);
     demi_state_scalars(w, &s);
     demi_state_visit(w, &s);
@@ -11108,7 +11111,9 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
     if (head->int_size != sizeof(demi_domain) + sizeof(demi_wall_contact) + sizeof(demi_shaped) ||
         head->scene != demi_scene_digest(w) ||
         head->shape.walls != w->wall_count || head->shape.fields != w->field_count ||
-        head->body_size != demi_scalars_size(w) + demi_state_size(w, &head->shape))
+        head->shape.domains < 0 || head->shape.domains > DEMI_DOMAINS ||
+        head->body_size != demi_scalars_size(w, head->shape.domains) +
+                           demi_state_size(w, &head->shape))
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene; create the "
                          "world with the same desc, "
                          "materials, pairs, walls, motions and fields as the one that wrote it, "
@@ -11116,83 +11121,57 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
     return DEM_OK;
 }
 
-DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
-    demi_checkpoint_head head;
-    const demi_extent *shape = &head.shape;
-    demi_array bytes = {0, 0, 0};
+/* Room for all that a file holds; 0 when there is none, and the world is as it was. */
+static int demi_checkpoint_room(dem_world *w, const demi_extent *shape) {
     const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride;
-    const int near = w->near.stride;
-    const int domains = w->domain_count;
+    const int near = w->near.stride, domains = w->domain_count;
     const int stride = w->memory_stride, uniform = w->uniform;
-    const demi_periods p = demi_periods_of(w);
-    size_t size = 0;
-    demi_stream s;
-    dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
-    int d, k, l, room;
-    if (result == DEM_OK) result = demi_checkpoint_check(w, path, (const char *)bytes.data, size,
-                                                         &head);
-    if (result != DEM_OK) {
-        demi_array_free(w, &bytes);
-        return result;
-    }
-    w->memory_stride = shape->memory_stride;    /* room for all of it first */
+    w->memory_stride = shape->memory_stride;
     w->uniform = 0;
     w->domain_count = shape->domains;
-    room = (!shape->orienting || demi_orient_begin(w)) &&
-           demi_bodies_reserve(w, (size_t)DEMI_MAX(shape->count, shape->slots)) &&
-           (!shape->orienting || demi_shaped_reserve(w, shape->shaped_stride)) &&
-           (!shape->orienting || (demi_array_grow(w, &w->spot_start_, sizeof(int32_t),
-                                                  (size_t)shape->count + 1) &&
-                                  demi_array_grow(w, &w->spot_, 4*sizeof(dem_real),
-                                                  (size_t)shape->spots + 1))) &&
-           demi_list_reserve(w, &w->own, shape->domains, shape->own_stride) &&
-           demi_list_reserve(w, &w->cross, shape->domains, shape->cross_stride) &&
-           demi_wall_lists_reserve(w, shape->wall_stride) &&
-           demi_wall_contacts_reserve(w, (size_t)shape->domains*(size_t)shape->wall_now_stride,
-                                      (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
-           demi_near_reserve(w, &w->near, shape->domains, shape->near_stride) &&
-           demi_array_grow(w, &w->quiet_, sizeof(demi_quiet),
-                           (size_t)(shape->count/DEMI_SOME + shape->domains + 1)) &&
-           demi_cross_reserve(w, (size_t)shape->domains*(size_t)shape->cross_stride) &&
-           demi_carry_reserve(w, shape->carry_rows, shape->carry_count, shape->carry_stride);
-    if (!room) {
-        w->own.stride = own; w->cross.stride = cross; w->wall_stride = walls;
-        w->near.stride = near;
-        w->domain_count = domains; w->memory_stride = stride; w->uniform = uniform;
-        demi_array_free(w, &bytes);
-        return demi_no_memory(w, "dem_checkpoint_read");
-    }
-    w->count = shape->count;
-    w->slot_count = shape->slots;
-    w->wall_now_stride = shape->wall_now_stride;
-    if (shape->orienting) w->shaped_stride = shape->shaped_stride;
-    w->list_valid = shape->list_valid;
-    w->carry_count = shape->carry_count;
-    w->carry_rows = shape->carry_rows;
-    w->carry_stride = shape->carry_stride;
-    for (d = 0; d < DEMI_DOMAINS; d++) memset(&w->domains[d], 0, sizeof w->domains[d]);
-    s.file = 0;
-    s.from = (const char *)bytes.data + sizeof head;
-    s.sum = 0;
-    /* the per-domain counts steer the visit: take them from their place first */
-    memcpy(w->domains, s.from + demi_scalars_size(w) + (size_t)w->count*((w->last_pos ? 35
-        : 31)*sizeof(dem_real) + 8) + (size_t)w->slot_count*8,
-           (size_t)w->domain_count*sizeof(demi_domain));
-    demi_state_scalars(w, &s);
-    demi_state_visit(w, &s);
-    demi_array_free(w, &bytes);
-    w->spots_valid = 0;
-    if (!shape->orienting) w->shaped_count = 0;
+    if ((!shape->orienting || demi_orient_begin(w)) &&
+        demi_bodies_reserve(w, (size_t)DEMI_MAX(shape->count, shape->slots)) &&
+        (!shape->orienting || demi_shaped_reserve(w, shape->shaped_stride)) &&
+        (!shape->orienting || (demi_array_grow(w, &w->spot_start_, sizeof(int32_t),
+                                               (size_t)shape->count + 1) &&
+                               demi_array_grow(w, &w->spot_, 4*sizeof(dem_real),
+                                               (size_t)shape->spots + 1))) &&
+        demi_list_reserve(w, &w->own, shape->domains, shape->own_stride) &&
+        demi_list_reserve(w, &w->cross, shape->domains, shape->cross_stride) &&
+        demi_wall_lists_reserve(w, shape->wall_stride) &&
+        demi_wall_contacts_reserve(w, (size_t)shape->domains*(size_t)shape->wall_now_stride,
+                                   (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
+        demi_near_reserve(w, &w->near, shape->domains, shape->near_stride) &&
+        demi_array_grow(w, &w->quiet_, sizeof(demi_quiet),
+                        (size_t)(shape->count/DEMI_SOME + shape->domains + 1)) &&
+        demi_cross_reserve(w, (size_t)shape->domains*(size_t)shape->cross_stride) &&
+        demi_carry_reserve(w, shape->carry_rows, shape->carry_count, shape->carry_stride))
+        return 1;
+    w->own.stride = own;
+    w->cross.stride = cross;
+    w->wall_stride = walls;
+    w->near.stride = near;
+    w->domain_count = domains;
+    w->memory_stride = stride;
+    w->uniform = uniform;
+    return 0;
+}
+
+/* What follows from the rest, and is not stored. */
+static void demi_checkpoint_follow(dem_world *w, int orienting) {
+    const demi_periods p = demi_periods_of(w);
+    int d, k, l;
+    w->spots_valid = w->lll_valid = 0;
+    if (!orienting) w->shaped_count = 0;
     if (w->shaped_count && w->list_valid) demi_spots_lay(w);          /* its room is there */
-    for (k = 0; k < w->count && w->orienting && !shape->orienting; k++) {
+    for (k = 0; k < w->count && w->orienting && !orienting; k++) {
         demi_quat_put(w->orient + 4*k, dem_quat_make(1, 0, 0, 0));
         w->body_shape[k] = 0;
         demi_put(w->moment + 4*k, demi_moments_of(w, k));
     }
     demi_effects(w);
     demi_image_shifts(w);
-    w->lll_valid = 0;
-    for (d = 0; d < w->domain_count; d++) {     /* what follows from the rest is not stored */
+    for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         const int first = d*w->near.stride;
         for (l = 0; l < 2; l++) {
@@ -11211,15 +11190,42 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
                                                        w->near.b[first + k]);
         demi_near_adopt(w, d);
     }
-    for (k = 0; k < w->wall_count; k++) {
-        w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
-    }
+    for (k = 0; k < w->wall_count; k++) w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
     if (w->list_valid && w->count) {
-        demi_cross_index(w);                    /* its room is there already */
+        demi_cross_index(w);                                          /* its room is there */
         for (d = 0; d < w->domain_count; d++) demi_domain_quiet(w, d);
     }
     demi_kernel_choose(w);
-    return DEM_OK;
+}
+
+DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
+    const char *call = "dem_checkpoint_read";
+    demi_checkpoint_head head;
+    const demi_extent *shape = &head.shape;
+    demi_array bytes = {0, 0, 0};
+    demi_stream s = {0, 0, 0, 0};
+    size_t size = 0;
+    dem_result result = demi_load(w, call, path, &bytes, &size);
+    if (result == DEM_OK)
+        result = demi_checkpoint_check(w, path, (const char *)bytes.data, size, &head);
+    if (result == DEM_OK && !demi_checkpoint_room(w, shape)) result = demi_no_memory(w, call);
+    if (result == DEM_OK) {
+        w->count = shape->count;
+        w->slot_count = shape->slots;
+        w->wall_now_stride = shape->wall_now_stride;
+        if (shape->orienting) w->shaped_stride = shape->shaped_stride;
+        w->list_valid = shape->list_valid;
+        w->carry_count = shape->carry_count;
+        w->carry_rows = shape->carry_rows;
+        w->carry_stride = shape->carry_stride;
+        memset(w->domains, 0, DEMI_DOMAINS*sizeof *w->domains);
+        s.from = (const char *)bytes.data + sizeof head;
+        demi_state_scalars(w, &s);
+        demi_state_visit(w, &s);
+        demi_checkpoint_follow(w, shape->orienting);
+    }
+    demi_array_free(w, &bytes);
+    return result;
 }
 
 /* ---------------------------------------------------------------------------------------------

@@ -462,7 +462,7 @@ int main(int argc, char **argv) {
         data = file_get(path, &size);
         data[8]++;
         file_put(path, data, size);
-        refused(world, DEM_ERROR_FORMAT, "version 4, must be 3");
+        refused(world, DEM_ERROR_FORMAT, "version 5, must be 4");
         data[8]--;
         data[12] = (char)(12 - data[12]);      /* 8 and 4 change places */
         file_put(path, data, size);
