@@ -5660,8 +5660,8 @@ static dem_vec3 demi_segment_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, int *feat
                  sides (square, slots), a rim or, within the thickness, a wall. Round holes: the
                  nearest point and the one across, so that a grain too large for the hole sits on
                  it. Exact for one contact; the inner corners of a square hole need no more
-       Where two wires cross, or rims meet, a grain touches both at what is one place. demi_share
-       sorts that out. Tests: tests/test_sieve.c. --- */
+       Where two wires cross, or rims meet, a grain touches both at what is one place, which
+       demi_sieve_share sorts out. Tests: tests/test_sieve.c. --- */
 enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1 };
 
 /* Half of how thick it is. */
@@ -5787,7 +5787,7 @@ static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
    half, and in the corner of a hole, where L is far more than the overlap, each bears all: no jump
    on the way. The rule for meshes (demi_wall_resolve) drops outright what lies in the plane of a
    face; here neither is a face. */
-static void demi_share(demi_wall_contact *c, int count) {
+static void demi_sieve_share(demi_wall_contact *c, int count) {
     int a, b;
     for (a = 0; a < count; a++)
         for (b = a + 1; b < count; b++) {
@@ -5833,7 +5833,7 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
         return count;
     default: count = demi_sieve_plate(s, x, r, out);
     }
-    if (count > 1) demi_share(out, count);
+    if (count > 1) demi_sieve_share(out, count);
     return count;
 }
 

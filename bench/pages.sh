@@ -1,6 +1,6 @@
-# sh bench/pages.sh [accuracy] [roofline] [clusters] [shapes] [peers]: measures anew what stands in those pages of docs/
-# (peers: the table in README.md), the first three when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in
-# the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
+# sh bench/pages.sh [accuracy] [roofline] [clusters] [shapes] [screener] [peers]: measures anew what stands in those pages
+# of docs/ (screener: its times in studies.md; peers: the table in README.md), the first three when none is named, and puts
+# tables and pictures in place. Needs a quiet machine: a busy one is told in the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
 [ "$1" ] || set -- accuracy roofline clusters
 export OMP_PROC_BIND=true OMP_PLACES=cores
 
@@ -39,6 +39,18 @@ peers() {
                 printf "| %s | %s | %s | %s | %s |\n", about[p[1]], name[p[2]], ratio[p[1] ".double.vs_" p[2]],
                     ratio[p[1] ".double.vs_" p[2] ".threads2"], ratio[p[1] ".single.vs_" p[2]] } }' "$1"
 }
+# times of the glass screener beside the thesis's, for two stiffnesses, from their summaries
+screener_times() {
+    cat "$1" "$2" | awk '
+        /^N[0-9]+\./ { split(substr($1, 2), p, "."); n = p[1]; what = p[2]
+            if (what == "compute" || what == "overlap" || what == "left") { seen[n, what]++; value[n, what, seen[n, what]] = $3 }
+            if (what == "thesis_compute") thesis[n] = $3 }
+        END { print "| balls | machine time | thesis | 200 N/m | ratio | overlap | 2000 N/m | ratio | overlap |"; print "|---|---|---|---|---|---|---|---|---|"
+            k = split("775 4950 9900", row, " "); split("20 25 45", time, " ")
+            for (i = 1; i <= k; i++) { n = row[i]; a = value[n, "compute", 1]; b = value[n, "compute", 2]
+                printf "| %d | %d s | %.1f h | %.1f s | %.0f | %.2f | %.1f s | %.0f | %.3f |\n", n, time[i], thesis[n]/3600,
+                    a, a ? thesis[n]/a : 0, value[n, "overlap", 1], b, b ? thesis[n]/b : 0, value[n, "overlap", 2] } }'
+}
 
 at=build/out
 for page in "$@"; do
@@ -66,11 +78,15 @@ for page in "$@"; do
     shapes)
         build/shapes || exit 1
         splice shapes.md shapes $at/shapes/page.md ;;
+    screener)
+        for k in 200 2000; do build/screener --study size --stiffness $k --out $at/screener_size$k || exit 1; done
+        screener_times $at/screener_size200/summary.txt $at/screener_size2000/summary.txt > build/page.times
+        splice studies.md screener build/page.times ;;
     peers)
         sh bench/peers.sh > build/peers.out || { cat build/peers.out; exit 1; }
         cat build/peers.out
         grep -q ' = ' build/peers.out || { echo "neither code was found: README.md stays as it was"; exit 1; }
         peers build/peers.out > build/peers.md && splice ../README.md peers build/peers.md || exit 1 ;;
-    *) echo "no page $page: accuracy, roofline, clusters, shapes or peers"; exit 1 ;;
+    *) echo "no page $page: accuracy, roofline, clusters, shapes, screener or peers"; exit 1 ;;
     esac
 done

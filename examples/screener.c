@@ -30,7 +30,7 @@
    with --repeats also blocks rpm50.seed2 and so on, and mean and spread over all of them):
      efficiency_number, efficiency_mass   %, eq 4.33 and 4.35: mean over decks of sorted/all that left
      deckN.sorted, deckN.gangue           balls that left deck N, 1 the lowest
-     deckN.rate                           kg/s that left it, over the last third, eq 4.40
+     deckN.rate                           kg/s that left it, eq 4.40
      gangue_number, gangue_mass           %, of all that left, eq 4.41
      fed, present, left, missing          balls; missing = fed - present - left is 0
      rate                                 balls/s that left, over the last third
@@ -395,15 +395,15 @@ static void sample_take(screener *s) {
     for (k = 0; k < s->levels; k++) s->mass[i][k] = let_out(s, k).total_mass;
     s->samples++;
 }
-/* Balls/s that left, over the last third of the samples; through one deck (from 0): kg/s. */
+/* Balls/s that left, over the last third of the samples; kg/s that left one deck (from 0), over all
+   of the time, eq 4.40. */
 static double rate_late(const screener *s) {
     const int last = s->samples - 1, late = 2*s->samples/3;
     return last > late ? (s->left[last] - s->left[late])/(s->time[last] - s->time[late]) : 0;
 }
-static double deck_rate_late(const screener *s, int deck) {
-    const int last = s->samples - 1, late = 2*s->samples/3;
-    return last > late ? (s->mass[last][deck] - s->mass[late][deck])/
-        (s->time[last] - s->time[late]) : 0;
+static double deck_rate(const screener *s, int deck) {
+    const int last = s->samples - 1;
+    return last > 0 ? s->mass[last][deck]/s->time[last] : 0;
 }
 /* 1 when of each size as many balls were fed as are here and have left, and all sizes together are
    the world's balance. */
@@ -536,7 +536,7 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
             snprintf(text, sizeof text, "deck%d.gangue", i + 1);
             study_result(text, (double)out.gangue, "");
             snprintf(text, sizeof text, "deck%d.rate", i + 1);
-            study_result(text, deck_rate_late(s, i), "kg/s");
+            study_result(text, deck_rate(s, i), "kg/s");
             if (i) blinded += dem_sieve_blinded(s->world, s->sieve[i], DEM_R(0.1));
         }
         study_result("gangue_number", 100*sorting.gangue_number, "%");
@@ -632,7 +632,7 @@ static int value_run(const struct screener_options *base, const char *tag, sweep
         square[0] += s.efficiency[k]*s.efficiency[k];
         square[1] += s.gangue[k]*s.gangue[k];
         r->decks = s.levels;
-        for (k = 0; k < s.levels; k++) sum[DECK_RATE + k] += deck_rate_late(&s, k);
+        for (k = 0; k < s.levels; k++) sum[DECK_RATE + k] += deck_rate(&s, k);
         for (k = 0; k < SAMPLES && i == 0; k++) {
             const int at = k < s.samples ? k : s.samples - 1;
             r->time[n][k] = s.time[at];
@@ -782,7 +782,7 @@ int main(int argc, char **argv) {
             if (!(options.seconds > 0)) o.seconds = seconds[i];
             snprintf(name, sizeof name, "N%d", balls[i]);
             also(&o, name);
-            snprintf(name, sizeof name, "N%d.seed_compute", balls[i]);
+            snprintf(name, sizeof name, "N%d.thesis_compute", balls[i]);
             study_result(name, 3600*hours[i], "s");
         }
     } else if (is(o.study, "holes")) {
