@@ -6061,9 +6061,8 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
 
     /* tangential: a trial force, capped by Coulomb; what is cut off is sliding */
     if (tangent != DEM_TANGENT_NONE) {
-        dem_vec3 s = demi_v(0, 0, 0), t, held;
+        dem_vec3 s = demi_v(0, 0, 0), t;
         dem_real size, cap, cut, old = kt;
-        int slides;
         if (tangent >= DEM_TANGENT_SPRING) s = dem_memory_turn(c, demi_at(memory));
         if (tangent == DEM_TANGENT_SPRING) {                /* s: displacement; [CS79] */
             s = demi_add(s, demi_scale(c->slip_step, c->dt));
@@ -6084,27 +6083,26 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
         cap = limit*c->friction;
         cut = size > limit*c->friction_static ? size : cap;
         cut = (cap + DEMI_TINY)/(cut + DEMI_TINY);
-        slides = cut < 1;
         push->tangent = demi_scale(t, cut);
-        if (tangent >= DEM_TANGENT_SPRING) {  /* while sliding, memory holds what friction can */
-            held = tangent == DEM_TANGENT_SPRING
-                ? demi_scale(push->tangent, -1/(kt + DEMI_TINY)) : push->tangent;
-            memory[0] = slides ? held.x : s.x;
-            memory[1] = slides ? held.y : s.y;
-            memory[2] = slides ? held.z : s.z;
+        if (tangent >= DEM_TANGENT_SPRING) {
+            /* Spring and dashpot side by side, behind a slider: what is cut off slips by
+                   (1 - cut) t dt/(kt dt + ct),
+               so that the two together hold what friction can. The spring alone made to hold it,
+               as is often written, would be given the dashpot's share from nowhere. */
+            const dem_real give = (1 - cut)*c->dt/(kt*c->dt + ct + DEMI_TINY);
+            const dem_real back = tangent == DEM_TANGENT_SPRING ? give : -kt*give;
+            s = demi_add(s, demi_scale(t, back));
+            memory[0] = s.x; memory[1] = s.y; memory[2] = s.z;
             if (tangent >= DEM_TANGENT_MINDLIN) memory[3] = kt;
+            if (ledger) {
+                out->slide = cut*give*demi_dot(t, t);
+                out->shear_stored = tangent == DEM_TANGENT_SPRING ? kt*demi_dot(s, s)/2
+                    : demi_dot(s, s)/(2*kt + DEMI_TINY);
+            }
         }
         if (ledger) {
-            const dem_vec3 e = demi_at(memory);
             out->shear_work = -demi_dot(push->tangent, v)*c->dt;
-            if (tangent == DEM_TANGENT_SPRING) {
-                out->slide = -demi_dot(push->tangent, demi_sub(s, e));
-                out->shear_stored = kt*demi_dot(e, e)/2;
-            } else if (tangent >= DEM_TANGENT_MINDLIN) {
-                out->slide = -demi_dot(push->tangent, demi_sub(e, s))/(kt + DEMI_TINY);
-                out->shear_stored = demi_dot(e, e)/(2*kt + DEMI_TINY);
-            } else out->slide = out->shear_work;
-            out->slide = slides ? out->slide : 0;
+            if (tangent < DEM_TANGENT_SPRING) out->slide = cut < 1 ? out->shear_work : 0;
         }
     }
 

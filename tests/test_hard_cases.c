@@ -706,5 +706,41 @@ int main(int argc, char **argv) {
             }
         CHECK_REL(v[0][samples - 1].x, 25.0/7, 1e-3); /* it rolls by then: 5/7 of the first speed */
     }
+    TEST("an oblique impact never has more energy than it came with, nor does sliding give any back, "
+         "for every law with a spring") {
+        static const double restitution[3] = {0.1, 0.3, 0.7}, tangent[2] = {0.5, 2};
+        int normal, law, i, j, k;
+        for (normal = DEM_NORMAL_HERTZ; normal <= DEM_NORMAL_HYSTERETIC; normal++)
+            for (law = DEM_TANGENT_SPRING; law <= DEM_TANGENT_MINDLIN_RESCALED; law++)
+                for (i = 0; i < 3; i++) for (j = 0; j < 2; j++) {
+                    dem_world_desc desc = one_thread(0);
+                    dem_world *world;
+                    dem_material stuff;
+                    dem_material_desc m = hertz_stuff(2500, 1e8, 0.3, restitution[i], 0.5);
+                    dem_ledger l;
+                    double before, slide = 0;
+                    desc.allow_large_dt = 0;
+                    desc.normal_law = (dem_normal_law)normal;
+                    desc.tangent_law = (dem_tangent_law)law;
+                    desc.ledger = 1;
+                    if (normal != DEM_NORMAL_HERTZ) m.stiffness = DEM_R(1e5);
+                    world = dem_world_create(&desc);
+                    stuff = dem_material_add(world, &m);
+                    set_motion(world, dem_sphere_add(world, stuff, DEM_R(0.005), at(0, 0, 0)),
+                               at(1, tangent[j], 0), at(0, 0, 0));
+                    dem_sphere_add(world, stuff, DEM_R(0.005), at(0.0101, 0, 0));
+                    before = dem_totals_get(world).kinetic;
+                    for (k = 0; k < 400; k++) {
+                        step(world, 1);
+                        l = dem_ledger_get(world);
+                        CHECK((l.kinetic + l.rotational + l.elastic)/before < 1 + 1e-4);
+                        CHECK(l.slide >= slide);
+                        slide = l.slide;
+                    }
+                    CHECK(l.normal/before > 0.03);
+                    CHECK_NEAR(l.residual/before, 0, 6e-3);     /* dt is t_c/50; e = .1 at the worst */
+                    dem_world_destroy(world);
+                }
+    }
     return test_end();
 }
