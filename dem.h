@@ -753,7 +753,8 @@ typedef struct dem_sieve_desc {
     dem_sieve_kind kind;      /* required */
     dem_vec3 point;           /* m, middle of a hole, half way through */
     dem_vec3 normal;          /* across the sieve; 0: along z */
-    dem_vec3 along;           /* rows of holes go this way; 0: along x, or whatever is across */
+    dem_vec3 along;           /* rows of holes go this way; 0, or within .05 degrees of the normal:
+                                 along x, or y where x is near the normal */
     dem_real aperture;        /* m, required, > 0: clear width, side or diameter of a hole */
     dem_real bar;             /* m, required, > 0: diameter of a wire, or solid between two holes */
     dem_real length;          /* m, of slots; 0: without end */
@@ -773,7 +774,8 @@ DEM_API dem_wall dem_sieve_add(dem_world *world, dem_material material, const de
 /* Grains that blind a sieve of wires or a plate: stuck in a hole, that is touching it on opposite
    sides, with the wedge between the two so narrow that friction holds it. Those moving faster than
    speed (m/s; 0: any) against the sieve are not counted. -1 with a sentence when there is no list
-   of contacts (see dem_contacts_get) or the wall is no sieve. Clusters count too. */
+   of contacts (see dem_contacts_get) or the wall is no sieve. Clusters count too; reduced holes
+   are never blinded. */
 DEM_API int dem_sieve_blinded(const dem_world *world, dem_wall sieve, dem_real speed);
 
 /* Centres (count x 3, written to out, which may be null) of a drum lined with touching spheres
@@ -807,7 +809,8 @@ typedef struct dem_feed { int32_t id; } dem_feed;                            /* 
 typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* id counts from 1 */
 
 /* Adds grains while the world runs: at random places in a region, of random sizes, at a rate, or
-   all at once. A grain that finds no free place waits, and is not lost. */
+   all at once. A grain that finds no free place waits, and is not lost; places are free of other
+   grains (walls are not asked). */
 typedef struct dem_feed_desc {
     dem_material material;           /* required */
     int class_count;                 /* required, 1..16: classes of size */
@@ -817,9 +820,10 @@ typedef struct dem_feed_desc {
     int limited;                     /* 1: `amount` is all there is, drawn without putting back */
     int by_mass;                     /* 1: amount and rate are in kg and kg/s, not in grains */
     double rate;                     /* grains/s; 0: all at once, as far as there is room */
-    double start, end;               /* s; end 0: no end */
-    dem_box box;                     /* m, required: centres are in it */
-    int round;                       /* 1: in the upright cylinder that fits in it */
+    double start, end;               /* s, in the world's time: a feed added later owes what was due
+                                        since start; end 0: no end */
+    dem_box box;                     /* m, required: centres are in it; stay a radius off walls */
+    int round;                       /* 1: in the upright cylinder (elliptic as the box) in it */
     dem_vec3 velocity;               /* m/s */
     dem_real spread;                 /* m/s, each component of velocity +- up to this */
     uint64_t seed;
@@ -827,15 +831,19 @@ typedef struct dem_feed_desc {
 typedef struct dem_feed_state {
     uint64_t fed[DEM_CLASSES], total; /* grains */
     double mass;                      /* kg */
-    uint64_t waiting;                 /* grains that are due without room; by mass: 0 or 1 */
+    uint64_t waiting;                 /* grains that are due without room; by mass, at a rate: 0 or
+                                         1 */
     int done;                         /* 1: nothing more will come */
 } dem_feed_state;
 DEM_API dem_feed dem_feed_add(dem_world *world, const dem_feed_desc *desc);
 DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_state *state);
 
-/* Takes out grains whose centre is in a region, and counts them; for the balance they have left. */
+/* Takes out grains whose centre is in a region (fixed ones too), and counts them; for the balance
+   they have left. The radius of a body that is not a sphere: of the smallest sphere about its
+   centre that holds it. */
 typedef struct dem_outlet_desc {
-    dem_wall frame;                  /* the region moves with this wall; null: it stands still */
+    dem_wall frame;                  /* the region moves with this wall, which then cannot be
+                                        removed; null: it stands still */
     dem_box box;                     /* m, required, in that frame */
     dem_real beyond;                 /* m, only those at least so far from the frame's z axis */
     dem_real wanted_min, wanted_max; /* m, radii that ought to leave here; max 0: no limit */
@@ -1034,21 +1042,23 @@ typedef struct dem_moldyn {
     double start, end, dt;           /* s; times.t0, tend, dt */
     double gravity;                  /* m/s2, upwards; control.grav */
     double density;                  /* kg/m3; control.rho */
-    double friction_static, friction;/* control.mue_s, mue_d */
+    double friction_static, friction;/* control.mue_s (0: the same as mue_d), mue_d */
     /* N/m; sd.stiff_lo, stiff_k_un, stiff_adh (that one < 0 in the file). Unloading no stiffer than
        loading: the linear law, which never pulls */
     double stiffness, stiffness_unloading, stiffness_adhesion;
     double damping_grain, damping_wall; /* N s/m; sd.damp_particle, damp_wall. 0: from restitution,
                                         when the law is linear */
-    double restitution;              /* sd.e */
+    double restitution;              /* sd.e; 0: not given, 1 where there is no damping either */
     int planar;
     int grain_count, wall_count;
     dem_real *grains;                /* grain_count x 14: place, velocity, angles, spin, radius, 1
                                         when it may move; in our axes */
     double wall_thickness;           /* m; surfaces lie half of it before the centres, eq 2.60 */
     dem_real *walls;                 /* wall_count x 6: normal, centre */
+    dem_allocator allocator;         /* of both: that of the world they were first read with */
 } dem_moldyn;
-static const dem_moldyn DEM_MOLDYN_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+static const dem_moldyn DEM_MOLDYN_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+                                           {0, 0, 0}};
 #define DEM_MOLDYN DEM_MOLDYN_ZERO
 typedef enum dem_moldyn_file {
     DEM_MOLDYN_CONTROL = 0,          /* .cin */
@@ -1061,7 +1071,7 @@ DEM_API dem_result dem_moldyn_read(dem_world *world, const char *cin, const char
 /* One of the three from memory, into what the others filled in already (begin with DEM_MOLDYN). */
 DEM_API dem_result dem_moldyn_parse(dem_world *world, const char *name, dem_moldyn_file file,
                                     const void *data, size_t size, dem_moldyn *moldyn);
-DEM_API void dem_moldyn_free(dem_world *world, dem_moldyn *moldyn);
+DEM_API void dem_moldyn_free(dem_moldyn *moldyn);
 DEM_API dem_world_desc dem_moldyn_desc(const dem_moldyn *moldyn);
 /* Materials, grains, walls and the time into an empty world made with that desc. Checks all before
    it adds any; if memory runs out, destroy the world. */
@@ -1076,7 +1086,8 @@ DEM_API dem_result dem_moldyn_write(dem_world *world, const dem_moldyn *moldyn, 
    numbers place and velocity in space; its figures are those of a plane. */
 DEM_API dem_result dem_xb_append(dem_world *world, const char *path, dem_box box);
 /* Appends a frame for ANIM; a new file begins with interval, frames and bodies. A line per grain
-   and wall: rotation matrix, place; the identity for spheres that nothing turns. */
+   and wall: rotation matrix, place; the identity for spheres that nothing turns. Their number must
+   stay what it was. */
 DEM_API dem_result dem_str_append(dem_world *world, const char *path, double interval, int frames);
 
 /* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters.
@@ -1308,8 +1319,15 @@ DEM_INLINE dem_vec3 demi_cross(dem_vec3 a, dem_vec3 b) {
     return demi_v(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
 }
 DEM_INLINE dem_real demi_length(dem_vec3 a) { return DEMI_SQRT(demi_dot(a, a)); }
-static dem_vec3 demi_unit(dem_vec3 a) {                   /* not for null vectors */
-    double x = (double)a.x, y = (double)a.y, z = (double)a.z, l = sqrt(x*x + y*y + z*z);
+static double demi_size(dem_vec3 a) {                     /* largest component */
+    return fmax(fabs((double)a.x), fmax(fabs((double)a.y), fabs((double)a.z)));
+}
+static dem_vec3 demi_unit(dem_vec3 a) {                   /* of any length but 0 */
+    double x = (double)a.x, y = (double)a.y, z = (double)a.z, l;
+    int e;
+    (void)frexp(demi_size(a), &e);                        /* a power of two: exact */
+    x = ldexp(x, -e); y = ldexp(y, -e); z = ldexp(z, -e);
+    l = sqrt(x*x + y*y + z*z);
     return demi_v((dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
 }
 DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
@@ -3567,7 +3585,9 @@ static int demi_pose_finite(const dem_pose *p) {
 static double demi_wall_speed(const demi_wall *wall) {
     const dem_pose *p = &wall->pose;
     if (wall->kind == DEMI_WALL_NONE || wall->symmetric) return 0;
-    if (wall->reach < 0) return -1;  /* endless and moving: no bound, look again every step */
+    if (wall->reach < 0 && demi_length(p->spin) > 0) return -1;   /* endless: no bound, look again
+                                                                     every step */
+    if (wall->reach < 0) return (double)demi_length(p->velocity);
     return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->reach;
 }
 
@@ -3718,7 +3738,7 @@ DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 poi
     dem_wall none;
     none.id = 0;
     if (!demi_wall_begin(w, "dem_plane_add", material, DEMI_WALL_PLANE, &wall)) return none;
-    if (!demi_finite3(point) || !demi_finite3(normal) || !(demi_dot(normal, normal) > 0)) {
+    if (!demi_finite3(point) || !demi_finite3(normal) || !(demi_size(normal) > 0)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_plane_add: normal is (%g, %g, %g), must be finite "
                   "and not zero, point "
                   "finite", (double)normal.x, (double)normal.y, (double)normal.z);
@@ -3876,8 +3896,11 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
     DEMI_BAD(lift, DEMI_ABS(d->lift) <= 0 || (d->kind == DEM_SIEVE_WIRES && d->lift > 0),
              ">= 0 m, and 0 but for a weave of wires")
     DEMI_BAD(radius, d->radius >= 0, ">= 0 m")
-    DEMI_BAD(model, d->model >= 0 && d->model <= 2, "1 or 2")
-    DEMI_BAD(clearance, d->clearance >= 0 && d->clearance <= 1, "0 to 1")
+    DEMI_BAD(staggered, !d->staggered || d->kind == DEM_SIEVE_ROUND, "0 but for round holes")
+    DEMI_BAD(model, !d->model || (d->kind == DEM_SIEVE_REDUCED && d->model > 0 && d->model <= 2),
+             "0, or of reduced holes 1 or 2")
+    DEMI_BAD(clearance, DEMI_ABS(d->clearance) <= 0 || (d->kind == DEM_SIEVE_REDUCED &&
+             d->clearance > 0 && d->clearance <= 1), "0, or of reduced holes up to 1")
 #undef DEMI_BAD
     if (bad) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: %s is %g, must be %s; start from "
@@ -3889,13 +3912,15 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
                   "check how it was computed");
         return none;
     }
-    n = demi_dot(n, n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
+    n = demi_size(n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
+    if (demi_size(t) > 0) t = demi_unit(t);
     t = demi_sub(t, demi_scale(n, demi_dot(t, n)));
-    if (!(demi_dot(t, t) > 0)) {                /* not said, or across the sieve: x, else y */
+    if (!(demi_dot(t, t) > DEM_R(1e-6))) {      /* not said, or across the sieve: x, else y */
         const dem_vec3 x = DEMI_ABS(n.x) < DEM_R(0.9) ? demi_v(1, 0, 0) : demi_v(0, 1, 0);
         t = demi_sub(x, demi_scale(n, demi_dot(x, n)));
     }
     t = demi_unit(t);
+    t = demi_unit(demi_sub(t, demi_scale(n, demi_dot(t, n))));      /* what rounding left */
     R[0] = t.x; R[3] = t.y; R[6] = t.z;
     R[2] = n.x; R[5] = n.y; R[8] = n.z;
     t = demi_cross(n, t);
@@ -4021,7 +4046,13 @@ DEM_API dem_result dem_wall_pose(const dem_world *world, dem_wall id, dem_pose *
 
 DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
     const int i = demi_wall_find(w, "dem_wall_remove", id);
+    int k;
     if (i < 0) return DEM_ERROR_ARGUMENT;
+    for (k = 0; k < w->outlet_count; k++)
+        if (((demi_outlet *)w->outlets_.data)[k].desc.frame.id == id.id)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_remove: outlet %d moves with wall "
+                             "%d and would let nothing out any more; keep the wall", k + 1,
+                             (int)id.id);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
     demi_wall_free(w, &w->walls[i]);            /* its place stays empty: ids of other walls hold */
     demi_scene_changed(w);
@@ -4955,14 +4986,18 @@ static int demi_cross_index(dem_world *w) {
 /* Writes the coefficients of a grain's contact with a wall. On a round wire the two radii of the
    contact differ, r and r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's
    ellipse for a wire as thick as the grain, 7 % for one of a fifth. */
+/* R* of a sphere of radius r with a wall. */
+static double demi_wall_r_eff(const demi_wall *wall, double r) {
+    const double q = (double)wall->sieve.bar/2;
+    if (wall->kind == DEMI_WALL_GRAINS) return r*(double)wall->radius/(r + (double)wall->radius);
+    if (wall->kind == DEMI_WALL_SIEVE && (wall->sieve.kind == DEM_SIEVE_WIRES ||
+                                          wall->sieve.kind == DEM_SIEVE_BARS))
+        return r*sqrt(q/(r + q));
+    return r;
+}
 static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
     const demi_wall *wall = &w->walls[c->wall];
-    const double r = (double)w->pos[4*c->body + 3], q = (double)wall->sieve.bar/2;
-    const double r_eff = wall->kind == DEMI_WALL_GRAINS
-        ? r*(double)wall->radius/(r + (double)wall->radius)
-        : wall->kind == DEMI_WALL_SIEVE && (wall->sieve.kind == DEM_SIEVE_WIRES ||
-                                            wall->sieve.kind == DEM_SIEVE_BARS)
-        ? r*sqrt(q/(r + q)) : r;
+    const double r_eff = demi_wall_r_eff(wall, (double)w->pos[4*c->body + 3]);
     const int grains = wall->kind == DEMI_WALL_GRAINS;
     /* there a grain of a wall has mass */
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
@@ -5582,9 +5617,9 @@ static dem_result demi_rebuild(dem_world *w) {
 
 /* Answers -1 with a sentence, for those who ask about a list that no longer fits. */
 static int demi_list_stale(const dem_world *world, const char *call) {
-    demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: bodies or walls changed since the "
-              "last step, so there is no list of contacts; call dem_search_now or dem_world_step "
-              "first", call);
+    demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: there was no step since bodies or "
+              "walls were added or changed, so there is no list of contacts; call dem_search_now "
+              "or dem_world_step first", call);
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
@@ -5656,6 +5691,7 @@ static dem_vec3 demi_segment_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, int *feat
        side of every hole, has an element number of its own, for contact memory.
          wires   axes at (i + 1/2)(aperture + bar): distance to the axis of each within reach,
                  exact for straight wires
+         disc    a sieve with a radius lies in a thin ring there: its rim
          plates  above the solid part: the face. Above a hole: the nearest point of each of its
                  sides (square, slots), a rim or, within the thickness, a wall. Round holes: the
                  nearest point and the one across, so that a grain too large for the hole sits on
@@ -5695,7 +5731,8 @@ static int demi_sieve_wires(const dem_sieve_desc *s, int set, dem_vec3 x, dem_re
     const dem_real q = s->bar/2, h = set ? -s->lift/2 : s->lift/2, pitch = s->aperture + s->bar;
     const dem_real u = set ? x.y : x.x, v = set ? x.x : x.y, R = s->radius;
     const dem_real far2 = (r + q)*(r + q) - (x.z - h)*(x.z - h);
-    const double home = floor((double)(u/pitch));
+    const dem_real S = DEMI_SQRT(x.x*x.x + x.y*x.y), held = R > 0 && S > R ? u*R/S : u;
+    const double home = floor((double)(held/pitch));   /* beside a disc: its nearest place */
     int k;
     if (!(far2 > 0)) return count;
     for (k = -2; k <= 3; k++) {                 /* a grain far larger than holes lies on these */
@@ -5731,8 +5768,9 @@ static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
     dem_real step[2], wide[2], off[2], mid[2];
     double i[2];
     int k, side, count = 0;
-    if (R > 0 && S > R)                         /* off the disc: its edge */
-        return demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r, demi_v(x.x*R/S, x.y*R/S, z), 0);
+    if (R > 0 && S > 0 && S > R - r)
+        count = demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r, demi_v(x.x*R/S, x.y*R/S, z), 0);
+    if (R > 0 && S > R) return count;           /* off the disc */
     if (s->kind == DEM_SIEVE_ROUND) {
         const dem_real pitch = s->aperture + s->bar;
         const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
@@ -5819,6 +5857,7 @@ static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
    hole. */
 static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
                             demi_wall_contact *out) {
+    const dem_real S = DEMI_SQRT(x.x*x.x + x.y*x.y);
     int count = 0;
     switch (s->kind) {
     case DEM_SIEVE_WIRES:
@@ -5827,7 +5866,9 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
         break;
     case DEM_SIEVE_BARS: count = demi_sieve_wires(s, 0, x, r, out, count); break;
     case DEM_SIEVE_REDUCED:
-        if (s->radius > 0 && x.x*x.x + x.y*x.y > s->radius*s->radius) return 0;
+        if (s->radius > 0 && S > s->radius)
+            return demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r,
+                                  demi_v(x.x*s->radius/S, x.y*s->radius/S, 0), 0);
         count = demi_sieve_face(s, x, r, out);
         if (count && demi_sieve_passes(s, x, r)) out->share = 0;
         return count;
@@ -5858,7 +5899,8 @@ DEM_INLINE dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3
         return wall->inside ? r + l - wall->radius : r + wall->radius - l;
     case DEMI_WALL_SIEVE:  /* the sheet it lies in, holes or not: for candidates. See demi_sieve */
         l = DEMI_ABS(x.z) - demi_sieve_half(&wall->sieve);
-        if (wall->radius > 0) l = DEMI_MAX(l, DEMI_SQRT(x.x*x.x + x.y*x.y) - wall->radius);
+        if (wall->radius > 0)                   /* ends of wires stand out of it */
+            l = DEMI_MAX(l, DEMI_SQRT(x.x*x.x + x.y*x.y) - wall->radius - wall->sieve.bar/2);
         *normal = demi_v(0, 0, x.z > 0 ? DEM_R(-1) : DEM_R(1));
         *point = demi_v(x.x, x.y, 0);
         return r - l;
@@ -6826,8 +6868,13 @@ static void demi_walls_respond(dem_world *w, int d) {
                 memset(c->memory, 0, sizeof c->memory);
             }
             if (w->walls[wall].sieve.kind == DEM_SIEVE_REDUCED) {   /* under way: to the end */
-                if (from && !(from->share > 0)) c->share = 0;
-                if (!(c->share > 0)) c->overlap = 0;
+                for (e = o; e < o_end; e++)
+                    if (old[e].wall == wall && !(old[e].share > 0)) c->share = 0;
+                if (!(c->share > 0)) {           /* no contact: nobody is pushed, nothing is told */
+                    c->overlap = 0;
+                    c->force = demi_v(0, 0, 0);
+                    continue;
+                }
             }
             demi_wall_contact_fill(w, c, from ? from->normal : c->normal, dt, &contact, &surface);
             if (w->desc.law) w->desc.law(&contact, c->memory, &f);
@@ -6978,6 +7025,10 @@ static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
         dem_vec3 arm_b = demi_scale(c[i].arm_b, c[i].overlap);
         dem_real sum = c[i].overlap;
         double give;
+        if (!(c[i].share > 0)) {                /* pushes nobody */
+            c[i].m_eff = w->mass[c[i].a];
+            continue;
+        }
         for (j = 0; j < n && w->desc.cluster_contacts == DEM_SHARING_ONE; j++) {
             dem_real t = (demi_dot(c[i].normal, c[j].normal) - zero)/(one - zero);
             if (j == i || !(t > 0)) continue;
@@ -7229,8 +7280,13 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
         if (p.ball) c->arm_a = demi_add(p.centre, demi_scale(c->normal, p.radius));
         else c->r_eff = (dem_real)demi_part_round(w, &p, (double)demi_ellipsoid_arm(&p, c->normal,
                                                                                    &c->arm_a));
-        if (wall->kind == DEMI_WALL_GRAINS)
-            c->r_eff = c->r_eff*wall->radius/(c->r_eff + wall->radius);
+        c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
+        if (wall->sieve.kind == DEM_SIEVE_REDUCED) {            /* under way: to the end */
+            for (e = 0; e < olds; e++)
+                if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k &&
+                    !(old[e].share > 0)) c->share = 0;
+            if (!(c->share > 0)) c->overlap = c->deep = 0;
+        }
         demi_shaped_recall(c, demi_shaped_match(old, olds, fresh, (int)(c - fresh), c));
     }
 }
@@ -7414,6 +7470,11 @@ static void demi_shaped_respond(dem_world *w, int d) {
         dem_push f;
         dem_vec3 surface, force, moment;
         demi_law_energy part;
+        if (!(c->overlap > 0)) {                /* under way through a reduced hole */
+            c->force = demi_v(0, 0, 0);
+            domain->shaped_walls += b < 0;
+            continue;
+        }
         if (!(c->unit[DEMI_R_EFF] > 0))
             demi_coefficients(w, ma, mb, 1, 1, b < 0 && w->walls[c->wall].kind != DEMI_WALL_GRAINS,
                               c->unit);
@@ -7846,6 +7907,19 @@ static const demi_integrator_row demi_integrator_rows[] = {     /* in the order 
     {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2},
     {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2}};
 
+static void demi_domain_finish(dem_world *w, int d) {
+    demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
+    if (w->shaped_count) demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
+}
+
+/* Completes the half kick that a step leaves open: velocities are then those of the present time.
+   */
+static void demi_finish(dem_world *w) {
+    if (w->synced) return;
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);
+    w->synced = 1;
+}
+
 /* ---------------------------------------------------------------------------------------------
    >>ledger
    Where the energy went. Laws add what they dissipate and store; moves add the work of gravity and
@@ -7979,16 +8053,24 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
             return id;
         }
         feed.mass[k] = demi_sphere_mass(w, m, (double)d->radius[k]);
-        if (d->limited)
-            feed.limit[k] = (uint64_t)(d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5);
+        if (d->limited) {
+            const double count = d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5;
+            if (!(count >= 1 && count < 1e15)) {
+                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has amount %g, which is %.3g grains "
+                          "of radius %g m, must be 1 to 1e15; check amount and by_mass", call, k,
+                          d->amount[k], count - 0.5, (double)d->radius[k]);
+                return id;
+            }
+            feed.limit[k] = (uint64_t)count;
+        }
     }
     if (!(d->rate >= 0) || !(d->rate < 1e15) || !(d->start >= 0) || !(d->end >= 0) ||
         !(d->spread >= 0) || !demi_finite(d->spread) || !demi_finite3(d->velocity) ||
-        (!(d->rate > 0) && !d->limited)) {
+        (!(d->rate > 0) && !d->limited) || (d->end > 0 && d->end < d->start)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s; "
-                  "must be finite and >= 0, and all at once (rate 0) needs `limited`, or it has no "
-                  "end",
-                  call, d->rate, d->start, d->end, (double)d->spread);
+                  "must be finite and >= 0, the end 0 or after the start, and all at once (rate 0) "
+                  "needs `limited`, or it has no end", call, d->rate, d->start, d->end,
+                  (double)d->spread);
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
@@ -8037,14 +8119,14 @@ static int demi_feed_room(const dem_world *w, dem_vec3 x, dem_real r) {
         dem_real d2 = 0;
         for (k = 0; k < 3; k++) {
             dem_real d = DEMI_ABS(w->pos[4*i + k] - to[k]);
-            if (d > p.half[k]) d = p.period[k] - d;
+            if (d > p.half[k]) d = DEMI_ABS(d - p.period[k]*(dem_real)
+                                            floor((double)(d/p.period[k]) + 0.5));
             d2 += d*d;
         }
         if (d2 < s*s) return 0;
     }
     return 1;
 }
-static void demi_finish(dem_world *w);                       /* >>step */
 /* Puts in one grain of the class drawn. 1: done, 0: no room, -1: no memory. */
 static int demi_feed_put(dem_world *w, demi_feed *f) {
     const dem_feed_desc *d = &f->desc;
@@ -8087,7 +8169,6 @@ static dem_result demi_feeds_run(dem_world *w) {
         const dem_feed_desc *d = &f->desc;
         const double until = d->end > 0 && w->time > d->end ? d->end : w->time;
         const double due = d->rate > 0 ? d->rate*(until - d->start) : 1e300;
-        f->state.done = !demi_feed_left(f) || (d->end > 0 && w->time > d->end);
         while (w->time >= d->start && w->steps >= f->again && demi_feed_left(f)) {
             const double rounded = 1e-9*(1 + due);           /* the third of 3/s is due at 1 s */
             int done;
@@ -8114,6 +8195,7 @@ static dem_result demi_feeds_run(dem_world *w) {
             if (!(d->rate > 0) || (d->limited && waits > (double)most)) waits = (double)most;
             f->state.waiting = (uint64_t)(waits + 1e-9*waits);
         }
+        f->state.done = f->next < 0 && (!demi_feed_left(f) || (d->end > 0 && w->time > d->end));
     }
     return DEM_OK;
 }
@@ -8409,19 +8491,6 @@ DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
                      "before asking for a time step");
 }
 
-static void demi_domain_finish(dem_world *w, int d) {
-    demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
-    if (w->shaped_count) demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
-}
-
-/* Completes the half kick that a step leaves open: velocities are then those of the present time.
-   */
-static void demi_finish(dem_world *w) {
-    if (w->synced) return;
-    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);
-    w->synced = 1;
-}
-
 /* Says that a body that is not a sphere turns too far in a step. */
 static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call) {
     return demi_fail(w, DEM_ERROR_TIME_STEP, "%s: step %llu: a body that is not a sphere turns by "
@@ -8712,7 +8781,44 @@ static dem_result demi_outflow(dem_world *w) {
     return DEM_OK;
 }
 
-static void demi_fields_sample(dem_world *w);
+/* What is asked for now goes into the fields of >>measure. */
+static size_t demi_field_cells(const demi_field *f) {
+    return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
+}
+static void demi_fields_sample(dem_world *w) {
+    int f, i, k;
+    for (f = 0; f < w->field_count; f++) {
+        demi_field *field = &w->fields[f];
+        const dem_field_desc *d = &field->desc;
+        double lo[3], size[3], volume;
+        if (!field->used || w->time < field->next || (d->end > 0 && w->time > d->end)) continue;
+        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->time) : w->time +
+            100*(double)w->dt;
+        if (field->next <= w->time) field->next = w->time + (double)w->dt/2;
+        lo[0] = (double)d->box.lo.x; lo[1] = (double)d->box.lo.y; lo[2] = (double)d->box.lo.z;
+        size[0] = ((double)d->box.hi.x - lo[0])/d->cells[0];
+        size[1] = ((double)d->box.hi.y - lo[1])/d->cells[1];
+        size[2] = ((double)d->box.hi.z - lo[2])/d->cells[2];
+        volume = size[0]*size[1]*size[2];
+        for (i = 0; i < w->count; i++) {
+            const double m = (double)w->mass[i], r = (double)w->pos[4*i + 3];
+            size_t cell = 0;
+            int in = 1;
+            for (k = 2; k >= 0; k--) {
+                const double t = floor(((double)w->pos[4*i + k] - lo[k])/size[k]);
+                in = in && t >= 0 && t < d->cells[k];
+                cell = cell*(size_t)d->cells[k] + (in ? (size_t)t : 0);
+            }
+            if (!in || demi_visits(w, i)) continue;
+            field->solid[cell] += (w->desc.planar ? DEMI_PI*r*r*size[2]
+                : m/(double)w->materials[w->body_material[i] - 1].density)/volume;
+            field->mass[cell] += m;
+            for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->vel[4*i +
+                k];
+        }
+        field->samples++;
+    }
+}
 
 /* 1 move: first half kick, drift, predicted velocities; walls follow. */
 static dem_result demi_step_move(dem_world *w) {
@@ -8900,43 +9006,6 @@ DEM_API uint64_t dem_world_steps(const dem_world *w) { return w->steps; }
    >>measure
    Looking at a world without changing it: fields on a grid, counters, contacts, the digest.
    --------------------------------------------------------------------------------------------- */
-static size_t demi_field_cells(const demi_field *f) {
-    return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
-}
-static void demi_fields_sample(dem_world *w) {
-    int f, i, k;
-    for (f = 0; f < w->field_count; f++) {
-        demi_field *field = &w->fields[f];
-        const dem_field_desc *d = &field->desc;
-        double lo[3], size[3], volume;
-        if (!field->used || w->time < field->next || (d->end > 0 && w->time > d->end)) continue;
-        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->time) : w->time +
-            100*(double)w->dt;
-        if (field->next <= w->time) field->next = w->time + (double)w->dt/2;
-        lo[0] = (double)d->box.lo.x; lo[1] = (double)d->box.lo.y; lo[2] = (double)d->box.lo.z;
-        size[0] = ((double)d->box.hi.x - lo[0])/d->cells[0];
-        size[1] = ((double)d->box.hi.y - lo[1])/d->cells[1];
-        size[2] = ((double)d->box.hi.z - lo[2])/d->cells[2];
-        volume = size[0]*size[1]*size[2];
-        for (i = 0; i < w->count; i++) {
-            const double m = (double)w->mass[i], r = (double)w->pos[4*i + 3];
-            size_t cell = 0;
-            int in = 1;
-            for (k = 2; k >= 0; k--) {
-                const double t = floor(((double)w->pos[4*i + k] - lo[k])/size[k]);
-                in = in && t >= 0 && t < d->cells[k];
-                cell = cell*(size_t)d->cells[k] + (in ? (size_t)t : 0);
-            }
-            if (!in || demi_visits(w, i)) continue;
-            field->solid[cell] += (w->desc.planar ? DEMI_PI*r*r*size[2]
-                : m/(double)w->materials[w->body_material[i] - 1].density)/volume;
-            field->mass[cell] += m;
-            for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->vel[4*i +
-                k];
-        }
-        field->samples++;
-    }
-}
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     dem_field id;
     demi_field field;
@@ -9069,27 +9138,27 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
         const demi_domain *domain = &w->domains[d];
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
             n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0);
-        for (k = 0; k < w->domains[d].wall_contacts; k++, n++) {
+        for (k = 0; k < w->domains[d].wall_contacts; k++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
-            if (n >= capacity || !out) continue;
-            out[n].a = dem_bodies_id(w, c->body);
-            out[n].b.slot = out[n].b.generation = 0;
-            out[n].wall = c->wall + 1;
-            out[n].normal = c->normal;
-            out[n].point = c->point;
-            out[n].overlap = c->overlap;
-            out[n].force = c->force;
+            if (!(c->overlap > 0) || ++n > capacity || !out) continue;
+            out[n - 1].a = dem_bodies_id(w, c->body);
+            out[n - 1].b.slot = out[n - 1].b.generation = 0;
+            out[n - 1].wall = c->wall + 1;
+            out[n - 1].normal = c->normal;
+            out[n - 1].point = c->point;
+            out[n - 1].overlap = c->overlap;
+            out[n - 1].force = c->force;
         }
-        for (k = 0; k < w->domains[d].shaped; k++, n++) {
+        for (k = 0; k < w->domains[d].shaped; k++) {
             const demi_shaped *c = &w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
-            if (n >= capacity || !out) continue;
-            out[n].a = dem_bodies_id(w, c->a);
-            out[n].b = dem_bodies_id(w, c->b);
-            out[n].wall = c->b < 0 ? c->wall + 1 : 0;
-            out[n].normal = c->normal;
-            out[n].point = demi_add(demi_at(w->pos + 4*c->a), c->arm_a);
-            out[n].overlap = c->overlap;
-            out[n].force = c->force;
+            if (!(c->overlap > 0) || ++n > capacity || !out) continue;
+            out[n - 1].a = dem_bodies_id(w, c->a);
+            out[n - 1].b = dem_bodies_id(w, c->b);
+            out[n - 1].wall = c->b < 0 ? c->wall + 1 : 0;
+            out[n - 1].normal = c->normal;
+            out[n - 1].point = demi_add(demi_at(w->pos + 4*c->a), c->arm_a);
+            out[n - 1].overlap = c->overlap;
+            out[n - 1].force = c->force;
         }
     }
     return n;
@@ -9097,6 +9166,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
 
 /* Digest of one contact, whichever of its bodies is a. */
 static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
+    const int pushes = c->share > 0;
     uint32_t who[4];
     uint64_t h = DEMI_HASH_START;
     int i, flip;
@@ -9106,6 +9176,7 @@ static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
     who[3] = c->b >= 0 ? (uint32_t)c->part_b : (uint32_t)c->wall;
     flip = c->b >= 0 && who[0] > who[1];
     for (i = 0; i < 4; i++) h = demi_hash(h, &who[flip ? i ^ 1 : i], sizeof *who);
+    h = demi_hash(h, &pushes, sizeof pushes);
     for (i = 0; i < w->memory_stride; i++) {
         dem_real m = c->memory[i];
         if (flip && (w->vector_mask >> i & 1)) m = -m;
@@ -9200,6 +9271,18 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
             h = demi_hash(h, &w->walls[i].pose.position, sizeof(dem_vec3));
             h = demi_hash(h, w->walls[i].pose.rotation, sizeof w->walls[i].pose.rotation);
         }
+    for (i = 0; i < w->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(w, i);
+        const int64_t next = f->next;
+        h = demi_hash(h, &f->random, sizeof f->random);
+        h = demi_hash(h, &next, sizeof next);
+        h = demi_hash(h, f->state.fed, sizeof f->state.fed);
+    }
+    for (i = 0; i < w->outlet_count; i++) {
+        const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
+        h = demi_hash(h, o->count, sizeof o->count);
+        h = demi_hash(h, &o->total, sizeof o->total);
+    }
     for (d = 0; d < w->domain_count && w->list_valid; d++) {
         const demi_domain *domain = &w->domains[d];
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
@@ -9220,10 +9303,12 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
         }
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
+            const int pushes = c->share > 0;    /* or is it under way through a reduced hole? */
             uint64_t one = DEMI_HASH_START;
             one = demi_hash(one, &w->body_slot[c->body], sizeof(uint32_t));
             one = demi_hash(one, &c->wall, sizeof c->wall);
             one = demi_hash(one, &c->element, sizeof c->element);
+            one = demi_hash(one, &pushes, sizeof pushes);
             sum += demi_hash(one, c->memory, sizeof c->memory);
         }
         for (k = 0; k < w->domains[d].shaped; k++)
@@ -10288,21 +10373,24 @@ DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char 
 /* ---- MOLDYN ---- */
 
 enum { DEMI_PIN = 14, DEMI_WIN = 6 };
-static void demi_moldyn_rows_free(dem_world *w, dem_moldyn *m, int walls) {
-    if (walls) {
-        demi_free(w, m->walls, (size_t)m->wall_count*DEMI_WIN, sizeof(dem_real));
-        m->walls = 0;
-        m->wall_count = 0;
-    } else {
-        demi_free(w, m->grains, (size_t)m->grain_count*DEMI_PIN, sizeof(dem_real));
-        m->grains = 0;
-        m->grain_count = 0;
-    }
+/* Rows are not the world's own: they may outlive the one they were read with. */
+static dem_real *demi_moldyn_rows_new(const dem_allocator *a, size_t count, size_t wide) {
+    const size_t bytes = count*wide*sizeof(dem_real);
+    void *rows = count > (size_t)-1/2/(wide*sizeof(dem_real)) ? 0 : demi_raw_alloc(a, bytes);
+    if (rows) memset(rows, 0, bytes);
+    return (dem_real *)rows;
 }
-DEM_API void dem_moldyn_free(dem_world *w, dem_moldyn *m) {
+static void demi_moldyn_rows_free(const dem_allocator *a, dem_real *rows, int count, size_t wide) {
+    if (rows) demi_raw_free(a, rows, (size_t)count*wide*sizeof(dem_real));
+}
+/* The allocator of its rows, or of those to come. */
+static dem_allocator demi_moldyn_allocator(const dem_world *w, const dem_moldyn *m) {
+    return m->grains || m->walls ? m->allocator : w->desc.allocator;
+}
+DEM_API void dem_moldyn_free(dem_moldyn *m) {
     if (!m) return;
-    demi_moldyn_rows_free(w, m, 0);
-    demi_moldyn_rows_free(w, m, 1);
+    demi_moldyn_rows_free(&m->allocator, m->grains, m->grain_count, DEMI_PIN);
+    demi_moldyn_rows_free(&m->allocator, m->walls, m->wall_count, DEMI_WIN);
     memset(m, 0, sizeof *m);
 }
 /* Keys of .cin, where their values go, and their limits. */
@@ -10357,9 +10445,10 @@ static dem_result demi_cin_read(demi_text *t, dem_moldyn *m) {
                      demi_cin_rows[i].key);
             return demi_text_fail(t, where);
         }
-    if (fresh.friction_static < fresh.friction || fresh.end < fresh.start)
-        return demi_text_fail(t, "control.mue_s of at least control.mue_d and times.tend of at "
-                              "least times.t0 are expected; correct the file");
+    if ((fresh.friction_static > 0 && fresh.friction_static < fresh.friction) ||
+        fresh.end < fresh.start)
+        return demi_text_fail(t, "control.mue_s of at least control.mue_d (or 0: the same) and "
+                              "times.tend of at least times.t0 are expected; correct the file");
     *m = fresh;
     return DEM_OK;
 }
@@ -10368,6 +10457,7 @@ static dem_result demi_cin_read(demi_text *t, dem_moldyn *m) {
 static dem_result demi_moldyn_rows(demi_text *t, dem_moldyn *m, int walls) {
     const int wide = walls ? DEMI_WIN : DEMI_PIN, flat = walls ? 4 : 8;
     const int known = walls ? m->grain_count > 0 : m->wall_count > 0;
+    const dem_allocator allocator = demi_moldyn_allocator(t->world, m);
     int32_t count = 0;
     int columns = 0, i, k;
     dem_real thickness = 0, *rows = 0;
@@ -10385,7 +10475,7 @@ static dem_result demi_moldyn_rows(demi_text *t, dem_moldyn *m, int walls) {
         return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: found %d rows announced "
                          "where the file has bytes for at most %.0f; was it cut short?", t->call,
                          t->name, t->line, (int)count, (double)(t->end - t->next)/(2*flat - 1));
-    if (count) rows = (dem_real *)demi_alloc(t->world, (size_t)count*(size_t)wide, sizeof *rows);
+    if (count) rows = demi_moldyn_rows_new(&allocator, (size_t)count, (size_t)wide);
     if (count && !rows) return demi_text_memory(t);
     for (i = 0; i < count && result == DEM_OK; i++) {
         dem_real value[DEMI_PIN], *row = rows + (size_t)i*(size_t)wide;
@@ -10425,10 +10515,12 @@ static dem_result demi_moldyn_rows(demi_text *t, dem_moldyn *m, int walls) {
         result = demi_text_fail(t, "the end of the file is expected: there are more rows than its "
                                 "first line says");
     if (result != DEM_OK) {
-        demi_free(t->world, rows, (size_t)count*(size_t)wide, sizeof *rows);
+        demi_moldyn_rows_free(&allocator, rows, count, (size_t)wide);
         return result;
     }
-    demi_moldyn_rows_free(t->world, m, walls);
+    demi_moldyn_rows_free(&allocator, walls ? m->walls : m->grains,
+                          walls ? m->wall_count : m->grain_count, (size_t)wide);
+    m->allocator = allocator;
     if (count) m->planar = columns == flat;
     if (walls) { m->walls = rows; m->wall_count = count; m->wall_thickness = (double)thickness; }
     else { m->grains = rows; m->grain_count = count; }
@@ -10468,7 +10560,7 @@ DEM_API dem_result dem_moldyn_read(dem_world *w, const char *cin, const char *pi
                                        bytes.data ? (const char *)bytes.data : "", size, m);
         demi_array_free(w, &bytes);
     }
-    if (result != DEM_OK) dem_moldyn_free(w, m);
+    if (result != DEM_OK) dem_moldyn_free(m);
     return result;
 }
 static int demi_moldyn_linear(const dem_moldyn *m) {
@@ -10487,6 +10579,14 @@ DEM_API dem_world_desc dem_moldyn_desc(const dem_moldyn *m) {
    added. */
 static dem_result demi_moldyn_check(dem_world *w, const char *call, const dem_moldyn *m) {
     int i, k;
+    if (m->grain_count < 0 || m->wall_count < 0 || !(m->wall_thickness >= 0) ||
+        !(m->wall_thickness < 1e15) || !(m->end >= m->start) ||
+        (m->friction_static > 0 && m->friction_static < m->friction))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grain_count is %d, wall_count %d, "
+                         "wall_thickness %g m, must be >= 0 and finite; end %g s, must be at least "
+                         "start, %g s; friction_static %g, must be 0 or at least friction, %g; "
+                         "mend them in moldyn", call, m->grain_count, m->wall_count,
+                         m->wall_thickness, m->end, m->start, m->friction_static, m->friction);
     for (i = 0; i < DEMI_CIN_ROWS; i++) {
         const demi_cin_row *row = &demi_cin_rows[i];
         double value;
@@ -10498,15 +10598,16 @@ static dem_result demi_moldyn_check(dem_world *w, const char *call, const dem_mo
     }
     for (i = 0; i < m->grain_count; i++) {
         const dem_real *row = m->grains + (size_t)i*DEMI_PIN;
-        int ok = row[12] > 0;
+        int ok = row[12] > 0 && (DEMI_ABS(row[13]) <= 0 || DEMI_ABS(row[13] - 1) <= 0);
         for (k = 0; k < DEMI_PIN; k++) ok = ok && demi_finite(row[k]);
         if (!ok)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grain %d has radius %g or a number that "
-                             "is not finite; mend its row in moldyn", call, i, (double)row[12]);
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grain %d has radius %g m and flag %g or "
+                             "a number that is not finite; must be > 0, and 0 or 1; mend its row "
+                             "in moldyn", call, i, (double)row[12], (double)row[13]);
     }
     for (i = 0; i < m->wall_count; i++) {
         const dem_real *row = m->walls + DEMI_WIN*i;
-        int ok = demi_dot(demi_at(row), demi_at(row)) > 0;
+        int ok = demi_size(demi_at(row)) > 0;
         for (k = 0; k < DEMI_WIN; k++) ok = ok && demi_finite(row[k]);
         if (!ok)
             return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d has normal (%g, %g, %g), must be "
@@ -10573,13 +10674,18 @@ static int demi_by_slot(const dem_world *w, int *slot) {
     return *slot < w->slot_count ? w->slot_index[(*slot)++] : -1;
 }
 DEM_API dem_result dem_moldyn_take(dem_world *w, dem_moldyn *m) {
+    const dem_allocator allocator = demi_moldyn_allocator(w, m);
     dem_real *rows = 0;
     int i = 0, slot = 0, b;
     if (w->shaped_count)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_moldyn_take: %d bodies are not spheres, which "
                          "MOLDYN's files cannot tell; use dem_vtp_write or a checkpoint",
                          w->shaped_count);
-    if (w->count) rows = (dem_real *)demi_alloc(w, (size_t)w->count*DEMI_PIN, sizeof *rows);
+    if (!w->desc.planar != !m->planar)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_moldyn_take: the world is %s and moldyn is "
+                         "not; take from a world made with dem_moldyn_desc",
+                         w->desc.planar ? "planar" : "in space");
+    if (w->count) rows = demi_moldyn_rows_new(&allocator, (size_t)w->count, DEMI_PIN);
     if (w->count && !rows) return demi_no_memory(w, "dem_moldyn_take");
     for (; (b = demi_by_slot(w, &slot)) >= 0; i++) {
         dem_real *row = rows + (size_t)i*DEMI_PIN;
@@ -10589,7 +10695,8 @@ DEM_API dem_result dem_moldyn_take(dem_world *w, dem_moldyn *m) {
         row[12] = w->pos[4*b + 3];
         row[13] = w->inv_mass[b] > 0 ? DEM_R(1) : DEM_R(0);
     }
-    demi_moldyn_rows_free(w, m, 0);
+    demi_moldyn_rows_free(&allocator, m->grains, m->grain_count, DEMI_PIN);
+    m->allocator = allocator;
     m->grains = rows;
     m->grain_count = w->count;
     m->start = w->time;
@@ -10610,9 +10717,9 @@ DEM_API dem_result dem_moldyn_write(dem_world *w, const dem_moldyn *m, const cha
     const char *call = "dem_moldyn_write";
     demi_out o;
     char number[32];
-    dem_result result = DEM_OK;
+    dem_result result = demi_moldyn_check(w, call, m);
     int i;
-    if (cin) {
+    if (cin && result == DEM_OK) {
         result = demi_out_open(&o, w, call, cin);
         if (result != DEM_OK) return result;
         for (i = 0; i < DEMI_CIN_ROWS; i++) {
@@ -10705,6 +10812,18 @@ static void demi_str_row(FILE *file, const dem_real *R, dem_vec3 x) {
     demi_fixed_write(file, (double)x.y, ' ');
     demi_fixed_write(file, (double)x.z, '\n');
 }
+/* Does the head of the file, interval frames bodies, say so many? */
+static int demi_str_holds(const char *path, int bodies) {
+    char head[200] = "", *at = head;
+    FILE *file = fopen(path, "rb");
+    int k, ok = file && fgets(head, sizeof head, file);
+    if (file) fclose(file);
+    for (k = 0; k < 2 && ok; k++) {
+        at += strcspn(at, " ");
+        at += strspn(at, " ");
+    }
+    return ok && strtol(at, 0, 10) == bodies;
+}
 DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interval, int frames) {
     static const dem_real one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     char number[32];
@@ -10712,6 +10831,12 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
     FILE *file = demi_append_open(w, "dem_str_append", path, &fresh);
     if (!file) return path ? DEM_ERROR_FILE : DEM_ERROR_ARGUMENT;
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
+    if (!fresh && !demi_str_holds(path, w->count + walls)) {
+        fclose(file);
+        return demi_fail(w, DEM_ERROR_FORMAT, "dem_str_append: %.200s is not of %d bodies, as there "
+                         "are now (%d grains, %d walls), and its format has one number for all "
+                         "frames; begin a new file", path, w->count + walls, w->count, walls);
+    }
     if (fresh) fprintf(file, "%s %d %d\n", demi_format_real(number, interval, 12), frames,
                        w->count + walls);
     while ((b = demi_by_slot(w, &slot)) >= 0) {
@@ -11114,8 +11239,8 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
                            demi_state_size(w, &head->shape))
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene; create the "
                          "world with the same desc, "
-                         "materials, pairs, walls, motions and fields as the one that wrote it, "
-                         "then read", call, path);
+                         "materials, pairs, shapes, walls, motions, fields, feeds and outlets as "
+                         "the one that wrote it, then read", call, path);
     return DEM_OK;
 }
 

@@ -29,7 +29,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             dem_world_destroy(made);
         }
     } else if (!dem_world_error(world)[0]) abort();
-    dem_moldyn_free(world, &m);
+    dem_moldyn_free(&m);
     dem_world_destroy(world);
     return 0;
 }

@@ -244,6 +244,59 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("a feed is done when its last grain has come: not while some wait, nor a step later") {
+        dem_world *world = world_of(0, 1e-5);
+        dem_material stuff = soft(world, 1000);
+        dem_feed_desc d = feed_of(stuff, 1e5);
+        dem_feed feed[2];
+        dem_feed_state s;
+        d.class_count = 1;
+        d.end = 1e-3;
+        d.velocity = at(1, 0, 0);
+        d.spread = 0;
+        d.box = box_of(0, 0, 0, 0, 0, 0);
+        feed[0] = dem_feed_add(world, &d);
+        d.limited = 1;
+        d.rate = 0;
+        d.amount[0] = 5;
+        d.end = 0;
+        d.box = box_of(1, 1, 1, 2, 2, 2);
+        feed[1] = dem_feed_add(world, &d);
+        CHECK_EQ(scene_step(world, 1), DEM_OK);
+        dem_feed_get(world, feed[1], &s);
+        CHECK_EQ((int)s.total, 5);
+        CHECK_EQ(s.done, 1);
+        CHECK_EQ(scene_step(world, 120), DEM_OK);
+        dem_feed_get(world, feed[0], &s);
+        CHECK((int)s.waiting > 90);
+        CHECK_EQ(s.done, 0);
+        d.amount[0] = 0.3;
+        CHECK_EQ(dem_feed_add(world, &d).id, 0);
+        CHECK_STR(dem_world_error(world), "which is 0.3 grains");
+        dem_world_destroy(world);
+    }
+
+    TEST("a feed from beyond a periodic domain finds those it fed there") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_feed_desc d;
+        desc.normal_law = DEM_NORMAL_LINEAR;
+        desc.dt = DEM_R(1e-5);
+        desc.domain = box_of(0, 0, 0, 0.1, 0.1, 0.1);
+        desc.boundary[0] = desc.boundary[1] = desc.boundary[2] = DEM_BOUNDARY_PERIODIC;
+        world = dem_world_create(&desc);
+        d = feed_of(soft(world, 1000), 5e4);
+        d.class_count = 1;
+        d.radius[0] = DEM_R(0.004);
+        d.velocity = at(0, 0, 0);
+        d.box = box_of(0.22, 0.22, 0.22, 0.26, 0.26, 0.26);
+        dem_feed_add(world, &d);
+        CHECK_EQ(scene_step(world, 400), DEM_OK);
+        CHECK(dem_bodies_get(world).count > 15);
+        CHECK((double)dem_counters_get(world).overlap_max < 0.1);
+        dem_world_destroy(world);
+    }
+
     TEST("outlets count by class and by what is wanted, standing still and on a turning wall") {
         dem_world *world = world_of(0, 1e-3);
         dem_material stuff = soft(world, 1);

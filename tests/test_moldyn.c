@@ -68,7 +68,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(m.wall_count, 6);
         CHECK_REL(m.wall_thickness, 0.003, 1e-6);
         CHECK_REL((double)m.walls[6*5 + 5], 0.1715, 1e-6);
-        dem_moldyn_free(w, &m);
+        dem_moldyn_free(&m);
         CHECK_EQ(m.grain_count, 0);
         dem_world_destroy(w);
     }
@@ -119,8 +119,8 @@ int main(int argc, char **argv) {
                     CHECK(memcmp(ba.velocities + 4*i, bb.velocities + 4*k, 3*sizeof(dem_real)) == 0);
                 }
         CHECK_EQ(dem_world_run(b, 0.05, 0, 0), DEM_OK);
-        dem_moldyn_free(any, &m);
-        dem_moldyn_free(any, &n);
+        dem_moldyn_free(&m);
+        dem_moldyn_free(&n);
         dem_world_destroy(a);
         dem_world_destroy(b);
         dem_world_destroy(any);
@@ -146,7 +146,7 @@ int main(int argc, char **argv) {
                   (double)c.damping_ratio)), 0.27, 1e-5);
         CHECK_EQ(dem_coefficients_get(w, grain, wall, DEM_R(0.15), 0, &c), DEM_OK);
         CHECK_REL(c.cn, 0.38, 1e-6);
-        dem_moldyn_free(any, &m);
+        dem_moldyn_free(&m);
         dem_world_destroy(w);
         dem_world_destroy(any);
     }
@@ -172,7 +172,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_run(w, 2, 0, 0), DEM_OK);
         s = scene_state(w, dem_bodies_id(w, scene_state(w, dem_bodies_id(w, 0)).fixed));
         CHECK_NEAR(s.position.y, 0.11, 0.003);   /* on the wall's surface, .01 above its middle */
-        dem_moldyn_free(any, &m);
+        dem_moldyn_free(&m);
         dem_world_destroy(w);
         dem_world_destroy(any);
     }
@@ -205,7 +205,7 @@ int main(int argc, char **argv) {
         load(str, text, sizeof text);
         CHECK_STR(text, "0.01 2 2\n1 0 0 0 1 0 0 0 1 0.050000 0.120000 0.000000\n");
         CHECK_EQ((int)(strstr(text, "0.120000") != strstr(text, "0.01")), 1);
-        dem_moldyn_free(any, &m);
+        dem_moldyn_free(&m);
         dem_world_destroy(w);
         dem_world_destroy(any);
         remove(xb);
@@ -266,7 +266,7 @@ int main(int argc, char **argv) {
             CHECK_EQ(dem_moldyn_add(fresh, &m), DEM_OK);   /* the world is as it was */
             dem_world_destroy(fresh);
         }
-        dem_moldyn_free(w, &m);
+        dem_moldyn_free(&m);
         CHECK_EQ(dem_moldyn_read(w, "build/tmp/none.cin", 0, 0, &m), DEM_ERROR_FILE);
         CHECK_EQ(m.grain_count, 0);
         dem_world_destroy(w);
