@@ -82,7 +82,8 @@ static const study_option table[] = {
     {"spacing", STUDY_REAL, &options.spacing, 0, 1, "m", "of decks; 0: .15 (large), .03 (others)"},
     {"openings", STUDY_INT, &options.openings, 1, 12, "", "in the rim of each deck"},
     {"open", STUDY_REAL, &options.open, 0.01, 1, "", "share of the rim that is open"},
-    {"vane", STUDY_REAL, &options.vane, -1, 0.5, "m", "deflector at each opening; -1: R/8"},
+    {"vane", STUDY_REAL, &options.vane, -1, 0.5, "m",
+        "deflector at each opening of a uniform barrel; -1: R/8"},
     {"stiffness", STUDY_REAL, &options.stiffness, 0, 1e9, "N/m", "0: 2e4 (large), 200 (glass), 2000 (small)"},
     {"restitution", STUDY_REAL, &options.restitution, 0.01, 1, "", "of balls and machine"},
     {"steps", STUDY_REAL, &options.steps, 20, 1000, "", "time steps in the shortest contact"},
@@ -173,8 +174,8 @@ static int part_move(screener *s, int part, dem_wall wall, double z) {
 }
 
 /* The rim: 96 segments, those of the openings left out; a vane at the end of each opening that a
-   turning machine comes to first, leading outwards. One profile serves all decks of a uniform barrel;
-   a stepped one is a mesh, with a ledge where it narrows. */
+   turning machine comes to first, which reaches inwards and leads balls out. One profile serves all
+   decks of a uniform barrel; a stepped one is a mesh, with a ledge where it narrows and no vanes. */
 static int rim_add(screener *s, dem_material stuff) {
     enum { N = 96 };
     dem_real xy[2*(N + 24)], *xyz;

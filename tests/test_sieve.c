@@ -320,13 +320,13 @@ int main(int argc, char **argv) {
     TEST("grains that lie alone on a shaking weave are left behind in geometric numbers: first-order "
          "sieving") {
         shaking q = shaking_of(sieve_of(DEM_SIEVE_WIRES, 0.01, 0.005), 0.0085);
-        int left[12], i, first = 0, m = 0;
+        int left[12], i, first = 2, m = 0;       /* straight once those over a hole are through */
         double sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0, r2;
         q.stiffness = 2e4;
         q.friction = 0.2;
         q.amplitude = 0.0015;
         q.frequency = 35;
-        q.grains = 900;
+        q.grains = 1700;
         q.periods = 12;
         q.period = 0.12;
         shake(&q, left);
