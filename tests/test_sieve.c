@@ -365,6 +365,32 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("an elastic bounce on crossings and corners keeps its energy to 3.5 overlaps over the radius, "
+         "on bars and round holes to 1e-3") {
+        static const dem_sieve_kind kinds[4] = {DEM_SIEVE_WIRES, DEM_SIEVE_SQUARE, DEM_SIEVE_BARS,
+                                                DEM_SIEVE_ROUND};
+        static const double stiffness[2] = {2e3, 2e5};
+        int i, j, k;
+        for (i = 0; i < 4; i++) for (j = 0; j < 2; j++) for (k = 0; k < 36; k++) {
+            dem_world *world = world_of(0, 5e-5*sqrt(2e3/stiffness[j]));
+            dem_material stuff = stiff(world, stiffness[j], 1, 0);
+            const dem_sieve_desc s = sieve_of(kinds[i], 0.01, 0.003);
+            dem_body grain;
+            double e, over;
+            dem_sieve_add(world, stuff, &s);
+            grain = dem_sphere_add(world, stuff, DEM_R(0.012),
+                                   at(0.013*(k%6 + 0.5)/6, 0.013*(k/6 + 0.5)/6, 0.016));
+            scene_move(world, grain, at(0.15, 0.1, -0.5), at(0, 0, 0));
+            CHECK_EQ(scene_step(world, (int)(0.08/(5e-5*sqrt(2e3/stiffness[j])))), DEM_OK);
+            e = (double)demi_dot(scene_state(world, grain).velocity,
+                                 scene_state(world, grain).velocity)/(0.15*0.15 + 0.01 + 0.25);
+            over = (double)dem_counters_get(world).overlap_max;
+            CHECK((double)scene_state(world, grain).position.z > 0.013);
+            CHECK_NEAR(e, 1, i < 2 ? 3.5*over : 1e-3);
+            dem_world_destroy(world);
+        }
+    }
+
     TEST("a grain that rolls over the rim of a sieve, or flies against it, gains nothing") {
         static const dem_sieve_kind kinds[5] = {DEM_SIEVE_SQUARE, DEM_SIEVE_ROUND, DEM_SIEVE_SLOTS,
                                                 DEM_SIEVE_WIRES, DEM_SIEVE_REDUCED};
