@@ -47,9 +47,10 @@ screener_times() {
             if (what == "thesis_compute") thesis[n] = $3 }
         END { print "| balls | machine time | thesis | 200 N/m | ratio | overlap | 2000 N/m | ratio | overlap |"; print "|---|---|---|---|---|---|---|---|---|"
             k = split("775 4950 9900", row, " "); split("20 25 45", time, " ")
-            for (i = 1; i <= k; i++) { n = row[i]; a = value[n, "compute", 1]; b = value[n, "compute", 2]
-                printf "| %d | %d s | %.1f h | %.1f s | %.0f | %.2f | %.1f s | %.0f | %.3f |\n", n, time[i], thesis[n]/3600,
-                    a, a ? thesis[n]/a : 0, value[n, "overlap", 1], b, b ? thesis[n]/b : 0, value[n, "overlap", 2] } }'
+            for (i = 1; i <= k; i++) { n = row[i]
+                printf "| %d | %d s | %.1f h | %s | %s |\n", n, time[i], thesis[n]/3600, cells(n, 1), cells(n, 2) } }
+        function cells(n, k,    t) { t = value[n, "compute", k]
+            return t ? sprintf("%.0f s | %.0f | %.3f", t, thesis[n]/t, value[n, "overlap", k]) : " | | " }'
 }
 
 at=build/out

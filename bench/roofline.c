@@ -76,8 +76,13 @@ static const char *const level_names[LEVELS] = {"L1", "L2", "L3", "memory"};
 static double bandwidth[LEVELS], peak, roots;      /* byte/s, flop/s, 1/s */
 static double level_kib[LEVELS] = {24, 384, 9216, 786432}; /* three arrays together */
 
+#if defined(__GNUC__)
+#define APART static __attribute__((noinline))
+#else
+#define APART static
+#endif
 /* not inlined: gcc forgets that the arrays are apart where it inlines, and stays scalar */
-DEMI_NOINLINE void triad(dem_real *DEMI_RESTRICT a, const dem_real *DEMI_RESTRICT b, const dem_real *DEMI_RESTRICT c,
+APART void triad(dem_real *DEMI_RESTRICT a, const dem_real *DEMI_RESTRICT b, const dem_real *DEMI_RESTRICT c,
                   dem_real s, size_t n) {
     size_t i;
     for (i = 0; i < n; i++) a[i] = b[i] + s*c[i];
@@ -106,7 +111,7 @@ static double measure_triad(double kib) { /* byte/s, best of several: the limit 
 #else
 #define MULTIPLY_ADD(x, m, s) ((x)*(m) + (s))
 #endif
-DEMI_NOINLINE void multiply_adds(dem_real *DEMI_RESTRICT x, dem_real m, dem_real s, int n) {
+APART void multiply_adds(dem_real *DEMI_RESTRICT x, dem_real m, dem_real s, int n) {
     int i;
     for (i = 0; i < n; i++) {
         dem_real v = x[i];
@@ -117,7 +122,7 @@ DEMI_NOINLINE void multiply_adds(dem_real *DEMI_RESTRICT x, dem_real m, dem_real
         x[i] = v;
     }
 }
-DEMI_NOINLINE void inverse_roots(dem_real *DEMI_RESTRICT y, const dem_real *DEMI_RESTRICT x, int n) {
+APART void inverse_roots(dem_real *DEMI_RESTRICT y, const dem_real *DEMI_RESTRICT x, int n) {
     int i;
     for (i = 0; i < n; i++) y[i] = 1/DEMI_SQRT(x[i]);
 }

@@ -55,25 +55,27 @@ static void pair_make(int i, double ratio) {
 }
 /* W0 and normal by bisection in long double. */
 static void pair_exact(const meeting *m, long double *w0, long double *n) {
-    long double lo = 0, hi = 1, f = 0, s[3] = {0, 0, 0}, size = 0;
+    long double lo = 0, hi = 1, f = 0, s[3] = {0, 0, 0}, size = 0, A[6], B[6], r[3];
     int k, turn;
+    for (k = 0; k < 6; k++) { A[k] = (long double)m->A[k]; B[k] = (long double)m->B[k]; }
+    for (k = 0; k < 3; k++) r[k] = (long double)m->r[k];
     for (turn = 0; turn < 64; turn++) {
         const long double l = (lo + hi)/2;
         long double K[6], J[6], det, fa = 0, fb = 0;
-        for (k = 0; k < 6; k++) K[k] = (1 - l)*m->A[k] + l*m->B[k];
+        for (k = 0; k < 6; k++) K[k] = (1 - l)*A[k] + l*B[k];
         J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
         J[1] = K[0]*K[2] - K[4]*K[4]; J[5] = K[3]*K[4] - K[0]*K[5]; J[2] = K[0]*K[1] - K[3]*K[3];
         det = K[0]*J[0] + K[3]*J[3] + K[4]*J[4];
-        s[0] = (J[0]*m->r[0] + J[3]*m->r[1] + J[4]*m->r[2])/det;
-        s[1] = (J[3]*m->r[0] + J[1]*m->r[1] + J[5]*m->r[2])/det;
-        s[2] = (J[4]*m->r[0] + J[5]*m->r[1] + J[2]*m->r[2])/det;
+        s[0] = (J[0]*r[0] + J[3]*r[1] + J[4]*r[2])/det;
+        s[1] = (J[3]*r[0] + J[1]*r[1] + J[5]*r[2])/det;
+        s[2] = (J[4]*r[0] + J[5]*r[1] + J[2]*r[2])/det;
         for (k = 0; k < 2; k++) {
-            const double *Q = k ? m->B : m->A;
+            const long double *Q = k ? B : A;
             const long double q = s[0]*(Q[0]*s[0] + 2*Q[3]*s[1] + 2*Q[4]*s[2]) + s[1]*(Q[1]*s[1] + 2*Q[5]*s[2]) +
                 s[2]*Q[2]*s[2];
             if (k) fb = l*l*q; else fa = (1 - l)*(1 - l)*q;
         }
-        f = l*(1 - l)*(m->r[0]*s[0] + m->r[1]*s[1] + m->r[2]*s[2]);
+        f = l*(1 - l)*(r[0]*s[0] + r[1]*s[1] + r[2]*s[2]);
         if (fa > fb) lo = l; else hi = l;
     }
     for (k = 0; k < 3; k++) size += s[k]*s[k];
