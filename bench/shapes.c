@@ -118,7 +118,7 @@ static void meet_run(double ratio) {
         demi_meet_heights(&m, n, &ha, &hb);
         pair_exact(&now[i], &w0, e);
         scale_error = fmax(scale_error, fabs((double)(sqrtl((long double)m.f) - w0)));
-        for (k = 0; k < 3; k++) d += (double)((n[k] - e[k])*(n[k] - e[k]));
+        for (k = 0; k < 3; k++) d += (double)(((long double)n[k] - e[k])*((long double)n[k] - e[k]));
         normal_error = fmax(normal_error, sqrt(d));
         square += d;
     }
