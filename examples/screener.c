@@ -262,7 +262,7 @@ static int decks_add(screener *s, dem_material stuff) {
         d.aperture = (dem_real)(2*s->w[k]);
         d.bar = (dem_real)s->bar[k];
         d.radius = (dem_real)(is(s->o.barrel, "stepped") ? level_radius(s, k - 1) : s->R);
-        d.model = is(s->o.holes, "model1") ? 1 : 2;
+        d.model = d.kind != DEM_SIEVE_REDUCED ? 0 : is(s->o.holes, "model1") ? 1 : 2;
         d.clearance = d.kind == DEM_SIEVE_REDUCED ? (dem_real)s->o.zeta : 0;
         s->sieve[k] = dem_sieve_add(s->world, stuff, &d);
         if (part_move(s, k, s->sieve[k], k*s->o.spacing)) return 1;
