@@ -5691,7 +5691,7 @@ static dem_vec3 demi_segment_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, int *feat
        side of every hole, has an element number of its own, for contact memory.
          wires   axes at (i + 1/2)(aperture + bar): distance to the axis of each within reach,
                  exact for straight wires
-         disc    a sieve with a radius lies in a thin ring there: its rim
+         rims    plates and reduced holes cut out as a disc lie in a thin ring
          plates  above the solid part: the face. Above a hole: the nearest point of each of its
                  sides (square, slots), a rim or, within the thickness, a wall. Round holes: the
                  nearest point and the one across, so that a grain too large for the hole sits on
@@ -10833,9 +10833,9 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (!fresh && !demi_str_holds(path, w->count + walls)) {
         fclose(file);
-        return demi_fail(w, DEM_ERROR_FORMAT, "dem_str_append: %.200s is not of %d bodies, as there "
-                         "are now (%d grains, %d walls), and its format has one number for all "
-                         "frames; begin a new file", path, w->count + walls, w->count, walls);
+        return demi_fail(w, DEM_ERROR_FORMAT, "dem_str_append: %.200s is not of %d bodies, as "
+                         "there are now (%d grains, %d walls), and its format has one number for "
+                         "all frames; begin a new file", path, w->count + walls, w->count, walls);
     }
     if (fresh) fprintf(file, "%s %d %d\n", demi_format_real(number, interval, 12), frames,
                        w->count + walls);

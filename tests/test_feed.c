@@ -244,6 +244,31 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("an outlet keeps its wall, and the digest tells feeds apart by their random state") {
+        uint64_t hash[2];
+        int i;
+        for (i = 0; i < 2; i++) {
+            dem_world *world = world_of(0, 1e-3);
+            dem_material stuff = soft(world, 1);
+            dem_feed_desc d = feed_of(stuff, 1);
+            dem_wall wall = dem_plane_add(world, stuff, at(5, 0, -3), at(0, 0, 1));
+            dem_outlet_desc o;
+            d.seed = (uint64_t)i;
+            dem_feed_add(world, &d);
+            hash[i] = dem_world_hash(world);
+            CHECK_EQ(dem_wall_remove(world, dem_plane_add(world, stuff, at(0, 0, -9), at(0, 0, 1))),
+                     DEM_OK);
+            memset(&o, 0, sizeof o);
+            o.frame = wall;
+            o.box = box_of(0, 0, 0, 1, 1, 1);
+            CHECK(dem_outlet_add(world, &o).id > 0);
+            CHECK_EQ(dem_wall_remove(world, wall), DEM_ERROR_ARGUMENT);
+            CHECK_STR(dem_world_error(world), "outlet 1 moves with wall");
+            dem_world_destroy(world);
+        }
+        CHECK(hash[0] != hash[1]);
+    }
+
     TEST("a feed is done when its last grain has come: not while some wait, nor a step later") {
         dem_world *world = world_of(0, 1e-5);
         dem_material stuff = soft(world, 1000);

@@ -272,5 +272,29 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
+    TEST(".str refuses another number of bodies than its head says, and what was read outlives its world") {
+        static const char path[] = "build/tmp/count.str";
+        dem_world *w = any_world();
+        dem_moldyn m = DEM_MOLDYN;
+        parse(w, &m, DEM_MOLDYN_CONTROL, cin);
+        parse(w, &m, DEM_MOLDYN_PARTICLES, pin);
+        dem_world_destroy(w);
+        {
+            const dem_world_desc desc = dem_moldyn_desc(&m);
+            w = dem_world_create(&desc);
+        }
+        CHECK_EQ(dem_moldyn_add(w, &m), DEM_OK);
+        CHECK_EQ(dem_moldyn_take(w, &m), DEM_OK);
+        remove(path);
+        CHECK_EQ(dem_str_append(w, path, 0.1, 2), DEM_OK);
+        CHECK_EQ(dem_str_append(w, path, 0.1, 2), DEM_OK);
+        dem_body_remove(w, dem_bodies_id(w, 0));
+        CHECK_EQ(dem_str_append(w, path, 0.1, 2), DEM_ERROR_FORMAT);
+        CHECK_STR(dem_world_error(w), "is not of 5 bodies");
+        dem_world_destroy(w);
+        dem_moldyn_free(&m);
+        remove(path);
+    }
+
     return test_end();
 }

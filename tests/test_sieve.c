@@ -419,6 +419,56 @@ int main(int argc, char **argv) {
             }
     }
 
+    TEST("a cluster of one sphere presses on a wire, and passes a reduced hole, as that sphere does") {
+        static const dem_real middle[3] = {0, 0, 0};
+        dem_real height[2][2];
+        int i, k;
+        for (i = 0; i < 2; i++) for (k = 0; k < 2; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_sieve_desc s = sieve_of(k ? DEM_SIEVE_REDUCED : DEM_SIEVE_BARS, 0.02, 0.004);
+            dem_cluster_desc cluster = DEM_CLUSTER_DESC;
+            dem_material stuff;
+            dem_world *world;
+            dem_body grain;
+            const dem_vec3 place = at(k ? 0 : 0.012, 0, 0.0069);
+            desc.gravity = at(0, 0, -9.81);
+            desc.dt = DEM_R(5e-6);
+            world = dem_world_create(&desc);          /* Hertz: R* matters */
+            stuff = scene_material(world, 1e6, 0.3, 0, 0);
+            if (k) { s.model = 2; s.clearance = DEM_R(0.5); }
+            CHECK(dem_sieve_add(world, stuff, &s).id > 0);
+            cluster.count = 1;
+            cluster.positions = middle;
+            cluster.radius = DEM_R(0.005);
+            grain = i ? dem_body_add(world, stuff, dem_shape_cluster_add(world, &cluster), place,
+                                     dem_quat_make(1, 0, 0, 0))
+                : dem_sphere_add(world, stuff, DEM_R(0.005), place);
+            CHECK_EQ(scene_step(world, 2000), DEM_OK);
+            height[i][k] = scene_state(world, grain).position.z;
+            dem_world_destroy(world);
+        }
+        CHECK_NEAR(height[1][0], (double)height[0][0], 1e-8);
+        CHECK_NEAR(height[1][1], (double)height[0][1], 1e-8);
+        CHECK((double)height[0][0] < 0.007 && (double)height[0][0] > 0.0065);
+    }
+
+    TEST("an endless sieve that swings does not ask for a new list at every step") {
+        dem_world *world = world_of(9.81, 1e-5);
+        dem_material stuff = stiff(world, 1e4, 0.3, 0);
+        const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.004, 0.002);
+        const dem_wall wall = dem_sieve_add(world, stuff, &s);
+        dem_motion motion = DEM_MOTION;
+        motion.kind = DEM_MOTION_OSCILLATING;
+        motion.velocity = at(0, 0, 1);
+        motion.amplitude = DEM_R(0.0005);
+        motion.frequency = 30;
+        dem_wall_motion(world, wall, &motion);
+        dem_sphere_add(world, stuff, DEM_R(0.01), at(0, 0, 0.011));
+        CHECK_EQ(scene_step(world, 3000), DEM_OK);
+        CHECK((int)dem_counters_get(world).rebuilds < 300);
+        dem_world_destroy(world);
+    }
+
     TEST("a cluster of which a part is under way through a reduced hole gains nothing") {
         static const dem_real places[6] = {DEM_R(-0.003), 0, 0, DEM_R(0.003), 0, 0};
         int i;
