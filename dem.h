@@ -18,6 +18,7 @@
        >>materials   materials, the pair table, coefficients
        >>shapes      ellipsoids, clusters of spheres: mass properties, supports, meetings
        >>bodies      grains: slots, arrays, insertion, removal
+       >>facets      what each face, edge and corner of a surface counts
        >>walls       planes, cylinders, profiles, meshes, walls of grains, sieves, their motions
        >>search      all pairs, grid, levels, linked linear list; the candidate list
        >>touch       candidate pairs -> contacts: geometry only
@@ -1385,6 +1386,11 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
     return h;
 }
 
+/* m: coordinates beyond are mistakes, squares of them could overflow; things smaller than LEAST in
+   all are, too */
+#define DEMI_REACH 1e15
+#define DEMI_LEAST 1e-12
+
 /* ---------------------------------------------------------------------------------------------
    >>memory
    The layout of the world, and the only places where memory comes from. Bodies live in flat arrays
@@ -1432,11 +1438,28 @@ enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_S
       DEMI_E_ROLL,
        DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_ENERGIES };
 
+/* Where a body touches a wall, before it is known what the law will say (see >>touch). */
+typedef struct demi_touching {
+    int32_t element;               /* of the wall; of facets: number of the face, edge or corner */
+    dem_real overlap, share;       /* m; how often its force counts (facets: index, see >>facets) */
+    dem_vec3 normal, point;        /* unit, body -> wall; m */
+} demi_touching;
+/* A side or corner of a facet that a body reaches: what joins it to its neighbours (see >>touch). */
+typedef struct demi_link {
+    dem_real distance;             /* in the body's measure */
+    int32_t number, corner;        /* of the side (corner 0) or corner (1) */
+    int32_t facet;                 /* among those reached */
+    int32_t sides[2];              /* of a corner: the facet's sides there */
+    int32_t place;                 /* where the side is nearest: its number, or a corner's */
+    int32_t root;                  /* of facet i, in link i: union and find */
+    dem_real more;                 /* how much more its place counts by pieces */
+    dem_vec3 point;                /* from the body's centre */
+} demi_link;
 /* A contact with a wall; lives as long as the two touch. */
 typedef struct demi_wall_contact {
-    int32_t body, wall, element, feature;
-    dem_vec3 normal, point;        /* unit, grain -> wall; m */
-    dem_real overlap, share;       /* m; part of the force that counts */
+    int32_t body, wall, element;
+    dem_vec3 normal, normal_before, point;     /* unit, grain -> wall, now and a step ago; m */
+    dem_real overlap, share;       /* m, 0: under way through a reduced hole; as above */
     dem_real coef[DEMI_COEFS], memory[DEMI_MEMORY];
     dem_vec3 force;                /* N, on the grain */
 } demi_wall_contact;
@@ -1461,13 +1484,15 @@ typedef struct demi_form {
 typedef struct demi_shaped {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* spheres of clusters */
-    int32_t wall, element, feature;
+    int32_t wall, element;
     int32_t send;                  /* 1 + where the far end's push goes; 0: b is of this domain */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to where they push */
     dem_vec3 normal_before, arm_before_a, arm_before_b;     /* in the step before */
     dem_real overlap, deep;        /* m; over the smallest radius */
-    dem_real share;                /* part of the force that counts */
+    dem_real share, lift, grip;    /* how often it counts: damping, elastic force, friction */
+    dem_real weight, area, depth;  /* before sharing; A (m2) and L (m) of demi_shaped_share */
     dem_real slope;                /* m of overlap per m of approach */
+    dem_real inset;                /* the normal force passes at this part of arm_a */
     dem_real r_eff, m_eff;         /* m, kg */
     double lambda;                 /* of Perram and Wertheim, where to begin next; 0: unknown */
     dem_real unit[DEMI_COEFS];     /* coefficients of 1 m and 1 kg; unit[DEMI_R_EFF] 0: not yet */
@@ -1485,9 +1510,10 @@ typedef struct demi_domain {
     int near_shaped, near_shaped_cross, near_shaped_end;   /* after those: pairs not of spheres */
     int near_next_own, near_next_cross, near_next_end;     /* of the list being made */
     int near_next_shaped, near_next_shaped_cross, near_next_shaped_end;
-    int contacts, wall_contacts;   /* touching now */
+    int contacts, wall_contacts, wall_contacts_next;       /* touching now; being found */
     int shaped, shaped_next;       /* contacts of bodies that are not spheres: now, being found */
     int shaped_walls;              /* those of them with walls */
+    int touching_first;            /* where its places in touching_ begin */
     int overflow;                  /* a list ran out of room while being built */
     double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
     double acceleration2;          /* max |a|^2 */
@@ -1501,6 +1527,9 @@ enum { DEMI_WALL_NONE = 0, DEMI_WALL_PLANE, DEMI_WALL_CYLINDER, DEMI_WALL_PROFIL
       DEMI_WALL_GRAINS, DEMI_WALL_SIEVE,
       DEMI_SIEVE_MOST = 12 };                   /* contacts of a grain with a sieve */
 
+/* A piece of a triangle's edge on which only a piece of another triangle's lies. */
+typedef struct demi_cut { dem_vec3 a, b; dem_real weight; } demi_cut;
+
 typedef struct demi_wall {
     int kind, material;            /* DEMI_WALL_..., index */
     int inside;                    /* cylinder */
@@ -1510,6 +1539,14 @@ typedef struct demi_wall {
     int vertex_count, element_count;
     dem_real *vertices;            /* vertex_count x 3, in the wall's own frame */
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
+    /* surfaces of facets (mesh, profile), see >>facets */
+    int edge_count, cut_count;
+    int32_t *edges;                /* element_count x 3 (mesh): the edge from corner k to the next */
+    dem_real *weight;              /* how often each face, edge and corner counts, in this order */
+    unsigned char *owns;           /* element_count: bit k: looks after edge k, 3 + k: corner k */
+    int32_t *cut_start;            /* element_count + 1 (null: none): pieces of edges in `cuts` */
+    demi_cut *cuts;
+    int group;                     /* walls of one group do not move against each other */
     dem_real reach;                /* m, farthest vertex from the frame's origin; < 0: endless */
     dem_pose home, pose;           /* pose at motion start, pose now */
     dem_pose first;                /* as it was added */
@@ -1654,6 +1691,10 @@ struct dem_world {
     dem_real *wall_gap;            /* m, between grain and element when the list was made */
     demi_wall_contact *wall_now, *wall_next;
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
+    int facets_valid;              /* what facets count fits the walls and their motions */
+    int touching_valid;            /* the next two have room for the present candidates */
+    /* room for one body and wall, by domain */
+    demi_array touching_, touching_table_, touching_links_;
     int shaped_stride;             /* contacts of shaped bodies per domain */
     demi_array shaped_now_, shaped_next_;
     demi_shaped *shaped_now, *shaped_next;
@@ -3517,6 +3558,550 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>facets
+   What each face, edge and corner of a surface counts, so that a grain feels the surface and not
+   the way it is cut into facets. Meshes (triangles) and profiles (segments) are surfaces of facets.
+
+   A grain of radius r whose centre x is at distance d from a wall stores U(r - d), U the energy of
+   the normal law. A surface S is met by the ball of radius s about x, s growing from 0 to r, first
+   in one place, perhaps in others, which join as s grows. Let chi(s) be Euler's number of what the
+   ball has in common with S: pieces, less holes in them. The rule is
+       E(x) = integral of chi(s) dU(r - s),  s = 0 .. r          F = -dE/dx
+   One place counts once; two that have joined count once, two that have not count twice. chi adds:
+   chi(A and B) = chi(A) + chi(B) - chi(what both have), and it is 1 for whatever is convex. So, over
+   the faces, edges and corners X of the surface, each convex and closed, d(X) its distance from x,
+       E = sum of weight(X) U(r - d(X)),     F = -sum of weight(X) U'(r - d(X)) grad d(X)
+       face 1,  edge 1 - (faces at it),  corner 1 - (faces at it) - sum of weights of edges at it
+   in words: every point of the surface is counted once in all. Cutting a facet in two changes
+   nothing. E is an energy: elastic contacts conserve, whatever the surface. The distance to
+   something convex has a continuous gradient, so F has no jump on any path outside the surface. In
+   the open, on a ridge, at a rim or a tip one place is nearest and U' there is all that is left:
+   what a plane and a cylinder give. In a valley there are two nearest places and the edge between,
+   which counts -1: F goes from one contact to two as the valley gets steeper or the overlap less.
+   (In the words of Morse's theory: F is a sum over the critical points of the distance, lowest
+   points 1, passes -1.) Terms with the same nearest point are added up before the law is called;
+   most of them cancel, and what is left is, nearly always, one contact.
+
+   The law, its friction and its memory are asked at each place that is left, and counted as often
+   as it counts. What two walls have in common is found where they do not move against each other;
+   each bears its part of the weight. Left as they are: facets that pierce each other, and a seam
+   between surfaces of different kinds: there the contacts of both add up, as they do in a corner.
+   The rule is Euler's integral of a valuation; algorithm and application to contacts are our own.
+   Tests: tests/test_facets.c.
+   --------------------------------------------------------------------------------------------- */
+DEM_INLINE int demi_faceted(const demi_wall *wall) {
+    return wall->kind == DEMI_WALL_MESH ||
+           (wall->kind == DEMI_WALL_PROFILE && wall->rule == DEM_EDGE_RESOLVED);
+}
+
+/* Points in the order of a coordinate along which hardly two of them are alike. */
+typedef struct demi_sorted { double key; int32_t index; } demi_sorted;
+static int demi_sorted_compare(const void *x, const void *y) {
+    const demi_sorted *a = (const demi_sorted *)x, *b = (const demi_sorted *)y;
+    return a->key < b->key ? -1 : a->key > b->key ? 1 : a->index < b->index ? -1
+        : a->index > b->index;
+}
+static double demi_skewed(const double *x) { return 0.61*x[0] + 0.57*x[1] + 0.5505*x[2]; }
+static double demi_far2(const double *a, const double *b) {
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    return x*x + y*y + z*z;
+}
+static void demi_points_sort(const double *x, int count, demi_sorted *sorted) {
+    int i;
+    for (i = 0; i < count; i++) {
+        sorted[i].key = demi_skewed(x + 3*i);
+        sorted[i].index = i;
+    }
+    qsort(sorted, (size_t)count, sizeof *sorted, demi_sorted_compare);
+}
+/* How far from a point another may be and yet be the same, m: a few roundings of its coordinates as
+   binary STL stores them, but far less than the shortest side there. Sides are counted in by
+   demi_near_side. */
+static double demi_near_point(const double *x) {
+    return 4*(double)FLT_EPSILON*DEMI_MAX(fabs(x[0]), DEMI_MAX(fabs(x[1]), fabs(x[2])));
+}
+static void demi_near_side(const double *x, int32_t a, int32_t b, double *near_by) {
+    const double most = 0.01*sqrt(demi_far2(x + 3*a, x + 3*b));
+    near_by[a] = DEMI_MIN(near_by[a], most);
+    near_by[b] = DEMI_MIN(near_by[b], most);
+}
+/* same[i]: the first point that lies where point i does. */
+static void demi_points_weld(const double *x, int count, const double *near_by,
+                             const demi_sorted *sorted, int32_t *same) {
+    int i, j;
+    for (i = 0; i < count; i++) same[i] = i;
+    for (i = 0; i < count; i++)
+        for (j = i + 1; j < count && sorted[j].key - sorted[i].key <= near_by[sorted[i].index];
+             j++) {
+            int32_t a = sorted[i].index, b = sorted[j].index;
+            const double most = DEMI_MIN(near_by[a], near_by[b]);
+            if (!(demi_far2(x + 3*a, x + 3*b) <= most*most)) continue;
+            while (same[a] != a) a = same[a];
+            while (same[b] != b) b = same[b];
+            same[DEMI_MAX(a, b)] = DEMI_MIN(a, b);
+        }
+    for (i = 0; i < count; i++) same[i] = same[same[i]];
+}
+/* Does a facet count? Not with two corners in one place; nor a triangle with none off its longest
+   side by more than what is one place there: its other sides and corners are its neighbours'. */
+static int demi_facet_counts(const double *x, const double *near_by, const int32_t *c, int per) {
+    double side[3], longest, most, area2 = 0, u[3], v[3];
+    int k;
+    if (c[0] == c[1]) return 0;
+    if (per == 2) return 1;
+    if (c[1] == c[2] || c[2] == c[0]) return 0;
+    for (k = 0; k < 3; k++) {
+        side[k] = demi_far2(x + 3*c[k], x + 3*c[(k + 1)%3]);
+        u[k] = x[3*c[1] + k] - x[3*c[0] + k];
+        v[k] = x[3*c[2] + k] - x[3*c[0] + k];
+    }
+    for (k = 0; k < 3; k++) {
+        const double n = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
+        area2 += n*n;
+    }
+    longest = DEMI_MAX(side[0], DEMI_MAX(side[1], side[2]));
+    most = DEMI_MIN(near_by[c[0]], DEMI_MIN(near_by[c[1]], near_by[c[2]]));
+    return area2 > most*most*longest;
+}
+
+/* A side of a facet, from point lo to point hi. */
+typedef struct demi_side { int32_t lo, hi, facet, side; } demi_side;
+static int demi_side_compare(const void *x, const void *y) {
+    const demi_side *a = (const demi_side *)x, *b = (const demi_side *)y;
+    if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
+    if (a->hi != b->hi) return a->hi < b->hi ? -1 : 1;
+    if (a->facet != b->facet) return a->facet < b->facet ? -1 : 1;
+    return a->side < b->side ? -1 : a->side > b->side;
+}
+static demi_side demi_side_of(int32_t a, int32_t b, int facet, int side) {
+    demi_side s;
+    s.lo = DEMI_MIN(a, b);
+    s.hi = DEMI_MAX(a, b);
+    s.facet = facet;
+    s.side = side;
+    return s;
+}
+
+/* Welds a wall's corners, numbers its edges and says which element looks after which. Elements
+   that have two corners in one place count nothing. 0 when memory ran out. */
+static int demi_facets_begin(dem_world *w, demi_wall *wall) {
+    const int n = wall->kind == DEMI_WALL_MESH ? 3 : 2, all = wall->element_count;
+    const size_t vertices = (size_t)wall->vertex_count;
+    double *x = (double *)demi_alloc(w, vertices*3, sizeof *x);
+    demi_sorted *sorted = (demi_sorted *)demi_alloc(w, vertices, sizeof *sorted);
+    int32_t *same = (int32_t *)demi_alloc(w, vertices, sizeof *same);
+    demi_side *sides = (demi_side *)demi_alloc(w, (size_t)all*3, sizeof *sides);
+    double *near_by = (double *)demi_alloc(w, vertices, sizeof *near_by);
+    int i, k, count = 0, ok = 0;
+    wall->owns = (unsigned char *)demi_alloc(w, (size_t)all, 1);
+    wall->edges = (int32_t *)demi_alloc(w, (size_t)all*3, sizeof(int32_t));
+    if (!x || !sorted || !same || !sides || !near_by || !wall->owns || !wall->edges) goto done;
+    for (i = 0; i < 3*wall->vertex_count; i++) x[i] = (double)wall->vertices[i];
+    for (i = 0; i < wall->vertex_count; i++) near_by[i] = demi_near_point(x + 3*i);
+    for (i = 0; i < all; i++)
+        for (k = 0; k < n; k++) {
+            const int32_t a = wall->corners[n*i + k], b = wall->corners[n*i + (k + 1)%n];
+            if (demi_far2(x + 3*a, x + 3*b) > 0) demi_near_side(x, a, b, near_by);
+        }
+    demi_points_sort(x, wall->vertex_count, sorted);
+    demi_points_weld(x, wall->vertex_count, near_by, sorted, same);
+    for (i = 0; i < n*all; i++) wall->corners[i] = same[wall->corners[i]];
+    memset(same, 0, vertices*sizeof *same);     /* from here on: does an element own it? */
+    for (i = 0; i < all; i++) {
+        const int32_t *c = wall->corners + n*i;
+        if (!demi_facet_counts(x, near_by, c, n)) continue;
+        for (k = 0; k < n; k++) {
+            if (!same[c[k]]) wall->owns[i] = (unsigned char)(wall->owns[i] | 8 << k);
+            same[c[k]] = 1;
+            if (n == 3) sides[count++] = demi_side_of(c[k], c[(k + 1)%3], i, k);
+        }
+    }
+    qsort(sides, (size_t)count, sizeof *sides, demi_side_compare);
+    for (i = 0; i < count; i++) {
+        const demi_side *s = sides + i;
+        const int again = i > 0 && s[-1].lo == s->lo && s[-1].hi == s->hi;
+        if (!again) {
+            wall->owns[s->facet] = (unsigned char)(wall->owns[s->facet] | 1 << s->side);
+            wall->edge_count++;
+        }
+        wall->edges[3*s->facet + s->side] = wall->edge_count - 1;
+    }
+    wall->weight = (dem_real *)demi_alloc(w, (size_t)all + (size_t)wall->edge_count + vertices,
+                                          sizeof(dem_real));
+    ok = wall->weight != 0;
+done:
+    demi_free(w, x, vertices*3, sizeof *x);
+    demi_free(w, sorted, vertices, sizeof *sorted);
+    demi_free(w, same, vertices, sizeof *same);
+    demi_free(w, sides, (size_t)all*3, sizeof *sides);
+    demi_free(w, near_by, vertices, sizeof *near_by);
+    return ok;
+}
+
+/* Does any element count? The first that does looks after its corners. */
+static int demi_facets_any(const demi_wall *wall) {
+    int i;
+    for (i = 0; i < wall->element_count; i++) if (wall->owns[i]) return 1;
+    return 0;
+}
+
+/* 1 when the two walls stay where they are to each other: both fixed, or moved alike. */
+static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
+    const dem_motion *m = &a->motion, *o = &b->motion;
+    if (a == b) return 1;
+    if (m->kind != o->kind || m->kind == DEM_MOTION_USER) return 0;
+    if (m->kind == DEM_MOTION_FIXED) return 1;
+    if (memcmp(&m->start, &o->start, sizeof m->start) ||
+        memcmp(&m->velocity, &o->velocity, sizeof m->velocity)) return 0;
+    return m->kind == DEM_MOTION_TRANSLATING ? 1 : m->kind == DEM_MOTION_ROTATING
+        ? !memcmp(&m->point, &o->point, sizeof m->point) &&
+          !memcmp(&m->axis, &o->axis, sizeof m->axis) &&
+          !memcmp(&m->speed, &o->speed, sizeof m->speed)
+        : !memcmp(&m->amplitude, &o->amplitude, sizeof m->amplitude) &&
+          !memcmp(&m->frequency, &o->frequency, sizeof m->frequency) &&
+          !memcmp(&m->phase, &o->phase, sizeof m->phase);
+}
+
+/* The surfaces of a group of walls as one, under work. Points are the corners of all of them, one
+   wall after the other, in the world; facets are their elements, those left out that have two
+   corners in one place. */
+typedef struct demi_join {
+    int per;                       /* corners of a facet: 3 (meshes) or 2 (profiles) */
+    int points, facets, sides, cuts;
+    double *x, *near_by;           /* points: x 3; m, what is one place */
+    demi_sorted *sorted;           /* points */
+    int32_t *same;                 /* points: the first in this place */
+    double *faces, *corners;       /* points: facets there, in all and with a corner */
+    double *edges;                 /* points: weights of edges that end there */
+    double *own;                   /* points: as corners, of one wall */
+    int32_t *facet;                /* facets x 5: wall, element, points of its corners */
+    double *count;                 /* facets: 1, or 1/n of n that coincide */
+    demi_side *side, *piece;       /* as they are, and with cuts: side 3 + k is a piece of side k */
+    int32_t *cut;                  /* cuts x 4: wall, element, points */
+    double *cut_weight;
+    size_t point_room, facet_room, piece_room, cut_room;
+} demi_join;
+
+static void demi_join_free(dem_world *w, demi_join *j) {
+    const size_t p = j->point_room, f = j->facet_room;
+    demi_free(w, j->x, p*3, sizeof(double));
+    demi_free(w, j->near_by, p, sizeof(double));
+    demi_free(w, j->sorted, p, sizeof(demi_sorted));
+    demi_free(w, j->same, p, sizeof(int32_t));
+    demi_free(w, j->faces, p, sizeof(double));
+    demi_free(w, j->corners, p, sizeof(double));
+    demi_free(w, j->edges, p, sizeof(double));
+    demi_free(w, j->own, p, sizeof(double));
+    demi_free(w, j->facet, f*5, sizeof(int32_t));
+    demi_free(w, j->count, f, sizeof(double));
+    demi_free(w, j->side, f*3, sizeof(demi_side));
+    demi_free(w, j->piece, j->piece_room, sizeof(demi_side));
+    demi_free(w, j->cut, j->cut_room*4, sizeof(int32_t));
+    demi_free(w, j->cut_weight, j->cut_room, sizeof(double));
+}
+static int demi_join_member(const dem_world *w, int wall, int group, int per) {
+    const demi_wall *m = &w->walls[wall];
+    return demi_faceted(m) && m->group == group && per == (m->kind == DEMI_WALL_MESH ? 3 : 2);
+}
+/* Points and facets of all walls of a group. 0 when memory ran out. */
+static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
+    int i, e, k, first = 0;
+    memset(j, 0, sizeof *j);
+    j->per = per;
+    for (i = group; i < w->wall_count; i++) {
+        if (!demi_join_member(w, i, group, per)) continue;
+        j->point_room += (size_t)w->walls[i].vertex_count;
+        j->facet_room += (size_t)w->walls[i].element_count;
+    }
+    if (j->point_room > INT_MAX/8 || j->facet_room > INT_MAX/8) return 0;
+    j->x = (double *)demi_alloc(w, j->point_room*3, sizeof(double));
+    j->near_by = (double *)demi_alloc(w, j->point_room, sizeof(double));
+    j->sorted = (demi_sorted *)demi_alloc(w, j->point_room, sizeof(demi_sorted));
+    j->same = (int32_t *)demi_alloc(w, j->point_room, sizeof(int32_t));
+    j->faces = (double *)demi_alloc(w, j->point_room, sizeof(double));
+    j->corners = (double *)demi_alloc(w, j->point_room, sizeof(double));
+    j->edges = (double *)demi_alloc(w, j->point_room, sizeof(double));
+    j->own = (double *)demi_alloc(w, j->point_room, sizeof(double));
+    j->facet = (int32_t *)demi_alloc(w, j->facet_room*5, sizeof(int32_t));
+    j->count = (double *)demi_alloc(w, j->facet_room, sizeof(double));
+    j->side = (demi_side *)demi_alloc(w, j->facet_room*3, sizeof(demi_side));
+    if (!j->x || !j->near_by || !j->sorted || !j->same || !j->faces || !j->corners || !j->edges || !j->own ||
+        !j->facet || !j->count || !j->side) return 0;
+    for (i = group; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        if (!demi_join_member(w, i, group, per)) continue;
+        for (k = 0; k < wall->vertex_count; k++) {
+            const dem_vec3 at = demi_add(wall->pose.position, demi_turn(wall->pose.rotation,
+                                         demi_at(wall->vertices + 3*k)));
+            double *x = j->x + 3*j->points;
+            x[0] = (double)at.x; x[1] = (double)at.y; x[2] = (double)at.z;
+            j->near_by[j->points++] = demi_near_point(x);
+        }
+        for (e = 0; e < wall->element_count; e++)
+            for (k = 0; k < per; k++) {
+                const int32_t a = first + wall->corners[per*e + k];
+                const int32_t b = first + wall->corners[per*e + (k + 1)%per];
+                if (a != b) demi_near_side(j->x, a, b, j->near_by);
+            }
+        first += wall->vertex_count;
+    }
+    first = 0;
+    demi_points_sort(j->x, j->points, j->sorted);
+    demi_points_weld(j->x, j->points, j->near_by, j->sorted, j->same);
+    for (i = group; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        if (!demi_join_member(w, i, group, per)) continue;
+        for (e = 0; e < wall->element_count; e++) {
+            int32_t *f = j->facet + 5*j->facets;
+            f[0] = i;
+            f[1] = e;
+            for (k = 0; k < per; k++) f[2 + k] = j->same[first + wall->corners[per*e + k]];
+            if (!demi_facet_counts(j->x, j->near_by, f + 2, per)) continue;
+            j->count[j->facets++] = 1;
+        }
+        first += wall->vertex_count;
+    }
+    return 1;
+}
+/* Facets that coincide, the sides of a box against another's, count once in all. */
+static void demi_join_double(demi_join *j) {
+    demi_side *s = j->side;
+    int i, k, end;
+    for (i = 0; i < j->facets; i++) {
+        int32_t c[3];
+        for (k = 0; k < 3; k++) c[k] = j->facet[5*i + 2 + (k < j->per ? k : 0)];
+        s[i] = demi_side_of(DEMI_MIN(c[0], DEMI_MIN(c[1], c[2])),
+                            DEMI_MAX(c[0], DEMI_MAX(c[1], c[2])), 0, i);
+        if (j->per == 3) s[i].facet = c[0] + c[1] + c[2] - s[i].lo - s[i].hi;
+    }
+    qsort(s, (size_t)j->facets, sizeof *s, demi_side_compare);
+    for (i = 0; i < j->facets; i = end) {
+        for (end = i + 1; end < j->facets && s[end].lo == s[i].lo && s[end].hi == s[i].hi &&
+             s[end].facet == s[i].facet;) end++;
+        for (k = i; k < end; k++) j->count[s[k].side] = 1.0/(end - i);
+    }
+    for (i = 0; i < j->facets; i++)
+        for (k = 0; k < j->per; k++) {
+            j->faces[j->facet[5*i + 2 + k]] += j->count[i];
+            j->corners[j->facet[5*i + 2 + k]] += j->count[i];
+        }
+}
+/* Points on the line from a to b, not at its ends, each place once, in the order of the line; out
+   may be null. */
+static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *out) {
+    const double *p = j->x + 3*a, *q = j->x + 3*b;
+    const double from = demi_skewed(p), to = demi_skewed(q), size2 = demi_far2(p, q);
+    const double ends = DEMI_MIN(j->near_by[a], j->near_by[b]);
+    const double lo_key = DEMI_MIN(from, to) - ends, hi_key = DEMI_MAX(from, to) + ends;
+    int lo = 0, hi = j->points, i, n = 0;
+    while (lo < hi) {
+        const int mid = (lo + hi)/2;
+        if (j->sorted[mid].key < lo_key) lo = mid + 1; else hi = mid;
+    }
+    for (; lo < j->points && j->sorted[lo].key <= hi_key; lo++) {
+        const int32_t at = j->sorted[lo].index;
+        const double *y = j->x + 3*at;
+        const double most = DEMI_MIN(ends, j->near_by[at]);
+        double t = 0, off2 = 0;
+        int k;
+        if (j->same[at] != at || at == a || at == b || !(j->corners[at] > 0)) continue;
+        for (k = 0; k < 3; k++) t += (y[k] - p[k])*(q[k] - p[k]);
+        t /= size2;
+        if (!(t > 0 && t < 1)) continue;
+        for (k = 0; k < 3; k++) {
+            const double d = y[k] - p[k] - t*(q[k] - p[k]);
+            off2 += d*d;
+        }
+        if (!(off2 <= most*most)) continue;
+        n++;
+        if (!out) continue;
+        for (i = n - 1; i > 0 && demi_far2(p, j->x + 3*out[i - 1]) > t*t*size2; i--)
+            out[i] = out[i - 1];
+        out[i] = at;
+    }
+    return n;
+}
+/* Sides of triangles, cut where corners of others lie on them. 0 when memory ran out. */
+static int demi_join_cut(dem_world *w, demi_join *j) {
+    int32_t *between = 0;
+    size_t most = 0, room = 0;
+    int i, k, end, cuts, n = 0, pass;
+    for (i = 0; i < j->facets; i++)
+        for (k = 0; k < 3; k++)
+            j->side[j->sides++] = demi_side_of(j->facet[5*i + 2 + k], j->facet[5*i + 2 + (k + 1)%3],
+                                               i, k);
+    qsort(j->side, (size_t)j->sides, sizeof *j->side, demi_side_compare);
+    for (pass = 0; pass < 2; pass++) {          /* how many; then make them */
+        for (i = 0; i < j->sides; i = end) {
+            const demi_side *s = j->side + i;
+            for (end = i; end < j->sides && j->side[end].lo == s->lo && j->side[end].hi == s->hi;)
+                end++;
+            cuts = demi_join_between(j, s->lo, s->hi, between);
+            most = DEMI_MAX(most, (size_t)cuts);
+            room += pass ? 0 : (size_t)(end - i)*((size_t)cuts + 1);
+            j->cut_room += pass || !cuts ? 0 : (size_t)(end - i)*((size_t)cuts + 1);
+            for (; pass && s < j->side + end; s++) {
+                for (k = 0; k <= cuts; k++)
+                    j->piece[n++] = demi_side_of(k ? between[k - 1] : s->lo, k < cuts ? between[k]
+                                                 : s->hi, s->facet, s->side + (cuts ? 3 : 0));
+                for (k = 0; k < cuts; k++) j->faces[between[k]] += j->count[s->facet];
+            }
+        }
+        if (pass) break;
+        if (room > INT_MAX/8) return 0;
+        j->piece_room = room;
+        j->piece = (demi_side *)demi_alloc(w, room, sizeof *j->piece);
+        between = (int32_t *)demi_alloc(w, most, sizeof *between);
+        j->cut = (int32_t *)demi_alloc(w, j->cut_room*4, sizeof *j->cut);
+        j->cut_weight = (double *)demi_alloc(w, j->cut_room, sizeof *j->cut_weight);
+        if ((room && !j->piece) || (most && !between) ||
+            (j->cut_room && (!j->cut || !j->cut_weight))) break;
+    }
+    j->sides = n;
+    if (pass == 1) qsort(j->piece, (size_t)n, sizeof *j->piece, demi_side_compare);
+    demi_free(w, between, most, sizeof *between);
+    return pass == 1;
+}
+/* What edges count; each wall gets its share of it, at an edge of its own or at a cut. */
+static void demi_join_edges(dem_world *w, demi_join *j) {
+    int i, k, end, other;
+    for (i = 0; i < j->sides; i = end) {
+        const demi_side *s = j->piece + i;
+        double all = 0;
+        for (end = i; end < j->sides && j->piece[end].lo == s->lo && j->piece[end].hi == s->hi;)
+            all += j->count[j->piece[end++].facet];
+        j->edges[s->lo] += 1 - all;
+        j->edges[s->hi] += 1 - all;
+        for (k = i; k < end; k++) {             /* the first of each wall in this place */
+            const int32_t *f = j->facet + 5*j->piece[k].facet;
+            demi_wall *wall = &w->walls[f[0]];
+            double mine = 0;
+            int first = k, whole = -1;
+            for (other = i; other < end; other++) {
+                const demi_side *o = j->piece + other;
+                if (j->facet[5*o->facet] != f[0]) continue;
+                first = DEMI_MIN(first, other);
+                mine += j->count[o->facet];
+                if (o->side < 3 && whole < 0)
+                    whole = wall->edges[3*j->facet[5*o->facet + 1] + o->side];
+            }
+            mine *= (1 - all)/all;
+            if (first < k) continue;
+            if (whole >= 0) wall->weight[wall->element_count + whole] = (dem_real)mine;
+            else if (mine < 0) {
+                int32_t *c = j->cut + 4*j->cuts;
+                c[0] = f[0]; c[1] = f[1]; c[2] = s->lo; c[3] = s->hi;
+                j->cut_weight[j->cuts++] = mine;
+                wall->cut_count++;
+            }
+        }
+    }
+}
+/* Corners of profiles that lie on other segments are corners of those as well. */
+static int demi_join_profiles(dem_world *w, demi_join *j) {
+    int32_t *between = (int32_t *)demi_alloc(w, (size_t)j->points, sizeof *between);
+    int i, k;
+    if (!between) return 0;
+    for (i = 0; i < j->facets; i++) {
+        const int n = demi_join_between(j, j->facet[5*i + 2], j->facet[5*i + 3], between);
+        for (k = 0; k < n; k++) j->faces[between[k]] += j->count[i];
+    }
+    demi_free(w, between, (size_t)j->points, sizeof *between);
+    return 1;
+}
+/* What corners and faces count. */
+static void demi_join_corners(dem_world *w, demi_join *j) {
+    int f, end, g, k;
+    for (f = 0; f < j->facets; f = end) {       /* one wall after the other */
+        const int id = j->facet[5*f];
+        demi_wall *wall = &w->walls[id];
+        dem_real *corner = wall->weight + wall->element_count + wall->edge_count;
+        memset(j->own, 0, (size_t)j->points*sizeof *j->own);
+        for (end = f; end < j->facets && j->facet[5*end] == id; end++) {
+            wall->weight[j->facet[5*end + 1]] = (dem_real)j->count[end];
+            for (k = 0; k < j->per; k++) j->own[j->facet[5*end + 2 + k]] += j->count[end];
+        }
+        for (g = f; g < end; g++) {
+            const int element = j->facet[5*g + 1];
+            for (k = 0; k < j->per; k++) {
+                const int32_t at = j->facet[5*g + 2 + k];
+                if (!(wall->owns[element] >> (3 + k) & 1) || !(j->own[at] > 0)) continue;
+                corner[wall->corners[j->per*element + k]] =
+                    (dem_real)((1 - j->faces[at] - j->edges[at])*j->own[at]/j->corners[at]);
+                j->own[at] = 0;
+            }
+        }
+    }
+}
+/* Hands the cuts over to their walls, by element. 0 when memory ran out. */
+static int demi_join_hand(dem_world *w, const demi_join *j) {
+    int i, k;
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        const size_t n = (size_t)wall->element_count + 1;
+        if (!wall->cut_count || wall->cuts) continue;
+        wall->cut_start = (int32_t *)demi_alloc(w, n, sizeof(int32_t));
+        wall->cuts = (demi_cut *)demi_alloc(w, (size_t)wall->cut_count, sizeof(demi_cut));
+        if (!wall->cut_start || !wall->cuts) return 0;
+        for (k = 0; k < j->cuts; k++) if (j->cut[4*k] == i) wall->cut_start[j->cut[4*k + 1] + 1]++;
+        for (k = 0; k < wall->element_count; k++) wall->cut_start[k + 1] += wall->cut_start[k];
+        for (k = j->cuts - 1; k >= 0; k--) {    /* filled from the back: starts end where they were */
+            const int32_t *c = j->cut + 4*k;
+            demi_cut *to;
+            if (c[0] != i) continue;
+            to = wall->cuts + --wall->cut_start[c[1] + 1];
+            to->a = demi_v((dem_real)j->x[3*c[2]], (dem_real)j->x[3*c[2] + 1],
+                           (dem_real)j->x[3*c[2] + 2]);
+            to->b = demi_v((dem_real)j->x[3*c[3]], (dem_real)j->x[3*c[3] + 1],
+                           (dem_real)j->x[3*c[3] + 2]);
+            to->a = demi_unturn(wall->pose.rotation, demi_sub(to->a, wall->pose.position));
+            to->b = demi_unturn(wall->pose.rotation, demi_sub(to->b, wall->pose.position));
+            to->weight = (dem_real)j->cut_weight[k];
+        }
+        for (k = 0; k < wall->element_count; k++) wall->cut_start[k] = wall->cut_start[k + 1];
+        wall->cut_start[wall->element_count] = wall->cut_count;
+    }
+    return 1;
+}
+static void demi_facets_drop_cuts(dem_world *w, demi_wall *wall) {
+    demi_free(w, wall->cut_start, (size_t)wall->element_count + 1, sizeof(int32_t));
+    demi_free(w, wall->cuts, (size_t)wall->cut_count, sizeof(demi_cut));
+    wall->cut_start = 0;
+    wall->cuts = 0;
+    wall->cut_count = 0;
+}
+/* Groups the walls and weighs their facets anew. 0 when memory ran out; the next call tries again. */
+static int demi_facets_weigh(dem_world *w) {
+    int i, k, per, ok = 1;
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        for (k = 0; k < i; k++)
+            if (w->walls[k].kind != DEMI_WALL_NONE && demi_walls_together(&w->walls[k], wall)) break;
+        wall->group = k;
+        if (!demi_faceted(wall)) continue;
+        demi_facets_drop_cuts(w, wall);
+        memset(wall->weight, 0, ((size_t)wall->element_count + (size_t)wall->edge_count +
+                                 (size_t)wall->vertex_count)*sizeof(dem_real));
+    }
+    for (i = 0; i < w->wall_count && ok; i++)
+        for (per = 2; per <= 3 && ok; per++) {
+            demi_join j;
+            if (w->walls[i].kind == DEMI_WALL_NONE || w->walls[i].group != i) continue;
+            for (k = i; k < w->wall_count && !demi_join_member(w, k, i, per);) k++;
+            if (k == w->wall_count) continue;
+            ok = demi_join_begin(w, &j, i, per);
+            if (ok) demi_join_double(&j);
+            if (ok) ok = per == 3 ? demi_join_cut(w, &j) : demi_join_profiles(w, &j);
+            if (ok && per == 3) demi_join_edges(w, &j);
+            if (ok) demi_join_corners(w, &j);
+            if (ok) ok = demi_join_hand(w, &j);
+            demi_join_free(w, &j);
+        }
+    w->facets_valid = ok;
+    return ok;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>walls
    A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls
    of many elements keep a grid of them in their own frame, so that a grain finds its neighbours at
@@ -3591,14 +4176,40 @@ static double demi_wall_speed(const demi_wall *wall) {
     return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->reach;
 }
 
+/* The arrays a wall owns: what is freed, and copied into slabs. */
+enum { DEMI_WALL_ARRAYS = 9 };
+typedef struct demi_owned {
+    void *place, *data;            /* where the pointer stands, and what it is */
+    size_t count, item;
+} demi_owned;
+static demi_owned demi_owned_of(void *place, size_t count, size_t item) {
+    demi_owned o;
+    o.place = place;
+    memcpy(&o.data, place, sizeof o.data);
+    o.count = count;
+    o.item = item;
+    return o;
+}
+static void demi_wall_arrays(demi_wall *wall, demi_owned *out) {
+    const size_t per = wall->kind == DEMI_WALL_MESH ? 3 : 2, n = (size_t)wall->element_count;
+    const size_t v = (size_t)wall->vertex_count;
+    out[0] = demi_owned_of(&wall->vertices, v*3, sizeof(dem_real));
+    out[1] = demi_owned_of(&wall->corners, n*per, sizeof(int32_t));
+    out[2] = demi_owned_of(&wall->edges, n*3, sizeof(int32_t));
+    out[3] = demi_owned_of(&wall->weight, n + (size_t)wall->edge_count + v, sizeof(dem_real));
+    out[4] = demi_owned_of(&wall->owns, n, 1);
+    out[5] = demi_owned_of(&wall->cut_start, n + 1, sizeof(int32_t));
+    out[6] = demi_owned_of(&wall->cuts, (size_t)wall->cut_count, sizeof(demi_cut));
+    out[7] = demi_owned_of(&wall->cell_start, (size_t)wall->cells[0]*(size_t)wall->cells[1]*
+                           (size_t)wall->cells[2] + 1, sizeof(int32_t));
+    out[8] = demi_owned_of(&wall->cell_items, (size_t)wall->cell_item_count, sizeof(int32_t));
+}
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
-    const size_t per = wall->kind == DEMI_WALL_MESH ? 3 : 2;
-    demi_free(w, wall->vertices, (size_t)wall->vertex_count*3, sizeof(dem_real));
-    demi_free(w, wall->corners, (size_t)wall->element_count*per, sizeof(int32_t));
-    demi_free(w, wall->cell_start,
-              (size_t)wall->cells[0]*(size_t)wall->cells[1]*(size_t)wall->cells[2] + 1,
-              sizeof(int32_t));
-    demi_free(w, wall->cell_items, (size_t)wall->cell_item_count, sizeof(int32_t));
+    demi_owned array[DEMI_WALL_ARRAYS];
+    int k;
+    demi_wall_arrays(wall, array);
+    for (k = 0; k < DEMI_WALL_ARRAYS; k++)
+        demi_free(w, array[k].data, array[k].count, array[k].item);
     memset(wall, 0, sizeof *wall);
 }
 
@@ -3628,60 +4239,82 @@ static void demi_wall_cells(const demi_wall *wall, dem_vec3 lo, dem_vec3 hi, int
     }
 }
 
-/* Box, reach and grid of a wall's elements. 0 when memory ran out. */
-static int demi_wall_index(dem_world *w, demi_wall *wall) {
+/* Box of an element, with what grains of a wall stand out. */
+static dem_box demi_wall_element_box(const demi_wall *wall, int element) {
     const dem_real pad = wall->kind == DEMI_WALL_GRAINS ? wall->radius : 0;
-    dem_vec3 c[3], lo, hi, size;
-    double reach = 0, extent = 0;
-    int i, k, n, pass, x, y, z, f[3], l[3];
-    wall->box.lo = wall->box.hi = demi_at(wall->vertices);
-    for (i = 0; i < wall->vertex_count; i++) {
-        const dem_vec3 p = demi_at(wall->vertices + 3*i);
-        wall->box.lo = demi_v(DEMI_MIN(wall->box.lo.x, p.x), DEMI_MIN(wall->box.lo.y, p.y),
-                              DEMI_MIN(wall->box.lo.z, p.z));
-        wall->box.hi = demi_v(DEMI_MAX(wall->box.hi.x, p.x), DEMI_MAX(wall->box.hi.y, p.y),
-                              DEMI_MAX(wall->box.hi.z, p.z));
-        reach = DEMI_MAX(reach, (double)demi_length(p) + (double)pad);
+    dem_vec3 c[3];
+    dem_box box;
+    int k, n = demi_wall_corners(wall, element, c);
+    box.lo = box.hi = c[0];
+    for (k = 1; k < n; k++) {
+        box.lo = demi_v(DEMI_MIN(box.lo.x, c[k].x), DEMI_MIN(box.lo.y, c[k].y),
+                        DEMI_MIN(box.lo.z, c[k].z));
+        box.hi = demi_v(DEMI_MAX(box.hi.x, c[k].x), DEMI_MAX(box.hi.y, c[k].y),
+                        DEMI_MAX(box.hi.z, c[k].z));
     }
-    wall->box.lo = demi_sub(wall->box.lo, demi_v(pad, pad, pad));
-    wall->box.hi = demi_add(wall->box.hi, demi_v(pad, pad, pad));
-    wall->reach = (dem_real)reach;
-    if (wall->element_count <= 4) return 1;     /* a handful: just look at all */
-    /* cell: the mean element, so that each is in few cells */
+    box.lo = demi_sub(box.lo, demi_v(pad, pad, pad));
+    box.hi = demi_add(box.hi, demi_v(pad, pad, pad));
+    return box;
+}
+/* Box of all, and how far from the frame's origin they go. */
+static void demi_wall_bounds(demi_wall *wall) {
+    const dem_real pad = wall->kind == DEMI_WALL_GRAINS ? wall->radius : 0;
+    dem_real reach = 0;
+    int i;
+    wall->box = demi_wall_element_box(wall, 0);
+    for (i = 1; i < wall->element_count; i++) {
+        const dem_box b = demi_wall_element_box(wall, i);
+        wall->box.lo = demi_v(DEMI_MIN(wall->box.lo.x, b.lo.x), DEMI_MIN(wall->box.lo.y, b.lo.y),
+                              DEMI_MIN(wall->box.lo.z, b.lo.z));
+        wall->box.hi = demi_v(DEMI_MAX(wall->box.hi.x, b.hi.x), DEMI_MAX(wall->box.hi.y, b.hi.y),
+                              DEMI_MAX(wall->box.hi.z, b.hi.z));
+    }
+    for (i = 0; i < wall->vertex_count; i++)
+        reach = DEMI_MAX(reach, demi_length(demi_at(wall->vertices + 3*i)) + pad);
+    wall->reach = reach;
+}
+/* Size of the cells: the mean element, so that each is in few, but finer where elements are long
+   and thin; coarser until neither cells nor entries are too many. */
+static void demi_wall_cells_choose(demi_wall *wall) {
+    const dem_vec3 size = demi_sub(wall->box.hi, wall->box.lo);
+    const double volume = (double)size.x*(double)size.y*(double)size.z, n = wall->element_count;
+    double extent = 0, mean, fine, entries;
+    int i, k, f[3], l[3];
     for (i = 0; i < wall->element_count; i++) {
-        n = demi_wall_corners(wall, i, c);
-        for (k = 1; k < n; k++) extent += (double)demi_length(demi_sub(c[k], c[0]))/(n - 1);
-        if (n == 1) extent += 2*(double)wall->radius;
+        dem_vec3 c[3];
+        const int corners = demi_wall_corners(wall, i, c);
+        for (k = 1; k < corners; k++)
+            extent += (double)demi_length(demi_sub(c[k], c[0]))/(corners - 1);
+        if (corners == 1) extent += 2*(double)wall->radius;
     }
-    size = demi_sub(wall->box.hi, wall->box.lo);
-    {                                           /* and each cell holds few, long triangles or not */
-        const double volume = (double)size.x*(double)size.y*(double)size.z;
-        const double mean = extent/wall->element_count;
-        const double fine = volume > 0 ? pow(volume/(16.0*wall->element_count), 1.0/3) : mean;
-        wall->cell = (dem_real)DEMI_MAX(DEMI_MIN(mean, fine), 1e-6*(double)demi_length(size));
-    }
+    mean = extent/n;
+    fine = volume > 0 ? pow(volume/(16*n), 1.0/3) : mean;
+    wall->cell = (dem_real)DEMI_MAX(DEMI_MIN(mean, fine), 1e-6*(double)demi_length(size));
     for (;; wall->cell *= DEM_R(1.26)) {
         wall->cells[0] = (int)DEMI_MIN(size.x/wall->cell, DEM_R(1e6)) + 1;
         wall->cells[1] = (int)DEMI_MIN(size.y/wall->cell, DEM_R(1e6)) + 1;
         wall->cells[2] = (int)DEMI_MIN(size.z/wall->cell, DEM_R(1e6)) + 1;
-        if ((double)wall->cells[0]*wall->cells[1]*wall->cells[2] <= 32.0*wall->element_count +
-            64) break;
+        if ((double)wall->cells[0]*wall->cells[1]*wall->cells[2] > 32*n + 64) continue;
+        for (i = 0, entries = 0; i < wall->element_count; i++) {
+            const dem_box b = demi_wall_element_box(wall, i);
+            demi_wall_cells(wall, b.lo, b.hi, f, l);
+            entries += (double)(l[0] - f[0] + 1)*(l[1] - f[1] + 1)*(l[2] - f[2] + 1);
+        }
+        if (entries <= 48*n + 64) return;
     }
+}
+/* The grid of a wall's elements. 0 when memory ran out. */
+static int demi_wall_index(dem_world *w, demi_wall *wall) {
+    int i, n, pass, x, y, z, f[3], l[3];
+    if (wall->element_count <= 4) return 1;     /* a handful: just look at all */
+    demi_wall_cells_choose(wall);
     n = wall->cells[0]*wall->cells[1]*wall->cells[2];
     wall->cell_start = (int32_t *)demi_alloc(w, (size_t)n + 1, sizeof(int32_t));
     if (!wall->cell_start) return 0;
     for (pass = 0; pass < 2; pass++) {          /* count, then fill from the back */
         for (i = wall->element_count - 1; i >= 0; i--) {
-            int corner, corners = demi_wall_corners(wall, i, c);
-            lo = hi = c[0];
-            for (corner = 1; corner < corners; corner++) {
-                lo = demi_v(DEMI_MIN(lo.x, c[corner].x), DEMI_MIN(lo.y, c[corner].y),
-                            DEMI_MIN(lo.z, c[corner].z));
-                hi = demi_v(DEMI_MAX(hi.x, c[corner].x), DEMI_MAX(hi.y, c[corner].y),
-                            DEMI_MAX(hi.z, c[corner].z));
-            }
-            demi_wall_cells(wall, demi_sub(lo, demi_v(pad, pad, pad)),
-                            demi_add(hi, demi_v(pad, pad, pad)), f, l);
+            const dem_box b = demi_wall_element_box(wall, i);
+            demi_wall_cells(wall, b.lo, b.hi, f, l);
             for (z = f[2]; z <= l[2]; z++)
                 for (y = f[1]; y <= l[1]; y++)
                     for (x = f[0]; x <= l[0]; x++) {
@@ -3717,6 +4350,7 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
         w->wall_capacity = (int)room;
     }
     w->walls[w->wall_count++] = *wall;
+    w->facets_valid = 0;
     demi_scene_changed(w);
     id.id = w->wall_count;
     return id;
@@ -3791,9 +4425,10 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
         return 0;
     }
     for (i = 0; i < vertices*per_vertex; i++)
-        if (!demi_finite(xyz[i])) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is not a finite "
-                      "number", call, i/per_vertex);
+        if (!demi_finite(xyz[i]) || DEMI_ABS((double)xyz[i]) > DEMI_REACH) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
+                      "between -%g and %g; was the file read whole, and in metres?", call,
+                      i/per_vertex, (double)xyz[i], DEMI_REACH, DEMI_REACH);
             return 0;
         }
     for (i = 0; i < elements*per_element; i++)
@@ -3818,6 +4453,20 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
         for (k = 0; k < per_vertex; k++) wall->vertices[3*i + k] = xyz[per_vertex*i + k];
     if (per_element) memcpy(wall->corners, corners,
                             (size_t)elements*(size_t)per_element*sizeof(int32_t));
+    if (per_element && !demi_facets_begin(w, wall)) {
+        demi_wall_free(w, wall);
+        demi_no_memory(w, call);
+        return 0;
+    }
+    demi_wall_bounds(wall);
+    if (per_element && (!demi_facets_any(wall) ||
+                        !(demi_size(demi_sub(wall->box.hi, wall->box.lo)) > DEMI_LEAST))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: of %d elements none has a size: corners in one "
+                  "place, triangles without height, or all within %g m; were the coordinates "
+                  "lost, or in another unit?", call, elements, DEMI_LEAST);
+        demi_wall_free(w, wall);
+        return 0;
+    }
     if (!demi_wall_index(w, wall)) {
         demi_wall_free(w, wall);
         demi_no_memory(w, call);
@@ -4033,6 +4682,7 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
     wall->symmetric = demi_wall_symmetric(wall);
     demi_wall_pose_at(wall, w->time, &wall->pose);
     wall->mid = wall->pose;
+    w->facets_valid = 0;
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -4055,6 +4705,7 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
                              (int)id.id);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
     demi_wall_free(w, &w->walls[i]);            /* its place stays empty: ids of other walls hold */
+    w->facets_valid = 0;
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -4828,6 +5479,32 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
 }
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
                                    dem_real enough);
+/* The candidates of one body and wall, from `first` on: ascending by element, each once, so that the
+   order does not hang on cells. */
+static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first) {
+    int32_t *e = w->wall_element + d*w->wall_stride;
+    dem_real *gap = w->wall_gap + d*w->wall_stride;
+    const int count = domain->walls - first;
+    int step, i, k, n = first;
+    for (step = 1; step < count/3; step = 3*step + 1) continue;
+    for (; step > 0; step /= 3)                 /* Shell's sort */
+        for (k = first + step; k < domain->walls; k++) {
+            const int32_t t = e[k];
+            const dem_real g = gap[k];
+            for (i = k; i >= first + step && e[i - step] > t; i -= step) {
+                e[i] = e[i - step];
+                gap[i] = gap[i - step];
+            }
+            e[i] = t;
+            gap[i] = g;
+        }
+    for (k = first; k < domain->walls; k++) {
+        if (k > first && e[k] == e[k - 1]) continue;
+        e[n] = e[k];
+        gap[n++] = gap[k];
+    }
+    domain->walls = n;
+}
 static void demi_domain_walls(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     int i, j, k, x, y, z, f[3], l[3];
@@ -4845,41 +5522,27 @@ static void demi_domain_walls(dem_world *w, int d) {
             at = demi_unturn(wall->pose.rotation, demi_sub(demi_at(w->pos + 4*i),
                                                            wall->pose.position));
             if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
-            if (wall->element_count <= 4) {
+            if (!wall->cell_start) {
                 for (k = 0; k < wall->element_count; k++) {
                     away = demi_wall_distance(wall, k, at, near_by);
                     if (away < near_by) demi_wall_offer(w, domain, d, i, j, k, away - r);
                 }
-                continue;
-            }
-            demi_wall_cells(wall, demi_sub(at, demi_v(near_by, near_by, near_by)),
-                            demi_add(at, demi_v(near_by, near_by, near_by)), f, l);
-            for (z = f[2]; z <= l[2]; z++)
-                for (y = f[1]; y <= l[1]; y++)
-                    for (x = f[0]; x <= l[0]; x++) {
-                        const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
-                        for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
-                            const int element = wall->cell_items[k];
-                            int q, seen = 0, base = d*w->wall_stride;
-                            for (q = first; q < domain->walls && !seen; q++)
-                                seen = w->wall_element[base + q] == element;
-                            if (seen) continue;
-                            away = demi_wall_distance(wall, element, at, near_by);
-                            if (away < near_by)
-                                demi_wall_offer(w, domain, d, i, j, element, away - r);
+            } else {
+                demi_wall_cells(wall, demi_sub(at, demi_v(near_by, near_by, near_by)),
+                                demi_add(at, demi_v(near_by, near_by, near_by)), f, l);
+                for (z = f[2]; z <= l[2]; z++)
+                    for (y = f[1]; y <= l[1]; y++)
+                        for (x = f[0]; x <= l[0]; x++) {
+                            const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
+                            for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
+                                const int element = wall->cell_items[k];
+                                away = demi_wall_distance(wall, element, at, near_by);
+                                if (away < near_by)
+                                    demi_wall_offer(w, domain, d, i, j, element, away - r);
+                            }
                         }
-                    }
-            /* ascending: the order must not hang on cells */
-            for (k = first + 1; k < domain->walls; k++) {
-                int32_t *e = w->wall_element + d*w->wall_stride, t = e[k];
-                dem_real *gap = w->wall_gap + d*w->wall_stride, g = gap[k];
-                for (x = k; x > first && e[x - 1] > t; x--) {
-                    e[x] = e[x - 1];
-                    gap[x] = gap[x - 1];
-                }
-                e[x] = t;
-                gap[x] = g;
             }
+            if (domain->walls > first) demi_walls_order(w, domain, d, first);
         }
     }
 }
@@ -5005,23 +5668,66 @@ static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
                       (double)w->mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
 }
 
-/* Contacts that one wall candidate may give: a sieve is a candidate of its own. */
-static int demi_wall_most(const dem_world *w) {
-    int i, most = 1;
-    for (i = 0; i < w->wall_count; i++) if (w->walls[i].kind == DEMI_WALL_SIEVE)
-            most = DEMI_SIEVE_MOST;
+/* Places that candidate k of domain d may give at most. */
+static int demi_places_of(const dem_world *w, int d, int k) {
+    const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + k]];
+    const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[d*w->wall_stride + k]
+        : 0;
+    return wall->kind == DEMI_WALL_SIEVE ? (int)DEMI_SIEVE_MOST : 7 + (cut ? cut[1] - cut[0] : 0);
+}
+static int demi_places_most(const dem_world *w) {
+    int d, k, most = 0;
+    for (d = 0; d < w->domain_count; d++) {
+        int n = 0;
+        for (k = 0; k < w->domains[d].walls; k++) n += demi_places_of(w, d, k);
+        most = DEMI_MAX(most, n);
+    }
     return most;
+}
+/* Room for the places of one body and wall, for each domain its own. 0 when memory ran out. */
+static int demi_touching_reserve(dem_world *w) {
+    size_t n = 0;
+    int d, k;
+    for (d = 0; d < w->domain_count; d++) {
+        const int32_t *body = w->wall_body + d*w->wall_stride, *id = w->wall_id + d*w->wall_stride;
+        size_t most = DEMI_SIEVE_MOST, places = 0;
+        w->domains[d].touching_first = (int)n;
+        for (k = 0; k < w->domains[d].walls; k++) {
+            if (k && (body[k] != body[k - 1] || id[k] != id[k - 1])) places = 0;
+            places += (size_t)demi_places_of(w, d, k);
+            most = DEMI_MAX(most, places);
+        }
+        n += most;
+        if (n > (size_t)INT_MAX/8) return 0;
+    }
+    w->touching_valid = demi_array_grow(w, &w->touching_, sizeof(demi_touching), n) &&
+                        demi_array_grow(w, &w->touching_links_, sizeof(demi_link), n) &&
+                        demi_array_grow(w, &w->touching_table_, sizeof(int32_t), 4*n);
+    return w->touching_valid;
 }
 /* Contacts with walls that still last, from the last list (by slot) into the domains of the new
    one. */
-static int demi_wall_contacts_move(dem_world *w, int stride) {
-    const size_t n = (size_t)w->domain_count*(size_t)stride;
-    int d, k, e = 0, total = 0;
+static int demi_wall_contacts_move(dem_world *w) {
+    int32_t here[DEMI_DOMAINS];
+    size_t n;
+    int d, k, e = 0, total = 0, stride = DEMI_MAX(w->wall_now_stride, 16);
     for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
+    /* slabs cannot stop in the middle of a step to make room: as much as there may ever be */
+    if (w->visitor) stride = DEMI_MAX(stride, demi_places_most(w));
+    memset(here, 0, sizeof here);
+    for (d = 0; d < DEMI_DOMAINS; d++)          /* how many each domain will have */
+        for (k = 0; k < w->domains[d].wall_contacts; k++) {
+            const demi_wall_contact *c = &w->wall_now[(size_t)d*(size_t)w->wall_now_stride +
+                                                      (size_t)k];
+            const int body = w->slot_index[c->body];
+            if (body < 0 || w->walls[c->wall].kind == DEMI_WALL_NONE) continue;
+            stride = DEMI_MAX(stride, ++here[demi_domain_of(w, body)]);
+        }
+    n = (size_t)w->domain_count*(size_t)stride;
     if (!demi_wall_contacts_reserve(w, n, DEMI_MAX(n, (size_t)total))) return 0;
     for (d = 0; d < DEMI_DOMAINS; d++) {  /* gather all in wall_next, slots turned to indices */
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
-            demi_wall_contact c = w->wall_now[d*w->wall_now_stride + k];
+            demi_wall_contact c = w->wall_now[(size_t)d*(size_t)w->wall_now_stride + (size_t)k];
             c.body = w->slot_index[c.body];
             if (c.body < 0 || w->walls[c.wall].kind == DEMI_WALL_NONE) continue;
             demi_wall_coefs(w, &c);
@@ -5035,13 +5741,23 @@ static int demi_wall_contacts_move(dem_world *w, int stride) {
         demi_wall_contact *to;
         int i;
         d = demi_domain_of(w, c.body);
-        /* cannot be: every contact is of a candidate */
-        if (w->domains[d].wall_contacts == stride) continue;
-        to = w->wall_now + d*stride;
+        to = w->wall_now + (size_t)d*(size_t)stride;
         for (i = w->domains[d].wall_contacts++; i > 0 && to[i - 1].body > c.body; i--)
             to[i] = to[i - 1];
         to[i] = c;
     }
+    return 1;
+}
+/* More room for each domain's, in a step. 0 when memory ran out; nothing is lost. */
+static int demi_wall_contacts_widen(dem_world *w) {
+    const size_t old = (size_t)w->wall_now_stride, stride = old + old/2 + 16;
+    const size_t n = (size_t)w->domain_count*stride;
+    int d;
+    if (n > (size_t)INT_MAX/8 || !demi_wall_contacts_reserve(w, n, n)) return 0;
+    for (d = w->domain_count - 1; d > 0; d--)
+        memmove(w->wall_now + (size_t)d*stride, w->wall_now + (size_t)d*old,
+                (size_t)w->domains[d].wall_contacts*sizeof(demi_wall_contact));
+    w->wall_now_stride = (int)stride;
     return 1;
 }
 
@@ -5538,9 +6254,9 @@ static int demi_walls_refuse(dem_world *w) {
 
 /* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
    they were (the next call tries again). */
-static dem_result demi_rebuild(dem_world *w) {
+static dem_result demi_rebuild(dem_world *w, const char *call) {
     int d, k, stride, again;
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+    if (!demi_list_drop(w)) return demi_no_memory(w, call);
     demi_effects(w);
     demi_skin_choose(w);
     /* other laws: memory means nothing */
@@ -5557,12 +6273,13 @@ static dem_result demi_rebuild(dem_world *w) {
                              (double)p.period[k], k, need);
     }
     if (demi_walls_refuse(w)) return DEM_ERROR_ARGUMENT;
+    if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
     if (!demi_grid_lay(w, 2*(w->wide ? w->level_fine : (double)w->radius_max) + w->skin + 1e-300))
-        return demi_no_memory(w, "dem_world_step");
+        return demi_no_memory(w, call);
     demi_bodies_sort(w);
-    if (w->shaped_count && !demi_spots_lay(w)) return demi_no_memory(w, "dem_world_step");
-    if (w->level_count && !demi_levels_lay(w)) return demi_no_memory(w, "dem_world_step");
+    if (w->shaped_count && !demi_spots_lay(w)) return demi_no_memory(w, call);
+    if (w->level_count && !demi_levels_lay(w)) return demi_no_memory(w, call);
     demi_image_shifts(w);
     w->domain_count = demi_domains_for(w->count);
     for (d = 0; d < w->domain_count; d++) {
@@ -5570,13 +6287,12 @@ static dem_result demi_rebuild(dem_world *w) {
         w->domains[d].end = (int)((int64_t)w->count*(d + 1)/w->domain_count);
         w->domains[d].overflow = 0;
     }
-    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w)) return demi_no_memory(w,
-        "dem_world_step");
+    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w)) return demi_no_memory(w, call);
     stride = DEMI_MAX(64, w->count/w->domain_count*3);
     if (!demi_list_reserve(w, &w->own, w->domain_count, DEMI_MAX(stride, (int)w->own.stride)) ||
         !demi_list_reserve(w, &w->cross, w->domain_count, w->domain_count == 1 ? 0
                            : DEMI_MAX(stride/4, (int)w->cross.stride)))
-        return demi_no_memory(w, "dem_world_step");
+        return demi_no_memory(w, call);
     do {                                        /* until every domain's pairs fit */
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_search);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 3;
@@ -5584,21 +6300,20 @@ static dem_result demi_rebuild(dem_world *w) {
                                              64)) ||
             (again & 2 && !demi_list_reserve(w, &w->cross, w->domain_count, w->cross.stride/2*3 +
                                              64)))
-            return demi_no_memory(w, "dem_world_step");
+            return demi_no_memory(w, call);
     } while (again);
-    if (!demi_cross_index(w)) return demi_no_memory(w, "dem_world_step");
+    if (!demi_cross_index(w)) return demi_no_memory(w, call);
     demi_near_choose(w);
-    if (!demi_near_make(w, 1)) return demi_no_memory(w, "dem_world_step");
-    if (!demi_wall_lists_reserve(w, DEMI_MAX(w->wall_stride, 64))) return demi_no_memory(w,
-        "dem_world_step");
+    if (!demi_near_make(w, 1)) return demi_no_memory(w, call);
+    if (!demi_wall_lists_reserve(w, DEMI_MAX(w->wall_stride, 64))) return demi_no_memory(w, call);
     do {
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 4;
         if (again && !demi_wall_lists_reserve(w, w->wall_stride/2*3 +
-                                              64)) return demi_no_memory(w, "dem_world_step");
+                                              64)) return demi_no_memory(w, call);
     } while (again);
-    if (!demi_wall_contacts_move(w, w->wall_stride*demi_wall_most(w)) || !demi_shaped_move(w))
-        return demi_no_memory(w, "dem_world_step");
+    if (!demi_touching_reserve(w) || !demi_wall_contacts_move(w) || !demi_shaped_move(w))
+        return demi_no_memory(w, call);
     if (demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
     while (w->slot_pending >= 0) {  /* slots freed since the last list may be used again */
@@ -5637,7 +6352,7 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
         }
     return n;
 }
-DEM_API dem_result dem_search_now(dem_world *w) { return demi_rebuild(w); }
+DEM_API dem_result dem_search_now(dem_world *w) { return demi_rebuild(w, "dem_search_now"); }
 
 /* ---------------------------------------------------------------------------------------------
    >>touch
@@ -5645,44 +6360,290 @@ DEM_API dem_result dem_search_now(dem_world *w) { return demi_rebuild(w); }
    (Where two spheres meet is demi_tile_touch.) Knows no law and no material.
    --------------------------------------------------------------------------------------------- */
 
-/* Closest point on triangle abc to p [ERI05] 5.1.5; *feature 0 face, 1 edge, 2 corner. [MIL]
-   Algorithm 5.6 is the same with a misprint in line 17 (d1 <= 0 for d3 <= 0). */
-DEM_INLINE dem_vec3 demi_triangle_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, dem_vec3 c,
-                                        int *feature) {
-    const dem_vec3 ab = demi_sub(b, a), ac = demi_sub(c, a), ap = demi_sub(p, a);
-    const dem_vec3 bp = demi_sub(p, b), cp = demi_sub(p, c);
-    const dem_real d1 = demi_dot(ab, ap), d2 = demi_dot(ac, ap), d3 = demi_dot(ab, bp);
-    const dem_real d4 = demi_dot(ac, bp);
-    const dem_real d5 = demi_dot(ab, cp), d6 = demi_dot(ac, cp);
-    const dem_real va = d3*d6 - d5*d4, vb = d5*d2 - d1*d6, vc = d1*d4 - d3*d2;
-    dem_vec3 normal, foot;
-    dem_real nn;
-    *feature = 2;
-    if (d1 <= 0 && d2 <= 0) return a;
-    if (d3 >= 0 && d4 <= d3) return b;
-    if (d6 >= 0 && d5 <= d6) return c;
-    *feature = 1;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return demi_add(a, demi_scale(ab, d1/(d1 - d3)));
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return demi_add(a, demi_scale(ac, d2/(d2 - d6)));
-    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        return demi_add(b, demi_scale(demi_sub(c, b), (d4 - d3)/((d4 - d3) + (d5 - d6))));
-    *feature = 0;                               /* face: drop the part along the normal, keeping the
-                                                   normal exact however large the triangle is */
+/* --- surfaces of facets: which places of one are nearest, and how often each counts (>>facets) --- */
+
+/* The point of a triangle (n = 3) or segment nearest the origin [ERI05] 5.1.5. *where: 0 inside,
+   1 + k on the side from corner k to the next, 4 + k corner k. Rounding may put it on one side of a
+   border or the other, which moves the point by no more than that. */
+DEM_INLINE dem_vec3 demi_side_point(dem_vec3 a, dem_vec3 b, int k, int l, int *where) {
+    const dem_vec3 ab = demi_sub(b, a);
+    const dem_real t = -demi_dot(a, ab), ll = demi_dot(ab, ab);
+    *where = t <= 0 ? 4 + k : t >= ll ? 4 + l : 1 + k;
+    return t <= 0 ? a : t >= ll ? b : demi_add(a, demi_scale(ab, t/ll));
+}
+/* A triangle so thin that it has no plane: the nearest of its sides. */
+static dem_vec3 demi_sides_point(const dem_vec3 *y, int *where) {
+    dem_vec3 best = demi_side_point(y[0], y[1], 0, 1, where), d;
+    int k, at;
+    for (k = 1; k < 3; k++) {
+        d = demi_side_point(y[k], y[(k + 1)%3], k, (k + 1)%3, &at);
+        if (!(demi_dot(d, d) < demi_dot(best, best))) continue;
+        best = d;
+        *where = at;
+    }
+    return best;
+}
+static dem_vec3 demi_facet_point(const dem_vec3 *y, int n, int *where) {
+    dem_vec3 ab, ac, normal;
+    dem_real d1, d2, d3, d4, d5, d6, nn;
+    if (n == 2) {
+        const dem_vec3 p = demi_side_point(y[0], y[1], 0, 1, where);
+        if (*where != 1) return p;
+        *where = 0;                             /* in the plane: along the normal, exactly */
+        ab = demi_sub(y[1], y[0]);
+        if (y[0].z < 0 || y[0].z > 0 || ab.z < 0 || ab.z > 0) return p;
+        normal = demi_v(-ab.y, ab.x, 0);
+        return demi_scale(normal, demi_dot(normal, y[0])/demi_dot(ab, ab));
+    }
+    ab = demi_sub(y[1], y[0]);
+    ac = demi_sub(y[2], y[0]);
+    d1 = -demi_dot(ab, y[0]); d2 = -demi_dot(ac, y[0]);
+    if (d1 <= 0 && d2 <= 0) { *where = 4; return y[0]; }
+    d3 = -demi_dot(ab, y[1]); d4 = -demi_dot(ac, y[1]);
+    if (d3 >= 0 && d4 <= d3) { *where = 5; return y[1]; }
+    d5 = -demi_dot(ab, y[2]); d6 = -demi_dot(ac, y[2]);
+    if (d6 >= 0 && d5 <= d6) { *where = 6; return y[2]; }
+    if (d1*d4 - d3*d2 <= 0 && d1 >= 0 && d3 <= 0) return demi_side_point(y[0], y[1], 0, 1, where);
+    if (d5*d2 - d1*d6 <= 0 && d2 >= 0 && d6 <= 0) return demi_side_point(y[2], y[0], 2, 0, where);
+    if (d3*d6 - d5*d4 <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return demi_side_point(y[1], y[2], 1, 2, where);
+    *where = 0;                                 /* along the normal, exact however large it is */
     normal = demi_cross(ab, ac);
     nn = demi_dot(normal, normal);
-    foot = demi_sub(p, demi_scale(normal, demi_dot(normal, ap)/nn));
-    return foot;
+    if (!(nn > (DEMI_SINGLE ? DEM_R(1e-10) : DEM_R(1e-20))*demi_dot(ab, ab)*demi_dot(ac, ac)))
+        return demi_sides_point(y, where);
+    return demi_scale(normal, demi_dot(normal, y[0])/nn);
 }
-static dem_vec3 demi_segment_point(dem_vec3 p, dem_vec3 a, dem_vec3 b, int *feature) {
-    const dem_vec3 ab = demi_sub(b, a);
-    const dem_real ll = demi_dot(ab, ab), t = ll > 0 ? demi_dot(demi_sub(p, a), ab)/ll : 0;
-    dem_vec3 normal;
-    *feature = 2;
-    if (t <= 0) return a;
-    if (t >= 1) return b;
-    *feature = 0;
-    normal = demi_v(-ab.y, ab.x, 0);            /* as for the triangle: subtract along the normal */
-    return demi_sub(p, demi_scale(normal, demi_dot(normal, demi_sub(p, a))/ll));
+
+/* Places found so far for one body and one wall. `point` is from the body's centre, `overlap` is
+   the distance; both in the body's own measure (an ellipsoid's is that in which it is the unit
+   sphere). Few are looked through one by one, many by a table of their numbers. */
+typedef struct demi_places {
+    demi_touching *at;
+    int32_t *table;                /* mask + 1 of them: 1 + index into at, 0: free; or null */
+    uint32_t mask;
+    int count;
+} demi_places;
+static void demi_place(demi_places *p, int32_t number, dem_real weight, dem_vec3 d, dem_real d2) {
+    uint32_t slot = (uint32_t)number*UINT32_C(2654435769) & p->mask;
+    int i = 0;
+    if (!p->table) while (i < p->count && p->at[i].element != number) i++;
+    else {
+        for (; p->table[slot]; slot = (slot + 1) & p->mask)
+            if (p->at[p->table[slot] - 1].element == number) break;
+        i = p->table[slot] ? p->table[slot] - 1 : p->count;
+        p->table[slot] = i + 1;
+    }
+    if (i < p->count) { p->at[i].share += weight; return; }
+    p->at[i].element = number;
+    p->at[i].share = weight;
+    p->at[i].point = d;
+    p->at[i].overlap = DEMI_SQRT(d2);
+    p->count++;
+}
+/* What is left: those that cancel go, those that are one place to the eye of rounding (a side and
+   a cut of it) become one. */
+static void demi_places_merge(demi_places *p, dem_real near_by) {
+    int i, k, count = 0;
+    for (i = 0; i < p->count; i++) {
+        demi_touching t = p->at[i];
+        if (t.share > DEM_R(-1e-3) && t.share < DEM_R(1e-3)) continue;
+        for (k = 0; k < count; k++) {
+            const dem_vec3 d = demi_sub(t.point, p->at[k].point);
+            if (demi_dot(d, d) <= near_by*near_by) break;
+        }
+        if (k < count) p->at[k].share += t.share; else p->at[count++] = t;
+    }
+    for (i = k = 0; i < count; i++)
+        if (p->at[i].share < DEM_R(-1e-3) || p->at[i].share > DEM_R(1e-3)) p->at[k++] = p->at[i];
+    p->count = k;
+}
+/* Corners of an element as seen from a body at x: in the body's measure, where part is an
+   ellipsoid. Segments go on along z without end: there only what is across z counts. */
+DEM_INLINE int demi_facet_seen(const demi_wall *wall, int element, dem_vec3 x,
+                               const demi_part *part, dem_vec3 *y) {
+    const int n = demi_wall_corners(wall, element, y);
+    int k;
+    for (k = 0; k < n; k++) {
+        y[k] = demi_sub(y[k], x);
+        if (n == 2) y[k].z = 0;
+        if (!part) continue;
+        y[k] = dem_quat_unturn(part->q, y[k]);
+        y[k] = demi_v(y[k].x/part->axes.x, y[k].y/part->axes.y, y[k].z/part->axes.z);
+    }
+    if (n == 2 && part) {
+        const dem_vec3 z = dem_quat_unturn(part->q, demi_v(0, 0, 1));
+        const dem_vec3 u = demi_unit(demi_v(z.x/part->axes.x, z.y/part->axes.y, z.z/part->axes.z));
+        for (k = 0; k < 2; k++) y[k] = demi_sub(y[k], demi_scale(u, demi_dot(y[k], u)));
+    }
+    return n;
+}
+/* Adds what element `e` and the edges and corners it looks after give, nearer than `within`. */
+static void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
+                              dem_real within, demi_places *p) {
+    const int edges = wall->element_count, corners = edges + wall->edge_count;
+    const int cuts = corners + wall->vertex_count, own = wall->owns[e];
+    const dem_real *weight = wall->weight, most = within*within;
+    dem_vec3 y[3], d;
+    dem_real add = weight[e], d2;
+    int where, done = 0, n, k, at;
+    n = demi_facet_seen(wall, e, x, part, y);
+    d = demi_facet_point(y, n, &where);
+    d2 = demi_dot(d, d);
+    if (!(d2 < most)) return;                   /* nor are its edges nearer */
+    if (where >= 1 && where <= 3 && own >> (where - 1) & 1) {
+        add += weight[edges + wall->edges[3*e + where - 1]];       /* the same point */
+        done = where;
+    }
+    if (add < 0 || add > 0)
+        demi_place(p, where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
+                   : corners + wall->corners[n*e + where - 4], add, d, d2);
+    for (k = 0; k < 3 && n == 3 && own & 7; k++) {
+        const dem_real count = weight[edges + wall->edges[3*e + k]];
+        if (!(own >> k & 1) || done == k + 1 || !(count < 0 || count > 0)) continue;
+        d = demi_side_point(y[k], y[(k + 1)%3], k, (k + 1)%3, &at);
+        d2 = demi_dot(d, d);
+        if (d2 < most)
+            demi_place(p, at < 4 ? edges + wall->edges[3*e + k]
+                       : corners + wall->corners[3*e + at - 4], count, d, d2);
+    }
+    for (k = 0; k < n && own >> 3; k++) {
+        const int32_t number = corners + wall->corners[n*e + k];
+        if (!(own >> (3 + k) & 1) || !(weight[number] < 0 || weight[number] > 0)) continue;
+        d2 = demi_dot(y[k], y[k]);
+        if (d2 < most) demi_place(p, number, weight[number], y[k], d2);
+    }
+    if (!wall->cut_start) return;
+    for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
+        dem_vec3 a = demi_sub(wall->cuts[k].a, x), b = demi_sub(wall->cuts[k].b, x);
+        if (part) {
+            a = dem_quat_unturn(part->q, a);
+            b = dem_quat_unturn(part->q, b);
+            a = demi_v(a.x/part->axes.x, a.y/part->axes.y, a.z/part->axes.z);
+            b = demi_v(b.x/part->axes.x, b.y/part->axes.y, b.z/part->axes.z);
+        }
+        d = demi_side_point(a, b, 0, 1, &at);
+        d2 = demi_dot(d, d);
+        if (d2 < most) demi_place(p, cuts + 3*k + (at < 4 ? 0 : at - 3), wall->cuts[k].weight, d, d2);
+    }
+}
+
+/* --- rings. Where what a ball reaches of a surface closes to a ring, on the rim of a hole or in a
+       funnel, Euler's number is 0 and nothing would push. A ring is one place, so there
+           E = integral of pieces(s) dU = U(facets) - U(links of a forest)
+       pieces: chi and the rings that are open; a forest: of the sides and corners that join facets,
+       nearest first, those that join what was not joined yet (Kruskal's). With U1 the nearest's,
+       X the energy by >>facets and P that by pieces, D = P - X >= 0 is what rings took away, and
+           E = X + D h(D/U1),    h(q) = (3 - 2 t) t^2, t = min(2 q, 1)
+       A dimple that is reached to its tip is a ring that is all but closed: D is small, and E is
+       X, smooth; an open ring counts as one piece, and which of its sides are nearest may change
+       from one moment to the next, as on the medial line of a single wall. Energy is conserved in
+       either. Rings through a seam of two walls are not seen. --- */
+static int demi_link_compare(const void *x, const void *y) {
+    const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
+    if (a->distance < b->distance) return -1;
+    if (a->distance > b->distance) return 1;
+    if (a->corner != b->corner) return a->corner < b->corner ? -1 : 1;
+    if (a->number != b->number) return a->number < b->number ? -1 : 1;
+    return a->facet < b->facet ? -1 : a->facet > b->facet;
+}
+static int demi_link_root(demi_link *link, int i) {
+    while (link[i].root != i) i = link[i].root = link[link[i].root].root;
+    return i;
+}
+/* Facets that are reached, and their nearest place. */
+typedef struct demi_ring { int facets; int32_t number; dem_real distance; dem_vec3 point; } demi_ring;
+/* Sides and corners of element e, if it is reached. Answers how many links there are then. */
+static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
+                          dem_real within, demi_link *link, int count, demi_ring *ring) {
+    const int edges = wall->element_count, corners = edges + wall->edge_count;
+    dem_vec3 y[3], d;
+    int k, where;
+    const int n = demi_facet_seen(wall, e, x, part, y);
+    const int32_t *v = wall->corners + n*e;
+    dem_real l;
+    d = demi_facet_point(y, n, &where);
+    l = demi_length(d);
+    if (!wall->owns || !(wall->weight[e] > 0) || !(l < within)) return count;
+    if (!ring->facets || l < ring->distance) {
+        ring->number = where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
+            : corners + v[where - 4];
+        ring->distance = l;
+        ring->point = d;
+    }
+    for (k = 0; k < 2*n; k++) {
+        demi_link *to = &link[count];
+        const int corner = k >= n, a = k%n, b = (k + 1)%n, turn = v[a] > v[b];
+        if (n == 2 && !corner) continue;
+        where = 4 + a;                          /* a side alike from either facet, to the bit */
+        to->point = corner ? y[a] : demi_side_point(y[turn ? b : a], y[turn ? a : b],
+                                                    turn ? b : a, turn ? a : b, &where);
+        to->distance = demi_length(to->point);
+        if (!(to->distance < within)) continue;
+        to->corner = corner;
+        to->facet = ring->facets;
+        to->number = corner ? corners + v[a] : edges + wall->edges[3*e + a];
+        to->place = where < 4 ? to->number : corners + v[where - 4];
+        to->sides[0] = to->sides[1] = -1;
+        if (corner && n == 3) {
+            to->sides[0] = wall->edges[3*e + a];
+            to->sides[1] = wall->edges[3*e + (a + 2)%3];
+        }
+        count++;
+    }
+    ring->facets++;
+    return count;
+}
+/* chi's weight of a corner, from the facets at it that are links first .. end - 1: 1 + facets -
+   sides (meshes), 1 - facets (profiles). */
+static int demi_links_corner(const demi_link *link, int first, int end) {
+    int i, k, j, sides = 0;
+    if (link[first].sides[0] < 0) return 1 - (end - first);
+    for (i = first; i < end; i++)
+        for (k = 0; k < 2; k++) {
+            int seen = 0;
+            for (j = first; j < i && !seen; j++)
+                seen = link[j].sides[0] == link[i].sides[k] || link[j].sides[1] == link[i].sides[k];
+            sides += !seen;
+        }
+    return 1 + (end - first) - sides;
+}
+/* Corrects the places of one body and wall for open rings. power: of U in the overlap. */
+static void demi_places_rings(const demi_wall *wall, const int32_t *element, int candidates,
+                              dem_vec3 x, const demi_part *part, dem_real within, dem_real power,
+                              demi_link *link, demi_places *p) {
+    demi_ring ring;
+    dem_real lost = 0, t, h, slope;
+    int i, k, end, count = 0;
+    memset(&ring, 0, sizeof ring);
+    for (i = 0; i < candidates; i++)
+        count = demi_links_add(wall, element[i], x, part, within, link, count, &ring);
+    if (ring.facets < 2) return;
+    qsort(link, (size_t)count, sizeof *link, demi_link_compare);
+    for (i = 0; i < ring.facets; i++) link[i].root = i;
+    for (i = 0; i < count; i = end) {
+        const dem_real q = (within - link[i].distance)/(within - ring.distance);
+        int joined = 0;
+        for (end = i + 1; end < count && link[end].number == link[i].number; end++) {
+            const int a = demi_link_root(link, link[i].facet);
+            const int b = demi_link_root(link, link[end].facet);
+            joined += a != b;
+            link[DEMI_MAX(a, b)].root = DEMI_MIN(a, b);
+        }
+        k = link[i].corner ? -demi_links_corner(link, i, end) : end - i - 1;
+        link[i].more = (dem_real)(k - joined);
+        lost += link[i].more*(power > 2 ? q*q*DEMI_SQRT(q) : q*q);
+        for (k = i + 1; k < end; k++) link[k].more = 0;
+    }
+    if (!(lost > DEM_R(1e-6))) return;
+    t = DEMI_MIN(2*lost, DEM_R(1));
+    h = t*t*(3 - 2*t);
+    slope = t < 1 ? 12*t*(1 - t) : 0;           /* dh/dq */
+    for (i = 0; i < count; i++)
+        if (link[i].more < 0 || link[i].more > 0)
+            demi_place(p, link[i].place, link[i].more*(h + lost*slope), link[i].point,
+                       link[i].distance*link[i].distance);
+    demi_place(p, ring.number, -lost*lost*slope, ring.point, ring.distance*ring.distance);
 }
 
 /* --- sieves: a sphere against all of a sieve, in the sieve's frame: z across, a hole in the
@@ -5711,14 +6672,13 @@ static int32_t demi_sieve_number(double i, double j, int side) {
     return (int32_t)(((uint32_t)a << 16) | ((uint32_t)b << 3) | (uint32_t)side);
 }
 /* Adds the contact with what lies `edge` around foot, if there is one. */
-static int demi_sieve_put(demi_wall_contact *out, int count, int32_t element, dem_vec3 x,
+static int demi_sieve_put(demi_touching *out, int count, int32_t element, dem_vec3 x,
                           dem_real r, dem_vec3 foot, dem_real edge) {
     const dem_vec3 d = demi_sub(foot, x);
     const dem_real l = demi_length(d), overlap = r + edge - l;
-    demi_wall_contact *c = &out[count];
+    demi_touching *c = &out[count];
     if (!(overlap > 0) || count == DEMI_SIEVE_MOST) return count;
     c->element = element;
-    c->feature = 1;
     c->normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
     c->point = demi_add(x, demi_scale(c->normal, l - edge));
     c->overlap = overlap;
@@ -5727,7 +6687,7 @@ static int demi_sieve_put(demi_wall_contact *out, int count, int32_t element, de
 }
 /* Wires of one set: across x (set 0) or across y (set 1). */
 static int demi_sieve_wires(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real r,
-                            demi_wall_contact *out, int count) {
+                            demi_touching *out, int count) {
     const dem_real q = s->bar/2, h = set ? -s->lift/2 : s->lift/2, pitch = s->aperture + s->bar;
     const dem_real u = set ? x.y : x.x, v = set ? x.x : x.y, R = s->radius;
     const dem_real far2 = (r + q)*(r + q) - (x.z - h)*(x.z - h);
@@ -5750,10 +6710,9 @@ static int demi_sieve_wires(const dem_sieve_desc *s, int set, dem_vec3 x, dem_re
     return count;
 }
 static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
-                           demi_wall_contact *out) {
+                           demi_touching *out) {
     const dem_real up = x.z >= 0 ? DEM_R(1) : DEM_R(-1);
     out->element = DEMI_SIEVE_FACE;
-    out->feature = 0;
     out->normal = demi_v(0, 0, -up);
     out->point = demi_v(x.x, x.y, up*s->thickness/2);
     out->overlap = r + s->thickness/2 - up*x.z;
@@ -5761,7 +6720,7 @@ static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
     return out->overlap > 0;
 }
 static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
-                            demi_wall_contact *out) {
+                            demi_touching *out) {
     const dem_real half = s->thickness/2, z = x.z > half ? half : x.z < -half ? -half : x.z;
     const dem_real a = s->aperture/2, R = s->radius, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
     const int endless = s->kind == DEM_SIEVE_SLOTS && !(s->length > 0);
@@ -5823,9 +6782,8 @@ static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
        share_a = max(L_a/(L_a + L_b), min(1, L_a/overlap_a))
    On top of a wire the one across is not felt (its L is 0), half way between the two each bears
    half, and in the corner of a hole, where L is far more than the overlap, each bears all: no jump
-   on the way. The rule for meshes (demi_wall_resolve) drops outright what lies in the plane of a
-   face; here neither is a face. */
-static void demi_sieve_share(demi_wall_contact *c, int count) {
+   on the way. */
+static void demi_sieve_share(demi_touching *c, int count) {
     int a, b;
     for (a = 0; a < count; a++)
         for (b = a + 1; b < count; b++) {
@@ -5856,7 +6814,7 @@ static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
    are the caller's to fill in. One of share 0 pushes nobody: a grain under way through a reduced
    hole. */
 static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
-                            demi_wall_contact *out) {
+                            demi_touching *out) {
     const dem_real S = DEMI_SQRT(x.x*x.x + x.y*x.y);
     int count = 0;
     switch (s->kind) {
@@ -5878,14 +6836,13 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
     return count;
 }
 
-/* One sphere against one element, all in the wall's frame. Fills in normal (grain -> wall), point
-   and feature; answers the overlap (negative: apart). */
+/* One sphere against one element, all in the wall's frame. Fills in normal (grain -> wall) and
+   point; answers the overlap (negative: apart). Of a sieve: the sheet it lies in, holes or not. */
 DEM_INLINE dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
-                                dem_vec3 *normal,
-                                dem_vec3 *point, int *feature) {
+                                    dem_vec3 *normal, dem_vec3 *point) {
     dem_vec3 c[3], d;
     dem_real l, edge = 0;
-    *feature = 0;
+    int where;
     switch (wall->kind) {
     case DEMI_WALL_PLANE:
         *normal = demi_v(0, 0, -1);
@@ -5897,7 +6854,7 @@ DEM_INLINE dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3
         *point = demi_v(d.x*wall->radius, d.y*wall->radius, x.z);
         *normal = wall->inside ? d : demi_scale(d, -1);
         return wall->inside ? r + l - wall->radius : r + wall->radius - l;
-    case DEMI_WALL_SIEVE:  /* the sheet it lies in, holes or not: for candidates. See demi_sieve */
+    case DEMI_WALL_SIEVE:
         l = DEMI_ABS(x.z) - demi_sieve_half(&wall->sieve);
         if (wall->radius > 0)                   /* ends of wires stand out of it */
             l = DEMI_MAX(l, DEMI_SQRT(x.x*x.x + x.y*x.y) - wall->radius - wall->sieve.bar/2);
@@ -5905,31 +6862,18 @@ DEM_INLINE dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3
         *point = demi_v(x.x, x.y, 0);
         return r - l;
     case DEMI_WALL_PROFILE:
-        x.z = 0;
-        demi_wall_corners(wall, element, c);
-        *point = demi_segment_point(x, c[0], c[1], feature);
-        break;
     case DEMI_WALL_MESH:
-        demi_wall_corners(wall, element, c);
-        *point = demi_triangle_point(x, c[0], c[1], c[2], feature);
+        d = demi_facet_point(c, demi_facet_seen(wall, element, x, 0, c), &where);
+        *point = demi_add(x, d);
         break;
     default:
         demi_wall_corners(wall, element, c);
         *point = c[0];
+        d = demi_sub(*point, x);
         edge = wall->radius;
         break;
     }
-    d = demi_sub(*point, x);
     l = demi_length(d);
-    if (*feature > 0) {  /* straight above its rim a face is met, not the rim */
-        const dem_vec3 face = wall->kind == DEMI_WALL_MESH
-            ? demi_cross(demi_sub(c[1], c[0]), demi_sub(c[2], c[0]))
-                                                           : demi_v(c[0].y - c[1].y, c[1].x -
-                                                               c[0].x, 0);
-        if (DEMI_ABS(demi_dot(face, d)) > (1 - 8*(DEMI_SINGLE ? (dem_real)FLT_EPSILON
-                                                  : (dem_real)DBL_EPSILON))*
-                                          l*demi_length(face)) *feature = 0;
-    }
     *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
     return r + edge - l;
 }
@@ -5938,7 +6882,6 @@ DEM_INLINE dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
                                    dem_real enough) {
     dem_vec3 n, p;
-    int feature;
     if (wall->kind == DEMI_WALL_MESH) {
         dem_vec3 c[3];
         dem_real h;
@@ -5947,7 +6890,7 @@ static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 
         h = demi_dot(n, demi_sub(local, c[0]));
         if (h*h >= enough*enough*demi_dot(n, n) && demi_dot(n, n) > 0) return enough;
     }
-    return -demi_wall_touch(wall, element, local, 0, &n, &p, &feature);
+    return -demi_wall_touch(wall, element, local, 0, &n, &p);
 }
 
 /* [MIL] Fig 5.19: the segment acts as its whole line, with the fraction a^2(3-2a) of the force, a =
@@ -5976,41 +6919,6 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
     *point = demi_add(c[0], demi_scale(t, along));
     *overlap = r - DEMI_ABS(off);
     return a*a*(3 - 2*a);
-}
-
-/* Of the elements of one wall that a grain overlaps, keeps those that count. Faces come first, the
-   deepest first; an edge or corner is dropped when its point lies in the plane of a face already
-   kept, or on a contact already kept: so that a flat mesh is one plane, and a fold two. Answers how
-   many are left. */
-static int demi_wall_resolve(demi_wall_contact *c, int count, dem_real r) {
-    const dem_real near_by = DEM_R(1e-6)*r;
-    int i, j, kept = 0;
-    for (i = 1; i < count; i++) {  /* few: insertion sort by feature, overlap, element */
-        const demi_wall_contact t = c[i];
-        for (j = i; j > 0; j--) {
-            const demi_wall_contact *p = &c[j - 1];
-            if (p->feature != t.feature ? p->feature < t.feature
-                : p->overlap > t.overlap || (p->overlap >= t.overlap &&
-                                             p->element < t.element)) break;
-            c[j] = c[j - 1];
-        }
-        c[j] = t;
-    }
-    for (i = 0; i < count; i++) {
-        int covered = 0;
-        for (j = 0; j < kept && !covered; j++) {
-            const dem_vec3 d = demi_sub(c[i].point, c[j].point);
-            if (demi_dot(d, d) <= near_by*near_by) covered = 1;
-            else if (c[j].feature == 0 && c[i].feature > 0 &&
-                     DEMI_ABS(demi_dot(d, c[j].normal)) <= near_by) covered = 1;
-            else if (c[j].feature == 0 && c[i].feature == 0 &&
-                     demi_dot(c[i].normal, c[j].normal) > 1 - DEM_R(1e-9) &&
-                     /* the same plane twice */
-                     DEMI_ABS(demi_dot(d, c[j].normal)) <= near_by) covered = 1;
-        }
-        if (!covered) c[kept++] = c[i];
-    }
-    return kept;
 }
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -6685,11 +7593,13 @@ static const char *demi_kernel_choose(dem_world *w) {
 #endif
 /* --- walls --- */
 
-/* The old contact that a new one continues: same element; else one on the same wall that nothing
-   else continues and whose normal is within about 18 degrees: the grain slid on to the neighbouring
-   element. */
-static const demi_wall_contact *demi_wall_match(const demi_wall_contact *old, int olds,
-                                                const demi_wall_contact *fresh,
+/* The old contact that a new one continues: same wall and element; else the one of nearest normal,
+   within about 18 degrees, that nothing else continues: the grain slid on to the neighbour. A place
+   of a surface that begins at depth has split off another one, and takes a copy of its memory: as
+   often as two come, one that takes away comes with them (>>facets). Walls that do not move against
+   each other are one here. */
+static const demi_wall_contact *demi_wall_match(const dem_world *w, const demi_wall_contact *old,
+                                                int olds, const demi_wall_contact *fresh,
                                                 int freshs, const demi_wall_contact *c) {
     const demi_wall_contact *best = 0;
     dem_real nearest = DEM_R(0.95);
@@ -6698,18 +7608,22 @@ static const demi_wall_contact *demi_wall_match(const demi_wall_contact *old, in
                                    old[i].element == c->element) return &old[i];
     for (i = 0; i < olds; i++) {
         const dem_real along = demi_dot(old[i].normal, c->normal);
-        int taken = old[i].wall != c->wall;
+        int taken = 0;
+        if (!(along > nearest) || w->walls[old[i].wall].group != w->walls[c->wall].group) continue;
         for (j = 0; j < freshs && !taken; j++) taken = fresh[j].wall == old[i].wall &&
             fresh[j].element == old[i].element;
-        if (!taken && along > nearest) { nearest = along; best = &old[i]; }
+        if (taken && (!demi_faceted(&w->walls[c->wall]) || !(2*c->overlap > old[i].overlap)))
+            continue;
+        nearest = along;
+        best = &old[i];
     }
     return best;
 }
 
-/* The contact between a grain and a wall as a law sees it. normal_before: of the step before. */
-DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *k,
-                                   dem_vec3 normal_before, dem_real dt,
-                                   dem_contact *c, dem_vec3 *surface) {
+/* The contact between a grain and a wall as a law sees it. */
+DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *k, dem_real dt,
+                                       dem_contact *c, dem_vec3 *surface) {
+    const dem_vec3 normal_before = k->normal_before;
     const demi_wall *wall = &w->walls[k->wall];
     const dem_real *x = w->pos + 4*k->body, r = x[3];
     const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body);
@@ -6755,61 +7669,155 @@ DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_conta
     c->user = w->desc.law_user;
 }
 
-/* Touching elements of one wall for a sphere at `at` of radius r, from the candidates first .. last
-   - 1 of the body it is, or is part of. */
-DEM_INLINE int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
-                             dem_real r, demi_wall_contact *out) {
+/* Room in which the places of one body and one wall are found. candidates: how many there are. */
+DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidates) {
+    const demi_domain *domain = &w->domains[d];
+    demi_places p;
+    memset(&p, 0, sizeof p);
+    p.at = (demi_touching *)w->touching_.data + domain->touching_first;
+    if (candidates > 4) {
+        uint32_t size = 64;
+        while (size < 2*7*(uint32_t)candidates) size *= 2;
+        p.table = (int32_t *)w->touching_table_.data + 4*domain->touching_first;
+        p.mask = size - 1;
+        memset(p.table, 0, size*sizeof *p.table);
+    }
+    return p;
+}
+/* Where an ellipsoid (part; null: a sphere of radius r) at `at` touches a surface of facets, from
+   the candidates first .. last - 1 of its body: normals, points and shares, and what is left of its
+   measure, r less the distance or 1 - W0, as overlaps. In the world. */
+static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                             dem_vec3 at, dem_real r, const demi_part *part, demi_touching **out) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const dem_real *R = wall->pose.rotation;
+    const dem_vec3 x = demi_unturn(R, demi_sub(at, wall->pose.position));
+    const dem_real within = part ? DEM_R(1) : r;
+    demi_places p = demi_places_begin(w, d, last - first);
+    int k;
+    for (k = first; k < last; k++)
+        if (!(w->wall_gap[base + k] > gone))
+            demi_facet_places(wall, w->wall_element[base + k], x, part, within, &p);
+    for (k = 0; k < p.count && !(p.at[k].share < DEM_R(-1e-3)); k++) continue;
+    if (k < p.count)                            /* something takes away: more than it should? */
+        demi_places_rings(wall, w->wall_element + base + first, last - first, x, part, within,
+                          w->desc.normal_law == DEM_NORMAL_HERTZ ? DEM_R(2.5) : DEM_R(2),
+                          (demi_link *)w->touching_links_.data + w->domains[d].touching_first, &p);
+    if (p.count > 1 || (p.count && p.at->share < 1))
+        demi_places_merge(&p, within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9)));
+    for (k = 0; k < p.count; k++) {
+        demi_touching *t = p.at + k;
+        dem_vec3 to = t->point, n = t->point;
+        if (part) {
+            const dem_vec3 a = part->axes;
+            to = dem_quat_turn(part->q, demi_v(n.x*a.x, n.y*a.y, n.z*a.z));
+            n = dem_quat_turn(part->q, demi_v(n.x/a.x, n.y/a.y, n.z/a.z));
+        }
+        n = t->overlap > 0 ? demi_scale(n, 1/demi_length(n)) : demi_v(0, 0, -1);
+        t->overlap = within - t->overlap;
+        t->normal = demi_turn(R, n);
+        t->point = demi_add(at, demi_turn(R, to));
+    }
+    *out = p.at;
+    return p.count;
+}
+/* Where a sphere at `at` of radius r touches one wall, from the candidates first .. last - 1 of the
+   body it is, or is part of. */
+static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at, dem_real r,
+                             demi_touching **places) {
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
-    const int id = w->wall_id[base + first];
-    const demi_wall *wall = &w->walls[id];
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
     /* as far as any grain and any wall have come since the list was made, and a little for rounding
        */
     const dem_real gone = (dem_real)(w->reach + w->wall_reach) + w->pos[4*body + 3]/10000;
+    demi_touching *out;
     dem_vec3 x;
     int k, count = 0;
     while (first < last && w->wall_gap[base + first] > gone) first++;
     if (first == last) return 0;
+    if (demi_faceted(wall)) return demi_facets_touch(w, d, first, last, gone, at, r, 0, places);
     x = demi_unturn(R, demi_sub(at, wall->pose.position));
-    if (wall->kind == DEMI_WALL_SIEVE) {        /* one candidate, as many contacts as there are */
+    *places = out = (demi_touching *)w->touching_.data + w->domains[d].touching_first;
+    if (wall->kind == DEMI_WALL_SIEVE)          /* one candidate, as many contacts as there are */
         count = demi_sieve_touch(&wall->sieve, x, r, out);
-        for (k = 0; k < count; k++) {
-            out[k].body = body;
-            out[k].wall = id;
-            out[k].normal = demi_turn(R, out[k].normal);
-            out[k].point = demi_add(wall->pose.position, demi_turn(R, out[k].point));
-        }
-        return count;
-    }
-    for (k = first; k < last; k++) {
-        demi_wall_contact *c = &out[count];
-        dem_vec3 n, p;
-        int feature = 0;
-        dem_real overlap, share = wall->share;
+    else for (k = first; k < last; k++) {
+        demi_touching *c = &out[count];
         if (w->wall_gap[base + k] > gone) continue;
-        if (wall->kind == DEMI_WALL_PROFILE && wall->rule == DEM_EDGE_FRACTION) {
-            share = demi_segment_share(wall, w->wall_element[base + k], x, r, &n, &p, &overlap);
-            if (!(share > 0)) continue;
-        } else {
-            overlap = demi_wall_touch(wall, w->wall_element[base + k], x, r, &n, &p, &feature);
-            if (!(overlap > 0)) continue;
-        }
-        c->body = body;
-        c->wall = id;
         c->element = w->wall_element[base + k];
-        c->feature = feature;
-        c->normal = demi_turn(R, n);
-        c->point = demi_add(wall->pose.position, demi_turn(R, p));
-        c->overlap = overlap;
-        c->share = share;
+        c->share = wall->share;
+        if (wall->kind == DEMI_WALL_PROFILE) {
+            c->share = demi_segment_share(wall, c->element, x, r, &c->normal, &c->point,
+                                          &c->overlap);
+            if (!(c->share > 0)) continue;
+        } else {
+            c->overlap = demi_wall_touch(wall, c->element, x, r, &c->normal, &c->point);
+            if (!(c->overlap > 0)) continue;
+        }
         count++;
     }
-    if (count > 1 && (wall->kind == DEMI_WALL_MESH || (wall->kind == DEMI_WALL_PROFILE &&
-                                                       wall->rule == DEM_EDGE_RESOLVED)))
-        count = demi_wall_resolve(out, count, r);
+    for (k = 0; k < count; k++) {
+        out[k].normal = demi_turn(R, out[k].normal);
+        out[k].point = demi_add(wall->pose.position, demi_turn(R, out[k].point));
+    }
     return count;
 }
 
+/* Spheres and walls of one domain: who touches where, with the memory of the step before. Runs out
+   of room: the caller makes more and begins anew, nothing lost. */
+static void demi_domain_walls_touch(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const int base = d*w->wall_stride;
+    const demi_wall_contact *old = w->wall_now + (size_t)d*(size_t)w->wall_now_stride;
+    demi_wall_contact *out = w->wall_next + (size_t)d*(size_t)w->wall_now_stride;
+    int k, last, q, e, count = 0, o = 0, o_end;
+    domain->wall_contacts_next = 0;
+    domain->overflow &= ~32;
+    for (k = 0; k < domain->walls; k = last) {
+        const int body = w->wall_body[base + k], wall = w->wall_id[base + k];
+        demi_touching *at;
+        int n;
+        for (last = k + 1; last < domain->walls && w->wall_body[base + last] == body &&
+             w->wall_id[base + last] == wall;) last++;
+        if (w->shaped_count && demi_form_of(w, body)) continue;     /* in >>shaped */
+        n = demi_wall_collect(w, d, k, last, demi_at(w->pos + 4*body), w->pos[4*body + 3], &at);
+        if (!n) continue;
+        if (count + n > w->wall_now_stride) { domain->overflow |= 32; return; }
+        while (o < domain->wall_contacts && old[o].body < body) o++;
+        for (o_end = o; o_end < domain->wall_contacts && old[o_end].body == body;) o_end++;
+        for (q = 0; q < n; q++) {
+            demi_wall_contact *c = &out[count + q];
+            c->body = body;
+            c->wall = wall;
+            c->element = at[q].element;
+        }
+        for (q = 0; q < n; q++) {
+            demi_wall_contact *c = &out[count + q];
+            const demi_wall_contact *from;
+            c->normal = at[q].normal;
+            c->point = at[q].point;
+            c->overlap = at[q].overlap;
+            c->share = at[q].share;
+            from = demi_wall_match(w, old + o, o_end - o, out + count, n, c);
+            c->normal_before = from ? from->normal : c->normal;
+            if (from) memcpy(c->memory, from->memory, sizeof c->memory);
+            else memset(c->memory, 0, sizeof c->memory);
+            if (from && from->wall == wall) memcpy(c->coef, from->coef, sizeof c->coef);
+            else demi_wall_coefs(w, c);
+            if (w->walls[wall].sieve.kind != DEM_SIEVE_REDUCED) continue;
+            for (e = o; e < o_end; e++)         /* under way: to the end */
+                if (old[e].wall == wall && !(old[e].overlap > 0)) c->share = 0;
+            if (!(c->share > 0)) c->overlap = 0;
+        }
+        count += n;
+    }
+    domain->wall_contacts_next = count;
+}
+
+DEM_INLINE void demi_push_add(dem_real *sum, dem_vec3 f) {
+    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
+}
 /* What a push of `force` at a place, with a moment, adds to its wall's sums. */
 DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
                               dem_vec3 force, dem_vec3 moment, dem_vec3 surface) {
@@ -6822,80 +7830,52 @@ DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wa
     sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
     sum->contacts++;
 }
-DEM_INLINE void demi_energy_add(demi_domain *domain, const demi_law_energy *part, dem_real share) {
+/* grip: how often friction and rolling count, which may differ from the rest (>>shaped). */
+DEM_INLINE void demi_energy_add(demi_domain *domain, const demi_law_energy *part, dem_real share,
+                                dem_real grip) {
     domain->energy[DEMI_E_DASHPOT] += (double)(share*(part->dashpot + part->sag));
     domain->energy[DEMI_E_ELASTIC] += (double)(share*part->elastic);
-    domain->energy[DEMI_E_SHEAR_WORK] += (double)(share*part->shear_work);
-    domain->energy[DEMI_E_SLIDE] += (double)(share*part->slide);
-    domain->energy[DEMI_E_SHEAR_STORED] += (double)(share*part->shear_stored);
-    domain->energy[DEMI_E_ROLL] += (double)(share*part->roll);
+    domain->energy[DEMI_E_SHEAR_WORK] += (double)(grip*part->shear_work);
+    domain->energy[DEMI_E_SLIDE] += (double)(grip*part->slide);
+    domain->energy[DEMI_E_SHEAR_STORED] += (double)(grip*part->shear_stored);
+    domain->energy[DEMI_E_ROLL] += (double)(grip*part->roll);
 }
 
-/* All wall contacts of one domain: touch, memory, law, sums. */
+/* All wall contacts of one domain's spheres: law, forces, sums. */
 static void demi_walls_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->forces_valid ? w->dt : 0;
-    const int base = d*w->wall_stride, clipped = w->desc.tension == DEM_TENSION_CLIPPED;
-    const demi_wall_contact *old = w->wall_now + d*w->wall_now_stride;
-    demi_wall_contact *out = w->wall_next + d*w->wall_now_stride;
+    const int clipped = w->desc.tension == DEM_TENSION_CLIPPED;
     demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
-    int k, last, q, e, count = 0, o = 0, o_end;
-    for (k = 0; k < domain->walls; k = last) {
-        const int body = w->wall_body[base + k], wall = w->wall_id[base + k];
+    int k;
+    for (k = 0; k < domain->wall_contacts_next; k++) {
+        demi_wall_contact *c = w->wall_next + (size_t)d*(size_t)w->wall_now_stride + k;
+        const int body = c->body;
         const dem_real r = w->pos[4*body + 3];
-        int n;
-        for (last = k + 1; last < domain->walls && w->wall_body[base + last] == body &&
-             w->wall_id[base + last] == wall;) last++;
-        if (w->shaped_count && demi_form_of(w, body)) continue;     /* in >>shaped */
-        n = demi_wall_collect(w, d, k, last, demi_at(w->pos + 4*body), r, out + count);
-        if (!n) continue;
-        while (o < domain->wall_contacts && old[o].body < body) o++;
-        for (o_end = o; o_end < domain->wall_contacts && old[o_end].body == body;) o_end++;
-        for (q = 0; q < n; q++) {
-            demi_wall_contact *c = &out[count + q];
-            const demi_wall_contact *from = demi_wall_match(old + o, o_end - o, out + count, n, c);
-            dem_contact contact;
-            dem_push f;
-            dem_vec3 surface, force, torque;
-            demi_law_energy part;
-            memset(&f, 0, sizeof f);
-            memset(&part, 0, sizeof part);
-            if (from && from->wall == wall) {
-                memcpy(c->coef, from->coef, sizeof c->coef);
-                memcpy(c->memory, from->memory, sizeof c->memory);
-            } else {
-                demi_wall_coefs(w, c);
-                memset(c->memory, 0, sizeof c->memory);
-            }
-            if (w->walls[wall].sieve.kind == DEM_SIEVE_REDUCED) {   /* under way: to the end */
-                for (e = o; e < o_end; e++)
-                    if (old[e].wall == wall && !(old[e].share > 0)) c->share = 0;
-                if (!(c->share > 0)) {           /* no contact: nobody is pushed, nothing is told */
-                    c->overlap = 0;
-                    c->force = demi_v(0, 0, 0);
-                    continue;
-                }
-            }
-            demi_wall_contact_fill(w, c, from ? from->normal : c->normal, dt, &contact, &surface);
-            if (w->desc.law) w->desc.law(&contact, c->memory, &f);
-            else demi_law(&contact, c->memory, &f, w->normal, w->tangent, w->rolling, clipped,
-                          w->desc.ledger, &part);
-            force = demi_scale(demi_sub(f.tangent, demi_scale(contact.normal, f.normal)), c->share);
-            f.moment = demi_scale(f.moment, c->share);
-            torque = demi_add(demi_scale(demi_cross(contact.normal, force), r), f.moment);
-            c->force = force;
-            for (e = 0; e < 3; e++) {
-                w->force[4*body + e] += e == 0 ? force.x : e == 1 ? force.y : force.z;
-                w->torque[4*body + e] += e == 0 ? torque.x : e == 1 ? torque.y : torque.z;
-            }
-            demi_wall_sum_add(w, &sums[wall], wall, demi_add(demi_at(w->pos + 4*body),
-                              demi_scale(contact.normal, r)), force, f.moment, surface);
-            domain->overlap = DEMI_MAX(domain->overlap, (double)(c->overlap/r));
-            demi_energy_add(domain, &part, c->share);
-        }
-        count += n;
+        dem_contact contact;
+        dem_push f;
+        dem_vec3 surface, force, torque;
+        demi_law_energy part;
+        c->force = demi_v(0, 0, 0);
+        if (!(c->overlap > 0)) continue;        /* under way: nobody is pushed, nothing is told */
+        memset(&f, 0, sizeof f);
+        memset(&part, 0, sizeof part);
+        demi_wall_contact_fill(w, c, dt, &contact, &surface);
+        if (w->desc.law) w->desc.law(&contact, c->memory, &f);
+        else demi_law(&contact, c->memory, &f, w->normal, w->tangent, w->rolling, clipped,
+                      w->desc.ledger, &part);
+        force = demi_scale(demi_sub(f.tangent, demi_scale(contact.normal, f.normal)), c->share);
+        f.moment = demi_scale(f.moment, c->share);
+        torque = demi_add(demi_scale(demi_cross(contact.normal, force), r), f.moment);
+        c->force = force;
+        demi_push_add(w->force + 4*body, force);
+        demi_push_add(w->torque + 4*body, torque);
+        demi_wall_sum_add(w, &sums[c->wall], c->wall, demi_add(demi_at(w->pos + 4*body),
+                          demi_scale(contact.normal, r)), force, f.moment, surface);
+        domain->overlap = DEMI_MAX(domain->overlap, (double)(c->overlap/r));
+        demi_energy_add(domain, &part, c->share, c->share);
     }
-    domain->wall_contacts = count;
+    domain->wall_contacts = domain->wall_contacts_next;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -6915,7 +7895,7 @@ static demi_shaped *demi_shaped_new(dem_world *w, int d) {
     c = w->shaped_next + (size_t)d*(size_t)w->shaped_stride + domain->shaped_next++;
     memset(c, 0, sizeof *c);
     c->b = -1;
-    c->share = c->slope = 1;
+    c->share = c->slope = c->inset = 1;
     return c;
 }
 
@@ -6969,9 +7949,8 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
 }
 
 /* The old contact that a new one continues, among those of the same body a: same partner and parts.
-   On a wall, failing that, one of the same part that nothing else continues and whose normal is
-   within about 18 degrees: it slid on to the neighbouring element. */
-static const demi_shaped *demi_shaped_match(const demi_shaped *old, int olds,
+   On a wall, failing that, what demi_wall_match takes, of the same part. */
+static const demi_shaped *demi_shaped_match(const dem_world *w, const demi_shaped *old, int olds,
                                             const demi_shaped *fresh, int freshs,
                                             const demi_shaped *c) {
     const demi_shaped *best = 0;
@@ -6983,11 +7962,16 @@ static const demi_shaped *demi_shaped_match(const demi_shaped *old, int olds,
     if (c->b >= 0) return 0;
     for (i = 0; i < olds; i++) {
         const dem_real along = demi_dot(old[i].normal, c->normal);
-        int taken = old[i].b >= 0 || old[i].wall != c->wall || old[i].part_a != c->part_a;
+        int taken = 0;
+        if (!(along > nearest) || old[i].b >= 0 || old[i].part_a != c->part_a ||
+            w->walls[old[i].wall].group != w->walls[c->wall].group) continue;
         for (j = 0; j < freshs && !taken; j++)
             taken = fresh[j].b < 0 && fresh[j].wall == old[i].wall &&
                     fresh[j].element == old[i].element && fresh[j].part_a == old[i].part_a;
-        if (!taken && along > nearest) { nearest = along; best = &old[i]; }
+        if (taken && (!demi_faceted(&w->walls[c->wall]) || !(2*c->overlap > old[i].overlap)))
+            continue;
+        nearest = along;
+        best = &old[i];
     }
     return best;
 }
@@ -7010,39 +7994,91 @@ static double demi_contact_give(const dem_world *w, int body, dem_vec3 arm, dem_
     return inv + (double)(t.x*t.x/I[0] + t.y*t.y/I[1] + t.z*t.z/I[2]);
 }
 
-/* Contacts of one pair (or of a body and a wall), c[0] .. c[n - 1]: what part of its force each
-   gives, and the mass it feels. Those that push the same way (weight 1 within 25 degrees, 0 beyond
-   45) are one contact in all: each gives the fraction overlap over sum of overlaps, and all feel
-   the mass at their common middle, weighted likewise. One contact alone: share 1, its own arms. So
-   stiffness, damping and restitution do not grow with the number of spheres that happen to touch
-   [BER23]. Steady as contacts come and go; not the gradient of an energy. Checked by "a cluster
-   that lands on one, two and three spheres". */
-static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
+/* How far two contacts of one pair push the same way: 1 within 25 degrees, 0 beyond 45. Those of one
+   part are not shared: they are counted already, by what they weigh. */
+DEM_INLINE dem_real demi_shaped_along(const demi_shaped *a, const demi_shaped *b) {
     const dem_real zero = DEM_R(0.7071067811865476), one = DEM_R(0.9063077870366499);
-    int i, j;
+    const dem_real t = (demi_dot(a->normal, b->normal) - zero)/(one - zero);
+    return !(t > 0) ? 0 : t < 1 ? t*t*(3 - 2*t) : 1;
+}
+DEM_INLINE dem_real demi_shaped_alike(const demi_shaped *a, const demi_shaped *b) {
+    return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_shaped_along(a, b);
+}
+/* Contacts of one pair (or of a body and a wall), c[0] .. c[n - 1], that are one in all. With
+   overlaps d, weights w (>>facets; else 1) and t: do i and j push the same way,
+       A_i = d_i^2 + sum of t_ij w_j d_j^2,     B_i = d_i^3 + sum of t_ij w_j d_j^3,     j not i
+       L_i = B_i/A_i,   s_i = w_i d_i^2/A_i,    E = sum of s_i U(L_i)
+   L is a mean of the overlaps in which the deep ones count more: alike ones give what one would,
+   whatever their number, and one that begins or ends counts nothing: stiffness, damping and
+   restitution do not grow with the number of spheres that happen to touch [BER23]. The elastic
+   force of contact k is exactly dE/dd_k = lift_k U'(L_k), which conserves (but for normals that
+   turn while they are between 25 and 45 degrees apart); with U ~ L^p
+       lift_k = sum of (L_i/L_k)^(p - 1) (s_i dL_i/dd_k + L_i/p ds_i/dd_k)
+   It may be a little below 0 where others are far deeper: no mean that does not depend on their
+   number can do without. Damping goes by s, and feels the mass at their common middle; friction by
+   s times (sum of lift over sum of s), so that mu is the ratio of both sums. Checked by "a cluster that lands on one, two and three spheres" and "elastic
+   clusters keep their energy". */
+static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
+    const int one = w->desc.cluster_contacts == DEM_SHARING_ONE;
+    const dem_real p = w->desc.normal_law == DEM_NORMAL_HERTZ ? DEM_R(2.5) : DEM_R(2);
+    int i, j, k;
     for (i = 0; i < n; i++) {
-        dem_vec3 arm_a = demi_scale(c[i].arm_a, c[i].overlap);
-        dem_vec3 arm_b = demi_scale(c[i].arm_b, c[i].overlap);
-        dem_real sum = c[i].overlap;
+        const dem_real d = c[i].overlap;
+        dem_real A = d*d, B = d*d*d;
+        dem_vec3 arm_a = demi_scale(c[i].arm_a, A), arm_b = demi_scale(c[i].arm_b, A);
         double give;
-        if (!(c[i].share > 0)) {                /* pushes nobody */
-            c[i].m_eff = w->mass[c[i].a];
-            continue;
+        c[i].depth = d;
+        c[i].area = A;
+        c[i].weight = c[i].lift = c[i].grip = c[i].share;
+        c[i].m_eff = w->mass[c[i].a];
+        if (!(d > 0)) continue;                 /* pushes nobody */
+        for (j = 0; j < n && one; j++) {
+            const dem_real t = j == i ? 0 : demi_shaped_alike(&c[i], &c[j]);
+            const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
+            if (!(t > 0)) continue;
+            A += add;
+            B += add*c[j].overlap;
+            arm_a = demi_add(arm_a, demi_scale(c[j].arm_a, add));
+            arm_b = demi_add(arm_b, demi_scale(c[j].arm_b, add));
         }
-        for (j = 0; j < n && w->desc.cluster_contacts == DEM_SHARING_ONE; j++) {
-            dem_real t = (demi_dot(c[i].normal, c[j].normal) - zero)/(one - zero);
-            if (j == i || !(t > 0)) continue;
-            t = DEMI_MIN(t, DEM_R(1));
-            t = t*t*(3 - 2*t)*c[j].overlap;
-            sum += t;
-            arm_a = demi_add(arm_a, demi_scale(c[j].arm_a, t));
-            arm_b = demi_add(arm_b, demi_scale(c[j].arm_b, t));
+        if (!(A > d*d*DEM_R(1e-6))) {           /* others take away all there is: it alone */
+            A = d*d;
+            B = A*d;
+            arm_a = demi_scale(c[i].arm_a, A);
+            arm_b = demi_scale(c[i].arm_b, A);
         }
-        give = demi_contact_give(w, c[i].a, demi_scale(arm_a, 1/sum), c[i].normal);
+        c[i].area = A;
+        c[i].depth = B/A;
+        c[i].share = c[i].weight*d*d/A;
+        give = demi_contact_give(w, c[i].a, demi_scale(arm_a, 1/A), c[i].normal);
         if (c[i].b >= 0)
-            give += demi_contact_give(w, c[i].b, demi_scale(arm_b, 1/sum), c[i].normal);
+            give += demi_contact_give(w, c[i].b, demi_scale(arm_b, 1/A), c[i].normal);
         c[i].m_eff = (dem_real)(1/give);
-        c[i].share *= c[i].overlap/sum;
+    }
+    for (k = 0; k < n && one && n > 1; k++) {
+        const dem_real d = c[k].overlap;
+        if (!(d > 0)) continue;
+        c[k].lift = 0;
+        for (i = 0; i < n; i++) {
+            const dem_real A = c[i].area, L = c[i].depth, share = c[i].share;
+            const dem_real t = i == k ? 1 : demi_shaped_alike(&c[i], &c[k])*c[k].weight;
+            const dem_real dA = 2*t*d, dB = 3*t*d*d, ratio = L/c[k].depth;
+            dem_real ds = -share*dA/A;
+            if (!(c[i].overlap > 0) || !(t > 0 || t < 0)) continue;
+            if (i == k) ds += 2*c[k].weight*d/A;
+            c[k].lift += (p > 2 ? ratio*DEMI_SQRT(ratio) : ratio)*
+                         (share*(dB - L*dA)/A + L/p*ds);
+        }
+    }
+    for (k = 0; k < n && one && n > 1; k++) {
+        dem_real lift = 0, share = 0;
+        for (i = 0; i < n; i++) {
+            const dem_real t = i == k ? 1 : demi_shaped_along(&c[i], &c[k]);
+            lift += t*c[i].lift;
+            share += t*c[i].share;
+        }
+        if (share > DEM_R(0.1) && lift > 0) c[k].grip = c[k].share*lift/share;
+        else c[k].grip = c[k].share;
     }
 }
 
@@ -7076,7 +8112,7 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
             c->a = a; c->b = b; c->part_a = i; c->part_b = j;
             c->wall = c->element = -1;
             c->send = send;
-            before = demi_shaped_match(old, olds, from, 0, c);     /* two balls do touch by now */
+            before = demi_shaped_match(w, old, olds, from, 0, c);     /* two balls do touch by now */
             if (demi_parts_touch(w, &p, &q, gap, before ? before->lambda : 0, c))
                 demi_shaped_recall(c, before);
             else w->domains[d].shaped_next--;
@@ -7112,47 +8148,6 @@ static double demi_ellipse_reach(const double *Q, double x, double y, int out, d
         angle += step > 0.5 ? 0.5 : step < -0.5 ? -0.5 : step;
     }
 }
-/* Closest point of a segment or triangle to the ellipsoid about x, in its own measure: mapped to
-   the unit sphere, y = diag(1/a) R^T (v - x), there the point closest to the
-   origin is where the two touch first, be it on a face, an edge or a corner. Answers W0 = |y|;
-   point: of the element; normal towards it. */
-static dem_real demi_ellipsoid_closest(const demi_part *p, dem_vec3 x, const dem_vec3 *c, int n,
-                                       dem_vec3 *point, dem_vec3 *normal, int *feature) {
-    const dem_vec3 a = p->axes;
-    dem_vec3 y[3], at, e;
-    dem_real w0;
-    int k;
-    for (k = 0; k < n; k++) {
-        y[k] = dem_quat_unturn(p->q, demi_sub(c[k], x));
-        y[k] = demi_v(y[k].x/a.x, y[k].y/a.y, y[k].z/a.z);
-    }
-    if (n == 3) at = demi_triangle_point(demi_v(0, 0, 0), y[0], y[1], y[2], feature);
-    else {  /* a strip without end along z: the plane it lies in, then beyond its borders */
-        const dem_vec3 z = dem_quat_unturn(p->q, demi_v(0, 0, 1));
-        const dem_vec3 along = demi_v(z.x/a.x, z.y/a.y, z.z/a.z);
-        const dem_vec3 u = demi_scale(along, 1/demi_length(along));
-        const dem_vec3 s = demi_sub(y[0], demi_scale(u, demi_dot(y[0], u)));
-        const dem_vec3 t = demi_sub(y[1], demi_scale(u, demi_dot(y[1], u)));
-        const dem_vec3 st = demi_sub(t, s);
-        const dem_real ll = demi_dot(st, st), f = ll > 0 ? -demi_dot(s, st)/ll : 0;
-        *feature = f <= 0 || f >= 1 ? 2 : 0;
-        at = f <= 0 ? s : f >= 1 ? t : demi_add(s, demi_scale(st, f));
-    }
-    w0 = demi_length(at);
-    *point = demi_add(x, dem_quat_turn(p->q, demi_v(at.x*a.x, at.y*a.y, at.z*a.z)));
-    e = demi_v(at.x/a.x, at.y/a.y, at.z/a.z);
-    if (*feature == 0 && n == 3) {              /* the face's own normal, exact */
-        const dem_vec3 face = demi_cross(demi_sub(c[1], c[0]), demi_sub(c[2], c[0]));
-        e = dem_quat_unturn(p->q, demi_dot(face, demi_sub(c[0], x)) > 0 ? face
-                            : demi_scale(face, -1));
-    } else if (*feature == 0) {
-        const dem_vec3 face = demi_v(c[0].y - c[1].y, c[1].x - c[0].x, 0);
-        e = dem_quat_unturn(p->q, demi_dot(face, demi_sub(c[0], x)) > 0 ? face
-                            : demi_scale(face, -1));
-    }
-    *normal = w0 > 0 || *feature == 0 ? demi_unit(dem_quat_turn(p->q, e)) : demi_v(0, 0, -1);
-    return w0;
-}
 /* Height of an ellipsoid in direction n, and the arm to its surface point there: Q n/h. */
 static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm) {
     const dem_vec3 e = dem_quat_unturn(p->q, n), a = p->axes;
@@ -7161,108 +8156,137 @@ static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm
     *arm = demi_scale(dem_quat_turn(p->q, demi_v(a.x*s.x, a.y*s.y, a.z*s.z)), 1/h);
     return h;
 }
-/* An ellipsoid (turned into the wall's frame) against one element. Fills in normal, arm, point,
-   feature, height; answers the overlap. Planes: h - distance; arms and overlaps are those of the
-   point that lies deepest, so a plane's push is the gradient of k overlap^2/2. */
-static dem_real demi_wall_ellipsoid(const demi_wall *wall, int element, const demi_part *p,
-                                    dem_vec3 x, demi_shaped *c, dem_vec3 *point, dem_real *height) {
-    dem_vec3 corner[3];
-    double Q[6], n[2], far;
-    dem_real w0;
+/* What is left of an ellipsoid about x inside a cylinder's radius R as it shrinks (or, from outside,
+   beyond it): 1 - W0, at the scale W0 it only just touches; n: where, across the axis. Newton's
+   method on W, whose far end goes with its height there; from W = 1, where n has been found. */
+static double demi_ellipse_shrink(const double *Q, double x, double y, int out, double R,
+                                  double far, double *n) {
+    double W = 1;
     int k;
-    c->feature = 0;
+    for (k = 0; k < 20; k++) {
+        const double h = sqrt(n[0]*n[0]*Q[0] + 2*n[0]*n[1]*Q[3] + n[1]*n[1]*Q[1]);
+        const double step = out*(R - far)/h;
+        double S[6];
+        int e;
+        W += step;
+        if (!(W > 1e-3)) return 1 - 1e-3;
+        for (e = 0; e < 6; e++) S[e] = W*W*Q[e];
+        far = demi_ellipse_reach(S, x, y, out, atan2(n[1], n[0]), n);
+        if (fabs(step) < 1e-15) break;
+    }
+    return 1 - W;
+}
+/* An ellipsoid (turned into the wall's frame, centre x) against a plane, a cylinder or a grain of a
+   wall. Fills in normal and point; answers 1 - W0, 0 or less when apart. */
+static dem_real demi_wall_ellipsoid(const demi_wall *wall, int element, const demi_part *p,
+                                    dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+    double Q[6], n[3], far, left;
+    dem_vec3 arm, gap;
+    dem_real h;
+    demi_meet m;
+    demi_ellipsoid_matrix(p->q, p->axes, Q);
     switch (wall->kind) {
     case DEMI_WALL_PLANE:
-        c->normal = demi_v(0, 0, -1);
-        *height = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
-        *point = demi_v(x.x + c->arm_a.x, x.y + c->arm_a.y, 0);
-        return *height - x.z;
+        *normal = demi_v(0, 0, -1);
+        h = demi_ellipsoid_arm(p, *normal, &arm);
+        *point = demi_v(x.x + arm.x*x.z/h, x.y + arm.y*x.z/h, 0);
+        return 1 - x.z/h;
     case DEMI_WALL_CYLINDER:
-        demi_ellipsoid_matrix(p->q, p->axes, Q);
         /* inside, either end of a long body may touch: element 0 and 1 */
         far = demi_ellipse_reach(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
                                  ? atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
                                  : atan2((double)x.y, (double)x.x), n);
-        c->normal = demi_v((dem_real)n[0], (dem_real)n[1], 0);
-        if (!wall->inside) c->normal = demi_scale(c->normal, -1);
-        *height = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
+        left = far - (double)wall->radius;
+        if (!(wall->inside ? left > 0 : left < 0)) return 0;
+        left = demi_ellipse_shrink(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1,
+                                   (double)wall->radius, far, n);
+        *normal = demi_v((dem_real)n[0], (dem_real)n[1], 0);
+        if (!wall->inside) *normal = demi_scale(*normal, -1);
+        demi_ellipsoid_arm(p, *normal, &arm);
         *point = demi_v((dem_real)n[0]*wall->radius, (dem_real)n[1]*wall->radius,
-                        x.z + c->arm_a.z);
-        return wall->inside ? (dem_real)far - wall->radius : wall->radius - (dem_real)far;
-    case DEMI_WALL_GRAINS: {
-        double B[6], r[3], m3[3], ha, hb;
-        demi_meet m;
-        const dem_vec3 gap = demi_sub(demi_at(wall->vertices + 3*element), x);
-        demi_ellipsoid_matrix(p->q, p->axes, Q);
+                        x.z + arm.z*(dem_real)(1 - left));
+        return (dem_real)left;
+    default: {
+        double B[6], r[3];
+        gap = demi_sub(demi_at(wall->vertices + 3*element), x);
         demi_ball_matrix(wall->radius, B);
         r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
         if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
         m.l = demi_meet_start(Q, B, r);
         demi_meet_solve(Q, B, r, 1, DEMI_MEET_NEAR, &m);
-        if (!(m.f < 1)) return -1;
-        demi_meet_heights(&m, m3, &ha, &hb);
-        c->normal = demi_v((dem_real)m3[0], (dem_real)m3[1], (dem_real)m3[2]);
-        *height = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
-        *point = demi_add(x, c->arm_a);
-        return (dem_real)((1 - sqrt(m.f))*(ha + hb));
+        if (!(m.f < 1)) return 0;
+        demi_meet_heights(&m, n, &far, &left);
+        *normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+        *point = demi_add(x, demi_v((dem_real)((1 - m.l)*m.a[0]), (dem_real)((1 - m.l)*m.a[1]),
+                                    (dem_real)((1 - m.l)*m.a[2])));
+        return (dem_real)(1 - sqrt(m.f));
     }
-    default: break;
     }
-    k = demi_wall_corners(wall, element, corner);
-    w0 = demi_ellipsoid_closest(p, x, corner, k, point, &c->normal, &c->feature);
-    *height = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
-    /* the plane it lies in: exactly the plane's overlap */
-    if (c->feature == 0)
-        return *height - demi_dot(c->normal, demi_sub(corner[0], x));
-    return (1 - w0)**height;
+}
+/* Where an ellipsoid touches one wall, as demi_wall_collect for spheres; overlaps are 1 - W0. */
+static int demi_ellipsoid_collect(const dem_world *w, int d, int first, int last, dem_real gone,
+                                  dem_vec3 at, const demi_part *p, demi_touching **places) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const dem_real *R = wall->pose.rotation;
+    const int two = wall->kind == DEMI_WALL_CYLINDER && wall->inside;
+    demi_part local = *p;
+    demi_touching *out;
+    double turn[3][3];
+    dem_vec3 x;
+    int i, e, count = 0;
+    for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
+    local.q = demi_quat_unit(dem_quat_times(demi_quat_of(turn), p->q));
+    if (demi_faceted(wall)) return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
+    x = demi_unturn(R, demi_sub(at, wall->pose.position));
+    *places = out = (demi_touching *)w->touching_.data + w->domains[d].touching_first;
+    for (i = first; i < last + two; i++) {
+        demi_touching *c = &out[count];
+        if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
+        c->element = i < last ? w->wall_element[base + i] : 1;
+        c->overlap = demi_wall_ellipsoid(wall, c->element, &local, x, &c->normal, &c->point);
+        if (!(c->overlap > 0)) continue;
+        c->normal = demi_turn(R, c->normal);
+        if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
+        c->point = demi_add(wall->pose.position, demi_turn(R, c->point));
+        c->share = wall->share;
+        count++;
+    }
+    return count;
 }
 
+/* Overlap, arm and radius of an ellipsoid's contact with a wall, of which `left` is 1 - W0: as with
+   other ellipsoids: l (1 - W0), with the sphere of a wall's grain in l, or along the normal. The arm
+   is to the point that lies deepest, as a sphere's is; what is l (1 - W0)'s gradient passes through
+   the point of the wall, at W0 of it. */
+static void demi_ellipsoid_contact(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                                   dem_real left, demi_shaped *c) {
+    const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
+    const dem_real edge = wall->kind == DEMI_WALL_GRAINS ? wall->radius : DEM_R(0);
+    c->overlap = left*(h + edge);
+    c->deep = c->overlap/demi_part_thin(p);
+    c->r_eff = (dem_real)demi_part_round(w, p, (double)h);
+    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
+        const dem_real l = (dem_real)demi_part_equal(p) + edge;
+        c->overlap = left*l;
+        c->slope = l/(h + edge);
+        c->inset = 1 - left;
+    }
+}
 /* Contacts of one part with one wall, from candidates first .. last - 1 of its body. */
 static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int k,
                                   const demi_shaped *old, int olds, int from) {
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
     const int id = w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
-    const dem_real *R = wall->pose.rotation;
-    /* room that demi_walls_respond fills later, for the spheres */
-    demi_wall_contact *found = w->wall_next + d*w->wall_now_stride;
     const dem_vec3 centre = demi_at(w->pos + 4*body);
-    demi_part p = demi_part_now(w, body, k), local = p;
+    const demi_part p = demi_part_now(w, body, k);
     const dem_real gone = (dem_real)(w->reach + w->wall_reach) + w->pos[4*body + 3]/10000;
-    dem_vec3 x;
-    int i, e, count = 0;
-    if (p.ball)
-        count = demi_wall_collect(w, d, first, last, demi_add(centre, p.centre), p.radius, found);
-    else {
-        const int two = wall->kind == DEMI_WALL_CYLINDER && wall->inside;
-        double turn[3][3];
-        dem_quat back;
-        for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
-        back = demi_quat_of(turn);
-        local.q = demi_quat_unit(dem_quat_times(back, p.q));
-        x = demi_unturn(R, demi_sub(centre, wall->pose.position));
-        for (i = first; i < last + two; i++) {
-            demi_wall_contact *c = &found[count];
-            const int element = i < last ? w->wall_element[base + i] : 1;
-            demi_shaped one;
-            dem_vec3 point;
-            dem_real height, overlap;
-            if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
-            memset(&one, 0, sizeof one);
-            overlap = demi_wall_ellipsoid(wall, element, &local, x, &one, &point, &height);
-            if (!(overlap > 0)) continue;
-            c->element = element;
-            c->feature = one.feature;
-            c->normal = demi_turn(R, one.normal);
-            if (two && count && demi_dot(c->normal, found->normal) > DEM_R(0.99)) continue;
-            c->point = demi_add(wall->pose.position, demi_turn(R, point));
-            c->overlap = overlap;
-            c->share = wall->share;
-            count++;
-        }
-        if (count > 1 && (wall->kind == DEMI_WALL_MESH || wall->kind == DEMI_WALL_PROFILE))
-            count = demi_wall_resolve(found, count, demi_part_thin(&p));
-    }
+    demi_touching *found = 0;
+    const int count = p.ball
+        ? demi_wall_collect(w, d, first, last, demi_add(centre, p.centre), p.radius, &found)
+        : demi_ellipsoid_collect(w, d, first, last, gone, centre, &p, &found);
+    int i, e;
     for (i = 0; i < count; i++) {
         demi_shaped *c = demi_shaped_new(w, d), *fresh;
         if (!c) return;
@@ -7271,23 +8295,22 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
         c->part_a = k;
         c->wall = id;
         c->element = found[i].element;
-        c->feature = found[i].feature;
         c->normal = found[i].normal;
-        c->overlap = found[i].overlap;
         c->share = found[i].share;
-        c->deep = c->overlap/demi_part_thin(&p);
-        c->r_eff = p.radius;
-        if (p.ball) c->arm_a = demi_add(p.centre, demi_scale(c->normal, p.radius));
-        else c->r_eff = (dem_real)demi_part_round(w, &p, (double)demi_ellipsoid_arm(&p, c->normal,
-                                                                                   &c->arm_a));
+        if (p.ball) {
+            c->overlap = found[i].overlap;
+            c->deep = c->overlap/p.radius;
+            c->r_eff = p.radius;
+            c->arm_a = demi_add(p.centre, demi_scale(c->normal, p.radius));
+        } else demi_ellipsoid_contact(w, wall, &p, found[i].overlap, c);
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
         if (wall->sieve.kind == DEM_SIEVE_REDUCED) {            /* under way: to the end */
             for (e = 0; e < olds; e++)
                 if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k &&
-                    !(old[e].share > 0)) c->share = 0;
+                    !(old[e].overlap > 0)) c->share = 0;
             if (!(c->share > 0)) c->overlap = c->deep = 0;
         }
-        demi_shaped_recall(c, demi_shaped_match(old, olds, fresh, (int)(c - fresh), c));
+        demi_shaped_recall(c, demi_shaped_match(w, old, olds, fresh, (int)(c - fresh), c));
     }
 }
 static void demi_shaped_wall(dem_world *w, int d, int first, int last, const demi_shaped *old,
@@ -7352,13 +8375,22 @@ static int demi_shaped_reserve(dem_world *w, int stride) {
     w->shaped_stride = stride;
     return 1;
 }
-static int demi_shaped_touch(dem_world *w) {
+static void demi_domain_touch(dem_world *w, int d) {
+    if (w->wall_count) demi_domain_walls_touch(w, d);
+    if (w->shaped_count) demi_domain_shaped_touch(w, d);
+}
+/* All contacts that are kept one by one. 0 when memory ran out. */
+static int demi_touch(dem_world *w) {
     int d, again;
+    if (!w->wall_count && !w->shaped_count) return 1;
+    if ((!w->facets_valid && !demi_facets_weigh(w)) ||
+        (!w->touching_valid && !demi_touching_reserve(w))) return 0;
     do {
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_shaped_touch);
-        for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;
-        if (again && !demi_shaped_reserve(w, w->shaped_stride/2*3 + 64)) return 0;
-    } while (again);
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_touch);
+        for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow;
+        if ((again & 16 && !demi_shaped_reserve(w, w->shaped_stride/2*3 + 64)) ||
+            (again & 32 && !demi_wall_contacts_widen(w))) return 0;
+    } while (again & (16 | 32));
     return 1;
 }
 
@@ -7425,7 +8457,7 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     }
     around = demi_add(demi_at(w->half_spin + 4*a), spin_step);
     memset(c, 0, sizeof *c);
-    c->overlap = k->overlap;
+    c->overlap = k->depth;
     c->normal = n;
     c->closing_speed = demi_dot(u, n);
     c->slip = demi_sub(u, demi_scale(n, c->closing_speed));
@@ -7450,8 +8482,21 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     c->wall = b >= 0 ? 0 : k->wall + 1;
     c->user = w->desc.law_user;
 }
-DEM_INLINE void demi_push_add(dem_real *sum, dem_vec3 f) {
-    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
+/* What the elastic force counts more, or less, than what dissipates: N. */
+static dem_real demi_shaped_lift(const dem_world *w, const demi_shaped *k, const dem_contact *c,
+                                 int clipped) {
+    const dem_real more = k->lift - k->share;
+    dem_real memory[DEMI_MEMORY];
+    dem_contact still = *c;
+    demi_law_energy part;
+    dem_push f;
+    if (!(more > 0 || more < 0)) return 0;
+    memcpy(memory, k->memory, sizeof memory);
+    memset(&f, 0, sizeof f);
+    still.closing_speed = 0;
+    if (w->desc.law) w->desc.law(&still, memory, &f);
+    else demi_law(&still, memory, &f, w->normal, w->tangent, w->rolling, clipped, 0, &part);
+    return more*f.normal;
 }
 /* All contacts of one domain: law, forces on both ends, walls' sums, energies. */
 static void demi_shaped_respond(dem_world *w, int d) {
@@ -7465,7 +8510,7 @@ static void demi_shaped_respond(dem_world *w, int d) {
         demi_shaped *c = w->shaped_next + (size_t)d*(size_t)w->shaped_stride + i;
         const int a = c->a, b = c->b, ma = w->body_material[a] - 1;
         const int mb = b >= 0 ? w->body_material[b] - 1 : w->walls[c->wall].material;
-        dem_real coef[DEMI_COEFS];
+        dem_real coef[DEMI_COEFS], press;
         dem_contact contact;
         dem_push f;
         dem_vec3 surface, force, moment;
@@ -7482,14 +8527,19 @@ static void demi_shaped_respond(dem_world *w, int d) {
         demi_shaped_fill(w, c, coef, dt, &contact, &surface);
         memset(&f, 0, sizeof f);
         memset(&part, 0, sizeof part);
+        press = demi_shaped_lift(w, c, &contact, clipped);
         if (w->desc.law) w->desc.law(&contact, c->memory, &f);
         else demi_law(&contact, c->memory, &f, w->normal, w->tangent, w->rolling, clipped,
                       w->desc.ledger, &part);
-        force = demi_scale(demi_sub(f.tangent, demi_scale(contact.normal, f.normal)), c->share);
-        moment = demi_scale(f.moment, c->share);
+        press += c->share*f.normal;
+        force = demi_sub(demi_scale(f.tangent, c->grip), demi_scale(contact.normal, press));
+        moment = demi_scale(f.moment, c->grip);
         c->force = force;
         demi_push_add(w->force + 4*a, force);
         demi_push_add(w->torque + 4*a, demi_add(demi_cross(c->arm_a, force), moment));
+        if (c->inset < 1)
+            demi_push_add(w->torque + 4*a, demi_scale(demi_cross(c->arm_a, contact.normal),
+                                                      (1 - c->inset)*press));
         if (b >= 0) {
             const dem_vec3 back = demi_scale(demi_add(demi_cross(c->arm_b, force), moment), -1);
             if (c->send) {                      /* several may go by one near pair */
@@ -7508,7 +8558,7 @@ static void demi_shaped_respond(dem_world *w, int d) {
         domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
         part.elastic /= c->slope;               /* V = k overlap^2/2; the law was given k slope */
         part.sag /= c->slope;
-        demi_energy_add(domain, &part, c->share);
+        demi_energy_add(domain, &part, c->share, c->grip);
     }
 }
 /* Slots of far ends are summed into: cleared before. */
@@ -8886,7 +9936,7 @@ static dem_result demi_step_once(dem_world *w) {
     /* 2 search: when something may have come near that is not in the list */
     if (!w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach +
         w->wall_reach > w->skin) {
-        result = demi_rebuild(w);
+        result = demi_rebuild(w, "dem_world_step");
         if (result != DEM_OK) return result;
         demi_kernel_choose(w);
         /* faster than thought: ask again */
@@ -8897,7 +9947,7 @@ static dem_result demi_step_once(dem_world *w) {
     }
 
     /* 3 touch, 4 respond, 5 gather */
-    if (w->shaped_count && !demi_shaped_touch(w)) return demi_no_memory(w, "dem_world_step");
+    if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
     w->moved = 0;
     for (d = 0; d < w->domain_count && (w->desc.law || w->desc.force); d++)
@@ -8916,13 +9966,13 @@ static dem_result demi_refresh(dem_world *w) {
     demi_finish(w);
     if (w->pairs_changed && !demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
     if (!w->list_valid) {
-        result = demi_rebuild(w);
+        result = demi_rebuild(w, "dem_world_step");
         if (result != DEM_OK) return result;
     }
     w->pairs_changed = 0;
     demi_kernel_choose(w);
     w->forces_valid = 0;
-    if (w->shaped_count && !demi_shaped_touch(w)) return demi_no_memory(w, "dem_world_step");
+    if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
     w->forces_valid = 1;
     return DEM_OK;
@@ -9166,7 +10216,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
 
 /* Digest of one contact, whichever of its bodies is a. */
 static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
-    const int pushes = c->share > 0;
+    const int pushes = c->overlap > 0;
     uint32_t who[4];
     uint64_t h = DEMI_HASH_START;
     int i, flip;
@@ -9303,7 +10353,7 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
         }
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
-            const int pushes = c->share > 0;    /* or is it under way through a reduced hole? */
+            const int pushes = c->overlap > 0;  /* or is it under way through a reduced hole? */
             uint64_t one = DEMI_HASH_START;
             one = demi_hash(one, &w->body_slot[c->body], sizeof(uint32_t));
             one = demi_hash(one, &c->wall, sizeof c->wall);
@@ -9335,7 +10385,6 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
    ---------------------------------------------------------------------------------------------- */
 #include <errno.h>
 
-#define DEMI_REACH 1e15             /* m: coordinates beyond are mistakes; squares could overflow */
 #define DEMI_ELEMENTS_MAX 700000000 /* vertices, triangles: three times as many fit an int32      */
 
 /* ---- text in ---- */
@@ -11314,6 +12363,7 @@ static void demi_checkpoint_follow(dem_world *w, int orienting) {
         demi_near_adopt(w, d);
     }
     for (k = 0; k < w->wall_count; k++) w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
+    w->touching_valid = 0;
     if (w->list_valid && w->count) {
         demi_cross_index(w);                                          /* its room is there */
         for (d = 0; d < w->domain_count; d++) demi_domain_quiet(w, d);
@@ -11482,6 +12532,8 @@ DEM_API void dem_world_destroy(dem_world *w) {
     arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
     arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_;
     arrays[k++] = &w->wall_next_;
+    arrays[k++] = &w->touching_; arrays[k++] = &w->touching_table_;
+    arrays[k++] = &w->touching_links_;
     arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
     arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
     arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
@@ -12242,7 +13294,7 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     }
     b->guest_count = h.grains;
     if (s->count > 1) w->desc.skin = s->head.skin > 0 ? (dem_real)s->head.skin : -1;
-    b->result = demi_rebuild(w);
+    b->result = demi_rebuild(w, "dem_world_step");
     if (b->result != DEM_OK) return;
     demi_kernel_choose(w);
     for (i = 0; i < b->guest_count; i++) b->guest[i] = w->slot_index[b->guest[i]];
@@ -12400,6 +13452,7 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     double deepest = 0;
     int k, d, finite = 1;
     demi_slab_receive(s, b);
+    demi_touch(w);                              /* its room is there, see demi_wall_contacts_move */
     demi_forces(w);
     for (k = 0; k < b->guest_count; k++, out += down) {
         memcpy(out, w->force + 4*b->guest[k], three);
@@ -12668,36 +13721,28 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
     if (!to->walls) return 0;
     to->wall_capacity = from->wall_count;
     for (i = 0; i < from->wall_count; i++) {
-        const demi_wall *a = &from->walls[i];
         demi_wall *b = &to->walls[i];
-        const size_t per = a->kind == DEMI_WALL_MESH ? 3 : 2, real = sizeof(dem_real);
-        const size_t cells = (size_t)a->cells[0]*(size_t)a->cells[1]*(size_t)a->cells[2] + 1;
-        const size_t sizes[4] = {(size_t)a->vertex_count*3*real, (size_t)a->element_count*per*4,
-                                 cells*4, (size_t)a->cell_item_count*4};
-        const void *data[4];
-        void *copy[4] = {0, 0, 0, 0};
+        demi_owned array[DEMI_WALL_ARRAYS];
+        void *copy[DEMI_WALL_ARRAYS];
         int k, ok = 1;
-        data[0] = a->vertices; data[1] = a->corners; data[2] = a->cell_start;
-        data[3] = a->cell_items;
-        for (k = 0; k < 4 && !first; k++) {
-            if (!data[k] || !sizes[k]) continue;
-            copy[k] = demi_alloc(to, sizes[k], 1);
-            ok = ok && copy[k];
-            if (copy[k]) memcpy(copy[k], data[k], sizes[k]);
+        *b = first ? first->walls[i] : from->walls[i];
+        demi_wall_arrays(b, array);
+        for (k = 0; k < DEMI_WALL_ARRAYS && !first; k++) {
+            const size_t size = array[k].count*array[k].item;
+            copy[k] = array[k].data && size ? demi_alloc(to, array[k].count, array[k].item) : 0;
+            ok = ok && (copy[k] || !array[k].data || !size);
+            if (copy[k]) memcpy(copy[k], array[k].data, size);
         }
-        if (!ok) {
-            for (k = 0; k < 4; k++) demi_free(to, copy[k], sizes[k], 1);
-            return 0;
+        for (k = 0; k < DEMI_WALL_ARRAYS && !first; k++) {
+            if (ok) memcpy(array[k].place, &copy[k], sizeof copy[k]);
+            else demi_free(to, copy[k], array[k].count, array[k].item);
         }
-        *b = *a;
-        b->vertices = first ? first->walls[i].vertices : (dem_real *)copy[0];
-        b->corners = first ? first->walls[i].corners : (int32_t *)copy[1];
-        b->cell_start = first ? first->walls[i].cell_start : (int32_t *)copy[2];
-        b->cell_items = first ? first->walls[i].cell_items : (int32_t *)copy[3];
+        if (!ok) return 0;
         if (first) b->motion.kind = DEM_MOTION_FIXED;
         to->wall_count = i + 1;
     }
-    return 1;
+    to->facets_valid = first || from->facets_valid;
+    return to->facets_valid || demi_facets_weigh(to);
 }
 /* Sums over time begin in slab 0 where the world has got to, elsewhere at nothing. */
 static void demi_slab_sums_clear(dem_world *w) {

@@ -44,7 +44,7 @@ static dem_body headed_add(dem_world *world, dem_material stuff, dem_vec3 place)
 /* Share of spheres of radius r, placed at random over whole holes, that fit through: untouched half
    way through, where the room is narrowest. */
 static double rain(const dem_sieve_desc *s, double r, int count, uint64_t seed) {
-    demi_wall_contact c[DEMI_SIEVE_MOST];
+    demi_touching c[DEMI_SIEVE_MOST];
     const double x = 10*(double)(s->aperture + s->bar);
     int i, passed = 0;
     for (i = 0; i < count; i++) {
@@ -57,7 +57,7 @@ static double sigma(double p, int count) { return sqrt(p*(1 - p)/count); }
 
 /* Sum of share*overlap*normal of a sphere: the force of springs of 1 N/m. */
 static dem_vec3 spring_force(const dem_sieve_desc *s, dem_vec3 x, double r) {
-    demi_wall_contact c[DEMI_SIEVE_MOST];
+    demi_touching c[DEMI_SIEVE_MOST];
     dem_vec3 f = at(0, 0, 0);
     const int n = demi_sieve_touch(s, x, (dem_real)r, c);
     int i;
@@ -202,7 +202,7 @@ int main(int argc, char **argv) {
         b = dem_bodies_get(world);
         seed = 3;
         {
-            demi_wall_contact c[DEMI_SIEVE_MOST];
+            demi_touching c[DEMI_SIEVE_MOST];
             int untouched[400];
             for (i = 0; i < 400; i++) {
                 const double x = 0.05*(i%20) + 0.014*scene_random(&seed);
