@@ -32,12 +32,14 @@ static double force_at(double overlap, dem_real *memory, demi_law_energy *part) 
     dem_contact c;
     dem_push push;
     demi_law_energy none;
+    demi_habit habit;
+    memset(&habit, 0, sizeof habit);
     memset(&c, 0, sizeof c);
     memset(&push, 0, sizeof push);
     c.normal = at(1, 0, 0);
     c.overlap = (dem_real)overlap;
     c.kn = KL; c.kun = KUN; c.kad = KAD;
-    demi_law(&c, memory, &push, DEM_NORMAL_HYSTERETIC, DEM_TANGENT_NONE, DEM_ROLLING_NONE, 0, 1,
+    demi_law(&c, memory, &push, DEM_NORMAL_HYSTERETIC, DEM_TANGENT_NONE, DEM_ROLLING_NONE, habit, 1,
              part ? part : &none);
     return (double)push.normal;
 }
