@@ -430,6 +430,14 @@ typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real 
                                  dem_real mass,
                                  double time, void *user);
 
+/* The same, with the whole body to look at, and a torque to answer: force (N) and torque (N m, about
+   the centre of mass, in the world's frame) are zero when it is called. body: as dem_body_get tells,
+   orientation included (that of a sphere is followed when the desc asks for orientations), at the
+   present time (s). id: for numbers of your own, kept by slot. */
+typedef struct dem_body_state dem_body_state;
+typedef void (*dem_body_force_fn)(const dem_body_state *body, dem_body id, double time,
+                                  dem_vec3 *force, dem_vec3 *torque, void *user);
+
 /* Fills in a wall's pose at a time (s). Called twice a step (for its end and its middle) from one
    thread. Must be smooth, with velocity and spin the exact derivatives of position and rotation. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
@@ -464,7 +472,8 @@ typedef struct dem_world_desc {
     dem_real law_stiffness;  /* N/m, the stiffest your law gets: for the time step; 0: built-in */
 
     dem_force_fn force;            /* force field of your own; 0: none */
-    void *force_user;
+    dem_body_force_fn body_force;  /* with torque; 0: none. Both may be given: they add up */
+    void *force_user;              /* handed to either */
 
     dem_integrator integrator;
     dem_real dt;                   /* s; 0: chosen from the live scene, see dem_step_advice */
@@ -486,7 +495,7 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
     DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
     DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
-    0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0,
+    0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
@@ -592,7 +601,7 @@ DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real r
 DEM_API dem_result dem_body_remove(dem_world *world, dem_body body);
 
 /* State of one body. */
-typedef struct dem_body_state {
+struct dem_body_state {
     dem_vec3 position, velocity, spin;   /* m, m/s, rad/s */
     dem_vec3 force, torque;              /* N, N m: of the last step; ignored by dem_body_set */
     dem_real radius, mass, inertia;      /* m, kg, kg m2; ignored by dem_body_set; not a sphere: of
@@ -603,7 +612,7 @@ typedef struct dem_body_state {
                               Spheres: followed when the world desc asks for orientations */
     dem_shape shape;                     /* id 0: a sphere; ignored by dem_body_set */
     dem_vec3 moments;      /* kg m2, about the principal axes; ignored by dem_body_set */
-} dem_body_state;
+};
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
 /* Sets position, velocity, spin, orientation and fixed. */
 DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
@@ -1557,8 +1566,13 @@ enum { DEMI_WALL_NONE = 0, DEMI_WALL_PLANE, DEMI_WALL_CYLINDER, DEMI_WALL_PROFIL
       DEMI_WALL_GRAINS, DEMI_WALL_SIEVE,
       DEMI_SIEVE_MOST = 12 };                   /* contacts of a grain with a sieve */
 
-/* A piece of a triangle's edge on which only a piece of another triangle's lies. */
-typedef struct demi_cut { dem_vec3 a, b; dem_real weight; } demi_cut;
+/* A piece of a triangle's side that ends at corners of other triangles. */
+typedef struct demi_cut {
+    dem_vec3 a, b;
+    dem_real weight;               /* what it counts; 0: another facet looks after it */
+    int32_t number, end[2];        /* of the piece: the edge's where it is one; of its ends */
+    int32_t side;                  /* of the element */
+} demi_cut;
 
 typedef struct demi_wall {
     int kind, material;            /* DEMI_WALL_..., index */
@@ -3670,16 +3684,31 @@ static void demi_points_sort(const double *x, int count, demi_sorted *sorted) {
     }
     qsort(sorted, (size_t)count, sizeof *sorted, demi_sorted_compare);
 }
-/* How far from a point another may be and yet be the same, m: a few roundings of its coordinates as
-   binary STL stores them, but far less than the shortest side there. Sides are counted in by
-   demi_near_side. */
+/* near_by: how far from each point another may be and yet be the same, m: a few roundings of the
+   coordinates of its elements as binary STL stores them, but far less than the shortest side there.
+   first: of the corners' points. */
 static double demi_near_point(const double *x) {
     return 4*(double)FLT_EPSILON*DEMI_MAX(fabs(x[0]), DEMI_MAX(fabs(x[1]), fabs(x[2])));
 }
-static void demi_near_side(const double *x, int32_t a, int32_t b, double *near_by) {
-    const double most = 0.01*sqrt(demi_far2(x + 3*a, x + 3*b));
-    near_by[a] = DEMI_MIN(near_by[a], most);
-    near_by[b] = DEMI_MIN(near_by[b], most);
+static void demi_near_by(const double *x, const demi_wall *wall, int first, double *near_by) {
+    const int per = wall->kind == DEMI_WALL_MESH ? 3 : 2;
+    int i, k, pass;
+    for (i = 0; i < wall->vertex_count; i++) near_by[first + i] = 0;       /* if no corner's */
+    for (pass = 0; pass < 2; pass++)
+        for (i = 0; i < wall->element_count; i++)
+            for (k = 0; k < per; k++) {
+                const int a = first + wall->corners[per*i + k];
+                const int b = first + wall->corners[per*i + (k + 1)%per];
+                const double side = 0.01*sqrt(demi_far2(x + 3*a, x + 3*b));
+                const double large = DEMI_MAX(demi_near_point(x + 3*a), demi_near_point(x + 3*b));
+                if (pass == 0) {
+                    near_by[a] = DEMI_MAX(near_by[a], large);
+                    near_by[b] = DEMI_MAX(near_by[b], large);
+                } else if (side > 0) {
+                    near_by[a] = DEMI_MIN(near_by[a], side);
+                    near_by[b] = DEMI_MIN(near_by[b], side);
+                }
+            }
 }
 /* same[i]: the first point that lies where point i does. */
 static void demi_points_weld(const double *x, int count, const double *near_by,
@@ -3753,12 +3782,7 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
     wall->edges = (int32_t *)demi_alloc(w, (size_t)all*3, sizeof(int32_t));
     if (!x || !sorted || !same || !sides || !near_by || !wall->owns || !wall->edges) goto done;
     for (i = 0; i < 3*wall->vertex_count; i++) x[i] = (double)wall->vertices[i];
-    for (i = 0; i < wall->vertex_count; i++) near_by[i] = demi_near_point(x + 3*i);
-    for (i = 0; i < all; i++)
-        for (k = 0; k < n; k++) {
-            const int32_t a = wall->corners[n*i + k], b = wall->corners[n*i + (k + 1)%n];
-            if (demi_far2(x + 3*a, x + 3*b) > 0) demi_near_side(x, a, b, near_by);
-        }
+    demi_near_by(x, wall, 0, near_by);
     demi_points_sort(x, wall->vertex_count, sorted);
     demi_points_weld(x, wall->vertex_count, near_by, sorted, same);
     for (i = 0; i < n*all; i++) wall->corners[i] = same[wall->corners[i]];
@@ -3826,14 +3850,14 @@ typedef struct demi_join {
     int points, facets, sides, cuts;
     double *x, *near_by;           /* points: x 3; m, what is one place */
     demi_sorted *sorted;           /* points */
-    int32_t *same;                 /* points: the first in this place */
+    int32_t *same, *mark;          /* points: the first in this place; for whoever needs it */
     double *faces, *corners;       /* points: facets there, in all and with a corner */
     double *edges;                 /* points: weights of edges that end there */
     double *own;                   /* points: as corners, of one wall */
     int32_t *facet;                /* facets x 5: wall, element, points of its corners */
-    double *count;                 /* facets: 1, or 1/n of n that coincide */
+    double *count;                 /* facets: 1; of those that coincide in n walls 1/n */
     demi_side *side, *piece;       /* as they are, and with cuts: side 3 + k is a piece of side k */
-    int32_t *cut;                  /* cuts x 4: wall, element, points */
+    int32_t *cut;                  /* cuts x 6: wall, element, points, number, side */
     double *cut_weight;
     size_t point_room, facet_room, piece_room, cut_room;
 } demi_join;
@@ -3844,6 +3868,7 @@ static void demi_join_free(dem_world *w, demi_join *j) {
     demi_free(w, j->near_by, p, sizeof(double));
     demi_free(w, j->sorted, p, sizeof(demi_sorted));
     demi_free(w, j->same, p, sizeof(int32_t));
+    demi_free(w, j->mark, p, sizeof(int32_t));
     demi_free(w, j->faces, p, sizeof(double));
     demi_free(w, j->corners, p, sizeof(double));
     demi_free(w, j->edges, p, sizeof(double));
@@ -3852,7 +3877,7 @@ static void demi_join_free(dem_world *w, demi_join *j) {
     demi_free(w, j->count, f, sizeof(double));
     demi_free(w, j->side, f*3, sizeof(demi_side));
     demi_free(w, j->piece, j->piece_room, sizeof(demi_side));
-    demi_free(w, j->cut, j->cut_room*4, sizeof(int32_t));
+    demi_free(w, j->cut, j->cut_room*6, sizeof(int32_t));
     demi_free(w, j->cut_weight, j->cut_room, sizeof(double));
 }
 static int demi_join_member(const dem_world *w, int wall, int group, int per) {
@@ -3874,6 +3899,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
     j->near_by = (double *)demi_alloc(w, j->point_room, sizeof(double));
     j->sorted = (demi_sorted *)demi_alloc(w, j->point_room, sizeof(demi_sorted));
     j->same = (int32_t *)demi_alloc(w, j->point_room, sizeof(int32_t));
+    j->mark = (int32_t *)demi_alloc(w, j->point_room, sizeof(int32_t));
     j->faces = (double *)demi_alloc(w, j->point_room, sizeof(double));
     j->corners = (double *)demi_alloc(w, j->point_room, sizeof(double));
     j->edges = (double *)demi_alloc(w, j->point_room, sizeof(double));
@@ -3881,7 +3907,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
     j->facet = (int32_t *)demi_alloc(w, j->facet_room*5, sizeof(int32_t));
     j->count = (double *)demi_alloc(w, j->facet_room, sizeof(double));
     j->side = (demi_side *)demi_alloc(w, j->facet_room*3, sizeof(demi_side));
-    if (!j->x || !j->near_by || !j->sorted || !j->same || !j->faces || !j->corners || !j->edges || !j->own ||
+    if (!j->x || !j->near_by || !j->sorted || !j->same || !j->mark || !j->faces || !j->corners || !j->edges || !j->own ||
         !j->facet || !j->count || !j->side) return 0;
     for (i = group; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
@@ -3889,16 +3915,10 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
         for (k = 0; k < wall->vertex_count; k++) {
             const dem_vec3 at = demi_add(wall->pose.position, demi_turn(wall->pose.rotation,
                                          demi_at(wall->vertices + 3*k)));
-            double *x = j->x + 3*j->points;
+            double *x = j->x + 3*j->points++;
             x[0] = (double)at.x; x[1] = (double)at.y; x[2] = (double)at.z;
-            j->near_by[j->points++] = demi_near_point(x);
         }
-        for (e = 0; e < wall->element_count; e++)
-            for (k = 0; k < per; k++) {
-                const int32_t a = first + wall->corners[per*e + k];
-                const int32_t b = first + wall->corners[per*e + (k + 1)%per];
-                if (a != b) demi_near_side(j->x, a, b, j->near_by);
-            }
+        demi_near_by(j->x, wall, first, j->near_by);
         first += wall->vertex_count;
     }
     first = 0;
@@ -3919,7 +3939,8 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
     }
     return 1;
 }
-/* Facets that coincide, the sides of a box against another's, count once in all. */
+/* Facets that coincide, the sides of a box against another's, count once in all: the first of each
+   wall, each its part. */
 static void demi_join_double(demi_join *j) {
     demi_side *s = j->side;
     int i, k, end;
@@ -3932,9 +3953,14 @@ static void demi_join_double(demi_join *j) {
     }
     qsort(s, (size_t)j->facets, sizeof *s, demi_side_compare);
     for (i = 0; i < j->facets; i = end) {
-        for (end = i + 1; end < j->facets && s[end].lo == s[i].lo && s[end].hi == s[i].hi &&
-             s[end].facet == s[i].facet;) end++;
-        for (k = i; k < end; k++) j->count[s[k].side] = 1.0/(end - i);
+        int walls = 0;
+        for (end = i; end < j->facets && s[end].lo == s[i].lo && s[end].hi == s[i].hi &&
+             s[end].facet == s[i].facet; end++) {
+            const int wall = j->facet[5*s[end].side];      /* ascending: facets are */
+            j->count[s[end].side] = end == i || wall != j->facet[5*s[end - 1].side];
+            walls += j->count[s[end].side] > 0;
+        }
+        for (k = i; k < end; k++) j->count[s[k].side] /= walls;
     }
     for (i = 0; i < j->facets; i++)
         for (k = 0; k < j->per; k++) {
@@ -4008,7 +4034,7 @@ static int demi_join_cut(dem_world *w, demi_join *j) {
         j->piece_room = room;
         j->piece = (demi_side *)demi_alloc(w, room, sizeof *j->piece);
         between = (int32_t *)demi_alloc(w, most, sizeof *between);
-        j->cut = (int32_t *)demi_alloc(w, j->cut_room*4, sizeof *j->cut);
+        j->cut = (int32_t *)demi_alloc(w, j->cut_room*6, sizeof *j->cut);
         j->cut_weight = (double *)demi_alloc(w, j->cut_room, sizeof *j->cut_weight);
         if ((room && !j->piece) || (most && !between) ||
             (j->cut_room && (!j->cut || !j->cut_weight))) break;
@@ -4018,7 +4044,32 @@ static int demi_join_cut(dem_world *w, demi_join *j) {
     demi_free(w, between, most, sizeof *between);
     return pass == 1;
 }
-/* What edges count; each wall gets its share of it, at an edge of its own or at a cut. */
+/* One wall's part of a place where sides first .. end - 1 of the join lie, `more` in all of it: at an
+   edge of its own, or at the first of its cuts; the other cuts remember where it is. */
+static void demi_join_edge(dem_world *w, demi_join *j, int first, int end, int id, double more) {
+    demi_wall *wall = &w->walls[id];
+    int k, whole = -1, number = 0;
+    for (k = first; k < end && whole < 0; k++) {
+        const int32_t *f = j->facet + 5*j->piece[k].facet;
+        if (f[0] == id && j->piece[k].side < 3)
+            whole = wall->edges[3*f[1] + j->piece[k].side];
+    }
+    if (whole >= 0) {
+        number = wall->element_count + whole;
+        wall->weight[number] = (dem_real)more;
+    } else number = wall->element_count + wall->edge_count + wall->vertex_count + wall->cut_count;
+    for (k = first; k < end; k++) {
+        const demi_side *s = j->piece + k;
+        const int32_t *f = j->facet + 5*s->facet;
+        int32_t *c = j->cut + 6*j->cuts;
+        if (f[0] != id || s->side < 3) continue;
+        c[0] = id; c[1] = f[1]; c[2] = s->lo; c[3] = s->hi; c[4] = number; c[5] = s->side - 3;
+        j->cut_weight[j->cuts++] = whole < 0 ? more : 0;
+        wall->cut_count++;
+        whole = 0;                              /* the first cut has it */
+    }
+}
+/* What edges count; each wall gets its share of it. */
 static void demi_join_edges(dem_world *w, demi_join *j) {
     int i, k, end, other;
     for (i = 0; i < j->sides; i = end) {
@@ -4026,30 +4077,19 @@ static void demi_join_edges(dem_world *w, demi_join *j) {
         double all = 0;
         for (end = i; end < j->sides && j->piece[end].lo == s->lo && j->piece[end].hi == s->hi;)
             all += j->count[j->piece[end++].facet];
-        j->edges[s->lo] += 1 - all;
-        j->edges[s->hi] += 1 - all;
-        for (k = i; k < end; k++) {             /* the first of each wall in this place */
-            const int32_t *f = j->facet + 5*j->piece[k].facet;
-            demi_wall *wall = &w->walls[f[0]];
+        j->edges[s->lo] += all > 0 ? 1 - all : 0;
+        j->edges[s->hi] += all > 0 ? 1 - all : 0;
+        for (k = i; k < end; k++) {             /* walls one by one, at the first side of each */
+            const int id = j->facet[5*j->piece[k].facet];
             double mine = 0;
-            int first = k, whole = -1;
+            int first = k;
             for (other = i; other < end; other++) {
-                const demi_side *o = j->piece + other;
-                if (j->facet[5*o->facet] != f[0]) continue;
+                if (j->facet[5*j->piece[other].facet] != id) continue;
                 first = DEMI_MIN(first, other);
-                mine += j->count[o->facet];
-                if (o->side < 3 && whole < 0)
-                    whole = wall->edges[3*j->facet[5*o->facet + 1] + o->side];
+                mine += j->count[j->piece[other].facet];
             }
-            mine *= (1 - all)/all;
-            if (first < k) continue;
-            if (whole >= 0) wall->weight[wall->element_count + whole] = (dem_real)mine;
-            else if (mine < 0) {
-                int32_t *c = j->cut + 4*j->cuts;
-                c[0] = f[0]; c[1] = f[1]; c[2] = s->lo; c[3] = s->hi;
-                j->cut_weight[j->cuts++] = mine;
-                wall->cut_count++;
-            }
+            if (first == k)
+                demi_join_edge(w, j, i, end, id, all > 0 ? mine*(1 - all)/all : 0);
         }
     }
 }
@@ -4089,29 +4129,43 @@ static void demi_join_corners(dem_world *w, demi_join *j) {
         }
     }
 }
+static dem_vec3 demi_join_local(const demi_join *j, const demi_wall *wall, int32_t point) {
+    const double *x = j->x + 3*point;
+    return demi_unturn(wall->pose.rotation, demi_sub(demi_v((dem_real)x[0], (dem_real)x[1],
+                                                            (dem_real)x[2]), wall->pose.position));
+}
 /* Hands the cuts over to their walls, by element. 0 when memory ran out. */
-static int demi_join_hand(dem_world *w, const demi_join *j) {
-    int i, k;
-    for (i = 0; i < w->wall_count; i++) {
+static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
+    int32_t *own = j->mark;                     /* by point: number of the wall's corner there */
+    int i, k, e, first = 0, passed = 0;
+    for (i = group; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         const size_t n = (size_t)wall->element_count + 1;
-        if (!wall->cut_count || wall->cuts) continue;
+        if (!demi_join_member(w, i, group, j->per)) continue;
+        first = passed;
+        passed += wall->vertex_count;
+        if (!wall->cut_count) continue;
         wall->cut_start = (int32_t *)demi_alloc(w, n, sizeof(int32_t));
         wall->cuts = (demi_cut *)demi_alloc(w, (size_t)wall->cut_count, sizeof(demi_cut));
         if (!wall->cut_start || !wall->cuts) return 0;
-        for (k = 0; k < j->cuts; k++) if (j->cut[4*k] == i) wall->cut_start[j->cut[4*k + 1] + 1]++;
+        for (k = 0; k < j->points; k++) own[k] = -1;
+        for (k = 0; k < wall->vertex_count; k++) {
+            const int32_t at = j->same[first + k];
+            if (own[at] < 0) own[at] = wall->element_count + wall->edge_count + k;
+        }
+        for (k = 0; k < j->cuts; k++) if (j->cut[6*k] == i) wall->cut_start[j->cut[6*k + 1] + 1]++;
         for (k = 0; k < wall->element_count; k++) wall->cut_start[k + 1] += wall->cut_start[k];
         for (k = j->cuts - 1; k >= 0; k--) {    /* filled from the back: starts end where they were */
-            const int32_t *c = j->cut + 4*k;
+            const int32_t *c = j->cut + 6*k;
             demi_cut *to;
             if (c[0] != i) continue;
             to = wall->cuts + --wall->cut_start[c[1] + 1];
-            to->a = demi_v((dem_real)j->x[3*c[2]], (dem_real)j->x[3*c[2] + 1],
-                           (dem_real)j->x[3*c[2] + 2]);
-            to->b = demi_v((dem_real)j->x[3*c[3]], (dem_real)j->x[3*c[3] + 1],
-                           (dem_real)j->x[3*c[3] + 2]);
-            to->a = demi_unturn(wall->pose.rotation, demi_sub(to->a, wall->pose.position));
-            to->b = demi_unturn(wall->pose.rotation, demi_sub(to->b, wall->pose.position));
+            to->a = demi_join_local(j, wall, c[2]);
+            to->b = demi_join_local(j, wall, c[3]);
+            to->number = c[4];
+            to->side = c[5];
+            for (e = 0; e < 2; e++)             /* corners of other walls: from the other end */
+                to->end[e] = own[c[2 + e]] >= 0 ? own[c[2 + e]] : INT32_MAX - c[2 + e];
             to->weight = (dem_real)j->cut_weight[k];
         }
         for (k = 0; k < wall->element_count; k++) wall->cut_start[k] = wall->cut_start[k + 1];
@@ -4150,7 +4204,7 @@ static int demi_facets_weigh(dem_world *w) {
             if (ok) ok = per == 3 ? demi_join_cut(w, &j) : demi_join_profiles(w, &j);
             if (ok && per == 3) demi_join_edges(w, &j);
             if (ok) demi_join_corners(w, &j);
-            if (ok) ok = demi_join_hand(w, &j);
+            if (ok) ok = demi_join_hand(w, &j, i);
             demi_join_free(w, &j);
         }
     w->facets_valid = ok;
@@ -5729,7 +5783,8 @@ static int demi_places_of(const dem_world *w, int d, int k) {
     const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + k]];
     const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[d*w->wall_stride + k]
         : 0;
-    return wall->kind == DEMI_WALL_SIEVE ? (int)DEMI_SIEVE_MOST : 7 + (cut ? cut[1] - cut[0] : 0);
+    if (wall->kind == DEMI_WALL_SIEVE) return DEMI_SIEVE_MOST;
+    return cut ? 7 + 2*(cut[1] - cut[0]) : 7;
 }
 static int demi_places_most(const dem_world *w) {
     int d, k, most = 0;
@@ -6096,7 +6151,7 @@ DEM_INLINE demi_quiet *demi_quiet_at(const dem_world *w, int d, int i) {
 }
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
-    return !(demi_dot(g, g) > 0) && !w->desc.force && !w->visitor &&
+    return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->visitor &&
            w->desc.integrator != DEM_POSITION_VERLET;
 }
 static void demi_domain_quiet(dem_world *w, int d) {
@@ -6275,7 +6330,8 @@ static void demi_skin_choose(dem_world *w) {
 
 /* Do laws ask for spins in this scene? Does any body have one that matters? */
 static int demi_spins(const dem_world *w) {
-    return w->desc.law || w->tangent != DEM_TANGENT_NONE || w->rolling != DEM_ROLLING_NONE;
+    return w->desc.law || w->desc.body_force || w->tangent != DEM_TANGENT_NONE ||
+           w->rolling != DEM_ROLLING_NONE;
 }
 static int demi_turns(const dem_world *w) { return w->orienting || demi_spins(w); }
 
@@ -6516,6 +6572,11 @@ static void demi_places_merge(demi_places *p, dem_real near_by) {
         if (p->at[i].share < DEM_R(-1e-3) || p->at[i].share > DEM_R(1e-3)) p->at[k++] = p->at[i];
     p->count = k;
 }
+/* A vector in the measure in which an ellipsoid is the unit sphere. */
+DEM_INLINE dem_vec3 demi_in_measure(const demi_part *part, dem_vec3 v) {
+    v = dem_quat_unturn(part->q, v);
+    return demi_v(v.x/part->axes.x, v.y/part->axes.y, v.z/part->axes.z);
+}
 /* Corners of an element as seen from a body at x: in the body's measure, where part is an
    ellipsoid. Segments go on along z without end: there only what is across z counts. */
 DEM_INLINE int demi_facet_seen(const demi_wall *wall, int element, dem_vec3 x,
@@ -6525,13 +6586,10 @@ DEM_INLINE int demi_facet_seen(const demi_wall *wall, int element, dem_vec3 x,
     for (k = 0; k < n; k++) {
         y[k] = demi_sub(y[k], x);
         if (n == 2) y[k].z = 0;
-        if (!part) continue;
-        y[k] = dem_quat_unturn(part->q, y[k]);
-        y[k] = demi_v(y[k].x/part->axes.x, y[k].y/part->axes.y, y[k].z/part->axes.z);
+        if (part) y[k] = demi_in_measure(part, y[k]);
     }
     if (n == 2 && part) {
-        const dem_vec3 z = dem_quat_unturn(part->q, demi_v(0, 0, 1));
-        const dem_vec3 u = demi_unit(demi_v(z.x/part->axes.x, z.y/part->axes.y, z.z/part->axes.z));
+        const dem_vec3 u = demi_unit(demi_in_measure(part, demi_v(0, 0, 1)));
         for (k = 0; k < 2; k++) y[k] = demi_sub(y[k], demi_scale(u, demi_dot(y[k], u)));
     }
     return n;
@@ -6540,7 +6598,7 @@ DEM_INLINE int demi_facet_seen(const demi_wall *wall, int element, dem_vec3 x,
 static void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
                               dem_real within, demi_places *p) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
-    const int cuts = corners + wall->vertex_count, own = wall->owns[e];
+    const int own = wall->owns[e];
     const dem_real *weight = wall->weight, most = within*within;
     dem_vec3 y[3], d;
     dem_real add = weight[e], d2;
@@ -6573,16 +6631,13 @@ static void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const de
     }
     if (!wall->cut_start) return;
     for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
-        dem_vec3 a = demi_sub(wall->cuts[k].a, x), b = demi_sub(wall->cuts[k].b, x);
-        if (part) {
-            a = dem_quat_unturn(part->q, a);
-            b = dem_quat_unturn(part->q, b);
-            a = demi_v(a.x/part->axes.x, a.y/part->axes.y, a.z/part->axes.z);
-            b = demi_v(b.x/part->axes.x, b.y/part->axes.y, b.z/part->axes.z);
-        }
+        const demi_cut *c = &wall->cuts[k];
+        dem_vec3 a = demi_sub(c->a, x), b = demi_sub(c->b, x);
+        if (!(c->weight < 0 || c->weight > 0)) continue;
+        if (part) { a = demi_in_measure(part, a); b = demi_in_measure(part, b); }
         d = demi_side_point(a, b, 0, 1, &at);
         d2 = demi_dot(d, d);
-        if (d2 < most) demi_place(p, cuts + 3*k + (at < 4 ? 0 : at - 3), wall->cuts[k].weight, d, d2);
+        if (d2 < most) demi_place(p, at < 4 ? c->number : c->end[at - 4], c->weight, d, d2);
     }
 }
 
@@ -6592,18 +6647,21 @@ static void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const de
        pieces: chi and the rings that are open; a forest: of the sides and corners that join facets,
        nearest first, those that join what was not joined yet (Kruskal's). With U1 the nearest's,
        X the energy by >>facets and P that by pieces, D = P - X >= 0 is what rings took away, and
-           E = X + D h(D/U1),    h(q) = (3 - 2 t) t^2, t = min(2 q, 1)
+           E = X + D h(D/U1),    h(q) = (3 - 2 t) t^2, t = 2 q - 1/2 within 0 .. 1
        A dimple that is reached to its tip is a ring that is all but closed: D is small, and E is
        X, smooth; an open ring counts as one piece, and which of its sides are nearest may change
        from one moment to the next, as on the medial line of a single wall. Energy is conserved in
        either. Rings through a seam of two walls are not seen. --- */
 static int demi_link_compare(const void *x, const void *y) {
     const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
-    if (a->distance < b->distance) return -1;
-    if (a->distance > b->distance) return 1;
     if (a->corner != b->corner) return a->corner < b->corner ? -1 : 1;
     if (a->number != b->number) return a->number < b->number ? -1 : 1;
     return a->facet < b->facet ? -1 : a->facet > b->facet;
+}
+static int demi_link_nearer(const void *x, const void *y) {
+    const demi_link *a = (const demi_link *)x, *b = (const demi_link *)y;
+    if (a->distance < b->distance) return -1;
+    return a->distance > b->distance ? 1 : demi_link_compare(x, y);
 }
 static int demi_link_root(demi_link *link, int i) {
     while (link[i].root != i) i = link[i].root = link[link[i].root].root;
@@ -6611,43 +6669,97 @@ static int demi_link_root(demi_link *link, int i) {
 }
 /* Facets that are reached, and their nearest place. */
 typedef struct demi_ring { int facets; int32_t number; dem_real distance; dem_vec3 point; } demi_ring;
+/* Adds a side (b: its other end) or corner of the facet under work, if it is reached: its numbers,
+   and where it is nearest. From whichever facet, the same side gives the same, to the bit: a has
+   the lower number. */
+static int demi_link_add(demi_link *link, int count, int facet, dem_real within, int32_t number,
+                         const dem_vec3 *a, const dem_vec3 *b, const int32_t *ends) {
+    demi_link *to = &link[count];
+    const int turn = b && ends[0] > ends[1];
+    int where = 4;
+    to->point = b ? demi_side_point(turn ? *b : *a, turn ? *a : *b, 0, 1, &where) : *a;
+    to->distance = demi_length(to->point);
+    if (!(to->distance < within)) return count;
+    to->corner = !b;
+    to->facet = facet;
+    to->number = number;
+    to->place = !b || where < 4 ? number : ends[turn ? 5 - where : where - 4];
+    to->sides[0] = to->sides[1] = -1;
+    return count + 1;
+}
+/* The number of the side of element e that begins or ends at a corner: of its cut there, if it is
+   cut. */
+static int32_t demi_link_side(const demi_wall *wall, int e, int side, int32_t corner) {
+    int k;
+    for (k = wall->cut_start ? wall->cut_start[e] : 0; wall->cut_start && k < wall->cut_start[e + 1];
+         k++) {
+        const demi_cut *c = &wall->cuts[k];
+        if (c->side == side && (c->end[0] == corner || c->end[1] == corner)) return c->number;
+    }
+    return wall->element_count + wall->edges[3*e + side];
+}
+/* Pieces of element e's sides, and the corners of others between them; *sides: which sides those
+   are. */
+static int demi_links_cut(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
+                          dem_real within, demi_link *link, int count, int facet, int *sides) {
+    int k, m, q;
+    for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
+        const demi_cut *c = &wall->cuts[k];
+        dem_vec3 end[2];
+        end[0] = demi_sub(c->a, x);
+        end[1] = demi_sub(c->b, x);
+        for (q = 0; q < 2 && part; q++) end[q] = demi_in_measure(part, end[q]);
+        *sides |= 1 << c->side;
+        count = demi_link_add(link, count, facet, within, c->number, end, end + 1, c->end);
+        for (q = 0; q < 2; q++)                 /* where the next piece goes on */
+            for (m = k + 1; m < wall->cut_start[e + 1]; m++) {
+                const demi_cut *o = &wall->cuts[m];
+                const int before = count;
+                if (o->side != c->side || (o->end[0] != c->end[q] && o->end[1] != c->end[q]))
+                    continue;
+                count = demi_link_add(link, count, facet, within, c->end[q], end + q, 0, 0);
+                if (count == before) continue;
+                link[before].sides[0] = c->number;
+                link[before].sides[1] = o->number;
+            }
+    }
+    return count;
+}
 /* Sides and corners of element e, if it is reached. Answers how many links there are then. */
 static int demi_links_add(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
                           dem_real within, demi_link *link, int count, demi_ring *ring) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
+    const int32_t *v;
     dem_vec3 y[3], d;
-    int k, where;
-    const int n = demi_facet_seen(wall, e, x, part, y);
-    const int32_t *v = wall->corners + n*e;
+    int k, n, where, cut = 0;
     dem_real l;
+    if (!(wall->weight[e] > 0)) return count;
+    n = demi_facet_seen(wall, e, x, part, y);
+    v = wall->corners + n*e;
     d = demi_facet_point(y, n, &where);
     l = demi_length(d);
-    if (!wall->owns || !(wall->weight[e] > 0) || !(l < within)) return count;
+    if (!(l < within)) return count;
     if (!ring->facets || l < ring->distance) {
         ring->number = where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
             : corners + v[where - 4];
         ring->distance = l;
         ring->point = d;
     }
-    for (k = 0; k < 2*n; k++) {
-        demi_link *to = &link[count];
-        const int corner = k >= n, a = k%n, b = (k + 1)%n, turn = v[a] > v[b];
-        if (n == 2 && !corner) continue;
-        where = 4 + a;                          /* a side alike from either facet, to the bit */
-        to->point = corner ? y[a] : demi_side_point(y[turn ? b : a], y[turn ? a : b],
-                                                    turn ? b : a, turn ? a : b, &where);
-        to->distance = demi_length(to->point);
-        if (!(to->distance < within)) continue;
-        to->corner = corner;
-        to->facet = ring->facets;
-        to->number = corner ? corners + v[a] : edges + wall->edges[3*e + a];
-        to->place = where < 4 ? to->number : corners + v[where - 4];
-        to->sides[0] = to->sides[1] = -1;
-        if (corner && n == 3) {
-            to->sides[0] = wall->edges[3*e + a];
-            to->sides[1] = wall->edges[3*e + (a + 2)%3];
+    if (wall->cut_start)
+        count = demi_links_cut(wall, e, x, part, within, link, count, ring->facets, &cut);
+    for (k = 0; k < n; k++) {
+        const int b = (k + 1)%n, before = count;
+        int32_t ends[2];
+        ends[0] = corners + v[k];
+        ends[1] = corners + v[b];
+        count = demi_link_add(link, count, ring->facets, within, corners + v[k], y + k, 0, 0);
+        if (count > before && n == 3) {
+            link[before].sides[0] = demi_link_side(wall, e, k, corners + v[k]);
+            link[before].sides[1] = demi_link_side(wall, e, (k + 2)%3, corners + v[k]);
         }
-        count++;
+        if (n == 3 && !(cut >> k & 1))
+            count = demi_link_add(link, count, ring->facets, within, edges + wall->edges[3*e + k],
+                                  y + k, y + b, ends);
     }
     ring->facets++;
     return count;
@@ -6678,6 +6790,9 @@ static void demi_places_rings(const demi_wall *wall, const int32_t *element, int
         count = demi_links_add(wall, element[i], x, part, within, link, count, &ring);
     if (ring.facets < 2) return;
     qsort(link, (size_t)count, sizeof *link, demi_link_compare);
+    for (i = 1; i < count; i++)                 /* one side, one distance, whatever the rounding */
+        if (link[i].number == link[i - 1].number) link[i].distance = link[i - 1].distance;
+    qsort(link, (size_t)count, sizeof *link, demi_link_nearer);
     for (i = 0; i < ring.facets; i++) link[i].root = i;
     for (i = 0; i < count; i = end) {
         const dem_real q = (within - link[i].distance)/(within - ring.distance);
@@ -6693,8 +6808,8 @@ static void demi_places_rings(const demi_wall *wall, const int32_t *element, int
         lost += link[i].more*(power > 2 ? q*q*DEMI_SQRT(q) : q*q);
         for (k = i + 1; k < end; k++) link[k].more = 0;
     }
-    if (!(lost > DEM_R(1e-6))) return;
-    t = DEMI_MIN(2*lost, DEM_R(1));
+    if (!(lost > DEM_R(0.25))) return;
+    t = DEMI_MIN(2*lost - DEM_R(0.5), DEM_R(1));
     h = t*t*(3 - 2*t);
     slope = t < 1 ? 12*t*(1 - t) : 0;           /* dh/dq */
     for (i = 0; i < count; i++)
@@ -7691,11 +7806,12 @@ static const char *demi_kernel_choose(dem_world *w) {
 #endif
 /* --- walls --- */
 
-/* How well an old contact fits a new one: by their normals; where those are the same, the same wall
-   and the same sign of what they count. */
-DEM_INLINE dem_real demi_match(dem_vec3 old, dem_vec3 now, int wall, int sign) {
+/* How well an old contact fits a new one: by their normals; where those are nearly the same (within
+   some 3 degrees), rather one that nothing continues yet; then the same wall, and the same sign of
+   what they count. */
+DEM_INLINE dem_real demi_match(dem_vec3 old, dem_vec3 now, int taken, int wall, int sign) {
     const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    return demi_dot(old, now) + (wall ? hair : 0) + (sign ? 2*hair : 0);
+    return demi_dot(old, now) + (taken ? 0 : DEM_R(1e-3)) + (wall ? hair : 0) + (sign ? 2*hair : 0);
 }
 /* The old contact that a new one continues: same wall and element; else the one of nearest normal,
    within about 18 degrees, that nothing else continues: the grain slid on to the neighbour. A place
@@ -7706,17 +7822,20 @@ static const demi_wall_contact *demi_wall_match(const dem_world *w, const demi_w
                                                 int olds, const demi_wall_contact *fresh,
                                                 int freshs, const demi_wall_contact *c) {
     const demi_wall_contact *best = 0;
-    dem_real nearest = DEM_R(0.95);
+    dem_real nearest = 0;
     int i, j;
     for (i = 0; i < olds; i++) if (old[i].wall == c->wall &&
                                    old[i].element == c->element) return &old[i];
     for (i = 0; i < olds; i++) {
-        const dem_real along = demi_match(old[i].normal, c->normal, old[i].wall == c->wall,
-                                          (old[i].share < 0) == (c->share < 0));
+        dem_real along;
         int taken = 0;
-        if (!(along > nearest) || w->walls[old[i].wall].group != w->walls[c->wall].group) continue;
+        if (!(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) ||
+            w->walls[old[i].wall].group != w->walls[c->wall].group) continue;
         for (j = 0; j < freshs && !taken; j++) taken = fresh[j].wall == old[i].wall &&
             fresh[j].element == old[i].element;
+        along = demi_match(old[i].normal, c->normal, taken, old[i].wall == c->wall,
+                           (old[i].share < 0) == (c->share < 0));
+        if (!(along > nearest)) continue;
         if (taken && (!demi_faceted(&w->walls[c->wall]) || !(2*c->overlap > old[i].overlap)))
             continue;
         nearest = along;
@@ -8059,21 +8178,24 @@ static const demi_shaped *demi_shaped_match(const dem_world *w, const demi_shape
                                             const demi_shaped *fresh, int freshs,
                                             const demi_shaped *c) {
     const demi_shaped *best = 0;
-    dem_real nearest = DEM_R(0.95);
+    dem_real nearest = 0;
     int i, j;
     for (i = 0; i < olds; i++)
         if (old[i].b == c->b && old[i].part_a == c->part_a && old[i].part_b == c->part_b &&
             old[i].wall == c->wall && old[i].element == c->element) return &old[i];
     if (c->b >= 0) return 0;
     for (i = 0; i < olds; i++) {
-        const dem_real along = demi_match(old[i].normal, c->normal, old[i].wall == c->wall,
-                                          (old[i].weight < 0) == (c->share < 0));
+        dem_real along;
         int taken = 0;
-        if (!(along > nearest) || old[i].b >= 0 || old[i].part_a != c->part_a ||
+        if (!(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) || old[i].b >= 0 ||
+            old[i].part_a != c->part_a ||
             w->walls[old[i].wall].group != w->walls[c->wall].group) continue;
         for (j = 0; j < freshs && !taken; j++)
             taken = fresh[j].b < 0 && fresh[j].wall == old[i].wall &&
                     fresh[j].element == old[i].element && fresh[j].part_a == old[i].part_a;
+        along = demi_match(old[i].normal, c->normal, taken, old[i].wall == c->wall,
+                           (old[i].weight < 0) == (c->share < 0));
+        if (!(along > nearest)) continue;
         if (taken && (!demi_faceted(&w->walls[c->wall]) || !(2*c->overlap > old[i].overlap)))
             continue;
         nearest = along;
@@ -9998,6 +10120,24 @@ static void demi_domain_move(dem_world *w, int d) {
     }
 }
 
+/* Forces and torques of a field that sees whole bodies. */
+static void demi_domain_fields(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    int i;
+    for (i = domain->begin; i < domain->end; i++) {
+        const dem_body id = dem_bodies_id(w, i);
+        const dem_vec3 none = demi_v(0, 0, 0);
+        dem_vec3 force = none, torque = none;
+        dem_body_state body;
+        if (demi_visits(w, i) || dem_body_get(w, id, &body) != DEM_OK) continue;
+        w->desc.body_force(&body, id, w->time, &force, &torque, w->desc.force_user);
+        demi_push_add(w->force + 4*i, force);
+        demi_push_add(w->torque + 4*i, torque);
+        if (w->desc.ledger && w->forces_valid && w->inv_mass[i] > 0)
+            domain->energy[DEMI_E_FORCE] += (double)(demi_dot(force, body.velocity) +
+                                                     demi_dot(torque, body.spin))*(double)w->dt;
+    }
+}
 /* Force field, or nothing, to start the sums with; after a move forces are clear already. */
 static void demi_domain_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
@@ -10007,8 +10147,7 @@ static void demi_domain_clear(dem_world *w, int d) {
         memset(w->force + 4*domain->begin, 0, n);
         memset(w->torque + 4*domain->begin, 0, n);
     }
-    if (!w->desc.force) return;
-    for (i = domain->begin; i < domain->end; i++) {
+    for (i = domain->begin; i < domain->end && w->desc.force; i++) {
         if (demi_visits(w, i)) continue;
         const dem_vec3 f = w->desc.force(demi_at(w->pos + 4*i), demi_at(w->vel + 4*i),
                                          w->pos[4*i + 3], w->mass[i],
@@ -10018,6 +10157,7 @@ static void demi_domain_clear(dem_world *w, int d) {
             w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f,
                 demi_at(w->vel + 4*i))*(double)w->dt;
     }
+    if (w->desc.body_force) demi_domain_fields(w, d);
 }
 static void demi_domain_respond(dem_world *w, int d) {
     const size_t walls = (size_t)w->wall_count;
@@ -10032,7 +10172,7 @@ static void demi_domain_gather(dem_world *w, int d) {
     int i;
     if (w->cross_entries) demi_cross_gather(w, d);
     demi_walls_respond(w, d);
-    if (w->desc.law || w->desc.force) {         /* those of your own may answer anything */
+    if (w->desc.law || w->desc.force || w->desc.body_force) {      /* those of your own may answer anything */
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
             sum += fabs((double)w->force[i]) + fabs((double)w->torque[i]);
@@ -10263,7 +10403,8 @@ static dem_result demi_step_once(dem_world *w) {
     if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
     w->moved = 0;
-    for (d = 0; d < w->domain_count && (w->desc.law || w->desc.force); d++)
+    for (d = 0; d < w->domain_count && (w->desc.law || w->desc.force ||
+                                        w->desc.body_force); d++)
         if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
 
     /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish)
@@ -12998,7 +13139,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->uniform ? "all alike (coefficients once per run)"
             : "differ (coefficients per candidate)", w->wall_count,
-            w->desc.force ? "yes" : "no", w->desc.ledger ? "on" : "off", demi_kernel_choose(w));
+            w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off", demi_kernel_choose(w));
     fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->overlap_max,
             w->overlap_max > 0.05 ? "  (beyond .05: stiffen the material or slow down)" : "");
     dem_pairs_print(w, out);
@@ -13813,7 +13954,7 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     if (!w->forces_valid) return;               /* only looking */
     for (d = 0; d < w->domain_count; d++) {
         deepest = DEMI_MAX(deepest, w->domains[d].overlap);
-        if (w->desc.law || w->desc.force) finite &= w->domains[d].check < 1e300;
+        if (w->desc.law || w->desc.force || w->desc.body_force) finite &= w->domains[d].check < 1e300;
     }
     if (!finite || !(deepest < 1)) b->result = demi_unstable(w);
 }

@@ -282,6 +282,24 @@ static double pressed(double depth, double frac) {
     return result == DEM_OK ? fastest/3e-4 : 1e30;
 }
 
+/* A magnet of moment MU (A m2) along its own x in a field B (T) along the world's x. */
+enum { MAGNET = 3 };                            /* MU B = 3 N m */
+static void compass(const dem_body_state *body, dem_body id, double time, dem_vec3 *force,
+                    dem_vec3 *torque, void *user) {
+    const dem_vec3 x = dem_quat_turn(body->orientation, at(1, 0, 0));
+    (void)id; (void)time; (void)force; (void)user;
+    torque->y = x.z*MAGNET;                     /* MU x B */
+    torque->z = -x.y*MAGNET;
+}
+/* A torque in proportion to the time, on the body that `user` names. */
+static void spin_up(const dem_body_state *body, dem_body id, double time, dem_vec3 *force,
+                    dem_vec3 *torque, void *user) {
+    const dem_body *who = (const dem_body *)user;
+    if (who->slot != id.slot || who->generation != id.generation) return;
+    torque->z = (dem_real)(2*time)*body->inertia;
+    force->x = 3*body->mass;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -442,6 +460,66 @@ int main(int argc, char **argv) {
                                           20, 4000);
                 CHECK_NEAR((20 - r.slip)/7*1.25/(1 + r.e), bound[load], 2e-3);
             }
+    }
+    TEST("a field that sees orientations turns bodies: a compass needle swings with 2 pi sqrt(I/(mu B)), "
+         "and the ledger knows") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_body needle;
+        dem_body_state s;
+        dem_ledger l;
+        double period, angle, last, zero[2] = {0, 0}, before;
+        int k, crossings = 0;
+        desc.threads = 1;
+        desc.ledger = 1;
+        desc.dt = DEM_R(1e-4);
+        desc.body_force = compass;
+        world = dem_world_create(&desc);
+        needle = dem_body_add(world, scene_material(world, 1e7, 0.5, 0, 0),
+                              dem_shape_ellipsoid_add(world, at(0.1, 0.02, 0.03)), at(0, 0, 0),
+                              dem_quat_about(at(0, 0, 1), DEM_R(0.05)));
+        s = scene_state(world, needle);
+        period = 2*pi*sqrt((double)s.moments.z/MAGNET);
+        if ((double)s.moments.z < (double)s.moments.x) period = 0;       /* principal order */
+        before = dem_totals_get(world).rotational;
+        last = 0.05;
+        for (k = 0; k < (int)(3*period/1e-4) && crossings < 2; k++) {
+            dem_vec3 x;
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            x = dem_quat_turn(scene_state(world, needle).orientation, at(1, 0, 0));
+            angle = atan2((double)x.y, (double)x.x);
+            if ((angle < 0) != (last < 0))
+                zero[crossings++] = (k + last/(last - angle))*1e-4;      /* between two steps */
+            last = angle;
+        }
+        CHECK_EQ(crossings, 2);
+        /* amplitude a lengthens it by a^2/16 = 1.6e-4 */
+        CHECK_REL(2*(zero[1] - zero[0]), period*(1 + 0.05*0.05/16), small > 0 ? 1e-3 : 1e-5);
+        l = dem_ledger_get(world);
+        CHECK_NEAR((l.rotational - before - l.force)/(MAGNET*0.05*0.05/2), 0, small > 0 ? 1e-2 : 1e-3);
+        dem_world_destroy(world);
+    }
+    TEST("a field's torque goes to the body it names, after sorting too, and to spheres") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material stuff;
+        dem_body ball[50];
+        int i;
+        desc.threads = 1;
+        desc.dt = DEM_R(1e-4);
+        desc.body_force = spin_up;
+        desc.force_user = &ball[17];
+        world = dem_world_create(&desc);
+        stuff = scene_material(world, 1e6, 0.5, 0, 0);
+        for (i = 0; i < 50; i++)
+            ball[i] = dem_sphere_add(world, stuff, DEM_R(0.01), at(-0.1*i, 0.05*(i%7), 0.1*(i%3)));
+        CHECK_EQ(scene_step(world, 10000), DEM_OK);
+        for (i = 0; i < 50; i++) {
+            const dem_body_state s = scene_state(world, ball[i]);
+            CHECK_NEAR(s.spin.z, i == 17 ? 1 : 0, 2e-3);           /* integral of 2 t; dt = .001 */
+            CHECK_NEAR(s.velocity.x, i == 17 ? 3 : 0, small > 0 ? 1e-4 : 1e-9);
+        }
+        dem_world_destroy(world);
     }
     return test_end();
 }
