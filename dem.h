@@ -4531,8 +4531,8 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
     }
     for (i = 0; i < vertices*per_vertex; i++)
         if (!demi_finite(xyz[i]) || DEMI_ABS((double)xyz[i]) > DEMI_REACH) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
-                      "between -%g and %g; was the file read whole, and in metres?", call,
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be finite, "
+                      "between -%g and %g; was the file read whole, in metres?", call,
                       i/per_vertex, (double)xyz[i], DEMI_REACH, DEMI_REACH);
             return 0;
         }
