@@ -1332,12 +1332,12 @@ static dem_vec3 demi_unit(dem_vec3 a) {                   /* of any length but 0
 }
 DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
 
-static int demi_finite(dem_real x) {
-    double d = (double)x;
+static int demi_finite_double(double x) {
     uint64_t bits;
-    memcpy(&bits, &d, sizeof bits);
+    memcpy(&bits, &x, sizeof bits);
     return ((bits >> 52) & 0x7ff) != 0x7ff;
 }
+static int demi_finite(dem_real x) { return demi_finite_double((double)x); }
 static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y) &&
                                      demi_finite(v.z); }
 
@@ -5420,6 +5420,16 @@ static int demi_near_make(dem_world *w, int fresh) {
     return 1;
 }
 
+/* What the laws in force keep per contact. */
+static void demi_effects_memory(dem_world *w) {
+    w->memory_stride = demi_memory_of(w->normal, w->tangent, w->rolling);
+    w->vector_mask = 0x77;
+    if (w->normal == DEM_NORMAL_HYSTERETIC)     /* a depth has no direction */
+        w->vector_mask &= ~(1 << demi_memory_shear(w->tangent, w->rolling));
+    if (!w->desc.law) return;
+    w->memory_stride = w->desc.law_memory;
+    w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
+}
 /* The effects of the live scene: which laws act, whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, j, friction = 0, rolling = 0;
@@ -5435,14 +5445,7 @@ static void demi_effects(dem_world *w) {
     if (w->rolling == DEM_ROLLING_AUTO) w->rolling = DEM_ROLLING_EPSD;
     if (!friction) w->tangent = DEM_TANGENT_NONE;
     if (!rolling) w->rolling = DEM_ROLLING_NONE;
-    w->memory_stride = demi_memory_of(w->normal, w->tangent, w->rolling);
-    w->vector_mask = 0x77;
-    if (w->normal == DEM_NORMAL_HYSTERETIC)     /* a depth has no direction */
-        w->vector_mask &= ~(1 << demi_memory_shear(w->tangent, w->rolling));
-    if (w->desc.law) {
-        w->memory_stride = w->desc.law_memory;
-        w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
-    }
+    demi_effects_memory(w);
     w->uniform = w->count > 0;
     w->fixed_count = 0;
     w->radius_min = w->radius_max = w->count ? w->pos[3] : 0;
@@ -10857,16 +10860,32 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
 
 /* ---------------------------------------------------------------------------------------------
    >>checkpoint
-   Everything that decides the next step, as it lies in memory, in one visit that both writes and
-   reads, so that the two cannot differ. The file: magic, version, size of dem_real, byte order,
-   digest of the scene (desc, materials, walls), shape, state, check sum of all before it. Reading
-   checks all of that first, then makes room, then copies: until then the world is as it was.
+   Everything that decides the next step, in one visit that both writes and reads, so that the two
+   cannot differ. The file: magic, version, size of dem_real, byte order, counts; a digest of each
+   part of the scene (desc, materials, pairs, shapes, walls, fields, feeds, outlets); numbers,
+   domains, bodies, lists, contacts; check sum of all before it.
+
+   What hangs on the list of candidates (laws in force, reals of memory per contact, coefficients
+   that dem_pair_set has outdated) is stored and not worked out anew: the scene may have changed
+   since the list was made. Of a list that no longer fits the bodies only the counts are stored, by
+   which the next one is chosen.
+
+   Reading fills a twin, an empty world of the same scene. A check sum only tells that a file is as
+   it was written, not that what was written makes sense: so every count is checked before room is
+   made for it, and every index and length before anything follows it. When all is right the twin's
+   state takes the place of the world's; until then the world is as it was.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 4 };
+enum { DEMI_CHECKPOINT_VERSION = 5 };
 
-/* Writes to file, or reads from memory, or (with neither) only counts bytes. */
-typedef struct demi_stream { FILE *file; const char *from; uint64_t sum; size_t size; } demi_stream;
+/* Writes to file, or reads the `left` bytes that are at `from`, or (with neither) counts bytes. */
+typedef struct demi_stream {
+    FILE *file;
+    const char *from;
+    uint64_t sum;
+    size_t size, left;
+    int cut;                         /* more was to be read than there was */
+} demi_stream;
 
 static void demi_visit(demi_stream *s, void *data, size_t size) {
     s->size += size;
@@ -10874,128 +10893,226 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
     if (s->file) {
         s->sum = demi_hash(s->sum, data, size);
         fwrite(data, 1, size, s->file);
-    } else if (s->from) {
+    } else if (s->from && size <= s->left) {
         memcpy(data, s->from, size);
         s->from += size;
+        s->left -= size;
+    } else if (s->from) {
+        memset(data, 0, size);
+        s->left = 0;
+        s->cut = 1;
     }
 }
 #define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
 
-typedef struct demi_extent {         /* how large the arrays are */
-    int32_t count, slots, domains, walls, fields, own_stride, cross_stride, wall_stride,
-        wall_now_stride, memory_stride, near_stride;
-    int32_t list_valid, own_total, cross_total, near_total, candidate_total, contact_total;
-    int32_t carry_count, carry_rows, carry_stride;
-    int32_t orienting, shaped_stride, shaped_total, near_remembered, spots;
-} demi_extent;
-static demi_extent demi_extent_of(const dem_world *w) {
-    demi_extent s;
-    int d;
-    memset(&s, 0, sizeof s);
-    s.count = w->count; s.slots = w->slot_count; s.domains = w->domain_count;
-    s.walls = w->wall_count; s.fields = w->field_count;
-    s.orienting = w->orienting; s.shaped_stride = w->shaped_stride;
-    for (d = 0; d < w->count; d++) s.spots += demi_form_of(w, d) ? demi_form_of(w, d)->count : 0;
-    s.own_stride = w->own.stride; s.cross_stride = w->cross.stride;
-    s.wall_stride = w->wall_stride; s.wall_now_stride = w->wall_now_stride;
-    s.memory_stride = w->memory_stride; s.near_stride = w->near.stride;
-    s.list_valid = w->list_valid;
-    s.carry_count = w->list_valid ? 0 : w->carry_count;      /* memory between two lists */
-    s.carry_rows = s.carry_count ? w->carry_rows : 0;
-    s.carry_stride = s.carry_count ? w->carry_stride : 0;
-    for (d = 0; d < w->domain_count; d++) {
-        s.own_total += w->domains[d].own;
-        s.cross_total += w->domains[d].cross;
-        s.near_total += w->domains[d].near_shaped_end;
-        s.near_remembered += w->domains[d].near_end;
-        s.shaped_total += w->domains[d].shaped;
-        s.candidate_total += w->domains[d].walls;
-        s.contact_total += w->domains[d].wall_contacts;
-    }
-    return s;
+/* --- the scene: what a file and the world that reads it must have in common --- */
+
+static uint64_t demi_digest_desc(const dem_world *w, int index) {
+    const dem_world_desc *d = &w->asked;
+    const int flags[] = {(int)d->boundary[0], (int)d->boundary[1], (int)d->boundary[2], d->planar,
+                         (int)d->normal_law, (int)d->tangent_law, (int)d->rolling_law,
+                         (int)d->tension, (int)d->convention, d->law != 0, d->law_memory,
+                         d->law_vectors, d->force != 0, (int)d->integrator, (int)d->search,
+                         d->ledger, (int)d->rotation, (int)d->ellipsoid_overlap,
+                         (int)d->cluster_contacts, d->orientations};
+    const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x,
+                                d->domain.lo.y, d->domain.lo.z, d->domain.hi.x, d->domain.hi.y,
+                                d->domain.hi.z, d->thickness, d->dt, d->impact_speed, d->skin};
+    (void)index;
+    return demi_hash(demi_hash(DEMI_HASH_START, flags, sizeof flags), numbers, sizeof numbers);
 }
-/* Bytes demi_state_visit moves for a shape: a lying file is found out before anything is touched.
-   */
-static size_t demi_state_size(const dem_world *w, const demi_extent *s) {
-    const size_t r = sizeof(dem_real), n = (size_t)s->count, pairs = (size_t)s->own_total +
-        (size_t)s->cross_total;
-    size_t size = n*((w->desc.integrator == DEM_POSITION_VERLET ? 35 : 31)*r + 8) +
-        (size_t)s->slots*8;
-    int i;
-    if (s->orienting) size += n*(12*r + 4) + 2*sizeof(int);
-    size += (size_t)s->shaped_total*sizeof(demi_shaped);
-    size += pairs*8 + (size_t)s->near_total*12 +
-        (size_t)s->near_remembered*(size_t)s->memory_stride*r +
-        (size_t)s->candidate_total*(12 + r);
-    size += (size_t)s->contact_total*sizeof(demi_wall_contact);
-    size += (size_t)s->walls*(3*sizeof(dem_pose) + sizeof(dem_channels) + sizeof(dem_motion));
-    if (s->carry_count)
-        size += ((size_t)s->carry_rows + 2)*4 + (size_t)s->carry_count*(4 +
-            (size_t)s->carry_stride*r);
-    for (i = 0; i < w->field_count; i++) size += 16 +
-        5*sizeof(double)*demi_field_cells(&w->fields[i]);
-    size += (size_t)w->feed_count*(sizeof(dem_feed_state) + 3*sizeof(uint64_t)) +
-        (size_t)w->outlet_count*sizeof(dem_outlet_state);
-    return size;
+static uint64_t demi_digest_material(const dem_world *w, int i) {
+    return demi_hash(DEMI_HASH_START, &w->materials[i], sizeof w->materials[i]);
+}
+static uint64_t demi_digest_pairs(const dem_world *w, int i) {
+    return demi_hash(DEMI_HASH_START, &w->pairs[i*DEMI_MATERIALS],
+                     (size_t)w->material_count*sizeof(dem_pair));
+}
+static uint64_t demi_digest_form(const dem_world *w, int i) {
+    const demi_form *form = &w->forms[i];
+    uint64_t h = demi_hash(DEMI_HASH_START, &form->count, sizeof form->count);
+    h = demi_hash(h, &form->axes, sizeof form->axes);
+    h = demi_hash(h, &form->inertia, sizeof form->inertia);
+    h = demi_hash(h, &form->volume, sizeof form->volume);
+    return form->count ? demi_hash(h, form->parts, 4*(size_t)form->count*sizeof(dem_real)) : h;
+}
+static uint64_t demi_digest_sieve(const dem_sieve_desc *s, uint64_t h) {
+    const int which[] = {(int)s->kind, s->staggered, s->model};
+    const dem_real sizes[] = {s->aperture, s->bar, s->length, s->thickness, s->lift, s->radius,
+                              s->clearance};
+    return demi_hash(demi_hash(h, which, sizeof which), sizes, sizeof sizes);
+}
+/* 0: a wall that was removed. */
+static uint64_t demi_digest_wall(const dem_world *w, int i) {
+    const demi_wall *wall = &w->walls[i];
+    const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule,
+                        wall->vertex_count, wall->element_count, (int)wall->motion.kind};
+    uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
+    if (wall->kind == DEMI_WALL_NONE) return 0;
+    h = demi_hash(h, &wall->radius, sizeof(dem_real));
+    h = demi_hash(h, &wall->share, sizeof(dem_real));
+    if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_CYLINDER ||
+        wall->kind == DEMI_WALL_SIEVE) h = demi_hash(h, &wall->first, sizeof wall->first);
+    if (wall->kind == DEMI_WALL_SIEVE) h = demi_digest_sieve(&wall->sieve, h);
+    if (wall->corners)
+        h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
+                      (wall->kind == DEMI_WALL_MESH ? 3 : 2));
+    if (wall->vertices)
+        h = demi_hash(h, wall->vertices, (size_t)wall->vertex_count*3*sizeof(dem_real));
+    return h ? h : 1;
+}
+static uint64_t demi_digest_field(const dem_world *w, int i) {
+    const dem_field_desc *f = &w->fields[i].desc;
+    uint64_t h = demi_hash(DEMI_HASH_START, &f->box, sizeof f->box);
+    h = demi_hash(h, f->cells, sizeof f->cells);
+    h = demi_hash(h, &f->start, sizeof f->start);
+    h = demi_hash(h, &f->end, sizeof f->end);
+    return demi_hash(h, &f->interval, sizeof f->interval);
+}
+static uint64_t demi_digest_feed(const dem_world *w, int i) {
+    const dem_feed_desc *f = &demi_feed_at(w, i)->desc;
+    const int what[] = {(int)f->material.id, f->class_count, f->limited, f->by_mass, f->round};
+    const double when[] = {f->rate, f->start, f->end};
+    uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
+    h = demi_hash(h, when, sizeof when);
+    h = demi_hash(h, f->radius, sizeof f->radius);
+    h = demi_hash(h, f->amount, sizeof f->amount);
+    h = demi_hash(h, &f->box, sizeof f->box);
+    h = demi_hash(h, &f->velocity, sizeof f->velocity);
+    h = demi_hash(h, &f->spread, sizeof f->spread);
+    return demi_hash(h, &f->seed, sizeof f->seed);
+}
+static uint64_t demi_digest_outlet(const dem_world *w, int i) {
+    const dem_outlet_desc *o = &demi_outlet_at(w, i)->desc;
+    const int what[] = {(int)o->frame.id, o->class_count};
+    const dem_real sizes[] = {o->beyond, o->wanted_min, o->wanted_max};
+    uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
+    h = demi_hash(h, sizes, sizeof sizes);
+    h = demi_hash(h, &o->box, sizeof o->box);
+    return demi_hash(h, o->radius, sizeof o->radius);
 }
 
-/* Numbers that are not arrays, and the domains: what these count steers demi_state_visit. */
-static void demi_state_scalars(dem_world *w, demi_stream *s) {
+/* The parts of a scene: one row each. `none`: its number is not told in a sentence. */
+typedef struct demi_scene_part {
+    const char *name, *many;
+    uint64_t (*digest)(const dem_world *w, int index);
+} demi_scene_part;
+enum { DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
+static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
+    {"the desc of the world", "descs", demi_digest_desc},
+    {"material", "materials", demi_digest_material},
+    {"the pairs (dem_pair_set) of material", "materials with pairs", demi_digest_pairs},
+    {"shape", "shapes", demi_digest_form},
+    {"wall", "walls", demi_digest_wall},
+    {"field", "fields", demi_digest_field},
+    {"feed", "feeds", demi_digest_feed},
+    {"outlet", "outlets", demi_digest_outlet}};
+static void demi_scene_counts(const dem_world *w, int32_t *counts) {
+    counts[0] = 1;
+    counts[1] = counts[2] = w->material_count;
+    counts[3] = w->form_count;
+    counts[DEMI_PART_WALLS] = w->wall_count;
+    counts[5] = w->field_count;
+    counts[6] = w->feed_count;
+    counts[7] = w->outlet_count;
+}
+/* All of a scene in one number: do two processes hold the same one? */
+static uint64_t demi_scene_digest(const dem_world *w) {
+    uint64_t h = DEMI_HASH_START;
+    int32_t counts[DEMI_PARTS];
+    int part, i;
+    demi_scene_counts(w, counts);
+    h = demi_hash(h, counts, sizeof counts);
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = 0; i < counts[part]; i++) {
+            const uint64_t one = demi_scene_parts[part].digest(w, i);
+            h = demi_hash(h, &one, sizeof one);
+        }
+    return h;
+}
+
+/* --- the state, visited in the order in which it is checked --- */
+
+/* Numbers that are not arrays. */
+static void demi_visit_numbers(dem_world *w, demi_stream *s) {
+    DEMI_VISIT(s, w->count);          DEMI_VISIT(s, w->slot_count);
+    DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->list_valid);
+    DEMI_VISIT(s, w->orienting);      DEMI_VISIT(s, w->shaped_count);
+    DEMI_VISIT(s, w->carry_count);    DEMI_VISIT(s, w->carry_rows);
+    DEMI_VISIT(s, w->carry_stride);
+    DEMI_VISIT(s, w->slot_free);      DEMI_VISIT(s, w->slot_pending);
     DEMI_VISIT(s, w->balance);
-    DEMI_VISIT(s, w->skin);
-    DEMI_VISIT(s, w->reach);
-    DEMI_VISIT(s, w->wall_reach);
-    DEMI_VISIT(s, w->skin_auto);
-    DEMI_VISIT(s, w->last_rebuild);
-    DEMI_VISIT(s, w->steps);
-    DEMI_VISIT(s, w->rebuilds);
+    /* effects, of the time the list was made */
+    DEMI_VISIT(s, w->tangent);        DEMI_VISIT(s, w->rolling);
+    DEMI_VISIT(s, w->uniform);        DEMI_VISIT(s, w->fixed_count);
+    DEMI_VISIT(s, w->tight);          DEMI_VISIT(s, w->uniform_coef);
+    DEMI_VISIT(s, w->uniform_radius); DEMI_VISIT(s, w->uniform_inv_mass);
+    DEMI_VISIT(s, w->radius_min);     DEMI_VISIT(s, w->radius_max);
+    DEMI_VISIT(s, w->dt_valid);       DEMI_VISIT(s, w->forces_valid);
+    DEMI_VISIT(s, w->synced);         DEMI_VISIT(s, w->primed);
+    DEMI_VISIT(s, w->moved);          DEMI_VISIT(s, w->pairs_changed);
+    DEMI_VISIT(s, w->last_rebuild);   DEMI_VISIT(s, w->steps);
+    DEMI_VISIT(s, w->rebuilds);       DEMI_VISIT(s, w->dt);
     DEMI_VISIT(s, w->time);
-    DEMI_VISIT(s, w->dt);
-    DEMI_VISIT(s, w->assumed_speed);
-    DEMI_VISIT(s, w->dt_valid);
-    DEMI_VISIT(s, w->forces_valid);
-    DEMI_VISIT(s, w->synced);
-    DEMI_VISIT(s, w->primed);
-    DEMI_VISIT(s, w->moved);
-    DEMI_VISIT(s, w->pairs_changed);
-    DEMI_VISIT(s, w->near_span);
-    DEMI_VISIT(s, w->near_age);
-    DEMI_VISIT(s, w->near_margin);
-    DEMI_VISIT(s, w->near_drift);
-    DEMI_VISIT(s, w->near_kick);
-    DEMI_VISIT(s, w->near_creep);
-    DEMI_VISIT(s, w->overlap_max);
-    DEMI_VISIT(s, w->speed_max);
-    DEMI_VISIT(s, w->energy);
-    DEMI_VISIT(s, w->energy_inserted);
-    DEMI_VISIT(s, w->energy_removed);
-    DEMI_VISIT(s, w->throughput);
-    DEMI_VISIT(s, w->half_kick);
-    DEMI_VISIT(s, w->slot_free);
-    DEMI_VISIT(s, w->slot_pending);
-    demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
+    DEMI_VISIT(s, w->skin);           DEMI_VISIT(s, w->reach);
+    DEMI_VISIT(s, w->wall_reach);     DEMI_VISIT(s, w->skin_auto);
+    DEMI_VISIT(s, w->assumed_speed);  DEMI_VISIT(s, w->near_span);
+    DEMI_VISIT(s, w->near_age);       DEMI_VISIT(s, w->near_margin);
+    DEMI_VISIT(s, w->near_drift);     DEMI_VISIT(s, w->near_kick);
+    DEMI_VISIT(s, w->near_creep);     DEMI_VISIT(s, w->overlap_max);
+    DEMI_VISIT(s, w->speed_max);      DEMI_VISIT(s, w->half_kick);
+    DEMI_VISIT(s, w->energy);         DEMI_VISIT(s, w->energy_inserted);
+    DEMI_VISIT(s, w->energy_removed); DEMI_VISIT(s, w->throughput);
 }
-static size_t demi_scalars_size(dem_world *w, int domains) {
-    demi_stream counting = {0, 0, 0, 0};
-    demi_state_scalars(w, &counting);
-    return counting.size - (size_t)w->domain_count*sizeof(demi_domain) +
-        (size_t)domains*sizeof(demi_domain);
-}
-static void demi_state_visit(dem_world *w, demi_stream *s) {
+static void demi_visit_bodies(dem_world *w, demi_stream *s) {
     const size_t r = sizeof(dem_real), n = (size_t)w->count;
-    int d, i;
     demi_visit(s, w->pos, 4*n*r);        demi_visit(s, w->vel, 4*n*r);
     demi_visit(s, w->spin, 4*n*r);
     demi_visit(s, w->half_vel, 4*n*r);   demi_visit(s, w->half_spin, 4*n*r);
     demi_visit(s, w->force, 4*n*r);      demi_visit(s, w->torque, 4*n*r);
-    if (w->last_pos) demi_visit(s, w->last_pos, 4*n*r);
+    if (w->desc.integrator == DEM_POSITION_VERLET) demi_visit(s, w->last_pos, 4*n*r);
     demi_visit(s, w->mass, n*r);         demi_visit(s, w->inv_mass, n*r);
     demi_visit(s, w->inv_inertia, n*r);
     demi_visit(s, w->body_slot, 4*n);    demi_visit(s, w->body_material, 4*n);
     demi_visit(s, w->slot_index, (size_t)w->slot_count*4);
     demi_visit(s, w->slot_generation, (size_t)w->slot_count*4);
-    for (d = 0; d < w->domain_count; d++) {
+    if (!w->orienting) return;
+    demi_visit(s, w->orient, 4*n*r);     demi_visit(s, w->angular, 4*n*r);
+    demi_visit(s, w->moment, 4*n*r);     demi_visit(s, w->body_shape, 4*n);
+}
+/* Near pairs of one domain; their candidates are counted from the domain's first. */
+static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
+    const demi_domain *domain = &w->domains[d];
+    const size_t from = (size_t)d*(size_t)w->near.stride, r = sizeof(dem_real);
+    const size_t remembering = (size_t)domain->near_end, all = (size_t)domain->near_shaped_end;
+    int p, e, l;
+    demi_visit(s, w->near.a + from, 4*all);
+    demi_visit(s, w->near.b + from, 4*all);
+    for (l = 0; l < 4; l++) {                   /* between these lie entries that nobody uses */
+        const int begin = l == 0 ? 0 : l == 1 ? domain->near_cross
+            : l == 2 ? domain->near_shaped : domain->near_shaped_cross;
+        const int end = l == 0 ? domain->near_own : l == 1 ? domain->near_end
+            : l == 2 ? domain->near_shaped_cross : domain->near_shaped_end;
+        for (p = begin; p < end; p++) {
+            const int32_t first = d*(l & 1 ? w->cross.stride : w->own.stride);
+            int32_t k = s->from ? 0 : w->near.k[from + (size_t)p] - first;
+            demi_visit(s, &k, sizeof k);
+            if (s->from) w->near.k[from + (size_t)p] = k;      /* `first` is added when checked */
+        }
+    }
+    for (e = 0; e < w->memory_stride; e++)
+        demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
+                   (size_t)e*(size_t)w->near.stride), remembering*r);
+    for (e = 0; e < DEMI_PAIR_COLUMNS && w->pairs_changed && !w->uniform; e++)
+        demi_visit(s, w->near.coef + (from*DEMI_PAIR_COLUMNS + (size_t)e*(size_t)w->near.stride),
+                   remembering*r);
+}
+/* Candidates, near pairs, wall candidates: of a list that fits the bodies. */
+static void demi_visit_lists(dem_world *w, demi_stream *s) {
+    int d, i;
+    for (d = 0; d < w->domain_count && w->list_valid; d++) {
         const demi_domain *domain = &w->domains[d];
+        const size_t walls = (size_t)domain->walls;
         for (i = 0; i < 2; i++) {
             demi_list *list = i ? &w->cross : &w->own;
             const size_t from = (size_t)d*(size_t)list->stride;
@@ -11003,40 +11120,33 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
             demi_visit(s, list->a + from, 4*pairs);
             demi_visit(s, list->b + from, 4*pairs);
         }
-        {
-            const size_t from = (size_t)d*(size_t)w->near.stride;
-            const size_t pairs = (size_t)domain->near_end;
-            const size_t all = (size_t)domain->near_shaped_end;
-            demi_visit(s, w->near.a + from, 4*all);
-            demi_visit(s, w->near.b + from, 4*all);
-            demi_visit(s, w->near.k + from, 4*all);
-            for (i = 0; i < w->memory_stride; i++)
-                demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
-                           (size_t)i*(size_t)w->near.stride), pairs*r);
-        }
-        demi_visit(s, w->wall_body + d*w->wall_stride, (size_t)domain->walls*4);
-        demi_visit(s, w->wall_id + d*w->wall_stride, (size_t)domain->walls*4);
-        demi_visit(s, w->wall_element + d*w->wall_stride, (size_t)domain->walls*4);
-        demi_visit(s, w->wall_gap + d*w->wall_stride, (size_t)domain->walls*r);
-        demi_visit(s, w->wall_now + d*w->wall_now_stride,
-                   (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
+        demi_visit_near(w, s, d);
+        demi_visit(s, w->wall_body + d*w->wall_stride, walls*4);
+        demi_visit(s, w->wall_id + d*w->wall_stride, walls*4);
+        demi_visit(s, w->wall_element + d*w->wall_stride, walls*4);
+        demi_visit(s, w->wall_gap + d*w->wall_stride, walls*sizeof(dem_real));
+    }
+}
+/* Contacts that last, with or without a list; memory on its way from one list to the next. */
+static void demi_visit_contacts(dem_world *w, demi_stream *s) {
+    int d;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        if (domain->wall_contacts)
+            demi_visit(s, w->wall_now + d*w->wall_now_stride,
+                       (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
         if (domain->shaped)
             demi_visit(s, w->shaped_now + (size_t)d*(size_t)w->shaped_stride,
                        (size_t)domain->shaped*sizeof(demi_shaped));
     }
-    if (w->orienting) {
-        demi_visit(s, w->orient, 4*n*r);
-        demi_visit(s, w->angular, 4*n*r);
-        demi_visit(s, w->moment, 4*n*r);
-        demi_visit(s, w->body_shape, 4*n);
-        demi_visit(s, &w->shaped_count, sizeof w->shaped_count);
-        demi_visit(s, &w->tight, sizeof w->tight);
-    }
-    if (!w->list_valid && w->carry_count) {
-        demi_visit(s, w->carry_start, ((size_t)w->carry_rows + 2)*4);
-        demi_visit(s, w->carry_partner, (size_t)w->carry_count*4);
-        demi_visit(s, w->carry_memory, (size_t)w->carry_count*(size_t)w->carry_stride*r);
-    }
+    if (w->list_valid || !w->carry_count) return;
+    demi_visit(s, w->carry_start, ((size_t)w->carry_rows + 1)*4);
+    demi_visit(s, w->carry_partner, (size_t)w->carry_count*4);
+    demi_visit(s, w->carry_memory,
+               (size_t)w->carry_count*(size_t)w->carry_stride*sizeof(dem_real));
+}
+static void demi_visit_walls(dem_world *w, demi_stream *s) {
+    int i;
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_motion motion = wall->motion;
@@ -11049,6 +11159,10 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
         motion.user = wall->motion.user;
         wall->motion = motion;
     }
+}
+/* Fields, feeds, outlets. */
+static void demi_visit_measured(dem_world *w, demi_stream *s) {
+    int i;
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
         const size_t cells = demi_field_cells(f);
@@ -11068,140 +11182,69 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
     for (i = 0; i < w->outlet_count; i++)
         demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
 }
-
-/* What a checkpoint's world must have in common with the one that reads it. */
-static uint64_t demi_scene_digest(const dem_world *w) {
-    uint64_t h = DEMI_HASH_START;
-    const dem_world_desc *d = &w->asked;
-    const int flags[] = {(int)d->boundary[0], (int)d->boundary[1], (int)d->boundary[2], d->planar,
-                         (int)d->normal_law,
-                         (int)d->tangent_law, (int)d->rolling_law, (int)d->tension,
-                             (int)d->convention, d->law != 0,
-                         d->law_memory, d->law_vectors, d->force != 0, (int)d->integrator,
-                             (int)d->search, d->ledger, (int)d->rotation,
-                             (int)d->ellipsoid_overlap, (int)d->cluster_contacts, d->orientations,
-                         w->material_count, w->wall_count, w->field_count, w->form_count,
-                         w->feed_count, w->outlet_count};
-    const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x,
-                                d->domain.lo.y, d->domain.lo.z,
-                                d->domain.hi.x, d->domain.hi.y, d->domain.hi.z, d->thickness,
-                                    d->dt, d->impact_speed, d->skin};
-    int i, j;
-    h = demi_hash(h, flags, sizeof flags);
-    h = demi_hash(h, numbers, sizeof numbers);
-    h = demi_hash(h, w->materials, (size_t)w->material_count*sizeof w->materials[0]);
-    for (i = 0; i < w->material_count; i++)
-        for (j = 0; j < w->material_count; j++)
-            h = demi_hash(h, &w->pairs[i*DEMI_MATERIALS + j], sizeof(dem_pair));
-    for (i = 0; i < w->form_count; i++) {
-        const demi_form *form = &w->forms[i];
-        h = demi_hash(h, &form->count, sizeof form->count);
-        h = demi_hash(h, &form->axes, sizeof form->axes);
-        h = demi_hash(h, &form->inertia, sizeof form->inertia);
-        h = demi_hash(h, &form->volume, sizeof form->volume);
-        if (form->count) h = demi_hash(h, form->parts, 4*(size_t)form->count*sizeof(dem_real));
-    }
-    for (i = 0; i < w->wall_count; i++) {
-        const demi_wall *wall = &w->walls[i];
-        const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule,
-                            wall->vertex_count,
-                            wall->element_count, (int)wall->motion.kind};
-        h = demi_hash(h, what, sizeof what);
-        h = demi_hash(h, &wall->radius, sizeof(dem_real));
-        h = demi_hash(h, &wall->share, sizeof(dem_real));
-        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_CYLINDER ||
-            wall->kind == DEMI_WALL_SIEVE)
-            h = demi_hash(h, &wall->first, sizeof wall->first);
-        if (wall->kind == DEMI_WALL_SIEVE) {
-            const dem_sieve_desc *s = &wall->sieve;
-            const int which[] = {(int)s->kind, s->staggered, s->model};
-            const dem_real sizes[] = {s->aperture, s->bar, s->length, s->thickness, s->lift,
-                                      s->radius, s->clearance};
-            h = demi_hash(h, which, sizeof which);
-            h = demi_hash(h, sizes, sizeof sizes);
-        }
-        if (wall->corners)
-            h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
-                          (wall->kind == DEMI_WALL_MESH ? 3 : 2));
-        if (wall->vertices) h = demi_hash(h, wall->vertices,
-                                          (size_t)wall->vertex_count*3*sizeof(dem_real));
-    }
-    for (i = 0; i < w->field_count; i++) {
-        const dem_field_desc *f = &w->fields[i].desc;
-        h = demi_hash(h, &f->box, sizeof f->box);
-        h = demi_hash(h, f->cells, sizeof f->cells);
-        h = demi_hash(h, &f->start, sizeof f->start);
-        h = demi_hash(h, &f->end, sizeof f->end);
-        h = demi_hash(h, &f->interval, sizeof f->interval);
-    }
-    for (i = 0; i < w->feed_count; i++) {
-        const demi_feed *f = demi_feed_at(w, i);
-        const dem_feed_desc *f_desc = &f->desc;
-        const int what[] = {(int)f_desc->material.id, f_desc->class_count, f_desc->limited,
-                            f_desc->by_mass, f_desc->round};
-        const double when[] = {f_desc->rate, f_desc->start, f_desc->end};
-        h = demi_hash(h, what, sizeof what);
-        h = demi_hash(h, when, sizeof when);
-        h = demi_hash(h, f_desc->radius, sizeof f_desc->radius);
-        h = demi_hash(h, f_desc->amount, sizeof f_desc->amount);
-        h = demi_hash(h, &f_desc->box, sizeof f_desc->box);
-        h = demi_hash(h, &f_desc->velocity, sizeof f_desc->velocity);
-        h = demi_hash(h, &f_desc->spread, sizeof f_desc->spread);
-        h = demi_hash(h, &f_desc->seed, sizeof f_desc->seed);
-    }
-    for (i = 0; i < w->outlet_count; i++) {
-        const dem_outlet_desc *o = &demi_outlet_at(w, i)->desc;
-        const int what[] = {(int)o->frame.id, o->class_count};
-        const dem_real sizes[] = {o->beyond, o->wanted_min, o->wanted_max};
-        h = demi_hash(h, what, sizeof what);
-        h = demi_hash(h, sizes, sizeof sizes);
-        h = demi_hash(h, &o->box, sizeof o->box);
-        h = demi_hash(h, o->radius, sizeof o->radius);
-    }
-    return h;
+static void demi_visit_state(dem_world *w, demi_stream *s) {
+    demi_visit_numbers(w, s);
+    demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
+    demi_visit_bodies(w, s);
+    demi_visit_lists(w, s);
+    demi_visit_contacts(w, s);
+    demi_visit_walls(w, s);
+    demi_visit_measured(w, s);
 }
+
+/* --- writing --- */
 
 typedef struct demi_checkpoint_head {
     char magic[8];
     uint32_t version, real_size, byte_order, int_size;
-    uint64_t scene, body_size;      /* digest; bytes that follow the shape, without the check sum */
-    demi_extent shape;
+    uint64_t body_size;             /* bytes that follow the head, without the check sum */
+    int32_t parts[DEMI_PARTS];      /* of the scene; as many digests follow */
 } demi_checkpoint_head;
 
+static uint32_t demi_checkpoint_layout(void) {
+    return (uint32_t)(sizeof(demi_domain) + sizeof(demi_wall_contact) + sizeof(demi_shaped));
+}
+static void demi_visit_digests(const dem_world *w, demi_stream *s, const int32_t *counts) {
+    int part, i;
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = 0; i < counts[part]; i++) {
+            uint64_t digest = demi_scene_parts[part].digest(w, i);
+            demi_visit(s, &digest, sizeof digest);
+        }
+}
 DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     demi_checkpoint_head head;
     demi_out out;
-    demi_stream s;
+    demi_stream s = {0, 0, 0, 0, 0, 0};
+    dem_result result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     uint64_t sum;
-    dem_result result;
-    result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
+    if (w->list_valid) w->carry_count = 0;      /* filed once, and taken up by the list */
+    if (!w->carry_count) w->carry_rows = w->carry_stride = 0;
     memset(&head, 0, sizeof head);
     memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
     head.version = DEMI_CHECKPOINT_VERSION;
     head.real_size = (uint32_t)sizeof(dem_real);
     head.byte_order = 0x01020304u;
-    head.int_size = (uint32_t)(sizeof(demi_domain) + sizeof(demi_wall_contact) +
-                               sizeof(demi_shaped));
-    head.scene = demi_scene_digest(w);
-    head.shape = demi_extent_of(w);
-    head.body_size = demi_scalars_size(w, w->domain_count) + demi_state_size(w, &head.shape);
+    head.int_size = demi_checkpoint_layout();
+    demi_scene_counts(w, head.parts);
+    demi_visit_digests(w, &s, head.parts);      /* counts */
+    demi_visit_state(w, &s);
+    head.body_size = s.size;
     s.file = out.file;
-    s.from = 0;
     s.sum = DEMI_HASH_START;
-    s.size = 0;
     demi_visit(&s, &head, sizeof head);
-    demi_state_scalars(w, &s);
-    demi_state_visit(w, &s);
+    demi_visit_digests(w, &s, head.parts);
+    demi_visit_state(w, &s);
     sum = s.sum;
     fwrite(&sum, 1, sizeof sum, out.file);
     return demi_out_close(&out);
 }
 
-/* Everything that can be wrong with a file, before anything is touched. */
+/* --- reading: is it a checkpoint, whole, and of this scene? --- */
+
 static dem_result demi_checkpoint_check(dem_world *w, const char *path, const char *data,
-                                        size_t size,
-                                        demi_checkpoint_head *head) {
+                                        size_t size, demi_checkpoint_head *head) {
     const char *call = "dem_checkpoint_read";
     uint64_t sum;
     if (size < sizeof *head || memcmp(data, DEMI_CHECKPOINT_MAGIC, 8))
@@ -11212,141 +11255,588 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
     memcpy(head, data, sizeof *head);
     if (head->byte_order != 0x01020304u || head->version != DEMI_CHECKPOINT_VERSION)
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: is of checkpoint version %u%s, must be "
-                         "%d; read it with the "
-                         "dem.h that wrote it", call, path, (unsigned)head->version,
+                         "%d; read it with the dem.h that wrote it", call, path,
+                         (unsigned)head->version,
                          head->byte_order != 0x01020304u ? " and another byte order" : "",
                          (int)DEMI_CHECKPOINT_VERSION);
     if (head->real_size != sizeof(dem_real))
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written with DEM_REAL of %u bytes, "
-                         "must be %u; build with the "
-                         "same precision", call, path, (unsigned)head->real_size,
-                         (unsigned)sizeof(dem_real));
-    if (size != sizeof *head + head->body_size + sizeof sum)
+                         "must be %u; build with the same precision", call, path,
+                         (unsigned)head->real_size, (unsigned)sizeof(dem_real));
+    if (head->body_size != (uint64_t)(size - sizeof *head) - sizeof sum)
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has %llu bytes, must be %llu; it was "
-                         "cut short or appended to", call,
-                         path, (unsigned long long)size,
+                         "cut short or appended to", call, path, (unsigned long long)size,
                          (unsigned long long)(sizeof *head + head->body_size + sizeof sum));
     memcpy(&sum, data + size - sizeof sum, sizeof sum);
     if (sum != demi_hash(DEMI_HASH_START, data, size - sizeof sum))
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: its check sum does not match its "
-                         "contents; the file is damaged", call,
-                         path);
-    if (head->int_size != sizeof(demi_domain) + sizeof(demi_wall_contact) + sizeof(demi_shaped) ||
-        head->scene != demi_scene_digest(w) ||
-        head->shape.walls != w->wall_count || head->shape.fields != w->field_count ||
-        head->shape.domains < 0 || head->shape.domains > DEMI_DOMAINS ||
-        head->body_size != demi_scalars_size(w, head->shape.domains) +
-                           demi_state_size(w, &head->shape))
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene; create the "
-                         "world with the same desc, "
-                         "materials, pairs, shapes, walls, motions, fields, feeds and outlets as "
-                         "the one that wrote it, then read", call, path);
+                         "contents; the file is damaged", call, path);
+    if (head->int_size != demi_checkpoint_layout())
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written by a program whose compiler "
+                         "lays out memory in another way; read it with a program built like the "
+                         "one that wrote it", call, path);
+    return DEM_OK;
+}
+/* Says which part of the scene differs. A wall that the file's world had removed may still stand
+   here: reading removes it. */
+static dem_result demi_checkpoint_scene(dem_world *w, const char *path, demi_stream *s,
+                                        const int32_t *parts) {
+    const char *call = "dem_checkpoint_read", *advice = "create the world with the same desc, "
+        "materials, pairs, shapes, walls, motions, fields, feeds and outlets as the one that "
+        "wrote it, then read";
+    int32_t counts[DEMI_PARTS];
+    int part, i;
+    demi_scene_counts(w, counts);
+    for (part = 0; part < DEMI_PARTS; part++)
+        if (parts[part] != counts[part])
+            return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene: %d %s "
+                             "there, %d here (removed ones count); %s", call, path,
+                             (int)parts[part], demi_scene_parts[part].many, (int)counts[part],
+                             advice);
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = 0; i < counts[part]; i++) {
+            const uint64_t here = demi_scene_parts[part].digest(w, i);
+            uint64_t there = 0;
+            const char *how = "differs";
+            char number[16] = "";
+            demi_visit(s, &there, sizeof there);
+            if (there == here || (part == DEMI_PART_WALLS && !there)) continue;
+            if (part == DEMI_PART_WALLS && !here) how = "was removed here and stands there";
+            if (part) snprintf(number, sizeof number, " %d", i + 1);
+            return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene: %s%s %s; "
+                             "%s", call, path, demi_scene_parts[part].name, number, how, advice);
+        }
     return DEM_OK;
 }
 
-/* Room for all that a file holds; 0 when there is none, and the world is as it was. */
-static int demi_checkpoint_room(dem_world *w, const demi_extent *shape) {
-    const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride;
-    const int near = w->near.stride, domains = w->domain_count;
-    const int stride = w->memory_stride, uniform = w->uniform;
-    w->memory_stride = shape->memory_stride;
-    w->uniform = 0;
-    w->domain_count = shape->domains;
-    if ((!shape->orienting || demi_orient_begin(w)) &&
-        demi_bodies_reserve(w, (size_t)DEMI_MAX(shape->count, shape->slots)) &&
-        (!shape->orienting || demi_shaped_reserve(w, shape->shaped_stride)) &&
-        (!shape->orienting || (demi_array_grow(w, &w->spot_start_, sizeof(int32_t),
-                                               (size_t)shape->count + 1) &&
-                               demi_array_grow(w, &w->spot_, 4*sizeof(dem_real),
-                                               (size_t)shape->spots + 1))) &&
-        demi_list_reserve(w, &w->own, shape->domains, shape->own_stride) &&
-        demi_list_reserve(w, &w->cross, shape->domains, shape->cross_stride) &&
-        demi_wall_lists_reserve(w, shape->wall_stride) &&
-        demi_wall_contacts_reserve(w, (size_t)shape->domains*(size_t)shape->wall_now_stride,
-                                   (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
-        demi_near_reserve(w, &w->near, shape->domains, shape->near_stride) &&
-        demi_array_grow(w, &w->quiet_, sizeof(demi_quiet),
-                        (size_t)(shape->count/DEMI_SOME + shape->domains + 1)) &&
-        demi_cross_reserve(w, (size_t)shape->domains*(size_t)shape->cross_stride) &&
-        demi_carry_reserve(w, shape->carry_rows, shape->carry_count, shape->carry_stride))
-        return 1;
-    w->own.stride = own;
-    w->cross.stride = cross;
-    w->wall_stride = walls;
-    w->near.stride = near;
-    w->domain_count = domains;
-    w->memory_stride = stride;
-    w->uniform = uniform;
+/* --- the twin --- */
+
+/* Frees what a run works with: bodies, lists, walls (not their geometry), fields, feeds, outlets. */
+static void demi_state_free(dem_world *w) {
+    demi_room set[20];
+    demi_array *arrays[64];
+    int i, n = demi_body_rooms(w, set), k = 0;
+    for (i = 0; i < n; i++) demi_free(w, *set[i].data, (size_t)w->capacity, set[i].item);
+    demi_free(w, w->slot_index, (size_t)w->slot_capacity, sizeof(int32_t));
+    demi_free(w, w->slot_generation, (size_t)w->slot_capacity, sizeof(uint32_t));
+    demi_free(w, w->walls, (size_t)w->wall_capacity, sizeof(demi_wall));
+    for (i = 0; i < w->field_count; i++) {
+        const size_t cells = demi_field_cells(&w->fields[i]);
+        demi_free(w, w->fields[i].solid, cells, sizeof(double));
+        demi_free(w, w->fields[i].mass, cells, sizeof(double));
+        demi_free(w, w->fields[i].momentum, cells, 3*sizeof(double));
+    }
+    demi_free(w, w->fields, (size_t)w->field_capacity, sizeof(demi_field));
+    for (i = 0; i < 2; i++) {
+        demi_list *list = i ? &w->cross : &w->own;
+        demi_near *near = i ? &w->near_last : &w->near;
+        arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->image_;
+        arrays[k++] = &list->place_;
+        arrays[k++] = &near->a_; arrays[k++] = &near->b_; arrays[k++] = &near->k_;
+        arrays[k++] = &near->image_; arrays[k++] = &near->memory_; arrays[k++] = &near->coef_;
+    }
+    arrays[k++] = &w->quiet_; arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
+    arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
+    arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
+    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_;
+    arrays[k++] = &w->wall_next_;
+    arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
+    arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
+    arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
+    arrays[k++] = &w->feeds_; arrays[k++] = &w->outlets_;
+    for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
+    while (k) demi_array_free(w, arrays[--k]);
+    demi_free(w, w->domains, DEMI_DOMAINS, sizeof(demi_domain));
+    demi_free(w, w->cross_incoming_start, DEMI_DOMAINS + 1, sizeof(int));
+}
+/* Copies of walls, fields, feeds and outlets, the domains: what state is read into. 0 when memory
+   ran out. */
+static int demi_twin_parts(dem_world *t, const dem_world *w) {
+    int i;
+    t->domains = (demi_domain *)demi_alloc(t, DEMI_DOMAINS, sizeof(demi_domain));
+    t->cross_incoming_start = (int *)demi_alloc(t, DEMI_DOMAINS + 1, sizeof(int));
+    t->walls = (demi_wall *)demi_alloc(t, (size_t)w->wall_count, sizeof(demi_wall));
+    t->fields = (demi_field *)demi_alloc(t, (size_t)w->field_count, sizeof(demi_field));
+    if (!t->domains || !t->cross_incoming_start || (w->wall_count && !t->walls) ||
+        (w->field_count && !t->fields) ||
+        !demi_array_grow(t, &t->feeds_, sizeof(demi_feed), (size_t)w->feed_count) ||
+        !demi_array_grow(t, &t->outlets_, sizeof(demi_outlet), (size_t)w->outlet_count)) return 0;
+    t->wall_count = t->wall_capacity = w->wall_count;
+    t->feed_count = w->feed_count;
+    t->outlet_count = w->outlet_count;
+    t->field_capacity = w->field_count;
+    if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
+    for (i = 0; i < w->feed_count; i++) *demi_feed_at(t, i) = *demi_feed_at(w, i);
+    for (i = 0; i < w->outlet_count; i++) *demi_outlet_at(t, i) = *demi_outlet_at(w, i);
+    for (i = 0; i < w->field_count; i++) {
+        const size_t cells = demi_field_cells(&w->fields[i]);
+        demi_field *f = &t->fields[i];
+        *f = w->fields[i];
+        f->solid = (double *)demi_alloc(t, cells, sizeof(double));
+        f->mass = (double *)demi_alloc(t, cells, sizeof(double));
+        f->momentum = (double *)demi_alloc(t, cells, 3*sizeof(double));
+        t->field_count = i + 1;
+        if (!f->solid || !f->mass || !f->momentum) return 0;
+    }
+    return 1;
+}
+/* An empty world of the scene of w: it has walls, fields, feeds and outlets of its own, but looks at
+   w's materials, shapes and geometry. Null when memory ran out. */
+static dem_world *demi_twin_make(dem_world *w) {
+    dem_world *t = (dem_world *)demi_alloc(w, 1, sizeof *t);
+    if (!t) return 0;
+    t->desc = w->desc;
+    t->asked = w->asked;
+    t->material_count = w->material_count;
+    memcpy(t->materials, w->materials, sizeof t->materials);
+    t->pairs = w->pairs;
+    t->form_count = w->form_count;
+    t->form_capacity = w->form_capacity;
+    t->forms = w->forms;
+    t->normal = (int)w->desc.normal_law;
+    if (demi_twin_parts(t, w)) return t;
+    demi_state_free(t);
+    demi_free(w, t, 1, sizeof *t);
     return 0;
 }
+/* The twin's state takes the place of the world's. */
+static void demi_twin_adopt(dem_world *w, dem_world *t) {
+    size_t bytes;
+    int i;
+    for (i = 0; i < w->wall_count; i++)
+        if (t->walls[i].kind == DEMI_WALL_NONE) demi_wall_free(w, &w->walls[i]);
+    demi_state_free(w);
+    bytes = w->bytes + t->bytes;
+    memcpy(t->error, w->error, sizeof t->error);
+    *w = *t;
+    w->bytes = bytes;
+    demi_free(w, t, 1, sizeof *t);
+}
 
-/* What follows from the rest, and is not stored. */
-static void demi_checkpoint_follow(dem_world *w, int orienting) {
-    const demi_periods p = demi_periods_of(w);
-    int d, k, l;
-    w->spots_valid = w->lll_valid = 0;
-    if (!orienting) w->shaped_count = 0;
-    if (w->shaped_count && w->list_valid) demi_spots_lay(w);          /* its room is there */
-    for (k = 0; k < w->count && w->orienting && !orienting; k++) {
-        demi_quat_put(w->orient + 4*k, dem_quat_make(1, 0, 0, 0));
-        w->body_shape[k] = 0;
-        demi_put(w->moment + 4*k, demi_moments_of(w, k));
+/* --- reading: does what it says make sense? Each of these checks one part of the twin, right after
+       it was read, and answers 0 with a sentence when not --- */
+
+typedef struct demi_reader {
+    dem_world *w, *t;
+    const char *path;
+    demi_stream s;
+} demi_reader;
+
+static int demi_lie(const demi_reader *r, const char *what, long long which) {
+    char number[32] = "";
+    if (which >= 0) snprintf(number, sizeof number, " %lld", which + 1);
+    demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: %s%s cannot be, although the "
+              "check sum is right; the file was altered, or the run that wrote it had blown up: "
+              "use an older one", r->path, what, number);
+    return 0;
+}
+/* Are so many items of `size` bytes left in the file? */
+static int demi_left(const demi_reader *r, int64_t count, size_t size) {
+    return count >= 0 && (uint64_t)count <= r->s.left/size;
+}
+/* Finite, and at least `least`. */
+static int demi_sane(double x, double least) { return demi_finite_double(x) && x >= least; }
+
+static int demi_numbers_check(const demi_reader *r) {
+    const dem_world *t = r->t, *w = r->w;
+    const int tangent = w->desc.tangent_law == DEM_TANGENT_AUTO ? (int)DEM_TANGENT_SPRING
+        : (int)w->desc.tangent_law;
+    const int rolling = w->desc.rolling_law == DEM_ROLLING_AUTO ? (int)DEM_ROLLING_EPSD
+        : (int)w->desc.rolling_law;
+    const double positive[] = {t->skin, t->reach, t->wall_reach, t->skin_auto,
+        t->assumed_speed, t->near_span, t->near_age, t->near_margin, t->near_drift, t->near_kick,
+        t->near_creep, t->speed_max, t->half_kick, (double)t->radius_min, (double)t->radius_max,
+        (double)t->dt};
+    const size_t per = 31*sizeof(dem_real) + 8 + (t->orienting ? 12*sizeof(dem_real) + 4 : 0);
+    size_t i;
+    if (!demi_left(r, t->count, per) || !demi_left(r, t->slot_count, 8) ||
+        t->count > INT_MAX/64 || t->slot_count > INT_MAX/64 || t->count > t->slot_count)
+        return demi_lie(r, "its number of bodies or of slots", -1);
+    if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
+        (t->list_valid && (!t->domain_count ||
+                           t->domain_count > demi_domains_for(4*t->count + 16))) || !demi_left(r, t->domain_count, sizeof(demi_domain)))
+        return demi_lie(r, "its number of domains", -1);
+    if (t->shaped_count < 0 || t->shaped_count > (t->orienting ? t->count : 0) ||
+        (w->asked.orientations && !t->orienting))
+        return demi_lie(r, "its number of bodies that are not spheres", -1);
+    if (!demi_left(r, t->carry_count, 4) || t->carry_rows < 0 || t->carry_rows > t->slot_count ||
+        t->carry_stride < 0 || t->carry_stride > DEMI_MEMORY || (t->list_valid && t->carry_count))
+        return demi_lie(r, "its contact memory", -1);
+    if ((t->tangent != tangent && t->tangent != DEM_TANGENT_NONE && (t->tangent || t->list_valid)) ||
+        (t->rolling != rolling && t->rolling != DEM_ROLLING_NONE && (t->rolling || t->list_valid)) ||
+        (t->uniform & ~1))
+        return demi_lie(r, "the laws in force", -1);
+    for (i = 0; i < sizeof positive/sizeof *positive; i++)
+        if (!demi_sane(positive[i], 0))
+            return demi_lie(r, "its time, time step, skin or one of the lengths that go with the "
+                            "list", -1);
+    if (!demi_finite_double(t->time) || fabs(t->time) > DEMI_REACH || (t->dt_valid && t->count && !(t->dt > 0)) ||
+        (t->dt_valid && t->count && w->desc.dt > 0 && (t->dt < w->desc.dt || t->dt > w->desc.dt)))
+        return demi_lie(r, "its time or time step", -1);
+    if (t->balance.present != (uint64_t)t->count ||
+        t->balance.inserted != t->balance.present + t->balance.removed + t->balance.left)
+        return demi_lie(r, "its balance of bodies", -1);
+    return 1;
+}
+/* Counts of domain d; begins where the one before ended. */
+static int demi_domain_check(const demi_reader *r, int d) {
+    const dem_world *t = r->t;
+    const demi_domain *o = &t->domains[d];
+    const int counts[] = {o->own, o->cross, o->walls, o->near_own, o->near_end - o->near_cross,
+        o->near_shaped_cross - o->near_shaped, o->near_shaped_end - o->near_shaped_cross,
+        o->contacts, o->wall_contacts, o->shaped, o->shaped_walls, o->near_cross, o->near_end,
+        o->near_shaped, o->near_shaped_cross, o->near_shaped_end};
+    const int group = DEMI_LANES;
+    size_t i;
+    for (i = 0; i < sizeof counts/sizeof *counts; i++)
+        if (counts[i] < 0 || counts[i] > INT_MAX/64) return 0;
+    if (!demi_left(r, o->wall_contacts, sizeof(demi_wall_contact)) ||
+        !demi_left(r, o->shaped, sizeof(demi_shaped)) || (o->shaped && !t->orienting)) return 0;
+    if (!t->list_valid) return 1;
+    return o->begin == (d ? t->domains[d - 1].end : 0) && o->end >= o->begin &&
+           o->end <= t->count && (d + 1 < t->domain_count || o->end == t->count) &&
+           demi_left(r, o->own, 8) && demi_left(r, o->cross, 8) &&
+           demi_left(r, o->walls, 12 + sizeof(dem_real)) &&
+           demi_left(r, o->near_shaped_end, 8) &&
+           o->near_cross == (o->near_own + group - 1)/group*group &&
+           o->near_shaped == (o->near_end + group - 1)/group*group &&
+           o->near_own + o->near_shaped_cross - o->near_shaped <= o->own &&
+           o->near_end - o->near_cross + o->near_shaped_end - o->near_shaped_cross <= o->cross &&
+           o->wall_contacts <= (int64_t)o->walls*demi_wall_most(t);
+}
+static int demi_domains_check(const demi_reader *r) {
+    dem_world *t = r->t;
+    int d;
+    for (d = 0; d < t->domain_count; d++) {
+        demi_domain *o = &t->domains[d];
+        if (!demi_domain_check(r, d)) return demi_lie(r, "the counts of domain", d);
+        o->overflow = 0;
+        if (t->list_valid) continue;
+        o->begin = DEMI_MIN(DEMI_MAX(o->begin, 0), t->count);    /* of a list that is no more */
+        o->end = DEMI_MIN(DEMI_MAX(o->end, o->begin), t->count);
     }
-    demi_effects(w);
-    demi_image_shifts(w);
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        const int first = d*w->near.stride;
+    return 1;
+}
+/* Slots: those of bodies, and two chains of free ones that nothing else is in. */
+static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
+    const dem_world *t = r->t;
+    int i, chain, left = t->slot_count - t->count;
+    for (i = 0; i < t->count; i++) {
+        const uint32_t slot = t->body_slot[i];
+        if (slot >= (uint32_t)t->slot_count || t->slot_index[slot] != i)
+            return demi_lie(r, "the slot of body", i);
+    }
+    for (chain = 0; chain < 2; chain++) {
+        int slot = chain ? t->slot_pending : t->slot_free;
+        while (slot != -1) {
+            if (slot < 0 || slot >= t->slot_count || seen[slot]++ || t->slot_index[slot] >= 0 ||
+                t->slot_index[slot] < -2 - t->slot_count || !left--)
+                return demi_lie(r, "a chain of free slots", -1);
+            slot = -2 - t->slot_index[slot];
+        }
+    }
+    return left == 0 ? 1 : demi_lie(r, "the number of free slots", -1);
+}
+static dem_real demi_quat_size2(const dem_real *q) {
+    return q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3];
+}
+static int demi_bodies_sane(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const dem_real *fours[] = {t->pos, t->vel, t->spin, t->half_vel, t->half_spin, t->force,
+                               t->torque, t->last_pos, t->orient, t->angular, t->moment};
+    int i, k, shaped = 0;
+    size_t f;
+    for (i = 0; i < t->count; i++) {
+        for (f = 0; f < sizeof fours/sizeof *fours; f++)
+            for (k = 0; k < 4; k++)
+                if (fours[f] && !demi_finite(fours[f][4*i + k]))
+                    return demi_lie(r, "a number of body", i);
+        if (demi_size(demi_at(t->pos + 4*i)) > DEMI_REACH || !(t->pos[4*i + 3] > 0) ||
+            !demi_sane((double)t->mass[i], 0) || !(t->mass[i] > 0) ||
+            !demi_sane((double)t->inv_mass[i], 0) || !demi_sane((double)t->inv_inertia[i], 0))
+            return demi_lie(r, "position, radius or mass of body", i);
+        if (t->body_material[i] < 1 || t->body_material[i] > t->material_count)
+            return demi_lie(r, "the material of body", i);
+        if (!t->orienting) continue;
+        if (t->body_shape[i] < 0 || t->body_shape[i] > t->form_count)
+            return demi_lie(r, "the shape of body", i);
+        if (!(demi_quat_size2(t->orient + 4*i) > DEM_R(0.98)) ||
+            !(demi_quat_size2(t->orient + 4*i) < DEM_R(1.02)))
+            return demi_lie(r, "the orientation of body", i);
+        if (!t->body_shape[i]) continue;
+        shaped++;
+        for (k = 0; k < 3; k++)
+            if (!(t->moment[4*i + k] > 0)) return demi_lie(r, "the inertia of body", i);
+    }
+    return shaped == t->shaped_count ? 1 : demi_lie(r, "the number of shaped bodies", -1);
+}
+/* Near pairs p = begin .. end - 1 of domain d: entries of this list, ascending, all of spheres or
+   none; from here on counted in all domains. */
+static int demi_near_check(const demi_reader *r, int d, const demi_list *list, int count, int begin,
+                           int end, int shaped) {
+    dem_world *t = r->t;
+    const int first = d*list->stride;
+    int p, last = -1;
+    for (p = begin; p < end; p++) {
+        const int at = d*t->near.stride + p, k = t->near.k[at];
+        if (k <= last || k >= count || t->near.a[at] != list->a[first + k] ||
+            t->near.b[at] != list->b[first + k] ||
+            shaped != (demi_form_of(t, t->near.a[at]) || demi_form_of(t, t->near.b[at])))
+            return demi_lie(r, "a near pair of domain", d);
+        last = k;
+        t->near.k[at] = first + k;
+    }
+    return 1;
+}
+static int demi_lists_check(const demi_reader *r) {
+    dem_world *t = r->t;
+    int d, l, k;
+    for (d = 0; d < t->domain_count && t->list_valid; d++) {
+        const demi_domain *o = &t->domains[d];
         for (l = 0; l < 2; l++) {
-            demi_list *list = l ? &w->cross : &w->own;
-            const int begin = d*list->stride, count = l ? domain->cross : domain->own;
+            const demi_list *list = l ? &t->cross : &t->own;
+            const int count = l ? o->cross : o->own, first = d*list->stride;
+            for (k = first; k < first + count; k++) {
+                const int a = list->a[k], b = list->b[k];
+                if (a < o->begin || a >= o->end || b <= a || b >= t->count || (b >= o->end) != l)
+                    return demi_lie(r, "a candidate pair of domain", d);
+            }
+            if (!demi_near_check(r, d, list, count, l ? o->near_cross : 0,
+                                 l ? o->near_end : o->near_own, 0) ||
+                !demi_near_check(r, d, list, count, l ? o->near_shaped_cross : o->near_shaped,
+                                 l ? o->near_shaped_end : o->near_shaped_cross, 1)) return 0;
+        }
+        for (k = d*t->wall_stride; k < d*t->wall_stride + o->walls; k++) {
+            const int wall = t->wall_id[k], body = t->wall_body[k];
+            if (body < o->begin || body >= o->end || wall < 0 || wall >= t->wall_count ||
+                t->walls[wall].kind == DEMI_WALL_NONE || t->wall_element[k] < 0 ||
+                t->wall_element[k] >= t->walls[wall].element_count ||
+                (k > d*t->wall_stride && body < t->wall_body[k - 1]))
+                return demi_lie(r, "a wall candidate of domain", d);
+        }
+    }
+    return 1;
+}
+/* Contacts that last: of bodies, or of slots while there is no list. */
+static int demi_contacts_check(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const int who = t->list_valid ? t->count : t->slot_count;
+    int d, k;
+    for (d = 0; d < t->domain_count; d++) {
+        for (k = 0; k < t->domains[d].wall_contacts; k++) {
+            const demi_wall_contact *c = t->wall_now + d*t->wall_now_stride + k;
+            if (c->body < 0 || c->body >= who || c->wall < 0 || c->wall >= t->wall_count ||
+                (t->list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))
+                return demi_lie(r, "a wall contact of domain", d);
+        }
+        for (k = 0; k < t->domains[d].shaped; k++) {
+            const demi_shaped *c = t->shaped_now + (size_t)d*(size_t)t->shaped_stride + k;
+            if (c->a < 0 || c->a >= who || c->b < -1 || c->b >= who || (c->b < 0 &&
+                (c->wall < 0 || c->wall >= t->wall_count ||
+                 (t->list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))))
+                return demi_lie(r, "a contact of shaped bodies in domain", d);
+        }
+    }
+    if (t->list_valid || !t->carry_count) return 1;
+    for (k = 0; k <= t->carry_rows; k++)
+        if (t->carry_start[k] < (k ? t->carry_start[k - 1] : 0) ||
+            t->carry_start[k] > t->carry_count || (!k && t->carry_start[k]))
+            return demi_lie(r, "contact memory of slot", k);
+    if (t->carry_start[t->carry_rows] != t->carry_count)
+        return demi_lie(r, "contact memory of slot", t->carry_rows);
+    for (k = 0; k < t->carry_count; k++) {
+        const int32_t p = t->carry_partner[k], other = p < 0 ? ~p : p;
+        if (other >= t->slot_count) return demi_lie(r, "a partner in contact memory, entry", k);
+    }
+    return 1;
+}
+static int demi_pose_sane(const dem_pose *p) {
+    int k;
+    for (k = 0; k < 9; k++)
+        if (!demi_finite(p->rotation[k]) || DEMI_ABS(p->rotation[k]) > 2) return 0;
+    return demi_pose_finite(p) && demi_size(p->position) <= DEMI_REACH;
+}
+static int demi_walls_check(const demi_reader *r) {
+    int i;
+    for (i = 0; i < r->t->wall_count; i++) {
+        const demi_wall *wall = &r->t->walls[i], *own = &r->w->walls[i];
+        const dem_motion *m = &wall->motion;
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
+            !demi_pose_sane(&wall->mid)) return demi_lie(r, "the pose of wall", i);
+        if (m->kind != own->motion.kind || !demi_finite3(m->velocity) || !demi_finite3(m->point) ||
+            !demi_finite3(m->axis) || !demi_finite(m->speed) || !demi_finite(m->amplitude) ||
+            !demi_finite(m->frequency) || !demi_finite(m->phase) || !demi_finite_double(m->start))
+            return demi_lie(r, "the motion of wall", i);
+    }
+    return 1;
+}
+static int demi_measured_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->field_count; i++)
+        if (!demi_finite_double(r->t->fields[i].next))
+            return demi_lie(r, "the time of the next sample of field", i);
+    for (i = 0; i < r->t->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(r->t, i);
+        if (f->next < -1 || f->next >= f->desc.class_count || !demi_sane(f->state.mass, 0))
+            return demi_lie(r, "the state of feed", i);
+        for (k = 0; k < f->desc.class_count; k++)
+            if (f->desc.limited && f->state.fed[k] > f->limit[k])
+                return demi_lie(r, "the state of feed", i);
+    }
+    return 1;
+}
+
+/* --- reading: room, and what follows from the rest --- */
+
+static int demi_twin_bodies_room(dem_world *t) {
+    const int orienting = t->orienting, count = t->count, slots = t->slot_count;
+    int ok;
+    t->orienting = t->count = t->slot_count = 0;              /* nothing to keep yet */
+    ok = demi_bodies_reserve(t, (size_t)slots) && (!orienting || demi_orient_begin(t));
+    t->count = count;
+    t->slot_count = slots;
+    return ok;
+}
+/* The lists' rows are as long as the longest asks for, and as a rebuild would make them. */
+static int demi_twin_lists_room(dem_world *t) {
+    int most[7] = {0, 0, 0, 0, 0, 0, 0}, d, k;
+    const int each = t->domain_count ? t->count/t->domain_count : 0;
+    for (d = 0; d < t->domain_count; d++) {
+        const demi_domain *o = &t->domains[d];
+        const int counts[] = {t->list_valid ? o->own : 0, t->list_valid ? o->cross : 0,
+                              t->list_valid ? o->near_shaped_end : 0, t->list_valid ? o->walls : 0,
+                              o->wall_contacts, o->shaped, t->domain_count > 1};
+        for (k = 0; k < 7; k++) most[k] = DEMI_MAX(most[k], counts[k]);
+    }
+    if (t->list_valid) {
+        most[0] = DEMI_MAX(most[0], DEMI_MAX(64, each*3));
+        most[1] = DEMI_MAX(most[1], most[6] ? DEMI_MAX(64, each*3)/4 : 0);
+        most[2] = DEMI_MAX(most[2], DEMI_MAX(64, each*5/2));
+        most[3] = DEMI_MAX(most[3], 64);
+        most[4] = DEMI_MAX(most[4], most[3]*demi_wall_most(t));
+        if (t->shaped_count) most[5] = DEMI_MAX(most[5], DEMI_MAX(64, each*4));
+    }
+    most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
+    t->wall_now_stride = most[4];
+    t->shaped_stride = 0;
+    if (!demi_wall_contacts_reserve(t, (size_t)t->domain_count*(size_t)most[4],
+                                    (size_t)t->domain_count*(size_t)most[4]) ||
+        (t->orienting && !demi_shaped_reserve(t, most[5])) ||
+        !demi_carry_reserve(t, t->carry_rows, t->carry_count, t->carry_stride)) return 0;
+    t->shaped_stride = t->orienting ? most[5] : 0;
+    return !t->list_valid ||
+           (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&
+            demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
+            demi_near_reserve(t, &t->near, t->domain_count, most[2]) &&
+            demi_wall_lists_reserve(t, most[3]) &&
+            demi_array_grow(t, &t->quiet_, sizeof(demi_quiet),
+                            (size_t)(t->count/DEMI_SOME + t->domain_count + 1)));
+}
+/* What follows from the rest, and is not stored. 0 when memory ran out. */
+static int demi_twin_follow(dem_world *t) {
+    const demi_periods p = demi_periods_of(t);
+    int d, k, l;
+    demi_image_shifts(t);
+    for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
+    demi_kernel_choose(t);
+    if (!t->list_valid) return 1;
+    if (t->shaped_count && !demi_spots_lay(t)) return 0;
+    for (d = 0; d < t->domain_count; d++) {
+        const demi_domain *o = &t->domains[d];
+        const int first = d*t->near.stride;
+        for (l = 0; l < 2; l++) {
+            demi_list *list = l ? &t->cross : &t->own;
+            const int begin = d*list->stride, count = l ? o->cross : o->own;
             for (k = begin; k < begin + count; k++)
-                list->image[k] = demi_pair_image(w, &p, list->a[k], list->b[k]);
+                list->image[k] = demi_pair_image(t, &p, list->a[k], list->b[k]);
         }
-        for (k = 0; k < domain->near_end; k++) {
-            const int a = w->near.a[first + k], b = w->near.b[first + k];
-            w->near.image[first + k] = demi_pair_image(w, &p, a, b);
-            if (!w->uniform) demi_near_coefs(w, &w->near, d, k, a, b);
+        for (k = demi_near_first(o); k < o->near_end; k = demi_near_next(o, k)) {
+            const int a = t->near.a[first + k], b = t->near.b[first + k];
+            t->near.image[first + k] = demi_pair_image(t, &p, a, b);
+            if (!t->uniform && !t->pairs_changed) demi_near_coefs(t, &t->near, d, k, a, b);
         }
-        for (k = domain->near_shaped; k < domain->near_shaped_end; k++)
-            w->near.image[first + k] = demi_pair_image(w, &p, w->near.a[first + k],
-                                                       w->near.b[first + k]);
-        demi_near_adopt(w, d);
+        for (k = o->near_shaped; k < o->near_shaped_end; k++)
+            t->near.image[first + k] = demi_pair_image(t, &p, t->near.a[first + k],
+                                                       t->near.b[first + k]);
+        demi_near_adopt(t, d);
     }
-    for (k = 0; k < w->wall_count; k++) w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
-    if (w->list_valid && w->count) {
-        demi_cross_index(w);                                          /* its room is there */
-        for (d = 0; d < w->domain_count; d++) demi_domain_quiet(w, d);
+    if (!demi_cross_index(t)) return 0;
+    for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
+    return 1;
+}
+
+/* Fills the twin from the rest of the file. A memory error has no sentence yet. */
+static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
+    dem_world *t = r->t;
+    demi_stream *s = &r->s;
+    demi_visit_numbers(t, s);
+    if (s->cut) demi_lie(r, "its length", -1);
+    if (s->cut || !demi_numbers_check(r)) return DEM_ERROR_FORMAT;
+    demi_effects_memory(t);
+    demi_visit(s, t->domains, (size_t)t->domain_count*sizeof(demi_domain));
+    if (!demi_domains_check(r)) return DEM_ERROR_FORMAT;
+    *seen = (unsigned char *)demi_alloc(t, (size_t)t->slot_count + 1, 1);
+    if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t)) return DEM_ERROR_MEMORY;
+    demi_visit_bodies(t, s);
+    if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
+    demi_visit_lists(t, s);
+    demi_visit_contacts(t, s);
+    if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
+    demi_visit_walls(t, s);
+    demi_visit_measured(t, s);
+    if (s->cut || s->left) demi_lie(r, "its length", -1);
+    if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r))
+        return DEM_ERROR_FORMAT;
+    return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
+}
+/* Reads a checkpoint from memory. */
+static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const char *data,
+                                        size_t size) {
+    demi_checkpoint_head head;
+    demi_reader r;
+    unsigned char *seen = 0;
+    int i;
+    dem_result result = demi_checkpoint_check(w, path, data, size, &head);
+    if (result != DEM_OK) return result;
+    memset(&r, 0, sizeof r);
+    r.w = w;
+    r.path = path;
+    r.s.from = data + sizeof head;
+    r.s.left = (size_t)head.body_size;
+    {
+        demi_stream digests = r.s;              /* once to compare, once to see what was removed */
+        result = demi_checkpoint_scene(w, path, &digests, head.parts);
     }
-    demi_kernel_choose(w);
+    if (result != DEM_OK) return result;
+    r.t = demi_twin_make(w);
+    if (!r.t) return demi_no_memory(w, "dem_checkpoint_read");
+    for (i = 0; i < DEMI_PARTS; i++) {
+        int k;
+        for (k = 0; k < head.parts[i]; k++) {
+            uint64_t digest = 0;
+            demi_visit(&r.s, &digest, sizeof digest);
+            if (i == DEMI_PART_WALLS && !digest)
+                memset(&r.t->walls[k], 0, sizeof r.t->walls[k]);
+        }
+    }
+    result = demi_twin_read(&r, &seen);
+    demi_free(r.t, seen, (size_t)r.t->slot_count + 1, 1);
+    if (result == DEM_OK) {
+        demi_twin_adopt(w, r.t);
+        return DEM_OK;
+    }
+    demi_state_free(r.t);
+    demi_free(w, r.t, 1, sizeof *r.t);
+    return result == DEM_ERROR_MEMORY ? demi_no_memory(w, "dem_checkpoint_read") : result;
 }
 
 DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
-    const char *call = "dem_checkpoint_read";
-    demi_checkpoint_head head;
-    const demi_extent *shape = &head.shape;
     demi_array bytes = {0, 0, 0};
-    demi_stream s = {0, 0, 0, 0};
     size_t size = 0;
-    dem_result result = demi_load(w, call, path, &bytes, &size);
+    dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
     if (result == DEM_OK)
-        result = demi_checkpoint_check(w, path, (const char *)bytes.data, size, &head);
-    if (result == DEM_OK && !demi_checkpoint_room(w, shape)) result = demi_no_memory(w, call);
-    if (result == DEM_OK) {
-        w->count = shape->count;
-        w->slot_count = shape->slots;
-        w->wall_now_stride = shape->wall_now_stride;
-        if (shape->orienting) w->shaped_stride = shape->shaped_stride;
-        w->list_valid = shape->list_valid;
-        w->carry_count = shape->carry_count;
-        w->carry_rows = shape->carry_rows;
-        w->carry_stride = shape->carry_stride;
-        memset(w->domains, 0, DEMI_DOMAINS*sizeof *w->domains);
-        s.from = (const char *)bytes.data + sizeof head;
-        demi_state_scalars(w, &s);
-        demi_state_visit(w, &s);
-        demi_checkpoint_follow(w, shape->orienting);
-    }
+        result = demi_checkpoint_parse(w, path, (const char *)bytes.data, size);
     demi_array_free(w, &bytes);
     return result;
 }
@@ -11449,48 +11939,14 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
 }
 
 DEM_API void dem_world_destroy(dem_world *w) {
-    demi_room set[20];
-    demi_array *arrays[64];
-    int i, n, k = 0;
     dem_allocator allocator;
+    int i;
     if (!w) return;
-    n = demi_body_rooms(w, set);
-    for (i = 0; i < n; i++) demi_free(w, *set[i].data, (size_t)w->capacity, set[i].item);
-    demi_free(w, w->slot_index, (size_t)w->slot_capacity, sizeof(int32_t));
-    demi_free(w, w->slot_generation, (size_t)w->slot_capacity, sizeof(uint32_t));
     for (i = 0; i < w->wall_count; i++) demi_wall_free(w, &w->walls[i]);
-    demi_free(w, w->walls, (size_t)w->wall_capacity, sizeof(demi_wall));
-    for (i = 0; i < w->field_count; i++) {
-        const size_t cells = demi_field_cells(&w->fields[i]);
-        demi_free(w, w->fields[i].solid, cells, sizeof(double));
-        demi_free(w, w->fields[i].mass, cells, sizeof(double));
-        demi_free(w, w->fields[i].momentum, cells, 3*sizeof(double));
-    }
-    demi_free(w, w->fields, (size_t)w->field_capacity, sizeof(demi_field));
     for (i = 0; i < w->form_count; i++) demi_form_free(w, &w->forms[i]);
     demi_free(w, w->forms, (size_t)w->form_capacity, sizeof(demi_form));
-    for (i = 0; i < 2; i++) {
-        demi_list *list = i ? &w->cross : &w->own;
-        demi_near *near = i ? &w->near_last : &w->near;
-        arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->image_;
-        arrays[k++] = &list->place_;
-        arrays[k++] = &near->a_; arrays[k++] = &near->b_; arrays[k++] = &near->k_;
-        arrays[k++] = &near->image_; arrays[k++] = &near->memory_; arrays[k++] = &near->coef_;
-    }
-    arrays[k++] = &w->quiet_; arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
-    arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
-    arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
-    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_;
-    arrays[k++] = &w->wall_next_;
-    arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
-    arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
-    arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
-    arrays[k++] = &w->feeds_; arrays[k++] = &w->outlets_;
-    for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
-    while (k) demi_array_free(w, arrays[--k]);
+    demi_state_free(w);
     demi_free(w, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
-    demi_free(w, w->domains, DEMI_DOMAINS, sizeof(demi_domain));
-    demi_free(w, w->cross_incoming_start, DEMI_DOMAINS + 1, sizeof(int));
     allocator = w->desc.allocator;
     demi_raw_free(&allocator, w, sizeof *w);
 }
