@@ -11482,10 +11482,11 @@ static int demi_numbers_check(const demi_reader *r) {
 static int demi_domain_check(const demi_reader *r, int d) {
     const dem_world *t = r->t;
     const demi_domain *o = &t->domains[d];
-    const int counts[] = {o->own, o->cross, o->walls, o->near_own, o->near_end - o->near_cross,
-        o->near_shaped_cross - o->near_shaped, o->near_shaped_end - o->near_shaped_cross,
-        o->contacts, o->wall_contacts, o->shaped, o->shaped_walls, o->near_cross, o->near_end,
-        o->near_shaped, o->near_shaped_cross, o->near_shaped_end};
+    const int64_t counts[] = {o->own, o->cross, o->walls, o->near_own,
+        (int64_t)o->near_end - o->near_cross, (int64_t)o->near_shaped_cross - o->near_shaped,
+        (int64_t)o->near_shaped_end - o->near_shaped_cross, o->contacts, o->wall_contacts,
+        o->shaped, o->shaped_walls, o->near_cross, o->near_end, o->near_shaped,
+        o->near_shaped_cross, o->near_shaped_end};
     const int group = DEMI_LANES;
     size_t i;
     for (i = 0; i < sizeof counts/sizeof *counts; i++)
