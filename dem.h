@@ -5765,6 +5765,14 @@ static int demi_walls_refuse(dem_world *w) {
     return 0;
 }
 
+/* A domain out of use: what it counted long ago must not steer the next lists. Contacts that last
+   are still to be moved. */
+static void demi_domain_forget(demi_domain *o) {
+    const int wall_contacts = o->wall_contacts, shaped = o->shaped;
+    memset(o, 0, sizeof *o);
+    o->wall_contacts = wall_contacts;
+    o->shaped = shaped;
+}
 /* Says that a body is nowhere: a run that blew up before, and was gone on with. */
 static dem_result demi_lost(dem_world *w, int body) {
     const dem_real *x = w->pos + 4*body;
@@ -5828,6 +5836,7 @@ static dem_result demi_rebuild(dem_world *w) {
     if (w->shaped_count && !demi_spots_lay(w)) return demi_no_memory(w, "dem_world_step");
     if (w->level_count && !demi_levels_lay(w)) return demi_no_memory(w, "dem_world_step");
     demi_image_shifts(w);
+    for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
     w->domain_count = demi_domains_for(w->count);
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->count*d/w->domain_count);
@@ -5906,7 +5915,13 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
 }
 DEM_API dem_result dem_search_now(dem_world *w) {
     if (demi_null(w, "dem_search_now", w, "world")) return DEM_ERROR_ARGUMENT;
-    return demi_rebuild(w);
+    {
+        const dem_result result = demi_rebuild(w);
+        /* the sentence names the step that would have asked: two names of one length */
+        if (result != DEM_OK && !strncmp(w->error, "dem_world_step", 14))
+            memcpy(w->error, "dem_search_now", 14);
+        return result;
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -9270,6 +9285,9 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
         int sampling = 0;
         if (!w->moved) {
             result = demi_dt_settle(w);
+            /* what a rebuild would refuse is refused before anything is fed */
+            if (result == DEM_OK && w->feed_count && !w->list_valid && demi_walls_refuse(w))
+                result = DEM_ERROR_ARGUMENT;
             if (result == DEM_OK && w->feed_count) {
                 result = demi_feeds_run(w);
                 if (result == DEM_OK) result = demi_dt_settle(w);   /* there may be new grains */
@@ -11421,8 +11439,7 @@ static uint64_t demi_digest_wall(const dem_world *w, int i) {
     if (wall->kind == DEMI_WALL_NONE) return 0;
     h = demi_hash(h, &wall->radius, sizeof(dem_real));
     h = demi_hash(h, &wall->share, sizeof(dem_real));
-    if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_CYLINDER ||
-        wall->kind == DEMI_WALL_SIEVE) h = demi_hash(h, &wall->first, sizeof wall->first);
+    h = demi_hash(h, &wall->first, sizeof wall->first);
     if (wall->kind == DEMI_WALL_SIEVE) h = demi_digest_sieve(&wall->sieve, h);
     if (wall->corners)
         h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*

@@ -580,6 +580,27 @@ int main(int argc, char **argv) {
         CHECK(dem_world_hash(world) != hash);
         dem_world_destroy(world);
     }
+    TEST("a step that is refused for a wall that does not know a body has fed nothing") {
+        dem_world *world = plain_world();
+        const dem_material m = stone(world);
+        dem_sieve_desc sieve = DEM_SIEVE_DESC;
+        dem_feed_desc feed;
+        sieve.kind = DEM_SIEVE_SQUARE;
+        sieve.aperture = DEM_R(0.01);
+        sieve.bar = DEM_R(0.002);
+        CHECK_EQ(dem_sieve_add(world, m, &sieve).id, 1);
+        CHECK(dem_body_add(world, m, dem_shape_ellipsoid_add(world, at(1e-3, 1e-3, 2e-3)),
+                           at(0, 0, 1), dem_quat_make(1, 0, 0, 0)).slot != 0);
+        memset(&feed, 0, sizeof feed);
+        feed.material = m; feed.class_count = 1; feed.limited = 1;
+        feed.radius[0] = DEM_R(1e-3); feed.amount[0] = 5;
+        feed.box = box_of(0, 0, 0.1, 0.1, 0.1, 0.2);
+        CHECK_EQ(dem_feed_add(world, &feed).id, 1);
+        CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "sieve");
+        CHECK_EQ(dem_balance_get(world).present, 1);
+        dem_world_destroy(world);
+    }
     TEST("a linked-list search of no bodies at all finds none") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
