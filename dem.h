@@ -107,7 +107,9 @@
 
    Errors. A function that can fail returns a `dem_result`, or a null id or null pointer, and leaves
    one sentence in dem_world_error: the call, the value, the limit, the likely cause, the remedy.
-   The world stays as it was before the call. A run that cannot be right (a force that is not
+   The world stays as it was before the call. If nobody reads why a part of the scene was refused,
+   the next run does not begin and quotes it. Null worlds, descs and places for answers are
+   answered: DEM_ERROR_ARGUMENT, a null id, 0. A run that cannot be right (a force that is not
    finite, an overlap larger than a radius) stops at the step that caused it. dem.h never prints,
    exits or aborts.
 
@@ -505,7 +507,12 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc);
 /* One sentence on why dem_world_create refuses this desc, or "" when it does not. */
 DEM_API const char *dem_create_error(const dem_world_desc *desc);
 DEM_API void dem_world_destroy(dem_world *world);
-/* The sentence of the last failed call on this world; "" when none failed yet. */
+/* The sentence of the last failed call on this world; "" when none failed yet. Of a null world:
+   that it is null. When a call that builds the scene (adds bodies, materials, shapes, walls, feeds,
+   outlets, fields; sets a pair or a motion) is refused, dem_world_step and dem_world_run do not
+   begin but quote it, until this function was called or the refused one went well: a scene that
+   lacks its floor would run, and answer DEM_OK. A program that handles a refusal by itself and goes
+   on without what was refused calls this first. */
 DEM_API const char *dem_world_error(const dem_world *world);
 DEM_API const char *dem_result_name(dem_result result);
 /* The desc as it is in force: zeros replaced by what was chosen. */
@@ -542,7 +549,10 @@ DEM_API dem_material dem_material_add(dem_world *world, const dem_material_desc 
 typedef struct dem_pair {
     dem_real young_eff;        /* E*, Pa */
     dem_real shear_eff;        /* G*, Pa */
-    dem_real restitution, friction, friction_static, rolling_friction;
+    dem_real restitution, friction;
+    dem_real friction_static;  /* >= friction; 0: the same as friction, and so it is when mixed from
+                                  materials that leave it 0: it follows when friction is changed */
+    dem_real rolling_friction;
     /* N/m, linear and hysteretic law; 0: from E* and impact speed, per pair of radii */
     dem_real stiffness;
     dem_real stiffness_ratio;  /* kt/kn, linear and hysteretic law */
@@ -593,7 +603,7 @@ DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real r
 /* Hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, those for
    which inside(centre, radius, user) is not 0 (null: all whose centre keeps a radius from the box;
    it is called twice a place), at most count (0: all that fit), in layers along z. Returns how many
-   were added. */
+   were added: none, with a sentence, when there are more than 1e9 places to go through. */
 typedef int (*dem_inside_fn)(dem_vec3 centre, dem_real radius, void *user);
 DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real radius,
                              dem_real padding,
@@ -817,7 +827,7 @@ DEM_API int dem_sieve_blinded(const dem_world *world, dem_wall sieve, dem_real s
 
 /* Centres (count x 3, written to out, which may be null) of a drum lined with touching spheres
    along z: [MIL] Algorithm 5.2 (shell) and 5.3 (ends: hexagonal sheet at +-length/2, layers
-   inside). Returns count. */
+   inside). Returns count; 0 when no drum is like that, or it would take more than 5e8. */
 DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radius, int ends,
                             dem_real *out);
 DEM_API dem_result dem_wall_motion(dem_world *world, dem_wall wall, const dem_motion *motion);
@@ -847,7 +857,7 @@ typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* 
 
 /* Adds grains while the world runs: at random places in a region, of random sizes, at a rate, or
    all at once. A grain that finds no free place waits, and is not lost; places are free of other
-   grains (walls are not asked). */
+   grains and of walls where they stand then. */
 typedef struct dem_feed_desc {
     dem_material material;           /* required */
     int class_count;                 /* required, 1..16: classes of size */
@@ -859,7 +869,7 @@ typedef struct dem_feed_desc {
     double rate;                     /* grains/s; 0: all at once, as far as there is room */
     double start, end;               /* s, in the world's time: a feed added later owes what was due
                                         since start; end 0: no end */
-    dem_box box;                     /* m, required: centres are in it; stay a radius off walls */
+    dem_box box;                     /* m, required: centres are in it */
     int round;                       /* 1: in the upright cylinder (elliptic as the box) in it */
     dem_vec3 velocity;               /* m/s */
     dem_real spread;                 /* m/s, each component of velocity +- up to this */
@@ -929,9 +939,11 @@ typedef struct dem_advice {
 DEM_API dem_result dem_step_advice(dem_world *world, dem_advice *advice);
 
 DEM_API dem_result dem_world_step(dem_world *world, int steps);
-/* Runs for seconds (rounded to whole steps). progress, if given, is called about ten times a second
-   of wall time and at the end; a non-zero answer stops the run (DEM_ERROR_STOPPED, state intact).
-   */
+/* Runs on for seconds, to the step nearest to the end. Runs that follow each other add up: twenty
+   of 0.05 s end within half a step of 1 s, since each counts from where the one before should have
+   ended (unless there were other steps between). progress, if given, is called about ten times a
+   second of wall time and at the end; a non-zero answer stops the run (DEM_ERROR_STOPPED, state
+   intact). */
 typedef int (*dem_progress_fn)(const dem_world *world, double done, double seconds_left,
                                void *user);
 DEM_API dem_result dem_world_run(dem_world *world, double seconds, dem_progress_fn progress,
@@ -1058,7 +1070,7 @@ DEM_API void dem_profile_free(dem_world *world, dem_profile *profile);
    OVITO (extended XYZ). Where bodies have orientations, these too (VTK: w x y z; XYZ: x y z w) with
    semi-axes; a cluster is one point for each of its spheres, all of its id. ParaView: Glyph, sphere
    of radius 1, scaled by semi_axes, turned by orientation (quaternion). Written to a temporary name
-   and renamed, so that a file is whole or absent. */
+   and renamed, so that a file is whole or absent; links are followed, pipes refused. */
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path);
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path);
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
@@ -1347,6 +1359,8 @@ static double demi_clock(void) {                          /* s of wall time, for
    Small vectors by value, poses, random numbers. Finite is tested on the exponent bits, which
    -ffast-math cannot fold away.
    --------------------------------------------------------------------------------------------- */
+#define DEMI_REACH 1e15             /* m: coordinates beyond are mistakes; squares could overflow */
+#define DEMI_LEAST 1e-12            /* m: surfaces smaller than that in all are mistakes, too */
 DEM_INLINE dem_vec3 demi_v(dem_real x, dem_real y, dem_real z) { return dem_vec3_make(x, y, z); }
 DEM_INLINE dem_vec3 demi_at(const dem_real *p) { return dem_vec3_make(p[0], p[1], p[2]); }
 DEM_INLINE dem_vec3 demi_add(dem_vec3 a, dem_vec3 b) { return demi_v(a.x + b.x, a.y + b.y, a.z +
@@ -1372,14 +1386,15 @@ static dem_vec3 demi_unit(dem_vec3 a) {                   /* of any length but 0
 }
 DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
 
-static int demi_finite(dem_real x) {
-    double d = (double)x;
+static int demi_finite_double(double x) {
     uint64_t bits;
-    memcpy(&bits, &d, sizeof bits);
+    memcpy(&bits, &x, sizeof bits);
     return ((bits >> 52) & 0x7ff) != 0x7ff;
 }
+static int demi_finite(dem_real x) { return demi_finite_double((double)x); }
 static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y) &&
                                      demi_finite(v.z); }
+static int demi_place(dem_vec3 v) { return demi_finite3(v) && demi_size(v) <= DEMI_REACH; }
 
 /* local -> world and back, for points and for directions */
 DEM_INLINE dem_vec3 demi_turn(const dem_real *R, dem_vec3 a) {
@@ -1424,11 +1439,6 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
     for (i = 0; i < size; i++) h = (h ^ p[i])*UINT64_C(1099511628211);
     return h;
 }
-
-/* m: coordinates beyond are mistakes, squares of them could overflow; things smaller than LEAST in
-   all are, too */
-#define DEMI_REACH 1e15
-#define DEMI_LEAST 1e-12
 
 /* ---------------------------------------------------------------------------------------------
    >>memory
@@ -1634,6 +1644,9 @@ typedef struct demi_level {
 /* classes of radii a factor sqrt 2 wide, before they are joined */
 enum { DEMI_LEVELS = 24 };
 
+/* Steps of one length: time is counted from their beginning, so that rounding does not add up. */
+typedef struct demi_since { double time; uint64_t steps; double dt; } demi_since;
+
 /* Box ends of the linked linear list on one axis. */
 typedef struct demi_end { dem_real value; int32_t box; int32_t upper; } demi_end;
 
@@ -1641,6 +1654,8 @@ struct dem_world {
     dem_world_desc desc;           /* as given, with choices filled in */
     dem_world_desc asked;          /* as given */
     char error[512];
+    char refusal[512];             /* of the first call that builds the scene and was refused */
+    unsigned refused;              /* which of demi_builders were, since dem_world_error was read */
     size_t bytes;
 
     int material_count, pairs_changed;
@@ -1698,6 +1713,9 @@ struct dem_world {
     double wall_fastest;           /* m/s, fastest wall point of the step */
     double skin, reach, wall_reach;/* m: margin, farthest a body / a wall point went since */
     double skin_auto;              /* m: what the cost model proposes; 0: nothing yet */
+    /* a rebuild or a new near list that ran out of memory had chosen these: tried again, it takes
+       the same, since the counts they are chosen by may be gone */
+    int skin_chosen, near_chosen;
     uint64_t last_rebuild;         /* step */
     dem_real image_shift[27*4];    /* m, from a body to another's image; 0: none */
     int domain_count;
@@ -1751,7 +1769,10 @@ struct dem_world {
     /* step */
     void (*kernel)(dem_world *w, int domain);
     uint64_t steps, rebuilds;
-    double time;
+    double time;                   /* s: since.time + (steps - since.steps) since.dt */
+    demi_since since;              /* when the present dt came into force */
+    double run_end;                /* s: where the last run should have ended, */
+    uint64_t run_steps;            /* and the step at which it did */
     dem_real dt;
     double assumed_speed;          /* m/s, behind dt */
     int dt_valid, forces_valid, synced, primed;
@@ -1762,15 +1783,74 @@ struct dem_world {
     double half_kick;              /* s, of the step under way */
 };
 
+/* The calls that build a scene: without what they would have added or chosen, a run is another one.
+   Not here: those that take away, look, read or write. */
+static const char *const demi_builders[] = {"dem_material_add", "dem_pair_set", "dem_spheres_add",
+    "dem_spheres_fill", "dem_spheres_pack", "dem_body_add", "dem_bodies_add", "dem_bodies_fill",
+    "dem_shape_ellipsoid_add", "dem_shape_cluster_add", "dem_plane_add", "dem_cylinder_add",
+    "dem_profile_add", "dem_mesh_add", "dem_grains_wall_add", "dem_sieve_add", "dem_wall_motion",
+    "dem_feed_add", "dem_outlet_add", "dem_field_add", "dem_moldyn_add"};
+/* Which of them a sentence begins with (or is); -1: none. */
+static int demi_builder_of(const char *sentence) {
+    size_t k;
+    for (k = 0; k < sizeof demi_builders/sizeof *demi_builders; k++) {
+        const size_t n = strlen(demi_builders[k]);
+        if (!strncmp(sentence, demi_builders[k], n) && (sentence[n] == ':' || !sentence[n]))
+            return (int)k;
+    }
+    return -1;
+}
+
 static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
                             ...) DEMI_FORMAT(3, 4);
 static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
     va_list args;
+    int call;
     va_start(args, format);
     vsnprintf(w->error, sizeof w->error, format, args);
     va_end(args);
+    call = demi_builder_of(w->error);
+    if (call < 0) return result;
+    if (!w->refused) memcpy(w->refusal, w->error, sizeof w->refusal);
+    w->refused |= 1u << call;
     return result;
 }
+/* A call that builds the scene went well: an earlier refusal of the same call is made good. */
+static void demi_built(dem_world *w, const char *call) {
+    const int k = demi_builder_of(call);
+    int next;
+    if (k < 0 || !(w->refused >> k & 1u)) return;
+    w->refused &= ~(1u << k);
+    if (!w->refused || demi_builder_of(w->refusal) != k) return;
+    for (next = 0; !(w->refused >> next & 1u);) next++;
+    snprintf(w->refusal, sizeof w->refusal, "%s: was refused, too", demi_builders[next]);
+}
+/* Before a run: says so when a call that builds the scene was refused and nobody read why. A scene
+   that lacks something would run, and answer DEM_OK. */
+static dem_result demi_unbuilt(dem_world *w, const char *call) {
+    char why[sizeof w->refusal];
+    if (!w->refused) return DEM_OK;
+    memcpy(why, w->refusal, sizeof why);
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: not begun, because a call before was refused and "
+                     "nobody has read why: \"%.320s\"; mend that call, or read dem_world_error "
+                     "and go on without it", call, why);
+}
+/* 1, with a sentence where there is a world to hold it, when the world or a pointer that has to
+   lead somewhere is null: the first line of every public function asks. */
+static int demi_null(const dem_world *w, const char *call, const void *pointer, const char *name) {
+    if (w && pointer) return 0;
+    if (w) demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: %s is null; give its address", call,
+                     name);
+    return 1;
+}
+static const dem_material demi_no_material = {0};
+static const dem_shape demi_no_shape = {0};
+static const dem_body demi_no_body = {0, 0};
+static const dem_wall demi_no_wall = {0};
+static const dem_field demi_no_field = {0};
+static const dem_feed demi_no_feed = {0};
+static const dem_outlet demi_no_outlet = {0};
+
 static dem_result demi_no_memory(dem_world *w, const char *call) {
     return demi_fail(w, DEM_ERROR_MEMORY, "%s: out of memory with %.1f MB held; use fewer bodies "
                      "or a smaller skin; nothing was changed", call, (double)w->bytes/1e6);
@@ -1880,6 +1960,7 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     dem_pair p;
     const double Ea = (double)a->young, Eb = (double)b->young, na = (double)a->poisson;
     const double nb = (double)b->poisson;
+    const int sticks = a->friction_static > 0 || b->friction_static > 0;
     const double sa = (double)(a->friction_static > 0 ? a->friction_static : a->friction);
     const double sb = (double)(b->friction_static > 0 ? b->friction_static : b->friction);
     memset(&p, 0, sizeof p);
@@ -1889,12 +1970,11 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     }
     p.restitution = (dem_real)sqrt((double)a->restitution*(double)b->restitution);
     p.friction = (dem_real)sqrt((double)a->friction*(double)b->friction);
-    p.friction_static = (dem_real)sqrt(sa*sb);
+    p.friction_static = sticks ? (dem_real)sqrt(sa*sb) : 0;   /* 0: follows the sliding one */
     p.rolling_friction = (dem_real)sqrt((double)a->rolling_friction*(double)b->rolling_friction);
     p.tangent_damping = 1;
     p.stiffness_adhesion =
         (dem_real)sqrt((double)a->stiffness_adhesion*(double)b->stiffness_adhesion);
-    /* springs in series; equal materials: their own value */
     /* springs in series; equal materials: their own value */
     if (a->stiffness > 0 && b->stiffness > 0)
         p.stiffness = 2*a->stiffness*b->stiffness/(a->stiffness + b->stiffness);
@@ -1909,6 +1989,7 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
 }
 
 DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *desc) {
+    if (demi_null(w, "dem_material_add", desc, "desc")) return demi_no_material;
     dem_material id; int i, n = w->material_count;
     id.id = 0;
     if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
@@ -1924,6 +2005,7 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
     for (i = 0; i <= n; i++)
         w->pairs[i*DEMI_MATERIALS + n] = w->pairs[n*DEMI_MATERIALS + i] =
             demi_mix(&w->materials[i], &w->materials[n]);
+    demi_built(w, "dem_material_add");
     id.id = n + 1;
     return id;
 }
@@ -1939,6 +2021,7 @@ static dem_result demi_material_index(dem_world *w, const char *call, dem_materi
 
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
                                 dem_pair *pair) {
+    if (demi_null(world, "dem_pair_get", pair, "pair")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;          /* only the error sentence is written */
     int i = 0, j = 0;
     if (demi_material_index(w, "dem_pair_get", a, &i) ||
@@ -1949,6 +2032,7 @@ DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_mate
 }
 
 DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
+    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
     int i = 0, j = 0;
     const char *bad = 0, *limit = "";
     dem_real value = 0;
@@ -1964,7 +2048,9 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
     DEMI_BAD(restitution, p->restitution > 0 && p->restitution <= 1, "> 0 and <= 1")
     DEMI_BAD(friction, p->friction >= 0, ">= 0")
-    DEMI_BAD(friction_static, p->friction_static >= p->friction, "at least the sliding friction")
+    DEMI_BAD(friction_static, DEMI_ABS(p->friction_static) <= 0 ||
+             p->friction_static >= p->friction,
+             "0, to be the same as the sliding friction, or at least that")
     DEMI_BAD(rolling_friction, p->rolling_friction >= 0, ">= 0")
     DEMI_BAD(stiffness, p->stiffness >= 0, ">= 0 N/m")
     DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, ">= 0")
@@ -1979,6 +2065,7 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
                          (double)value, limit);
     w->pairs[i*DEMI_MATERIALS + j] = w->pairs[j*DEMI_MATERIALS + i] = *p;
     w->pairs_changed = 1;                       /* the next step makes a new list of it */
+    demi_built(w, "dem_pair_set");
     w->dt_valid = 0;
     return DEM_OK;
 }
@@ -2092,9 +2179,28 @@ static double demi_sphere_inertia(const dem_world *w, double mass, double r) {
     return w->desc.planar ? mass*r*r/2 : 0.4*mass*r*r;
 }
 
+/* 1 with a sentence when a sphere or disc of this radius would have a mass or moment of inertia
+   that dem_real cannot hold, or not the inverse of: what moves it would be 0 or infinite. */
+static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_real radius, int i) {
+    const double r = (double)radius, m = demi_sphere_mass(w, material, r);
+    const double inertia = demi_sphere_inertia(w, m, r);
+    const dem_real four[] = {(dem_real)m, (dem_real)(1/m), (dem_real)inertia,
+                             (dem_real)(1/inertia)};
+    int k, bad = !demi_finite_double(m) || !(m > 0) || !demi_finite_double(inertia) ||
+        !(inertia > 0) || r > DEMI_REACH;
+    for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
+    if (bad)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius of number %d is %g m, which gives it a mass "
+                  "of %g kg: too small or too large to calculate with in %s precision; lengths are "
+                  "in metres: check the unit; nothing was added", call, i, r, m,
+                  DEMI_SINGLE ? "single" : "double");
+    return bad;
+}
+
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
                                         dem_coefficients *out) {
+    if (demi_null(world, "dem_coefficients_get", out, "out")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;
     int i = 0, j = 0;
     double ra = (double)radius_a, rb = (double)radius_b, ma, r, m;
@@ -2126,6 +2232,7 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
 }
 
 DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
+    if (demi_null(w, "dem_pairs_print", out, "out")) return;
     int i, j;
     fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
             "kt/kn\n");
@@ -2136,7 +2243,8 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
                     i + 1, j + 1,
                     (double)p->young_eff, (double)p->shear_eff, (double)p->restitution,
                     (double)p->friction,
-                    (double)p->friction_static, (double)p->rolling_friction, (double)p->stiffness,
+                    (double)DEMI_MAX(p->friction, p->friction_static),
+                    (double)p->rolling_friction, (double)p->stiffness,
                     (double)p->stiffness_ratio);
         }
 }
@@ -2373,6 +2481,7 @@ static dem_shape demi_form_adopt(dem_world *w, const char *call, demi_form *form
         w->form_capacity = (int)room;
     }
     w->forms[w->form_count++] = *form;
+    demi_built(w, call);
     id.id = w->form_count;
     return id;
 }
@@ -2384,6 +2493,7 @@ static int demi_shape_planar(dem_world *w, const char *call) {
 }
 
 DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
+    if (demi_null(w, "dem_shape_ellipsoid_add", w, "world")) return demi_no_shape;
     demi_form form;
     dem_shape none;
     const double lo = (double)DEMI_MIN(a.x, DEMI_MIN(a.y, a.z));
@@ -2468,6 +2578,11 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
                   (double)desc->positions[3*i + 2]);
         return 0;
     }
+    if ((int)desc->mass < 0 || desc->mass > DEM_CLUSTER_GIVEN) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: mass is %d, must be a DEM_CLUSTER_ value; start from "
+                  "DEM_CLUSTER_DESC", call, (int)desc->mass);
+        return 0;
+    }
     if (desc->mass != DEM_CLUSTER_GIVEN) return 1;
     if (desc->volume > 0 && demi_finite(desc->volume) && demi_finite3(desc->centre) && I[0] > 0 &&
         I[1] > 0 && I[2] > 0 && I[0] <= I[1] + I[2] && I[1] <= I[0] + I[2] && I[2] <= I[0] + I[1] &&
@@ -2499,6 +2614,7 @@ static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const
     return 1;
 }
 DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *desc) {
+    if (demi_null(w, "dem_shape_cluster_add", desc, "desc")) return demi_no_shape;
     demi_form form;
     demi_moments m;
     dem_shape none;
@@ -2549,6 +2665,7 @@ static int demi_form_index(dem_world *w, const char *call, dem_shape shape) {
     return -1;
 }
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info) {
+    if (demi_null(world, "dem_shape_get", info, "info")) return DEM_ERROR_ARGUMENT;
     const int i = demi_form_index((dem_world *)world, "dem_shape_get", shape);
     const demi_form *form;
     dem_vec3 I;
@@ -2748,6 +2865,7 @@ static double demi_meet_chord(const demi_meet *m, const double *A) {
 }
 DEM_API dem_meeting dem_ellipsoids_meet(const dem_ellipsoid *a, const dem_ellipsoid *b,
                                         dem_real lambda) {
+    if (!a || !b) { dem_meeting nothing; memset(&nothing, 0, sizeof nothing); return nothing; }
     const dem_quat none = dem_quat_make(1, 0, 0, 0);
     const dem_quat qa = demi_quat_most(a->orientation) > 0 ? demi_quat_unit(a->orientation) : none;
     const dem_quat qb = demi_quat_most(b->orientation) > 0 ? demi_quat_unit(b->orientation) : none;
@@ -3184,6 +3302,7 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
                                    const dem_real *positions,
                                    const dem_real *velocities, const dem_real *radii,
                                    dem_real radius) {
+    if (demi_null(w, "dem_spheres_add", w, "world")) return DEM_ERROR_ARGUMENT;
     int i, m = 0;
     if (demi_material_index(w, "dem_spheres_add", material,
                             &m) != DEM_OK) return DEM_ERROR_ARGUMENT;
@@ -3197,11 +3316,13 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: radius of sphere %d is %g, "
                              "must be > 0 m; "
                              "no sphere was added", i, (double)r);
-        if (!demi_finite3(demi_at(positions + 3*i)) || (velocities &&
-                                                        !demi_finite3(demi_at(velocities + 3*i))))
+        if (demi_mass_refuse(w, "dem_spheres_add", m, r, i)) return DEM_ERROR_ARGUMENT;
+        if (!demi_place(demi_at(positions + 3*i)) || (velocities &&
+                                                      !demi_finite3(demi_at(velocities + 3*i))))
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of "
-                             "sphere %d is not a "
-                             "finite number; check the data it came from; no sphere was added", i);
+                             "sphere %d is not a finite number, or the position is farther than "
+                             "%g m from the origin; check the data it came from; no sphere was "
+                             "added", i, DEMI_REACH);
     }
     if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count))
         return demi_no_memory(w, "dem_spheres_add");
@@ -3215,11 +3336,13 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
         w->energy_inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
+    demi_built(w, "dem_spheres_add");
     return DEM_OK;
 }
 
 DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real radius,
                                 dem_vec3 position) {
+    if (demi_null(w, "dem_sphere_add", w, "world")) return demi_no_body;
     dem_body id;
     dem_real x[3];
     id.slot = id.generation = 0;
@@ -3240,10 +3363,11 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
     }
     for (i = 0; i < count; i++) {
         const dem_quat o = q ? demi_quat_at(q + 4*i) : dem_quat_make(1, 0, 0, 0);
-        if (!demi_finite3(demi_at(x + 3*i)) || (v && !demi_finite3(demi_at(v + 3*i))) ||
+        if (!demi_place(demi_at(x + 3*i)) || (v && !demi_finite3(demi_at(v + 3*i))) ||
             (spin && !demi_finite3(demi_at(spin + 3*i)))) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: position, velocity or spin of body %d is not a "
-                      "finite number; check the data it came from; no body was added", call, i);
+                      "finite number, or the position is farther than %g m from the origin; check "
+                      "the data it came from; no body was added", call, i, DEMI_REACH);
             return 0;
         }
         if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
@@ -3260,6 +3384,25 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
     }
     return 1;
 }
+/* 1 with a sentence when a body of a shape, scaled, would weigh nothing or too much. */
+static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, int form,
+                                  dem_real scale, int i) {
+    const double s = (double)scale, density = (double)w->materials[material].density;
+    const double m = density*w->forms[form].volume*s*s*s;
+    const dem_vec3 I = w->forms[form].inertia;
+    const double least = m*s*s*(double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
+    const double most = m*s*s*(double)DEMI_MAX(I.x, DEMI_MAX(I.y, I.z));
+    const dem_real six[] = {(dem_real)m, (dem_real)(1/m), (dem_real)least, (dem_real)(1/least),
+                            (dem_real)most, (dem_real)(1/most)};
+    int k, bad = !demi_finite_double(m) || !(m > 0);
+    for (k = 0; k < 6 && !bad; k++) bad = !demi_finite(six[k]) || !(six[k] > 0);
+    if (bad)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %d has scale %g and a mass of %g kg: it or its "
+                  "inertia is too small or too large to calculate with in %s precision; lengths "
+                  "are in metres: check the unit; nothing was added", call, i, s, m,
+                  DEMI_SINGLE ? "single" : "double");
+    return bad;
+}
 static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material material,
                                   dem_shape shape, int count, const dem_real *positions,
                                   const dem_real *orientations, const dem_real *velocities,
@@ -3269,6 +3412,9 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
         (f = demi_form_index(w, call, shape)) < 0 ||
         !demi_bodies_check(w, call, count, positions, orientations, velocities, spins, scales))
         return DEM_ERROR_ARGUMENT;
+    for (i = 0; i < count; i++)
+        if (demi_shape_mass_refuse(w, call, m, f, scales ? scales[i] : 1, i))
+            return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count) ||
         !demi_orient_begin(w)) return demi_no_memory(w, call);
     for (i = 0; i < count; i++) {
@@ -3285,17 +3431,20 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
         w->energy_inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
+    demi_built(w, call);
     return DEM_OK;
 }
 DEM_API dem_result dem_bodies_add(dem_world *w, dem_material material, dem_shape shape, int count,
                                   const dem_real *positions, const dem_real *orientations,
                                   const dem_real *velocities, const dem_real *spins,
                                   const dem_real *scales) {
+    if (demi_null(w, "dem_bodies_add", w, "world")) return DEM_ERROR_ARGUMENT;
     return demi_bodies_add(w, "dem_bodies_add", material, shape, count, positions, orientations,
                            velocities, spins, scales);
 }
 DEM_API dem_body dem_body_add(dem_world *w, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation) {
+    if (demi_null(w, "dem_body_add", w, "world")) return demi_no_body;
     dem_body id;
     dem_real x[3], q[4];
     id.slot = id.generation = 0;
@@ -3350,6 +3499,7 @@ static void demi_body_take_out(dem_world *w, int i) {
 }
 
 DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
+    if (demi_null(w, "dem_body_remove", w, "world")) return DEM_ERROR_ARGUMENT;
     int i = demi_body_index(w, "dem_body_remove", body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_remove");
@@ -3360,6 +3510,7 @@ DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
 }
 
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *s) {
+    if (demi_null(world, "dem_body_get", s, "state")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;
     int i = demi_body_index(w, "dem_body_get", body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
@@ -3384,6 +3535,7 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
 }
 
 DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_state *s) {
+    if (demi_null(w, "dem_body_set", s, "state")) return DEM_ERROR_ARGUMENT;
     int i = demi_body_index(w, "dem_body_set", body);
     const demi_form *form;
     const dem_quat q = s->orientation;
@@ -3395,10 +3547,11 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
                          "%g, %g), must be finite and not zero; fill the state with dem_body_get "
                          "first", (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y,
                          (double)q.z);
-    if (!demi_finite3(s->position) || !demi_finite3(s->velocity) || !demi_finite3(s->spin))
+    if (!demi_place(s->position) || !demi_finite3(s->velocity) || !demi_finite3(s->spin))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: position, velocity or spin of body "
-                         "%u is not a finite "
-                         "number; check what it was computed from", (unsigned)body.slot);
+                         "%u is not a finite number, or the position is farther than %g m from the "
+                         "origin; check what it was computed from", (unsigned)body.slot,
+                         DEMI_REACH);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_set");
     before = demi_body_energy(w, i);
     m = (double)w->mass[i];
@@ -3426,6 +3579,8 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
 
 DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
     dem_bodies b;
+    memset(&b, 0, sizeof b);
+    if (!w) return b;
     b.count = w->count;
     b.positions = w->pos; b.velocities = w->vel; b.spins = w->spin; b.forces = w->force;
     b.torques = w->torque;
@@ -3435,6 +3590,7 @@ DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
     return b;
 }
 DEM_API dem_body dem_bodies_id(const dem_world *w, int index) {
+    if (demi_null(w, "dem_bodies_id", w, "world")) return demi_no_body;
     dem_body id;
     id.slot = id.generation = 0;
     if (index < 0 || index >= w->count) return id;
@@ -3442,7 +3598,11 @@ DEM_API dem_body dem_bodies_id(const dem_world *w, int index) {
     id.generation = w->slot_generation[w->body_slot[index]];
     return id;
 }
-DEM_API dem_balance dem_balance_get(const dem_world *w) { return w->balance; }
+DEM_API dem_balance dem_balance_get(const dem_world *w) {
+    dem_balance none;
+    memset(&none, 0, sizeof none);
+    return w ? w->balance : none;
+}
 
 /* Buckets of the bodies there are, for finding room: cell = at least twice the largest radius. */
 typedef struct demi_buckets { dem_box box; double cell; int n[3]; int32_t *head, *next;
@@ -3454,7 +3614,7 @@ static int demi_bucket_of(const demi_buckets *g, dem_vec3 x) {
     lo[0] = (double)g->box.lo.x; lo[1] = (double)g->box.lo.y; lo[2] = (double)g->box.lo.z;
     for (k = 0; k < 3; k++) {
         double t = floor((p[k] - lo[k])/g->cell);
-        c[k] = t < 0 ? 0 : t >= g->n[k] ? g->n[k] - 1 : (int)t;
+        c[k] = !(t > 0) ? 0 : t >= g->n[k] ? g->n[k] - 1 : (int)t;
     }
     return c[0] + g->n[0]*(c[1] + g->n[1]*c[2]);
 }
@@ -3496,11 +3656,13 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                   call, (double)radius, count);
         return 0;
     }
+    if (form < 0 ? demi_mass_refuse(w, call, m, radius, 0)
+                 : demi_shape_mass_refuse(w, call, m, form, 1, 0)) return 0;
     size[0] = (double)(box.hi.x - box.lo.x) - 2*(double)radius;
     size[1] = (double)(box.hi.y - box.lo.y) - 2*(double)radius;
     size[2] = planar ? 0 : (double)(box.hi.z - box.lo.z) - 2*(double)radius;
-    if (!(size[0] >= 0 && size[1] >= 0 && size[2] >= 0) || !demi_finite3(box.lo) ||
-        !demi_finite3(box.hi)) {
+    if (!(size[0] >= 0 && size[1] >= 0 && size[2] >= 0) || !demi_place(box.lo) ||
+        !demi_place(box.hi)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
                   "give lo below hi by at least a diameter", call, (double)radius);
         return 0;
@@ -3558,6 +3720,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                   form < 0 ? "spheres" : "bodies with bounding spheres", (double)radius,
                   form < 0 ? "pack them with dem_spheres_pack"
                   : "place them yourself with dem_bodies_add");
+    demi_built(w, call);                        /* fewer than asked: the answer says so */
     demi_free(w, g.head, cells, sizeof(int32_t));
     demi_free(w, g.next, (size_t)g.next_room + 1, sizeof(int32_t));
     demi_scene_changed(w);
@@ -3565,10 +3728,12 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
 }
 DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius, dem_box box,
                              int count, uint64_t seed) {
+    if (demi_null(w, "dem_spheres_fill", w, "world")) return 0;
     return demi_fill(w, "dem_spheres_fill", material, -1, radius, box, count, seed);
 }
 DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape, dem_box box,
                             int count, uint64_t seed) {
+    if (demi_null(w, "dem_bodies_fill", w, "world")) return 0;
     const int form = demi_form_index(w, "dem_bodies_fill", shape);
     if (form < 0) return 0;
     if (!demi_orient_begin(w)) { demi_no_memory(w, "dem_bodies_fill"); return 0; }
@@ -3577,52 +3742,91 @@ DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape
 
 /* Sphere (i, j, k) of a hexagonal close packing of spheres of radius r that starts at the origin:
    even and odd layers alternate. In a plane: a triangular lattice, k = 0. */
-static dem_vec3 demi_pack_site(int i, int j, int k, double r) {
-    const double root3 = sqrt(3.0);
-    return demi_v((dem_real)(r*(2*i + ((j + k) & 1))), (dem_real)(r*root3*(j + (k & 1)/3.0)),
-                  (dem_real)(r*k*2*sqrt(6.0)/3));
+static dem_vec3 demi_pack_site(int64_t i, int64_t j, int64_t k, double r) {
+    const double root3 = sqrt(3.0), x = (double)(2*i + ((j + k) & 1));
+    return demi_v((dem_real)(r*x), (dem_real)(r*root3*((double)j + (double)(k & 1)/3.0)),
+                  (dem_real)(r*(double)k*2*sqrt(6.0)/3));
 }
 
+typedef struct demi_packing {
+    dem_real radius;
+    double pitch, size[3];           /* m: radius with half the padding; room for centres */
+    dem_box box;
+    dem_inside_fn inside;
+    void *user;
+} demi_packing;
+/* Goes through the places of a packing, at most `most` of those that are taken, and adds spheres
+   there when asked. Answers how many. */
+static int demi_packing_fill(dem_world *w, const demi_packing *p, int material, int most, int add) {
+    const double slack = 1e-9*p->pitch;
+    int64_t i, j, k;
+    int done = 0;
+    for (k = 0; done < most; k++) {
+        if ((double)demi_pack_site(0, 0, k, p->pitch).z > p->size[2] + slack) break;
+        for (j = 0; done < most; j++) {
+            if ((double)demi_pack_site(0, j, k, p->pitch).y > p->size[1] + slack) break;
+            for (i = 0; done < most; i++) {
+                const dem_vec3 s = demi_pack_site(i, j, k, p->pitch);
+                dem_vec3 x;
+                if ((double)s.x > p->size[0] + slack) break;
+                x = demi_v(p->box.lo.x + p->radius + s.x, p->box.lo.y + p->radius + s.y,
+                           w->desc.planar ? 0 : p->box.lo.z + p->radius + s.z);
+                if (p->inside && !p->inside(x, p->radius, p->user)) continue;
+                if (add) demi_body_append(w, material, p->radius, x);
+                done++;
+            }
+        }
+        if (w->desc.planar) break;
+    }
+    return done;
+}
 DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radius, dem_real padding,
                              dem_box box, dem_inside_fn inside, void *user, int count) {
-    const double r = (double)radius + (double)padding/2, slack = 1e-9*r;
-    double size[3];
-    int i, j, k, n[3], m = 0, done = 0, pass;
-    if (demi_material_index(w, "dem_spheres_pack", material, &m) != DEM_OK) return 0;
+    const char *call = "dem_spheres_pack";
+    const int room = INT_MAX/64 - (w ? w->count : 0);
+    demi_packing p;
+    int m = 0, done;
+    double places = 1;
+    if (demi_null(w, call, w, "world") || demi_material_index(w, call, material, &m) != DEM_OK)
+        return 0;
     if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
-        count < 0 ||
-        !demi_finite3(box.lo) || !demi_finite3(box.hi)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_pack: radius %g, padding %g, count %d; must "
-                  "be > 0, >= 0, >= 0 "
-                  "and the box finite", (double)radius, (double)padding, count);
+        count < 0 || !demi_place(box.lo) || !demi_place(box.hi)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius %g, padding %g, count %d; must be > 0, >= 0, "
+                  ">= 0 and the box finite", call, (double)radius, (double)padding, count);
         return 0;
     }
-    if (!demi_list_drop(w)) { demi_no_memory(w, "dem_spheres_pack"); return 0; }
-    size[0] = (double)(box.hi.x - box.lo.x) - 2*(double)radius;
-    size[1] = (double)(box.hi.y - box.lo.y) - 2*(double)radius;
-    size[2] = w->desc.planar ? 0 : (double)(box.hi.z - box.lo.z) - 2*(double)radius;
-    for (k = 0; k < 3; k++) n[k] = size[k] < 0 ? 0 : (int)DEMI_MIN(size[k]/r + 2, 1e8);
-    if (w->desc.planar) n[2] = 1;
-    for (pass = 0; pass < 2; pass++) {          /* count, make room, add: all or nothing */
-        done = 0;
-        for (k = 0; k < n[2]; k++)
-            for (j = 0; j < n[1]; j++)
-                for (i = 0; i < n[0]; i++) {
-                    const dem_vec3 s = demi_pack_site(i, j, k, r);
-                    dem_vec3 x;
-                    if ((double)s.x > size[0] + slack || (double)s.y > size[1] + slack ||
-                        (double)s.z > size[2] + slack) break;
-                    x = demi_v(box.lo.x + radius + s.x, box.lo.y + radius + s.y,
-                               w->desc.planar ? 0 : box.lo.z + radius + s.z);
-                    if ((count && done == count) || (inside && !inside(x, radius, user))) continue;
-                    if (pass) demi_body_append(w, m, radius, x);
-                    done++;
-                }
-        if (!pass && !demi_bodies_reserve(w, (size_t)w->count + (size_t)done)) {
-            demi_no_memory(w, "dem_spheres_pack");
-            return 0;
-        }
+    if (demi_mass_refuse(w, call, m, radius, 0)) return 0;
+    p.radius = radius;
+    p.pitch = (double)radius + (double)padding/2;
+    p.size[0] = (double)(box.hi.x - box.lo.x) - 2*(double)radius;
+    p.size[1] = (double)(box.hi.y - box.lo.y) - 2*(double)radius;
+    p.size[2] = w->desc.planar ? 0 : (double)(box.hi.z - box.lo.z) - 2*(double)radius;
+    p.box = box;
+    p.inside = inside;
+    p.user = user;
+    for (done = 0; done < 3; done++)            /* a sphere takes 4 sqrt 2 pitch^3 of space */
+        places *= DEMI_MAX(p.size[done]/p.pitch, 0)*0.56 + 1;
+    if ((inside ? places : count ? (double)DEMI_MIN(places, (double)count) : places) > 1e9) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has about %.2g places for radius %g m, which "
+                  "is more than can be gone through; make the box smaller, or check the unit of "
+                  "both", call, places, (double)radius);
+        return 0;
     }
+    if (!demi_list_drop(w)) { demi_no_memory(w, call); return 0; }
+    /* count, make room, add: all or nothing */
+    done = demi_packing_fill(w, &p, m, count ? DEMI_MIN(count, room + 1) : room + 1, 0);
+    if (done > room) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: more than %d spheres of radius %g m would be added, "
+                  "which is more than a world holds; make the box smaller or the spheres larger",
+                  call, room, (double)radius);
+        return 0;
+    }
+    if (!demi_bodies_reserve(w, (size_t)w->count + (size_t)done)) {
+        demi_no_memory(w, call);
+        return 0;
+    }
+    done = demi_packing_fill(w, &p, m, done, 1);
+    demi_built(w, call);
     demi_scene_changed(w);
     return done;
 }
@@ -3838,7 +4042,7 @@ static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
 }
 
 /* The surfaces of a group of walls as one, under work. Points are the corners of all of them, one
-   wall after the other, in the world; facets are their elements, those left out that have two
+   wall after the other, where they were when their motion began (so that a restart finds the same); facets are their elements, those left out that have two
    corners in one place. */
 typedef struct demi_join {
     int per;                       /* corners of a facet: 3 (meshes) or 2 (profiles) */
@@ -3908,7 +4112,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
         const demi_wall *wall = &w->walls[i];
         if (!demi_join_member(w, i, group, per)) continue;
         for (k = 0; k < wall->vertex_count; k++) {
-            const dem_vec3 at = demi_add(wall->pose.position, demi_turn(wall->pose.rotation,
+            const dem_vec3 at = demi_add(wall->home.position, demi_turn(wall->home.rotation,
                                          demi_at(wall->vertices + 3*k)));
             double *x = j->x + 3*j->points++;
             x[0] = (double)at.x; x[1] = (double)at.y; x[2] = (double)at.z;
@@ -4126,8 +4330,8 @@ static void demi_join_corners(dem_world *w, demi_join *j) {
 }
 static dem_vec3 demi_join_local(const demi_join *j, const demi_wall *wall, int32_t point) {
     const double *x = j->x + 3*point;
-    return demi_unturn(wall->pose.rotation, demi_sub(demi_v((dem_real)x[0], (dem_real)x[1],
-                                                            (dem_real)x[2]), wall->pose.position));
+    return demi_unturn(wall->home.rotation, demi_sub(demi_v((dem_real)x[0], (dem_real)x[1],
+                                                            (dem_real)x[2]), wall->home.position));
 }
 /* Hands the cuts over to their walls, by element. 0 when memory ran out. */
 static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
@@ -4456,6 +4660,7 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     }
     w->walls[w->wall_count++] = *wall;
     w->facets_valid = 0;
+    demi_built(w, call);
     demi_scene_changed(w);
     id.id = w->wall_count;
     return id;
@@ -4473,6 +4678,7 @@ static int demi_wall_begin(dem_world *w, const char *call, dem_material material
 
 DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 point,
                                dem_vec3 normal) {
+    if (demi_null(w, "dem_plane_add", w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
@@ -4495,6 +4701,7 @@ DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 poi
 DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 point,
                                   dem_vec3 axis,
                                   dem_real radius, int inside) {
+    if (demi_null(w, "dem_cylinder_add", w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
@@ -4530,7 +4737,7 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
         return 0;
     }
     for (i = 0; i < vertices*per_vertex; i++)
-        if (!demi_finite(xyz[i]) || DEMI_ABS((double)xyz[i]) > DEMI_REACH) {
+        if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_REACH) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be finite, "
                       "between -%g and %g; was the file read whole, in metres?", call,
                       i/per_vertex, (double)xyz[i], DEMI_REACH, DEMI_REACH);
@@ -4582,6 +4789,7 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
 
 DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_profile *profile,
                                  dem_edge_rule rule) {
+    if (demi_null(w, "dem_profile_add", profile, "profile")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
@@ -4594,6 +4802,7 @@ DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_
 }
 
 DEM_API dem_wall dem_mesh_add(dem_world *w, dem_material material, const dem_mesh *mesh) {
+    if (demi_null(w, "dem_mesh_add", mesh, "mesh")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
@@ -4607,6 +4816,7 @@ DEM_API dem_wall dem_mesh_add(dem_world *w, dem_material material, const dem_mes
 DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int count,
                                      const dem_real *positions,
                                      dem_real radius, dem_real share) {
+    if (demi_null(w, "dem_grains_wall_add", w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
@@ -4626,6 +4836,7 @@ DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int co
 }
 
 DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
+    if (demi_null(w, "dem_sieve_add", d, "desc")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     const char *bad = 0, *limit = "";
@@ -4695,26 +4906,29 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
 DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radius, int ends,
                             dem_real *out) {
     const double R = (double)drum_radius, L = (double)length, r = (double)radius;
-    const double half = asin(r/(R - r));
-    int layers, circle, i, j, k, count = 0;
-    if (!(r > 0) || !(R > 2*r) || !(L > 0) || !demi_finite(drum_radius) ||
+    const double half = asin(r/(R - r)), root3 = sqrt(3.0), across = 2*R/(r*root3) + 5;
+    const double round = DEMI_PI/half, along = ceil((L - 2*r)/(r*root3)) + 1;
+    int layers, circle, i, j, k;
+    size_t count = 0;
+    if (!(r > 0) || !(R > 2*r) || !(L > 0) || !demi_finite(drum_radius) || !demi_finite(radius) ||
         !demi_finite(length)) return 0;
-    circle = (int)(DEMI_PI/half);
-    layers = (int)ceil((L - 2*r)/(r*sqrt(3.0))) + 1;
+    if (!(round*along + (ends ? 2*across*across : 0) < (double)(INT_MAX/4))) return 0;
+    circle = (int)round;
+    layers = (int)along;
     for (k = 0; k < layers; k++)
         for (i = 0; i < circle; i++, count++) {
             const double angle = 2*DEMI_PI*i/circle + (k & 1 ? DEMI_PI/circle : 0);
             if (!out) continue;
             out[3*count] = (dem_real)((R - r)*cos(angle));
             out[3*count + 1] = (dem_real)((R - r)*sin(angle));
-            out[3*count + 2] = (dem_real)(-L/2 + r*(1 + k*sqrt(3.0)));
+            out[3*count + 2] = (dem_real)(-L/2 + r*(1 + k*root3));
         }
-    if (!ends) return count;
+    if (!ends) return (int)count;
     for (k = -1; k <= 1; k += 2) {
-        const int rows = (int)(R/(r*sqrt(3.0))) + 2, columns = (int)(R/(2*r)) + 2;
+        const int rows = (int)(R/(r*root3)) + 2, columns = (int)(R/(2*r)) + 2;
         for (j = -rows; j <= rows; j++)
             for (i = -columns; i <= columns; i++) {
-                const double x = 2*r*i + (j & 1 ? r : 0), y = r*sqrt(3.0)*j;
+                const double x = 2*r*i + (j & 1 ? r : 0), y = r*root3*j;
                 if (sqrt(x*x + y*y) >= R + r) continue;
                 if (out) {
                     out[3*count] = (dem_real)x;
@@ -4724,7 +4938,7 @@ DEM_API int dem_drum_grains(dem_real drum_radius, dem_real length, dem_real radi
                 count++;
             }
     }
-    return count;
+    return (int)count;
 }
 
 /* Index of a wall, or -1 with a sentence. */
@@ -4752,6 +4966,7 @@ static int demi_wall_symmetric(const demi_wall *wall) {
 }
 
 DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *motion) {
+    if (demi_null(w, "dem_wall_motion", motion, "motion")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, "dem_wall_motion", id);
     demi_wall *wall;
     if (i < 0) return DEM_ERROR_ARGUMENT;
@@ -4772,7 +4987,7 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
         !demi_finite3(motion->axis) ||
         !demi_finite(motion->speed) || !demi_finite(motion->amplitude) ||
         !demi_finite(motion->frequency) ||
-        !demi_finite(motion->phase) || !(motion->start > -1e300 && motion->start < 1e300) ||
+        !demi_finite(motion->phase) || !demi_finite_double(motion->start) ||
         (int)motion->kind < 0 || motion->kind > DEM_MOTION_USER)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: a number in the motion of wall "
                          "%d is not finite, or "
@@ -4788,11 +5003,13 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
     demi_wall_pose_at(wall, w->time, &wall->pose);
     wall->mid = wall->pose;
     w->facets_valid = 0;
+    demi_built(w, "dem_wall_motion");
     demi_scene_changed(w);
     return DEM_OK;
 }
 
 DEM_API dem_result dem_wall_pose(const dem_world *world, dem_wall id, dem_pose *pose) {
+    if (demi_null(world, "dem_wall_pose", pose, "pose")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find((dem_world *)world, "dem_wall_pose", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *pose = world->walls[i].pose;
@@ -4800,6 +5017,7 @@ DEM_API dem_result dem_wall_pose(const dem_world *world, dem_wall id, dem_pose *
 }
 
 DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
+    if (demi_null(w, "dem_wall_remove", w, "world")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, "dem_wall_remove", id);
     int k;
     if (i < 0) return DEM_ERROR_ARGUMENT;
@@ -4816,12 +5034,14 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
 }
 
 DEM_API dem_result dem_wall_channels(const dem_world *world, dem_wall id, dem_channels *channels) {
+    if (demi_null(world, "dem_wall_channels", channels, "channels")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find((dem_world *)world, "dem_wall_channels", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *channels = world->walls[i].channels;
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_channels_reset(dem_world *w, dem_wall id) {
+    if (demi_null(w, "dem_wall_channels_reset", w, "world")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, "dem_wall_channels_reset", id);
     demi_wall *wall;
     if (i < 0) return DEM_ERROR_ARGUMENT;
@@ -4909,7 +5129,7 @@ static int demi_cell_of(const double *origin, const double *size, const int *cel
     int c[3], k;
     for (k = 0; k < 3; k++) {
         const double t = ((double)x[k] - origin[k])/size[k];
-        c[k] = t <= 0 ? 0 : t >= cells[k] ? cells[k] - 1 : (int)t;
+        c[k] = !(t > 0) ? 0 : t >= cells[k] ? cells[k] - 1 : (int)t;
     }
     return c[0] + cells[0]*(c[1] + cells[1]*c[2]);
 }
@@ -5457,7 +5677,7 @@ static int demi_lll_start(dem_world *w) {
             ends[k].upper = k & 1;
             ends[k].value = demi_box_end(w, ends[k].box, axis, k & 1);
         }
-        qsort(ends, (size_t)n*2, sizeof *ends, demi_end_compare);
+        if (n) qsort(ends, (size_t)n*2, sizeof *ends, demi_end_compare);
     }
     for (i = 0; i < w->lll_table_.capacity; i++) ((demi_pair_key *)w->lll_table_.data)[i].lo = -1;
     w->lll_size = 0;
@@ -6242,11 +6462,22 @@ static int demi_near_make(dem_world *w, int fresh) {
     return 1;
 }
 
+/* What the laws in force keep per contact. */
+static void demi_effects_memory(dem_world *w) {
+    w->memory_stride = demi_memory_of(w->normal, w->tangent, w->rolling);
+    w->vector_mask = 0x77;
+    if (w->normal == DEM_NORMAL_HYSTERETIC)     /* a depth has no direction */
+        w->vector_mask &= ~(1 << demi_memory_shear(w->tangent, w->rolling));
+    if (!w->desc.law) return;
+    w->memory_stride = w->desc.law_memory;
+    w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
+}
 /* The effects of the live scene: which laws act, whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, j, friction = 0, rolling = 0;
     for (i = 0; i < w->material_count; i++)
         for (j = 0; j < w->material_count; j++) {
+            friction |= w->pairs[i*DEMI_MATERIALS + j].friction > 0;
             friction |= w->pairs[i*DEMI_MATERIALS + j].friction_static > 0;
             rolling |= w->pairs[i*DEMI_MATERIALS + j].rolling_friction > 0;
         }
@@ -6257,14 +6488,7 @@ static void demi_effects(dem_world *w) {
     if (w->rolling == DEM_ROLLING_AUTO) w->rolling = DEM_ROLLING_EPSD;
     if (!friction) w->tangent = DEM_TANGENT_NONE;
     if (!rolling) w->rolling = DEM_ROLLING_NONE;
-    w->memory_stride = demi_memory_of(w->normal, w->tangent, w->rolling);
-    w->vector_mask = 0x77;
-    if (w->normal == DEM_NORMAL_HYSTERETIC)     /* a depth has no direction */
-        w->vector_mask &= ~(1 << demi_memory_shear(w->tangent, w->rolling));
-    if (w->desc.law) {
-        w->memory_stride = w->desc.law_memory;
-        w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
-    }
+    demi_effects_memory(w);
     w->uniform = w->count > 0;
     w->fixed_count = 0;
     w->radius_min = w->radius_max = w->count ? w->pos[3] : 0;
@@ -6297,6 +6521,7 @@ static void demi_skin_choose(dem_world *w) {
     const double r = (double)(w->radius_min > 0 ? w->radius_min : 1);
     const double steps = (double)(w->steps - w->last_rebuild);
     int k;
+    w->skin_auto = DEMI_MIN(w->skin_auto, 2*r);   /* all bodies may be others by now */
     if (w->desc.skin > 0) { w->skin = (double)w->desc.skin; return; }
     if (w->desc.skin < 0) { w->skin = 0; return; }
     if (w->skin_auto <= 0) w->skin_auto = 0.1*r;
@@ -6359,13 +6584,55 @@ static int demi_walls_refuse(dem_world *w) {
     return 0;
 }
 
+/* A domain out of use: what it counted long ago must not steer the next lists. Contacts that last
+   are still to be moved. */
+static void demi_domain_forget(demi_domain *o) {
+    const int wall_contacts = o->wall_contacts, shaped = o->shaped;
+    memset(o, 0, sizeof *o);
+    o->wall_contacts = wall_contacts;
+    o->shaped = shaped;
+}
+/* Says that a body is nowhere: a run that blew up before, and was gone on with. */
+static dem_result demi_lost(dem_world *w, int body) {
+    const dem_real *x = w->pos + 4*body;
+    return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its position is "
+                     "(%g, %g, %g) m, must be finite and at most %g m from the origin; the run "
+                     "blew up before (two grains at one place, dt too large, or a law, field "
+                     "or motion of your own that divides by zero): take the body out, or go back "
+                     "to a checkpoint", (unsigned long long)w->steps,
+                     (unsigned)w->body_slot[body] + 1, (double)x[0], (double)x[1], (double)x[2],
+                     DEMI_REACH);
+}
+/* Bodies that lie on each other, or far from all others, share a cell, and a cell's bodies are all
+   compared. 1 with a sentence when that would take minutes. */
+static int demi_crowd_refuse(dem_world *w) {
+    const int32_t *start = (const int32_t *)w->cell_start_.data;
+    const int n = w->cells[0]*w->cells[1]*w->cells[2];
+    double work = 0;
+    int c, crowd = 0;
+    for (c = 0; c < n; c++) {
+        const int here = start[c + 1] - start[c];
+        work += (double)here*here;
+        crowd = DEMI_MAX(crowd, here);
+    }
+    if (w->desc.search == DEM_SEARCH_ALL_PAIRS || w->desc.search == DEM_SEARCH_LINKED_LIST ||
+        work <= 1e9 + 2e4*w->count) return 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: a search would compare %.2g pairs: %d of %d "
+              "bodies are in one cell of %.3g by %.3g by %.3g m; they lie on each other, or some "
+              "are far from all others: take those out (an outflow boundary does), or spread the "
+              "others", work, crowd, w->count, w->cell_size[0], w->cell_size[1], w->cell_size[2]);
+    return 1;
+}
 /* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
    they were (the next call tries again). */
 static dem_result demi_rebuild(dem_world *w, const char *call) {
     int d, k, stride, again;
+    for (k = 0; k < w->count; k++)
+        if (!demi_place(demi_at(w->pos + 4*k))) return demi_lost(w, k);
     if (!demi_list_drop(w)) return demi_no_memory(w, call);
     demi_effects(w);
-    demi_skin_choose(w);
+    if (!w->skin_chosen || w->visitor) demi_skin_choose(w);
+    w->skin_chosen = 1;
     /* other laws: memory means nothing */
     if (w->carry_stride != w->memory_stride) w->carry_count = 0;
     demi_wrap(w);
@@ -6385,9 +6652,11 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     if (!demi_grid_lay(w, 2*(w->wide ? w->level_fine : (double)w->radius_max) + w->skin + 1e-300))
         return demi_no_memory(w, call);
     demi_bodies_sort(w);
+    if (!w->level_count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
     if (w->shaped_count && !demi_spots_lay(w)) return demi_no_memory(w, call);
     if (w->level_count && !demi_levels_lay(w)) return demi_no_memory(w, call);
     demi_image_shifts(w);
+    for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
     w->domain_count = demi_domains_for(w->count);
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].begin = (int)((int64_t)w->count*d/w->domain_count);
@@ -6410,7 +6679,8 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
             return demi_no_memory(w, call);
     } while (again);
     if (!demi_cross_index(w)) return demi_no_memory(w, call);
-    demi_near_choose(w);
+    if (!w->near_chosen) demi_near_choose(w);
+    w->near_chosen = 1;
     if (!demi_near_make(w, 1)) return demi_no_memory(w, call);
     if (!demi_wall_lists_reserve(w, DEMI_MAX(w->wall_stride, 64))) return demi_no_memory(w, call);
     do {
@@ -6430,6 +6700,7 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
         w->slot_free = slot;
     }
     w->carry_count = 0;
+    w->skin_chosen = w->near_chosen = 0;
     w->reach = w->wall_reach = 0;
     w->last_rebuild = w->steps;
     w->rebuilds++;
@@ -6445,6 +6716,7 @@ static int demi_list_stale(const dem_world *world, const char *call) {
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
+    if (demi_null(w, "dem_candidates_get", w, "world")) return -1;
     int d, l, k, n = 0;
     if (!w->list_valid) return demi_list_stale(w, "dem_candidates_get");
     for (d = 0; d < w->domain_count; d++)
@@ -6459,7 +6731,10 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
         }
     return n;
 }
-DEM_API dem_result dem_search_now(dem_world *w) { return demi_rebuild(w, "dem_search_now"); }
+DEM_API dem_result dem_search_now(dem_world *w) {
+    if (demi_null(w, "dem_search_now", w, "world")) return DEM_ERROR_ARGUMENT;
+    return demi_rebuild(w, "dem_search_now");
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>touch
@@ -6531,7 +6806,7 @@ typedef struct demi_places {
     uint32_t mask;
     int count;
 } demi_places;
-static void demi_place(demi_places *p, int32_t number, dem_real weight, dem_vec3 d, dem_real d2) {
+static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem_vec3 d, dem_real d2) {
     uint32_t slot = (uint32_t)number*UINT32_C(2654435769) & p->mask;
     int i = 0;
     if (!p->table) while (i < p->count && p->at[i].element != number) i++;
@@ -6607,7 +6882,7 @@ static void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const de
         done = where;
     }
     if (add < 0 || add > 0)
-        demi_place(p, where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
+        demi_places_add(p, where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
                    : corners + wall->corners[n*e + where - 4], add, d, d2);
     for (k = 0; k < 3 && n == 3 && own & 7; k++) {
         const dem_real count = weight[edges + wall->edges[3*e + k]];
@@ -6615,14 +6890,14 @@ static void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const de
         d = demi_side_point(y[k], y[(k + 1)%3], k, (k + 1)%3, &at);
         d2 = demi_dot(d, d);
         if (d2 < most)
-            demi_place(p, at < 4 ? edges + wall->edges[3*e + k]
+            demi_places_add(p, at < 4 ? edges + wall->edges[3*e + k]
                        : corners + wall->corners[3*e + at - 4], count, d, d2);
     }
     for (k = 0; k < n && own >> 3; k++) {
         const int32_t number = corners + wall->corners[n*e + k];
         if (!(own >> (3 + k) & 1) || !(weight[number] < 0 || weight[number] > 0)) continue;
         d2 = demi_dot(y[k], y[k]);
-        if (d2 < most) demi_place(p, number, weight[number], y[k], d2);
+        if (d2 < most) demi_places_add(p, number, weight[number], y[k], d2);
     }
     if (!wall->cut_start) return;
     for (k = wall->cut_start[e]; k < wall->cut_start[e + 1]; k++) {
@@ -6632,7 +6907,7 @@ static void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const de
         if (part) { a = demi_in_measure(part, a); b = demi_in_measure(part, b); }
         d = demi_side_point(a, b, 0, 1, &at);
         d2 = demi_dot(d, d);
-        if (d2 < most) demi_place(p, at < 4 ? c->number : c->end[at - 4], c->weight, d, d2);
+        if (d2 < most) demi_places_add(p, at < 4 ? c->number : c->end[at - 4], c->weight, d, d2);
     }
 }
 
@@ -6809,9 +7084,9 @@ static void demi_places_rings(const demi_wall *wall, const int32_t *element, int
     slope = t < 1 ? 12*t*(1 - t) : 0;           /* dh/dq */
     for (i = 0; i < count; i++)
         if (link[i].more < 0 || link[i].more > 0)
-            demi_place(p, link[i].place, link[i].more*(h + lost*slope), link[i].point,
+            demi_places_add(p, link[i].place, link[i].more*(h + lost*slope), link[i].point,
                        link[i].distance*link[i].distance);
-    demi_place(p, ring.number, -lost*lost*slope, ring.point, ring.distance*ring.distance);
+    demi_places_add(p, ring.number, -lost*lost*slope, ring.point, ring.distance*ring.distance);
 }
 
 /* --- sieves: a sphere against all of a sieve, in the sieve's frame: z across, a hole in the
@@ -9240,7 +9515,7 @@ static void demi_ledger_book(dem_world *w) {
 DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     dem_ledger l;
     memset(&l, 0, sizeof l);
-    if (!w->desc.ledger) return l;
+    if (!w || !w->desc.ledger) return l;
     demi_kinetic(w, &l.kinetic, &l.rotational);
     l.elastic = w->energy[DEMI_E_ELASTIC] + w->energy[DEMI_E_SHEAR_STORED];
     l.gravity = w->energy[DEMI_E_GRAVITY];
@@ -9263,6 +9538,7 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
     dem_totals t;
     int i;
     memset(&t, 0, sizeof t);
+    if (!w) return t;
     demi_kinetic(w, &t.kinetic, &t.rotational);
     for (i = 0; i < w->count; i++) {
         const double m = (double)w->mass[i];
@@ -9304,6 +9580,7 @@ static int demi_box_bad(dem_box b, int planar) {
            !(b.hi.y >= b.lo.y) || (!planar && !(b.hi.z >= b.lo.z));
 }
 DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
+    if (demi_null(w, "dem_feed_add", d, "desc")) return demi_no_feed;
     const char *call = "dem_feed_add";
     demi_feed feed;
     dem_feed id;
@@ -9319,12 +9596,13 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
         if (!(d->radius[k] > 0) || !demi_finite(d->radius[k]) || !(d->amount[k] > 0) ||
-            !(d->amount[k] < 1e15)) {
+            !(d->amount[k] < 1e15) || !demi_finite_double(d->amount[k])) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has radius %g m and amount %g, must be "
                       "> 0 and finite; leave out classes that do not occur", call, k,
                       (double)d->radius[k], d->amount[k]);
             return id;
         }
+        if (demi_mass_refuse(w, call, m, d->radius[k], k)) return id;
         feed.mass[k] = demi_sphere_mass(w, m, (double)d->radius[k]);
         if (d->limited) {
             const double count = d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5;
@@ -9337,8 +9615,10 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
             feed.limit[k] = (uint64_t)count;
         }
     }
-    if (!(d->rate >= 0) || !(d->rate < 1e15) || !(d->start >= 0) || !(d->end >= 0) ||
-        !(d->spread >= 0) || !demi_finite(d->spread) || !demi_finite3(d->velocity) ||
+    if (!demi_finite_double(d->rate) || !demi_finite_double(d->start) ||
+        !demi_finite_double(d->end) || !(d->rate >= 0) || !(d->rate < 1e15) ||
+        !(d->start >= 0) || !(d->end >= 0) || !(d->spread >= 0) ||
+        !demi_finite(d->spread) || !demi_finite3(d->velocity) ||
         (!(d->rate > 0) && !d->limited) || (d->end > 0 && d->end < d->start)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s; "
                   "must be finite and >= 0, the end 0 or after the start, and all at once (rate 0) "
@@ -9359,6 +9639,7 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     feed.next = -1;
     *demi_feed_at(w, w->feed_count++) = feed;
     w->dt_valid = 0;                            /* for grains that are to come */
+    demi_built(w, call);
     id.id = w->feed_count;
     return id;
 }
@@ -9400,10 +9681,38 @@ static int demi_feed_room(const dem_world *w, dem_vec3 x, dem_real r) {
     }
     return 1;
 }
-/* Puts in one grain of the class drawn. 1: done, 0: no room, -1: no memory. */
+/* Would a sphere there touch a wall as it stands now? Of a sieve: its plane. */
+static int demi_feed_walls(const dem_world *w, dem_vec3 at, dem_real r) {
+    const dem_vec3 reach = demi_v(r, r, r);
+    int j, k, x, y, z, f[3], l[3];
+    for (j = 0; j < w->wall_count; j++) {
+        const demi_wall *wall = &w->walls[j];
+        dem_vec3 local;
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        local = demi_unturn(wall->pose.rotation, demi_sub(at, wall->pose.position));
+        if (wall->kind == DEMI_WALL_PROFILE) local.z = 0;
+        if (wall->element_count <= 4) {
+            for (k = 0; k < wall->element_count; k++)
+                if (demi_wall_distance(wall, k, local, r) < r) return 1;
+            continue;
+        }
+        demi_wall_cells(wall, demi_sub(local, reach), demi_add(local, reach), f, l);
+        for (z = f[2]; z <= l[2]; z++)
+            for (y = f[1]; y <= l[1]; y++)
+                for (x = f[0]; x <= l[0]; x++) {
+                    const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
+                    for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++)
+                        if (demi_wall_distance(wall, wall->cell_items[k], local, r) < r) return 1;
+                }
+    }
+    return 0;
+}
+/* Puts in one grain of the class drawn. 1: done, 0: no room, -1: no memory; the next try then draws
+   the same numbers. */
 static int demi_feed_put(dem_world *w, demi_feed *f) {
     const dem_feed_desc *d = &f->desc;
     const dem_real r = d->radius[f->next];
+    const uint64_t random = f->random;
     dem_vec3 x, v;
     int tries, i, free_place = 0;
     for (tries = 0; tries < DEMI_FEED_TRIES && !free_place; tries++) {
@@ -9418,11 +9727,14 @@ static int demi_feed_put(dem_world *w, demi_feed *f) {
                    d->velocity.y + d->spread*(dem_real)(2*u[4] - 1),
                    d->velocity.z + d->spread*(dem_real)(2*u[5] - 1));
         if (w->desc.planar) x.z = v.z = 0;
-        free_place = in && demi_feed_room(w, x, r);
+        free_place = in && !demi_feed_walls(w, x, r) && demi_feed_room(w, x, r);
     }
     if (!free_place) return 0;
     demi_finish(w);
-    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + 1)) return -1;
+    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + 1)) {
+        f->random = random;
+        return -1;
+    }
     i = w->slot_index[demi_body_append(w, d->material.id - 1, r, x)];
     demi_put(w->vel + 4*i, v);
     demi_put(w->half_vel + 4*i, v);
@@ -9466,6 +9778,7 @@ static dem_result demi_feeds_run(dem_world *w) {
             uint64_t most = 0;
             for (k = 0; k < d->class_count; k++) most += f->limit[k] - f->state.fed[k];
             if (!(d->rate > 0) || (d->limited && waits > (double)most)) waits = (double)most;
+            waits = DEMI_MIN(DEMI_MAX(waits, 0), 1e18);        /* fits a whole number */
             f->state.waiting = (uint64_t)(waits + 1e-9*waits);
         }
         f->state.done = f->next < 0 && (!demi_feed_left(f) || (d->end > 0 && w->time > d->end));
@@ -9473,6 +9786,7 @@ static dem_result demi_feeds_run(dem_world *w) {
     return DEM_OK;
 }
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
+    if (demi_null(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
     if (id.id < 1 || id.id > w->feed_count)
         return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not "
                          "exist, there are %d", (int)id.id, w->feed_count);
@@ -9481,11 +9795,13 @@ DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state 
 }
 
 DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
+    if (demi_null(w, "dem_outlet_add", d, "desc")) return demi_no_outlet;
     const char *call = "dem_outlet_add";
     demi_outlet outlet;
     dem_outlet id;
     int k, bad = d->class_count < 0 || d->class_count > DEM_CLASSES || !(d->beyond >= 0) ||
-        !demi_finite(d->beyond) || !(d->wanted_min >= 0) || !(d->wanted_max >= 0) ||
+        !demi_finite(d->beyond) || !demi_finite(d->wanted_min) || !demi_finite(d->wanted_max) ||
+        !(d->wanted_min >= 0) || !(d->wanted_max >= 0) ||
         (d->wanted_max > 0 && !(d->wanted_max > d->wanted_min));
     id.id = 0;
     for (k = 0; k < d->class_count && !bad; k++)
@@ -9511,6 +9827,7 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     outlet.desc = *d;
     outlet.state.since = w->time;
     *demi_outlet_at(w, w->outlet_count++) = outlet;
+    demi_built(w, call);
     id.id = w->outlet_count;
     return id;
 }
@@ -9568,12 +9885,14 @@ static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_o
     return 0;
 }
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
+    if (demi_null(w, "dem_outlet_get", state, "state")) return DEM_ERROR_ARGUMENT;
     const demi_outlet *o = demi_outlet_find(w, "dem_outlet_get", id);
     if (!o) return DEM_ERROR_ARGUMENT;
     *state = o->state;
     return DEM_OK;
 }
 DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
+    if (demi_null(w, "dem_outlet_reset", w, "world")) return DEM_ERROR_ARGUMENT;
     demi_outlet *o = demi_outlet_find(w, "dem_outlet_reset", id);
     if (!o) return DEM_ERROR_ARGUMENT;
     memset(&o->state, 0, sizeof o->state);
@@ -9584,9 +9903,13 @@ DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
    together; rates eq 4.40. (Eq 4.36 has the density twice.) */
 DEM_API dem_result dem_sorting_get(const dem_world *w, const dem_outlet *outlets, int count,
                                    dem_sorting *out) {
+    if (demi_null(w, "dem_sorting_get", out, "sorting")) return DEM_ERROR_ARGUMENT;
     double number = 0, mass = 0, gangue = 0, gangue_mass = 0, since = w->time;
     int i;
     memset(out, 0, sizeof *out);
+    if (count < 0 || (count && !outlets))
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sorting_get: count is %d, must "
+                         "be >= 0 with as many outlets; check the caller's array", count);
     for (i = 0; i < count; i++) {
         const demi_outlet *o = demi_outlet_find(w, "dem_sorting_get", outlets[i]);
         if (!o) return DEM_ERROR_ARGUMENT;
@@ -10235,8 +10558,8 @@ static dem_result demi_unstable(dem_world *w) {
             !demi_finite3(demi_at(w->torque + 4*i)))
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its "
                              "position, velocity or spin is no "
-                             "longer a finite number; likely a law, force field or motion of your "
-                             "own divided by zero, or dt "
+                             "longer a finite number; likely two grains stand at the same place, a "
+                             "law, force field or motion of your own divided by zero, or dt "
                              "= %g s is too large", (unsigned long long)w->steps,
                              (unsigned)w->body_slot[i] + 1, (double)w->dt);
     for (d = 0; d < w->domain_count; d++) deepest = DEMI_MAX(deepest, w->domains[d].overlap);
@@ -10318,6 +10641,17 @@ static void demi_fields_sample(dem_world *w) {
     }
 }
 
+/* Time after one more step. */
+static void demi_time_pass(dem_world *w) {
+    const double dt = (double)w->dt;
+    if (w->since.dt < dt || w->since.dt > dt) {
+        w->since.time = w->time;
+        w->since.steps = w->steps;
+        w->since.dt = dt;
+    }
+    w->steps++;
+    w->time = w->since.time + (double)(w->steps - w->since.steps)*dt;
+}
 /* 1 move: first half kick, drift, predicted velocities; walls follow. */
 static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
@@ -10325,8 +10659,7 @@ static dem_result demi_step_move(dem_world *w) {
     w->half_kick = (double)w->dt/2;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
     w->synced = 0;
-    w->time += (double)w->dt;
-    w->steps++;
+    demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
         if (!(s < 1e300) || (DEMI_SINGLE && !(s < 1e37))) return demi_unstable(w);
@@ -10390,8 +10723,10 @@ static dem_result demi_step_once(dem_world *w) {
         /* faster than thought: ask again */
         if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;
     } else if (demi_near_due(w)) {
-        demi_near_choose(w);
+        if (!w->near_chosen) demi_near_choose(w);
+        w->near_chosen = 1;
         if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
+        w->near_chosen = 0;
     }
 
     /* 3 touch, 4 respond, 5 gather */
@@ -10452,14 +10787,19 @@ DEM_API dem_result dem_step_advice(dem_world *w, dem_advice *advice) {
 }
 
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
+    if (demi_null(w, "dem_world_step", w, "world")) return DEM_ERROR_ARGUMENT;
     dem_result result = DEM_OK;
     int i, f, whole = 1;
     if (steps < 0)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
+    if (steps && demi_unbuilt(w, "dem_world_step") != DEM_OK) return DEM_ERROR_ARGUMENT;
     for (i = 0; i < steps && result == DEM_OK; i++) {
         int sampling = 0;
         if (!w->moved) {
             result = demi_dt_settle(w);
+            /* what a rebuild would refuse is refused before anything is fed */
+            if (result == DEM_OK && w->feed_count && !w->list_valid && demi_walls_refuse(w))
+                result = DEM_ERROR_ARGUMENT;
             if (result == DEM_OK && w->feed_count) {
                 result = demi_feeds_run(w);
                 if (result == DEM_OK) result = demi_dt_settle(w);   /* there may be new grains */
@@ -10483,14 +10823,19 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
 
 DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
                                  void *user) {
+    if (demi_null(w, "dem_world_run", w, "world")) return DEM_ERROR_ARGUMENT;
     const double start = w->time, begun = demi_clock();
-    double last = begun;
+    double last = begun, end;
     int chunk = 1;
-    if (!(seconds >= 0) || !(seconds < 1e300))
+    if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
                          ">= 0", seconds);
+    if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
+    end = start + seconds;
+    if (w->run_steps == w->steps && fabs(w->run_end - start) <= (double)w->dt)
+        end = w->run_end + seconds;
     for (;;) {
-        const double left = start + seconds - w->time;
+        const double left = end - w->time;
         double now;
         int steps = chunk;
         dem_result result = demi_dt_settle(w);
@@ -10511,11 +10856,14 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         /* short steps: look at the clock less often */
         if (now - begun < 0.05*(double)w->steps && chunk < 1000) chunk++;
     }
+    w->run_end = end;
+    w->run_steps = w->steps;
     if (progress) progress(w, 1, 0, user);
     return DEM_OK;
 }
 
 DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
+    if (demi_null(w, "dem_progress_print", user, "user")) return 0;
     fprintf((FILE *)user, "\r%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", 100*done,
             w->time, w->count,
             seconds_left, done >= 1 ? "\n" : "");
@@ -10523,26 +10871,35 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     return 0;
 }
 
-DEM_API double dem_world_time(const dem_world *w) { return w->time; }
-DEM_API uint64_t dem_world_steps(const dem_world *w) { return w->steps; }
+DEM_API double dem_world_time(const dem_world *w) {
+    if (demi_null(w, "dem_world_time", w, "world")) return 0;
+    return w->time;
+}
+DEM_API uint64_t dem_world_steps(const dem_world *w) {
+    if (demi_null(w, "dem_world_steps", w, "world")) return 0;
+    return w->steps;
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>measure
    Looking at a world without changing it: fields on a grid, counters, contacts, the digest.
    --------------------------------------------------------------------------------------------- */
 DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
+    if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
     dem_field id;
     demi_field field;
     size_t n;
     id.id = 0;
     if (d->cells[0] < 1 || d->cells[1] < 1 || d->cells[2] < 1 ||
         (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->box.hi.x > d->box.lo.x) ||
-        !(d->box.hi.y > d->box.lo.y) || !(d->box.hi.z > d->box.lo.z) || !(d->interval >= 0) ||
-        !(d->start >= 0)) {
+        !(d->box.hi.y > d->box.lo.y) || !(d->box.hi.z > d->box.lo.z) ||
+        !demi_finite3(d->box.lo) || !demi_finite3(d->box.hi) || !(d->interval >= 0) ||
+        !(d->start >= 0) || !demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
+        !demi_finite_double(d->end)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval %g s; "
                   "must be >= 1 each and at most "
-                  "2^28 in all, the box with lo below hi, times >= 0", d->cells[0], d->cells[1],
-                  d->cells[2], d->interval);
+                  "2^28 in all, the box finite with lo below hi, times finite and >= 0",
+                  d->cells[0], d->cells[1], d->cells[2], d->interval);
         return id;
     }
     memset(&field, 0, sizeof field);
@@ -10571,6 +10928,7 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
         return id;
     }
     w->fields[w->field_count++] = field;
+    demi_built(w, "dem_field_add");
     id.id = w->field_count;
     return id;
 }
@@ -10581,6 +10939,7 @@ static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id)
     return 0;
 }
 DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
+    if (demi_null(w, "dem_field_get", data, "data")) return DEM_ERROR_ARGUMENT;
     const demi_field *f = demi_field_find((dem_world *)w, "dem_field_get", id);
     if (!f) return DEM_ERROR_ARGUMENT;
     memcpy(data->cells, f->desc.cells, sizeof data->cells);
@@ -10592,6 +10951,7 @@ DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_dat
     return DEM_OK;
 }
 DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
+    if (demi_null(w, "dem_field_reset", w, "world")) return DEM_ERROR_ARGUMENT;
     demi_field *f = demi_field_find(w, "dem_field_reset", id);
     size_t n;
     if (!f) return DEM_ERROR_ARGUMENT;
@@ -10607,6 +10967,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     dem_counters c;
     int d;
     memset(&c, 0, sizeof c);
+    if (!w) return c;
     c.steps = w->steps;
     c.rebuilds = w->rebuilds;
     for (d = 0; d < w->domain_count && w->list_valid; d++) {
@@ -10624,7 +10985,10 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     c.memory = w->bytes;
     return c;
 }
-DEM_API void dem_overlap_reset(dem_world *w) { w->overlap_max = 0; }
+DEM_API void dem_overlap_reset(dem_world *w) {
+    if (demi_null(w, "dem_overlap_reset", w, "world")) return;
+    w->overlap_max = 0;
+}
 
 /* One near pair, if it touches: its force by the law of the run on a copy of its memory. */
 static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out) {
@@ -10656,6 +11020,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     return 1;
 }
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
+    if (demi_null(w, "dem_contacts_get", w, "world")) return -1;
     int d, k, n = 0;
     if (!w->list_valid) return demi_list_stale(w, "dem_contacts_get");
     for (d = 0; d < w->domain_count; d++) {
@@ -10688,26 +11053,76 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
     return n;
 }
 
-/* Digest of one contact, whichever of its bodies is a. */
-static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
-    const int pushes = c->overlap > 0;
-    uint32_t who[4];
-    uint64_t h = DEMI_HASH_START;
-    int i, flip;
-    who[0] = w->body_slot[c->a];
-    who[1] = c->b >= 0 ? w->body_slot[c->b] : (uint32_t)c->element;
-    who[2] = (uint32_t)c->part_a;
-    who[3] = c->b >= 0 ? (uint32_t)c->part_b : (uint32_t)c->wall;
-    flip = c->b >= 0 && who[0] > who[1];
-    for (i = 0; i < 4; i++) h = demi_hash(h, &who[flip ? i ^ 1 : i], sizeof *who);
-    h = demi_hash(h, &pushes, sizeof pushes);
-    for (i = 0; i < w->memory_stride; i++) {
-        dem_real m = c->memory[i];
+/* Digest of contact memory: of n reals a `stride` apart, turned round or not. */
+static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real *memory, int n,
+                                 size_t stride, int flip) {
+    int i;
+    for (i = 0; i < n; i++) {
+        dem_real m = memory[(size_t)i*stride];
         if (flip && (w->vector_mask >> i & 1)) m = -m;
         if (!(m < 0) && !(m > 0)) m = 0;                   /* -0 is 0 */
         h = demi_hash(h, &m, sizeof m);
     }
     return h;
+}
+static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
+                                 const dem_real *memory, int n, size_t stride) {
+    const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
+    uint64_t one = demi_hash(DEMI_HASH_START, &lo, sizeof lo);
+    return demi_memory_hash(w, demi_hash(one, &hi, sizeof hi), memory, n, stride, sa > sb);
+}
+/* Digest of one contact, whichever of its bodies is a. */
+static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
+    const int pushes = c->share > 0, slots = !w->list_valid;   /* while there is no list */
+    uint32_t who[4];
+    uint64_t h = DEMI_HASH_START;
+    int i, flip;
+    who[0] = slots ? (uint32_t)c->a : w->body_slot[c->a];
+    who[1] = c->b < 0 ? (uint32_t)c->element : slots ? (uint32_t)c->b : w->body_slot[c->b];
+    who[2] = (uint32_t)c->part_a;
+    who[3] = c->b >= 0 ? (uint32_t)c->part_b : (uint32_t)c->wall;
+    flip = c->b >= 0 && who[0] > who[1];
+    for (i = 0; i < 4; i++) h = demi_hash(h, &who[flip ? i ^ 1 : i], sizeof *who);
+    h = demi_hash(h, &pushes, sizeof pushes);
+    return demi_memory_hash(w, h, c->memory, w->memory_stride, 1, flip);
+}
+/* Contacts as a sum of their own digests, in which neither their order tells nor whether there is a
+   list or they are on their way to the next one. */
+static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
+    uint64_t sum = 0;
+    int d, k, i;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (k = w->list_valid ? demi_near_first(domain) : domain->near_end; k < domain->near_end;
+             k = demi_near_next(domain, k)) {
+            const demi_span span = demi_span_of(w, d, k, 1);
+            if (demi_near_remembers(w, d, k))
+                sum += demi_pair_digest(w, w->body_slot[span.a[0]], w->body_slot[span.b[0]],
+                                        span.memory, w->memory_stride, span.stride);
+        }
+        for (k = 0; k < domain->wall_contacts; k++) {
+            const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
+            const int pushes = c->share > 0;    /* or is it under way through a reduced hole? */
+            const uint32_t slot = w->list_valid ? w->body_slot[c->body] : (uint32_t)c->body;
+            uint64_t one = demi_hash(DEMI_HASH_START, &slot, sizeof slot);
+            one = demi_hash(one, &c->wall, sizeof c->wall);
+            one = demi_hash(one, &c->element, sizeof c->element);
+            one = demi_hash(one, &pushes, sizeof pushes);
+            sum += demi_hash(one, c->memory, sizeof c->memory);
+        }
+        for (k = 0; k < domain->shaped; k++)
+            sum += demi_shaped_hash(w, &w->shaped_now[(size_t)d*(size_t)w->shaped_stride +
+                                                      (size_t)k]);
+    }
+    for (i = 0; !w->list_valid && w->carry_count && i < w->carry_rows; i++)
+        for (k = w->carry_start[i]; k < w->carry_start[i + 1]; k++) {
+            const int32_t p = w->carry_partner[k];
+            const uint32_t row = (uint32_t)i, other = (uint32_t)(p < 0 ? ~p : p);
+            sum += demi_pair_digest(w, p < 0 ? other : row, p < 0 ? row : other,
+                                    w->carry_memory + (size_t)k*(size_t)w->carry_stride,
+                                    w->carry_stride, 1);
+        }
+    return demi_hash(h, &sum, sizeof sum);
 }
 
 /* Contact k of domain d: spheres' with walls first, then all of the other bodies. Whose it is; and
@@ -10733,6 +11148,7 @@ static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body
    sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
    |n_z| <= mu |n_xy|. */
 DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed) {
+    if (demi_null(w, "dem_sieve_blinded", w, "world")) return -1;
     const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded", sieve);
     const demi_wall *wall = id < 0 ? 0 : &w->walls[id];
     dem_vec3 across, n, m;
@@ -10776,8 +11192,9 @@ DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed
 /* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;
    contact memory as a sum over contacts of their own digests, for the same reason. */
 DEM_API uint64_t dem_world_hash(const dem_world *w) {
-    uint64_t h = DEMI_HASH_START, sum = 0;
-    int i, d, k;
+    if (demi_null(w, "dem_world_hash", w, "world")) return 0;
+    uint64_t h = DEMI_HASH_START;
+    int i;
     h = demi_hash(h, &w->time, sizeof w->time);
     for (i = 0; i < w->slot_count; i++) {
         const int b = w->slot_index[i];
@@ -10807,39 +11224,7 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
         h = demi_hash(h, o->count, sizeof o->count);
         h = demi_hash(h, &o->total, sizeof o->total);
     }
-    for (d = 0; d < w->domain_count && w->list_valid; d++) {
-        const demi_domain *domain = &w->domains[d];
-        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
-            const demi_span span = demi_span_of(w, d, k, 1);
-            const uint32_t sa = w->body_slot[span.a[0]], sb = w->body_slot[span.b[0]];
-            const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
-            uint64_t one = DEMI_HASH_START;
-            if (!demi_near_remembers(w, d, k)) continue;
-            one = demi_hash(one, &lo, sizeof lo);
-            one = demi_hash(one, &hi, sizeof hi);
-            for (i = 0; i < w->memory_stride; i++) {
-                dem_real m = span.memory[(size_t)i*span.stride];
-                if (sa > sb && (w->vector_mask >> i & 1)) m = -m;
-                if (!(m < 0) && !(m > 0)) m = 0;                   /* -0 is 0 */
-                one = demi_hash(one, &m, sizeof m);
-            }
-            sum += one;
-        }
-        for (k = 0; k < w->domains[d].wall_contacts; k++) {
-            const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
-            const int pushes = c->overlap > 0;  /* or is it under way through a reduced hole? */
-            uint64_t one = DEMI_HASH_START;
-            one = demi_hash(one, &w->body_slot[c->body], sizeof(uint32_t));
-            one = demi_hash(one, &c->wall, sizeof c->wall);
-            one = demi_hash(one, &c->element, sizeof c->element);
-            one = demi_hash(one, &pushes, sizeof pushes);
-            sum += demi_hash(one, c->memory, sizeof c->memory);
-        }
-        for (k = 0; k < w->domains[d].shaped; k++)
-            sum += demi_shaped_hash(w, &w->shaped_now[(size_t)d*(size_t)w->shaped_stride +
-                                                      (size_t)k]);
-    }
-    return demi_hash(h, &sum, sizeof sum);
+    return demi_contacts_hash(w, h);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -10854,8 +11239,11 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
    triangles of an edge and finding doubled triangles are all this one question.
 
    Writing. demi_out_open gives a file of the name path.tmp; demi_out_close renames it to path when
-   all went well and removes it otherwise, so what stands under path is whole. Write errors stick to
-   the FILE and are looked at once, on closing. Text has decimal points whatever the locale says.
+   all went well and removes it otherwise, so what stands under path is whole. A symbolic link
+   stays: the file it leads to is the one replaced. Pipes and terminals are refused, and what is
+   there but empty (a file, a device such as /dev/null) is written to as it is: it has nothing to
+   lose. Write errors stick to the FILE and are looked at once, on closing. Text has decimal points
+   whatever the locale says.
    ---------------------------------------------------------------------------------------------- */
 #include <errno.h>
 
@@ -11364,6 +11752,7 @@ static dem_result demi_read(dem_world *w, const char *call, const char *path, si
 
 DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size,
                           dem_mesh *mesh, dem_mesh_health *health) {
+    if (demi_null(world, "dem_mesh_parse", world, "world")) return DEM_ERROR_ARGUMENT;
     if (mesh) memset(mesh, 0, sizeof *mesh);
     if (health) memset(health, 0, sizeof *health);
     if (!mesh || !data)
@@ -11374,6 +11763,7 @@ DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void
 
 DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
                                  dem_mesh_health *health) {
+    if (demi_null(world, "dem_mesh_read", world, "world")) return DEM_ERROR_ARGUMENT;
     if (health) memset(health, 0, sizeof *health);
     if (!mesh)
         return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_read: mesh is null; give its "
@@ -11383,7 +11773,7 @@ DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *m
 }
 
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
-    if (mesh) demi_mesh_free(world, mesh, 3);
+    if (world && mesh) demi_mesh_free(world, mesh, 3);
 }
 
 /* What was read as a mesh of width 2, as a profile. */
@@ -11407,6 +11797,7 @@ static dem_result demi_profile_take(dem_world *w, const char *call, const char *
 
 DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const void *data,
                                      size_t size, dem_profile *profile) {
+    if (demi_null(world, "dem_profile_parse", world, "world")) return DEM_ERROR_ARGUMENT;
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
     if (profile) memset(profile, 0, sizeof *profile);
@@ -11419,6 +11810,7 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
 }
 
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile) {
+    if (demi_null(world, "dem_profile_read", world, "world")) return DEM_ERROR_ARGUMENT;
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
     if (!profile)
@@ -11431,7 +11823,7 @@ DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_prof
 }
 
 DEM_API void dem_profile_free(dem_world *world, dem_profile *profile) {
-    if (!profile) return;
+    if (!world || !profile) return;
     demi_free(world, profile->vertices, (size_t)profile->vertex_count*2, sizeof(dem_real));
     demi_free(world, profile->segments, (size_t)profile->segment_count*2, sizeof(int32_t));
     memset(profile, 0, sizeof *profile);
@@ -11442,12 +11834,48 @@ DEM_API void dem_profile_free(dem_world *world, dem_profile *profile) {
 typedef struct demi_out {
     dem_world *world;
     const char *call, *path;
-    char *temporary;            /* path.tmp                                                       */
-    size_t temporary_size;
+    char *place;                /* path, or where it leads when it is a link                      */
+    char *temporary;            /* place.tmp; null: place itself is written to                    */
+    size_t room;                /* bytes of each of the two                                       */
     FILE *file;
 } demi_out;
 
-/* Ends a file: renames it to its path if all was written, removes it if not. Where rename refuses
+/* Where a symbolic link leads; 0: path is none. C has no word for links: on Unix we ask readlink by
+   its name in the C library, without the header, whose names would then stand in every program.
+   Elsewhere a link is replaced by a file. */
+#if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
+    !defined(__CYGWIN__)
+long demi_readlink(const char *path, char *to, size_t size) __asm__("readlink");
+#elif defined(__APPLE__) && defined(__GNUC__)
+long demi_readlink(const char *path, char *to, size_t size) __asm__("_readlink");
+#else
+static long demi_readlink(const char *path, char *to, size_t size) {
+    (void)path; (void)to; (void)size;
+    return -1;
+}
+#endif
+enum { DEMI_LINK = 1024, DEMI_LINKS = 16 };   /* bytes of a link's target; links on the way */
+/* Replaces place by what it leads to when it is a link. 0: too long, or in a circle. */
+static int demi_link_follow(char *place, size_t room) {
+    char to[DEMI_LINK];
+    int i;
+    for (i = 0; i < DEMI_LINKS; i++) {
+        const long n = demi_readlink(place, to, sizeof to);
+        const char *slash = strrchr(place, '/');
+        const size_t folder = to[0] == '/' || !slash || n < 0 ? 0 : (size_t)(slash - place) + 1;
+        if (n < 0) return 1;
+        if ((size_t)n >= sizeof to || folder + (size_t)n + 5 > room) return 0;
+        memcpy(place + folder, to, (size_t)n);
+        place[folder + (size_t)n] = 0;
+    }
+    return 0;
+}
+
+static void demi_out_free(demi_out *o) {
+    demi_free(o->world, o->place, o->room, 1);
+    demi_free(o->world, o->temporary, o->room, 1);
+}
+/* Ends a file: renames it to its place if all was written, removes it if not. Where rename refuses
    to replace a file (Windows), the old one is removed first; a folder of that name never is. */
 static dem_result demi_out_close(demi_out *o) {
     int whole = o->file && fflush(o->file) == 0 && !ferror(o->file), cause = errno;
@@ -11455,33 +11883,67 @@ static dem_result demi_out_close(demi_out *o) {
         whole = 0;
         cause = errno;
     }
-    if (whole && rename(o->temporary, o->path) != 0) {
+    if (whole && o->temporary && rename(o->temporary, o->place) != 0) {
         cause = errno;
-        whole = (cause == EEXIST || cause == EACCES) && remove(o->path) == 0 &&
-                rename(o->temporary, o->path) == 0;
+        whole = (cause == EEXIST || cause == EACCES) && remove(o->place) == 0 &&
+                rename(o->temporary, o->place) == 0;
     }
     if (!whole) {
-        if (o->file) remove(o->temporary);
+        if (o->file && o->temporary) remove(o->temporary);
+        if (o->file && !o->temporary) {         /* it was empty: so it is again */
+            FILE *empty = fopen(o->place, "wb");
+            if (empty) fclose(empty);
+        }
         demi_fail(o->world, DEM_ERROR_FILE, "%s: cannot write %.200s: %s; check that its folder "
                   "exists, may be written to and has room", o->call, o->path,
                   cause ? strerror(cause) : "unknown cause");
     }
-    demi_free(o->world, o->temporary, o->temporary_size, 1);
+    demi_out_free(o);
     return whole ? DEM_OK : DEM_ERROR_FILE;
 }
 
 /* Begins a file under a temporary name. If this fails there is nothing to close. */
 static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, const char *path) {
+    size_t length;
+    FILE *there;
     if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
+    memset(o, 0, sizeof *o);
     o->world = w;
     o->call = call;
     o->path = path;
-    o->temporary_size = strlen(path) + 5;
-    o->temporary = (char *)demi_alloc(w, o->temporary_size, 1);
-    if (!o->temporary)
+    length = strlen(path);
+    o->room = length + DEMI_LINK + 5;
+    o->place = (char *)demi_alloc(w, o->room, 1);
+    o->temporary = (char *)demi_alloc(w, o->room, 1);
+    if (!o->place || !o->temporary) {
+        demi_out_free(o);
         return demi_fail(w, DEM_ERROR_MEMORY, "%s: no memory for a file name; free some", call);
-    memcpy(o->temporary, path, o->temporary_size - 5);
-    memcpy(o->temporary + o->temporary_size - 5, ".tmp", 5);
+    }
+    memcpy(o->place, path, length + 1);
+    there = fopen(path, "r+b");                 /* of a pipe: does not wait for its other end */
+    if (there && fseek(there, 0, SEEK_END) != 0) {
+        fclose(there);
+        demi_out_free(o);
+        return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a pipe or a terminal, must be a file, "
+                         "which is written whole or not at all; write a file and send that", call,
+                         path);
+    }
+    errno = 0;
+    if (there && ftell(there) == 0) {
+        demi_free(w, o->temporary, o->room, 1);
+        o->temporary = 0;
+        o->file = there;
+        return DEM_OK;
+    }
+    if (there) fclose(there);
+    if (!demi_link_follow(o->place, o->room)) {
+        demi_out_free(o);
+        return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a link that leads in a circle or "
+                         "through too many others; give the file itself", call, path);
+    }
+    length = strlen(o->place);
+    memcpy(o->temporary, o->place, length);
+    memcpy(o->temporary + length, ".tmp", 5);
     errno = 0;
     o->file = fopen(o->temporary, "wb");
     return o->file ? DEM_OK : demi_out_close(o);
@@ -11661,6 +12123,7 @@ static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
 }
 
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
+    if (demi_null(world, "dem_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
     demi_column column[DEMI_GRAIN_COLUMNS];
     demi_drawing g;
     dem_result result;
@@ -11674,6 +12137,7 @@ DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
 
 /* Legacy VTK, in its binary form: numbers are big-endian. */
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
+    if (demi_null(world, "dem_vtk_write", world, "world")) return DEM_ERROR_ARGUMENT;
     demi_column column[DEMI_GRAIN_COLUMNS];
     demi_out o;
     const char *real = sizeof(dem_real) == 4 ? "float" : "double";
@@ -11717,6 +12181,7 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
 /* Extended XYZ. Species, which ASE wants to be chemical elements, tell the material: H is 1, He 2,
    and so on. A domain becomes the lattice; an axis without extent gets 1 m. */
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
+    if (demi_null(world, "dem_xyz_write", world, "world")) return DEM_ERROR_ARGUMENT;
     static const char elements[] =
         "H HeLiBeB C N O F NeNaMgAlSiP S ClArK CaScTiV CrMnFeCoNiCuZnGaGe"
         "AsSeBrKrRbSrY ZrNbMoTcRuRhPdAgCdInSnSbTeI XeCsBaLaCePrNdPmSmEuGd";
@@ -11802,6 +12267,7 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
 
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1) {
+    if (demi_null(world, "dem_walls_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
     int64_t points = 0, triangles = 0, p = 0, t = 0;
     dem_real z[2], *place = 0;
     int32_t *corners = 0, *id = 0;
@@ -11848,6 +12314,7 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
 /* Appending cannot go by way of a temporary name. Instead the line goes out in one piece, and after
    one that was cut short (a full disk, a killed run) a new line is begun. */
 DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char *path) {
+    if (demi_null(world, "dem_channels_csv", world, "world")) return DEM_ERROR_ARGUMENT;
     static const char heading[] = "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts\n";
     dem_channels c;
     dem_real value[8];
@@ -12058,6 +12525,7 @@ static dem_result demi_moldyn_parse(dem_world *w, const char *call, const char *
 }
 DEM_API dem_result dem_moldyn_parse(dem_world *w, const char *name, dem_moldyn_file file,
                                     const void *data, size_t size, dem_moldyn *m) {
+    if (demi_null(w, "dem_moldyn_parse", w, "world")) return DEM_ERROR_ARGUMENT;
     if (!m || (!data && size) || (int)file < 0 || file > DEM_MOLDYN_WALLS)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_moldyn_parse: moldyn or data is null, or file "
                          "%d is none of the three; give all", (int)file);
@@ -12066,6 +12534,7 @@ DEM_API dem_result dem_moldyn_parse(dem_world *w, const char *name, dem_moldyn_f
 }
 DEM_API dem_result dem_moldyn_read(dem_world *w, const char *cin, const char *pin, const char *win,
                                    dem_moldyn *m) {
+    if (demi_null(w, "dem_moldyn_read", w, "world")) return DEM_ERROR_ARGUMENT;
     const char *call = "dem_moldyn_read";
     const char *paths[3];
     dem_result result = DEM_OK;
@@ -12090,6 +12559,7 @@ static int demi_moldyn_linear(const dem_moldyn *m) {
     return m->stiffness_unloading <= m->stiffness;
 }
 DEM_API dem_world_desc dem_moldyn_desc(const dem_moldyn *m) {
+    if (!m) return DEM_WORLD_DESC;
     dem_world_desc d = DEM_WORLD_DESC;
     d.planar = m->planar;
     if (m->planar) d.gravity.y = (dem_real)m->gravity;
@@ -12115,7 +12585,7 @@ static dem_result demi_moldyn_check(dem_world *w, const char *call, const dem_mo
         double value;
         memcpy(&value, (const char *)m + row->at, sizeof value);
         if (row->hi <= 0) value = -value;                          /* adhesion: a slope there */
-        if (!(value >= row->lo && value <= row->hi))
+        if (!demi_finite_double(value) || !(value >= row->lo && value <= row->hi))
             return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %g to %g; mend it in "
                              "moldyn", call, row->key, value, row->lo, row->hi);
     }
@@ -12140,6 +12610,7 @@ static dem_result demi_moldyn_check(dem_world *w, const char *call, const dem_mo
     return DEM_OK;
 }
 DEM_API dem_result dem_moldyn_add(dem_world *w, const dem_moldyn *m) {
+    if (demi_null(w, "dem_moldyn_add", m, "moldyn")) return DEM_ERROR_ARGUMENT;
     const char *call = "dem_moldyn_add";
     const int linear = demi_moldyn_linear(m);
     dem_material_desc d = DEM_MATERIAL_DESC;
@@ -12189,6 +12660,8 @@ DEM_API dem_result dem_moldyn_add(dem_world *w, const dem_moldyn *m) {
         if (dem_body_set(w, body, &s) != DEM_OK) return DEM_ERROR_ARGUMENT;
     }
     w->time = m->start;
+    w->since.dt = 0;
+    demi_built(w, call);
     return DEM_OK;
 }
 /* Index of the body in the k-th used slot, counting on from *slot. */
@@ -12197,6 +12670,7 @@ static int demi_by_slot(const dem_world *w, int *slot) {
     return *slot < w->slot_count ? w->slot_index[(*slot)++] : -1;
 }
 DEM_API dem_result dem_moldyn_take(dem_world *w, dem_moldyn *m) {
+    if (demi_null(w, "dem_moldyn_take", m, "moldyn")) return DEM_ERROR_ARGUMENT;
     const dem_allocator allocator = demi_moldyn_allocator(w, m);
     dem_real *rows = 0;
     int i = 0, slot = 0, b;
@@ -12235,6 +12709,7 @@ static void demi_row_write(FILE *file, const dem_real *row, const int *which, in
 }
 DEM_API dem_result dem_moldyn_write(dem_world *w, const dem_moldyn *m, const char *cin,
                                     const char *pin, const char *win) {
+    if (demi_null(w, "dem_moldyn_write", m, "moldyn")) return DEM_ERROR_ARGUMENT;
     static const int wide[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
     static const int flat_grain[] = {0, 1, 3, 4, 8, 11, 12, 13}, flat_wall[] = {0, 1, 3, 4};
     const char *call = "dem_moldyn_write";
@@ -12303,6 +12778,7 @@ static dem_result demi_append_close(dem_world *w, const char *call, const char *
     return DEM_OK;
 }
 DEM_API dem_result dem_xb_append(dem_world *w, const char *path, dem_box box) {
+    if (demi_null(w, "dem_xb_append", w, "world")) return DEM_ERROR_ARGUMENT;
     const int up = w->desc.planar ? 1 : 2;
     const dem_real lo[3] = {box.lo.x, box.lo.y, box.lo.z}, hi[3] = {box.hi.x, box.hi.y, box.hi.z};
     char number[32];
@@ -12348,10 +12824,15 @@ static int demi_str_holds(const char *path, int bodies) {
     return ok && strtol(at, 0, 10) == bodies;
 }
 DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interval, int frames) {
+    if (demi_null(w, "dem_str_append", w, "world")) return DEM_ERROR_ARGUMENT;
     static const dem_real one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     char number[32];
     int fresh, slot = 0, b, i, walls = 0;
-    FILE *file = demi_append_open(w, "dem_str_append", path, &fresh);
+    FILE *file = !demi_finite_double(interval) || frames < 0 ? 0
+        : demi_append_open(w, "dem_str_append", path, &fresh);
+    if (!demi_finite_double(interval) || frames < 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_str_append: interval is %g s and frames %d, "
+                         "must be finite and >= 0", interval, frames);
     if (!file) return path ? DEM_ERROR_FILE : DEM_ERROR_ARGUMENT;
     for (i = 0; i < w->wall_count; i++) walls += w->walls[i].kind != DEMI_WALL_NONE;
     if (!fresh && !demi_str_holds(path, w->count + walls)) {
@@ -12380,16 +12861,32 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
 
 /* ---------------------------------------------------------------------------------------------
    >>checkpoint
-   Everything that decides the next step, as it lies in memory, in one visit that both writes and
-   reads, so that the two cannot differ. The file: magic, version, size of dem_real, byte order,
-   digest of the scene (desc, materials, walls), shape, state, check sum of all before it. Reading
-   checks all of that first, then makes room, then copies: until then the world is as it was.
+   Everything that decides the next step, in one visit that both writes and reads, so that the two
+   cannot differ. The file: magic, version, size of dem_real, byte order, counts; a digest of each
+   part of the scene (desc, materials, pairs, shapes, walls, fields, feeds, outlets); numbers,
+   domains, bodies, lists, contacts; check sum of all before it.
+
+   What hangs on the list of candidates (laws in force, reals of memory per contact, coefficients
+   that dem_pair_set has outdated) is stored and not worked out anew: the scene may have changed
+   since the list was made. Of a list that no longer fits the bodies only the counts are stored, by
+   which the next one is chosen.
+
+   Reading fills a twin, an empty world of the same scene. A check sum only tells that a file is as
+   it was written, not that what was written makes sense: so every count is checked before room is
+   made for it, and every index and length before anything follows it. When all is right the twin's
+   state takes the place of the world's; until then the world is as it was.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 4 };
+enum { DEMI_CHECKPOINT_VERSION = 5 };
 
-/* Writes to file, or reads from memory, or (with neither) only counts bytes. */
-typedef struct demi_stream { FILE *file; const char *from; uint64_t sum; size_t size; } demi_stream;
+/* Writes to file, or reads the `left` bytes that are at `from`, or (with neither) counts bytes. */
+typedef struct demi_stream {
+    FILE *file;
+    const char *from;
+    uint64_t sum;
+    size_t size, left;
+    int cut;                         /* more was to be read than there was */
+} demi_stream;
 
 static void demi_visit(demi_stream *s, void *data, size_t size) {
     s->size += size;
@@ -12397,129 +12894,228 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
     if (s->file) {
         s->sum = demi_hash(s->sum, data, size);
         fwrite(data, 1, size, s->file);
-    } else if (s->from) {
+    } else if (s->from && size <= s->left) {
         memcpy(data, s->from, size);
         s->from += size;
+        s->left -= size;
+    } else if (s->from) {
+        memset(data, 0, size);
+        s->left = 0;
+        s->cut = 1;
     }
 }
 #define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
 
-typedef struct demi_extent {         /* how large the arrays are */
-    int32_t count, slots, domains, walls, fields, own_stride, cross_stride, wall_stride,
-        wall_now_stride, memory_stride, near_stride;
-    int32_t list_valid, own_total, cross_total, near_total, candidate_total, contact_total;
-    int32_t carry_count, carry_rows, carry_stride;
-    int32_t orienting, shaped_stride, shaped_total, near_remembered, spots;
-} demi_extent;
-static demi_extent demi_extent_of(const dem_world *w) {
-    demi_extent s;
-    int d;
-    memset(&s, 0, sizeof s);
-    s.count = w->count; s.slots = w->slot_count; s.domains = w->domain_count;
-    s.walls = w->wall_count; s.fields = w->field_count;
-    s.orienting = w->orienting; s.shaped_stride = w->shaped_stride;
-    for (d = 0; d < w->count; d++) s.spots += demi_form_of(w, d) ? demi_form_of(w, d)->count : 0;
-    s.own_stride = w->own.stride; s.cross_stride = w->cross.stride;
-    s.wall_stride = w->wall_stride; s.wall_now_stride = w->wall_now_stride;
-    s.memory_stride = w->memory_stride; s.near_stride = w->near.stride;
-    s.list_valid = w->list_valid;
-    s.carry_count = w->list_valid ? 0 : w->carry_count;      /* memory between two lists */
-    s.carry_rows = s.carry_count ? w->carry_rows : 0;
-    s.carry_stride = s.carry_count ? w->carry_stride : 0;
-    for (d = 0; d < w->domain_count; d++) {
-        s.own_total += w->domains[d].own;
-        s.cross_total += w->domains[d].cross;
-        s.near_total += w->domains[d].near_shaped_end;
-        s.near_remembered += w->domains[d].near_end;
-        s.shaped_total += w->domains[d].shaped;
-        s.candidate_total += w->domains[d].walls;
-        s.contact_total += w->domains[d].wall_contacts;
-    }
-    return s;
+/* --- the scene: what a file and the world that reads it must have in common --- */
+
+static uint64_t demi_digest_desc(const dem_world *w, int index) {
+    const dem_world_desc *d = &w->asked;
+    const int flags[] = {(int)d->boundary[0], (int)d->boundary[1], (int)d->boundary[2], d->planar,
+                         (int)d->normal_law, (int)d->tangent_law, (int)d->rolling_law,
+                         (int)d->tension, (int)d->convention, d->law != 0, d->law_memory,
+                         d->law_vectors, d->force != 0, (int)d->integrator, (int)d->search,
+                         d->ledger, (int)d->rotation, (int)d->ellipsoid_overlap,
+                         (int)d->cluster_contacts, d->orientations};
+    const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x,
+                                d->domain.lo.y, d->domain.lo.z, d->domain.hi.x, d->domain.hi.y,
+                                d->domain.hi.z, d->thickness, d->dt, d->impact_speed, d->skin};
+    (void)index;
+    return demi_hash(demi_hash(DEMI_HASH_START, flags, sizeof flags), numbers, sizeof numbers);
 }
-/* Bytes demi_state_visit moves for a shape: a lying file is found out before anything is touched.
-   */
-static size_t demi_state_size(const dem_world *w, const demi_extent *s) {
-    const size_t r = sizeof(dem_real), n = (size_t)s->count, pairs = (size_t)s->own_total +
-        (size_t)s->cross_total;
-    size_t size = n*((w->desc.integrator == DEM_POSITION_VERLET ? 35 : 31)*r + 8) +
-        (size_t)s->slots*8;
-    int i;
-    if (s->orienting) size += n*(12*r + 4) + 2*sizeof(int);
-    size += (size_t)s->shaped_total*sizeof(demi_shaped);
-    size += pairs*8 + (size_t)s->near_total*12 +
-        (size_t)s->near_remembered*(size_t)s->memory_stride*r +
-        (size_t)s->candidate_total*(12 + r);
-    size += (size_t)s->contact_total*sizeof(demi_wall_contact);
-    size += (size_t)s->walls*(3*sizeof(dem_pose) + sizeof(dem_channels) + sizeof(dem_motion));
-    if (s->carry_count)
-        size += ((size_t)s->carry_rows + 2)*4 + (size_t)s->carry_count*(4 +
-            (size_t)s->carry_stride*r);
-    for (i = 0; i < w->field_count; i++) size += 16 +
-        5*sizeof(double)*demi_field_cells(&w->fields[i]);
-    size += (size_t)w->feed_count*(sizeof(dem_feed_state) + 3*sizeof(uint64_t)) +
-        (size_t)w->outlet_count*sizeof(dem_outlet_state);
-    return size;
+static uint64_t demi_digest_material(const dem_world *w, int i) {
+    return demi_hash(DEMI_HASH_START, &w->materials[i], sizeof w->materials[i]);
+}
+static uint64_t demi_digest_pairs(const dem_world *w, int i) {
+    return demi_hash(DEMI_HASH_START, &w->pairs[i*DEMI_MATERIALS],
+                     (size_t)w->material_count*sizeof(dem_pair));
+}
+static uint64_t demi_digest_form(const dem_world *w, int i) {
+    const demi_form *form = &w->forms[i];
+    uint64_t h = demi_hash(DEMI_HASH_START, &form->count, sizeof form->count);
+    h = demi_hash(h, &form->axes, sizeof form->axes);
+    h = demi_hash(h, &form->inertia, sizeof form->inertia);
+    h = demi_hash(h, &form->volume, sizeof form->volume);
+    return form->count ? demi_hash(h, form->parts, 4*(size_t)form->count*sizeof(dem_real)) : h;
+}
+static uint64_t demi_digest_sieve(const dem_sieve_desc *s, uint64_t h) {
+    const int which[] = {(int)s->kind, s->staggered, s->model};
+    const dem_real sizes[] = {s->aperture, s->bar, s->length, s->thickness, s->lift, s->radius,
+                              s->clearance};
+    return demi_hash(demi_hash(h, which, sizeof which), sizes, sizeof sizes);
+}
+/* 0: a wall that was removed. */
+static uint64_t demi_digest_wall(const dem_world *w, int i) {
+    const demi_wall *wall = &w->walls[i];
+    const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule,
+                        wall->vertex_count, wall->element_count, (int)wall->motion.kind};
+    uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
+    if (wall->kind == DEMI_WALL_NONE) return 0;
+    h = demi_hash(h, &wall->radius, sizeof(dem_real));
+    h = demi_hash(h, &wall->share, sizeof(dem_real));
+    h = demi_hash(h, &wall->first, sizeof wall->first);
+    if (wall->kind == DEMI_WALL_SIEVE) h = demi_digest_sieve(&wall->sieve, h);
+    if (wall->corners)
+        h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
+                      (wall->kind == DEMI_WALL_MESH ? 3 : 2));
+    if (wall->vertices)
+        h = demi_hash(h, wall->vertices, (size_t)wall->vertex_count*3*sizeof(dem_real));
+    return h ? h : 1;
+}
+static uint64_t demi_digest_field(const dem_world *w, int i) {
+    const dem_field_desc *f = &w->fields[i].desc;
+    uint64_t h = demi_hash(DEMI_HASH_START, &f->box, sizeof f->box);
+    h = demi_hash(h, f->cells, sizeof f->cells);
+    h = demi_hash(h, &f->start, sizeof f->start);
+    h = demi_hash(h, &f->end, sizeof f->end);
+    return demi_hash(h, &f->interval, sizeof f->interval);
+}
+static uint64_t demi_digest_feed(const dem_world *w, int i) {
+    const dem_feed_desc *f = &demi_feed_at(w, i)->desc;
+    const int what[] = {(int)f->material.id, f->class_count, f->limited, f->by_mass, f->round};
+    const double when[] = {f->rate, f->start, f->end};
+    uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
+    h = demi_hash(h, when, sizeof when);
+    h = demi_hash(h, f->radius, sizeof f->radius);
+    h = demi_hash(h, f->amount, sizeof f->amount);
+    h = demi_hash(h, &f->box, sizeof f->box);
+    h = demi_hash(h, &f->velocity, sizeof f->velocity);
+    h = demi_hash(h, &f->spread, sizeof f->spread);
+    return demi_hash(h, &f->seed, sizeof f->seed);
+}
+static uint64_t demi_digest_outlet(const dem_world *w, int i) {
+    const dem_outlet_desc *o = &demi_outlet_at(w, i)->desc;
+    const int what[] = {(int)o->frame.id, o->class_count};
+    const dem_real sizes[] = {o->beyond, o->wanted_min, o->wanted_max};
+    uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
+    h = demi_hash(h, sizes, sizeof sizes);
+    h = demi_hash(h, &o->box, sizeof o->box);
+    return demi_hash(h, o->radius, sizeof o->radius);
 }
 
-/* Numbers that are not arrays, and the domains: what these count steers demi_state_visit. */
-static void demi_state_scalars(dem_world *w, demi_stream *s) {
+/* The parts of a scene: one row each. `none`: its number is not told in a sentence. */
+typedef struct demi_scene_part {
+    const char *name, *many;
+    uint64_t (*digest)(const dem_world *w, int index);
+} demi_scene_part;
+enum { DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
+static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
+    {"the desc of the world", "descs", demi_digest_desc},
+    {"material", "materials", demi_digest_material},
+    {"the pairs (dem_pair_set) of material", "materials with pairs", demi_digest_pairs},
+    {"shape", "shapes", demi_digest_form},
+    {"wall", "walls", demi_digest_wall},
+    {"field", "fields", demi_digest_field},
+    {"feed", "feeds", demi_digest_feed},
+    {"outlet", "outlets", demi_digest_outlet}};
+static void demi_scene_counts(const dem_world *w, int32_t *counts) {
+    counts[0] = 1;
+    counts[1] = counts[2] = w->material_count;
+    counts[3] = w->form_count;
+    counts[DEMI_PART_WALLS] = w->wall_count;
+    counts[5] = w->field_count;
+    counts[6] = w->feed_count;
+    counts[7] = w->outlet_count;
+}
+/* All of a scene in one number: do two processes hold the same one? */
+static uint64_t demi_scene_digest(const dem_world *w) {
+    uint64_t h = DEMI_HASH_START;
+    int32_t counts[DEMI_PARTS];
+    int part, i;
+    demi_scene_counts(w, counts);
+    h = demi_hash(h, counts, sizeof counts);
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = 0; i < counts[part]; i++) {
+            const uint64_t one = demi_scene_parts[part].digest(w, i);
+            h = demi_hash(h, &one, sizeof one);
+        }
+    return h;
+}
+
+/* --- the state, visited in the order in which it is checked --- */
+
+/* Numbers that are not arrays. */
+static void demi_visit_numbers(dem_world *w, demi_stream *s) {
+    DEMI_VISIT(s, w->count);          DEMI_VISIT(s, w->slot_count);
+    DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->list_valid);
+    DEMI_VISIT(s, w->orienting);      DEMI_VISIT(s, w->shaped_count);
+    DEMI_VISIT(s, w->carry_count);    DEMI_VISIT(s, w->carry_rows);
+    DEMI_VISIT(s, w->carry_stride);
+    DEMI_VISIT(s, w->slot_free);      DEMI_VISIT(s, w->slot_pending);
     DEMI_VISIT(s, w->balance);
-    DEMI_VISIT(s, w->skin);
-    DEMI_VISIT(s, w->reach);
-    DEMI_VISIT(s, w->wall_reach);
-    DEMI_VISIT(s, w->skin_auto);
-    DEMI_VISIT(s, w->last_rebuild);
-    DEMI_VISIT(s, w->steps);
-    DEMI_VISIT(s, w->rebuilds);
-    DEMI_VISIT(s, w->time);
-    DEMI_VISIT(s, w->dt);
-    DEMI_VISIT(s, w->assumed_speed);
-    DEMI_VISIT(s, w->dt_valid);
-    DEMI_VISIT(s, w->forces_valid);
-    DEMI_VISIT(s, w->synced);
-    DEMI_VISIT(s, w->primed);
-    DEMI_VISIT(s, w->moved);
-    DEMI_VISIT(s, w->pairs_changed);
-    DEMI_VISIT(s, w->near_span);
-    DEMI_VISIT(s, w->near_age);
-    DEMI_VISIT(s, w->near_margin);
-    DEMI_VISIT(s, w->near_drift);
-    DEMI_VISIT(s, w->near_kick);
-    DEMI_VISIT(s, w->near_creep);
-    DEMI_VISIT(s, w->overlap_max);
-    DEMI_VISIT(s, w->speed_max);                         DEMI_VISIT(s, w->press_due);
-    DEMI_VISIT(s, w->press_since);
-    DEMI_VISIT(s, w->energy);
-    DEMI_VISIT(s, w->energy_inserted);
-    DEMI_VISIT(s, w->energy_removed);
-    DEMI_VISIT(s, w->throughput);
-    DEMI_VISIT(s, w->half_kick);
-    DEMI_VISIT(s, w->slot_free);
-    DEMI_VISIT(s, w->slot_pending);
-    demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
+    /* effects, of the time the list was made */
+    DEMI_VISIT(s, w->tangent);        DEMI_VISIT(s, w->rolling);
+    DEMI_VISIT(s, w->uniform);        DEMI_VISIT(s, w->fixed_count);
+    DEMI_VISIT(s, w->tight);          DEMI_VISIT(s, w->uniform_coef);
+    DEMI_VISIT(s, w->uniform_radius); DEMI_VISIT(s, w->uniform_inv_mass);
+    DEMI_VISIT(s, w->radius_min);     DEMI_VISIT(s, w->radius_max);
+    DEMI_VISIT(s, w->dt_valid);       DEMI_VISIT(s, w->forces_valid);
+    DEMI_VISIT(s, w->synced);         DEMI_VISIT(s, w->primed);
+    DEMI_VISIT(s, w->moved);          DEMI_VISIT(s, w->pairs_changed);
+    DEMI_VISIT(s, w->last_rebuild);   DEMI_VISIT(s, w->steps);
+    DEMI_VISIT(s, w->rebuilds);       DEMI_VISIT(s, w->dt);
+    DEMI_VISIT(s, w->time);           DEMI_VISIT(s, w->since);
+    DEMI_VISIT(s, w->run_end);        DEMI_VISIT(s, w->run_steps);
+    DEMI_VISIT(s, w->skin_chosen);    DEMI_VISIT(s, w->near_chosen);
+    DEMI_VISIT(s, w->skin);           DEMI_VISIT(s, w->reach);
+    DEMI_VISIT(s, w->wall_reach);     DEMI_VISIT(s, w->skin_auto);
+    DEMI_VISIT(s, w->assumed_speed);  DEMI_VISIT(s, w->near_span);
+    DEMI_VISIT(s, w->near_age);       DEMI_VISIT(s, w->near_margin);
+    DEMI_VISIT(s, w->near_drift);     DEMI_VISIT(s, w->near_kick);
+    DEMI_VISIT(s, w->near_creep);     DEMI_VISIT(s, w->overlap_max);
+    DEMI_VISIT(s, w->speed_max);      DEMI_VISIT(s, w->half_kick);
+    DEMI_VISIT(s, w->press_due);      DEMI_VISIT(s, w->press_since);
+    DEMI_VISIT(s, w->energy);         DEMI_VISIT(s, w->energy_inserted);
+    DEMI_VISIT(s, w->energy_removed); DEMI_VISIT(s, w->throughput);
 }
-static size_t demi_scalars_size(dem_world *w, int domains) {
-    demi_stream counting = {0, 0, 0, 0};
-    demi_state_scalars(w, &counting);
-    return counting.size - (size_t)w->domain_count*sizeof(demi_domain) +
-        (size_t)domains*sizeof(demi_domain);
-}
-static void demi_state_visit(dem_world *w, demi_stream *s) {
+static void demi_visit_bodies(dem_world *w, demi_stream *s) {
     const size_t r = sizeof(dem_real), n = (size_t)w->count;
-    int d, i;
     demi_visit(s, w->pos, 4*n*r);        demi_visit(s, w->vel, 4*n*r);
     demi_visit(s, w->spin, 4*n*r);
     demi_visit(s, w->half_vel, 4*n*r);   demi_visit(s, w->half_spin, 4*n*r);
     demi_visit(s, w->force, 4*n*r);      demi_visit(s, w->torque, 4*n*r);
-    if (w->last_pos) demi_visit(s, w->last_pos, 4*n*r);
+    if (w->desc.integrator == DEM_POSITION_VERLET) demi_visit(s, w->last_pos, 4*n*r);
     demi_visit(s, w->mass, n*r);         demi_visit(s, w->inv_mass, n*r);
     demi_visit(s, w->inv_inertia, n*r);
     demi_visit(s, w->body_slot, 4*n);    demi_visit(s, w->body_material, 4*n);
     demi_visit(s, w->slot_index, (size_t)w->slot_count*4);
     demi_visit(s, w->slot_generation, (size_t)w->slot_count*4);
-    for (d = 0; d < w->domain_count; d++) {
+    if (!w->orienting) return;
+    demi_visit(s, w->orient, 4*n*r);     demi_visit(s, w->angular, 4*n*r);
+    demi_visit(s, w->moment, 4*n*r);     demi_visit(s, w->body_shape, 4*n);
+}
+/* Near pairs of one domain; their candidates are counted from the domain's first. */
+static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
+    const demi_domain *domain = &w->domains[d];
+    const size_t from = (size_t)d*(size_t)w->near.stride, r = sizeof(dem_real);
+    const size_t remembering = (size_t)domain->near_end, all = (size_t)domain->near_shaped_end;
+    int p, e, l;
+    demi_visit(s, w->near.a + from, 4*all);
+    demi_visit(s, w->near.b + from, 4*all);
+    for (l = 0; l < 4; l++) {                   /* between these lie entries that nobody uses */
+        const int begin = l == 0 ? 0 : l == 1 ? domain->near_cross
+            : l == 2 ? domain->near_shaped : domain->near_shaped_cross;
+        const int end = l == 0 ? domain->near_own : l == 1 ? domain->near_end
+            : l == 2 ? domain->near_shaped_cross : domain->near_shaped_end;
+        for (p = begin; p < end; p++) {
+            const int32_t first = d*(l & 1 ? w->cross.stride : w->own.stride);
+            int32_t k = s->from ? 0 : w->near.k[from + (size_t)p] - first;
+            demi_visit(s, &k, sizeof k);
+            if (s->from) w->near.k[from + (size_t)p] = k;      /* `first` is added when checked */
+        }
+    }
+    for (e = 0; e < w->memory_stride; e++)
+        demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
+                   (size_t)e*(size_t)w->near.stride), remembering*r);
+    for (e = 0; e < DEMI_PAIR_COLUMNS && w->pairs_changed && !w->uniform; e++)
+        demi_visit(s, w->near.coef + (from*DEMI_PAIR_COLUMNS + (size_t)e*(size_t)w->near.stride),
+                   remembering*r);
+}
+/* Candidates, near pairs, wall candidates: of a list that fits the bodies. */
+static void demi_visit_lists(dem_world *w, demi_stream *s) {
+    int d, i;
+    for (d = 0; d < w->domain_count && w->list_valid; d++) {
         const demi_domain *domain = &w->domains[d];
+        const size_t walls = (size_t)domain->walls;
         for (i = 0; i < 2; i++) {
             demi_list *list = i ? &w->cross : &w->own;
             const size_t from = (size_t)d*(size_t)list->stride;
@@ -12527,40 +13123,33 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
             demi_visit(s, list->a + from, 4*pairs);
             demi_visit(s, list->b + from, 4*pairs);
         }
-        {
-            const size_t from = (size_t)d*(size_t)w->near.stride;
-            const size_t pairs = (size_t)domain->near_end;
-            const size_t all = (size_t)domain->near_shaped_end;
-            demi_visit(s, w->near.a + from, 4*all);
-            demi_visit(s, w->near.b + from, 4*all);
-            demi_visit(s, w->near.k + from, 4*all);
-            for (i = 0; i < w->memory_stride; i++)
-                demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
-                           (size_t)i*(size_t)w->near.stride), pairs*r);
-        }
-        demi_visit(s, w->wall_body + d*w->wall_stride, (size_t)domain->walls*4);
-        demi_visit(s, w->wall_id + d*w->wall_stride, (size_t)domain->walls*4);
-        demi_visit(s, w->wall_element + d*w->wall_stride, (size_t)domain->walls*4);
-        demi_visit(s, w->wall_gap + d*w->wall_stride, (size_t)domain->walls*r);
-        demi_visit(s, w->wall_now + d*w->wall_now_stride,
-                   (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
+        demi_visit_near(w, s, d);
+        demi_visit(s, w->wall_body + d*w->wall_stride, walls*4);
+        demi_visit(s, w->wall_id + d*w->wall_stride, walls*4);
+        demi_visit(s, w->wall_element + d*w->wall_stride, walls*4);
+        demi_visit(s, w->wall_gap + d*w->wall_stride, walls*sizeof(dem_real));
+    }
+}
+/* Contacts that last, with or without a list; memory on its way from one list to the next. */
+static void demi_visit_contacts(dem_world *w, demi_stream *s) {
+    int d;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        if (domain->wall_contacts)
+            demi_visit(s, w->wall_now + d*w->wall_now_stride,
+                       (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
         if (domain->shaped)
             demi_visit(s, w->shaped_now + (size_t)d*(size_t)w->shaped_stride,
                        (size_t)domain->shaped*sizeof(demi_shaped));
     }
-    if (w->orienting) {
-        demi_visit(s, w->orient, 4*n*r);
-        demi_visit(s, w->angular, 4*n*r);
-        demi_visit(s, w->moment, 4*n*r);
-        demi_visit(s, w->body_shape, 4*n);
-        demi_visit(s, &w->shaped_count, sizeof w->shaped_count);
-        demi_visit(s, &w->tight, sizeof w->tight);
-    }
-    if (!w->list_valid && w->carry_count) {
-        demi_visit(s, w->carry_start, ((size_t)w->carry_rows + 2)*4);
-        demi_visit(s, w->carry_partner, (size_t)w->carry_count*4);
-        demi_visit(s, w->carry_memory, (size_t)w->carry_count*(size_t)w->carry_stride*r);
-    }
+    if (w->list_valid || !w->carry_count) return;
+    demi_visit(s, w->carry_start, ((size_t)w->carry_rows + 1)*4);
+    demi_visit(s, w->carry_partner, (size_t)w->carry_count*4);
+    demi_visit(s, w->carry_memory,
+               (size_t)w->carry_count*(size_t)w->carry_stride*sizeof(dem_real));
+}
+static void demi_visit_walls(dem_world *w, demi_stream *s) {
+    int i;
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_motion motion = wall->motion;
@@ -12573,6 +13162,10 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
         motion.user = wall->motion.user;
         wall->motion = motion;
     }
+}
+/* Fields, feeds, outlets. */
+static void demi_visit_measured(dem_world *w, demi_stream *s) {
+    int i;
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
         const size_t cells = demi_field_cells(f);
@@ -12592,140 +13185,70 @@ static void demi_state_visit(dem_world *w, demi_stream *s) {
     for (i = 0; i < w->outlet_count; i++)
         demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
 }
-
-/* What a checkpoint's world must have in common with the one that reads it. */
-static uint64_t demi_scene_digest(const dem_world *w) {
-    uint64_t h = DEMI_HASH_START;
-    const dem_world_desc *d = &w->asked;
-    const int flags[] = {(int)d->boundary[0], (int)d->boundary[1], (int)d->boundary[2], d->planar,
-                         (int)d->normal_law,
-                         (int)d->tangent_law, (int)d->rolling_law, (int)d->tension,
-                             (int)d->convention, d->law != 0,
-                         d->law_memory, d->law_vectors, d->force != 0, (int)d->integrator,
-                             (int)d->search, d->ledger, (int)d->rotation,
-                             (int)d->ellipsoid_overlap, (int)d->cluster_contacts, d->orientations,
-                         w->material_count, w->wall_count, w->field_count, w->form_count,
-                         w->feed_count, w->outlet_count};
-    const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x,
-                                d->domain.lo.y, d->domain.lo.z,
-                                d->domain.hi.x, d->domain.hi.y, d->domain.hi.z, d->thickness,
-                                    d->dt, d->impact_speed, d->skin};
-    int i, j;
-    h = demi_hash(h, flags, sizeof flags);
-    h = demi_hash(h, numbers, sizeof numbers);
-    h = demi_hash(h, w->materials, (size_t)w->material_count*sizeof w->materials[0]);
-    for (i = 0; i < w->material_count; i++)
-        for (j = 0; j < w->material_count; j++)
-            h = demi_hash(h, &w->pairs[i*DEMI_MATERIALS + j], sizeof(dem_pair));
-    for (i = 0; i < w->form_count; i++) {
-        const demi_form *form = &w->forms[i];
-        h = demi_hash(h, &form->count, sizeof form->count);
-        h = demi_hash(h, &form->axes, sizeof form->axes);
-        h = demi_hash(h, &form->inertia, sizeof form->inertia);
-        h = demi_hash(h, &form->volume, sizeof form->volume);
-        if (form->count) h = demi_hash(h, form->parts, 4*(size_t)form->count*sizeof(dem_real));
-    }
-    for (i = 0; i < w->wall_count; i++) {
-        const demi_wall *wall = &w->walls[i];
-        const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule,
-                            wall->vertex_count,
-                            wall->element_count, (int)wall->motion.kind};
-        h = demi_hash(h, what, sizeof what);
-        h = demi_hash(h, &wall->radius, sizeof(dem_real));
-        h = demi_hash(h, &wall->share, sizeof(dem_real));
-        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_CYLINDER ||
-            wall->kind == DEMI_WALL_SIEVE)
-            h = demi_hash(h, &wall->first, sizeof wall->first);
-        if (wall->kind == DEMI_WALL_SIEVE) {
-            const dem_sieve_desc *s = &wall->sieve;
-            const int which[] = {(int)s->kind, s->staggered, s->model};
-            const dem_real sizes[] = {s->aperture, s->bar, s->length, s->thickness, s->lift,
-                                      s->radius, s->clearance};
-            h = demi_hash(h, which, sizeof which);
-            h = demi_hash(h, sizes, sizeof sizes);
-        }
-        if (wall->corners)
-            h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
-                          (wall->kind == DEMI_WALL_MESH ? 3 : 2));
-        if (wall->vertices) h = demi_hash(h, wall->vertices,
-                                          (size_t)wall->vertex_count*3*sizeof(dem_real));
-    }
-    for (i = 0; i < w->field_count; i++) {
-        const dem_field_desc *f = &w->fields[i].desc;
-        h = demi_hash(h, &f->box, sizeof f->box);
-        h = demi_hash(h, f->cells, sizeof f->cells);
-        h = demi_hash(h, &f->start, sizeof f->start);
-        h = demi_hash(h, &f->end, sizeof f->end);
-        h = demi_hash(h, &f->interval, sizeof f->interval);
-    }
-    for (i = 0; i < w->feed_count; i++) {
-        const demi_feed *f = demi_feed_at(w, i);
-        const dem_feed_desc *f_desc = &f->desc;
-        const int what[] = {(int)f_desc->material.id, f_desc->class_count, f_desc->limited,
-                            f_desc->by_mass, f_desc->round};
-        const double when[] = {f_desc->rate, f_desc->start, f_desc->end};
-        h = demi_hash(h, what, sizeof what);
-        h = demi_hash(h, when, sizeof when);
-        h = demi_hash(h, f_desc->radius, sizeof f_desc->radius);
-        h = demi_hash(h, f_desc->amount, sizeof f_desc->amount);
-        h = demi_hash(h, &f_desc->box, sizeof f_desc->box);
-        h = demi_hash(h, &f_desc->velocity, sizeof f_desc->velocity);
-        h = demi_hash(h, &f_desc->spread, sizeof f_desc->spread);
-        h = demi_hash(h, &f_desc->seed, sizeof f_desc->seed);
-    }
-    for (i = 0; i < w->outlet_count; i++) {
-        const dem_outlet_desc *o = &demi_outlet_at(w, i)->desc;
-        const int what[] = {(int)o->frame.id, o->class_count};
-        const dem_real sizes[] = {o->beyond, o->wanted_min, o->wanted_max};
-        h = demi_hash(h, what, sizeof what);
-        h = demi_hash(h, sizes, sizeof sizes);
-        h = demi_hash(h, &o->box, sizeof o->box);
-        h = demi_hash(h, o->radius, sizeof o->radius);
-    }
-    return h;
+static void demi_visit_state(dem_world *w, demi_stream *s) {
+    demi_visit_numbers(w, s);
+    demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
+    demi_visit_bodies(w, s);
+    demi_visit_lists(w, s);
+    demi_visit_contacts(w, s);
+    demi_visit_walls(w, s);
+    demi_visit_measured(w, s);
 }
+
+/* --- writing --- */
 
 typedef struct demi_checkpoint_head {
     char magic[8];
     uint32_t version, real_size, byte_order, int_size;
-    uint64_t scene, body_size;      /* digest; bytes that follow the shape, without the check sum */
-    demi_extent shape;
+    uint64_t body_size;             /* bytes that follow the head, without the check sum */
+    int32_t parts[DEMI_PARTS];      /* of the scene; as many digests follow */
 } demi_checkpoint_head;
 
+static uint32_t demi_checkpoint_layout(void) {
+    return (uint32_t)(sizeof(demi_domain) + sizeof(demi_wall_contact) + sizeof(demi_shaped));
+}
+static void demi_visit_digests(const dem_world *w, demi_stream *s, const int32_t *counts) {
+    int part, i;
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = 0; i < counts[part]; i++) {
+            uint64_t digest = demi_scene_parts[part].digest(w, i);
+            demi_visit(s, &digest, sizeof digest);
+        }
+}
 DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
+    if (demi_null(w, "dem_checkpoint_write", w, "world")) return DEM_ERROR_ARGUMENT;
     demi_checkpoint_head head;
     demi_out out;
-    demi_stream s;
+    demi_stream s = {0, 0, 0, 0, 0, 0};
+    dem_result result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     uint64_t sum;
-    dem_result result;
-    result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
+    if (w->list_valid) w->carry_count = 0;      /* filed once, and taken up by the list */
+    if (!w->carry_count) w->carry_rows = w->carry_stride = 0;
     memset(&head, 0, sizeof head);
     memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
     head.version = DEMI_CHECKPOINT_VERSION;
     head.real_size = (uint32_t)sizeof(dem_real);
     head.byte_order = 0x01020304u;
-    head.int_size = (uint32_t)(sizeof(demi_domain) + sizeof(demi_wall_contact) +
-                               sizeof(demi_shaped));
-    head.scene = demi_scene_digest(w);
-    head.shape = demi_extent_of(w);
-    head.body_size = demi_scalars_size(w, w->domain_count) + demi_state_size(w, &head.shape);
+    head.int_size = demi_checkpoint_layout();
+    demi_scene_counts(w, head.parts);
+    demi_visit_digests(w, &s, head.parts);      /* counts */
+    demi_visit_state(w, &s);
+    head.body_size = s.size;
     s.file = out.file;
-    s.from = 0;
     s.sum = DEMI_HASH_START;
-    s.size = 0;
     demi_visit(&s, &head, sizeof head);
-    demi_state_scalars(w, &s);
-    demi_state_visit(w, &s);
+    demi_visit_digests(w, &s, head.parts);
+    demi_visit_state(w, &s);
     sum = s.sum;
     fwrite(&sum, 1, sizeof sum, out.file);
     return demi_out_close(&out);
 }
 
-/* Everything that can be wrong with a file, before anything is touched. */
+/* --- reading: is it a checkpoint, whole, and of this scene? --- */
+
 static dem_result demi_checkpoint_check(dem_world *w, const char *path, const char *data,
-                                        size_t size,
-                                        demi_checkpoint_head *head) {
+                                        size_t size, demi_checkpoint_head *head) {
     const char *call = "dem_checkpoint_read";
     uint64_t sum;
     if (size < sizeof *head || memcmp(data, DEMI_CHECKPOINT_MAGIC, 8))
@@ -12736,142 +13259,599 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
     memcpy(head, data, sizeof *head);
     if (head->byte_order != 0x01020304u || head->version != DEMI_CHECKPOINT_VERSION)
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: is of checkpoint version %u%s, must be "
-                         "%d; read it with the "
-                         "dem.h that wrote it", call, path, (unsigned)head->version,
+                         "%d; read it with the dem.h that wrote it", call, path,
+                         (unsigned)head->version,
                          head->byte_order != 0x01020304u ? " and another byte order" : "",
                          (int)DEMI_CHECKPOINT_VERSION);
     if (head->real_size != sizeof(dem_real))
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written with DEM_REAL of %u bytes, "
-                         "must be %u; build with the "
-                         "same precision", call, path, (unsigned)head->real_size,
-                         (unsigned)sizeof(dem_real));
-    if (size != sizeof *head + head->body_size + sizeof sum)
+                         "must be %u; build with the same precision", call, path,
+                         (unsigned)head->real_size, (unsigned)sizeof(dem_real));
+    if (head->body_size != (uint64_t)(size - sizeof *head) - sizeof sum)
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has %llu bytes, must be %llu; it was "
-                         "cut short or appended to", call,
-                         path, (unsigned long long)size,
+                         "cut short or appended to", call, path, (unsigned long long)size,
                          (unsigned long long)(sizeof *head + head->body_size + sizeof sum));
     memcpy(&sum, data + size - sizeof sum, sizeof sum);
     if (sum != demi_hash(DEMI_HASH_START, data, size - sizeof sum))
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: its check sum does not match its "
-                         "contents; the file is damaged", call,
-                         path);
-    if (head->int_size != sizeof(demi_domain) + sizeof(demi_wall_contact) + sizeof(demi_shaped) ||
-        head->scene != demi_scene_digest(w) ||
-        head->shape.walls != w->wall_count || head->shape.fields != w->field_count ||
-        head->shape.domains < 0 || head->shape.domains > DEMI_DOMAINS ||
-        head->body_size != demi_scalars_size(w, head->shape.domains) +
-                           demi_state_size(w, &head->shape))
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene; create the "
-                         "world with the same desc, "
-                         "materials, pairs, shapes, walls, motions, fields, feeds and outlets as "
-                         "the one that wrote it, then read", call, path);
+                         "contents; the file is damaged", call, path);
+    if (head->int_size != demi_checkpoint_layout())
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written by a program whose compiler "
+                         "lays out memory in another way; read it with a program built like the "
+                         "one that wrote it", call, path);
+    return DEM_OK;
+}
+/* Says which part of the scene differs. A wall that the file's world had removed may still stand
+   here: reading removes it. */
+static dem_result demi_checkpoint_scene(dem_world *w, const char *path, demi_stream *s,
+                                        const int32_t *parts) {
+    const char *call = "dem_checkpoint_read", *advice = "create the world with the same desc, "
+        "materials, pairs, shapes, walls, motions, fields, feeds and outlets as the one that "
+        "wrote it, then read";
+    int32_t counts[DEMI_PARTS];
+    int part, i;
+    demi_scene_counts(w, counts);
+    for (part = 0; part < DEMI_PARTS; part++)
+        if (parts[part] != counts[part])
+            return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene: %d %s "
+                             "there, %d here (removed ones count); %s", call, path,
+                             (int)parts[part], demi_scene_parts[part].many, (int)counts[part],
+                             advice);
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = 0; i < counts[part]; i++) {
+            const uint64_t here = demi_scene_parts[part].digest(w, i);
+            uint64_t there = 0;
+            const char *how = "differs";
+            char number[16] = "";
+            demi_visit(s, &there, sizeof there);
+            if (there == here || (part == DEMI_PART_WALLS && !there)) continue;
+            if (part == DEMI_PART_WALLS && !here) how = "was removed here and stands there";
+            if (part) snprintf(number, sizeof number, " %d", i + 1);
+            return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene: %s%s %s; "
+                             "%s", call, path, demi_scene_parts[part].name, number, how, advice);
+        }
     return DEM_OK;
 }
 
-/* Room for all that a file holds; 0 when there is none, and the world is as it was. */
-static int demi_checkpoint_room(dem_world *w, const demi_extent *shape) {
-    const int own = w->own.stride, cross = w->cross.stride, walls = w->wall_stride;
-    const int near = w->near.stride, domains = w->domain_count;
-    const int stride = w->memory_stride, uniform = w->uniform;
-    w->memory_stride = shape->memory_stride;
-    w->uniform = 0;
-    w->domain_count = shape->domains;
-    if ((!shape->orienting || demi_orient_begin(w)) &&
-        demi_bodies_reserve(w, (size_t)DEMI_MAX(shape->count, shape->slots)) &&
-        (!shape->orienting || demi_shaped_reserve(w, shape->shaped_stride)) &&
-        (!shape->orienting || (demi_array_grow(w, &w->spot_start_, sizeof(int32_t),
-                                               (size_t)shape->count + 1) &&
-                               demi_array_grow(w, &w->spot_, 4*sizeof(dem_real),
-                                               (size_t)shape->spots + 1))) &&
-        demi_list_reserve(w, &w->own, shape->domains, shape->own_stride) &&
-        demi_list_reserve(w, &w->cross, shape->domains, shape->cross_stride) &&
-        demi_wall_lists_reserve(w, shape->wall_stride) &&
-        demi_wall_contacts_reserve(w, (size_t)shape->domains*(size_t)shape->wall_now_stride,
-                                   (size_t)shape->domains*(size_t)shape->wall_now_stride) &&
-        demi_near_reserve(w, &w->near, shape->domains, shape->near_stride) &&
-        demi_array_grow(w, &w->quiet_, sizeof(demi_quiet),
-                        (size_t)(shape->count/DEMI_SOME + shape->domains + 1)) &&
-        demi_cross_reserve(w, (size_t)shape->domains*(size_t)shape->cross_stride) &&
-        demi_carry_reserve(w, shape->carry_rows, shape->carry_count, shape->carry_stride))
-        return 1;
-    w->own.stride = own;
-    w->cross.stride = cross;
-    w->wall_stride = walls;
-    w->near.stride = near;
-    w->domain_count = domains;
-    w->memory_stride = stride;
-    w->uniform = uniform;
+/* --- the twin --- */
+
+/* Frees what a run works with: bodies, lists, walls (not their geometry), fields, feeds, outlets.
+   */
+static void demi_state_free(dem_world *w) {
+    demi_room set[20];
+    demi_array *arrays[64];
+    int i, n = demi_body_rooms(w, set), k = 0;
+    for (i = 0; i < n; i++) demi_free(w, *set[i].data, (size_t)w->capacity, set[i].item);
+    demi_free(w, w->slot_index, (size_t)w->slot_capacity, sizeof(int32_t));
+    demi_free(w, w->slot_generation, (size_t)w->slot_capacity, sizeof(uint32_t));
+    demi_free(w, w->walls, (size_t)w->wall_capacity, sizeof(demi_wall));
+    for (i = 0; i < w->field_count; i++) {
+        const size_t cells = demi_field_cells(&w->fields[i]);
+        demi_free(w, w->fields[i].solid, cells, sizeof(double));
+        demi_free(w, w->fields[i].mass, cells, sizeof(double));
+        demi_free(w, w->fields[i].momentum, cells, 3*sizeof(double));
+    }
+    demi_free(w, w->fields, (size_t)w->field_capacity, sizeof(demi_field));
+    for (i = 0; i < 2; i++) {
+        demi_list *list = i ? &w->cross : &w->own;
+        demi_near *near = i ? &w->near_last : &w->near;
+        arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->image_;
+        arrays[k++] = &list->place_;
+        arrays[k++] = &near->a_; arrays[k++] = &near->b_; arrays[k++] = &near->k_;
+        arrays[k++] = &near->image_; arrays[k++] = &near->memory_; arrays[k++] = &near->coef_;
+    }
+    arrays[k++] = &w->quiet_; arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
+    arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
+    arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
+    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_;
+    arrays[k++] = &w->wall_next_; arrays[k++] = &w->touching_; arrays[k++] = &w->touching_table_;
+    arrays[k++] = &w->touching_links_; arrays[k++] = &w->press_;
+    arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
+    arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
+    arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
+    arrays[k++] = &w->feeds_; arrays[k++] = &w->outlets_;
+    for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
+    while (k) demi_array_free(w, arrays[--k]);
+    demi_free(w, w->domains, DEMI_DOMAINS, sizeof(demi_domain));
+    demi_free(w, w->cross_incoming_start, DEMI_DOMAINS + 1, sizeof(int));
+}
+/* Copies of walls, fields, feeds and outlets, the domains: what state is read into. 0 when memory
+   ran out. */
+static int demi_twin_parts(dem_world *t, const dem_world *w) {
+    int i;
+    t->domains = (demi_domain *)demi_alloc(t, DEMI_DOMAINS, sizeof(demi_domain));
+    t->cross_incoming_start = (int *)demi_alloc(t, DEMI_DOMAINS + 1, sizeof(int));
+    t->walls = (demi_wall *)demi_alloc(t, (size_t)w->wall_count, sizeof(demi_wall));
+    t->fields = (demi_field *)demi_alloc(t, (size_t)w->field_count, sizeof(demi_field));
+    t->wall_capacity = w->wall_count;
+    t->field_capacity = w->field_count;
+    if (!t->domains || !t->cross_incoming_start || (w->wall_count && !t->walls) ||
+        (w->field_count && !t->fields) ||
+        !demi_array_grow(t, &t->feeds_, sizeof(demi_feed), (size_t)w->feed_count) ||
+        !demi_array_grow(t, &t->outlets_, sizeof(demi_outlet), (size_t)w->outlet_count)) return 0;
+    t->wall_count = w->wall_count;
+    t->feed_count = w->feed_count;
+    t->outlet_count = w->outlet_count;
+    if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
+    for (i = 0; i < w->feed_count; i++) *demi_feed_at(t, i) = *demi_feed_at(w, i);
+    for (i = 0; i < w->outlet_count; i++) *demi_outlet_at(t, i) = *demi_outlet_at(w, i);
+    for (i = 0; i < w->field_count; i++) {
+        const size_t cells = demi_field_cells(&w->fields[i]);
+        demi_field *f = &t->fields[i];
+        *f = w->fields[i];
+        f->solid = (double *)demi_alloc(t, cells, sizeof(double));
+        f->mass = (double *)demi_alloc(t, cells, sizeof(double));
+        f->momentum = (double *)demi_alloc(t, cells, 3*sizeof(double));
+        t->field_count = i + 1;
+        if (!f->solid || !f->mass || !f->momentum) return 0;
+    }
+    return 1;
+}
+/* An empty world of the scene of w: it has walls, fields, feeds and outlets of its own, but looks
+   at w's materials, shapes and geometry. Null when memory ran out. */
+static dem_world *demi_twin_make(dem_world *w) {
+    dem_world *t = (dem_world *)demi_alloc(w, 1, sizeof *t);
+    if (!t) return 0;
+    t->desc = w->desc;
+    t->asked = w->asked;
+    t->material_count = w->material_count;
+    memcpy(t->materials, w->materials, sizeof t->materials);
+    t->pairs = w->pairs;
+    t->form_count = w->form_count;
+    t->form_capacity = w->form_capacity;
+    t->forms = w->forms;
+    t->normal = (int)w->desc.normal_law;
+    if (demi_twin_parts(t, w)) return t;
+    demi_state_free(t);
+    demi_free(w, t, 1, sizeof *t);
     return 0;
 }
+/* The twin's state takes the place of the world's. */
+static void demi_twin_adopt(dem_world *w, dem_world *t) {
+    size_t bytes;
+    int i;
+    for (i = 0; i < w->wall_count; i++)
+        if (t->walls[i].kind == DEMI_WALL_NONE) demi_wall_free(w, &w->walls[i]);
+    demi_state_free(w);
+    bytes = w->bytes + t->bytes;
+    memcpy(t->error, w->error, sizeof t->error);
+    memcpy(t->refusal, w->refusal, sizeof t->refusal);
+    t->refused = w->refused;
+    *w = *t;
+    w->bytes = bytes;
+    demi_free(w, t, 1, sizeof *t);
+}
 
-/* What follows from the rest, and is not stored. */
-static void demi_checkpoint_follow(dem_world *w, int orienting) {
-    const demi_periods p = demi_periods_of(w);
-    int d, k, l;
-    w->spots_valid = w->lll_valid = 0;
-    if (!orienting) w->shaped_count = 0;
-    if (w->shaped_count && w->list_valid) demi_spots_lay(w);          /* its room is there */
-    for (k = 0; k < w->count && w->orienting && !orienting; k++) {
-        demi_quat_put(w->orient + 4*k, dem_quat_make(1, 0, 0, 0));
-        w->body_shape[k] = 0;
-        demi_put(w->moment + 4*k, demi_moments_of(w, k));
+/* --- reading: does what it says make sense? Each of these checks one part of the twin, right after
+       it was read, and answers 0 with a sentence when not --- */
+
+typedef struct demi_reader {
+    dem_world *w, *t;
+    const char *path;
+    demi_stream s;
+} demi_reader;
+
+static int demi_lie(const demi_reader *r, const char *what, long long which) {
+    char number[32] = "";
+    if (which >= 0) snprintf(number, sizeof number, " %lld", which + 1);
+    demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: %s%s cannot be, although the "
+              "check sum is right; the file was altered, or the run that wrote it had blown up: "
+              "use an older one", r->path, what, number);
+    return 0;
+}
+/* Are so many items of `size` bytes left in the file? */
+static int demi_left(const demi_reader *r, int64_t count, size_t size) {
+    return count >= 0 && (uint64_t)count <= r->s.left/size;
+}
+/* Finite, and at least `least`. */
+static int demi_sane(double x, double least) { return demi_finite_double(x) && x >= least; }
+
+static int demi_numbers_check(const demi_reader *r) {
+    const dem_world *t = r->t, *w = r->w;
+    const int tangent = w->desc.tangent_law == DEM_TANGENT_AUTO ? (int)DEM_TANGENT_SPRING
+        : (int)w->desc.tangent_law;
+    const int rolling = w->desc.rolling_law == DEM_ROLLING_AUTO ? (int)DEM_ROLLING_EPSD
+        : (int)w->desc.rolling_law;
+    const double positive[] = {t->skin, t->reach, t->wall_reach, t->skin_auto,
+        t->assumed_speed, t->near_span, t->near_age, t->near_margin, t->near_drift, t->near_kick,
+        t->near_creep, t->speed_max, t->half_kick, (double)t->radius_min, (double)t->radius_max,
+        (double)t->dt};
+    const size_t per = 31*sizeof(dem_real) + 8 + (t->orienting ? 12*sizeof(dem_real) + 4 : 0);
+    size_t i;
+    if (!demi_left(r, t->count, per) || !demi_left(r, t->slot_count, 8) ||
+        t->count > INT_MAX/64 || t->slot_count > INT_MAX/64 || t->count > t->slot_count)
+        return demi_lie(r, "its number of bodies or of slots", -1);
+    if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
+        (t->list_valid && (!t->domain_count ||
+                           t->domain_count > demi_domains_for(4*t->count + 16))) ||
+        !demi_left(r, t->domain_count, sizeof(demi_domain)))
+        return demi_lie(r, "its number of domains", -1);
+    if (t->shaped_count < 0 || t->shaped_count > (t->orienting ? t->count : 0) ||
+        (w->asked.orientations && !t->orienting))
+        return demi_lie(r, "its number of bodies that are not spheres", -1);
+    if (!demi_left(r, t->carry_count, 4) || t->carry_rows < 0 || t->carry_rows > t->slot_count ||
+        t->carry_stride < 0 || t->carry_stride > DEMI_MEMORY || (t->list_valid && t->carry_count))
+        return demi_lie(r, "its contact memory", -1);
+    if (((t->tangent || t->list_valid) && t->tangent != tangent &&
+         t->tangent != DEM_TANGENT_NONE) || ((t->rolling || t->list_valid) &&
+         t->rolling != rolling && t->rolling != DEM_ROLLING_NONE) || (t->uniform & ~1))
+        return demi_lie(r, "the laws in force", -1);
+    for (i = 0; i < sizeof positive/sizeof *positive; i++)
+        if (!demi_sane(positive[i], 0))
+            return demi_lie(r, "its time, time step, skin or one of the lengths that go with the "
+                            "list", -1);
+    if (!demi_finite_double(t->time) || fabs(t->time) > DEMI_REACH ||
+        !demi_finite_double(t->since.time) || fabs(t->since.time) > DEMI_REACH ||
+        t->since.steps > t->steps || !demi_sane(t->since.dt, 0) ||
+        !demi_finite_double(t->run_end) || (t->dt_valid && t->count && !(t->dt > 0)) ||
+        (t->dt_valid && t->count && w->desc.dt > 0 && (t->dt < w->desc.dt || t->dt > w->desc.dt)))
+        return demi_lie(r, "its time or time step", -1);
+    if (t->balance.present != (uint64_t)t->count ||
+        t->balance.inserted != t->balance.present + t->balance.removed + t->balance.left)
+        return demi_lie(r, "its balance of bodies", -1);
+    return 1;
+}
+/* Counts of domain d; begins where the one before ended. */
+static int demi_domain_check(const demi_reader *r, int d) {
+    const dem_world *t = r->t;
+    const demi_domain *o = &t->domains[d];
+    const int64_t counts[] = {o->own, o->cross, o->walls, o->near_own,
+        (int64_t)o->near_end - o->near_cross, (int64_t)o->near_shaped_cross - o->near_shaped,
+        (int64_t)o->near_shaped_end - o->near_shaped_cross, o->contacts, o->wall_contacts,
+        o->shaped, o->shaped_walls, o->near_cross, o->near_end, o->near_shaped,
+        o->near_shaped_cross, o->near_shaped_end};
+    const int group = DEMI_LANES;
+    size_t i;
+    for (i = 0; i < sizeof counts/sizeof *counts; i++)
+        if (counts[i] < 0 || counts[i] > INT_MAX/64) return 0;
+    if (!demi_left(r, o->wall_contacts, sizeof(demi_wall_contact)) ||
+        !demi_left(r, o->shaped, sizeof(demi_shaped)) || (o->shaped && !t->orienting)) return 0;
+    if (!t->list_valid) return 1;
+    return o->begin == (d ? t->domains[d - 1].end : 0) && o->end >= o->begin &&
+           o->end <= t->count && (d + 1 < t->domain_count || o->end == t->count) &&
+           demi_left(r, o->own, 8) && demi_left(r, o->cross, 8) &&
+           demi_left(r, o->walls, 12 + sizeof(dem_real)) &&
+           demi_left(r, o->near_shaped_end, 8) &&
+           o->near_cross == (o->near_own + group - 1)/group*group &&
+           o->near_shaped == (o->near_end + group - 1)/group*group &&
+           o->near_own + o->near_shaped_cross - o->near_shaped <= o->own &&
+           o->near_end - o->near_cross + o->near_shaped_end - o->near_shaped_cross <= o->cross;
+}
+static int demi_domains_check(const demi_reader *r) {
+    dem_world *t = r->t;
+    int d;
+    for (d = 0; d < t->domain_count; d++) {
+        demi_domain *o = &t->domains[d];
+        if (!demi_domain_check(r, d)) return demi_lie(r, "the counts of domain", d);
+        o->overflow = 0;
+        if (t->list_valid) continue;
+        o->begin = DEMI_MIN(DEMI_MAX(o->begin, 0), t->count);    /* of a list that is no more */
+        o->end = DEMI_MIN(DEMI_MAX(o->end, o->begin), t->count);
     }
-    demi_effects(w);
-    demi_image_shifts(w);
-    for (d = 0; d < w->domain_count; d++) {
-        const demi_domain *domain = &w->domains[d];
-        const int first = d*w->near.stride;
+    return 1;
+}
+/* Slots: those of bodies, and two chains of free ones that nothing else is in. */
+static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
+    const dem_world *t = r->t;
+    int i, chain, left = t->slot_count - t->count;
+    for (i = 0; i < t->count; i++) {
+        const uint32_t slot = t->body_slot[i];
+        if (slot >= (uint32_t)t->slot_count || t->slot_index[slot] != i)
+            return demi_lie(r, "the slot of body", i);
+    }
+    for (chain = 0; chain < 2; chain++) {
+        int slot = chain ? t->slot_pending : t->slot_free;
+        while (slot != -1) {
+            if (slot < 0 || slot >= t->slot_count || seen[slot]++ || t->slot_index[slot] >= 0 ||
+                t->slot_index[slot] < -2 - t->slot_count || !left--)
+                return demi_lie(r, "a chain of free slots", -1);
+            slot = -2 - t->slot_index[slot];
+        }
+    }
+    return left == 0 ? 1 : demi_lie(r, "the number of free slots", -1);
+}
+static dem_real demi_quat_size2(const dem_real *q) {
+    return q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3];
+}
+static int demi_bodies_sane(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const dem_real *fours[] = {t->pos, t->vel, t->spin, t->half_vel, t->half_spin, t->force,
+                               t->torque, t->last_pos, t->orient, t->angular, t->moment};
+    int i, k, shaped = 0;
+    size_t f;
+    for (i = 0; i < t->count; i++) {
+        for (f = 0; f < sizeof fours/sizeof *fours; f++)
+            for (k = 0; k < 4; k++)
+                if (fours[f] && !demi_finite(fours[f][4*i + k]))
+                    return demi_lie(r, "a number of body", i);
+        if (demi_size(demi_at(t->pos + 4*i)) > DEMI_REACH || !(t->pos[4*i + 3] > 0) ||
+            !demi_sane((double)t->mass[i], 0) || !(t->mass[i] > 0) ||
+            !demi_sane((double)t->inv_mass[i], 0) || !demi_sane((double)t->inv_inertia[i], 0))
+            return demi_lie(r, "position, radius or mass of body", i);
+        if (t->body_material[i] < 1 || t->body_material[i] > t->material_count)
+            return demi_lie(r, "the material of body", i);
+        if (!t->orienting) continue;
+        if (t->body_shape[i] < 0 || t->body_shape[i] > t->form_count)
+            return demi_lie(r, "the shape of body", i);
+        if (!(demi_quat_size2(t->orient + 4*i) > DEM_R(0.98)) ||
+            !(demi_quat_size2(t->orient + 4*i) < DEM_R(1.02)))
+            return demi_lie(r, "the orientation of body", i);
+        if (!t->body_shape[i]) continue;
+        shaped++;
+        for (k = 0; k < 3; k++)
+            if (!(t->moment[4*i + k] > 0)) return demi_lie(r, "the inertia of body", i);
+    }
+    return shaped == t->shaped_count ? 1 : demi_lie(r, "the number of shaped bodies", -1);
+}
+/* Near pairs p = begin .. end - 1 of domain d: entries of this list, ascending, all of spheres or
+   none; from here on counted in all domains. */
+static int demi_near_check(const demi_reader *r, int d, const demi_list *list, int count, int begin,
+                           int end, int shaped) {
+    dem_world *t = r->t;
+    const int first = d*list->stride;
+    int p, last = -1;
+    for (p = begin; p < end; p++) {
+        const int at = d*t->near.stride + p, k = t->near.k[at];
+        if (k <= last || k >= count || t->near.a[at] != list->a[first + k] ||
+            t->near.b[at] != list->b[first + k] ||
+            shaped != (demi_form_of(t, t->near.a[at]) || demi_form_of(t, t->near.b[at])))
+            return demi_lie(r, "a near pair of domain", d);
+        last = k;
+        t->near.k[at] = first + k;
+    }
+    return 1;
+}
+static int demi_lists_check(const demi_reader *r) {
+    dem_world *t = r->t;
+    int d, l, k;
+    for (d = 0; d < t->domain_count && t->list_valid; d++) {
+        const demi_domain *o = &t->domains[d];
         for (l = 0; l < 2; l++) {
-            demi_list *list = l ? &w->cross : &w->own;
-            const int begin = d*list->stride, count = l ? domain->cross : domain->own;
+            const demi_list *list = l ? &t->cross : &t->own;
+            const int count = l ? o->cross : o->own, first = d*list->stride;
+            for (k = first; k < first + count; k++) {
+                const int a = list->a[k], b = list->b[k];
+                if (a < o->begin || a >= o->end || b <= a || b >= t->count || (b >= o->end) != l)
+                    return demi_lie(r, "a candidate pair of domain", d);
+            }
+            if (!demi_near_check(r, d, list, count, l ? o->near_cross : 0,
+                                 l ? o->near_end : o->near_own, 0) ||
+                !demi_near_check(r, d, list, count, l ? o->near_shaped_cross : o->near_shaped,
+                                 l ? o->near_shaped_end : o->near_shaped_cross, 1)) return 0;
+        }
+        for (k = d*t->wall_stride; k < d*t->wall_stride + o->walls; k++) {
+            const int wall = t->wall_id[k], body = t->wall_body[k];
+            if (body < o->begin || body >= o->end || wall < 0 || wall >= t->wall_count ||
+                t->walls[wall].kind == DEMI_WALL_NONE || t->wall_element[k] < 0 ||
+                t->wall_element[k] >= t->walls[wall].element_count ||
+                (k > d*t->wall_stride && body < t->wall_body[k - 1]))
+                return demi_lie(r, "a wall candidate of domain", d);
+        }
+    }
+    return 1;
+}
+/* Contacts that last: of bodies, or of slots while there is no list. */
+static int demi_contacts_check(const demi_reader *r) {
+    const dem_world *t = r->t;
+    const int who = t->list_valid ? t->count : t->slot_count;
+    int d, k;
+    for (d = 0; d < t->domain_count; d++) {
+        for (k = 0; k < t->domains[d].wall_contacts; k++) {
+            const demi_wall_contact *c = t->wall_now + d*t->wall_now_stride + k;
+            if (c->body < 0 || c->body >= who || c->wall < 0 || c->wall >= t->wall_count ||
+                (t->list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))
+                return demi_lie(r, "a wall contact of domain", d);
+        }
+        for (k = 0; k < t->domains[d].shaped; k++) {
+            const demi_shaped *c = t->shaped_now + (size_t)d*(size_t)t->shaped_stride + k;
+            if (c->a < 0 || c->a >= who || c->b < -1 || c->b >= who || (c->b < 0 &&
+                (c->wall < 0 || c->wall >= t->wall_count ||
+                 (t->list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))))
+                return demi_lie(r, "a contact of shaped bodies in domain", d);
+        }
+    }
+    if (t->list_valid || !t->carry_count) return 1;
+    for (k = 0; k <= t->carry_rows; k++)
+        if (t->carry_start[k] < (k ? t->carry_start[k - 1] : 0) ||
+            t->carry_start[k] > t->carry_count || (!k && t->carry_start[k]))
+            return demi_lie(r, "contact memory of slot", k);
+    if (t->carry_start[t->carry_rows] != t->carry_count)
+        return demi_lie(r, "contact memory of slot", t->carry_rows);
+    for (k = 0; k < t->carry_count; k++) {
+        const int32_t p = t->carry_partner[k], other = p < 0 ? ~p : p;
+        if (other >= t->slot_count) return demi_lie(r, "a partner in contact memory, entry", k);
+    }
+    return 1;
+}
+static int demi_pose_sane(const dem_pose *p) {
+    int k;
+    for (k = 0; k < 9; k++)
+        if (!demi_finite(p->rotation[k]) || DEMI_ABS(p->rotation[k]) > 2) return 0;
+    return demi_pose_finite(p) && demi_size(p->position) <= DEMI_REACH;
+}
+static int demi_walls_check(const demi_reader *r) {
+    int i;
+    for (i = 0; i < r->t->wall_count; i++) {
+        const demi_wall *wall = &r->t->walls[i], *own = &r->w->walls[i];
+        const dem_motion *m = &wall->motion;
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
+            !demi_pose_sane(&wall->mid)) return demi_lie(r, "the pose of wall", i);
+        if (m->kind != own->motion.kind || !demi_finite3(m->velocity) || !demi_finite3(m->point) ||
+            !demi_finite3(m->axis) || !demi_finite(m->speed) || !demi_finite(m->amplitude) ||
+            !demi_finite(m->frequency) || !demi_finite(m->phase) || !demi_finite_double(m->start))
+            return demi_lie(r, "the motion of wall", i);
+    }
+    return 1;
+}
+static int demi_measured_check(const demi_reader *r) {
+    int i, k;
+    for (i = 0; i < r->t->field_count; i++)
+        if (!demi_finite_double(r->t->fields[i].next))
+            return demi_lie(r, "the time of the next sample of field", i);
+    for (i = 0; i < r->t->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(r->t, i);
+        if (f->next < -1 || f->next >= f->desc.class_count || !demi_sane(f->state.mass, 0))
+            return demi_lie(r, "the state of feed", i);
+        for (k = 0; k < f->desc.class_count; k++)
+            if (f->desc.limited && f->state.fed[k] > f->limit[k])
+                return demi_lie(r, "the state of feed", i);
+    }
+    return 1;
+}
+
+/* --- reading: room, and what follows from the rest --- */
+
+static int demi_twin_bodies_room(dem_world *t) {
+    const int orienting = t->orienting, count = t->count, slots = t->slot_count;
+    int ok;
+    t->orienting = t->count = t->slot_count = 0;              /* nothing to keep yet */
+    ok = demi_bodies_reserve(t, (size_t)slots) && (!orienting || demi_orient_begin(t));
+    t->count = count;
+    t->slot_count = slots;
+    return ok;
+}
+/* The lists' rows are as long as the longest asks for, and as a rebuild would make them. */
+static int demi_twin_lists_room(dem_world *t) {
+    int most[7] = {0, 0, 0, 0, 0, 0, 0}, d, k;
+    const int each = t->domain_count ? t->count/t->domain_count : 0;
+    for (d = 0; d < t->domain_count; d++) {
+        const demi_domain *o = &t->domains[d];
+        const int counts[] = {t->list_valid ? o->own : 0, t->list_valid ? o->cross : 0,
+                              t->list_valid ? o->near_shaped_end : 0, t->list_valid ? o->walls : 0,
+                              o->wall_contacts, o->shaped, t->domain_count > 1};
+        for (k = 0; k < 7; k++) most[k] = DEMI_MAX(most[k], counts[k]);
+    }
+    if (t->list_valid) {
+        most[0] = DEMI_MAX(most[0], DEMI_MAX(64, each*3));
+        most[1] = DEMI_MAX(most[1], most[6] ? DEMI_MAX(64, each*3)/4 : 0);
+        most[2] = DEMI_MAX(most[2], DEMI_MAX(64, each*5/2));
+        most[3] = DEMI_MAX(most[3], 64);
+        most[4] = DEMI_MAX(most[4], 16);
+        if (t->shaped_count) most[5] = DEMI_MAX(most[5], DEMI_MAX(64, each*4));
+    }
+    most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
+    t->wall_now_stride = most[4];
+    t->shaped_stride = 0;
+    if (!demi_wall_contacts_reserve(t, (size_t)t->domain_count*(size_t)most[4],
+                                    (size_t)t->domain_count*(size_t)most[4]) ||
+        (t->orienting && !demi_shaped_reserve(t, most[5])) ||
+        !demi_carry_reserve(t, t->carry_rows, t->carry_count, t->carry_stride)) return 0;
+    t->shaped_stride = t->orienting ? most[5] : 0;
+    return !t->list_valid ||
+           (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&
+            demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
+            demi_near_reserve(t, &t->near, t->domain_count, most[2]) &&
+            demi_wall_lists_reserve(t, most[3]) &&
+            demi_array_grow(t, &t->quiet_, sizeof(demi_quiet),
+                            (size_t)(t->count/DEMI_SOME + t->domain_count + 1)));
+}
+/* What follows from the rest, and is not stored. 0 when memory ran out. */
+static int demi_twin_follow(dem_world *t) {
+    const demi_periods p = demi_periods_of(t);
+    int d, k, l;
+    demi_image_shifts(t);
+    for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
+    demi_kernel_choose(t);
+    if (!t->list_valid) return 1;
+    if (t->shaped_count && !demi_spots_lay(t)) return 0;
+    for (d = 0; d < t->domain_count; d++) {
+        const demi_domain *o = &t->domains[d];
+        const int first = d*t->near.stride;
+        for (l = 0; l < 2; l++) {
+            demi_list *list = l ? &t->cross : &t->own;
+            const int begin = d*list->stride, count = l ? o->cross : o->own;
             for (k = begin; k < begin + count; k++)
-                list->image[k] = demi_pair_image(w, &p, list->a[k], list->b[k]);
+                list->image[k] = demi_pair_image(t, &p, list->a[k], list->b[k]);
         }
-        for (k = 0; k < domain->near_end; k++) {
-            const int a = w->near.a[first + k], b = w->near.b[first + k];
-            w->near.image[first + k] = demi_pair_image(w, &p, a, b);
-            if (!w->uniform) demi_near_coefs(w, &w->near, d, k, a, b);
+        for (k = demi_near_first(o); k < o->near_end; k = demi_near_next(o, k)) {
+            const int a = t->near.a[first + k], b = t->near.b[first + k];
+            t->near.image[first + k] = demi_pair_image(t, &p, a, b);
+            if (!t->uniform && !t->pairs_changed) demi_near_coefs(t, &t->near, d, k, a, b);
         }
-        for (k = domain->near_shaped; k < domain->near_shaped_end; k++)
-            w->near.image[first + k] = demi_pair_image(w, &p, w->near.a[first + k],
-                                                       w->near.b[first + k]);
-        demi_near_adopt(w, d);
+        for (k = o->near_shaped; k < o->near_shaped_end; k++)
+            t->near.image[first + k] = demi_pair_image(t, &p, t->near.a[first + k],
+                                                       t->near.b[first + k]);
+        demi_near_adopt(t, d);
     }
-    for (k = 0; k < w->wall_count; k++) w->walls[k].symmetric = demi_wall_symmetric(&w->walls[k]);
-    w->touching_valid = 0;
-    if (w->list_valid && w->count) {
-        demi_cross_index(w);                                          /* its room is there */
-        for (d = 0; d < w->domain_count; d++) demi_domain_quiet(w, d);
+    t->touching_valid = 0;
+    if (!demi_cross_index(t)) return 0;
+    for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
+    return 1;
+}
+
+/* Fills the twin from the rest of the file. A memory error has no sentence yet. */
+static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
+    dem_world *t = r->t;
+    demi_stream *s = &r->s;
+    demi_visit_numbers(t, s);
+    if (s->cut) demi_lie(r, "its length", -1);
+    if (s->cut || !demi_numbers_check(r)) return DEM_ERROR_FORMAT;
+    demi_effects_memory(t);
+    demi_visit(s, t->domains, (size_t)t->domain_count*sizeof(demi_domain));
+    if (!demi_domains_check(r)) return DEM_ERROR_FORMAT;
+    *seen = (unsigned char *)demi_alloc(t, (size_t)t->slot_count + 1, 1);
+    if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t)) return DEM_ERROR_MEMORY;
+    demi_visit_bodies(t, s);
+    if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
+    demi_visit_lists(t, s);
+    demi_visit_contacts(t, s);
+    if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
+    demi_visit_walls(t, s);
+    demi_visit_measured(t, s);
+    if (s->cut || s->left) demi_lie(r, "its length", -1);
+    if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r))
+        return DEM_ERROR_FORMAT;
+    return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
+}
+/* Reads a checkpoint from memory. */
+static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const char *data,
+                                        size_t size) {
+    demi_checkpoint_head head;
+    demi_reader r;
+    unsigned char *seen = 0;
+    int i;
+    dem_result result = demi_checkpoint_check(w, path, data, size, &head);
+    if (result != DEM_OK) return result;
+    memset(&r, 0, sizeof r);
+    r.w = w;
+    r.path = path;
+    r.s.from = data + sizeof head;
+    r.s.left = (size_t)head.body_size;
+    {
+        demi_stream digests = r.s;              /* once to compare, once to see what was removed */
+        result = demi_checkpoint_scene(w, path, &digests, head.parts);
     }
-    demi_kernel_choose(w);
+    if (result != DEM_OK) return result;
+    r.t = demi_twin_make(w);
+    if (!r.t) return demi_no_memory(w, "dem_checkpoint_read");
+    for (i = 0; i < DEMI_PARTS; i++) {
+        int k;
+        for (k = 0; k < head.parts[i]; k++) {
+            uint64_t digest = 0;
+            demi_visit(&r.s, &digest, sizeof digest);
+            if (i == DEMI_PART_WALLS && !digest)
+                memset(&r.t->walls[k], 0, sizeof r.t->walls[k]);
+        }
+    }
+    result = demi_twin_read(&r, &seen);
+    demi_free(r.t, seen, (size_t)r.t->slot_count + 1, 1);
+    if (result == DEM_OK) {
+        demi_twin_adopt(w, r.t);
+        return DEM_OK;
+    }
+    demi_state_free(r.t);
+    demi_free(w, r.t, 1, sizeof *r.t);
+    return result == DEM_ERROR_MEMORY ? demi_no_memory(w, "dem_checkpoint_read") : result;
 }
 
 DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
-    const char *call = "dem_checkpoint_read";
-    demi_checkpoint_head head;
-    const demi_extent *shape = &head.shape;
+    if (demi_null(w, "dem_checkpoint_read", w, "world")) return DEM_ERROR_ARGUMENT;
     demi_array bytes = {0, 0, 0};
-    demi_stream s = {0, 0, 0, 0};
     size_t size = 0;
-    dem_result result = demi_load(w, call, path, &bytes, &size);
+    dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
     if (result == DEM_OK)
-        result = demi_checkpoint_check(w, path, (const char *)bytes.data, size, &head);
-    if (result == DEM_OK && !demi_checkpoint_room(w, shape)) result = demi_no_memory(w, call);
-    if (result == DEM_OK) {
-        w->count = shape->count;
-        w->slot_count = shape->slots;
-        w->wall_now_stride = shape->wall_now_stride;
-        if (shape->orienting) w->shaped_stride = shape->shaped_stride;
-        w->list_valid = shape->list_valid;
-        w->carry_count = shape->carry_count;
-        w->carry_rows = shape->carry_rows;
-        w->carry_stride = shape->carry_stride;
-        memset(w->domains, 0, DEMI_DOMAINS*sizeof *w->domains);
-        s.from = (const char *)bytes.data + sizeof head;
-        demi_state_scalars(w, &s);
-        demi_state_visit(w, &s);
-        demi_checkpoint_follow(w, shape->orienting);
-    }
+        result = demi_checkpoint_parse(w, path, (const char *)bytes.data, size);
     demi_array_free(w, &bytes);
     return result;
 }
@@ -12888,6 +13868,8 @@ DEM_API const char *dem_result_name(dem_result r) {
 }
 
 DEM_API const char *dem_create_error(const dem_world_desc *d) {
+    if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
+        "began as DEM_WORLD_DESC";
     const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
     const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
     int k;
@@ -12911,6 +13893,8 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         "the library choose";
     if (!(d->impact_speed >= 0) || !demi_finite(d->impact_speed)) return "dem_world_create: "
         "impact_speed must be >= 0 m/s";
+    if (!(d->law_stiffness >= 0) || !demi_finite(d->law_stiffness)) return "dem_world_create: "
+        "law_stiffness must be finite and >= 0 N/m; 0 means that of the built-in law";
     if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
         "choose, below 0 means none";
     if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64; 0 "
@@ -12978,58 +13962,26 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
 }
 
 DEM_API void dem_world_destroy(dem_world *w) {
-    demi_room set[20];
-    demi_array *arrays[64];
-    int i, n, k = 0;
     dem_allocator allocator;
+    int i;
     if (!w) return;
-    n = demi_body_rooms(w, set);
-    for (i = 0; i < n; i++) demi_free(w, *set[i].data, (size_t)w->capacity, set[i].item);
-    demi_free(w, w->slot_index, (size_t)w->slot_capacity, sizeof(int32_t));
-    demi_free(w, w->slot_generation, (size_t)w->slot_capacity, sizeof(uint32_t));
     for (i = 0; i < w->wall_count; i++) demi_wall_free(w, &w->walls[i]);
-    demi_free(w, w->walls, (size_t)w->wall_capacity, sizeof(demi_wall));
-    for (i = 0; i < w->field_count; i++) {
-        const size_t cells = demi_field_cells(&w->fields[i]);
-        demi_free(w, w->fields[i].solid, cells, sizeof(double));
-        demi_free(w, w->fields[i].mass, cells, sizeof(double));
-        demi_free(w, w->fields[i].momentum, cells, 3*sizeof(double));
-    }
-    demi_free(w, w->fields, (size_t)w->field_capacity, sizeof(demi_field));
     for (i = 0; i < w->form_count; i++) demi_form_free(w, &w->forms[i]);
     demi_free(w, w->forms, (size_t)w->form_capacity, sizeof(demi_form));
-    for (i = 0; i < 2; i++) {
-        demi_list *list = i ? &w->cross : &w->own;
-        demi_near *near = i ? &w->near_last : &w->near;
-        arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->image_;
-        arrays[k++] = &list->place_;
-        arrays[k++] = &near->a_; arrays[k++] = &near->b_; arrays[k++] = &near->k_;
-        arrays[k++] = &near->image_; arrays[k++] = &near->memory_; arrays[k++] = &near->coef_;
-    }
-    arrays[k++] = &w->quiet_; arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
-    arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
-    arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
-    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_;
-    arrays[k++] = &w->wall_next_;
-    arrays[k++] = &w->touching_; arrays[k++] = &w->touching_table_;
-    arrays[k++] = &w->touching_links_; arrays[k++] = &w->press_;
-    arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
-    arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
-    arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
-    arrays[k++] = &w->feeds_; arrays[k++] = &w->outlets_;
-    for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
-    while (k) demi_array_free(w, arrays[--k]);
+    demi_state_free(w);
     demi_free(w, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
-    demi_free(w, w->domains, DEMI_DOMAINS, sizeof(demi_domain));
-    demi_free(w, w->cross_incoming_start, DEMI_DOMAINS + 1, sizeof(int));
     allocator = w->desc.allocator;
     demi_raw_free(&allocator, w, sizeof *w);
 }
 
-DEM_API const char *dem_world_error(const dem_world *w) { return w ? w->error
-                                                         : "dem_world_create: returned null; "
-                                                             "dem_create_error(desc) says why"; }
+DEM_API const char *dem_world_error(const dem_world *w) {
+    if (!w) return "dem_world_create: the world is null, so it was refused and this call too; "
+        "dem_create_error(desc) says why";
+    ((dem_world *)w)->refused = 0;              /* somebody looks */
+    return w->error;
+}
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
+    if (!w) return DEM_WORLD_DESC;
     dem_world_desc d = w->desc;
     if (w->dt > 0) d.dt = w->dt;
     d.skin = (dem_real)w->skin;
@@ -13065,16 +14017,44 @@ static int demi_shaped_total(const dem_world *w) {
     for (d = 0; d < w->domain_count; d++) n += w->domains[d].shaped;
     return n;
 }
-DEM_API void dem_world_report(const dem_world *world, FILE *out) {
-    static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
-    static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
+/* The laws in force. Of a law of the user's own only what it was given is known. */
+static void demi_laws_report(const dem_world *w, FILE *out) {
     static const char *tangents[] = {"auto", "none", "viscous", "step", "spring", "Mindlin",
                                      "Mindlin, rescaled"};
     static const char *rollings[] = {"auto", "none", "step", "constant torque", "EPSD"};
     static const char *loads[] = {"the normal force", "its spring's part", "its size"};
     static const char *sliders[] = {"spring and dashpot share it", "the spring alone holds it",
                                     "the spring holds what the dashpot leaves"};
-    const demi_habit habit = demi_habit_of(world);
+    const demi_habit habit = demi_habit_of(w);
+    const char *unused = "";
+#ifdef DEM_LAW
+    unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
+#endif
+    if (w->desc.law) {
+        fprintf(out, "effects    normal, tangential, rolling: your own law; spins and torques are "
+                "followed; %d reals of memory per contact\n", w->desc.law_memory);
+        return;
+    }
+    fprintf(out, "effects    normal: %s%s%s\n", w->normal == DEM_NORMAL_HERTZ ? "Hertz"
+            : w->normal == DEM_NORMAL_LINEAR ? "linear"
+            : "hysteretic (8 bytes of memory per candidate)",
+            w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped"
+            : w->desc.tension == DEM_TENSION_NONE ? ", no tension" : "", unused);
+    fprintf(out, "           tangential: %s%s\n", tangents[w->tangent],
+            w->tangent == DEM_TANGENT_NONE
+            ? " (no friction in any pair: no spin, no torque, no memory)"
+            : w->tangent >= DEM_TANGENT_SPRING
+            ? " (32 bytes of memory per candidate)" : "");
+    if (w->tangent != DEM_TANGENT_NONE)
+        fprintf(out, "           friction's limit is mu times %s; %s\n", loads[habit.load],
+                w->tangent < DEM_TANGENT_SPRING ? "a dashpot alone holds it"
+                : sliders[habit.slider]);
+    fprintf(out, "           rolling: %s\n", rollings[w->rolling]);
+}
+DEM_API void dem_world_report(const dem_world *world, FILE *out) {
+    if (demi_null(world, "dem_world_report", out, "out")) return;
+    static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
+    static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
     dem_world *w = (dem_world *)world;          /* effects are worked out if they were not yet */
     const dem_counters c = dem_counters_get(w);
     const double per = w->count ? 1.0/w->count : 0;
@@ -13106,22 +14086,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             ? (double)w->steps/(double)w->rebuilds : 0,
             per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
-    fprintf(out, "effects    normal: %s%s\n", w->desc.law ? "your own law"
-            : w->normal == DEM_NORMAL_HERTZ ? "Hertz"
-            : w->normal == DEM_NORMAL_LINEAR ? "linear"
-            : "hysteretic (8 bytes of memory per candidate)",
-            w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped"
-            : w->desc.tension == DEM_TENSION_NONE ? ", no tension" : "");
-    fprintf(out, "           tangential: %s%s\n", tangents[w->tangent],
-            w->tangent == DEM_TANGENT_NONE
-            ? " (no friction in any pair: no spin, no torque, no memory)"
-            : w->tangent >= DEM_TANGENT_SPRING
-            ? " (32 bytes of memory per candidate)" : "");
-    if (w->tangent != DEM_TANGENT_NONE && !w->desc.law)
-        fprintf(out, "           friction's limit is mu times %s; %s\n", loads[habit.load],
-                w->tangent < DEM_TANGENT_SPRING ? "a dashpot alone holds it"
-                : sliders[habit.slider]);
-    fprintf(out, "           rolling: %s\n", rollings[w->rolling]);
+    demi_laws_report(w, out);
     if (w->shaped_count)
         fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap "
                 "%s; a "
@@ -14117,6 +15082,7 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
     if (!h->moved) {
         h->moved = 1;
         h->time = first->time;
+        h->since = first->since;
         h->steps++;
         demi_slabs_poses(s);
         result = demi_slabs_agree(s, flags, 6);
@@ -14152,6 +15118,7 @@ static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
                      call);
 }
 DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
+    if (!s) return DEM_ERROR_ARGUMENT;
     dem_result result = demi_slabs_usable(s, "dem_slabs_step");
     dem_world *h = &s->head;
     int i, f, whole = 1;
@@ -14287,6 +15254,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     memset(w->slot_index, 0xff, slots*sizeof(int32_t));
     if (slots) memcpy(w->slot_generation, from->slot_generation, slots*sizeof(uint32_t));
     w->time = from->time;           w->steps = from->steps;       w->rebuilds = from->rebuilds;
+    w->since = from->since;
     w->last_rebuild = from->steps;  w->skin_auto = from->skin_auto;
     w->skin = from->skin;           w->dt = from->dt;             w->dt_valid = from->dt_valid;
     w->wall_fastest = from->wall_fastest;                         w->near_span = from->near_span;
@@ -14404,6 +15372,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->wall_count = w->wall_count;
     memcpy(h->materials, w->materials, sizeof h->materials);
     h->time = w->time;           h->steps = w->steps;         h->rebuilds = w->rebuilds;
+    h->since = w->since;         h->balance = w->balance;
     h->last_rebuild = w->steps;  h->skin_auto = w->skin_auto; h->skin = w->skin;
     h->dt = w->dt;               h->dt_valid = w->dt_valid;   h->primed = w->primed;
     h->assumed_speed = w->assumed_speed;
@@ -14476,13 +15445,17 @@ DEM_API void dem_slabs_destroy(dem_slabs *s) {
     demi_raw_free(&allocator, s, sizeof *s);
 }
 DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
+    if (demi_null(w, "dem_slabs_create", desc, "desc")) return 0;
     const size_t slots = (size_t)w->slot_count + 1;
     dem_slabs *s;
     uint8_t *marks;
     int k, ok;
-    if (demi_slabs_check(w, desc) != DEM_OK) return 0;
-    demi_finish(w);
-    if (!demi_list_drop(w)) { demi_no_memory(w, "dem_slabs_create"); return 0; }
+    if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
+        return 0;
+    if (w->list_valid && !demi_carry_collect(w)) {  /* the world keeps its list: it is only read */
+        demi_no_memory(w, "dem_slabs_create");
+        return 0;
+    }
     s = (dem_slabs *)demi_raw_alloc(&w->desc.allocator, sizeof *s);
     if (!s) { demi_no_memory(w, "dem_slabs_create"); return 0; }
     memset(s, 0, sizeof *s);
@@ -14636,6 +15609,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     const dem_world *h = &s->head, *from = s->slabs[0].world;
     int i;
     w->time = h->time;           w->steps = h->steps;         w->rebuilds = h->rebuilds;
+    w->since = h->since;
     w->last_rebuild = h->last_rebuild;                        w->skin_auto = h->skin_auto;
     if (s->count == 1) w->skin_auto = from->skin_auto;
     w->skin = h->skin;           w->dt = h->dt;               w->dt_valid = h->dt_valid;
@@ -14727,6 +15701,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, demi_array *add, d
     return DEM_OK;
 }
 DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
+    if (!s || demi_null(&s->head, "dem_slabs_collect", w, "world")) return DEM_ERROR_ARGUMENT;
     demi_array add = {0, 0, 0}, seen = {0, 0, 0};
     dem_result result = demi_slabs_usable(s, "dem_slabs_collect");
     demi_slab_sums sums;
@@ -14746,6 +15721,8 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
                 demi_body_take_out(w, i);
                 w->energy_removed = removed;
             }
+        w->balance.inserted = s->head.balance.inserted;   /* whatever happened here since */
+        w->balance.removed = s->head.balance.removed;
         demi_effects(w);                        /* the world may never have taken a step itself */
         demi_kernel_choose(w);
     }
@@ -14754,6 +15731,7 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
     return result;
 }
 DEM_API void dem_slabs_channels_reset(dem_slabs *s) {
+    if (!s) return;
     int k, i;
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
@@ -14770,6 +15748,7 @@ DEM_API const char *dem_slabs_error(const dem_slabs *s) {
     return s ? s->head.error : "dem_slabs_create: returned null; dem_world_error(world) says why";
 }
 DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
+    if (!s || demi_null(&s->head, "dem_slab_get", out, "slab")) return DEM_ERROR_ARGUMENT;
     const demi_slab *b;
     if (index < s->first || index >= s->first + s->local)
         return demi_fail((dem_world *)&s->head, DEM_ERROR_ARGUMENT, "dem_slab_get: slab %d is not "
@@ -14789,6 +15768,7 @@ DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
     dem_slabs_counters c;
     int k;
     memset(&c, 0, sizeof c);
+    if (!s) return c;
     c.time = s->head.time;
     c.steps = s->head.steps;
     c.rebuilds = s->head.rebuilds;

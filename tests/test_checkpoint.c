@@ -285,6 +285,202 @@ static dem_world *other_world(int what) {
     return world;
 }
 
+/* Spheres, a cluster and an ellipsoid in a heap, a plane, a mesh, a feed, an outlet, a field. */
+static dem_world *rich_world(int steps) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_cluster_desc two = DEM_CLUSTER_DESC;
+    dem_feed_desc feed;
+    dem_outlet_desc outlet;
+    dem_field_desc field;
+    dem_motion motion = DEM_MOTION;
+    dem_material glass;
+    dem_world *world;
+    dem_shape pair, egg;
+    dem_real centres[6] = {0, 0, 0, DEM_R(5e-4), 0, 0};
+    int i;
+    desc.threads = 1;
+    desc.dt = DEM_R(1e-6);
+    desc.gravity = at(0, 0, -9.81);
+    world = dem_world_create(&desc);
+    glass = scene_material(world, 1e7, 0.7, 0.3, 0);
+    dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    motion.kind = DEM_MOTION_TRANSLATING;
+    motion.velocity = at(1e-3, 0, 0);
+    dem_wall_motion(world, scene_floor(world, glass, -0.01, -0.01, 0.01, 0.01, 2, 2), &motion);
+    two.count = 2; two.positions = centres; two.radius = DEM_R(6e-4);
+    pair = dem_shape_cluster_add(world, &two);
+    egg = dem_shape_ellipsoid_add(world, at(1e-3, 8e-4, 1.1e-3));
+    for (i = 0; i < 12; i++) {
+        const dem_vec3 x = at(i%3*1.7e-3, i/3%2*1.7e-3, 0.8e-3 + i/6*1.7e-3);
+        if (i%4 == 2) dem_body_add(world, glass, i%3 ? pair : egg, x, dem_quat_make(1, 0, 0, 0));
+        else dem_sphere_add(world, glass, DEM_R(0.9e-3), x);
+    }
+    memset(&feed, 0, sizeof feed);
+    feed.material = glass; feed.class_count = 2; feed.limited = 1; feed.rate = 1;
+    feed.radius[0] = DEM_R(1e-3); feed.radius[1] = DEM_R(2e-3);
+    feed.amount[0] = feed.amount[1] = 5;
+    feed.box = box_of(-0.1, -0.1, 0.5, 0.1, 0.1, 0.6);
+    dem_feed_add(world, &feed);
+    memset(&outlet, 0, sizeof outlet);
+    outlet.box = box_of(0, 0, 7, 1, 1, 8);
+    dem_outlet_add(world, &outlet);
+    memset(&field, 0, sizeof field);
+    field.box = box_of(0, 0, 0, 1, 1, 1);
+    for (i = 0; i < 3; i++) field.cells[i] = 2;
+    dem_field_add(world, &field);
+    scene_step(world, steps);
+    dem_body_remove(world, dem_bodies_id(world, 0));     /* a slot that rests */
+    scene_step(world, steps ? 1 : 0);
+    return world;
+}
+/* Puts one lie into the world that is about to be written: some number that cannot be. Answers 0
+   when there is no lie of that number. Those of 100 and more are about a world without a list. */
+static int lie_tell(dem_world *w, int lie) {
+    demi_domain *o = &w->domains[0];
+    demi_feed *f = demi_feed_at(w, 0);
+    const int huge = 0x7fffffff, twice = w->near.k[1];
+    int shaped = 0;
+    while (!w->body_shape[shaped]) shaped++;
+    switch (lie) {
+    case 0: w->balance.present++; break;
+    case 1: w->slot_count = huge; break;
+    case 2: w->domain_count = 257; break;
+    case 3: w->domain_count = 0; break;
+    case 4: w->shaped_count = 13; break;
+    case 5: w->shaped_count--; break;
+    case 6: w->slot_free = 77; break;
+    case 7: w->slot_pending = 1; break;
+    case 8: w->slot_free = -2; break;
+    case 9: w->tangent = DEM_TANGENT_MINDLIN; break;
+    case 10: w->rolling = 99; break;
+    case 11: w->dt = DEM_R(-1e-6); break;
+    case 12: w->dt = 0; break;
+    case 13: w->dt = DEM_R(2e-6); break;
+    case 14: w->time = HUGE_VAL; break;
+    case 15: w->time = 1e30; break;
+    case 16: w->skin = -1; break;
+    case 17: w->near_span = -1; break;
+    case 18: w->near_margin = HUGE_VAL; break;
+    case 19: w->uniform = 2; break;
+    case 20: o->own = -1; break;
+    case 21: o->own = huge; break;
+    case 22: o->cross = 1; break;
+    case 23: o->walls = huge/2; break;
+    case 24: o->near_own++; break;
+    case 25: o->near_end = -4; break;
+    case 26: o->near_shaped = 1 << 20; break;
+    case 27: o->near_shaped_end = huge; break;
+    case 28: o->near_shaped_cross = 0; break;
+    case 29: o->wall_contacts = huge/64; break;
+    case 30: o->shaped = -7; break;
+    case 31: o->begin = 1; break;
+    case 32: o->end = 12345; break;
+    case 33: w->own.a[0] = -1; break;
+    case 34: w->own.b[0] = w->count; break;
+    case 35: w->own.b[0] = w->own.a[0]; break;
+    case 36: w->near.k[0] = huge; break;
+    case 37: w->near.k[0] = -1; break;
+    case 38: w->near.k[0] = twice; break;
+    case 39: w->near.a[0] = 12345678; break;
+    case 40: w->near.b[0] = -3; break;
+    case 41: w->wall_body[0] = 999; break;
+    case 42: w->wall_id[0] = 2; break;
+    case 43: w->wall_element[0] = 1 << 30; break;
+    case 44: w->wall_now[0].body = -1; break;
+    case 45: w->wall_now[0].wall = 7; break;
+    case 46: w->shaped_now[0].a = 1 << 20; break;
+    case 47: w->shaped_now[0].b = -2; break;
+    case 48: w->body_slot[0] = 0xffffffffu; break;
+    case 49: w->body_slot[0] = w->body_slot[1]; break;
+    case 50: w->slot_index[w->body_slot[0]] = 5; break;
+    case 51: w->body_material[0] = 0; break;
+    case 52: w->body_material[0] = 2; break;
+    case 53: w->body_shape[shaped] = 3; break;
+    case 54: w->body_shape[shaped] = -1; break;
+    case 55: w->pos[3] = 0; break;
+    case 56: w->pos[0] = DEM_R(1e20); break;
+    case 57: w->mass[0] = -1; break;
+    case 58: w->orient[0] = 3; break;
+    case 59: w->moment[4*shaped] = 0; break;
+    case 60: w->walls[1].pose.rotation[0] = DEM_R(1e30); break;
+    case 61: w->walls[1].motion.kind = (dem_motion_kind)DEM_MOTION_USER; break;
+    case 62: w->fields[0].next = HUGE_VAL; break;
+    case 63: f->next = 2; break;
+    case 64: f->next = -5; break;
+    case 65: f->state.fed[0] = 6; break;
+    case 66: w->carry_count = 1; break;
+    case 100: w->carry_rows = huge; break;
+    case 101: w->carry_stride = 9; break;
+    case 102: w->carry_count = huge; break;
+    case 103: w->carry_start[1] = -1; break;
+    case 104: w->carry_start[w->carry_rows] = 0; break;
+    case 105: w->carry_partner[0] = 12345; break;
+    case 106: w->carry_partner[0] = ~12345; break;
+    case 107: w->wall_now[0].body = w->slot_count; break;
+    case 108: w->shaped_now[0].a = -1; break;
+    default: return 0;
+    }
+    return 1;
+}
+/* Writes a checkpoint with a lie and the check sum that goes with it. Counts that lie are written as
+   they are, but what follows is as long as it was. */
+static int lie_write(dem_world *w, int lie) {
+    const dem_world truth = *w;
+    demi_domain *domains = (demi_domain *)malloc(DEMI_DOMAINS*sizeof *domains);
+    demi_stream s = {0, 0, 0, 0, 0, 0};
+    size_t size;
+    char *data;
+    int told;
+    CHECK_EQ(dem_checkpoint_write(w, path), DEM_OK);
+    data = file_get(path, &size);
+    memcpy(domains, w->domains, DEMI_DOMAINS*sizeof *domains);
+    told = lie_tell(w, lie);
+    demi_visit_digests(&truth, &s, ((const demi_checkpoint_head *)(const void *)data)->parts);
+    size = sizeof(demi_checkpoint_head) + s.size;
+    s.file = fopen(path, "wb");
+    s.sum = DEMI_HASH_START;
+    demi_visit(&s, data, size);
+    demi_visit_numbers(w, &s);
+    demi_visit(&s, w->domains, (size_t)truth.domain_count*sizeof *domains);
+    *w = truth;
+    memcpy(w->domains, domains, DEMI_DOMAINS*sizeof *domains);
+    demi_visit_bodies(w, &s);
+    demi_visit_lists(w, &s);
+    demi_visit_contacts(w, &s);
+    demi_visit_walls(w, &s);
+    demi_visit_measured(w, &s);
+    fwrite(&s.sum, 1, sizeof s.sum, s.file);
+    fclose(s.file);
+    free(domains);
+    free(data);
+    return told;
+}
+
+/* The allocator of a program whose memory was used before. */
+static void *used_alloc(size_t size, void *user) {
+    void *p = malloc(size);
+    (void)user;
+    if (p) memset(p, 0x7f, size);
+    return p;
+}
+static void used_free(void *p, size_t size, void *user) { (void)size; (void)user; free(p); }
+/* Three grains of different size in a row. */
+static dem_world *row_world(double friction, dem_material *stuff) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    desc.threads = 1;
+    desc.allocator.alloc_fn = used_alloc;
+    desc.allocator.free_fn = used_free;
+    world = dem_world_create(&desc);
+    *stuff = scene_material(world, 1e7, 0.5, friction, 0);
+    return world;
+}
+static void row_add(dem_world *world, dem_material stuff) {
+    dem_sphere_add(world, stuff, DEM_R(1e-3), at(0, 0, 0));
+    dem_sphere_add(world, stuff, DEM_R(1.5e-3), at(2.49e-3, 0, 0));
+    dem_sphere_add(world, stuff, DEM_R(2e-3), at(-2.99e-3, 0, 0));
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -462,7 +658,7 @@ int main(int argc, char **argv) {
         data = file_get(path, &size);
         data[8]++;
         file_put(path, data, size);
-        refused(world, DEM_ERROR_FORMAT, "version 5, must be 4");
+        refused(world, DEM_ERROR_FORMAT, "version 6, must be 5");
         data[8]--;
         data[12] = (char)(12 - data[12]);      /* 8 and 4 change places */
         file_put(path, data, size);
@@ -492,6 +688,125 @@ int main(int argc, char **argv) {
             if (test_now.wrong > before) printf("        with difference %d\n", what);
             dem_world_destroy(world);
         }
+        remove(path);
+    }
+    TEST("a checkpoint between dem_pair_set or dem_material_add, which bring friction in or take it "
+         "away, and the next step goes on as without it") {
+        int how;
+        for (how = 0; how < 3; how++) {
+            dem_contact_info ca[8], cb[8];
+            dem_world *w[2];
+            dem_material stuff, more;
+            dem_pair pair;
+            int i;
+            for (i = 0; i < 2; i++) {
+                w[i] = row_world(how == 2 ? 0.4 : 0, &stuff);
+                row_add(w[i], stuff);
+                scene_move(w[i], dem_bodies_id(w[i], 1), at(0, 0.1, 0), at(1, 2, 3));
+                scene_step(w[i], 3);
+                if (how == 0) {
+                    more = scene_material(w[i], 1e7, 0.5, 0.5, 0);
+                    CHECK(more.id == 2);
+                } else {
+                    dem_pair_get(w[i], stuff, stuff, &pair);
+                    pair.friction = pair.friction_static = how == 1 ? DEM_R(0.5) : 0;
+                    CHECK_EQ(dem_pair_set(w[i], stuff, stuff, &pair), DEM_OK);
+                }
+            }
+            CHECK_EQ(dem_checkpoint_write(w[0], path), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(w[1], path), DEM_OK);
+            CHECK_EQ(dem_world_hash(w[1]), dem_world_hash(w[0]));
+            CHECK_EQ(dem_contacts_get(w[0], ca, 8), 2);
+            CHECK_EQ(dem_contacts_get(w[1], cb, 8), 2);
+            for (i = 0; i < 2; i++)
+                CHECK(memcmp(&ca[i].force, &cb[i].force, sizeof ca[i].force) == 0);
+            for (i = 0; i < 2; i++) scene_step(w[i], 20);
+            CHECK_EQ(dem_world_hash(w[1]), dem_world_hash(w[0]));
+            for (i = 0; i < 2; i++) dem_world_destroy(w[i]);
+        }
+        remove(path);
+    }
+    TEST("a checkpoint after dem_body_remove, before the next step, is read into a fresh world and "
+         "into a used one, and goes on as without it") {
+        int fresh;
+        for (fresh = 0; fresh < 2; fresh++) {
+            dem_material stuff;
+            dem_world *a = row_world(0.3, &stuff), *b = row_world(0.3, &stuff);
+            row_add(a, stuff);
+            scene_step(a, 1);
+            if (!fresh) {
+                row_add(b, stuff);
+                scene_step(b, 2);
+            }
+            CHECK_EQ(dem_body_remove(a, dem_bodies_id(a, 1)), DEM_OK);
+            CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
+            CHECK_EQ(dem_world_hash(a), dem_world_hash(b));
+            CHECK_EQ(dem_balance_get(b).removed, 1);
+            dem_sphere_add(a, stuff, DEM_R(1e-3), at(0, 1.99e-3, 0));    /* takes the same slot */
+            dem_sphere_add(b, stuff, DEM_R(1e-3), at(0, 1.99e-3, 0));
+            scene_step(a, 20);
+            scene_step(b, 20);
+            CHECK_EQ(dem_world_hash(a), dem_world_hash(b));
+            dem_world_destroy(a);
+            dem_world_destroy(b);
+        }
+        remove(path);
+    }
+    TEST("a wall that was removed before the checkpoint is removed by reading it; one that stands "
+         "there and was removed here is named") {
+        dem_world *a = other_world(SAME), *b = other_world(SAME);
+        dem_wall wall;
+        dem_pose pose;
+        wall.id = 2;
+        CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
+        CHECK_EQ(dem_wall_remove(a, wall), DEM_OK);
+        refused(a, DEM_ERROR_FORMAT, "wall 2 was removed here");
+        CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(a, path), DEM_OK);
+        CHECK_EQ(dem_wall_pose(b, wall, &pose), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
+        CHECK_EQ(dem_wall_pose(b, wall, &pose), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_world_hash(a), dem_world_hash(b));
+        dem_world_destroy(a);
+        dem_world_destroy(b);
+        remove(path);
+    }
+    TEST("the refusal of another scene names the part that differs") {
+        static const char *parts[] = {"", "material 1 differs", "material 1 differs", "the desc of",
+            "the desc of", "4 walls there, 3 here", "wall 1 differs", "wall 2 differs",
+            "wall 1 differs", "field 1 differs", "field 1 differs", "wall 3 differs"};
+        dem_world *world = other_world(SAME), *other = other_world(WALL_MORE);
+        int what;
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        for (what = DENSITY; what < OTHERS; what++) {
+            dem_world *here = other_world(what);
+            if (what != WALL_MORE) refused(here, DEM_ERROR_FORMAT, parts[what]);
+            dem_world_destroy(here);
+        }
+        CHECK_EQ(dem_checkpoint_write(other, path), DEM_OK);
+        refused(world, DEM_ERROR_FORMAT, parts[WALL_MORE]);
+        dem_world_destroy(world);
+        dem_world_destroy(other);
+        remove(path);
+    }
+    TEST("each of 76 lies in a checkpoint with a right check sum is refused by name, the world as it "
+         "was") {
+        int lie, told = 0;
+        for (lie = 0; lie < 110; lie++) {
+            const int before = test_now.wrong;
+            dem_world *liar = rich_world(20), *world = rich_world(20);
+            if (lie >= 100) CHECK(demi_list_drop(liar));
+            if (lie_write(liar, lie)) {
+                told++;
+                refused(world, DEM_ERROR_FORMAT, "cannot be");
+                CHECK_EQ(scene_step(world, 5), DEM_OK);
+            }
+            if (test_now.wrong > before) printf("        with lie %d\n", lie);
+            dem_world_destroy(liar);
+            dem_world_destroy(world);
+        }
+        CHECK_EQ(told, 76);
         remove(path);
     }
     TEST("a checkpoint that cannot be written leaves the older file whole, and says why") {
