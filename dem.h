@@ -10766,6 +10766,7 @@ static dem_result demi_refresh(dem_world *w) {
 DEM_API dem_result dem_step_advice(dem_world *w, dem_advice *advice) {
     double limit;
     int worst = 0;
+    if (demi_null(w, "dem_step_advice", advice, "advice")) return DEM_ERROR_ARGUMENT;
     if (!w->list_valid) demi_effects(w);
     demi_advise(w, advice);
     if (!(advice->contact_time > 0))
