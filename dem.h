@@ -13121,10 +13121,12 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
             demi_list *list = i ? &w->cross : &w->own;
             const size_t from = (size_t)d*(size_t)list->stride;
             const size_t pairs = (size_t)(i ? domain->cross : domain->own);
+            if (!pairs) continue;
             demi_visit(s, list->a + from, 4*pairs);
             demi_visit(s, list->b + from, 4*pairs);
         }
-        demi_visit_near(w, s, d);
+        if (domain->near_shaped_end) demi_visit_near(w, s, d);
+        if (!walls) continue;
         demi_visit(s, w->wall_body + d*w->wall_stride, walls*4);
         demi_visit(s, w->wall_id + d*w->wall_stride, walls*4);
         demi_visit(s, w->wall_element + d*w->wall_stride, walls*4);
