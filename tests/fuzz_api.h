@@ -31,13 +31,14 @@ typedef struct fuzz_avoid {
     int checkpoint_after_remove;      /* read into a fresh world when bodies went since the last step */
     int slabs_in_one_world;           /* dem_slabs_create in A and not in B, where it should change nothing */
     int checkpoint_oriented_reader;   /* read by a world with orientations when the writer had none */
-    int counters_between_steps;       /* contacts of domains that were not in use at the last step */
+    int stale_domains;                /* sums of domains that were in use once, and not at the last step */
+    int step_refused_after_feed;      /* a step that is refused when feeds have put in grains */
     int slabs_collect_changed;        /* into a world whose grains came or went since dem_slabs_create */
     int memory_refused;               /* the k-th request gets nothing */
     int memory_refused_hash;          /* ... and the hash is as it was */
     int going_on_after_unstable;      /* calls after a run that stopped as unstable: then the program ends */
 } fuzz_avoid;
-static fuzz_avoid fuzz_avoids = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+static fuzz_avoid fuzz_avoids = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
 static const char *fuzz_folder = "build/tmp";  /* for files */
 
 enum { FUZZ_CALLS = 64, FUZZ_BYTES = 4*(FUZZ_CALLS + 1), FUZZ_CONTACTS = 4096 };
@@ -86,6 +87,7 @@ typedef struct fuzz_machine {
     int failed, refusable;            /* 1: refused; 1: then the hash must be as before */
     int must_fail;                    /* 1: a bad call, to be refused */
     int unstable;                     /* a run stopped so */
+    int domains_most;                 /* ever in use */
     int printing;
 } fuzz_machine;
 
@@ -699,12 +701,13 @@ static void fuzz_bodies_remove(fuzz_machine *m) {
 /* ---- calls: running ---- */
 static void fuzz_ran(fuzz_machine *m, dem_result r, uint64_t steps) {
     fuzz_result(m, r);
-    if (dem_world_steps(m->world) == steps) { m->unstable |= r == DEM_ERROR_UNSTABLE; return; }
+    m->unstable |= r == DEM_ERROR_UNSTABLE;
     if (r == DEM_ERROR_UNSTABLE || r == DEM_ERROR_MEMORY) m->refusable = 0;   /* stops in the middle */
     if (r == DEM_ERROR_TIME_STEP) m->refusable = 0;         /* also found out on the way */
+    if (r == DEM_ERROR_ARGUMENT && m->feeds && fuzz_avoids.step_refused_after_feed) m->refusable = 0;
+    if (dem_world_steps(m->world) == steps) return;
     if (r == DEM_OK) m->bodies_gone = 0;
     if (r == DEM_OK && dem_counters_get(m->world).rebuilds != m->rebuilds) m->pairs_new = 0;
-    m->unstable |= r == DEM_ERROR_UNSTABLE;
 }
 static void fuzz_step(fuzz_machine *m) {
     const int n = fuzz_below(m, 3) ? 1 + fuzz_below(m, 40) : fuzz_below(m, 3);
@@ -787,7 +790,7 @@ static void fuzz_look_counts(fuzz_machine *m) {
     fuzz_note(m, &c.steps, sizeof c.steps);
     fuzz_note(m, &c.rebuilds, sizeof c.rebuilds);
     fuzz_note_int(m, c.candidates);
-    if (!fuzz_avoids.counters_between_steps) { fuzz_note_int(m, c.contacts); fuzz_note_int(m, c.wall_contacts); }
+    if (!fuzz_avoids.stale_domains) { fuzz_note_int(m, c.contacts); fuzz_note_int(m, c.wall_contacts); }
     fuzz_note_real(m, (double)c.overlap_max); fuzz_note_real(m, (double)c.speed_max);
     fuzz_note_real(m, (double)c.skin); fuzz_note_real(m, (double)c.dt);
     fuzz_note_int(m, (int)c.search); fuzz_note_int(m, c.domains);
@@ -1001,7 +1004,8 @@ static void fuzz_slabs_collect(fuzz_machine *m) {
 /* ---- calls: checkpoints kept for later ---- */
 static int fuzz_checkpoint_avoided(const fuzz_machine *m) {
     return (fuzz_avoids.checkpoint_after_pairs && m->pairs_new) ||
-           (fuzz_avoids.checkpoint_after_remove && m->bodies_gone);
+           (fuzz_avoids.checkpoint_after_remove && m->bodies_gone) ||
+           (fuzz_avoids.stale_domains && m->domains_most > dem_counters_get(m->world).domains);
 }
 static void fuzz_save(fuzz_machine *m) {
     char path[200];
@@ -1390,6 +1394,10 @@ static void fuzz_call(fuzz_machine *m, const unsigned char *bytes) {
     if (m->memory->refused && fuzz_avoids.memory_refused_hash) m->refusable = 0;
     if (m->failed && m->refusable && dem_world_hash(m->world) != m->before)
         fuzz_fail("%c: %s was refused and changed the hash: %s", m->name, kind->name, dem_world_error(m->world));
+    {
+        const int domains = dem_counters_get(m->world).domains;
+        if (domains > m->domains_most) m->domains_most = domains;
+    }
     if (m->must_fail && !m->failed) fuzz_fail("%c: %s was accepted", m->name, kind->name);
 }
 /* A fresh world with the scene of a; with != 0: and what bodies were added, anyhow. */
@@ -1413,6 +1421,7 @@ static int fuzz_fresh(fuzz_game *g, fuzz_machine *f, int threads, int with) {
                 fuzz_fail("F: %s was accepted in A and is refused in a fresh world: %s",
                           fuzz_kinds[fuzz_kind_of(bytes[0])].name, dem_world_error(f->world));
         }
+    f->domains_most = g->a.domains_most;
     f->scene = g->a.scene; f->bodies_gone = g->a.bodies_gone; f->pairs_new = g->a.pairs_new;
     f->saved = g->a.saved; f->saved_scene = g->a.saved_scene; f->saved_hash = g->a.saved_hash;
     return 1;
@@ -1460,12 +1469,15 @@ static void fuzz_checkpoint(fuzz_game *g, const unsigned char *bytes) {
             fuzz_fail("step %d after the checkpoint: A %s, B %s, F %s; %s", i, dem_result_name(ra), dem_result_name(rb),
                       dem_result_name(rf), dem_world_error(ra != DEM_OK ? a->world : fresh.world));
         if (ra == DEM_OK) a->bodies_gone = b->bodies_gone = 0;
+        if (dem_counters_get(b->world).domains > a->domains_most)
+            a->domains_most = b->domains_most = dem_counters_get(b->world).domains;
         fuzz_same(a, b, "some steps after the checkpoint");
         if (!fuzz_wrong[0]) fuzz_same(&fresh, b, "some steps after the checkpoint");
         a->unstable = b->unstable = ra == DEM_ERROR_UNSTABLE;
         if (ra != DEM_OK) break;
     }
     fresh.unstable = a->unstable;
+    fresh.domains_most = a->domains_most;
     fresh.bodies_gone = a->bodies_gone;
     fresh.pairs_new = a->pairs_new;
     if (which & 8 && !fuzz_wrong[0]) {
