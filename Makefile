@@ -93,7 +93,7 @@ bench-peers: $(BENCHES) $(BENCH_ALSO) ## the same scenes in LAMMPS and LIGGGHTS,
 bench-pages: $(BENCHES) $(BENCH_ALSO) build/screener ## measure anew what docs/ tells of speed; PAGES=roofline: one page
 	@sh bench/pages.sh $(PAGES)
 
-fuzz: ## FUZZ_SECONDS (600) per reader under clang's fuzzer and sanitizers
+fuzz: ## FUZZ_SECONDS (600) per reader, and for programs of calls, under clang's fuzzer and sanitizers
 	@FUZZ_CC="$(FUZZ_CC)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
 docs: ## check that links in README and docs lead somewhere, and that cited keys exist

@@ -1,6 +1,6 @@
 # Builds every tests/fuzz_NAME.c with clang's fuzzer and sanitizers and lets it run for FUZZ_SECONDS.
 # Seeds come from tests/corpus/NAME and stay as they are; what the fuzzer finds goes to build/corpus/NAME,
-# an input that breaks the reader to build/fuzz_NAME-*.
+# an input that breaks one to build/fuzz_NAME-*.
 cc=${FUZZ_CC:-clang}; seconds=${FUZZ_SECONDS:-600}
 command -v "$cc" >/dev/null || { echo "SKIP: $cc not found (Debian package clang)"; exit 0; }
 mkdir -p build
@@ -17,4 +17,4 @@ for source in tests/fuzz_*.c; do
         -artifact_prefix="build/$name-" -print_final_stats=1 -verbosity=0 \
         "build/corpus/$corpus" $seeds || failed="$failed $name"
 done
-[ -z "$failed" ] && echo "all readers survived" || { echo "fuzz failed:$failed"; exit 1; }
+[ -z "$failed" ] && echo "all survived" || { echo "fuzz failed:$failed"; exit 1; }
