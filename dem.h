@@ -749,8 +749,8 @@ static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0
 
 /* How a wall of segments shares the force where a grain straddles two of them. */
 typedef enum dem_edge_rule {
-    DEM_EDGE_RESOLVED = 0,    /* faces first, then edges and corners not already accounted for: a
-                                 flat mesh gives exactly the plane's force */
+    DEM_EDGE_RESOLVED = 0,    /* as one surface, whatever the cut (>>facets): a flat one gives
+                                 exactly the plane's force */
     DEM_EDGE_FRACTION         /* [MIL] Fig 5.19: every segment pushes along its own line's normal
                                  with the fraction a^2(3-2a), a = share of the chord inside.
                                  Profiles only */
