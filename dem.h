@@ -432,10 +432,10 @@ typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real 
                                  dem_real mass,
                                  double time, void *user);
 
-/* The same, with the whole body to look at, and a torque to answer: force (N) and torque (N m, about
-   the centre of mass, in the world's frame) are zero when it is called. body: as dem_body_get tells,
-   orientation included (that of a sphere is followed when the desc asks for orientations), at the
-   present time (s). id: for numbers of your own, kept by slot. */
+/* The same, with the whole body to look at, and a torque to answer: force (N) and torque (N m,
+   about the centre of mass, in the world's frame) are zero when it is called. body: as dem_body_get
+   tells, orientation included (that of a sphere is followed when the desc asks for orientations),
+   at the present time (s). id: for numbers of your own, kept by slot. */
 typedef struct dem_body_state dem_body_state;
 typedef void (*dem_body_force_fn)(const dem_body_state *body, dem_body id, double time,
                                   dem_vec3 *force, dem_vec3 *torque, void *user);
@@ -1493,7 +1493,7 @@ typedef struct demi_touching {
     dem_real overlap, share;       /* m; how often its force counts (facets: index, see >>facets) */
     dem_vec3 normal, point;        /* unit, body -> wall; m */
 } demi_touching;
-/* A side or corner of a facet that a body reaches: what joins it to its neighbours (see >>touch). */
+/* A side or corner of a facet that a body reaches: what joins it to its neighbours (>>touch). */
 typedef struct demi_link {
     dem_real distance;             /* in the body's measure */
     int32_t number, corner;        /* of the side (corner 0) or corner (1) */
@@ -1595,7 +1595,7 @@ typedef struct demi_wall {
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
     /* surfaces of facets (mesh, profile), see >>facets */
     int edge_count, cut_count;
-    int32_t *edges;                /* element_count x 3 (mesh): the edge from corner k to the next */
+    int32_t *edges;                /* element_count x 3 (mesh): the edge from corner k to k + 1 */
     dem_real *weight;              /* how often each face, edge and corner counts, in this order */
     unsigned char *owns;           /* element_count: bit k: looks after edge k, 3 + k: corner k */
     int32_t *cut_start;            /* element_count + 1 (null: none): pieces of edges in `cuts` */
@@ -2157,8 +2157,9 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
 
 /* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi
    sqrt(m/k) (with damping pi/sqrt(k/m - (c/2m)^2) [ALK07] eq 2.21; near the critical damping and
-   beyond, where that has no end, pi 2m/c: the dashpot's own time). Hysteretic: that of its steepest
-   branch, kun, which is what a time step has to follow; the contact itself lasts longer, eq 2.45. */
+   beyond, where that has no end, pi 2m/c: the dashpot's own time). Hysteretic: that of its
+   steepest branch, kun, which is what a time step has to follow; the contact itself lasts longer,
+   eq 2.45. */
 static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff,
                                 double speed) {
     const int hysteretic = w->desc.normal_law == DEM_NORMAL_HYSTERETIC;
@@ -3837,13 +3838,14 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
    the way it is cut into facets. Meshes (triangles) and profiles (segments) are surfaces of facets.
 
    A grain of radius r whose centre x is at distance d from a wall stores U(r - d), U the energy of
-   the normal law. A surface S is met by the ball of radius s about x, s growing from 0 to r, first
-   in one place, perhaps in others, which join as s grows. Let chi(s) be Euler's number of what the
-   ball has in common with S: pieces, less holes in them. The rule is
+   the normal law. A ball about x, whose radius s grows from 0 to r, meets the surface S first in
+   one place, perhaps then in others; as s grows on they join. Let chi(s) be Euler's number of what
+   ball and surface have in common: pieces, less rings. The rule is
        E(x) = integral of chi(s) dU(r - s),  s = 0 .. r          F = -dE/dx
    One place counts once; two that have joined count once, two that have not count twice. chi adds:
-   chi(A and B) = chi(A) + chi(B) - chi(what both have), and it is 1 for whatever is convex. So, over
-   the faces, edges and corners X of the surface, each convex and closed, d(X) its distance from x,
+       chi(A or B) = chi(A) + chi(B) - chi(A and B)
+   and it is 1 for whatever is convex. So, over the faces, edges and corners X of the surface, each
+   convex and closed, at distance d(X) from x,
        E = sum of weight(X) U(r - d(X)),     F = -sum of weight(X) U'(r - d(X)) grad d(X)
        face 1,  edge 1 - (faces at it),  corner 1 - (faces at it) - sum of weights of edges at it
    in words: every point of the surface is counted once in all. Cutting a facet in two changes
@@ -3852,16 +3854,17 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
    the open, on a ridge, at a rim or a tip one place is nearest and U' there is all that is left:
    what a plane and a cylinder give. In a valley there are two nearest places and the edge between,
    which counts -1: F goes from one contact to two as the valley gets steeper or the overlap less.
-   (In the words of Morse's theory: F is a sum over the critical points of the distance, lowest
-   points 1, passes -1.) Terms with the same nearest point are added up before the law is called;
-   most of them cancel, and what is left is, nearly always, one contact.
+   (In Morse's words: F is a sum over the critical points of the distance, lowest points 1, passes
+   -1.) Terms with the same nearest point are added up before the law is called; most of them
+   cancel, and what is left is, nearly always, one contact. Where a ring closes around the grain chi
+   is 0; what is done then stands in >>touch.
 
    The law, its friction and its memory are asked at each place that is left, and counted as often
    as it counts. What two walls have in common is found where they do not move against each other;
-   each bears its part of the weight. Left as they are: facets that pierce each other, and a seam
-   between surfaces of different kinds: there the contacts of both add up, as they do in a corner.
-   The rule is Euler's integral of a valuation; algorithm and application to contacts are our own.
-   Tests: tests/test_facets.c.
+   each bears its part of the weight. Left as they are, so that contacts add up, as they do in a
+   corner: facets that pierce each other or overlap in one plane, cracks, and seams between walls of
+   different kinds. That Euler's number adds is old; as a rule of contact we have not found it
+   published. Tests: tests/test_facets.c.
    --------------------------------------------------------------------------------------------- */
 DEM_INLINE int demi_faceted(const demi_wall *wall) {
     return wall->kind == DEMI_WALL_MESH ||
@@ -4042,8 +4045,8 @@ static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
 }
 
 /* The surfaces of a group of walls as one, under work. Points are the corners of all of them, one
-   wall after the other, where they were when their motion began (so that a restart finds the same); facets are their elements, those left out that have two
-   corners in one place. */
+   wall after the other, where they were when their motion began (so that a restart finds the same);
+   facets are their elements, those left out that have no size. */
 typedef struct demi_join {
     int per;                       /* corners of a facet: 3 (meshes) or 2 (profiles) */
     int points, facets, sides, cuts;
@@ -4106,8 +4109,8 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
     j->facet = (int32_t *)demi_alloc(w, j->facet_room*5, sizeof(int32_t));
     j->count = (double *)demi_alloc(w, j->facet_room, sizeof(double));
     j->side = (demi_side *)demi_alloc(w, j->facet_room*3, sizeof(demi_side));
-    if (!j->x || !j->near_by || !j->sorted || !j->same || !j->mark || !j->faces || !j->corners || !j->edges || !j->own ||
-        !j->facet || !j->count || !j->side) return 0;
+    if (!j->x || !j->near_by || !j->sorted || !j->same || !j->mark || !j->faces || !j->corners ||
+        !j->edges || !j->own || !j->facet || !j->count || !j->side) return 0;
     for (i = group; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
         if (!demi_join_member(w, i, group, per)) continue;
@@ -4243,8 +4246,8 @@ static int demi_join_cut(dem_world *w, demi_join *j) {
     demi_free(w, between, most, sizeof *between);
     return pass == 1;
 }
-/* One wall's part of a place where sides first .. end - 1 of the join lie, `more` in all of it: at an
-   edge of its own, or at the first of its cuts; the other cuts remember where it is. */
+/* One wall's part, `more`, of a place where sides first .. end - 1 of the join lie: at an edge of
+   its own, or at the first of its cuts; the other cuts remember where it is. */
 static void demi_join_edge(dem_world *w, demi_join *j, int first, int end, int id, double more) {
     demi_wall *wall = &w->walls[id];
     int k, whole = -1, number = 0;
@@ -4354,7 +4357,7 @@ static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
         }
         for (k = 0; k < j->cuts; k++) if (j->cut[6*k] == i) wall->cut_start[j->cut[6*k + 1] + 1]++;
         for (k = 0; k < wall->element_count; k++) wall->cut_start[k + 1] += wall->cut_start[k];
-        for (k = j->cuts - 1; k >= 0; k--) {    /* filled from the back: starts end where they were */
+        for (k = j->cuts - 1; k >= 0; k--) {    /* from the back: starts end where they were */
             const int32_t *c = j->cut + 6*k;
             demi_cut *to;
             if (c[0] != i) continue;
@@ -4379,13 +4382,15 @@ static void demi_facets_drop_cuts(dem_world *w, demi_wall *wall) {
     wall->cuts = 0;
     wall->cut_count = 0;
 }
-/* Groups the walls and weighs their facets anew. 0 when memory ran out; the next call tries again. */
+/* Groups the walls and weighs their facets anew. 0 when memory ran out; the next call tries again.
+   */
 static int demi_facets_weigh(dem_world *w) {
     int i, k, per, ok = 1;
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         for (k = 0; k < i; k++)
-            if (w->walls[k].kind != DEMI_WALL_NONE && demi_walls_together(&w->walls[k], wall)) break;
+            if (w->walls[k].kind != DEMI_WALL_NONE && demi_walls_together(&w->walls[k], wall))
+                break;
         wall->group = k;
         if (!demi_faceted(wall)) continue;
         demi_facets_drop_cuts(w, wall);
@@ -4738,8 +4743,8 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
     }
     for (i = 0; i < vertices*per_vertex; i++)
         if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_REACH) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be finite, "
-                      "between -%g and %g; was the file read whole, in metres?", call,
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
+                      "finite and between -%g and %g; was the file read whole, in metres?", call,
                       i/per_vertex, (double)xyz[i], DEMI_REACH, DEMI_REACH);
             return 0;
         }
@@ -5804,8 +5809,8 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
 }
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
                                    dem_real enough);
-/* The candidates of one body and wall, from `first` on: ascending by element, each once, so that the
-   order does not hang on cells. */
+/* The candidates of one body and wall, from `first` on: ascending by element, each once, so that
+   the order does not hang on cells. */
 static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first) {
     int32_t *e = w->wall_element + d*w->wall_stride;
     dem_real *gap = w->wall_gap + d*w->wall_stride;
@@ -6548,6 +6553,10 @@ static void demi_skin_choose(dem_world *w) {
     w->skin = w->skin_auto;
 }
 
+/* Does a function of the user's answer forces? */
+static int demi_own(const dem_world *w) {
+    return w->desc.law || w->desc.force || w->desc.body_force;
+}
 /* Do laws ask for spins in this scene? Does any body have one that matters? */
 static int demi_spins(const dem_world *w) {
     return w->desc.law || w->desc.body_force || w->tangent != DEM_TANGENT_NONE ||
@@ -6663,7 +6672,8 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
         w->domains[d].end = (int)((int64_t)w->count*(d + 1)/w->domain_count);
         w->domains[d].overflow = 0;
     }
-    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w)) return demi_no_memory(w, call);
+    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w))
+        return demi_no_memory(w, call);
     stride = DEMI_MAX(64, w->count/w->domain_count*3);
     if (!demi_list_reserve(w, &w->own, w->domain_count, DEMI_MAX(stride, (int)w->own.stride)) ||
         !demi_list_reserve(w, &w->cross, w->domain_count, w->domain_count == 1 ? 0
@@ -6742,7 +6752,7 @@ DEM_API dem_result dem_search_now(dem_world *w) {
    (Where two spheres meet is demi_tile_touch.) Knows no law and no material.
    --------------------------------------------------------------------------------------------- */
 
-/* --- surfaces of facets: which places of one are nearest, and how often each counts (>>facets) --- */
+/* --- surfaces of facets: which places are nearest, and how often each counts (>>facets) --- */
 
 /* The point of a triangle (n = 3) or segment nearest the origin [ERI05] 5.1.5. *where: 0 inside,
    1 + k on the side from corner k to the next, 4 + k corner k. Rounding may put it on one side of a
@@ -6806,7 +6816,8 @@ typedef struct demi_places {
     uint32_t mask;
     int count;
 } demi_places;
-static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem_vec3 d, dem_real d2) {
+static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem_vec3 d,
+                            dem_real d2) {
     uint32_t slot = (uint32_t)number*UINT32_C(2654435769) & p->mask;
     int i = 0;
     if (!p->table) while (i < p->count && p->at[i].element != number) i++;
@@ -6938,7 +6949,12 @@ static int demi_link_root(demi_link *link, int i) {
     return i;
 }
 /* Facets that are reached, and their nearest place. */
-typedef struct demi_ring { int facets; int32_t number; dem_real distance; dem_vec3 point; } demi_ring;
+typedef struct demi_ring {
+    int facets;
+    int32_t number;
+    dem_real distance;
+    dem_vec3 point;
+} demi_ring;
 /* Adds a side (b: its other end) or corner of the facet under work, if it is reached: its numbers,
    and where it is nearest. From whichever facet, the same side gives the same, to the bit: a has
    the lower number. */
@@ -6960,9 +6976,8 @@ static int demi_link_add(demi_link *link, int count, int facet, dem_real within,
 /* The number of the side of element e that begins or ends at a corner: of its cut there, if it is
    cut. */
 static int32_t demi_link_side(const demi_wall *wall, int e, int side, int32_t corner) {
-    int k;
-    for (k = wall->cut_start ? wall->cut_start[e] : 0; wall->cut_start && k < wall->cut_start[e + 1];
-         k++) {
+    int k = wall->cut_start ? wall->cut_start[e] : 0;
+    for (; wall->cut_start && k < wall->cut_start[e + 1]; k++) {
         const demi_cut *c = &wall->cuts[k];
         if (c->side == side && (c->end[0] == corner || c->end[1] == corner)) return c->number;
     }
@@ -8218,8 +8233,8 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
 }
 /* Where a sphere at `at` of radius r touches one wall, from the candidates first .. last - 1 of the
    body it is, or is part of. */
-static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at, dem_real r,
-                             demi_touching **places) {
+static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
+                             dem_real r, demi_touching **places) {
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
@@ -8492,8 +8507,8 @@ static double demi_contact_give(const dem_world *w, int body, dem_vec3 arm, dem_
     return inv + (double)(t.x*t.x/I[0] + t.y*t.y/I[1] + t.z*t.z/I[2]);
 }
 
-/* How far two contacts of one pair push the same way: 1 within 25 degrees, 0 beyond 45. Those of one
-   part are not shared: they are counted already, by what they weigh. */
+/* How far two contacts of one pair push the same way: 1 within 25 degrees, 0 beyond 45. Those of
+   one part are not shared: they are counted already, by what they weigh. */
 DEM_INLINE dem_real demi_shaped_along(const demi_shaped *a, const demi_shaped *b) {
     const dem_real zero = DEM_R(0.7071067811865476), one = DEM_R(0.9063077870366499);
     const dem_real t = (demi_dot(a->normal, b->normal) - zero)/(one - zero);
@@ -8514,8 +8529,8 @@ DEM_INLINE dem_real demi_shaped_alike(const demi_shaped *a, const demi_shaped *b
        lift_k = sum of (L_i/L_k)^(p - 1) (s_i dL_i/dd_k + L_i/p ds_i/dd_k)
    It may be a little below 0 where others are far deeper: no mean that does not depend on their
    number can do without. Damping goes by s, and feels the mass at their common middle; friction by
-   s times (sum of lift over sum of s), so that mu is the ratio of both sums. Checked by "a cluster that lands on one, two and three spheres" and "elastic
-   clusters keep their energy". */
+   s times (sum of lift over sum of s), so that mu is the ratio of both sums. Checked by "a cluster
+   that lands on one, two and three spheres" and tests/test_facets.c. */
 static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
     const int one = w->desc.cluster_contacts == DEM_SHARING_ONE;
     const dem_real p = w->desc.normal_law == DEM_NORMAL_HERTZ ? DEM_R(2.5) : DEM_R(2);
@@ -8610,7 +8625,7 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
             c->a = a; c->b = b; c->part_a = i; c->part_b = j;
             c->wall = c->element = -1;
             c->send = send;
-            before = demi_shaped_match(w, old, olds, from, 0, c);     /* two balls do touch by now */
+            before = demi_shaped_match(w, old, olds, from, 0, c);    /* two balls touch by now */
             if (demi_parts_touch(w, &p, &q, gap, before ? before->lambda : 0, c))
                 demi_shaped_recall(c, before);
             else w->domains[d].shaped_next--;
@@ -8654,9 +8669,10 @@ static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm
     *arm = demi_scale(dem_quat_turn(p->q, demi_v(a.x*s.x, a.y*s.y, a.z*s.z)), 1/h);
     return h;
 }
-/* What is left of an ellipsoid about x inside a cylinder's radius R as it shrinks (or, from outside,
-   beyond it): 1 - W0, at the scale W0 it only just touches; n: where, across the axis. Newton's
-   method on W, whose far end goes with its height there; from W = 1, where n has been found. */
+/* What is left of an ellipsoid about x inside a cylinder's radius R as it shrinks (or, from
+   outside, beyond it): 1 - W0, at the scale W0 it only just touches; n: where, across the axis.
+   Newton's method on W, whose far end goes with its height there; from W = 1, where n has been
+   found. */
 static double demi_ellipse_shrink(const double *Q, double x, double y, int out, double R,
                                   double far, double *n) {
     double W = 1;
@@ -8735,7 +8751,8 @@ static int demi_ellipsoid_collect(const dem_world *w, int d, int first, int last
     int i, e, count = 0;
     for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
     local.q = demi_quat_unit(dem_quat_times(demi_quat_of(turn), p->q));
-    if (demi_faceted(wall)) return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
+    if (demi_faceted(wall))
+        return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
     x = demi_unturn(R, demi_sub(at, wall->pose.position));
     *places = out = (demi_touching *)w->touching_.data + w->domains[d].touching_first;
     for (i = first; i < last + two; i++) {
@@ -8753,10 +8770,10 @@ static int demi_ellipsoid_collect(const dem_world *w, int d, int first, int last
     return count;
 }
 
-/* Overlap, arm and radius of an ellipsoid's contact with a wall, of which `left` is 1 - W0: as with
-   other ellipsoids: l (1 - W0), with the sphere of a wall's grain in l, or along the normal. The arm
-   is to the point that lies deepest, as a sphere's is; what is l (1 - W0)'s gradient passes through
-   the point of the wall, at W0 of it. */
+/* Overlap, arm and radius of an ellipsoid's contact with a wall, of which `left` is 1 - W0: as
+   with other ellipsoids: l (1 - W0), with the sphere of a wall's grain in l, or along the normal.
+   The arm is to the point that lies deepest, as a sphere's is; what is l (1 - W0)'s gradient
+   passes through the point of the wall, at W0 of it. */
 static void demi_ellipsoid_contact(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                    dem_real left, demi_shaped *c) {
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
@@ -10136,13 +10153,13 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
            omega2 <= max over bodies of (a + b)/2 + sqrt((a - b)^2/4 + q^2)
            A = sum f [k n n + kt (1 - n n)]/m,  B = sum f [kt l^2 (1 - n n) + kr]/I,
            q = |sum f kt l n|/sqrt(m I),       a, b: norms of A, B (largest sum along a row)
-       and the same for damping. Exact for close packings that shear and spin. A cheap bound per body
-       comes first (max over directions per contact, summed); few bodies need the matrices, and only
-       when the step is within a factor of two or so of its limit. Spheres only. Checked by "a time
-       step that is accepted is stable where twelve contacts a grain are pressed". --- */
+       and the same for damping. Exact for close packings that shear and spin. A cheap bound per
+       body comes first (max over directions per contact, summed); few bodies need the matrices, and
+       only when the step is within a factor of two or so of its limit. Spheres only. Checked by "a
+       time step that is accepted is stable where twelve contacts a grain are pressed". --- */
 typedef struct demi_press {
     double omega2, rate;           /* 1/s2, 1/s: cheap */
-    double A[2][6], B[2][6], q[2][3];          /* stiffness, damping; per mass, inertia, root of both */
+    double A[2][6], B[2][6], q[2][3];          /* stiffness, damping; per mass, inertia, both */
     int32_t contacts;
     dem_real deepest;              /* of its radius */
 } demi_press;
@@ -10218,7 +10235,8 @@ static void demi_press_visit(const dem_world *w, int whole, double dt, demi_pres
                                          (size_t)p;
             demi_press *to = press + k->body;
             demi_pressed c;
-            if (!(k->overlap > 0) || (whole && dt <= demi_dt_stable(to->omega2, to->rate))) continue;
+            if (!(k->overlap > 0) || (whole && dt <= demi_dt_stable(to->omega2, to->rate)))
+                continue;
             c.s = demi_stiffness_of(w, k->coef, (double)w->mass[k->body], (double)k->overlap);
             c.n = k->normal;
             c.overlap = k->overlap;
@@ -10232,7 +10250,8 @@ static double demi_press_limit(dem_world *w, double dt, int *worst) {
     demi_press *press;
     double least = dt;
     int i, found = 0;
-    if (!w->count || !demi_array_grow(w, &w->press_, sizeof(demi_press), (size_t)w->count)) return 0;
+    if (!w->count || !demi_array_grow(w, &w->press_, sizeof(demi_press), (size_t)w->count))
+        return 0;
     press = (demi_press *)w->press_.data;
     memset(press, 0, (size_t)w->count*sizeof *press);
     demi_press_visit(w, 0, dt, press);
@@ -10308,10 +10327,10 @@ static double demi_fastest(const dem_world *w) {
             most = DEMI_MAX(most, (double)demi_dot(demi_at(w->vel + 4*i), demi_at(w->vel + 4*i)));
     return sqrt(most);
 }
-/* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast bodies
-   move. A step that was chosen is made smaller; one that was given is refused, before anything
-   moves. Pressed contacts are looked at more and more rarely while the scene stays, at least every
-   thousand steps; the speed at every step. */
+/* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast
+   bodies move. A step that was chosen is made smaller; one that was given is refused, before
+   anything moves. Pressed contacts are looked at more and more rarely while the scene stays, at
+   least every thousand steps; the speed at every step. */
 static dem_result demi_dt_check(dem_world *w) {
     const double radius = (double)w->radius_min;
     int worst = 0, auto_dt = !(w->desc.dt > 0);
@@ -10490,7 +10509,7 @@ static void demi_domain_gather(dem_world *w, int d) {
     int i;
     if (w->cross_entries) demi_cross_gather(w, d);
     demi_walls_respond(w, d);
-    if (w->desc.law || w->desc.force || w->desc.body_force) {      /* those of your own may answer anything */
+    if (demi_own(w)) {                          /* those of your own may answer anything */
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
             sum += fabs((double)w->force[i]) + fabs((double)w->torque[i]);
@@ -10733,8 +10752,7 @@ static dem_result demi_step_once(dem_world *w) {
     if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
     w->moved = 0;
-    for (d = 0; d < w->domain_count && (w->desc.law || w->desc.force ||
-                                        w->desc.body_force); d++)
+    for (d = 0; d < w->domain_count && demi_own(w); d++)
         if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
 
     /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish)
@@ -14102,7 +14120,8 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->uniform ? "all alike (coefficients once per run)"
             : "differ (coefficients per candidate)", w->wall_count,
-            w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off", demi_kernel_choose(w));
+            w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
+            demi_kernel_choose(w));
     fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->overlap_max,
             w->overlap_max > 0.05 ? "  (beyond .05: stiffen the material or slow down)" : "");
     dem_pairs_print(w, out);
@@ -14917,7 +14936,7 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     if (!w->forces_valid) return;               /* only looking */
     for (d = 0; d < w->domain_count; d++) {
         deepest = DEMI_MAX(deepest, w->domains[d].overlap);
-        if (w->desc.law || w->desc.force || w->desc.body_force) finite &= w->domains[d].check < 1e300;
+        if (demi_own(w)) finite &= w->domains[d].check < 1e300;
     }
     if (!finite || !(deepest < 1)) b->result = demi_unstable(w);
 }
