@@ -100,6 +100,7 @@ static const study_option table[] = {
 };
 
 static int is(const char *a, const char *b) { return !strcmp(a, b); }
+static int is_sphere(double xi) { return xi < 1 + 1e-9 && xi > 1 - 1e-9; }
 
 static int refused(dem_world *world, dem_result result) {
     if (result != DEM_OK) study_fail("%s", dem_world_error(world));
@@ -269,7 +270,7 @@ static int gas_create(gas *g, double xi, double e, int count) {
     memset(g, 0, sizeof *g);
     g->xi = xi;
     g->e = e;
-    g->spheres = xi < 1 + 1e-9 && xi > 1 - 1e-9;
+    g->spheres = is_sphere(xi);
     g->side = (int)(cbrt(count) + 0.5);
     g->count = g->side*g->side*g->side;
     g->cube = CUBE*cbrt(g->count/4096.0);
@@ -659,7 +660,8 @@ static void direct_case(double xi, double e) {
     enum { COUNT = 20000 };
     static draw bodies[COUNT];
     static gas g;
-    const double inertia = (1 + xi*xi)/5;
+    const double inertia = (1 + xi*xi)/5, most = xi > 1 ? xi : 1/xi;  /* of a curvature */
+    const int spheres = is_sphere(xi);
     double theta, zeta, s = 0, bound = 0, tr = 1, sum = 0, weight = 0, from = 0, start = 0;
     double wait, end, e_now = 0, ratio;
     int i, k, round;
@@ -677,7 +679,7 @@ static void direct_case(double xi, double e) {
         for (k = 0; k < 3; k++) { d->v[k] = normal(&g); d->u[k] = normal(&g); any[k] = normal(&g); }
         unit3(d->u);
         cross3(d->u, any, d->w);
-        for (k = 0; k < 3; k++) d->w[k] *= xi > 1 ? 1/sqrt(inertia) : 0; /* spheres keep spins */
+        for (k = 0; k < 3; k++) d->w[k] *= spheres ? 0 : 1/sqrt(inertia); /* spheres keep spins */
     }
     g.scale = 0;                                   /* ln of what energies were divided by */
     for (round = 0; s < end; round++) {
@@ -700,7 +702,7 @@ static void direct_case(double xi, double e) {
         for (i = 0; i < COUNT; i++)
             for (k = 0; k < 3; k++) { bodies[i].v[k] /= by; bodies[i].w[k] /= by; }
         if (round == 0 || round == 20)             /* rare excess is cut: 1e-4 of collisions */
-            bound = 4*(xi > 1 ? xi*xi : 1)*7*sqrt(1 + g.t.d_mean*theta);
+            bound = 4*most*most*7*sqrt(1 + g.t.d_mean*theta);
         for (i = 0; i < COUNT; i++) {              /* candidates */
             draw *a = &bodies[(int)(uniform(&g)*COUNT)], *b = &bodies[(int)(uniform(&g)*COUNT)];
             double n[3], det, close, along, push;
@@ -728,8 +730,8 @@ static void direct_case(double xi, double e) {
             }
         }
     }
-    if (xi > 1) tell(&g, "T_ratio_direct", exp(sum/weight), "");
-    if (xi > 1) tell(&g, "T_ratio_theory", 1/theta, "");
+    if (!spheres) tell(&g, "T_ratio_direct", exp(sum/weight), "");
+    if (!spheres) tell(&g, "T_ratio_theory", 1/theta, "");
     tell(&g, "zeta_star_direct", -(e_now - start)/(s - from), "");
     tell(&g, "zeta_star_theory", zeta, "");
 }
