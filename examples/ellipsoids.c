@@ -43,7 +43,8 @@
    Gaussian velocities and spins that know nothing of each other are assumed; good to about 1 %.
 
    Results of a case, such as xi2.00.e0.90.T_ratio:
-     T_ratio, T_ratio_error   T_tr/T_rot once it no longer drifts; standard error from 8 blocks
+     T_ratio, T_ratio_error   T_tr/T_rot once it no longer drifts; standard error from 8
+                              blocks, wider where they are shorter than its memory
      zeta_star, _error        cooling rate over the same time
      T_ratio_theory, zeta_star_theory
      haff_rms                 root mean square of ln(T_tot/T_haff), T_haff = T(0)/(1 + tau)^2, tau =
@@ -100,6 +101,7 @@ static const study_option table[] = {
 };
 
 static int is(const char *a, const char *b) { return !strcmp(a, b); }
+static int is_sphere(double xi) { return xi < 1 + 1e-9 && xi > 1 - 1e-9; }
 
 static int refused(dem_world *world, dem_result result) {
     if (result != DEM_OK) study_fail("%s", dem_world_error(world));
@@ -269,7 +271,7 @@ static int gas_create(gas *g, double xi, double e, int count) {
     memset(g, 0, sizeof *g);
     g->xi = xi;
     g->e = e;
-    g->spheres = xi < 1 + 1e-9 && xi > 1 - 1e-9;
+    g->spheres = is_sphere(xi);
     g->side = (int)(cbrt(count) + 0.5);
     g->count = g->side*g->side*g->side;
     g->cube = CUBE*cbrt(g->count/4096.0);
@@ -477,16 +479,31 @@ static double settling(const gas *g, int reduced_damping, double theta_end) {
     return s;
 }
 
+/* How long T_rot/T_tr takes to forget that it strayed, in s: near xi = 1 several collisions a body. */
+static double relaxation(const theory *t, double theta, double e, int reduced_damping) {
+    const double step = 0.01;
+    double tr[2], rot[2];
+    int k;
+    for (k = 0; k < 2; k++)
+        theory_rates(t, theta*exp(k*step), e, reduced_damping, &tr[k], &rot[k]);
+    return step/(rot[1] - rot[0] - tr[1] + tr[0]);
+}
+
 static void tell(const gas *g, const char *what, double value, const char *unit) {
     char name[64];
     snprintf(name, sizeof name, "xi%.2f.e%.2f.%s", g->xi, g->e, what);
     study_result(name, value, unit);
 }
 
-/* Ratio and cooling rate over the samples from `from` on, in blocks of equal s. */
-static void gas_measure(gas *g, int from) {
+/* Ratio and cooling rate over the samples from `from` on, in blocks of equal s. Blocks no longer than
+   T_rot/T_tr remembers, r, stray together: neighbours are correlated by c = exp(-block/r), and the
+   error of the mean of many is sqrt((1 + c)/(1 - c)) times what independent ones have. */
+static void gas_measure(gas *g, int from, int reduced_damping) {
     double ratio[BLOCKS], zeta[BLOCKS], mean[2] = {0, 0}, spread[2] = {0, 0};
     const double s0 = g->samples[from].s, s1 = g->samples[g->sample_count - 1].s;
+    const double memory = g->spheres ? 0 : exp(-(s1 - s0)/BLOCKS/
+        relaxation(&g->t, 1/g->ratio_theory, g->e, reduced_damping));
+    const double wider = sqrt((1 + memory)/(1 - memory));
     int block, i = from, first = from;
     for (block = 0; block < BLOCKS; block++) {
         const double end = s0 + (s1 - s0)*(block + 1)/BLOCKS;
@@ -514,11 +531,11 @@ static void gas_measure(gas *g, int from) {
               (s1 - s0);
     if (!g->spheres) {
         tell(g, "T_ratio", g->ratio, "");
-        tell(g, "T_ratio_error", sqrt(spread[0]), "");
+        tell(g, "T_ratio_error", wider*sqrt(spread[0]), "");
         tell(g, "T_ratio_theory", g->ratio_theory, "");
     }
     tell(g, "zeta_star", g->zeta, "");
-    tell(g, "zeta_star_error", sqrt(spread[1]), "");
+    tell(g, "zeta_star_error", wider*sqrt(spread[1]), "");
     tell(g, "zeta_star_theory", g->zeta_theory, "");
 }
 
@@ -585,7 +602,7 @@ static int gas_case(gas *g, double xi, double e) {
         snprintf(what, sizeof what, "xi %.2f e %.2f half %d", xi, e, i + 1);
         if (gas_run(g, what, options.collisions/g->t.d_root/2, 2 + i)) return 1;
     }
-    gas_measure(g, from);
+    gas_measure(g, from, reduced_damping);
     gas_compare(g, reduced_damping);
     tell(g, "kurtosis", g->fourth/g->fourth_sum/3 - 1, "");
     tell(g, "overlap_max", dem_counters_get(g->world).overlap_max, "");
@@ -659,7 +676,8 @@ static void direct_case(double xi, double e) {
     enum { COUNT = 20000 };
     static draw bodies[COUNT];
     static gas g;
-    const double inertia = (1 + xi*xi)/5;
+    const double inertia = (1 + xi*xi)/5, most = xi > 1 ? xi : 1/xi;  /* of a curvature */
+    const int spheres = is_sphere(xi);
     double theta, zeta, s = 0, bound = 0, tr = 1, sum = 0, weight = 0, from = 0, start = 0;
     double wait, end, e_now = 0, ratio;
     int i, k, round;
@@ -677,7 +695,7 @@ static void direct_case(double xi, double e) {
         for (k = 0; k < 3; k++) { d->v[k] = normal(&g); d->u[k] = normal(&g); any[k] = normal(&g); }
         unit3(d->u);
         cross3(d->u, any, d->w);
-        for (k = 0; k < 3; k++) d->w[k] *= xi > 1 ? 1/sqrt(inertia) : 0; /* spheres keep spins */
+        for (k = 0; k < 3; k++) d->w[k] *= spheres ? 0 : 1/sqrt(inertia); /* spheres keep spins */
     }
     g.scale = 0;                                   /* ln of what energies were divided by */
     for (round = 0; s < end; round++) {
@@ -700,7 +718,7 @@ static void direct_case(double xi, double e) {
         for (i = 0; i < COUNT; i++)
             for (k = 0; k < 3; k++) { bodies[i].v[k] /= by; bodies[i].w[k] /= by; }
         if (round == 0 || round == 20)             /* rare excess is cut: 1e-4 of collisions */
-            bound = 4*(xi > 1 ? xi*xi : 1)*7*sqrt(1 + g.t.d_mean*theta);
+            bound = 4*most*most*7*sqrt(1 + g.t.d_mean*theta);
         for (i = 0; i < COUNT; i++) {              /* candidates */
             draw *a = &bodies[(int)(uniform(&g)*COUNT)], *b = &bodies[(int)(uniform(&g)*COUNT)];
             double n[3], det, close, along, push;
@@ -728,8 +746,8 @@ static void direct_case(double xi, double e) {
             }
         }
     }
-    if (xi > 1) tell(&g, "T_ratio_direct", exp(sum/weight), "");
-    if (xi > 1) tell(&g, "T_ratio_theory", 1/theta, "");
+    if (!spheres) tell(&g, "T_ratio_direct", exp(sum/weight), "");
+    if (!spheres) tell(&g, "T_ratio_theory", 1/theta, "");
     tell(&g, "zeta_star_direct", -(e_now - start)/(s - from), "");
     tell(&g, "zeta_star_theory", zeta, "");
 }
