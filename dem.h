@@ -27,6 +27,7 @@
        >>shaped      contacts of bodies that are not spheres: touch and respond, one by one
        >>integrators kick, drift, predict; rotation
        >>ledger      where the energy went
+       >>placing     room for new grains: regions, fills, packings
        >>feed        grains fed in, taken out and counted
        >>step        time step, advisor, one step after the other
        >>measure     fields on a grid, channels, balance
@@ -594,17 +595,30 @@ DEM_API dem_result dem_spheres_add(dem_world *world, dem_material material, int 
                                    const dem_real *positions,
                                    const dem_real *velocities, const dem_real *radii,
                                    dem_real radius);
-/* Random filling: count spheres of one radius inside box, none overlapping another body; seed makes
-   it repeatable. Returns how many found a place (fewer than asked: the box is too full; the
-   sentence says so). */
+/* Says which places there are: not 0 for those where a body of this (bounding) radius may be. */
+typedef int (*dem_inside_fn)(dem_vec3 centre, dem_real radius, void *user);
+/* Where new bodies may be. */
+typedef struct dem_region {
+    dem_box box;             /* m, required: bodies are wholly in it. On a periodic axis a box as
+                                long as the domain has no faces: centres are anywhere */
+    int cylinder;            /* 'x', 'y' or 'z': in the cylinder along that axis that the box holds
+                                (elliptic as the box); 0: all of the box */
+    dem_inside_fn inside;    /* of those, which; 0: all */
+    void *user;
+} dem_region;
+/* Random filling: count spheres of one radius inside box, in random sequence; seed makes it
+   repeatable. A place is free when nothing there overlaps another body, across periodic faces too,
+   or touches a wall: behind a plane, on the wrong side of a cylinder and in a sieve there is none;
+   the inside of a closed mesh is a place like any other. Returns how many found a place (fewer than
+   asked: it is too full, 2000 tries for one were in vain; the sentence says so). */
 DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius,
                              dem_box box, int count,
                              uint64_t seed);
-/* Hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, those for
-   which inside(centre, radius, user) is not 0 (null: all whose centre keeps a radius from the box;
-   it is called twice a place), at most count (0: all that fit), in layers along z. Returns how many
-   were added: none, with a sentence, when there are more than 1e9 places to go through. */
-typedef int (*dem_inside_fn)(dem_vec3 centre, dem_real radius, void *user);
+/* Hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, in layers
+   along z: of its places those that are free, as above, and for which inside(centre, radius, user)
+   is not 0 (null: all), at most count (0: all that fit). Centres keep a radius from the box, and
+   across periodic faces the packing keeps off itself, but does not go on. Returns how many were
+   added. */
 DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real radius,
                              dem_real padding,
                              dem_box box, dem_inside_fn inside, void *user, int count);
@@ -704,6 +718,9 @@ DEM_API dem_result dem_bodies_add(dem_world *world, dem_material material, dem_s
 /* Random filling as dem_spheres_fill, in random orientations, with room for each to turn freely. */
 DEM_API int dem_bodies_fill(dem_world *world, dem_material material, dem_shape shape, dem_box box,
                             int count, uint64_t seed);
+/* The same in a region; shape: null: spheres of this radius, else the radius is not used. */
+DEM_API int dem_region_fill(dem_world *world, const dem_region *region, dem_material material,
+                            dem_shape shape, dem_real radius, int count, uint64_t seed);
 
 /* Two ellipsoids by themselves, for analysis. orientation: of any length; 0: not turned. */
 typedef struct dem_ellipsoid { dem_vec3 position, semi_axes; dem_quat orientation; } dem_ellipsoid;
@@ -856,8 +873,8 @@ typedef struct dem_feed { int32_t id; } dem_feed;                            /* 
 typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* id counts from 1 */
 
 /* Adds grains while the world runs: at random places in a region, of random sizes, at a rate, or
-   all at once. A grain that finds no free place waits, and is not lost; places are free of other
-   grains and of walls where they stand then. */
+   all at once. A grain that finds no free place waits, and is not lost; places are found as
+   dem_spheres_fill finds them. */
 typedef struct dem_feed_desc {
     dem_material material;           /* required */
     int class_count;                 /* required, 1..16: classes of size */
@@ -874,6 +891,8 @@ typedef struct dem_feed_desc {
     dem_vec3 velocity;               /* m/s */
     dem_real spread;                 /* m/s, each component of velocity +- up to this */
     uint64_t seed;
+    dem_inside_fn inside;            /* places of the box to use, as in dem_region; 0: all */
+    void *inside_user;
 } dem_feed_desc;
 typedef struct dem_feed_state {
     uint64_t fed[DEM_CLASSES], total; /* grains */
@@ -1492,6 +1511,7 @@ typedef struct demi_touching {
     int32_t element;               /* of the wall; of facets: number of the face, edge or corner */
     dem_real overlap, share;       /* m; how often its force counts (facets: index, see >>facets) */
     dem_vec3 normal, point;        /* unit, body -> wall; m */
+    dem_vec3 shift;                /* m, from the body to its image that the wall meets */
 } demi_touching;
 /* A side or corner of a facet that a body reaches: what joins it to its neighbours (>>touch). */
 typedef struct demi_link {
@@ -1511,6 +1531,7 @@ typedef struct demi_wall_contact {
     dem_real overlap, share;       /* m, 0: under way through a reduced hole; as above */
     dem_real coef[DEMI_COEFS], memory[DEMI_MEMORY];
     dem_vec3 force;                /* N, on the grain */
+    dem_vec3 shift;                /* as above */
 } demi_wall_contact;
 
 /* A shape, in its principal frame, per unit of mass and scale. */
@@ -1547,6 +1568,7 @@ typedef struct demi_shaped {
     dem_real unit[DEMI_COEFS];     /* coefficients of 1 m and 1 kg; unit[DEMI_R_EFF] 0: not yet */
     dem_real memory[DEMI_MEMORY];
     dem_vec3 force;                /* N, on a */
+    dem_vec3 shift;                /* with a wall: as above */
 } demi_shaped;
 
 /* What the grains of one domain do to one wall in one step. */
@@ -1594,13 +1616,15 @@ typedef struct demi_wall {
     dem_real *vertices;            /* vertex_count x 3, in the wall's own frame */
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
     /* surfaces of facets (mesh, profile), see >>facets */
-    int edge_count, cut_count;
+    int edge_count, cut_count, number_count;   /* numbers: of faces, edges, corners, cuts */
     int32_t *edges;                /* element_count x 3 (mesh): the edge from corner k to k + 1 */
     dem_real *weight;              /* how often each face, edge and corner counts, in this order */
     unsigned char *owns;           /* element_count: bit k: looks after edge k, 3 + k: corner k */
     int32_t *cut_start;            /* element_count + 1 (null: none): pieces of edges in `cuts` */
     demi_cut *cuts;
     int group;                     /* walls of one group do not move against each other */
+    dem_real span_lo[3], span_hi[3];   /* m, from where to where it goes, in a periodic world */
+    int repeats[3];                /* along a periodic axis: it is not longer than the period */
     dem_real reach;                /* m, farthest vertex from the frame's origin; < 0: endless */
     dem_pose home, pose;           /* pose at motion start, pose now */
     dem_pose first;                /* as it was added */
@@ -1698,6 +1722,7 @@ struct dem_world {
     demi_field *fields;
     int feed_count, outlet_count;
     demi_array feeds_, outlets_;   /* demi_feed, demi_outlet */
+    demi_array crowd_, crowd_nodes_, crowd_turned_;   /* see >>placing */
 
     /* effects, worked out when the scene changes */
     int normal, tangent, rolling;  /* laws in force */
@@ -1754,6 +1779,10 @@ struct dem_world {
     demi_array wall_body_, wall_id_, wall_element_, wall_gap_, wall_now_, wall_next_, wall_sums_;
     int32_t *wall_body, *wall_id, *wall_element;
     dem_real *wall_gap;            /* m, between grain and element when the list was made */
+    dem_real *wall_shift;          /* x 3, m: from the grain to its image that is near */
+    demi_array wall_shift_;
+    dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
+    int repeating;                 /* does any wall repeat? */
     demi_wall_contact *wall_now, *wall_next;
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     int facets_valid;              /* what facets count fits the walls and their motions */
@@ -1787,6 +1816,7 @@ struct dem_world {
    Not here: those that take away, look, read or write. */
 static const char *const demi_builders[] = {"dem_material_add", "dem_pair_set", "dem_spheres_add",
     "dem_spheres_fill", "dem_spheres_pack", "dem_body_add", "dem_bodies_add", "dem_bodies_fill",
+    "dem_region_fill",
     "dem_shape_ellipsoid_add", "dem_shape_cluster_add", "dem_plane_add", "dem_cylinder_add",
     "dem_profile_add", "dem_mesh_add", "dem_grains_wall_add", "dem_sieve_add", "dem_wall_motion",
     "dem_feed_add", "dem_outlet_add", "dem_field_add", "dem_moldyn_add"};
@@ -3052,6 +3082,86 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
    filed by slot and finds its way into the next list.
    --------------------------------------------------------------------------------------------- */
 
+/* --- one notion of place. On a periodic axis a coordinate stands for all its images, a period
+       apart. Between two rebuilds bodies may stand up to half a skin outside the box (pairs note
+       which image of a partner is nearest, so nobody is moved while a list is in use). Whoever
+       asks where a body is, or how far from another, asks here: searches, fills, feeds, outlets,
+       fields, getters, writers. Tests: tests/test_periodic.c. --- */
+/* lo: m, where the box begins; period: m, 0 where an axis is not periodic, and half then huge. */
+typedef struct demi_periods { dem_real lo[3], half[3], period[3]; int any; } demi_periods;
+static demi_periods demi_periods_of(const dem_world *w) {
+    const dem_vec3 lo = w->desc.domain.lo, size = demi_sub(w->desc.domain.hi, lo);
+    demi_periods p;
+    int k;
+    demi_put(p.lo, lo);
+    demi_put(p.period, size);
+    for (k = 0, p.any = 0; k < 3; k++) {
+        const int periodic = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
+        p.any |= periodic;
+        p.half[k] = periodic ? p.period[k]/2 : (DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX);
+        if (!periodic) p.period[k] = 0;
+    }
+    return p;
+}
+/* Shortest image of a distance d in a period: valid for |d| < 1.5 period. half = huge: not
+   periodic. For the innermost loops; elsewhere demi_nearest. */
+DEM_INLINE dem_real demi_image(dem_real d, dem_real half, dem_real period) {
+    const dem_real up = d < -half ? period : 0, down = d > half ? period : 0;
+    return d + up - down;
+}
+/* The image of coordinate x with from <= image < from + period, whatever rounding does; x itself
+   where the period is 0. */
+DEM_INLINE dem_real demi_into(dem_real x, dem_real from, dem_real period) {
+    if (!(period > 0) || (x >= from && x < from + period)) return x;
+    if (x < from) x += period*(dem_real)ceil((double)((from - x)/period));
+    else x -= period*(dem_real)floor((double)((x - from)/period));
+    if (x >= from + period) x -= period;
+    return x < from ? from : x;
+}
+/* A place in the periodic box. */
+static dem_vec3 demi_place_of(const demi_periods *p, dem_vec3 x) {
+    if (!p->any) return x;
+    return demi_v(demi_into(x.x, p->lo[0], p->period[0]), demi_into(x.y, p->lo[1], p->period[1]),
+                  demi_into(x.z, p->lo[2], p->period[2]));
+}
+/* What is left of a distance between two places, of any size, when the nearest images are taken. */
+static dem_vec3 demi_nearest(const demi_periods *p, dem_vec3 d) {
+    if (!p->any) return d;
+    return demi_v(demi_into(d.x, -p->half[0], p->period[0]),
+                  demi_into(d.y, -p->half[1], p->period[1]),
+                  demi_into(d.z, -p->half[2], p->period[2]));
+}
+/* All bodies in the periodic box: count x 4, as w->pos. Holds until bodies move or are sorted. */
+static const dem_real *demi_wrapped(const dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    int i, k;
+    if (!p.any) return w->pos;
+    for (i = 0; i < w->count; i++) {
+        for (k = 0; k < 3; k++)
+            w->scratch[4*i + k] = demi_into(w->pos[4*i + k], p.lo[k], p.period[k]);
+        w->scratch[4*i + 3] = w->pos[4*i + 3];
+    }
+    return w->scratch;
+}
+static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
+    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y;
+    lo[2] = (double)w->desc.domain.lo.z;
+    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y;
+    hi[2] = (double)w->desc.domain.hi.z;
+}
+/* Brings positions back into the periodic box: at a rebuild, when nobody holds images. */
+static void demi_wrap(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    int i, k;
+    for (k = 0; k < 3 && p.any; k++) {
+        for (i = 0; i < w->count && p.period[k] > 0; i++) {
+            const dem_real from = w->pos[4*i + k], to = demi_into(from, p.lo[k], p.period[k]);
+            if (w->last_pos) w->last_pos[4*i + k] += to - from;
+            w->pos[4*i + k] = to;
+        }
+    }
+}
+
 /* Is this body a copy of one that is at home in another slab? (>>slabs; never elsewhere) */
 DEM_INLINE int demi_visits(const dem_world *w, int i) {
     return w->visitor && w->visitor[w->body_slot[i]] == 1;
@@ -3513,9 +3623,11 @@ DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *s) {
     if (demi_null(world, "dem_body_get", s, "state")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;
+    demi_periods p;
     int i = demi_body_index(w, "dem_body_get", body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
-    s->position = demi_at(w->pos + 4*i);
+    p = demi_periods_of(w);
+    s->position = demi_place_of(&p, demi_at(w->pos + 4*i));
     s->velocity = demi_at(w->vel + 4*i);
     s->spin = demi_at(w->spin + 4*i);
     s->force = demi_at(w->force + 4*i);
@@ -3583,7 +3695,7 @@ DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
     memset(&b, 0, sizeof b);
     if (!w) return b;
     b.count = w->count;
-    b.positions = w->pos; b.velocities = w->vel; b.spins = w->spin; b.forces = w->force;
+    b.positions = demi_wrapped(w); b.velocities = w->vel; b.spins = w->spin; b.forces = w->force;
     b.torques = w->torque;
     b.masses = w->mass; b.slots = w->body_slot; b.materials = w->body_material;
     b.orientations = w->orient;
@@ -3605,232 +3717,6 @@ DEM_API dem_balance dem_balance_get(const dem_world *w) {
     return w ? w->balance : none;
 }
 
-/* Buckets of the bodies there are, for finding room: cell = at least twice the largest radius. */
-typedef struct demi_buckets { dem_box box; double cell; int n[3]; int32_t *head, *next;
-                             int next_room; } demi_buckets;
-static int demi_bucket_of(const demi_buckets *g, dem_vec3 x) {
-    int k, c[3];
-    double p[3], lo[3];
-    p[0] = (double)x.x; p[1] = (double)x.y; p[2] = (double)x.z;
-    lo[0] = (double)g->box.lo.x; lo[1] = (double)g->box.lo.y; lo[2] = (double)g->box.lo.z;
-    for (k = 0; k < 3; k++) {
-        double t = floor((p[k] - lo[k])/g->cell);
-        c[k] = !(t > 0) ? 0 : t >= g->n[k] ? g->n[k] - 1 : (int)t;
-    }
-    return c[0] + g->n[0]*(c[1] + g->n[1]*c[2]);
-}
-static int demi_bucket_free(const dem_world *w, const demi_buckets *g, dem_vec3 x, dem_real r) {
-    const int home = demi_bucket_of(g, x), hx = home%g->n[0], hy = home/g->n[0]%g->n[1];
-    const int hz = home/g->n[0]/g->n[1];
-    int i, j, k, b;
-    for (k = DEMI_MAX(hz - 1, 0); k <= DEMI_MIN(hz + 1, g->n[2] - 1); k++)
-        for (j = DEMI_MAX(hy - 1, 0); j <= DEMI_MIN(hy + 1, g->n[1] - 1); j++)
-            for (i = DEMI_MAX(hx - 1, 0); i <= DEMI_MIN(hx + 1, g->n[0] - 1); i++)
-                for (b = g->head[i + g->n[0]*(j + g->n[1]*k)]; b >= 0; b = g->next[b]) {
-                    dem_vec3 d = demi_sub(demi_at(w->pos + 4*b), x);
-                    dem_real s = w->pos[4*b + 3] + r;
-                    if (demi_dot(d, d) < s*s) return 0;
-                }
-    return 1;
-}
-
-/* All orientations are equally likely (Shoemake 1992). */
-static dem_quat demi_quat_random(uint64_t *state) {
-    const double u = demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
-    const double b = 2*DEMI_PI*demi_uniform(state), r = sqrt(1 - u), s = sqrt(u);
-    return dem_quat_make((dem_real)(r*sin(a)), (dem_real)(r*cos(a)), (dem_real)(s*sin(b)),
-                         (dem_real)(s*cos(b)));
-}
-/* Fills a box with spheres, or with bodies of a form (>= 0), whose bounding sphere has this radius.
-   */
-static int demi_fill(dem_world *w, const char *call, dem_material material, int form,
-                     dem_real radius, dem_box box, int count, uint64_t seed) {
-    demi_buckets g;
-    uint64_t state = seed;
-    dem_real r_max = radius;
-    int i, k, m = 0, done = 0, planar = w->desc.planar;
-    size_t cells;
-    double size[3];
-    if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
-    if (!(radius > 0) || !demi_finite(radius) || count < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m and count %d, must be > 0 and >= 0",
-                  call, (double)radius, count);
-        return 0;
-    }
-    if (form < 0 ? demi_mass_refuse(w, call, m, radius, 0)
-                 : demi_shape_mass_refuse(w, call, m, form, 1, 0)) return 0;
-    size[0] = (double)(box.hi.x - box.lo.x) - 2*(double)radius;
-    size[1] = (double)(box.hi.y - box.lo.y) - 2*(double)radius;
-    size[2] = planar ? 0 : (double)(box.hi.z - box.lo.z) - 2*(double)radius;
-    if (!(size[0] >= 0 && size[1] >= 0 && size[2] >= 0) || !demi_place(box.lo) ||
-        !demi_place(box.hi)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
-                  "give lo below hi by at least a diameter", call, (double)radius);
-        return 0;
-    }
-    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count)) {
-        demi_no_memory(w, call);
-        return 0;
-    }
-    for (i = 0; i < w->count; i++) r_max = DEMI_MAX(r_max, w->pos[4*i + 3]);
-    g.box = box;
-    g.cell = 2.0001*(double)r_max;
-    for (;; g.cell *= 1.26) {                   /* no more cells than about four per body */
-        for (k = 0; k < 3; k++) g.n[k] = (int)DEMI_MIN((size[k] + 2*(double)radius)/g.cell, 1e6) +
-            1;
-        if ((double)g.n[0]*g.n[1]*g.n[2] <= 4.0*(w->count + count) + 64) break;
-    }
-    cells = (size_t)g.n[0]*(size_t)g.n[1]*(size_t)g.n[2];
-    g.next_room = w->count + count;
-    g.head = (int32_t *)demi_alloc(w, cells, sizeof(int32_t));
-    g.next = (int32_t *)demi_alloc(w, (size_t)g.next_room + 1, sizeof(int32_t));
-    if (!g.head || !g.next) {
-        demi_free(w, g.head, cells, sizeof(int32_t));
-        demi_free(w, g.next, (size_t)g.next_room + 1, sizeof(int32_t));
-        demi_no_memory(w, call);
-        return 0;
-    }
-    memset(g.head, 0xff, cells*sizeof(int32_t));
-    for (i = 0; i < w->count; i++) {
-        k = demi_bucket_of(&g, demi_at(w->pos + 4*i));
-        g.next[i] = g.head[k];
-        g.head[k] = i;
-    }
-    for (i = 0; i < count; i++) {
-        int tries;
-        for (tries = 0; tries < 2000; tries++) {
-            dem_vec3 x;
-            x.x = box.lo.x + radius + (dem_real)(size[0]*demi_uniform(&state));
-            x.y = box.lo.y + radius + (dem_real)(size[1]*demi_uniform(&state));
-            x.z = planar ? 0 : box.lo.z + radius + (dem_real)(size[2]*demi_uniform(&state));
-            if (!demi_bucket_free(w, &g, x, radius)) continue;
-            demi_body_append(w, m, radius, x);
-            if (form >= 0)
-                demi_body_shape(w, w->count - 1, form, 1, demi_quat_random(&state));
-            k = demi_bucket_of(&g, x);
-            g.next[w->count - 1] = g.head[k];
-            g.head[k] = w->count - 1;
-            done++;
-            break;
-        }
-        if (tries == 2000) break;
-    }
-    if (done < count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a place in 2000 "
-                  "tries each; enlarge the box, or %s", call, done, count,
-                  form < 0 ? "spheres" : "bodies with bounding spheres", (double)radius,
-                  form < 0 ? "pack them with dem_spheres_pack"
-                  : "place them yourself with dem_bodies_add");
-    demi_built(w, call);                        /* fewer than asked: the answer says so */
-    demi_free(w, g.head, cells, sizeof(int32_t));
-    demi_free(w, g.next, (size_t)g.next_room + 1, sizeof(int32_t));
-    demi_scene_changed(w);
-    return done;
-}
-DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius, dem_box box,
-                             int count, uint64_t seed) {
-    if (demi_null(w, "dem_spheres_fill", w, "world")) return 0;
-    return demi_fill(w, "dem_spheres_fill", material, -1, radius, box, count, seed);
-}
-DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape, dem_box box,
-                            int count, uint64_t seed) {
-    if (demi_null(w, "dem_bodies_fill", w, "world")) return 0;
-    const int form = demi_form_index(w, "dem_bodies_fill", shape);
-    if (form < 0) return 0;
-    if (!demi_orient_begin(w)) { demi_no_memory(w, "dem_bodies_fill"); return 0; }
-    return demi_fill(w, "dem_bodies_fill", material, form, w->forms[form].radius, box, count, seed);
-}
-
-/* Sphere (i, j, k) of a hexagonal close packing of spheres of radius r that starts at the origin:
-   even and odd layers alternate. In a plane: a triangular lattice, k = 0. */
-static dem_vec3 demi_pack_site(int64_t i, int64_t j, int64_t k, double r) {
-    const double root3 = sqrt(3.0), x = (double)(2*i + ((j + k) & 1));
-    return demi_v((dem_real)(r*x), (dem_real)(r*root3*((double)j + (double)(k & 1)/3.0)),
-                  (dem_real)(r*(double)k*2*sqrt(6.0)/3));
-}
-
-typedef struct demi_packing {
-    dem_real radius;
-    double pitch, size[3];           /* m: radius with half the padding; room for centres */
-    dem_box box;
-    dem_inside_fn inside;
-    void *user;
-} demi_packing;
-/* Goes through the places of a packing, at most `most` of those that are taken, and adds spheres
-   there when asked. Answers how many. */
-static int demi_packing_fill(dem_world *w, const demi_packing *p, int material, int most, int add) {
-    const double slack = 1e-9*p->pitch;
-    int64_t i, j, k;
-    int done = 0;
-    for (k = 0; done < most; k++) {
-        if ((double)demi_pack_site(0, 0, k, p->pitch).z > p->size[2] + slack) break;
-        for (j = 0; done < most; j++) {
-            if ((double)demi_pack_site(0, j, k, p->pitch).y > p->size[1] + slack) break;
-            for (i = 0; done < most; i++) {
-                const dem_vec3 s = demi_pack_site(i, j, k, p->pitch);
-                dem_vec3 x;
-                if ((double)s.x > p->size[0] + slack) break;
-                x = demi_v(p->box.lo.x + p->radius + s.x, p->box.lo.y + p->radius + s.y,
-                           w->desc.planar ? 0 : p->box.lo.z + p->radius + s.z);
-                if (p->inside && !p->inside(x, p->radius, p->user)) continue;
-                if (add) demi_body_append(w, material, p->radius, x);
-                done++;
-            }
-        }
-        if (w->desc.planar) break;
-    }
-    return done;
-}
-DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radius, dem_real padding,
-                             dem_box box, dem_inside_fn inside, void *user, int count) {
-    const char *call = "dem_spheres_pack";
-    const int room = INT_MAX/64 - (w ? w->count : 0);
-    demi_packing p;
-    int m = 0, done;
-    double places = 1;
-    if (demi_null(w, call, w, "world") || demi_material_index(w, call, material, &m) != DEM_OK)
-        return 0;
-    if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
-        count < 0 || !demi_place(box.lo) || !demi_place(box.hi)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius %g, padding %g, count %d; must be > 0, >= 0, "
-                  ">= 0 and the box finite", call, (double)radius, (double)padding, count);
-        return 0;
-    }
-    if (demi_mass_refuse(w, call, m, radius, 0)) return 0;
-    p.radius = radius;
-    p.pitch = (double)radius + (double)padding/2;
-    p.size[0] = (double)(box.hi.x - box.lo.x) - 2*(double)radius;
-    p.size[1] = (double)(box.hi.y - box.lo.y) - 2*(double)radius;
-    p.size[2] = w->desc.planar ? 0 : (double)(box.hi.z - box.lo.z) - 2*(double)radius;
-    p.box = box;
-    p.inside = inside;
-    p.user = user;
-    for (done = 0; done < 3; done++)            /* a sphere takes 4 sqrt 2 pitch^3 of space */
-        places *= DEMI_MAX(p.size[done]/p.pitch, 0)*0.56 + 1;
-    if ((inside ? places : count ? (double)DEMI_MIN(places, (double)count) : places) > 1e9) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has about %.2g places for radius %g m, which "
-                  "is more than can be gone through; make the box smaller, or check the unit of "
-                  "both", call, places, (double)radius);
-        return 0;
-    }
-    if (!demi_list_drop(w)) { demi_no_memory(w, call); return 0; }
-    /* count, make room, add: all or nothing */
-    done = demi_packing_fill(w, &p, m, count ? DEMI_MIN(count, room + 1) : room + 1, 0);
-    if (done > room) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: more than %d spheres of radius %g m would be added, "
-                  "which is more than a world holds; make the box smaller or the spheres larger",
-                  call, room, (double)radius);
-        return 0;
-    }
-    if (!demi_bodies_reserve(w, (size_t)w->count + (size_t)done)) {
-        demi_no_memory(w, call);
-        return 0;
-    }
-    done = demi_packing_fill(w, &p, m, done, 1);
-    demi_built(w, call);
-    demi_scene_changed(w);
-    return done;
-}
 
 /* ---------------------------------------------------------------------------------------------
    >>facets
@@ -4044,12 +3930,85 @@ static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
           !memcmp(&m->phase, &o->phase, sizeof m->phase);
 }
 
+/* --- walls across periodic faces. A wall that is not longer than the period along a periodic axis
+       repeats there: bodies look for it at their own images, and where it ends just where its image
+       begins the two are one surface. One that is longer stands for all its images and must reach
+       a grain beyond both faces. Endless walls are their own images. --- */
+static void demi_reach_add(dem_real *lo, dem_real *hi, dem_vec3 x, dem_real pad) {
+    dem_real at[3];
+    int k;
+    demi_put(at, x);
+    for (k = 0; k < 3; k++) {
+        lo[k] = DEMI_MIN(lo[k], at[k] - pad);
+        hi[k] = DEMI_MAX(hi[k], at[k] + pad);
+    }
+}
+/* From where to where a wall with ends goes along the axes of the world, where it is now. */
+static void demi_wall_span(demi_wall *wall) {
+    const dem_pose *p = &wall->pose;
+    const dem_real pad = wall->kind == DEMI_WALL_GRAINS ? wall->radius : 0;
+    const dem_real far = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
+    dem_real lo[3] = {far, far, far}, hi[3] = {-far, -far, -far};
+    int i;
+    for (i = 0; i < wall->vertex_count; i++)
+        demi_reach_add(lo, hi, demi_add(p->position, demi_turn(p->rotation,
+                                        demi_at(wall->vertices + 3*i))), pad);
+    if (!wall->vertex_count) demi_reach_add(lo, hi, p->position, wall->reach);
+    if (wall->kind == DEMI_WALL_PROFILE) {      /* endless along its z */
+        lo[2] = -far/4;
+        hi[2] = far/4;
+    }
+    memcpy(wall->span_lo, lo, sizeof lo);
+    memcpy(wall->span_hi, hi, sizeof hi);
+}
+/* Says of each wall along which axes it repeats. */
+static void demi_walls_repeat(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    int i, k;
+    w->repeating = 0;
+    for (k = 0; k < 3; k++) w->wall_period[k] = p.period[k] > 0 ? p.period[k] : w->ring_period[k];
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        memset(wall->repeats, 0, sizeof wall->repeats);
+        if (wall->kind == DEMI_WALL_NONE || wall->reach < 0) continue;
+        if (!(w->wall_period[0] > 0 || w->wall_period[1] > 0 || w->wall_period[2] > 0)) continue;
+        demi_wall_span(wall);
+        for (k = 0; k < 3; k++) {
+            const dem_real most = DEMI_MAX(DEMI_ABS(wall->span_lo[k]), DEMI_ABS(wall->span_hi[k]));
+            const dem_real slack = 8*(dem_real)FLT_EPSILON*most;
+            wall->repeats[k] = w->wall_period[k] > 0 &&
+                wall->span_hi[k] - wall->span_lo[k] <= w->wall_period[k] + slack;
+            w->repeating |= wall->repeats[k];
+        }
+    }
+}
+/* How many periods on, from first[k] to last[k], the images of a place are from which a wall is
+   nearer than `far`. */
+static void demi_wall_images(const dem_world *w, const demi_wall *wall, dem_vec3 place,
+                             dem_real far, int *first, int *last) {
+    dem_real x[3];
+    int k;
+    demi_put(x, place);
+    for (k = 0; k < 3; k++) {
+        const double period = (double)w->wall_period[k];
+        first[k] = last[k] = 0;
+        if (!wall->repeats[k]) continue;
+        first[k] = (int)ceil((double)(wall->span_lo[k] - far - x[k])/period);
+        last[k] = (int)floor((double)(wall->span_hi[k] + far - x[k])/period);
+    }
+}
+static dem_vec3 demi_wall_shift(const dem_world *w, int a, int b, int c) {
+    return demi_v((dem_real)a*w->wall_period[0], (dem_real)b*w->wall_period[1],
+                  (dem_real)c*w->wall_period[2]);
+}
+
 /* The surfaces of a group of walls as one, under work. Points are the corners of all of them, one
    wall after the other, where they were when their motion began (so that a restart finds the same);
    facets are their elements, those left out that have no size. */
 typedef struct demi_join {
     int per;                       /* corners of a facet: 3 (meshes) or 2 (profiles) */
     int points, facets, sides, cuts;
+    int images;                    /* of facets: the last ones, of no wall, -1 */
     double *x, *near_by;           /* points: x 3; m, what is one place */
     demi_sorted *sorted;           /* points */
     int32_t *same, *mark;          /* points: the first in this place; for whoever needs it */
@@ -4086,9 +4045,69 @@ static int demi_join_member(const dem_world *w, int wall, int group, int per) {
     const demi_wall *m = &w->walls[wall];
     return demi_faceted(m) && m->group == group && per == (m->kind == DEMI_WALL_MESH ? 3 : 2);
 }
+/* Does a wall keep its place to its image along an axis? */
+static int demi_wall_keeps(const demi_wall *wall, int axis) {
+    const dem_motion *m = &wall->motion;
+    const dem_vec3 n = demi_unit(m->axis), e = demi_v(axis == 0, axis == 1, axis == 2);
+    return wall->repeats[axis] && (m->kind != DEM_MOTION_ROTATING ||
+                                   demi_length(demi_cross(n, e)) <= DEM_R(1e-6));
+}
+/* Images of facets that touch the group: they count where edges and corners meet them, and get no
+   weight themselves. fill 0: counts them, with one point for each corner. */
+static void demi_join_images(const dem_world *w, demi_join *j, int group, int fill) {
+    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, slack = 0;
+    int i, e, k, c, n, first = 0;
+    if (!w->repeating) return;
+    for (i = group; i < w->wall_count; i++)
+        for (k = 0; k < 3 && demi_join_member(w, i, group, j->per); k++) {
+            lo[k] = DEMI_MIN(lo[k], (double)w->walls[i].span_lo[k]);
+            hi[k] = DEMI_MAX(hi[k], (double)w->walls[i].span_hi[k]);
+            if (k == 2 && j->per == 2) continue;
+            slack = DEMI_MAX(slack, 8*(double)FLT_EPSILON*DEMI_MAX(fabs(lo[k]), fabs(hi[k])));
+        }
+    for (i = group; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        if (!demi_join_member(w, i, group, j->per)) continue;
+        for (n = 0; n < 27; n++) {
+            const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
+            const dem_vec3 by = demi_wall_shift(w, s[0], s[1], s[2]);
+            int use = n != 13;
+            for (k = 0; k < 3; k++) use = use && (!s[k] || demi_wall_keeps(wall, k));
+            for (e = 0; e < wall->element_count && use; e++) {
+                double x[9], a = 0, b = 0;
+                int near = 1;
+                for (c = 0; c < j->per; c++) {
+                    const dem_vec3 at = demi_add(by, demi_add(wall->pose.position,
+                        demi_turn(wall->pose.rotation, demi_at(wall->vertices + 3*
+                                                               wall->corners[j->per*e + c]))));
+                    x[3*c] = (double)at.x; x[3*c + 1] = (double)at.y; x[3*c + 2] = (double)at.z;
+                }
+                for (k = 0; k < 3; k++) {
+                    for (c = 0; c < j->per; c++) {
+                        a = c ? DEMI_MIN(a, x[3*c + k]) : x[k];
+                        b = c ? DEMI_MAX(b, x[3*c + k]) : x[k];
+                    }
+                    near = near && a <= hi[k] + slack && b >= lo[k] - slack;
+                }
+                if (!near) continue;
+                if (!fill) {
+                    j->point_room += (size_t)j->per;
+                    j->facet_room++;
+                    continue;
+                }
+                memcpy(j->x + 3*j->points, x, (size_t)j->per*3*sizeof *x);
+                for (c = 0; c < j->per; c++)    /* as it is for the wall's own corners */
+                    j->near_by[j->points + c] = j->near_by[first + wall->corners[j->per*e + c]];
+                j->points += j->per;
+                j->images++;
+            }
+        }
+        first += wall->vertex_count;
+    }
+}
 /* Points and facets of all walls of a group. 0 when memory ran out. */
 static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
-    int i, e, k, first = 0;
+    int i, e, k, first = 0, real_points;
     memset(j, 0, sizeof *j);
     j->per = per;
     for (i = group; i < w->wall_count; i++) {
@@ -4096,6 +4115,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
         j->point_room += (size_t)w->walls[i].vertex_count;
         j->facet_room += (size_t)w->walls[i].element_count;
     }
+    demi_join_images(w, j, group, 0);
     if (j->point_room > INT_MAX/8 || j->facet_room > INT_MAX/8) return 0;
     j->x = (double *)demi_alloc(w, j->point_room*3, sizeof(double));
     j->near_by = (double *)demi_alloc(w, j->point_room, sizeof(double));
@@ -4123,6 +4143,8 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
         demi_near_by(j->x, wall, first, j->near_by);
         first += wall->vertex_count;
     }
+    real_points = j->points;
+    demi_join_images(w, j, group, 1);
     first = 0;
     demi_points_sort(j->x, j->points, j->sorted);
     demi_points_weld(j->x, j->points, j->near_by, j->sorted, j->same);
@@ -4138,6 +4160,13 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
             j->count[j->facets++] = 1;
         }
         first += wall->vertex_count;
+    }
+    for (i = 0; i < j->images; i++) {
+        int32_t *f = j->facet + 5*j->facets;
+        f[0] = f[1] = -1;
+        for (k = 0; k < per; k++) f[2 + k] = j->same[real_points + per*i + k];
+        if (!demi_facet_counts(j->x, j->near_by, f + 2, per)) continue;
+        j->count[j->facets++] = 1;
     }
     return 1;
 }
@@ -4285,6 +4314,7 @@ static void demi_join_edges(dem_world *w, demi_join *j) {
             const int id = j->facet[5*j->piece[k].facet];
             double mine = 0;
             int first = k;
+            if (id < 0) continue;               /* an image */
             for (other = i; other < end; other++) {
                 if (j->facet[5*j->piece[other].facet] != id) continue;
                 first = DEMI_MIN(first, other);
@@ -4312,8 +4342,9 @@ static void demi_join_corners(dem_world *w, demi_join *j) {
     int f, end, g, k;
     for (f = 0; f < j->facets; f = end) {       /* one wall after the other */
         const int id = j->facet[5*f];
-        demi_wall *wall = &w->walls[id];
+        demi_wall *wall = &w->walls[id < 0 ? 0 : id];
         dem_real *corner = wall->weight + wall->element_count + wall->edge_count;
+        if (id < 0) return;                     /* images get nothing */
         memset(j->own, 0, (size_t)j->points*sizeof *j->own);
         for (end = f; end < j->facets && j->facet[5*end] == id; end++) {
             wall->weight[j->facet[5*end + 1]] = (dem_real)j->count[end];
@@ -4346,6 +4377,7 @@ static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
         if (!demi_join_member(w, i, group, j->per)) continue;
         first = passed;
         passed += wall->vertex_count;
+        wall->number_count += wall->cut_count;
         if (!wall->cut_count) continue;
         wall->cut_start = (int32_t *)demi_alloc(w, n, sizeof(int32_t));
         wall->cuts = (demi_cut *)demi_alloc(w, (size_t)wall->cut_count, sizeof(demi_cut));
@@ -4366,12 +4398,14 @@ static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
             to->b = demi_join_local(j, wall, c[3]);
             to->number = c[4];
             to->side = c[5];
-            for (e = 0; e < 2; e++)             /* corners of other walls: from the other end */
-                to->end[e] = own[c[2 + e]] >= 0 ? own[c[2 + e]] : INT32_MAX - c[2 + e];
+            for (e = 0; e < 2; e++)             /* corners of other walls: beyond its own numbers */
+                to->end[e] = own[c[2 + e]] >= 0 ? own[c[2 + e]]
+                    : wall->number_count + c[2 + e];
             to->weight = (dem_real)j->cut_weight[k];
         }
         for (k = 0; k < wall->element_count; k++) wall->cut_start[k] = wall->cut_start[k + 1];
         wall->cut_start[wall->element_count] = wall->cut_count;
+        wall->number_count += j->points;
     }
     return 1;
 }
@@ -4386,6 +4420,7 @@ static void demi_facets_drop_cuts(dem_world *w, demi_wall *wall) {
    */
 static int demi_facets_weigh(dem_world *w) {
     int i, k, per, ok = 1;
+    demi_walls_repeat(w);
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         for (k = 0; k < i; k++)
@@ -4394,6 +4429,7 @@ static int demi_facets_weigh(dem_world *w) {
         wall->group = k;
         if (!demi_faceted(wall)) continue;
         demi_facets_drop_cuts(w, wall);
+        wall->number_count = wall->element_count + wall->edge_count + wall->vertex_count;
         memset(wall->weight, 0, ((size_t)wall->element_count + (size_t)wall->edge_count +
                                  (size_t)wall->vertex_count)*sizeof(dem_real));
     }
@@ -5067,57 +5103,6 @@ DEM_API dem_result dem_wall_channels_reset(dem_world *w, dem_wall id) {
 
 /* Row of a body in an array of four reals each; unsigned, which spares a sign to extend. */
 #define DEMI_AT(array, body) ((array) + 4*(size_t)(uint32_t)(body))
-
-/* Shortest image of a distance d in a period: valid for |d| < 1.5 period. half = huge: not
-   periodic. */
-DEM_INLINE dem_real demi_image(dem_real d, dem_real half, dem_real period) {
-    const dem_real up = d < -half ? period : 0, down = d > half ? period : 0;
-    return d + up - down;
-}
-typedef struct demi_periods { dem_real half[3], period[3]; } demi_periods;
-static demi_periods demi_periods_of(const dem_world *w) {
-    demi_periods p;
-    double lo[3], hi[3];
-    int k;
-    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y;
-    lo[2] = (double)w->desc.domain.lo.z;
-    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y;
-    hi[2] = (double)w->desc.domain.hi.z;
-    for (k = 0; k < 3; k++) {
-        const int periodic = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
-        p.period[k] = periodic ? (dem_real)(hi[k] - lo[k]) : 0;
-        p.half[k] = periodic ? (dem_real)((hi[k] - lo[k])/2)
-            : (DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX);
-    }
-    return p;
-}
-static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
-    lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y;
-    lo[2] = (double)w->desc.domain.lo.z;
-    hi[0] = (double)w->desc.domain.hi.x; hi[1] = (double)w->desc.domain.hi.y;
-    hi[2] = (double)w->desc.domain.hi.z;
-}
-
-/* Brings positions back into the periodic box. */
-static void demi_wrap(dem_world *w) {
-    double lo[3], hi[3];
-    int i, k;
-    demi_domain_limits(w, lo, hi);
-    for (k = 0; k < 3; k++) {
-        const dem_real a = (dem_real)lo[k], b = (dem_real)hi[k], L = b - a;
-        if (w->desc.boundary[k] != DEM_BOUNDARY_PERIODIC) continue;
-        for (i = 0; i < w->count; i++) {
-            dem_real *x = w->pos + 4*i + k, shift = 0;
-            if (*x >= b) shift = -L*(dem_real)floor((double)((*x - a)/L));
-            if (*x < a) shift = L*(dem_real)ceil((double)((a - *x)/L));
-            if (shift > 0 || shift < 0) {
-                *x += shift;
-                if (*x >= b) { *x -= L; shift -= L; }
-                if (w->last_pos) w->last_pos[4*i + k] += shift;
-            }
-        }
-    }
-}
 
 /* Divides a box into cells no smaller than `least`, no more than about 4 for each of `count`. */
 static void demi_cells_lay(const double *lo, const double *hi, double least, int count, int *cells,
@@ -5797,7 +5782,7 @@ static void demi_domain_search(dem_world *w, int d) {
 
 /* Wall elements near a grain, ascending; offered to the domain's list of wall candidates. */
 static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
-                            int element, dem_real gap) {
+                            int element, dem_real gap, dem_vec3 shift) {
     int k = domain->walls;
     if (k >= w->wall_stride) { domain->overflow |= 4; return; }
     domain->walls++;
@@ -5806,6 +5791,7 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_id[k] = wall;
     w->wall_element[k] = element;
     w->wall_gap[k] = gap;
+    demi_put(w->wall_shift + 3*(size_t)k, shift);
 }
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
                                    dem_real enough);
@@ -5835,44 +5821,54 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
     }
     domain->walls = n;
 }
+/* Elements of one wall near body i as it is seen `shift` farther on. */
+static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
+    const demi_wall *wall = &w->walls[j];
+    const dem_real r = w->pos[4*i + 3], near_by = r + (dem_real)w->skin;
+    const int first = domain->walls;
+    const dem_vec3 out = demi_v(near_by, near_by, near_by);
+    dem_vec3 at = demi_unturn(wall->pose.rotation, demi_sub(demi_add(demi_at(w->pos + 4*i), shift),
+                                                            wall->pose.position));
+    dem_real away;
+    int k, x, y, z, f[3], l[3];
+    if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
+    if (!wall->cell_start) {
+        for (k = 0; k < wall->element_count; k++) {
+            away = demi_wall_distance(wall, k, at, near_by);
+            if (away < near_by) demi_wall_offer(w, domain, d, i, j, k, away - r, shift);
+        }
+    } else {
+        demi_wall_cells(wall, demi_sub(at, out), demi_add(at, out), f, l);
+        for (z = f[2]; z <= l[2]; z++)
+            for (y = f[1]; y <= l[1]; y++)
+                for (x = f[0]; x <= l[0]; x++) {
+                    const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
+                    for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
+                        const int element = wall->cell_items[k];
+                        away = demi_wall_distance(wall, element, at, near_by);
+                        if (away < near_by)
+                            demi_wall_offer(w, domain, d, i, j, element, away - r, shift);
+                    }
+                }
+    }
+    if (domain->walls > first) demi_walls_order(w, domain, d, first);
+}
 static void demi_domain_walls(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    int i, j, k, x, y, z, f[3], l[3];
+    int i, j, a, b, c, f[3], l[3];
     domain->walls = 0;
     domain->overflow &= ~4;
     for (i = domain->begin; i < domain->end; i++) {
         if ((w->fixed_count && w->inv_mass[i] <= 0) || demi_visits(w, i)) continue;
         for (j = 0; j < w->wall_count; j++) {
             const demi_wall *wall = &w->walls[j];
-            const dem_real r = w->pos[4*i + 3], near_by = r + (dem_real)w->skin;
-            const int first = domain->walls;
-            dem_real away;
-            dem_vec3 at;
             if (wall->kind == DEMI_WALL_NONE) continue;
-            at = demi_unturn(wall->pose.rotation, demi_sub(demi_at(w->pos + 4*i),
-                                                           wall->pose.position));
-            if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
-            if (!wall->cell_start) {
-                for (k = 0; k < wall->element_count; k++) {
-                    away = demi_wall_distance(wall, k, at, near_by);
-                    if (away < near_by) demi_wall_offer(w, domain, d, i, j, k, away - r);
-                }
-            } else {
-                demi_wall_cells(wall, demi_sub(at, demi_v(near_by, near_by, near_by)),
-                                demi_add(at, demi_v(near_by, near_by, near_by)), f, l);
-                for (z = f[2]; z <= l[2]; z++)
-                    for (y = f[1]; y <= l[1]; y++)
-                        for (x = f[0]; x <= l[0]; x++) {
-                            const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
-                            for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
-                                const int element = wall->cell_items[k];
-                                away = demi_wall_distance(wall, element, at, near_by);
-                                if (away < near_by)
-                                    demi_wall_offer(w, domain, d, i, j, element, away - r);
-                            }
-                        }
-            }
-            if (domain->walls > first) demi_walls_order(w, domain, d, first);
+            demi_wall_images(w, wall, demi_at(w->pos + 4*i), w->pos[4*i + 3] + (dem_real)w->skin,
+                             f, l);
+            for (c = f[2]; c <= l[2]; c++)
+                for (b = f[1]; b <= l[1]; b++)
+                    for (a = f[0]; a <= l[0]; a++)
+                        demi_wall_look(w, domain, d, i, j, demi_wall_shift(w, a, b, c));
         }
     }
 }
@@ -5914,12 +5910,14 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &w->wall_body_, sizeof(int32_t),
                                                              n) &&
                    demi_array_grow(w, &w->wall_id_, sizeof(int32_t), n) &&
+                   demi_array_grow(w, &w->wall_shift_, 3*sizeof(dem_real), n) &&
                    demi_array_grow(w, &w->wall_gap_, sizeof(dem_real), n) &&
                    demi_array_grow(w, &w->wall_element_, sizeof(int32_t), n);
     w->wall_body = (int32_t *)w->wall_body_.data;
     w->wall_id = (int32_t *)w->wall_id_.data;
     w->wall_element = (int32_t *)w->wall_element_.data;
     w->wall_gap = (dem_real *)w->wall_gap_.data;
+    w->wall_shift = (dem_real *)w->wall_shift_.data;
     if (ok) w->wall_stride = stride;
     return ok;
 }
@@ -6632,6 +6630,29 @@ static int demi_crowd_refuse(dem_world *w) {
               "others", work, crowd, w->count, w->cell_size[0], w->cell_size[1], w->cell_size[2]);
     return 1;
 }
+/* A wall longer than the period does not repeat, and must be there for all that stands in the box;
+   says so when one ends too near. */
+static int demi_walls_end(dem_world *w, const char *call) {
+    const demi_periods p = demi_periods_of(w);
+    const dem_real need = w->radius_max*DEM_R(0.999);
+    int j, k;
+    for (j = 0; j < w->wall_count; j++)
+        for (k = 0; k < 3; k++) {
+            const demi_wall *wall = &w->walls[j];
+            const dem_real lo = p.lo[k], hi = lo + p.period[k];
+            if (wall->kind == DEMI_WALL_NONE || wall->reach < 0 || wall->repeats[k] ||
+                !(p.period[k] > 0) || !(w->count > 0) ||
+                (wall->span_lo[k] <= lo - need && wall->span_hi[k] >= hi + need)) continue;
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic axis "
+                      "%d, which is longer than the period of %g m, so that it does not repeat; it "
+                      "must reach %g m, the largest radius, beyond the faces at %g and %g m, or be "
+                      "no longer than the period", call, j + 1,
+                      (double)wall->span_lo[k], (double)wall->span_hi[k], k, (double)p.period[k],
+                      (double)w->radius_max, (double)lo, (double)hi);
+            return 1;
+        }
+    return 0;
+}
 /* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
    they were (the next call tries again). */
 static dem_result demi_rebuild(dem_world *w, const char *call) {
@@ -6655,7 +6676,8 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
                              "the grains smaller",
                              (double)p.period[k], k, need);
     }
-    if (demi_walls_refuse(w)) return DEM_ERROR_ARGUMENT;
+    demi_walls_repeat(w);
+    if (demi_walls_refuse(w) || demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
     if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
     if (!demi_grid_lay(w, 2*(w->wide ? w->level_fine : (double)w->radius_max) + w->skin + 1e-300))
@@ -6814,12 +6836,13 @@ typedef struct demi_places {
     demi_touching *at;
     int32_t *table;                /* mask + 1 of them: 1 + index into at, 0: free; or null */
     uint32_t mask;
-    int count;
+    int count, offset;             /* what numbers begin with: an image of the body each */
 } demi_places;
 static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem_vec3 d,
                             dem_real d2) {
-    uint32_t slot = (uint32_t)number*UINT32_C(2654435769) & p->mask;
+    uint32_t slot = (uint32_t)(number + p->offset)*UINT32_C(2654435769) & p->mask;
     int i = 0;
+    number += p->offset;
     if (!p->table) while (i < p->count && p->at[i].element != number) i++;
     else {
         for (; p->table[slot]; slot = (slot + 1) & p->mask)
@@ -7747,7 +7770,6 @@ DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone,
     return demi_sub(slip, demi_scale(normal, demi_dot(slip, normal)));
 }
 
-
 /* One contact of a tile, in three short steps. Each runs over all contacts before the next begins:
    processors then have several contacts under way at once, where one long chain of roots and
    quotients would keep them waiting.
@@ -8136,11 +8158,11 @@ DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_conta
     const demi_wall *wall = &w->walls[k->wall];
     const dem_real *x = w->pos + 4*k->body, r = x[3];
     const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body);
-    const dem_vec3 at = demi_add(demi_at(x), demi_scale(n, r));
+    const dem_vec3 centre = demi_add(demi_at(x), k->shift), at = demi_add(centre, demi_scale(n, r));
     const dem_vec3 arm = demi_sub(at, wall->pose.position);
     /* where the contact was in the middle of the step: taken where it is now instead, a grain that
        is carried round creeps outwards by w^2 R dt/2 */
-    const dem_vec3 was = demi_sub(demi_add(demi_at(x), demi_scale(demi_add(n, normal_before), r/2)),
+    const dem_vec3 was = demi_sub(demi_add(centre, demi_scale(demi_add(n, normal_before), r/2)),
                                   demi_scale(demi_at(w->half_vel + 4*k->body), dt/2));
     const dem_vec3 mid = demi_add(wall->mid.velocity, demi_cross(wall->mid.spin,
         demi_sub(was, wall->mid.position)));
@@ -8193,6 +8215,14 @@ DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidat
     }
     return p;
 }
+/* Candidates from k on that see the wall from the same image of their body: the end of them. */
+DEM_INLINE int demi_image_end(const dem_world *w, int base, int k, int last) {
+    const dem_real *s = w->wall_shift + 3*(size_t)(base + k);
+    int end = k + 1;
+    if (!w->repeating) return last;
+    while (end < last && !memcmp(s, w->wall_shift + 3*(size_t)(base + end), 3*sizeof *s)) end++;
+    return end;
+}
 /* Where an ellipsoid (part; null: a sphere of radius r) at `at` touches a surface of facets, from
    the candidates first .. last - 1 of its body: normals, points and shares, and what is left of its
    measure, r less the distance or 1 - W0, as overlaps. In the world. */
@@ -8201,23 +8231,32 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
-    const dem_vec3 x = demi_unturn(R, demi_sub(at, wall->pose.position));
     const dem_real within = part ? DEM_R(1) : r;
     demi_places p = demi_places_begin(w, d, last - first);
-    int k;
-    for (k = first; k < last; k++)
-        if (!(w->wall_gap[base + k] > gone))
-            demi_facet_places(wall, w->wall_element[base + k], x, part, within, &p);
-    for (k = 0; k < p.count && !(p.at[k].share < DEM_R(-1e-3)); k++) continue;
-    if (k < p.count)                            /* something takes away: more than it should? */
-        demi_places_rings(wall, w->wall_element + base + first, last - first, x, part, within,
-                          w->desc.normal_law == DEM_NORMAL_HERTZ ? DEM_R(2.5) : DEM_R(2),
-                          (demi_link *)w->touching_links_.data + w->domains[d].touching_first, &p);
+    const int numbers = wall->number_count;
+    int k, q, from, end;
+    for (k = first; k < last; k = end, p.offset += numbers) {   /* image by image */
+        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
+        const dem_vec3 x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        from = p.count;
+        end = demi_image_end(w, base, k, last);
+        for (q = k; q < end; q++)
+            if (!(w->wall_gap[base + q] > gone))
+                demi_facet_places(wall, w->wall_element[base + q], x, part, within, &p);
+        for (q = from; q < p.count && !(p.at[q].share < DEM_R(-1e-3)); q++) continue;
+        if (q < p.count)                        /* something takes away: more than it should? */
+            demi_places_rings(wall, w->wall_element + base + k, end - k, x, part, within,
+                              w->desc.normal_law == DEM_NORMAL_HERTZ ? DEM_R(2.5) : DEM_R(2),
+                              (demi_link *)w->touching_links_.data +
+                              w->domains[d].touching_first, &p);
+        for (q = from; q < p.count; q++) p.at[q].shift = shift;
+    }
     if (p.count > 1 || (p.count && p.at->share < 1))
         demi_places_merge(&p, within*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-9)));
     for (k = 0; k < p.count; k++) {
         demi_touching *t = p.at + k;
         dem_vec3 to = t->point, n = t->point;
+        t->element %= numbers;
         if (part) {
             const dem_vec3 a = part->axes;
             to = dem_quat_turn(part->q, demi_v(n.x*a.x, n.y*a.y, n.z*a.z));
@@ -8242,33 +8281,39 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem
        */
     const dem_real gone = (dem_real)(w->reach + w->wall_reach) + w->pos[4*body + 3]/10000;
     demi_touching *out;
-    dem_vec3 x;
-    int k, count = 0;
+    int k, q, end, count = 0;
     while (first < last && w->wall_gap[base + first] > gone) first++;
     if (first == last) return 0;
     if (demi_faceted(wall)) return demi_facets_touch(w, d, first, last, gone, at, r, 0, places);
-    x = demi_unturn(R, demi_sub(at, wall->pose.position));
     *places = out = (demi_touching *)w->touching_.data + w->domains[d].touching_first;
-    if (wall->kind == DEMI_WALL_SIEVE)          /* one candidate, as many contacts as there are */
-        count = demi_sieve_touch(&wall->sieve, x, r, out);
-    else for (k = first; k < last; k++) {
-        demi_touching *c = &out[count];
-        if (w->wall_gap[base + k] > gone) continue;
-        c->element = w->wall_element[base + k];
-        c->share = wall->share;
-        if (wall->kind == DEMI_WALL_PROFILE) {
-            c->share = demi_segment_share(wall, c->element, x, r, &c->normal, &c->point,
-                                          &c->overlap);
-            if (!(c->share > 0)) continue;
-        } else {
-            c->overlap = demi_wall_touch(wall, c->element, x, r, &c->normal, &c->point);
-            if (!(c->overlap > 0)) continue;
+    for (k = first; k < last; k = end) {
+        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
+        const dem_vec3 x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        const int from = count;
+        end = demi_image_end(w, base, k, last);
+        if (wall->kind == DEMI_WALL_SIEVE)      /* one candidate, as many contacts as there are */
+            count += demi_sieve_touch(&wall->sieve, x, r, out + count);
+        else for (; k < end; k++) {
+            demi_touching *c = &out[count];
+            if (w->wall_gap[base + k] > gone) continue;
+            c->element = w->wall_element[base + k];
+            c->share = wall->share;
+            if (wall->kind == DEMI_WALL_PROFILE) {
+                c->share = demi_segment_share(wall, c->element, x, r, &c->normal, &c->point,
+                                              &c->overlap);
+                if (!(c->share > 0)) continue;
+            } else {
+                c->overlap = demi_wall_touch(wall, c->element, x, r, &c->normal, &c->point);
+                if (!(c->overlap > 0)) continue;
+            }
+            count++;
         }
-        count++;
-    }
-    for (k = 0; k < count; k++) {
-        out[k].normal = demi_turn(R, out[k].normal);
-        out[k].point = demi_add(wall->pose.position, demi_turn(R, out[k].point));
+        for (q = from; q < count; q++) {
+            out[q].normal = demi_turn(R, out[q].normal);
+            out[q].point = demi_sub(demi_add(wall->pose.position, demi_turn(R, out[q].point)),
+                                    shift);
+            out[q].shift = shift;
+        }
     }
     return count;
 }
@@ -8308,6 +8353,7 @@ static void demi_domain_walls_touch(dem_world *w, int d) {
             c->point = at[q].point;
             c->overlap = at[q].overlap;
             c->share = at[q].share;
+            c->shift = at[q].shift;
             from = demi_wall_match(w, old + o, o_end - o, out + count, n, c);
             c->normal_before = from ? from->normal : c->normal;
             if (from) memcpy(c->memory, from->memory, sizeof c->memory);
@@ -8379,8 +8425,8 @@ static void demi_walls_respond(dem_world *w, int d) {
         c->force = force;
         demi_push_add(w->force + 4*body, force);
         demi_push_add(w->torque + 4*body, torque);
-        demi_wall_sum_add(w, &sums[c->wall], c->wall, demi_add(demi_at(w->pos + 4*body),
-                          demi_scale(contact.normal, r)), force, f.moment, surface);
+        demi_wall_sum_add(w, &sums[c->wall], c->wall, demi_add(demi_add(demi_at(w->pos + 4*body),
+                          c->shift), demi_scale(contact.normal, r)), force, f.moment, surface);
         domain->overlap = DEMI_MAX(domain->overlap, (double)(c->overlap/r));
         demi_energy_add(domain, &part, c->share, c->share);
     }
@@ -8747,23 +8793,25 @@ static int demi_ellipsoid_collect(const dem_world *w, int d, int first, int last
     demi_part local = *p;
     demi_touching *out;
     double turn[3][3];
-    dem_vec3 x;
+    dem_vec3 x, shift;
     int i, e, count = 0;
     for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
     local.q = demi_quat_unit(dem_quat_times(demi_quat_of(turn), p->q));
     if (demi_faceted(wall))
         return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
-    x = demi_unturn(R, demi_sub(at, wall->pose.position));
     *places = out = (demi_touching *)w->touching_.data + w->domains[d].touching_first;
     for (i = first; i < last + two; i++) {
         demi_touching *c = &out[count];
         if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
+        shift = demi_at(w->wall_shift + 3*(size_t)(base + DEMI_MIN(i, last - 1)));
+        x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
         c->element = i < last ? w->wall_element[base + i] : 1;
         c->overlap = demi_wall_ellipsoid(wall, c->element, &local, x, &c->normal, &c->point);
         if (!(c->overlap > 0)) continue;
         c->normal = demi_turn(R, c->normal);
         if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
-        c->point = demi_add(wall->pose.position, demi_turn(R, c->point));
+        c->point = demi_sub(demi_add(wall->pose.position, demi_turn(R, c->point)), shift);
+        c->shift = shift;
         c->share = wall->share;
         count++;
     }
@@ -8812,6 +8860,7 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
         c->element = found[i].element;
         c->normal = found[i].normal;
         c->share = found[i].share;
+        c->shift = found[i].shift;
         if (p.ball) {
             c->overlap = found[i].overlap;
             c->deep = c->overlap/p.radius;
@@ -8960,7 +9009,7 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
         *surface = demi_v(0, 0, 0);
     } else {
         const demi_wall *wall = &w->walls[k->wall];
-        const dem_vec3 x = demi_at(w->pos + 4*a);
+        const dem_vec3 x = demi_add(demi_at(w->pos + 4*a), k->shift);
         /* where the contact was in the middle of the step */
         const dem_vec3 was = demi_add(mid_a, demi_sub(x, demi_scale(demi_at(w->half_vel + 4*a),
                                                                     dt/2)));
@@ -9066,7 +9115,8 @@ static void demi_shaped_respond(dem_world *w, int d) {
             }
             domain->contacts++;
         } else {
-            demi_wall_sum_add(w, &sums[c->wall], c->wall, demi_add(demi_at(w->pos + 4*a), c->arm_a),
+            demi_wall_sum_add(w, &sums[c->wall], c->wall, demi_add(demi_add(demi_at(w->pos + 4*a),
+                              c->shift), c->arm_a),
                               force, moment, surface);
             domain->shaped_walls++;
         }
@@ -9578,6 +9628,548 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>placing
+   Where new grains find room: one engine for fills, packings and feeds. A region says which places
+   there are: a box, of which an axis that holds a whole period has no faces, a cylinder in it, a
+   function. A crowd says who is near: spheres in a tree of boxes, halved along the longest side
+   whenever one holds more than a few; each box knows the largest radius in it, so that what cannot
+   be near is passed over whole, whatever the mixture (1:100 and more), and nobody looks at every
+   body for every place. Walls are asked through their own cells. Places are tried at random, one
+   after the other, none moves another away [random sequential addition], by random numbers of their
+   own: the same seed gives the same places.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_CROWD_LEAF = 8, DEMI_CROWD_DEPTH = 60 };
+/* Tries for one grain: places that were taken, and places that the region does not have. */
+enum { DEMI_FILL_TRIES = 2000, DEMI_FILL_OUTSIDE = 200000 };
+/* Lattice places that a packing looks at. */
+#define DEMI_PACK_MOST 3e8
+
+typedef struct demi_node {
+    int32_t child;                 /* the first of its two halves; 0: a leaf */
+    int32_t first, count;          /* of a leaf: spheres, from `first` on by `next` */
+    dem_real reach;                /* m, largest radius below it */
+} demi_node;
+typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next; } demi_sphere;
+typedef struct demi_crowd {
+    demi_periods p;
+    double lo[3], size[3];         /* of the tree's box; on a periodic axis the whole period */
+    int count, nodes;
+} demi_crowd;
+/* A box on the way down the tree. */
+typedef struct demi_nook { int32_t node; double lo[3], size[3]; } demi_nook;
+
+static demi_sphere *demi_crowd_spheres(const dem_world *w) {
+    return (demi_sphere *)w->crowd_.data;
+}
+static demi_node *demi_crowd_nodes(const dem_world *w) {
+    return (demi_node *)w->crowd_nodes_.data;
+}
+static int demi_longest(const double *size) {
+    const int k = size[1] > size[0];
+    return size[2] > size[k] ? 2 : k;
+}
+/* The half of a nook that is below (0) or above (1) its middle. */
+static demi_nook demi_nook_half(const demi_nook *n, int32_t child, int upper) {
+    demi_nook h = *n;
+    const int k = demi_longest(n->size);
+    h.node = child + upper;
+    h.size[k] = n->size[k]/2;
+    if (upper) h.lo[k] += h.size[k];
+    return h;
+}
+static int demi_nook_upper(const demi_nook *n, dem_vec3 x) {
+    const int k = demi_longest(n->size);
+    return (double)(k == 0 ? x.x : k == 1 ? x.y : x.z) >= n->lo[k] + n->size[k]/2;
+}
+static demi_nook demi_crowd_root(const demi_crowd *c) {
+    demi_nook n;
+    n.node = 0;
+    memcpy(n.lo, c->lo, sizeof n.lo);
+    memcpy(n.size, c->size, sizeof n.size);
+    return n;
+}
+static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
+    all[i].next = leaf->first;
+    leaf->first = i;
+    leaf->count++;
+    leaf->reach = DEMI_MAX(leaf->reach, all[i].radius);
+}
+/* Halves a leaf. 0 when memory ran out; it is as it was. */
+static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
+    demi_sphere *all = demi_crowd_spheres(w);
+    demi_node *nodes;
+    int32_t i, next;
+    int k;
+    if (!demi_array_grow(w, &w->crowd_nodes_, sizeof(demi_node), (size_t)c->nodes + 2)) return 0;
+    nodes = demi_crowd_nodes(w);
+    nodes[at->node].child = c->nodes;
+    for (k = 0; k < 2; k++) {
+        demi_node *half = nodes + c->nodes++;
+        half->child = half->count = 0;
+        half->first = -1;
+        half->reach = 0;
+    }
+    for (i = nodes[at->node].first; i >= 0; i = next) {
+        next = all[i].next;
+        demi_leaf_put(nodes + nodes[at->node].child + demi_nook_upper(at, all[i].at), all, i);
+    }
+    return 1;
+}
+/* One more sphere in the crowd. What stands outside the tree's box counts to the nearest leaf,
+   which is never farther from a place in the box than the sphere is. 0 when memory ran out. */
+static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radius) {
+    demi_nook at = demi_crowd_root(c);
+    demi_sphere *s;
+    demi_node *node;
+    int depth = 0;
+    if (!demi_array_grow(w, &w->crowd_, sizeof(demi_sphere), (size_t)c->count + 1)) return 0;
+    s = demi_crowd_spheres(w) + c->count;
+    s->at = demi_place_of(&c->p, x);
+    s->radius = radius;
+    for (;;) {
+        node = demi_crowd_nodes(w) + at.node;
+        node->reach = DEMI_MAX(node->reach, radius);
+        if (!node->child && node->count >= DEMI_CROWD_LEAF && depth < DEMI_CROWD_DEPTH &&
+            !demi_leaf_split(w, c, &at)) return 0;
+        node = demi_crowd_nodes(w) + at.node;
+        if (!node->child) break;
+        at = demi_nook_half(&at, node->child, demi_nook_upper(&at, s->at));
+        depth++;
+    }
+    demi_leaf_put(node, demi_crowd_spheres(w), c->count++);
+    return 1;
+}
+/* How far a place is from a nook, squared; less where that takes no thought. */
+static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const double *x) {
+    double d2 = 0;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double below = n->lo[k] - x[k], above = x[k] - n->lo[k] - n->size[k];
+        const double period = (double)c->p.period[k];
+        double d = below > above ? below : above;
+        if (!(d > 0)) continue;
+        if (period > 0) {                       /* or the other way round */
+            const double round = period - n->size[k] - d;
+            d = round < 0 ? 0 : DEMI_MIN(d, round);
+        }
+        d2 += d*d;
+    }
+    return d2;
+}
+/* Does a sphere overlap nobody in the crowd? Its centre is in the tree's box. */
+static int demi_crowd_free(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
+                           dem_real radius) {
+    const demi_sphere *all = demi_crowd_spheres(w);
+    const demi_node *nodes = demi_crowd_nodes(w);
+    const dem_vec3 at = demi_place_of(&c->p, centre);
+    demi_nook stack[DEMI_CROWD_DEPTH + 2];
+    double x[3];
+    int top = 0, i;
+    if (!c->count) return 1;
+    x[0] = (double)at.x; x[1] = (double)at.y; x[2] = (double)at.z;
+    stack[top++] = demi_crowd_root(c);
+    while (top) {
+        const demi_nook n = stack[--top];
+        const demi_node *node = nodes + n.node;
+        const double cut = (double)(radius + node->reach);
+        if (demi_nook_far2(c, &n, x) >= cut*cut) continue;
+        if (node->child) {                      /* the half it is in comes first */
+            const int upper = demi_nook_upper(&n, at);
+            stack[top++] = demi_nook_half(&n, node->child, !upper);
+            stack[top++] = demi_nook_half(&n, node->child, upper);
+            continue;
+        }
+        for (i = node->first; i >= 0; i = all[i].next) {
+            const dem_vec3 d = demi_nearest(&c->p, demi_sub(all[i].at, at));
+            const dem_real s = all[i].radius + radius;
+            if (demi_dot(d, d) < s*s) return 0;
+        }
+    }
+    return 1;
+}
+
+/* --- regions --- */
+
+/* Where centres may be, ready for drawing. */
+typedef struct demi_region {
+    dem_vec3 lo;                   /* m */
+    double size[3];
+    int cylinder;                  /* 1 + the axis it is along; 0: all of the box */
+    dem_inside_fn inside;
+    void *user;
+} demi_region;
+
+/* Centres keep `off` (m) from the faces of the box. A box that holds a whole period has no faces
+   on that axis. 0: there is no room. */
+static int demi_region_make(const dem_world *w, const dem_region *from, double off,
+                            demi_region *to) {
+    const demi_periods p = demi_periods_of(w);
+    dem_real lo[3], hi[3];
+    int k, ok = 1;
+    demi_put(lo, from->box.lo);
+    demi_put(hi, from->box.hi);
+    for (k = 0; k < 3; k++) {
+        const double side = (double)hi[k] - (double)lo[k], period = (double)p.period[k];
+        to->size[k] = side - 2*off;
+        if (period > 0 && side >= period*(1 - 1e-6)) {
+            to->size[k] = period;
+            lo[k] = p.lo[k];
+        } else lo[k] += (dem_real)off;
+        if (k == 2 && w->desc.planar) to->size[k] = lo[k] = 0;
+        ok = ok && to->size[k] >= 0;
+    }
+    to->lo = demi_at(lo);
+    to->cylinder = from->cylinder ? 1 + from->cylinder - 'x' : 0;
+    to->inside = from->inside;
+    to->user = from->user;
+    return ok && demi_finite3(from->box.lo) && demi_finite3(from->box.hi);
+}
+/* The place that three numbers from 0 to 1 name. 0: not of the region. */
+static int demi_region_at(const demi_region *g, const double *u, dem_real radius, dem_vec3 *x) {
+    double round = 0;
+    int k;
+    for (k = 0; k < 3; k++)
+        if (g->cylinder && g->cylinder != 1 + k) round += (2*u[k] - 1)*(2*u[k] - 1);
+    if (round > 1) return 0;
+    *x = demi_v(g->lo.x + (dem_real)(g->size[0]*u[0]), g->lo.y + (dem_real)(g->size[1]*u[1]),
+                g->lo.z + (dem_real)(g->size[2]*u[2]));
+    return !g->inside || g->inside(*x, radius, g->user);
+}
+
+/* Begins a crowd with the bodies that spheres of this radius in the region could overlap; one look
+   at each body. 0 when memory ran out. */
+static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, dem_real radius) {
+    dem_vec3 mid;
+    double half[3];
+    demi_node *root;
+    int i, k;
+    c->p = demi_periods_of(w);
+    demi_walls_repeat(w);
+    c->count = 0;
+    c->nodes = 1;
+    if (!demi_array_grow(w, &w->crowd_nodes_, sizeof(demi_node), 1)) return 0;
+    root = demi_crowd_nodes(w);
+    root->child = root->count = 0;
+    root->first = -1;
+    root->reach = 0;
+    c->lo[0] = (double)g->lo.x; c->lo[1] = (double)g->lo.y; c->lo[2] = (double)g->lo.z;
+    for (k = 0; k < 3; k++) half[k] = g->size[k]/2;
+    mid = demi_v((dem_real)(c->lo[0] + half[0]), (dem_real)(c->lo[1] + half[1]),
+                 (dem_real)(c->lo[2] + half[2]));
+    for (k = 0; k < 3; k++) {
+        c->size[k] = g->size[k];
+        if (!(c->p.period[k] > 0)) continue;
+        c->lo[k] = (double)c->p.lo[k];
+        c->size[k] = (double)c->p.period[k];
+    }
+    for (i = 0; i < w->count; i++) {
+        const dem_real r = w->pos[4*i + 3];
+        const dem_vec3 d = demi_nearest(&c->p, demi_sub(demi_at(w->pos + 4*i), mid));
+        /* a part in a thousand more: rounding must not lose a neighbour */
+        const double s = 1.001*(double)(r + radius);
+        if (fabs((double)d.x) > half[0]*1.001 + s || fabs((double)d.y) > half[1]*1.001 + s ||
+            fabs((double)d.z) > half[2]*1.001 + s) continue;
+        if (!demi_crowd_put(w, c, demi_at(w->pos + 4*i), r)) return 0;
+    }
+    return 1;
+}
+static void demi_crowd_end(dem_world *w) {
+    demi_array_free(w, &w->crowd_);
+    demi_array_free(w, &w->crowd_nodes_);
+    demi_array_free(w, &w->crowd_turned_);
+}
+
+/* --- walls --- */
+
+/* Does a sphere touch none of the elements of a wall? at: in the wall's frame. */
+static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) {
+    const dem_real touch = radius*(DEMI_SINGLE ? DEM_R(0.9999) : DEM_R(0.999999999));
+    const dem_vec3 out = demi_v(radius, radius, radius);
+    int k, x, y, z, f[3], l[3];
+    if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
+    if (!wall->cell_start) {
+        for (k = 0; k < wall->element_count; k++)
+            if (demi_wall_distance(wall, k, at, radius) < touch) return 0;
+        return 1;
+    }
+    demi_wall_cells(wall, demi_sub(at, out), demi_add(at, out), f, l);
+    for (z = f[2]; z <= l[2]; z++)
+        for (y = f[1]; y <= l[1]; y++)
+            for (x = f[0]; x <= l[0]; x++) {
+                const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
+                for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++)
+                    if (demi_wall_distance(wall, wall->cell_items[k], at, radius) < touch)
+                        return 0;
+            }
+    return 1;
+}
+/* Does a sphere touch no wall, where walls are now? What is behind a plane or on the wrong side of
+   a cylinder touches it; in a sieve's sheet there is no room, holes or not; the inside of a closed
+   mesh is a place like any other. */
+static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
+    int j, a, b, c, f[3], l[3];
+    for (j = 0; j < w->wall_count; j++) {
+        const demi_wall *wall = &w->walls[j];
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        demi_wall_images(w, wall, x, radius, f, l);
+        for (c = f[2]; c <= l[2]; c++)
+            for (b = f[1]; b <= l[1]; b++)
+                for (a = f[0]; a <= l[0]; a++) {
+                    const dem_vec3 at = demi_add(x, demi_wall_shift(w, a, b, c));
+                    if (!demi_wall_clear(wall, demi_unturn(wall->pose.rotation,
+                                             demi_sub(at, wall->pose.position)), radius)) return 0;
+                }
+    }
+    return 1;
+}
+static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, dem_real radius) {
+    return demi_crowd_free(w, c, x, radius) && demi_walls_clear(w, x, radius);
+}
+
+/* --- fills --- */
+
+/* All orientations are equally likely (Shoemake 1992). */
+static dem_quat demi_quat_random(uint64_t *state) {
+    const double u = demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
+    const double b = 2*DEMI_PI*demi_uniform(state), r = sqrt(1 - u), s = sqrt(u);
+    return dem_quat_make((dem_real)(r*sin(a)), (dem_real)(r*cos(a)), (dem_real)(s*sin(b)),
+                         (dem_real)(s*cos(b)));
+}
+/* Adds what was placed in the crowd from sphere `first` on, all or nothing. 0 when memory ran
+   out. */
+static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int material, int form) {
+    const demi_sphere *s = demi_crowd_spheres(w);
+    const dem_real *q = (const dem_real *)w->crowd_turned_.data;
+    int i;
+    if (!demi_list_drop(w) ||
+        !demi_bodies_reserve(w, (size_t)w->count + (size_t)(c->count - first))) return 0;
+    for (i = first; i < c->count; i++) {
+        demi_body_append(w, material, s[i].radius, s[i].at);
+        if (form >= 0)
+            demi_body_shape(w, w->count - 1, form, 1, demi_quat_at(q + 4*(size_t)(i - first)));
+    }
+    if (c->count > first) demi_scene_changed(w);
+    return 1;
+}
+/* Finds places for up to `count` spheres, which join the crowd. Answers how many; -1: memory ran
+   out. */
+static int demi_fill_places(dem_world *w, demi_crowd *c, const demi_region *g, dem_real radius,
+                            int turned, int count, uint64_t state) {
+    int i, k;
+    for (i = 0; i < count; i++) {
+        int taken = 0, outside = 0;
+        dem_vec3 x;
+        for (;;) {
+            double u[3];
+            for (k = 0; k < 3; k++) u[k] = k == 2 && w->desc.planar ? 0 : demi_uniform(&state);
+            if (!demi_region_at(g, u, radius, &x)) {
+                if (++outside == DEMI_FILL_OUTSIDE) return i;
+                continue;
+            }
+            if (demi_room_free(w, c, x, radius)) break;
+            if (++taken == DEMI_FILL_TRIES) return i;
+        }
+        if (!demi_crowd_put(w, c, x, radius)) return -1;
+        if (!turned) continue;
+        if (!demi_array_grow(w, &w->crowd_turned_, 4*sizeof(dem_real), (size_t)i + 1)) return -1;
+        demi_quat_put((dem_real *)w->crowd_turned_.data + 4*(size_t)i, demi_quat_random(&state));
+    }
+    return count;
+}
+/* Fills a region with spheres, or with bodies of a form (>= 0), whose bounding sphere has this
+   radius. */
+static int demi_fill(dem_world *w, const char *call, dem_material material, int form,
+                     dem_real radius, const dem_region *region, int count, uint64_t seed) {
+    demi_region g;
+    demi_crowd c;
+    int m = 0, first, done;
+    if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
+    if (!(radius > 0) || !demi_finite(radius) || count < 0) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m and count %d, must be > 0 and >= 0",
+                  call, (double)radius, count);
+        return 0;
+    }
+    if (form < 0 ? demi_mass_refuse(w, call, m, radius, 0)
+                 : demi_shape_mass_refuse(w, call, m, form, 1, 0)) return 0;
+    if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z')) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the "
+                  "axis it is along, or 0 for all of the box", call, region->cylinder);
+        return 0;
+    }
+    if (!demi_place(region->box.lo) || !demi_place(region->box.hi) ||
+        !demi_region_make(w, region, (double)radius, &g)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
+                  "give lo below hi by at least a diameter", call, (double)radius);
+        return 0;
+    }
+    done = demi_crowd_begin(w, &c, &g, radius) ? 0 : -1;
+    first = c.count;
+    if (!done) done = demi_fill_places(w, &c, &g, radius, form >= 0, count, seed);
+    if (done >= 0 && !demi_crowd_settle(w, &c, first, m, form)) done = -1;
+    demi_crowd_end(w);
+    if (done < 0) {
+        demi_no_memory(w, call);
+        return 0;
+    }
+    if (done < count)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a place in %d "
+                  "tries each, free of other bodies and of walls; enlarge the %s, or %s", call,
+                  done, count, form < 0 ? "spheres" : "bodies with bounding spheres",
+                  (double)radius, (int)DEMI_FILL_TRIES, region->inside ? "region" : "box", form < 0
+                  ? "pack them with dem_spheres_pack" : "place them yourself with dem_bodies_add");
+    demi_built(w, call);                        /* fewer than asked: the answer says so */
+    return done;
+}
+static dem_region demi_region_box(dem_box box) {
+    dem_region region;
+    memset(&region, 0, sizeof region);
+    region.box = box;
+    return region;
+}
+DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius, dem_box box,
+                             int count, uint64_t seed) {
+    const dem_region region = demi_region_box(box);
+    if (demi_null(w, "dem_spheres_fill", w, "world")) return 0;
+    return demi_fill(w, "dem_spheres_fill", material, -1, radius, &region, count, seed);
+}
+static int demi_form_fill(dem_world *w, const char *call, dem_material material, dem_shape shape,
+                          const dem_region *region, int count, uint64_t seed) {
+    const int form = demi_form_index(w, call, shape);
+    if (form < 0) return 0;
+    if (!demi_orient_begin(w)) { demi_no_memory(w, call); return 0; }
+    return demi_fill(w, call, material, form, w->forms[form].radius, region, count, seed);
+}
+DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape, dem_box box,
+                            int count, uint64_t seed) {
+    const dem_region region = demi_region_box(box);
+    if (demi_null(w, "dem_bodies_fill", w, "world")) return 0;
+    return demi_form_fill(w, "dem_bodies_fill", material, shape, &region, count, seed);
+}
+DEM_API int dem_region_fill(dem_world *w, const dem_region *region, dem_material material,
+                            dem_shape shape, dem_real radius, int count, uint64_t seed) {
+    const char *call = "dem_region_fill";
+    if (demi_null(w, call, region, "region")) return 0;
+    return shape.id ? demi_form_fill(w, call, material, shape, region, count, seed)
+                    : demi_fill(w, call, material, -1, radius, region, count, seed);
+}
+
+/* --- packings --- */
+
+/* Sphere (i, j, k) of a hexagonal close packing of spheres of radius r that starts at the origin:
+   even and odd layers alternate. In a plane: a triangular lattice, k = 0. */
+static dem_vec3 demi_pack_site(int64_t i, int64_t j, int64_t k, double r) {
+    return demi_v((dem_real)(r*(double)(2*i + ((j + k) & 1))),
+                  (dem_real)(r*sqrt(3.0)*((double)j + (double)(k & 1)/3.0)),
+                  (dem_real)(r*(double)k*2*sqrt(6.0)/3));
+}
+typedef struct demi_lattice {
+    dem_vec3 lo;                   /* m, the first place */
+    double size[3], r;             /* m, how far the last one may be from it; half a pitch */
+    dem_real radius;
+    dem_inside_fn inside;
+    void *user;
+    int count;                     /* at most; 0: all */
+    double looked;                 /* places looked at */
+} demi_lattice;
+/* Free places of the lattice, in layers along z, join the crowd's array (not its tree: they do not
+   overlap each other). Answers how many; -1: memory ran out. */
+static int demi_lattice_fill(dem_world *w, demi_crowd *c, demi_lattice *g) {
+    const double slack = 1e-9*g->r;
+    int64_t i, j, k;
+    int done = 0;
+    for (k = 0;; k++) {
+        if ((double)demi_pack_site(0, 0, k, g->r).z > g->size[2] + slack ||
+            (k > 0 && w->desc.planar)) return done;
+        for (j = 0;; j++) {
+            if ((double)demi_pack_site(0, j, k, g->r).y > g->size[1] + slack) break;
+            for (i = 0;; i++) {
+                const dem_vec3 s = demi_pack_site(i, j, k, g->r);
+                const dem_vec3 x = demi_v(g->lo.x + s.x, g->lo.y + s.y,
+                                          w->desc.planar ? 0 : g->lo.z + s.z);
+                demi_sphere *to;
+                if ((double)s.x > g->size[0] + slack) break;
+                if (++g->looked > DEMI_PACK_MOST || c->count == INT_MAX/64) return done;
+                if (g->inside && !g->inside(x, g->radius, g->user)) continue;
+                if (!demi_room_free(w, c, x, g->radius*DEM_R(0.999999))) continue;
+                if (!demi_array_grow(w, &w->crowd_, sizeof(demi_sphere),
+                                     (size_t)c->count + (size_t)done + 1)) return -1;
+                to = demi_crowd_spheres(w) + c->count + done++;
+                to->at = x;
+                to->radius = g->radius;
+                if (g->count && done == g->count) return done;
+            }
+        }
+    }
+}
+/* About how many places a lattice has. */
+static double demi_lattice_places(const dem_world *w, const demi_lattice *g) {
+    const double rows = g->size[1]/(g->r*sqrt(3.0)) + 1, layers = g->size[2]/(g->r*1.633) + 1;
+    return (g->size[0]/(2*g->r) + 1)*rows*(w->desc.planar ? 1 : layers);
+}
+/* A lattice in a box. 0: not one place. */
+static int demi_lattice_make(const dem_world *w, dem_box box, dem_real radius, dem_real padding,
+                             demi_region *room, demi_lattice *g) {
+    const demi_periods p = demi_periods_of(w);
+    const dem_region region = demi_region_box(box);
+    dem_real lo[3];
+    int k;
+    memset(g, 0, sizeof *g);
+    g->r = (double)radius + (double)padding/2;
+    g->radius = radius;
+    if (!demi_region_make(w, &region, (double)radius, room)) return 0;
+    demi_put(lo, room->lo);
+    for (k = 0; k < 3; k++) {                   /* round a period, the last keeps off the first */
+        const int full = p.period[k] > 0 && room->size[k] >= (double)p.period[k];
+        g->size[k] = room->size[k] - (full ? 2*g->r : 0);
+        if (full) lo[k] += radius;
+        if (!(g->size[k] >= 0)) return 0;
+    }
+    g->lo = demi_at(lo);
+    return 1;
+}
+DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radius, dem_real padding,
+                             dem_box box, dem_inside_fn inside, void *user, int count) {
+    const char *call = "dem_spheres_pack";
+    demi_region room;
+    demi_crowd c;
+    demi_lattice g;
+    int m = 0, first, done;
+    if (demi_null(w, call, w, "world") || demi_material_index(w, call, material, &m) != DEM_OK)
+        return 0;
+    if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
+        count < 0 || !demi_place(box.lo) || !demi_place(box.hi)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius %g, padding %g, count %d; must be > 0, >= 0, "
+                  ">= 0 and the box finite", call, (double)radius, (double)padding, count);
+        return 0;
+    }
+    if (demi_mass_refuse(w, call, m, radius, 0) ||
+        !demi_lattice_make(w, box, radius, padding, &room, &g)) return 0;
+    g.inside = inside; g.user = user; g.count = count;
+    if (!count && !inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has about %.3g places for spheres of radius "
+                  "%g m, must be at most %d, which is what a world holds; make the box smaller or "
+                  "give a count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
+        return 0;
+    }
+    done = demi_crowd_begin(w, &c, &room, radius) ? 0 : -1;
+    first = c.count;
+    if (!done) done = demi_lattice_fill(w, &c, &g);
+    c.count += DEMI_MAX(done, 0);
+    if (done >= 0 && !demi_crowd_settle(w, &c, first, m, -1)) done = -1;
+    demi_crowd_end(w);
+    if (done < 0) {
+        demi_no_memory(w, call);
+        return 0;
+    }
+    if (g.looked > DEMI_PACK_MOST || c.count >= INT_MAX/64)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: stopped after %.3g places, %d spheres of radius %g m "
+                  "packed; a world holds %d bodies, and %g places are looked at: make the box "
+                  "smaller", call, g.looked, done, (double)radius, INT_MAX/64, DEMI_PACK_MOST);
+    demi_built(w, call);
+    return done;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>feed
    Grains come in between two steps, and go out in the middle of one, when all have moved: at the
    place where an outflow boundary takes them too. What a feed draws comes from its own random state
@@ -9679,54 +10271,8 @@ static void demi_feed_draw(demi_feed *f) {
     while (k > 0 && !(weight[k] > 0)) k--;      /* round-off at the end */
     f->next = k;
 }
-/* Is there room for a sphere? */
-static int demi_feed_room(const dem_world *w, dem_vec3 x, dem_real r) {
-    const demi_periods p = demi_periods_of(w);
-    dem_real to[3];
-    int i, k;
-    demi_put(to, x);
-    for (i = 0; i < w->count; i++) {
-        const dem_real s = w->pos[4*i + 3] + r;
-        dem_real d2 = 0;
-        for (k = 0; k < 3; k++) {
-            dem_real d = DEMI_ABS(w->pos[4*i + k] - to[k]);
-            if (d > p.half[k]) d = DEMI_ABS(d - p.period[k]*(dem_real)
-                                            floor((double)(d/p.period[k]) + 0.5));
-            d2 += d*d;
-        }
-        if (d2 < s*s) return 0;
-    }
-    return 1;
-}
-/* Would a sphere there touch a wall as it stands now? Of a sieve: its plane. */
-static int demi_feed_walls(const dem_world *w, dem_vec3 at, dem_real r) {
-    const dem_vec3 reach = demi_v(r, r, r);
-    int j, k, x, y, z, f[3], l[3];
-    for (j = 0; j < w->wall_count; j++) {
-        const demi_wall *wall = &w->walls[j];
-        dem_vec3 local;
-        if (wall->kind == DEMI_WALL_NONE) continue;
-        local = demi_unturn(wall->pose.rotation, demi_sub(at, wall->pose.position));
-        if (wall->kind == DEMI_WALL_PROFILE) local.z = 0;
-        if (wall->element_count <= 4) {
-            for (k = 0; k < wall->element_count; k++)
-                if (demi_wall_distance(wall, k, local, r) < r) return 1;
-            continue;
-        }
-        demi_wall_cells(wall, demi_sub(local, reach), demi_add(local, reach), f, l);
-        for (z = f[2]; z <= l[2]; z++)
-            for (y = f[1]; y <= l[1]; y++)
-                for (x = f[0]; x <= l[0]; x++) {
-                    const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
-                    for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++)
-                        if (demi_wall_distance(wall, wall->cell_items[k], local, r) < r) return 1;
-                }
-    }
-    return 0;
-}
-/* Puts in one grain of the class drawn. 1: done, 0: no room, -1: no memory; the next try then draws
-   the same numbers. */
-static int demi_feed_put(dem_world *w, demi_feed *f) {
+/* Puts in one grain of the class drawn. 1: done, 0: no room, -1: no memory, nothing happened. */
+static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_crowd *c) {
     const dem_feed_desc *d = &f->desc;
     const dem_real r = d->radius[f->next];
     const uint64_t random = f->random;
@@ -9734,21 +10280,19 @@ static int demi_feed_put(dem_world *w, demi_feed *f) {
     int tries, i, free_place = 0;
     for (tries = 0; tries < DEMI_FEED_TRIES && !free_place; tries++) {
         double u[6];
-        int k, in = 1;
+        int k;
         for (k = 0; k < 6; k++) u[k] = demi_uniform(&f->random);
-        if (d->round) in = (2*u[0] - 1)*(2*u[0] - 1) + (2*u[1] - 1)*(2*u[1] - 1) <= 1;
-        x = demi_v(d->box.lo.x + (dem_real)u[0]*(d->box.hi.x - d->box.lo.x),
-                   d->box.lo.y + (dem_real)u[1]*(d->box.hi.y - d->box.lo.y),
-                   d->box.lo.z + (dem_real)u[2]*(d->box.hi.z - d->box.lo.z));
         v = demi_v(d->velocity.x + d->spread*(dem_real)(2*u[3] - 1),
                    d->velocity.y + d->spread*(dem_real)(2*u[4] - 1),
                    d->velocity.z + d->spread*(dem_real)(2*u[5] - 1));
-        if (w->desc.planar) x.z = v.z = 0;
-        free_place = in && !demi_feed_walls(w, x, r) && demi_feed_room(w, x, r);
+        if (w->desc.planar) v.z = 0;
+        free_place = demi_region_at(g, u, r, &x) && demi_room_free(w, c, x, r);
     }
     if (!free_place) return 0;
+    x = demi_place_of(&c->p, x);
     demi_finish(w);
-    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + 1)) {
+    if (!demi_crowd_put(w, c, x, r) || !demi_list_drop(w) ||
+        !demi_bodies_reserve(w, (size_t)w->count + 1)) {
         f->random = random;
         return -1;
     }
@@ -9763,14 +10307,24 @@ static int demi_feed_put(dem_world *w, demi_feed *f) {
     f->next = -1;
     return 1;
 }
+static int demi_feed_region(const dem_world *w, const dem_feed_desc *d, demi_region *g) {
+    dem_region region = demi_region_box(d->box);
+    region.cylinder = d->round ? 'z' : 0;
+    region.inside = d->inside;
+    region.user = d->inside_user;
+    return demi_region_make(w, &region, 0, g);
+}
 /* All that is due now. */
 static dem_result demi_feeds_run(dem_world *w) {
-    int i;
+    int i, k;
     for (i = 0; i < w->feed_count; i++) {
         demi_feed *f = demi_feed_at(w, i);
         const dem_feed_desc *d = &f->desc;
         const double until = d->end > 0 && w->time > d->end ? d->end : w->time;
         const double due = d->rate > 0 ? d->rate*(until - d->start) : 1e300;
+        int looked = 0;                         /* is the crowd there? */
+        demi_region g;
+        demi_crowd c;
         while (w->time >= d->start && w->steps >= f->again && demi_feed_left(f)) {
             const double rounded = 1e-9*(1 + due);           /* the third of 3/s is due at 1 s */
             int done;
@@ -9784,14 +10338,20 @@ static dem_result demi_feeds_run(dem_world *w) {
                     break;
                 }
             }
-            done = demi_feed_put(w, f);
+            if (!looked) {
+                dem_real r = 0;
+                for (k = 0; k < d->class_count; k++) r = DEMI_MAX(r, d->radius[k]);
+                demi_feed_region(w, d, &g);
+                if (!demi_crowd_begin(w, &c, &g, r)) return demi_no_memory(w, "dem_world_step");
+                looked = 1;
+            }
+            done = demi_feed_put(w, f, &g, &c);
             if (done < 0) return demi_no_memory(w, "dem_world_step");
             if (!done) f->again = w->steps + DEMI_FEED_REST;
         }
         f->state.waiting = 0;
         if (f->next >= 0) {
             double waits = d->by_mass || !(d->rate > 0) ? 1 : due - (double)f->state.total;
-            int k;
             uint64_t most = 0;
             for (k = 0; k < d->class_count; k++) most += f->limit[k] - f->state.fed[k];
             if (!(d->rate > 0) || (d->limited && waits > (double)most)) waits = (double)most;
@@ -9868,31 +10428,42 @@ static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {
            x.z >= d->box.lo.z && x.z <= d->box.hi.z &&
            x.x*x.x + x.y*x.y >= d->beyond*d->beyond;
 }
+/* A place in the frame of an outlet's region; in a periodic world the image nearest to the region's
+   centre, or, of a region without end, the one in the box. */
+static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
+                                  const dem_outlet_desc *d, dem_vec3 x) {
+    const dem_pose *pose = d->frame.id ? &w->walls[d->frame.id - 1].pose : 0;
+    dem_vec3 c = demi_scale(demi_add(d->box.lo, d->box.hi), DEM_R(0.5));
+    if (p->any) {
+        dem_real at[3], mid[3];
+        int k;
+        if (pose) c = demi_add(pose->position, demi_turn(pose->rotation, c));
+        demi_put(at, x);
+        demi_put(mid, c);
+        for (k = 0; k < 3; k++)
+            at[k] = demi_into(at[k], DEMI_ABS(mid[k] - p->lo[k]) < 1000*p->period[k]
+                              ? mid[k] - p->half[k] : p->lo[k], p->period[k]);
+        x = demi_at(at);
+    }
+    return pose ? demi_unturn(pose->rotation, demi_sub(x, pose->position)) : x;
+}
 /* After a move: the first outlet that a grain is in takes it. */
 static dem_result demi_outlets_run(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
     int i, k;
-    for (i = 0; i < w->count && w->outlet_count; i++) {
-        int frame = -1;
-        dem_vec3 x = demi_v(0, 0, 0);
+    for (i = 0; i < w->count && w->outlet_count; i++)
         for (k = 0; k < w->outlet_count; k++) {
             demi_outlet *o = demi_outlet_at(w, k);
-            if (o->desc.frame.id != frame) {
-                frame = o->desc.frame.id;
-                x = demi_at(w->pos + 4*i);
-                if (frame) {
-                    const dem_pose *p = &w->walls[frame - 1].pose;
-                    if (w->walls[frame - 1].kind == DEMI_WALL_NONE) { frame = -1; continue; }
-                    x = demi_unturn(p->rotation, demi_sub(x, p->position));
-                }
-            }
-            if (!demi_outlet_has(&o->desc, x)) continue;
+            const int frame = o->desc.frame.id;
+            if (frame && w->walls[frame - 1].kind == DEMI_WALL_NONE) continue;
+            if (!demi_outlet_has(&o->desc, demi_outlet_place(w, &p, &o->desc,
+                                                             demi_at(w->pos + 4*i)))) continue;
             if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
             demi_outlet_book(w, o, i);
             demi_body_take_out(w, i--);
             w->balance.left++;
             break;
         }
-    }
     return DEM_OK;
 }
 static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_outlet id) {
@@ -10625,36 +11196,57 @@ static dem_result demi_outflow(dem_world *w) {
 static size_t demi_field_cells(const demi_field *f) {
     return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
 }
+/* What one body at x adds to a field, if it is there. */
+static void demi_field_add(const dem_world *w, demi_field *field, int i, const double *x) {
+    const dem_field_desc *d = &field->desc;
+    const double m = (double)w->mass[i], r = (double)w->pos[4*i + 3];
+    double lo[3], size[3];
+    size_t cell = 0;
+    int k;
+    lo[0] = (double)d->box.lo.x; lo[1] = (double)d->box.lo.y; lo[2] = (double)d->box.lo.z;
+    size[0] = ((double)d->box.hi.x - lo[0])/d->cells[0];
+    size[1] = ((double)d->box.hi.y - lo[1])/d->cells[1];
+    size[2] = ((double)d->box.hi.z - lo[2])/d->cells[2];
+    for (k = 2; k >= 0; k--) {
+        const double t = floor((x[k] - lo[k])/size[k]);
+        if (!(t >= 0 && t < d->cells[k])) return;
+        cell = cell*(size_t)d->cells[k] + (size_t)t;
+    }
+    field->solid[cell] += (w->desc.planar ? DEMI_PI*r*r*size[2]
+        : m/(double)w->materials[w->body_material[i] - 1].density)/(size[0]*size[1]*size[2]);
+    field->mass[cell] += m;
+    for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->vel[4*i + k];
+}
+/* In a periodic world a body is in a field wherever one of its images is: once, unless the field is
+   longer than the period. */
 static void demi_fields_sample(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
     int f, i, k;
     for (f = 0; f < w->field_count; f++) {
         demi_field *field = &w->fields[f];
         const dem_field_desc *d = &field->desc;
-        double lo[3], size[3], volume;
+        dem_real lo[3], hi[3];
+        int images[3], n;
         if (!field->used || w->time < field->next || (d->end > 0 && w->time > d->end)) continue;
         field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->time) : w->time +
             100*(double)w->dt;
         if (field->next <= w->time) field->next = w->time + (double)w->dt/2;
-        lo[0] = (double)d->box.lo.x; lo[1] = (double)d->box.lo.y; lo[2] = (double)d->box.lo.z;
-        size[0] = ((double)d->box.hi.x - lo[0])/d->cells[0];
-        size[1] = ((double)d->box.hi.y - lo[1])/d->cells[1];
-        size[2] = ((double)d->box.hi.z - lo[2])/d->cells[2];
-        volume = size[0]*size[1]*size[2];
+        demi_put(lo, d->box.lo);
+        demi_put(hi, d->box.hi);
+        for (k = 0; k < 3; k++) {
+            const double sides = p.period[k] > 0 ? (double)((hi[k] - lo[k])/p.period[k]) : 0;
+            images[k] = (int)DEMI_MIN(ceil(DEMI_MAX(sides - 1e-6, 1e-6)), 100);
+        }
         for (i = 0; i < w->count; i++) {
-            const double m = (double)w->mass[i], r = (double)w->pos[4*i + 3];
-            size_t cell = 0;
-            int in = 1;
-            for (k = 2; k >= 0; k--) {
-                const double t = floor(((double)w->pos[4*i + k] - lo[k])/size[k]);
-                in = in && t >= 0 && t < d->cells[k];
-                cell = cell*(size_t)d->cells[k] + (in ? (size_t)t : 0);
+            if (demi_visits(w, i)) continue;
+            for (n = 0; n < images[0]*images[1]*images[2]; n++) {
+                double x[3];
+                for (k = 0; k < 3; k++)
+                    x[k] = (double)demi_into(w->pos[4*i + k], lo[k], p.period[k]) +
+                        (double)p.period[k]*(k == 0 ? n%images[0] : k == 1 ? n/images[0]%images[1]
+                                             : n/images[0]/images[1]);
+                demi_field_add(w, field, i, x);
             }
-            if (!in || demi_visits(w, i)) continue;
-            field->solid[cell] += (w->desc.planar ? DEMI_PI*r*r*size[2]
-                : m/(double)w->materials[w->body_material[i] - 1].density)/volume;
-            field->mass[cell] += m;
-            for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->vel[4*i +
-                k];
         }
         field->samples++;
     }
@@ -11017,6 +11609,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     const int a = span.a[0], b = span.b[0];
     demi_tile tile;
     dem_vec3 gap;
+    const demi_periods periods = demi_periods_of(w);
     int e;
     for (e = 0; e < r.keep; e++) tile.memory[e][0] = span.memory[(size_t)e*span.stride];
     for (e = 0; e < DEMI_PAIR_COLUMNS && !r.uniform; e++)
@@ -11033,13 +11626,14 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     out->wall = 0;
     out->normal = demi_row(tile.normal, 0);
     out->overlap = tile.overlap[0];
-    out->point = demi_add(demi_at(w->pos + 4*a),
-                          demi_scale(gap, w->pos[4*a + 3]/(w->pos[4*a + 3] + w->pos[4*b + 3])));
+    gap = demi_scale(gap, w->pos[4*a + 3]/(w->pos[4*a + 3] + w->pos[4*b + 3]));
+    out->point = demi_place_of(&periods, demi_add(demi_at(w->pos + 4*a), gap));
     out->force = demi_row(tile.force, 0);
     return 1;
 }
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
     if (demi_null(w, "dem_contacts_get", w, "world")) return -1;
+    const demi_periods p = demi_periods_of(w);
     int d, k, n = 0;
     if (!w->list_valid) return demi_list_stale(w, "dem_contacts_get");
     for (d = 0; d < w->domain_count; d++) {
@@ -11053,7 +11647,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
             out[n - 1].b.slot = out[n - 1].b.generation = 0;
             out[n - 1].wall = c->wall + 1;
             out[n - 1].normal = c->normal;
-            out[n - 1].point = c->point;
+            out[n - 1].point = demi_place_of(&p, c->point);
             out[n - 1].overlap = c->overlap;
             out[n - 1].force = c->force;
         }
@@ -11064,7 +11658,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
             out[n - 1].b = dem_bodies_id(w, c->b);
             out[n - 1].wall = c->b < 0 ? c->wall + 1 : 0;
             out[n - 1].normal = c->normal;
-            out[n - 1].point = demi_add(demi_at(w->pos + 4*c->a), c->arm_a);
+            out[n - 1].point = demi_place_of(&p, demi_add(demi_at(w->pos + 4*c->a), c->arm_a));
             out[n - 1].overlap = c->overlap;
             out[n - 1].force = c->force;
         }
@@ -12033,11 +12627,12 @@ typedef struct demi_drawing {
 } demi_drawing;
 /* 0 when memory ran out. */
 static int demi_drawing_make(dem_world *w, demi_drawing *g) {
+    const dem_real *places = demi_wrapped(w);
     dem_real *row;
     int i, k, e, n = 0;
     memset(g, 0, sizeof *g);
     g->count = w->count;
-    g->pos = w->pos; g->vel = w->vel; g->spin = w->spin;
+    g->pos = places; g->vel = w->vel; g->spin = w->spin;
     g->slots = w->body_slot; g->materials = w->body_material;
     if (!w->orienting) return 1;
     g->count = 0;
@@ -12049,7 +12644,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
         for (k = 0; k < demi_parts_count(w, i); k++, n++) {
             const demi_part p = demi_part_of(w, i, k);
             row = g->own + 4*n;
-            demi_put(row, demi_add(demi_at(w->pos + 4*i), p.centre));
+            demi_put(row, demi_add(demi_at(places + 4*i), p.centre));
             row[3] = p.radius;
             row += 4*(size_t)g->count;
             demi_put(row, demi_velocity_at(w->vel, w->spin, i, p.centre));
@@ -12691,6 +13286,7 @@ static int demi_by_slot(const dem_world *w, int *slot) {
 DEM_API dem_result dem_moldyn_take(dem_world *w, dem_moldyn *m) {
     if (demi_null(w, "dem_moldyn_take", m, "moldyn")) return DEM_ERROR_ARGUMENT;
     const dem_allocator allocator = demi_moldyn_allocator(w, m);
+    const dem_real *places = demi_wrapped(w);
     dem_real *rows = 0;
     int i = 0, slot = 0, b;
     if (w->shaped_count)
@@ -12705,7 +13301,7 @@ DEM_API dem_result dem_moldyn_take(dem_world *w, dem_moldyn *m) {
     if (w->count && !rows) return demi_no_memory(w, "dem_moldyn_take");
     for (; (b = demi_by_slot(w, &slot)) >= 0; i++) {
         dem_real *row = rows + (size_t)i*DEMI_PIN;
-        memcpy(row, w->pos + 4*b, 3*sizeof *row);
+        memcpy(row, places + 4*b, 3*sizeof *row);
         memcpy(row + 3, w->vel + 4*b, 3*sizeof *row);
         memcpy(row + 9, w->spin + 4*b, 3*sizeof *row);
         row[12] = w->pos[4*b + 3];
@@ -12800,6 +13396,7 @@ DEM_API dem_result dem_xb_append(dem_world *w, const char *path, dem_box box) {
     if (demi_null(w, "dem_xb_append", w, "world")) return DEM_ERROR_ARGUMENT;
     const int up = w->desc.planar ? 1 : 2;
     const dem_real lo[3] = {box.lo.x, box.lo.y, box.lo.z}, hi[3] = {box.hi.x, box.hi.y, box.hi.z};
+    const dem_real *places = demi_wrapped(w);
     char number[32];
     int fresh, slot = 0, b;
     FILE *file = demi_append_open(w, "dem_xb_append", path, &fresh);
@@ -12810,7 +13407,7 @@ DEM_API dem_result dem_xb_append(dem_world *w, const char *path, dem_box box) {
     demi_fixed_write(file, (double)hi[0], ' ');
     demi_fixed_write(file, (double)hi[up], '\n');
     while ((b = demi_by_slot(w, &slot)) >= 0) {
-        const dem_real *x = w->pos + 4*b, *v = w->vel + 4*b, *s = w->spin + 4*b;
+        const dem_real *x = places + 4*b, *v = w->vel + 4*b, *s = w->spin + 4*b;
         demi_fixed_write(file, (double)x[0], ' ');
         demi_fixed_write(file, (double)x[up], ' ');
         demi_fixed_write(file, (double)v[0], ' ');
@@ -12845,6 +13442,7 @@ static int demi_str_holds(const char *path, int bodies) {
 DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interval, int frames) {
     if (demi_null(w, "dem_str_append", w, "world")) return DEM_ERROR_ARGUMENT;
     static const dem_real one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const dem_real *places = demi_wrapped(w);
     char number[32];
     int fresh, slot = 0, b, i, walls = 0;
     FILE *file = !demi_finite_double(interval) || frames < 0 ? 0
@@ -12870,7 +13468,7 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
                                              demi_v(i == 0, i == 1, i == 2));
             turned[i] = e.x; turned[3 + i] = e.y; turned[6 + i] = e.z;
         }
-        demi_str_row(file, turned, demi_at(w->pos + 4*b));
+        demi_str_row(file, turned, demi_at(places + 4*b));
     }
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
@@ -13149,6 +13747,8 @@ static void demi_visit_lists(dem_world *w, demi_stream *s) {
         demi_visit(s, w->wall_id + d*w->wall_stride, walls*4);
         demi_visit(s, w->wall_element + d*w->wall_stride, walls*4);
         demi_visit(s, w->wall_gap + d*w->wall_stride, walls*sizeof(dem_real));
+        demi_visit(s, w->wall_shift + 3*(size_t)d*(size_t)w->wall_stride,
+                   3*walls*sizeof(dem_real));
     }
 }
 /* Contacts that last, with or without a list; memory on its way from one list to the next. */
@@ -13364,13 +13964,15 @@ static void demi_state_free(dem_world *w) {
     arrays[k++] = &w->quiet_; arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
     arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
     arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
-    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_now_;
+    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_shift_;
+    arrays[k++] = &w->wall_now_;
     arrays[k++] = &w->wall_next_; arrays[k++] = &w->touching_; arrays[k++] = &w->touching_table_;
     arrays[k++] = &w->touching_links_; arrays[k++] = &w->press_;
     arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
     arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
     arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
     arrays[k++] = &w->feeds_; arrays[k++] = &w->outlets_;
+    arrays[k++] = &w->crowd_; arrays[k++] = &w->crowd_nodes_; arrays[k++] = &w->crowd_turned_;
     for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
     while (k) demi_array_free(w, arrays[--k]);
     demi_free(w, w->domains, DEMI_DOMAINS, sizeof(demi_domain));
@@ -13531,7 +14133,7 @@ static int demi_domain_check(const demi_reader *r, int d) {
     return o->begin == (d ? t->domains[d - 1].end : 0) && o->end >= o->begin &&
            o->end <= t->count && (d + 1 < t->domain_count || o->end == t->count) &&
            demi_left(r, o->own, 8) && demi_left(r, o->cross, 8) &&
-           demi_left(r, o->walls, 12 + sizeof(dem_real)) &&
+           demi_left(r, o->walls, 12 + 4*sizeof(dem_real)) &&
            demi_left(r, o->near_shaped_end, 8) &&
            o->near_cross == (o->near_own + group - 1)/group*group &&
            o->near_shaped == (o->near_end + group - 1)/group*group &&
@@ -13645,6 +14247,7 @@ static int demi_lists_check(const demi_reader *r) {
             if (body < o->begin || body >= o->end || wall < 0 || wall >= t->wall_count ||
                 t->walls[wall].kind == DEMI_WALL_NONE || t->wall_element[k] < 0 ||
                 t->wall_element[k] >= t->walls[wall].element_count ||
+                !demi_finite3(demi_at(t->wall_shift + 3*(size_t)k)) ||
                 (k > d*t->wall_stride && body < t->wall_body[k - 1]))
                 return demi_lie(r, "a wall candidate of domain", d);
         }
@@ -13660,6 +14263,7 @@ static int demi_contacts_check(const demi_reader *r) {
         for (k = 0; k < t->domains[d].wall_contacts; k++) {
             const demi_wall_contact *c = t->wall_now + d*t->wall_now_stride + k;
             if (c->body < 0 || c->body >= who || c->wall < 0 || c->wall >= t->wall_count ||
+                !demi_finite3(c->shift) ||
                 (t->list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))
                 return demi_lie(r, "a wall contact of domain", d);
         }
@@ -13772,6 +14376,7 @@ static int demi_twin_follow(dem_world *t) {
     const demi_periods p = demi_periods_of(t);
     int d, k, l;
     demi_image_shifts(t);
+    demi_walls_repeat(t);
     for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
     demi_kernel_choose(t);
     if (!t->list_valid) return 1;
@@ -15263,6 +15868,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     }
     w = dem_world_create(&desc);
     if (!w) return 0;
+    if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(dem_pair));
     w->material_count = from->material_count;
