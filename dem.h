@@ -6039,7 +6039,8 @@ static int demi_touching_reserve(dem_world *w) {
 static int demi_wall_contacts_move(dem_world *w) {
     int32_t here[DEMI_DOMAINS];
     size_t n;
-    int d, k, e = 0, total = 0, stride = DEMI_MAX(w->wall_now_stride, 16);
+    /* hardly ever more contacts than candidates */
+    int d, k, e = 0, total = 0, stride = DEMI_MAX(w->wall_now_stride, w->wall_stride);
     for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
     /* slabs cannot stop in the middle of a step to make room: as much as there may ever be */
     if (w->visitor) stride = DEMI_MAX(stride, demi_places_most(w));
@@ -10729,7 +10730,7 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
        only when the step is within a factor of two or so of its limit. Spheres only. Checked by "a
        time step that is accepted is stable where twelve contacts a grain are pressed". --- */
 typedef struct demi_press {
-    double omega2, rate;           /* 1/s2, 1/s: cheap */
+    double omega2, rate;           /* 1/s2, 1/s: the cheap bound */
     double A[2][6], B[2][6], q[2][3];          /* stiffness, damping; per mass, inertia, both */
     int32_t contacts;
     dem_real deepest;              /* of its radius */
@@ -10815,14 +10816,14 @@ static void demi_press_visit(const dem_world *w, int whole, double dt, demi_pres
         }
     }
 }
-/* The largest stable step for the contacts there are, if it is below dt; else 0. worst: the body.
-   Its room is kept. 0 too when memory for it is refused: it is asked again. */
+/* The largest stable step for the contacts there are, if it is below dt; else 0; -1: memory ran
+   out. worst: the body. Its room is kept. */
 static double demi_press_limit(dem_world *w, double dt, int *worst) {
     demi_press *press;
     double least = dt;
     int i, found = 0;
-    if (!w->count || !demi_array_grow(w, &w->press_, sizeof(demi_press), (size_t)w->count))
-        return 0;
+    if (!w->count) return 0;
+    if (!demi_array_grow(w, &w->press_, sizeof(demi_press), (size_t)w->count)) return -1;
     press = (demi_press *)w->press_.data;
     memset(press, 0, (size_t)w->count*sizeof *press);
     demi_press_visit(w, 0, dt, press);
@@ -10917,8 +10918,9 @@ static dem_result demi_dt_check(dem_world *w) {
                          speed, speed*(double)w->dt/radius, radius, (double)w->dt,
                          0.1*radius/speed);
     if (w->steps < w->press_due) return DEM_OK;
-    w->press_due = w->steps + DEMI_MIN(w->steps - w->press_since + 1, 1000);
     limit = demi_press_limit(w, (double)w->dt*(auto_dt ? 2 : 1), &worst);
+    if (limit < 0) return demi_no_memory(w, "dem_world_step");
+    w->press_due = w->steps + DEMI_MIN(w->steps - w->press_since + 1, 1000);
     if (!(limit > 0)) return DEM_OK;
     if (auto_dt) {
         demi_finish(w);
@@ -11387,6 +11389,7 @@ DEM_API dem_result dem_step_advice(dem_world *w, dem_advice *advice) {
         if (result != DEM_OK) return result;
     }
     limit = demi_press_limit(w, (double)advice->dt_max, &worst);
+    if (limit < 0) return demi_no_memory(w, "dem_step_advice");
     if (!(limit > 0)) return DEM_OK;
     advice->dt_max = (dem_real)limit;
     advice->dt = (dem_real)DEMI_MIN((double)advice->dt, limit/2);
