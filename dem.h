@@ -7549,17 +7549,17 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
                    spring   all and the dashpot's share besides, so that the spring alone does.
                The dashpot's share comes from nowhere there. */
             const dem_real give = (1 - cut)*c->dt/(kt*c->dt + ct + DEMI_TINY);
-            const dem_real give_up = c->dt > 0 ? habit.slider == DEM_SLIDER_SHARED ? kt*give
-                : 1 - cut : 0;
-            const dem_real dashed = c->dt > 0 && habit.slider == DEM_SLIDER_SPRING && cut < 1
-                ? ct : 0;
-            const dem_real by = tangent == DEM_TANGENT_SPRING ? 1/(kt + DEMI_TINY) : -1;
-            const dem_vec3 lost = demi_add(demi_scale(t, give_up), demi_scale(v, dashed));
-            s = demi_add(s, demi_scale(lost, by));
+            const dem_real soft = habit.slider == DEM_SLIDER_SHARED ? give
+                : (c->dt > 0 ? 1 - cut : 0)/(kt + DEMI_TINY);      /* m/N: of the spring's length */
+            dem_vec3 lost = demi_scale(t, soft);
+            if (habit.slider == DEM_SLIDER_SPRING)
+                lost = demi_add(lost, demi_scale(v, c->dt > 0 && cut < 1 ? ct/(kt + DEMI_TINY) : 0));
+            s = tangent == DEM_TANGENT_SPRING ? demi_add(s, lost)
+                : demi_sub(s, demi_scale(lost, kt));
             memory[0] = s.x; memory[1] = s.y; memory[2] = s.z;
             if (tangent >= DEM_TANGENT_MINDLIN) memory[3] = kt;
             if (ledger) {
-                out->slide = cut*demi_dot(t, lost)/(kt + DEMI_TINY);
+                out->slide = cut*demi_dot(t, lost);
                 out->shear_stored = tangent == DEM_TANGENT_SPRING ? kt*demi_dot(s, s)/2
                     : demi_dot(s, s)/(2*kt + DEMI_TINY);
             }
@@ -7714,7 +7714,7 @@ typedef struct demi_run {
     dem_real dt, radius, inv_radius, m_eff, coef[DEMI_COEFS];
 } demi_run;
 DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int rolling,
-                                int uniform, int ledger, dem_law_fn law, dem_real dt) {
+                                int uniform, int ledger, int usual, dem_law_fn law, dem_real dt) {
     demi_run r;
     int e;
     r.normal = normal; r.tangent = tangent; r.rolling = rolling;
@@ -7723,6 +7723,7 @@ DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int
     r.turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
     r.parting = law || rolling != DEM_ROLLING_NONE || (r.turning && !uniform);
     r.habit = demi_habit_of(w);
+    if (usual) { r.habit.load = DEM_LOAD_PUSH; r.habit.slider = DEM_SLIDER_SHARED; }
     r.dt = dt;
     r.radius = w->uniform_radius;
     r.inv_radius = 1/w->uniform_radius;
@@ -7990,9 +7991,9 @@ DEM_INLINE void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span
 
 /* All pairs of one domain: those inside it, then those that lead out. */
 DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rolling, int uniform,
-                           int ledger, dem_law_fn law) {
+                           int ledger, int usual, dem_law_fn law) {
     demi_domain *domain = &w->domains[d];
-    const demi_run r = demi_run_of(w, normal, tangent, rolling, uniform, ledger, law,
+    const demi_run r = demi_run_of(w, normal, tangent, rolling, uniform, ledger, usual, law,
                                    w->forces_valid ? w->dt : 0);  /* 0: looking only */
     DEMI_ALIGNED demi_tile tile;
     demi_tally tally = {0, 0};
@@ -8038,16 +8039,19 @@ static void demi_cross_gather(dem_world *w, int d) {
 
 /* Kernels: one line per effect set, and one that asks at run time. Same source, same bits. */
 static void demi_pairs_any(dem_world *w, int d) {
-    demi_pairs(w, d, w->normal, w->tangent, w->rolling, w->uniform, w->desc.ledger, w->desc.law);
+    demi_pairs(w, d, w->normal, w->tangent, w->rolling, w->uniform, w->desc.ledger, 0,
+               w->desc.law);
 }
 #ifdef DEM_LAW
 DEMI_CLONES static void demi_pairs_own_law(dem_world *w, int d) {
-    demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 0, DEM_LAW);
+    demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 0, 1,
+               DEM_LAW);
 }
 #endif
 #ifndef DEM_NO_SPECIALIZE
 /* Name of the function, normal law, tangent law, rolling law, all bodies alike?, ledger?, name in
-   reports. A kernel for alike bodies serves only those. First fit wins. */
+   reports. A kernel for alike bodies serves only those. First fit wins. All are for the usual load
+   and slider. */
 #define DEMI_KERNELS(X) \
     X(hertz,                HERTZ,  NONE,    NONE, 1, 0, "hertz, alike") \
     X(hertz_mixed,          HERTZ,  NONE,    NONE, 0, 0, "hertz, mixed") \
@@ -8070,7 +8074,7 @@ DEMI_CLONES static void demi_pairs_own_law(dem_world *w, int d) {
 #define DEMI_KERNEL_DEFINE(NAME, NORMAL, TANGENT, ROLLING, UNIFORM, LEDGER, TEXT) \
     DEMI_CLONES static void demi_pairs_##NAME(dem_world *w, int d) { \
         demi_pairs(w, d, DEM_NORMAL_##NORMAL, DEM_TANGENT_##TANGENT, DEM_ROLLING_##ROLLING, \
-                   UNIFORM, LEDGER, 0); \
+                   UNIFORM, LEDGER, 1, 0); \
     }
 #define DEMI_KERNEL_ROW(NAME, NORMAL, TANGENT, ROLLING, UNIFORM, LEDGER, TEXT) \
     {DEM_NORMAL_##NORMAL, DEM_TANGENT_##TANGENT, DEM_ROLLING_##ROLLING, UNIFORM, LEDGER, \
@@ -8099,6 +8103,8 @@ static const char *demi_kernel_choose(dem_world *w) {
 #endif
 #ifndef DEM_NO_SPECIALIZE
     for (r = demi_kernel_rows; r->kernel && !w->desc.law; r++) {
+        const demi_habit habit = demi_habit_of(w);
+        if (habit.load != DEM_LOAD_PUSH || habit.slider != DEM_SLIDER_SHARED) break;
         if (r->ledger == (w->desc.ledger != 0) && r->normal == w->normal &&
             r->tangent == w->tangent && r->rolling == w->rolling && r->uniform <= w->uniform) {
             w->kernel = r->kernel;
@@ -11606,7 +11612,7 @@ DEM_API void dem_overlap_reset(dem_world *w) {
 
 /* One near pair, if it touches: its force by the law of the run on a copy of its memory. */
 static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out) {
-    const demi_run r = demi_run_of(w, w->normal, w->tangent, w->rolling, w->uniform, 0,
+    const demi_run r = demi_run_of(w, w->normal, w->tangent, w->rolling, w->uniform, 0, 0,
                                    w->desc.law, 0);
     const demi_span span = demi_span_of(w, d, p, 1);
     const int a = span.a[0], b = span.b[0];
