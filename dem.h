@@ -1764,7 +1764,7 @@ struct dem_world {
     int level_count, wide;         /* wide: radii differ so much that levels pay */
     demi_level levels[DEMI_LEVELS];/* the coarsest first; none in use: level_count is 0 */
     double level_fine;             /* m, largest radius of the finest class */
-    demi_array press_;             /* what presses each body, while a step's limit is looked for */
+    demi_array press_, press_whole_;           /* what presses bodies, while a step is judged */
     uint64_t press_due;            /* step at which it is looked for next */
     uint64_t press_since;          /* step of the last change of the scene */
     double level_looks[2];         /* estimated work of a search per body: by one grid, by levels */
@@ -10737,25 +10737,30 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
        time step that is accepted is stable where twelve contacts a grain are pressed". --- */
 typedef struct demi_press {
     double omega2, rate;           /* 1/s2, 1/s: the cheap bound */
-    double A[2][6], B[2][6], q[2][3];          /* stiffness, damping; per mass, inertia, both */
-    int32_t contacts;
+    int32_t contacts, whole;       /* how many; 1 + index of its matrices, 0: none needed */
     dem_real deepest;              /* of its radius */
 } demi_press;
+typedef struct demi_press_whole {  /* per mass, inertia, root of both */
+    double A[2][6], B[2][6], q[2][3];          /* 0: stiffness, 1: damping */
+} demi_press_whole;
 typedef struct demi_pressed { demi_stiffness s; dem_vec3 n; dem_real overlap; } demi_pressed;
 static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, int moving,
-                           double arm, int whole, demi_press *p) {
+                           double arm, demi_press *p) {
+    const double m = (double)w->mass[body], f = moving ? 2 : 1;
+    const double I = demi_sphere_inertia(w, m, (double)w->pos[4*body + 3]);
+    if (w->inv_mass[body] <= 0) return;
+    p->omega2 += f*DEMI_MAX(c->s.k/m, c->s.kt*(1/m + arm*arm/I) + c->s.kr/I);
+    p->rate += f*DEMI_MAX(c->s.c/m, c->s.ct*(1/m + arm*arm/I) + c->s.cr/I);
+    p->contacts++;
+    p->deepest = DEMI_MAX(p->deepest, c->overlap/w->pos[4*body + 3]);
+}
+static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, int moving,
+                                 double arm, demi_press_whole *p) {
     const double m = (double)w->mass[body], f = moving ? 2 : 1;
     const double I = demi_sphere_inertia(w, m, (double)w->pos[4*body + 3]);
     const double n[3] = {(double)c->n.x, (double)c->n.y, (double)c->n.z};
     int i, j, e = 0, d;
     if (w->inv_mass[body] <= 0) return;
-    if (!whole) {
-        p->omega2 += f*DEMI_MAX(c->s.k/m, c->s.kt*(1/m + arm*arm/I) + c->s.kr/I);
-        p->rate += f*DEMI_MAX(c->s.c/m, c->s.ct*(1/m + arm*arm/I) + c->s.cr/I);
-        p->contacts++;
-        p->deepest = DEMI_MAX(p->deepest, c->overlap/w->pos[4*body + 3]);
-        return;
-    }
     for (i = 0; i < 3; i++)
         for (j = i; j < 3; j++, e++)
             for (d = 0; d < 2; d++) {
@@ -10772,13 +10777,13 @@ static double demi_press_norm(const double *A) {
     return DEMI_MAX(DEMI_MAX(x, y), fabs(A[2]) + fabs(A[4]) + fabs(A[5]));
 }
 /* The bound of either matrix, d 0 stiffness, 1 damping. */
-static double demi_press_bound(const demi_press *p, int d) {
+static double demi_press_bound(const demi_press_whole *p, int d) {
     const double a = demi_press_norm(p->A[d]), b = demi_press_norm(p->B[d]);
     const double q2 = p->q[d][0]*p->q[d][0] + p->q[d][1]*p->q[d][1] + p->q[d][2]*p->q[d][2];
     return (a + b)/2 + sqrt((a - b)*(a - b)/4 + q2);
 }
 /* All contacts of spheres with each other and with walls. */
-static void demi_press_visit(const dem_world *w, int whole, double dt, demi_press *press) {
+static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_whole *whole) {
     int d, p, side;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
@@ -10794,6 +10799,7 @@ static void demi_press_visit(const dem_world *w, int whole, double dt, demi_pres
             demi_pressed c;
             int e;
             if (!(l < sum) || !(l > 0)) continue;
+            if (whole && !press[a].whole && !press[b].whole) continue;
             for (e = 0; e < DEMI_PAIR_COLUMNS && !w->uniform; e++)
                 coef[e] = span.coef[(size_t)e*span.stride];
             c.s = demi_stiffness_of(w, w->uniform ? w->uniform_coef : coef, w->uniform
@@ -10802,23 +10808,25 @@ static void demi_press_visit(const dem_world *w, int whole, double dt, demi_pres
             c.n = demi_scale(gap, 1/l);
             c.overlap = sum - l;
             for (side = 0; side < 2; side++) {
-                demi_press *to = press + (side ? b : a);
+                const int i = side ? b : a;
                 const double arm = (double)(l*(side ? y[3] : x[3])/sum);
-                if (whole && dt <= demi_dt_stable(to->omega2, to->rate)) continue;
-                demi_press_add(w, side ? b : a, &c, both, arm, whole, to);
+                if (!whole) demi_press_add(w, i, &c, both, arm, press + i);
+                else if (press[i].whole)
+                    demi_press_add_whole(w, i, &c, both, arm, whole + press[i].whole - 1);
             }
         }
         for (p = 0; p < domain->wall_contacts; p++) {
             const demi_wall_contact *k = w->wall_now + (size_t)d*(size_t)w->wall_now_stride +
                                          (size_t)p;
-            demi_press *to = press + k->body;
+            const int i = k->body;
+            const double arm = (double)w->pos[4*i + 3];
             demi_pressed c;
-            if (!(k->overlap > 0) || (whole && dt <= demi_dt_stable(to->omega2, to->rate)))
-                continue;
+            if (!(k->overlap > 0) || (whole && !press[i].whole)) continue;
             c.s = demi_stiffness_of(w, k->coef, (double)w->mass[k->body], (double)k->overlap);
             c.n = k->normal;
             c.overlap = k->overlap;
-            demi_press_add(w, k->body, &c, 0, (double)w->pos[4*k->body + 3], whole, to);
+            if (!whole) demi_press_add(w, i, &c, 0, arm, press + i);
+            else demi_press_add_whole(w, i, &c, 0, arm, whole + press[i].whole - 1);
         }
     }
 }
@@ -10826,20 +10834,26 @@ static void demi_press_visit(const dem_world *w, int whole, double dt, demi_pres
    out. worst: the body. Its room is kept. */
 static double demi_press_limit(dem_world *w, double dt, int *worst) {
     demi_press *press;
+    demi_press_whole *whole;
     double least = dt;
     int i, found = 0;
     if (!w->count) return 0;
     if (!demi_array_grow(w, &w->press_, sizeof(demi_press), (size_t)w->count)) return -1;
     press = (demi_press *)w->press_.data;
     memset(press, 0, (size_t)w->count*sizeof *press);
-    demi_press_visit(w, 0, dt, press);
-    for (i = 0; i < w->count; i++) found += dt > demi_dt_stable(press[i].omega2, press[i].rate);
+    demi_press_visit(w, press, 0);
+    for (i = 0; i < w->count; i++)
+        if (dt > demi_dt_stable(press[i].omega2, press[i].rate)) press[i].whole = ++found;
     if (!found) return 0;
-    demi_press_visit(w, 1, dt, press);
+    if (!demi_array_grow(w, &w->press_whole_, sizeof *whole, (size_t)found)) return -1;
+    whole = (demi_press_whole *)w->press_whole_.data;
+    memset(whole, 0, (size_t)found*sizeof *whole);
+    demi_press_visit(w, press, whole);
     for (i = 0; i < w->count; i++) {
+        const demi_press_whole *p = whole + press[i].whole - 1;
         double limit;
-        if (!(dt > demi_dt_stable(press[i].omega2, press[i].rate))) continue;
-        limit = demi_dt_stable(demi_press_bound(press + i, 0), demi_press_bound(press + i, 1));
+        if (!press[i].whole) continue;
+        limit = demi_dt_stable(demi_press_bound(p, 0), demi_press_bound(p, 1));
         if (limit < least) { least = limit; *worst = i; }
     }
     return least < dt ? least : 0;
@@ -10926,7 +10940,7 @@ static dem_result demi_dt_check(dem_world *w) {
     if (w->steps < w->press_due) return DEM_OK;
     limit = demi_press_limit(w, (double)w->dt*(auto_dt ? 2 : 1), &worst);
     if (limit < 0) return demi_no_memory(w, "dem_world_step");
-    w->press_due = w->steps + DEMI_MIN(w->steps - w->press_since + 1, 1000);
+    w->press_due = w->steps + DEMI_MIN(8*(w->steps - w->press_since) + 8, 1000);
     if (!(limit > 0)) return DEM_OK;
     if (auto_dt) {
         demi_finish(w);
@@ -13977,6 +13991,7 @@ static void demi_state_free(dem_world *w) {
     arrays[k++] = &w->wall_now_;
     arrays[k++] = &w->wall_next_; arrays[k++] = &w->touching_; arrays[k++] = &w->touching_table_;
     arrays[k++] = &w->touching_links_; arrays[k++] = &w->press_;
+    arrays[k++] = &w->press_whole_;
     arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
     arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
     arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
