@@ -1623,6 +1623,7 @@ typedef struct demi_wall {
     int32_t *cut_start;            /* element_count + 1 (null: none): pieces of edges in `cuts` */
     demi_cut *cuts;
     int group;                     /* walls of one group do not move against each other */
+    int lone;                      /* its facets have neighbours of its own alone */
     dem_real span_lo[3], span_hi[3];   /* m, from where to where it goes, in a periodic world */
     int repeats[3];                /* along a periodic axis: it is not longer than the period */
     dem_real reach;                /* m, farthest vertex from the frame's origin; < 0: endless */
@@ -4416,6 +4417,16 @@ static void demi_facets_drop_cuts(dem_world *w, demi_wall *wall) {
     wall->cuts = 0;
     wall->cut_count = 0;
 }
+/* Which walls of a group share nothing with others, nor with images of their own. */
+static void demi_join_lone(dem_world *w, int group, int per) {
+    int i, members = 0;
+    for (i = group; i < w->wall_count; i++) members += demi_join_member(w, i, group, per);
+    for (i = group; i < w->wall_count; i++) {
+        const int *repeats = w->walls[i].repeats;
+        if (demi_join_member(w, i, group, per))
+            w->walls[i].lone = members == 1 && !repeats[0] && !repeats[1] && !repeats[2];
+    }
+}
 /* Groups the walls and weighs their facets anew. 0 when memory ran out; the next call tries again.
    */
 static int demi_facets_weigh(dem_world *w) {
@@ -4439,6 +4450,7 @@ static int demi_facets_weigh(dem_world *w) {
             if (w->walls[i].kind == DEMI_WALL_NONE || w->walls[i].group != i) continue;
             for (k = i; k < w->wall_count && !demi_join_member(w, k, i, per);) k++;
             if (k == w->wall_count) continue;
+            demi_join_lone(w, i, per);
             ok = demi_join_begin(w, &j, i, per);
             if (ok) demi_join_double(&j);
             if (ok) ok = per == 3 ? demi_join_cut(w, &j) : demi_join_profiles(w, &j);
@@ -5845,6 +5857,10 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
                     const int cell = x + wall->cells[0]*(y + wall->cells[1]*z);
                     for (k = wall->cell_start[cell]; k < wall->cell_start[cell + 1]; k++) {
                         const int element = wall->cell_items[k];
+                        const int32_t *e = w->wall_element + d*w->wall_stride;
+                        int q = DEMI_MAX(first, domain->walls - 16);       /* rather not twice */
+                        while (q < domain->walls && e[q] != element) q++;
+                        if (q < domain->walls) continue;
                         away = demi_wall_distance(wall, element, at, near_by);
                         if (away < near_by)
                             demi_wall_offer(w, domain, d, i, j, element, away - r, shift);
@@ -5863,6 +5879,10 @@ static void demi_domain_walls(dem_world *w, int d) {
         for (j = 0; j < w->wall_count; j++) {
             const demi_wall *wall = &w->walls[j];
             if (wall->kind == DEMI_WALL_NONE) continue;
+            if (!w->repeating) {
+                demi_wall_look(w, domain, d, i, j, demi_v(0, 0, 0));
+                continue;
+            }
             demi_wall_images(w, wall, demi_at(w->pos + 4*i), w->pos[4*i + 3] + (dem_real)w->skin,
                              f, l);
             for (c = f[2]; c <= l[2]; c++)
@@ -6798,7 +6818,7 @@ static dem_vec3 demi_sides_point(const dem_vec3 *y, int *where) {
     }
     return best;
 }
-static dem_vec3 demi_facet_point(const dem_vec3 *y, int n, int *where) {
+DEM_INLINE dem_vec3 demi_facet_point(const dem_vec3 *y, int n, int *where) {
     dem_vec3 ab, ac, normal;
     dem_real d1, d2, d3, d4, d5, d6, nn;
     if (n == 2) {
@@ -6899,9 +6919,26 @@ DEM_INLINE int demi_facet_seen(const demi_wall *wall, int element, dem_vec3 x,
     }
     return n;
 }
+/* The number of an element's nearest place. */
+DEM_INLINE int32_t demi_facet_number(const demi_wall *wall, int e, int n, int where) {
+    const int edges = wall->element_count;
+    return where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
+        : edges + wall->edge_count + wall->corners[n*e + where - 4];
+}
+/* An element none of whose neighbours is within reach: no edge or corner is that counts. */
+DEM_INLINE void demi_facet_alone(const demi_wall *wall, int e, dem_vec3 x, dem_real within,
+                                 demi_places *p) {
+    dem_vec3 y[3];
+    int where;
+    const int n = demi_facet_seen(wall, e, x, 0, y);
+    const dem_vec3 d = demi_facet_point(y, n, &where);
+    const dem_real d2 = demi_dot(d, d);
+    if (d2 < within*within && wall->weight[e] > 0)
+        demi_places_add(p, demi_facet_number(wall, e, n, where), wall->weight[e], d, d2);
+}
 /* Adds what element `e` and the edges and corners it looks after give, nearer than `within`. */
-static void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
-                              dem_real within, demi_places *p) {
+DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const demi_part *part,
+                                  dem_real within, demi_places *p) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
     const int own = wall->owns[e];
     const dem_real *weight = wall->weight, most = within*within;
@@ -6917,8 +6954,7 @@ static void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, const de
         done = where;
     }
     if (add < 0 || add > 0)
-        demi_places_add(p, where == 0 ? e : where < 4 ? edges + wall->edges[3*e + where - 1]
-                   : corners + wall->corners[n*e + where - 4], add, d, d2);
+        demi_places_add(p, demi_facet_number(wall, e, n, where), add, d, d2);
     for (k = 0; k < 3 && n == 3 && own & 7; k++) {
         const dem_real count = weight[edges + wall->edges[3*e + k]];
         if (!(own >> k & 1) || done == k + 1 || !(count < 0 || count > 0)) continue;
@@ -7553,7 +7589,8 @@ DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push,
                 : (c->dt > 0 ? 1 - cut : 0)/(kt + DEMI_TINY);      /* m/N: of the spring's length */
             dem_vec3 lost = demi_scale(t, soft);
             if (habit.slider == DEM_SLIDER_SPRING)
-                lost = demi_add(lost, demi_scale(v, c->dt > 0 && cut < 1 ? ct/(kt + DEMI_TINY) : 0));
+                lost = demi_add(lost, demi_scale(v, c->dt > 0 && cut < 1 ? ct/(kt + DEMI_TINY)
+                                                 : 0));
             s = tangent == DEM_TANGENT_SPRING ? demi_add(s, lost)
                 : demi_sub(s, demi_scale(lost, kt));
             memory[0] = s.x; memory[1] = s.y; memory[2] = s.z;
@@ -8213,7 +8250,7 @@ DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidat
     demi_places p;
     memset(&p, 0, sizeof p);
     p.at = (demi_touching *)w->touching_.data + domain->touching_first;
-    if (candidates > 4) {
+    if (candidates > 10) {
         uint32_t size = 64;
         while (size < 2*7*(uint32_t)candidates) size *= 2;
         p.table = (int32_t *)w->touching_table_.data + 4*domain->touching_first;
@@ -8241,13 +8278,23 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
     const dem_real within = part ? DEM_R(1) : r;
     demi_places p = demi_places_begin(w, d, last - first);
     const int numbers = wall->number_count;
-    int k, q, from, end;
+    int k, q, from, end, only;
     for (k = first; k < last; k = end, p.offset += numbers) {   /* image by image */
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
         const dem_vec3 x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
         from = p.count;
         end = demi_image_end(w, base, k, last);
-        for (q = k; q < end; q++)
+        for (q = k; q < end && w->wall_gap[base + q] > gone; q++) continue;
+        for (only = q++; q < end && w->wall_gap[base + q] > gone; q++) continue;
+        if (only < end && q == end && wall->lone && !part) {
+            demi_facet_alone(wall, w->wall_element[base + only], x, within, &p);
+            if (p.count > from) p.at[from].shift = shift;
+            continue;
+        }
+        for (q = k; q < end && !part; q++)      /* spheres have a copy of the code for them */
+            if (!(w->wall_gap[base + q] > gone))
+                demi_facet_places(wall, w->wall_element[base + q], x, 0, within, &p);
+        for (q = k; q < end && part; q++)
             if (!(w->wall_gap[base + q] > gone))
                 demi_facet_places(wall, w->wall_element[base + q], x, part, within, &p);
         for (q = from; q < p.count && !(p.at[q].share < DEM_R(-1e-3)); q++) continue;
