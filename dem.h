@@ -9388,8 +9388,7 @@ DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
        mean = w + h w'/2 + h^2 w''/6 + h^3 w'''/24,   end = w + h w' + h^2 w''/2 + h^3 w'''/6;
    q goes by the mean and the first term of Magnus, h (w x end)/12; then by the small rotation that
    puts I end where R^T L is: two of three errors of q are gone, and L, |q| are exact. Free flight:
-   order
-   3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times
+   order 3 in q; error 10 times smaller than SPIRAL's at |w| h = .1, energy drift 9 times
    (docs/shapes.md). I, inv: principal moments, their inverses; answers the mean, in the body's
    frame. */
 DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
@@ -9413,7 +9412,7 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     *q = demi_quat_spin(*q, demi_scale(demi_add(mean, magnus), h));
     end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
     g = dem_quat_unturn(*q, L);
-    c = demi_scale(demi_cross(end, g), ll > 0 ? DEM_R(0.5)/ll : 0);
+    c = demi_scale(demi_cross(end, g), ll > DEMI_TINY ? DEM_R(0.5)/ll : 0);
     *q = demi_quat_again(dem_quat_times(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
 }
