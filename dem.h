@@ -945,17 +945,18 @@ DEM_API dem_result dem_sorting_get(const dem_world *world, const dem_outlet *out
 
 /* What limits the time step, worked out from the live scene. */
 typedef struct dem_advice {
-    dem_real dt;              /* s, proposed: contact_time/50, or half the largest stable step */
+    dem_real dt;              /* s, proposed: contact_time/50, or 1/5 of the largest stable step */
     dem_real dt_max;          /* s, a larger one is refused: contact_time/20 [ALK07] eq 2.22, or
                                  the largest stable step for contacts to come (their dashpots and
-                                 rolling) and those there are (many, pressed) */
+                                 rolling) */
     dem_real contact_time;    /* s, of the shortest contact */
     dem_real rayleigh;        /* s, pi R sqrt(rho/G)/(.1631 nu + .8766), smallest; for comparison */
     dem_real speed;           /* m/s, impact speed assumed */
     char binds[160];          /* what binds: materials, radii, speed */
 } dem_advice;
-/* Looks at the contacts there are, and makes the list of them first where there is none. */
-DEM_API dem_result dem_step_advice(dem_world *world, dem_advice *advice);
+/* What contacts that are pressed already allow is looked at when the run begins, and as it goes on:
+   a step that is too large for them is refused then, or made smaller where it was chosen. */
+DEM_API dem_result dem_step_advice(const dem_world *world, dem_advice *advice);
 
 DEM_API dem_result dem_world_step(dem_world *world, int steps);
 /* Runs on for seconds, to the step nearest to the end. Runs that follow each other add up: twenty
@@ -6686,7 +6687,6 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     w->skin_chosen = 1;
     /* other laws: memory means nothing */
     if (w->carry_stride != w->memory_stride) w->carry_count = 0;
-    demi_wrap(w);
     for (k = 0; k < 3; k++) {
         const demi_periods p = demi_periods_of(w);
         const double need = 2*(2*(double)w->radius_max + w->skin);
@@ -6699,6 +6699,7 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     }
     demi_walls_repeat(w);
     if (demi_walls_refuse(w) || demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
+    demi_wrap(w);                               /* after what may be refused: places stay then */
     if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
     if (!demi_grid_lay(w, 2*(w->wide ? w->level_fine : (double)w->radius_max) + w->skin + 1e-300))
@@ -10923,6 +10924,13 @@ static double demi_spin_fastest(const dem_world *w) {
     return most;
 }
 /* Settles dt before stepping: chosen or checked. */
+DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
+    if (demi_null(w, "dem_step_advice", advice, "advice")) return DEM_ERROR_ARGUMENT;
+    demi_advise(w, advice);
+    if (advice->contact_time > 0) return DEM_OK;
+    return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: the world has no grain "
+                     "that moves; add grains before asking for a time step");
+}
 static dem_result demi_dt_settle(dem_world *w) {
     dem_advice a;
     double spin;
@@ -11437,32 +11445,6 @@ static dem_result demi_refresh(dem_world *w) {
     if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
     w->forces_valid = 1;
-    return DEM_OK;
-}
-
-/* What is pressed now binds as well. */
-DEM_API dem_result dem_step_advice(dem_world *w, dem_advice *advice) {
-    double limit;
-    int worst = 0;
-    if (demi_null(w, "dem_step_advice", advice, "advice")) return DEM_ERROR_ARGUMENT;
-    if (!w->list_valid) demi_effects(w);
-    demi_advise(w, advice);
-    if (!(advice->contact_time > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_step_advice: the world has no grain that "
-                         "moves; add grains before asking for a time step");
-    if (!w->forces_valid || !w->list_valid || w->pairs_changed) {
-        const dem_result result = demi_refresh(w);
-        if (result != DEM_OK) return result;
-    }
-    limit = demi_press_limit(w, (double)advice->dt_max, &worst);
-    if (limit < 0) return demi_no_memory(w, "dem_step_advice");
-    if (!(limit > 0)) return DEM_OK;
-    advice->dt_max = (dem_real)limit;
-    advice->dt = (dem_real)DEMI_MIN((double)advice->dt, limit/2);
-    snprintf(advice->binds, sizeof advice->binds, "body %u, pressed by %d contacts, by %.3g of its "
-             "radius at most", (unsigned)w->body_slot[worst] + 1,
-             (int)((demi_press *)w->press_.data)[worst].contacts,
-             (double)((demi_press *)w->press_.data)[worst].deepest);
     return DEM_OK;
 }
 

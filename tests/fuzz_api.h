@@ -705,6 +705,9 @@ static void fuzz_ran(fuzz_machine *m, dem_result r, uint64_t steps) {
     if (r == DEM_ERROR_UNSTABLE || r == DEM_ERROR_MEMORY) m->refusable = 0;   /* stops in the middle */
     if (r == DEM_ERROR_TIME_STEP) m->refusable = 0;         /* also found out on the way */
     if (r == DEM_ERROR_ARGUMENT && m->feeds && fuzz_avoids.step_refused_after_feed) m->refusable = 0;
+    /* a wall that moved grew longer than the period in the middle of a step */
+    if (r == DEM_ERROR_ARGUMENT && strstr(dem_world_error(m->world), "longer than the period"))
+        m->refusable = 0;
     if (dem_world_steps(m->world) == steps) return;
     if (r == DEM_OK) m->bodies_gone = 0;
     if (r == DEM_OK && dem_counters_get(m->world).rebuilds != m->rebuilds) m->pairs_new = 0;
@@ -1399,6 +1402,7 @@ static void fuzz_call(fuzz_machine *m, const unsigned char *bytes) {
         if (domains > m->domains_most) m->domains_most = domains;
     }
     if (m->must_fail && !m->failed) fuzz_fail("%c: %s was accepted", m->name, kind->name);
+    dem_world_error(m->world);                  /* read: a refusal does not keep runs from beginning */
 }
 /* A fresh world with the scene of a; with != 0: and what bodies were added, anyhow. */
 static int fuzz_fresh(fuzz_game *g, fuzz_machine *f, int threads, int with) {

@@ -7,7 +7,7 @@
 #include "test.h"
 #include "fuzz_api.h"
 
-enum { GRAINS = FUZZ_GRAINS, SEEDS = 100 };          /* to a sentence: about a second */
+enum { GRAINS = FUZZ_GRAINS, SEEDS = 60 };          /* to a sentence: about a second */
 static void seeds(int first, int parts) {
     int seed;
     for (seed = first; seed < first + SEEDS; seed++) CHECK_EQ(fuzz_one((uint64_t)seed, parts), 0);
