@@ -175,7 +175,7 @@ static int step_timed(dem_world *w, double time[PHASES]) {
     w->moved = 1;
     moved = found = study_clock();
     if (!w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach + w->wall_reach > w->skin) {
-        if (demi_rebuild(w) != DEM_OK) return 0;
+        if (demi_rebuild(w, "dem_world_step") != DEM_OK) return 0;
         kernel_choose(w);
         phase = SEARCH;
         search_made++;
@@ -187,6 +187,7 @@ static int step_timed(dem_world *w, double time[PHASES]) {
     }
     if (phase != MOVE) found = study_clock();
     kernel_time = 0;
+    if (!demi_touch(w)) return 0;               /* counted with the rest: walls */
     demi_forces(w);
     w->moved = 0;
     done = study_clock();
@@ -333,7 +334,7 @@ static double search_rare(dem_world *w, double *times, int turns, double rebuild
     double spent = 0, begun;
     if (!(rebuilds > 0)) {
         begun = study_clock();
-        if (demi_rebuild(w) != DEM_OK) study_fail("%s", dem_world_error(w));
+        if (demi_rebuild(w, "dem_world_step") != DEM_OK) study_fail("%s", dem_world_error(w));
         spent = (study_clock() - begun)/steps/w->count;
         rebuilds = 1.0/(steps*turns);
     }
