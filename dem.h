@@ -135,6 +135,7 @@
      [ERI05]   Ericson, Real-Time Collision Detection (2005): closest point on a triangle
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
      [HER82]   Hertz, J. reine angew. Math. 92 (1882) 156
+     [HOA61]   Hoare, Comm. ACM 4 (1961) 321: the k-th of many by exchanges
      [MIL]     a thesis on tumbling mills on a GPU: laws by the step, meshes, segments
      [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
@@ -3759,26 +3760,130 @@ DEM_INLINE int demi_faceted(const demi_wall *wall) {
            (wall->kind == DEMI_WALL_PROFILE && wall->rule == DEM_EDGE_RESOLVED);
 }
 
-/* Points in the order of a coordinate along which hardly two of them are alike. */
-typedef struct demi_sorted { double key; int32_t index; } demi_sorted;
-static int demi_sorted_compare(const void *x, const void *y) {
-    const demi_sorted *a = (const demi_sorted *)x, *b = (const demi_sorted *)y;
-    return a->key < b->key ? -1 : a->key > b->key ? 1 : a->index < b->index ? -1
-        : a->index > b->index;
-}
-static double demi_skewed(const double *x) { return 0.61*x[0] + 0.57*x[1] + 0.5505*x[2]; }
 static double demi_far2(const double *a, const double *b) {
     const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
     return x*x + y*y + z*z;
 }
-static void demi_points_sort(const double *x, int count, demi_sorted *sorted) {
-    int i;
-    for (i = 0; i < count; i++) {
-        sorted[i].key = demi_skewed(x + 3*i);
-        sorted[i].index = i;
+
+/* Points in a tree of boxes, to find those near a line. Node k has the halves 2k + 1 and 2k + 2, cut
+   across its longest side; each has a stretch of `order` and the box around its points. */
+enum { DEMI_TREE_LEAF = 8 };
+typedef struct demi_tree {
+    const double *x;               /* points x 3, m: the caller's */
+    int32_t *order;                /* points */
+    double *box;                   /* nodes x 6: lowest and highest x, y, z */
+    size_t points, nodes;
+} demi_tree;
+/* A search along the line from a to b: nodes not yet looked into, and the leaf under work. */
+typedef struct demi_search_line {
+    const demi_tree *tree;
+    const double *a, *b;
+    double off;                    /* m, how far from the line a point may be */
+    int32_t node[64], from[64], to[64];
+    int open, at, end;
+} demi_search_line;
+
+/* Puts the k-th point along an axis in its place, none above it before it [HOA61]. */
+static void demi_tree_select(const double *x, int axis, int32_t *order, int count, int k) {
+    int lo = 0, hi = count - 1;
+    while (lo < hi) {
+        const double pivot = x[3*order[k] + axis];
+        int i = lo, j = hi;
+        while (i <= j) {
+            while (x[3*order[i] + axis] < pivot) i++;
+            while (x[3*order[j] + axis] > pivot) j--;
+            if (i <= j) {
+                const int32_t keep = order[i];
+                order[i++] = order[j];
+                order[j--] = keep;
+            }
+        }
+        if (j < k) lo = i;
+        if (i > k) hi = j;
     }
-    qsort(sorted, (size_t)count, sizeof *sorted, demi_sorted_compare);
 }
+static void demi_tree_node(demi_tree *t, size_t node, int from, int to) {
+    double *box = t->box + 6*node;
+    const int mid = from + (to - from)/2;
+    int i, k, axis = 0;
+    for (k = 0; k < 3; k++) {
+        box[k] = box[3 + k] = t->x[3*t->order[from] + k];
+        for (i = from + 1; i < to; i++) {
+            box[k] = DEMI_MIN(box[k], t->x[3*t->order[i] + k]);
+            box[3 + k] = DEMI_MAX(box[3 + k], t->x[3*t->order[i] + k]);
+        }
+        if (box[3 + k] - box[k] > box[3 + axis] - box[axis]) axis = k;
+    }
+    if (to - from <= DEMI_TREE_LEAF) return;
+    demi_tree_select(t->x, axis, t->order + from, to - from, mid - from);
+    demi_tree_node(t, 2*node + 1, from, mid);
+    demi_tree_node(t, 2*node + 2, mid, to);
+}
+static void demi_tree_free(dem_world *w, demi_tree *t) {
+    demi_free(w, t->order, t->points, sizeof *t->order);
+    demi_free(w, t->box, t->nodes*6, sizeof *t->box);
+}
+/* 0 when memory ran out; free it even then. */
+static int demi_tree_make(dem_world *w, demi_tree *t, const double *x, int count) {
+    int i;
+    t->x = x;
+    t->points = (size_t)count;
+    for (t->nodes = 1, i = count; i > DEMI_TREE_LEAF; i = i - i/2) t->nodes = 2*t->nodes + 1;
+    t->order = (int32_t *)demi_alloc(w, t->points, sizeof *t->order);
+    t->box = (double *)demi_alloc(w, t->nodes*6, sizeof *t->box);
+    if (!t->order || !t->box) return !count;
+    for (i = 0; i < count; i++) t->order[i] = i;
+    if (count) demi_tree_node(t, 0, 0, count);
+    return 1;
+}
+/* Has the line from a to b a part within `off` of the box? More rather than less near its edges. */
+static int demi_line_meets(const double *a, const double *b, double off, const double *box) {
+    double enter = 0, leave = 1;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const double lo = box[k] - off - a[k], hi = box[3 + k] + off - a[k], way = b[k] - a[k];
+        if (way > 0 || way < 0) {
+            enter = DEMI_MAX(enter, (way > 0 ? lo : hi)/way);
+            leave = DEMI_MIN(leave, (way > 0 ? hi : lo)/way);
+        } else if (lo > 0 || hi < 0) return 0;
+    }
+    return enter <= leave*(1 + 1e-12) + 1e-300;
+}
+static void demi_tree_line(demi_search_line *s, const demi_tree *t, const double *a,
+                           const double *b, double off) {
+    s->tree = t;
+    s->a = a;
+    s->b = b;
+    s->off = off;
+    s->open = t->points > 0;
+    s->node[0] = s->from[0] = 0;
+    s->to[0] = (int32_t)t->points;
+    s->at = s->end = 0;
+}
+/* The next point that may be near the line, -1 after the last; no point that is near is missing. */
+static int32_t demi_tree_next(demi_search_line *s) {
+    while (s->at == s->end) {
+        int32_t node, from, to;
+        if (!s->open) return -1;
+        node = s->node[--s->open];
+        from = s->from[s->open];
+        to = s->to[s->open];
+        if (!demi_line_meets(s->a, s->b, s->off, s->tree->box + 6*node)) continue;
+        if (to - from <= DEMI_TREE_LEAF) {
+            s->at = from;
+            s->end = to;
+        } else {
+            s->node[s->open] = 2*node + 2;
+            s->from[s->open] = from + (to - from)/2;
+            s->to[s->open++] = to;
+            s->node[s->open] = 2*node + 1;
+            s->from[s->open] = from;
+            s->to[s->open++] = from + (to - from)/2;
+        }
+    }
+    return s->tree->order[s->at++];
+}
+
 /* How far from each corner's point another may be and yet be the same, m: a few roundings of the
    largest coordinate, as binary STL stores it, but far less than the shortest side there. */
 static void demi_near_by(const double *x, const demi_wall *wall, int first, double *near_by) {
@@ -3801,20 +3906,23 @@ static void demi_near_by(const double *x, const demi_wall *wall, int first, doub
         }
 }
 /* same[i]: the first point that lies where point i does. */
-static void demi_points_weld(const double *x, int count, const double *near_by,
-                             const demi_sorted *sorted, int32_t *same) {
-    int i, j;
+static void demi_points_weld(const demi_tree *tree, const double *near_by, int32_t *same) {
+    const double *x = tree->x;
+    const int count = (int)tree->points;
+    demi_search_line near;
+    int i;
     for (i = 0; i < count; i++) same[i] = i;
-    for (i = 0; i < count; i++)
-        for (j = i + 1; j < count && sorted[j].key - sorted[i].key <= near_by[sorted[i].index];
-             j++) {
-            int32_t a = sorted[i].index, b = sorted[j].index;
-            const double most = DEMI_MIN(near_by[a], near_by[b]);
-            if (!(demi_far2(x + 3*a, x + 3*b) <= most*most)) continue;
-            while (same[a] != a) a = same[a];
-            while (same[b] != b) b = same[b];
+    for (i = 0; i < count; i++) {
+        int32_t a, b, other;
+        demi_tree_line(&near, tree, x + 3*i, x + 3*i, near_by[i]);
+        while ((other = demi_tree_next(&near)) >= 0) {
+            const double most = DEMI_MIN(near_by[i], near_by[other]);
+            if (other <= i || !(demi_far2(x + 3*i, x + 3*other) <= most*most)) continue;
+            for (a = i; same[a] != a;) a = same[a];
+            for (b = other; same[b] != b;) b = same[b];
             same[DEMI_MAX(a, b)] = DEMI_MIN(a, b);
         }
+    }
     for (i = 0; i < count; i++) same[i] = same[same[i]];
 }
 /* Does a facet count? Not with two corners in one place; nor a triangle with none off its longest
@@ -3863,18 +3971,19 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
     const int n = wall->kind == DEMI_WALL_MESH ? 3 : 2, all = wall->element_count;
     const size_t vertices = (size_t)wall->vertex_count;
     double *x = (double *)demi_alloc(w, vertices*3, sizeof *x);
-    demi_sorted *sorted = (demi_sorted *)demi_alloc(w, vertices, sizeof *sorted);
     int32_t *same = (int32_t *)demi_alloc(w, vertices, sizeof *same);
     demi_side *sides = (demi_side *)demi_alloc(w, (size_t)all*3, sizeof *sides);
     double *near_by = (double *)demi_alloc(w, vertices, sizeof *near_by);
+    demi_tree tree;
     int i, k, count = 0, ok = 0;
+    memset(&tree, 0, sizeof tree);
     wall->owns = (unsigned char *)demi_alloc(w, (size_t)all, 1);
     wall->edges = (int32_t *)demi_alloc(w, (size_t)all*3, sizeof(int32_t));
-    if (!x || !sorted || !same || !sides || !near_by || !wall->owns || !wall->edges) goto done;
+    if (!x || !same || !sides || !near_by || !wall->owns || !wall->edges) goto done;
     for (i = 0; i < 3*wall->vertex_count; i++) x[i] = (double)wall->vertices[i];
+    if (!demi_tree_make(w, &tree, x, wall->vertex_count)) goto done;
     demi_near_by(x, wall, 0, near_by);
-    demi_points_sort(x, wall->vertex_count, sorted);
-    demi_points_weld(x, wall->vertex_count, near_by, sorted, same);
+    demi_points_weld(&tree, near_by, same);
     for (i = 0; i < n*all; i++) wall->corners[i] = same[wall->corners[i]];
     memset(same, 0, vertices*sizeof *same);     /* from here on: does an element own it? */
     for (i = 0; i < all; i++) {
@@ -3901,7 +4010,7 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
     ok = wall->weight != 0;
 done:
     demi_free(w, x, vertices*3, sizeof *x);
-    demi_free(w, sorted, vertices, sizeof *sorted);
+    demi_tree_free(w, &tree);
     demi_free(w, same, vertices, sizeof *same);
     demi_free(w, sides, (size_t)all*3, sizeof *sides);
     demi_free(w, near_by, vertices, sizeof *near_by);
@@ -4012,7 +4121,7 @@ typedef struct demi_join {
     int points, facets, sides, cuts;
     int images;                    /* of facets: the last ones, of no wall, -1 */
     double *x, *near_by;           /* points: x 3; m, what is one place */
-    demi_sorted *sorted;           /* points */
+    demi_tree tree;                /* of points */
     int32_t *same, *mark;          /* points: the first in this place; for whoever needs it */
     double *faces, *corners;       /* points: facets there, in all and with a corner */
     double *edges;                 /* points: weights of edges that end there */
@@ -4029,7 +4138,7 @@ static void demi_join_free(dem_world *w, demi_join *j) {
     const size_t p = j->point_room, f = j->facet_room;
     demi_free(w, j->x, p*3, sizeof(double));
     demi_free(w, j->near_by, p, sizeof(double));
-    demi_free(w, j->sorted, p, sizeof(demi_sorted));
+    demi_tree_free(w, &j->tree);
     demi_free(w, j->same, p, sizeof(int32_t));
     demi_free(w, j->mark, p, sizeof(int32_t));
     demi_free(w, j->faces, p, sizeof(double));
@@ -4121,7 +4230,6 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
     if (j->point_room > INT_MAX/8 || j->facet_room > INT_MAX/8) return 0;
     j->x = (double *)demi_alloc(w, j->point_room*3, sizeof(double));
     j->near_by = (double *)demi_alloc(w, j->point_room, sizeof(double));
-    j->sorted = (demi_sorted *)demi_alloc(w, j->point_room, sizeof(demi_sorted));
     j->same = (int32_t *)demi_alloc(w, j->point_room, sizeof(int32_t));
     j->mark = (int32_t *)demi_alloc(w, j->point_room, sizeof(int32_t));
     j->faces = (double *)demi_alloc(w, j->point_room, sizeof(double));
@@ -4131,7 +4239,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
     j->facet = (int32_t *)demi_alloc(w, j->facet_room*5, sizeof(int32_t));
     j->count = (double *)demi_alloc(w, j->facet_room, sizeof(double));
     j->side = (demi_side *)demi_alloc(w, j->facet_room*3, sizeof(demi_side));
-    if (!j->x || !j->near_by || !j->sorted || !j->same || !j->mark || !j->faces || !j->corners ||
+    if (!j->x || !j->near_by || !j->same || !j->mark || !j->faces || !j->corners ||
         !j->edges || !j->own || !j->facet || !j->count || !j->side) return 0;
     for (i = group; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
@@ -4148,8 +4256,8 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
     real_points = j->points;
     demi_join_images(w, j, group, 1);
     first = 0;
-    demi_points_sort(j->x, j->points, j->sorted);
-    demi_points_weld(j->x, j->points, j->near_by, j->sorted, j->same);
+    if (!demi_tree_make(w, &j->tree, j->x, j->points)) return 0;
+    demi_points_weld(&j->tree, j->near_by, j->same);
     for (i = group; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
         if (!demi_join_member(w, i, group, per)) continue;
@@ -4205,16 +4313,12 @@ static void demi_join_double(demi_join *j) {
    may be null. */
 static int demi_join_between(const demi_join *j, int32_t a, int32_t b, int32_t *out) {
     const double *p = j->x + 3*a, *q = j->x + 3*b;
-    const double from = demi_skewed(p), to = demi_skewed(q), size2 = demi_far2(p, q);
-    const double ends = DEMI_MIN(j->near_by[a], j->near_by[b]);
-    const double lo_key = DEMI_MIN(from, to) - ends, hi_key = DEMI_MAX(from, to) + ends;
-    int lo = 0, hi = j->points, i, n = 0;
-    while (lo < hi) {
-        const int mid = (lo + hi)/2;
-        if (j->sorted[mid].key < lo_key) lo = mid + 1; else hi = mid;
-    }
-    for (; lo < j->points && j->sorted[lo].key <= hi_key; lo++) {
-        const int32_t at = j->sorted[lo].index;
+    const double size2 = demi_far2(p, q), ends = DEMI_MIN(j->near_by[a], j->near_by[b]);
+    demi_search_line line;
+    int32_t at;
+    int i, n = 0;
+    demi_tree_line(&line, &j->tree, p, q, ends);
+    while ((at = demi_tree_next(&line)) >= 0) {
         const double *y = j->x + 3*at;
         const double most = DEMI_MIN(ends, j->near_by[at]);
         double t = 0, off2 = 0;

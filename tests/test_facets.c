@@ -1245,6 +1245,61 @@ int main(int argc, char **argv) {
             soup_free(&s);
         }
     }
+    TEST("corners near an edge are found as by looking at all, and few others are looked at however long the edge") {
+        enum { POINTS = 4000 };
+        static double x[3*POINTS];
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *w = dem_world_create(&desc);
+        uint64_t seed = 5;
+        int shape, i, k, trial, missed = 0, looked = 0;
+        for (shape = 0; shape < 3; shape++) {   /* a cloud, two rims, an oblique plane of few places */
+            demi_tree tree;
+            for (i = 0; i < POINTS; i++) {
+                const double angle = 4*pi*i/POINTS;
+                for (k = 0; k < 3; k++) x[3*i + k] = scene_random(&seed);
+                if (shape == 1) {
+                    x[3*i] = 10*cos(angle);
+                    x[3*i + 1] = 10*sin(angle);
+                    x[3*i + 2] = i < POINTS/2 ? -3 : 3;
+                } else if (shape == 2) {
+                    for (k = 0; k < 2; k++) x[3*i + k] = floor(12*x[3*i + k]);
+                    x[3*i + 2] = -(0.61*x[3*i] + 0.57*x[3*i + 1])/0.5505;
+                }
+            }
+            memset(&tree, 0, sizeof tree);
+            if (!demi_tree_make(w, &tree, x, POINTS)) CHECK(0);
+            for (trial = 0; trial < 200; trial++) {
+                const int a = (int)(scene_random(&seed)*POINTS/2);
+                const int b = trial%4 ? a + POINTS/2 : a;
+                const double off = trial%3 ? 1e-6 : 0.03;
+                static char found[POINTS];
+                demi_search_line line;
+                int32_t p;
+                memset(found, 0, sizeof found);
+                demi_tree_line(&line, &tree, x + 3*a, x + 3*b, off);
+                while ((p = demi_tree_next(&line)) >= 0) {
+                    CHECK(!found[p]);
+                    found[p] = 1;
+                    looked += shape == 1 && off < 0.01;
+                }
+                for (i = 0; i < POINTS; i++) {
+                    double t = 0, l = demi_far2(x + 3*a, x + 3*b), d2 = 0;
+                    for (k = 0; k < 3; k++)
+                        t += (x[3*i + k] - x[3*a + k])*(x[3*b + k] - x[3*a + k])/(l > 0 ? l : 1);
+                    t = t > 1 ? 1 : t > 0 ? t : 0;
+                    for (k = 0; k < 3; k++) {
+                        const double d = x[3*i + k] - x[3*a + k] - t*(x[3*b + k] - x[3*a + k]);
+                        d2 += d*d;
+                    }
+                    missed += d2 <= off*off && !found[i];
+                }
+            }
+            demi_tree_free(w, &tree);
+        }
+        CHECK_NEAR(missed, 0, 0);
+        CHECK(looked < 133*40);                 /* 133 searches; each ends in a leaf or two a rim */
+        dem_world_destroy(w);
+    }
     TEST("a coordinate that is no number is refused by name") {
         dem_real x[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
         int32_t t[3] = {0, 1, 2};
