@@ -4888,10 +4888,11 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
                           const dem_real *xyz,
                           int per_vertex, int elements, const int32_t *corners, int per_element) {
     int i, k;
-    if (vertices < 1 || elements < 1 || !xyz || (per_element && !corners)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be at least one of "
-                  "each; was the file "
-                  "read?", call, vertices, elements);
+    if (vertices < 1 || elements < 1 || vertices > INT_MAX/8 || elements > INT_MAX/8 || !xyz ||
+        (per_element && !corners)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be 1 to %d of "
+                  "each and pointers to them; was the file read?", call, vertices, elements,
+                  INT_MAX/8);
         return 0;
     }
     for (i = 0; i < vertices*per_vertex; i++)
@@ -4951,10 +4952,15 @@ DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_profile_add", material, DEMI_WALL_PROFILE, &wall) ||
-        !demi_wall_load(w, "dem_profile_add", &wall, profile->vertex_count, profile->vertices, 2,
-                        profile->segment_count, profile->segments, 2)) return none;
+    if (!demi_wall_begin(w, "dem_profile_add", material, DEMI_WALL_PROFILE, &wall)) return none;
+    if (rule < DEM_EDGE_RESOLVED || rule > DEM_EDGE_FRACTION) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_profile_add: rule is %d, must be DEM_EDGE_RESOLVED "
+                  "(0) to DEM_EDGE_FRACTION (%d); was it set?", (int)rule, (int)DEM_EDGE_FRACTION);
+        return none;
+    }
     wall.rule = rule;
+    if (!demi_wall_load(w, "dem_profile_add", &wall, profile->vertex_count, profile->vertices, 2,
+                        profile->segment_count, profile->segments, 2)) return none;
     wall.motion.axis = demi_v(0, 0, 1);
     return demi_wall_adopt(w, "dem_profile_add", &wall);
 }
@@ -11582,7 +11588,7 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
             sampling |= w->fields[f].used && w->time >= w->fields[f].next;
         if (sampling && whole) { demi_finish(w); demi_fields_sample(w); }
     }
-    if (!whole) return result;                  /* half a step: its velocities stay as predicted */
+    if (!whole && w->moved) return result;      /* half a step: its velocities stay as predicted */
     demi_finish(w);
     return result;
 }
@@ -13991,13 +13997,34 @@ static void demi_visit_digests(const dem_world *w, demi_stream *s, const int32_t
             demi_visit(s, &digest, sizeof digest);
         }
 }
+/* The first body whose state is not finite or out of the world; -1: none. */
+static int demi_body_lost(const dem_world *w) {
+    const dem_real *fours[] = {w->pos, w->vel, w->spin, w->half_vel, w->half_spin, w->force,
+                               w->torque, w->last_pos, w->orient, w->angular, w->moment};
+    int i, k;
+    size_t f;
+    for (i = 0; i < w->count; i++) {
+        for (f = 0; f < sizeof fours/sizeof *fours; f++)
+            for (k = 0; k < 4; k++)
+                if (fours[f] && !demi_finite(fours[f][4*i + k])) return i;
+        if (demi_size(demi_at(w->pos + 4*i)) > DEMI_REACH) return i;
+    }
+    return -1;
+}
 DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     if (demi_null(w, "dem_checkpoint_write", w, "world")) return DEM_ERROR_ARGUMENT;
+    const int lost = demi_body_lost(w);
     demi_checkpoint_head head;
     demi_out out;
     demi_stream s = {0, 0, 0, 0, 0, 0};
-    dem_result result = demi_out_open(&out, w, "dem_checkpoint_write", path);
+    dem_result result;
     uint64_t sum;
+    if (lost >= 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_write: body %u is no longer at a "
+                         "finite place and speed: the run has blown up; go back to an earlier "
+                         "checkpoint, %s is left as it was", (unsigned)w->body_slot[lost] + 1,
+                         path ? path : "the file");
+    result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
     if (w->list_valid) w->carry_count = 0;      /* filed once, and taken up by the list */
     if (!w->carry_count) w->carry_rows = w->carry_stride = 0;
@@ -14334,16 +14361,11 @@ static dem_real demi_quat_size2(const dem_real *q) {
 }
 static int demi_bodies_sane(const demi_reader *r) {
     const dem_world *t = r->t;
-    const dem_real *fours[] = {t->pos, t->vel, t->spin, t->half_vel, t->half_spin, t->force,
-                               t->torque, t->last_pos, t->orient, t->angular, t->moment};
+    const int lost = demi_body_lost(t);
     int i, k, shaped = 0;
-    size_t f;
+    if (lost >= 0) return demi_lie(r, "a number of body", lost);
     for (i = 0; i < t->count; i++) {
-        for (f = 0; f < sizeof fours/sizeof *fours; f++)
-            for (k = 0; k < 4; k++)
-                if (fours[f] && !demi_finite(fours[f][4*i + k]))
-                    return demi_lie(r, "a number of body", i);
-        if (demi_size(demi_at(t->pos + 4*i)) > DEMI_REACH || !(t->pos[4*i + 3] > 0) ||
+        if (!(t->pos[4*i + 3] > 0) ||
             !demi_sane((double)t->mass[i], 0) || !(t->mass[i] > 0) ||
             !demi_sane((double)t->inv_mass[i], 0) || !demi_sane((double)t->inv_inertia[i], 0))
             return demi_lie(r, "position, radius or mass of body", i);
@@ -14980,6 +15002,7 @@ struct dem_slabs {
     demi_slab *slabs;              /* local */
     demi_domain total;             /* the head's only domain */
     demi_parcel mine, all;         /* for dem_slabs_collect */
+    demi_array known;              /* uint32_t by slot: generation of the body dealt, 0: none */
     uint64_t border_moves;
     void (*phase)(struct dem_slabs *s, demi_slab *b);
 };
@@ -16217,6 +16240,7 @@ DEM_API void dem_slabs_destroy(dem_slabs *s) {
     for (k = s->slabs ? s->local - 1 : -1; k >= 0; k--) demi_slab_destroy(&s->slabs[k], k > 0);
     demi_array_free(h, &s->mine.bytes);
     demi_array_free(h, &s->all.bytes);
+    demi_array_free(h, &s->known);
     demi_free(h, h->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
     demi_free(h, h->pos, most, 4*sizeof(dem_real));
     demi_free(h, h->vel, most, 4*sizeof(dem_real));
@@ -16253,6 +16277,9 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     s->period = (double)demi_periods_of(w).period[s->axis];
     marks = (uint8_t *)demi_alloc(w, slots, 1);
     ok = marks && demi_slabs_head(s, w);
+    ok = ok && demi_array_grow(&s->head, &s->known, sizeof(uint32_t), slots);
+    for (k = 0; k < w->slot_count && ok; k++)
+        ((uint32_t *)s->known.data)[k] = w->slot_index[k] < 0 ? 0 : w->slot_generation[k];
     if (ok) demi_slabs_first_borders(s, w);
     for (k = 0; k < s->local && ok; k++) {
         demi_slab *b = &s->slabs[k];
@@ -16451,6 +16478,13 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, demi_array *add, d
                          "created from, unchanged, or one built like it", call, w->slot_count,
                          w->wall_count, w->material_count, s->slabs[0].world->slot_count,
                          h->wall_count, h->material_count);
+    for (i = 0; i < w->count; i++) {
+        const uint32_t slot = w->body_slot[i];
+        if (w->slot_generation[slot] != ((const uint32_t *)s->known.data)[slot])
+            return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u was added to the world after the "
+                             "slabs had been created; collect before adding grains, or create the "
+                             "slabs anew after it", call, (unsigned)slot + 1);
+    }
     for (k = 0; k < s->count; k++) {
         const char *from = demi_slabs_find(s, k, &sums);
         demi_parcel_head head;

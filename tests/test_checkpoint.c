@@ -837,5 +837,24 @@ int main(int argc, char **argv) {
         free(present);
         dem_world_destroy(world);
     }
+    TEST("a run that has blown up is not written over its last checkpoint, and the sentence says so") {
+        dem_world *world = tiny_world(2500);
+        size_t before, after;
+        char *old, *present;
+        scene_step(world, 3);
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+        old = file_get(path, &before);
+        world->vel[1] = (dem_real)(HUGE_VAL - HUGE_VAL);
+        CHECK_EQ(dem_checkpoint_write(world, path), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "the run has blown up");
+        present = file_get(path, &after);
+        CHECK_EQ(before, after);
+        CHECK(old && present && memcmp(old, present, after) == 0);
+        CHECK_EQ(dem_checkpoint_read(world, path), DEM_OK);
+        CHECK_EQ(scene_step(world, 3), DEM_OK);
+        free(old);
+        free(present);
+        dem_world_destroy(world);
+    }
     return test_end();
 }

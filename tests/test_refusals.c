@@ -448,6 +448,50 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error(world), "1e+15 m");
         dem_world_destroy(world);
     }
+    TEST("an unknown edge rule, no vertices or fewer are refused, and more than can be counted") {
+        dem_world *world = plain_world();
+        const dem_material m = stone(world);
+        dem_real x[4] = {0, 0, 1, 0};
+        int32_t ends[2] = {0, 1};
+        dem_profile profile;
+        profile.vertex_count = 2; profile.segment_count = 1;
+        profile.vertices = x; profile.segments = ends;
+        CHECK_EQ(dem_profile_add(world, m, &profile, (dem_edge_rule)3).id, 0);
+        CHECK_STR(dem_world_error(world), "rule is 3");
+        profile.segment_count = -1;
+        CHECK_EQ(dem_profile_add(world, m, &profile, DEM_EDGE_RESOLVED).id, 0);
+        CHECK_STR(dem_world_error(world), "-1 elements, must be 1 to");
+        profile.segment_count = 1; profile.vertex_count = INT_MAX;
+        CHECK_EQ(dem_profile_add(world, m, &profile, DEM_EDGE_RESOLVED).id, 0);
+        CHECK_STR(dem_world_error(world), "2147483647 vertices");
+        CHECK_EQ(dem_grains_wall_add(world, m, -3, x, 1, 1).id, 0);
+        CHECK_STR(dem_world_error(world), "-3 vertices");
+        profile.vertex_count = 2;
+        CHECK_EQ(dem_profile_add(world, m, &profile, DEM_EDGE_FRACTION).id, 1);
+        dem_world_destroy(world);
+    }
+    TEST("a run that stops because grains overlap stands at the end of that step: what is refused "
+         "after it changes nothing") {
+        dem_world *world = plain_world();
+        const dem_material m = stone(world);
+        dem_sieve_desc sieve = DEM_SIEVE_DESC;
+        const dem_shape egg = dem_shape_ellipsoid_add(world, at(1e-3, 1e-3, 1.5e-3));
+        uint64_t hash;
+        dem_body_add(world, m, egg, at(0, 0, 0.01), dem_quat_make(1, 0, 0, 0));
+        dem_sphere_add(world, m, DEM_R(1e-3), at(0, 0, 0.02));
+        dem_sphere_add(world, m, DEM_R(1e-3), at(1e-5, 0, 0.02));
+        CHECK_EQ(dem_world_step(world, 5), DEM_ERROR_UNSTABLE);
+        sieve.kind = DEM_SIEVE_WIRES;
+        sieve.aperture = DEM_R(1e-3);
+        sieve.bar = DEM_R(2e-4);
+        sieve.normal = at(0, 0, 1);
+        CHECK(dem_sieve_add(world, m, &sieve).id > 0);
+        hash = dem_world_hash(world);
+        CHECK_EQ(dem_world_step(world, 5), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "is a sieve");
+        CHECK(dem_world_hash(world) == hash);
+        dem_world_destroy(world);
+    }
     TEST("a packing stops at its count however large the box, and one with more places than can be "
          "counted is refused") {
         dem_world *world = plain_world();

@@ -786,6 +786,7 @@ int main(int argc, char **argv) {
         dem_slabs *slabs;
         dem_channels c;
         dem_slab slab;
+        dem_material first;
         dem_wall wall;
         CHECK(!dem_slabs_create(world, &desc));
         CHECK_STR(dem_world_error(world), "count is 0, must be 1 to 1024");
@@ -829,6 +830,11 @@ int main(int argc, char **argv) {
         dem_body_remove(world, dem_bodies_id(world, 3));
         CHECK_EQ(dem_slabs_collect(slabs, world), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_slabs_error(slabs), "no longer in the world; collect before removing");
+        first.id = 1;
+        CHECK_EQ(dem_search_now(world), DEM_OK);                /* from now on its slot is free */
+        dem_sphere_add(world, first, DEM_R(1e-3), at(0, 0, 0.5));   /* takes the removed one's slot */
+        CHECK_EQ(dem_slabs_collect(slabs, world), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_slabs_error(slabs), "was added to the world after the slabs had been created");
         dem_slabs_destroy(slabs);
         slabs = deal(small, 0, 16);            /* 50 mm in 16 slabs: 3.1 mm, largest grain 3 mm */
         CHECK_EQ(dem_slabs_step(slabs, 1), DEM_OK);
