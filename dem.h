@@ -365,7 +365,9 @@ typedef enum dem_search {
 typedef enum dem_boundary {
     DEM_BOUNDARY_OPEN = 0,   /* bodies may leave the domain box; nothing happens */
     DEM_BOUNDARY_PERIODIC,   /* leaves on one side, enters on the other */
-    DEM_BOUNDARY_OUTFLOW  /* bodies whose centre leaves the box are taken out and counted as left */
+    /* bodies whose centre leaves the box are taken out in that step and counted as left; each time
+       a new list of neighbours is made: many that leave one by one are cheaper with an outlet */
+    DEM_BOUNDARY_OUTFLOW
 } dem_boundary;
 
 /* ---- a contact, and a law of one's own ---- */
@@ -875,7 +877,8 @@ typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* 
 
 /* Adds grains while the world runs: at random places in a region, of random sizes, at a rate, or
    all at once. A grain that finds no free place waits, and is not lost; places are found as
-   dem_spheres_fill finds them. */
+   dem_spheres_fill finds them. Most grains join the list of neighbours as it is; it is made anew
+   for one that brings a first size or material in, or comes beside bodies that are no spheres. */
 typedef struct dem_feed_desc {
     dem_material material;           /* required */
     int class_count;                 /* required, 1..16: classes of size */
@@ -906,7 +909,9 @@ DEM_API dem_feed dem_feed_add(dem_world *world, const dem_feed_desc *desc);
 DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_state *state);
 
 /* Takes out grains whose centre is in a region (fixed ones too), and counts them; for the balance
-   they have left. The radius of a body that is not a sphere: of the smallest sphere about its
+   they have left. It looks whenever a new list of neighbours is made, and every 64 steps: a grain
+   is in by half a skin at most, or for 64 steps, before it goes; a region thinner than half a skin
+   may be passed unseen. So many that leave one by one cost hardly more than none. The radius of a body that is not a sphere: of the smallest sphere about its
    centre that holds it. */
 typedef struct dem_outlet_desc {
     dem_wall frame;                  /* the region moves with this wall, which then cannot be
@@ -1756,6 +1761,8 @@ struct dem_world {
     double near_creep;             /* m: what that may have brought two bodies together */
     demi_array quiet_;             /* what may push each few bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
+    int join_room;                 /* candidates that newcomers may still bring, see demi_list_join */
+    int near_stale;                /* lacks a pair of a body that joined: made anew in the next step */
     int *cross_incoming_start;     /* domain_count + 1 */
     demi_array cross_incoming_, cross_push_;
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
@@ -4890,9 +4897,9 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
     int i, k;
     if (vertices < 1 || elements < 1 || vertices > INT_MAX/8 || elements > INT_MAX/8 || !xyz ||
         (per_element && !corners)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be 1 to %d of "
-                  "each and pointers to them; was the file read?", call, vertices, elements,
-                  INT_MAX/8);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be at least one of "
+                  "each, at most %d, with pointers to them; was the file read?", call, vertices,
+                  elements, INT_MAX/8);
         return 0;
     }
     for (i = 0; i < vertices*per_vertex; i++)
@@ -5980,28 +5987,31 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
     }
     if (domain->walls > first) demi_walls_order(w, domain, d, first);
 }
+/* Elements of all walls near body i. */
+static void demi_body_walls(dem_world *w, int d, int i) {
+    demi_domain *domain = &w->domains[d];
+    int j, a, b, c, f[3], l[3];
+    if ((w->fixed_count && w->inv_mass[i] <= 0) || demi_visits(w, i)) return;
+    for (j = 0; j < w->wall_count; j++) {
+        const demi_wall *wall = &w->walls[j];
+        if (wall->kind == DEMI_WALL_NONE) continue;
+        if (!w->repeating) {
+            demi_wall_look(w, domain, d, i, j, demi_v(0, 0, 0));
+            continue;
+        }
+        demi_wall_images(w, wall, demi_at(w->pos + 4*i), w->pos[4*i + 3] + (dem_real)w->skin, f, l);
+        for (c = f[2]; c <= l[2]; c++)
+            for (b = f[1]; b <= l[1]; b++)
+                for (a = f[0]; a <= l[0]; a++)
+                    demi_wall_look(w, domain, d, i, j, demi_wall_shift(w, a, b, c));
+    }
+}
 static void demi_domain_walls(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    int i, j, a, b, c, f[3], l[3];
+    int i;
     domain->walls = 0;
     domain->overflow &= ~4;
-    for (i = domain->begin; i < domain->end; i++) {
-        if ((w->fixed_count && w->inv_mass[i] <= 0) || demi_visits(w, i)) continue;
-        for (j = 0; j < w->wall_count; j++) {
-            const demi_wall *wall = &w->walls[j];
-            if (wall->kind == DEMI_WALL_NONE) continue;
-            if (!w->repeating) {
-                demi_wall_look(w, domain, d, i, j, demi_v(0, 0, 0));
-                continue;
-            }
-            demi_wall_images(w, wall, demi_at(w->pos + 4*i), w->pos[4*i + 3] + (dem_real)w->skin,
-                             f, l);
-            for (c = f[2]; c <= l[2]; c++)
-                for (b = f[1]; b <= l[1]; b++)
-                    for (a = f[0]; a <= l[0]; a++)
-                        demi_wall_look(w, domain, d, i, j, demi_wall_shift(w, a, b, c));
-        }
-    }
+    for (i = domain->begin; i < domain->end; i++) demi_body_walls(w, d, i);
 }
 
 /* Room for a list. 0 when memory ran out; what did grow is pointed at all the same. */
@@ -6222,16 +6232,16 @@ static int demi_wall_contacts_widen(dem_world *w) {
     return 1;
 }
 
-/* Contacts of shaped bodies that still last, from the last list (by slot) into the domains of the
-   new one, each with its lower body as a: what turns round, turns round. */
-static int demi_shaped_move(dem_world *w) {
-    int d, k, e = 0, i, total = 0, stride = DEMI_MAX(64, w->count/w->domain_count*4);
+/* Room for the contacts of shaped bodies in the domains of a new list; nothing moves yet. Answers
+   how many a domain then holds, 0: there are none to move, -1: memory ran out. */
+static int demi_shaped_room(dem_world *w) {
+    int d, k, total = 0, stride = DEMI_MAX(64, w->count/w->domain_count*4);
     int crowd[DEMI_DOMAINS], ok;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         total += w->domains[d].shaped;
         crowd[d] = 0;
     }
-    if (!w->shaped_count && !total) return 1;
+    if (!w->shaped_count && !total) return 0;
     for (d = 0; d < DEMI_DOMAINS; d++)          /* how many will come to each domain at most */
         for (k = 0; k < w->domains[d].shaped; k++) {
             const demi_shaped *c = &w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
@@ -6246,7 +6256,13 @@ static int demi_shaped_move(dem_world *w) {
                          (size_t)stride*(size_t)w->domain_count);
     w->shaped_now = (demi_shaped *)w->shaped_now_.data;
     w->shaped_next = (demi_shaped *)w->shaped_next_.data;
-    if (!ok) return 0;
+    return ok ? stride : -1;
+}
+/* Contacts of shaped bodies that still last, from the last list (by slot) into the domains of the
+   new one, each with its lower body as a: what turns round, turns round. */
+static void demi_shaped_move(dem_world *w, int stride) {
+    int d, k, e = 0, i;
+    if (!stride) return;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         for (k = 0; k < w->domains[d].shaped; k++) {
             demi_shaped c = w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
@@ -6285,7 +6301,6 @@ static int demi_shaped_move(dem_world *w) {
         w->shaped_now[(size_t)demi_domain_of(w, c->a)*(size_t)stride + (size_t)w->order[c->a]++] =
             *c;
     }
-    return 1;
 }
 
 /* Reals of memory that the built-in laws keep per contact: see >>laws. The hysteretic law's comes
@@ -6593,6 +6608,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     if (!fresh && demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
     w->near_age = w->near_creep = 0;
+    w->near_stale = 0;
     w->near_drift = w->near_kick;  /* speeds now, and those that move, are as much as this apart */
     return 1;
 }
@@ -6785,6 +6801,67 @@ static int demi_walls_end(dem_world *w, const char *call) {
         }
     return 0;
 }
+/* --- new spheres join the list, so that a steady feed does not have it made anew for every grain:
+       the candidates of a newcomer are written behind those of the others. It belongs to the last
+       domain. Whether there is room hangs on counts alone, not on what was allocated: runs that go
+       on from a checkpoint must do the same. --- */
+enum { DEMI_JOIN_MOST = 8192 };
+
+/* Is there no room behind the candidates? 1: pairs inside, 2: pairs leading out, 4: walls. */
+static int demi_join_lack(const dem_world *w) {
+    const int last = w->domain_count - 1;
+    int d, lack = 0;
+    if (!w->join_room) return 0;
+    if (w->domains[last].own + w->join_room > w->own.stride) lack = 1;
+    for (d = 0; d < last; d++)
+        if (w->domains[d].cross + w->join_room > w->cross.stride) lack |= 2;
+    return lack | (w->domains[last].walls + w->join_room > w->wall_stride ? 4 : 0);
+}
+/* May a sphere join? Not when it would bring an effect in, nor beside bodies that are no spheres. */
+static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
+    if (!w->list_valid || w->pairs_changed || !w->count || w->shaped_count || w->visitor) return 0;
+    return !w->uniform || (w->body_material[0] == material + 1 && !(radius < w->uniform_radius) &&
+                           !(radius > w->uniform_radius));
+}
+/* Could the two touch before the near list is made anew? As demi_near_pick asks. */
+static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int b) {
+    const dem_vec3 x = demi_nearest(p, demi_sub(demi_at(w->pos + 4*b), demi_at(w->pos + 4*a)));
+    const dem_vec3 u = demi_sub(demi_at(w->vel + 4*b), demi_at(w->vel + 4*a));
+    return demi_length(x) < w->pos[4*a + 3] + w->pos[4*b + 3] + (dem_real)w->near_margin +
+                            (dem_real)w->near_span*demi_length(u);
+}
+/* Body i, just appended, joins the list; `found`, ascending: all whose gap to it may be below the
+   skin. 0: there was no room, the list must be made anew. */
+static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) {
+    const int last = w->domain_count - 1, walls = w->domains[last].walls;
+    const demi_periods p = demi_periods_of(w);
+    int k, leading = 0;
+    w->domains[last].end = i + 1;
+    if (count >= w->join_room) return 0;
+    w->join_room -= count;
+    for (k = 0; k < count; k++) {
+        const int a = found[k], d = demi_domain_of(w, a);
+        demi_domain *domain = &w->domains[d];
+        demi_list *list = d == last ? &w->own : &w->cross;
+        const int at = d == last ? domain->own : domain->cross;
+        list->place[d*list->stride + at] = 0;
+        demi_pair_offer(w, d, &p, (dem_real)w->skin, a, i);
+        leading |= d < last;
+        w->near_stale |= demi_join_near(w, &p, a, i);
+    }
+    if (leading && !demi_cross_index(w)) return 0;
+    demi_body_walls(w, last, i);
+    if (w->domains[last].walls - walls >= w->join_room) return 0;
+    w->join_room -= w->domains[last].walls - walls;
+    if (w->domains[last].walls > walls) w->touching_valid = 0;
+    if (!demi_array_grow(w, &w->quiet_, sizeof(demi_quiet),
+                         (size_t)(w->count/DEMI_SOME + w->domain_count + 1))) return 0;
+    demi_quiet_at(w, last, i)->restless = 2;
+    w->radius_min = DEMI_MIN(w->radius_min, w->pos[4*i + 3]);
+    w->radius_max = DEMI_MAX(w->radius_max, w->pos[4*i + 3]);
+    return 1;
+}
+
 /* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
    they were (the next call tries again). */
 static dem_result demi_rebuild(dem_world *w, const char *call) {
@@ -6829,13 +6906,15 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w))
         return demi_no_memory(w, call);
     stride = DEMI_MAX(64, w->count/w->domain_count*3);
+    w->join_room = w->feed_count ? DEMI_MIN(512 + w->count/16, DEMI_JOIN_MOST) : 0;
     if (!demi_list_reserve(w, &w->own, w->domain_count, DEMI_MAX(stride, (int)w->own.stride)) ||
         !demi_list_reserve(w, &w->cross, w->domain_count, w->domain_count == 1 ? 0
                            : DEMI_MAX(stride/4, (int)w->cross.stride)))
         return demi_no_memory(w, call);
     do {                                        /* until every domain's pairs fit */
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_search);
-        for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 3;
+        for (d = 0, again = demi_join_lack(w) & 3; d < w->domain_count; d++)
+            again |= w->domains[d].overflow & 3;
         if ((again & 1 && !demi_list_reserve(w, &w->own, w->domain_count, w->own.stride/2*3 +
                                              64)) ||
             (again & 2 && !demi_list_reserve(w, &w->cross, w->domain_count, w->cross.stride/2*3 +
@@ -6849,12 +6928,15 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     if (!demi_wall_lists_reserve(w, DEMI_MAX(w->wall_stride, 64))) return demi_no_memory(w, call);
     do {
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
-        for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 4;
+        for (d = 0, again = demi_join_lack(w) & 4; d < w->domain_count; d++)
+            again |= w->domains[d].overflow & 4;
         if (again && !demi_wall_lists_reserve(w, w->wall_stride/2*3 +
                                               64)) return demi_no_memory(w, call);
     } while (again);
-    if (!demi_touching_reserve(w) || !demi_wall_contacts_move(w) || !demi_shaped_move(w))
+    k = demi_shaped_room(w);                    /* all room first: what has moved cannot go back */
+    if (k < 0 || !demi_touching_reserve(w) || !demi_wall_contacts_move(w))
         return demi_no_memory(w, call);
+    demi_shaped_move(w, k);
     if (demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
     while (w->slot_pending >= 0) {  /* slots freed since the last list may be used again */
@@ -9451,21 +9533,23 @@ static void demi_finish_halves(dem_world *w, int begin, int end) {
     }
 }
 /* What half_vel and half_spin must be before the first step from a state at t. */
-static void demi_prime(dem_world *w) {
+static void demi_prime_body(dem_world *w, int i) {
     const dem_real dt = w->dt, h = dt/2;
-    int i, k;
-    for (i = 0; i < w->count; i++) {
-        const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
-        for (k = 0; k < 3; k++) {
-            const dem_real a = b.f[k]*b.inv + b.g[k];
-            b.half[k] = b.v[k] - a*h;
-            if (w->last_pos) w->last_pos[4*i + k] = w->pos[4*i + k] - b.half[k]*dt;
-            s.half[k] = s.v[k] - s.f[k]*s.inv*h;
-        }
-        if (w->shaped_count && w->body_shape[i])
-            demi_put(w->angular + 4*i, demi_sub(demi_angular_of(w, i),
-                                                demi_scale(demi_at(w->torque + 4*i), h)));
+    const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
+    int k;
+    for (k = 0; k < 3; k++) {
+        const dem_real a = b.f[k]*b.inv + b.g[k];
+        b.half[k] = b.v[k] - a*h;
+        if (w->last_pos) w->last_pos[4*i + k] = w->pos[4*i + k] - b.half[k]*dt;
+        s.half[k] = s.v[k] - s.f[k]*s.inv*h;
     }
+    if (w->shaped_count && w->body_shape[i])
+        demi_put(w->angular + 4*i, demi_sub(demi_angular_of(w, i),
+                                            demi_scale(demi_at(w->torque + 4*i), h)));
+}
+static void demi_prime(dem_world *w) {
+    int i;
+    for (i = 0; i < w->count; i++) demi_prime_body(w, i);
     w->primed = 1;
 }
 /* --- rotation. A sphere's spin runs along in the scheme of its translation; its orientation, when
@@ -9813,7 +9897,7 @@ typedef struct demi_node {
     int32_t first, count;          /* of a leaf: spheres, from `first` on by `next` */
     dem_real reach;                /* m, largest radius below it */
 } demi_node;
-typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next; } demi_sphere;
+typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next, body; } demi_sphere;
 typedef struct demi_crowd {
     demi_periods p;
     double lo[3], size[3];         /* of the tree's box; on a periodic axis the whole period */
@@ -9880,8 +9964,9 @@ static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
     return 1;
 }
 /* One more sphere in the crowd. What stands outside the tree's box counts to the nearest leaf,
-   which is never farther from a place in the box than the sphere is. 0 when memory ran out. */
-static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radius) {
+   which is never farther from a place in the box than the sphere is. body: its index, if it is one
+   already. 0 when memory ran out. */
+static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radius, int body) {
     demi_nook at = demi_crowd_root(c);
     demi_sphere *s;
     demi_node *node;
@@ -9890,6 +9975,7 @@ static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radi
     s = demi_crowd_spheres(w) + c->count;
     s->at = demi_place_of(&c->p, x);
     s->radius = radius;
+    s->body = body;
     for (;;) {
         node = demi_crowd_nodes(w) + at.node;
         node->reach = DEMI_MAX(node->reach, radius);
@@ -9920,16 +10006,17 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
     }
     return d2;
 }
-/* Does a sphere overlap nobody in the crowd? Its centre is in the tree's box. */
-static int demi_crowd_free(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
-                           dem_real radius) {
+/* How many of the crowd a sphere overlaps, and the bodies they are; ends with the first that `found`
+   has no room for. Its centre is in the tree's box. */
+static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
+                           dem_real radius, int32_t *found, int room) {
     const demi_sphere *all = demi_crowd_spheres(w);
     const demi_node *nodes = demi_crowd_nodes(w);
     const dem_vec3 at = demi_place_of(&c->p, centre);
     demi_nook stack[DEMI_CROWD_DEPTH + 2];
     double x[3];
-    int top = 0, i;
-    if (!c->count) return 1;
+    int top = 0, count = 0, i;
+    if (!c->count) return 0;
     x[0] = (double)at.x; x[1] = (double)at.y; x[2] = (double)at.z;
     stack[top++] = demi_crowd_root(c);
     while (top) {
@@ -9946,10 +10033,17 @@ static int demi_crowd_free(const dem_world *w, const demi_crowd *c, dem_vec3 cen
         for (i = node->first; i >= 0; i = all[i].next) {
             const dem_vec3 d = demi_nearest(&c->p, demi_sub(all[i].at, at));
             const dem_real s = all[i].radius + radius;
-            if (demi_dot(d, d) < s*s) return 0;
+            if (!(demi_dot(d, d) < s*s)) continue;
+            if (count++ == room) return count;
+            found[count - 1] = all[i].body;
         }
     }
-    return 1;
+    return count;
+}
+/* Does a sphere overlap nobody in the crowd? */
+static int demi_crowd_free(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
+                           dem_real radius) {
+    return !demi_crowd_look(w, c, centre, radius, 0, 0);
 }
 
 /* --- regions --- */
@@ -9979,7 +10073,10 @@ static int demi_region_make(const dem_world *w, const dem_region *from, double o
             to->size[k] = period;
             lo[k] = p.lo[k];
         } else lo[k] += (dem_real)off;
-        if (k == 2 && w->desc.planar) to->size[k] = lo[k] = 0;
+        if (k == 2 && w->desc.planar) {
+            to->size[k] = 0;
+            lo[k] = 0;
+        }
         ok = ok && to->size[k] >= 0;
     }
     to->lo = demi_at(lo);
@@ -10033,7 +10130,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
         const double s = 1.001*(double)(r + radius);
         if (fabs((double)d.x) > half[0]*1.001 + s || fabs((double)d.y) > half[1]*1.001 + s ||
             fabs((double)d.z) > half[2]*1.001 + s) continue;
-        if (!demi_crowd_put(w, c, demi_at(w->pos + 4*i), r)) return 0;
+        if (!demi_crowd_put(w, c, demi_at(w->pos + 4*i), r, i)) return 0;
     }
     return 1;
 }
@@ -10133,7 +10230,7 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const demi_region *g, d
             if (demi_room_free(w, c, x, radius)) break;
             if (++taken == DEMI_FILL_TRIES) return i;
         }
-        if (!demi_crowd_put(w, c, x, radius)) return -1;
+        if (!demi_crowd_put(w, c, x, radius, -1)) return -1;
         if (!turned) continue;
         if (!demi_array_grow(w, &w->crowd_turned_, 4*sizeof(dem_real), (size_t)i + 1)) return -1;
         demi_quat_put((dem_real *)w->crowd_turned_.data + 4*(size_t)i, demi_quat_random(&state));
@@ -10335,12 +10432,15 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
 
 /* ---------------------------------------------------------------------------------------------
    >>feed
-   Grains come in between two steps, and go out in the middle of one, when all have moved: at the
-   place where an outflow boundary takes them too. What a feed draws comes from its own random state
+   Grains come in between two steps, joining the list of candidates (demi_list_join), and go out in
+   the middle of one, when all have moved and a list is due. What a feed draws comes from its own random state
    in a fixed order: class, then place and velocity until a place is free. How much is due follows
    from the time alone.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* places tried; steps until the next try */
+enum { DEMI_FEED_NEAR = 256 };                       /* bodies near one that joins the list */
+/* Outlets look when a list is made anew, and every so many steps: see demi_step_once. */
+enum { DEMI_OUTLET_REST = 64 };
 
 static demi_feed *demi_feed_at(const dem_world *w, int i) {
     return (demi_feed *)w->feeds_.data + i;
@@ -10441,7 +10541,8 @@ static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_
     const dem_real r = d->radius[f->next];
     const uint64_t random = f->random;
     dem_vec3 x, v;
-    int tries, i, free_place = 0;
+    int32_t found[DEMI_FEED_NEAR];
+    int tries, i, count = 0, free_place = 0, joins;
     for (tries = 0; tries < DEMI_FEED_TRIES && !free_place; tries++) {
         double u[6];
         int k;
@@ -10454,8 +10555,11 @@ static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_
     }
     if (!free_place) return 0;
     x = demi_place_of(&c->p, x);
-    demi_finish(w);
-    if (!demi_crowd_put(w, c, x, r) || !demi_list_drop(w) ||
+    joins = demi_join_possible(w, d->material.id - 1, r);
+    if (!joins || !w->primed) demi_finish(w);   /* one that joins may stand at the half step as well */
+    if (joins) count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*(dem_real)w->skin, found, DEMI_FEED_NEAR);
+    joins = joins && count <= DEMI_FEED_NEAR;
+    if (!demi_crowd_put(w, c, x, r, w->count) || (!joins && !demi_list_drop(w)) ||
         !demi_bodies_reserve(w, (size_t)w->count + 1)) {
         f->random = random;
         return -1;
@@ -10464,7 +10568,14 @@ static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_
     demi_put(w->vel + 4*i, v);
     demi_put(w->half_vel + 4*i, v);
     w->energy_inserted += demi_body_energy(w, i);
-    demi_scene_changed(w);
+    w->speed_max = DEMI_MAX(w->speed_max, (double)demi_length(v));
+    if (joins) {
+        qsort(found, (size_t)count, sizeof *found, demi_int_compare);
+        joins = demi_list_join(w, i, found, count);
+        w->pairs_changed |= !joins;             /* then the list is made anew */
+    }
+    if (!joins || w->desc.force || w->desc.body_force) demi_scene_changed(w);
+    else if (w->primed) demi_prime_body(w, i);  /* it touches nobody: no force on it is known yet */
     f->state.fed[f->next]++;
     f->state.total++;
     f->state.mass += f->mass[f->next];
@@ -10506,7 +10617,8 @@ static dem_result demi_feeds_run(dem_world *w) {
                 dem_real r = 0;
                 for (k = 0; k < d->class_count; k++) r = DEMI_MAX(r, d->radius[k]);
                 demi_feed_region(w, d, &g);
-                if (!demi_crowd_begin(w, &c, &g, r)) return demi_no_memory(w, "dem_world_step");
+                if (!demi_crowd_begin(w, &c, &g, r + (dem_real)w->skin))
+                    return demi_no_memory(w, "dem_world_step");
                 looked = 1;
             }
             done = demi_feed_put(w, f, &g, &c);
@@ -10768,12 +10880,12 @@ static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef
         s.c *= sqrt(root); s.ct *= sqrt(root);
     }
     s.kr = s.cr = 0;
-    if (w->rolling == DEM_ROLLING_EPSD) {
+    if (w->desc.rolling_law == DEM_ROLLING_AUTO || w->desc.rolling_law == DEM_ROLLING_EPSD) {
         s.kr = 2.25*s.k*arm*arm;
         s.cr = 0.6*sqrt(s.kr*1.4*m_eff*r*r);
     }
     if (w->desc.normal_law == DEM_NORMAL_HYSTERETIC) s.k = (double)coef[DEMI_K_UN];
-    if (w->tangent == DEM_TANGENT_NONE) s.kt = s.ct = 0;
+    if (w->desc.tangent_law == DEM_TANGENT_NONE || !(coef[DEMI_MU_STATIC] > 0)) s.kt = s.ct = 0;
     if (w->desc.law) {
         memset(&s, 0, sizeof s);
         s.k = (double)w->desc.law_stiffness;
@@ -11050,7 +11162,6 @@ static dem_result demi_dt_settle(dem_world *w) {
         return DEM_OK;
     }
     demi_finish(w);                             /* speeds are those of now, whoever asks */
-    if (!w->list_valid) demi_effects(w);        /* which laws there are */
     demi_advise(w, &a);
     spin = demi_spin_fastest(w);
     if (w->desc.dt > 0) {
@@ -11500,27 +11611,29 @@ static dem_result demi_step_move(dem_world *w) {
 static dem_result demi_step_once(dem_world *w) {
     double overlap = 0;
     dem_result result;
-    int d;
+    int d, search;
     if (!w->moved) {
         result = demi_step_move(w);
         if (result != DEM_OK) return result;
         demi_near_pass(w, w->near_kick);
         w->moved = 1;
     }
+    /* 2 search: when something may have come near that is not in the list. Outlets look then:
+       nobody gets farther than half a skin between two lists */
     result = demi_outflow(w);
-    if (result == DEM_OK && w->outlet_count) result = demi_outlets_run(w);
+    search = !w->list_valid || w->skin <= 0 || 2*w->reach > w->skin ||
+             w->reach + w->wall_reach > w->skin;
+    if (result == DEM_OK && w->outlet_count && (search || w->steps%DEMI_OUTLET_REST == 0))
+        result = demi_outlets_run(w);
     if (result != DEM_OK) return result;
-
-    /* 2 search: when something may have come near that is not in the list */
-    if (!w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach +
-        w->wall_reach > w->skin) {
+    if (search || !w->list_valid) {
         result = demi_rebuild(w, "dem_world_step");
         if (result != DEM_OK) return result;
         demi_kernel_choose(w);
         /* faster than thought: ask again */
         if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;
-    } else if (demi_near_due(w)) {
-        if (!w->near_chosen) demi_near_choose(w);
+    } else if (w->near_stale || demi_near_due(w)) {
+        if (!w->near_chosen && demi_near_due(w)) demi_near_choose(w);
         w->near_chosen = 1;
         if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
         w->near_chosen = 0;
@@ -13655,7 +13768,7 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
    state takes the place of the world's; until then the world is as it was.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 5 };
+enum { DEMI_CHECKPOINT_VERSION = 6 };
 
 /* Writes to file, or reads the `left` bytes that are at `from`, or (with neither) counts bytes. */
 typedef struct demi_stream {
@@ -13839,7 +13952,11 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->assumed_speed);  DEMI_VISIT(s, w->near_span);
     DEMI_VISIT(s, w->near_age);       DEMI_VISIT(s, w->near_margin);
     DEMI_VISIT(s, w->near_drift);     DEMI_VISIT(s, w->near_kick);
-    DEMI_VISIT(s, w->near_creep);     DEMI_VISIT(s, w->overlap_max);
+    DEMI_VISIT(s, w->near_creep);     DEMI_VISIT(s, w->near_stale);
+    DEMI_VISIT(s, w->join_room);      DEMI_VISIT(s, w->overlap_max);
+    DEMI_VISIT(s, w->desc.search);    DEMI_VISIT(s, w->levels);
+    DEMI_VISIT(s, w->level_count);    DEMI_VISIT(s, w->level_fine);
+    DEMI_VISIT(s, w->level_looks);    DEMI_VISIT(s, w->wide);
     DEMI_VISIT(s, w->speed_max);      DEMI_VISIT(s, w->half_kick);
     DEMI_VISIT(s, w->press_due);      DEMI_VISIT(s, w->press_since);
     DEMI_VISIT(s, w->energy);         DEMI_VISIT(s, w->energy_inserted);
@@ -14272,6 +14389,12 @@ static int demi_numbers_check(const demi_reader *r) {
                            t->domain_count > demi_domains_for(4*t->count + 16))) ||
         !demi_left(r, t->domain_count, sizeof(demi_domain)))
         return demi_lie(r, "its number of domains", -1);
+    if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
+        return demi_lie(r, "the room in its lists", -1);
+    if ((int)t->desc.search < 0 || t->desc.search > DEM_SEARCH_LEVELS || t->level_count < 0 ||
+        t->level_count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
+                                         t->desc.search != w->desc.search))
+        return demi_lie(r, "its search", -1);
     if (t->shaped_count < 0 || t->shaped_count > (t->orienting ? t->count : 0) ||
         (w->asked.orientations && !t->orienting))
         return demi_lie(r, "its number of bodies that are not spheres", -1);
@@ -14533,6 +14656,7 @@ static int demi_twin_lists_room(dem_world *t) {
         most[4] = DEMI_MAX(most[4], 16);
         if (t->shaped_count) most[5] = DEMI_MAX(most[5], DEMI_MAX(64, each*4));
     }
+    for (k = 0; k < 4; k++) if (k != 2) most[k] += t->join_room;
     most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
     t->wall_now_stride = most[4];
     t->shaped_stride = 0;
@@ -14859,7 +14983,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     if (demi_null(world, "dem_world_report", out, "out")) return;
     static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
-    dem_world *w = (dem_world *)world;          /* effects are worked out if they were not yet */
+    dem_world look = *world, *w = &look;        /* effects not yet worked out are so in a copy */
     const dem_counters c = dem_counters_get(w);
     const double per = w->count ? 1.0/w->count : 0;
     dem_advice a;

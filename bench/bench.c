@@ -142,6 +142,8 @@ static const price_row price_rows[] = {
     {"integrator.symplectic_euler", "bed", "first order, energy bounded", {.integrator = DEM_SYMPLECTIC_EULER}},
     {"integrator.forward_euler", "bed", "first order, gains energy", {.integrator = DEM_FORWARD_EULER}},
     {"skin0", "bed", "nothing: a new list at every step", {.skin = -1}},
+    {"feed", "drum", "a bead fed every fourth step", {.feed = 50000}},
+    {"outlet", "drum", "beads that fly through the middle are taken out", {.outlet = 1}},
     {"search.linked_list", "drum", "nothing here: pays at wide size ranges [ALK07]", {.search = DEM_SEARCH_LINKED_LIST}},
     {"search.all_pairs", "drum", "nothing: the oracle of the tests", {.search = DEM_SEARCH_ALL_PAIRS, .every = 18}}, /* of 1000 */
 };

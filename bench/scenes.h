@@ -67,9 +67,11 @@ typedef struct bench_choice {
     double dt;                  /* s, 0: the scene's                                           */
     dem_force_fn force;
     void *force_user;
+    double feed;                /* beads/s fed into the middle of DRUM, 0: none                 */
+    int outlet;                 /* 1: beads that fly through the middle of DRUM leave           */
 } bench_choice;
 #define BENCH_CHOICE {0, 0, 0, DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, \
-    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0}
+    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0}
 
 STUDY_FN int bench_is(const bench_scene *s, const char *name) { return !strcmp(s->name, name); }
 
@@ -263,6 +265,25 @@ STUDY_FN int bench_drum_walls(dem_world *world, dem_material glass, double degre
     return ok;
 }
 
+/* What comes in and goes out in the middle of DRUM. */
+STUDY_FN int bench_drum_flow(dem_world *world, dem_material glass, const bench_choice *o) {
+    const dem_box middle = dem_box_make(DEM_R(-0.02), DEM_R(0.005), DEM_R(-0.02), DEM_R(0.02), DEM_R(0.055),
+                                        DEM_R(0.02));
+    dem_feed_desc feed;
+    dem_outlet_desc outlet;
+    memset(&feed, 0, sizeof feed);
+    memset(&outlet, 0, sizeof outlet);
+    feed.material = glass;
+    feed.class_count = 1;
+    feed.radius[0] = (dem_real)BENCH_RADIUS;
+    feed.amount[0] = 1;
+    feed.rate = o->feed;
+    feed.box = middle;
+    feed.velocity = dem_vec3_make(0, 0, -1);
+    outlet.box = middle;
+    return (!(o->feed > 0) || dem_feed_add(world, &feed).id) && (!o->outlet || dem_outlet_add(world, &outlet).id);
+}
+
 /* The world of a scene at its start state. degrees: how far DRUM has turned. */
 STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, double degrees) {
     const int gas = bench_is(s, "gas"), bed = bench_is(s, "bed"), drum = bench_is(s, "drum");
@@ -316,7 +337,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     }
     ok = ok && material.id;
     if (bed) ok = ok && dem_plane_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
-    if (drum) ok = ok && bench_drum_walls(world, material, degrees);
+    if (drum) ok = ok && bench_drum_walls(world, material, degrees) && bench_drum_flow(world, material, o);
 
     x = (dem_real *)study_alloc((size_t)count*3, sizeof *x);
     v = (dem_real *)study_alloc((size_t)count*3, sizeof *v);

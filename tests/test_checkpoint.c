@@ -658,7 +658,7 @@ int main(int argc, char **argv) {
         data = file_get(path, &size);
         data[8]++;
         file_put(path, data, size);
-        refused(world, DEM_ERROR_FORMAT, "version 6, must be 5");
+        refused(world, DEM_ERROR_FORMAT, "version 7, must be 6");
         data[8]--;
         data[12] = (char)(12 - data[12]);      /* 8 and 4 change places */
         file_put(path, data, size);

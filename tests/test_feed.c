@@ -1,5 +1,6 @@
 /* Feeds and outlets: what comes in by number and by mass, what goes out, and that between the two
    nothing is lost (for an hour of machine time: build/screener --study hour). */
+#define DEM_DOMAIN_BODIES 64                  /* several domains: newcomers have neighbours in all */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "../examples/tumbler.h"
@@ -135,7 +136,17 @@ static int machine_balanced(const machine *m) {
     return ok && b.left == o[0].total + o[1].total && f.total == b.inserted;
 }
 
+/* Contacts of bodies with others, in slots after the first `count`. */
+static int touching_beyond(const dem_world *world, uint32_t count) {
+    static dem_contact_info c[2000];
+    const int n = dem_contacts_get(world, c, 2000);
+    int i, found = 0;
+    for (i = 0; i < n; i++) found += c[i].a.slot > count || c[i].b.slot > count;
+    return found;
+}
+
 int main(int argc, char **argv) {
+    const dem_feed first = {1};
     test_begin(argc, argv);
 
     TEST("a feed of 100 grains/s has fed each when it is due, in random sizes by number") {
@@ -396,6 +407,108 @@ int main(int argc, char **argv) {
         CHECK_EQ(sorting.silent, 0);
         CHECK(sorting.efficiency_number > 0.5);
         dem_world_destroy(m.world);
+    }
+
+    TEST("grains that are fed join the list of neighbours: they meet the others as if it had been made anew for "
+         "each of them, whatever the search") {
+        static const dem_search searches[] = {DEM_SEARCH_GRID, DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_LINKED_LIST};
+        uint64_t hash[3], rebuilds[2] = {0, 0};
+        double apart = 0;
+        int way, i, s;
+        for (s = 0; s < 3; s++) {
+            dem_world *world[2];
+            dem_feed_state f;
+            for (way = 0; way < (s ? 1 : 2); way++) {    /* joining; a new list in every step */
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_material stuff;
+                dem_feed_desc d;
+                desc.normal_law = DEM_NORMAL_LINEAR;
+                desc.gravity = at(0, 0, -9.81);
+                desc.dt = DEM_R(1e-5);
+                desc.skin = DEM_R(2e-3);
+                desc.search = searches[s];
+                desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
+                desc.domain = box_of(-0.03, -0.03, 0, 0.03, 0.03, 0.1);
+                world[way] = dem_world_create(&desc);
+                stuff = soft(world[way], 1000);
+                dem_plane_add(world[way], stuff, at(0, 0, 0), at(0, 0, 1));
+                scene_block(world[way], stuff, 12, 12, 4, 2e-3, 1, 0.02, 3);
+                d = feed_of(stuff, 12500);                   /* one in eight steps, some onto the bed */
+                d.class_count = 1;
+                d.box = box_of(-0.03, -0.03, 0.02, 0.03, 0.03, 0.04);
+                dem_feed_add(world[way], &d);
+                for (i = 0; i < 800; i++) {
+                    if (way) world[way]->reach = 1;
+                    CHECK_EQ(scene_step(world[way], 1), DEM_OK);
+                }
+                dem_feed_get(world[way], first, &f);
+                CHECK(f.total > 90);
+                CHECK(touching_beyond(world[way], 576) > 5);
+                if (!s) rebuilds[way] = dem_counters_get(world[way]).rebuilds;
+            }
+            if (!s) {
+                const dem_bodies b = dem_bodies_get(world[0]);
+                for (i = 0; i < b.count; i++) {
+                    dem_body_state x = scene_state(world[0], dem_bodies_id(world[0], i));
+                    dem_body_state y = scene_state(world[1], dem_bodies_id(world[0], i));
+                    const double dx = (double)(x.position.x - y.position.x);
+                    const double dz = (double)(x.position.z - y.position.z);
+                    if (fabs(dx) < 0.03) apart = DEMI_MAX(apart, fabs(dx));
+                    apart = DEMI_MAX(apart, fabs(dz));
+                }
+                dem_world_destroy(world[1]);
+            }
+            hash[s] = dem_world_hash(world[0]);
+            dem_world_destroy(world[0]);
+        }
+        CHECK(rebuilds[1] > 790);
+        CHECK(rebuilds[0] < 12);
+        CHECK(apart < (sizeof(dem_real) == 4 ? 2e-4 : 1e-12));     /* rounding, grown in collisions */
+        CHECK(hash[0] == hash[1]);                                 /* whatever the search */
+        CHECK(hash[0] == hash[2]);
+    }
+
+    TEST("an outlet takes a grain within half a skin or 64 steps of its coming in, and hardly a list more is made for "
+         "those that leave one by one") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material stuff;
+        dem_outlet_desc o;
+        uint64_t rebuilds;
+        double deepest = 0;
+        int i, k, most = 0, gone = 0;
+        static int since[400];
+        desc.normal_law = DEM_NORMAL_LINEAR;
+        desc.dt = DEM_R(1e-5);
+        desc.skin = DEM_R(1e-3);
+        world = dem_world_create(&desc);
+        stuff = soft(world, 1000);
+        for (i = 0; i < 400; i++)                /* one by one through x = 0, in 1500 steps, at 0.2 m/s */
+            scene_move(world, dem_sphere_add(world, stuff, DEM_R(1e-3), at(-7.5e-6*i, 3e-3*i, 0)),
+                       at(0.2, 0, 0), at(0, 0, 0));
+        memset(&o, 0, sizeof o);
+        o.box = box_of(0, -10, -10, 10, 10, 10);
+        dem_outlet_add(world, &o);
+        scene_step(world, 1);
+        rebuilds = dem_counters_get(world).rebuilds;
+        for (i = 0; i < 1600; i++) {
+            dem_bodies b;
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            b = dem_bodies_get(world);
+            for (k = 0; k < b.count; k++)
+                if (b.positions[4*k] > 0) {
+                    const uint32_t slot = dem_bodies_id(world, k).slot - 1;
+                    deepest = DEMI_MAX(deepest, (double)b.positions[4*k]);
+                    since[slot]++;
+                    most = DEMI_MAX(most, since[slot]);
+                }
+        }
+        gone = (int)dem_balance_get(world).left;
+        CHECK_EQ(gone, 400);
+        CHECK(most > 0 && most <= 64);
+        CHECK(deepest < 0.5e-3 + 0.2*1e-5);
+        CHECK((int)(dem_counters_get(world).rebuilds - rebuilds) <= 1600/64 + 8);
+        dem_world_destroy(world);
     }
 
     TEST("a fed machine goes on from a checkpoint bit for bit, with any number of threads") {

@@ -460,7 +460,7 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error(world), "rule is 3");
         profile.segment_count = -1;
         CHECK_EQ(dem_profile_add(world, m, &profile, DEM_EDGE_RESOLVED).id, 0);
-        CHECK_STR(dem_world_error(world), "-1 elements, must be 1 to");
+        CHECK_STR(dem_world_error(world), "-1 elements, must be at least one");
         profile.segment_count = 1; profile.vertex_count = INT_MAX;
         CHECK_EQ(dem_profile_add(world, m, &profile, DEM_EDGE_RESOLVED).id, 0);
         CHECK_STR(dem_world_error(world), "2147483647 vertices");
