@@ -20,6 +20,13 @@ static inline double scene_random(uint64_t *state) {
     z = (z ^ (z >> 27))*UINT64_C(0x94D049BB133111EB);
     return (double)((z ^ (z >> 31)) >> 11)/9007199254740992.0;
 }
+/* Three of them, in the order of the axes whatever the compiler: a u + b along each. */
+static inline dem_vec3 scene_at(uint64_t *state, double ax, double bx, double ay, double by, double az,
+                                double bz) {
+    const double x = ax*scene_random(state) + bx, y = ay*scene_random(state) + by;
+    const double z = az*scene_random(state) + bz;
+    return at(x, y, z);
+}
 static inline dem_material_desc scene_stuff(double young, double restitution, double friction,
                                             double rolling) {
     dem_material_desc m = DEM_MATERIAL_DESC;

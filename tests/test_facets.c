@@ -312,9 +312,14 @@ static ride rail_ride(rail *q, dem_vec3 a, dem_vec3 b, dem_vec3 spin, int n) {
 }
 static dem_vec3 direction(uint64_t *seed) {
     dem_vec3 d;
-    do d = at(2*scene_random(seed) - 1, 2*scene_random(seed) - 1, 2*scene_random(seed) - 1);
+    do d = scene_at(seed, 2, -1, 2, -1, 2, -1);
     while (!(demi_dot(d, d) > DEM_R(0.01) && demi_dot(d, d) < 1));
     return demi_unit(d);
+}
+/* Up to so far off in some direction; drawn one after the other, so that every compiler draws the same. */
+static dem_vec3 off_by(uint64_t *seed, double most) {
+    const dem_real far = (dem_real)(most*scene_random(seed));
+    return demi_scale(direction(seed), far);
 }
 static double size_of(dem_vec3 v) { return (double)demi_length(v); }
 
@@ -461,7 +466,7 @@ static void impacts_run(impacts *q, const soup *given, int kind, int inside) {
         } else if (kind == 1 || kind == 2) {
             const double a = 2*pi*scene_random(&seed), R = kind == 1 ? 4*r : r;
             aim = at(R*cos(a), R*sin(a), 0);
-        } else if (kind == 3) aim = at(3*r*scene_random(&seed), 3*r*scene_random(&seed), 0.7*r);
+        } else if (kind == 3) aim = scene_at(&seed, 3*r, 0, 3*r, 0, 0, 0.7*r);
         if (inside || kind == 1 || kind == 2) {
             const double way = (double)(from.x*aim.x + from.y*aim.y);
             if ((kind == 2 ? way < 0 : way > 0)) from = demi_scale(from, -1);
@@ -480,9 +485,8 @@ static void impacts_run(impacts *q, const soup *given, int kind, int inside) {
         jitter = demi_add(demi_scale(from, -1), demi_scale(jitter, DEM_R(0.3)));
         state.velocity = demi_scale(jitter, (dem_real)fast);
         state.spin = demi_scale(spin, (dem_real)((q->shape || q->friction > 0 ? 0.7 : 0)*fast/r));
-        state.orientation = dem_quat_make((dem_real)(scene_random(&seed) - 0.5),
-            (dem_real)(scene_random(&seed) - 0.5), (dem_real)(scene_random(&seed) - 0.5),
-            (dem_real)(scene_random(&seed) - 0.4));
+        aim = scene_at(&seed, 1, -0.5, 1, -0.5, 1, -0.5);
+        state.orientation = dem_quat_make(aim.x, aim.y, aim.z, (dem_real)(scene_random(&seed) - 0.4));
         if (q->shape == impact_ball) state.orientation = dem_quat_make(1, 0, 0, 0);
         dem_body_set(world, body, &state);
         before = dem_totals_get(world);
@@ -566,7 +570,7 @@ static double cuts_differ(const soup *s, rail *a, rail *b, dem_vec3 up, double n
     double worst = 0;
     int i;
     for (i = 0; i < count; i++) {
-        const dem_vec3 off = demi_scale(direction(&seed), (dem_real)(near_by*scene_random(&seed)));
+        const dem_vec3 off = off_by(&seed, near_by);
         const dem_vec3 side = demi_sub(off, demi_scale(up, demi_dot(off, up)));
         const dem_vec3 x = place_above(s, side, up, 1 - overlap);
         const dem_vec3 f = rail_at(a, x), g = rail_at(b, x);
@@ -587,8 +591,8 @@ static rides rides_over(rail *q, const soup *s, dem_vec3 up, double wide, double
     int i, k;
     memset(&out, 0, sizeof out);
     for (i = 0; i < count; i++) {
-        const dem_vec3 a = demi_scale(direction(&seed), (dem_real)(wide*scene_random(&seed)));
-        const dem_vec3 b = demi_scale(direction(&seed), (dem_real)(wide*scene_random(&seed)));
+        const dem_vec3 a = off_by(&seed, wide);
+        const dem_vec3 b = off_by(&seed, wide);
         const dem_vec3 p = place_above(s, a, up, clear*(1 - 0.05*scene_random(&seed)));
         const dem_vec3 o = place_above(s, b, up, clear*(1 - 0.05*scene_random(&seed)));
         const dem_vec3 spin = demi_scale(direction(&seed), (dem_real)turn);
@@ -811,10 +815,11 @@ int main(int argc, char **argv) {
                 for (n = 0; n < 8; n++) {
                     const dem_vec3 way = i >= 3 ? y : up;
                     const double wide = i < 2 ? 0.9 : 1.4;
-                    const dem_vec3 a = demi_scale(direction(&seed), (dem_real)(wide*scene_random(&seed)));
-                    const dem_vec3 b = demi_scale(direction(&seed), (dem_real)(wide*scene_random(&seed)));
+                    const dem_vec3 a = off_by(&seed, wide);
+                    const dem_vec3 b = off_by(&seed, wide);
                     const dem_vec3 p = place_above(&s, a, way, 1), o = place_above(&s, b, way, 1);
-                    const dem_quat turned = dem_quat_about(direction(&seed), (dem_real)(3*scene_random(&seed)));
+                    const dem_real angle = (dem_real)(3*scene_random(&seed));
+                    const dem_quat turned = dem_quat_about(direction(&seed), angle);
                     const dem_vec3 spin = dem_quat_turn(turned, at(0, 0, 1));    /* of moment 2 of 3 */
                     for (k = 0; k < 2; k++) {
                         dem_body_state state = scene_state(q.world, q.body);
@@ -1192,7 +1197,7 @@ int main(int argc, char **argv) {
             }
             b = rail_on(&c);
             for (k = 0; k < 30; k++) {
-                const dem_vec3 side = at(2*scene_random(&seed) - 1, 2*scene_random(&seed) - 1, 0);
+                const dem_vec3 side = scene_at(&seed, 2, -1, 2, -1, 0, 0);
                 const dem_vec3 x = place_above(&s, side, up, 0.99);
                 CHECK_NEAR(size_of(demi_sub(rail_at(&a, x), rail_at(&b, x))), 0, DEMI_SINGLE ? 1e-4 : 1e-12);
             }

@@ -71,8 +71,7 @@ static dem_world *place_gas(dem_world_desc *desc, dem_material *m) {
     dem_spheres_fill(world, *m, DEM_R(0.002), desc->domain, 200, 1);
     for (i = 0; i < 200; i++) {
         const dem_body b = dem_bodies_id(world, i);
-        scene_move(world, b, at(2*scene_random(&random) - 1, 2*scene_random(&random) - 1,
-                                2*scene_random(&random) - 1), at(0, 0, 0));
+        scene_move(world, b, scene_at(&random, 2, -1, 2, -1, 2, -1), at(0, 0, 0));
     }
     return world;
 }

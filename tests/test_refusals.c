@@ -408,6 +408,7 @@ int main(int argc, char **argv) {
          "sentence") {
         const double radius[] = {DEMI_SINGLE ? 1e-16 : 1e-110, DEMI_SINGLE ? 1e13 : 1e110,
                                  DEMI_SINGLE ? 1e-30 : 1e-300};
+        const dem_real origin[3] = {0, 0, 0};
         int i;
         for (i = 0; i < 3; i++) {
             dem_world *world = plain_world();
@@ -424,7 +425,7 @@ int main(int argc, char **argv) {
             feed.radius[0] = r; feed.amount[0] = 1;
             CHECK_EQ(dem_feed_add(world, &feed).id, 0);
             egg = dem_shape_ellipsoid_add(world, at(1, 1, 1));
-            CHECK_EQ(dem_bodies_add(world, m, egg, 1, &r, 0, 0, 0, &r), DEM_ERROR_ARGUMENT);
+            CHECK_EQ(dem_bodies_add(world, m, egg, 1, origin, 0, 0, 0, &r), DEM_ERROR_ARGUMENT);
             CHECK_EQ(dem_balance_get(world).present, 0);
             dem_world_destroy(world);
         }

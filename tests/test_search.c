@@ -509,8 +509,7 @@ int main(int argc, char **argv) {
         for (i = 0; i < 25; i++) {              /* few: a wide skin pays */
             dem_body b = dem_sphere_add(world, grain, DEM_R(1e-3),
                                         at(2e-3, 3e-3 + 5e-3*(i%5), 3e-3 + 5e-3*(i/5)));
-            scene_move(world, b, at(0, 4*scene_random(&seed) - 2, 4*scene_random(&seed) - 2),
-                       at(0, 0, 0));
+            scene_move(world, b, scene_at(&seed, 0, 0, 4, -2, 4, -2), at(0, 0, 0));
         }
         CHECK_EQ(scene_step(world, 4000), DEM_OK);
         dem_world_destroy(world);

@@ -253,8 +253,7 @@ static dem_world *gas(int periodic, int threads) {
                          (uint64_t)k + 1);
     for (i = 0; i < world->count; i++)
         scene_move(world, dem_bodies_id(world, i),
-                   at(scene_random(&seed) - 0.5, scene_random(&seed) - 0.5,
-                      scene_random(&seed) - 0.5), at(0, 0, 0));
+                   scene_at(&seed, 1, -0.5, 1, -0.5, 1, -0.5), at(0, 0, 0));
     return world;
 }
 /* Where bits are compared: a gas, whose sums are of one or two forces and hide their order, and a
