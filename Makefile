@@ -43,7 +43,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run test examples studies mpi check bench bench-parallel bench-peers bench-pages fuzz docs readers tags snippets clean
+.PHONY: help all run test hard examples studies mpi check bench bench-parallel bench-peers bench-pages fuzz docs readers tags snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -55,6 +55,9 @@ run: build/mill ## the tumbling mill: progress on the terminal, pictures in buil
 
 test: $(TESTS) ## build and run all tests; FILTER=words runs the sentences that contain them
 	@sh tests/run.sh "$(FILTER)" $(TESTS)
+
+hard: build/test_facets build/test_sieve ## the long forms of the hard cases: 1e5 impacts of each kind; FILTER=words as in test
+	@TEST_LONG=1 TEST_TABLES=1 sh tests/run.sh "$(FILTER)" $^
 
 examples: $(LESSONS) snippets ## build and run the numbered examples, compile the snippets of the manual
 	@failed=; for e in $(LESSONS); do n=$$(basename $$e); echo "== $$n"; mkdir -p build/out/$$n; \

@@ -3,6 +3,7 @@
    make bench                    all of it in under three minutes, in double, in single and built with -O2
    build/bench --scene bed       one scene: rate, threads, memory, ledger
    build/bench --scene prices    what other laws, searches, integrators and lists cost
+   build/bench --scene walls     what a contact with a wall costs, against facets per grain
    build/bench --scene sizes     what a grain costs among much larger ones, by levels and on one grid
    build/bench --settle bed      makes a start state anew (minutes), as build/out/bench/bed_20k.txt
 
@@ -181,6 +182,101 @@ static void prices(double load) {
     study_close(page, "page.md");
     bench_scene_free(&bed);
     bench_scene_free(&drum);
+}
+
+/* ---- what a contact with a wall costs ---- */
+
+/* Beads that slide slowly on a floor, none touching another; on the same floor as a plane, in a wide
+   cylinder, and cut into more and more triangles. The time of the same beads in the air is taken off. */
+enum { WALLS_SIDE = 64, WALLS_BEADS = WALLS_SIDE*WALLS_SIDE };
+typedef enum walls_kind { WALLS_NONE, WALLS_PLANE, WALLS_CYLINDER, WALLS_MESH } walls_kind;
+static int walls_mesh(dem_world *world, dem_material glass, int n, double side) {
+    dem_mesh mesh;
+    int i, j, k = 0, ok;
+    mesh.vertex_count = (n + 1)*(n + 1);
+    mesh.triangle_count = 2*n*n;
+    mesh.vertices = (dem_real *)study_alloc((size_t)mesh.vertex_count*3, sizeof(dem_real));
+    mesh.triangles = (int32_t *)study_alloc((size_t)mesh.triangle_count*3, sizeof(int32_t));
+    for (j = 0; j <= n; j++)
+        for (i = 0; i <= n; i++) {
+            dem_real *x = mesh.vertices + 3*(i + (n + 1)*j);
+            x[0] = (dem_real)(side*i/n);
+            x[1] = (dem_real)(side*j/n);
+            x[2] = 0;
+        }
+    for (j = 0; j < n; j++)
+        for (i = 0; i < n; i++) {
+            const int a = i + (n + 1)*j, c = a + n + 1;
+            const int corners[6] = {a, a + 1, c + 1, a, c + 1, c};
+            int e;
+            for (e = 0; e < 6; e++) mesh.triangles[k++] = corners[e];
+        }
+    ok = dem_mesh_add(world, glass, &mesh).id != 0;
+    free(mesh.vertices);
+    free(mesh.triangles);
+    return ok;
+}
+static dem_world *walls_world(walls_kind kind, int n) {
+    const double r = BENCH_RADIUS, side = 2.1*r*WALLS_SIDE, drum = 4*side, deep = 1e-4*r;
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc m = DEM_MATERIAL_DESC;
+    dem_world *world;
+    dem_material glass;
+    int i, ok = 1;
+    desc.threads = 1;
+    desc.dt = (dem_real)BENCH_DT;
+    desc.skin = DEM_R(5e-5);
+    if (kind != WALLS_NONE) desc.gravity.z = (dem_real)-BENCH_GRAVITY;
+    m.density = (dem_real)BENCH_DENSITY;
+    m.restitution = (dem_real)BENCH_RESTITUTION;
+    m.young = (dem_real)BENCH_YOUNG;
+    m.poisson = (dem_real)BENCH_POISSON;
+    m.friction = (dem_real)BENCH_FRICTION;
+    world = dem_world_create(&desc);
+    glass = dem_material_add(world, &m);
+    if (kind == WALLS_PLANE) ok = dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id != 0;
+    if (kind == WALLS_CYLINDER)
+        ok = dem_cylinder_add(world, glass, dem_vec3_make((dem_real)(side/2), 0, (dem_real)drum), dem_vec3_make(0, 1, 0),
+                              (dem_real)drum, 1).id != 0;
+    if (kind == WALLS_MESH) ok = walls_mesh(world, glass, n, side);
+    for (i = 0; i < WALLS_BEADS && ok; i++) {
+        const double x = 2.1*r*(i%WALLS_SIDE + 0.5), y = 2.1*r*(i/WALLS_SIDE + 0.5), off = x - side/2;
+        const double z = kind == WALLS_CYLINDER ? drum - sqrt((drum - r + deep)*(drum - r + deep) - off*off) : r - deep;
+        const dem_body bead = dem_sphere_add(world, glass, (dem_real)r, dem_vec3_make((dem_real)x, (dem_real)y, (dem_real)z));
+        dem_body_state state;
+        ok = dem_body_get(world, bead, &state) == DEM_OK;
+        state.velocity.y = DEM_R(0.002);
+        ok = ok && dem_body_set(world, bead, &state) == DEM_OK;
+    }
+    if (ok && dem_world_step(world, WARM_UP) == DEM_OK) return world;
+    study_fail("walls: %s", dem_world_error(world));
+    dem_world_destroy(world);
+    return 0;
+}
+static void walls(void) {
+    static const struct { const char *name; walls_kind kind; int n; } rows[] = {
+        {"plane", WALLS_PLANE, 0}, {"cylinder", WALLS_CYLINDER, 0}, {"mesh_242", WALLS_MESH, 11},
+        {"mesh_5000", WALLS_MESH, 50}, {"mesh_50000", WALLS_MESH, 158}, {"mesh_500000", WALLS_MESH, 500}};
+    const int steps = steps_asked ? steps_asked : full ? 1000 : 100;
+    size_t i;
+    for (i = 0; i < sizeof rows/sizeof *rows; i++) {
+        dem_world *air = walls_world(WALLS_NONE, 0), *floor = air ? walls_world(rows[i].kind, rows[i].n) : 0;
+        double ta[MOST_LOOPS], tb[MOST_LOOPS], each[MOST_LOOPS];
+        int r, turns = floor ? take_turns("walls", air, floor, steps, ta, tb) : 0;
+        char name[64];
+        if (turns) {
+            const int contacts = dem_counters_get(floor).wall_contacts;
+            for (r = 0; r < turns; r++) each[r] = 1e9*(tb[r] - ta[r])/steps/(contacts ? contacts : 1);
+            snprintf(name, sizeof name, "walls.%s.facets_per_bead", rows[i].name);
+            if (rows[i].n) bench_result_short(name, 2.0*rows[i].n*rows[i].n/WALLS_BEADS, "");
+            snprintf(name, sizeof name, "walls.%s.contacts_per_bead", rows[i].name);
+            bench_result_short(name, (double)contacts/WALLS_BEADS, "");
+            snprintf(name, sizeof name, "walls.%s.contact", rows[i].name);
+            bench_result_short(name, bench_median(each, turns), "ns");
+        }
+        if (air) dem_world_destroy(air);
+        if (floor) dem_world_destroy(floor);
+    }
 }
 
 /* ---- what a grain costs among much larger ones ---- */
@@ -453,7 +549,7 @@ static void measure_raw(const bench_scene *s) {
 
 int main(int argc, char **argv) {
     static const study_option table[] = {
-        {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|prices|sizes", "what to measure"},
+        {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|prices|sizes|walls", "what to measure"},
         {"steps", STUDY_INT, &steps_asked, 0, 1e8, "", "steps of one timed loop, 0: by scene"},
         {"repeat", STUDY_INT, &repeat_asked, 0, MOST_LOOPS, "", "timed loops, 0: 5, or 9 in full"},
         {"threads", STUDY_INT, &threads_asked, 1, 64, "", "threads to compare one thread with"},
@@ -499,6 +595,7 @@ int main(int argc, char **argv) {
             measure(&s);
             bench_scene_free(&s);
         }
+    if (!strcmp(scene_name, "walls") || (!strcmp(scene_name, "all") && !brief)) walls();
     if (!strcmp(scene_name, "sizes") || (!strcmp(scene_name, "all") && !brief)) sizes();
     if (!strcmp(scene_name, "prices") || (!strcmp(scene_name, "all") && !brief)) prices(load);
     return study_end();

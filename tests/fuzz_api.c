@@ -38,7 +38,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
 #include <time.h>
 #include <unistd.h>
 
-enum { BATCH = 25, PATIENCE = 10 };             /* programs to a process; s, then it hangs */
+enum { BATCH = 25, PATIENCE = 60 };             /* programs to a process; s, then it hangs */
 
 /* FUZZ_TRY="null_arguments memory_refused": has in what fuzz_avoids leaves out; "all": everything. */
 static void try_also(const char *names) {
