@@ -4384,7 +4384,7 @@ static int demi_join_cut(dem_world *w, demi_join *j) {
             (j->cut_room && (!j->cut || !j->cut_weight))) break;
     }
     j->sides = n;
-    if (pass == 1) qsort(j->piece, (size_t)n, sizeof *j->piece, demi_side_compare);
+    if (pass == 1 && n) qsort(j->piece, (size_t)n, sizeof *j->piece, demi_side_compare);
     demi_free(w, between, most, sizeof *between);
     return pass == 1;
 }
@@ -5328,6 +5328,7 @@ static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
     const int32_t row = DEMI_MIN(sa, sb), other = DEMI_MAX(sa, sb);
     int k;
     if (!w->carry_count || row >= w->carry_rows) return -1;
+    if (w->carry_stride != w->memory_stride) return -1;     /* of other laws: it means nothing */
     for (k = w->carry_start[row]; k < w->carry_start[row + 1]; k++) {
         const int32_t p = w->carry_partner[k];
         if (p == other) { *flip = sa > sb; return k; }
@@ -5883,7 +5884,9 @@ static int demi_lll_rows(dem_world *w) {
         if (pass == 0) for (k = 2; k < w->count + 2; k++) start[k] += start[k - 1];
     }
     for (k = 0; k < w->count; k++)
-        qsort(rows + start[k], (size_t)(start[k + 1] - start[k]), sizeof *rows, demi_int_compare);
+        if (start[k + 1] > start[k])
+            qsort(rows + start[k], (size_t)(start[k + 1] - start[k]), sizeof *rows,
+                  demi_int_compare);
     return 1;
 }
 static void demi_rows_linked(dem_world *w, int d) {
@@ -6872,8 +6875,6 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     demi_effects(w);
     if (!w->skin_chosen || w->visitor) demi_skin_choose(w);
     w->skin_chosen = 1;
-    /* other laws: memory means nothing */
-    if (w->carry_stride != w->memory_stride) w->carry_count = 0;
     for (k = 0; k < 3; k++) {
         const demi_periods p = demi_periods_of(w);
         const double need = 2*(2*(double)w->radius_max + w->skin);
