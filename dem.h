@@ -911,8 +911,8 @@ DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_
 /* Takes out grains whose centre is in a region (fixed ones too), and counts them; for the balance
    they have left. It looks whenever a new list of neighbours is made, and every 64 steps: a grain
    is in by half a skin at most, or for 64 steps, before it goes; a region thinner than half a skin
-   may be passed unseen. So many that leave one by one cost hardly more than none. The radius of a body that is not a sphere: of the smallest sphere about its
-   centre that holds it. */
+   may be passed unseen. So many that leave one by one cost hardly more than none. The radius of a
+   body that is not a sphere: of the smallest sphere about its centre that holds it. */
 typedef struct dem_outlet_desc {
     dem_wall frame;                  /* the region moves with this wall, which then cannot be
                                         removed; null: it stands still */
@@ -1761,8 +1761,8 @@ struct dem_world {
     double near_creep;             /* m: what that may have brought two bodies together */
     demi_array quiet_;             /* what may push each few bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
-    int join_room;                 /* candidates that newcomers may still bring, see demi_list_join */
-    int near_stale;                /* lacks a pair of a body that joined: made anew in the next step */
+    int join_room;                 /* candidates that newcomers may bring, see demi_list_join */
+    int near_stale;                /* lacks a pair of a body that joined: the next step makes it */
     int *cross_incoming_start;     /* domain_count + 1 */
     demi_array cross_incoming_, cross_push_;
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
@@ -3772,8 +3772,8 @@ static double demi_far2(const double *a, const double *b) {
     return x*x + y*y + z*z;
 }
 
-/* Points in a tree of boxes, to find those near a line. Node k has the halves 2k + 1 and 2k + 2, cut
-   across its longest side; each has a stretch of `order` and the box around its points. */
+/* Points in a tree of boxes, to find those near a line. Node k has the halves 2k + 1 and 2k + 2,
+   cut across its longest side; each has a stretch of `order` and the box around its points. */
 enum { DEMI_TREE_LEAF = 8 };
 typedef struct demi_tree {
     const double *x;               /* points x 3, m: the caller's */
@@ -3921,6 +3921,9 @@ static void demi_points_weld(const demi_tree *tree, const double *near_by, int32
     for (i = 0; i < count; i++) same[i] = i;
     for (i = 0; i < count; i++) {
         int32_t a, b, other;
+        /* a copy of a point before it: that one has met all whom it would meet */
+        if (same[i] != i && near_by[i] <= near_by[same[i]] &&
+            !(demi_far2(x + 3*i, x + 3*same[i]) > 0)) continue;
         demi_tree_line(&near, tree, x + 3*i, x + 3*i, near_by[i]);
         while ((other = demi_tree_next(&near)) >= 0) {
             const double most = DEMI_MIN(near_by[i], near_by[other]);
@@ -6820,7 +6823,7 @@ static int demi_join_lack(const dem_world *w) {
         if (w->domains[d].cross + w->join_room > w->cross.stride) lack |= 2;
     return lack | (w->domains[last].walls + w->join_room > w->wall_stride ? 4 : 0);
 }
-/* May a sphere join? Not when it would bring an effect in, nor beside bodies that are no spheres. */
+/* May a sphere join? Not when it would bring an effect in, nor beside bodies of other shapes. */
 static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
     if (!w->list_valid || w->pairs_changed || !w->count || w->shaped_count || w->visitor) return 0;
     return !w->uniform || (w->body_material[0] == material + 1 && !(radius < w->uniform_radius) &&
@@ -10007,8 +10010,8 @@ static double demi_nook_far2(const demi_crowd *c, const demi_nook *n, const doub
     }
     return d2;
 }
-/* How many of the crowd a sphere overlaps, and the bodies they are; ends with the first that `found`
-   has no room for. Its centre is in the tree's box. */
+/* How many of the crowd a sphere overlaps, and the bodies they are; ends with the first that
+   `found` has no room for. Its centre is in the tree's box. */
 static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 centre,
                            dem_real radius, int32_t *found, int room) {
     const demi_sphere *all = demi_crowd_spheres(w);
@@ -10434,9 +10437,9 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
 /* ---------------------------------------------------------------------------------------------
    >>feed
    Grains come in between two steps, joining the list of candidates (demi_list_join), and go out in
-   the middle of one, when all have moved and a list is due. What a feed draws comes from its own random state
-   in a fixed order: class, then place and velocity until a place is free. How much is due follows
-   from the time alone.
+   the middle of one, when all have moved and a list is due. What a feed draws comes from its own
+   random state in a fixed order: class, then place and velocity until a place is free. How much is
+   due follows from the time alone.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* places tried; steps until the next try */
 enum { DEMI_FEED_NEAR = 256 };                       /* bodies near one that joins the list */
@@ -10557,8 +10560,10 @@ static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_
     if (!free_place) return 0;
     x = demi_place_of(&c->p, x);
     joins = demi_join_possible(w, d->material.id - 1, r);
-    if (!joins || !w->primed) demi_finish(w);   /* one that joins may stand at the half step as well */
-    if (joins) count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*(dem_real)w->skin, found, DEMI_FEED_NEAR);
+    if (!joins || !w->primed) demi_finish(w);   /* one that joins may stand at the half step, too */
+    if (joins)
+        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*(dem_real)w->skin, found,
+                                DEMI_FEED_NEAR);
     joins = joins && count <= DEMI_FEED_NEAR;
     if (!demi_crowd_put(w, c, x, r, w->count) || (!joins && !demi_list_drop(w)) ||
         !demi_bodies_reserve(w, (size_t)w->count + 1)) {

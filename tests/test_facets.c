@@ -1182,6 +1182,21 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("a disc of 30,000 triangles about one point, each with corners of its own, pushes as a plane") {
+        soup s = soup_of(3);
+        rail a;
+        int i;
+        for (i = 0; i < 30000; i++) {
+            const double from = 2*pi*i/30000, to = 2*pi*((i + 1)%30000)/30000;
+            const double x[9] = {0, 0, 0, 3*cos(from), 3*sin(from), 0, 3*cos(to), 3*sin(to), 0};
+            triangle(&s, x, x + 3, x + 6);
+        }
+        a = rail_on(&s);
+        for (i = 0; i < 5; i++)
+            CHECK_NEAR(size_of(rail_at(&a, at(0.2*i, 0, 0.99))), 0.01, DEMI_SINGLE ? 1e-6 : 1e-10);
+        dem_world_destroy(a.world);
+        soup_free(&s);
+    }
     TEST("a sheet given twice or three times, either way round, pushes once") {
         int i, k;
         for (i = 0; i < 4; i++) {
