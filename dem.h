@@ -1627,6 +1627,9 @@ typedef struct demi_wall {
     int32_t *edges;                /* element_count x 3 (mesh): the edge from corner k to k + 1 */
     dem_real *weight;              /* how often each face, edge and corner counts, in this order */
     unsigned char *owns;           /* element_count: bit k: looks after edge k, 3 + k: corner k */
+    dem_real *planes;              /* element_count x 4: unit normal and n.x of its plane, m; zeros:
+                                      it is too thin to have one */
+    dem_real plane_slack;          /* m, what rounding may do to a distance from a plane */
     int32_t *cut_start;            /* element_count + 1 (null: none): pieces of edges in `cuts` */
     demi_cut *cuts;
     int group;                     /* walls of one group do not move against each other */
@@ -1788,7 +1791,8 @@ struct dem_world {
     int wall_now_stride;           /* wall contacts per domain */
     demi_array wall_body_, wall_id_, wall_element_, wall_gap_, wall_now_, wall_next_, wall_sums_;
     int32_t *wall_body, *wall_id, *wall_element;
-    dem_real *wall_gap;            /* m, between grain and element when the list was made */
+    dem_real *wall_gap;            /* m, between grain and element when the list was made, or a
+                                      little less */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image that is near */
     demi_array wall_shift_;
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
@@ -3975,6 +3979,27 @@ static demi_side demi_side_of(int32_t a, int32_t b, int facet, int side) {
     return s;
 }
 
+/* The planes of a wall's elements, by which most that a body does not reach are told at once. */
+static void demi_facet_planes(demi_wall *wall, const double *x) {
+    const int n = wall->kind == DEMI_WALL_MESH ? 3 : 2;
+    double far = 0;
+    int i, k;
+    for (i = 0; i < 3*wall->vertex_count; i++) far = DEMI_MAX(far, fabs(x[i]));
+    wall->plane_slack = (dem_real)(16*far*(DEMI_SINGLE ? (double)FLT_EPSILON : DBL_EPSILON));
+    for (i = 0; i < wall->element_count; i++) {
+        const double *a = x + 3*wall->corners[n*i], *b = x + 3*wall->corners[n*i + 1];
+        double u[3], v[3], m[3], l;
+        for (k = 0; k < 3; k++) u[k] = b[k] - a[k];
+        for (k = 0; k < 3; k++) v[k] = n == 3 ? x[3*wall->corners[n*i + 2] + k] - a[k] : k == 2;
+        if (n == 2) u[2] = 0;                   /* a segment goes on along z without end */
+        for (k = 0; k < 3; k++) m[k] = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
+        l = sqrt(m[0]*m[0] + m[1]*m[1] + m[2]*m[2]);
+        if (!(l*l > 1e-8*(u[0]*u[0] + u[1]*u[1] + u[2]*u[2])*
+                    (v[0]*v[0] + v[1]*v[1] + v[2]*v[2]))) continue;
+        for (k = 0; k < 3; k++) wall->planes[4*i + k] = (dem_real)(m[k]/l);
+        wall->planes[4*i + 3] = (dem_real)((m[0]*a[0] + m[1]*a[1] + m[2]*a[2])/l);
+    }
+}
 /* Welds a wall's corners, numbers its edges and says which element looks after which. Elements
    that have two corners in one place count nothing. 0 when memory ran out. */
 static int demi_facets_begin(dem_world *w, demi_wall *wall) {
@@ -3989,12 +4014,15 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
     memset(&tree, 0, sizeof tree);
     wall->owns = (unsigned char *)demi_alloc(w, (size_t)all, 1);
     wall->edges = (int32_t *)demi_alloc(w, (size_t)all*3, sizeof(int32_t));
-    if (!x || !same || !sides || !near_by || !wall->owns || !wall->edges) goto done;
+    wall->planes = (dem_real *)demi_alloc(w, (size_t)all*4, sizeof(dem_real));
+    if (!x || !same || !sides || !near_by || !wall->owns || !wall->edges || !wall->planes)
+        goto done;
     for (i = 0; i < 3*wall->vertex_count; i++) x[i] = (double)wall->vertices[i];
     if (!demi_tree_make(w, &tree, x, wall->vertex_count)) goto done;
     demi_near_by(x, wall, 0, near_by);
     demi_points_weld(&tree, near_by, same);
     for (i = 0; i < n*all; i++) wall->corners[i] = same[wall->corners[i]];
+    demi_facet_planes(wall, x);
     memset(same, 0, vertices*sizeof *same);     /* from here on: does an element own it? */
     for (i = 0; i < all; i++) {
         const int32_t *c = wall->corners + n*i;
@@ -4654,7 +4682,7 @@ static double demi_wall_speed(const demi_wall *wall) {
 }
 
 /* The arrays a wall owns: what is freed, and copied into slabs. */
-enum { DEMI_WALL_ARRAYS = 9 };
+enum { DEMI_WALL_ARRAYS = 10 };
 typedef struct demi_owned {
     void *place, *data;            /* where the pointer stands, and what it is */
     size_t count, item;
@@ -4680,6 +4708,7 @@ static void demi_wall_arrays(demi_wall *wall, demi_owned *out) {
     out[7] = demi_owned_of(&wall->cell_start, (size_t)wall->cells[0]*(size_t)wall->cells[1]*
                            (size_t)wall->cells[2] + 1, sizeof(int32_t));
     out[8] = demi_owned_of(&wall->cell_items, (size_t)wall->cell_item_count, sizeof(int32_t));
+    out[9] = demi_owned_of(&wall->planes, n*4, sizeof(dem_real));
 }
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
     demi_owned array[DEMI_WALL_ARRAYS];
@@ -5926,7 +5955,7 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_body[k] = body;
     w->wall_id[k] = wall;
     w->wall_element[k] = element;
-    w->wall_gap[k] = gap;
+    w->wall_gap[k] = gap - w->pos[4*body + 3]/10000;    /* a little for rounding */
     demi_put(w->wall_shift + 3*(size_t)k, shift);
 }
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
@@ -8441,6 +8470,10 @@ DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_conta
     c->user = w->desc.law_user;
 }
 
+/* m: as far as any grain and any wall have come towards each other since the list was made. */
+DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
+    return (dem_real)(w->reach + w->wall_reach);
+}
 /* Room in which the places of one body and one wall are found. candidates: how many there are. */
 DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidates) {
     const demi_domain *domain = &w->domains[d];
@@ -8464,6 +8497,15 @@ DEM_INLINE int demi_image_end(const dem_world *w, int base, int k, int last) {
     while (end < last && !memcmp(s, w->wall_shift + 3*(size_t)(base + end), 3*sizeof *s)) end++;
     return end;
 }
+/* Can candidate k, an element of a wall, be nearer than `within` to a place? No where its gap has
+   not closed, or its plane is farther off. */
+DEM_INLINE int demi_facet_near(const dem_world *w, const demi_wall *wall, int k, dem_real gone,
+                               dem_vec3 x, dem_real within) {
+    const dem_real *plane = DEMI_AT(wall->planes, w->wall_element[k]);
+    const dem_real off = plane[0]*x.x + plane[1]*x.y + plane[2]*x.z - plane[3];
+    return !(w->wall_gap[k] > gone) &&
+           !(DEMI_ABS(off) > within*DEM_R(1.001) + wall->plane_slack);
+}
 /* Where an ellipsoid (part; null: a sphere of radius r) at `at` touches a surface of facets, from
    the candidates first .. last - 1 of its body: normals, points and shares, and what is left of its
    measure, r less the distance or 1 - W0, as overlaps. In the world. */
@@ -8475,21 +8517,23 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
     const dem_real within = part ? DEM_R(1) : r;
     demi_places p = demi_places_begin(w, d, last - first);
     const int numbers = wall->number_count;
-    int k, q, from, end, only;
+    int k, q, from, end, one, reached;
     for (k = first; k < last; k = end, p.offset += numbers) {   /* image by image */
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
         const dem_vec3 x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
         from = p.count;
         end = demi_image_end(w, base, k, last);
-        for (q = k; q < end && w->wall_gap[base + q] > gone; q++) continue;
-        for (only = q++; q < end && w->wall_gap[base + q] > gone; q++) continue;
-        if (only < end && q == end && wall->lone && !part) {
-            demi_facet_alone(wall, w->wall_element[base + only], x, within, &p);
+        for (q = k, one = end, reached = 0; q < end && !part; q++) {
+            if (!demi_facet_near(w, wall, base + q, gone, x, within)) continue;
+            if (!reached++) one = q;
+        }
+        if (reached == 1 && wall->lone) {
+            demi_facet_alone(wall, w->wall_element[base + one], x, within, &p);
             if (p.count > from) p.at[from].shift = shift;
             continue;
         }
-        for (q = k; q < end && !part; q++)      /* spheres have a copy of the code for them */
-            if (!(w->wall_gap[base + q] > gone))
+        for (q = one; q < end; q++)             /* spheres have a copy of the code for them */
+            if (demi_facet_near(w, wall, base + q, gone, x, within))
                 demi_facet_places(wall, w->wall_element[base + q], x, 0, within, &p);
         for (q = k; q < end && part; q++)
             if (!(w->wall_gap[base + q] > gone))
@@ -8525,12 +8569,10 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
    body it is, or is part of. */
 static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
                              dem_real r, demi_touching **places) {
-    const int base = d*w->wall_stride, body = w->wall_body[base + first];
+    const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
-    /* as far as any grain and any wall have come since the list was made, and a little for rounding
-       */
-    const dem_real gone = (dem_real)(w->reach + w->wall_reach) + w->pos[4*body + 3]/10000;
+    const dem_real gone = demi_walls_gone(w);
     demi_touching *out;
     int k, q, end, count = 0;
     while (first < last && w->wall_gap[base + first] > gone) first++;
@@ -8576,6 +8618,7 @@ static void demi_domain_walls_touch(dem_world *w, int d) {
     const int base = d*w->wall_stride;
     const demi_wall_contact *old = w->wall_now + (size_t)d*(size_t)w->wall_now_stride;
     demi_wall_contact *out = w->wall_next + (size_t)d*(size_t)w->wall_now_stride;
+    const dem_real gone = demi_walls_gone(w);
     int k, last, q, e, count = 0, o = 0, o_end;
     domain->wall_contacts_next = 0;
     domain->overflow &= ~32;
@@ -8583,8 +8626,10 @@ static void demi_domain_walls_touch(dem_world *w, int d) {
         const int body = w->wall_body[base + k], wall = w->wall_id[base + k];
         demi_touching *at;
         int n;
-        for (last = k + 1; last < domain->walls && w->wall_body[base + last] == body &&
-             w->wall_id[base + last] == wall;) last++;
+        last = k + 1;
+        if (w->wall_gap[base + k] > gone) continue;     /* not near yet: the body is not looked at */
+        while (last < domain->walls && w->wall_body[base + last] == body &&
+               w->wall_id[base + last] == wall) last++;
         if (w->shaped_count && demi_form_of(w, body)) continue;     /* in >>shaped */
         n = demi_wall_collect(w, d, k, last, demi_at(w->pos + 4*body), w->pos[4*body + 3], &at);
         if (!n) continue;
@@ -9095,7 +9140,7 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
     const demi_wall *wall = &w->walls[id];
     const dem_vec3 centre = demi_at(w->pos + 4*body);
     const demi_part p = demi_part_now(w, body, k);
-    const dem_real gone = (dem_real)(w->reach + w->wall_reach) + w->pos[4*body + 3]/10000;
+    const dem_real gone = demi_walls_gone(w);
     demi_touching *found = 0;
     const int count = p.ball
         ? demi_wall_collect(w, d, first, last, demi_add(centre, p.centre), p.radius, &found)
