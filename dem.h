@@ -15,6 +15,7 @@
        >>platform    compiler, OpenMP, the one parallel loop
        >>maths       vectors, poses, random numbers
        >>memory      allocation, arrays that grow, errors, the world's layout
+       >>laws        the built-in contact laws, a line each
        >>materials   materials, the pair table, coefficients
        >>shapes      ellipsoids, clusters of spheres: mass properties, supports, meetings
        >>bodies      grains: slots, arrays, insertion, removal
@@ -22,8 +23,7 @@
        >>walls       planes, cylinders, profiles, meshes, walls of grains, sieves, their motions
        >>search      all pairs, grid, levels, linked linear list; the candidate list
        >>touch       candidate pairs -> contacts: geometry only
-       >>laws        contact -> force and torque
-       >>respond     the loops that bring touch and law together, grain-grain and grain-wall
+       >>respond     contact -> force and torque: the loops that bring touch and law together
        >>shaped      contacts of bodies that are not spheres: touch and respond, one by one
        >>integrators kick, drift, predict; rotation
        >>ledger      where the energy went
@@ -97,7 +97,7 @@
        DEM_STATIC         makes every function static
        DEM_LAW            name of your contact law, to have it inlined (see >>add-law)
        DEM_NO_OPENMP      never use OpenMP, even when the compiler offers it
-       DEM_NO_SPECIALIZE  one run-time kernel instead of one per effect set: slower, same bits
+       DEM_NO_SPECIALIZE  always law by law, never all laws at once: slower, same bits
        DEM_NO_CLONES      kernels for the compiler's target only, not also for wider vectors
        DEM_DOMAIN_BODIES  bodies per domain, about (2048); another number gives other bits
        DEM_ASSERT(x)      what checks for our own bugs; default: nothing
@@ -154,6 +154,7 @@
 #ifndef DEM_H
 #define DEM_H
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -178,8 +179,9 @@ typedef DEM_REAL dem_real;
 #endif
 
 /* Inlined whatever it takes: contact laws named by DEM_LAW, and functions whose triples of numbers
-   would otherwise go through memory, which costs more than their arithmetic. */
-#if defined(__GNUC__) && !defined(__TINYC__)
+   would otherwise go through memory, which costs more than their arithmetic. Not where the compiler
+   is asked not to optimise: code then only grows by it. */
+#if defined(__GNUC__) && defined(__OPTIMIZE__) && !defined(__TINYC__)
 #define DEM_INLINE static inline __attribute__((always_inline))
 #else
 #define DEM_INLINE static inline
@@ -370,6 +372,31 @@ typedef enum dem_boundary {
     DEM_BOUNDARY_OUTFLOW
 } dem_boundary;
 
+/* ---- maths that laws are written with; not meant for more ---- */
+/* Maths in the precision of dem_real; the choice folds away at compile time. */
+#define DEMI_SINGLE (sizeof(dem_real) == sizeof(float))
+#define DEMI_SQRT(x) (DEMI_SINGLE ? (dem_real)sqrtf((float)(x)) : (dem_real)sqrt((double)(x)))
+#define DEMI_ABS(x) (DEMI_SINGLE ? (dem_real)fabsf((float)(x)) : (dem_real)fabs((double)(x)))
+/* Added to a length before dividing by it. */
+#define DEMI_TINY (DEMI_SINGLE ? DEM_R(1e-30) : DEM_R(1e-200))
+#if defined(__GNUC__) && !defined(__TINYC__) && !defined(__cplusplus)
+extern double sqrt(double) __attribute__((const));  /* "const": does not set errno, so that roots */
+extern float sqrtf(float) __attribute__((const));  /* can be vectorised without -fno-math-errno */
+#endif
+DEM_INLINE dem_vec3 demi_v(dem_real x, dem_real y, dem_real z) { return dem_vec3_make(x, y, z); }
+DEM_INLINE dem_vec3 demi_at(const dem_real *p) { return dem_vec3_make(p[0], p[1], p[2]); }
+DEM_INLINE dem_vec3 demi_add(dem_vec3 a, dem_vec3 b) { return demi_v(a.x + b.x, a.y + b.y, a.z +
+    b.z); }
+DEM_INLINE dem_vec3 demi_sub(dem_vec3 a, dem_vec3 b) { return demi_v(a.x - b.x, a.y - b.y, a.z -
+    b.z); }
+DEM_INLINE dem_vec3 demi_scale(dem_vec3 a, dem_real s) { return demi_v(a.x*s, a.y*s, a.z*s); }
+DEM_INLINE dem_real demi_dot(dem_vec3 a, dem_vec3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
+DEM_INLINE dem_vec3 demi_cross(dem_vec3 a, dem_vec3 b) {
+    return demi_v(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
+}
+DEM_INLINE dem_real demi_length(dem_vec3 a) { return DEMI_SQRT(demi_dot(a, a)); }
+DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
+
 /* ---- a contact, and a law of one's own ---- */
 
 /* What a law sees: this contact and nothing else. Velocities are of body a relative to body b, or
@@ -395,14 +422,33 @@ typedef struct dem_contact {
     dem_real friction, friction_static, rolling_friction;
     int32_t material_a, material_b; /* dem_material ids */
     int32_t wall;            /* 0: b is a grain; otherwise the dem_wall id */
+    int tension, friction_load, slider;  /* dem_tension, dem_load, dem_slider: as in the desc */
     void *user;              /* law_user of the world desc */
 } dem_contact;
+
+/* Where the energy of one contact goes in one step, J. */
+typedef struct dem_contact_energy {
+    dem_real dashpot, sag;   /* lost to the normal dashpot, and to hysteresis */
+    dem_real elastic;        /* stored by the normal spring */
+    dem_real shear_work;     /* done against the tangential force */
+    dem_real slide;          /* lost to sliding */
+    dem_real shear_stored;   /* stored by the tangential spring */
+    dem_real roll;           /* lost to rolling resistance */
+} dem_contact_energy;
 
 /* What a law answers. Zeroed before the law is called. */
 typedef struct dem_push {
     dem_real normal;         /* N, repulsion: positive pushes apart */
     dem_vec3 tangent;        /* N, on a (b gets the opposite), at the contact point */
     dem_vec3 moment;         /* N m, on a (b gets the opposite): rolling resistance */
+    /* what a normal law hands to one of friction and one of rolling, see dem_law_hertz; a law that
+       calls neither may leave it alone */
+    dem_real elastic;        /* N, the spring's part of `normal` */
+    dem_real load;           /* N, >= 0: friction's limit is friction times that */
+    dem_real slope, slope_step;  /* N/m, d(elastic)/d(overlap): now, in the middle of the step */
+    dem_real kt, kt_step;    /* N/m, tangential stiffness: the same */
+    dem_real ct;             /* N s/m, tangential dashpot */
+    dem_contact_energy energy;   /* for the ledger */
 } dem_push;
 
 /* A contact law. memory holds law_memory reals that start at zero when the contact begins and are
@@ -428,6 +474,235 @@ DEM_INLINE dem_vec3 dem_memory_turn(const dem_contact *c, dem_vec3 v) {
     out.y = q*y + t*(n.z*x - n.x*z);
     out.z = q*z + t*(n.x*y - n.y*x);
     return out;
+}
+
+/* ---- the built-in laws ----
+   Each is a function like one of your own, and a law of your own may call them: first one for the
+   normal force, then one for friction, then one for rolling. Each of the later ones takes from the
+   answer what the normal law has put there: the load, and how stiff the contact is at its present
+   overlap. `memory` is where the law's own reals begin: as many as its comment says, vectors first.
+   Coefficients (kn, cn, kt, ct and so on) come with the contact. None has a branch that depends on
+   the contact, so that compilers turn loops over them into vector code. `energy` in the answer is
+   for the ledger. */
+
+/* For a normal law: sets what friction may count on from the elastic and the whole normal force, as
+   friction_load says, and takes away what pulls, if tension says so. hold: N, what adhesion holds
+   besides, 0 if there is none. */
+DEM_INLINE void dem_law_load(const dem_contact *c, dem_push *f, dem_real hold) {
+    const int clipped = c->tension != DEM_TENSION_KEPT;
+    const dem_real least = f->elastic < 0 ? f->elastic : 0;  /* adhesion may pull, no dashpot */
+    const dem_real whole = (clipped || c->friction_load != DEM_LOAD_ELASTIC ? f->normal
+                                                                          : f->elastic) + hold;
+    const dem_real size = f->normal < 0 ? -f->normal : f->normal;
+    f->load = whole > 0 ? whole : 0;
+    if (!clipped && c->friction_load == DEM_LOAD_SIZE) f->load = size;
+    if (clipped) f->normal = f->normal < least ? least : f->normal;
+    f->energy.dashpot = (f->normal - f->elastic)*c->closing_speed*c->dt;
+}
+/* Memory grows by what happened in the step. That is of second order in dt with the stiffness of
+   the middle of the time in which the two touched: of the overlap half way between what it was a
+   step ago, 0 at least, and now. Answers which part of the step that was, 1 unless they have just
+   met. Checked by "tangential and rolling memory is of second order". */
+DEM_INLINE dem_real demi_law_share(const dem_contact *c) {
+    const dem_real gone = c->closing_speed*c->dt;
+    return c->overlap > gone ? 1 : c->overlap/(gone + DEMI_TINY);
+}
+DEM_INLINE dem_real demi_law_middle(const dem_contact *c) {
+    const dem_real gone = c->closing_speed*c->dt;
+    return (c->overlap + (c->overlap > gone ? c->overlap - gone : 0))/2;
+}
+
+/* F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92]; kt goes with d^(1/2), ct with d^(1/4). No memory. */
+DEM_INLINE void dem_law_hertz(const dem_contact *c, dem_real *memory, dem_push *f) {
+    const dem_real root = DEMI_SQRT(c->overlap), fourth = DEMI_SQRT(root);
+    const dem_real middle = DEMI_SQRT(demi_law_middle(c));
+    (void)memory;
+    f->elastic = c->kn*root*c->overlap;
+    f->normal = f->elastic + c->cn*fourth*c->closing_speed;
+    f->slope = DEM_R(1.5)*(c->kn*root);
+    f->slope_step = DEM_R(1.5)*(c->kn*middle);
+    f->kt = c->kt*root;
+    f->kt_step = c->kt*middle;
+    f->ct = c->ct*fourth;
+    dem_law_load(c, f, 0);
+    f->energy.elastic = f->elastic*c->overlap*2/5;
+}
+/* F = kn d + cn v. No memory. */
+DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_push *f) {
+    (void)memory;
+    f->elastic = c->kn*c->overlap;
+    f->normal = f->elastic + c->cn*c->closing_speed;
+    f->slope = f->slope_step = c->kn;
+    f->kt = f->kt_step = c->kt;
+    f->ct = c->ct;
+    dem_law_load(c, f, 0);
+    f->energy.elastic = f->elastic*c->overlap/2;
+}
+/* Hysteretic [ALK07] eq 2.41 to 2.49:
+       F = kun d - (kun - kn) D,  D: depth, N/m and m
+   loading (d = D): F = kn d; un- and reloading: slope kun, zero at d0 = (1 - kn/kun) D [2.44];
+   pulling: F = -kad d, on which D shrinks with d, so that reloading from any point of it, at slope
+   kun, meets kn d again at the D that belongs to that point. D is all there is to remember: the
+   larger of D and d, but at most d (kun + kad)/(kun - kn). The branches meet at
+   d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun. That is eq 2.49
+   with kad as a size; with the negative slope [ALK07] defines it as, its 2.48 and 2.49 have the
+   wrong sign, and its text calls d_ad a deformation and a force. Friction is what F + kad d can
+   hold, which is 0 at the pulling line; [ALK07] takes |F|, which is 0 where nothing pulls or pushes
+   and large where the two are torn apart.
+   Along the slope kun nothing is lost: a grain at rest on one swings there for ever unless
+   normal_damping calms it. Stored is F^2/(2 kun); a D that changes dissipates F (1 - kn/kun) dD,
+   summed exactly along either line. Memory: D, m, no vector.
+   Tests: "a hysteretic contact dissipates the area of its loop". */
+DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_push *f) {
+    const dem_real kn = c->kn, kun = c->kun, kad = c->kad, soft = kun - kn, before = memory[0];
+    const dem_real loaded = c->overlap > before ? c->overlap : before;
+    const dem_real most = c->overlap*(kun + kad)/(soft + DEMI_TINY);
+    const dem_real depth = most < loaded ? most : loaded;
+    memory[0] = depth;
+    f->elastic = kun*c->overlap - soft*depth;
+    f->normal = f->elastic + c->cn*c->closing_speed;
+    f->slope = f->slope_step = kn;
+    f->kt = f->kt_step = c->kt;
+    f->ct = c->ct;
+    dem_law_load(c, f, kad*c->overlap);
+    f->energy.elastic = f->elastic*f->elastic/(2*kun);
+    f->energy.sag = soft/(2*kun)*(kn*(loaded*loaded - before*before) +
+                                  kad*soft/(kun + kad)*(loaded*loaded - depth*depth));
+}
+
+/* Friction caps a trial force t by Coulomb: by friction_static while it holds, by friction when it
+   slides. Answers which part of t is left; what is cut off is sliding. */
+DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_push *f, dem_vec3 t) {
+    const dem_real size = DEMI_SQRT(demi_dot(t, t)), cap = f->load*c->friction;
+    dem_real cut = size > f->load*c->friction_static ? size : cap;
+    cut = (cap + DEMI_TINY)/(cut + DEMI_TINY);
+    f->tangent = demi_scale(t, cut);
+    f->energy.shear_work = -demi_dot(f->tangent, c->slip)*c->dt;
+    return cut;
+}
+/* No memory, a dashpot of so many N s/m. */
+DEM_INLINE void demi_law_dashpot(const dem_contact *c, dem_push *f, dem_real ct) {
+    const dem_vec3 v = c->slip;
+    const dem_real cut = demi_law_cap(c, f, demi_v(-ct*v.x, -ct*v.y, -ct*v.z));
+    f->energy.slide = cut < 1 ? f->energy.shear_work : 0;
+}
+/* -ct v, capped; [MIL] 4.3. No memory. */
+DEM_INLINE void dem_law_viscous(const dem_contact *c, dem_real *memory, dem_push *f) {
+    (void)memory;
+    demi_law_dashpot(c, f, f->ct);
+}
+/* -kt (v dt) - ct v, capped; [MIL] 4.2. No memory. */
+DEM_INLINE void dem_law_step(const dem_contact *c, dem_real *memory, dem_push *f) {
+    (void)memory;
+    demi_law_dashpot(c, f, f->kt*c->dt + f->ct);
+}
+/* The length by which a spring gives way when (1 - cut) t of a trial force t is cut off, m:
+       shared   the part of spring and dashpot side by side, kt dt/(kt dt + ct), so that the two
+                together hold what friction can
+       rest     all, so that spring and dashpot of the present slip do
+       spring   all and the dashpot's share besides, so that the spring alone does.
+   The dashpot's share comes from nowhere there. */
+DEM_INLINE dem_vec3 demi_law_give(const dem_contact *c, dem_push *f, dem_vec3 t, dem_real cut) {
+    const dem_real shared = (1 - cut)*c->dt/(f->kt*c->dt + f->ct + DEMI_TINY);
+    const dem_real all = (c->dt > 0 ? 1 - cut : 0)/(f->kt + DEMI_TINY);      /* m/N */
+    dem_vec3 lost = demi_scale(t, c->slider == DEM_SLIDER_SHARED ? shared : all);
+    if (c->slider == DEM_SLIDER_SPRING)
+        lost = demi_add(lost, demi_scale(c->slip, c->dt > 0 && cut < 1 ? f->ct/(f->kt + DEMI_TINY)
+                                                  : 0));
+    f->energy.slide = cut*demi_dot(t, lost);
+    return lost;
+}
+/* -kt s - ct v, capped; s: displacement, carried along with the contact plane [CS79]. Memory: s, m,
+   a vector. */
+DEM_INLINE void dem_law_spring(const dem_contact *c, dem_real *memory, dem_push *f) {
+    const dem_vec3 v = c->slip;
+    const dem_real kt = f->kt, ct = f->ct;
+    dem_vec3 s = dem_memory_turn(c, demi_at(memory)), t;
+    dem_real cut;
+    s = demi_add(s, demi_scale(c->slip_step, demi_law_share(c)*c->dt));
+    t = demi_v(-kt*s.x - ct*v.x, -kt*s.y - ct*v.y, -kt*s.z - ct*v.z);
+    cut = demi_law_cap(c, f, t);
+    s = demi_add(s, demi_law_give(c, f, t, cut));
+    demi_put(memory, s);
+    f->energy.shear_stored = kt*demi_dot(s, s)/2;
+}
+/* Increments of force at the stiffness of the step's middle [DIR05]; old: what is left of the force
+   of the step before. */
+DEM_INLINE void demi_law_increment(const dem_contact *c, dem_real *memory, dem_push *f,
+                                   dem_real kt_step, dem_real old) {
+    const dem_vec3 v = c->slip;
+    const dem_real kt = f->kt, ct = f->ct;
+    dem_vec3 s = demi_scale(dem_memory_turn(c, demi_at(memory)), old), t;
+    dem_real cut;
+    s = demi_sub(s, demi_scale(c->slip_step, kt_step*demi_law_share(c)*c->dt));
+    t = demi_v(s.x - ct*v.x, s.y - ct*v.y, s.z - ct*v.z);
+    cut = demi_law_cap(c, f, t);
+    s = demi_sub(s, demi_scale(demi_law_give(c, f, t, cut), kt));
+    demi_put(memory, s);
+    memory[3] = kt;
+    f->energy.shear_stored = demi_dot(s, s)/(2*kt + DEMI_TINY);
+}
+/* [DIR05]: s grows by -kt ds at kt of the present overlap; s - ct v, capped. Memory: s, N, a
+   vector, and kt of the last step, N/m. */
+DEM_INLINE void dem_law_mindlin(const dem_contact *c, dem_real *memory, dem_push *f) {
+    demi_law_increment(c, memory, f, f->kt_step, 1);
+}
+/* [THO13]: the same, but unloading keeps the length s/kt: where kt falls, s falls with it. Memory
+   as above. */
+DEM_INLINE void dem_law_mindlin_rescaled(const dem_contact *c, dem_real *memory, dem_push *f) {
+    const dem_real kt = f->kt, before = memory[3];
+    demi_law_increment(c, memory, f, kt < before ? kt : f->kt_step, kt < before ? kt/before : 1);
+}
+
+/* The moment of a spring m that takes up the relative rotation across the normal, at kr of the
+   step's middle, N m. */
+DEM_INLINE dem_vec3 demi_law_roll(const dem_contact *c, const dem_real *memory, dem_real kr) {
+    const dem_vec3 n = c->normal, w = c->spin_step;
+    return demi_sub(dem_memory_turn(c, demi_at(memory)),
+                    demi_scale(demi_sub(w, demi_scale(n, demi_dot(w, n))),
+                               kr*demi_law_share(c)*c->dt));
+}
+/* What rolling friction leaves of a moment of size `size`, at most `most`, both N m. */
+DEM_INLINE dem_real demi_law_left(dem_real size, dem_real most) {
+    return (most + DEMI_TINY)/((size > most ? size : most) + DEMI_TINY);
+}
+/* mu_r R min(F, |w|) against the relative spin w: [MIL] 4.5, dimensions as printed. No memory. */
+DEM_INLINE void dem_law_roll_step(const dem_contact *c, dem_real *memory, dem_push *f) {
+    const dem_real size = demi_length(c->spin), least = f->load < size ? f->load : size;
+    (void)memory;
+    f->moment = demi_scale(c->spin, -c->rolling_friction*c->r_eff*least/(size + DEMI_TINY));
+    f->energy.roll = -demi_dot(f->moment, c->spin)*c->dt;
+}
+/* mu_r R* F against the rotation [ZHO99], which at rest must be whatever holds it. That takes a
+   spring, as stiff as a step can resolve, kr = (.3/dt)^2 I of the lighter's inertia I = 2/5 m*
+   R*^2, critically damped and shared with the limit. What it yields goes with dt^2; nothing creeps.
+   Memory: its moment, N m, a vector. */
+DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory, dem_push *f) {
+    const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
+    const dem_real per = c->dt > 0 ? 1/(c->dt + DEMI_TINY) : 0;
+    const dem_real hard = 2*(c->m_eff*c->r_eff*c->r_eff)/5*per, kr = DEM_R(0.09)*hard*per;
+    const dem_vec3 m = demi_law_roll(c, memory, kr);
+    const dem_vec3 t = demi_sub(m, demi_scale(w, DEM_R(0.6)*hard));
+    const dem_real left = demi_law_left(DEMI_SQRT(demi_dot(t, t)),
+                                        c->rolling_friction*c->r_eff*f->load);
+    f->moment = demi_scale(t, left);
+    demi_put(memory, demi_sub(m, demi_scale(t, c->dt > 0 ? (1 - left)*DEM_R(0.09/0.69) : 0)));
+    f->energy.roll = -demi_dot(f->moment, c->spin)*c->dt;
+}
+/* EPSD [AI11]: a spring kr = 2.25 k (mu_r R*)^2, k = dF/dd the normal stiffness, held at mu_r R* F;
+   below that a dashpot of .3 times the critical one of I = 7/5 m* R*^2. Memory: the spring's
+   moment, N m, a vector. */
+DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_push *f) {
+    const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
+    const dem_real arm = c->rolling_friction*c->r_eff, mr2 = c->m_eff*c->r_eff*c->r_eff;
+    const dem_real kr = DEM_R(2.25)*f->slope*arm*arm, most = arm*f->load;
+    const dem_real cr = DEM_R(0.6)*DEMI_SQRT(kr*7*mr2/5);
+    dem_vec3 m = demi_law_roll(c, memory, DEM_R(2.25)*f->slope_step*arm*arm);
+    const dem_real size = DEMI_SQRT(demi_dot(m, m));
+    m = demi_scale(m, demi_law_left(size, most));
+    f->moment = demi_sub(m, demi_scale(w, size > most ? 0 : cr));
+    demi_put(memory, m);
+    f->energy.roll = -demi_dot(f->moment, c->spin)*c->dt;
 }
 
 /* Force in N on a body at position (m) with velocity (m/s), of radius (m) and mass (kg), at time
@@ -1275,7 +1550,6 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
    --------------------------------------------------------------------------------------------- */
 #include <float.h>
 #include <limits.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -1285,11 +1559,6 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #define DEMI_OPENMP 1
 #else
 #define DEMI_OPENMP 0
-#endif
-
-#if defined(__GNUC__) && !defined(__TINYC__) && !defined(__cplusplus)
-extern double sqrt(double) __attribute__((const));  /* "const": does not set errno, so that roots */
-extern float sqrtf(float) __attribute__((const));  /* can be vectorised without -fno-math-errno */
 #endif
 
 #if defined(__GNUC__) && !defined(__TINYC__)
@@ -1337,14 +1606,8 @@ extern float sqrtf(float) __attribute__((const));  /* can be vectorised without 
 #define DEM_ASSERT(x) ((void)0)
 #endif
 
-/* Maths in the precision of dem_real; the choice folds away at compile time. */
-#define DEMI_SINGLE (sizeof(dem_real) == sizeof(float))
-#define DEMI_SQRT(x) (DEMI_SINGLE ? (dem_real)sqrtf((float)(x)) : (dem_real)sqrt((double)(x)))
-#define DEMI_ABS(x) (DEMI_SINGLE ? (dem_real)fabsf((float)(x)) : (dem_real)fabs((double)(x)))
 #define DEMI_MIN(a, b) ((a) < (b) ? (a) : (b))
 #define DEMI_MAX(a, b) ((a) > (b) ? (a) : (b))
-/* Added to a length before dividing by it. */
-#define DEMI_TINY (DEMI_SINGLE ? DEM_R(1e-30) : DEM_R(1e-200))
 #define DEMI_PI 3.14159265358979323846
 
 /* Calls task(world, i) for i = 0 .. count-1. Tasks must not depend on each other. */
@@ -1387,18 +1650,6 @@ static double demi_clock(void) {                          /* s of wall time, for
    --------------------------------------------------------------------------------------------- */
 #define DEMI_REACH 1e15             /* m: coordinates beyond are mistakes; squares could overflow */
 #define DEMI_LEAST 1e-12            /* m: surfaces smaller than that in all are mistakes, too */
-DEM_INLINE dem_vec3 demi_v(dem_real x, dem_real y, dem_real z) { return dem_vec3_make(x, y, z); }
-DEM_INLINE dem_vec3 demi_at(const dem_real *p) { return dem_vec3_make(p[0], p[1], p[2]); }
-DEM_INLINE dem_vec3 demi_add(dem_vec3 a, dem_vec3 b) { return demi_v(a.x + b.x, a.y + b.y, a.z +
-    b.z); }
-DEM_INLINE dem_vec3 demi_sub(dem_vec3 a, dem_vec3 b) { return demi_v(a.x - b.x, a.y - b.y, a.z -
-    b.z); }
-DEM_INLINE dem_vec3 demi_scale(dem_vec3 a, dem_real s) { return demi_v(a.x*s, a.y*s, a.z*s); }
-DEM_INLINE dem_real demi_dot(dem_vec3 a, dem_vec3 b) { return a.x*b.x + a.y*b.y + a.z*b.z; }
-DEM_INLINE dem_vec3 demi_cross(dem_vec3 a, dem_vec3 b) {
-    return demi_v(a.y*b.z - a.z*b.y, a.z*b.x - a.x*b.z, a.x*b.y - a.y*b.x);
-}
-DEM_INLINE dem_real demi_length(dem_vec3 a) { return DEMI_SQRT(demi_dot(a, a)); }
 static double demi_size(dem_vec3 a) {                     /* largest component */
     return fmax(fabs((double)a.x), fmax(fabs((double)a.y), fabs((double)a.z)));
 }
@@ -1410,8 +1661,6 @@ static dem_vec3 demi_unit(dem_vec3 a) {                   /* of any length but 0
     l = sqrt(x*x + y*y + z*z);
     return demi_v((dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
 }
-DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
-
 static int demi_finite_double(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -1685,6 +1934,13 @@ typedef struct demi_since { double time; uint64_t steps; double dt; } demi_since
 /* Box ends of the linked linear list on one axis. */
 typedef struct demi_end { dem_real value; int32_t box; int32_t upper; } demi_end;
 
+/* The laws in force and where the memory of each begins (that of friction: at 0), see >>laws. */
+struct demi_law_row;
+typedef struct demi_laws {
+    const struct demi_law_row *normal, *tangent, *rolling;
+    int at_rolling, at_normal, memory, vectors;     /* reals; bits of those that are vectors */
+} demi_laws;
+
 struct dem_world {
     dem_world_desc desc;           /* as given, with choices filled in */
     dem_world_desc asked;          /* as given */
@@ -1738,7 +1994,9 @@ struct dem_world {
     /* effects, worked out when the scene changes */
     int normal, tangent, rolling;  /* laws in force */
     int uniform;                   /* one radius, one mass, one material, nothing fixed */
+    demi_laws laws;                /* their rows; not used where the user's own acts */
     int memory_stride, vector_mask;/* reals per contact; which of them are vectors */
+    int composed;                  /* one stage per law even where one for all would do (tests) */
     dem_real uniform_coef[DEMI_COEFS], uniform_radius, uniform_inv_mass;
     dem_real radius_min, radius_max;
     int fixed_count;
@@ -1950,6 +2208,97 @@ static int demi_array_grow(dem_world *w, demi_array *array, size_t item, size_t 
 static void demi_array_free(dem_world *w, demi_array *array) {
     demi_free(w, array->data, array->capacity, array->item);
     memset(array, 0, sizeof *array);
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>laws
+   The built-in laws, a line each: the laws themselves stand in >>api, where those who write their
+   own may call them. A contact force is made of a normal law, one of friction and one of rolling,
+   of which the last two may be absent. What is kept per contact is what these keep, one after the
+   other: friction, rolling, normal, so that vectors come first.
+   >>add-law: (1) a function dem_law_... and, at the end of its enum, a constant in >>api; (2) a
+   line at the end of its list here; (3) a sentence in tests/.
+   --------------------------------------------------------------------------------------------- */
+/* constant, function, reals of memory, how many vectors they begin with, name in reports */
+#define DEMI_NORMAL_LAWS(X) \
+    X(DEM_NORMAL_HERTZ,             hertz,            0, 0, "Hertz") \
+    X(DEM_NORMAL_LINEAR,            linear,           0, 0, "linear") \
+    X(DEM_NORMAL_HYSTERETIC,        hysteretic,       1, 0, "hysteretic")
+#define DEMI_TANGENT_LAWS(X) \
+    X(DEM_TANGENT_VISCOUS,          viscous,          0, 0, "viscous") \
+    X(DEM_TANGENT_STEP,             step,             0, 0, "step") \
+    X(DEM_TANGENT_SPRING,           spring,           3, 1, "spring") \
+    X(DEM_TANGENT_MINDLIN,          mindlin,          4, 1, "Mindlin") \
+    X(DEM_TANGENT_MINDLIN_RESCALED, mindlin_rescaled, 4, 1, "Mindlin, rescaled")
+#define DEMI_ROLLING_LAWS(X) \
+    X(DEM_ROLLING_STEP,             roll_step,        0, 0, "step") \
+    X(DEM_ROLLING_CONSTANT,         roll_constant,    3, 1, "constant torque") \
+    X(DEM_ROLLING_EPSD,             roll_epsd,        3, 1, "EPSD")
+
+typedef struct demi_law_row {
+    int kind;                      /* the constant: its place in the table */
+    dem_law_fn law;                /* null: none, or "chosen for you" */
+    int memory, vectors;
+    const char *name;
+} demi_law_row;
+#define DEMI_LAW_ROW(KIND, LAW, MEMORY, VECTORS, NAME) {KIND, dem_law_##LAW, MEMORY, VECTORS, NAME},
+static const demi_law_row demi_normal_laws[] = {DEMI_NORMAL_LAWS(DEMI_LAW_ROW)
+    {-1, 0, 0, 0, 0}};
+static const demi_law_row demi_tangent_laws[] = {{DEM_TANGENT_AUTO, 0, 0, 0, "auto"},
+    {DEM_TANGENT_NONE, 0, 0, 0, "none"}, DEMI_TANGENT_LAWS(DEMI_LAW_ROW) {-1, 0, 0, 0, 0}};
+static const demi_law_row demi_rolling_laws[] = {{DEM_ROLLING_AUTO, 0, 0, 0, "auto"},
+    {DEM_ROLLING_NONE, 0, 0, 0, "none"}, DEMI_ROLLING_LAWS(DEMI_LAW_ROW) {-1, 0, 0, 0, 0}};
+/* Is there such a law in a table? */
+static int demi_law_known(const demi_law_row *rows, int kind) {
+    int k;
+    for (k = 0; rows[k].kind >= 0; k++) if (k == kind) return 1;
+    return 0;
+}
+
+/* The laws in force, and where the memory of each begins. */
+static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling) {
+    laws->normal = &demi_normal_laws[normal];
+    laws->tangent = &demi_tangent_laws[tangent];
+    laws->rolling = &demi_rolling_laws[rolling];
+    laws->at_rolling = laws->tangent->memory;
+    laws->at_normal = laws->at_rolling + laws->rolling->memory;
+    laws->memory = laws->at_normal + laws->normal->memory;
+    laws->vectors = ((1 << 3*laws->tangent->vectors) - 1) |
+                    ((1 << 3*laws->rolling->vectors) - 1) << laws->at_rolling |
+                    ((1 << 3*laws->normal->vectors) - 1) << laws->at_normal;
+}
+/* Number by number: a memset would keep it in memory, and loops over it from being vectors. */
+DEM_INLINE void demi_push_clear(dem_push *f) {
+    f->tangent = f->moment = demi_v(0, 0, 0);
+    f->normal = f->elastic = f->load = f->slope = f->slope_step = 0;
+    f->kt = f->kt_step = f->ct = 0;
+    f->energy.dashpot = f->energy.sag = f->energy.elastic = f->energy.shear_work = 0;
+    f->energy.slide = f->energy.shear_stored = f->energy.roll = 0;
+}
+/* What the desc says about how dashpots meet the end of a contact and friction's limit; what it
+   says where nothing is asked for. */
+DEM_INLINE void demi_contact_usual(dem_contact *c) {
+    c->tension = DEM_TENSION_KEPT;
+    c->friction_load = DEM_LOAD_PUSH;
+    c->slider = DEM_SLIDER_SHARED;
+}
+static int demi_laws_usual(const dem_world *w) {
+    return w->desc.tension == DEM_TENSION_KEPT && w->desc.friction_load == DEM_LOAD_PUSH &&
+           w->desc.slider == DEM_SLIDER_SHARED;
+}
+DEM_INLINE void demi_contact_choices(const dem_world *w, dem_contact *c) {
+    c->tension = (int)w->desc.tension;
+    c->friction_load = (int)w->desc.friction_load;
+    c->slider = (int)w->desc.slider;
+}
+/* The force of one contact by the laws in force, or by the user's. */
+static void demi_law(const dem_world *w, const dem_contact *c, dem_real *memory, dem_push *f) {
+    const demi_laws *laws = &w->laws;
+    demi_push_clear(f);
+    if (w->desc.law) { w->desc.law(c, memory, f); return; }
+    laws->normal->law(c, memory + laws->at_normal, f);
+    if (laws->tangent->law) laws->tangent->law(c, memory, f);
+    if (laws->rolling->law) laws->rolling->law(c, memory + laws->at_rolling, f);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -4436,8 +4785,9 @@ static void demi_join_edge(dem_world *w, demi_join *j, int first, int end, int i
     for (k = first; k < end; k++) {
         const demi_side *s = j->piece + k;
         const int32_t *f = j->facet + 5*s->facet;
-        int32_t *c = j->cut + 6*j->cuts;
+        int32_t *c;
         if (f[0] != id || s->side < 3) continue;
+        c = j->cut + 6*j->cuts;
         c[0] = id; c[1] = f[1]; c[2] = s->lo; c[3] = s->hi; c[4] = number; c[5] = s->side - 3;
         j->cut_weight[j->cuts++] = whole < 0 ? more : 0;
         wall->cut_count++;
@@ -6338,16 +6688,6 @@ static void demi_shaped_move(dem_world *w, int stride) {
     }
 }
 
-/* Reals of memory that the built-in laws keep per contact: see >>laws. The hysteretic law's comes
-   after those of friction and rolling. */
-DEM_INLINE int demi_memory_shear(int tangent, int rolling) {
-    return rolling >= DEM_ROLLING_CONSTANT ? 7 : tangent >= DEM_TANGENT_MINDLIN ? 4
-        : tangent == DEM_TANGENT_SPRING ? 3 : 0;
-}
-DEM_INLINE int demi_memory_of(int normal, int tangent, int rolling) {
-    return demi_memory_shear(tangent, rolling) + (normal == DEM_NORMAL_HYSTERETIC);
-}
-
 /* --- the near list: candidates that touch or may within near_span, were they to meet head-on at
        the speed they have now; and near_margin more, because speeds change. Forces are worked out
        for all of it, touching or not, so that a step neither looks at candidates nor packs them;
@@ -6650,10 +6990,9 @@ static int demi_near_make(dem_world *w, int fresh) {
 
 /* What the laws in force keep per contact. */
 static void demi_effects_memory(dem_world *w) {
-    w->memory_stride = demi_memory_of(w->normal, w->tangent, w->rolling);
-    w->vector_mask = 0x77;
-    if (w->normal == DEM_NORMAL_HYSTERETIC)     /* a depth has no direction */
-        w->vector_mask &= ~(1 << demi_memory_shear(w->tangent, w->rolling));
+    demi_laws_set(&w->laws, w->normal, w->tangent, w->rolling);
+    w->memory_stride = w->laws.memory;
+    w->vector_mask = w->laws.vectors;
     if (!w->desc.law) return;
     w->memory_stride = w->desc.law_memory;
     w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
@@ -7670,221 +8009,17 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
 #pragma GCC optimize("no-trapping-math")
 #endif
 /* ---------------------------------------------------------------------------------------------
-   >>laws
-   One contact in, force and torque out. A law sees a dem_contact, its memory and its answer,
-   nothing else. demi_law is the built-in one; its first arguments are literals where a kernel is
-   specialised, so that what a scene does not call for is not there. It has no branches that depend
-   on the contact: compilers turn it into vector code. memory: [0..2] spring or force in the tangent
-   plane, [3] kt of the last step; [4..6] rolling moment; after those in use, the hysteretic law's
-   depth. `out` gets the energies of the ledger, when there is one.
-   >>add-law: (1) an enum value in >>api, (2) a case here, (3) its memory in demi_effects, (4) a
-   sentence in tests/, (5) a line in docs/theory.md.
-   --------------------------------------------------------------------------------------------- */
-/* How dashpots meet the end of a contact and friction's limit; the same for all contacts. */
-typedef struct demi_habit { int clipped, load, slider; } demi_habit;
-static demi_habit demi_habit_of(const dem_world *w) {
-    demi_habit h;
-    h.clipped = w->desc.tension != DEM_TENSION_KEPT;
-    h.load = h.clipped ? DEM_LOAD_PUSH : (int)w->desc.friction_load;
-    h.slider = (int)w->desc.slider;
-    return h;
-}
-/* sag: what a hysteretic spring keeps for itself; booked with the dashpot's */
-typedef struct demi_law_energy {
-    dem_real dashpot, sag, elastic, shear_work, slide, shear_stored, roll;
-} demi_law_energy;
-
-DEM_INLINE void demi_law(const dem_contact *c, dem_real *memory, dem_push *push, int normal,
-                         int tangent, int rolling, demi_habit habit, int ledger,
-                         demi_law_energy *out) {
-    const dem_vec3 n = c->normal, v = c->slip;
-    dem_real root, fn, elastic, kt, ct, limit, kn, kt_mid, kn_mid;
-    /* Memory grows by what happened in the step. That is of second order in dt with the stiffness
-       of the middle of the time in which the two touched: of the overlap half way between earlier,
-       what it was a step ago, and now; share: which part of the step that was, 1 unless they have
-       just met. Checked by "tangential and rolling memory is of second order". */
-    const dem_real gone = c->closing_speed*c->dt;
-    const dem_real earlier = c->overlap > gone ? c->overlap - gone : 0;
-    const dem_real share = c->overlap > gone ? 1 : c->overlap/(gone + DEMI_TINY);
-
-    /* normal: Hertz F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92], or linear F = kn d + cn v, or
-       hysteretic [ALK07] eq 2.41 to 2.49:
-           F = kun d - (kun - kn) D,  D: depth, N/m and m
-       loading (d = D): F = kn d; un- and reloading: slope kun, zero at d0 = (1 - kn/kun) D [2.44];
-       pulling: F = -kad d, on which D shrinks with d, so that reloading from any point of it, at
-       slope kun, meets kn d again at the D that belongs to that point. D is all there is to
-       remember: the larger of D and d, but at most d (kun + kad)/(kun - kn). The branches meet at
-       d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun. That is eq
-       2.49 with kad as a size; with the negative slope [ALK07] defines it as, its 2.48 and 2.49
-       have the wrong sign, and its text calls d_ad a deformation and a force. Friction is what
-       F + kad d can hold, which is 0 at the pulling line; [ALK07] takes |F|, which is 0 where
-       nothing pulls or pushes and large where the two are torn apart.
-       Along the slope kun nothing is lost: a grain at rest on one swings there for ever unless
-       normal_damping calms it. Stored is F^2/(2 kun); a D that changes dissipates
-       F (1 - kn/kun) dD, summed exactly along either line.
-       Tests: "a hysteretic contact dissipates the area of its loop". */
-    dem_real hold = 0, sag = 0;
-    if (normal == DEM_NORMAL_HYSTERETIC) {
-        const int place = demi_memory_shear(tangent, rolling);
-        const dem_real kun = c->kun, kad = c->kad, soft = kun - c->kn, before = memory[place];
-        const dem_real loaded = c->overlap > before ? c->overlap : before;
-        const dem_real most = c->overlap*(kun + kad)/(soft + DEMI_TINY);
-        const dem_real depth = most < loaded ? most : loaded;
-        kn = kn_mid = c->kn;
-        kt = kt_mid = c->kt;
-        ct = c->ct;
-        memory[place] = depth;
-        elastic = kun*c->overlap - soft*depth;
-        fn = elastic + c->cn*c->closing_speed;
-        hold = kad*c->overlap;
-        sag = soft/(2*kun)*(kn*(loaded*loaded - before*before) +
-                            kad*soft/(kun + kad)*(loaded*loaded - depth*depth));
-    } else if (normal == DEM_NORMAL_HERTZ) {
-        root = DEMI_SQRT((c->overlap + earlier)/2);
-        kt_mid = c->kt*root;
-        kn_mid = c->kn*root;
-        root = DEMI_SQRT(c->overlap);
-        kn = c->kn*root;
-        elastic = kn*c->overlap;
-        kt = c->kt*root;
-        root = DEMI_SQRT(root);
-        ct = c->ct*root;
-        fn = elastic + c->cn*root*c->closing_speed;
-    } else {
-        kn = kn_mid = c->kn;
-        elastic = kn*c->overlap;
-        kt = kt_mid = c->kt;
-        ct = c->ct;
-        fn = elastic + c->cn*c->closing_speed;
-    }
-    limit = fn > 0 ? fn : 0;
-    if (normal == DEM_NORMAL_HYSTERETIC) {      /* the dashpot may not pull, adhesion may */
-        const dem_real least = elastic < 0 ? elastic : 0;
-        limit = (habit.load == DEM_LOAD_ELASTIC ? elastic : fn) + hold;
-        limit = limit > 0 ? limit : 0;
-        fn = habit.clipped && fn < least ? least : fn;
-    } else {
-        fn = habit.clipped ? limit : fn;        /* no pull at the end of a contact */
-        limit = habit.load == DEM_LOAD_ELASTIC ? elastic
-            : habit.load == DEM_LOAD_SIZE ? DEMI_ABS(fn) : limit;
-    }
-    push->normal = fn;
-    if (ledger) {
-        out->dashpot = (fn - elastic)*c->closing_speed*c->dt;
-        out->sag = sag;
-        out->elastic = normal == DEM_NORMAL_HYSTERETIC ? elastic*elastic/(2*c->kun)
-            : normal == DEM_NORMAL_HERTZ ? elastic*c->overlap*2/5 : elastic*c->overlap/2;
-        out->shear_work = out->slide = out->shear_stored = out->roll = 0;
-    }
-
-    /* tangential: a trial force, capped by Coulomb; what is cut off is sliding */
-    if (tangent != DEM_TANGENT_NONE) {
-        dem_vec3 s = demi_v(0, 0, 0), t;
-        dem_real size, cap, cut, old = kt;
-        if (tangent >= DEM_TANGENT_SPRING) s = dem_memory_turn(c, demi_at(memory));
-        if (tangent == DEM_TANGENT_SPRING) {                /* s: displacement; [CS79] */
-            s = demi_add(s, demi_scale(c->slip_step, share*c->dt));
-            t = demi_v(-kt*s.x - ct*v.x, -kt*s.y - ct*v.y, -kt*s.z - ct*v.z);
-        } else if (tangent >= DEM_TANGENT_MINDLIN) {        /* s: force; [DIR05, THO13] */
-            if (tangent == DEM_TANGENT_MINDLIN_RESCALED) {
-                old = memory[3];
-                kt_mid = kt < old ? kt : kt_mid;            /* unloading keeps the length s/kt */
-                old = kt < old ? kt/old : 1;
-                s = demi_scale(s, old);
-            }
-            s = demi_sub(s, demi_scale(c->slip_step, kt_mid*share*c->dt));
-            t = demi_v(s.x - ct*v.x, s.y - ct*v.y, s.z - ct*v.z);
-        } else {                                            /* no memory: [MIL] 4.3 and 4.2 */
-            const dem_real k = tangent == DEM_TANGENT_STEP ? kt*c->dt + ct : ct;
-            t = demi_v(-k*v.x, -k*v.y, -k*v.z);
-        }
-        size = DEMI_SQRT(demi_dot(t, t));
-        cap = limit*c->friction;
-        cut = size > limit*c->friction_static ? size : cap;
-        cut = (cap + DEMI_TINY)/(cut + DEMI_TINY);
-        push->tangent = demi_scale(t, cut);
-        if (tangent >= DEM_TANGENT_SPRING) {
-            /* What is cut off, (1 - cut) t, the spring gives up: of it
-                   shared   the part of spring and dashpot side by side, kt dt/(kt dt + ct), so that
-                            the two together hold what friction can
-                   rest     all, so that spring and dashpot of the present slip do
-                   spring   all and the dashpot's share besides, so that the spring alone does.
-               The dashpot's share comes from nowhere there. */
-            const dem_real give = (1 - cut)*c->dt/(kt*c->dt + ct + DEMI_TINY);
-            const dem_real soft = habit.slider == DEM_SLIDER_SHARED ? give
-                : (c->dt > 0 ? 1 - cut : 0)/(kt + DEMI_TINY);      /* m/N: of the spring's length */
-            dem_vec3 lost = demi_scale(t, soft);
-            if (habit.slider == DEM_SLIDER_SPRING)
-                lost = demi_add(lost, demi_scale(v, c->dt > 0 && cut < 1 ? ct/(kt + DEMI_TINY)
-                                                 : 0));
-            s = tangent == DEM_TANGENT_SPRING ? demi_add(s, lost)
-                : demi_sub(s, demi_scale(lost, kt));
-            memory[0] = s.x; memory[1] = s.y; memory[2] = s.z;
-            if (tangent >= DEM_TANGENT_MINDLIN) memory[3] = kt;
-            if (ledger) {
-                out->slide = cut*demi_dot(t, lost);
-                out->shear_stored = tangent == DEM_TANGENT_SPRING ? kt*demi_dot(s, s)/2
-                    : demi_dot(s, s)/(2*kt + DEMI_TINY);
-            }
-        }
-        if (ledger) {
-            out->shear_work = -demi_dot(push->tangent, v)*c->dt;
-            if (tangent < DEM_TANGENT_SPRING) out->slide = cut < 1 ? out->shear_work : 0;
-        }
-    }
-
-    /* rolling: against the relative spin across the normal */
-    if (rolling != DEM_ROLLING_NONE) {
-        const dem_real along = demi_dot(c->spin, n);
-        const dem_vec3 w = demi_sub(c->spin, demi_scale(n, along));
-        dem_real most = c->rolling_friction*c->r_eff*limit;
-        if (rolling >= DEM_ROLLING_CONSTANT) {
-            /* EPSD [AI11]: kr = 2.25 kn (mu_r R*)^2, damping below the limit, 2 x .3 sqrt(kr I).
-               Constant [ZHO99]: mu_r R* Fn against the rotation, which at rest must be whatever
-               holds it. That takes a memory: the same spring, as stiff as a step can resolve,
-               (.3/dt)^2 I of the lighter's inertia I, critically damped and shared with the
-               limit. What it yields goes with dt^2; nothing creeps. */
-            const int constant = rolling == DEM_ROLLING_CONSTANT;
-            const dem_real arm = c->rolling_friction*c->r_eff, mr2 = c->m_eff*c->r_eff*c->r_eff;
-            const dem_real stiff = normal == DEM_NORMAL_HERTZ ? DEM_R(1.5) : 1;
-            const dem_real per = c->dt > 0 ? 1/(c->dt + DEMI_TINY) : 0, hard = 2*mr2/5*per;
-            const dem_real kr = constant ? DEM_R(0.09)*hard*per : DEM_R(2.25)*stiff*kn*arm*arm;
-            const dem_real kr_mid = constant ? kr : DEM_R(2.25)*stiff*kn_mid*arm*arm;
-            const dem_real cr = constant ? DEM_R(0.6)*hard : DEM_R(0.6)*DEMI_SQRT(kr*7*mr2/5);
-            dem_vec3 m = dem_memory_turn(c, demi_at(memory + 4)), t;
-            dem_real size, cut;
-            m = demi_sub(m, demi_scale(demi_sub(c->spin_step,
-                                                demi_scale(n, demi_dot(c->spin_step, n))),
-                                                kr_mid*share*c->dt));
-            t = constant ? demi_sub(m, demi_scale(w, cr)) : m;
-            size = DEMI_SQRT(demi_dot(t, t));
-            cut = size > most ? size : most;
-            cut = (most + DEMI_TINY)/(cut + DEMI_TINY);
-            push->moment = demi_scale(t, cut);
-            if (constant)
-                m = demi_sub(m, demi_scale(t, c->dt > 0 ? (1 - cut)*DEM_R(0.09/0.69) : 0));
-            else {
-                m = push->moment;
-                push->moment = demi_sub(m, demi_scale(w, size > most ? 0 : cr));
-            }
-            memory[4] = m.x; memory[5] = m.y; memory[6] = m.z;
-        } else {                                            /* [MIL] 4.5, as printed */
-            const dem_real size = demi_length(c->spin), f = limit < size ? limit : size;
-            push->moment = demi_scale(c->spin, -c->rolling_friction*c->r_eff*f/(size + DEMI_TINY));
-        }
-        if (ledger) out->roll = -demi_dot(push->moment, c->spin)*c->dt;
-    }
-}
-
-/* ---------------------------------------------------------------------------------------------
    >>respond
    The loops that bring near pairs, touch and law together. Grain-grain, a tile of pairs at a
    time: what the law needs of the two bodies is copied into rows, pair after pair (a copy of three
-   numbers that lie together is cheaper than three gathers); touch and law run over the rows
-   (vectorised: groups of a constant length, which compilers turn into vectors at -O2 too); pushes
-   are added to both bodies. Pairs that lead out of a domain leave their push in a slot of its own;
-   the other domain fetches it after all are done, in the order of the list. So every body's sum has
-   one order whatever the number of threads. Grain-wall follows, per grain.
+   numbers that lie together is cheaper than three gathers); then stages run over the rows, one
+   after the other: touch, motion, normal law, friction, rolling, answer (vectorised: groups of a
+   constant length, which compilers turn into vectors at -O2 too); pushes are added to both bodies.
+   A scene runs the stages that it calls for, so that any combination of laws costs the sum of its
+   parts; the commonest ones have a stage for all of it, which saves the rows in between. Pairs that
+   lead out of a domain leave their push in a slot of its own; the other domain fetches it after all
+   are done, in the order of the list. So every body's sum has one order whatever the number of
+   threads. Grain-wall follows, per grain.
    --------------------------------------------------------------------------------------------- */
 /* Pairs under work. Sums and differences are of the two bodies, a plus b and a minus b. A row has
    room to spare so that rows do not lie a power of two apart, which caches take badly. */
@@ -7906,15 +8041,19 @@ typedef struct demi_tile {
     demi_rows apart, parted;       /* rad/s, difference of spins: the same */
     dem_real radius[2][DEMI_ROW];
     dem_real memory[DEMI_MEMORY][DEMI_ROW], coef[DEMI_PAIR_COLUMNS][DEMI_ROW];
-    /* worked out */
+    /* touch and motion */
     dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
     dem_real touch[DEMI_ROW];      /* 1 where the two touch, else 0 */
     dem_real normal[3][DEMI_ROW], turn[3][DEMI_ROW];      /* unit, 1/s */
     dem_real slip[3][DEMI_ROW], slip_step[3][DEMI_ROW];   /* m/s */
     dem_real lean[DEMI_ROW];       /* m, from the middle to the contact, towards b */
     dem_real closing[DEMI_ROW], twist[DEMI_ROW];
+    /* laws: what each leaves for the next (see dem_push), what does not touch included */
+    dem_real repulsion[DEMI_ROW], load[DEMI_ROW], slope[2][DEMI_ROW], kt[2][DEMI_ROW];
+    dem_real ct[DEMI_ROW], tangent[3][DEMI_ROW], moment[3][DEMI_ROW];
     dem_real part[6][DEMI_ROW];                           /* energies */
-    dem_real force[3][DEMI_ROW], torque[2][3][DEMI_ROW];  /* answers; torque on a, on b */
+    /* answer */
+    dem_real force[3][DEMI_ROW], torque[2][3][DEMI_ROW];  /* torque on a, on b */
 } demi_tile;
 /* Where the pairs of a tile stand in the near list. */
 typedef struct demi_span {
@@ -7946,63 +8085,68 @@ DEM_INLINE void demi_row_put(dem_real rows[3][DEMI_ROW], int q, dem_vec3 v) {
     rows[0][q] = v.x; rows[1][q] = v.y; rows[2][q] = v.z;
 }
 /* count: whole groups */
-DEM_INLINE void demi_row_copy(dem_real *DEMI_RESTRICT to, const dem_real *DEMI_RESTRICT from,
-                              int count) {
+static void demi_row_copy(dem_real *DEMI_RESTRICT to, const dem_real *DEMI_RESTRICT from,
+                          int count) {
     int q, l;
     for (q = 0; q < count; q += DEMI_LANES)
         for (l = 0; l < DEMI_LANES; l++) to[q + l] = from[q + l];
 }
 DEM_INLINE void demi_rows_minus(demi_rows *DEMI_RESTRICT rows, size_t q, const dem_real *a,
                                 const dem_real *b) {
-    DEMI_XY(rows, 0, q) = a[0] - b[0];
-    DEMI_XY(rows, 1, q) = a[1] - b[1];
-    rows->z[q] = a[2] - b[2];
+    const dem_real x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+    DEMI_XY(rows, 0, q) = x;
+    DEMI_XY(rows, 1, q) = y;
+    rows->z[q] = z;
 }
 DEM_INLINE void demi_rows_plus(demi_rows *DEMI_RESTRICT rows, size_t q, const dem_real *a,
                                const dem_real *b) {
-    DEMI_XY(rows, 0, q) = a[0] + b[0];
-    DEMI_XY(rows, 1, q) = a[1] + b[1];
-    rows->z[q] = a[2] + b[2];
+    const dem_real x = a[0] + b[0], y = a[1] + b[1], z = a[2] + b[2];
+    DEMI_XY(rows, 0, q) = x;
+    DEMI_XY(rows, 1, q) = y;
+    rows->z[q] = z;
+}
+DEM_INLINE void demi_rows_shifted(demi_rows *DEMI_RESTRICT rows, size_t q, const dem_real *a,
+                                  const dem_real *b, const dem_real *shift) {
+    const dem_real x = a[0] - b[0] + shift[0], y = a[1] - b[1] + shift[1];
+    const dem_real z = a[2] - b[2] + shift[2];
+    DEMI_XY(rows, 0, q) = x;
+    DEMI_XY(rows, 1, q) = y;
+    rows->z[q] = z;
 }
 DEM_INLINE dem_vec3 demi_rows_at(const demi_rows *rows, int q) {
     return demi_v(DEMI_XY(rows, 0, q), DEMI_XY(rows, 1, q), rows->z[q]);
 }
-/* What is switched on, and what is the same for all contacts of a run. Literals in a specialised
-   kernel. */
-typedef struct demi_run {
-    int normal, tangent, rolling, uniform, ledger, keep;  /* keep: reals of memory */
-    int turning, parting;          /* are spins, differences of spins wanted? */
-    demi_habit habit;
-    dem_law_fn law;
-    dem_real dt, radius, inv_radius, m_eff, coef[DEMI_COEFS];
-} demi_run;
-DEM_INLINE demi_run demi_run_of(const dem_world *w, int normal, int tangent, int rolling,
-                                int uniform, int ledger, int usual, dem_law_fn law, dem_real dt) {
-    demi_run r;
-    int e;
-    r.normal = normal; r.tangent = tangent; r.rolling = rolling;
-    r.uniform = uniform; r.ledger = ledger && !law; r.law = law;
-    r.keep = law ? w->memory_stride : demi_memory_of(normal, tangent, rolling);
-    r.turning = law || tangent != DEM_TANGENT_NONE || rolling != DEM_ROLLING_NONE;
-    r.parting = law || rolling != DEM_ROLLING_NONE || (r.turning && !uniform);
-    r.habit = demi_habit_of(w);
-    if (usual) { r.habit.load = DEM_LOAD_PUSH; r.habit.slider = DEM_SLIDER_SHARED; }
-    r.dt = dt;
-    r.radius = w->uniform_radius;
-    r.inv_radius = 1/w->uniform_radius;
-    r.m_eff = 1/(2*w->uniform_inv_mass);
-    for (e = 0; e < DEMI_COEFS; e++) r.coef[e] = w->uniform_coef[e];
-    return r;
-}
 
-/* Copies what touch and law will see of the bodies into the rows. */
-DEM_INLINE void demi_tile_fetch(const dem_world *w, const demi_span *span, int count,
-                                const demi_run *r, demi_tile *DEMI_RESTRICT t) {
+/* What is the same for all pairs of a run: a stage takes a copy, so that compilers see that nothing
+   changes it. */
+typedef struct demi_same {
+    dem_real dt, radius, inv_radius;
+    int tension, friction_load, slider;
+    int at_rolling, at_normal;     /* where their memory begins */
+} demi_same;
+/* What a scene calls for. */
+typedef struct demi_run demi_run;
+typedef void (*demi_stage)(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full);
+enum { DEMI_STAGES = 6 };
+struct demi_run {
+    const dem_world *w;
+    const demi_span *span;         /* the pairs under work */
+    int uniform, ledger, keep;     /* keep: reals of memory */
+    int turning, parting;          /* are spins, differences of spins wanted? */
+    int following;                 /* is the motion over the last step wanted? */
+    demi_same same;
+    demi_stage stage[DEMI_STAGES]; /* in this order; null: the end */
+};
+
+/* Copies what the stages will see of the bodies into the rows. */
+DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t, int uniform,
+                           int turning, int parting, int following) {
+    const dem_world *w = r->w;
     const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT shift = w->image_shift;
     const dem_real *DEMI_RESTRICT u = w->vel, *DEMI_RESTRICT s = w->spin;
     const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
-    const int32_t *DEMI_RESTRICT la = span->a, *DEMI_RESTRICT lb = span->b;
-    const unsigned char *DEMI_RESTRICT image = span->image;
+    const int32_t *DEMI_RESTRICT la = r->span->a, *DEMI_RESTRICT lb = r->span->b;
+    const unsigned char *DEMI_RESTRICT image = r->span->image;
     int n;
     for (n = 0; n < count; n++) {
         size_t q = (size_t)n;
@@ -8011,19 +8155,23 @@ DEM_INLINE void demi_tile_fetch(const dem_world *w, const demi_span *span, int c
         DEMI_ONE_BY_ONE(q);
         i = (uint32_t)la[q]; j = (uint32_t)lb[q];
         a = DEMI_AT(x, i); b = DEMI_AT(x, j); c = shift + image[q];
-        DEMI_XY(&t->gap, 0, q) = b[0] - a[0] + c[0];
-        DEMI_XY(&t->gap, 1, q) = b[1] - a[1] + c[1];
-        t->gap.z[q] = b[2] - a[2] + c[2];
-        if (!r->uniform) { t->radius[0][q] = a[3]; t->radius[1][q] = b[3]; }
+        demi_rows_shifted(&t->gap, q, b, a, c);
+        if (!uniform) { t->radius[0][q] = a[3]; t->radius[1][q] = b[3]; }
         demi_rows_minus(&t->rate, q, DEMI_AT(u, i), DEMI_AT(u, j));
-        if (r->turning) demi_rows_plus(&t->around, q, DEMI_AT(s, i), DEMI_AT(s, j));
-        if (r->parting) demi_rows_minus(&t->apart, q, DEMI_AT(s, i), DEMI_AT(s, j));
-        if (r->law || r->keep) {
-            demi_rows_minus(&t->gone, q, DEMI_AT(uh, i), DEMI_AT(uh, j));
-            demi_rows_plus(&t->turned, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
-            if (r->parting) demi_rows_minus(&t->parted, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
-        }
+        if (turning) demi_rows_plus(&t->around, q, DEMI_AT(s, i), DEMI_AT(s, j));
+        if (parting) demi_rows_minus(&t->apart, q, DEMI_AT(s, i), DEMI_AT(s, j));
+        if (!following) continue;
+        demi_rows_minus(&t->gone, q, DEMI_AT(uh, i), DEMI_AT(uh, j));
+        demi_rows_plus(&t->turned, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
+        if (parting) demi_rows_minus(&t->parted, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
     }
+}
+static void demi_tile_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t) {
+    if (r->parting)                             /* alike or not: radii cost little then */
+        { if (r->following) demi_fetch(r, count, t, 0, 1, 1, 1);
+          else demi_fetch(r, count, t, 0, 1, 1, 0); }
+    else if (r->following) demi_fetch(r, count, t, 1, 1, 0, 1);
+    else demi_fetch(r, count, t, r->uniform, r->turning, 0, 0);
 }
 
 /* Slip over the step just taken, in the tangent plane of now: velocity and spin (times arm) are
@@ -8035,20 +8183,26 @@ DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone,
     return demi_sub(slip, demi_scale(normal, demi_dot(slip, normal)));
 }
 
-/* One contact of a tile, in three short steps. Each runs over all contacts before the next begins:
-   processors then have several contacts under way at once, where one long chain of roots and
-   quotients would keep them waiting.
-   1 touch: distance, normal, overlap */
-DEM_INLINE void demi_tile_touch(demi_tile *DEMI_RESTRICT t, int q, const demi_run *r) {
+/* --- stages: each runs over all pairs of a tile before the next begins. Processors then have
+   several pairs under way at once, where one long chain of roots and quotients would keep them
+   waiting. `full` is a whole number of groups; pairs to fill up the last one are nobody's. --- */
+#define DEMI_ROWS(full) { int g, l; \
+    for (g = 0; g < (full); g += DEMI_LANES) { \
+        DEMI_VECTOR \
+        for (l = 0; l < DEMI_LANES; l++) { const int q = g + l;
+#define DEMI_ROWS_END }}}
+
+/* touch: distance, normal, overlap */
+DEM_INLINE void demi_touch_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q, int uniform) {
     const dem_vec3 gap = demi_rows_at(&t->gap, q);
     const dem_real d = DEMI_SQRT(demi_dot(gap, gap)), over_d = 1/(d + DEMI_TINY);
     dem_real overlap;
     t->length[q] = d;
     t->over_d[q] = over_d;
     demi_row_put(t->normal, q, demi_scale(gap, over_d));
-    if (r->uniform) {
-        overlap = 2*r->radius - d;
-        t->deep[q] = overlap*r->inv_radius;
+    if (uniform) {
+        overlap = 2*s->radius - d;
+        t->deep[q] = overlap*s->inv_radius;
     } else {
         const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
         overlap = ra + rb - d;
@@ -8058,139 +8212,350 @@ DEM_INLINE void demi_tile_touch(demi_tile *DEMI_RESTRICT t, int q, const demi_ru
     t->touch[q] = overlap > 0 ? DEM_R(1) : DEM_R(0);
     t->overlap[q] = overlap > 0 ? overlap : 0;
 }
-/* 2 motion: how the two move at the contact, now and over the step just taken */
-DEM_INLINE void demi_tile_motion(demi_tile *DEMI_RESTRICT t, int q, const demi_run *r) {
+/* motion: how the two move at the contact, now and over the step just taken */
+DEM_INLINE void demi_motion_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q, int uniform,
+                                int turning, int following) {
     const dem_vec3 n = demi_row(t->normal, q), rate = demi_rows_at(&t->rate, q);
     const dem_real d = t->length[q], closing = demi_dot(rate, n);
     t->closing[q] = closing;
-    if (r->turning) {       /* la wa + lb wb, from sum and difference */
+    if (turning) {          /* la wa + lb wb, from sum and difference */
         dem_vec3 arm = demi_scale(demi_rows_at(&t->around, q), d/2);
-        if (!r->uniform) arm = demi_add(arm, demi_scale(demi_rows_at(&t->apart, q), t->lean[q]));
+        if (!uniform) arm = demi_add(arm, demi_scale(demi_rows_at(&t->apart, q), t->lean[q]));
         demi_row_put(t->slip, q, demi_add(demi_sub(rate, demi_scale(n, closing)),
                                           demi_cross(arm, n)));
     }
-    if (r->law || r->keep) {
-        const dem_vec3 gone = demi_rows_at(&t->gone, q);
-        const dem_vec3 turned = demi_rows_at(&t->turned, q);
+    if (following) {
+        const dem_vec3 gone = demi_rows_at(&t->gone, q), turned = demi_rows_at(&t->turned, q);
         const dem_vec3 turn = demi_scale(demi_sub(gone, demi_scale(n, demi_dot(gone, n))),
                                          -t->over_d[q]);
+        const dem_vec3 mid = demi_sub(n, demi_scale(turn, s->dt/2));
         dem_vec3 arm = demi_scale(turned, d/2);
-        if (!r->uniform) arm = demi_add(arm, demi_scale(demi_rows_at(&t->parted, q), t->lean[q]));
+        if (!uniform) arm = demi_add(arm, demi_scale(demi_rows_at(&t->parted, q), t->lean[q]));
         demi_row_put(t->turn, q, turn);
-        demi_row_put(t->slip_step, q, demi_slip_step(n, demi_sub(n, demi_scale(turn, r->dt/2)),
-                                                     gone,
-                                                arm));
+        demi_row_put(t->slip_step, q, demi_slip_step(n, mid, gone, arm));
         t->twist[q] = demi_dot(turned, n)/2;
     }
 }
-/* 3 law: force and torque. What does not touch answers zero and forgets. */
-DEM_INLINE void demi_tile_law(const dem_world *w, demi_tile *DEMI_RESTRICT t, int q,
-                              const demi_span *span, const demi_run *r) {
-    const int whole = r->law || r->rolling != DEM_ROLLING_NONE;
-    const dem_vec3 none = demi_v(0, 0, 0);
-    const dem_real touch = t->touch[q];
-    dem_real m[DEMI_MEMORY];
-    dem_contact c;
-    dem_push f;
-    c.normal = demi_row(t->normal, q);
-    c.overlap = t->overlap[q];
-    c.closing_speed = t->closing[q];
-    c.dt = r->dt;
-    c.slip = r->turning ? demi_row(t->slip, q) : none;
-    c.slip_step = r->law || r->keep ? demi_row(t->slip_step, q) : none;
-    c.normal_rate = r->law || r->keep ? demi_row(t->turn, q) : none;
-    c.twist = r->law || r->keep ? t->twist[q] : 0;
-    c.spin = whole ? demi_rows_at(&t->apart, q) : none;
-    c.spin_step = whole && (r->law || r->keep) ? demi_rows_at(&t->parted, q) : none;
-    if (r->uniform) {
-        c.kn = r->coef[DEMI_KN]; c.cn = r->coef[DEMI_CN];
-        c.kt = r->coef[DEMI_KT]; c.ct = r->coef[DEMI_CT];
-        c.friction = r->coef[DEMI_MU]; c.friction_static = r->coef[DEMI_MU_STATIC];
-        c.rolling_friction = r->coef[DEMI_MU_ROLL];
-        c.r_eff = r->coef[DEMI_R_EFF];
-        c.m_eff = r->m_eff;
-        c.kun = r->coef[DEMI_K_UN]; c.kad = r->coef[DEMI_K_AD];
-    } else {
-        c.kn = t->coef[DEMI_KN][q]; c.cn = t->coef[DEMI_CN][q];
-        c.kt = t->coef[DEMI_KT][q]; c.ct = t->coef[DEMI_CT][q];
-        c.friction = t->coef[DEMI_MU][q]; c.friction_static = t->coef[DEMI_MU_STATIC][q];
-        c.rolling_friction = t->coef[DEMI_MU_ROLL][q];
-        c.r_eff = t->coef[DEMI_R_EFF][q];
-        c.m_eff = t->coef[DEMI_M_EFF][q];
-        c.kun = r->normal == DEM_NORMAL_HYSTERETIC ? t->coef[DEMI_K_UN][q] : 0;
-        c.kad = r->normal == DEM_NORMAL_HYSTERETIC ? t->coef[DEMI_K_AD][q] : 0;
+#define DEMI_MOTION_STAGE(NAME, UNIFORM, TURNING, FOLLOWING) \
+    DEMI_CLONES static void demi_stage_##NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
+                                              int full) { \
+        const demi_same s = r->same; \
+        DEMI_ROWS(full) demi_touch_one(t, &s, q, UNIFORM); DEMI_ROWS_END \
+        DEMI_ROWS(full) demi_motion_one(t, &s, q, UNIFORM, TURNING, FOLLOWING); DEMI_ROWS_END \
     }
-#define DEMI_RECALL(e) m[e] = e < r->keep ? t->memory[e][q] : 0
-#define DEMI_KEEP(e) if (e < r->keep) t->memory[e][q] = m[e]*touch
+DEMI_MOTION_STAGE(alike_bare, 1, 0, 0)
+DEMI_MOTION_STAGE(mixed_bare, 0, 0, 0)
+DEMI_MOTION_STAGE(alike_turning, 1, 1, 0)
+DEMI_MOTION_STAGE(mixed_turning, 0, 1, 0)
+DEMI_MOTION_STAGE(alike_following, 1, 1, 1)
+DEMI_MOTION_STAGE(mixed_following, 0, 1, 1)
+
+/* Pair q as a law sees it; compilers leave out what the law does not look at. */
+DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                  dem_contact *c) {
+    c->normal = demi_row(t->normal, q);
+    c->overlap = t->overlap[q];
+    c->closing_speed = t->closing[q];
+    c->slip = demi_row(t->slip, q);
+    c->spin = demi_rows_at(&t->apart, q);
+    c->slip_step = demi_row(t->slip_step, q);
+    c->spin_step = demi_rows_at(&t->parted, q);
+    c->normal_rate = demi_row(t->turn, q);
+    c->twist = t->twist[q];
+    c->dt = s->dt;
+    c->kn = t->coef[DEMI_KN][q]; c->cn = t->coef[DEMI_CN][q];
+    c->kt = t->coef[DEMI_KT][q]; c->ct = t->coef[DEMI_CT][q];
+    c->kun = t->coef[DEMI_K_UN][q]; c->kad = t->coef[DEMI_K_AD][q];
+    c->friction = t->coef[DEMI_MU][q]; c->friction_static = t->coef[DEMI_MU_STATIC][q];
+    c->rolling_friction = t->coef[DEMI_MU_ROLL][q];
+    c->r_eff = t->coef[DEMI_R_EFF][q];
+    c->m_eff = t->coef[DEMI_M_EFF][q];
+    c->tension = s->tension;
+    c->friction_load = s->friction_load;
+    c->slider = s->slider;
+    c->wall = 0;
+}
+/* A law's memory of pair q: `count` reals from `at` on. What does not touch forgets. */
+#define DEMI_RECALL(e) m[e] = e < count ? t->memory[at + e][q] : 0
+#define DEMI_KEEP(e) if (e < count) t->memory[at + e][q] = m[e]*t->touch[q]
+DEM_INLINE void demi_recall(demi_tile *DEMI_RESTRICT t, int q, int at, int count, dem_real *m) {
     DEMI_EIGHT(DEMI_RECALL);
-    f.tangent = f.moment = none;
-    f.normal = 0;
-    if (r->law) {
-        c.material_a = w->body_material[span->a[q]];
-        c.material_b = w->body_material[span->b[q]];
-        c.wall = 0;
-        c.user = w->desc.law_user;
-        r->law(&c, m, &f);
-    } else {
-        demi_law_energy part = {0, 0, 0, 0, 0, 0, 0};
-        demi_law(&c, m, &f, r->normal, r->tangent, r->rolling, r->habit, r->ledger, &part);
-        if (r->ledger) {
-            t->part[0][q] = (part.dashpot + part.sag)*touch; t->part[1][q] = part.elastic*touch;
-            t->part[2][q] = part.shear_work*touch;   t->part[3][q] = part.slide*touch;
-            t->part[4][q] = part.shear_stored*touch; t->part[5][q] = part.roll*touch;
-        }
-    }
+}
+DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count,
+                          const dem_real *m) {
     DEMI_EIGHT(DEMI_KEEP);
+}
 #undef DEMI_RECALL
 #undef DEMI_KEEP
-    f.tangent = demi_scale(f.tangent, touch);
-    demi_row_put(t->force, q, demi_sub(f.tangent, demi_scale(c.normal, f.normal*touch)));
-    if (r->turning) {
-        const dem_vec3 across = demi_cross(c.normal, f.tangent);
-        const dem_real half = t->length[q]/2, lean = r->uniform ? 0 : t->lean[q];
-        if (r->parting) {
-            f.moment = demi_scale(f.moment, touch);
-            demi_row_put(t->torque[0], q, demi_add(demi_scale(across, half + lean), f.moment));
-            demi_row_put(t->torque[1], q, demi_sub(demi_scale(across, half - lean), f.moment));
+/* What a law has put into its answer, for the next; `all`: what only some of them ask for, and the
+   energies, too. */
+DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f, int all) {
+    t->repulsion[q] = f->normal;
+    t->load[q] = f->load;
+    t->kt[0][q] = f->kt;
+    t->ct[q] = f->ct;
+    if (!all) return;
+    t->kt[1][q] = f->kt_step;
+    t->slope[0][q] = f->slope;
+    t->slope[1][q] = f->slope_step;
+    t->part[0][q] = (f->energy.dashpot + f->energy.sag)*t->touch[q];
+    t->part[1][q] = f->energy.elastic*t->touch[q];
+}
+DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_push *f) {
+    demi_push_clear(f);
+    f->load = t->load[q];
+    f->kt = t->kt[0][q]; f->kt_step = t->kt[1][q];
+    f->slope = t->slope[0][q]; f->slope_step = t->slope[1][q];
+    f->ct = t->ct[q];
+}
+DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f, int all) {
+    demi_row_put(t->tangent, q, f->tangent);
+    if (!all) return;
+    t->part[2][q] = f->energy.shear_work*t->touch[q];
+    t->part[3][q] = f->energy.slide*t->touch[q];
+    t->part[4][q] = f->energy.shear_stored*t->touch[q];
+}
+/* Two stages for each normal law and each of friction: for what is common, and for all choices. */
+#define DEMI_NORMAL_ROWS(LAW, MEMORY, NAME, ALL) \
+    DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
+        const demi_same s = r->same; \
+        DEMI_ROWS(full) \
+            dem_contact c; dem_push f; dem_real m[DEMI_MEMORY]; \
+            demi_tile_contact(t, &s, q, &c); \
+            if (!(ALL)) demi_contact_usual(&c); \
+            demi_push_clear(&f); \
+            demi_recall(t, q, s.at_normal, MEMORY, m); \
+            dem_law_##LAW(&c, m, &f); \
+            demi_keep(t, q, s.at_normal, MEMORY, m); \
+            demi_normal_put(t, q, &f, ALL); \
+        DEMI_ROWS_END \
+    }
+#define DEMI_NORMAL_STAGES(KIND, LAW, MEMORY, VECTORS, TEXT) \
+    DEMI_NORMAL_ROWS(LAW, MEMORY, demi_stage_##LAW, 0) \
+    DEMI_NORMAL_ROWS(LAW, MEMORY, demi_stage_##LAW##_all, 1)
+DEMI_NORMAL_LAWS(DEMI_NORMAL_STAGES)
+#define DEMI_TANGENT_ROWS(LAW, MEMORY, NAME, ALL) \
+    DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
+        const demi_same s = r->same; \
+        DEMI_ROWS(full) \
+            dem_contact c; dem_push f; dem_real m[DEMI_MEMORY]; \
+            demi_tile_contact(t, &s, q, &c); \
+            if (!(ALL)) demi_contact_usual(&c); \
+            demi_normal_get(t, q, &f); \
+            demi_recall(t, q, 0, MEMORY, m); \
+            dem_law_##LAW(&c, m, &f); \
+            demi_keep(t, q, 0, MEMORY, m); \
+            demi_tangent_put(t, q, &f, ALL); \
+        DEMI_ROWS_END \
+    }
+#define DEMI_TANGENT_STAGES(KIND, LAW, MEMORY, VECTORS, TEXT) \
+    DEMI_TANGENT_ROWS(LAW, MEMORY, demi_stage_##LAW, 0) \
+    DEMI_TANGENT_ROWS(LAW, MEMORY, demi_stage_##LAW##_all, 1)
+DEMI_TANGENT_LAWS(DEMI_TANGENT_STAGES)
+#define DEMI_ROLLING_STAGE(KIND, LAW, MEMORY, VECTORS, TEXT) \
+    DEMI_CLONES static void demi_stage_##LAW(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
+                                             int full) { \
+        const demi_same s = r->same; \
+        DEMI_ROWS(full) \
+            dem_contact c; dem_push f; dem_real m[DEMI_MEMORY]; \
+            demi_tile_contact(t, &s, q, &c); \
+            demi_normal_get(t, q, &f); \
+            demi_recall(t, q, s.at_rolling, MEMORY, m); \
+            dem_law_##LAW(&c, m, &f); \
+            demi_keep(t, q, s.at_rolling, MEMORY, m); \
+            demi_row_put(t->moment, q, f.moment); \
+            t->part[5][q] = f.energy.roll*t->touch[q]; \
+        DEMI_ROWS_END \
+    }
+DEMI_ROLLING_LAWS(DEMI_ROLLING_STAGE)
+
+/* answer: force and torques. What does not touch answers zero. */
+DEM_INLINE void demi_answer_one(demi_tile *DEMI_RESTRICT t, int q, dem_real repulsion,
+                                dem_vec3 tangent, dem_vec3 moment, int uniform, int turning,
+                                int parting) {
+    const dem_real touch = t->touch[q];
+    const dem_vec3 n = demi_row(t->normal, q);
+    tangent = demi_scale(tangent, touch);
+    demi_row_put(t->force, q, demi_sub(tangent, demi_scale(n, repulsion*touch)));
+    if (turning) {
+        const dem_vec3 across = demi_cross(n, tangent);
+        const dem_real half = t->length[q]/2, lean = uniform ? 0 : t->lean[q];
+        if (parting) {
+            moment = demi_scale(moment, touch);
+            demi_row_put(t->torque[0], q, demi_add(demi_scale(across, half + lean), moment));
+            demi_row_put(t->torque[1], q, demi_sub(demi_scale(across, half - lean), moment));
         } else demi_row_put(t->torque[0], q, demi_scale(across, half));  /* the same on both */
     }
 }
-/* For a law that is called: only what touches, one by one. */
-DEM_INLINE void demi_tile_call(const dem_world *w, demi_tile *DEMI_RESTRICT t, int q,
-                               const demi_span *span, const demi_run *r) {
-    int e;
-    if (t->touch[q] > 0) { demi_tile_law(w, t, q, span, r); return; }
-    demi_row_put(t->force, q, demi_v(0, 0, 0));
-    demi_row_put(t->torque[0], q, demi_v(0, 0, 0));
-    demi_row_put(t->torque[1], q, demi_v(0, 0, 0));
-    for (e = 0; e < r->keep; e++) t->memory[e][q] = 0;
+#define DEMI_ANSWER_STAGE(NAME, UNIFORM, TURNING, PARTING, MOMENT) \
+    DEMI_CLONES static void demi_stage_##NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
+                                              int full) { \
+        (void)r; \
+        DEMI_ROWS(full) \
+            demi_answer_one(t, q, t->repulsion[q], \
+                            TURNING ? demi_row(t->tangent, q) : demi_v(0, 0, 0), \
+                            MOMENT ? demi_row(t->moment, q) : demi_v(0, 0, 0), \
+                            UNIFORM, TURNING, PARTING); \
+        DEMI_ROWS_END \
+    }
+DEMI_ANSWER_STAGE(answer_bare, 1, 0, 0, 0)
+DEMI_ANSWER_STAGE(answer_alike, 1, 1, 0, 0)
+DEMI_ANSWER_STAGE(answer_mixed, 0, 1, 1, 0)
+DEMI_ANSWER_STAGE(answer_alike_rolling, 1, 1, 1, 1)
+DEMI_ANSWER_STAGE(answer_mixed_rolling, 0, 1, 1, 1)
+
+/* All laws and the answer at once, for the commonest scenes. */
+#define DEMI_WHOLE_STAGE(NAME, NORMAL, TANGENT, MEMORY, UNIFORM, TURNING) \
+    DEMI_CLONES static void demi_stage_##NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
+                                              int full) { \
+        const demi_same s = r->same; \
+        DEMI_ROWS(full) \
+            dem_contact c; dem_push f; dem_real m[DEMI_MEMORY]; \
+            demi_tile_contact(t, &s, q, &c); \
+            demi_contact_usual(&c); \
+            demi_push_clear(&f); \
+            NORMAL(&c, 0, &f); \
+            demi_recall(t, q, 0, MEMORY, m); \
+            TANGENT(&c, m, &f); \
+            demi_keep(t, q, 0, MEMORY, m); \
+            demi_answer_one(t, q, f.normal, f.tangent, f.moment, UNIFORM, TURNING, \
+                            TURNING && !UNIFORM); \
+        DEMI_ROWS_END \
+    }
+#ifndef DEM_NO_SPECIALIZE
+#define DEMI_NO_LAW(c, m, f) ((void)0)
+DEMI_WHOLE_STAGE(whole_hertz, dem_law_hertz, DEMI_NO_LAW, 0, 1, 0)
+DEMI_WHOLE_STAGE(whole_hertz_spring, dem_law_hertz, dem_law_spring, 3, 1, 1)
+DEMI_WHOLE_STAGE(whole_hertz_spring_mixed, dem_law_hertz, dem_law_spring, 3, 0, 1)
+#endif
+
+/* The user's law: only what touches, one by one; inlined into the loop where DEM_LAW names it. */
+DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, int q,
+                             dem_law_fn law) {
+    dem_contact c;
+    dem_push f;
+    dem_real m[DEMI_MEMORY];
+    demi_tile_contact(t, &r->same, q, &c);
+    c.material_a = r->w->body_material[r->span->a[q]];
+    c.material_b = r->w->body_material[r->span->b[q]];
+    c.user = r->w->desc.law_user;
+    demi_push_clear(&f);
+    demi_recall(t, q, 0, r->keep, m);
+    law(&c, m, &f);
+    demi_keep(t, q, 0, r->keep, m);
+    demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->uniform, 1, 1);
+}
+static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
+    int q, e;
+    (void)full;
+    for (q = 0; q < r->span->count; q++) {
+        if (t->touch[q] > 0) { demi_own_one(t, r, q, r->w->desc.law); continue; }
+        demi_row_put(t->force, q, demi_v(0, 0, 0));
+        demi_row_put(t->torque[0], q, demi_v(0, 0, 0));
+        demi_row_put(t->torque[1], q, demi_v(0, 0, 0));
+        for (e = 0; e < r->keep; e++) t->memory[e][q] = 0;
+    }
+}
+#ifdef DEM_LAW
+DEMI_CLONES static void demi_stage_own_inlined(demi_tile *DEMI_RESTRICT t, const demi_run *r,
+                                               int full) {
+    DEMI_ROWS(full) demi_own_one(t, r, q, DEM_LAW); DEMI_ROWS_END
+}
+#endif
+
+/* --- which stages a scene runs --- */
+typedef struct demi_stage_row { demi_stage common, all; } demi_stage_row;
+#define DEMI_STAGE_ROW(KIND, LAW, MEMORY, VECTORS, TEXT) {demi_stage_##LAW, demi_stage_##LAW##_all},
+#define DEMI_STAGE_ROW_ONE(KIND, LAW, MEMORY, VECTORS, TEXT) {demi_stage_##LAW, demi_stage_##LAW},
+/* in the order of the rows in >>laws */
+static const demi_stage_row demi_normal_stages[] = {DEMI_NORMAL_LAWS(DEMI_STAGE_ROW) {0, 0}};
+static const demi_stage_row demi_tangent_stages[] = {{0, 0}, {0, 0},
+    DEMI_TANGENT_LAWS(DEMI_STAGE_ROW) {0, 0}};
+static const demi_stage_row demi_rolling_stages[] = {{0, 0}, {0, 0},
+    DEMI_ROLLING_LAWS(DEMI_STAGE_ROW_ONE) {0, 0}};
+
+/* The stage that does all for the laws in force, or null. */
+static demi_stage demi_whole_stage(const dem_world *w) {
+#ifdef DEM_LAW
+    if (w->desc.law == DEM_LAW) return demi_stage_own_inlined;
+#endif
+    if (w->desc.law) return demi_stage_own;
+#ifndef DEM_NO_SPECIALIZE
+    if (w->composed || w->desc.ledger || !demi_laws_usual(w) ||
+        w->normal != DEM_NORMAL_HERTZ || w->rolling != DEM_ROLLING_NONE) return 0;
+    if (w->tangent == DEM_TANGENT_NONE) return demi_stage_whole_hertz;
+    if (w->tangent == DEM_TANGENT_SPRING)
+        return w->uniform ? demi_stage_whole_hertz_spring : demi_stage_whole_hertz_spring_mixed;
+#endif
+    return 0;
+}
+/* What a law of the laws in force asks of a run. dt 0: looking only. */
+static demi_run demi_run_of(const dem_world *w, dem_real dt) {
+    const demi_laws *laws = &w->laws;
+    const demi_stage whole = demi_whole_stage(w);
+    const int own = w->desc.law != 0;
+    const int turns = laws->tangent->law != 0, rolls = laws->rolling->law != 0;
+    const int all = w->desc.ledger || !demi_laws_usual(w);
+    const int precise = all || rolls || w->tangent >= DEM_TANGENT_MINDLIN;
+    demi_run r;
+    int k = 0;
+    memset(&r, 0, sizeof r);
+    r.w = w;
+    r.uniform = w->uniform;
+    r.ledger = w->desc.ledger && !own;
+    r.keep = w->memory_stride;
+    r.turning = own || turns || rolls;
+    r.parting = own || rolls || (r.turning && !r.uniform);
+    r.following = own || laws->tangent->vectors || laws->rolling->vectors;
+    r.same.at_rolling = laws->at_rolling;
+    r.same.at_normal = laws->at_normal;
+    r.same.tension = (int)w->desc.tension;
+    r.same.friction_load = (int)w->desc.friction_load;
+    r.same.slider = (int)w->desc.slider;
+    r.same.dt = dt;
+    r.same.radius = w->uniform_radius;
+    r.same.inv_radius = 1/w->uniform_radius;
+    r.stage[k++] = r.following ? r.uniform ? demi_stage_alike_following : demi_stage_mixed_following
+        : r.turning ? r.uniform ? demi_stage_alike_turning : demi_stage_mixed_turning
+        : r.uniform ? demi_stage_alike_bare : demi_stage_mixed_bare;
+    if (whole) { r.stage[k] = whole; return r; }
+    r.stage[k++] = precise ? demi_normal_stages[w->normal].all
+                           : demi_normal_stages[w->normal].common;
+    if (turns) r.stage[k++] = all ? demi_tangent_stages[w->tangent].all
+                                  : demi_tangent_stages[w->tangent].common;
+    if (rolls) r.stage[k++] = demi_rolling_stages[w->rolling].common;
+    r.stage[k] = !r.turning ? demi_stage_answer_bare
+        : rolls ? r.uniform ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
+        : r.uniform ? demi_stage_answer_alike : demi_stage_answer_mixed;
+    return r;
+}
+/* Column e of pairs of bodies that are all alike. */
+static dem_real demi_uniform_coef(const dem_world *w, int e) {
+    return e == DEMI_M_EFF ? 1/(2*w->uniform_inv_mass) : w->uniform_coef[e];
+}
+/* Rows that no stage of the run fills: coefficients of alike bodies, friction of none. */
+static void demi_tile_begin(const dem_world *w, const demi_run *r, demi_tile *t) {
+    int e, q;
+    for (e = 0; e < DEMI_PAIR_COLUMNS && r->uniform; e++)
+        for (q = 0; q < DEMI_TILE; q++)
+            t->coef[e][q] = demi_uniform_coef(w, e);
+    memset(t->part, 0, sizeof t->part);
+    memset(t->tangent, 0, sizeof t->tangent);
 }
 
 /* The whole tile; energies are summed in order. */
-DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_span *span, const demi_run *r,
-                                  demi_tile *DEMI_RESTRICT t, double *energy) {
+static void demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *r,
+                              demi_tile *DEMI_RESTRICT t, double *energy) {
     const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
-    int q, l;
+    int q, k;
+    r->span = span;
     for (q = 0; q < r->keep; q++)
         demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
     for (q = 0; q < DEMI_PAIR_COLUMNS && !r->uniform; q++)
-        if (r->normal == DEM_NORMAL_HYSTERETIC || q < DEMI_K_UN || q > DEMI_K_AD)
+        if (w->normal == DEM_NORMAL_HYSTERETIC || q < DEMI_K_UN || q > DEMI_K_AD)
             demi_row_copy(t->coef[q], span->coef + (size_t)q*span->stride, full);
-    demi_tile_fetch(w, span, full, r, t);
-    for (q = 0; q < full; q += DEMI_LANES) {
-        DEMI_VECTOR
-        for (l = 0; l < DEMI_LANES; l++) demi_tile_touch(t, q + l, r);
-    }
-    for (q = 0; q < full; q += DEMI_LANES) {
-        DEMI_VECTOR
-        for (l = 0; l < DEMI_LANES; l++) demi_tile_motion(t, q + l, r);
-    }
-    if (r->law) for (q = 0; q < span->count; q++) demi_tile_call(w, t, q, span, r);
-    else
-        for (q = 0; q < full; q += DEMI_LANES) {
-            DEMI_VECTOR
-            for (l = 0; l < DEMI_LANES; l++) demi_tile_law(w, t, q + l, span, r);
-        }
+    demi_tile_fetch(r, full, t);
+    for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
     for (q = 0; q < r->keep; q++)
         demi_row_copy(span->memory + (size_t)q*span->stride, t->memory[q], full);
     if (r->ledger)
@@ -8206,35 +8571,46 @@ DEM_INLINE void demi_tile_respond(const dem_world *w, const demi_span *span, con
 
 /* What a tile adds up to besides forces. */
 typedef struct demi_tally { dem_real deepest, contacts; } demi_tally;
-DEM_INLINE void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_tally *sum) {
+static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_tally *sum) {
     int q;
     for (q = 0; q < count; q++) {
         sum->deepest = t->deep[q] > sum->deepest ? t->deep[q] : sum->deepest;
         sum->contacts += t->touch[q];
     }
 }
+DEM_INLINE void demi_sum_add(dem_real *sum, dem_real x, dem_real y, dem_real z) {
+    x += sum[0]; y += sum[1]; z += sum[2];
+    sum[0] = x; sum[1] = y; sum[2] = z;
+}
 /* Adds a tile's pushes to both bodies. */
-DEM_INLINE void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
-                                  const demi_run *r, dem_real *DEMI_RESTRICT force,
-                                  dem_real *DEMI_RESTRICT torque) {
-    const int second = r->parting ? 1 : 0;
+DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                             dem_real *DEMI_RESTRICT force, dem_real *DEMI_RESTRICT torque,
+                             int turning, int second) {
+    const int32_t *DEMI_RESTRICT la = span->a, *DEMI_RESTRICT lb = span->b;
+    const int count = span->count;
     int n;
-    for (n = 0; n < span->count; n++) {
+    for (n = 0; n < count; n++) {
         const size_t q = (size_t)n;
-        dem_real *fa = DEMI_AT(force, span->a[q]), *fb = DEMI_AT(force, span->b[q]);
+        const int32_t i = la[q], j = lb[q];
         const dem_real fx = t->force[0][q], fy = t->force[1][q], fz = t->force[2][q];
-        fa[0] += fx; fa[1] += fy; fa[2] += fz;
-        fb[0] -= fx; fb[1] -= fy; fb[2] -= fz;
-        if (r->turning) {
-            dem_real *ma = DEMI_AT(torque, span->a[q]), *mb = DEMI_AT(torque, span->b[q]);
-            ma[0] += t->torque[0][0][q]; ma[1] += t->torque[0][1][q]; ma[2] += t->torque[0][2][q];
-            mb[0] += t->torque[second][0][q]; mb[1] += t->torque[second][1][q];
-            mb[2] += t->torque[second][2][q];
-        }
+        demi_sum_add(DEMI_AT(force, i), fx, fy, fz);
+        demi_sum_add(DEMI_AT(force, j), -fx, -fy, -fz);
+        if (!turning) continue;
+        demi_sum_add(DEMI_AT(torque, i), t->torque[0][0][q], t->torque[0][1][q],
+                     t->torque[0][2][q]);
+        demi_sum_add(DEMI_AT(torque, j), t->torque[second][0][q], t->torque[second][1][q],
+                     t->torque[second][2][q]);
     }
 }
+static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+                              const demi_run *r, dem_real *DEMI_RESTRICT force,
+                              dem_real *DEMI_RESTRICT torque) {
+    if (r->parting) demi_scatter(t, span, force, torque, 1, 1);
+    else if (r->turning) demi_scatter(t, span, force, torque, 1, 0);
+    else demi_scatter(t, span, force, torque, 0, 0);
+}
 /* The same for pairs that lead out: the far ends' pushes stay in slots, six reals each. */
-DEM_INLINE void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
+static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                                const demi_run *r, dem_real *DEMI_RESTRICT force,
                                dem_real *DEMI_RESTRICT torque, dem_real *DEMI_RESTRICT out) {
     const int second = r->parting ? 1 : 0;
@@ -8253,14 +8629,13 @@ DEM_INLINE void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span
 }
 
 /* All pairs of one domain: those inside it, then those that lead out. */
-DEM_INLINE void demi_pairs(dem_world *w, int d, int normal, int tangent, int rolling, int uniform,
-                           int ledger, int usual, dem_law_fn law) {
+static void demi_pairs(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const demi_run r = demi_run_of(w, normal, tangent, rolling, uniform, ledger, usual, law,
-                                   w->forces_valid ? w->dt : 0);  /* 0: looking only */
+    demi_run r = demi_run_of(w, w->forces_valid ? w->dt : 0);  /* 0: looking only */
     DEMI_ALIGNED demi_tile tile;
     demi_tally tally = {0, 0};
     int l, p;
+    demi_tile_begin(w, &r, &tile);
     for (l = 0; l < 2; l++) {
         const int begin = l ? domain->near_cross : 0;
         const int end = l ? domain->near_end : domain->near_own;
@@ -8300,82 +8675,14 @@ static void demi_cross_gather(dem_world *w, int d) {
     }
 }
 
-/* Kernels: one line per effect set, and one that asks at run time. Same source, same bits. */
-static void demi_pairs_any(dem_world *w, int d) {
-    demi_pairs(w, d, w->normal, w->tangent, w->rolling, w->uniform, w->desc.ledger, 0,
-               w->desc.law);
-}
-#ifdef DEM_LAW
-DEMI_CLONES static void demi_pairs_own_law(dem_world *w, int d) {
-    demi_pairs(w, d, DEM_NORMAL_HERTZ, DEM_TANGENT_NONE, DEM_ROLLING_NONE, w->uniform, 0, 1,
-               DEM_LAW);
-}
-#endif
-#ifndef DEM_NO_SPECIALIZE
-/* Name of the function, normal law, tangent law, rolling law, all bodies alike?, ledger?, name in
-   reports. A kernel for alike bodies serves only those. First fit wins. All are for the usual load
-   and slider. */
-#define DEMI_KERNELS(X) \
-    X(hertz,                HERTZ,  NONE,    NONE, 1, 0, "hertz, alike") \
-    X(hertz_mixed,          HERTZ,  NONE,    NONE, 0, 0, "hertz, mixed") \
-    X(hertz_spring,         HERTZ,  SPRING,  NONE, 1, 0, "hertz + spring, alike") \
-    X(hertz_spring_mixed,   HERTZ,  SPRING,  NONE, 0, 0, "hertz + spring, mixed") \
-    X(hertz_spring_ledger,  HERTZ,  SPRING,  NONE, 1, 1, "hertz + spring, alike, ledger") \
-    X(hertz_mixed_ledger,   HERTZ,  SPRING,  NONE, 0, 1, "hertz + spring, mixed, ledger") \
-    X(hertz_roll,           HERTZ,  SPRING,  EPSD, 1, 0, "hertz + spring + rolling, alike") \
-    X(hertz_roll_mixed,     HERTZ,  SPRING,  EPSD, 0, 0, "hertz + spring + rolling, mixed") \
-    X(hertz_mindlin,        HERTZ,  MINDLIN, NONE, 1, 0, "hertz + mindlin, alike") \
-    X(hertz_mindlin_mixed,  HERTZ,  MINDLIN, NONE, 0, 0, "hertz + mindlin, mixed") \
-    X(linear,               LINEAR, NONE,    NONE, 1, 0, "linear, alike") \
-    X(linear_mixed,         LINEAR, NONE,    NONE, 0, 0, "linear, mixed") \
-    X(linear_spring,        LINEAR, SPRING,  NONE, 1, 0, "linear + spring, alike") \
-    X(linear_spring_mixed,  LINEAR, SPRING,  NONE, 0, 0, "linear + spring, mixed") \
-    X(hysteretic,           HYSTERETIC, NONE,   NONE, 1, 0, "hysteretic, alike") \
-    X(hysteretic_mixed,     HYSTERETIC, NONE,   NONE, 0, 0, "hysteretic, mixed") \
-    X(hysteretic_spring,    HYSTERETIC, SPRING, NONE, 1, 0, "hysteretic + spring, alike") \
-    X(hysteretic_spring_mixed, HYSTERETIC, SPRING, NONE, 0, 0, "hysteretic + spring, mixed")
-#define DEMI_KERNEL_DEFINE(NAME, NORMAL, TANGENT, ROLLING, UNIFORM, LEDGER, TEXT) \
-    DEMI_CLONES static void demi_pairs_##NAME(dem_world *w, int d) { \
-        demi_pairs(w, d, DEM_NORMAL_##NORMAL, DEM_TANGENT_##TANGENT, DEM_ROLLING_##ROLLING, \
-                   UNIFORM, LEDGER, 1, 0); \
-    }
-#define DEMI_KERNEL_ROW(NAME, NORMAL, TANGENT, ROLLING, UNIFORM, LEDGER, TEXT) \
-    {DEM_NORMAL_##NORMAL, DEM_TANGENT_##TANGENT, DEM_ROLLING_##ROLLING, UNIFORM, LEDGER, \
-     demi_pairs_##NAME, TEXT},
-DEMI_KERNELS(DEMI_KERNEL_DEFINE)
-typedef struct demi_kernel_row {
-    int normal, tangent, rolling, uniform, ledger;
-    void (*kernel)(dem_world *, int);
-    const char *name;
-} demi_kernel_row;
-static const demi_kernel_row demi_kernel_rows[] = {DEMI_KERNELS(DEMI_KERNEL_ROW)
-    {0, 0, 0, 0, 0, 0, 0}};
-#endif
-
-/* Sets the kernel for the effects in force; answers its name. */
+/* Sets the loop over pairs for the laws in force; answers what reports call it. */
 static const char *demi_kernel_choose(dem_world *w) {
-#ifndef DEM_NO_SPECIALIZE
-    const demi_kernel_row *r;
-#endif
-    w->kernel = demi_pairs_any;
+    w->kernel = demi_pairs;
 #ifdef DEM_LAW
-    if (w->desc.law == DEM_LAW && !w->desc.ledger) {
-        w->kernel = demi_pairs_own_law;
-        return "your law, inlined";
-    }
+    if (w->desc.law == DEM_LAW) return "your law, inlined";
 #endif
-#ifndef DEM_NO_SPECIALIZE
-    for (r = demi_kernel_rows; r->kernel && !w->desc.law; r++) {
-        const demi_habit habit = demi_habit_of(w);
-        if (habit.load != DEM_LOAD_PUSH || habit.slider != DEM_SLIDER_SHARED) break;
-        if (r->ledger == (w->desc.ledger != 0) && r->normal == w->normal &&
-            r->tangent == w->tangent && r->rolling == w->rolling && r->uniform <= w->uniform) {
-            w->kernel = r->kernel;
-            return r->name;
-        }
-    }
-#endif
-    return "run-time kernel";
+    if (w->desc.law) return "your law, called";
+    return demi_whole_stage(w) ? "all laws at once" : "law by law";
 }
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -8467,6 +8774,7 @@ DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_conta
     c->material_a = w->body_material[k->body];
     c->material_b = wall->material + 1;
     c->wall = k->wall + 1;
+    demi_contact_choices(w, c);
     c->user = w->desc.law_user;
 }
 
@@ -8627,7 +8935,7 @@ static void demi_domain_walls_touch(dem_world *w, int d) {
         demi_touching *at;
         int n;
         last = k + 1;
-        if (w->wall_gap[base + k] > gone) continue;     /* not near yet: the body is not looked at */
+        if (w->wall_gap[base + k] > gone) continue;     /* the body is not looked at */
         while (last < domain->walls && w->wall_body[base + last] == body &&
                w->wall_id[base + last] == wall) last++;
         if (w->shaped_count && demi_form_of(w, body)) continue;     /* in >>shaped */
@@ -8682,7 +8990,7 @@ DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wa
     sum->contacts++;
 }
 /* grip: how often friction and rolling count, which may differ from the rest (>>shaped). */
-DEM_INLINE void demi_energy_add(demi_domain *domain, const demi_law_energy *part, dem_real share,
+DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *part, dem_real share,
                                 dem_real grip) {
     domain->energy[DEMI_E_DASHPOT] += (double)(share*(part->dashpot + part->sag));
     domain->energy[DEMI_E_ELASTIC] += (double)(share*part->elastic);
@@ -8696,7 +9004,6 @@ DEM_INLINE void demi_energy_add(demi_domain *domain, const demi_law_energy *part
 static void demi_walls_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->forces_valid ? w->dt : 0;
-    const demi_habit habit = demi_habit_of(w);
     demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
     int k;
     for (k = 0; k < domain->wall_contacts_next; k++) {
@@ -8706,15 +9013,10 @@ static void demi_walls_respond(dem_world *w, int d) {
         dem_contact contact;
         dem_push f;
         dem_vec3 surface, force, torque;
-        demi_law_energy part;
         c->force = demi_v(0, 0, 0);
         if (!(c->overlap > 0)) continue;        /* under way: nobody is pushed, nothing is told */
-        memset(&f, 0, sizeof f);
-        memset(&part, 0, sizeof part);
         demi_wall_contact_fill(w, c, dt, &contact, &surface);
-        if (w->desc.law) w->desc.law(&contact, c->memory, &f);
-        else demi_law(&contact, c->memory, &f, w->normal, w->tangent, w->rolling, habit,
-                      w->desc.ledger, &part);
+        demi_law(w, &contact, c->memory, &f);
         force = demi_scale(demi_sub(f.tangent, demi_scale(contact.normal, f.normal)), c->share);
         f.moment = demi_scale(f.moment, c->share);
         torque = demi_add(demi_scale(demi_cross(contact.normal, force), r), f.moment);
@@ -8724,7 +9026,7 @@ static void demi_walls_respond(dem_world *w, int d) {
         demi_wall_sum_add(w, &sums[c->wall], c->wall, demi_add(demi_add(demi_at(w->pos + 4*body),
                           c->shift), demi_scale(contact.normal, r)), force, f.moment, surface);
         domain->overlap = DEMI_MAX(domain->overlap, (double)(c->overlap/r));
-        demi_energy_add(domain, &part, c->share, c->share);
+        demi_energy_add(domain, &f.energy, c->share, c->share);
     }
     domain->wall_contacts = domain->wall_contacts_next;
 }
@@ -9340,29 +9642,25 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     c->material_a = w->body_material[a];
     c->material_b = b >= 0 ? w->body_material[b] : w->walls[k->wall].material + 1;
     c->wall = b >= 0 ? 0 : k->wall + 1;
+    demi_contact_choices(w, c);
     c->user = w->desc.law_user;
 }
 /* What the elastic force counts more, or less, than what dissipates: N. */
-static dem_real demi_shaped_lift(const dem_world *w, const demi_shaped *k, const dem_contact *c,
-                                 demi_habit habit) {
+static dem_real demi_shaped_lift(const dem_world *w, const demi_shaped *k, const dem_contact *c) {
     const dem_real more = k->lift - k->share;
     dem_real memory[DEMI_MEMORY];
     dem_contact still = *c;
-    demi_law_energy part;
     dem_push f;
     if (!(more > 0 || more < 0)) return 0;
     memcpy(memory, k->memory, sizeof memory);
-    memset(&f, 0, sizeof f);
     still.closing_speed = 0;
-    if (w->desc.law) w->desc.law(&still, memory, &f);
-    else demi_law(&still, memory, &f, w->normal, w->tangent, w->rolling, habit, 0, &part);
+    demi_law(w, &still, memory, &f);
     return more*f.normal;
 }
 /* All contacts of one domain: law, forces on both ends, walls' sums, energies. */
 static void demi_shaped_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->forces_valid ? w->dt : 0;
-    const demi_habit habit = demi_habit_of(w);
     demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
     int i;
     domain->shaped_walls = 0;
@@ -9374,7 +9672,6 @@ static void demi_shaped_respond(dem_world *w, int d) {
         dem_contact contact;
         dem_push f;
         dem_vec3 surface, force, moment;
-        demi_law_energy part;
         if (!(c->overlap > 0)) {                /* under way through a reduced hole */
             c->force = demi_v(0, 0, 0);
             domain->shaped_walls += b < 0;
@@ -9385,12 +9682,8 @@ static void demi_shaped_respond(dem_world *w, int d) {
                               c->unit);
         demi_shaped_coefs(w, c, ma, mb, coef);
         demi_shaped_fill(w, c, coef, dt, &contact, &surface);
-        memset(&f, 0, sizeof f);
-        memset(&part, 0, sizeof part);
-        press = demi_shaped_lift(w, c, &contact, habit);
-        if (w->desc.law) w->desc.law(&contact, c->memory, &f);
-        else demi_law(&contact, c->memory, &f, w->normal, w->tangent, w->rolling, habit,
-                      w->desc.ledger, &part);
+        press = demi_shaped_lift(w, c, &contact);
+        demi_law(w, &contact, c->memory, &f);
         press += c->share*f.normal;
         force = demi_sub(demi_scale(f.tangent, c->grip), demi_scale(contact.normal, press));
         moment = demi_scale(f.moment, c->grip);
@@ -9417,9 +9710,9 @@ static void demi_shaped_respond(dem_world *w, int d) {
             domain->shaped_walls++;
         }
         domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
-        part.elastic /= c->slope;               /* V = k overlap^2/2; the law was given k slope */
-        part.sag /= c->slope;
-        demi_energy_add(domain, &part, c->share, c->grip);
+        f.energy.elastic /= c->slope;           /* V = k overlap^2/2; the law was given k slope */
+        f.energy.sag /= c->slope;
+        demi_energy_add(domain, &f.energy, c->share, c->grip);
     }
 }
 /* Slots of far ends are summed into: cleared before. */
@@ -11928,24 +12221,32 @@ DEM_API void dem_overlap_reset(dem_world *w) {
 
 /* One near pair, if it touches: its force by the law of the run on a copy of its memory. */
 static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out) {
-    const demi_run r = demi_run_of(w, w->normal, w->tangent, w->rolling, w->uniform, 0, 0,
-                                   w->desc.law, 0);
+    demi_run r = demi_run_of(w, 0);
     const demi_span span = demi_span_of(w, d, p, 1);
     const int a = span.a[0], b = span.b[0];
-    demi_tile tile;
-    dem_vec3 gap;
     const demi_periods periods = demi_periods_of(w);
+    dem_real memory[DEMI_MEMORY];
+    demi_tile tile;
+    dem_contact c;
+    dem_push f;
+    dem_vec3 gap;
     int e;
-    for (e = 0; e < r.keep; e++) tile.memory[e][0] = span.memory[(size_t)e*span.stride];
-    for (e = 0; e < DEMI_PAIR_COLUMNS && !r.uniform; e++)
-        tile.coef[e][0] = span.coef[(size_t)e*span.stride];
-    demi_tile_fetch(w, &span, 1, &r, &tile);
+    r.span = &span;
+    demi_tile_fetch(&r, 1, &tile);
     gap = demi_rows_at(&tile.gap, 0);
-    demi_tile_touch(&tile, 0, &r);
+    demi_touch_one(&tile, &r.same, 0, r.uniform);
     if (!(tile.touch[0] > 0)) return 0;
     if (!out) return 1;
-    demi_tile_motion(&tile, 0, &r);
-    demi_tile_law(w, &tile, 0, &span, &r);
+    for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
+        tile.coef[e][0] = r.uniform ? demi_uniform_coef(w, e) : span.coef[(size_t)e*span.stride];
+    demi_motion_one(&tile, &r.same, 0, r.uniform, r.turning, r.following);
+    demi_tile_contact(&tile, &r.same, 0, &c);
+    c.material_a = w->body_material[a];
+    c.material_b = w->body_material[b];
+    c.user = w->desc.law_user;
+    demi_law(w, &c, memory, &f);
+    demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.uniform, r.turning, r.parting);
     out->a = dem_bodies_id(w, a);
     out->b = dem_bodies_id(w, b);
     out->wall = 0;
@@ -12131,14 +12432,18 @@ DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed
    contact memory as a sum over contacts of their own digests, for the same reason. */
 DEM_API uint64_t dem_world_hash(const dem_world *w) {
     if (demi_null(w, "dem_world_hash", w, "world")) return 0;
+    const demi_periods p = demi_periods_of(w);
     uint64_t h = DEMI_HASH_START;
     int i;
     h = demi_hash(h, &w->time, sizeof w->time);
     for (i = 0; i < w->slot_count; i++) {
         const int b = w->slot_index[i];
+        dem_real x[4];
         if (b < 0) continue;
+        demi_put(x, demi_place_of(&p, demi_at(w->pos + 4*b)));  /* a new list puts them there */
+        x[3] = w->pos[4*b + 3];
         h = demi_hash(h, &i, sizeof i);
-        h = demi_hash(h, w->pos + 4*b, 4*sizeof(dem_real));
+        h = demi_hash(h, x, sizeof x);
         h = demi_hash(h, w->vel + 4*b, 3*sizeof(dem_real));
         h = demi_hash(h, w->spin + 4*b, 3*sizeof(dem_real));
         if (!w->orienting) continue;
@@ -14883,10 +15188,9 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     if (d->law_vectors < 0 || 3*d->law_vectors > d->law_memory)
         return "dem_world_create: law_vectors is more than fits into law_memory, must be at most "
             "law_memory/3";
-    if ((int)d->normal_law < 0 || d->normal_law > DEM_NORMAL_HYSTERETIC ||
-        (int)d->tangent_law < 0 ||
-        d->tangent_law > DEM_TANGENT_MINDLIN_RESCALED || (int)d->rolling_law < 0 ||
-        d->rolling_law > DEM_ROLLING_EPSD)
+    if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
+        !demi_law_known(demi_tangent_laws, (int)d->tangent_law) ||
+        !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
         return "dem_world_create: a contact law is unknown, must be one of the enum values; start "
             "from DEM_WORLD_DESC";
     if ((int)d->tension < 0 || d->tension > DEM_TENSION_NONE || (int)d->convention < 0 ||
@@ -14996,15 +15300,23 @@ static int demi_shaped_total(const dem_world *w) {
     for (d = 0; d < w->domain_count; d++) n += w->domains[d].shaped;
     return n;
 }
+/* What a law remembers, in words. */
+static const char *demi_law_memory_text(const demi_law_row *row, char text[64]) {
+    text[0] = 0;
+    if (row->memory)
+        snprintf(text, 64, " (%d bytes of memory per near pair)",
+                 row->memory*(int)sizeof(dem_real));
+    return text;
+}
 /* The laws in force. Of a law of the user's own only what it was given is known. */
 static void demi_laws_report(const dem_world *w, FILE *out) {
-    static const char *tangents[] = {"auto", "none", "viscous", "step", "spring", "Mindlin",
-                                     "Mindlin, rescaled"};
-    static const char *rollings[] = {"auto", "none", "step", "constant torque", "EPSD"};
     static const char *loads[] = {"the normal force", "its spring's part", "its size"};
     static const char *sliders[] = {"spring and dashpot share it", "the spring alone holds it",
                                     "the spring holds what the dashpot leaves"};
-    const demi_habit habit = demi_habit_of(w);
+    const int load = w->desc.tension != DEM_TENSION_KEPT ? DEM_LOAD_PUSH
+        : (int)w->desc.friction_load;           /* nothing pulls there */
+    const demi_laws *laws = &w->laws;
+    char text[64];
     const char *unused = "";
 #ifdef DEM_LAW
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
@@ -15014,21 +15326,18 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
                 "followed; %d reals of memory per contact\n", w->desc.law_memory);
         return;
     }
-    fprintf(out, "effects    normal: %s%s%s\n", w->normal == DEM_NORMAL_HERTZ ? "Hertz"
-            : w->normal == DEM_NORMAL_LINEAR ? "linear"
-            : "hysteretic (8 bytes of memory per candidate)",
+    fprintf(out, "effects    normal: %s%s%s%s\n", laws->normal->name,
             w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped"
-            : w->desc.tension == DEM_TENSION_NONE ? ", no tension" : "", unused);
-    fprintf(out, "           tangential: %s%s\n", tangents[w->tangent],
-            w->tangent == DEM_TANGENT_NONE
-            ? " (no friction in any pair: no spin, no torque, no memory)"
-            : w->tangent >= DEM_TANGENT_SPRING
-            ? " (32 bytes of memory per candidate)" : "");
-    if (w->tangent != DEM_TANGENT_NONE)
-        fprintf(out, "           friction's limit is mu times %s; %s\n", loads[habit.load],
-                w->tangent < DEM_TANGENT_SPRING ? "a dashpot alone holds it"
-                : sliders[habit.slider]);
-    fprintf(out, "           rolling: %s\n", rollings[w->rolling]);
+            : w->desc.tension == DEM_TENSION_NONE ? ", no tension" : "",
+            demi_law_memory_text(laws->normal, text), unused);
+    fprintf(out, "           tangential: %s%s\n", laws->tangent->name, laws->tangent->law
+            ? demi_law_memory_text(laws->tangent, text)
+            : " (no friction in any pair: no spin, no torque, no memory)");
+    if (laws->tangent->law)
+        fprintf(out, "           friction's limit is mu times %s; %s\n", loads[load],
+                laws->tangent->memory ? sliders[w->desc.slider] : "a dashpot alone holds it");
+    fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
+            demi_law_memory_text(laws->rolling, text));
 }
 DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     if (demi_null(world, "dem_world_report", out, "out")) return;

@@ -28,19 +28,16 @@ static dem_world *world_of(double dt, double g) {
 }
 
 /* The law alone, at an overlap, on a memory. */
-static double force_at(double overlap, dem_real *memory, demi_law_energy *part) {
+static double force_at(double overlap, dem_real *memory, dem_contact_energy *part) {
     dem_contact c;
     dem_push push;
-    demi_law_energy none;
-    demi_habit habit;
-    memset(&habit, 0, sizeof habit);
     memset(&c, 0, sizeof c);
     memset(&push, 0, sizeof push);
     c.normal = at(1, 0, 0);
     c.overlap = (dem_real)overlap;
     c.kn = KL; c.kun = KUN; c.kad = KAD;
-    demi_law(&c, memory, &push, DEM_NORMAL_HYSTERETIC, DEM_TANGENT_NONE, DEM_ROLLING_NONE, habit, 1,
-             part ? part : &none);
+    dem_law_hysteretic(&c, memory, &push);
+    if (part) *part = push.energy;
     return (double)push.normal;
 }
 /* Goes to an overlap in small steps; answers the work done by the force against the path, and adds
@@ -50,7 +47,7 @@ static double walk(double from, double to, dem_real *memory, double *lost) {
     double work = 0, before = force_at(from, memory, 0);
     int i;
     for (i = 1; i <= n; i++) {
-        demi_law_energy part;
+        dem_contact_energy part;
         const double x = from + (to - from)*i/n, f = force_at(x, memory, &part);
         work += (f + before)/2*(to - from)/n;
         *lost += (double)(part.dashpot + part.sag);

@@ -277,6 +277,45 @@ static void swarm_each(int mixed) {
     }
 }
 
+/* 300 grains of which some have crossed a periodic face since the last list, and many new ones: the
+   next list needs more memory. Request `refuse` from here on gets none; 1 when that came to pass.
+   Whether or not it did, what the hash tells of must be as before. */
+static int search_refused(long refuse) {
+    counter c;
+    dem_world_desc desc = counted(&c);
+    dem_world *world;
+    dem_material stuff;
+    uint64_t hash;
+    int i, k, refused;
+    desc.gravity = at(0, 0, 0);
+    desc.domain = box_of(0, 0, 0, 0.1, 0.1, 0.1);
+    desc.skin = DEM_R(0.004);
+    desc.dt = DEM_R(2e-6);
+    for (k = 0; k < 3; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+    world = dem_world_create(&desc);
+    stuff = scene_material(world, 1e7, 1, 0.3, 0);
+    CHECK_EQ(dem_spheres_fill(world, stuff, DEM_R(0.002), desc.domain, 300, 1), 300);
+    for (i = 0; i < 300; i++)
+        scene_move(world, dem_bodies_id(world, i), at(-2, -2, -2), at(0, 0, 0));
+    for (k = 0, i = 300; k < 100 && i == 300; k++) {
+        CHECK_EQ(scene_step(world, 10), DEM_OK);
+        for (i = 0; i < 300 && world->pos[4*i] >= 0; i++) continue;
+    }
+    CHECK(i < world->count);                   /* one stands outside */
+    CHECK_EQ(dem_spheres_fill(world, stuff, DEM_R(0.002), desc.domain, 1200, 2), 1200);
+    hash = dem_world_hash(world);
+    c.refuse = c.calls + refuse;
+    refused = dem_search_now(world) != DEM_OK;
+    CHECK_EQ(refused, c.refused);
+    CHECK_EQ(dem_world_hash(world), hash);
+    c.refuse = 0;
+    CHECK_EQ(dem_search_now(world), DEM_OK);
+    CHECK_EQ(dem_world_hash(world), hash);
+    dem_world_destroy(world);
+    CHECK_EQ(c.blocks, 0);
+    return refused;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -403,6 +442,12 @@ int main(int argc, char **argv) {
         CHECK(k > 10);
         remove("build/tmp/memory.ckpt");
         remove("build/tmp/memory.vtp");
+    }
+    TEST("a new list changes no hash where grains have crossed a periodic face, made or refused for "
+         "memory at any request") {
+        long k = 1;
+        while (search_refused(k)) k++;
+        CHECK(k > 5);
     }
     return test_end();
 }
