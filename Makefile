@@ -16,6 +16,9 @@ JOBS         ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 
 # ---- what there is ----
 TESTS    := $(patsubst tests/%.c,build/%,$(wildcard tests/test_*.c))
+# these set macros of dem.h before they include it; all others are compiled as one program
+ALONE    := $(addprefix build/,test_api test_feed test_own_law)
+TOGETHER := $(filter-out $(ALONE),$(TESTS))
 LESSONS  := $(patsubst examples/%.c,build/%,$(wildcard examples/[0-9][0-9]_*.c))
 STUDIES  := $(filter-out $(LESSONS),$(patsubst examples/%.c,build/%,$(wildcard examples/*.c)))
 FUZZERS  := $(patsubst tests/%.c,build/%,$(wildcard tests/fuzz_*.c))
@@ -53,11 +56,11 @@ run: build/mill ## the tumbling mill: progress on the terminal, pictures in buil
 	@mkdir -p build/out/mill
 	build/mill --threads 1 --out build/out/mill
 
-test: $(TESTS) ## build and run all tests; FILTER=words runs the sentences that contain them
-	@sh tests/run.sh "$(FILTER)" $(TESTS)
+test: build/tests $(ALONE) ## build and run all tests; FILTER=words runs the sentences that contain them
+	@JOBS=$(JOBS) sh tests/run.sh "$(FILTER)" $(TOGETHER:build/%=build/tests@%) $(ALONE)
 
-hard: build/test_facets build/test_sieve ## the long forms of the hard cases: 1e5 impacts of each kind; FILTER=words as in test
-	@TEST_LONG=1 TEST_TABLES=1 sh tests/run.sh "$(FILTER)" $^
+hard: build/tests ## the long forms of the hard cases: 1e5 impacts of each kind; FILTER=words as in test
+	@JOBS=$(JOBS) TEST_LONG=1 TEST_TABLES=1 sh tests/run.sh "$(FILTER)" build/tests@test_facets build/tests@test_sieve
 
 examples: $(LESSONS) snippets ## build and run the numbered examples, compile the snippets of the manual
 	@failed=; for e in $(LESSONS); do n=$$(basename $$e); echo "== $$n"; mkdir -p build/out/$$n; \
@@ -76,7 +79,7 @@ mpi: ## build examples/mpi and run it on 1, 2 and 3 processes, where mpicc and i
 	    $(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mpi_slabs examples/mpi/slabs.c $(LDFLAGS) $(LDLIBS); \
 	    for n in 1 2 3; do echo "== $$n"; $(MPIRUN) -n $$n build/mpi_slabs; done; fi
 
-all: $(STUDIES) $(LESSONS) $(TESTS) $(BENCHES) $(BENCH_ALSO) ## build everything, run nothing
+all: $(STUDIES) $(LESSONS) build/tests $(ALONE) $(BENCHES) $(BENCH_ALSO) ## build everything, run nothing
 
 check: ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
 	@JOBS=$(JOBS) sh tests/check.sh
@@ -124,14 +127,17 @@ clean: ## remove build/
 
 # ---- how a program is built: one source, one header ----
 $(TESTS): build/%: tests/%.c $(wildcard tests/*.h)
+build/tests.c: tests/together.awk $(TOGETHER:build/%=tests/%.c)
+	awk -f tests/together.awk $(TOGETHER:build/%=tests/%.c) > $@
+build/tests: build/tests.c $(wildcard tests/*.h)
 $(LESSONS): build/%: examples/%.c
 $(STUDIES): build/%: examples/%.c $(wildcard examples/study.h)
 $(BENCHES): build/%: bench/%.c $(wildcard examples/study.h bench/*.h)
 build/parallel: examples/mill.c
 build/write_files: tests/write_files.c
 # -O3 takes three times as long to compile as -O2 and is for those that run long
-$(TESTS) $(LESSONS) build/write_files: LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
-$(TESTS) $(LESSONS) $(STUDIES) $(BENCHES) build/write_files: dem.h build/flags
+build/tests $(TESTS) $(LESSONS) build/write_files: LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
+build/tests $(TESTS) $(LESSONS) $(STUDIES) $(BENCHES) build/write_files: dem.h build/flags
 	$(COMPILE) $(LEVEL) -o $@ $(filter %/$(@F).c,$^) $(LINK)
 # benches say how they were built; bench.c also in single precision, and as plain as can be
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'

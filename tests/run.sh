@@ -1,23 +1,31 @@
-# sh tests/run.sh FILTER PROGRAM...: runs test programs one after the other and adds up their totals.
+# sh tests/run.sh FILTER PROGRAM...: runs test programs, JOBS (1) at a time, and adds up their totals.
+# PROGRAM@TEST is one test of a program of many (tests/together.awk).
 # A program that ends without its totals, or badly in spite of them, counts as one failure.
 # The last line is "N passed, N failed"; the exit code is 1 when anything failed.
-filter=$1; shift
-log=$(mktemp) || exit 1
-trap 'rm -f "$log"' EXIT
-passed=0; failed=0
-for program in "$@"; do
-    name=$(basename "$program")
-    "$program" "$filter" >"$log" 2>&1
+if [ "$1" = -one ]; then                       # DIR FILTER NUMBER PROGRAM: output to DIR/NUMBER
+    dir=$2; filter=$3; number=$4; program=$5; name=$(basename "$program")
+    case $name in
+    *@*) name=${name#*@}; "${program%@*}" "@$name" "$filter" >"$dir/$number" 2>&1 ;;
+    *) "$program" "$filter" >"$dir/$number" 2>&1 ;;
+    esac
     code=$?
-    cat "$log"
-    totals=$(sed -n "s/^$name: \([0-9]*\) passed, \([0-9]*\) failed\$/\1 \2/p" "$log" | tail -n 1)
+    totals=$(sed -n "s/^$name: \([0-9]*\) passed, \([0-9]*\) failed\$/\1 \2/p" "$dir/$number" | tail -n 1)
     p=${totals% *}; f=${totals#* }
     if [ -z "$totals" ]; then
-        p=0; f=1; echo "FAILED $name: ended with code $code before its totals"
+        p=0; f=1; echo "FAILED $name: ended with code $code before its totals" >>"$dir/$number"
     elif [ $code -ne 0 ] && [ "$f" -eq 0 ]; then
-        f=1; echo "FAILED $name: ended with code $code after its totals"
+        f=1; echo "FAILED $name: ended with code $code after its totals" >>"$dir/$number"
     fi
-    passed=$((passed + p)); failed=$((failed + f))
-done
-echo "$passed passed, $failed failed"
-[ $failed -eq 0 ]
+    echo "$p $f" >"$dir/$number.totals"
+    cat "$dir/$number"
+    exit 0
+fi
+filter=$1; shift
+export OMP_WAIT_POLICY=passive                # more threads than cores, and more programs: let who waits sleep
+dir=$(mktemp -d) || exit 1
+trap 'rm -rf "$dir"' EXIT
+count=0
+for program in "$@"; do count=$((count + 1)); printf '%s\n%s\n' $count "$program"; done |
+    xargs -P "${JOBS:-1}" -n 2 sh "$0" -one "$dir" "$filter"
+cat "$dir"/*.totals 2>/dev/null | awk -v programs=$# '{ passed += $1; failed += $2 }
+    END { failed += programs - NR; print passed + 0 " passed, " failed + 0 " failed"; exit failed > 0 }'

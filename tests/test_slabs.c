@@ -199,7 +199,7 @@ static void count_free(void *memory, size_t size, void *user) {
 }
 
 /* Heaps along x: `tilted` lets all grains run to x = 0. */
-static dem_world *box(double gx, double gz, dem_boundary end, int count, counter *c) {
+static dem_world *crate(double gx, double gz, dem_boundary end, int count, counter *c) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world;
     dem_material glass;
@@ -259,7 +259,7 @@ static dem_world *gas(int periodic, int threads) {
 /* Where bits are compared: a gas, whose sums are of one or two forces and hide their order, and a
    heap that runs to one side, whose borders move. */
 static dem_world *bits_world(int heap, int threads) {
-    dem_world *world = heap ? box(-30, -1, DEM_BOUNDARY_OPEN, 200, 0) : gas(1, threads);
+    dem_world *world = heap ? crate(-30, -1, DEM_BOUNDARY_OPEN, 200, 0) : gas(1, threads);
     world->desc.threads = threads;
     return world;
 }
@@ -635,7 +635,7 @@ int main(int argc, char **argv) {
         int still;
         double worst[2] = {0, 0};
         for (still = 0; still < 2; still++) {
-            dem_world *world = box(-30, 0, DEM_BOUNDARY_OPEN, 300, 0);
+            dem_world *world = crate(-30, 0, DEM_BOUNDARY_OPEN, 300, 0);
             dem_slabs_desc desc = DEM_SLABS_DESC;
             dem_slabs *slabs;
             dem_slab first, now;
@@ -667,8 +667,8 @@ int main(int argc, char **argv) {
         CHECK(worst[1] > 1.6);
     }
     TEST("grains that leave through an outflow boundary leave once, in slabs as in one world") {
-        dem_world *one = box(-10, -2, DEM_BOUNDARY_OUTFLOW, 200, 0);
-        dem_world *other = box(-10, -2, DEM_BOUNDARY_OUTFLOW, 200, 0);
+        dem_world *one = crate(-10, -2, DEM_BOUNDARY_OUTFLOW, 200, 0);
+        dem_world *other = crate(-10, -2, DEM_BOUNDARY_OUTFLOW, 200, 0);
         dem_slabs *slabs = deal(other, 0, 3);
         int k;
         for (k = 0; k < 6; k++) {
@@ -733,7 +733,7 @@ int main(int argc, char **argv) {
         long k, calls = 0;
         int tries;
         for (k = 0; k == 0 || (k <= calls && test_now.wrong == 0); k++) {
-            dem_world *world = box(-30, -2, DEM_BOUNDARY_OPEN, 90, &c);
+            dem_world *world = crate(-30, -2, DEM_BOUNDARY_OPEN, 90, &c);
             dem_slabs_desc desc = DEM_SLABS_DESC;
             dem_slabs *slabs = 0;
             dem_result result = DEM_OK;
@@ -852,7 +852,7 @@ int main(int argc, char **argv) {
         dem_world_destroy(flat);
     }
     TEST("a grain that runs into itself's like is stopped in the slab that saw it, with its name") {
-        dem_world *world = box(0, 0, DEM_BOUNDARY_OPEN, 60, 0);
+        dem_world *world = crate(0, 0, DEM_BOUNDARY_OPEN, 60, 0);
         dem_slabs *slabs;
         dem_body_state s;
         int i, one = 0;

@@ -6,7 +6,11 @@
 #include "scene.h"
 
 /* Everything a result could differ in. */
-typedef struct outcome { uint64_t hash; dem_ledger ledger; dem_channels floor; int domains;
+typedef struct outcome {
+    uint64_t hash;
+    dem_ledger ledger;
+    dem_channels floor;
+    int domains;
 } outcome;
 
 /* About 6000 grains, mixed, with friction and rolling friction, on a plane and in a turning mesh.
