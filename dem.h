@@ -448,7 +448,7 @@ typedef struct dem_push {
     dem_real slope, slope_step;  /* N/m, d(elastic)/d(overlap): now, in the middle of the step */
     dem_real kt, kt_step;    /* N/m, tangential stiffness: the same */
     dem_real ct;             /* N s/m, tangential dashpot */
-    dem_contact_energy energy;   /* for the ledger */
+    dem_contact_energy energy;   /* for the ledger: what your law leaves at 0 it cannot know */
 } dem_push;
 
 /* A contact law. memory holds law_memory reals that start at zero when the contact begins and are
@@ -8287,6 +8287,16 @@ DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count,
 }
 #undef DEMI_RECALL
 #undef DEMI_KEEP
+/* What a law says of energy, for the ledger. */
+DEM_INLINE void demi_normal_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f) {
+    t->part[0][q] = (f->energy.dashpot + f->energy.sag)*t->touch[q];
+    t->part[1][q] = f->energy.elastic*t->touch[q];
+}
+DEM_INLINE void demi_tangent_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f) {
+    t->part[2][q] = f->energy.shear_work*t->touch[q];
+    t->part[3][q] = f->energy.slide*t->touch[q];
+    t->part[4][q] = f->energy.shear_stored*t->touch[q];
+}
 /* What a law has put into its answer, for the next; `all`: what only some of them ask for, and the
    energies, too. */
 DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f, int all) {
@@ -8298,8 +8308,7 @@ DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_pus
     t->kt[1][q] = f->kt_step;
     t->slope[0][q] = f->slope;
     t->slope[1][q] = f->slope_step;
-    t->part[0][q] = (f->energy.dashpot + f->energy.sag)*t->touch[q];
-    t->part[1][q] = f->energy.elastic*t->touch[q];
+    demi_normal_energy(t, q, f);
 }
 DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_push *f) {
     demi_push_clear(f);
@@ -8310,10 +8319,7 @@ DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_push *f) 
 }
 DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f, int all) {
     demi_row_put(t->tangent, q, f->tangent);
-    if (!all) return;
-    t->part[2][q] = f->energy.shear_work*t->touch[q];
-    t->part[3][q] = f->energy.slide*t->touch[q];
-    t->part[4][q] = f->energy.shear_stored*t->touch[q];
+    if (all) demi_tangent_energy(t, q, f);
 }
 /* Two stages for each normal law and each of friction: for what is common, and for all choices. */
 #define DEMI_NORMAL_ROWS(LAW, MEMORY, NAME, ALL) \
@@ -8444,6 +8450,10 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, int 
     law(&c, m, &f);
     demi_keep(t, q, 0, r->keep, m);
     demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->uniform, 1, 1);
+    if (!r->ledger) return;                     /* what the law says of it */
+    demi_normal_energy(t, q, &f);
+    demi_tangent_energy(t, q, &f);
+    t->part[5][q] = f.energy.roll*t->touch[q];
 }
 static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
     int q, e;
@@ -8454,6 +8464,7 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
         demi_row_put(t->torque[0], q, demi_v(0, 0, 0));
         demi_row_put(t->torque[1], q, demi_v(0, 0, 0));
         for (e = 0; e < r->keep; e++) t->memory[e][q] = 0;
+        for (e = 0; e < 6; e++) t->part[e][q] = 0;
     }
 }
 #ifdef DEM_LAW
@@ -8502,7 +8513,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt) {
     memset(&r, 0, sizeof r);
     r.w = w;
     r.uniform = w->uniform;
-    r.ledger = w->desc.ledger && !own;
+    r.ledger = w->desc.ledger;
     r.keep = w->memory_stride;
     r.turning = own || turns || rolls;
     r.parting = own || rolls || (r.turning && !r.uniform);
