@@ -46,7 +46,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run test hard examples studies mpi check bench bench-parallel bench-peers bench-pages fuzz docs readers tags snippets clean
+.PHONY: help all run test hard examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers tags snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -89,6 +89,9 @@ BIND := OMP_PROC_BIND=true OMP_PLACES=cores
 bench: $(BENCHES) $(BENCH_ALSO) ## the quick form of all benches, in under 3 minutes; each takes --help
 	@$(BIND) build/bench && build/bench_single --brief && build/bench_O2 --brief --scene bed && \
 	    $(BIND) build/parallel --short --threads 2 --settle 0 && STEPS=60 ROUNDS=3 CORES=1 sh bench/peers.sh
+
+bench-compile: build/flags ## processor time that compiling dem.h takes, by compiler and level
+	@sh bench/compile.sh
 
 bench-parallel: build/parallel ## threads, sizes, searches beside published figures, in minutes
 	@$(BIND) build/parallel
