@@ -512,7 +512,7 @@ DEM_INLINE dem_real demi_law_middle(const dem_contact *c) {
     return (c->overlap + (c->overlap > gone ? c->overlap - gone : 0))/2;
 }
 
-/* F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92]; kt goes with d^(1/2), ct with d^(1/4). No memory. */
+/* F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92]; kt as d^(1/2), ct as d^(1/4). No memory. */
 DEM_INLINE void dem_law_hertz(const dem_contact *c, dem_real *memory, dem_push *f) {
     const dem_real root = DEMI_SQRT(c->overlap), fourth = DEMI_SQRT(root);
     const dem_real middle = DEMI_SQRT(demi_law_middle(c));
@@ -8410,8 +8410,10 @@ DEMI_ANSWER_STAGE(answer_mixed, 0, 1, 1, 0)
 DEMI_ANSWER_STAGE(answer_alike_rolling, 1, 1, 1, 1)
 DEMI_ANSWER_STAGE(answer_mixed_rolling, 0, 1, 1, 1)
 
-/* All laws and the answer at once, for the commonest scenes. */
-#define DEMI_WHOLE_STAGE(NAME, NORMAL, TANGENT, MEMORY, UNIFORM, TURNING) \
+/* All laws and the answer at once, for the commonest scenes. Memory: friction's FRICTION reals,
+   then rolling's. */
+#define DEMI_WHOLE_STAGE(NAME, NORMAL, TANGENT, FRICTION, ROLLING, MEMORY, UNIFORM, TURNING, \
+                         ROLLS, LEDGER) \
     DEMI_CLONES static void demi_stage_##NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
                                               int full) { \
         const demi_same s = r->same; \
@@ -8423,16 +8425,31 @@ DEMI_ANSWER_STAGE(answer_mixed_rolling, 0, 1, 1, 1)
             NORMAL(&c, 0, &f); \
             demi_recall(t, q, 0, MEMORY, m); \
             TANGENT(&c, m, &f); \
+            ROLLING(&c, m + (FRICTION), &f); \
             demi_keep(t, q, 0, MEMORY, m); \
             demi_answer_one(t, q, f.normal, f.tangent, f.moment, UNIFORM, TURNING, \
-                            TURNING && !UNIFORM); \
+                            (TURNING && !(UNIFORM)) || (ROLLS)); \
+            if (LEDGER) { demi_normal_energy(t, q, &f); demi_tangent_energy(t, q, &f); } \
+            if ((LEDGER) && (ROLLS)) t->part[5][q] = f.energy.roll*t->touch[q]; \
         DEMI_ROWS_END \
     }
 #ifndef DEM_NO_SPECIALIZE
 #define DEMI_NO_LAW(c, m, f) ((void)0)
-DEMI_WHOLE_STAGE(whole_hertz, dem_law_hertz, DEMI_NO_LAW, 0, 1, 0)
-DEMI_WHOLE_STAGE(whole_hertz_spring, dem_law_hertz, dem_law_spring, 3, 1, 1)
-DEMI_WHOLE_STAGE(whole_hertz_spring_mixed, dem_law_hertz, dem_law_spring, 3, 0, 1)
+DEMI_WHOLE_STAGE(hertz_alone, dem_law_hertz, DEMI_NO_LAW, 0, DEMI_NO_LAW, 0, 1, 0, 0, 0)
+#define DEMI_WHOLE_SPRING(NAME, UNIFORM, LEDGER) \
+    DEMI_WHOLE_STAGE(NAME, dem_law_hertz, dem_law_spring, 3, DEMI_NO_LAW, 3, UNIFORM, 1, 0, \
+                     LEDGER)
+#define DEMI_WHOLE_ROLLING(NAME, UNIFORM, LEDGER) \
+    DEMI_WHOLE_STAGE(NAME, dem_law_hertz, dem_law_spring, 3, dem_law_roll_epsd, 6, UNIFORM, 1, 1, \
+                     LEDGER)
+DEMI_WHOLE_SPRING(spring_alike, 1, 0)
+DEMI_WHOLE_SPRING(spring_mixed, 0, 0)
+DEMI_WHOLE_SPRING(spring_alike_ledger, 1, 1)
+DEMI_WHOLE_SPRING(spring_mixed_ledger, 0, 1)
+DEMI_WHOLE_ROLLING(rolling_alike, 1, 0)
+DEMI_WHOLE_ROLLING(rolling_mixed, 0, 0)
+DEMI_WHOLE_ROLLING(rolling_alike_ledger, 1, 1)
+DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
 #endif
 
 /* The user's law: only what touches, one by one; inlined into the loop where DEM_LAW names it. */
@@ -8492,11 +8509,17 @@ static demi_stage demi_whole_stage(const dem_world *w) {
 #endif
     if (w->desc.law) return demi_stage_own;
 #ifndef DEM_NO_SPECIALIZE
-    if (w->composed || w->desc.ledger || !demi_laws_usual(w) ||
-        w->normal != DEM_NORMAL_HERTZ || w->rolling != DEM_ROLLING_NONE) return 0;
-    if (w->tangent == DEM_TANGENT_NONE) return demi_stage_whole_hertz;
-    if (w->tangent == DEM_TANGENT_SPRING)
-        return w->uniform ? demi_stage_whole_hertz_spring : demi_stage_whole_hertz_spring_mixed;
+    if (w->composed || !demi_laws_usual(w) || w->normal != DEM_NORMAL_HERTZ) return 0;
+    if (w->tangent == DEM_TANGENT_NONE && w->rolling == DEM_ROLLING_NONE && !w->desc.ledger)
+        return demi_stage_hertz_alone;
+    if (w->tangent == DEM_TANGENT_SPRING && w->rolling == DEM_ROLLING_NONE)
+        return w->desc.ledger
+            ? w->uniform ? demi_stage_spring_alike_ledger : demi_stage_spring_mixed_ledger
+            : w->uniform ? demi_stage_spring_alike : demi_stage_spring_mixed;
+    if (w->tangent == DEM_TANGENT_SPRING && w->rolling == DEM_ROLLING_EPSD)
+        return w->desc.ledger
+            ? w->uniform ? demi_stage_rolling_alike_ledger : demi_stage_rolling_mixed_ledger
+            : w->uniform ? demi_stage_rolling_alike : demi_stage_rolling_mixed;
 #endif
     return 0;
 }

@@ -65,7 +65,7 @@ static void check_same(const outcome *a, const outcome *b) {
 }
 
 /* A block of grains between planes or in a periodic box, law by law or all laws at once: its hash. */
-static uint64_t block(dem_normal_law normal, int friction, int mixed, int periodic, int composed,
+static uint64_t block(int friction, int rolling, int ledger, int mixed, int periodic, int composed,
                       int *whole) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world;
@@ -73,14 +73,14 @@ static uint64_t block(dem_normal_law normal, int friction, int mixed, int period
     uint64_t hash;
     int k;
     desc.threads = 1;
-    desc.normal_law = normal;
+    desc.ledger = ledger;
     desc.dt = DEM_R(2e-6);
     desc.allow_large_dt = 1;
     desc.skin = DEM_R(1.5e-3);                 /* wide: one list for the run, after the first */
     for (k = 0; k < 3 && periodic; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
     desc.domain = box_of(0, 0, 0, 7*1.97e-3, 7*1.97e-3, 7*1.97e-3);
     world = dem_world_create(&desc);
-    glass = scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, 0);
+    glass = scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, rolling ? 0.1 : 0);
     if (!periodic) dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
     scene_block(world, glass, 7, 7, 7, 1e-3, mixed, 1, 5);
     world->composed = composed;
@@ -88,6 +88,10 @@ static uint64_t block(dem_normal_law normal, int friction, int mixed, int period
     *whole = demi_whole_stage(world) != 0;
     CHECK_EQ(dem_counters_get(world).rebuilds, 1);
     hash = dem_world_hash(world);
+    if (ledger) {
+        const dem_ledger book = dem_ledger_get(world);
+        hash = demi_hash(hash, &book, sizeof book);
+    }
     dem_world_destroy(world);
     return hash;
 }
@@ -136,12 +140,17 @@ int main(int argc, char **argv) {
     }
     TEST("the laws of the commonest scenes, worked out at once, give the bits that they give one after "
          "the other") {
-        int friction, mixed, periodic, at_once, by_law;
-        for (friction = 0; friction < 2; friction++)
+        static const struct { int friction, rolling, ledger; } sets[] = {
+            {0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {1, 1, 0}, {1, 1, 1}};
+        size_t i;
+        int mixed, periodic, at_once, by_law;
+        for (i = 0; i < sizeof sets/sizeof *sets; i++)
             for (mixed = 0; mixed < 2; mixed++)
                 for (periodic = 0; periodic < 2; periodic++) {
-                    CHECK_EQ(block(DEM_NORMAL_HERTZ, friction, mixed, periodic, 0, &at_once),
-                             block(DEM_NORMAL_HERTZ, friction, mixed, periodic, 1, &by_law));
+                    CHECK_EQ(block(sets[i].friction, sets[i].rolling, sets[i].ledger, mixed, periodic,
+                                   0, &at_once),
+                             block(sets[i].friction, sets[i].rolling, sets[i].ledger, mixed, periodic,
+                                   1, &by_law));
                     CHECK_EQ(at_once, 1);
                     CHECK_EQ(by_law, 0);
                 }
