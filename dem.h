@@ -2215,7 +2215,7 @@ static void demi_array_free(dem_world *w, demi_array *array) {
    The built-in laws, a line each: the laws themselves stand in >>api, where those who write their
    own may call them. A contact force is made of a normal law, one of friction and one of rolling,
    of which the last two may be absent. What is kept per contact is what these keep, one after the
-   other: friction, rolling, normal, so that vectors come first.
+   other: friction, rolling, normal; each says which of it are vectors.
    >>add-law: (1) a function dem_law_... and, at the end of its enum, a constant in >>api; (2) a
    line at the end of its list here; (3) a sentence in tests/.
    --------------------------------------------------------------------------------------------- */
@@ -2267,7 +2267,8 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling)
                     ((1 << 3*laws->rolling->vectors) - 1) << laws->at_rolling |
                     ((1 << 3*laws->normal->vectors) - 1) << laws->at_normal;
 }
-/* Number by number: a memset would keep it in memory, and loops over it from being vectors. */
+/* An answer before its law is called. Number by number: a memset would keep the struct in memory,
+   and loops from becoming vector code. */
 DEM_INLINE void demi_push_clear(dem_push *f) {
     f->tangent = f->moment = demi_v(0, 0, 0);
     f->normal = f->elastic = f->load = f->slope = f->slope_step = 0;
@@ -8167,9 +8168,9 @@ DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRIC
     }
 }
 static void demi_tile_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t) {
-    if (r->parting)                             /* alike or not: radii cost little then */
-        { if (r->following) demi_fetch(r, count, t, 0, 1, 1, 1);
-          else demi_fetch(r, count, t, 0, 1, 1, 0); }
+    /* where differences of spins are wanted, radii cost little, even those of alike bodies */
+    if (r->parting && r->following) demi_fetch(r, count, t, 0, 1, 1, 1);
+    else if (r->parting) demi_fetch(r, count, t, 0, 1, 1, 0);
     else if (r->following) demi_fetch(r, count, t, 1, 1, 0, 1);
     else demi_fetch(r, count, t, r->uniform, r->turning, 0, 0);
 }
@@ -8321,59 +8322,38 @@ DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, int q, const dem_pu
     demi_row_put(t->tangent, q, f->tangent);
     if (all) demi_tangent_energy(t, q, f);
 }
-/* Two stages for each normal law and each of friction: for what is common, and for all choices. */
-#define DEMI_NORMAL_ROWS(LAW, MEMORY, NAME, ALL) \
+DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f, int all) {
+    (void)all;
+    demi_row_put(t->moment, q, f->moment);
+    t->part[5][q] = f->energy.roll*t->touch[q];
+}
+/* A stage of one law, whose memory begins at AT. Normal and friction laws have two: for what is
+   common, and for all choices. (A normal law overwrites all that it gets.) */
+#define DEMI_LAW_STAGE(NAME, LAW, AT, MEMORY, ALL, PUT) \
     DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
         const demi_same s = r->same; \
         DEMI_ROWS(full) \
             dem_contact c; dem_push f; dem_real m[DEMI_MEMORY]; \
             demi_tile_contact(t, &s, q, &c); \
             if (!(ALL)) demi_contact_usual(&c); \
-            demi_push_clear(&f); \
-            demi_recall(t, q, s.at_normal, MEMORY, m); \
+            demi_normal_get(t, q, &f); \
+            demi_recall(t, q, AT, MEMORY, m); \
             dem_law_##LAW(&c, m, &f); \
-            demi_keep(t, q, s.at_normal, MEMORY, m); \
-            demi_normal_put(t, q, &f, ALL); \
+            demi_keep(t, q, AT, MEMORY, m); \
+            PUT(t, q, &f, ALL); \
         DEMI_ROWS_END \
     }
 #define DEMI_NORMAL_STAGES(KIND, LAW, MEMORY, VECTORS, TEXT) \
-    DEMI_NORMAL_ROWS(LAW, MEMORY, demi_stage_##LAW, 0) \
-    DEMI_NORMAL_ROWS(LAW, MEMORY, demi_stage_##LAW##_all, 1)
-DEMI_NORMAL_LAWS(DEMI_NORMAL_STAGES)
-#define DEMI_TANGENT_ROWS(LAW, MEMORY, NAME, ALL) \
-    DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
-        const demi_same s = r->same; \
-        DEMI_ROWS(full) \
-            dem_contact c; dem_push f; dem_real m[DEMI_MEMORY]; \
-            demi_tile_contact(t, &s, q, &c); \
-            if (!(ALL)) demi_contact_usual(&c); \
-            demi_normal_get(t, q, &f); \
-            demi_recall(t, q, 0, MEMORY, m); \
-            dem_law_##LAW(&c, m, &f); \
-            demi_keep(t, q, 0, MEMORY, m); \
-            demi_tangent_put(t, q, &f, ALL); \
-        DEMI_ROWS_END \
-    }
+    DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_normal, MEMORY, 0, demi_normal_put) \
+    DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, s.at_normal, MEMORY, 1, demi_normal_put)
 #define DEMI_TANGENT_STAGES(KIND, LAW, MEMORY, VECTORS, TEXT) \
-    DEMI_TANGENT_ROWS(LAW, MEMORY, demi_stage_##LAW, 0) \
-    DEMI_TANGENT_ROWS(LAW, MEMORY, demi_stage_##LAW##_all, 1)
+    DEMI_LAW_STAGE(demi_stage_##LAW, LAW, 0, MEMORY, 0, demi_tangent_put) \
+    DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, 0, MEMORY, 1, demi_tangent_put)
+#define DEMI_ROLLING_STAGES(KIND, LAW, MEMORY, VECTORS, TEXT) \
+    DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_rolling, MEMORY, 1, demi_rolling_put)
+DEMI_NORMAL_LAWS(DEMI_NORMAL_STAGES)
 DEMI_TANGENT_LAWS(DEMI_TANGENT_STAGES)
-#define DEMI_ROLLING_STAGE(KIND, LAW, MEMORY, VECTORS, TEXT) \
-    DEMI_CLONES static void demi_stage_##LAW(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
-                                             int full) { \
-        const demi_same s = r->same; \
-        DEMI_ROWS(full) \
-            dem_contact c; dem_push f; dem_real m[DEMI_MEMORY]; \
-            demi_tile_contact(t, &s, q, &c); \
-            demi_normal_get(t, q, &f); \
-            demi_recall(t, q, s.at_rolling, MEMORY, m); \
-            dem_law_##LAW(&c, m, &f); \
-            demi_keep(t, q, s.at_rolling, MEMORY, m); \
-            demi_row_put(t->moment, q, f.moment); \
-            t->part[5][q] = f.energy.roll*t->touch[q]; \
-        DEMI_ROWS_END \
-    }
-DEMI_ROLLING_LAWS(DEMI_ROLLING_STAGE)
+DEMI_ROLLING_LAWS(DEMI_ROLLING_STAGES)
 
 /* answer: force and torques. What does not touch answers zero. */
 DEM_INLINE void demi_answer_one(demi_tile *DEMI_RESTRICT t, int q, dem_real repulsion,
@@ -8523,7 +8503,7 @@ static demi_stage demi_whole_stage(const dem_world *w) {
 #endif
     return 0;
 }
-/* What a law of the laws in force asks of a run. dt 0: looking only. */
+/* What the laws in force ask of a run: what is fetched, and which stages. dt 0: looking only. */
 static demi_run demi_run_of(const dem_world *w, dem_real dt) {
     const demi_laws *laws = &w->laws;
     const demi_stage whole = demi_whole_stage(w);
@@ -9689,7 +9669,7 @@ static dem_real demi_shaped_lift(const dem_world *w, const demi_shaped *k, const
     memcpy(memory, k->memory, sizeof memory);
     still.closing_speed = 0;
     demi_law(w, &still, memory, &f);
-    return more*f.normal;
+    return f.normal;
 }
 /* All contacts of one domain: law, forces on both ends, walls' sums, energies. */
 static void demi_shaped_respond(dem_world *w, int d) {
@@ -14158,7 +14138,7 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
    state takes the place of the world's; until then the world is as it was.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 6 };
+enum { DEMI_CHECKPOINT_VERSION = 7 };
 
 /* Writes to file, or reads the `left` bytes that are at `from`, or (with neither) counts bytes. */
 typedef struct demi_stream {

@@ -653,12 +653,13 @@ int main(int argc, char **argv) {
          "name") {
         dem_world *world = tiny_world(2500);
         size_t size;
-        char *data;
+        char *data, versions[64];
         CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
         data = file_get(path, &size);
         data[8]++;
         file_put(path, data, size);
-        refused(world, DEM_ERROR_FORMAT, "version 7, must be 6");
+        snprintf(versions, sizeof versions, "version %d, must be %d", data[8], data[8] - 1);
+        refused(world, DEM_ERROR_FORMAT, versions);
         data[8]--;
         data[12] = (char)(12 - data[12]);      /* 8 and 4 change places */
         file_put(path, data, size);
