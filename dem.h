@@ -2189,12 +2189,12 @@ static void demi_free(dem_world *w, void *data, size_t count, size_t size) {
     w->bytes -= count*size + DEMI_LINE;
     demi_raw_free(&w->desc.allocator, p - p[-1], count*size + DEMI_LINE);
 }
-/* Makes room for count items, keeping those there. 0 when memory ran out; then nothing has changed.
-   */
+/* Makes room for count items, keeping those there; an array grown for none is not null either, for
+   null + 0 is undefined in C. 0 when memory ran out; then nothing has changed. */
 static int demi_array_grow(dem_world *w, demi_array *array, size_t item, size_t count) {
     void *p;
     size_t room = array->capacity;
-    if (count <= room) return 1;
+    if (array->data && count <= room) return 1;
     room = DEMI_MAX(count, room + room/4 + 16); /* bulk: what it takes; bit by bit: in steps */
     p = demi_alloc(w, room, item);
     if (!p) return 0;
@@ -4838,8 +4838,9 @@ static void demi_join_corners(dem_world *w, demi_join *j) {
     for (f = 0; f < j->facets; f = end) {       /* one wall after the other */
         const int id = j->facet[5*f];
         demi_wall *wall = &w->walls[id < 0 ? 0 : id];
-        dem_real *corner = wall->weight + wall->element_count + wall->edge_count;
+        dem_real *corner;
         if (id < 0) return;                     /* images get nothing */
+        corner = wall->weight + wall->element_count + wall->edge_count;
         memset(j->own, 0, (size_t)j->points*sizeof *j->own);
         for (end = f; end < j->facets && j->facet[5*end] == id; end++) {
             wall->weight[j->facet[5*end + 1]] = (dem_real)j->count[end];
