@@ -1817,6 +1817,9 @@ typedef struct demi_shaped {
     dem_real overlap, deep;        /* m; over the smallest radius */
     dem_real share, lift, grip;    /* how often it counts: damping, elastic force, friction */
     dem_real weight, area, depth;  /* before sharing; A (m2) and L (m) of demi_shaped_share */
+    dem_real bend;                 /* 1/m: the normal turns by this times the way part_a goes */
+    dem_vec3 axis;                 /* but for ways along the normal, and along this, if not 0 */
+    dem_vec3 aside;                /* elastic force across the normal, over that along it */
     dem_real slope;                /* m of overlap per m of approach */
     dem_real inset;                /* the normal force passes at this part of arm_a */
     dem_real r_eff, m_eff;         /* m, kg */
@@ -9085,6 +9088,7 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
         c->r_eff = p->radius*q->radius/sum;
         c->arm_a = demi_add(p->centre, demi_scale(c->normal, d*p->radius/sum));
         c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+        c->bend = -1/DEMI_MAX(d, sum/10);
         return 1;
     }
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
@@ -9166,15 +9170,25 @@ static double demi_contact_give(const dem_world *w, int body, dem_vec3 arm, dem_
     return inv + (double)(t.x*t.x/I[0] + t.y*t.y/I[1] + t.z*t.z/I[2]);
 }
 
-/* How far two contacts of one pair push the same way: 1 within 25 degrees, 0 beyond 45. Those of
-   one part are not shared: they are counted already, by what they weigh. */
-DEM_INLINE dem_real demi_shaped_along(const demi_shaped *a, const demi_shaped *b) {
+/* How far two contacts of one pair push the same way, t: 1 within 25 degrees, 0 beyond 45. *rate:
+   how t changes with the cosine between their normals. Those of one part are not shared: they are
+   counted already, by what they weigh. */
+DEM_INLINE dem_real demi_shaped_along(const demi_shaped *a, const demi_shaped *b, dem_real *rate) {
     const dem_real zero = DEM_R(0.7071067811865476), one = DEM_R(0.9063077870366499);
     const dem_real t = (demi_dot(a->normal, b->normal) - zero)/(one - zero);
+    *rate = t > 0 && t < 1 ? 6*t*(1 - t)/(one - zero) : 0;
     return !(t > 0) ? 0 : t < 1 ? t*t*(3 - 2*t) : 1;
 }
-DEM_INLINE dem_real demi_shaped_alike(const demi_shaped *a, const demi_shaped *b) {
-    return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_shaped_along(a, b);
+DEM_INLINE dem_real demi_shaped_alike(const demi_shaped *a, const demi_shaped *b, dem_real *rate) {
+    *rate = 0;
+    return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_shaped_along(a, b, rate);
+}
+/* The force aside on contact c's ball that has c's normal turn towards, or away from, another's:
+   -(dE/dt)(dt/dcos) d(n.other)/dx. push: the first two. */
+DEM_INLINE void demi_shaped_aside(demi_shaped *c, dem_vec3 other, dem_real push) {
+    dem_vec3 turn = demi_sub(other, demi_scale(c->normal, demi_dot(other, c->normal)));
+    turn = demi_sub(turn, demi_scale(c->axis, demi_dot(other, c->axis)));
+    c->aside = demi_add(c->aside, demi_scale(turn, push*c->bend));
 }
 /* Contacts of one pair (or of a body and a wall), c[0] .. c[n - 1], that are one in all. With
    overlaps d, weights w (>>facets; else 1) and t: do i and j push the same way,
@@ -9183,9 +9197,13 @@ DEM_INLINE dem_real demi_shaped_alike(const demi_shaped *a, const demi_shaped *b
    L is a mean of the overlaps in which the deep ones count more: alike ones give what one would,
    whatever their number, and one that begins or ends counts nothing: stiffness, damping and
    restitution do not grow with the number of spheres that happen to touch [BER23]. The elastic
-   force of contact k is exactly dE/dd_k = lift_k U'(L_k), which conserves (but for normals that
-   turn while they are between 25 and 45 degrees apart); with U ~ L^p
-       lift_k = sum of (L_i/L_k)^(p - 1) (s_i dL_i/dd_k + L_i/p ds_i/dd_k)
+   force is the gradient of E, which conserves: of contact k, along its normal, dE/dd_k =
+   lift_k U'(L_k), and across it, as far as its normal turns with its place, that of the t; with
+   U ~ L^p (and of the radius, with Hertz)
+       lift_k = sum of U'(L_i)/U'(L_k) (s_i dL_i/dd_k + L_i/p ds_i/dd_k)
+       dE/dt_ij = U'(L_i) s_i w_j d_j^2/A_i (d_j - L_i - L_i/p) + the same of j and i
+   (Left out: how an ellipsoid's normal turns at a cluster's ball, and a sieve's. A ball that is
+   nearly at what it goes round, within a tenth of its radius, turns no faster than there.)
    It may be a little below 0 where others are far deeper: no mean that does not depend on their
    number can do without. Damping goes by s, and feels the mass at their common middle; friction by
    s times (sum of lift over sum of s), so that mu is the ratio of both sums. Checked by "a cluster
@@ -9198,6 +9216,7 @@ static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
         const dem_real d = c[i].overlap;
         dem_real A = d*d, B = d*d*d;
         dem_vec3 arm_a = demi_scale(c[i].arm_a, A), arm_b = demi_scale(c[i].arm_b, A);
+        dem_real rate;
         double give;
         c[i].depth = d;
         c[i].area = A;
@@ -9205,7 +9224,7 @@ static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
         c[i].m_eff = w->mass[c[i].a];
         if (!(d > 0)) continue;                 /* pushes nobody */
         for (j = 0; j < n && one; j++) {
-            const dem_real t = j == i ? 0 : demi_shaped_alike(&c[i], &c[j]);
+            const dem_real t = j == i ? 0 : demi_shaped_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0)) continue;
             A += add;
@@ -9233,19 +9252,28 @@ static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
         c[k].lift = 0;
         for (i = 0; i < n; i++) {
             const dem_real A = c[i].area, L = c[i].depth, share = c[i].share;
-            const dem_real t = i == k ? 1 : demi_shaped_alike(&c[i], &c[k])*c[k].weight;
+            dem_real rate = 0;
+            const dem_real t = i == k ? 1 : demi_shaped_alike(&c[i], &c[k], &rate)*c[k].weight;
             const dem_real dA = 2*t*d, dB = 3*t*d*d, ratio = L/c[k].depth;
+            const dem_real slope =              /* U'(L_i)/U'(L_k) */
+                p > 2 ? ratio*DEMI_SQRT(ratio*c[i].r_eff/c[k].r_eff) : ratio;
             dem_real ds = -share*dA/A;
-            if (!(c[i].overlap > 0) || !(t > 0 || t < 0)) continue;
+            if (!(c[i].overlap > 0)) continue;
+            if (rate > 0) {
+                const dem_real e = c[i].overlap, M = c[k].depth;
+                const dem_real of_i = slope*share*c[k].weight*d*d/A*(d - L - L/p);
+                const dem_real of_k = c[k].share*c[i].weight*e*e/c[k].area*(e - M - M/p);
+                demi_shaped_aside(&c[k], c[i].normal, -rate*(of_i + of_k));
+            }
+            if (!(t > 0 || t < 0)) continue;
             if (i == k) ds += 2*c[k].weight*d/A;
-            c[k].lift += (p > 2 ? ratio*DEMI_SQRT(ratio) : ratio)*
-                         (share*(dB - L*dA)/A + L/p*ds);
+            c[k].lift += slope*(share*(dB - L*dA)/A + L/p*ds);
         }
     }
     for (k = 0; k < n && one && n > 1; k++) {
-        dem_real lift = 0, share = 0;
+        dem_real lift = 0, share = 0, rate;
         for (i = 0; i < n; i++) {
-            const dem_real t = i == k ? 1 : demi_shaped_along(&c[i], &c[k]);
+            const dem_real t = i == k ? 1 : demi_shaped_along(&c[i], &c[k], &rate);
             lift += t*c[i].lift;
             share += t*c[i].share;
         }
@@ -9449,6 +9477,46 @@ static void demi_ellipsoid_contact(const dem_world *w, const demi_wall *wall, co
         c->inset = 1 - left;
     }
 }
+/* How the normal of a ball's contact with a wall turns as the ball moves: bend and axis. dist: m,
+   from the ball's centre to the surface. Among facets, that of an edge is looked for where the
+   contact was found: in candidates first .. last - 1. */
+static void demi_wall_bend(const dem_world *w, int base, int first, int last, dem_real dist,
+                           demi_shaped *c) {
+    const demi_wall *wall = &w->walls[c->wall];
+    const int edges = wall->element_count, corners = edges + wall->edge_count;
+    dem_vec3 axis = demi_v(0, 0, 0);
+    int k, q, found = 0;
+    switch (wall->kind) {
+    case DEMI_WALL_CYLINDER:
+        axis.z = 1;
+        dist = wall->inside ? dist - wall->radius : dist + wall->radius;
+        break;
+    case DEMI_WALL_GRAINS: dist += wall->radius; break;
+    case DEMI_WALL_PROFILE:
+        axis.z = 1;
+        if (c->element < edges) return;
+        break;
+    case DEMI_WALL_MESH:
+        if (c->element < edges) return;
+        for (k = first; k < last && !found && (c->element < corners ||
+             c->element >= corners + wall->vertex_count); k++) {
+            const int e = w->wall_element[base + k];
+            dem_vec3 y[3];
+            demi_wall_corners(wall, e, y);
+            for (q = 0; q < 3 && !found; q++)
+                if ((found = edges + wall->edges[3*e + q] == c->element) != 0)
+                    axis = demi_unit(demi_sub(y[(q + 1)%3], y[q]));
+            for (q = wall->cut_start ? wall->cut_start[e] : 0;
+                 wall->cut_start && q < wall->cut_start[e + 1] && !found; q++)
+                if ((found = wall->cuts[q].number == c->element) != 0)
+                    axis = demi_unit(demi_sub(wall->cuts[q].b, wall->cuts[q].a));
+        }
+        break;
+    default: return;
+    }
+    c->bend = -1/dist;
+    c->axis = demi_turn(wall->pose.rotation, axis);
+}
 /* Contacts of one part with one wall, from candidates first .. last - 1 of its body. */
 static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int k,
                                   const demi_shaped *old, int olds, int from) {
@@ -9479,6 +9547,9 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
             c->deep = c->overlap/p.radius;
             c->r_eff = p.radius;
             c->arm_a = demi_add(p.centre, demi_scale(c->normal, p.radius));
+            if (w->desc.cluster_contacts == DEM_SHARING_ONE && c->overlap > 0)
+                demi_wall_bend(w, base, first, last,
+                               DEMI_MAX(p.radius - c->overlap, p.radius/10), c);
         } else demi_ellipsoid_contact(w, wall, &p, found[i].overlap, c);
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
         if (wall->sieve.kind == DEM_SIEVE_REDUCED) {            /* under way: to the end */
@@ -9660,13 +9731,12 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     demi_contact_choices(w, c);
     c->user = w->desc.law_user;
 }
-/* What the elastic force counts more, or less, than what dissipates: N. */
-static dem_real demi_shaped_lift(const dem_world *w, const demi_shaped *k, const dem_contact *c) {
-    const dem_real more = k->lift - k->share;
+/* N, the elastic force alone, where it counts more, or less, than what dissipates; else 0. */
+static dem_real demi_shaped_still(const dem_world *w, const demi_shaped *k, const dem_contact *c) {
     dem_real memory[DEMI_MEMORY];
     dem_contact still = *c;
     dem_push f;
-    if (!(more > 0 || more < 0)) return 0;
+    if (!(k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0)) return 0;
     memcpy(memory, k->memory, sizeof memory);
     still.closing_speed = 0;
     demi_law(w, &still, memory, &f);
@@ -9683,10 +9753,10 @@ static void demi_shaped_respond(dem_world *w, int d) {
         demi_shaped *c = w->shaped_next + (size_t)d*(size_t)w->shaped_stride + i;
         const int a = c->a, b = c->b, ma = w->body_material[a] - 1;
         const int mb = b >= 0 ? w->body_material[b] - 1 : w->walls[c->wall].material;
-        dem_real coef[DEMI_COEFS], press;
+        dem_real coef[DEMI_COEFS], press, still;
         dem_contact contact;
         dem_push f;
-        dem_vec3 surface, force, moment;
+        dem_vec3 surface, force, moment, moment_b;
         if (!(c->overlap > 0)) {                /* under way through a reduced hole */
             c->force = demi_v(0, 0, 0);
             domain->shaped_walls += b < 0;
@@ -9697,11 +9767,19 @@ static void demi_shaped_respond(dem_world *w, int d) {
                               c->unit);
         demi_shaped_coefs(w, c, ma, mb, coef);
         demi_shaped_fill(w, c, coef, dt, &contact, &surface);
-        press = demi_shaped_lift(w, c, &contact);
+        still = demi_shaped_still(w, c, &contact);
         demi_law(w, &contact, c->memory, &f);
-        press += c->share*f.normal;
+        press = c->share*f.normal + (c->lift - c->share)*still;
         force = demi_sub(demi_scale(f.tangent, c->grip), demi_scale(contact.normal, press));
-        moment = demi_scale(f.moment, c->grip);
+        moment = moment_b = demi_scale(f.moment, c->grip);
+        if (demi_dot(c->aside, c->aside) > 0) { /* between the ball and what it goes round */
+            const dem_vec3 aside = demi_scale(c->aside, still);
+            const dem_vec3 arm = demi_sub(demi_part_now(w, a, c->part_a).centre, c->arm_a);
+            const dem_vec3 far = demi_sub(arm, demi_scale(contact.normal, 1/c->bend));
+            force = demi_add(force, aside);
+            moment = demi_add(moment, demi_cross(arm, aside));
+            moment_b = demi_add(moment_b, demi_cross(far, aside));
+        }
         c->force = force;
         demi_push_add(w->force + 4*a, force);
         demi_push_add(w->torque + 4*a, demi_add(demi_cross(c->arm_a, force), moment));
@@ -9709,7 +9787,7 @@ static void demi_shaped_respond(dem_world *w, int d) {
             demi_push_add(w->torque + 4*a, demi_scale(demi_cross(c->arm_a, contact.normal),
                                                       (1 - c->inset)*press));
         if (b >= 0) {
-            const dem_vec3 back = demi_scale(demi_add(demi_cross(c->arm_b, force), moment), -1);
+            const dem_vec3 back = demi_scale(demi_add(demi_cross(c->arm_b, force), moment_b), -1);
             if (c->send) {                      /* several may go by one near pair */
                 demi_push_add(w->cross_push + 6*(size_t)(c->send - 1), demi_scale(force, -1));
                 demi_push_add(w->cross_push + 6*(size_t)(c->send - 1) + 3, back);
@@ -9721,7 +9799,7 @@ static void demi_shaped_respond(dem_world *w, int d) {
         } else {
             demi_wall_sum_add(w, &sums[c->wall], c->wall, demi_add(demi_add(demi_at(w->pos + 4*a),
                               c->shift), c->arm_a),
-                              force, moment, surface);
+                              force, moment_b, surface);
             domain->shaped_walls++;
         }
         domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);

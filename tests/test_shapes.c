@@ -1788,6 +1788,55 @@ static void more_tests(void) {
             }
     }
 
+    TEST("clusters whose contacts are shared collide elastically without gaining or losing energy, momentum or angular "
+         "momentum, whichever of their spheres touch") {
+        const dem_real p[9] = {0, 0, 0, DEM_R(0.008), 0, 0, DEM_R(-0.004), DEM_R(0.006), DEM_R(0.002)};
+        const double k = 1e5, mass = 2500*4.2e-6*2.2;
+        double worst[2] = {0, 0};
+        int fine, i, e;
+        for (fine = 0; fine < 2; fine++) {
+            dem_world_desc desc = linear_desc(pi*sqrt(mass/2/k)/(fine ? 200 : 50));
+            dem_world *world = dem_world_create(&desc);
+            const dem_material m = soft_stuff(world, k, 1, 0);
+            const dem_shape shape = cluster_of(world, 3, p, 0.01, DEM_CLUSTER_UNION);
+            dem_body body[2];
+            uint64_t seed = 17;
+            int hits = 0;
+            for (i = 0; i < 2; i++) body[i] = dem_body_add(world, m, shape, at(i, 0, 0), dem_quat_make(1, 0, 0, 0));
+            for (i = 0; i < 100; i++) {
+                const dem_vec3 way = any_vector(&seed, 1);
+                const double far = 0.07/sqrt((double)demi_dot(way, way));
+                dem_totals before, after;
+                double E;
+                for (e = 0; e < 2; e++) {
+                    const double sign = e ? 1 : -1;
+                    const dem_vec3 off = any_vector(&seed, 0.004);
+                    dem_body_state s = scene_state(world, body[e]);
+                    s.position = demi_add(off, demi_scale(way, (dem_real)(sign*far/2)));
+                    s.velocity = demi_scale(way, (dem_real)(-sign*far/0.07));
+                    s.spin = any_vector(&seed, 60);
+                    s.orientation = dem_quat_about(any_vector(&seed, 1), DEM_R(3)*(dem_real)scene_random(&seed));
+                    dem_body_set(world, body[e], &s);
+                }
+                before = dem_totals_get(world);
+                scene_step(world, fine ? 9600 : 2400);
+                after = dem_totals_get(world);
+                if (dem_counters_get(world).contacts) continue;
+                E = before.kinetic + before.rotational;
+                hits += fabs(after.kinetic/before.kinetic - 1) > 1e-3;
+                worst[fine] = fmax(worst[fine], fabs((after.kinetic + after.rotational)/E - 1));
+                for (e = 0; e < 3; e++) {
+                    CHECK_NEAR(after.momentum[e] - before.momentum[e], 0, SINGLE ? 1e-6 : 1e-15);
+                    CHECK_NEAR(after.angular[e] - before.angular[e], 0, SINGLE ? 1e-6 : 1e-15);
+                }
+            }
+            CHECK(hits > 50);
+            dem_world_destroy(world);
+        }
+        CHECK_NEAR(worst[0], 0, 3e-3);
+        CHECK_NEAR(worst[1], 0, SINGLE ? 1e-3 : 2.5e-4);
+    }
+
     TEST("needles of 20 to 1 collide elastically without gaining or losing energy") {
         dem_world_desc desc;
         dem_world *world;
