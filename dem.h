@@ -1816,7 +1816,8 @@ typedef struct demi_shaped {
     dem_vec3 normal_before, arm_before_a, arm_before_b;     /* in the step before */
     dem_real overlap, deep;        /* m; over the smallest radius */
     dem_real share, lift, grip;    /* how often it counts: damping, elastic force, friction */
-    dem_real weight, area, depth;  /* before sharing; A (m2) and L (m) of demi_shaped_share */
+    dem_real weight;               /* share before contacts are shared: see demi_shaped_share */
+    dem_real area, added, rate;    /* m2, A; what others add to it, over d^2; how A follows that */
     dem_real bend;                 /* 1/m: the normal turns by this times the way part_a goes */
     dem_vec3 axis;                 /* but for ways along the normal, and along this, if not 0 */
     dem_vec3 aside;                /* elastic force across the normal, over that along it */
@@ -9190,96 +9191,100 @@ DEM_INLINE void demi_shaped_aside(demi_shaped *c, dem_vec3 other, dem_real push)
     turn = demi_sub(turn, demi_scale(c->axis, demi_dot(other, c->axis)));
     c->aside = demi_add(c->aside, demi_scale(turn, push*c->bend));
 }
+/* What the shared energy (below) asks of contacts whose shares are known: lift, aside, grip. */
+static void demi_shaped_lift(const dem_world *w, demi_shaped *c, int n) {
+    const int hertz = w->desc.normal_law == DEM_NORMAL_HERTZ;
+    const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2);
+    dem_real rate;
+    int i, k;
+    for (k = 0; k < n; k++) {
+        const dem_real d = c[k].overlap, own = c[k].share*d/p;     /* E_k over U'(d_k) */
+        if (!(d > 0)) continue;
+        c[k].lift = c[k].share*(1 + 2/p*c[k].rate*c[k].added*d*d/c[k].area);
+        for (i = 0; i < n; i++) {
+            const dem_real t = i == k ? 0 : demi_shaped_alike(&c[i], &c[k], &rate);
+            const dem_real e = c[i].overlap, more = e/d;
+            /* U'(d_i) over U'(d_k); E_i over U'(d_k) and A_i */
+            const dem_real steep = hertz ? more*DEMI_SQRT(more*c[i].r_eff/c[k].r_eff) : more;
+            const dem_real far = steep*c[i].share*e/p*c[i].rate/c[i].area;
+            if (!(t > 0) || !(e > 0)) continue;
+            c[k].lift -= far*2*t*c[k].weight*d;
+            if (rate > 0)
+                demi_shaped_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
+                                  own*c[k].rate/c[k].area*c[i].weight*e*e));
+        }
+    }
+    for (k = 0; k < n; k++) {
+        dem_real lift = 0, share = 0, own = 0;
+        for (i = 0; i < n; i++) {
+            const dem_real t = i == k ? 1 : demi_shaped_along(&c[i], &c[k], &rate);
+            const dem_real e = c[i].overlap > 0 ? c[i].overlap : 0;
+            const dem_real press = t*(hertz ? e*DEMI_SQRT(e*c[i].r_eff) : e);   /* ~ U'(d_i) */
+            lift += press*c[i].lift;
+            share += press*c[i].share;
+            if (i == k) own = press;
+        }
+        if (share > DEM_R(0.1)*own && lift > 0) c[k].grip = c[k].share*lift/share;
+        else c[k].grip = c[k].share;
+    }
+}
+/* Room that contact i leaves to itself: 1 + x, x what the others add, over d_i^2; where others take
+   away (>>facets) smoothly no less than a quarter. *rate: how it changes with x. */
+static dem_real demi_shaped_room_of(dem_real x, dem_real *rate) {
+    const dem_real below = DEM_R(0.0625)/(DEM_R(-0.25) - x);    /* x < -1/2 */
+    *rate = x < DEM_R(-0.5) ? 16*below*below : DEM_R(1);
+    return x < DEM_R(-0.5) ? DEM_R(0.25) + below : 1 + x;
+}
 /* Contacts of one pair (or of a body and a wall), c[0] .. c[n - 1], that are one in all. With
-   overlaps d, weights w (>>facets; else 1) and t: do i and j push the same way,
-       A_i = d_i^2 + sum of t_ij w_j d_j^2,     B_i = d_i^3 + sum of t_ij w_j d_j^3,     j not i
-       L_i = B_i/A_i,   s_i = w_i d_i^2/A_i,    E = sum of s_i U(L_i)
-   L is a mean of the overlaps in which the deep ones count more: alike ones give what one would,
-   whatever their number, and one that begins or ends counts nothing: stiffness, damping and
-   restitution do not grow with the number of spheres that happen to touch [BER23]. The elastic
-   force is the gradient of E, which conserves: of contact k, along its normal, dE/dd_k =
-   lift_k U'(L_k), and across it, as far as its normal turns with its place, that of the t; with
-   U ~ L^p (and of the radius, with Hertz)
-       lift_k = sum of U'(L_i)/U'(L_k) (s_i dL_i/dd_k + L_i/p ds_i/dd_k)
-       dE/dt_ij = U'(L_i) s_i w_j d_j^2/A_i (d_j - L_i - L_i/p) + the same of j and i
+   overlaps d, weights w (>>facets; else 1), what each stores U(d), and t: do i and j push the same
+   way,
+       A_i = d_i^2 + sum of t_ij w_j d_j^2, j not i;   s_i = w_i d_i^2/A_i;   E = sum of s_i U(d_i)
+   a mean in which the deep ones count more: alike ones store what one would, whatever their number,
+   and one that begins or ends counts nothing: stiffness, damping and restitution do not grow with
+   the number of spheres that happen to touch [BER23]. The elastic force is the gradient of E, which
+   conserves: of contact k, along its normal, dE/dd_k = lift_k U'(d_k); and across it, as far as its
+   normal turns with its place, that of the t. With U ~ sqrt(R) d^p (Hertz) or d^p
+       E_i = s_i U'(d_i) d_i/p,          dE_k/dd_k = s_k U'(d_k) (1 + 2/p (A_k - d_k^2)/A_k)
+       dE_i/dd_k = -E_i 2 t_ik w_k d_k/A_i,    dE_i/dt_ik = -E_i w_k d_k^2/A_i
    (Left out: how an ellipsoid's normal turns at a cluster's ball, and a sieve's. A ball that is
    nearly at what it goes round, within a tenth of its radius, turns no faster than there.)
    It may be a little below 0 where others are far deeper: no mean that does not depend on their
    number can do without. Damping goes by s, and feels the mass at their common middle; friction by
-   s times (sum of lift over sum of s), so that mu is the ratio of both sums. Checked by "a cluster
-   that lands on one, two and three spheres" and tests/test_facets.c. */
+   s times (sum of lift U' over sum of s U'), so that mu is the ratio of both sums. Checked by "a
+   cluster that lands on one, two and three spheres" and tests/test_facets.c. */
 static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
     const int one = w->desc.cluster_contacts == DEM_SHARING_ONE;
-    const dem_real p = w->desc.normal_law == DEM_NORMAL_HERTZ ? DEM_R(2.5) : DEM_R(2);
-    int i, j, k;
+    int i, j;
     for (i = 0; i < n; i++) {
-        const dem_real d = c[i].overlap;
-        dem_real A = d*d, B = d*d*d;
-        dem_vec3 arm_a = demi_scale(c[i].arm_a, A), arm_b = demi_scale(c[i].arm_b, A);
-        dem_real rate;
+        const dem_real d2 = c[i].overlap*c[i].overlap;
+        dem_vec3 arm_a = demi_scale(c[i].arm_a, d2), arm_b = demi_scale(c[i].arm_b, d2);
+        dem_real A = d2, rate;
         double give;
-        c[i].depth = d;
-        c[i].area = A;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
         c[i].m_eff = w->mass[c[i].a];
-        if (!(d > 0)) continue;                 /* pushes nobody */
+        if (!(c[i].overlap > 0)) continue;      /* pushes nobody */
         for (j = 0; j < n && one; j++) {
             const dem_real t = j == i ? 0 : demi_shaped_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0)) continue;
             A += add;
-            B += add*c[j].overlap;
             arm_a = demi_add(arm_a, demi_scale(c[j].arm_a, add));
             arm_b = demi_add(arm_b, demi_scale(c[j].arm_b, add));
         }
-        if (!(A > d*d*DEM_R(1e-6))) {           /* others take away all there is: it alone */
-            A = d*d;
-            B = A*d;
-            arm_a = demi_scale(c[i].arm_a, A);
-            arm_b = demi_scale(c[i].arm_b, A);
+        c[i].added = A/d2 - 1;
+        c[i].area = d2*demi_shaped_room_of(c[i].added, &c[i].rate);
+        c[i].share = c[i].weight*d2/c[i].area;
+        if (!(A > d2/2)) {                      /* others take away: its own place will do */
+            A = d2;
+            arm_a = demi_scale(c[i].arm_a, d2);
+            arm_b = demi_scale(c[i].arm_b, d2);
         }
-        c[i].area = A;
-        c[i].depth = B/A;
-        c[i].share = c[i].weight*d*d/A;
         give = demi_contact_give(w, c[i].a, demi_scale(arm_a, 1/A), c[i].normal);
         if (c[i].b >= 0)
             give += demi_contact_give(w, c[i].b, demi_scale(arm_b, 1/A), c[i].normal);
         c[i].m_eff = (dem_real)(1/give);
     }
-    for (k = 0; k < n && one && n > 1; k++) {
-        const dem_real d = c[k].overlap;
-        if (!(d > 0)) continue;
-        c[k].lift = 0;
-        for (i = 0; i < n; i++) {
-            const dem_real A = c[i].area, L = c[i].depth, share = c[i].share;
-            dem_real rate = 0;
-            const dem_real t = i == k ? 1 : demi_shaped_alike(&c[i], &c[k], &rate)*c[k].weight;
-            const dem_real dA = 2*t*d, dB = 3*t*d*d, ratio = L/c[k].depth;
-            const dem_real slope =              /* U'(L_i)/U'(L_k) */
-                p > 2 ? ratio*DEMI_SQRT(ratio*c[i].r_eff/c[k].r_eff) : ratio;
-            dem_real ds = -share*dA/A;
-            if (!(c[i].overlap > 0)) continue;
-            if (rate > 0) {
-                const dem_real e = c[i].overlap, M = c[k].depth;
-                const dem_real of_i = slope*share*c[k].weight*d*d/A*(d - L - L/p);
-                const dem_real of_k = c[k].share*c[i].weight*e*e/c[k].area*(e - M - M/p);
-                demi_shaped_aside(&c[k], c[i].normal, -rate*(of_i + of_k));
-            }
-            if (!(t > 0 || t < 0)) continue;
-            if (i == k) ds += 2*c[k].weight*d/A;
-            c[k].lift += slope*(share*(dB - L*dA)/A + L/p*ds);
-        }
-    }
-    for (k = 0; k < n && one && n > 1; k++) {
-        dem_real lift = 0, share = 0, rate;
-        for (i = 0; i < n; i++) {
-            const dem_real t = i == k ? 1 : demi_shaped_along(&c[i], &c[k], &rate);
-            lift += t*c[i].lift;
-            share += t*c[i].share;
-        }
-        if (share > DEM_R(0.1) && lift > 0) c[k].grip = c[k].share*lift/share;
-        else c[k].grip = c[k].share;
-    }
+    if (one && n > 1) demi_shaped_lift(w, c, n);
 }
 
 /* All contacts of one near pair. old: those body a had in the step before. */
@@ -9705,7 +9710,7 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     }
     around = demi_add(demi_at(w->half_spin + 4*a), spin_step);
     memset(c, 0, sizeof *c);
-    c->overlap = k->depth;
+    c->overlap = k->overlap;
     c->normal = n;
     c->closing_speed = demi_dot(u, n);
     c->slip = demi_sub(u, demi_scale(n, c->closing_speed));
