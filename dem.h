@@ -10,7 +10,9 @@
 
    Contents; jump to a part by searching for its tag:
        >>manual      a complete program, conventions, one step, options, errors, threads, extending
-       >>api         types, descs, functions, in the order of a program's life
+       >>api         ids, choices, contacts and the built-in laws
+       >>scene       worlds, materials, bodies, walls, feeds
+       >>run         steps, measuring, files, slabs, report
        >>implementation  stop there if you only want to use it
        >>platform    compiler, OpenMP, the one parallel loop
        >>maths       vectors, poses, random numbers
@@ -21,20 +23,29 @@
        >>bodies      grains: slots, arrays, insertion, removal
        >>facets      what each face, edge and corner of a surface counts
        >>walls       planes, cylinders, profiles, meshes, walls of grains, sieves, their motions
-       >>search      all pairs, grid, levels, linked linear list; the candidate list
+       >>search      all pairs, grid, levels, linked linear list; the neighbour list
+       >>lists       candidates on walls; contacts that last, carried to new lists
+       >>near        neighbours that may touch soon: the pruned list that forces use
+       >>rebuild     effects, skin, order of bodies, domains: all lists made anew
        >>touch       candidate pairs -> contacts: geometry only
        >>respond     contact -> force and torque: the loops that bring touch and law together
+       >>on-walls    spheres on walls: touch and respond, one by one
        >>shaped      contacts of bodies that are not spheres: touch and respond, one by one
        >>integrators kick, drift, predict; rotation
        >>ledger      where the energy went
        >>placing     room for new grains: regions, fills, packings
        >>feed        grains fed in, taken out and counted
-       >>step        time step, advisor, one step after the other
+       >>advice      which time step a scene bears
+       >>step        one step after the other
        >>measure     fields on a grid, channels, balance
-       >>files       meshes and MOLDYN scenes in; VTP, VTK, XYZ, CSV, XBALLS and ANIM out
+       >>read        meshes and MOLDYN scenes in
+       >>write       VTP, VTK, XYZ, CSV, XBALLS and ANIM out
        >>checkpoint  everything, to the last bit
+       >>restore     a checkpoint checked and read
        >>world       create, destroy, report
-       >>slabs       one scene dealt to threads or processes, slab by slab
+       >>slabs       one scene dealt to threads or processes: what grains take along
+       >>slabs-step  one step of all slabs
+       >>deal        slabs made and collected
 */
 
 /* ---------------------------------------------------------------------------------------------
@@ -731,6 +742,12 @@ typedef struct dem_allocator {
     void *user;
 } dem_allocator;
 
+/* ---------------------------------------------------------------------------------------------
+   >>scene
+   What a scene is made of, in the order in which a program builds it: the world, materials, grains
+   and other bodies, walls, feeds and outlets.
+   --------------------------------------------------------------------------------------------- */
+
 /* ---- world ---- */
 typedef struct dem_world_desc {
     dem_vec3 gravity;              /* m/s2; 0: none */
@@ -1221,6 +1238,11 @@ typedef struct dem_sorting {
 } dem_sorting;
 DEM_API dem_result dem_sorting_get(const dem_world *world, const dem_outlet *outlets, int count,
                                    dem_sorting *sorting);
+
+/* ---------------------------------------------------------------------------------------------
+   >>run
+   What is done with a scene: steps, looking and measuring, files, slabs, the report.
+   --------------------------------------------------------------------------------------------- */
 
 /* ---- run ---- */
 
@@ -6301,6 +6323,14 @@ static void demi_domain_search(dem_world *w, int d) {
     }
 }
 
+/* ---------------------------------------------------------------------------------------------
+   >>lists
+   What a rebuild puts next to the neighbour list: candidates on walls (elements that a body may
+   touch before the next rebuild), room for all lists, and the contacts with walls and of shaped
+   bodies that last: their memory goes from the lists of before, by slot, to those that are new. All
+   room is made before anything moves, so that a rebuild which gets no memory has changed nothing.
+   --------------------------------------------------------------------------------------------- */
+
 /* Wall elements near a grain, ascending; offered to the domain's list of wall candidates. */
 static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, int wall,
                             int element, dem_real gap, dem_vec3 shift) {
@@ -6694,15 +6724,17 @@ static void demi_shaped_move(dem_world *w, int stride) {
     }
 }
 
-/* --- the near list: candidates that touch or may within near_span, were they to meet head-on at
-       the speed they have now; and near_margin more, because speeds change. Forces are worked out
-       for all of it, touching or not, so that a step neither looks at candidates nor packs them;
-       what does not touch answers zero. It is made anew, from the candidates, when the time is over
-       or accelerations may have used up the margin: two bodies have come nearer than their speeds
-       of then say by at most near_creep, the sum over steps of 2 dt times near_drift, itself the
-       sum of dt times the largest acceleration. Memory comes from the list before or, after a
-       search, from where it was filed. Numbers do not depend on how long a list lasts: a zero more
-       or less does not change a sum. --- */
+/* ---------------------------------------------------------------------------------------------
+   >>near
+   The near list: candidates that touch or may within near_span, were they to meet head-on at the
+   speed they have now; and near_margin more, because speeds change. Forces are worked out for all
+   of it, touching or not, so that a step neither looks at candidates nor packs them; what does not
+   touch answers zero. It is made anew, from the candidates, when the time is over or accelerations
+   may have used up the margin: two bodies have come nearer than their speeds of then say by at most
+   near_creep, the sum over steps of 2 dt times near_drift, itself the sum of dt times the largest
+   acceleration. Memory comes from the list before or, after a search, from where it was filed.
+   Numbers do not depend on how long a list lasts: a zero more or less does not change a sum.
+   --------------------------------------------------------------------------------------------- */
 
 /* Coefficients of a pair, into its columns; only needed when bodies differ. */
 static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
@@ -6994,6 +7026,13 @@ static int demi_near_make(dem_world *w, int fresh) {
     return 1;
 }
 
+/* ---------------------------------------------------------------------------------------------
+   >>rebuild
+   Everything that hangs on which bodies are near which, made anew: the effects in force, the skin,
+   the order of bodies, domains, lists. Refusals come first: a rebuild that fails leaves places,
+   memory and the old list as they were. New bodies may join a list that stands (demi_list_join).
+   --------------------------------------------------------------------------------------------- */
+
 /* What the laws in force keep per contact. */
 static void demi_effects_memory(dem_world *w) {
     demi_laws_set(&w->laws, w->normal, w->tangent, w->rolling);
@@ -7242,26 +7281,93 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     return 1;
 }
 
-/* Rebuilds everything the step needs to find contacts. DEM_ERROR_MEMORY leaves bodies and memory as
-   they were (the next call tries again). */
+/* Answers 1 with a sentence when a period is too short for one image of each partner. */
+static int demi_periods_refuse(dem_world *w) {
+    const demi_periods p = demi_periods_of(w);
+    const double need = 2*(2*(double)w->radius_max + w->skin);
+    int k;
+    for (k = 0; k < 3; k++)
+        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic "
+                      "axis %d, must be at least %g m (two grains and the skin, twice); make it "
+                      "longer or the grains smaller", (double)p.period[k], k, need);
+            return 1;
+        }
+    return 0;
+}
+/* Deals the bodies, in the order of the sort, to domains. */
+static void demi_domains_deal(dem_world *w) {
+    int d;
+    for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
+    w->domain_count = demi_domains_for(w->count);
+    for (d = 0; d < w->domain_count; d++) {
+        w->domains[d].begin = (int)((int64_t)w->count*d/w->domain_count);
+        w->domains[d].end = (int)((int64_t)w->count*(d + 1)/w->domain_count);
+        w->domains[d].overflow = 0;
+    }
+}
+/* Which of the lists in `lists` (1: own, 2: cross, 4: walls) some domain had too little room in. */
+static int demi_lists_overflow(const dem_world *w, int lists) {
+    int d, over = demi_join_lack(w);
+    for (d = 0; d < w->domain_count; d++) over |= w->domains[d].overflow;
+    return over & lists;
+}
+/* Neighbour lists of bodies: searched anew until every domain's pairs fit. 0: no memory. */
+static int demi_pairs_find(dem_world *w) {
+    const int n = w->domain_count, stride = DEMI_MAX(64, w->count/n*3);
+    int over;
+    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w)) return 0;
+    w->join_room = w->feed_count ? DEMI_MIN(512 + w->count/16, DEMI_JOIN_MOST) : 0;
+    if (!demi_list_reserve(w, &w->own, n, DEMI_MAX(stride, (int)w->own.stride)) ||
+        !demi_list_reserve(w, &w->cross, n, n == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
+        return 0;
+    do {
+        demi_parallel(w, w->desc.threads, n, demi_domain_search);
+        over = demi_lists_overflow(w, 3);
+        if ((over & 1 && !demi_list_reserve(w, &w->own, n, w->own.stride/2*3 + 64)) ||
+            (over & 2 && !demi_list_reserve(w, &w->cross, n, w->cross.stride/2*3 + 64))) return 0;
+    } while (over);
+    return demi_cross_index(w);
+}
+/* Candidates on walls, likewise. */
+static int demi_walls_find(dem_world *w) {
+    int room = DEMI_MAX(w->wall_stride, 64);
+    do {
+        if (!demi_wall_lists_reserve(w, room)) return 0;
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
+        room = w->wall_stride/2*3 + 64;
+    } while (demi_lists_overflow(w, 4));
+    return 1;
+}
+/* Memory of contacts with walls and of shaped bodies moves to the new lists: all room first, for
+   what has moved cannot go back. */
+static int demi_contacts_move(dem_world *w) {
+    const int stride = demi_shaped_room(w);
+    if (stride < 0 || !demi_touching_reserve(w) || !demi_wall_contacts_move(w)) return 0;
+    demi_shaped_move(w, stride);
+    return 1;
+}
+/* Slots freed since the last list may be used again. */
+static void demi_slots_release(dem_world *w) {
+    while (w->slot_pending >= 0) {
+        const int slot = w->slot_pending;
+        w->slot_pending = -2 - w->slot_index[slot];
+        w->slot_index[slot] = -2 - w->slot_free;
+        w->slot_free = slot;
+    }
+}
+/* Rebuilds everything the step needs to find contacts: first what may be refused, then bodies are
+   put in order, then lists are made and memory moves to them. DEM_ERROR_MEMORY leaves bodies and
+   memory as they were (the next call tries again). */
 static dem_result demi_rebuild(dem_world *w, const char *call) {
-    int d, k, stride, again;
+    int k;
     for (k = 0; k < w->count; k++)
         if (!demi_place(demi_at(w->pos + 4*k))) return demi_lost(w, k);
     if (!demi_list_drop(w)) return demi_no_memory(w, call);
     demi_effects(w);
     if (!w->skin_chosen || w->visitor) demi_skin_choose(w);
     w->skin_chosen = 1;
-    for (k = 0; k < 3; k++) {
-        const demi_periods p = demi_periods_of(w);
-        const double need = 2*(2*(double)w->radius_max + w->skin);
-        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on "
-                             "periodic axis %d, must be "
-                             "at least %g m (two grains and the skin, twice); make it longer or "
-                             "the grains smaller",
-                             (double)p.period[k], k, need);
-    }
+    if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_walls_repeat(w);
     if (demi_walls_refuse(w) || demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
     demi_wrap(w);                               /* after what may be refused: places stay then */
@@ -7271,58 +7377,18 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
         return demi_no_memory(w, call);
     demi_bodies_sort(w);
     if (!w->level_count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
-    if (w->shaped_count && !demi_spots_lay(w)) return demi_no_memory(w, call);
-    if (w->level_count && !demi_levels_lay(w)) return demi_no_memory(w, call);
+    if ((w->shaped_count && !demi_spots_lay(w)) || (w->level_count && !demi_levels_lay(w)))
+        return demi_no_memory(w, call);
     demi_image_shifts(w);
-    for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
-    w->domain_count = demi_domains_for(w->count);
-    for (d = 0; d < w->domain_count; d++) {
-        w->domains[d].begin = (int)((int64_t)w->count*d/w->domain_count);
-        w->domains[d].end = (int)((int64_t)w->count*(d + 1)/w->domain_count);
-        w->domains[d].overflow = 0;
-    }
-    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w))
-        return demi_no_memory(w, call);
-    stride = DEMI_MAX(64, w->count/w->domain_count*3);
-    w->join_room = w->feed_count ? DEMI_MIN(512 + w->count/16, DEMI_JOIN_MOST) : 0;
-    if (!demi_list_reserve(w, &w->own, w->domain_count, DEMI_MAX(stride, (int)w->own.stride)) ||
-        !demi_list_reserve(w, &w->cross, w->domain_count, w->domain_count == 1 ? 0
-                           : DEMI_MAX(stride/4, (int)w->cross.stride)))
-        return demi_no_memory(w, call);
-    do {                                        /* until every domain's pairs fit */
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_search);
-        for (d = 0, again = demi_join_lack(w) & 3; d < w->domain_count; d++)
-            again |= w->domains[d].overflow & 3;
-        if ((again & 1 && !demi_list_reserve(w, &w->own, w->domain_count, w->own.stride/2*3 +
-                                             64)) ||
-            (again & 2 && !demi_list_reserve(w, &w->cross, w->domain_count, w->cross.stride/2*3 +
-                                             64)))
-            return demi_no_memory(w, call);
-    } while (again);
-    if (!demi_cross_index(w)) return demi_no_memory(w, call);
+    demi_domains_deal(w);
+    if (!demi_pairs_find(w)) return demi_no_memory(w, call);
     if (!w->near_chosen) demi_near_choose(w);
     w->near_chosen = 1;
-    if (!demi_near_make(w, 1)) return demi_no_memory(w, call);
-    if (!demi_wall_lists_reserve(w, DEMI_MAX(w->wall_stride, 64))) return demi_no_memory(w, call);
-    do {
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_walls);
-        for (d = 0, again = demi_join_lack(w) & 4; d < w->domain_count; d++)
-            again |= w->domains[d].overflow & 4;
-        if (again && !demi_wall_lists_reserve(w, w->wall_stride/2*3 +
-                                              64)) return demi_no_memory(w, call);
-    } while (again);
-    k = demi_shaped_room(w);                    /* all room first: what has moved cannot go back */
-    if (k < 0 || !demi_touching_reserve(w) || !demi_wall_contacts_move(w))
+    if (!demi_near_make(w, 1) || !demi_walls_find(w) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
-    demi_shaped_move(w, k);
     if (demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
-    while (w->slot_pending >= 0) {  /* slots freed since the last list may be used again */
-        const int slot = w->slot_pending;
-        w->slot_pending = -2 - w->slot_index[slot];
-        w->slot_index[slot] = -2 - w->slot_free;
-        w->slot_free = slot;
-    }
+    demi_slots_release(w);
     w->carry_count = 0;
     w->skin_chosen = w->near_chosen = 0;
     w->reach = w->wall_reach = 0;
@@ -8025,7 +8091,7 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
    parts; the commonest ones have a stage for all of it, which saves the rows in between. Pairs that
    lead out of a domain leave their push in a slot of its own; the other domain fetches it after all
    are done, in the order of the list. So every body's sum has one order whatever the number of
-   threads. Grain-wall follows, per grain.
+   threads.
    --------------------------------------------------------------------------------------------- */
 /* Pairs under work. Sums and differences are of the two bodies, a plus b and a minus b. A row has
    room to spare so that rows do not lie a power of two apart, which caches take badly. */
@@ -8707,7 +8773,13 @@ static const char *demi_kernel_choose(dem_world *w) {
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
-/* --- walls --- */
+
+/* ---------------------------------------------------------------------------------------------
+   >>on-walls
+   Spheres on walls: touch and respond, one contact after the other. touch collects the places where
+   a sphere and a wall meet and gives each the memory it had a step ago; respond asks the law,
+   pushes the body and adds up what the wall bears.
+   --------------------------------------------------------------------------------------------- */
 
 /* How well an old contact fits a new one: by their normals; where those are nearly the same (within
    some 3 degrees), rather one that nothing continues yet; then the same wall, and the same sign of
@@ -11240,9 +11312,10 @@ DEM_API dem_result dem_sorting_get(const dem_world *w, const dem_outlet *outlets
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>step
-   The time step (advised, checked), one step in the order of the manual, and runs of many. Errors
-   of a run are found in the step that caused them and name the body.
+   >>advice
+   Which time step a scene bears: contact times and stable steps of the pairs that may meet, of the
+   contacts that are there, of spins and speeds; what dt = 0 chooses and what is refused by name.
+   Reads everything, writes only dt and room of its own.
    --------------------------------------------------------------------------------------------- */
 
 /* Impact speed to reckon with: given, or the largest of what grains and walls do now and what
@@ -11343,96 +11416,110 @@ static double demi_dt_of_contact(const dem_world *w, const dem_real *coef, doubl
     const double slide = 3.5*s.kt/m_eff + s.kr/I;
     return demi_dt_stable(DEMI_MAX(s.k/m_eff, slide), DEMI_MAX(s.c/m_eff, 3.5*s.ct/m_eff + s.cr/I));
 }
-/* Shortest contact among all material pairs and walls there are, for their smallest grains. */
-static void demi_advise(const dem_world *w, dem_advice *out) {
-    double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];     /* moving; largest that is fixed */
-    double speed = demi_speed_estimate(w), best = 1e300, rayleigh = 1e300, other_radius = 0;
-    double limit = 1e300;                       /* s, least stable step */
-    int many[DEMI_MATERIALS], i, j, at_i = -1, at_j = -1, at_wall = 0;
-    for (i = 0; i < DEMI_MATERIALS; i++) { smallest[i] = peg[i] = 0; many[i] = 0; }
+/* What each material's grains are: those there are, and those that feeds will bring. */
+typedef struct demi_grades {
+    double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];  /* m: moving; largest that is fixed */
+    int many[DEMI_MATERIALS];                              /* that move, or more of their like */
+} demi_grades;
+static void demi_grades_of(const dem_world *w, demi_grades *g) {
+    int i, j;
+    memset(g, 0, sizeof *g);
     for (i = 0; i < w->count; i++) {
         const int m = w->body_material[i] - 1;
         const double r = demi_advise_radius(w, i);
-        if (w->inv_mass[i] <= 0) { peg[m] = DEMI_MAX(peg[m], r); continue; }
-        if (!many[m]++ || r < smallest[m]) smallest[m] = r;
+        if (w->inv_mass[i] <= 0) { g->peg[m] = DEMI_MAX(g->peg[m], r); continue; }
+        if (!g->many[m]++ || r < g->smallest[m]) g->smallest[m] = r;
     }
-    for (i = 0; i < w->feed_count; i++) {       /* and those that are to come */
+    for (i = 0; i < w->feed_count; i++) {
         const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
         const int m = d->material.id - 1;
         for (j = 0; j < d->class_count; j++) {
             const double r = (double)d->radius[j];
-            if (!many[m] || r < smallest[m]) smallest[m] = r;
-            many[m] += 2;
+            if (!g->many[m] || r < g->smallest[m]) g->smallest[m] = r;
+            g->many[m] += 2;
         }
     }
+}
+/* The contact that lasts shortest, of those looked at so far, and the least stable step. */
+typedef struct demi_shortest {
+    double time, limit, radius, partner;       /* s, s, m, m */
+    int material, other, wall;                 /* indices; wall: 1 + index, 0: none */
+} demi_shortest;
+/* Smallest grains of material i with one kind of partner: material `other` (fixed or not), wall. */
+static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, int other, int fixed,
+                             int wall, double speed, demi_shortest *s) {
+    const double r = g->smallest[i], m = demi_sphere_mass(w, i, r);
+    double m_eff = m, r_eff = r, partner = 0, t;
+    dem_real coef[DEMI_COEFS];
+    if (wall < 0) {
+        partner = fixed ? g->peg[other] : g->smallest[other];
+        if (!(partner > 0)) return;
+        if (!fixed) m_eff = 1/(1/m + 1/demi_sphere_mass(w, other, partner));
+        r_eff = r*partner/(r + partner);
+    }
+    demi_coefficients(w, i, other, r_eff, m_eff, wall >= 0, coef);
+    if (w->desc.law && w->desc.law_stiffness > 0)
+        t = DEMI_PI*sqrt(m_eff/(double)w->desc.law_stiffness);
+    else {
+        t = demi_contact_time(w, coef, m_eff, speed);
+        s->limit = DEMI_MIN(s->limit, demi_dt_of_contact(w, coef, m_eff, speed));
+    }
+    if (t >= s->time) return;
+    s->time = t;
+    s->radius = r;
+    s->partner = partner;
+    s->material = i;
+    s->other = other;
+    s->wall = wall + 1;
+}
+/* pi r sqrt(rho/G)/(.1631 nu + .8766), the time a surface wave takes over the smallest grain. */
+static double demi_rayleigh(const dem_material_desc *d, double r) {
+    const double nu = (double)d->poisson, G = (double)d->young/(2*(1 + nu));
+    return G > 0 ? DEMI_PI*r*sqrt((double)d->density/G)/(0.1631*nu + 0.8766) : 1e300;
+}
+/* Shortest contact among all material pairs and walls there are, for their smallest grains. */
+static void demi_advise(const dem_world *w, dem_advice *out) {
+    const double speed = demi_speed_estimate(w);
+    double rayleigh = 1e300;
+    demi_shortest s = {1e300, 1e300, 0, 0, -1, -1, 0};
+    demi_grades g;
+    int i, j;
+    demi_grades_of(w, &g);
     for (i = 0; i < w->material_count; i++) {
-        const double r = smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r) : 0;
-        const double nu = (double)w->materials[i].poisson;
-        const double G = (double)w->materials[i].young/(2*(1 + nu));
-        /* moving grains, fixed ones, walls */
-        const int kinds = 2*w->material_count + w->wall_count;
-        dem_real coef[DEMI_COEFS];
-        if (r <= 0) continue;
-        if (G > 0)
-            rayleigh = DEMI_MIN(rayleigh, DEMI_PI*r*sqrt((double)w->materials[i].density/G)/
-                                          (0.1631*nu + 0.8766));
-        for (j = 0; j < kinds; j++) {
-            const int wall = j - 2*w->material_count;
-            const int other = wall >= 0 ? w->walls[wall].material : j%w->material_count;
-            double m_eff = m, r_eff = r, partner = 0, t;
-            if (wall >= 0 && w->walls[wall].kind == DEMI_WALL_NONE) continue;
-            if (wall < 0) {
-                const int fixed = j >= w->material_count;
-                partner = fixed ? peg[other] : smallest[other];
-                if (partner <= 0 || (!fixed && other == i && many[i] < 2)) continue;
-                if (!fixed) m_eff = 1/(1/m + 1/demi_sphere_mass(w, other, partner));
-                r_eff = r*partner/(r + partner);
-            }
-            demi_coefficients(w, i, other, r_eff, m_eff, wall >= 0, coef);
-            if (w->desc.law && w->desc.law_stiffness > 0)
-                t = DEMI_PI*sqrt(m_eff/(double)w->desc.law_stiffness);
-            else {
-                t = demi_contact_time(w, coef, m_eff, speed);
-                limit = DEMI_MIN(limit, demi_dt_of_contact(w, coef, m_eff, speed));
-            }
-            if (t >= best) continue;
-            best = t;
-            at_i = i;
-            at_j = other;
-            at_wall = wall >= 0 ? wall + 1 : 0;
-            other_radius = partner;
+        if (!(g.smallest[i] > 0)) continue;
+        rayleigh = DEMI_MIN(rayleigh, demi_rayleigh(&w->materials[i], g.smallest[i]));
+        for (j = 0; j < w->material_count; j++)
+            if (j != i || g.many[i] > 1) demi_advise_pair(w, &g, i, j, 0, -1, speed, &s);
+        for (j = 0; j < w->material_count; j++) demi_advise_pair(w, &g, i, j, 1, -1, speed, &s);
+        for (j = 0; j < w->wall_count; j++)
+            if (w->walls[j].kind != DEMI_WALL_NONE)
+                demi_advise_pair(w, &g, i, w->walls[j].material, 0, j, speed, &s);
+    }
+    for (i = 0; i < w->material_count && s.material < 0; i++)     /* one grain alone: its like */
+        if (g.smallest[i] > 0) {
+            const double limit = s.limit;
+            demi_advise_pair(w, &g, i, i, 0, -1, speed, &s);
+            s.limit = limit;                    /* which is not there to be unstable with */
         }
-    }
-    for (i = 0; i < w->material_count && at_i < 0; i++) {     /* one grain alone: meets its like */
-        const double m = smallest[i] > 0 ? demi_sphere_mass(w, i, smallest[i])/2 : 0;
-        dem_real coef[DEMI_COEFS];
-        if (m <= 0) continue;
-        demi_coefficients(w, i, i, smallest[i]/2, m, 0, coef);
-        best = demi_contact_time(w, coef, m, speed);
-        if (w->desc.law && w->desc.law_stiffness > 0)
-            best = DEMI_PI*sqrt(m/(double)w->desc.law_stiffness);
-        at_i = at_j = i;
-        other_radius = smallest[i];
-    }
     memset(out, 0, sizeof *out);
     out->speed = (dem_real)speed;
     out->rayleigh = (dem_real)(rayleigh < 1e300 ? rayleigh : 0);
-    if (at_i < 0) { snprintf(out->binds, sizeof out->binds, "no grain that moves"); best = 0; }
-    else if (at_wall)
+    if (s.material < 0) {
+        snprintf(out->binds, sizeof out->binds, "no grain that moves");
+        s.time = 0;
+    } else if (s.wall)
         snprintf(out->binds, sizeof out->binds, "grains of material %d, radius %g m, on wall %d of "
-                 "material %d, at %.3g m/s",
-                 at_i + 1, smallest[at_i], at_wall, at_j + 1, speed);
+                 "material %d, at %.3g m/s", s.material + 1, s.radius, s.wall, s.other + 1, speed);
     else
         snprintf(out->binds, sizeof out->binds, "grains of materials %d and %d, radii %g and %g m, "
-                 "at %.3g m/s", at_i + 1,
-                 at_j + 1, smallest[at_i], other_radius, speed);
-    out->contact_time = (dem_real)best;
-    out->dt = (dem_real)DEMI_MIN(best/50, limit/5);
-    out->dt_max = (dem_real)DEMI_MIN(best/20, limit);
-    if (best > 0 && limit < best/20) {
+                 "at %.3g m/s", s.material + 1, s.other + 1, s.radius, s.partner, speed);
+    out->contact_time = (dem_real)s.time;
+    out->dt = (dem_real)DEMI_MIN(s.time/50, s.limit/5);
+    out->dt_max = (dem_real)DEMI_MIN(s.time/20, s.limit);
+    if (s.time > 0 && s.limit < s.time/20) {
         const size_t n = strlen(out->binds);
         snprintf(out->binds + n, sizeof out->binds - n, "; stable to %.3g s, by its dashpot, "
-                 "friction or rolling", limit);
+                 "friction or rolling", s.limit);
     }
 }
 
@@ -11673,7 +11760,11 @@ static dem_result demi_dt_check(dem_world *w) {
                      (double)((demi_press *)w->press_.data)[worst].deepest);
 }
 
-/* --- the parts of a step, per domain --- */
+/* ---------------------------------------------------------------------------------------------
+   >>step
+   One step in the order of the manual, and runs of many. The parts of a step run over domains, in
+   parallel. Errors of a run are found in the step that caused them and name the body.
+   --------------------------------------------------------------------------------------------- */
 
 /* How fast the fastest is, how much the most accelerated, and a sum that keeps what is not finite
    (a maximum loses it). In groups, each place of which has its own maximum and sum: that is what
@@ -12569,22 +12660,16 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>files
-   Reading. A file is loaded whole and goes to the parser that also serves data in memory. Its bytes
-   are not to be trusted: nothing is read past the end, a count is held against the bytes there
-   before memory is taken for it, and errors name the line. Text is read by moving (demi_text_line,
-   demi_text_word) and looking at the present word (demi_text_is, _real, _corner). OBJ and STL text
-   have no counts, so they are gone through twice: to count, then to fill arrays of the right size.
+   >>read
+   Files in. A file is loaded whole and goes to the parser that also serves data in memory. Its
+   bytes are not to be trusted: nothing is read past the end, a count is held against the bytes
+   there before memory is taken for it, and errors name the line. Text is read by moving
+   (demi_text_line, demi_text_word) and looking at the present word (demi_text_is, _real, _corner).
+   OBJ and STL text have no counts, so they are gone through twice: to count, then to fill arrays of
+   the right size.
 
    demi_first_equal says of each of many keys where it came first. Merging vertices, counting the
    triangles of an edge and finding doubled triangles are all this one question.
-
-   Writing. demi_out_open gives a file of the name path.tmp; demi_out_close renames it to path when
-   all went well and removes it otherwise, so what stands under path is whole. A symbolic link
-   stays: the file it leads to is the one replaced. Pipes and terminals are refused, and what is
-   there but empty (a file, a device such as /dev/null) is written to as it is: it has nothing to
-   lose. Write errors stick to the FILE and are looked at once, on closing. Text has decimal points
-   whatever the locale says.
    ---------------------------------------------------------------------------------------------- */
 #include <errno.h>
 
@@ -13170,7 +13255,15 @@ DEM_API void dem_profile_free(dem_world *world, dem_profile *profile) {
     memset(profile, 0, sizeof *profile);
 }
 
-/* ---- files out ---- */
+/* ---------------------------------------------------------------------------------------------
+   >>write
+   demi_out_open gives a file of the name path.tmp; demi_out_close renames it to path when all went
+   well and removes it otherwise, so what stands under path is whole. A symbolic link stays: the
+   file it leads to is the one replaced. Pipes and terminals are refused, and what is there but
+   empty (a file, a device such as /dev/null) is written to as it is: it has nothing to lose. Write
+   errors stick to the FILE and are looked at once, on closing. Text has decimal points whatever the
+   locale says.
+   --------------------------------------------------------------------------------------------- */
 
 typedef struct demi_out {
     dem_world *world;
@@ -14215,11 +14308,6 @@ DEM_API dem_result dem_str_append(dem_world *w, const char *path, double interva
    that dem_pair_set has outdated) is stored and not worked out anew: the scene may have changed
    since the list was made. Of a list that no longer fits the bodies only the counts are stored, by
    which the next one is chosen.
-
-   Reading fills a twin, an empty world of the same scene. A check sum only tells that a file is as
-   it was written, not that what was written makes sense: so every count is checked before room is
-   made for it, and every index and length before anything follows it. When all is right the twin's
-   state takes the place of the world's; until then the world is as it was.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
 enum { DEMI_CHECKPOINT_VERSION = 7 };
@@ -14687,7 +14775,13 @@ static dem_result demi_checkpoint_scene(dem_world *w, const char *path, demi_str
     return DEM_OK;
 }
 
-/* --- the twin --- */
+/* ---------------------------------------------------------------------------------------------
+   >>restore
+   Reading a checkpoint fills a twin, an empty world of the same scene. A check sum only tells that
+   a file is as it was written, not that what was written makes sense: so every count is checked
+   before room is made for it, and every index and length before anything follows it. When all is
+   right the twin's state takes the place of the world's; until then the world is as it was.
+   --------------------------------------------------------------------------------------------- */
 
 /* Frees what a run works with: bodies, lists, walls (not their geometry), fields, feeds, outlets.
    */
@@ -15437,15 +15531,58 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
             demi_law_memory_text(laws->rolling, text));
 }
-DEM_API void dem_world_report(const dem_world *world, FILE *out) {
-    if (demi_null(world, "dem_world_report", out, "out")) return;
+static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
+    if (w->shaped_count)
+        fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap "
+                "%s; a cluster's contacts %s; %.2f contacts per body\n", w->shaped_count,
+                rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
+                w->desc.cluster_contacts == DEM_SHARING_ONE ? "are shared" : "add up",
+                w->count ? (double)demi_shaped_total(w)/w->count : 0);
+    else if (w->orienting)
+        fprintf(out, "           orientations of spheres are followed, because you asked\n");
+}
+/* What each wall bears, and what came in and went out. */
+static void demi_flows_report(const dem_world *w, FILE *out) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        const dem_channels *ch = &w->walls[i].channels;
+        if (w->walls[i].kind == DEMI_WALL_NONE) continue;
+        fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
+                "power %.4g W\n", i + 1,
+                ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z,
+                (double)ch->torque_axial,
+                (double)ch->power);
+    }
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_state *f = &demi_feed_at(w, i)->state;
+        fprintf(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,
+                (unsigned long long)f->total, f->mass, (unsigned long long)f->waiting,
+                f->done ? "; done" : "");
+    }
+    for (i = 0; i < w->outlet_count; i++) {
+        const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
+        fprintf(out, "outlet %-3d %llu grains, %.6g kg, of them wanted %llu, %.6g kg\n", i + 1,
+                (unsigned long long)o->total, o->total_mass, (unsigned long long)o->sorted,
+                o->sorted_mass);
+    }
+}
+static void demi_ledger_report(const dem_world *w, FILE *out) {
+    const dem_ledger l = dem_ledger_get(w);
+    fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
+            "%.6g\n           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
+            "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n"
+            "           residual %.3g (%.2g of the throughput)\n", l.gravity, l.walls, l.force,
+            l.inserted, l.removed, l.kinetic, l.rotational, l.elastic, l.normal, l.slide, l.tangent,
+            l.rolling, l.residual, l.throughput > 0 ? l.residual/l.throughput : 0);
+}
+DEM_API void dem_world_report(const dem_world *world, FILE *out) {
+    if (demi_null(world, "dem_world_report", out, "out")) return;
     dem_world look = *world, *w = &look;        /* effects not yet worked out are so in a copy */
     const dem_counters c = dem_counters_get(w);
     const double per = w->count ? 1.0/w->count : 0;
     dem_advice a;
-    int i;
     if (!w->list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
     fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s, %d domain%s, %.1f MB\n",
@@ -15473,15 +15610,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     demi_laws_report(w, out);
-    if (w->shaped_count)
-        fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap "
-                "%s; a "
-                "cluster's contacts %s; %.2f contacts per body\n", w->shaped_count,
-                rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
-                w->desc.cluster_contacts == DEM_SHARING_ONE ? "are shared" : "add up",
-                w->count ? (double)demi_shaped_total(w)/w->count : 0);
-    else if (w->orienting)
-        fprintf(out, "           orientations of spheres are followed, because you asked\n");
+    demi_shapes_report(w, out);
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->uniform ? "all alike (coefficients once per run)"
             : "differ (coefficients per candidate)", w->wall_count,
@@ -15490,38 +15619,8 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->overlap_max,
             w->overlap_max > 0.05 ? "  (beyond .05: stiffen the material or slow down)" : "");
     dem_pairs_print(w, out);
-    for (i = 0; i < w->wall_count; i++) {
-        const dem_channels *ch = &w->walls[i].channels;
-        if (w->walls[i].kind == DEMI_WALL_NONE) continue;
-        fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
-                "power %.4g W\n", i + 1,
-                ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z,
-                (double)ch->torque_axial,
-                (double)ch->power);
-    }
-    for (i = 0; i < w->feed_count; i++) {
-        const dem_feed_state *f = &demi_feed_at(w, i)->state;
-        fprintf(out, "feed %-3d   %llu grains, %.6g kg; %llu wait for room%s\n", i + 1,
-                (unsigned long long)f->total, f->mass, (unsigned long long)f->waiting,
-                f->done ? "; done" : "");
-    }
-    for (i = 0; i < w->outlet_count; i++) {
-        const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
-        fprintf(out, "outlet %-3d %llu grains, %.6g kg, of them wanted %llu, %.6g kg\n", i + 1,
-                (unsigned long long)o->total, o->total_mass, (unsigned long long)o->sorted,
-                o->sorted_mass);
-    }
-    if (w->desc.ledger) {
-        const dem_ledger l = dem_ledger_get(w);
-        fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
-                "%.6g\n           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
-                "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n"
-                "           residual %.3g (%.2g of the throughput)\n", l.gravity, l.walls,
-                l.force, l.inserted, l.removed,
-                l.kinetic, l.rotational, l.elastic, l.normal, l.slide, l.tangent, l.rolling,
-                l.residual,
-                l.throughput > 0 ? l.residual/l.throughput : 0);
-    }
+    demi_flows_report(w, out);
+    if (w->desc.ledger) demi_ledger_report(w, out);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -15773,7 +15872,10 @@ static const char *demi_parcel_contacts(const demi_parcel_head *h, const char *g
            (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
 }
 
-/* --- phases, neighbours, agreement --- */
+/* ---------------------------------------------------------------------------------------------
+   >>slabs-step
+   One step of all slabs: phases, what goes to neighbours, what is agreed on, new lists, borders.
+   --------------------------------------------------------------------------------------------- */
 
 static void demi_slab_task(dem_world *w, int k) {
     dem_slabs *s = (dem_slabs *)(void *)w;      /* the head comes first */
@@ -16536,7 +16638,11 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
     return result;
 }
 
-/* --- create, destroy --- */
+/* ---------------------------------------------------------------------------------------------
+   >>deal
+   Dealing a scene to slabs and collecting it again: their worlds, what each process finds out about
+   the others' when they are made, and the state of all of them written into one world.
+   --------------------------------------------------------------------------------------------- */
 
 static void *demi_slabs_alloc(size_t size, void *user) {
     const dem_allocator *a = (const dem_allocator *)user;

@@ -1,12 +1,35 @@
 # awk -f tests/tags.awk dem.h: the tags of the contents list at the top of the file (lines that begin
 # with >>name, before the first ruled banner) must each head one ruled banner, in the same order; a
 # banner that the list does not name is an error too. Tags such as >>add-law inside the text are free.
+# A part has at most 900 lines, a function at most 80, a line at most 100 columns. -v out=DIR also writes each part
+# to a file of its own there, for reading.
 BEGIN { dashes = "------------------------------------------------------------"; equals = dashes; gsub(/-/, "=", equals) }
 { ruled = index($0, dashes) || index($0, equals) }
+length($0) > 100 { complain("line " FNR " has " length($0) " columns, must be at most 100") }
+/^(static|DEM_API|DEM_INLINE|DEMI_CLONES) .*\(/ && !/;$/ { function_line = FNR; function_head = $0 }
+/^}/ {
+    if (function_line && FNR - function_line >= 80)
+        complain("line " function_line ": has " FNR - function_line + 1 " lines, must be at most 80: " function_head)
+    function_line = 0
+}
 $1 ~ /^>>[a-z]/ && !banners_begun && !was_ruled { listed[++lists] = $1; place[$1] = lists }
 $1 ~ /^>>[a-z]/ && was_ruled { headed[++heads] = $1; line[heads] = FNR; times[$1]++ }
 { if (ruled) banners_begun = 1; was_ruled = ruled }
+out {                               # a part begins with the rule above its tag
+    if ($1 ~ /^>>[a-z]/ && held_rule) {
+        if (file) close(file)
+        file = sprintf("%s/%02d-%s.h", out, ++files, substr($1, 3))
+    }
+    if (held != "") print held > (file ? file : out "/00-contents.h")
+    held_rule = ruled && /^\/\*/
+    held = $0 ? $0 : " "
+}
 END {
+    if (out && held != "") print held > file
+    line[heads + 1] = FNR + 1
+    for (i = 1; i <= heads; i++)
+        if (line[i + 1] - line[i] > 900)
+            complain(headed[i] " has " line[i + 1] - line[i] " lines, must be at most 900")
     if (lists == 0) { print FILENAME ": no contents list found"; exit 1 }
     for (i = 1; i <= lists; i++) {
         if (times[listed[i]] == 0) complain(listed[i] " is in the contents, but heads no part")
@@ -18,7 +41,7 @@ END {
         else if (place[headed[i]] < last) complain("line " line[i] ": " headed[i] " stands after " listed[last])
         else last = place[headed[i]]
     }
-    if (!bad) print FILENAME ": " lists " parts, all in order"
+    if (!bad) print FILENAME ": " lists " parts, all in order, none too long"
     exit bad
 }
 function complain(sentence) { print FILENAME ": " sentence; bad = 1 }
