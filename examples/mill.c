@@ -44,6 +44,7 @@
    torque.csv, ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
+#include "drum.h"
 #include "study.h"
 
 #define PI 3.14159265358979323846
@@ -254,9 +255,9 @@ static int shell_add(mill *m) {
            layers are r sqrt(3) apart, and mill_begin made the slice an even number of them */
         double lining = is(m->o.ends, "flat") ? L : L + 12*r;
         dem_real *at;
-        count = dem_drum_grains(R, lining, r, 0, 0);
+        count = drum_grains(R, lining, r, 0, 0);
         at = (dem_real *)study_alloc(3*(size_t)count, sizeof *at);
-        dem_drum_grains(R, lining, r, 0, at);
+        drum_grains(R, lining, r, 0, at);
         m->walls[0] = dem_grains_wall_add(m->world, m->lining, count, at, r, 1);
         free(at);
     } else if (is(m->o.profile, "none")) {

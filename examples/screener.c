@@ -40,8 +40,9 @@
      steps, unbalanced_steps              of --study hour: those at which a size was not in balance */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
-#include "tumbler.h"
+#include "sorting.h"
 #include "study.h"
+#include "tumbler.h"
 
 #define PI 3.14159265358979323846
 enum { LEVELS = 5, SAMPLES = 200 };
@@ -381,15 +382,15 @@ static dem_outlet_state let_out(const screener *s, int deck) {
     return state;
 }
 static void sample_take(screener *s) {
-    dem_sorting sorting;
+    sorting sorted;
     const dem_balance balance = dem_balance_get(s->world);
     const int i = s->samples;
     int k;
-    if (i == SAMPLES || dem_sorting_get(s->world, s->outlet, s->levels, &sorting) != DEM_OK) return;
+    if (i == SAMPLES || sorting_get(s->world, s->outlet, s->levels, &sorted) != DEM_OK) return;
     s->time[i] = dem_world_time(s->world);
-    s->efficiency[i] = 100*sorting.efficiency_number;
-    s->mass_efficiency[i] = 100*sorting.efficiency_mass;
-    s->gangue[i] = 100*sorting.gangue_mass;
+    s->efficiency[i] = 100*sorted.efficiency_number;
+    s->mass_efficiency[i] = 100*sorted.efficiency_mass;
+    s->gangue[i] = 100*sorted.gangue_mass;
     s->left[i] = (double)balance.left;
     s->present[i] = (double)balance.present;
     s->fed[i] = (double)fed(s).total;
@@ -522,14 +523,14 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
     }
     s->compute = study_clock() - begun;
     if (!bad) {
-        dem_sorting sorting;
+        sorting sorted;
         const dem_feed_state feed = fed(s);
         const dem_balance balance = dem_balance_get(s->world);
         int blinded = 0;
         char text[64];
-        dem_sorting_get(s->world, s->outlet, s->levels, &sorting);
-        study_result("efficiency_number", 100*sorting.efficiency_number, "%");
-        study_result("efficiency_mass", 100*sorting.efficiency_mass, "%");
+        sorting_get(s->world, s->outlet, s->levels, &sorted);
+        study_result("efficiency_number", 100*sorted.efficiency_number, "%");
+        study_result("efficiency_mass", 100*sorted.efficiency_mass, "%");
         for (i = 0; i < s->levels; i++) {
             const dem_outlet_state out = let_out(s, i);
             snprintf(text, sizeof text, "deck%d.sorted", i + 1);
@@ -540,8 +541,8 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
             study_result(text, deck_rate(s, i), "kg/s");
             if (i) blinded += dem_sieve_blinded(s->world, s->sieve[i], DEM_R(0.1));
         }
-        study_result("gangue_number", 100*sorting.gangue_number, "%");
-        study_result("gangue_mass", 100*sorting.gangue_mass, "%");
+        study_result("gangue_number", 100*sorted.gangue_number, "%");
+        study_result("gangue_mass", 100*sorted.gangue_mass, "%");
         study_result("fed", (double)feed.total, "");
         study_result("present", (double)balance.present, "");
         study_result("left", (double)balance.left, "");

@@ -3,6 +3,7 @@
 #define DEM_DOMAIN_BODIES 64                  /* several domains: newcomers have neighbours in all */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
+#include "../examples/sorting.h"
 #include "../examples/tumbler.h"
 #include "test.h"
 #include "scene.h"
@@ -341,7 +342,7 @@ int main(int argc, char **argv) {
         dem_outlet_desc d;
         dem_outlet outlet[2];
         dem_outlet_state s;
-        dem_sorting sorting;
+        sorting sorted;
         dem_body body;
         int i;
         turn.kind = DEM_MOTION_ROTATING;
@@ -377,23 +378,23 @@ int main(int argc, char **argv) {
         CHECK_EQ((int)s.sorted, 2);
         CHECK_EQ((int)s.gangue, 3);
         CHECK_REL(s.gangue_mass, 3*2500*4/3.0*3.14159265358979e-6, 1e-6);
-        CHECK_EQ(dem_sorting_get(world, outlet, 2, &sorting), DEM_OK);
-        CHECK_EQ(sorting.silent, 1);
-        CHECK_REL(sorting.efficiency_number, 0.4/2, 1e-12);
+        CHECK_EQ(sorting_get(world, outlet, 2, &sorted), DEM_OK);
+        CHECK_EQ(sorted.silent, 1);
+        CHECK_REL(sorted.efficiency_number, 0.4/2, 1e-12);
         scene_step(world, 600);
         dem_outlet_get(world, outlet[1], &s);
         CHECK_EQ((int)s.total, 1);
         CHECK_EQ(dem_bodies_get(world).count, 1);
-        CHECK_EQ(dem_sorting_get(world, outlet, 2, &sorting), DEM_OK);
-        CHECK_REL(sorting.efficiency_number, (0.4 + 1)/2, 1e-12);      /* eq 4.33 */
-        CHECK_REL(sorting.gangue_number, 3/6.0, 1e-12);
-        CHECK_REL(sorting.rate_number, 6/dem_world_time(world), 1e-9);
+        CHECK_EQ(sorting_get(world, outlet, 2, &sorted), DEM_OK);
+        CHECK_REL(sorted.efficiency_number, (0.4 + 1)/2, 1e-12);      /* eq 4.33 */
+        CHECK_REL(sorted.gangue_number, 3/6.0, 1e-12);
+        CHECK_REL(sorted.rate_number, 6/dem_world_time(world), 1e-9);
         dem_world_destroy(world);
     }
 
     TEST("fed = present + left, by class, at every step of a tumbling machine") {
         machine m;
-        dem_sorting sorting;
+        sorting sorted;
         int i, bad = 0;
         const int steps = 60000;                 /* 6 s */
         machine_build(&m, 1);
@@ -402,10 +403,10 @@ int main(int argc, char **argv) {
             if (!machine_balanced(&m)) bad = 1;
         }
         CHECK_EQ(bad, 0);
-        CHECK_EQ(dem_sorting_get(m.world, m.outlet, 2, &sorting), DEM_OK);
+        CHECK_EQ(sorting_get(m.world, m.outlet, 2, &sorted), DEM_OK);
         CHECK(dem_balance_get(m.world).left > 20);
-        CHECK_EQ(sorting.silent, 0);
-        CHECK(sorting.efficiency_number > 0.5);
+        CHECK_EQ(sorted.silent, 0);
+        CHECK(sorted.efficiency_number > 0.5);
         dem_world_destroy(m.world);
     }
 
@@ -546,7 +547,7 @@ int main(int argc, char **argv) {
         dem_outlet_desc o;
         dem_slabs_desc slabs = DEM_SLABS_DESC;
         dem_outlet none;
-        dem_sorting sorting;
+        sorting sorted;
         CHECK_EQ(dem_feed_add(world, &d).id, 0);
         CHECK_STR(dem_world_error(world), "needs `limited`");
         d.rate = 1;
@@ -566,8 +567,13 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_outlet_add(world, &o).id, 0);
         CHECK_STR(dem_world_error(world), "wanted 2 to 1");
         none.id = 3;
-        CHECK_EQ(dem_sorting_get(world, &none, 1, &sorting), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "outlet 3 does not exist");
+        CHECK_EQ(sorting_get(world, &none, 1, &sorted), DEM_ERROR_ARGUMENT);
+        CHECK_STR(sorted.error, "outlet 3, number 1 of 1, does not exist");
+        CHECK_EQ(sorting_get(world, &none, 1, 0), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(sorting_get(world, 0, 1, &sorted), DEM_ERROR_ARGUMENT);
+        CHECK_STR(sorted.error, "outlets is null");
+        CHECK_EQ(sorting_get(0, &none, 1, &sorted), DEM_ERROR_ARGUMENT);
+        CHECK_STR(sorted.error, "world is null");
         d = feed_of(stuff, 1);
         CHECK(dem_feed_add(world, &d).id > 0);
         slabs.count = 2;
