@@ -132,13 +132,15 @@ clean: ## remove build/
 	rm -rf build
 
 # ---- how a program is built: one source, one header ----
-$(TESTS): build/%: tests/%.c $(wildcard tests/*.h)
+# examples/*.h are companions of dem.h (moldyn.h, tumbler.h, ...), which tests and benches include, too
+HEADERS := $(wildcard examples/*.h)
+$(TESTS): build/%: tests/%.c $(wildcard tests/*.h) $(HEADERS)
 build/tests.c: tests/together.awk $(TOGETHER:build/%=tests/%.c)
 	awk -f tests/together.awk $(TOGETHER:build/%=tests/%.c) > $@
-build/tests: build/tests.c $(wildcard tests/*.h)
+build/tests: build/tests.c $(wildcard tests/*.h) $(HEADERS)
 $(LESSONS): build/%: examples/%.c
-$(STUDIES): build/%: examples/%.c $(wildcard examples/study.h)
-$(BENCHES): build/%: bench/%.c $(wildcard examples/study.h bench/*.h)
+$(STUDIES): build/%: examples/%.c $(HEADERS)
+$(BENCHES): build/%: bench/%.c $(HEADERS) $(wildcard bench/*.h)
 build/parallel: examples/mill.c
 build/write_files: tests/write_files.c
 # -O3 takes three times as long to compile as -O2 and is for those that run long
@@ -147,9 +149,9 @@ build/tests $(TESTS) $(LESSONS) $(STUDIES) $(BENCHES) build/write_files: dem.h b
 	$(COMPILE) $(LEVEL) -o $@ $(filter %/$(@F).c,$^) $(LINK)
 # benches say how they were built; bench.c also in single precision, and as plain as can be
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'
-build/bench_single: bench/bench.c $(wildcard examples/study.h bench/*.h) dem.h build/flags
+build/bench_single: bench/bench.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags
 	$(COMPILE) -DDEM_REAL=float -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP)) -DDEM_REAL=float"' -o $@ $< $(LINK)
-build/bench_O2: bench/bench.c $(wildcard examples/study.h bench/*.h) dem.h build/flags
+build/bench_O2: bench/bench.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags
 	$(CC) -std=c99 -O2 $(CPPFLAGS) -I. -DBENCH_LABEL='".O2"' -DBENCH_FLAGS='"-std=c99 -O2 $(OMP)"' -o $@ $< $(LINK)
 ifeq ($(wildcard examples/mill.c),)
 build/mill:

@@ -17,8 +17,13 @@ try() {
 
 try "parts of dem.h in order" "awk -f tests/tags.awk dem.h"
 
-# what is compiled: the header alone, the implementation, both in one file, two files linked
+# what is compiled: the header alone, the implementation, both in one file, two files linked; the headers
+# that stand beside dem.h and use its public part only
 user=tests/two_files.c
+companions=$dir/companions.c
+printf '#include "dem.h"\n' > $companions
+printf '#include "examples/%s.h"\n' drum moldyn sorting tumbler >> $companions
+try "companions use public names only" "! grep -n 'demi_\|DEMI_' examples/drum.h examples/moldyn.h examples/sorting.h examples/tumbler.h"
 one_file="-DDEM_IMPLEMENTATION $user"
 strict="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Werror"
 float="-DDEM_REAL=float"
@@ -52,6 +57,9 @@ for cc in gcc clang tcc; do
         try "$cc${real:+ float}: strict, DEM_NO_SPECIALIZE" "$cc -std=c99 -I. $real $strict -DDEM_NO_SPECIALIZE -c dem.c -o \$bin.o"
         try "$cc${real:+ float}: strict, DEM_NO_CLONES"     "$cc -std=c99 -I. $real $strict -DDEM_NO_CLONES -O1 -c dem.c -o \$bin.o"
     done
+    for real in "" $float; do
+        try "$cc${real:+ float}: strict, companions"        "$cc -std=c99 -I. $real $strict -O1 -c $companions -o \$bin.o"
+    done
     for source in bench/*.c; do
         try "$cc: strict, $source"                  "$cc -std=c99 -I. $strict $openmp -fsyntax-only $source"
     done
@@ -70,6 +78,9 @@ for cxx in g++ clang++; do
             try "$cxx -std=$std${real:+ float}: strict"     "$cxx -std=$std -I. $real $strict -O1 -x c++ -c dem.c -o \$bin.o"
         done
         try "$cxx -std=$std: strict, DEM_STATIC"   "$cxx -std=$std -I. $strict -DDEM_STATIC -x c++ -c dem.c -o \$bin.o"
+        for real in "" $float; do
+            try "$cxx -std=$std${real:+ float}: strict, companions" "$cxx -std=$std -I. $real $strict -O1 -x c++ -c $companions -o \$bin.o"
+        done
     done
     found gcc &&
     try "$cxx user, gcc implementation"            "gcc -I. -c dem.c -o \$bin.o && $cxx -I. -x c++ $user -x none \$bin.o -o \$bin -lm && \$bin"
