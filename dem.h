@@ -111,7 +111,6 @@
        DEM_NO_SPECIALIZE  always law by law, never all laws at once: slower, same bits
        DEM_NO_CLONES      kernels for the compiler's target only, not also for wider vectors
        DEM_DOMAIN_BODIES  bodies per domain, about (2048); another number gives other bits
-       DEM_ASSERT(x)      what checks for our own bugs; default: nothing
 
    Memory. All of it comes from the allocator of the world desc (default malloc and free). A step
    allocates nothing once the world is warm; it may grow lists when more grains come together than
@@ -1546,9 +1545,6 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 
 #ifndef DEM_DOMAIN_BODIES
 #define DEM_DOMAIN_BODIES 2048
-#endif
-#ifndef DEM_ASSERT
-#define DEM_ASSERT(x) ((void)0)
 #endif
 
 #define DEMI_MIN(a, b) ((a) < (b) ? (a) : (b))
@@ -16632,3 +16628,26 @@ DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
 }
 
 #endif /* DEM_IMPLEMENTATION */
+
+/* MIT License
+
+   Copyright (c) 2026 the dem.h authors
+
+   Permission is hereby granted, free of charge, to any person obtaining a copy
+   of this software and associated documentation files (the "Software"), to deal
+   in the Software without restriction, including without limitation the rights
+   to use, copy, modify, merge, publish, distribute, sublicense, and/or sell
+   copies of the Software, and to permit persons to whom the Software is
+   furnished to do so, subject to the following conditions:
+
+   The above copyright notice and this permission notice shall be included in all
+   copies or substantial portions of the Software.
+
+   THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR
+   IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY,
+   FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE
+   AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
+   LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
+   OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE
+   SOFTWARE.
+*/
