@@ -272,7 +272,7 @@ typedef struct dem_world dem_world;
 typedef enum dem_normal_law {
     DEM_NORMAL_HERTZ = 0,  /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92] */
     DEM_NORMAL_LINEAR,     /* F = kn delta + cn v; kn given, or from Young's modulus and a speed */
-    DEM_NORMAL_HYSTERETIC  /* [ALK07] eq 2.47: loads along kn delta, unloads and reloads with slope
+    DEM_NORMAL_HYSTERETIC, /* [ALK07] eq 2.47: loads along kn delta, unloads and reloads with slope
                               kun, pulls by at most kad delta; needs no dashpot */
 } dem_normal_law;
 
@@ -283,7 +283,7 @@ typedef enum dem_tangent_law {
     DEM_TANGENT_STEP,           /* [MIL]: -kt (v_t dt) - ct v_t, capped; without memory */
     DEM_TANGENT_SPRING,         /* [CS79]: -kt xi - ct v_t, xi = integral of v_t dt, capped */
     DEM_TANGENT_MINDLIN,  /* [DIR05]: increments of force, kt of the present overlap; capped */
-    DEM_TANGENT_MINDLIN_RESCALED/* [THO13]: the same, force scaled down with kt while unloading */
+    DEM_TANGENT_MINDLIN_RESCALED, /* [THO13]: the same, scaled down with kt while unloading */
 } dem_tangent_law;
 
 typedef enum dem_rolling_law {
@@ -291,7 +291,7 @@ typedef enum dem_rolling_law {
     DEM_ROLLING_NONE,
     DEM_ROLLING_STEP,       /* [MIL] section 4.5: mu_r R min(Fn, |w|), dimensions as printed */
     DEM_ROLLING_CONSTANT,   /* [ZHO99]: mu_r R* Fn against the relative spin; at rest up to that */
-    DEM_ROLLING_EPSD        /* [AI11]: elastic-plastic spring-dashpot, with memory */
+    DEM_ROLLING_EPSD,       /* [AI11]: elastic-plastic spring-dashpot, with memory */
 } dem_rolling_law;
 
 typedef enum dem_tension {
@@ -335,7 +335,7 @@ typedef enum dem_integrator {
     DEM_FORWARD_EULER,       /* first order, gains energy; what [MIL] used */
     DEM_SYMPLECTIC_EULER,    /* first order, energy bounded */
     DEM_POSITION_VERLET,     /* original Verlet: x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 */
-    DEM_LEAPFROG             /* velocities kept at half steps; same path as velocity Verlet */
+    DEM_LEAPFROG,            /* velocities kept at half steps; same path as velocity Verlet */
 } dem_integrator;
 
 /* How bodies that are not spheres turn. All keep angular momentum to round-off while nothing
@@ -1766,7 +1766,6 @@ typedef struct demi_shaped {
     dem_real inset;                /* the normal force passes at this part of arm_a */
     dem_real r_eff, m_eff;         /* m, kg */
     double lambda;                 /* of Perram and Wertheim, where to begin next; 0: unknown */
-    dem_real unit[DEMI_COEFS];     /* coefficients of 1 m and 1 kg; unit[DEMI_R_EFF] 0: not yet */
     dem_real memory[DEMI_MEMORY];
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as above */
@@ -1879,6 +1878,12 @@ typedef struct demi_since { double time; uint64_t steps; double dt; } demi_since
 /* Box ends of the linked linear list on one axis. */
 typedef struct demi_end { dem_real value; int32_t box; int32_t upper; } demi_end;
 
+/* What holds between two materials. */
+typedef struct demi_pair {
+    dem_pair given;
+    double damping;                /* damping ratio that gives its restitution */
+} demi_pair;
+
 /* The laws in force and where the memory of each begins (that of friction: at 0), see >>laws. */
 struct demi_law_row;
 typedef struct demi_laws {
@@ -1896,7 +1901,7 @@ struct dem_world {
 
     int material_count, pairs_changed;
     dem_material_desc materials[DEMI_MATERIALS];
-    dem_pair *pairs;               /* DEMI_MATERIALS x DEMI_MATERIALS */
+    demi_pair *pairs;              /* DEMI_MATERIALS x DEMI_MATERIALS */
 
     int form_count, form_capacity;
     demi_form *forms;
@@ -2162,37 +2167,102 @@ static void demi_array_free(dem_world *w, demi_array *array) {
    of which the last two may be absent. What is kept per contact is what these keep, one after the
    other: friction, rolling, normal; each says which of it are vectors.
    >>add-law: (1) a function dem_law_... and, at the end of its enum, a constant in >>api; (2) a
-   line at the end of its list here; (3) a sentence in tests/.
+   line at the end of its list here, for a normal law with its coefficients above; (3) a sentence in
+   tests/. docs/extending.md performs it, and `make recipes` performs docs/extending.md.
    --------------------------------------------------------------------------------------------- */
-/* constant, function, reals of memory, how many vectors they begin with, name in reports */
+/* What the rest of dem.h must know of a law. */
+enum {
+    DEMI_LINEAR = 0,               /* force ~ overlap; a stiffness that is given may be its own */
+    DEMI_HERTZIAN = 1,             /* force ~ overlap^(3/2), stiffness ~ sqrt(R) */
+    DEMI_BRANCHED = 2,             /* unloads along another line, and may adhere: kun, kad */
+    DEMI_MIDDLE = 4,               /* friction that asks for the stiffness amid the step */
+    DEMI_SPRUNG = 8                /* rolling that the time step must resolve */
+};
+/* What a normal law's coefficients are made of: moduli (Pa), radius (m), mass (kg), damping ratio
+   of one contact, and the speed (m/s) of a likely impact. */
+typedef struct demi_scales {
+    double E, G, R, m, beta, speed;
+    const dem_pair *pair;
+} demi_scales;
+typedef struct demi_coefs { double kn, cn, kt, ct, kun, kad; } demi_coefs;
+/* F = kn d^(3/2) + cn d^(1/4) v,  kn = 4/3 E* sqrt(R*),  cn = 2 sqrt(5/6) beta sqrt(2 E* sqrt(R*)
+   m*),  kt = 8 G* sqrt(R*) (times d^(1/2)),  ct = 2 sqrt(5/6) beta sqrt(8 G* sqrt(R*) m*)
+   [TSU92, MIL] */
+static void demi_coefs_hertz(const demi_scales *s, demi_coefs *k) {
+    const double root = sqrt(s->R);
+    k->kn = 4*s->E*root/3;
+    k->cn = 2*sqrt(5.0/6)*s->beta*sqrt(2*s->E*root*s->m);
+    k->kt = 8*s->G*root;
+    k->ct = 2*sqrt(5.0/6)*s->beta*sqrt(8*s->G*root*s->m);
+}
+/* F = kn d + cn v,  kn = (320/81 m* v^2 E*^4 R*^2)^(1/5) [DIM04] unless given,  cn = 2 beta sqrt(kn
+   m*) unless given,  kt = ratio kn,  ct = 2 beta sqrt(kt m*) */
+static void demi_coefs_linear(const demi_scales *s, demi_coefs *k) {
+    const double E = s->E, R = s->R, m = s->m, v = s->speed;
+    const dem_pair *p = s->pair;
+    k->kn = p->stiffness > 0 ? (double)p->stiffness : pow(320.0/81*m*v*v*E*E*E*E*R*R, 0.2);
+    k->cn = p->normal_damping > 0 ? (double)p->normal_damping : 2*s->beta*sqrt(k->kn*m);
+    k->kt = k->kn*(double)p->stiffness_ratio;
+    k->ct = 2*s->beta*sqrt(k->kt*m);
+}
+/* kn, kt, ct as linear,  kun = kn/e^2 ([ALK07] eq 2.43),  kad as given,  cn = 0 unless given */
+static void demi_coefs_hysteretic(const demi_scales *s, demi_coefs *k) {
+    const double e = (double)s->pair->restitution;
+    demi_coefs_linear(s, k);
+    k->cn = (double)s->pair->normal_damping;
+    k->kun = k->kn/(e*e);
+    k->kad = (double)s->pair->stiffness_adhesion;
+}
+/* constant, function, reals of memory, how many vectors they begin with, what is to be known, name
+   in reports; the coefficients of a normal law are demi_coefs_... */
 #define DEMI_NORMAL_LAWS(X) \
-    X(DEM_NORMAL_HERTZ,             hertz,            0, 0, "Hertz") \
-    X(DEM_NORMAL_LINEAR,            linear,           0, 0, "linear") \
-    X(DEM_NORMAL_HYSTERETIC,        hysteretic,       1, 0, "hysteretic")
+    X(DEM_NORMAL_HERTZ,             hertz,            0, 0, DEMI_HERTZIAN, "Hertz") \
+    X(DEM_NORMAL_LINEAR,            linear,           0, 0, DEMI_LINEAR, "linear") \
+    X(DEM_NORMAL_HYSTERETIC,        hysteretic,       1, 0, DEMI_BRANCHED, "hysteretic") \
+    /* the last */
 #define DEMI_TANGENT_LAWS(X) \
-    X(DEM_TANGENT_VISCOUS,          viscous,          0, 0, "viscous") \
-    X(DEM_TANGENT_STEP,             step,             0, 0, "step") \
-    X(DEM_TANGENT_SPRING,           spring,           3, 1, "spring") \
-    X(DEM_TANGENT_MINDLIN,          mindlin,          4, 1, "Mindlin") \
-    X(DEM_TANGENT_MINDLIN_RESCALED, mindlin_rescaled, 4, 1, "Mindlin, rescaled")
+    X(DEM_TANGENT_VISCOUS,          viscous,          0, 0, 0, "viscous") \
+    X(DEM_TANGENT_STEP,             step,             0, 0, 0, "step") \
+    X(DEM_TANGENT_SPRING,           spring,           3, 1, 0, "spring") \
+    X(DEM_TANGENT_MINDLIN,          mindlin,          4, 1, DEMI_MIDDLE, "Mindlin") \
+    X(DEM_TANGENT_MINDLIN_RESCALED, mindlin_rescaled, 4, 1, DEMI_MIDDLE, "Mindlin, rescaled") \
+    /* the last */
 #define DEMI_ROLLING_LAWS(X) \
-    X(DEM_ROLLING_STEP,             roll_step,        0, 0, "step") \
-    X(DEM_ROLLING_CONSTANT,         roll_constant,    3, 1, "constant torque") \
-    X(DEM_ROLLING_EPSD,             roll_epsd,        3, 1, "EPSD")
+    X(DEM_ROLLING_STEP,             roll_step,        0, 0, 0, "step") \
+    X(DEM_ROLLING_CONSTANT,         roll_constant,    3, 1, 0, "constant torque") \
+    X(DEM_ROLLING_EPSD,             roll_epsd,        3, 1, DEMI_SPRUNG, "EPSD") \
+    /* the last */
 
 typedef struct demi_law_row {
     int kind;                      /* the constant: its place in the table */
     dem_law_fn law;                /* null: none, or "chosen for you" */
-    int memory, vectors;
+    int memory, vectors, traits;
     const char *name;
+    void (*coefs)(const demi_scales *s, demi_coefs *k);    /* of a normal law; k: zeros before */
 } demi_law_row;
-#define DEMI_LAW_ROW(KIND, LAW, MEMORY, VECTORS, NAME) {KIND, dem_law_##LAW, MEMORY, VECTORS, NAME},
-static const demi_law_row demi_normal_laws[] = {DEMI_NORMAL_LAWS(DEMI_LAW_ROW)
-    {-1, 0, 0, 0, 0}};
-static const demi_law_row demi_tangent_laws[] = {{DEM_TANGENT_AUTO, 0, 0, 0, "auto"},
-    {DEM_TANGENT_NONE, 0, 0, 0, "none"}, DEMI_TANGENT_LAWS(DEMI_LAW_ROW) {-1, 0, 0, 0, 0}};
-static const demi_law_row demi_rolling_laws[] = {{DEM_ROLLING_AUTO, 0, 0, 0, "auto"},
-    {DEM_ROLLING_NONE, 0, 0, 0, "none"}, DEMI_ROLLING_LAWS(DEMI_LAW_ROW) {-1, 0, 0, 0, 0}};
+#define DEMI_NORMAL_ROW(KIND, LAW, MEMORY, VECTORS, TRAITS, NAME) \
+    {KIND, dem_law_##LAW, MEMORY, VECTORS, TRAITS, NAME, demi_coefs_##LAW},
+#define DEMI_LAW_ROW(KIND, LAW, MEMORY, VECTORS, TRAITS, NAME) \
+    {KIND, dem_law_##LAW, MEMORY, VECTORS, TRAITS, NAME, 0},
+static const demi_law_row demi_normal_laws[] = {DEMI_NORMAL_LAWS(DEMI_NORMAL_ROW)
+    {-1, 0, 0, 0, 0, 0, 0}};
+static const demi_law_row demi_tangent_laws[] = {{DEM_TANGENT_AUTO, 0, 0, 0, 0, "auto", 0},
+    {DEM_TANGENT_NONE, 0, 0, 0, 0, "none", 0}, DEMI_TANGENT_LAWS(DEMI_LAW_ROW)
+    {-1, 0, 0, 0, 0, 0, 0}};
+static const demi_law_row demi_rolling_laws[] = {{DEM_ROLLING_AUTO, 0, 0, 0, 0, "auto", 0},
+    {DEM_ROLLING_NONE, 0, 0, 0, 0, "none", 0}, DEMI_ROLLING_LAWS(DEMI_LAW_ROW)
+    {-1, 0, 0, 0, 0, 0, 0}};
+/* Which law is meant where the choice is left to us. */
+static int demi_tangent_meant(const dem_world *w) {
+    return w->desc.tangent_law == DEM_TANGENT_AUTO ? DEM_TANGENT_SPRING : (int)w->desc.tangent_law;
+}
+static int demi_rolling_meant(const dem_world *w) {
+    return w->desc.rolling_law == DEM_ROLLING_AUTO ? DEM_ROLLING_EPSD : (int)w->desc.rolling_law;
+}
+/* Has the normal law that the desc asks for such a trait? */
+DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {
+    return (demi_normal_laws[w->desc.normal_law].traits & trait) != 0;
+}
 /* Is there such a law in a table? */
 static int demi_law_known(const demi_law_row *rows, int kind) {
     int k;
@@ -2254,9 +2324,9 @@ static void demi_law(const dem_world *w, const dem_contact *c, dem_real *memory,
    numbers a law multiplies with. Restitution comes first, damping is derived from it.
    --------------------------------------------------------------------------------------------- */
 static dem_result demi_material_check(dem_world *w, const char *call, const dem_material_desc *d) {
-    const int linear_k = w->desc.normal_law != DEM_NORMAL_HERTZ && d->stiffness > 0;
+    const int linear_k = !demi_normal_is(w, DEMI_HERTZIAN) && d->stiffness > 0;
     /* restitution may then be left to the two stiffnesses */
-    const int two_k = w->desc.normal_law == DEM_NORMAL_HYSTERETIC && d->stiffness_unloading > 0;
+    const int two_k = demi_normal_is(w, DEMI_BRANCHED) && d->stiffness_unloading > 0;
     struct { const char *name; dem_real value; int ok; const char *limit; } rows[11];
     int i;
 #define DEMI_ROW(k, field, good, text) \
@@ -2327,88 +2397,6 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
     return p;
 }
 
-DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *desc) {
-    if (demi_null(w, "dem_material_add", desc, "desc")) return demi_no_material;
-    dem_material id; int i, n = w->material_count;
-    id.id = 0;
-    if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
-    if (n == DEMI_MATERIALS) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, the "
-                  "limit; reuse one", n);
-        return id;
-    }
-    w->materials[n] = *desc;
-    if (!(desc->restitution > 0))               /* hysteretic law: left to the stiffnesses */
-        w->materials[n].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
-    w->material_count = n + 1;
-    for (i = 0; i <= n; i++)
-        w->pairs[i*DEMI_MATERIALS + n] = w->pairs[n*DEMI_MATERIALS + i] =
-            demi_mix(&w->materials[i], &w->materials[n]);
-    demi_built(w, "dem_material_add");
-    id.id = n + 1;
-    return id;
-}
-
-static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
-    if (m.id < 1 || m.id > w->material_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; add "
-                         "it with dem_material_add and check what that returned", call, (int)m.id,
-                         w->material_count);
-    *index = m.id - 1;
-    return DEM_OK;
-}
-
-DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
-                                dem_pair *pair) {
-    if (demi_null(world, "dem_pair_get", pair, "pair")) return DEM_ERROR_ARGUMENT;
-    dem_world *w = (dem_world *)world;          /* only the error sentence is written */
-    int i = 0, j = 0;
-    if (demi_material_index(w, "dem_pair_get", a, &i) ||
-        demi_material_index(w, "dem_pair_get", b, &j))
-        return DEM_ERROR_ARGUMENT;
-    *pair = w->pairs[i*DEMI_MATERIALS + j];
-    return DEM_OK;
-}
-
-DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
-    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
-    int i = 0, j = 0;
-    const char *bad = 0, *limit = "";
-    dem_real value = 0;
-    if (demi_material_index(w, "dem_pair_set", a, &i) ||
-        demi_material_index(w, "dem_pair_set", b, &j))
-        return DEM_ERROR_ARGUMENT;
-#define DEMI_BAD(field, good, text) \
-    if (!bad && (!demi_finite(p->field) || !(good))) { \
-        bad = #field; value = p->field; limit = text; \
-    }
-    DEMI_BAD(young_eff, p->young_eff > 0 || (p->young_eff >= 0 && p->stiffness > 0 &&
-             w->desc.normal_law != DEM_NORMAL_HERTZ), "> 0 Pa")
-    DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
-    DEMI_BAD(restitution, p->restitution > 0 && p->restitution <= 1, "> 0 and <= 1")
-    DEMI_BAD(friction, p->friction >= 0, ">= 0")
-    DEMI_BAD(friction_static, DEMI_ABS(p->friction_static) <= 0 ||
-             p->friction_static >= p->friction,
-             "0, to be the same as the sliding friction, or at least that")
-    DEMI_BAD(rolling_friction, p->rolling_friction >= 0, ">= 0")
-    DEMI_BAD(stiffness, p->stiffness >= 0, ">= 0 N/m")
-    DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, ">= 0")
-    DEMI_BAD(tangent_damping, p->tangent_damping >= 0, ">= 0")
-    DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, ">= 0 N/m")
-    DEMI_BAD(normal_damping, p->normal_damping >= 0, ">= 0 N s/m")
-#undef DEMI_BAD
-    if (bad)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
-                         "must be %s; start "
-                         "from dem_pair_get and change what differs", bad, i + 1, j + 1,
-                         (double)value, limit);
-    w->pairs[i*DEMI_MATERIALS + j] = w->pairs[j*DEMI_MATERIALS + i] = *p;
-    w->pairs_changed = 1;                       /* the next step makes a new list of it */
-    demi_built(w, "dem_pair_set");
-    w->dt_valid = 0;
-    return DEM_OK;
-}
-
 /* beta = -ln e / sqrt(pi^2 + ln^2 e), the share of critical damping that gives restitution e */
 static double demi_damping_ratio(double e) {
     const double l = log(e);
@@ -2437,73 +2425,142 @@ static double demi_damping_for(double e, dem_tension tension) {
     return (lo + hi)/2;
 }
 
-/* The coefficients of one contact.
-     Hertz   F = kn d^(3/2) + cn d^(1/4) v,  kn = 4/3 E* sqrt(R*),  cn = 2 sqrt(5/6) beta sqrt(2 E*
-             sqrt(R*) m*)
-             kt = 8 G* sqrt(R*) (times d^(1/2)),  ct = 2 sqrt(5/6) beta sqrt(8 G* sqrt(R*) m*)
-                                                  [TSU92, MIL]
-     linear  F = kn d + cn v,  kn = (320/81 m* v^2 E*^4 R*^2)^(1/5) [DIM04] unless given, cn = 2
-             beta sqrt(kn m*)
-             kt = ratio kn,  ct = 2 beta sqrt(kt m*)
-     hysteretic  kn, kt, ct as linear, kun = kn/e^2 ([ALK07] eq 2.43), kad as given, cn = 0; both
-                 laws
-             take normal_damping for cn when it is given
+static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
+    demi_pair *pair = &w->pairs[i*DEMI_MATERIALS + j];
+    pair->given = *p;
+    pair->damping = demi_damping_for((double)p->restitution, w->desc.tension);
+    w->pairs[j*DEMI_MATERIALS + i] = *pair;
+}
+static dem_real demi_static_friction(const dem_world *w, int a, int b) {
+    const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
+    return DEMI_MAX(p->friction, p->friction_static);
+}
+DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *desc) {
+    if (demi_null(w, "dem_material_add", desc, "desc")) return demi_no_material;
+    dem_material id; int i, n = w->material_count;
+    id.id = 0;
+    if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
+    if (n == DEMI_MATERIALS) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, the "
+                  "limit; reuse one", n);
+        return id;
+    }
+    w->materials[n] = *desc;
+    if (!(desc->restitution > 0))               /* hysteretic law: left to the stiffnesses */
+        w->materials[n].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
+    w->material_count = n + 1;
+    for (i = 0; i <= n; i++) {
+        const dem_pair pair = demi_mix(&w->materials[i], &w->materials[n]);
+        demi_pair_put(w, i, n, &pair);
+    }
+    demi_built(w, "dem_material_add");
+    id.id = n + 1;
+    return id;
+}
+
+static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
+    if (m.id < 1 || m.id > w->material_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; add "
+                         "it with dem_material_add and check what that returned", call, (int)m.id,
+                         w->material_count);
+    *index = m.id - 1;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
+                                dem_pair *pair) {
+    if (demi_null(world, "dem_pair_get", pair, "pair")) return DEM_ERROR_ARGUMENT;
+    dem_world *w = (dem_world *)world;          /* only the error sentence is written */
+    int i = 0, j = 0;
+    if (demi_material_index(w, "dem_pair_get", a, &i) ||
+        demi_material_index(w, "dem_pair_get", b, &j))
+        return DEM_ERROR_ARGUMENT;
+    *pair = w->pairs[i*DEMI_MATERIALS + j].given;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, const dem_pair *p) {
+    if (demi_null(w, "dem_pair_set", p, "pair")) return DEM_ERROR_ARGUMENT;
+    int i = 0, j = 0;
+    const char *bad = 0, *limit = "";
+    dem_real value = 0;
+    if (demi_material_index(w, "dem_pair_set", a, &i) ||
+        demi_material_index(w, "dem_pair_set", b, &j))
+        return DEM_ERROR_ARGUMENT;
+#define DEMI_BAD(field, good, text) \
+    if (!bad && (!demi_finite(p->field) || !(good))) { \
+        bad = #field; value = p->field; limit = text; \
+    }
+    DEMI_BAD(young_eff, p->young_eff > 0 || (p->young_eff >= 0 && p->stiffness > 0 &&
+             !demi_normal_is(w, DEMI_HERTZIAN)), "> 0 Pa")
+    DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
+    DEMI_BAD(restitution, p->restitution > 0 && p->restitution <= 1, "> 0 and <= 1")
+    DEMI_BAD(friction, p->friction >= 0, ">= 0")
+    DEMI_BAD(friction_static, DEMI_ABS(p->friction_static) <= 0 ||
+             p->friction_static >= p->friction,
+             "0, to be the same as the sliding friction, or at least that")
+    DEMI_BAD(rolling_friction, p->rolling_friction >= 0, ">= 0")
+    DEMI_BAD(stiffness, p->stiffness >= 0, ">= 0 N/m")
+    DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, ">= 0")
+    DEMI_BAD(tangent_damping, p->tangent_damping >= 0, ">= 0")
+    DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, ">= 0 N/m")
+    DEMI_BAD(normal_damping, p->normal_damping >= 0, ">= 0 N s/m")
+#undef DEMI_BAD
+    if (bad)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
+                         "must be %s; start "
+                         "from dem_pair_get and change what differs", bad, i + 1, j + 1,
+                         (double)value, limit);
+    demi_pair_put(w, i, j, p);
+    w->pairs_changed = 1;                       /* the next step makes a new list of it */
+    demi_built(w, "dem_pair_set");
+    w->dt_valid = 0;
+    return DEM_OK;
+}
+
+/* The coefficients of one contact: its law's (>>laws), and what holds for all.
    DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
    between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff, m_eff: the
    standard ones. Checked by "the thesis's eight coefficients". */
 static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff,
                               int wall, dem_real *out) {
-    const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b];
-    const double beta = demi_damping_for((double)p->restitution, w->desc.tension);
-    double E = (double)p->young_eff, G = (double)p->shear_eff, kn, cn, kt, ct, R = r_eff, m = m_eff;
+    const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
+    demi_scales s = {(double)p->young_eff, (double)p->shear_eff, r_eff, m_eff, 0, 1, p};
+    demi_coefs k = {0, 0, 0, 0, 0, 0};
+    s.beta = w->pairs[a*DEMI_MATERIALS + b].damping;
+    if (w->desc.impact_speed > 0) s.speed = (double)w->desc.impact_speed;
     if (mill) {  /* material b's own moduli: the wall's, or the grain's */
         const dem_material_desc *d = &w->materials[b];
-        E = (double)d->young;
-        G = E/(2*(1 + (double)d->poisson));
-        if (wall) { R /= 2; m /= 2; }
+        s.E = (double)d->young;
+        s.G = s.E/(2*(1 + (double)d->poisson));
+        if (wall) { s.R /= 2; s.m /= 2; }
     }
-    if (w->desc.normal_law == DEM_NORMAL_HERTZ) {
-        const double root = sqrt(R);
-        kn = 4*E*root/3;
-        cn = 2*sqrt(5.0/6)*beta*sqrt(2*E*root*m);
-        kt = 8*G*root;
-        ct = 2*sqrt(5.0/6)*beta*sqrt(8*G*root*m);
-        if (mill && !wall) {                    /* of half the overlap */
-            kn *= pow(0.5, 1.5); kt *= sqrt(0.5);
-            cn *= pow(0.5, 0.25); ct *= pow(0.5, 0.25);
-        }
-    } else {
-        const double v = w->desc.impact_speed > 0 ? (double)w->desc.impact_speed : 1;
-        kn = p->stiffness > 0 ? (double)p->stiffness : pow(320.0/81*m*v*v*E*E*E*E*R*R, 0.2);
-        cn = w->desc.normal_law == DEM_NORMAL_HYSTERETIC ? 0 : 2*beta*sqrt(kn*m);
-        if (p->normal_damping > 0) cn = (double)p->normal_damping;
-        kt = kn*(double)p->stiffness_ratio;
-        ct = 2*beta*sqrt(kt*m);
+    demi_normal_laws[w->desc.normal_law].coefs(&s, &k);
+    if (mill && !wall && demi_normal_is(w, DEMI_HERTZIAN)) {   /* of half the overlap */
+        k.kn *= pow(0.5, 1.5); k.kt *= sqrt(0.5);
+        k.cn *= pow(0.5, 0.25); k.ct *= pow(0.5, 0.25);
     }
-    ct *= (double)p->tangent_damping;
-    out[DEMI_KN] = (dem_real)kn; out[DEMI_CN] = (dem_real)cn; out[DEMI_KT] = (dem_real)kt;
-    out[DEMI_CT] = (dem_real)ct;
+    k.ct *= (double)p->tangent_damping;
+    out[DEMI_KN] = (dem_real)k.kn; out[DEMI_CN] = (dem_real)k.cn;
+    out[DEMI_KT] = (dem_real)k.kt; out[DEMI_CT] = (dem_real)k.ct;
+    out[DEMI_K_UN] = (dem_real)k.kun; out[DEMI_K_AD] = (dem_real)k.kad;
     out[DEMI_MU] = p->friction;
-    out[DEMI_MU_STATIC] = DEMI_MAX(p->friction, p->friction_static);
+    out[DEMI_MU_STATIC] = demi_static_friction(w, a, b);
     out[DEMI_MU_ROLL] = p->rolling_friction;
     out[DEMI_R_EFF] = (dem_real)r_eff;
-    out[DEMI_K_UN] = out[DEMI_K_AD] = 0;
-    if (w->desc.normal_law != DEM_NORMAL_HYSTERETIC) return;
-    out[DEMI_K_UN] = (dem_real)(kn/((double)p->restitution*(double)p->restitution));
-    out[DEMI_K_AD] = p->stiffness_adhesion;
 }
 
 /* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi
    sqrt(m/k) (with damping pi/sqrt(k/m - (c/2m)^2) [ALK07] eq 2.21; near the critical damping and
-   beyond, where that has no end, pi 2m/c: the dashpot's own time). Hysteretic: that of its
+   beyond, where that has no end, pi 2m/c: the dashpot's own time). Branched: that of its
    steepest branch, kun, which is what a time step has to follow; the contact itself lasts longer,
    eq 2.45. */
 static double demi_contact_time(const dem_world *w, const dem_real *coef, double m_eff,
                                 double speed) {
-    const int hysteretic = w->desc.normal_law == DEM_NORMAL_HYSTERETIC;
-    const double k = (double)coef[hysteretic ? DEMI_K_UN : DEMI_KN], c = (double)coef[DEMI_CN];
-    if (w->desc.normal_law != DEM_NORMAL_HERTZ) {
+    const int branched = demi_normal_is(w, DEMI_BRANCHED);
+    const double k = (double)coef[branched ? DEMI_K_UN : DEMI_KN], c = (double)coef[DEMI_CN];
+    if (!demi_normal_is(w, DEMI_HERTZIAN)) {
         const double eta = c/(2*m_eff);
         return DEMI_PI/DEMI_MAX(sqrt(DEMI_MAX(k/m_eff - eta*eta, 0)), eta);
     }
@@ -2560,12 +2617,10 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
     out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT];
     out->ct = coef[DEMI_CT];
     out->kun = coef[DEMI_K_UN]; out->kad = coef[DEMI_K_AD];
-    out->damping_ratio =
-        (dem_real)demi_damping_for((double)w->pairs[i*DEMI_MATERIALS + j].restitution,
-                                   w->desc.tension);
+    out->damping_ratio = (dem_real)w->pairs[i*DEMI_MATERIALS + j].damping;
     out->contact_time = (dem_real)demi_contact_time(w, coef, m, w->desc.impact_speed > 0
                                                     ? (double)w->desc.impact_speed : 1);
-    if (w->desc.normal_law == DEM_NORMAL_HYSTERETIC)
+    if (demi_normal_is(w, DEMI_BRANCHED))
         out->contact_time = (dem_real)(DEMI_PI/2*(sqrt(m/(double)out->kn) +
                                                   sqrt(m/(double)out->kun)));
     return DEM_OK;
@@ -2578,7 +2633,7 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
             "kt/kn\n");
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
-            const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j];
+            const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
             fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %.4g\n",
                     i + 1, j + 1,
                     (double)p->young_eff, (double)p->shear_eff, (double)p->restitution,
@@ -6579,7 +6634,6 @@ static void demi_shaped_move(dem_world *w, int stride) {
                 for (i = 0; i < w->memory_stride; i++)
                     if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
             }
-            c.unit[DEMI_R_EFF] = 0;             /* materials may have changed */
             w->shaped_next[e++] = c;
         }
         w->domains[d].shaped = 0;
@@ -6924,17 +6978,13 @@ static void demi_effects(dem_world *w) {
     int i, j, friction = 0, rolling = 0;
     for (i = 0; i < w->material_count; i++)
         for (j = 0; j < w->material_count; j++) {
-            friction |= w->pairs[i*DEMI_MATERIALS + j].friction > 0;
-            friction |= w->pairs[i*DEMI_MATERIALS + j].friction_static > 0;
-            rolling |= w->pairs[i*DEMI_MATERIALS + j].rolling_friction > 0;
+            const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
+            friction |= p->friction > 0 || p->friction_static > 0;
+            rolling |= p->rolling_friction > 0;
         }
     w->normal = (int)w->desc.normal_law;
-    w->tangent = (int)w->desc.tangent_law;
-    w->rolling = (int)w->desc.rolling_law;
-    if (w->tangent == DEM_TANGENT_AUTO) w->tangent = DEM_TANGENT_SPRING;
-    if (w->rolling == DEM_ROLLING_AUTO) w->rolling = DEM_ROLLING_EPSD;
-    if (!friction) w->tangent = DEM_TANGENT_NONE;
-    if (!rolling) w->rolling = DEM_ROLLING_NONE;
+    w->tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
+    w->rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
     demi_effects_memory(w);
     w->uniform = w->count > 0;
     w->fixed_count = 0;
@@ -8291,13 +8341,13 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_pu
             PUT(t, q, &f, ALL); \
         DEMI_ROWS_END \
     }
-#define DEMI_NORMAL_STAGES(KIND, LAW, MEMORY, VECTORS, TEXT) \
+#define DEMI_NORMAL_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_normal, MEMORY, 0, demi_normal_put) \
     DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, s.at_normal, MEMORY, 1, demi_normal_put)
-#define DEMI_TANGENT_STAGES(KIND, LAW, MEMORY, VECTORS, TEXT) \
+#define DEMI_TANGENT_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     DEMI_LAW_STAGE(demi_stage_##LAW, LAW, 0, MEMORY, 0, demi_tangent_put) \
     DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, 0, MEMORY, 1, demi_tangent_put)
-#define DEMI_ROLLING_STAGES(KIND, LAW, MEMORY, VECTORS, TEXT) \
+#define DEMI_ROLLING_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_rolling, MEMORY, 1, demi_rolling_put)
 DEMI_NORMAL_LAWS(DEMI_NORMAL_STAGES)
 DEMI_TANGENT_LAWS(DEMI_TANGENT_STAGES)
@@ -8421,8 +8471,10 @@ DEMI_CLONES static void demi_stage_own_inlined(demi_tile *DEMI_RESTRICT t, const
 
 /* --- which stages a scene runs --- */
 typedef struct demi_stage_row { demi_stage common, all; } demi_stage_row;
-#define DEMI_STAGE_ROW(KIND, LAW, MEMORY, VECTORS, TEXT) {demi_stage_##LAW, demi_stage_##LAW##_all},
-#define DEMI_STAGE_ROW_ONE(KIND, LAW, MEMORY, VECTORS, TEXT) {demi_stage_##LAW, demi_stage_##LAW},
+#define DEMI_STAGE_ROW(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    {demi_stage_##LAW, demi_stage_##LAW##_all},
+#define DEMI_STAGE_ROW_ONE(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    {demi_stage_##LAW, demi_stage_##LAW},
 /* in the order of the rows in >>laws */
 static const demi_stage_row demi_normal_stages[] = {DEMI_NORMAL_LAWS(DEMI_STAGE_ROW) {0, 0}};
 static const demi_stage_row demi_tangent_stages[] = {{0, 0}, {0, 0},
@@ -8458,7 +8510,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt) {
     const int own = w->desc.law != 0;
     const int turns = laws->tangent->law != 0, rolls = laws->rolling->law != 0;
     const int all = w->desc.ledger || !demi_laws_usual(w);
-    const int precise = all || rolls || w->tangent >= DEM_TANGENT_MINDLIN;
+    const int precise = all || rolls || laws->tangent->traits & DEMI_MIDDLE;
     demi_run r;
     int k = 0;
     memset(&r, 0, sizeof r);
@@ -8508,13 +8560,14 @@ static void demi_tile_begin(const dem_world *w, const demi_run *r, demi_tile *t)
 /* The whole tile; energies are summed in order. */
 static void demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *r,
                               demi_tile *DEMI_RESTRICT t, double *energy) {
+    const int branched = demi_normal_is(w, DEMI_BRANCHED);
     const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     int q, k;
     r->span = span;
     for (q = 0; q < r->keep; q++)
         demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
     for (q = 0; q < DEMI_PAIR_COLUMNS && !r->uniform; q++)
-        if (w->normal == DEM_NORMAL_HYSTERETIC || q < DEMI_K_UN || q > DEMI_K_AD)
+        if (branched || q < DEMI_K_UN || q > DEMI_K_AD)
             demi_row_copy(t->coef[q], span->coef + (size_t)q*span->stride, full);
     demi_tile_fetch(r, full, t);
     for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
@@ -8817,7 +8870,7 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
         for (q = from; q < p.count && !(p.at[q].share < DEM_R(-1e-3)); q++) continue;
         if (q < p.count)                        /* something takes away: more than it should? */
             demi_places_rings(wall, w->wall_element + base + k, end - k, x, part, within,
-                              w->desc.normal_law == DEM_NORMAL_HERTZ ? DEM_R(2.5) : DEM_R(2),
+                              demi_normal_is(w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
                               (demi_link *)w->touching_links_.data +
                               w->domains[d].touching_first, &p);
         for (q = from; q < p.count; q++) p.at[q].shift = shift;
@@ -9106,7 +9159,6 @@ static void demi_shaped_recall(demi_shaped *c, const demi_shaped *old) {
     c->arm_before_a = old ? old->arm_a : c->arm_a;
     c->arm_before_b = old ? old->arm_b : c->arm_b;
     if (!old) return;
-    memcpy(c->unit, old->unit, sizeof c->unit);
     memcpy(c->memory, old->memory, sizeof c->memory);
 }
 
@@ -9142,7 +9194,7 @@ DEM_INLINE void demi_shaped_aside(demi_shaped *c, dem_vec3 other, dem_real push)
 }
 /* What the shared energy (below) asks of contacts whose shares are known: lift, aside, grip. */
 static void demi_shaped_lift(const dem_world *w, demi_shaped *c, int n) {
-    const int hertz = w->desc.normal_law == DEM_NORMAL_HERTZ;
+    const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
     const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2);
     dem_real rate;
     int i, k;
@@ -9598,29 +9650,15 @@ static int demi_touch(dem_world *w) {
 
 /* --- respond --- */
 
-/* Coefficients for this contact's radius and mass from those of 1 m and 1 kg: their powers are
-   those in demi_coefficients. */
+/* Coefficients of a contact whose overlap grows by `slope` per m of approach. */
 static void demi_shaped_coefs(const dem_world *w, const demi_shaped *k, int a, int b,
                               dem_real *out) {
-    const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b];
-    const dem_real R = k->r_eff, m = DEMI_SQRT(k->m_eff);
-    dem_real stiff = 1, damp = m;
-    if (w->desc.normal_law == DEM_NORMAL_HERTZ) {
-        stiff = DEMI_SQRT(R);
-        damp = m*DEMI_SQRT(stiff);
-    } else if (!(p->stiffness > 0)) {
-        stiff = (dem_real)pow((double)(k->m_eff*R*R), 0.2);
-        damp = m*DEMI_SQRT(stiff);
-    }
-    memcpy(out, k->unit, sizeof k->unit);
-    out[DEMI_KN] *= stiff*k->slope;
-    out[DEMI_K_UN] *= stiff*k->slope;
+    demi_coefficients(w, a, b, (double)k->r_eff, (double)k->m_eff,
+                      k->b < 0 && w->walls[k->wall].kind != DEMI_WALL_GRAINS, out);
+    out[DEMI_KN] *= k->slope;
+    out[DEMI_K_UN] *= k->slope;
     out[DEMI_K_AD] *= k->slope;
-    out[DEMI_CN] *= (p->normal_damping > 0 && w->desc.normal_law != DEM_NORMAL_HERTZ ? 1 : damp)*
-        k->slope;
-    out[DEMI_KT] *= stiff;
-    out[DEMI_CT] *= damp;
-    out[DEMI_R_EFF] = R;
+    out[DEMI_CN] *= k->slope;
 }
 /* Velocity of a body at an arm: now, or its mean over the step. */
 static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int body, dem_vec3 arm) {
@@ -9716,9 +9754,6 @@ static void demi_shaped_respond(dem_world *w, int d) {
             domain->shaped_walls += b < 0;
             continue;
         }
-        if (!(c->unit[DEMI_R_EFF] > 0))
-            demi_coefficients(w, ma, mb, 1, 1, b < 0 && w->walls[c->wall].kind != DEMI_WALL_GRAINS,
-                              c->unit);
         demi_shaped_coefs(w, c, ma, mb, coef);
         demi_shaped_fill(w, c, coef, dt, &contact, &surface);
         still = demi_shaped_still(w, c, &contact);
@@ -10157,7 +10192,9 @@ static const demi_integrator_row demi_integrator_rows[] = {     /* in the order 
     {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1},
     {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1},
     {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2},
-    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2}};
+    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2},
+};
+enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
 
 static void demi_domain_finish(dem_world *w, int d) {
     demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
@@ -11217,7 +11254,7 @@ static double demi_advise_radius(const dem_world *w, int body) {
     scale = r/(double)form->radius;
     r = (double)form->equal*scale*pow(form->light, 1.0/3);
     sharp = r/((double)form->blunt*scale);
-    return w->desc.normal_law == DEM_NORMAL_HERTZ && sharp < 1 ? r*pow(sharp, 1.0/6) : r;
+    return demi_normal_is(w, DEMI_HERTZIAN) && sharp < 1 ? r*pow(sharp, 1.0/6) : r;
 }
 /* The largest step at which x'' = -omega2 x - rate x' keeps still by velocity Verlet with predicted
    velocities: omega2 dt^2/4 + rate dt = 1, s. (For the other integrators about the same.) */
@@ -11234,16 +11271,16 @@ static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef
     demi_stiffness s;
     s.k = (double)coef[DEMI_KN];
     s.kt = (double)coef[DEMI_KT]; s.c = (double)coef[DEMI_CN]; s.ct = (double)coef[DEMI_CT];
-    if (w->desc.normal_law == DEM_NORMAL_HERTZ) {
+    if (demi_normal_is(w, DEMI_HERTZIAN)) {
         s.k *= 1.5*root; s.kt *= root;
         s.c *= sqrt(root); s.ct *= sqrt(root);
     }
     s.kr = s.cr = 0;
-    if (w->desc.rolling_law == DEM_ROLLING_AUTO || w->desc.rolling_law == DEM_ROLLING_EPSD) {
+    if (demi_rolling_laws[demi_rolling_meant(w)].traits & DEMI_SPRUNG) {
         s.kr = 2.25*s.k*arm*arm;
         s.cr = 0.6*sqrt(s.kr*1.4*m_eff*r*r);
     }
-    if (w->desc.normal_law == DEM_NORMAL_HYSTERETIC) s.k = (double)coef[DEMI_K_UN];
+    if (demi_normal_is(w, DEMI_BRANCHED)) s.k = (double)coef[DEMI_K_UN];
     if (w->desc.tangent_law == DEM_TANGENT_NONE || !(coef[DEMI_MU_STATIC] > 0)) s.kt = s.ct = 0;
     if (w->desc.law) {
         memset(&s, 0, sizeof s);
@@ -12412,7 +12449,7 @@ static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body
         const demi_shaped *c = w->shaped_now + (size_t)d*(size_t)w->shaped_stride + (k - spheres);
         *body = c->a;
         *normal = c->normal;
-        *mu = c->unit[DEMI_MU_STATIC];
+        *mu = demi_static_friction(w, w->body_material[c->a] - 1, w->walls[wall].material);
         return c->b < 0 && c->wall == wall;
     }
 }
@@ -13701,8 +13738,11 @@ static uint64_t demi_digest_material(const dem_world *w, int i) {
     return demi_hash(DEMI_HASH_START, &w->materials[i], sizeof w->materials[i]);
 }
 static uint64_t demi_digest_pairs(const dem_world *w, int i) {
-    return demi_hash(DEMI_HASH_START, &w->pairs[i*DEMI_MATERIALS],
-                     (size_t)w->material_count*sizeof(dem_pair));
+    uint64_t h = DEMI_HASH_START;
+    int j;
+    for (j = 0; j < w->material_count; j++)
+        h = demi_hash(h, &w->pairs[i*DEMI_MATERIALS + j].given, sizeof(dem_pair));
+    return h;
 }
 static uint64_t demi_digest_form(const dem_world *w, int i) {
     const demi_form *form = &w->forms[i];
@@ -14261,10 +14301,7 @@ static int demi_sane(double x, double least) { return demi_finite_double(x) && x
 
 static int demi_numbers_check(const demi_reader *r) {
     const dem_world *t = r->t, *w = r->w;
-    const int tangent = w->desc.tangent_law == DEM_TANGENT_AUTO ? (int)DEM_TANGENT_SPRING
-        : (int)w->desc.tangent_law;
-    const int rolling = w->desc.rolling_law == DEM_ROLLING_AUTO ? (int)DEM_ROLLING_EPSD
-        : (int)w->desc.rolling_law;
+    const int tangent = demi_tangent_meant(w), rolling = demi_rolling_meant(w);
     const double positive[] = {t->skin, t->reach, t->wall_reach, t->skin_auto,
         t->assumed_speed, t->near_span, t->near_age, t->near_margin, t->near_drift, t->near_kick,
         t->near_creep, t->speed_max, t->half_kick, (double)t->radius_min, (double)t->radius_max,
@@ -14735,7 +14772,7 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         d->slider > DEM_SLIDER_REST)
         return "dem_world_create: friction_load or slider is unknown, must be one of the enum "
                "values; start from DEM_WORLD_DESC";
-    if ((int)d->integrator < 0 || d->integrator > DEM_LEAPFROG || (int)d->search < 0 ||
+    if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
         d->search > DEM_SEARCH_LEVELS)
         return "dem_world_create: integrator or search is unknown, must be one of the enum values; "
             "start from DEM_WORLD_DESC";
@@ -14768,7 +14805,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->slot_free = w->slot_pending = -1;
     w->synced = 1;
     w->orienting = desc->orientations != 0;
-    w->pairs = (dem_pair *)demi_alloc(w, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
+    w->pairs = (demi_pair *)demi_alloc(w, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(demi_pair));
     w->domains = (demi_domain *)demi_alloc(w, DEMI_DOMAINS, sizeof(demi_domain));
     w->cross_incoming_start = (int *)demi_alloc(w, DEMI_DOMAINS + 1, sizeof(int));
     if (!w->pairs || !w->domains || !w->cross_incoming_start) {
@@ -14786,7 +14823,7 @@ DEM_API void dem_world_destroy(dem_world *w) {
     for (i = 0; i < w->form_count; i++) demi_form_free(w, &w->forms[i]);
     demi_free(w, w->forms, (size_t)w->form_capacity, sizeof(demi_form));
     demi_state_free(w);
-    demi_free(w, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
+    demi_free(w, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(demi_pair));
     allocator = w->desc.allocator;
     demi_raw_free(&allocator, w, sizeof *w);
 }
@@ -16079,7 +16116,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     if (!w) return 0;
     if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
-    memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(dem_pair));
+    memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     w->material_count = from->material_count;
     w->visitor = (uint8_t *)demi_alloc(w, slots + 1, 1);
     w->slot_index = (int32_t *)demi_alloc(w, slots + 1, sizeof(int32_t));
@@ -16214,7 +16251,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->dt = w->dt;               h->dt_valid = w->dt_valid;   h->primed = w->primed;
     h->assumed_speed = w->assumed_speed;
     h->forces_valid = w->forces_valid && !w->pairs_changed;
-    h->pairs = (dem_pair *)demi_alloc(h, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
+    h->pairs = (demi_pair *)demi_alloc(h, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(demi_pair));
     h->pos = (dem_real *)demi_alloc(h, most, 4*sizeof(dem_real));
     h->vel = (dem_real *)demi_alloc(h, most, 4*sizeof(dem_real));
     h->inv_mass = (dem_real *)demi_alloc(h, most, sizeof(dem_real));
@@ -16225,7 +16262,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     s->slabs = (demi_slab *)demi_alloc(h, (size_t)s->local, sizeof(demi_slab));
     if (!h->pairs || !h->pos || !h->vel || !h->inv_mass || !h->body_material || !s->values ||
         !s->borders || !s->slabs) return 0;
-    memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(dem_pair));
+    memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     return 1;
 }
 /* First borders: the same number of grains in every slab. */
@@ -16271,7 +16308,7 @@ DEM_API void dem_slabs_destroy(dem_slabs *s) {
     demi_array_free(h, &s->mine.bytes);
     demi_array_free(h, &s->all.bytes);
     demi_array_free(h, &s->known);
-    demi_free(h, h->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(dem_pair));
+    demi_free(h, h->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(demi_pair));
     demi_free(h, h->pos, most, 4*sizeof(dem_real));
     demi_free(h, h->vel, most, 4*sizeof(dem_real));
     demi_free(h, h->inv_mass, most, sizeof(dem_real));
