@@ -28,7 +28,7 @@ BENCH_ALSO := $(if $(wildcard bench/bench.c),build/bench_single build/bench_O2)
 hash := \#
 
 # ---- what the compiler can do; asked only when something is to be compiled ----
-ifneq ($(filter-out help clean tags parts check fuzz docs,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help clean tags parts recipes check fuzz docs,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -46,7 +46,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run test hard examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers tags parts snippets clean
+.PHONY: help all run test hard examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers tags parts recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -115,6 +115,9 @@ readers: build/write_files ## write every file format and open it with VTK and A
 
 tags: ## every part named in dem.h's contents stands there once and in order; parts and functions keep their limits
 	@awk -f tests/tags.awk dem.h
+
+recipes: ## apply the patches of docs/extending.md to a copy of dem.h and use what they add
+	@CC="$(CC)" sh tests/recipes.sh
 
 parts: ## cut dem.h into its parts, for reading: build/parts/01-manual.h ...
 	@rm -rf build/parts && mkdir -p build/parts && awk -v out=build/parts -f tests/tags.awk dem.h && ls build/parts
