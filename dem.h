@@ -6973,15 +6973,21 @@ static void demi_effects_memory(dem_world *w) {
     w->memory_stride = w->desc.law_memory;
     w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
 }
-/* The effects of the live scene: which laws act, whether all bodies are alike. */
-static void demi_effects(dem_world *w) {
-    int i, j, friction = 0, rolling = 0;
+/* Does any pair of the scene have friction, or rolling friction? */
+static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling) {
+    int i, j;
+    *friction = *rolling = 0;
     for (i = 0; i < w->material_count; i++)
         for (j = 0; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
-            friction |= p->friction > 0 || p->friction_static > 0;
-            rolling |= p->rolling_friction > 0;
+            *friction |= p->friction > 0 || p->friction_static > 0;
+            *rolling |= p->rolling_friction > 0;
         }
+}
+/* The effects of the live scene: which laws act, whether all bodies are alike. */
+static void demi_effects(dem_world *w) {
+    int i, friction, rolling;
+    demi_pairs_rub(w, &friction, &rolling);
     w->normal = (int)w->desc.normal_law;
     w->tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
     w->rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
@@ -7208,6 +7214,61 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     return 1;
 }
 
+/* What the laws of before kept, for those in force now: each law's reals go where it has them. */
+static void demi_memory_map(const demi_laws *was, const demi_laws *now, const dem_real *old,
+                            dem_real *m) {
+    int k;
+    for (k = 0; k < now->memory; k++) m[k] = 0;
+    for (k = 0; k < now->tangent->memory && was->tangent == now->tangent; k++) m[k] = old[k];
+    for (k = 0; k < now->rolling->memory && was->rolling == now->rolling; k++)
+        m[now->at_rolling + k] = old[was->at_rolling + k];
+    for (k = 0; k < now->normal->memory; k++) m[now->at_normal + k] = old[was->at_normal + k];
+}
+/* All memory on its way to the next list (there is none now). 0 when memory ran out; nothing
+   changed then. */
+static int demi_memory_move(dem_world *w, const demi_laws *was) {
+    const size_t from = (size_t)w->carry_stride, to = (size_t)w->laws.memory;
+    demi_array fresh = {0, 0, 0};
+    dem_real old[DEMI_MEMORY];
+    int d, k;
+    if (!demi_array_grow(w, &fresh, sizeof(dem_real), (size_t)w->carry_count*to)) return 0;
+    for (k = 0; k < w->carry_count; k++)
+        demi_memory_map(was, &w->laws, w->carry_memory + (size_t)k*from,
+                        (dem_real *)fresh.data + (size_t)k*to);
+    demi_array_free(w, &w->carry_memory_);
+    w->carry_memory_ = fresh;
+    w->carry_memory = (dem_real *)fresh.data;
+    w->carry_stride = (int)to;
+    for (d = 0; d < w->domain_count; d++) {
+        for (k = 0; k < w->domains[d].wall_contacts; k++) {
+            demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
+            memcpy(old, c->memory, sizeof old);
+            memset(c->memory, 0, sizeof c->memory);
+            demi_memory_map(was, &w->laws, old, c->memory);
+        }
+        for (k = 0; k < w->domains[d].shaped; k++) {
+            demi_shaped *c = &w->shaped_now[d*w->shaped_stride + k];
+            memcpy(old, c->memory, sizeof old);
+            memset(c->memory, 0, sizeof c->memory);
+            demi_memory_map(was, &w->laws, old, c->memory);
+        }
+    }
+    return 1;
+}
+/* The effects of the scene as it is now; when friction has come into it, or has gone, memory moves
+   with the laws. 0 when memory ran out: the laws of before stay in force. */
+static int demi_effects_take(dem_world *w) {
+    const demi_laws was = w->laws;
+    const int tangent = w->tangent, rolling = w->rolling;
+    demi_effects(w);
+    if (w->desc.law || !was.normal || w->carry_stride != was.memory ||
+        (was.tangent == w->laws.tangent && was.rolling == w->laws.rolling) ||
+        demi_memory_move(w, &was)) return 1;
+    w->tangent = tangent;
+    w->rolling = rolling;
+    demi_effects_memory(w);
+    return 0;
+}
 /* Answers 1 with a sentence when a period is too short for one image of each partner. */
 static int demi_periods_refuse(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
@@ -7290,8 +7351,7 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     int k;
     for (k = 0; k < w->count; k++)
         if (!demi_place(demi_at(w->pos + 4*k))) return demi_lost(w, k);
-    if (!demi_list_drop(w)) return demi_no_memory(w, call);
-    demi_effects(w);
+    if (!demi_list_drop(w) || !demi_effects_take(w)) return demi_no_memory(w, call);
     if (!w->skin_chosen || w->visitor) demi_skin_choose(w);
     w->skin_chosen = 1;
     if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
@@ -12362,23 +12422,38 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
     return n;
 }
 
-/* Digest of contact memory: of n reals a `stride` apart, turned round or not. */
-static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real *memory, int n,
-                                 size_t stride, int flip) {
-    int i;
-    for (i = 0; i < n; i++) {
+/* Digest of contact memory, reals a `stride` apart, turned round or not. Told is what is not 0 and
+   belongs to an effect of the scene, with a number that does not depend on which other laws are in
+   force: so it does not matter whether a list has been made since friction came or went. *any: is
+   there something to tell? */
+static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real *memory,
+                                 size_t stride, int flip, int *any) {
+    const demi_laws *laws = &w->laws;
+    int i, friction = 1, rolling = 1;
+    *any = 0;
+    if (!w->desc.law && w->memory_stride) demi_pairs_rub(w, &friction, &rolling);
+    for (i = 0; i < w->memory_stride; i++) {
         dem_real m = memory[(size_t)i*stride];
+        int number = i;
+        if (!w->desc.law) {
+            if (i < laws->at_rolling ? !friction : i < laws->at_normal && !rolling) continue;
+            if (i >= laws->at_normal) number = 2*DEMI_MEMORY + i - laws->at_normal;
+            else if (i >= laws->at_rolling) number = DEMI_MEMORY + i - laws->at_rolling;
+        }
+        if (!(m < 0) && !(m > 0)) continue;
         if (flip && (w->vector_mask >> i & 1)) m = -m;
-        if (!(m < 0) && !(m > 0)) m = 0;                   /* -0 is 0 */
-        h = demi_hash(h, &m, sizeof m);
+        h = demi_hash(demi_hash(h, &number, sizeof number), &m, sizeof m);
+        *any = 1;
     }
     return h;
 }
 static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
-                                 const dem_real *memory, int n, size_t stride) {
+                                 const dem_real *memory, size_t stride) {
     const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
     uint64_t one = demi_hash(DEMI_HASH_START, &lo, sizeof lo);
-    return demi_memory_hash(w, demi_hash(one, &hi, sizeof hi), memory, n, stride, sa > sb);
+    int any;
+    one = demi_memory_hash(w, demi_hash(one, &hi, sizeof hi), memory, stride, sa > sb, &any);
+    return any ? one : 0;
 }
 /* Digest of one contact, whichever of its bodies is a. */
 static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
@@ -12393,7 +12468,7 @@ static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
     flip = c->b >= 0 && who[0] > who[1];
     for (i = 0; i < 4; i++) h = demi_hash(h, &who[flip ? i ^ 1 : i], sizeof *who);
     h = demi_hash(h, &pushes, sizeof pushes);
-    return demi_memory_hash(w, h, c->memory, w->memory_stride, 1, flip);
+    return demi_memory_hash(w, h, c->memory, 1, flip, &i);
 }
 /* Contacts as a sum of their own digests, in which neither their order tells nor whether there is a
    list or they are on their way to the next one. */
@@ -12407,7 +12482,7 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
             const demi_span span = demi_span_of(w, d, k, 1);
             if (demi_near_remembers(w, d, k))
                 sum += demi_pair_digest(w, w->body_slot[span.a[0]], w->body_slot[span.b[0]],
-                                        span.memory, w->memory_stride, span.stride);
+                                        span.memory, span.stride);
         }
         for (k = 0; k < domain->wall_contacts; k++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
@@ -12417,19 +12492,19 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
             one = demi_hash(one, &c->wall, sizeof c->wall);
             one = demi_hash(one, &c->element, sizeof c->element);
             one = demi_hash(one, &pushes, sizeof pushes);
-            sum += demi_hash(one, c->memory, sizeof c->memory);
+            sum += demi_memory_hash(w, one, c->memory, 1, 0, &i);
         }
         for (k = 0; k < domain->shaped; k++)
             sum += demi_shaped_hash(w, &w->shaped_now[(size_t)d*(size_t)w->shaped_stride +
                                                       (size_t)k]);
     }
-    for (i = 0; !w->list_valid && w->carry_count && i < w->carry_rows; i++)
+    for (i = 0; !w->list_valid && w->carry_count && w->carry_stride == w->memory_stride &&
+                i < w->carry_rows; i++)
         for (k = w->carry_start[i]; k < w->carry_start[i + 1]; k++) {
             const int32_t p = w->carry_partner[k];
             const uint32_t row = (uint32_t)i, other = (uint32_t)(p < 0 ? ~p : p);
             sum += demi_pair_digest(w, p < 0 ? other : row, p < 0 ? row : other,
-                                    w->carry_memory + (size_t)k*(size_t)w->carry_stride,
-                                    w->carry_stride, 1);
+                                    w->carry_memory + (size_t)k*(size_t)w->carry_stride, 1);
         }
     return demi_hash(h, &sum, sizeof sum);
 }

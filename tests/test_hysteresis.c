@@ -357,6 +357,43 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("a contact keeps the depth it was loaded to when friction comes into the scene, or goes: ball on ball, ball and "
+         "cluster on a plane") {
+        static const dem_real places[6] = {DEM_R(-0.004), 0, 0, DEM_R(0.004), 0, 0};
+        static const dem_real radii[2] = {DEM_R(0.006), DEM_R(0.006)};
+        double height[3][3];
+        int how, i;
+        for (how = 0; how < 3; how++) {         /* none; friction, then rolling friction too; and gone again */
+            dem_world *world = world_of(1e-5, 9.81);
+            const dem_material_desc d = sticky(KUN, 0);
+            const dem_material m = dem_material_add(world, &d);
+            dem_cluster_desc c = DEM_CLUSTER_DESC;
+            dem_body body[3];
+            dem_pair pair;
+            c.count = 2;
+            c.positions = places;
+            c.radii = radii;
+            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            body[0] = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.0099));
+            body[1] = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.0297));
+            body[2] = dem_body_add(world, m, dem_shape_cluster_add(world, &c), at(0.1, 0, 0.0059),
+                                   dem_quat_make(1, 0, 0, 0));
+            scene_step(world, 300);             /* past the turning point, on the line of unloading */
+            for (i = 0; i < 2 && how; i++) {
+                dem_pair_get(world, m, m, &pair);
+                pair.friction = DEM_R(0.3);
+                pair.rolling_friction = i ? DEM_R(0.1) : 0;
+                if (how == 2 && i) pair.friction = pair.rolling_friction = 0;
+                dem_pair_set(world, m, m, &pair);
+                scene_step(world, 20);
+            }
+            scene_step(world, how ? 160 : 200);
+            for (i = 0; i < 3; i++) height[how][i] = (double)scene_state(world, body[i]).position.z;
+            dem_world_destroy(world);
+        }
+        for (how = 1; how < 3; how++)
+            for (i = 0; i < 3; i++) CHECK_NEAR(height[how][i], height[0][i], DEMI_SINGLE ? 1e-7 : 1e-15);
+    }
     TEST("values of the hysteretic law outside their limits are refused, by name") {
         dem_world *world = world_of(0, 0);
         dem_material_desc m = sticky(KL/2, 0);
