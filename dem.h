@@ -7231,6 +7231,7 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     demi_array fresh = {0, 0, 0};
     dem_real old[DEMI_MEMORY];
     int d, k;
+    if (w->carry_stride != was->memory) w->carry_count = 0;    /* of no use: not these laws' */
     if (!demi_array_grow(w, &fresh, sizeof(dem_real), (size_t)w->carry_count*to)) return 0;
     for (k = 0; k < w->carry_count; k++)
         demi_memory_map(was, &w->laws, w->carry_memory + (size_t)k*from,
@@ -7261,7 +7262,7 @@ static int demi_effects_take(dem_world *w) {
     const demi_laws was = w->laws;
     const int tangent = w->tangent, rolling = w->rolling;
     demi_effects(w);
-    if (w->desc.law || !was.normal || w->carry_stride != was.memory ||
+    if (w->desc.law || !was.normal ||
         (was.tangent == w->laws.tangent && was.rolling == w->laws.rolling) ||
         demi_memory_move(w, &was)) return 1;
     w->tangent = tangent;

@@ -361,9 +361,10 @@ int main(int argc, char **argv) {
          "cluster on a plane") {
         static const dem_real places[6] = {DEM_R(-0.004), 0, 0, DEM_R(0.004), 0, 0};
         static const dem_real radii[2] = {DEM_R(0.006), DEM_R(0.006)};
-        double height[3][3];
-        int how, i;
-        for (how = 0; how < 3; how++) {         /* none; friction, then rolling friction too; and gone again */
+        double height[6][3];
+        int run, i;
+        for (run = 0; run < 6; run++) {         /* ball on ball, or none that touch */
+            const int how = run%3;              /* none; friction, then rolling friction too; and gone again */
             dem_world *world = world_of(1e-5, 9.81);
             const dem_material_desc d = sticky(KUN, 0);
             const dem_material m = dem_material_add(world, &d);
@@ -375,7 +376,7 @@ int main(int argc, char **argv) {
             c.radii = radii;
             dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
             body[0] = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.0099));
-            body[1] = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.0297));
+            body[1] = dem_sphere_add(world, m, DEM_R(0.01), run < 3 ? at(0, 0, 0.0297) : at(0.3, 0, 0.0099));
             body[2] = dem_body_add(world, m, dem_shape_cluster_add(world, &c), at(0.1, 0, 0.0059),
                                    dem_quat_make(1, 0, 0, 0));
             scene_step(world, 300);             /* past the turning point, on the line of unloading */
@@ -385,14 +386,20 @@ int main(int argc, char **argv) {
                 pair.rolling_friction = i ? DEM_R(0.1) : 0;
                 if (how == 2 && i) pair.friction = pair.rolling_friction = 0;
                 dem_pair_set(world, m, m, &pair);
+                if (!i) {                       /* also while there is no list, and by way of a file */
+                    dem_sphere_add(world, m, DEM_R(0.01), at(1, 1, 1));
+                    CHECK_EQ(dem_checkpoint_write(world, "build/tmp/depth.ckpt"), DEM_OK);
+                    CHECK_EQ(dem_checkpoint_read(world, "build/tmp/depth.ckpt"), DEM_OK);
+                    remove("build/tmp/depth.ckpt");
+                }
                 scene_step(world, 20);
             }
             scene_step(world, how ? 160 : 200);
-            for (i = 0; i < 3; i++) height[how][i] = (double)scene_state(world, body[i]).position.z;
+            for (i = 0; i < 3; i++) height[run][i] = (double)scene_state(world, body[i]).position.z;
             dem_world_destroy(world);
         }
-        for (how = 1; how < 3; how++)
-            for (i = 0; i < 3; i++) CHECK_NEAR(height[how][i], height[0][i], DEMI_SINGLE ? 1e-7 : 1e-15);
+        for (run = 0; run < 6; run++)
+            for (i = 0; i < 3; i++) CHECK_NEAR(height[run][i], height[run/3*3][i], DEMI_SINGLE ? 1e-7 : 1e-15);
     }
     TEST("values of the hysteretic law outside their limits are refused, by name") {
         dem_world *world = world_of(0, 0);
