@@ -1660,8 +1660,7 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    >>memory
    The layout of the world, and the only places where memory comes from. Bodies live in flat arrays
    of four reals each, so that a gather touches one cache line and a drift is one long loop. Every
-   array that grows is a field here; demi_array_grow keeps what it holds, or leaves it alone and
-   says so.
+   array that grows is a field here; DEMI_GROW keeps what it holds, or leaves it alone and says so.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_SOME = 16, DEMI_DOMAINS = 256,
       DEMI_LANES = 64/(int)sizeof(dem_real),    /* pairs computed together: widest vectors */
@@ -1672,8 +1671,10 @@ enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL
       DEMI_K_UN, DEMI_K_AD,                     /* hysteretic law */
       DEMI_COEFS };
 
-/* A growing array: items of one size. Never holds less than before. */
-typedef struct demi_array { void *data; size_t capacity, item; } demi_array;
+/* Memory that a world holds hangs on one of two chains (demi_hold): what belongs to the scene and
+   outlives a restart (materials, shapes, geometry of walls), and what a run works with. */
+enum { DEMI_LOOSE, DEMI_SCENE, DEMI_RUN, DEMI_CHAINS };
+struct demi_block;
 
 /* Candidate pairs of all domains. Domain d owns entries d*stride .. d*stride + stride - 1. */
 typedef struct demi_list {
@@ -1681,7 +1682,6 @@ typedef struct demi_list {
     int32_t *a, *b;                /* body indices, a < b */
     int32_t *place;                /* 1 + its entry in the near list, 0 when not near */
     unsigned char *image;          /* which entry of image_shift leads from a to b */
-    demi_array a_, b_, place_, image_;
 } demi_list;
 
 /* Near pairs of all domains: those candidates that touch or might before long. Domain d owns
@@ -1694,7 +1694,6 @@ typedef struct demi_near {
     unsigned char *image;
     dem_real *memory;              /* w->memory_stride columns; zeros while a pair does not touch */
     dem_real *coef;                /* DEMI_PAIR_COLUMNS columns, when bodies differ */
-    demi_array a_, b_, k_, image_, memory_, coef_;
 } demi_near;
 enum { DEMI_M_EFF = DEMI_COEFS, DEMI_PAIR_COLUMNS };
 
@@ -1866,7 +1865,7 @@ typedef struct demi_outlet { dem_outlet_desc desc; dem_outlet_state state; } dem
 typedef struct demi_level {
     double radius;                 /* m, largest of the class */
     double size[3];                /* m, of a cell */
-    int cells[3], first;           /* cells stand from `first` on in w->cell_start_ */
+    int cells[3], first;           /* cells stand from `first` on in w->cell_start */
     int count;                     /* bodies */
 } demi_level;
 /* classes of radii a factor sqrt 2 wide, before they are joined */
@@ -1898,28 +1897,30 @@ struct dem_world {
     char refusal[512];             /* of the first call that builds the scene and was refused */
     unsigned refused;              /* which of demi_builders were, since dem_world_error was read */
     size_t bytes;
+    struct demi_block *chains[DEMI_CHAINS];
 
     int material_count, pairs_changed;
     dem_material_desc materials[DEMI_MATERIALS];
     demi_pair *pairs;              /* DEMI_MATERIALS x DEMI_MATERIALS */
 
-    int form_count, form_capacity;
+    int form_count;
     demi_form *forms;
 
     int count, capacity;           /* bodies */
     dem_real *pos, *vel, *spin;    /* x 4; at the full step (predicted while a step is under way) */
     dem_real *half_vel, *half_spin;/* x 4; mean over the step just taken: at the half step */
-    dem_real *last_pos;            /* x 4; one step ago (position Verlet only) */
+    dem_real *last_pos;            /* x 4; one step ago (schemes that look back) */
     dem_real *force, *torque;      /* x 4 */
     dem_real *inv_mass, *inv_inertia, *mass;     /* inv_inertia: 0 unless a sphere that moves */
+    int backward;                  /* last_pos exists */
     int orienting;                 /* the next four exist */
     dem_real *orient;              /* x 4: w x y z, principal axes -> world */
     dem_real *angular;             /* x 4: angular momentum at the half step; shaped bodies only */
     dem_real *moment;              /* x 4: principal moments of inertia, kg m2; lever, m */
     int32_t *body_shape;           /* dem_shape ids; 0: a sphere */
     int shaped_count;              /* bodies that are not spheres */
-    /* where the spheres of clusters are: x 4, from the body's centre */
-    demi_array spot_, spot_start_;
+    dem_real *spot;                /* x 4: spheres of clusters: centre from the body's, radius, m */
+    int32_t *spot_start;           /* where those of each body begin */
     int spots_valid;               /* they fit the bodies and their orientations */
     uint32_t *body_slot;
     int32_t *body_material;
@@ -1933,13 +1934,16 @@ struct dem_world {
     int32_t *order, *cell_of;      /* permutation, cell of each body */
     dem_balance balance;
 
-    int wall_count, wall_capacity;
+    int wall_count;
     demi_wall *walls;
-    int field_count, field_capacity;
+    int field_count;
     demi_field *fields;
     int feed_count, outlet_count;
-    demi_array feeds_, outlets_;   /* demi_feed, demi_outlet */
-    demi_array crowd_, crowd_nodes_, crowd_turned_;   /* see >>placing */
+    demi_feed *feeds;
+    demi_outlet *outlets;
+    struct demi_sphere *crowd;     /* see >>placing */
+    struct demi_node *crowd_nodes;
+    dem_real *crowd_turned;        /* x 4 */
 
     /* effects, worked out when the scene changes */
     int normal, tangent, rolling;  /* laws in force */
@@ -1970,39 +1974,36 @@ struct dem_world {
     double near_margin;            /* m: what velocities may bring by having changed since */
     double near_drift, near_kick;  /* m/s: how much a velocity may have changed since; last step */
     double near_creep;             /* m: what that may have brought two bodies together */
-    demi_array quiet_;             /* what may push each few bodies, see demi_domain_quiet */
+    struct demi_quiet *quiet;      /* what may push each few bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
     int join_room;                 /* candidates that newcomers may bring, see demi_list_join */
     int near_stale;                /* lacks a pair of a body that joined: the next step makes it */
     int *cross_incoming_start;     /* domain_count + 1 */
-    demi_array cross_incoming_, cross_push_;
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
     dem_real *cross_push;          /* x 6: force and torque on the far end */
     int cross_entries;
-    demi_array cell_start_;
+    int32_t *cell_start;
     int cells[3];
     double cell_origin[3], cell_size[3];
     int level_count, wide;         /* wide: radii differ so much that levels pay */
     demi_level levels[DEMI_LEVELS];/* the coarsest first; none in use: level_count is 0 */
     double level_fine;             /* m, largest radius of the finest class */
-    demi_array press_, press_whole_;           /* what presses bodies, while a step is judged */
+    struct demi_press *press;      /* what presses bodies, while a step is judged */
+    struct demi_press_whole *press_whole;
     uint64_t press_due;            /* step at which it is looked for next */
     uint64_t press_since;          /* step of the last change of the scene */
     double level_looks[2];         /* estimated work of a search per body: by one grid, by levels */
     /* contact memory on its way to a new list */
-    demi_array carry_start_, carry_partner_, carry_memory_;
     int32_t *carry_start, *carry_partner;
     dem_real *carry_memory;
     int carry_count, carry_rows;   /* entries; slots there were when they were filed */
     int carry_stride;              /* reals per entry */
     int wall_stride;               /* wall candidates per domain */
     int wall_now_stride;           /* wall contacts per domain */
-    demi_array wall_body_, wall_id_, wall_element_, wall_gap_, wall_now_, wall_next_, wall_sums_;
     int32_t *wall_body, *wall_id, *wall_element;
     dem_real *wall_gap;            /* m, between grain and element when the list was made, or a
                                       little less */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image that is near */
-    demi_array wall_shift_;
     dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
     int repeating;                 /* does any wall repeat? */
     demi_wall_contact *wall_now, *wall_next;
@@ -2010,11 +2011,14 @@ struct dem_world {
     int facets_valid;              /* what facets count fits the walls and their motions */
     int touching_valid;            /* the next two have room for the present candidates */
     /* room for one body and wall, by domain */
-    demi_array touching_, touching_table_, touching_links_;
+    demi_touching *touching;
+    int32_t *touching_table;
+    demi_link *touching_links;
     int shaped_stride;             /* contacts of shaped bodies per domain */
-    demi_array shaped_now_, shaped_next_;
     demi_shaped *shaped_now, *shaped_next;
-    demi_array lll_ends_[3], lll_table_, lll_rows_, lll_row_start_;
+    demi_end *lll_ends[3];
+    struct demi_pair_key *lll_table;
+    int32_t *lll_rows, *lll_row_start;
     int lll_valid, lll_boxes, lll_size;
 
     /* step */
@@ -2033,6 +2037,46 @@ struct dem_world {
     double throughput;
     double half_kick;              /* s, of the step under way */
 };
+
+/* --- what each body has, told once. Making room, adding, removing, sorting, checking, saving and
+       sending to another slab are loops over these rows (>>bodies). >>add-array: a field in
+       dem_world above and a row here. Who has it: DEMI_EVERY body; DEMI_BACK: those of a scheme
+       that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_SLOTS: every slot.
+       What is done with it: DEMI_KEPT: it is state, and 0 in a new body unless set; DEMI_REALS:
+       kept, and finite; DEMI_PLACES: reals that begin with a place, which moves by a period; 0:
+       room to work in. --- */
+enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_SLOTS };
+enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
+typedef struct demi_body_array {
+    size_t field, item;            /* where its pointer stands in dem_world; bytes of one body */
+    int who, what;
+} demi_body_array;
+#define DEMI_ARRAY(field, count, who, what) \
+    {offsetof(dem_world, field), (count)*sizeof *((dem_world *)0)->field, who, what}
+static const demi_body_array demi_body_arrays[] = {
+    DEMI_ARRAY(body_slot,       1, DEMI_EVERY,  DEMI_KEPT),     /* the first: see demi_body_take */
+    DEMI_ARRAY(body_material,   1, DEMI_EVERY,  DEMI_KEPT),
+    DEMI_ARRAY(pos,             4, DEMI_EVERY,  DEMI_PLACES),
+    DEMI_ARRAY(vel,             4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(spin,            4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(half_vel,        4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(half_spin,       4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(force,           4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(torque,          4, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(mass,            1, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(inv_mass,        1, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(inv_inertia,     1, DEMI_EVERY,  DEMI_REALS),
+    DEMI_ARRAY(last_pos,        4, DEMI_BACK,   DEMI_PLACES),
+    DEMI_ARRAY(orient,          4, DEMI_TURNED, DEMI_REALS),
+    DEMI_ARRAY(angular,         4, DEMI_TURNED, DEMI_REALS),
+    DEMI_ARRAY(moment,          4, DEMI_TURNED, DEMI_REALS),
+    DEMI_ARRAY(body_shape,      1, DEMI_TURNED, DEMI_KEPT),
+    DEMI_ARRAY(scratch,         4, DEMI_EVERY,  0),
+    DEMI_ARRAY(order,           1, DEMI_EVERY,  0),
+    DEMI_ARRAY(cell_of,         1, DEMI_EVERY,  0),
+    DEMI_ARRAY(slot_index,      1, DEMI_SLOTS,  DEMI_KEPT),
+    DEMI_ARRAY(slot_generation, 1, DEMI_SLOTS,  DEMI_KEPT)};
+enum { DEMI_BODY_ARRAYS = (int)(sizeof demi_body_arrays/sizeof *demi_body_arrays) };
 
 /* The calls that build a scene: without what they would have added or chosen, a run is another one.
    Not here: those that take away, look, read or write. */
@@ -2115,49 +2159,77 @@ static void demi_raw_free(const dem_allocator *a, void *p, size_t size) {
     if (!p) return;
     if (a->free_fn) a->free_fn(p, size, a->user); else free(p);
 }
-/* count items of size bytes, cleared; null when there is no room or the product overflows. Begins
-   on a cache line, so that no row of four reals lies across two: the byte before says how far in.
-   */
+/* What stands before everything handed out. Begins on a cache line, so that no row of four reals
+   lies across two; knows its size, so that it frees and grows without being told. */
+typedef struct demi_block {
+    struct demi_block *before, *after;         /* in its chain */
+    size_t bytes;                              /* of what is handed out */
+    int in, chain;                             /* bytes from where the allocator's begin */
+} demi_block;
 enum { DEMI_LINE = 64 };
-static void *demi_alloc(dem_world *w, size_t count, size_t size) {
+static demi_block *demi_block_of(void *data) { return (demi_block *)data - 1; }
+/* Items of `item` bytes there is room for; 0 of null. */
+static size_t demi_room(const void *data, size_t item) {
+    return data ? ((const demi_block *)data - 1)->bytes/item : 0;
+}
+/* count items of size bytes, cleared, that hang on a chain of the world or, DEMI_LOOSE, on none:
+   then its maker frees it. Null when there is no room, the product overflows, or count is 0. */
+static void *demi_hold(dem_world *w, int chain, size_t count, size_t size) {
+    const size_t bytes = count*size;
     unsigned char *p;
-    size_t bytes, in;
-    if (size && count > (size_t)-1/2/size) return 0;
-    if (count*size == 0) return 0;
-    bytes = count*size + DEMI_LINE;
-    p = (unsigned char *)demi_raw_alloc(&w->desc.allocator, bytes);
+    demi_block *block;
+    int in;
+    if ((size && count > (size_t)-1/2/size) || !bytes) return 0;
+    p = (unsigned char *)demi_raw_alloc(&w->desc.allocator, bytes + 2*DEMI_LINE);
     if (!p) return 0;
-    memset(p, 0, bytes);
-    w->bytes += bytes;
-    in = DEMI_LINE - (size_t)((uintptr_t)p%DEMI_LINE);
-    p[in - 1] = (unsigned char)in;
+    in = 2*DEMI_LINE - (int)((uintptr_t)p%DEMI_LINE);
+    memset(p + in, 0, bytes);
+    block = (demi_block *)(void *)(p + in) - 1;
+    block->before = 0;
+    block->after = chain ? w->chains[chain] : 0;
+    block->bytes = bytes;
+    block->in = in;
+    block->chain = chain;
+    if (block->after) block->after->before = block;
+    if (chain) w->chains[chain] = block;
+    w->bytes += bytes + 2*DEMI_LINE;
     return p + in;
 }
-static void demi_free(dem_world *w, void *data, size_t count, size_t size) {
-    unsigned char *p = (unsigned char *)data;
-    if (!p) return;
-    w->bytes -= count*size + DEMI_LINE;
-    demi_raw_free(&w->desc.allocator, p - p[-1], count*size + DEMI_LINE);
+static void *demi_alloc(dem_world *w, size_t count, size_t size) {
+    return demi_hold(w, DEMI_LOOSE, count, size);
 }
-/* Makes room for count items, keeping those there; an array grown for none is not null either, for
-   null + 0 is undefined in C. 0 when memory ran out; then nothing has changed. */
-static int demi_array_grow(dem_world *w, demi_array *array, size_t item, size_t count) {
-    void *p;
-    size_t room = array->capacity;
-    if (array->data && count <= room) return 1;
-    room = DEMI_MAX(count, room + room/4 + 16); /* bulk: what it takes; bit by bit: in steps */
-    p = demi_alloc(w, room, item);
-    if (!p) return 0;
-    if (array->data) memcpy(p, array->data, array->capacity*item);
-    demi_free(w, array->data, array->capacity, item);
-    array->data = p;
-    array->capacity = room;
-    array->item = item;
+static void demi_free(dem_world *w, void *data) {
+    demi_block *block;
+    if (!data) return;
+    block = demi_block_of(data);
+    if (block->after) block->after->before = block->before;
+    if (block->before) block->before->after = block->after;
+    else if (block->chain) w->chains[block->chain] = block->after;
+    w->bytes -= block->bytes + 2*DEMI_LINE;
+    demi_raw_free(&w->desc.allocator, (unsigned char *)data - block->in,
+                  block->bytes + 2*DEMI_LINE);
+}
+/* All that hangs on a chain: nothing can be forgotten. */
+static void demi_free_chain(dem_world *w, int chain) {
+    while (w->chains[chain]) demi_free(w, w->chains[chain] + 1);
+}
+/* Makes room for count items in an array of the world, keeping those there; never shrinks. An array
+   grown for none is not null either, for null + 0 is undefined in C. 0 when memory ran out; then
+   nothing has changed. */
+#define DEMI_GROW(w, array, count) demi_grow(w, DEMI_RUN, &(array), sizeof *(array), count)
+static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t count) {
+    void *old, *fresh;
+    size_t room;
+    memcpy(&old, array, sizeof old);            /* a pointer to whatever */
+    room = demi_room(old, item);
+    if (old && count <= room) return 1;
+    /* bulk: what it takes; bit by bit: in steps */
+    fresh = demi_hold(w, chain, DEMI_MAX(count, room + room/4 + 16), item);
+    if (!fresh) return 0;
+    if (old) memcpy(fresh, old, room*item);
+    demi_free(w, old);
+    memcpy(array, &fresh, sizeof fresh);
     return 1;
-}
-static void demi_array_free(dem_world *w, demi_array *array) {
-    demi_free(w, array->data, array->capacity, array->item);
-    memset(array, 0, sizeof *array);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -2861,19 +2933,15 @@ static void demi_form_bounds(demi_form *form) {
 
 /* Takes over a prepared form (its array included) or frees it. */
 static void demi_form_free(dem_world *w, demi_form *form) {
-    demi_free(w, form->parts, 4*(size_t)form->count, sizeof(dem_real));
+    demi_free(w, form->parts);
 }
 static dem_shape demi_form_adopt(dem_world *w, const char *call, demi_form *form) {
     dem_shape id;
     id.id = 0;
-    if (w->form_count == w->form_capacity) {
-        const size_t room = (size_t)w->form_capacity*2 + 8;
-        demi_form *fresh = (demi_form *)demi_alloc(w, room, sizeof *fresh);
-        if (!fresh) { demi_form_free(w, form); demi_no_memory(w, call); return id; }
-        if (w->form_count) memcpy(fresh, w->forms, (size_t)w->form_count*sizeof *fresh);
-        demi_free(w, w->forms, (size_t)w->form_capacity, sizeof *fresh);
-        w->forms = fresh;
-        w->form_capacity = (int)room;
+    if (!demi_grow(w, DEMI_SCENE, &w->forms, sizeof *w->forms, (size_t)w->form_count + 1)) {
+        demi_form_free(w, form);
+        demi_no_memory(w, call);
+        return id;
     }
     w->forms[w->form_count++] = *form;
     demi_built(w, call);
@@ -2949,7 +3017,7 @@ static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, cons
         double *room = (double *)demi_alloc(w, n, sizeof(double));
         if (!room) return 0;
         demi_moments_union(form, desc->rays > 0 ? desc->rays : 512, room, m);
-        demi_free(w, room, n, sizeof(double));
+        demi_free(w, room);
         return 1;
     }
 }
@@ -3020,7 +3088,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     if (demi_shape_planar(w, "dem_shape_cluster_add") || !demi_cluster_check(w, desc)) return none;
     memset(&form, 0, sizeof form);
     form.count = desc->count;
-    form.parts = (dem_real *)demi_alloc(w, 4*(size_t)form.count, sizeof(dem_real));
+    form.parts = (dem_real *)demi_hold(w, DEMI_SCENE, 4*(size_t)form.count, sizeof(dem_real));
     if (!form.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
     /* a frame may be far off */
     if (desc->mass != DEM_CLUSTER_GIVEN) about = demi_at(desc->positions);
@@ -3325,13 +3393,13 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
 }
 /* The spheres of a cluster, as they are turned now: rows of centre and radius. */
 static const dem_real *demi_spots_of(const dem_world *w, int body) {
-    return (const dem_real *)w->spot_.data + 4*((const int32_t *)w->spot_start_.data)[body];
+    return w->spot + 4*w->spot_start[body];
 }
 static void demi_spots_turn(dem_world *w, int body) {
     const demi_form *form = demi_form_of(w, body);
     const dem_quat q = demi_quat_at(w->orient + 4*body);
     const dem_real scale = demi_scale_of(w, body, form);
-    dem_real *spot = (dem_real *)w->spot_.data + 4*((const int32_t *)w->spot_start_.data)[body];
+    dem_real *spot = w->spot + 4*w->spot_start[body];
     int k;
     for (k = 0; k < form->count; k++, spot += 4) {
         demi_put(spot, demi_scale(dem_quat_turn(q, demi_at(form->parts + 4*k)), scale));
@@ -3342,15 +3410,15 @@ static void demi_spots_turn(dem_world *w, int body) {
 static int demi_spots_lay(dem_world *w) {
     int32_t *start;
     int i, n = 0;
-    if (!demi_array_grow(w, &w->spot_start_, sizeof(int32_t), (size_t)w->count + 1)) return 0;
-    start = (int32_t *)w->spot_start_.data;
+    if (!DEMI_GROW(w, w->spot_start, (size_t)w->count + 1)) return 0;
+    start = w->spot_start;
     for (i = 0; i < w->count; i++) {
         const demi_form *form = demi_form_of(w, i);
         start[i] = n;
         if (form && n > INT_MAX/8 - form->count) return 0;
         n += form ? form->count : 0;
     }
-    if (!demi_array_grow(w, &w->spot_, 4*sizeof(dem_real), (size_t)n + 1)) return 0;
+    if (!DEMI_GROW(w, w->spot, 4*((size_t)n + 1))) return 0;
     w->spots_valid = 1;
     for (i = 0; i < w->count; i++)
         if (demi_form_of(w, i) && demi_form_of(w, i)->count) demi_spots_turn(w, i);
@@ -3520,7 +3588,7 @@ static void demi_wrap(dem_world *w) {
     for (k = 0; k < 3 && p.any; k++) {
         for (i = 0; i < w->count && p.period[k] > 0; i++) {
             const dem_real from = w->pos[4*i + k], to = demi_into(from, p.lo[k], p.period[k]);
-            if (w->last_pos) w->last_pos[4*i + k] += to - from;
+            if (w->backward) w->last_pos[4*i + k] += to - from;
             w->pos[4*i + k] = to;
         }
     }
@@ -3534,12 +3602,9 @@ DEM_INLINE int demi_visits(const dem_world *w, int i) {
 /* Room for filed memory. 0 when memory ran out. */
 static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
     const size_t reals = (size_t)count*(size_t)stride;
-    const int ok = demi_array_grow(w, &w->carry_start_, sizeof(int32_t), (size_t)rows + 2) &&
-                   demi_array_grow(w, &w->carry_partner_, sizeof(int32_t), (size_t)count) &&
-                   demi_array_grow(w, &w->carry_memory_, sizeof(dem_real), reals);
-    w->carry_start = (int32_t *)w->carry_start_.data;
-    w->carry_partner = (int32_t *)w->carry_partner_.data;
-    w->carry_memory = (dem_real *)w->carry_memory_.data;
+    const int ok = DEMI_GROW(w, w->carry_start, (size_t)rows + 2) &&
+                   DEMI_GROW(w, w->carry_partner, (size_t)count) &&
+                   DEMI_GROW(w, w->carry_memory, reals);
     return ok;
 }
 
@@ -3623,86 +3688,86 @@ static int demi_list_drop(dem_world *w) {
     return 1;
 }
 
-/* Gives every array of the set new room, or leaves all as they were. */
-typedef struct demi_room { void **data; size_t item; void *fresh; } demi_room;
-static int demi_room_grow(dem_world *w, demi_room *set, int count, size_t used, size_t old_room,
-                          size_t room) {
-    int i;
-    for (i = 0; i < count; i++) {
-        set[i].fresh = demi_alloc(w, room, set[i].item);
-        if (!set[i].fresh) {
-            while (i--) demi_free(w, set[i].fresh, room, set[i].item);
-            return 0;
-        }
+/* --- the arrays of bodies (demi_body_arrays) --- */
+
+/* Does each body of this world (or slot) have one? */
+static int demi_has(const dem_world *w, const demi_body_array *a) {
+    return a->who == DEMI_BACK ? w->backward : a->who == DEMI_TURNED ? w->orienting : 1;
+}
+static char *demi_data(const dem_world *w, const demi_body_array *a) {
+    char *data;
+    memcpy(&data, (const char *)w + a->field, sizeof data);
+    return data;
+}
+/* What body i has of it. */
+static char *demi_datum(const dem_world *w, const demi_body_array *a, int i) {
+    return demi_data(w, a) + (size_t)i*a->item;
+}
+/* New room for those arrays that `chosen` names, a bit for each who, keeping the first `used`
+   items. 0 when memory ran out: all are as they were. */
+static int demi_bodies_room(dem_world *w, int chosen, size_t used, size_t room) {
+    void *fresh[DEMI_BODY_ARRAYS];
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        fresh[k] = 0;
+        if (!(chosen >> a->who & 1) || !room) continue;
+        fresh[k] = demi_hold(w, DEMI_RUN, room, a->item);
+        if (fresh[k]) continue;
+        while (k--) demi_free(w, fresh[k]);
+        return 0;
     }
-    for (i = 0; i < count; i++) {
-        if (used) memcpy(set[i].fresh, *set[i].data, used*set[i].item);
-        demi_free(w, *set[i].data, old_room, set[i].item);
-        *set[i].data = set[i].fresh;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        if (!fresh[k]) continue;
+        if (used) memcpy(fresh[k], demi_data(w, a), used*a->item);
+        demi_free(w, demi_data(w, a));
+        memcpy((char *)w + a->field, &fresh[k], sizeof fresh[k]);
     }
     return 1;
 }
-static void demi_room_add(demi_room *set, int *count, void *data, size_t item) {
-    set[*count].data = (void **)data;
-    set[*count].item = item;
-    (*count)++;
-}
-/* What bodies that turn have besides. */
-static int demi_orient_rooms(dem_world *w, demi_room *set, int n) {
-    const size_t four = 4*sizeof(dem_real);
-    demi_room_add(set, &n, &w->orient, four);     demi_room_add(set, &n, &w->angular, four);
-    demi_room_add(set, &n, &w->moment, four);
-    demi_room_add(set, &n, &w->body_shape, sizeof(int32_t));
-    return n;
-}
-static int demi_body_rooms(dem_world *w, demi_room *set) {
-    int n = 0;
-    const size_t four = 4*sizeof(dem_real);
-    demi_room_add(set, &n, &w->pos, four);        demi_room_add(set, &n, &w->vel, four);
-    demi_room_add(set, &n, &w->spin, four);       demi_room_add(set, &n, &w->half_vel, four);
-    demi_room_add(set, &n, &w->half_spin, four);  demi_room_add(set, &n, &w->force, four);
-    if (w->desc.integrator == DEM_POSITION_VERLET) demi_room_add(set, &n, &w->last_pos, four);
-    demi_room_add(set, &n, &w->torque, four);     demi_room_add(set, &n, &w->scratch, four);
-    demi_room_add(set, &n, &w->inv_mass, sizeof(dem_real));
-    demi_room_add(set, &n, &w->inv_inertia, sizeof(dem_real));
-    demi_room_add(set, &n, &w->mass, sizeof(dem_real));
-    demi_room_add(set, &n, &w->body_slot, sizeof(uint32_t));
-    demi_room_add(set, &n, &w->body_material, sizeof(int32_t));
-    demi_room_add(set, &n, &w->order, sizeof(int32_t));
-    demi_room_add(set, &n, &w->cell_of, sizeof(int32_t));
-    return w->orienting ? demi_orient_rooms(w, set, n) : n;
-}
 static int demi_bodies_reserve(dem_world *w, size_t count) {
-    demi_room set[20];
     const size_t old = (size_t)w->capacity, room = DEMI_MAX(count, old + old/4 + 16);
     /* slots of removed bodies rest until the next list: each body to come may need a new one */
     const size_t more = count > (size_t)w->count ? count - (size_t)w->count : 0;
     const size_t slots = (size_t)w->slot_count + more;
-    int n = demi_body_rooms(w, set);
+    const int sets = 1 << DEMI_EVERY | w->backward << DEMI_BACK | w->orienting << DEMI_TURNED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->capacity) {
-        if (!demi_room_grow(w, set, n, (size_t)w->count, (size_t)w->capacity, room)) return 0;
+        if (!demi_bodies_room(w, sets, (size_t)w->count, room)) return 0;
         w->capacity = (int)room;
     }
     if (slots > (size_t)w->slot_capacity) {
         const size_t slot_room = DEMI_MAX(slots, (size_t)w->slot_capacity*5/4 + 16);
-        n = 0;
-        demi_room_add(set, &n, &w->slot_index, sizeof(int32_t));
-        demi_room_add(set, &n, &w->slot_generation, sizeof(uint32_t));
-        if (!demi_room_grow(w, set, n, (size_t)w->slot_count, (size_t)w->slot_capacity,
-                            slot_room)) return 0;
+        if (!demi_bodies_room(w, 1 << DEMI_SLOTS, (size_t)w->slot_count, slot_room)) return 0;
         w->slot_capacity = (int)slot_room;
     }
     return 1;
 }
+/* All that body i keeps becomes 0. */
+static void demi_body_clear(dem_world *w, int i) {
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a))
+            memset(demi_datum(w, a, i), 0, a->item);
+    }
+}
+/* All that body `from` keeps, into body `to`. */
+static void demi_body_copy(dem_world *w, int from, int to) {
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a))
+            memcpy(demi_datum(w, a, to), demi_datum(w, a, from), a->item);
+    }
+}
 
 /* From now on bodies have orientations. 0 when memory ran out; nothing changed then. */
 static int demi_orient_begin(dem_world *w) {
-    demi_room set[4];
-    int i, n;
+    int i;
     if (w->orienting) return 1;
-    n = demi_orient_rooms(w, set, 0);
-    if (w->capacity && !demi_room_grow(w, set, n, 0, 0, (size_t)w->capacity)) return 0;
+    if (!demi_bodies_room(w, 1 << DEMI_TURNED, 0, (size_t)w->capacity)) return 0;
     w->orienting = 1;
     for (i = 0; i < w->count; i++) {
         w->orient[4*i] = 1;
@@ -3729,12 +3794,7 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     int slot = w->slot_free;
     if (slot >= 0) w->slot_free = -2 - w->slot_index[slot];       /* chain: index = -2 - next */
     else { slot = w->slot_count++; w->slot_generation[slot] = 1; }
-    memset(w->pos + 4*i, 0, 4*sizeof(dem_real));       memset(w->vel + 4*i, 0, 4*sizeof(dem_real));
-    memset(w->spin + 4*i, 0, 4*sizeof(dem_real));      memset(w->force + 4*i, 0,
-                                                              4*sizeof(dem_real));
-    memset(w->torque + 4*i, 0, 4*sizeof(dem_real));    memset(w->half_vel + 4*i, 0,
-                                                              4*sizeof(dem_real));
-    memset(w->half_spin + 4*i, 0, 4*sizeof(dem_real));
+    demi_body_clear(w, i);
     demi_put(w->pos + 4*i, x);
     if (w->desc.planar) w->pos[4*i + 2] = 0;
     w->pos[4*i + 3] = radius;
@@ -3746,9 +3806,6 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->slot_index[slot] = i;
     if (w->orienting) {
         demi_quat_put(w->orient + 4*i, dem_quat_make(1, 0, 0, 0));
-        memset(w->angular + 4*i, 0, 4*sizeof(dem_real));
-        memset(w->moment + 4*i, 0, 4*sizeof(dem_real));
-        w->body_shape[i] = 0;
         demi_put(w->moment + 4*i, demi_moments_of(w, i));
     }
     w->lll_valid = 0;
@@ -3947,22 +4004,7 @@ static void demi_body_take_out(dem_world *w, int i) {
     w->energy_removed += demi_body_energy(w, i);
     if (demi_form_of(w, i)) w->shaped_count--;
     if (i != last) {
-        dem_real *fours[11];
-        int k, n = 7;
-        fours[0] = w->pos; fours[1] = w->vel; fours[2] = w->spin; fours[3] = w->half_vel;
-        fours[4] = w->half_spin;
-        fours[5] = w->force; fours[6] = w->torque;
-        if (w->last_pos) fours[n++] = w->last_pos;
-        if (w->orienting) {
-            fours[n++] = w->orient; fours[n++] = w->angular; fours[n++] = w->moment;
-            w->body_shape[i] = w->body_shape[last];
-        }
-        for (k = 0; k < n; k++) memcpy(fours[k] + 4*i, fours[k] + 4*last, 4*sizeof(dem_real));
-        w->mass[i] = w->mass[last];
-        w->inv_mass[i] = w->inv_mass[last];
-        w->inv_inertia[i] = w->inv_inertia[last];
-        w->body_slot[i] = w->body_slot[last];
-        w->body_material[i] = w->body_material[last];
+        demi_body_copy(w, last, i);
         w->slot_index[w->body_slot[i]] = i;
     }
     w->slot_index[slot] = -2 - w->slot_pending;
@@ -4181,8 +4223,8 @@ static void demi_tree_node(demi_tree *t, size_t node, int from, int to) {
     demi_tree_node(t, 2*node + 2, mid, to);
 }
 static void demi_tree_free(dem_world *w, demi_tree *t) {
-    demi_free(w, t->order, t->points, sizeof *t->order);
-    demi_free(w, t->box, t->nodes*6, sizeof *t->box);
+    demi_free(w, t->order);
+    demi_free(w, t->box);
 }
 /* 0 when memory ran out; free it even then. */
 static int demi_tree_make(dem_world *w, demi_tree *t, const double *x, int count) {
@@ -4362,9 +4404,9 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
     demi_tree tree;
     int i, k, count = 0, ok = 0;
     memset(&tree, 0, sizeof tree);
-    wall->owns = (unsigned char *)demi_alloc(w, (size_t)all, 1);
-    wall->edges = (int32_t *)demi_alloc(w, (size_t)all*3, sizeof(int32_t));
-    wall->planes = (dem_real *)demi_alloc(w, (size_t)all*4, sizeof(dem_real));
+    wall->owns = (unsigned char *)demi_hold(w, DEMI_SCENE, (size_t)all, 1);
+    wall->edges = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)all*3, sizeof(int32_t));
+    wall->planes = (dem_real *)demi_hold(w, DEMI_SCENE, (size_t)all*4, sizeof(dem_real));
     if (!x || !same || !sides || !near_by || !wall->owns || !wall->edges || !wall->planes)
         goto done;
     for (i = 0; i < 3*wall->vertex_count; i++) x[i] = (double)wall->vertices[i];
@@ -4393,15 +4435,16 @@ static int demi_facets_begin(dem_world *w, demi_wall *wall) {
         }
         wall->edges[3*s->facet + s->side] = wall->edge_count - 1;
     }
-    wall->weight = (dem_real *)demi_alloc(w, (size_t)all + (size_t)wall->edge_count + vertices,
+    wall->weight = (dem_real *)demi_hold(w, DEMI_SCENE,
+                                         (size_t)all + (size_t)wall->edge_count + vertices,
                                           sizeof(dem_real));
     ok = wall->weight != 0;
 done:
-    demi_free(w, x, vertices*3, sizeof *x);
+    demi_free(w, x);
     demi_tree_free(w, &tree);
-    demi_free(w, same, vertices, sizeof *same);
-    demi_free(w, sides, (size_t)all*3, sizeof *sides);
-    demi_free(w, near_by, vertices, sizeof *near_by);
+    demi_free(w, same);
+    demi_free(w, sides);
+    demi_free(w, near_by);
     return ok;
 }
 
@@ -4523,22 +4566,21 @@ typedef struct demi_join {
 } demi_join;
 
 static void demi_join_free(dem_world *w, demi_join *j) {
-    const size_t p = j->point_room, f = j->facet_room;
-    demi_free(w, j->x, p*3, sizeof(double));
-    demi_free(w, j->near_by, p, sizeof(double));
+    demi_free(w, j->x);
+    demi_free(w, j->near_by);
     demi_tree_free(w, &j->tree);
-    demi_free(w, j->same, p, sizeof(int32_t));
-    demi_free(w, j->mark, p, sizeof(int32_t));
-    demi_free(w, j->faces, p, sizeof(double));
-    demi_free(w, j->corners, p, sizeof(double));
-    demi_free(w, j->edges, p, sizeof(double));
-    demi_free(w, j->own, p, sizeof(double));
-    demi_free(w, j->facet, f*5, sizeof(int32_t));
-    demi_free(w, j->count, f, sizeof(double));
-    demi_free(w, j->side, f*3, sizeof(demi_side));
-    demi_free(w, j->piece, j->piece_room, sizeof(demi_side));
-    demi_free(w, j->cut, j->cut_room*6, sizeof(int32_t));
-    demi_free(w, j->cut_weight, j->cut_room, sizeof(double));
+    demi_free(w, j->same);
+    demi_free(w, j->mark);
+    demi_free(w, j->faces);
+    demi_free(w, j->corners);
+    demi_free(w, j->edges);
+    demi_free(w, j->own);
+    demi_free(w, j->facet);
+    demi_free(w, j->count);
+    demi_free(w, j->side);
+    demi_free(w, j->piece);
+    demi_free(w, j->cut);
+    demi_free(w, j->cut_weight);
 }
 static int demi_join_member(const dem_world *w, int wall, int group, int per) {
     const demi_wall *m = &w->walls[wall];
@@ -4766,7 +4808,7 @@ static int demi_join_cut(dem_world *w, demi_join *j) {
     }
     j->sides = n;
     if (pass == 1 && n) qsort(j->piece, (size_t)n, sizeof *j->piece, demi_side_compare);
-    demi_free(w, between, most, sizeof *between);
+    demi_free(w, between);
     return pass == 1;
 }
 /* One wall's part, `more`, of a place where sides first .. end - 1 of the join lie: at an edge of
@@ -4829,7 +4871,7 @@ static int demi_join_profiles(dem_world *w, demi_join *j) {
         const int n = demi_join_between(j, j->facet[5*i + 2], j->facet[5*i + 3], between);
         for (k = 0; k < n; k++) j->faces[between[k]] += j->count[i];
     }
-    demi_free(w, between, (size_t)j->points, sizeof *between);
+    demi_free(w, between);
     return 1;
 }
 /* What corners and faces count. */
@@ -4875,8 +4917,9 @@ static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
         passed += wall->vertex_count;
         wall->number_count += wall->cut_count;
         if (!wall->cut_count) continue;
-        wall->cut_start = (int32_t *)demi_alloc(w, n, sizeof(int32_t));
-        wall->cuts = (demi_cut *)demi_alloc(w, (size_t)wall->cut_count, sizeof(demi_cut));
+        wall->cut_start = (int32_t *)demi_hold(w, DEMI_SCENE, n, sizeof(int32_t));
+        wall->cuts = (demi_cut *)demi_hold(w, DEMI_SCENE, (size_t)wall->cut_count,
+                                           sizeof(demi_cut));
         if (!wall->cut_start || !wall->cuts) return 0;
         for (k = 0; k < j->points; k++) own[k] = -1;
         for (k = 0; k < wall->vertex_count; k++) {
@@ -4906,8 +4949,8 @@ static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
     return 1;
 }
 static void demi_facets_drop_cuts(dem_world *w, demi_wall *wall) {
-    demi_free(w, wall->cut_start, (size_t)wall->element_count + 1, sizeof(int32_t));
-    demi_free(w, wall->cuts, (size_t)wall->cut_count, sizeof(demi_cut));
+    demi_free(w, wall->cut_start);
+    demi_free(w, wall->cuts);
     wall->cut_start = 0;
     wall->cuts = 0;
     wall->cut_count = 0;
@@ -5033,42 +5076,34 @@ static double demi_wall_speed(const demi_wall *wall) {
     return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->reach;
 }
 
-/* The arrays a wall owns: what is freed, and copied into slabs. */
-enum { DEMI_WALL_ARRAYS = 10 };
-typedef struct demi_owned {
-    void *place, *data;            /* where the pointer stands, and what it is */
-    size_t count, item;
-} demi_owned;
-static demi_owned demi_owned_of(void *place, size_t count, size_t item) {
-    demi_owned o;
-    o.place = place;
-    memcpy(&o.data, place, sizeof o.data);
-    o.count = count;
-    o.item = item;
-    return o;
-}
-static void demi_wall_arrays(demi_wall *wall, demi_owned *out) {
-    const size_t per = wall->kind == DEMI_WALL_MESH ? 3 : 2, n = (size_t)wall->element_count;
-    const size_t v = (size_t)wall->vertex_count;
-    out[0] = demi_owned_of(&wall->vertices, v*3, sizeof(dem_real));
-    out[1] = demi_owned_of(&wall->corners, n*per, sizeof(int32_t));
-    out[2] = demi_owned_of(&wall->edges, n*3, sizeof(int32_t));
-    out[3] = demi_owned_of(&wall->weight, n + (size_t)wall->edge_count + v, sizeof(dem_real));
-    out[4] = demi_owned_of(&wall->owns, n, 1);
-    out[5] = demi_owned_of(&wall->cut_start, n + 1, sizeof(int32_t));
-    out[6] = demi_owned_of(&wall->cuts, (size_t)wall->cut_count, sizeof(demi_cut));
-    out[7] = demi_owned_of(&wall->cell_start, (size_t)wall->cells[0]*(size_t)wall->cells[1]*
-                           (size_t)wall->cells[2] + 1, sizeof(int32_t));
-    out[8] = demi_owned_of(&wall->cell_items, (size_t)wall->cell_item_count, sizeof(int32_t));
-    out[9] = demi_owned_of(&wall->planes, n*4, sizeof(dem_real));
-}
+/* The arrays a wall owns: where their pointers stand. What is freed, and copied into slabs. */
+#define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
+    &(wall)->weight, &(wall)->owns, &(wall)->planes, &(wall)->cut_start, &(wall)->cuts, \
+    &(wall)->cell_start, &(wall)->cell_items}
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
-    demi_owned array[DEMI_WALL_ARRAYS];
-    int k;
-    demi_wall_arrays(wall, array);
-    for (k = 0; k < DEMI_WALL_ARRAYS; k++)
-        demi_free(w, array[k].data, array[k].count, array[k].item);
+    void *places[] = DEMI_WALL_ARRAYS(wall), *data;
+    size_t k;
+    for (k = 0; k < sizeof places/sizeof *places; k++) {
+        memcpy(&data, places[k], sizeof data);
+        demi_free(w, data);
+    }
     memset(wall, 0, sizeof *wall);
+}
+/* Arrays of its own instead of those it shares with another wall. 0 when memory ran out: it has
+   none then. */
+static int demi_wall_own(dem_world *w, demi_wall *wall) {
+    void *places[] = DEMI_WALL_ARRAYS(wall), *data, *copy;
+    size_t k;
+    int ok = 1;
+    for (k = 0; k < sizeof places/sizeof *places; k++) {
+        memcpy(&data, places[k], sizeof data);
+        copy = data ? demi_hold(w, DEMI_SCENE, demi_room(data, 1), 1) : 0;
+        ok = ok && !copy == !data;
+        if (copy) memcpy(copy, data, demi_room(data, 1));
+        memcpy(places[k], &copy, sizeof copy);
+    }
+    if (!ok) demi_wall_free(w, wall);
+    return ok;
 }
 
 /* Number of corners an element of this wall has; their coordinates. */
@@ -5167,7 +5202,7 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
     if (wall->element_count <= 4) return 1;     /* a handful: just look at all */
     demi_wall_cells_choose(wall);
     n = wall->cells[0]*wall->cells[1]*wall->cells[2];
-    wall->cell_start = (int32_t *)demi_alloc(w, (size_t)n + 1, sizeof(int32_t));
+    wall->cell_start = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)n + 1, sizeof(int32_t));
     if (!wall->cell_start) return 0;
     for (pass = 0; pass < 2; pass++) {          /* count, then fill from the back */
         for (i = wall->element_count - 1; i >= 0; i--) {
@@ -5184,7 +5219,7 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
         if (pass == 0) {
             for (i = 1; i <= n; i++) wall->cell_start[i] += wall->cell_start[i - 1];
             wall->cell_item_count = wall->cell_start[n];
-            wall->cell_items = (int32_t *)demi_alloc(w, (size_t)wall->cell_item_count,
+            wall->cell_items = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)wall->cell_item_count,
                                                      sizeof(int32_t));
             if (!wall->cell_items) return 0;
         }
@@ -5198,14 +5233,10 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     id.id = 0;
     wall->pose = wall->mid = wall->first = wall->home;
     if (!demi_list_drop(w)) { demi_wall_free(w, wall); demi_no_memory(w, call); return id; }
-    if (w->wall_count == w->wall_capacity) {
-        const size_t room = (size_t)w->wall_capacity*2 + 8;
-        demi_wall *fresh = (demi_wall *)demi_alloc(w, room, sizeof(demi_wall));
-        if (!fresh) { demi_wall_free(w, wall); demi_no_memory(w, call); return id; }
-        if (w->wall_count) memcpy(fresh, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
-        demi_free(w, w->walls, (size_t)w->wall_capacity, sizeof(demi_wall));
-        w->walls = fresh;
-        w->wall_capacity = (int)room;
+    if (!DEMI_GROW(w, w->walls, (size_t)w->wall_count + 1)) {
+        demi_wall_free(w, wall);
+        demi_no_memory(w, call);
+        return id;
     }
     w->walls[w->wall_count++] = *wall;
     w->facets_valid = 0;
@@ -5302,8 +5333,8 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
         }
     wall->vertex_count = vertices;
     wall->element_count = elements;
-    wall->vertices = (dem_real *)demi_alloc(w, (size_t)vertices*3, sizeof(dem_real));
-    if (per_element) wall->corners = (int32_t *)demi_alloc(w,
+    wall->vertices = (dem_real *)demi_hold(w, DEMI_SCENE, (size_t)vertices*3, sizeof(dem_real));
+    if (per_element) wall->corners = (int32_t *)demi_hold(w, DEMI_SCENE,
                                                            (size_t)elements*(size_t)per_element,
                                                            sizeof(int32_t));
     if (!wall->vertices || (per_element && !wall->corners)) {
@@ -5535,7 +5566,7 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
     int k;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     for (k = 0; k < w->outlet_count; k++)
-        if (((demi_outlet *)w->outlets_.data)[k].desc.frame.id == id.id)
+        if (w->outlets[k].desc.frame.id == id.id)
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_remove: outlet %d moves with wall "
                              "%d and would let nothing out any more; keep the wall", k + 1,
                              (int)id.id);
@@ -5615,21 +5646,32 @@ static int demi_grid_lay(dem_world *w, double least) {
     demi_cells_lay(lo, hi, least, w->count, w->cells, w->cell_size);
     for (k = 0; k < 3; k++) w->cell_origin[k] = lo[k];
     n = w->cells[0]*w->cells[1]*w->cells[2];
-    if (!demi_array_grow(w, &w->cell_start_, sizeof(int32_t), (size_t)n + 2)) return 0;
+    if (!DEMI_GROW(w, w->cell_start, (size_t)n + 2)) return 0;
     for (i = 0; i < w->count; i++)
         w->cell_of[i] = demi_cell_of(w->cell_origin, w->cell_size, w->cells, w->pos + 4*i);
     return 1;
 }
 
-static void demi_permute4(const dem_world *w, dem_real *x) {
-    int i;
-    for (i = 0; i < w->count; i++) memcpy(w->scratch + 4*i, x + 4*w->order[i], 4*sizeof(dem_real));
-    memcpy(x, w->scratch, (size_t)w->count*4*sizeof(dem_real));
+/* Puts what bodies have of it in the order of w->order. The sizes there are, by name: copies of
+   constant length are instructions, others calls. */
+static void demi_permute(dem_world *w, const demi_body_array *a) {
+    char *to = (char *)w->scratch;
+    const char *from = demi_data(w, a);
+    const size_t n = (size_t)w->count;
+    size_t i;
+#define DEMI_PERMUTE(size) \
+    for (i = 0; i < n; i++) memcpy(to + i*(size), from + (size_t)w->order[i]*(size), size)
+    if (a->item == 4*sizeof(dem_real)) DEMI_PERMUTE(4*sizeof(dem_real));
+    else if (a->item == sizeof(dem_real)) DEMI_PERMUTE(sizeof(dem_real));
+    else if (a->item == sizeof(int32_t)) DEMI_PERMUTE(sizeof(int32_t));
+    else DEMI_PERMUTE(a->item);
+#undef DEMI_PERMUTE
+    memcpy(demi_data(w, a), to, n*a->item);
 }
 /* Puts the bodies of cell c, in their order, at order[start[c]] .. order[start[c + 1] - 1]. Answers
    whether they stood so already. */
 static int demi_cells_fill(dem_world *w, int n) {
-    int32_t *start = (int32_t *)w->cell_start_.data;
+    int32_t *start = w->cell_start;
     int i, sorted = 1;
     memset(start, 0, ((size_t)n + 2)*sizeof(int32_t));
     for (i = 0; i < w->count; i++) {
@@ -5644,22 +5686,10 @@ static int demi_cells_fill(dem_world *w, int n) {
 static void demi_bodies_sort(dem_world *w) {
     int i;
     if (demi_cells_fill(w, w->cells[0]*w->cells[1]*w->cells[2])) return;
-    demi_permute4(w, w->pos); demi_permute4(w, w->vel); demi_permute4(w, w->spin);
-    demi_permute4(w, w->half_vel); demi_permute4(w, w->half_spin);
-    demi_permute4(w, w->force); demi_permute4(w, w->torque);
-    if (w->last_pos) demi_permute4(w, w->last_pos);
-    if (w->orienting) {
-        demi_permute4(w, w->orient); demi_permute4(w, w->angular); demi_permute4(w, w->moment);
+    for (i = 0; i < DEMI_BODY_ARRAYS; i++) {
+        const demi_body_array *a = &demi_body_arrays[i];
+        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a)) demi_permute(w, a);
     }
-#define DEMI_PERMUTE(array, type) do { \
-        type *from = w->array, *to = (type *)(void *)w->scratch; \
-        for (i = 0; i < w->count; i++) to[i] = from[w->order[i]]; \
-        memcpy(from, to, (size_t)w->count*sizeof(type)); } while (0)
-    DEMI_PERMUTE(mass, dem_real); DEMI_PERMUTE(inv_mass, dem_real);
-    DEMI_PERMUTE(inv_inertia, dem_real);
-    DEMI_PERMUTE(body_slot, uint32_t); DEMI_PERMUTE(body_material, int32_t);
-    if (w->orienting) DEMI_PERMUTE(body_shape, int32_t);
-#undef DEMI_PERMUTE
     for (i = 0; i < w->count; i++) w->slot_index[w->body_slot[i]] = i;
 }
 
@@ -5765,7 +5795,7 @@ static int demi_neighbours(int c, int n, int periodic, int *out) {
 
 static void demi_rows_grid(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
-    const int32_t *start = (const int32_t *)w->cell_start_.data;
+    const int32_t *start = w->cell_start;
     int a, c, i, j, k, b, last = -1, ranges = 0;
     int32_t from[27], to[27];
     for (a = w->domains[d].begin; a < w->domains[d].end; a++) {
@@ -5897,7 +5927,7 @@ static int demi_levels_lay(dem_world *w) {
         level->first = n;
         n += level->cells[0]*level->cells[1]*level->cells[2];
     }
-    if (!demi_array_grow(w, &w->cell_start_, sizeof(int32_t), (size_t)n + 2)) return 0;
+    if (!DEMI_GROW(w, w->cell_start, (size_t)n + 2)) return 0;
     for (i = 0; i < w->count; i++) {
         const demi_level *level = w->levels;
         while (level < w->levels + w->level_count - 1 && (double)w->pos[4*i + 3] <= level[1].radius)
@@ -5938,7 +5968,7 @@ DEM_INLINE double demi_level_gap2(const dem_world *w, const demi_level *level, i
 /* Offers a the bodies after it in cells `first` to `last` of a row of cells along x. */
 static void demi_level_offer(dem_world *w, int d, const demi_periods *p, int a, int row,
                              int first, int last) {
-    const int32_t *start = (const int32_t *)w->cell_start_.data;
+    const int32_t *start = w->cell_start;
     const int end = start[row + last + 1];
     int i;
     for (i = start[row + first]; i < end; i++)
@@ -6051,12 +6081,12 @@ static size_t demi_pair_hash(int32_t lo, int32_t hi, size_t room) {
 /* Open addressing with a power of two of places, at most two thirds full; deletion closes the gap.
    */
 static int demi_pair_table_add(dem_world *w, int32_t a, int32_t b) {
-    demi_pair_key *table = (demi_pair_key *)w->lll_table_.data;
-    size_t room = w->lll_table_.capacity, k;
+    demi_pair_key *table = w->lll_table;
+    size_t room = demi_room(table, sizeof *table), k;
     const int32_t lo = DEMI_MIN(a, b), hi = DEMI_MAX(a, b);
     if (3*(size_t)(w->lll_size + 1) > 2*room) {
         const size_t fresh_room = room ? 2*room : 1024;
-        demi_pair_key *fresh = (demi_pair_key *)demi_alloc(w, fresh_room, sizeof *fresh);
+        demi_pair_key *fresh = (demi_pair_key *)demi_hold(w, DEMI_RUN, fresh_room, sizeof *fresh);
         size_t i;
         if (!fresh) return 0;
         for (i = 0; i < fresh_room; i++) fresh[i].lo = -1;
@@ -6066,10 +6096,9 @@ static int demi_pair_table_add(dem_world *w, int32_t a, int32_t b) {
             while (fresh[k].lo >= 0) k = (k + 1) & (fresh_room - 1);
             fresh[k] = table[i];
         }
-        demi_array_free(w, &w->lll_table_);
-        w->lll_table_.data = table = fresh;
-        w->lll_table_.capacity = room = fresh_room;
-        w->lll_table_.item = sizeof *fresh;
+        demi_free(w, table);
+        w->lll_table = table = fresh;
+        room = fresh_room;
     }
     for (k = demi_pair_hash(lo, hi, room); table[k].lo >= 0; k = (k + 1) & (room - 1))
         if (table[k].lo == lo && table[k].hi == hi) return 1;
@@ -6079,8 +6108,8 @@ static int demi_pair_table_add(dem_world *w, int32_t a, int32_t b) {
     return 1;
 }
 static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
-    demi_pair_key *table = (demi_pair_key *)w->lll_table_.data;
-    const size_t room = w->lll_table_.capacity;
+    demi_pair_key *table = w->lll_table;
+    const size_t room = demi_room(table, sizeof *table);
     const int32_t lo = DEMI_MIN(a, b), hi = DEMI_MAX(a, b);
     size_t k, gap;
     if (!room) return;
@@ -6133,8 +6162,8 @@ static int demi_lll_start(dem_world *w) {
     int32_t *active;
     demi_end *ends;
     for (axis = 0; axis < 3; axis++) {
-        if (!demi_array_grow(w, &w->lll_ends_[axis], sizeof(demi_end), (size_t)n*2)) return 0;
-        ends = (demi_end *)w->lll_ends_[axis].data;
+        if (!DEMI_GROW(w, w->lll_ends[axis], (size_t)n*2)) return 0;
+        ends = w->lll_ends[axis];
         for (k = 0; k < 2*n; k++) {
             ends[k].box = (int32_t)w->body_slot[k/2];
             ends[k].upper = k & 1;
@@ -6142,7 +6171,7 @@ static int demi_lll_start(dem_world *w) {
         }
         if (n) qsort(ends, (size_t)n*2, sizeof *ends, demi_end_compare);
     }
-    for (i = 0; i < w->lll_table_.capacity; i++) ((demi_pair_key *)w->lll_table_.data)[i].lo = -1;
+    for (i = 0; i < demi_room(w->lll_table, sizeof *w->lll_table); i++) w->lll_table[i].lo = -1;
     w->lll_size = 0;
     w->lll_boxes = n;
     while (sweep < 3 && w->desc.boundary[sweep] == DEM_BOUNDARY_PERIODIC) sweep++;
@@ -6153,9 +6182,9 @@ static int demi_lll_start(dem_world *w) {
                                          (int32_t)w->body_slot[j])) return 0;
         return 1;
     }
-    if (!demi_array_grow(w, &w->lll_rows_, sizeof(int32_t), (size_t)n)) return 0;
-    active = (int32_t *)w->lll_rows_.data;
-    ends = (demi_end *)w->lll_ends_[sweep].data;
+    if (!DEMI_GROW(w, w->lll_rows, (size_t)n)) return 0;
+    active = w->lll_rows;
+    ends = w->lll_ends[sweep];
     for (k = 0; k < 2*n; k++) {
         if (ends[k].upper) {
             for (j = 0; active[j] != ends[k].box; j++) {}
@@ -6173,7 +6202,7 @@ static int demi_lll_start(dem_world *w) {
 static int demi_lll_update(dem_world *w) {
     int axis, k, j;
     for (axis = 0; axis < 3; axis++) {
-        demi_end *ends = (demi_end *)w->lll_ends_[axis].data;
+        demi_end *ends = w->lll_ends[axis];
         for (k = 0; k < 2*w->lll_boxes; k++)
             ends[k].value = demi_box_end(w, ends[k].box, axis, ends[k].upper);
         for (k = 1; k < 2*w->lll_boxes; k++) {
@@ -6208,14 +6237,14 @@ static int demi_lll_rows(dem_world *w) {
     w->lll_valid = 0;                           /* until it is whole again */
     if (fresh ? !demi_lll_start(w) : !demi_lll_update(w)) return 0;
     w->lll_valid = 1;
-    if (!demi_array_grow(w, &w->lll_row_start_, sizeof(int32_t), (size_t)w->count + 2) ||
-        !demi_array_grow(w, &w->lll_rows_, sizeof(int32_t), (size_t)w->lll_size)) return 0;
-    start = (int32_t *)w->lll_row_start_.data;
-    rows = (int32_t *)w->lll_rows_.data;
+    if (!DEMI_GROW(w, w->lll_row_start, (size_t)w->count + 2) ||
+        !DEMI_GROW(w, w->lll_rows, (size_t)w->lll_size)) return 0;
+    start = w->lll_row_start;
+    rows = w->lll_rows;
     memset(start, 0, ((size_t)w->count + 2)*sizeof(int32_t));
     for (pass = 0; pass < 2; pass++) {
-        for (i = 0; i < w->lll_table_.capacity; i++) {
-            const demi_pair_key *key = (const demi_pair_key *)w->lll_table_.data + i;
+        for (i = 0; i < demi_room(w->lll_table, sizeof *w->lll_table); i++) {
+            const demi_pair_key *key = w->lll_table + i;
             int a, b;
             if (key->lo < 0) continue;
             a = w->slot_index[key->lo];
@@ -6233,8 +6262,8 @@ static int demi_lll_rows(dem_world *w) {
 }
 static void demi_rows_linked(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
-    const int32_t *start = (const int32_t *)w->lll_row_start_.data;
-    const int32_t *rows = (const int32_t *)w->lll_rows_.data;
+    const int32_t *start = w->lll_row_start;
+    const int32_t *rows = w->lll_rows;
     int a, k;
     for (a = w->domains[d].begin; a < w->domains[d].end; a++)
         for (k = start[a]; k < start[a + 1]; k++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a,
@@ -6370,68 +6399,45 @@ static void demi_domain_walls(dem_world *w, int d) {
 /* Room for a list. 0 when memory ran out; what did grow is pointed at all the same. */
 static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride;
-    const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &list->a_, sizeof(int32_t), n) &&
-                   demi_array_grow(w, &list->b_, sizeof(int32_t), n) &&
-                   demi_array_grow(w, &list->place_, sizeof(int32_t), n) &&
-                   demi_array_grow(w, &list->image_, 1, n);
-    list->place = (int32_t *)list->place_.data;
-    list->a = (int32_t *)list->a_.data;
-    list->b = (int32_t *)list->b_.data;
-    list->image = (unsigned char *)list->image_.data;
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, list->a, n) &&
+                   DEMI_GROW(w, list->b, n) &&
+                   DEMI_GROW(w, list->place, n) &&
+                   DEMI_GROW(w, list->image, n);
     if (ok) list->stride = stride;
     return ok;
 }
 static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
-    const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &near->a_, sizeof(int32_t), n) &&
-                   demi_array_grow(w, &near->b_, sizeof(int32_t), n) &&
-                   demi_array_grow(w, &near->k_, sizeof(int32_t), n) &&
-                   demi_array_grow(w, &near->image_, 1, n) &&
-                   demi_array_grow(w, &near->memory_, sizeof(dem_real), m) &&
-                   (w->uniform || demi_array_grow(w, &near->coef_, sizeof(dem_real),
-                                                  n*DEMI_PAIR_COLUMNS));
-    near->a = (int32_t *)near->a_.data;
-    near->b = (int32_t *)near->b_.data;
-    near->k = (int32_t *)near->k_.data;
-    near->image = (unsigned char *)near->image_.data;
-    near->memory = (dem_real *)near->memory_.data;
-    near->coef = (dem_real *)near->coef_.data;
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, near->a, n) &&
+                   DEMI_GROW(w, near->b, n) &&
+                   DEMI_GROW(w, near->k, n) &&
+                   DEMI_GROW(w, near->image, n) &&
+                   DEMI_GROW(w, near->memory, m) &&
+                   (w->uniform || DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS));
     if (ok) near->stride = stride;
     return ok;
 }
 static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const size_t n = (size_t)w->domain_count*(size_t)stride;
-    const int ok = n <= (size_t)INT_MAX/8 && demi_array_grow(w, &w->wall_body_, sizeof(int32_t),
-                                                             n) &&
-                   demi_array_grow(w, &w->wall_id_, sizeof(int32_t), n) &&
-                   demi_array_grow(w, &w->wall_shift_, 3*sizeof(dem_real), n) &&
-                   demi_array_grow(w, &w->wall_gap_, sizeof(dem_real), n) &&
-                   demi_array_grow(w, &w->wall_element_, sizeof(int32_t), n);
-    w->wall_body = (int32_t *)w->wall_body_.data;
-    w->wall_id = (int32_t *)w->wall_id_.data;
-    w->wall_element = (int32_t *)w->wall_element_.data;
-    w->wall_gap = (dem_real *)w->wall_gap_.data;
-    w->wall_shift = (dem_real *)w->wall_shift_.data;
+    const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, w->wall_body, n) &&
+                   DEMI_GROW(w, w->wall_id, n) &&
+                   DEMI_GROW(w, w->wall_shift, 3*n) &&
+                   DEMI_GROW(w, w->wall_gap, n) &&
+                   DEMI_GROW(w, w->wall_element, n);
     if (ok) w->wall_stride = stride;
     return ok;
 }
 static int demi_cross_reserve(dem_world *w, size_t entries) {
-    const int ok = demi_array_grow(w, &w->cross_incoming_, sizeof(int32_t), entries) &&
-                   demi_array_grow(w, &w->cross_push_, sizeof(dem_real),
-                                   6*(entries + DEMI_LANES + 1));
-    w->cross_incoming = (int32_t *)w->cross_incoming_.data;
-    w->cross_push = (dem_real *)w->cross_push_.data;
+    const int ok = DEMI_GROW(w, w->cross_incoming, entries) &&
+                   DEMI_GROW(w, w->cross_push, 6*(entries + DEMI_LANES + 1));
     return ok;
 }
 /* Room for contacts with walls, now and next, and for the walls' sums. */
 static int demi_wall_contacts_reserve(dem_world *w, size_t now, size_t next) {
     const size_t sums = (size_t)w->domain_count*(size_t)w->wall_count;
-    const int ok = demi_array_grow(w, &w->wall_now_, sizeof(demi_wall_contact), now) &&
-                   demi_array_grow(w, &w->wall_next_, sizeof(demi_wall_contact), next) &&
-                   demi_array_grow(w, &w->wall_sums_, sizeof(demi_wall_sum), sums);
-    w->wall_now = (demi_wall_contact *)w->wall_now_.data;
-    w->wall_next = (demi_wall_contact *)w->wall_next_.data;
-    w->wall_sums = (demi_wall_sum *)w->wall_sums_.data;
+    const int ok = DEMI_GROW(w, w->wall_now, now) &&
+                   DEMI_GROW(w, w->wall_next, next) &&
+                   DEMI_GROW(w, w->wall_sums, sums);
     return ok;
 }
 
@@ -6523,9 +6529,9 @@ static int demi_touching_reserve(dem_world *w) {
         n += most;
         if (n > (size_t)INT_MAX/8) return 0;
     }
-    w->touching_valid = demi_array_grow(w, &w->touching_, sizeof(demi_touching), n) &&
-                        demi_array_grow(w, &w->touching_links_, sizeof(demi_link), n) &&
-                        demi_array_grow(w, &w->touching_table_, sizeof(int32_t), 4*n);
+    w->touching_valid = DEMI_GROW(w, w->touching, n) &&
+                        DEMI_GROW(w, w->touching_links, n) &&
+                        DEMI_GROW(w, w->touching_table, 4*n);
     return w->touching_valid;
 }
 /* Contacts with walls that still last, from the last list (by slot) into the domains of the new
@@ -6603,12 +6609,9 @@ static int demi_shaped_room(dem_world *w) {
         }
     for (d = 0; d < DEMI_DOMAINS; d++) stride = DEMI_MAX(stride, crowd[d]);
     stride = DEMI_MAX(stride, w->shaped_stride);
-    ok = demi_array_grow(w, &w->shaped_next_, sizeof(demi_shaped),
-                         DEMI_MAX((size_t)stride*(size_t)w->domain_count, (size_t)total)) &&
-         demi_array_grow(w, &w->shaped_now_, sizeof(demi_shaped),
-                         (size_t)stride*(size_t)w->domain_count);
-    w->shaped_now = (demi_shaped *)w->shaped_now_.data;
-    w->shaped_next = (demi_shaped *)w->shaped_next_.data;
+    ok = DEMI_GROW(w, w->shaped_next,
+                   DEMI_MAX((size_t)stride*(size_t)w->domain_count, (size_t)total)) &&
+         DEMI_GROW(w, w->shaped_now, (size_t)stride*(size_t)w->domain_count);
     return ok ? stride : -1;
 }
 /* Contacts of shaped bodies that still last, from the last list (by slot) into the domains of the
@@ -6856,12 +6859,12 @@ typedef struct demi_quiet {
     dem_real speed2;               /* the largest |v|^2 when last looked at */
 } demi_quiet;
 DEM_INLINE demi_quiet *demi_quiet_at(const dem_world *w, int d, int i) {
-    return (demi_quiet *)w->quiet_.data + d + i/DEMI_SOME;     /* no two domains share one */
+    return w->quiet + d + i/DEMI_SOME;     /* no two domains share one */
 }
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->visitor &&
-           w->desc.integrator != DEM_POSITION_VERLET;
+           !w->backward;
 }
 static void demi_domain_quiet(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
@@ -6928,8 +6931,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     w->near = w->near_last;
     w->near_last = swap;
     w->near_fresh = fresh;
-    if (!demi_array_grow(w, &w->quiet_, sizeof(demi_quiet),
-                         (size_t)(w->count/DEMI_SOME + w->domain_count + 1))) {
+    if (!DEMI_GROW(w, w->quiet, (size_t)(w->count/DEMI_SOME + w->domain_count + 1))) {
         w->near_last = w->near;
         w->near = swap;
         return 0;
@@ -7113,7 +7115,7 @@ static dem_result demi_lost(dem_world *w, int body) {
 /* Bodies that lie on each other, or far from all others, share a cell, and a cell's bodies are all
    compared. 1 with a sentence when that would take minutes. */
 static int demi_crowd_refuse(dem_world *w) {
-    const int32_t *start = (const int32_t *)w->cell_start_.data;
+    const int32_t *start = w->cell_start;
     const int n = w->cells[0]*w->cells[1]*w->cells[2];
     double work = 0;
     int c, crowd = 0;
@@ -7206,8 +7208,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     if (w->domains[last].walls - walls >= w->join_room) return 0;
     w->join_room -= w->domains[last].walls - walls;
     if (w->domains[last].walls > walls) w->touching_valid = 0;
-    if (!demi_array_grow(w, &w->quiet_, sizeof(demi_quiet),
-                         (size_t)(w->count/DEMI_SOME + w->domain_count + 1))) return 0;
+    if (!DEMI_GROW(w, w->quiet, (size_t)(w->count/DEMI_SOME + w->domain_count + 1))) return 0;
     demi_quiet_at(w, last, i)->restless = 2;
     w->radius_min = DEMI_MIN(w->radius_min, w->pos[4*i + 3]);
     w->radius_max = DEMI_MAX(w->radius_max, w->pos[4*i + 3]);
@@ -7228,17 +7229,15 @@ static void demi_memory_map(const demi_laws *was, const demi_laws *now, const de
    changed then. */
 static int demi_memory_move(dem_world *w, const demi_laws *was) {
     const size_t from = (size_t)w->carry_stride, to = (size_t)w->laws.memory;
-    demi_array fresh = {0, 0, 0};
-    dem_real old[DEMI_MEMORY];
+    dem_real old[DEMI_MEMORY], *fresh = 0;
     int d, k;
     if (w->carry_stride != was->memory) w->carry_count = 0;    /* of no use: not these laws' */
-    if (!demi_array_grow(w, &fresh, sizeof(dem_real), (size_t)w->carry_count*to)) return 0;
+    if (!DEMI_GROW(w, fresh, (size_t)w->carry_count*to)) return 0;
     for (k = 0; k < w->carry_count; k++)
         demi_memory_map(was, &w->laws, w->carry_memory + (size_t)k*from,
-                        (dem_real *)fresh.data + (size_t)k*to);
-    demi_array_free(w, &w->carry_memory_);
-    w->carry_memory_ = fresh;
-    w->carry_memory = (dem_real *)fresh.data;
+                        fresh + (size_t)k*to);
+    demi_free(w, w->carry_memory);
+    w->carry_memory = fresh;
     w->carry_stride = (int)to;
     for (d = 0; d < w->domain_count; d++) {
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
@@ -8869,11 +8868,11 @@ DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidat
     const demi_domain *domain = &w->domains[d];
     demi_places p;
     memset(&p, 0, sizeof p);
-    p.at = (demi_touching *)w->touching_.data + domain->touching_first;
+    p.at = w->touching + domain->touching_first;
     if (candidates > 10) {
         uint32_t size = 64;
         while (size < 2*7*(uint32_t)candidates) size *= 2;
-        p.table = (int32_t *)w->touching_table_.data + 4*domain->touching_first;
+        p.table = w->touching_table + 4*domain->touching_first;
         p.mask = size - 1;
         memset(p.table, 0, size*sizeof *p.table);
     }
@@ -8932,7 +8931,7 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
         if (q < p.count)                        /* something takes away: more than it should? */
             demi_places_rings(wall, w->wall_element + base + k, end - k, x, part, within,
                               demi_normal_is(w, DEMI_HERTZIAN) ? DEM_R(2.5) : DEM_R(2),
-                              (demi_link *)w->touching_links_.data +
+                              w->touching_links +
                               w->domains[d].touching_first, &p);
         for (q = from; q < p.count; q++) p.at[q].shift = shift;
     }
@@ -8968,7 +8967,7 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem
     while (first < last && w->wall_gap[base + first] > gone) first++;
     if (first == last) return 0;
     if (demi_faceted(wall)) return demi_facets_touch(w, d, first, last, gone, at, r, 0, places);
-    *places = out = (demi_touching *)w->touching_.data + w->domains[d].touching_first;
+    *places = out = w->touching + w->domains[d].touching_first;
     for (k = first; k < last; k = end) {
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
         const dem_vec3 x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
@@ -9507,7 +9506,7 @@ static int demi_ellipsoid_collect(const dem_world *w, int d, int first, int last
     local.q = demi_quat_unit(dem_quat_times(demi_quat_of(turn), p->q));
     if (demi_faceted(wall))
         return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
-    *places = out = (demi_touching *)w->touching_.data + w->domains[d].touching_first;
+    *places = out = w->touching + w->domains[d].touching_first;
     for (i = first; i < last + two; i++) {
         demi_touching *c = &out[count];
         if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
@@ -9675,15 +9674,10 @@ static int demi_shaped_reserve(dem_world *w, int stride) {
     const int old = w->shaped_stride;
     const size_t n = (size_t)DEMI_DOMAINS < (size_t)w->domain_count ? 0 : (size_t)w->domain_count;
     int d;
-    if (stride <= old && w->shaped_now_.capacity >= n*(size_t)old) stride = old;
-    if (!demi_array_grow(w, &w->shaped_next_, sizeof(demi_shaped), n*(size_t)stride) ||
-        !demi_array_grow(w, &w->shaped_now_, sizeof(demi_shaped), n*(size_t)stride)) {
-        w->shaped_now = (demi_shaped *)w->shaped_now_.data;
-        w->shaped_next = (demi_shaped *)w->shaped_next_.data;
-        return 0;
-    }
-    w->shaped_now = (demi_shaped *)w->shaped_now_.data;
-    w->shaped_next = (demi_shaped *)w->shaped_next_.data;
+    if (stride <= old && demi_room(w->shaped_now, sizeof(demi_shaped)) >= n*(size_t)old) stride =
+           old;
+    if (!DEMI_GROW(w, w->shaped_next, n*(size_t)stride) ||
+        !DEMI_GROW(w, w->shaped_now, n*(size_t)stride)) return 0;
     for (d = w->domain_count - 1; d > 0 && stride > old; d--)
         memmove(w->shaped_now + (size_t)d*(size_t)stride, w->shaped_now + (size_t)d*(size_t)old,
                 (size_t)w->domains[d].shaped*sizeof(demi_shaped));
@@ -10025,7 +10019,7 @@ static void demi_prime_body(dem_world *w, int i) {
     for (k = 0; k < 3; k++) {
         const dem_real a = b.f[k]*b.inv + b.g[k];
         b.half[k] = b.v[k] - a*h;
-        if (w->last_pos) w->last_pos[4*i + k] = w->pos[4*i + k] - b.half[k]*dt;
+        if (w->backward) w->last_pos[4*i + k] = w->pos[4*i + k] - b.half[k]*dt;
         s.half[k] = s.v[k] - s.f[k]*s.inv*h;
     }
     if (w->shaped_count && w->body_shape[i])
@@ -10247,13 +10241,14 @@ typedef struct demi_integrator_row {
     void (*move)(dem_world *w, int begin, int end, int turning);
     void (*finish)(dem_world *w, int begin, int end);
     int order;
+    int backward;                  /* it needs last_pos, the places of one step ago */
 } demi_integrator_row;
 static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator */
-    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2},
-    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1},
-    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1},
-    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2},
-    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2},
+    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0},
+    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1, 0},
+    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0},
+    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1},
+    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0},
 };
 enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
 
@@ -10394,10 +10389,10 @@ typedef struct demi_crowd {
 typedef struct demi_nook { int32_t node; double lo[3], size[3]; } demi_nook;
 
 static demi_sphere *demi_crowd_spheres(const dem_world *w) {
-    return (demi_sphere *)w->crowd_.data;
+    return w->crowd;
 }
 static demi_node *demi_crowd_nodes(const dem_world *w) {
-    return (demi_node *)w->crowd_nodes_.data;
+    return w->crowd_nodes;
 }
 static int demi_longest(const double *size) {
     const int k = size[1] > size[0];
@@ -10435,7 +10430,7 @@ static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
     demi_node *nodes;
     int32_t i, next;
     int k;
-    if (!demi_array_grow(w, &w->crowd_nodes_, sizeof(demi_node), (size_t)c->nodes + 2)) return 0;
+    if (!DEMI_GROW(w, w->crowd_nodes, (size_t)c->nodes + 2)) return 0;
     nodes = demi_crowd_nodes(w);
     nodes[at->node].child = c->nodes;
     for (k = 0; k < 2; k++) {
@@ -10458,7 +10453,7 @@ static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radi
     demi_sphere *s;
     demi_node *node;
     int depth = 0;
-    if (!demi_array_grow(w, &w->crowd_, sizeof(demi_sphere), (size_t)c->count + 1)) return 0;
+    if (!DEMI_GROW(w, w->crowd, (size_t)c->count + 1)) return 0;
     s = demi_crowd_spheres(w) + c->count;
     s->at = demi_place_of(&c->p, x);
     s->radius = radius;
@@ -10595,7 +10590,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
     demi_walls_repeat(w);
     c->count = 0;
     c->nodes = 1;
-    if (!demi_array_grow(w, &w->crowd_nodes_, sizeof(demi_node), 1)) return 0;
+    if (!DEMI_GROW(w, w->crowd_nodes, 1)) return 0;
     root = demi_crowd_nodes(w);
     root->child = root->count = 0;
     root->first = -1;
@@ -10622,9 +10617,12 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
     return 1;
 }
 static void demi_crowd_end(dem_world *w) {
-    demi_array_free(w, &w->crowd_);
-    demi_array_free(w, &w->crowd_nodes_);
-    demi_array_free(w, &w->crowd_turned_);
+    demi_free(w, w->crowd);
+    demi_free(w, w->crowd_nodes);
+    demi_free(w, w->crowd_turned);
+    w->crowd = 0;
+    w->crowd_nodes = 0;
+    w->crowd_turned = 0;
 }
 
 /* --- walls --- */
@@ -10687,7 +10685,7 @@ static dem_quat demi_quat_random(uint64_t *state) {
    out. */
 static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int material, int form) {
     const demi_sphere *s = demi_crowd_spheres(w);
-    const dem_real *q = (const dem_real *)w->crowd_turned_.data;
+    const dem_real *q = w->crowd_turned;
     int i;
     if (!demi_list_drop(w) ||
         !demi_bodies_reserve(w, (size_t)w->count + (size_t)(c->count - first))) return 0;
@@ -10719,8 +10717,8 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const demi_region *g, d
         }
         if (!demi_crowd_put(w, c, x, radius, -1)) return -1;
         if (!turned) continue;
-        if (!demi_array_grow(w, &w->crowd_turned_, 4*sizeof(dem_real), (size_t)i + 1)) return -1;
-        demi_quat_put((dem_real *)w->crowd_turned_.data + 4*(size_t)i, demi_quat_random(&state));
+        if (!DEMI_GROW(w, w->crowd_turned, 4*((size_t)i + 1))) return -1;
+        demi_quat_put(w->crowd_turned + 4*(size_t)i, demi_quat_random(&state));
     }
     return count;
 }
@@ -10839,8 +10837,7 @@ static int demi_lattice_fill(dem_world *w, demi_crowd *c, demi_lattice *g) {
                 if (++g->looked > DEMI_PACK_MOST || c->count == INT_MAX/64) return done;
                 if (g->inside && !g->inside(x, g->radius, g->user)) continue;
                 if (!demi_room_free(w, c, x, g->radius*DEM_R(0.999999))) continue;
-                if (!demi_array_grow(w, &w->crowd_, sizeof(demi_sphere),
-                                     (size_t)c->count + (size_t)done + 1)) return -1;
+                if (!DEMI_GROW(w, w->crowd, (size_t)c->count + (size_t)done + 1)) return -1;
                 to = demi_crowd_spheres(w) + c->count + done++;
                 to->at = x;
                 to->radius = g->radius;
@@ -10929,11 +10926,9 @@ enum { DEMI_FEED_NEAR = 256 };                       /* bodies near one that joi
 /* Outlets look when a list is made anew, and every so many steps: see demi_step_once. */
 enum { DEMI_OUTLET_REST = 64 };
 
-static demi_feed *demi_feed_at(const dem_world *w, int i) {
-    return (demi_feed *)w->feeds_.data + i;
-}
+static demi_feed *demi_feed_at(const dem_world *w, int i) { return w->feeds + i; }
 static demi_outlet *demi_outlet_at(const dem_world *w, int i) {
-    return (demi_outlet *)w->outlets_.data + i;
+    return w->outlets + i;
 }
 static int demi_box_bad(dem_box b, int planar) {
     return !demi_finite3(b.lo) || !demi_finite3(b.hi) || !(b.hi.x >= b.lo.x) ||
@@ -10991,7 +10986,7 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
                   "region where centres of new grains are", call);
         return id;
     }
-    if (!demi_array_grow(w, &w->feeds_, sizeof(demi_feed), (size_t)w->feed_count + 1)) {
+    if (!DEMI_GROW(w, w->feeds, (size_t)w->feed_count + 1)) {
         demi_no_memory(w, call);
         return id;
     }
@@ -11161,7 +11156,7 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
         return id;
     }
     if (d->frame.id && demi_wall_find(w, call, d->frame) < 0) return id;
-    if (!demi_array_grow(w, &w->outlets_, sizeof(demi_outlet), (size_t)w->outlet_count + 1)) {
+    if (!DEMI_GROW(w, w->outlets, (size_t)w->outlet_count + 1)) {
         demi_no_memory(w, call);
         return id;
     }
@@ -11578,15 +11573,15 @@ static double demi_press_limit(dem_world *w, double dt, int *worst) {
     double least = dt;
     int i, found = 0;
     if (!w->count) return 0;
-    if (!demi_array_grow(w, &w->press_, sizeof(demi_press), (size_t)w->count)) return -1;
-    press = (demi_press *)w->press_.data;
+    if (!DEMI_GROW(w, w->press, (size_t)w->count)) return -1;
+    press = w->press;
     memset(press, 0, (size_t)w->count*sizeof *press);
     demi_press_visit(w, press, 0);
     for (i = 0; i < w->count; i++)
         if (dt > demi_dt_stable(press[i].omega2, press[i].rate)) press[i].whole = ++found;
     if (!found) return 0;
-    if (!demi_array_grow(w, &w->press_whole_, sizeof *whole, (size_t)found)) return -1;
-    whole = (demi_press_whole *)w->press_whole_.data;
+    if (!DEMI_GROW(w, w->press_whole, (size_t)found)) return -1;
+    whole = w->press_whole;
     memset(whole, 0, (size_t)found*sizeof *whole);
     demi_press_visit(w, press, whole);
     for (i = 0; i < w->count; i++) {
@@ -11698,8 +11693,8 @@ static dem_result demi_dt_check(dem_world *w) {
                      "most %g s: body %u is pressed by %d contacts, by %.3g of its radius at most; "
                      "use dt = 0, a smaller dt, or less overlap", (unsigned long long)w->steps,
                      (double)w->dt, limit, (unsigned)w->body_slot[worst] + 1,
-                     (int)((demi_press *)w->press_.data)[worst].contacts,
-                     (double)((demi_press *)w->press_.data)[worst].deepest);
+                     (int)w->press[worst].contacts,
+                     (double)w->press[worst].deepest);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -11866,7 +11861,8 @@ static void demi_domain_gather(dem_world *w, int d) {
 /* Forces at the present positions and velocities; wall channels. */
 static void demi_forces(dem_world *w) {
     const double dt = w->forces_valid ? (double)w->dt : 0;
-    demi_array swap;
+    demi_wall_contact *wall_contacts = w->wall_now;
+    demi_shaped *shaped = w->shaped_now;
     int d, i, k;
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].overlap = 0;
@@ -11874,12 +11870,10 @@ static void demi_forces(dem_world *w) {
     }
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_respond);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gather);
-    swap = w->wall_now_; w->wall_now_ = w->wall_next_; w->wall_next_ = swap;
-    w->wall_now = (demi_wall_contact *)w->wall_now_.data;
-    w->wall_next = (demi_wall_contact *)w->wall_next_.data;
-    swap = w->shaped_now_; w->shaped_now_ = w->shaped_next_; w->shaped_next_ = swap;
-    w->shaped_now = (demi_shaped *)w->shaped_now_.data;
-    w->shaped_next = (demi_shaped *)w->shaped_next_.data;
+    w->wall_now = w->wall_next;
+    w->wall_next = wall_contacts;
+    w->shaped_now = w->shaped_next;
+    w->shaped_next = shaped;
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].shaped = w->shaped_count ? w->domains[d].shaped_next : 0;
         if (!w->shaped_count) w->domains[d].shaped_walls = 0;
@@ -12267,23 +12261,14 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     field.desc = *d;
     field.next = d->start;
     n = demi_field_cells(&field);
-    field.solid = (double *)demi_alloc(w, n, sizeof(double));
-    field.mass = (double *)demi_alloc(w, n, sizeof(double));
-    field.momentum = (double *)demi_alloc(w, n, 3*sizeof(double));
-    if (field.solid && field.mass && field.momentum && w->field_count == w->field_capacity) {
-        const size_t room = (size_t)w->field_capacity*2 + 4;
-        demi_field *fresh = (demi_field *)demi_alloc(w, room, sizeof *fresh);
-        if (fresh) {
-            if (w->field_count) memcpy(fresh, w->fields, (size_t)w->field_count*sizeof *fresh);
-            demi_free(w, w->fields, (size_t)w->field_capacity, sizeof *fresh);
-            w->fields = fresh;
-            w->field_capacity = (int)room;
-        }
-    }
-    if (!field.solid || !field.mass || !field.momentum || w->field_count == w->field_capacity) {
-        demi_free(w, field.solid, n, sizeof(double));
-        demi_free(w, field.mass, n, sizeof(double));
-        demi_free(w, field.momentum, n, 3*sizeof(double));
+    field.solid = (double *)demi_hold(w, DEMI_RUN, n, sizeof(double));
+    field.mass = (double *)demi_hold(w, DEMI_RUN, n, sizeof(double));
+    field.momentum = (double *)demi_hold(w, DEMI_RUN, n, 3*sizeof(double));
+    if (!field.solid || !field.mass || !field.momentum ||
+        !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1)) {
+        demi_free(w, field.solid);
+        demi_free(w, field.mass);
+        demi_free(w, field.momentum);
         demi_no_memory(w, "dem_field_add");
         return id;
     }
@@ -12778,9 +12763,9 @@ static dem_result demi_text_corner(const demi_text *t, int count, int back, int3
 
 /* ---- meshes and profiles in: width is 3 for triangles in space, 2 for segments in a plane ---- */
 
-static void demi_mesh_free(dem_world *w, dem_mesh *mesh, size_t width) {
-    demi_free(w, mesh->vertices, (size_t)mesh->vertex_count*width, sizeof(dem_real));
-    demi_free(w, mesh->triangles, (size_t)mesh->triangle_count*width, sizeof(int32_t));
+static void demi_mesh_free(dem_world *w, dem_mesh *mesh) {
+    demi_free(w, mesh->vertices);
+    demi_free(w, mesh->triangles);
     memset(mesh, 0, sizeof *mesh);
 }
 
@@ -12939,8 +12924,8 @@ static int32_t *demi_first_equal(dem_world *w, const void *keys, size_t count, s
         if (!table[at]) table[at] = (int32_t)i + 1;
         first[i] = table[at] - 1;
     }
-    demi_free(w, table, slots, sizeof(int32_t));
-    if (!table) demi_free(w, first, count, sizeof(int32_t));
+    demi_free(w, table);
+    if (!table) demi_free(w, first);
     return table ? first : 0;
 }
 
@@ -12956,9 +12941,9 @@ static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh, int *merge
         if (first[i] == (int32_t)i)
             memcpy(vertices + 3*unique++, mesh->vertices + 3*i, 3*sizeof(dem_real));
     }
-    demi_free(t->world, first, count, sizeof(int32_t));
+    demi_free(t->world, first);
     if (!vertices) return demi_text_memory(t);
-    demi_free(t->world, mesh->vertices, 3*count, sizeof(dem_real));
+    demi_free(t->world, mesh->vertices);
     mesh->vertices = vertices;
     mesh->vertex_count = (int)unique;
     *merged = (int)(count - unique);
@@ -13050,9 +13035,9 @@ static dem_result demi_health_edges(const demi_text *t, const dem_mesh *mesh,
             health->open_edges += keys[i] == 1;
             health->crowded_edges += keys[i] > 2;
         }
-        demi_free(t->world, first, n, sizeof(int32_t));
+        demi_free(t->world, first);
     }
-    demi_free(t->world, keys, 6*count, sizeof(int32_t));
+    demi_free(t->world, keys);
     return result == DEM_OK ? result : demi_text_memory(t);
 }
 
@@ -13092,14 +13077,14 @@ static dem_result demi_parse(dem_world *w, const char *call, const char *name, c
         result = demi_health_edges(&t, mesh, health);
     }
     if (result != DEM_OK) {
-        demi_mesh_free(w, mesh, width);
+        demi_mesh_free(w, mesh);
         if (health) memset(health, 0, sizeof *health);
     }
     return result;
 }
 
 /* Loads a file whole into bytes, which the caller frees, also after a failure. */
-static dem_result demi_load(dem_world *w, const char *call, const char *path, demi_array *bytes,
+static dem_result demi_load(dem_world *w, const char *call, const char *path, char **bytes,
                             size_t *size) {
     FILE *file;
     dem_result result = DEM_OK;
@@ -13109,8 +13094,8 @@ static dem_result demi_load(dem_world *w, const char *call, const char *path, de
     errno = 0;
     file = fopen(path, "rb");
     while (file && !feof(file) && !ferror(file) && result == DEM_OK) {
-        if (demi_array_grow(w, bytes, 1, *size + 65536))
-            *size += fread((char *)bytes->data + *size, 1, bytes->capacity - *size, file);
+        if (demi_grow(w, DEMI_LOOSE, bytes, 1, *size + 65536))
+            *size += fread(*bytes + *size, 1, demi_room(*bytes, 1) - *size, file);
         else result = demi_fail(w, DEM_ERROR_MEMORY, "%s: %.200s: no memory to load it beyond %.0f "
                                 "bytes; free some", call, path, (double)*size);
     }
@@ -13124,12 +13109,12 @@ static dem_result demi_load(dem_world *w, const char *call, const char *path, de
 /* demi_parse for a file. */
 static dem_result demi_read(dem_world *w, const char *call, const char *path, size_t width,
                             dem_mesh *mesh, dem_mesh_health *health) {
-    demi_array bytes = {0, 0, 0};
+    char *bytes = 0;
     size_t size;
     dem_result result = demi_load(w, call, path, &bytes, &size);
-    if (result == DEM_OK) result = demi_parse(w, call, path, (const char *)bytes.data, size, width,
+    if (result == DEM_OK) result = demi_parse(w, call, path, bytes, size, width,
                                               mesh, health);
-    demi_array_free(w, &bytes);
+    demi_free(w, bytes);
     return result;
 }
 
@@ -13156,7 +13141,7 @@ DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *m
 }
 
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
-    if (world && mesh) demi_mesh_free(world, mesh, 3);
+    if (world && mesh) demi_mesh_free(world, mesh);
 }
 
 /* What was read as a mesh of width 2, as a profile. */
@@ -13207,8 +13192,8 @@ DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_prof
 
 DEM_API void dem_profile_free(dem_world *world, dem_profile *profile) {
     if (!world || !profile) return;
-    demi_free(world, profile->vertices, (size_t)profile->vertex_count*2, sizeof(dem_real));
-    demi_free(world, profile->segments, (size_t)profile->segment_count*2, sizeof(int32_t));
+    demi_free(world, profile->vertices);
+    demi_free(world, profile->segments);
     memset(profile, 0, sizeof *profile);
 }
 
@@ -13263,8 +13248,8 @@ static int demi_link_follow(char *place, size_t room) {
 }
 
 static void demi_out_free(demi_out *o) {
-    demi_free(o->world, o->place, o->room, 1);
-    demi_free(o->world, o->temporary, o->room, 1);
+    demi_free(o->world, o->place);
+    demi_free(o->world, o->temporary);
 }
 /* Ends a file: renames it to its place if all was written, removes it if not. Where rename refuses
    to replace a file (Windows), the old one is removed first; a folder of that name never is. */
@@ -13321,7 +13306,7 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
     }
     errno = 0;
     if (there && ftell(there) == 0) {
-        demi_free(w, o->temporary, o->room, 1);
+        demi_free(w, o->temporary);
         o->temporary = 0;
         o->file = there;
         return DEM_OK;
@@ -13446,8 +13431,8 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
 }
 static void demi_drawing_free(dem_world *w, demi_drawing *g) {
     if (!w->orienting) return;
-    demi_free(w, g->own, 20*(size_t)g->count + 1, sizeof(dem_real));
-    demi_free(w, g->own_ids, 2*(size_t)g->count + 1, sizeof(int32_t));
+    demi_free(w, g->own);
+    demi_free(w, g->own_ids);
 }
 static dem_result demi_drawing_fails(dem_world *w, const char *call, demi_drawing *g) {
     demi_drawing_free(w, g);
@@ -13697,9 +13682,9 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
                            "points and %.0f triangles; free some", (double)points,
                            (double)triangles);
     }
-    demi_free(world, place, room[0], sizeof(dem_real));
-    demi_free(world, corners, 3*room[1], sizeof(int32_t));
-    demi_free(world, id, room[1], sizeof(int32_t));
+    demi_free(world, place);
+    demi_free(world, corners);
+    demi_free(world, id);
     return result;
 }
 
@@ -13765,7 +13750,7 @@ DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char 
    which the next one is chosen.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 7 };
+enum { DEMI_CHECKPOINT_VERSION = 8 };
 
 /* Writes to file, or reads the `left` bytes that are at `from`, or (with neither) counts bytes. */
 typedef struct demi_stream {
@@ -13963,20 +13948,12 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->energy_removed); DEMI_VISIT(s, w->throughput);
 }
 static void demi_visit_bodies(dem_world *w, demi_stream *s) {
-    const size_t r = sizeof(dem_real), n = (size_t)w->count;
-    demi_visit(s, w->pos, 4*n*r);        demi_visit(s, w->vel, 4*n*r);
-    demi_visit(s, w->spin, 4*n*r);
-    demi_visit(s, w->half_vel, 4*n*r);   demi_visit(s, w->half_spin, 4*n*r);
-    demi_visit(s, w->force, 4*n*r);      demi_visit(s, w->torque, 4*n*r);
-    if (w->desc.integrator == DEM_POSITION_VERLET) demi_visit(s, w->last_pos, 4*n*r);
-    demi_visit(s, w->mass, n*r);         demi_visit(s, w->inv_mass, n*r);
-    demi_visit(s, w->inv_inertia, n*r);
-    demi_visit(s, w->body_slot, 4*n);    demi_visit(s, w->body_material, 4*n);
-    demi_visit(s, w->slot_index, (size_t)w->slot_count*4);
-    demi_visit(s, w->slot_generation, (size_t)w->slot_count*4);
-    if (!w->orienting) return;
-    demi_visit(s, w->orient, 4*n*r);     demi_visit(s, w->angular, 4*n*r);
-    demi_visit(s, w->moment, 4*n*r);     demi_visit(s, w->body_shape, 4*n);
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        const size_t n = (size_t)(a->who == DEMI_SLOTS ? w->slot_count : w->count);
+        if (a->what && demi_has(w, a)) demi_visit(s, demi_data(w, a), n*a->item);
+    }
 }
 /* Near pairs of one domain; their candidates are counted from the domain's first. */
 static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
@@ -14103,8 +14080,17 @@ typedef struct demi_checkpoint_head {
     int32_t parts[DEMI_PARTS];      /* of the scene; as many digests follow */
 } demi_checkpoint_head;
 
+/* Of structs that are saved whole, and of what bodies keep: tells files of another dem.h. */
 static uint32_t demi_checkpoint_layout(void) {
-    return (uint32_t)(sizeof(demi_domain) + sizeof(demi_wall_contact) + sizeof(demi_shaped));
+    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_wall_contact), sizeof(demi_shaped)};
+    uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const size_t row[] = {demi_body_arrays[k].item, (size_t)demi_body_arrays[k].who,
+                              (size_t)demi_body_arrays[k].what};
+        h = demi_hash(h, row, sizeof row);
+    }
+    return (uint32_t)(h ^ h >> 32);
 }
 static void demi_visit_digests(const dem_world *w, demi_stream *s, const int32_t *counts) {
     int part, i;
@@ -14116,14 +14102,16 @@ static void demi_visit_digests(const dem_world *w, demi_stream *s, const int32_t
 }
 /* The first body whose state is not finite or out of the world; -1: none. */
 static int demi_body_lost(const dem_world *w) {
-    const dem_real *fours[] = {w->pos, w->vel, w->spin, w->half_vel, w->half_spin, w->force,
-                               w->torque, w->last_pos, w->orient, w->angular, w->moment};
     int i, k;
-    size_t f;
+    size_t e;
     for (i = 0; i < w->count; i++) {
-        for (f = 0; f < sizeof fours/sizeof *fours; f++)
-            for (k = 0; k < 4; k++)
-                if (fours[f] && !demi_finite(fours[f][4*i + k])) return i;
+        for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+            const demi_body_array *a = &demi_body_arrays[k];
+            const dem_real *x;
+            if (a->what < DEMI_REALS || !demi_has(w, a)) continue;
+            x = (const dem_real *)(const void *)demi_datum(w, a, i);
+            for (e = 0; e < a->item/sizeof *x; e++) if (!demi_finite(x[e])) return i;
+        }
         if (demi_size(demi_at(w->pos + 4*i)) > DEMI_REACH) return i;
     }
     return -1;
@@ -14196,9 +14184,9 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: its check sum does not match its "
                          "contents; the file is damaged", call, path);
     if (head->int_size != demi_checkpoint_layout())
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written by a program whose compiler "
-                         "lays out memory in another way; read it with a program built like the "
-                         "one that wrote it", call, path);
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written by another dem.h, or one "
+                         "whose compiler lays out memory in another way; read it with a program "
+                         "built like the one that wrote it", call, path);
     return DEM_OK;
 }
 /* Says which part of the scene differs. A wall that the file's world had removed may still stand
@@ -14241,63 +14229,18 @@ static dem_result demi_checkpoint_scene(dem_world *w, const char *path, demi_str
    right the twin's state takes the place of the world's; until then the world is as it was.
    --------------------------------------------------------------------------------------------- */
 
-/* Frees what a run works with: bodies, lists, walls (not their geometry), fields, feeds, outlets.
-   */
-static void demi_state_free(dem_world *w) {
-    demi_room set[20];
-    demi_array *arrays[64];
-    int i, n = demi_body_rooms(w, set), k = 0;
-    for (i = 0; i < n; i++) demi_free(w, *set[i].data, (size_t)w->capacity, set[i].item);
-    demi_free(w, w->slot_index, (size_t)w->slot_capacity, sizeof(int32_t));
-    demi_free(w, w->slot_generation, (size_t)w->slot_capacity, sizeof(uint32_t));
-    demi_free(w, w->walls, (size_t)w->wall_capacity, sizeof(demi_wall));
-    for (i = 0; i < w->field_count; i++) {
-        const size_t cells = demi_field_cells(&w->fields[i]);
-        demi_free(w, w->fields[i].solid, cells, sizeof(double));
-        demi_free(w, w->fields[i].mass, cells, sizeof(double));
-        demi_free(w, w->fields[i].momentum, cells, 3*sizeof(double));
-    }
-    demi_free(w, w->fields, (size_t)w->field_capacity, sizeof(demi_field));
-    for (i = 0; i < 2; i++) {
-        demi_list *list = i ? &w->cross : &w->own;
-        demi_near *near = i ? &w->near_last : &w->near;
-        arrays[k++] = &list->a_; arrays[k++] = &list->b_; arrays[k++] = &list->image_;
-        arrays[k++] = &list->place_;
-        arrays[k++] = &near->a_; arrays[k++] = &near->b_; arrays[k++] = &near->k_;
-        arrays[k++] = &near->image_; arrays[k++] = &near->memory_; arrays[k++] = &near->coef_;
-    }
-    arrays[k++] = &w->quiet_; arrays[k++] = &w->cross_incoming_; arrays[k++] = &w->cross_push_;
-    arrays[k++] = &w->cell_start_; arrays[k++] = &w->carry_start_; arrays[k++] = &w->carry_partner_;
-    arrays[k++] = &w->carry_memory_; arrays[k++] = &w->wall_body_; arrays[k++] = &w->wall_id_;
-    arrays[k++] = &w->wall_element_; arrays[k++] = &w->wall_gap_; arrays[k++] = &w->wall_shift_;
-    arrays[k++] = &w->wall_now_;
-    arrays[k++] = &w->wall_next_; arrays[k++] = &w->touching_; arrays[k++] = &w->touching_table_;
-    arrays[k++] = &w->touching_links_; arrays[k++] = &w->press_;
-    arrays[k++] = &w->press_whole_;
-    arrays[k++] = &w->wall_sums_; arrays[k++] = &w->lll_table_; arrays[k++] = &w->lll_rows_;
-    arrays[k++] = &w->lll_row_start_; arrays[k++] = &w->shaped_now_; arrays[k++] = &w->shaped_next_;
-    arrays[k++] = &w->spot_; arrays[k++] = &w->spot_start_;
-    arrays[k++] = &w->feeds_; arrays[k++] = &w->outlets_;
-    arrays[k++] = &w->crowd_; arrays[k++] = &w->crowd_nodes_; arrays[k++] = &w->crowd_turned_;
-    for (i = 0; i < 3; i++) arrays[k++] = &w->lll_ends_[i];
-    while (k) demi_array_free(w, arrays[--k]);
-    demi_free(w, w->domains, DEMI_DOMAINS, sizeof(demi_domain));
-    demi_free(w, w->cross_incoming_start, DEMI_DOMAINS + 1, sizeof(int));
-}
 /* Copies of walls, fields, feeds and outlets, the domains: what state is read into. 0 when memory
    ran out. */
 static int demi_twin_parts(dem_world *t, const dem_world *w) {
     int i;
-    t->domains = (demi_domain *)demi_alloc(t, DEMI_DOMAINS, sizeof(demi_domain));
-    t->cross_incoming_start = (int *)demi_alloc(t, DEMI_DOMAINS + 1, sizeof(int));
-    t->walls = (demi_wall *)demi_alloc(t, (size_t)w->wall_count, sizeof(demi_wall));
-    t->fields = (demi_field *)demi_alloc(t, (size_t)w->field_count, sizeof(demi_field));
-    t->wall_capacity = w->wall_count;
-    t->field_capacity = w->field_count;
+    t->domains = (demi_domain *)demi_hold(t, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
+    t->cross_incoming_start = (int *)demi_hold(t, DEMI_RUN, DEMI_DOMAINS + 1, sizeof(int));
+    t->walls = (demi_wall *)demi_hold(t, DEMI_RUN, (size_t)w->wall_count, sizeof(demi_wall));
+    t->fields = (demi_field *)demi_hold(t, DEMI_RUN, (size_t)w->field_count, sizeof(demi_field));
     if (!t->domains || !t->cross_incoming_start || (w->wall_count && !t->walls) ||
         (w->field_count && !t->fields) ||
-        !demi_array_grow(t, &t->feeds_, sizeof(demi_feed), (size_t)w->feed_count) ||
-        !demi_array_grow(t, &t->outlets_, sizeof(demi_outlet), (size_t)w->outlet_count)) return 0;
+        !DEMI_GROW(t, t->feeds, (size_t)w->feed_count) ||
+        !DEMI_GROW(t, t->outlets, (size_t)w->outlet_count)) return 0;
     t->wall_count = w->wall_count;
     t->feed_count = w->feed_count;
     t->outlet_count = w->outlet_count;
@@ -14308,9 +14251,9 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
         const size_t cells = demi_field_cells(&w->fields[i]);
         demi_field *f = &t->fields[i];
         *f = w->fields[i];
-        f->solid = (double *)demi_alloc(t, cells, sizeof(double));
-        f->mass = (double *)demi_alloc(t, cells, sizeof(double));
-        f->momentum = (double *)demi_alloc(t, cells, 3*sizeof(double));
+        f->solid = (double *)demi_hold(t, DEMI_RUN, cells, sizeof(double));
+        f->mass = (double *)demi_hold(t, DEMI_RUN, cells, sizeof(double));
+        f->momentum = (double *)demi_hold(t, DEMI_RUN, cells, 3*sizeof(double));
         t->field_count = i + 1;
         if (!f->solid || !f->mass || !f->momentum) return 0;
     }
@@ -14327,12 +14270,12 @@ static dem_world *demi_twin_make(dem_world *w) {
     memcpy(t->materials, w->materials, sizeof t->materials);
     t->pairs = w->pairs;
     t->form_count = w->form_count;
-    t->form_capacity = w->form_capacity;
     t->forms = w->forms;
     t->normal = (int)w->desc.normal_law;
+    t->backward = w->backward;
     if (demi_twin_parts(t, w)) return t;
-    demi_state_free(t);
-    demi_free(w, t, 1, sizeof *t);
+    demi_free_chain(t, DEMI_RUN);
+    demi_free(w, t);
     return 0;
 }
 /* The twin's state takes the place of the world's. */
@@ -14341,14 +14284,15 @@ static void demi_twin_adopt(dem_world *w, dem_world *t) {
     int i;
     for (i = 0; i < w->wall_count; i++)
         if (t->walls[i].kind == DEMI_WALL_NONE) demi_wall_free(w, &w->walls[i]);
-    demi_state_free(w);
+    demi_free_chain(w, DEMI_RUN);
+    t->chains[DEMI_SCENE] = w->chains[DEMI_SCENE];
     bytes = w->bytes + t->bytes;
     memcpy(t->error, w->error, sizeof t->error);
     memcpy(t->refusal, w->refusal, sizeof t->refusal);
     t->refused = w->refused;
     *w = *t;
     w->bytes = bytes;
-    demi_free(w, t, 1, sizeof *t);
+    demi_free(w, t);
 }
 
 /* --- reading: does what it says make sense? Each of these checks one part of the twin, right after
@@ -14382,8 +14326,11 @@ static int demi_numbers_check(const demi_reader *r) {
         t->assumed_speed, t->near_span, t->near_age, t->near_margin, t->near_drift, t->near_kick,
         t->near_creep, t->speed_max, t->half_kick, (double)t->radius_min, (double)t->radius_max,
         (double)t->dt};
-    const size_t per = 31*sizeof(dem_real) + 8 + (t->orienting ? 12*sizeof(dem_real) + 4 : 0);
-    size_t i;
+    size_t i, per = 0;
+    for (i = 0; i < DEMI_BODY_ARRAYS; i++) {
+        const demi_body_array *a = &demi_body_arrays[i];
+        if (a->what && a->who != DEMI_SLOTS && demi_has(t, a)) per += a->item;
+    }
     if (!demi_left(r, t->count, per) || !demi_left(r, t->slot_count, 8) ||
         t->count > INT_MAX/64 || t->slot_count > INT_MAX/64 || t->count > t->slot_count)
         return demi_lie(r, "its number of bodies or of slots", -1);
@@ -14673,8 +14620,7 @@ static int demi_twin_lists_room(dem_world *t) {
             demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
             demi_near_reserve(t, &t->near, t->domain_count, most[2]) &&
             demi_wall_lists_reserve(t, most[3]) &&
-            demi_array_grow(t, &t->quiet_, sizeof(demi_quiet),
-                            (size_t)(t->count/DEMI_SOME + t->domain_count + 1)));
+            DEMI_GROW(t, t->quiet, (size_t)(t->count/DEMI_SOME + t->domain_count + 1)));
 }
 /* What follows from the rest, and is not stored. 0 when memory ran out. */
 static int demi_twin_follow(dem_world *t) {
@@ -14766,24 +14712,24 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
         }
     }
     result = demi_twin_read(&r, &seen);
-    demi_free(r.t, seen, (size_t)r.t->slot_count + 1, 1);
+    demi_free(r.t, seen);
     if (result == DEM_OK) {
         demi_twin_adopt(w, r.t);
         return DEM_OK;
     }
-    demi_state_free(r.t);
-    demi_free(w, r.t, 1, sizeof *r.t);
+    demi_free_chain(r.t, DEMI_RUN);
+    demi_free(w, r.t);
     return result == DEM_ERROR_MEMORY ? demi_no_memory(w, "dem_checkpoint_read") : result;
 }
 
 DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
     if (demi_null(w, "dem_checkpoint_read", w, "world")) return DEM_ERROR_ARGUMENT;
-    demi_array bytes = {0, 0, 0};
+    char *bytes = 0;
     size_t size = 0;
     dem_result result = demi_load(w, "dem_checkpoint_read", path, &bytes, &size);
     if (result == DEM_OK)
-        result = demi_checkpoint_parse(w, path, (const char *)bytes.data, size);
-    demi_array_free(w, &bytes);
+        result = demi_checkpoint_parse(w, path, bytes, size);
+    demi_free(w, bytes);
     return result;
 }
 
@@ -14881,9 +14827,11 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->slot_free = w->slot_pending = -1;
     w->synced = 1;
     w->orienting = desc->orientations != 0;
-    w->pairs = (demi_pair *)demi_alloc(w, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(demi_pair));
-    w->domains = (demi_domain *)demi_alloc(w, DEMI_DOMAINS, sizeof(demi_domain));
-    w->cross_incoming_start = (int *)demi_alloc(w, DEMI_DOMAINS + 1, sizeof(int));
+    w->backward = demi_integrator_rows[desc->integrator].backward;
+    w->pairs = (demi_pair *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
+                                      sizeof(demi_pair));
+    w->domains = (demi_domain *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
+    w->cross_incoming_start = (int *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS + 1, sizeof(int));
     if (!w->pairs || !w->domains || !w->cross_incoming_start) {
         dem_world_destroy(w);
         return 0;
@@ -14893,13 +14841,9 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
 
 DEM_API void dem_world_destroy(dem_world *w) {
     dem_allocator allocator;
-    int i;
+    int chain;
     if (!w) return;
-    for (i = 0; i < w->wall_count; i++) demi_wall_free(w, &w->walls[i]);
-    for (i = 0; i < w->form_count; i++) demi_form_free(w, &w->forms[i]);
-    demi_free(w, w->forms, (size_t)w->form_capacity, sizeof(demi_form));
-    demi_state_free(w);
-    demi_free(w, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(demi_pair));
+    for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
     allocator = w->desc.allocator;
     demi_raw_free(&allocator, w, sizeof *w);
 }
@@ -15108,7 +15052,7 @@ enum { DEMI_SLABS = 1024, DEMI_SLAB_BINS = 32, DEMI_UP = 1, DEMI_DOWN = 2, DEMI_
        DEMI_VISITOR = 1, DEMI_GOES_DOWN = 2, DEMI_GOES_UP = 3, DEMI_GOES_VISITING = 4 };
 
 /* A message: bytes that grow. */
-typedef struct demi_parcel { demi_array bytes; size_t size; } demi_parcel;
+typedef struct demi_parcel { char *bytes; size_t size; } demi_parcel;
 
 typedef struct demi_slab {
     dem_world *world;
@@ -15116,9 +15060,9 @@ typedef struct demi_slab {
     dem_result result;             /* of the last phases; looked at by demi_slabs_agree */
     demi_parcel out[2];            /* to the lower, to the upper neighbour */
     demi_parcel in[2];             /* from them, when they are in another process */
-    demi_array halo_, guest_, guest_inv_, add_;
     int32_t *halo, *guest;         /* indices of home grains that visit above; of visitors here */
     dem_real *guest_inv;           /* x 2: 1/mass, 1/inertia of visitors */
+    int32_t *add;                  /* see demi_pairs_take */
     int halo_count, guest_count, leavers;
     uint64_t bytes, migrated;
     double work, seconds;
@@ -15138,7 +15082,7 @@ struct dem_slabs {
     demi_slab *slabs;              /* local */
     demi_domain total;             /* the head's only domain */
     demi_parcel mine, all;         /* for dem_slabs_collect */
-    demi_array known;              /* uint32_t by slot: generation of the body dealt, 0: none */
+    uint32_t *known;               /* by slot: generation of the body dealt, 0: none */
     uint64_t border_moves;
     void (*phase)(struct dem_slabs *s, demi_slab *b);
 };
@@ -15146,8 +15090,8 @@ struct dem_slabs {
 /* --- parcels --- */
 
 static int demi_parcel_put(dem_world *w, demi_parcel *p, const void *data, size_t size) {
-    if (!demi_array_grow(w, &p->bytes, 1, p->size + size)) return 0;
-    if (size) memcpy((char *)p->bytes.data + p->size, data, size);
+    if (!DEMI_GROW(w, p->bytes, p->size + size)) return 0;
+    if (size) memcpy(p->bytes + p->size, data, size);
     p->size += size;
     return 1;
 }
@@ -15156,52 +15100,56 @@ static void demi_take(const char **from, void *to, size_t size) {
     *from += size;
 }
 
-/* One grain with all it has. */
-typedef struct demi_grain {
+/* One grain with all it keeps: the rows of demi_body_arrays one after the other, its slot first. */
+static size_t demi_grain_size(const dem_world *w) {
+    size_t size = 0;
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a)) size += a->item;
+    }
+    return size;
+}
+/* Body i, its places moved by `shift` along axis. 0 when memory ran out. */
+static int demi_grain_put(dem_world *host, demi_parcel *out, const dem_world *w, int i, int axis,
+                          dem_real shift) {
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        dem_real place[4];
+        if (!a->what || a->who == DEMI_SLOTS || !demi_has(w, a)) continue;
+        if (a->what != DEMI_PLACES) {
+            if (!demi_parcel_put(host, out, demi_datum(w, a, i), a->item)) return 0;
+            continue;
+        }
+        memcpy(place, demi_datum(w, a, i), sizeof place);
+        place[axis] += shift;
+        if (!demi_parcel_put(host, out, place, sizeof place)) return 0;
+    }
+    return 1;
+}
+/* Body i becomes the one that arrived. */
+static void demi_grain_take(dem_world *w, int i, const char **from) {
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
+        const demi_body_array *a = &demi_body_arrays[k];
+        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a))
+            demi_take(from, demi_datum(w, a, i), a->item);
+    }
+}
+static uint32_t demi_grain_slot(const char *from) {
     uint32_t slot;
-    int32_t material;
-    dem_real pos[4], vel[3], spin[3], half_vel[3], half_spin[3], force[3], torque[3], last[3];
-    dem_real mass, inv_mass, inv_inertia;
-} demi_grain;
-static void demi_grain_of(const dem_world *w, int i, demi_grain *g) {
-    const size_t three = 3*sizeof(dem_real);
-    memset(g, 0, sizeof *g);
-    g->slot = w->body_slot[i];
-    g->material = w->body_material[i];
-    memcpy(g->pos, w->pos + 4*i, sizeof g->pos);
-    memcpy(g->vel, w->vel + 4*i, three);           memcpy(g->spin, w->spin + 4*i, three);
-    memcpy(g->half_vel, w->half_vel + 4*i, three); memcpy(g->half_spin, w->half_spin + 4*i, three);
-    memcpy(g->force, w->force + 4*i, three);       memcpy(g->torque, w->torque + 4*i, three);
-    if (w->last_pos) memcpy(g->last, w->last_pos + 4*i, three);
-    g->mass = w->mass[i];
-    g->inv_mass = w->inv_mass[i];
-    g->inv_inertia = w->inv_inertia[i];
+    memcpy(&slot, from, sizeof slot);
+    return slot;
 }
-static void demi_grain_to(dem_world *w, int i, const demi_grain *g) {
-    const size_t three = 3*sizeof(dem_real);
-    w->body_material[i] = g->material;
-    memcpy(w->pos + 4*i, g->pos, sizeof g->pos);
-    memcpy(w->vel + 4*i, g->vel, three);           memcpy(w->spin + 4*i, g->spin, three);
-    memcpy(w->half_vel + 4*i, g->half_vel, three); memcpy(w->half_spin + 4*i, g->half_spin, three);
-    memcpy(w->force + 4*i, g->force, three);       memcpy(w->torque + 4*i, g->torque, three);
-    if (w->last_pos) memcpy(w->last_pos + 4*i, g->last, three);
-    w->mass[i] = g->mass;
-    w->inv_mass[i] = g->inv_mass;
-    w->inv_inertia[i] = g->inv_inertia;
-}
-/* Room has been seen to. */
-static void demi_grain_append(dem_world *w, const demi_grain *g) {
+/* Room has been seen to. Answers its index. */
+static int demi_grain_append(dem_world *w, const char **from) {
     const int i = w->count++;
-    memset(w->vel + 4*i, 0, 4*sizeof(dem_real));      memset(w->spin + 4*i, 0, 4*sizeof(dem_real));
-    memset(w->half_vel + 4*i, 0, 4*sizeof(dem_real));
-    memset(w->half_spin + 4*i, 0, 4*sizeof(dem_real));
-    memset(w->force + 4*i, 0, 4*sizeof(dem_real));    memset(w->torque + 4*i, 0,
-                                                             4*sizeof(dem_real));
-    if (w->last_pos) memset(w->last_pos + 4*i, 0, 4*sizeof(dem_real));
-    demi_grain_to(w, i, g);
-    w->body_slot[i] = g->slot;
-    w->slot_index[g->slot] = i;
+    demi_grain_take(w, i, from);
+    w->slot_index[w->body_slot[i]] = i;
+    if (demi_form_of(w, i)) w->shaped_count++;
     w->lll_valid = 0;
+    return i;
 }
 /* Takes a grain out of a slab without its having left the scene. */
 static void demi_grain_forget(dem_world *w, int i) {
@@ -15224,15 +15172,11 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
     const size_t start = out->size;
     const int stride = w->carry_stride;
     demi_parcel_head head = {0, 0, 0, 0};
-    demi_grain g;
     int i, k, d, ok = demi_parcel_put(host, out, &head, sizeof head);
     head.stride = stride;
     for (i = 0; i < w->count && ok; i++) {
         if (marks[w->body_slot[i]] != mark) continue;
-        demi_grain_of(w, i, &g);
-        g.pos[axis] += shift;
-        g.last[axis] += shift;
-        ok = demi_parcel_put(host, out, &g, sizeof g);
+        ok = demi_grain_put(host, out, w, i, axis, shift);
         head.grains++;
     }
     for (i = 0; memory && w->carry_count && i < w->carry_rows && ok; i++)
@@ -15253,19 +15197,19 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
             ok = demi_parcel_put(host, out, &c, sizeof c);
             head.contacts++;
         }
-    if (ok) memcpy((char *)out->bytes.data + start, &head, sizeof head);
+    if (ok) memcpy(out->bytes + start, &head, sizeof head);
     return ok;
 }
 
 /* Room for pairs and contacts with walls that are to arrive, beside those filed already; `add` for
    demi_pairs_take. The contacts there are move to the first domain. 0 when memory ran out. */
-static int demi_filed_reserve(dem_world *w, demi_array *add, int stride, int pairs, int contacts) {
+static int demi_filed_reserve(dem_world *w, int32_t **add, int stride, int pairs, int contacts) {
     const int had = w->carry_count;
     int d, total = 0, rows = w->slot_count;
     demi_wall_contact *to;
     for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
     if (!demi_carry_reserve(w, rows, had + pairs, stride) ||
-        !demi_array_grow(w, add, sizeof(int32_t), (size_t)rows + 1) ||
+        !DEMI_GROW(w, *add, (size_t)rows + 1) ||
         !demi_wall_contacts_reserve(w, (size_t)(total + contacts), (size_t)(total + contacts)))
         return 0;
     if (!had) memset(w->carry_start, 0, ((size_t)rows + 2)*sizeof(int32_t));
@@ -15319,11 +15263,13 @@ static void demi_wall_contacts_take(dem_world *w, const char *from, int contacts
     w->domains[0].wall_contacts += contacts;
 }
 /* Where the parts of a packed message begin. */
-static const char *demi_parcel_pairs(const demi_parcel_head *h, const char *grains) {
-    return grains + (size_t)h->grains*sizeof(demi_grain);
+static const char *demi_parcel_pairs(const dem_world *w, const demi_parcel_head *h,
+                                     const char *grains) {
+    return grains + (size_t)h->grains*demi_grain_size(w);
 }
-static const char *demi_parcel_contacts(const demi_parcel_head *h, const char *grains) {
-    return demi_parcel_pairs(h, grains) +
+static const char *demi_parcel_contacts(const dem_world *w, const demi_parcel_head *h,
+                                        const char *grains) {
+    return demi_parcel_pairs(w, h, grains) +
            (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
 }
 
@@ -15415,18 +15361,18 @@ static dem_result demi_slabs_exchange(dem_slabs *s, int ways, int sized) {
     } else {
         answer = t->exchange_fn(&send[0], 8, &get[0], 8, &send[1], 8, &get[1], 8, t->user);
         if (answer) return demi_slabs_transport_failed(s, "exchange_fn", answer);
-        if (!demi_array_grow(low->world, &low->in[0].bytes, 1, (size_t)get[0]) ||
-            !demi_array_grow(top->world, &top->in[1].bytes, 1, (size_t)get[1]))
+        if (!DEMI_GROW(low->world, low->in[0].bytes, (size_t)get[0]) ||
+            !DEMI_GROW(top->world, top->in[1].bytes, (size_t)get[1]))
             low->result = demi_no_memory(low->world, "dem_slabs_step");
         result = demi_slabs_agree(s, 0, 0);
         if (result != DEM_OK) return result;
         low->in[0].size = (size_t)get[0];
         top->in[1].size = (size_t)get[1];
     }
-    answer = t->exchange_fn(low->out[0].bytes.data, (size_t)send[0],
-                            low->in[0].bytes.data, (size_t)get[0],
-                            top->out[1].bytes.data, (size_t)send[1],
-                            top->in[1].bytes.data, (size_t)get[1], t->user);
+    answer = t->exchange_fn(low->out[0].bytes, (size_t)send[0],
+                            low->in[0].bytes, (size_t)get[0],
+                            top->out[1].bytes, (size_t)send[1],
+                            top->in[1].bytes, (size_t)get[1], t->user);
     return answer ? demi_slabs_transport_failed(s, "exchange_fn", answer) : DEM_OK;
 }
 
@@ -15604,7 +15550,7 @@ static demi_parcel_head demi_slab_head(const dem_slabs *s, const demi_slab *b, i
                                        const char **grains) {
     demi_parcel_head head = {0, 0, 0, 0};
     if (demi_slab_has(s, b, side)) {
-        *grains = (const char *)demi_slab_inbox(s, b, side)->bytes.data;
+        *grains = demi_slab_inbox(s, b, side)->bytes;
         demi_take(grains, &head, sizeof head);
     }
     return head;
@@ -15616,7 +15562,7 @@ static void demi_slab_room(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const int stride = l.pairs ? l.stride : u.pairs ? u.stride : w->carry_stride;
     if (!demi_bodies_reserve(w, (size_t)w->count + (size_t)l.grains + (size_t)u.grains) ||
-        !demi_filed_reserve(w, &b->add_, stride, l.pairs + u.pairs, l.contacts + u.contacts))
+        !demi_filed_reserve(w, &b->add, stride, l.pairs + u.pairs, l.contacts + u.contacts))
         b->result = demi_no_memory(w, "dem_slabs_step");
 }
 /* Leavers go, arrivals come in: nothing can fail any more. */
@@ -15630,16 +15576,12 @@ static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
     for (side = 0; side < 2; side++) {
         const char *grains = 0, *from;
         const demi_parcel_head h = demi_slab_head(s, b, side, &grains);
-        demi_grain g;
         from = grains;
-        for (i = 0; i < h.grains; i++) {
-            demi_take(&from, &g, sizeof g);
-            demi_grain_append(w, &g);
-        }
+        for (i = 0; i < h.grains; i++) demi_grain_append(w, &from);
         if (h.pairs)
-            demi_pairs_take(w, (int32_t *)b->add_.data, demi_parcel_pairs(&h, grains), h.pairs);
+            demi_pairs_take(w, b->add, demi_parcel_pairs(w, &h, grains), h.pairs);
         if (h.contacts)
-            demi_wall_contacts_take(w, demi_parcel_contacts(&h, grains), h.contacts);
+            demi_wall_contacts_take(w, demi_parcel_contacts(w, &h, grains), h.contacts);
     }
 }
 /* Grains near enough to the upper border to touch something beyond it. */
@@ -15648,11 +15590,10 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     int i, n = 0;
     b->out[1].size = 0;
     if (!demi_slab_has(s, b, 1)) return;
-    if (!demi_array_grow(w, &b->halo_, sizeof(int32_t), (size_t)w->count)) {
+    if (!DEMI_GROW(w, b->halo, (size_t)w->count)) {
         b->result = demi_no_memory(w, "dem_slabs_step");
         return;
     }
-    b->halo = (int32_t *)b->halo_.data;
     for (i = 0; i < w->count; i++) {
         const double x = (double)w->pos[4*i + s->axis], r = (double)w->pos[4*i + 3];
         if (!(x + s->cut - (double)s->head.radius_max + r > s->borders[b->index + 1])) continue;
@@ -15674,21 +15615,17 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     const char *from = 0;
     const demi_parcel_head h = demi_slab_head(s, b, 0, &from);
     const size_t real = sizeof(dem_real);
-    demi_grain g;
     int i, d, ok;
     ok = demi_bodies_reserve(w, (size_t)w->count + (size_t)h.grains) &&
-         demi_array_grow(w, &b->guest_, sizeof(int32_t), (size_t)h.grains) &&
-         demi_array_grow(w, &b->guest_inv_, 2*real, (size_t)h.grains);
+         DEMI_GROW(w, b->guest, (size_t)h.grains) &&
+         DEMI_GROW(w, b->guest_inv, 2*(size_t)h.grains);
     if (!ok) { b->result = demi_no_memory(w, "dem_slabs_step"); return; }
-    b->guest = (int32_t *)b->guest_.data;
-    b->guest_inv = (dem_real *)b->guest_inv_.data;
     for (i = 0; i < h.grains; i++) {
-        demi_take(&from, &g, sizeof g);
-        demi_grain_append(w, &g);
-        w->visitor[g.slot] = DEMI_VISITOR;
-        b->guest[i] = (int32_t)g.slot;
-        b->guest_inv[2*i] = g.inv_mass;
-        b->guest_inv[2*i + 1] = g.inv_inertia;
+        const int at = demi_grain_append(w, &from);
+        w->visitor[w->body_slot[at]] = DEMI_VISITOR;
+        b->guest[i] = (int32_t)w->body_slot[at];
+        b->guest_inv[2*i] = w->inv_mass[at];
+        b->guest_inv[2*i + 1] = w->inv_inertia[at];
     }
     b->guest_count = h.grains;
     if (s->count > 1) w->desc.skin = s->head.skin > 0 ? (dem_real)s->head.skin : -1;
@@ -15709,10 +15646,10 @@ static void demi_slab_settle(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     (void)s;
     b->out[1].size = (size_t)b->halo_count*demi_slab_up(w)*sizeof(dem_real);
-    if (!demi_array_grow(w, &b->in[0].bytes, 1, b->in[0].size) ||
-        !demi_array_grow(w, &b->in[1].bytes, 1, b->in[1].size) ||
-        !demi_array_grow(w, &b->out[0].bytes, 1, b->out[0].size) ||
-        !demi_array_grow(w, &b->out[1].bytes, 1, b->out[1].size))
+    if (!DEMI_GROW(w, b->in[0].bytes, b->in[0].size) ||
+        !DEMI_GROW(w, b->in[1].bytes, b->in[1].size) ||
+        !DEMI_GROW(w, b->out[0].bytes, b->out[0].size) ||
+        !DEMI_GROW(w, b->out[1].bytes, b->out[1].size))
         b->result = demi_no_memory(w, "dem_slabs_step");
 }
 
@@ -15783,7 +15720,7 @@ static void demi_slab_move(dem_slabs *s, demi_slab *b) {
         demi_put(w->vel + 4*i, demi_v(0, 0, 0));      demi_put(w->half_vel + 4*i, demi_v(0, 0, 0));
         demi_put(w->spin + 4*i, demi_v(0, 0, 0));     demi_put(w->half_spin + 4*i, demi_v(0, 0, 0));
         demi_put(w->force + 4*i, demi_v(0, 0, 0));    demi_put(w->torque + 4*i, demi_v(0, 0, 0));
-        if (w->last_pos) demi_put(w->last_pos + 4*i, demi_at(w->pos + 4*i));
+        if (w->backward) demi_put(w->last_pos + 4*i, demi_at(w->pos + 4*i));
     }
     if (!s->head.moved) b->result = demi_step_move(w);
     if (b->result == DEM_OK) b->result = demi_outflow(w);
@@ -15802,7 +15739,7 @@ static void demi_slab_send(dem_slabs *s, demi_slab *b) {
     const dem_world *w = b->world;
     const size_t three = 3*sizeof(dem_real), reals = demi_slab_up(w);
     const dem_real shift = demi_slab_shift(s, b, 1);
-    dem_real *out = (dem_real *)b->out[1].bytes.data;
+    dem_real *out = (dem_real *)b->out[1].bytes;
     int k;
     for (k = 0; k < b->halo_count; k++, out += reals) {
         const int i = 4*b->halo[k];
@@ -15819,7 +15756,7 @@ static void demi_slab_send(dem_slabs *s, demi_slab *b) {
 static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t three = 3*sizeof(dem_real), up = demi_slab_up(w);
-    const dem_real *in = b->guest_count ? (const dem_real *)demi_slab_inbox(s, b, 0)->bytes.data
+    const dem_real *in = b->guest_count ? (const dem_real *)demi_slab_inbox(s, b, 0)->bytes
         : 0;
     int k;
     for (k = 0; k < b->guest_count; k++, in += up) {
@@ -15846,7 +15783,7 @@ static void demi_slab_near(dem_slabs *s, demi_slab *b) {
 static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t three = 3*sizeof(dem_real), down = demi_slab_down(w);
-    dem_real *out = (dem_real *)b->out[0].bytes.data;
+    dem_real *out = (dem_real *)b->out[0].bytes;
     double deepest = 0;
     int k, d, finite = 1;
     demi_slab_receive(s, b);
@@ -15866,7 +15803,7 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
 static void demi_slab_add(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t down = demi_slab_down(w);
-    const dem_real *in = b->halo_count ? (const dem_real *)demi_slab_inbox(s, b, 1)->bytes.data
+    const dem_real *in = b->halo_count ? (const dem_real *)demi_slab_inbox(s, b, 1)->bytes
         : 0;
     int k, e;
     for (k = 0; k < b->halo_count; k++, in += down)
@@ -16120,28 +16057,13 @@ static void demi_slabs_free(void *memory, size_t size, void *user) {
 static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world *first) {
     const size_t n = (size_t)from->wall_count;
     int i;
-    to->walls = (demi_wall *)demi_alloc(to, n, sizeof *to->walls);
+    to->walls = (demi_wall *)demi_hold(to, DEMI_RUN, n, sizeof *to->walls);
     if (!n) return 1;
     if (!to->walls) return 0;
-    to->wall_capacity = from->wall_count;
     for (i = 0; i < from->wall_count; i++) {
         demi_wall *b = &to->walls[i];
-        demi_owned array[DEMI_WALL_ARRAYS];
-        void *copy[DEMI_WALL_ARRAYS];
-        int k, ok = 1;
         *b = first ? first->walls[i] : from->walls[i];
-        demi_wall_arrays(b, array);
-        for (k = 0; k < DEMI_WALL_ARRAYS && !first; k++) {
-            const size_t size = array[k].count*array[k].item;
-            copy[k] = array[k].data && size ? demi_alloc(to, array[k].count, array[k].item) : 0;
-            ok = ok && (copy[k] || !array[k].data || !size);
-            if (copy[k]) memcpy(copy[k], array[k].data, size);
-        }
-        for (k = 0; k < DEMI_WALL_ARRAYS && !first; k++) {
-            if (ok) memcpy(array[k].place, &copy[k], sizeof copy[k]);
-            else demi_free(to, copy[k], array[k].count, array[k].item);
-        }
-        if (!ok) return 0;
+        if (!first && !demi_wall_own(to, b)) return 0;
         if (first) b->motion.kind = DEM_MOTION_FIXED;
         to->wall_count = i + 1;
     }
@@ -16194,9 +16116,9 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     w->material_count = from->material_count;
-    w->visitor = (uint8_t *)demi_alloc(w, slots + 1, 1);
-    w->slot_index = (int32_t *)demi_alloc(w, slots + 1, sizeof(int32_t));
-    w->slot_generation = (uint32_t *)demi_alloc(w, slots + 1, sizeof(uint32_t));
+    w->visitor = (uint8_t *)demi_hold(w, DEMI_RUN, slots + 1, 1);
+    w->slot_index = (int32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(int32_t));
+    w->slot_generation = (uint32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(uint32_t));
     w->slot_capacity = (int)slots + 1;
     w->slot_count = (int)slots;
     if (!w->visitor || !w->slot_index || !w->slot_generation ||
@@ -16227,7 +16149,6 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
     dem_world *w = b->world;
     const char *at;
     demi_parcel_head h;
-    demi_grain g;
     int i;
     for (i = 0; i < from->count; i++) {
         const double x = (double)from->pos[4*i + s->axis];
@@ -16236,16 +16157,13 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
     }
     b->out[0].size = 0;
     if (!demi_pack(w, from, marks, 1, 1, s->axis, 0, &b->out[0])) return 0;
-    at = (const char *)b->out[0].bytes.data;
+    at = b->out[0].bytes;
     demi_take(&at, &h, sizeof h);
     if (!demi_bodies_reserve(w, (size_t)h.grains) ||
-        !demi_filed_reserve(w, &b->add_, h.stride, h.pairs, h.contacts)) return 0;
-    demi_pairs_take(w, (int32_t *)b->add_.data, demi_parcel_pairs(&h, at), h.pairs);
-    if (h.contacts) demi_wall_contacts_take(w, demi_parcel_contacts(&h, at), h.contacts);
-    for (i = 0; i < h.grains; i++) {
-        demi_take(&at, &g, sizeof g);
-        demi_grain_append(w, &g);
-    }
+        !demi_filed_reserve(w, &b->add, h.stride, h.pairs, h.contacts)) return 0;
+    demi_pairs_take(w, b->add, demi_parcel_pairs(w, &h, at), h.pairs);
+    if (h.contacts) demi_wall_contacts_take(w, demi_parcel_contacts(w, &h, at), h.contacts);
+    for (i = 0; i < h.grains; i++) demi_grain_append(w, &at);
     return 1;
 }
 
@@ -16327,15 +16245,16 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->dt = w->dt;               h->dt_valid = w->dt_valid;   h->primed = w->primed;
     h->assumed_speed = w->assumed_speed;
     h->forces_valid = w->forces_valid && !w->pairs_changed;
-    h->pairs = (demi_pair *)demi_alloc(h, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(demi_pair));
-    h->pos = (dem_real *)demi_alloc(h, most, 4*sizeof(dem_real));
-    h->vel = (dem_real *)demi_alloc(h, most, 4*sizeof(dem_real));
-    h->inv_mass = (dem_real *)demi_alloc(h, most, sizeof(dem_real));
-    h->body_material = (int32_t *)demi_alloc(h, most, sizeof(int32_t));
+    h->pairs = (demi_pair *)demi_hold(h, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
+                                      sizeof(demi_pair));
+    h->pos = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
+    h->vel = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
+    h->inv_mass = (dem_real *)demi_hold(h, DEMI_RUN, most, sizeof(dem_real));
+    h->body_material = (int32_t *)demi_hold(h, DEMI_RUN, most, sizeof(int32_t));
     s->value_room = n*DEMI_SLAB_BINS + 2*DEMI_MATERIALS + 8;
-    s->values = (double *)demi_alloc(h, s->value_room, sizeof(double));
-    s->borders = (double *)demi_alloc(h, n + 1, sizeof(double));
-    s->slabs = (demi_slab *)demi_alloc(h, (size_t)s->local, sizeof(demi_slab));
+    s->values = (double *)demi_hold(h, DEMI_RUN, s->value_room, sizeof(double));
+    s->borders = (double *)demi_hold(h, DEMI_RUN, n + 1, sizeof(double));
+    s->slabs = (demi_slab *)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(demi_slab));
     if (!h->pairs || !h->pos || !h->vel || !h->inv_mass || !h->body_material || !s->values ||
         !s->borders || !s->slabs) return 0;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
@@ -16357,42 +16276,13 @@ static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
     demi_slabs_lay(s, s->values, n, -ends[1], ends[0]);
 }
 
-static void demi_slab_destroy(demi_slab *b, int shares) {
-    dem_world *w = b->world;
-    int k;
-    if (!w) return;
-    for (k = 0; k < 2; k++) {
-        demi_array_free(w, &b->out[k].bytes);
-        demi_array_free(w, &b->in[k].bytes);
-    }
-    demi_array_free(w, &b->halo_);
-    demi_array_free(w, &b->guest_);
-    demi_array_free(w, &b->guest_inv_);
-    demi_array_free(w, &b->add_);
-    demi_free(w, w->visitor, (size_t)w->slot_count + 1, 1);
-    if (shares) w->wall_count = 0;              /* their geometry is the first slab's */
-    dem_world_destroy(w);
-}
 DEM_API void dem_slabs_destroy(dem_slabs *s) {
-    const size_t most = 3*DEMI_MATERIALS;
     dem_allocator allocator;
-    dem_world *h;
     int k;
     if (!s) return;
-    h = &s->head;
-    for (k = s->slabs ? s->local - 1 : -1; k >= 0; k--) demi_slab_destroy(&s->slabs[k], k > 0);
-    demi_array_free(h, &s->mine.bytes);
-    demi_array_free(h, &s->all.bytes);
-    demi_array_free(h, &s->known);
-    demi_free(h, h->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS, sizeof(demi_pair));
-    demi_free(h, h->pos, most, 4*sizeof(dem_real));
-    demi_free(h, h->vel, most, 4*sizeof(dem_real));
-    demi_free(h, h->inv_mass, most, sizeof(dem_real));
-    demi_free(h, h->body_material, most, sizeof(int32_t));
-    demi_free(h, s->values, s->value_room, sizeof(double));
-    demi_free(h, s->borders, (size_t)s->count + 1, sizeof(double));
-    demi_free(h, s->slabs, (size_t)s->local, sizeof(demi_slab));
-    allocator = h->desc.allocator;
+    for (k = 0; k < s->local && s->slabs; k++) dem_world_destroy(s->slabs[k].world);
+    allocator = s->head.desc.allocator;
+    demi_free_chain(&s->head, DEMI_RUN);
     demi_raw_free(&allocator, s, sizeof *s);
 }
 DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
@@ -16420,9 +16310,9 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     s->period = (double)demi_periods_of(w).period[s->axis];
     marks = (uint8_t *)demi_alloc(w, slots, 1);
     ok = marks && demi_slabs_head(s, w);
-    ok = ok && demi_array_grow(&s->head, &s->known, sizeof(uint32_t), slots);
+    ok = ok && DEMI_GROW(&s->head, s->known, slots);
     for (k = 0; k < w->slot_count && ok; k++)
-        ((uint32_t *)s->known.data)[k] = w->slot_index[k] < 0 ? 0 : w->slot_generation[k];
+        s->known[k] = w->slot_index[k] < 0 ? 0 : w->slot_generation[k];
     if (ok) demi_slabs_first_borders(s, w);
     for (k = 0; k < s->local && ok; k++) {
         demi_slab *b = &s->slabs[k];
@@ -16431,7 +16321,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
                                    &s->head.desc.allocator);
         ok = demi_slab_ready(b->world, w) && demi_slab_fill(s, b, w, marks);
     }
-    demi_free(w, marks, slots, 1);
+    demi_free(w, marks);
     if (demi_slabs_same(s, w, ok) == DEM_OK) return s;
     dem_slabs_destroy(s);
     return 0;
@@ -16473,7 +16363,7 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
          demi_pack(h, w, w->visitor, DEMI_ALL, 1, s->axis, 0, out);
     if (!ok) return 0;
     sums.size = out->size - start;
-    memcpy((char *)out->bytes.data + start, &sums, sizeof sums);
+    memcpy(out->bytes + start, &sums, sizeof sums);
     return 1;
 }
 /* Reports of all processes, passed round the ring: each hands on what it got from below. */
@@ -16489,16 +16379,16 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
         if (s->slabs[k].result == DEM_OK && !demi_slab_report(s, &s->slabs[k]))
             s->slabs[k].result = demi_no_memory(s->slabs[k].world, "dem_slabs_collect");
     top->out[1].size = 0;
-    if (!demi_parcel_put(&s->head, &s->all, s->mine.bytes.data, s->mine.size) ||
-        !demi_parcel_put(top->world, &top->out[1], s->mine.bytes.data, s->mine.size))
+    if (!demi_parcel_put(&s->head, &s->all, s->mine.bytes, s->mine.size) ||
+        !demi_parcel_put(top->world, &top->out[1], s->mine.bytes, s->mine.size))
         top->result = demi_no_memory(top->world, "dem_slabs_collect");
     if (result == DEM_OK) result = demi_slabs_agree(s, 0, 0);
     for (round = 1; round < (int)processes && result == DEM_OK; round++) {
         result = demi_slabs_exchange(s, DEMI_UP, 0);
         if (result != DEM_OK) break;
         top->out[1].size = 0;
-        if (!demi_parcel_put(&s->head, &s->all, low->in[0].bytes.data, low->in[0].size) ||
-            !demi_parcel_put(top->world, &top->out[1], low->in[0].bytes.data, low->in[0].size))
+        if (!demi_parcel_put(&s->head, &s->all, low->in[0].bytes, low->in[0].size) ||
+            !demi_parcel_put(top->world, &top->out[1], low->in[0].bytes, low->in[0].size))
             top->result = demi_no_memory(top->world, "dem_slabs_collect");
         result = demi_slabs_agree(s, 0, 0);
     }
@@ -16509,7 +16399,7 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
 }
 /* The report of one slab; null when it is missing. */
 static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums *sums) {
-    const char *from = (const char *)s->all.bytes.data, *end = from + s->all.size;
+    const char *from = s->all.bytes, *end = from + s->all.size;
     for (; from < end; from += sums->size) {
         memcpy(sums, from, sizeof *sums);
         if (sums->index == index) return from + sizeof *sums;
@@ -16593,22 +16483,21 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
 /* Grains, memory and contacts of one slab. */
 static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const char *from) {
     demi_parcel_head head;
-    demi_grain g;
     const char *grains;
     int i;
     demi_take(&from, &head, sizeof head);
     grains = from;
     for (i = 0; i < head.grains; i++) {
-        demi_take(&from, &g, sizeof g);
-        demi_grain_to(w, w->slot_index[g.slot], &g);
-        seen[g.slot] = 1;
+        const uint32_t slot = demi_grain_slot(from);
+        demi_grain_take(w, w->slot_index[slot], &from);
+        seen[slot] = 1;
     }
-    demi_pairs_take(w, add, demi_parcel_pairs(&head, grains), head.pairs);
+    demi_pairs_take(w, add, demi_parcel_pairs(w, &head, grains), head.pairs);
     if (head.contacts)
-        demi_wall_contacts_take(w, demi_parcel_contacts(&head, grains), head.contacts);
+        demi_wall_contacts_take(w, demi_parcel_contacts(w, &head, grains), head.contacts);
 }
 /* Room for all that was gathered, and whether the world can hold it. */
-static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, demi_array *add, demi_array *seen) {
+static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uint8_t **seen) {
     const char *call = "dem_slabs_collect";
     dem_world *h = &s->head;
     demi_slab_sums sums;
@@ -16623,7 +16512,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, demi_array *add, d
                          h->wall_count, h->material_count);
     for (i = 0; i < w->count; i++) {
         const uint32_t slot = w->body_slot[i];
-        if (w->slot_generation[slot] != ((const uint32_t *)s->known.data)[slot])
+        if (w->slot_generation[slot] != s->known[slot])
             return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u was added to the world after the "
                              "slabs had been created; collect before adding grains, or create the "
                              "slabs anew after it", call, (unsigned)slot + 1);
@@ -16631,7 +16520,6 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, demi_array *add, d
     for (k = 0; k < s->count; k++) {
         const char *from = demi_slabs_find(s, k, &sums);
         demi_parcel_head head;
-        demi_grain g;
         if (!from)
             return demi_fail(h, DEM_ERROR_STOPPED, "%s: slab %d did not report; see that every "
                              "process makes the call and the ring is closed", call, k);
@@ -16641,15 +16529,16 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, demi_array *add, d
         contacts += head.contacts;
         if (head.pairs) stride = head.stride;
         for (i = 0; i < head.grains; i++) {
-            demi_take(&from, &g, sizeof g);
-            if (w->slot_index[g.slot] < 0)
+            const uint32_t slot = demi_grain_slot(from);
+            from += demi_grain_size(w);
+            if (w->slot_index[slot] < 0)
                 return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u is in slab %d, but no longer "
                                  "in the world; collect before removing grains, or create the "
-                                 "slabs anew after it", call, (unsigned)g.slot + 1, k);
+                                 "slabs anew after it", call, (unsigned)slot + 1, k);
         }
     }
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
-    if (!demi_array_grow(h, seen, 1, (size_t)w->slot_count + 1) ||
+    if (!DEMI_GROW(h, *seen, (size_t)w->slot_count + 1) ||
         !demi_carry_reserve(w, w->slot_count, pairs, stride) ||
         !demi_wall_contacts_reserve(w, (size_t)contacts, (size_t)contacts) ||
         !demi_filed_reserve(w, add, stride, pairs, contacts)) return demi_no_memory(h, call);
@@ -16658,12 +16547,13 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, demi_array *add, d
     w->carry_count = 0;
     w->carry_rows = w->slot_count;
     w->carry_stride = stride;
-    memset(seen->data, 0, (size_t)w->slot_count + 1);
+    memset(*seen, 0, (size_t)w->slot_count + 1);
     return DEM_OK;
 }
 DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
     if (!s || demi_null(&s->head, "dem_slabs_collect", w, "world")) return DEM_ERROR_ARGUMENT;
-    demi_array add = {0, 0, 0}, seen = {0, 0, 0};
+    int32_t *add = 0;
+    uint8_t *seen = 0;
     dem_result result = demi_slabs_usable(s, "dem_slabs_collect");
     demi_slab_sums sums;
     int k, i;
@@ -16674,10 +16564,10 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         for (k = 0; k < s->count; k++) {
             const char *from = demi_slabs_find(s, k, &sums);
             from = demi_slabs_add(w, &sums, from);
-            demi_slabs_write(w, (int32_t *)add.data, (uint8_t *)seen.data, from);
+            demi_slabs_write(w, add, seen, from);
         }
         for (i = w->count - 1; i >= 0; i--)     /* in no slab: left through an outflow boundary */
-            if (!((const uint8_t *)seen.data)[w->body_slot[i]]) {
+            if (!seen[w->body_slot[i]]) {
                 const double removed = w->energy_removed;
                 demi_body_take_out(w, i);
                 w->energy_removed = removed;
@@ -16687,8 +16577,8 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         demi_effects(w);                        /* the world may never have taken a step itself */
         demi_kernel_choose(w);
     }
-    demi_array_free(w, &add);
-    demi_array_free(&s->head, &seen);
+    demi_free(w, add);
+    demi_free(&s->head, seen);
     return result;
 }
 DEM_API void dem_slabs_channels_reset(dem_slabs *s) {
