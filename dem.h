@@ -2030,7 +2030,9 @@ struct dem_world {
     uint64_t run_steps;            /* and the step at which it did */
     dem_real dt;
     double assumed_speed;          /* m/s, behind dt */
+    double spin_elsewhere;         /* rad/s, fastest in slabs, of bodies that are not spheres */
     int dt_valid, forces_valid, synced, primed;
+    double step_reach;             /* m, farthest that any point of a body went in the last step */
     int moved;                     /* a step has moved and lacks its forces: memory ran out in it */
     double overlap_max, speed_max;
     double energy[DEMI_ENERGIES], energy_inserted, energy_removed;
@@ -11604,7 +11606,7 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
 }
 /* The fastest spin among those bodies, rad/s. */
 static double demi_spin_fastest(const dem_world *w) {
-    double most = 0;
+    double most = w->spin_elsewhere;
     int i;
     for (i = 0; i < w->count && w->shaped_count; i++)
         if (w->body_shape[i])
@@ -12049,7 +12051,8 @@ static dem_result demi_step_move(dem_world *w) {
     if (sqrt(turn_rate)*(double)w->dt > (w->desc.allow_large_dt ? 2 : 1)) /* series end there */
         return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
     w->speed_max = sqrt(speed2);
-    w->reach += (w->speed_max + (w->tight ? sqrt(turn_speed) : 0))*(double)w->dt;
+    w->step_reach = (w->speed_max + (w->tight ? sqrt(turn_speed) : 0))*(double)w->dt;
+    w->reach += w->step_reach;
     w->near_kick = sqrt(acceleration2)*(double)w->dt + sqrt(turn);
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
@@ -15164,14 +15167,16 @@ static void demi_grain_forget(dem_world *w, int i) {
 }
 
 /* Grains whose mark is `mark`; with them, when asked, the filed memory of pairs that name one of
-   them and their contacts with walls (all there are, for mark DEMI_ALL). shift: added along axis.
+   them, their contacts with walls and those of shaped bodies (all there are, for mark DEMI_ALL).
+   shift: added along axis.
    Memory must be filed: after demi_list_drop or demi_carry_collect. */
-typedef struct demi_parcel_head { int32_t grains, pairs, contacts, stride; } demi_parcel_head;
+typedef struct demi_parcel_head { int32_t grains, pairs, contacts, shaped,
+                                 stride; } demi_parcel_head;
 static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, int mark,
                      int memory, int axis, dem_real shift, demi_parcel *out) {
     const size_t start = out->size;
     const int stride = w->carry_stride;
-    demi_parcel_head head = {0, 0, 0, 0};
+    demi_parcel_head head = {0, 0, 0, 0, 0};
     int i, k, d, ok = demi_parcel_put(host, out, &head, sizeof head);
     head.stride = stride;
     for (i = 0; i < w->count && ok; i++) {
@@ -15197,34 +15202,60 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
             ok = demi_parcel_put(host, out, &c, sizeof c);
             head.contacts++;
         }
+    for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
+        for (k = 0; k < w->domains[d].shaped && ok; k++) {
+            demi_shaped c = w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
+            if (w->list_valid) {
+                c.a = (int32_t)w->body_slot[c.a];
+                if (c.b >= 0) c.b = (int32_t)w->body_slot[c.b];
+            }
+            if (mark != DEMI_ALL && marks[c.a] != mark && (c.b < 0 || marks[c.b] != mark)) continue;
+            ok = demi_parcel_put(host, out, &c, sizeof c);
+            head.shaped++;
+        }
     if (ok) memcpy(out->bytes + start, &head, sizeof head);
     return ok;
 }
 
-/* Room for pairs and contacts with walls that are to arrive, beside those filed already; `add` for
-   demi_pairs_take. The contacts there are move to the first domain. 0 when memory ran out. */
-static int demi_filed_reserve(dem_world *w, int32_t **add, int stride, int pairs, int contacts) {
-    const int had = w->carry_count;
-    int d, total = 0, rows = w->slot_count;
+/* Room for what is to arrive by these heads, beside what is filed already; `add` for
+   demi_pairs_take. Contacts that are there move to the first domain. 0 when memory ran out. */
+static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_parcel_head *come) {
+    const int had = w->carry_count, rows = w->slot_count;
+    int d, total = 0, shaped = 0;
     demi_wall_contact *to;
-    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
-    if (!demi_carry_reserve(w, rows, had + pairs, stride) ||
+    demi_shaped *shaped_to;
+    for (d = 0; d < DEMI_DOMAINS; d++) {
+        total += w->domains[d].wall_contacts;
+        shaped += w->domains[d].shaped;
+    }
+    if (!demi_carry_reserve(w, rows, had + come->pairs, come->stride) ||
         !DEMI_GROW(w, *add, (size_t)rows + 1) ||
-        !demi_wall_contacts_reserve(w, (size_t)(total + contacts), (size_t)(total + contacts)))
+        !demi_wall_contacts_reserve(w, (size_t)(total + come->contacts),
+                                    (size_t)(total + come->contacts)) ||
+        !DEMI_GROW(w, w->shaped_now, (size_t)(shaped + come->shaped)))
         return 0;
     if (!had) memset(w->carry_start, 0, ((size_t)rows + 2)*sizeof(int32_t));
     for (d = had ? w->carry_rows : rows; d < rows; d++) w->carry_start[d + 1] = w->carry_start[d];
     w->carry_rows = rows;
-    w->carry_stride = stride;
+    w->carry_stride = come->stride;
     to = w->wall_now;
+    shaped_to = w->shaped_now;
     for (d = 0; d < DEMI_DOMAINS; d++) {
-        const int n = w->domains[d].wall_contacts;
-        if (n && d) memmove(to, w->wall_now + d*w->wall_now_stride, (size_t)n*sizeof *to);
-        to += n;
-        w->domains[d].wall_contacts = 0;
+        demi_domain *o = &w->domains[d];
+        if (o->wall_contacts && d)
+            memmove(to, w->wall_now + (size_t)d*(size_t)w->wall_now_stride,
+                    (size_t)o->wall_contacts*sizeof *to);
+        if (o->shaped && d)
+            memmove(shaped_to, w->shaped_now + (size_t)d*(size_t)w->shaped_stride,
+                    (size_t)o->shaped*sizeof *shaped_to);
+        to += o->wall_contacts;
+        shaped_to += o->shaped;
+        o->wall_contacts = o->shaped = 0;
     }
     w->domains[0].wall_contacts = total;
-    w->wall_now_stride = total + contacts;
+    w->domains[0].shaped = shaped;
+    w->wall_now_stride = total + come->contacts;
+    w->shaped_stride = shaped + come->shaped;
     return 1;
 }
 /* Files pairs that arrived behind those already in their rows. */
@@ -15257,20 +15288,19 @@ static void demi_pairs_take(dem_world *w, int32_t *add, const char *from, int pa
     }
     w->carry_count += pairs;
 }
-static void demi_wall_contacts_take(dem_world *w, const char *from, int contacts) {
-    memcpy(w->wall_now + w->domains[0].wall_contacts, from,
-           (size_t)contacts*sizeof(demi_wall_contact));
-    w->domains[0].wall_contacts += contacts;
-}
-/* Where the parts of a packed message begin. */
-static const char *demi_parcel_pairs(const dem_world *w, const demi_parcel_head *h,
-                                     const char *grains) {
-    return grains + (size_t)h->grains*demi_grain_size(w);
-}
-static const char *demi_parcel_contacts(const dem_world *w, const demi_parcel_head *h,
-                                        const char *grains) {
-    return demi_parcel_pairs(w, h, grains) +
-           (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
+/* What a message has besides grains, which end at `from`: files all of it. */
+static void demi_filed_take(dem_world *w, int32_t *add, const demi_parcel_head *h,
+                            const char *from) {
+    demi_domain *first = &w->domains[0];
+    demi_pairs_take(w, add, from, h->pairs);
+    from += (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
+    if (h->contacts)
+        demi_take(&from, w->wall_now + first->wall_contacts,
+                  (size_t)h->contacts*sizeof(demi_wall_contact));
+    if (h->shaped)
+        demi_take(&from, w->shaped_now + first->shaped, (size_t)h->shaped*sizeof(demi_shaped));
+    first->wall_contacts += h->contacts;
+    first->shaped += h->shaped;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -15548,7 +15578,7 @@ static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
 }
 static demi_parcel_head demi_slab_head(const dem_slabs *s, const demi_slab *b, int side,
                                        const char **grains) {
-    demi_parcel_head head = {0, 0, 0, 0};
+    demi_parcel_head head = {0, 0, 0, 0, 0};
     if (demi_slab_has(s, b, side)) {
         *grains = demi_slab_inbox(s, b, side)->bytes;
         demi_take(grains, &head, sizeof head);
@@ -15560,9 +15590,11 @@ static void demi_slab_room(dem_slabs *s, demi_slab *b) {
     const demi_parcel_head l = demi_slab_head(s, b, 0, &from);
     const demi_parcel_head u = demi_slab_head(s, b, 1, &from);
     dem_world *w = b->world;
-    const int stride = l.pairs ? l.stride : u.pairs ? u.stride : w->carry_stride;
-    if (!demi_bodies_reserve(w, (size_t)w->count + (size_t)l.grains + (size_t)u.grains) ||
-        !demi_filed_reserve(w, &b->add, stride, l.pairs + u.pairs, l.contacts + u.contacts))
+    demi_parcel_head come = {l.grains + u.grains, l.pairs + u.pairs, l.contacts + u.contacts,
+                             l.shaped + u.shaped, 0};
+    come.stride = l.pairs ? l.stride : u.pairs ? u.stride : w->carry_stride;
+    if (!demi_bodies_reserve(w, (size_t)w->count + (size_t)come.grains) ||
+        !demi_filed_reserve(w, &b->add, &come))
         b->result = demi_no_memory(w, "dem_slabs_step");
 }
 /* Leavers go, arrivals come in: nothing can fail any more. */
@@ -15574,14 +15606,10 @@ static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
         if (demi_slab_side(s, b, w->pos[4*i + s->axis], &shift)) demi_grain_forget(w, i);
     b->migrated += (uint64_t)b->leavers;
     for (side = 0; side < 2; side++) {
-        const char *grains = 0, *from;
-        const demi_parcel_head h = demi_slab_head(s, b, side, &grains);
-        from = grains;
+        const char *from = 0;
+        const demi_parcel_head h = demi_slab_head(s, b, side, &from);
         for (i = 0; i < h.grains; i++) demi_grain_append(w, &from);
-        if (h.pairs)
-            demi_pairs_take(w, b->add, demi_parcel_pairs(w, &h, grains), h.pairs);
-        if (h.contacts)
-            demi_wall_contacts_take(w, demi_parcel_contacts(w, &h, grains), h.contacts);
+        demi_filed_take(w, b->add, &h, from);
     }
 }
 /* Grains near enough to the upper border to touch something beyond it. */
@@ -15606,8 +15634,10 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     b->halo_count = n;
 }
 /* Reals sent up and down per visitor and step. */
-static size_t demi_slab_up(const dem_world *w) { return demi_spins(w) ? 15 : 6; }
-static size_t demi_slab_down(const dem_world *w) { return demi_spins(w) ? 6 : 3; }
+static size_t demi_slab_up(const dem_world *w) {
+    return w->orienting ? 19 : demi_spins(w) ? 15 : 6;
+}
+static size_t demi_slab_down(const dem_world *w) { return demi_turns(w) ? 6 : 3; }
 
 /* Visitors come in; then the list is made as in any world, and steps get their room. */
 static void demi_slab_list(dem_slabs *s, demi_slab *b) {
@@ -15750,6 +15780,7 @@ static void demi_slab_send(dem_slabs *s, demi_slab *b) {
         memcpy(out + 6, w->spin + i, three);
         memcpy(out + 9, w->half_vel + i, three);
         memcpy(out + 12, w->half_spin + i, three);
+        if (reals == 19) memcpy(out + 15, w->orient + i, 4*sizeof(dem_real));
     }
 }
 /* Visitors are where their owners say. */
@@ -15769,6 +15800,10 @@ static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
         memcpy(w->spin + 4*i, in + 6, three);
         memcpy(w->half_vel + 4*i, in + 9, three);
         memcpy(w->half_spin + 4*i, in + 12, three);
+        if (up == 15) continue;
+        memcpy(w->orient + 4*i, in + 15, 4*sizeof(dem_real));
+        if (w->spots_valid && demi_form_of(w, i) && demi_form_of(w, i)->count)
+            demi_spots_turn(w, i);
     }
 }
 /* The near list, where it is due. */
@@ -15779,15 +15814,20 @@ static void demi_slab_near(dem_slabs *s, demi_slab *b) {
     demi_near_choose(w);
     if (!demi_near_make(w, 0)) b->result = demi_no_memory(w, "dem_slabs_step");
 }
-/* 3 touch, 4 respond, 5 gather, here; forces on visitors go into the lower outbox. */
+/* 3 touch. Where bodies are not spheres it may run out of room; all agree before any force is
+   worked out, since memory follows a step once. Else there is room, see demi_wall_contacts_move. */
+static void demi_slab_touch(dem_slabs *s, demi_slab *b) {
+    demi_slab_receive(s, b);
+    if (!demi_touch(b->world)) b->result = demi_no_memory(b->world, "dem_slabs_step");
+}
+/* 4 respond, 5 gather, here; forces on visitors go into the lower outbox. */
 static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t three = 3*sizeof(dem_real), down = demi_slab_down(w);
     dem_real *out = (dem_real *)b->out[0].bytes;
     double deepest = 0;
     int k, d, finite = 1;
-    demi_slab_receive(s, b);
-    demi_touch(w);                              /* its room is there, see demi_wall_contacts_move */
+    if (!w->orienting) demi_slab_touch(s, b);
     demi_forces(w);
     for (k = 0; k < b->guest_count; k++, out += down) {
         memcpy(out, w->force + 4*b->guest[k], three);
@@ -15822,6 +15862,11 @@ static dem_result demi_slabs_forces(dem_slabs *s, int near) {
     }
     if (near) {
         demi_slabs_phase(s, demi_slab_near);
+        result = demi_slabs_agree(s, 0, 0);
+        if (result != DEM_OK) return result;
+    }
+    if (s->slabs[0].world->orienting) {
+        demi_slabs_phase(s, demi_slab_touch);
         result = demi_slabs_agree(s, 0, 0);
         if (result != DEM_OK) return result;
     }
@@ -15861,7 +15906,7 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
     dem_result result;
     int k, i, j;
     for (i = 0; i < 2*m; i++) v[i] = i < m ? -1e300 : 0;       /* minus smallest; largest fixed */
-    v[2*m] = 0;                                                /* speed; lowest, highest */
+    v[2*m] = v[2*m + 3] = 0;                                   /* speed; lowest, highest; spin */
     v[2*m + 1] = v[2*m + 2] = -1e300;
     memset(many, 0, sizeof many);
     for (k = 0; k < s->local; k++) {
@@ -15871,14 +15916,17 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
             const double r = (double)w->pos[4*i + 3];
             if (demi_visits(w, i)) continue;
             j = w->body_material[i] - 1;
-            if (w->inv_mass[i] > 0) { v[j] = DEMI_MAX(v[j], -r); many[j]++; }
-            else v[m + j] = DEMI_MAX(v[m + j], r);
+            if (w->inv_mass[i] > 0) { v[j] = DEMI_MAX(v[j], -demi_advise_radius(w, i)); many[j]++; }
+            else v[m + j] = DEMI_MAX(v[m + j], demi_advise_radius(w, i));
             v[2*m] = DEMI_MAX(v[2*m], (double)demi_length(demi_at(w->vel + 4*i)));
             v[2*m + 1] = DEMI_MAX(v[2*m + 1], r - x);
             v[2*m + 2] = DEMI_MAX(v[2*m + 2], r + x);
+            if (demi_form_of(w, i))
+                v[2*m + 3] = DEMI_MAX(v[2*m + 3], (double)demi_length(demi_at(w->spin + 4*i)));
         }
     }
-    result = demi_slabs_reduce(s, v, 2*m + 3, 0);
+    result = demi_slabs_reduce(s, v, 2*m + 4, 0);
+    h->spin_elsewhere = v[2*m + 3];
     if (result == DEM_OK) result = demi_slabs_reduce(s, many, m, 1);
     h->count = 0;
     for (j = 0; j < m && result == DEM_OK; j++)
@@ -15946,8 +15994,8 @@ static dem_result demi_slabs_refresh(dem_slabs *s) {
 static dem_result demi_slabs_step_once(dem_slabs *s) {
     dem_world *h = &s->head;
     const dem_world *first = s->slabs[0].world;
-    /* speed, list stale, walls' reach, kick; near lists' creep and age over what they allow */
-    double flags[6] = {0, 0, 0, 0, -1e300, -1e300};
+    /* speed, list stale, walls' reach, kick; near lists' creep, age over what they allow; reach */
+    double flags[7] = {0, 0, 0, 0, -1e300, -1e300, 0};
     const double dt = (double)h->dt;
     dem_result result;
     int k, near;
@@ -15959,6 +16007,7 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         flags[3] = DEMI_MAX(flags[3], w->near_kick);
         flags[4] = DEMI_MAX(flags[4], w->near_creep + 2*w->near_drift*dt - w->near_margin);
         flags[5] = DEMI_MAX(flags[5], w->near_age + dt - w->near_span*(1 - 1e-9));
+        flags[6] = DEMI_MAX(flags[6], w->step_reach);
     }
     flags[2] = first->wall_reach;
     if (!h->moved) {
@@ -15967,12 +16016,12 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         h->since = first->since;
         h->steps++;
         demi_slabs_poses(s);
-        result = demi_slabs_agree(s, flags, 6);
+        result = demi_slabs_agree(s, flags, 7);
         h->speed_max = flags[0];
-        h->reach += h->speed_max*dt;
+        h->reach += flags[6];
         for (k = 0; k < s->local; k++) demi_near_pass(s->slabs[k].world, flags[3]);
         h->near_due = flags[4] + 2*flags[3]*dt > -1e-6*h->skin || flags[5] > -1e-6*dt;
-    } else result = demi_slabs_agree(s, flags, 6);
+    } else result = demi_slabs_agree(s, flags, 7);
     if (result != DEM_OK) return result;
     near = s->count == 1 || h->near_due;        /* each looks for itself again */
     if (s->count == 1) h->reach = first->reach;
@@ -16070,6 +16119,26 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
     to->facets_valid = first || from->facets_valid;
     return to->facets_valid || demi_facets_weigh(to);
 }
+/* Copies the shapes; slabs after the first share those of the first. 0 when memory ran out. */
+static int demi_slab_forms(dem_world *to, const dem_world *from, const dem_world *first) {
+    int i;
+    if (first) {
+        to->forms = first->forms;
+        to->form_count = first->form_count;
+        return 1;
+    }
+    for (i = 0; i < from->form_count; i++) {
+        demi_form form = from->forms[i];
+        const size_t reals = 4*(size_t)form.count;
+        if (reals) {
+            form.parts = (dem_real *)demi_hold(to, DEMI_SCENE, reals, sizeof(dem_real));
+            if (!form.parts) return 0;
+            memcpy(form.parts, from->forms[i].parts, reals*sizeof(dem_real));
+        }
+        if (!demi_form_adopt(to, "dem_slabs_create", &form).id) return 0;
+    }
+    return 1;
+}
 /* Sums over time begin in slab 0 where the world has got to, elsewhere at nothing. */
 static void demi_slab_sums_clear(dem_world *w) {
     int i;
@@ -16122,6 +16191,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->slot_capacity = (int)slots + 1;
     w->slot_count = (int)slots;
     if (!w->visitor || !w->slot_index || !w->slot_generation ||
+        (from->orienting && !demi_orient_begin(w)) ||
+        !demi_slab_forms(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0)) return w;
     memset(w->slot_index, 0xff, slots*sizeof(int32_t));
     if (slots) memcpy(w->slot_generation, from->slot_generation, slots*sizeof(uint32_t));
@@ -16142,6 +16213,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
 }
 static int demi_slab_ready(const dem_world *w, const dem_world *from) {
     return w && w->visitor && w->slot_index && w->slot_generation &&
+           w->form_count == from->form_count && w->orienting == from->orienting &&
            w->wall_count == from->wall_count && w->field_count == from->field_count;
 }
 /* The grains of one slab, from the world. */
@@ -16159,11 +16231,9 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
     if (!demi_pack(w, from, marks, 1, 1, s->axis, 0, &b->out[0])) return 0;
     at = b->out[0].bytes;
     demi_take(&at, &h, sizeof h);
-    if (!demi_bodies_reserve(w, (size_t)h.grains) ||
-        !demi_filed_reserve(w, &b->add, h.stride, h.pairs, h.contacts)) return 0;
-    demi_pairs_take(w, b->add, demi_parcel_pairs(w, &h, at), h.pairs);
-    if (h.contacts) demi_wall_contacts_take(w, demi_parcel_contacts(w, &h, at), h.contacts);
+    if (!demi_bodies_reserve(w, (size_t)h.grains) || !demi_filed_reserve(w, &b->add, &h)) return 0;
     for (i = 0; i < h.grains; i++) demi_grain_append(w, &at);
+    demi_filed_take(w, b->add, &h, at);
     return 1;
 }
 
@@ -16191,9 +16261,6 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval %d, must "
                          "be 0, >= 1 or < 0 (never), and >= 0", call, (double)d->balance,
                          d->balance_interval);
-    if (w->orienting)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world has bodies with orientations, "
-                         "which slabs do not carry yet; use threads instead", call);
     if (w->moved)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world stands in the middle of a step that "
                          "ran out of memory; finish it with dem_world_step first", call);
@@ -16483,25 +16550,26 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
 /* Grains, memory and contacts of one slab. */
 static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const char *from) {
     demi_parcel_head head;
-    const char *grains;
     int i;
     demi_take(&from, &head, sizeof head);
-    grains = from;
     for (i = 0; i < head.grains; i++) {
         const uint32_t slot = demi_grain_slot(from);
         demi_grain_take(w, w->slot_index[slot], &from);
         seen[slot] = 1;
     }
-    demi_pairs_take(w, add, demi_parcel_pairs(w, &head, grains), head.pairs);
-    if (head.contacts)
-        demi_wall_contacts_take(w, demi_parcel_contacts(w, &head, grains), head.contacts);
+    demi_filed_take(w, add, &head, from);
 }
 /* Room for all that was gathered, and whether the world can hold it. */
 static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uint8_t **seen) {
     const char *call = "dem_slabs_collect";
     dem_world *h = &s->head;
     demi_slab_sums sums;
-    int k, i, pairs = 0, contacts = 0, stride = 0;
+    demi_parcel_head come = {0, 0, 0, 0, 0};
+    int k, i;
+    if (w->orienting != s->slabs[0].world->orienting)
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations in %s only; collect "
+                         "into the world the slabs were created from, unchanged, or one built like "
+                         "it", call, w->orienting ? "the world" : "the slabs");
     if (w->slot_count != s->slabs[0].world->slot_count || w->wall_count != h->wall_count ||
         w->material_count != h->material_count ||
         w->field_count != s->slabs[0].world->field_count)
@@ -16525,9 +16593,10 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
                              "process makes the call and the ring is closed", call, k);
         from = demi_slabs_skip(w, &sums, from);
         demi_take(&from, &head, sizeof head);
-        pairs += head.pairs;
-        contacts += head.contacts;
-        if (head.pairs) stride = head.stride;
+        come.pairs += head.pairs;
+        come.contacts += head.contacts;
+        come.shaped += head.shaped;
+        if (head.pairs) come.stride = head.stride;
         for (i = 0; i < head.grains; i++) {
             const uint32_t slot = demi_grain_slot(from);
             from += demi_grain_size(w);
@@ -16538,15 +16607,10 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         }
     }
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
-    if (!DEMI_GROW(h, *seen, (size_t)w->slot_count + 1) ||
-        !demi_carry_reserve(w, w->slot_count, pairs, stride) ||
-        !demi_wall_contacts_reserve(w, (size_t)contacts, (size_t)contacts) ||
-        !demi_filed_reserve(w, add, stride, pairs, contacts)) return demi_no_memory(h, call);
-    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].wall_contacts = 0;
-    memset(w->carry_start, 0, ((size_t)w->slot_count + 2)*sizeof(int32_t));
+    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].wall_contacts = w->domains[k].shaped = 0;
     w->carry_count = 0;
-    w->carry_rows = w->slot_count;
-    w->carry_stride = stride;
+    if (!DEMI_GROW(h, *seen, (size_t)w->slot_count + 1) || !demi_filed_reserve(w, add, &come))
+        return demi_no_memory(h, call);
     memset(*seen, 0, (size_t)w->slot_count + 1);
     return DEM_OK;
 }
