@@ -1793,9 +1793,43 @@ typedef struct demi_domain {
     double energy[DEMI_ENERGIES];
 } demi_domain;
 
-enum { DEMI_WALL_NONE = 0, DEMI_WALL_PLANE, DEMI_WALL_CYLINDER, DEMI_WALL_PROFILE, DEMI_WALL_MESH,
-      DEMI_WALL_GRAINS, DEMI_WALL_SIEVE,
-      DEMI_SIEVE_MOST = 12 };                   /* contacts of a grain with a sieve */
+/* Kinds of walls, a row each; nothing else names a kind but its own functions. >>add-wall: a row
+   here, a declaration in >>scene, functions above the tables in >>shaped. A row: constant; corners
+   of an element (0: it has none); places a candidate may give at most; traits; name in sentences;
+   how near a sphere is to one element; how spheres touch it, how ellipsoids do (0: they do not know
+   each other, which is said when the second of the two is added); how its normals turn as a ball
+   moves (0: not at all). */
+enum {
+    DEMI_FACETS = 1,               /* a surface of facets, see >>facets */
+    DEMI_DRAWN = 2,                /* drawn out along its own z without end: seen at z = 0 */
+    DEMI_BALLS = 4,                /* elements are grains: balls of `radius` about their corner */
+    DEMI_FLAT = 8                  /* a half space beyond z = 0 */
+};
+enum { DEMI_SIEVE_MOST = 12 };                  /* contacts of a grain with a sieve */
+#define DEMI_WALLS(X) \
+    X(PLANE,    0, 7, DEMI_FLAT, "plane", \
+      demi_plane_near, demi_elements_touch, demi_plane_ellipsoid, 0) \
+    X(CYLINDER, 0, 7, 0, "cylinder", \
+      demi_cylinder_near, demi_elements_touch, demi_cylinder_ellipsoid, demi_cylinder_bend) \
+    X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", \
+      demi_facet_distance, demi_facets_spheres, demi_facets_ellipsoid, demi_profile_bend) \
+    X(SEGMENTS, 2, 7, DEMI_DRAWN, "profile of DEM_EDGE_FRACTION", \
+      demi_facet_distance, demi_segments_touch, 0, 0) \
+    X(MESH,     3, 7, DEMI_FACETS, "mesh", \
+      demi_facet_distance, demi_facets_spheres, demi_facets_ellipsoid, demi_mesh_bend) \
+    X(GRAINS,   1, 7, DEMI_BALLS, "wall of grains", \
+      demi_grain_near, demi_elements_touch, demi_grain_ellipsoid, demi_grain_bend) \
+    X(SIEVE,    0, DEMI_SIEVE_MOST, 0, "sieve", \
+      demi_sieve_near, demi_sieve_spheres, 0, 0) \
+    /* the last */
+#define DEMI_WALL_CONSTANT(KIND, C, M, T, N, E, S, L, B) DEMI_WALL_##KIND,
+enum { DEMI_WALL_NONE = 0, DEMI_WALLS(DEMI_WALL_CONSTANT) DEMI_WALL_KINDS };
+typedef struct demi_wall_kind { int corners, most, traits; const char *name; } demi_wall_kind;
+#define DEMI_WALL_KIND(KIND, CORNERS, MOST, TRAITS, NAME, E, S, L, B) {CORNERS, MOST, TRAITS, NAME},
+static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed"},
+    DEMI_WALLS(DEMI_WALL_KIND)};
+/* What touches: spheres, clusters being many of them, and ellipsoids. */
+enum { DEMI_BALL, DEMI_ELLIPSOID, DEMI_SHAPES };
 
 /* A piece of a triangle's side that ends at corners of other triangles. */
 typedef struct demi_cut {
@@ -3373,6 +3407,7 @@ typedef struct demi_part {
     dem_vec3 centre, axes;
     dem_quat q;
 } demi_part;
+static int demi_part_shape(const demi_part *p) { return p->ball ? DEMI_BALL : DEMI_ELLIPSOID; }
 static int demi_parts_count(const dem_world *w, int body) {
     const demi_form *form = demi_form_of(w, body);
     return form && form->count ? form->count : 1;
@@ -3815,6 +3850,30 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->balance.present++;
     return (uint32_t)slot;
 }
+/* Do bodies of this shape (DEMI_BALL, ...) and walls of this kind know each other? (>>shaped) */
+static int demi_touch_known(int kind, int shape);
+static dem_result demi_strangers(dem_world *w, const char *call, int wall, int kind, int body) {
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and body %u an ellipsoid: the two "
+                     "do not know each other; make bodies clusters of spheres, or the wall a mesh "
+                     "or a resolved profile; nothing was added", call, wall + 1,
+                     demi_wall_kinds[kind].name, (unsigned)body + 1);
+}
+/* What a form's parts are. */
+static int demi_form_shape(const demi_form *form) {
+    return !form || form->count ? DEMI_BALL : DEMI_ELLIPSOID;
+}
+/* 1 with a sentence when some wall does not know bodies of a form that are to be added. */
+static int demi_walls_strange(dem_world *w, const char *call, int form) {
+    const int shape = demi_form_shape(&w->forms[form]);
+    int j;
+    for (j = 0; j < w->wall_count; j++) {
+        const int kind = w->walls[j].kind;
+        if (kind == DEMI_WALL_NONE || demi_touch_known(kind, shape)) continue;
+        demi_strangers(w, call, j, kind, w->slot_count);
+        return 1;
+    }
+    return 0;
+}
 /* Makes the body just appended one of a shape, scaled. */
 static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_quat orientation) {
     const demi_form *form = &w->forms[shape];
@@ -3944,7 +4003,8 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
     int i, m = 0, f;
     if (demi_material_index(w, call, material, &m) != DEM_OK ||
         (f = demi_form_index(w, call, shape)) < 0 ||
-        !demi_bodies_check(w, call, count, positions, orientations, velocities, spins, scales))
+        !demi_bodies_check(w, call, count, positions, orientations, velocities, spins, scales) ||
+        demi_walls_strange(w, call, f))
         return DEM_ERROR_ARGUMENT;
     for (i = 0; i < count; i++)
         if (demi_shape_mass_refuse(w, call, m, f, scales ? scales[i] : 1, i))
@@ -4160,10 +4220,11 @@ DEM_API dem_balance dem_balance_get(const dem_world *w) {
    different kinds. That Euler's number adds is old; as a rule of contact we have not found it
    published. Tests: tests/test_facets.c.
    --------------------------------------------------------------------------------------------- */
-DEM_INLINE int demi_faceted(const demi_wall *wall) {
-    return wall->kind == DEMI_WALL_MESH ||
-           (wall->kind == DEMI_WALL_PROFILE && wall->rule == DEM_EDGE_RESOLVED);
+DEM_INLINE int demi_wall_is(const demi_wall *wall, int trait) {
+    return (demi_wall_kinds[wall->kind].traits & trait) != 0;
 }
+DEM_INLINE int demi_faceted(const demi_wall *wall) { return demi_wall_is(wall, DEMI_FACETS); }
+DEM_INLINE int demi_wall_per(const demi_wall *wall) { return demi_wall_kinds[wall->kind].corners; }
 
 static double demi_far2(const double *a, const double *b) {
     const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
@@ -4292,7 +4353,7 @@ static int32_t demi_tree_next(demi_search_line *s) {
 /* How far from each corner's point another may be and yet be the same, m: a few roundings of the
    largest coordinate, as binary STL stores it, but far less than the shortest side there. */
 static void demi_near_by(const double *x, const demi_wall *wall, int first, double *near_by) {
-    const int per = wall->kind == DEMI_WALL_MESH ? 3 : 2;
+    const int per = demi_wall_per(wall);
     double most = 0;
     int i, k;
     for (i = 0; i < wall->vertex_count; i++) near_by[first + i] = 0;       /* if no corner's */
@@ -4375,7 +4436,7 @@ static demi_side demi_side_of(int32_t a, int32_t b, int facet, int side) {
 
 /* The planes of a wall's elements, by which most that a body does not reach are told at once. */
 static void demi_facet_planes(demi_wall *wall, const double *x) {
-    const int n = wall->kind == DEMI_WALL_MESH ? 3 : 2;
+    const int n = demi_wall_per(wall);
     double far = 0;
     int i, k;
     for (i = 0; i < 3*wall->vertex_count; i++) far = DEMI_MAX(far, fabs(x[i]));
@@ -4397,7 +4458,7 @@ static void demi_facet_planes(demi_wall *wall, const double *x) {
 /* Welds a wall's corners, numbers its edges and says which element looks after which. Elements
    that have two corners in one place count nothing. 0 when memory ran out. */
 static int demi_facets_begin(dem_world *w, demi_wall *wall) {
-    const int n = wall->kind == DEMI_WALL_MESH ? 3 : 2, all = wall->element_count;
+    const int n = demi_wall_per(wall), all = wall->element_count;
     const size_t vertices = (size_t)wall->vertex_count;
     double *x = (double *)demi_alloc(w, vertices*3, sizeof *x);
     int32_t *same = (int32_t *)demi_alloc(w, vertices, sizeof *same);
@@ -4490,7 +4551,7 @@ static void demi_reach_add(dem_real *lo, dem_real *hi, dem_vec3 x, dem_real pad)
 /* From where to where a wall with ends goes along the axes of the world, where it is now. */
 static void demi_wall_span(demi_wall *wall) {
     const dem_pose *p = &wall->pose;
-    const dem_real pad = wall->kind == DEMI_WALL_GRAINS ? wall->radius : 0;
+    const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
     const dem_real far = DEMI_SINGLE ? DEM_R(FLT_MAX) : (dem_real)DBL_MAX;
     dem_real lo[3] = {far, far, far}, hi[3] = {-far, -far, -far};
     int i;
@@ -4498,7 +4559,7 @@ static void demi_wall_span(demi_wall *wall) {
         demi_reach_add(lo, hi, demi_add(p->position, demi_turn(p->rotation,
                                         demi_at(wall->vertices + 3*i))), pad);
     if (!wall->vertex_count) demi_reach_add(lo, hi, p->position, wall->reach);
-    if (wall->kind == DEMI_WALL_PROFILE) {      /* endless along its z */
+    if (demi_wall_is(wall, DEMI_DRAWN)) {
         lo[2] = -far/4;
         hi[2] = far/4;
     }
@@ -4586,7 +4647,7 @@ static void demi_join_free(dem_world *w, demi_join *j) {
 }
 static int demi_join_member(const dem_world *w, int wall, int group, int per) {
     const demi_wall *m = &w->walls[wall];
-    return demi_faceted(m) && m->group == group && per == (m->kind == DEMI_WALL_MESH ? 3 : 2);
+    return demi_faceted(m) && m->group == group && per == demi_wall_per(m);
 }
 /* Does a wall keep its place to its image along an axis? */
 static int demi_wall_keeps(const demi_wall *wall, int axis) {
@@ -5008,8 +5069,7 @@ static int demi_facets_weigh(dem_world *w) {
    A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls
    of many elements keep a grid of them in their own frame, so that a grain finds its neighbours at
    a cost that does not depend on their number. Planes and cylinders are one element each, without
-   end. >>add-wall: a kind in the enum, a case in demi_wall_touch (>>touch), a function here that
-   adds it.
+   end. Kinds are rows: DEMI_WALLS in >>memory.
    --------------------------------------------------------------------------------------------- */
 static void demi_pose_identity(dem_pose *p) {
     memset(p, 0, sizeof *p);
@@ -5110,7 +5170,7 @@ static int demi_wall_own(dem_world *w, demi_wall *wall) {
 
 /* Number of corners an element of this wall has; their coordinates. */
 static int demi_wall_corners(const demi_wall *wall, int element, dem_vec3 *out) {
-    const int n = wall->kind == DEMI_WALL_MESH ? 3 : wall->kind == DEMI_WALL_PROFILE ? 2 : 1;
+    const int n = demi_wall_per(wall);
     int k;
     for (k = 0; k < n; k++)
         out[k] = demi_at(wall->vertices + 3*(wall->corners ? wall->corners[n*element + k]
@@ -5136,7 +5196,7 @@ static void demi_wall_cells(const demi_wall *wall, dem_vec3 lo, dem_vec3 hi, int
 
 /* Box of an element, with what grains of a wall stand out. */
 static dem_box demi_wall_element_box(const demi_wall *wall, int element) {
-    const dem_real pad = wall->kind == DEMI_WALL_GRAINS ? wall->radius : 0;
+    const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
     dem_vec3 c[3];
     dem_box box;
     int k, n = demi_wall_corners(wall, element, c);
@@ -5153,7 +5213,7 @@ static dem_box demi_wall_element_box(const demi_wall *wall, int element) {
 }
 /* Box of all, and how far from the frame's origin they go. */
 static void demi_wall_bounds(demi_wall *wall) {
-    const dem_real pad = wall->kind == DEMI_WALL_GRAINS ? wall->radius : 0;
+    const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
     dem_real reach = 0;
     int i;
     wall->box = demi_wall_element_box(wall, 0);
@@ -5232,8 +5292,15 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
 /* Takes over a prepared wall (its arrays included) or frees it. */
 static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
     dem_wall id;
+    int i;
     id.id = 0;
     wall->pose = wall->mid = wall->first = wall->home;
+    for (i = 0; i < w->count && w->shaped_count; i++)
+        if (!demi_touch_known(wall->kind, demi_form_shape(demi_form_of(w, i)))) {
+            demi_strangers(w, call, w->wall_count, wall->kind, (int)w->body_slot[i]);
+            demi_wall_free(w, wall);
+            return id;
+        }
     if (!demi_list_drop(w)) { demi_wall_free(w, wall); demi_no_memory(w, call); return id; }
     if (!DEMI_GROW(w, w->walls, (size_t)w->wall_count + 1)) {
         demi_wall_free(w, wall);
@@ -5376,7 +5443,8 @@ DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_profile_add", material, DEMI_WALL_PROFILE, &wall)) return none;
+    if (!demi_wall_begin(w, "dem_profile_add", material, rule == DEM_EDGE_FRACTION
+                         ? DEMI_WALL_SEGMENTS : DEMI_WALL_PROFILE, &wall)) return none;
     if (rule < DEM_EDGE_RESOLVED || rule > DEM_EDGE_FRACTION) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_profile_add: rule is %d, must be DEM_EDGE_RESOLVED "
                   "(0) to DEM_EDGE_FRACTION (%d); was it set?", (int)rule, (int)DEM_EDGE_FRACTION);
@@ -5506,7 +5574,7 @@ static int demi_wall_symmetric(const demi_wall *wall) {
     if (m->kind != DEM_MOTION_ROTATING || wall->reach >= 0) return 0;
     z = demi_v(wall->home.rotation[2], wall->home.rotation[5], wall->home.rotation[8]);
     if (demi_length(demi_cross(z, demi_unit(m->axis))) > DEM_R(1e-6)) return 0;
-    if (wall->kind == DEMI_WALL_PLANE) return 1;
+    if (demi_wall_is(wall, DEMI_FLAT)) return 1;
     off = demi_sub(m->point, wall->home.position);
     return demi_length(demi_cross(z, off)) <= DEM_R(1e-6)*wall->radius;
 }
@@ -6345,7 +6413,7 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
                                                             wall->pose.position));
     dem_real away;
     int k, x, y, z, f[3], l[3];
-    if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
+    if (demi_wall_is(wall, DEMI_DRAWN)) at.z = 0;
     if (!wall->cell_start) {
         for (k = 0; k < wall->element_count; k++) {
             away = demi_wall_distance(wall, k, at, near_by);
@@ -6482,16 +6550,15 @@ static int demi_cross_index(dem_world *w) {
 /* R* of a sphere of radius r with a wall. */
 static double demi_wall_r_eff(const demi_wall *wall, double r) {
     const double q = (double)wall->sieve.bar/2;
-    if (wall->kind == DEMI_WALL_GRAINS) return r*(double)wall->radius/(r + (double)wall->radius);
-    if (wall->kind == DEMI_WALL_SIEVE && (wall->sieve.kind == DEM_SIEVE_WIRES ||
-                                          wall->sieve.kind == DEM_SIEVE_BARS))
+    if (demi_wall_is(wall, DEMI_BALLS)) return r*(double)wall->radius/(r + (double)wall->radius);
+    if (wall->sieve.kind == DEM_SIEVE_WIRES || wall->sieve.kind == DEM_SIEVE_BARS)
         return r*sqrt(q/(r + q));
     return r;
 }
 static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
     const demi_wall *wall = &w->walls[c->wall];
     const double r_eff = demi_wall_r_eff(wall, (double)w->pos[4*c->body + 3]);
-    const int grains = wall->kind == DEMI_WALL_GRAINS;
+    const int grains = demi_wall_is(wall, DEMI_BALLS);
     /* there a grain of a wall has mass */
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
     demi_coefficients(w, w->body_material[c->body] - 1, wall->material, r_eff,
@@ -6503,8 +6570,7 @@ static int demi_places_of(const dem_world *w, int d, int k) {
     const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + k]];
     const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[d*w->wall_stride + k]
         : 0;
-    if (wall->kind == DEMI_WALL_SIEVE) return DEMI_SIEVE_MOST;
-    return cut ? 7 + 2*(cut[1] - cut[0]) : 7;
+    return demi_wall_kinds[wall->kind].most + (cut ? 2*(cut[1] - cut[0]) : 0);
 }
 static int demi_places_most(const dem_world *w) {
     int d, k, most = 0;
@@ -7074,27 +7140,6 @@ static int demi_domains_for(int count) {
     return n < 8 ? n : DEMI_MIN(DEMI_MAX(count/DEM_DOMAIN_BODIES/8*8, 8), (int)DEMI_DOMAINS);
 }
 
-/* Sieves, and segments that push with a fraction, know spheres and clusters of them; says so when
-   there is an ellipsoid. */
-static int demi_walls_refuse(dem_world *w) {
-    int i, j;
-    for (j = 0; j < w->wall_count && w->shaped_count; j++) {
-        const int sieve = w->walls[j].kind == DEMI_WALL_SIEVE;
-        if (!sieve && (w->walls[j].kind != DEMI_WALL_PROFILE ||
-                       w->walls[j].rule != DEM_EDGE_FRACTION)) continue;
-        for (i = 0; i < w->count; i++) {
-            const demi_form *form = demi_form_of(w, i);
-            if (!form || form->count) continue;
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: wall %d is a %s and body %u an "
-                      "ellipsoid, which it does not know; make the body a cluster of spheres, or "
-                      "the wall %s", j + 1, sieve ? "sieve" : "profile of DEM_EDGE_FRACTION",
-                      (unsigned)w->body_slot[i] + 1, sieve ? "a mesh" : "DEM_EDGE_RESOLVED");
-            return 1;
-        }
-    }
-    return 0;
-}
-
 /* A domain out of use: what it counted long ago must not steer the next lists. Contacts that last
    are still to be moved. */
 static void demi_domain_forget(demi_domain *o) {
@@ -7358,7 +7403,7 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     w->skin_chosen = 1;
     if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_walls_repeat(w);
-    if (demi_walls_refuse(w) || demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
+    if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
     demi_wrap(w);                               /* after what may be refused: places stay then */
     if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
@@ -7980,53 +8025,65 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
     return count;
 }
 
-/* One sphere against one element, all in the wall's frame. Fills in normal (grain -> wall) and
-   point; answers the overlap (negative: apart). Of a sieve: the sheet it lies in, holes or not. */
-DEM_INLINE dem_real demi_wall_touch(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+/* --- one sphere against one element, all in the wall's frame: fills in normal (grain -> wall) and
+       point, answers the overlap (negative: apart). Candidates are told by it, too. --- */
+typedef dem_real (*demi_near_fn)(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                 dem_vec3 *normal, dem_vec3 *point);
+static dem_real demi_plane_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                dem_vec3 *normal, dem_vec3 *point) {
+    (void)wall; (void)element;
+    *normal = demi_v(0, 0, -1);
+    *point = demi_v(x.x, x.y, 0);
+    return r - x.z;
+}
+static dem_real demi_cylinder_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                   dem_vec3 *normal, dem_vec3 *point) {
+    const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
+    (void)element;
+    *point = demi_v(d.x*wall->radius, d.y*wall->radius, x.z);
+    *normal = wall->inside ? d : demi_scale(d, -1);
+    return wall->inside ? r + l - wall->radius : r + wall->radius - l;
+}
+/* The sheet that a sieve lies in, holes or not. */
+static dem_real demi_sieve_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                dem_vec3 *normal, dem_vec3 *point) {
+    dem_real l = DEMI_ABS(x.z) - demi_sieve_half(&wall->sieve);
+    (void)element;
+    if (wall->radius > 0)                       /* ends of wires stand out of it */
+        l = DEMI_MAX(l, DEMI_SQRT(x.x*x.x + x.y*x.y) - wall->radius - wall->sieve.bar/2);
+    *normal = demi_v(0, 0, x.z > 0 ? DEM_R(-1) : DEM_R(1));
+    *point = demi_v(x.x, x.y, 0);
+    return r - l;
+}
+/* A ball of radius `edge` about a point `d` away. */
+DEM_INLINE dem_real demi_point_near(dem_vec3 d, dem_real reach, dem_vec3 *normal) {
+    const dem_real l = demi_length(d);
+    *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
+    return reach - l;
+}
+static dem_real demi_facet_distance(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                     dem_vec3 *normal, dem_vec3 *point) {
     dem_vec3 c[3], d;
-    dem_real l, edge = 0;
     int where;
-    switch (wall->kind) {
-    case DEMI_WALL_PLANE:
-        *normal = demi_v(0, 0, -1);
-        *point = demi_v(x.x, x.y, 0);
-        return r - x.z;
-    case DEMI_WALL_CYLINDER:
-        l = DEMI_SQRT(x.x*x.x + x.y*x.y);
-        d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
-        *point = demi_v(d.x*wall->radius, d.y*wall->radius, x.z);
-        *normal = wall->inside ? d : demi_scale(d, -1);
-        return wall->inside ? r + l - wall->radius : r + wall->radius - l;
-    case DEMI_WALL_SIEVE:
-        l = DEMI_ABS(x.z) - demi_sieve_half(&wall->sieve);
-        if (wall->radius > 0)                   /* ends of wires stand out of it */
-            l = DEMI_MAX(l, DEMI_SQRT(x.x*x.x + x.y*x.y) - wall->radius - wall->sieve.bar/2);
-        *normal = demi_v(0, 0, x.z > 0 ? DEM_R(-1) : DEM_R(1));
-        *point = demi_v(x.x, x.y, 0);
-        return r - l;
-    case DEMI_WALL_PROFILE:
-    case DEMI_WALL_MESH:
-        d = demi_facet_point(c, demi_facet_seen(wall, element, x, 0, c), &where);
-        *point = demi_add(x, d);
-        break;
-    default:
-        demi_wall_corners(wall, element, c);
-        *point = c[0];
-        d = demi_sub(*point, x);
-        edge = wall->radius;
-        break;
-    }
-    l = demi_length(d);
-    *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
-    return r + edge - l;
+    d = demi_facet_point(c, demi_facet_seen(wall, element, x, 0, c), &where);
+    *point = demi_add(x, d);
+    return demi_point_near(d, r, normal);
 }
+static dem_real demi_grain_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                dem_vec3 *normal, dem_vec3 *point) {
+    *point = demi_at(wall->vertices + 3*element);
+    return demi_point_near(demi_sub(*point, x), r + wall->radius, normal);
+}
+#define DEMI_WALL_NEAR(KIND, C, M, T, N, NEAR, S, L, B) NEAR,
+static const demi_near_fn demi_nears[] = {0, DEMI_WALLS(DEMI_WALL_NEAR)};
+
 /* Distance from a point to an element; `enough` or more is not worked out: a triangle whose plane
    is too far off is dropped at once. */
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
                                    dem_real enough) {
     dem_vec3 n, p;
-    if (wall->kind == DEMI_WALL_MESH) {
+    if (demi_wall_per(wall) == 3) {
         dem_vec3 c[3];
         dem_real h;
         demi_wall_corners(wall, element, c);
@@ -8034,7 +8091,7 @@ static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 
         h = demi_dot(n, demi_sub(local, c[0]));
         if (h*h >= enough*enough*demi_dot(n, n) && demi_dot(n, n) > 0) return enough;
     }
-    return -demi_wall_touch(wall, element, local, 0, &n, &p);
+    return -demi_nears[wall->kind](wall, element, local, 0, &n, &p);
 }
 
 /* [MIL] Fig 5.19: the segment acts as its whole line, with the fraction a^2(3-2a) of the force, a =
@@ -8956,38 +9013,44 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
     *out = p.at;
     return p.count;
 }
-/* Where a sphere at `at` of radius r touches one wall, from the candidates first .. last - 1 of the
-   body it is, or is part of. */
-static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
-                             dem_real r, demi_touching **places) {
+/* --- where one part of a body, a sphere or an ellipsoid, touches one wall, from the candidates
+       first .. last - 1 of its body, those no farther than `gone`: normals, points, overlaps (of an
+       ellipsoid 1 - W0) and shares, in the world. at: its centre. --- */
+typedef int (*demi_touch_fn)(const dem_world *w, int d, int first, int last, dem_real gone,
+                             dem_vec3 at, const demi_part *part, demi_touching **places);
+static int demi_facets_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                               dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_facets_touch(w, d, first, last, gone, at, part->radius, 0, places);
+}
+/* A sphere and a wall each of whose elements it may touch; how: 0: as it is near to them, 1: as
+   segments that push with a fraction, 2: as a sieve, one candidate and as many contacts as there
+   are. */
+DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                                  dem_vec3 at, dem_real r, demi_touching **places, int how) {
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
-    const dem_real gone = demi_walls_gone(w);
+    const demi_near_fn near = demi_nears[wall->kind];
     demi_touching *out;
     int k, q, end, count = 0;
-    while (first < last && w->wall_gap[base + first] > gone) first++;
-    if (first == last) return 0;
-    if (demi_faceted(wall)) return demi_facets_touch(w, d, first, last, gone, at, r, 0, places);
     *places = out = w->touching + w->domains[d].touching_first;
     for (k = first; k < last; k = end) {
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
         const dem_vec3 x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
         const int from = count;
         end = demi_image_end(w, base, k, last);
-        if (wall->kind == DEMI_WALL_SIEVE)      /* one candidate, as many contacts as there are */
-            count += demi_sieve_touch(&wall->sieve, x, r, out + count);
+        if (how == 2) count += demi_sieve_touch(&wall->sieve, x, r, out + count);
         else for (; k < end; k++) {
             demi_touching *c = &out[count];
             if (w->wall_gap[base + k] > gone) continue;
             c->element = w->wall_element[base + k];
             c->share = wall->share;
-            if (wall->kind == DEMI_WALL_PROFILE) {
+            if (how == 1) {
                 c->share = demi_segment_share(wall, c->element, x, r, &c->normal, &c->point,
                                               &c->overlap);
                 if (!(c->share > 0)) continue;
             } else {
-                c->overlap = demi_wall_touch(wall, c->element, x, r, &c->normal, &c->point);
+                c->overlap = near(wall, c->element, x, r, &c->normal, &c->point);
                 if (!(c->overlap > 0)) continue;
             }
             count++;
@@ -9001,6 +9064,21 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem
     }
     return count;
 }
+static int demi_elements_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                               dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0);
+}
+static int demi_segments_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                               dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 1);
+}
+static int demi_sieve_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                              dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 2);
+}
+/* By the table of who touches what, which stands in >>shaped. */
+static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
+                             const demi_part *part, demi_touching **places);
 
 /* Spheres and walls of one domain: who touches where, with the memory of the step before. Runs out
    of room: the caller makes more and begins anew, nothing lost. */
@@ -9010,7 +9088,10 @@ static void demi_domain_walls_touch(dem_world *w, int d) {
     const demi_wall_contact *old = w->wall_now + (size_t)d*(size_t)w->wall_now_stride;
     demi_wall_contact *out = w->wall_next + (size_t)d*(size_t)w->wall_now_stride;
     const dem_real gone = demi_walls_gone(w);
+    demi_part sphere;
     int k, last, q, e, count = 0, o = 0, o_end;
+    memset(&sphere, 0, sizeof sphere);
+    sphere.ball = 1;
     domain->wall_contacts_next = 0;
     domain->overflow &= ~32;
     for (k = 0; k < domain->walls; k = last) {
@@ -9022,7 +9103,8 @@ static void demi_domain_walls_touch(dem_world *w, int d) {
         while (last < domain->walls && w->wall_body[base + last] == body &&
                w->wall_id[base + last] == wall) last++;
         if (w->shaped_count && demi_form_of(w, body)) continue;     /* in >>shaped */
-        n = demi_wall_collect(w, d, k, last, demi_at(w->pos + 4*body), w->pos[4*body + 3], &at);
+        sphere.radius = w->pos[4*body + 3];
+        n = demi_wall_collect(w, d, k, last, demi_at(w->pos + 4*body), &sphere, &at);
         if (!n) continue;
         if (count + n > w->wall_now_stride) { domain->overflow |= 32; return; }
         while (o < domain->wall_contacts && old[o].body < body) o++;
@@ -9137,25 +9219,30 @@ static demi_shaped *demi_shaped_new(dem_world *w, int d) {
 
 /* --- touch: two bodies --- */
 
-/* The contact of two parts, if they touch: geometry into c. Two spheres share the distance as their
-   radii do, ellipsoids as Perram and Wertheim's point does. */
-static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+/* --- two parts, if they touch: geometry into c. lambda: where to begin, 0: unknown --- */
+typedef int (*demi_meet_fn)(const dem_world *w, const demi_part *p, const demi_part *q,
+                            dem_vec3 gap, double lambda, demi_shaped *c);
+/* Two spheres share the distance as their radii do. */
+static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                             dem_vec3 gap, double lambda, demi_shaped *c) {
+    const dem_real d = demi_length(gap), sum = p->radius + q->radius;
+    (void)w; (void)lambda;
+    if (!(d < sum)) return 0;
+    c->normal = d > 0 ? demi_scale(gap, 1/d) : demi_v(0, 0, 1);
+    c->overlap = sum - d;
+    c->deep = c->overlap/DEMI_MIN(p->radius, q->radius);
+    c->r_eff = p->radius*q->radius/sum;
+    c->arm_a = demi_add(p->centre, demi_scale(c->normal, d*p->radius/sum));
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+    c->bend = -1/DEMI_MAX(d, sum/10);
+    return 1;
+}
+/* Ellipsoids, or one and a sphere, as Perram and Wertheim's point does. */
+static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                 dem_vec3 gap, double lambda, demi_shaped *c) {
     const dem_real d = demi_length(gap);
     double A[6], B[6], r[3], n[3], ha, hb, w0, ra, rb;
     demi_meet m;
-    if (p->ball && q->ball) {
-        const dem_real sum = p->radius + q->radius;
-        if (!(d < sum)) return 0;
-        c->normal = d > 0 ? demi_scale(gap, 1/d) : demi_v(0, 0, 1);
-        c->overlap = sum - d;
-        c->deep = c->overlap/DEMI_MIN(p->radius, q->radius);
-        c->r_eff = p->radius*q->radius/sum;
-        c->arm_a = demi_add(p->centre, demi_scale(c->normal, d*p->radius/sum));
-        c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
-        c->bend = -1/DEMI_MAX(d, sum/10);
-        return 1;
-    }
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
     if (!(d > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
     demi_part_matrix(p, A);
@@ -9184,6 +9271,10 @@ static int demi_parts_touch(const dem_world *w, const demi_part *p, const demi_p
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
+/* Who meets whom. */
+static const demi_meet_fn demi_meets[DEMI_SHAPES][DEMI_SHAPES] = {
+    {demi_balls_touch, demi_ellipsoids_touch},
+    {demi_ellipsoids_touch, demi_ellipsoids_touch}};
 
 /* The old contact that a new one continues, among those of the same body a: same partner and parts.
    On a wall, failing that, what demi_wall_match takes, of the same part. */
@@ -9381,7 +9472,8 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
             c->wall = c->element = -1;
             c->send = send;
             before = demi_shaped_match(w, old, olds, from, 0, c);    /* two balls touch by now */
-            if (demi_parts_touch(w, &p, &q, gap, before ? before->lambda : 0, c))
+            if (demi_meets[demi_part_shape(&p)][demi_part_shape(&q)](w, &p, &q, gap, before
+                                                                     ? before->lambda : 0, c))
                 demi_shaped_recall(c, before);
             else w->domains[d].shaped_next--;
         }
@@ -9445,69 +9537,85 @@ static double demi_ellipse_shrink(const double *Q, double x, double y, int out, 
     }
     return 1 - W;
 }
-/* An ellipsoid (turned into the wall's frame, centre x) against a plane, a cylinder or a grain of a
-   wall. Fills in normal and point; answers 1 - W0, 0 or less when apart. */
-static dem_real demi_wall_ellipsoid(const demi_wall *wall, int element, const demi_part *p,
-                                    dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
-    double Q[6], n[3], far, left;
-    dem_vec3 arm, gap;
+/* --- one ellipsoid, turned into the wall's frame, against one element, centre x: fills in normal
+       and point, answers 1 - W0, 0 or less when apart --- */
+typedef dem_real (*demi_ellipsoid_fn)(const demi_wall *wall, int element, const demi_part *p,
+                                      dem_vec3 x, dem_vec3 *normal, dem_vec3 *point);
+static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, const demi_part *p,
+                                        dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+    dem_vec3 arm;
     dem_real h;
+    (void)wall; (void)element;
+    *normal = demi_v(0, 0, -1);
+    h = demi_ellipsoid_arm(p, *normal, &arm);
+    *point = demi_v(x.x + arm.x*x.z/h, x.y + arm.y*x.z/h, 0);
+    return 1 - x.z/h;
+}
+/* Inside, either end of a long body may touch: element 0 and 1. */
+static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, const demi_part *p,
+                                           dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+    double Q[6], n[3], far, left;
+    dem_vec3 arm;
+    demi_ellipsoid_matrix(p->q, p->axes, Q);
+    far = demi_ellipse_reach(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
+                             ? atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
+                             : atan2((double)x.y, (double)x.x), n);
+    left = far - (double)wall->radius;
+    if (!(wall->inside ? left > 0 : left < 0)) return 0;
+    left = demi_ellipse_shrink(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1,
+                               (double)wall->radius, far, n);
+    *normal = demi_v((dem_real)n[0], (dem_real)n[1], 0);
+    if (!wall->inside) *normal = demi_scale(*normal, -1);
+    demi_ellipsoid_arm(p, *normal, &arm);
+    *point = demi_v((dem_real)n[0]*wall->radius, (dem_real)n[1]*wall->radius,
+                    x.z + arm.z*(dem_real)(1 - left));
+    return (dem_real)left;
+}
+static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, const demi_part *p,
+                                        dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+    const dem_vec3 gap = demi_sub(demi_at(wall->vertices + 3*element), x);
+    double Q[6], B[6], r[3], n[3], ha, hb;
     demi_meet m;
     demi_ellipsoid_matrix(p->q, p->axes, Q);
-    switch (wall->kind) {
-    case DEMI_WALL_PLANE:
-        *normal = demi_v(0, 0, -1);
-        h = demi_ellipsoid_arm(p, *normal, &arm);
-        *point = demi_v(x.x + arm.x*x.z/h, x.y + arm.y*x.z/h, 0);
-        return 1 - x.z/h;
-    case DEMI_WALL_CYLINDER:
-        /* inside, either end of a long body may touch: element 0 and 1 */
-        far = demi_ellipse_reach(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
-                                 ? atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
-                                 : atan2((double)x.y, (double)x.x), n);
-        left = far - (double)wall->radius;
-        if (!(wall->inside ? left > 0 : left < 0)) return 0;
-        left = demi_ellipse_shrink(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1,
-                                   (double)wall->radius, far, n);
-        *normal = demi_v((dem_real)n[0], (dem_real)n[1], 0);
-        if (!wall->inside) *normal = demi_scale(*normal, -1);
-        demi_ellipsoid_arm(p, *normal, &arm);
-        *point = demi_v((dem_real)n[0]*wall->radius, (dem_real)n[1]*wall->radius,
-                        x.z + arm.z*(dem_real)(1 - left));
-        return (dem_real)left;
-    default: {
-        double B[6], r[3];
-        gap = demi_sub(demi_at(wall->vertices + 3*element), x);
-        demi_ball_matrix(wall->radius, B);
-        r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-        if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
-        m.l = demi_meet_start(Q, B, r);
-        demi_meet_solve(Q, B, r, 1, DEMI_MEET_NEAR, &m);
-        if (!(m.f < 1)) return 0;
-        demi_meet_heights(&m, n, &far, &left);
-        *normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-        *point = demi_add(x, demi_v((dem_real)((1 - m.l)*m.a[0]), (dem_real)((1 - m.l)*m.a[1]),
-                                    (dem_real)((1 - m.l)*m.a[2])));
-        return (dem_real)(1 - sqrt(m.f));
-    }
-    }
+    demi_ball_matrix(wall->radius, B);
+    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
+    if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
+    m.l = demi_meet_start(Q, B, r);
+    demi_meet_solve(Q, B, r, 1, DEMI_MEET_NEAR, &m);
+    if (!(m.f < 1)) return 0;
+    demi_meet_heights(&m, n, &ha, &hb);
+    *normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+    *point = demi_add(x, demi_v((dem_real)((1 - m.l)*m.a[0]), (dem_real)((1 - m.l)*m.a[1]),
+                                (dem_real)((1 - m.l)*m.a[2])));
+    return (dem_real)(1 - sqrt(m.f));
 }
-/* Where an ellipsoid touches one wall, as demi_wall_collect for spheres; overlaps are 1 - W0. */
-static int demi_ellipsoid_collect(const dem_world *w, int d, int first, int last, dem_real gone,
-                                  dem_vec3 at, const demi_part *p, demi_touching **places) {
+/* An ellipsoid as the wall's frame sees it. */
+static demi_part demi_part_local(const demi_wall *wall, const demi_part *p) {
+    const dem_real *R = wall->pose.rotation;
+    demi_part local = *p;
+    double turn[3][3];
+    int i, e;
+    for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
+    local.q = demi_quat_unit(dem_quat_times(demi_quat_of(turn), p->q));
+    return local;
+}
+static int demi_facets_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    const demi_part local = demi_part_local(&w->walls[w->wall_id[d*w->wall_stride + first]], part);
+    return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
+}
+/* An ellipsoid and a wall, element by element. */
+static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places,
+                                demi_ellipsoid_fn on) {
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
-    const int two = wall->kind == DEMI_WALL_CYLINDER && wall->inside;
-    demi_part local = *p;
+    const demi_part local = demi_part_local(wall, part);
+    const int two = wall->inside;
     demi_touching *out;
-    double turn[3][3];
     dem_vec3 x, shift;
-    int i, e, count = 0;
-    for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
-    local.q = demi_quat_unit(dem_quat_times(demi_quat_of(turn), p->q));
-    if (demi_faceted(wall))
-        return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
+    int i, count = 0;
     *places = out = w->touching + w->domains[d].touching_first;
     for (i = first; i < last + two; i++) {
         demi_touching *c = &out[count];
@@ -9515,7 +9623,7 @@ static int demi_ellipsoid_collect(const dem_world *w, int d, int first, int last
         shift = demi_at(w->wall_shift + 3*(size_t)(base + DEMI_MIN(i, last - 1)));
         x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
         c->element = i < last ? w->wall_element[base + i] : 1;
-        c->overlap = demi_wall_ellipsoid(wall, c->element, &local, x, &c->normal, &c->point);
+        c->overlap = on(wall, c->element, &local, x, &c->normal, &c->point);
         if (!(c->overlap > 0)) continue;
         c->normal = demi_turn(R, c->normal);
         if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
@@ -9526,6 +9634,32 @@ static int demi_ellipsoid_collect(const dem_world *w, int d, int first, int last
     }
     return count;
 }
+static int demi_plane_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_plane);
+}
+static int demi_cylinder_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                   dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places,
+                                demi_ellipsoid_on_cylinder);
+}
+static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_grain);
+}
+
+/* Who touches what: walls by kind, and spheres and ellipsoids. */
+#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, SPHERES, ELLIPSOIDS, B) {SPHERES, ELLIPSOIDS},
+static const demi_touch_fn demi_touches[][DEMI_SHAPES] = {{0, 0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
+static int demi_touch_known(int kind, int shape) { return demi_touches[kind][shape] != 0; }
+static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
+                             const demi_part *part, demi_touching **places) {
+    const int base = d*w->wall_stride, kind = w->walls[w->wall_id[base + first]].kind;
+    const dem_real gone = demi_walls_gone(w);
+    while (first < last && w->wall_gap[base + first] > gone) first++;
+    if (first == last) return 0;
+    return demi_touches[kind][demi_part_shape(part)](w, d, first, last, gone, at, part, places);
+}
 
 /* Overlap, arm and radius of an ellipsoid's contact with a wall, of which `left` is 1 - W0: as
    with other ellipsoids: l (1 - W0), with the sphere of a wall's grain in l, or along the normal.
@@ -9534,7 +9668,7 @@ static int demi_ellipsoid_collect(const dem_world *w, int d, int first, int last
 static void demi_ellipsoid_contact(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                    dem_real left, demi_shaped *c) {
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
-    const dem_real edge = wall->kind == DEMI_WALL_GRAINS ? wall->radius : DEM_R(0);
+    const dem_real edge = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0);
     c->overlap = left*(h + edge);
     c->deep = c->overlap/demi_part_thin(p);
     c->r_eff = (dem_real)demi_part_round(w, p, (double)h);
@@ -9545,43 +9679,57 @@ static void demi_ellipsoid_contact(const dem_world *w, const demi_wall *wall, co
         c->inset = 1 - left;
     }
 }
-/* How the normal of a ball's contact with a wall turns as the ball moves: bend and axis. dist: m,
-   from the ball's centre to the surface. Among facets, that of an edge is looked for where the
-   contact was found: in candidates first .. last - 1. */
-static void demi_wall_bend(const dem_world *w, int base, int first, int last, dem_real dist,
-                           demi_shaped *c) {
-    const demi_wall *wall = &w->walls[c->wall];
+/* --- how the normal of a ball's contact with a wall turns as the ball moves. dist: m, from the
+       ball's centre to the surface. Answers that to what the normal turns about (0: it does not),
+       and the axis along which nothing turns, if there is one. among: the elements where the
+       contact, with this number, was found. --- */
+typedef dem_real (*demi_bend_fn)(const demi_wall *wall, const int32_t *among, int count, int number,
+                                 dem_real dist, dem_vec3 *axis);
+static dem_real demi_cylinder_bend(const demi_wall *wall, const int32_t *among, int count,
+                                   int number, dem_real dist, dem_vec3 *axis) {
+    (void)among; (void)count; (void)number;
+    axis->z = 1;
+    return wall->inside ? dist - wall->radius : dist + wall->radius;
+}
+static dem_real demi_grain_bend(const demi_wall *wall, const int32_t *among, int count, int number,
+                                dem_real dist, dem_vec3 *axis) {
+    (void)among; (void)count; (void)number; (void)axis;
+    return dist + wall->radius;
+}
+static dem_real demi_profile_bend(const demi_wall *wall, const int32_t *among, int count,
+                                  int number, dem_real dist, dem_vec3 *axis) {
+    (void)among; (void)count;
+    axis->z = 1;
+    return number < wall->element_count ? 0 : dist;
+}
+static dem_real demi_mesh_bend(const demi_wall *wall, const int32_t *among, int count, int number,
+                               dem_real dist, dem_vec3 *axis) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
-    dem_vec3 axis = demi_v(0, 0, 0);
     int k, q, found = 0;
-    switch (wall->kind) {
-    case DEMI_WALL_CYLINDER:
-        axis.z = 1;
-        dist = wall->inside ? dist - wall->radius : dist + wall->radius;
-        break;
-    case DEMI_WALL_GRAINS: dist += wall->radius; break;
-    case DEMI_WALL_PROFILE:
-        axis.z = 1;
-        if (c->element < edges) return;
-        break;
-    case DEMI_WALL_MESH:
-        if (c->element < edges) return;
-        for (k = first; k < last && !found && (c->element < corners ||
-             c->element >= corners + wall->vertex_count); k++) {
-            const int e = w->wall_element[base + k];
-            dem_vec3 y[3];
-            demi_wall_corners(wall, e, y);
-            for (q = 0; q < 3 && !found; q++)
-                if ((found = edges + wall->edges[3*e + q] == c->element) != 0)
-                    axis = demi_unit(demi_sub(y[(q + 1)%3], y[q]));
-            for (q = wall->cut_start ? wall->cut_start[e] : 0;
-                 wall->cut_start && q < wall->cut_start[e + 1] && !found; q++)
-                if ((found = wall->cuts[q].number == c->element) != 0)
-                    axis = demi_unit(demi_sub(wall->cuts[q].b, wall->cuts[q].a));
-        }
-        break;
-    default: return;
+    if (number < edges) return 0;
+    for (k = 0; k < count && !found && (number < corners ||
+         number >= corners + wall->vertex_count); k++) {
+        const int e = among[k];
+        dem_vec3 y[3];
+        demi_wall_corners(wall, e, y);
+        for (q = 0; q < 3 && !found; q++)
+            if ((found = edges + wall->edges[3*e + q] == number) != 0)
+                *axis = demi_unit(demi_sub(y[(q + 1)%3], y[q]));
+        for (q = wall->cut_start ? wall->cut_start[e] : 0;
+             wall->cut_start && q < wall->cut_start[e + 1] && !found; q++)
+            if ((found = wall->cuts[q].number == number) != 0)
+                *axis = demi_unit(demi_sub(wall->cuts[q].b, wall->cuts[q].a));
     }
+    return dist;
+}
+#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, S, L, BEND) BEND,
+static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
+static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
+                           demi_shaped *c) {
+    dem_vec3 axis = demi_v(0, 0, 0);
+    if (!demi_bends[wall->kind]) return;
+    dist = demi_bends[wall->kind](wall, among, count, c->element, dist, &axis);
+    if (!(dist < 0 || dist > 0)) return;
     c->bend = -1/dist;
     c->axis = demi_turn(wall->pose.rotation, axis);
 }
@@ -9593,11 +9741,9 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
     const demi_wall *wall = &w->walls[id];
     const dem_vec3 centre = demi_at(w->pos + 4*body);
     const demi_part p = demi_part_now(w, body, k);
-    const dem_real gone = demi_walls_gone(w);
     demi_touching *found = 0;
-    const int count = p.ball
-        ? demi_wall_collect(w, d, first, last, demi_add(centre, p.centre), p.radius, &found)
-        : demi_ellipsoid_collect(w, d, first, last, gone, centre, &p, &found);
+    const int count = demi_wall_collect(w, d, first, last, p.ball ? demi_add(centre, p.centre)
+                                        : centre, &p, &found);
     int i, e;
     for (i = 0; i < count; i++) {
         demi_shaped *c = demi_shaped_new(w, d), *fresh;
@@ -9616,7 +9762,7 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
             c->r_eff = p.radius;
             c->arm_a = demi_add(p.centre, demi_scale(c->normal, p.radius));
             if (w->desc.cluster_contacts == DEM_SHARING_ONE && c->overlap > 0)
-                demi_wall_bend(w, base, first, last,
+                demi_wall_bend(wall, w->wall_element + base + first, last - first,
                                DEMI_MAX(p.radius - c->overlap, p.radius/10), c);
         } else demi_ellipsoid_contact(w, wall, &p, found[i].overlap, c);
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
@@ -9711,7 +9857,7 @@ static int demi_touch(dem_world *w) {
 static void demi_shaped_coefs(const dem_world *w, const demi_shaped *k, int a, int b,
                               dem_real *out) {
     demi_coefficients(w, a, b, (double)k->r_eff, (double)k->m_eff,
-                      k->b < 0 && w->walls[k->wall].kind != DEMI_WALL_GRAINS, out);
+                      k->b < 0 && !demi_wall_is(&w->walls[k->wall], DEMI_BALLS), out);
     out[DEMI_KN] *= k->slope;
     out[DEMI_K_UN] *= k->slope;
     out[DEMI_K_AD] *= k->slope;
@@ -10634,7 +10780,7 @@ static int demi_wall_clear(const demi_wall *wall, dem_vec3 at, dem_real radius) 
     const dem_real touch = radius*(DEMI_SINGLE ? DEM_R(0.9999) : DEM_R(0.999999999));
     const dem_vec3 out = demi_v(radius, radius, radius);
     int k, x, y, z, f[3], l[3];
-    if (wall->kind == DEMI_WALL_PROFILE) at.z = 0;
+    if (demi_wall_is(wall, DEMI_DRAWN)) at.z = 0;
     if (!wall->cell_start) {
         for (k = 0; k < wall->element_count; k++)
             if (demi_wall_distance(wall, k, at, radius) < touch) return 0;
@@ -10690,7 +10836,8 @@ static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int m
     const dem_real *q = w->crowd_turned;
     int i;
     if (!demi_list_drop(w) ||
-        !demi_bodies_reserve(w, (size_t)w->count + (size_t)(c->count - first))) return 0;
+        !demi_bodies_reserve(w, (size_t)w->count + (size_t)(c->count - first)) ||
+        (form >= 0 && !demi_orient_begin(w))) return 0;
     for (i = first; i < c->count; i++) {
         demi_body_append(w, material, s[i].radius, s[i].at);
         if (form >= 0)
@@ -10738,7 +10885,8 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
         return 0;
     }
     if (form < 0 ? demi_mass_refuse(w, call, m, radius, 0)
-                 : demi_shape_mass_refuse(w, call, m, form, 1, 0)) return 0;
+                 : demi_shape_mass_refuse(w, call, m, form, 1, 0) ||
+                   demi_walls_strange(w, call, form)) return 0;
     if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z')) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the "
                   "axis it is along, or 0 for all of the box", call, region->cylinder);
@@ -10784,7 +10932,6 @@ static int demi_form_fill(dem_world *w, const char *call, dem_material material,
                           const dem_region *region, int count, uint64_t seed) {
     const int form = demi_form_index(w, call, shape);
     if (form < 0) return 0;
-    if (!demi_orient_begin(w)) { demi_no_memory(w, call); return 0; }
     return demi_fill(w, call, material, form, w->forms[form].radius, region, count, seed);
 }
 DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape, dem_box box,
@@ -11286,11 +11433,11 @@ static double demi_speed_estimate(const dem_world *w) {
         speed = DEMI_MAX(speed, (double)demi_length(wall->pose.velocity) +
                          (double)demi_length(wall->pose.spin)*
                          (double)DEMI_MAX(wall->reach, wall->radius));
-        if (wall->kind == DEMI_WALL_PLANE || wall->kind == DEMI_WALL_GRAINS ||
-            wall->kind == DEMI_WALL_MESH) {
-            const int n = wall->kind == DEMI_WALL_PLANE ? 1 : wall->vertex_count;
+        if (demi_wall_is(wall, DEMI_FLAT) || (wall->vertex_count &&
+                                              !demi_wall_is(wall, DEMI_DRAWN))) {
+            const int n = DEMI_MAX(wall->vertex_count, 1);
             for (k = 0; k < n; k++) {
-                const dem_vec3 p = wall->kind == DEMI_WALL_PLANE ? wall->pose.position :
+                const dem_vec3 p = !wall->vertex_count ? wall->pose.position :
                     demi_add(wall->pose.position, demi_turn(wall->pose.rotation,
                                                             demi_at(wall->vertices + 3*k)));
                 hi = DEMI_MAX(hi, (double)demi_dot(p, down));
@@ -12154,9 +12301,6 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
         int sampling = 0;
         if (!w->moved) {
             result = demi_dt_settle(w);
-            /* what a rebuild would refuse is refused before anything is fed */
-            if (result == DEM_OK && w->feed_count && !w->list_valid && demi_walls_refuse(w))
-                result = DEM_ERROR_ARGUMENT;
             if (result == DEM_OK && w->feed_count) {
                 result = demi_feeds_run(w);
                 if (result == DEM_OK) result = demi_dt_settle(w);   /* there may be new grains */
@@ -12528,7 +12672,7 @@ DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed
     dem_real mu, mu_m;
     int d, k, j, body, same, count = 0;
     if (!wall) return -1;
-    if (wall->kind != DEMI_WALL_SIEVE) {
+    if (!wall->sieve.kind) {
         demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded: wall %d is not a sieve; "
                   "give what dem_sieve_add returned", (int)sieve.id);
         return -1;
@@ -13620,11 +13764,11 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
                            int64_t *triangles, dem_real *place, int32_t *corners, int32_t *id) {
     const demi_wall *wall = w->walls + i;
     int64_t k, up = wall->vertex_count, base = *points;
-    int c, profile = wall->kind == DEMI_WALL_PROFILE, sides = profile ? 2 : 1;
+    int c, profile = demi_wall_is(wall, DEMI_DRAWN), sides = profile ? 2 : 1;
     dem_pose pose;
     dem_wall handle;
     handle.id = i + 1;
-    if (!profile && wall->kind != DEMI_WALL_MESH) return;
+    if (demi_wall_per(wall) < 2) return;
     *points += sides*up;
     *triangles += sides*(int64_t)wall->element_count;
     if (!place || dem_wall_pose(w, handle, &pose) != DEM_OK) return;
@@ -13658,7 +13802,7 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
     z[1] = z1;
     for (i = 0; i < world->wall_count; i++) {
         demi_wall_draw(world, i, z, &points, &triangles, 0, 0, 0);
-        profiles += world->walls[i].kind == DEMI_WALL_PROFILE;
+        profiles += demi_wall_is(&world->walls[i], DEMI_DRAWN);
     }
     if (profiles && !(z1 > z0))
         return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_walls_vtp_write: z0 is %g and z1 is %g, "
@@ -13832,10 +13976,10 @@ static uint64_t demi_digest_wall(const dem_world *w, int i) {
     h = demi_hash(h, &wall->radius, sizeof(dem_real));
     h = demi_hash(h, &wall->share, sizeof(dem_real));
     h = demi_hash(h, &wall->first, sizeof wall->first);
-    if (wall->kind == DEMI_WALL_SIEVE) h = demi_digest_sieve(&wall->sieve, h);
+    if (wall->sieve.kind) h = demi_digest_sieve(&wall->sieve, h);
     if (wall->corners)
         h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
-                      (wall->kind == DEMI_WALL_MESH ? 3 : 2));
+                      (size_t)demi_wall_per(wall));
     if (wall->vertices)
         h = demi_hash(h, wall->vertices, (size_t)wall->vertex_count*3*sizeof(dem_real));
     return h ? h : 1;

@@ -469,8 +469,8 @@ int main(int argc, char **argv) {
         sieve.aperture = DEM_R(1e-3);
         sieve.bar = DEM_R(2e-4);
         sieve.normal = at(0, 0, 1);
-        CHECK(dem_sieve_add(world, m, &sieve).id > 0);
         hash = dem_world_hash(world);
+        CHECK_EQ(dem_sieve_add(world, m, &sieve).id, 0);
         CHECK_EQ(dem_world_step(world, 5), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_world_error(world), "is a sieve");
         CHECK(dem_world_hash(world) == hash);
@@ -608,26 +608,63 @@ int main(int argc, char **argv) {
         CHECK(dem_world_hash(world) != hash);
         dem_world_destroy(world);
     }
-    TEST("a step that is refused for a wall that does not know a body has fed nothing") {
-        dem_world *world = plain_world();
-        const dem_material m = stone(world);
-        dem_sieve_desc sieve = DEM_SIEVE_DESC;
-        dem_feed_desc feed;
-        sieve.kind = DEM_SIEVE_SQUARE;
-        sieve.aperture = DEM_R(0.01);
-        sieve.bar = DEM_R(0.002);
-        CHECK_EQ(dem_sieve_add(world, m, &sieve).id, 1);
-        CHECK(dem_body_add(world, m, dem_shape_ellipsoid_add(world, at(1e-3, 1e-3, 2e-3)),
-                           at(0, 0, 1), dem_quat_make(1, 0, 0, 0)).slot != 0);
-        memset(&feed, 0, sizeof feed);
-        feed.material = m; feed.class_count = 1; feed.limited = 1;
-        feed.radius[0] = DEM_R(1e-3); feed.amount[0] = 5;
-        feed.box = box_of(0, 0, 0.1, 0.1, 0.1, 0.2);
-        CHECK_EQ(dem_feed_add(world, &feed).id, 1);
-        CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "sieve");
-        CHECK_EQ(dem_balance_get(world).present, 1);
-        dem_world_destroy(world);
+    TEST("a wall and a body that do not know each other are refused by name when the second of the "
+         "two is added, whichever that is; the scene stays as it was and runs") {
+        int order, kind, how;
+        for (kind = 0; kind < 2; kind++)
+            for (how = 0; how < 4; how++)
+                for (order = 0; order < 2; order++) {
+                    dem_world *world = plain_world();
+                    const dem_material m = stone(world);
+                    const dem_shape egg = dem_shape_ellipsoid_add(world, at(1e-3, 1e-3, 2e-3));
+                    const dem_real x[3] = {0, 0, 1};
+                    const char *call = how == 0 ? "dem_body_add" : how == 1 ? "dem_bodies_add"
+                        : how == 2 ? "dem_bodies_fill" : "dem_region_fill";
+                    dem_sieve_desc sieve = DEM_SIEVE_DESC;
+                    dem_profile profile;
+                    dem_real p[4] = {-1, -1, 1, -1};
+                    int32_t s[2] = {0, 1};
+                    dem_region region;
+                    uint64_t was = 0;
+                    int turn;
+                    sieve.kind = DEM_SIEVE_SQUARE;
+                    sieve.aperture = DEM_R(0.01);
+                    sieve.bar = DEM_R(0.002);
+                    profile.vertex_count = 2; profile.segment_count = 1;
+                    profile.vertices = p; profile.segments = s;
+                    memset(&region, 0, sizeof region);
+                    region.box = box_of(0, 0, 1, 1, 1, 2);
+                    dem_sphere_add(world, m, DEM_R(1e-3), at(0, 0, 0.5));
+                    for (turn = 0; turn < 2; turn++) {
+                        const int before = world->count, walls = world->wall_count;
+                        int done;
+                        if (turn) was = dem_world_hash(world);
+                        if (order == turn)
+                            done = kind ? dem_profile_add(world, m, &profile,
+                                                          DEM_EDGE_FRACTION).id > 0
+                                : dem_sieve_add(world, m, &sieve).id > 0;
+                        else if (how == 0)
+                            done = dem_body_add(world, m, egg, at(0, 0, 1),
+                                                dem_quat_make(1, 0, 0, 0)).slot != 0;
+                        else if (how == 1)
+                            done = dem_bodies_add(world, m, egg, 1, x, 0, 0, 0, 0) == DEM_OK;
+                        else if (how == 2)
+                            done = dem_bodies_fill(world, m, egg, region.box, 3, 1) == 3;
+                        else done = dem_region_fill(world, &region, m, egg, 0, 3, 1) == 3;
+                        CHECK_EQ(done, !turn);
+                        if (!turn) continue;
+                        CHECK_EQ(world->count, before);
+                        CHECK_EQ(world->wall_count, walls);
+                        CHECK_EQ(dem_world_hash(world), was);
+                    }
+                    CHECK_STR(dem_world_error(world), order == 0 ? call : kind ? "dem_profile_add"
+                              : "dem_sieve_add");
+                    CHECK_STR(dem_world_error(world), kind ? "is a profile of DEM_EDGE_FRACTION"
+                              : "is a sieve");
+                    CHECK_STR(dem_world_error(world), "do not know each other");
+                    CHECK_EQ(scene_step(world, 2), DEM_OK);
+                    dem_world_destroy(world);
+                }
     }
     TEST("a linked-list search of no bodies at all finds none") {
         dem_world_desc desc = DEM_WORLD_DESC;
