@@ -1929,7 +1929,8 @@ struct dem_world {
     dem_world_desc asked;          /* as given */
     char error[512];
     char refusal[512];             /* of the first call that builds the scene and was refused */
-    unsigned refused;              /* which of demi_builders were, since dem_world_error was read */
+    int refused;                   /* calls that were, since dem_world_error was read */
+    char refused_calls[24][32];    /* their names */
     size_t bytes;
     struct demi_block *chains[DEMI_CHAINS];
 
@@ -2114,48 +2115,52 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(slot_generation, 1, DEMI_SLOTS,  DEMI_KEPT)};
 enum { DEMI_BODY_ARRAYS = (int)(sizeof demi_body_arrays/sizeof *demi_body_arrays) };
 
-/* The calls that build a scene: without what they would have added or chosen, a run is another one.
-   Not here: those that take away, look, read or write. */
-static const char *const demi_builders[] = {"dem_material_add", "dem_pair_set", "dem_spheres_add",
-    "dem_spheres_fill", "dem_spheres_pack", "dem_body_add", "dem_bodies_add", "dem_bodies_fill",
-    "dem_region_fill",
-    "dem_shape_ellipsoid_add", "dem_shape_cluster_add", "dem_plane_add", "dem_cylinder_add",
-    "dem_profile_add", "dem_mesh_add", "dem_grains_wall_add", "dem_sieve_add", "dem_wall_motion",
-    "dem_feed_add", "dem_outlet_add", "dem_field_add"};
-/* Which of them a sentence begins with (or is); -1: none. */
-static int demi_builder_of(const char *sentence) {
-    size_t k;
-    for (k = 0; k < sizeof demi_builders/sizeof *demi_builders; k++) {
-        const size_t n = strlen(demi_builders[k]);
-        if (!strncmp(sentence, demi_builders[k], n) && (sentence[n] == ':' || !sentence[n]))
-            return (int)k;
+/* Does a call, its name n characters long, build a scene? Without what it would have added or
+   chosen a run is another one. Those that take away, look, read or write do not. */
+static int demi_builds(const char *call, size_t n) {
+    static const char *const ends[] = {"_add", "_fill", "_pack", "dem_pair_set", "dem_wall_motion"};
+    size_t k, l;
+    for (k = 0; k < sizeof ends/sizeof *ends; k++) {
+        l = strlen(ends[k]);
+        if (n >= l && !memcmp(call + n - l, ends[k], l)) return 1;
     }
+    return 0;
+}
+/* Which of the refused calls it is, -1: none. */
+static int demi_refused_find(const dem_world *w, const char *call, size_t n) {
+    int k;
+    for (k = 0; k < w->refused; k++)
+        if (strlen(w->refused_calls[k]) == n && !memcmp(w->refused_calls[k], call, n)) return k;
     return -1;
 }
 
 static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
                             ...) DEMI_FORMAT(3, 4);
 static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
+    const size_t calls = sizeof w->refused_calls/sizeof *w->refused_calls;
     va_list args;
-    int call;
+    size_t n;
     va_start(args, format);
     vsnprintf(w->error, sizeof w->error, format, args);
     va_end(args);
-    call = demi_builder_of(w->error);
-    if (call < 0) return result;
+    n = strcspn(w->error, ":");
+    if (n >= sizeof *w->refused_calls || !demi_builds(w->error, n)) return result;
     if (!w->refused) memcpy(w->refusal, w->error, sizeof w->refusal);
-    w->refused |= 1u << call;
+    if (demi_refused_find(w, w->error, n) < 0 && (size_t)w->refused < calls) {
+        memcpy(w->refused_calls[w->refused], w->error, n);
+        w->refused_calls[w->refused++][n] = 0;
+    }
     return result;
 }
 /* A call that builds the scene went well: an earlier refusal of the same call is made good. */
 static void demi_built(dem_world *w, const char *call) {
-    const int k = demi_builder_of(call);
-    int next;
-    if (k < 0 || !(w->refused >> k & 1u)) return;
-    w->refused &= ~(1u << k);
-    if (!w->refused || demi_builder_of(w->refusal) != k) return;
-    for (next = 0; !(w->refused >> next & 1u);) next++;
-    snprintf(w->refusal, sizeof w->refusal, "%s: was refused, too", demi_builders[next]);
+    const size_t n = strlen(call);
+    const int k = demi_refused_find(w, call, n);
+    if (k < 0) return;
+    memmove(w->refused_calls[k], w->refused_calls[k + 1],
+            (size_t)(--w->refused - k)*sizeof *w->refused_calls);
+    if (!w->refused || strncmp(w->refusal, call, n) || w->refusal[n] != ':') return;
+    snprintf(w->refusal, sizeof w->refusal, "%s: was refused, too", w->refused_calls[0]);
 }
 /* Before a run: says so when a call that builds the scene was refused and nobody read why. A scene
    that lacks something would run, and answer DEM_OK. */
@@ -14436,6 +14441,7 @@ static void demi_twin_adopt(dem_world *w, dem_world *t) {
     bytes = w->bytes + t->bytes;
     memcpy(t->error, w->error, sizeof t->error);
     memcpy(t->refusal, w->refusal, sizeof t->refusal);
+    memcpy(t->refused_calls, w->refused_calls, sizeof t->refused_calls);
     t->refused = w->refused;
     *w = *t;
     w->bytes = bytes;

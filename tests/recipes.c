@@ -121,6 +121,98 @@ int main(int argc, char **argv) {
         CHECK_REL(scene_state(world, ball).velocity.x, 0.5*5/7, 0.01);
         dem_world_destroy(world);
     }
+    TEST("recipe for a wall: in a shell a ball swings as a pendulum that also rolls, clusters come "
+         "to rest on both their spheres, ellipsoids are refused by name") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_cluster_desc two = DEM_CLUSTER_DESC;
+        static const dem_real places[6] = {DEM_R(-0.004), 0, 0, DEM_R(0.004), 0, 0};
+        const char *path = "build/recipes/shell.ckpt";
+        const double length = 0.5 - 0.01, start = 0.02;
+        uint64_t hash[3] = {0, 0, 0};
+        dem_material m;
+        dem_body ball;
+        dem_pose pose;
+        int k;
+        desc.gravity.z = DEM_R(-9.81);
+        for (k = 0; k < 3; k++) {              /* 1 thread, 2 threads, on from a checkpoint */
+            dem_world *world;
+            dem_wall shell;
+            desc.threads = 1 + (k == 1);
+            world = dem_world_create(&desc);
+            m = scene_material(world, 1e7, 0.5, 0.5, 0);
+            shell = dem_shell_add(world, m, at(0, 0, 1), DEM_R(0.5));
+            CHECK_EQ(shell.id, 1);
+            ball = dem_sphere_add(world, m, DEM_R(0.01), at(length*sin(start), 0,
+                                                            1 - length*cos(start)));
+            if (k < 2) CHECK_EQ(dem_world_run(world, 0.5, 0, 0), DEM_OK);
+            if (k == 1) CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+            if (k == 2) CHECK_EQ(dem_checkpoint_read(world, path), DEM_OK);
+            /* half a period: pi sqrt(7 L/(5 g)) */
+            CHECK_EQ(dem_world_run(world, 3.14159265358979*sqrt(1.4*length/9.81) - 0.5, 0, 0),
+                     DEM_OK);
+            CHECK_REL(scene_state(world, ball).position.x, -length*sin(start), 0.02);
+            hash[k] = dem_world_hash(world);
+            CHECK_EQ(dem_wall_pose(world, shell, &pose), DEM_OK);
+            CHECK_NEAR(pose.position.z, 1, 1e-12);
+            dem_world_destroy(world);
+        }
+        CHECK(hash[1] == hash[0] && hash[2] == hash[0]);
+        {
+            dem_world *world = dem_world_create(&desc);
+            dem_shape pair;
+            two.count = 2;
+            two.positions = places;
+            two.radius = DEM_R(0.005);
+            m = scene_material(world, 1e6, 0.3, 0.5, 0.1);
+            CHECK_EQ(dem_shell_add(world, m, at(0, 0, 1), 0).id, 0);
+            CHECK_STR(dem_world_error(world), "dem_shell_add: radius is 0 m, must be > 0");
+            CHECK_EQ(dem_shell_add(world, m, at(0, 0, 1), DEM_R(0.05)).id, 1);
+            pair = dem_shape_cluster_add(world, &two);
+            ball = dem_body_add(world, m, pair, at(0.01, 0, 0.97), dem_quat_make(1, 0, 0, 0));
+            CHECK_EQ(dem_body_add(world, m, dem_shape_ellipsoid_add(world, at(1, 2, 3)),
+                                  at(0, 0, 1), dem_quat_make(1, 0, 0, 0)).slot, 0);
+            CHECK_STR(dem_world_error(world), "wall 1 is a shell");
+            CHECK_EQ(dem_world_run(world, 2, 0, 0), DEM_OK);
+            {   /* on both of its spheres, wherever friction holds it */
+                const dem_vec3 x = scene_state(world, ball).position;
+                CHECK_NEAR(sqrt((double)(x.x*x.x + x.y*x.y + (x.z - 1)*(x.z - 1))),
+                           sqrt(0.045*0.045 - 0.004*0.004), 1e-4);   /* pressed in 4e-5 m */
+                CHECK_NEAR(demi_length(scene_state(world, ball).velocity), 0, 1e-3);
+            }
+            dem_world_destroy(world);
+        }
+        remove(path);
+    }
+    TEST("recipe for a number of each body: it follows its body through sorts, removals, a "
+         "checkpoint and slabs") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *a = mixture(desc, 1), *b = mixture(desc, 1);
+        dem_slabs_desc deal = DEM_SLABS_DESC;
+        dem_slabs *slabs;
+        const char *path = "build/recipes/charge.ckpt";
+        int i, round;
+        for (i = 0; i < a->count; i++) a->charge[i] = (dem_real)(1 + a->body_slot[i]);
+        dem_body_remove(a, dem_bodies_id(a, 5));
+        CHECK_EQ(scene_step(a, 1000), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
+        dem_body_remove(b, dem_bodies_id(b, 5));
+        CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
+        CHECK_EQ(b->count, 26);
+        for (round = 0; round < 2; round++) {
+            for (i = 0; i < b->count; i++)
+                CHECK_NEAR(b->charge[i], (dem_real)(1 + b->body_slot[i]), 0);
+            if (round) break;
+            deal.count = 2;
+            slabs = dem_slabs_create(b, &deal);
+            CHECK_EQ(dem_slabs_step(slabs, 300), DEM_OK);
+            for (i = 0; i < b->count; i++) b->charge[i] = 0;
+            CHECK_EQ(dem_slabs_collect(slabs, b), DEM_OK);
+            dem_slabs_destroy(slabs);
+        }
+        remove(path);
+        dem_world_destroy(a);
+        dem_world_destroy(b);
+    }
     TEST("recipe for an integrator: exact where the force is constant") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
