@@ -1798,7 +1798,8 @@ typedef struct demi_domain {
    of an element (0: it has none); places a candidate may give at most; traits; name in sentences;
    how near a sphere is to one element; how spheres touch it, how ellipsoids do (0: they do not know
    each other, which is said when the second of the two is added); how its normals turn as a ball
-   moves (0: not at all). */
+   moves (0: not at all). demi_elements_touch serves any wall; planes and cylinders have copies with
+   theirs inlined. */
 enum {
     DEMI_FACETS = 1,               /* a surface of facets, see >>facets */
     DEMI_DRAWN = 2,                /* drawn out along its own z without end: seen at z = 0 */
@@ -1808,9 +1809,9 @@ enum {
 enum { DEMI_SIEVE_MOST = 12 };                  /* contacts of a grain with a sieve */
 #define DEMI_WALLS(X) \
     X(PLANE,    0, 7, DEMI_FLAT, "plane", \
-      demi_plane_near, demi_elements_touch, demi_plane_ellipsoid, 0) \
+      demi_plane_near, demi_plane_spheres, demi_plane_ellipsoid, 0) \
     X(CYLINDER, 0, 7, 0, "cylinder", \
-      demi_cylinder_near, demi_elements_touch, demi_cylinder_ellipsoid, demi_cylinder_bend) \
+      demi_cylinder_near, demi_cylinder_spheres, demi_cylinder_ellipsoid, demi_cylinder_bend) \
     X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", \
       demi_facet_distance, demi_facets_spheres, demi_facets_ellipsoid, demi_profile_bend) \
     X(SEGMENTS, 2, 7, DEMI_DRAWN, "profile of DEM_EDGE_FRACTION", \
@@ -1924,6 +1925,67 @@ typedef struct demi_laws {
     int at_rolling, at_normal, memory, vectors;     /* reals; bits of those that are vectors */
 } demi_laws;
 
+/* --- what a world knows in numbers alone, by whose they are. Saved and copied whole: a field more
+       is saved, too. Pointers, and what follows from other things, do not belong here. --- */
+
+typedef struct demi_timing {       /* >>step, >>advice */
+    double time;                   /* s: since.time + (steps - since.steps) since.dt */
+    demi_since since;              /* when the present dt came into force */
+    uint64_t steps, rebuilds;
+    uint64_t last_rebuild;         /* step */
+    double run_end;                /* s: where the last run should have ended, */
+    uint64_t run_steps;            /* and the step at which it did */
+    dem_real dt;                   /* s */
+    double half_kick;              /* s, of the step under way */
+    double assumed_speed;          /* m/s, behind dt */
+    double spin_elsewhere;         /* rad/s, fastest in slabs, of bodies that are not spheres */
+    uint64_t press_due;            /* step at which what presses bodies is looked for next */
+    uint64_t press_since;          /* step of the last change of the scene */
+} demi_timing;
+/* How far a world has got on its way to the next step. A change of the scene undoes dt_valid,
+   forces_valid and primed; one of who is where, list_valid, too. dem_world_step makes good what is
+   missing, in this order: */
+typedef struct demi_stage {
+    int dt_valid;                  /* 1: the time step suits the scene */
+    int list_valid;                /* 2: candidates fit the bodies */
+    int pairs_changed;             /* 0, or 1: what holds between materials has changed since */
+    int forces_valid;              /* 3: forces are those of the present places and velocities */
+    int primed;                    /* 4: half-step velocities are those of the step before */
+    int moved;                     /* a step has moved and lacks its forces: memory ran out in it */
+    int synced;                    /* no half kick is due: see demi_finish */
+    int near_stale;                /* the near list lacks a pair of a body that joined */
+    /* a rebuild or a new near list that ran out of memory had chosen these: tried again, it takes
+       the same, since the counts they are chosen by may be gone */
+    int skin_chosen, near_chosen;
+} demi_stages;
+typedef struct demi_margin {       /* >>rebuild, >>near: how long lists hold */
+    double skin, reach, wall_reach;/* m: margin, farthest a body / a wall point went since */
+    double step_reach;             /* m, farthest that any point of a body went in the last step */
+    double skin_auto;              /* m: what the cost model proposes; 0: nothing yet */
+    double span, age;              /* s: how long the near list is meant to last, lasts already */
+    double slack;                  /* m: what velocities may bring by having changed since */
+    double drift, kick;            /* m/s: how much a velocity may have changed since; last step */
+    double creep;                  /* m: what that may have brought two bodies together */
+} demi_margin;
+typedef struct demi_in_force {     /* >>rebuild: worked out when the list is made */
+    int tangent, rolling;          /* laws in force */
+    int uniform;                   /* one radius, one mass, one material, nothing fixed */
+    int fixed_count;
+    int tight;                     /* some body is so long that its bounding sphere is no guide */
+    dem_real uniform_coef[DEMI_COEFS], uniform_radius, uniform_inv_mass;
+    dem_real radius_min, radius_max;           /* m */
+} demi_in_force;
+typedef struct demi_levels {       /* >>search */
+    int count, wide;               /* wide: radii differ so much that levels pay */
+    demi_level level[DEMI_LEVELS]; /* the coarsest first; none in use: count is 0 */
+    double fine;                   /* m, largest radius of the finest class */
+    double looks[2];               /* estimated work of a search per body: by one grid, by levels */
+} demi_levels;
+typedef struct demi_booked {       /* >>ledger: sums since the beginning, and the largest seen */
+    double energy[DEMI_ENERGIES], inserted, removed, throughput;       /* J */
+    double overlap_max, speed_max; /* of the radius; m/s */
+} demi_booked;
+
 struct dem_world {
     dem_world_desc desc;           /* as given, with choices filled in */
     dem_world_desc asked;          /* as given */
@@ -1932,9 +1994,16 @@ struct dem_world {
     int refused;                   /* calls that were, since dem_world_error was read */
     char refused_calls[24][32];    /* their names */
     size_t bytes;
+    /* told by numbers alone, saved and copied whole */
+    demi_timing clock;
+    demi_stages stage;
+    demi_margin margin;
+    demi_in_force effects;
+    demi_levels levels;
+    demi_booked booked;
     struct demi_block *chains[DEMI_CHAINS];
 
-    int material_count, pairs_changed;
+    int material_count;
     dem_material_desc materials[DEMI_MATERIALS];
     demi_pair *pairs;              /* DEMI_MATERIALS x DEMI_MATERIALS */
 
@@ -1981,38 +2050,21 @@ struct dem_world {
     dem_real *crowd_turned;        /* x 4 */
 
     /* effects, worked out when the scene changes */
-    int normal, tangent, rolling;  /* laws in force */
-    int uniform;                   /* one radius, one mass, one material, nothing fixed */
+    int normal;                    /* law in force */
     demi_laws laws;                /* their rows; not used where the user's own acts */
     int memory_stride, vector_mask;/* reals per contact; which of them are vectors */
     int composed;                  /* one stage per law even where one for all would do (tests) */
-    dem_real uniform_coef[DEMI_COEFS], uniform_radius, uniform_inv_mass;
-    dem_real radius_min, radius_max;
-    int fixed_count;
-    int tight;                     /* some body is so long that its bounding sphere is no guide */
 
     /* search */
-    int list_valid;                /* candidate list fits the bodies */
     double wall_fastest;           /* m/s, fastest wall point of the step */
-    double skin, reach, wall_reach;/* m: margin, farthest a body / a wall point went since */
-    double skin_auto;              /* m: what the cost model proposes; 0: nothing yet */
-    /* a rebuild or a new near list that ran out of memory had chosen these: tried again, it takes
-       the same, since the counts they are chosen by may be gone */
-    int skin_chosen, near_chosen;
-    uint64_t last_rebuild;         /* step */
     dem_real image_shift[27*4];    /* m, from a body to another's image; 0: none */
     int domain_count;
     demi_domain *domains;
     demi_list own, cross;
     demi_near near, near_last;     /* in use, and the one before: swapped when made anew */
-    double near_span, near_age;    /* s: how long the near list is meant to last, lasts already */
-    double near_margin;            /* m: what velocities may bring by having changed since */
-    double near_drift, near_kick;  /* m/s: how much a velocity may have changed since; last step */
-    double near_creep;             /* m: what that may have brought two bodies together */
     struct demi_quiet *quiet;      /* what may push each few bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
     int join_room;                 /* candidates that newcomers may bring, see demi_list_join */
-    int near_stale;                /* lacks a pair of a body that joined: the next step makes it */
     int *cross_incoming_start;     /* domain_count + 1 */
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
     dem_real *cross_push;          /* x 6: force and torque on the far end */
@@ -2020,14 +2072,8 @@ struct dem_world {
     int32_t *cell_start;
     int cells[3];
     double cell_origin[3], cell_size[3];
-    int level_count, wide;         /* wide: radii differ so much that levels pay */
-    demi_level levels[DEMI_LEVELS];/* the coarsest first; none in use: level_count is 0 */
-    double level_fine;             /* m, largest radius of the finest class */
     struct demi_press *press;      /* what presses bodies, while a step is judged */
     struct demi_press_whole *press_whole;
-    uint64_t press_due;            /* step at which it is looked for next */
-    uint64_t press_since;          /* step of the last change of the scene */
-    double level_looks[2];         /* estimated work of a search per body: by one grid, by levels */
     /* contact memory on its way to a new list */
     int32_t *carry_start, *carry_partner;
     dem_real *carry_memory;
@@ -2058,21 +2104,6 @@ struct dem_world {
 
     /* step */
     void (*kernel)(dem_world *w, int domain);
-    uint64_t steps, rebuilds;
-    double time;                   /* s: since.time + (steps - since.steps) since.dt */
-    demi_since since;              /* when the present dt came into force */
-    double run_end;                /* s: where the last run should have ended, */
-    uint64_t run_steps;            /* and the step at which it did */
-    dem_real dt;
-    double assumed_speed;          /* m/s, behind dt */
-    double spin_elsewhere;         /* rad/s, fastest in slabs, of bodies that are not spheres */
-    int dt_valid, forces_valid, synced, primed;
-    double step_reach;             /* m, farthest that any point of a body went in the last step */
-    int moved;                     /* a step has moved and lacks its forces: memory ran out in it */
-    double overlap_max, speed_max;
-    double energy[DEMI_ENERGIES], energy_inserted, energy_removed;
-    double throughput;
-    double half_kick;              /* s, of the step under way */
 };
 
 /* --- what each body has, told once. Making room, adding, removing, sorting, checking, saving and
@@ -2625,9 +2656,9 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
                          "from dem_pair_get and change what differs", bad, i + 1, j + 1,
                          (double)value, limit);
     demi_pair_put(w, i, j, p);
-    w->pairs_changed = 1;                       /* the next step makes a new list of it */
+    w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
     demi_built(w, "dem_pair_set");
-    w->dt_valid = 0;
+    w->stage.dt_valid = 0;
     return DEM_OK;
 }
 
@@ -3713,7 +3744,7 @@ static int demi_carry_collect(dem_world *w) {
 static int demi_list_drop(dem_world *w) {
     int d, k;
     w->spots_valid = 0;
-    if (!w->list_valid) return 1;
+    if (!w->stage.list_valid) return 1;
     if (!demi_carry_collect(w)) return 0;
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
@@ -3726,7 +3757,7 @@ static int demi_list_drop(dem_world *w) {
             c->a = (int32_t)w->body_slot[c->a];
             if (c->b >= 0) c->b = (int32_t)w->body_slot[c->b];
         }
-    w->list_valid = 0;
+    w->stage.list_valid = 0;
     return 1;
 }
 
@@ -3827,7 +3858,9 @@ static double demi_body_energy(const dem_world *w, int i) {
 }
 
 /* What follows from bodies having changed: forces, list and advice must be made anew. */
-static void demi_scene_changed(dem_world *w) { w->forces_valid = w->dt_valid = w->primed = 0; }
+static void demi_scene_changed(dem_world *w) {
+    w->stage.forces_valid = w->stage.dt_valid = w->stage.primed = 0;
+}
 
 /* Puts one body at the end of the arrays; room and list have been seen to. */
 static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, dem_vec3 x) {
@@ -3931,7 +3964,7 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
         if (velocities) demi_put(w->vel + 4*k, demi_at(velocities + 3*i));
         if (w->desc.planar) w->vel[4*k + 2] = 0;
         demi_put(w->half_vel + 4*k, demi_at(w->vel + 4*k));
-        w->energy_inserted += demi_body_energy(w, k);
+        w->booked.inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
     demi_built(w, "dem_spheres_add");
@@ -4027,7 +4060,7 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
         demi_put(w->half_vel + 4*k, demi_at(w->vel + 4*k));
         demi_put(w->half_spin + 4*k, demi_at(w->spin + 4*k));
         demi_put(w->angular + 4*k, demi_angular_of(w, k));
-        w->energy_inserted += demi_body_energy(w, k);
+        w->booked.inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
     demi_built(w, call);
@@ -4068,7 +4101,7 @@ static int demi_body_index(dem_world *w, const char *call, dem_body b) {
 
 static void demi_body_take_out(dem_world *w, int i) {
     const int last = w->count - 1, slot = (int)w->body_slot[i];
-    w->energy_removed += demi_body_energy(w, i);
+    w->booked.removed += demi_body_energy(w, i);
     if (demi_form_of(w, i)) w->shaped_count--;
     if (i != last) {
         demi_body_copy(w, last, i);
@@ -4158,7 +4191,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
         demi_quat_put(w->orient + 4*i, demi_quat_unit(form ? dem_quat_times(q, form->frame) : q));
         demi_put(w->angular + 4*i, demi_angular_of(w, i));
     }
-    w->energy_inserted += demi_body_energy(w, i) - before;
+    w->booked.inserted += demi_body_energy(w, i) - before;
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -5617,9 +5650,9 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
     wall->home.velocity = wall->home.spin = demi_v(0, 0, 0);
     wall->motion = *motion;
     if (!(demi_dot(motion->axis, motion->axis) > 0)) wall->motion.axis = demi_v(0, 0, 1);
-    wall->motion.start = DEMI_MAX(motion->start, w->time);
+    wall->motion.start = DEMI_MAX(motion->start, w->clock.time);
     wall->symmetric = demi_wall_symmetric(wall);
-    demi_wall_pose_at(wall, w->time, &wall->pose);
+    demi_wall_pose_at(wall, w->clock.time, &wall->pose);
     wall->mid = wall->pose;
     w->facets_valid = 0;
     demi_built(w, "dem_wall_motion");
@@ -5827,9 +5860,9 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     demi_list *list;
     int k;
     if (!(dx*dx + dy*dy + dz*dz < cut*cut)) return;
-    if (w->fixed_count && w->inv_mass[a] <= 0 && w->inv_mass[b] <= 0) return;
+    if (w->effects.fixed_count && w->inv_mass[a] <= 0 && w->inv_mass[b] <= 0) return;
     if (demi_visits(w, a) && demi_visits(w, b)) return;
-    if (w->tight && !demi_pair_reaches(w, a, b, demi_v(dx, dy, dz), skin)) return;
+    if (w->effects.tight && !demi_pair_reaches(w, a, b, demi_v(dx, dy, dz), skin)) return;
     list = b < domain->end ? &w->own : &w->cross;
     k = list == &w->own ? domain->own : domain->cross;
     if (k >= list->stride) { domain->overflow |= list == &w->own ? 1 : 2; return; }
@@ -5847,7 +5880,8 @@ static void demi_rows_all_pairs(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     int a, b;
     for (a = w->domains[d].begin; a < w->domains[d].end; a++)
-        for (b = a + 1; b < w->count; b++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a, b);
+        for (b = a + 1; b < w->count; b++)
+            demi_pair_offer(w, d, &p, (dem_real)w->margin.skin, a, b);
 }
 
 /* Cell indices c-1, c, c+1 along an axis, wrapped when periodic, without doubles, ascending. */
@@ -5896,7 +5930,7 @@ static void demi_rows_grid(dem_world *w, int d) {
         }
         for (k = 0; k < ranges; k++)
             for (b = DEMI_MAX(from[k], a + 1); b < to[k];
-                 b++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a, b);
+                 b++) demi_pair_offer(w, d, &p, (dem_real)w->margin.skin, a, b);
     }
 }
 
@@ -5916,7 +5950,7 @@ static void demi_rows_grid(dem_world *w, int d) {
    some 10 tests. */
 static double demi_level_work(const dem_world *w, double radius, double room, double count,
                               double finer) {
-    const double side = 2*radius + w->skin, all = w->desc.planar ? 9 : 27;
+    const double side = 2*radius + w->margin.skin, all = w->desc.planar ? 9 : 27;
     const double cell = w->desc.planar ? side*side : side*side*side;
     const double part = DEMI_MIN(cell/DEMI_MAX(room, 1e-300), 1/all);
     return count*part*(0.5*all*count + 0.25*all*finer) + 10*(count + finer);
@@ -5929,7 +5963,8 @@ static double demi_radii_count(const dem_world *w, double *top, int *below) {
     double limit[DEMI_LEVELS], room = 0;
     int i, k;
     for (k = 0; k < DEMI_LEVELS; k++) {
-        limit[k] = k < 2 ? (double)w->radius_max*(k ? 0.70710678118654752 : 1) : limit[k - 2]/2;
+        limit[k] = k < 2 ? (double)w->effects.radius_max*(k ? 0.70710678118654752 : 1)
+            : limit[k - 2]/2;
         top[k] = 0;
         below[k] = 0;
     }
@@ -5951,10 +5986,10 @@ static double demi_radii_count(const dem_world *w, double *top, int *below) {
 static void demi_levels_choose(dem_world *w) {
     double top[DEMI_LEVELS], least[DEMI_LEVELS + 1], room, one;
     int below[DEMI_LEVELS + 1], next[DEMI_LEVELS + 1], i, k;
-    const int alike = w->radius_max <= 2*w->radius_min;    /* enough for one grid */
+    const int alike = w->effects.radius_max <= 2*w->effects.radius_min;    /* enough for one grid */
     const int by_name = w->desc.search == DEM_SEARCH_LEVELS && w->asked.search != DEM_SEARCH_AUTO;
-    w->wide = w->level_count = 0;
-    w->level_looks[0] = w->level_looks[1] = 0;
+    w->levels.wide = w->levels.count = 0;
+    w->levels.looks[0] = w->levels.looks[1] = 0;
     if (w->asked.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (!w->count || (alike && !by_name)) return;
     below[DEMI_LEVELS] = 0;
@@ -5974,19 +6009,19 @@ static void demi_levels_choose(dem_world *w) {
     }
     for (i = 0; i < DEMI_LEVELS; i = next[i]) {
         if (below[i] == below[next[i]]) continue;
-        w->levels[w->level_count].radius = w->level_fine = top[i];
-        w->levels[w->level_count++].count = below[i] - below[next[i]];
+        w->levels.level[w->levels.count].radius = w->levels.fine = top[i];
+        w->levels.level[w->levels.count++].count = below[i] - below[next[i]];
     }
-    one = demi_level_work(w, (double)w->radius_max, room, w->count, 0);
-    w->wide = !alike && w->level_count > 1 && 2*least[0] < one;
-    w->level_looks[0] = one/w->count;
-    w->level_looks[1] = least[0]/w->count;
-    if (w->asked.search == DEM_SEARCH_AUTO && w->wide) w->desc.search = DEM_SEARCH_LEVELS;
+    one = demi_level_work(w, (double)w->effects.radius_max, room, w->count, 0);
+    w->levels.wide = !alike && w->levels.count > 1 && 2*least[0] < one;
+    w->levels.looks[0] = one/w->count;
+    w->levels.looks[1] = least[0]/w->count;
+    if (w->asked.search == DEM_SEARCH_AUTO && w->levels.wide) w->desc.search = DEM_SEARCH_LEVELS;
     if (w->desc.search == DEM_SEARCH_LEVELS) return;
     /* bodies are sorted by finer cells than those of the grid asked for: one level is that grid */
-    w->level_count = w->wide && w->desc.search == DEM_SEARCH_GRID;
-    w->levels[0].radius = (double)w->radius_max;
-    w->levels[0].count = w->count;
+    w->levels.count = w->levels.wide && w->desc.search == DEM_SEARCH_GRID;
+    w->levels.level[0].radius = (double)w->effects.radius_max;
+    w->levels.level[0].count = w->count;
 }
 
 /* Lays the cells of all levels and deals the bodies, sorted by now, to them; the arrays that the
@@ -5995,17 +6030,18 @@ static int demi_levels_lay(dem_world *w) {
     double hi[3];
     int i, k, l, n = 0;
     for (k = 0; k < 3; k++) hi[k] = w->cell_origin[k] + w->cell_size[k]*w->cells[k];
-    for (l = 0; l < w->level_count; l++) {
-        demi_level *level = &w->levels[l];
-        demi_cells_lay(w->cell_origin, hi, 2*level->radius + w->skin + 1e-300, level->count,
+    for (l = 0; l < w->levels.count; l++) {
+        demi_level *level = &w->levels.level[l];
+        demi_cells_lay(w->cell_origin, hi, 2*level->radius + w->margin.skin + 1e-300, level->count,
                        level->cells, level->size);
         level->first = n;
         n += level->cells[0]*level->cells[1]*level->cells[2];
     }
     if (!DEMI_GROW(w, w->cell_start, (size_t)n + 2)) return 0;
     for (i = 0; i < w->count; i++) {
-        const demi_level *level = w->levels;
-        while (level < w->levels + w->level_count - 1 && (double)w->pos[4*i + 3] <= level[1].radius)
+        const demi_level *level = w->levels.level;
+        while (level < w->levels.level + w->levels.count - 1 &&
+               (double)w->pos[4*i + 3] <= level[1].radius)
             level++;
         w->cell_of[i] = level->first + demi_cell_of(w->cell_origin, level->size, level->cells,
                                                     w->pos + 4*i);
@@ -6047,7 +6083,7 @@ static void demi_level_offer(dem_world *w, int d, const demi_periods *p, int a, 
     const int end = start[row + last + 1];
     int i;
     for (i = start[row + first]; i < end; i++)
-        if (w->order[i] > a) demi_pair_offer(w, d, p, (dem_real)w->skin, a, w->order[i]);
+        if (w->order[i] > a) demi_pair_offer(w, d, p, (dem_real)w->margin.skin, a, w->order[i]);
 }
 /* Offers a what it can reach in one level. */
 static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
@@ -6057,7 +6093,8 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     /* what round-off of distances over a whole period may add */
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
         w->cell_size[1]*w->cells[1] + w->cell_size[2]*w->cells[2]);
-    const double reach = ((double)w->pos[4*a + 3] + level->radius + w->skin)*(1 + 1e-5) + slack;
+    const double reach = ((double)w->pos[4*a + 3] + level->radius + w->margin.skin)*(1 + 1e-5) +
+        slack;
     const demi_reach sx = demi_level_span(w, level, 0, x, reach);
     const demi_reach sy = demi_level_span(w, level, 1, y, reach);
     const demi_reach sz = demi_level_span(w, level, 2, z, reach);
@@ -6135,7 +6172,7 @@ static void demi_rows_levels(dem_world *w, int d) {
     int a, l;
     for (a = domain->begin; a < domain->end; a++) {
         const int own = domain->own, cross = domain->cross;
-        for (l = 0; l < w->level_count; l++) demi_row_level(w, d, &p, a, &w->levels[l]);
+        for (l = 0; l < w->levels.count; l++) demi_row_level(w, d, &p, a, &w->levels.level[l]);
         demi_row_sort(&w->own, d, own, domain->own);
         demi_row_sort(&w->cross, d, cross, domain->cross);
     }
@@ -6206,7 +6243,7 @@ static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
 }
 static dem_real demi_box_end(const dem_world *w, int slot, int axis, int upper) {
     const int i = w->slot_index[slot];
-    const dem_real grow = w->pos[4*i + 3] + (dem_real)w->skin/2;
+    const dem_real grow = w->pos[4*i + 3] + (dem_real)w->margin.skin/2;
     return upper ? w->pos[4*i + axis] + grow : w->pos[4*i + axis] - grow;
 }
 static int demi_boxes_overlap(const dem_world *w, int s, int t) {
@@ -6341,8 +6378,8 @@ static void demi_rows_linked(dem_world *w, int d) {
     const int32_t *rows = w->lll_rows;
     int a, k;
     for (a = w->domains[d].begin; a < w->domains[d].end; a++)
-        for (k = start[a]; k < start[a + 1]; k++) demi_pair_offer(w, d, &p, (dem_real)w->skin, a,
-            rows[k]);
+        for (k = start[a]; k < start[a + 1]; k++)
+            demi_pair_offer(w, d, &p, (dem_real)w->margin.skin, a, rows[k]);
 }
 
 /* --- what is common --- */
@@ -6355,7 +6392,7 @@ static void demi_domain_search(dem_world *w, int d) {
     case DEM_SEARCH_ALL_PAIRS: demi_rows_all_pairs(w, d); break;
     case DEM_SEARCH_LINKED_LIST: demi_rows_linked(w, d); break;
     default:
-        if (w->level_count) demi_rows_levels(w, d); else demi_rows_grid(w, d);
+        if (w->levels.count) demi_rows_levels(w, d); else demi_rows_grid(w, d);
     }
 }
 
@@ -6411,7 +6448,7 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
 /* Elements of one wall near body i as it is seen `shift` farther on. */
 static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
     const demi_wall *wall = &w->walls[j];
-    const dem_real r = w->pos[4*i + 3], near_by = r + (dem_real)w->skin;
+    const dem_real r = w->pos[4*i + 3], near_by = r + (dem_real)w->margin.skin;
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
     dem_vec3 at = demi_unturn(wall->pose.rotation, demi_sub(demi_add(demi_at(w->pos + 4*i), shift),
@@ -6448,7 +6485,7 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
     int j, a, b, c, f[3], l[3];
-    if ((w->fixed_count && w->inv_mass[i] <= 0) || demi_visits(w, i)) return;
+    if ((w->effects.fixed_count && w->inv_mass[i] <= 0) || demi_visits(w, i)) return;
     for (j = 0; j < w->wall_count; j++) {
         const demi_wall *wall = &w->walls[j];
         if (wall->kind == DEMI_WALL_NONE) continue;
@@ -6456,7 +6493,8 @@ static void demi_body_walls(dem_world *w, int d, int i) {
             demi_wall_look(w, domain, d, i, j, demi_v(0, 0, 0));
             continue;
         }
-        demi_wall_images(w, wall, demi_at(w->pos + 4*i), w->pos[4*i + 3] + (dem_real)w->skin, f, l);
+        demi_wall_images(w, wall, demi_at(w->pos + 4*i),
+                         w->pos[4*i + 3] + (dem_real)w->margin.skin, f, l);
         for (c = f[2]; c <= l[2]; c++)
             for (b = f[1]; b <= l[1]; b++)
                 for (a = f[0]; a <= l[0]; a++)
@@ -6488,7 +6526,7 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
                    DEMI_GROW(w, near->memory, m) &&
-                   (w->uniform || DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS));
+                   (w->effects.uniform || DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS));
     if (ok) near->stride = stride;
     return ok;
 }
@@ -6763,7 +6801,7 @@ static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, i
 DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p, int mixed) {
     const dem_real *x = w->pos, *u = w->vel, *shift = w->image_shift;
-    const dem_real margin = (dem_real)w->near_margin, span = (dem_real)w->near_span;
+    const dem_real margin = (dem_real)w->margin.slack, span = (dem_real)w->margin.span;
     const int room = w->near.stride - DEMI_LANES;
     const int32_t *shape = w->body_shape;
     int32_t *out = w->near.k + d*w->near.stride;
@@ -6789,7 +6827,7 @@ static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int en
    their spins may bring. */
 static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p) {
-    const dem_real margin = (dem_real)w->near_margin, span = (dem_real)w->near_span;
+    const dem_real margin = (dem_real)w->margin.slack, span = (dem_real)w->margin.span;
     const int room = w->near.stride - DEMI_LANES;
     int32_t *out = w->near.k + d*w->near.stride;
     int k;
@@ -6820,13 +6858,13 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
     if (from >= 0) {
         const dem_real *old = last->memory + (size_t)d*keep*last_stride + (size_t)from;
         for (e = 0; e < keep; e++) m[e*stride] = old[e*last_stride];
-        if (w->uniform) return;
+        if (w->effects.uniform) return;
         m = near->coef + (size_t)d*columns*stride + (size_t)p;
         old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
         for (e = 0; e < columns; e++) m[e*stride] = old[e*last_stride];
         return;
     }
-    if (!w->uniform) demi_near_coefs(w, near, d, p, near->a[at], near->b[at]);
+    if (!w->effects.uniform) demi_near_coefs(w, near, d, p, near->a[at], near->b[at]);
     for (e = 0; e < keep; e++) m[e*stride] = 0;
     if (!keep || !w->near_fresh ||
         (from = demi_carry_find(w, near->a[at], near->b[at], &flip)) < 0) return;
@@ -6844,7 +6882,7 @@ static void demi_near_adopt(dem_world *w, int d) {
     const size_t stride = (size_t)near->stride;
     dem_real *memory = w->memory_stride
         ? near->memory + (size_t)d*(size_t)w->memory_stride*stride : 0;
-    dem_real *coef = w->uniform ? 0 : near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride;
+    dem_real *coef = w->effects.uniform ? 0 : near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride;
     int l, p, e;
     for (l = 0; l < 2; l++) {
         const int end = l ? domain->near_end : domain->near_own, at = d*near->stride;
@@ -6855,7 +6893,7 @@ static void demi_near_adopt(dem_world *w, int d) {
             near->k[at + p] = near->k[at + end - 1];
             near->image[at + p] = near->image[at + end - 1];
             for (e = 0; e < w->memory_stride; e++) memory[(size_t)e*stride + (size_t)p] = 0;
-            for (e = 0; e < DEMI_PAIR_COLUMNS && !w->uniform; e++)
+            for (e = 0; e < DEMI_PAIR_COLUMNS && !w->effects.uniform; e++)
                 coef[(size_t)e*stride + (size_t)p] = coef[(size_t)e*stride + (size_t)end - 1];
         }
     }
@@ -6898,7 +6936,7 @@ static void demi_domain_near(dem_world *w, int d) {
             near->a[at] = list->a[k];
             near->b[at] = list->b[k];
             near->image[at] = list->image[k];
-            if (w->memory_stride || !w->uniform)
+            if (w->memory_stride || !w->effects.uniform)
                 demi_near_recall(w, d, q, w->near_fresh ? -1 : list->place[k] - 1);
         }
         if (l) domain->near_next_end = p;
@@ -6964,11 +7002,12 @@ static void demi_domain_quiet(dem_world *w, int d) {
    force costs 1; making the list, 0.15 for each candidate and 1 for each near pair (bench/ measures
    both). Pairs that do not touch grow with the span, how often the list is made shrinks with it. */
 static void demi_near_choose(dem_world *w) {
-    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1), dt = (double)w->dt;
-    double near = 0, touching = 0, candidates = 0, longer = 1, span = w->near_span;
+    const double r = (double)(w->effects.radius_min > 0 ? w->effects.radius_min : 1),
+        dt = (double)w->clock.dt;
+    double near = 0, touching = 0, candidates = 0, longer = 1, span = w->margin.span;
     int d;
     if (span < dt) span = dt;                   /* the first of all */
-    if (w->near_age > 0) {
+    if (w->margin.age > 0) {
         for (d = 0; d < w->domain_count; d++) {
             const demi_domain *domain = &w->domains[d];
             near += domain->near_own + domain->near_end - domain->near_cross;
@@ -6978,24 +7017,24 @@ static void demi_near_choose(dem_world *w) {
         }
         if (w->shaped_count) candidates *= 6;   /* supports, and some meetings */
         longer = sqrt((0.15*candidates + near)*dt/
-                      (w->near_age*DEMI_MAX(near - touching, 0.01*w->count)));
+                      (w->margin.age*DEMI_MAX(near - touching, 0.01*w->count)));
         longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));
-        span = DEMI_MIN(DEMI_MAX(w->near_age*longer, 2*dt), 1000*dt);
+        span = DEMI_MIN(DEMI_MAX(w->margin.age*longer, 2*dt), 1000*dt);
         /* creep grows with the square of time */
-        w->near_margin = w->near_creep*span*span/(w->near_age*w->near_age)*1.2;
+        w->margin.slack = w->margin.creep*span*span/(w->margin.age*w->margin.age)*1.2;
     }
-    w->near_margin = DEMI_MIN(DEMI_MAX(w->near_margin, 1e-5*r), 0.1*r);
-    w->near_span = span;
+    w->margin.slack = DEMI_MIN(DEMI_MAX(w->margin.slack, 1e-5*r), 0.1*r);
+    w->margin.span = span;
 }
 /* A step has gone by, in which no velocity changed by more than kick. */
 static void demi_near_pass(dem_world *w, double kick) {
-    w->near_kick = kick;
-    w->near_drift += kick;
-    w->near_creep += 2*w->near_drift*(double)w->dt;
-    w->near_age += (double)w->dt;
+    w->margin.kick = kick;
+    w->margin.drift += kick;
+    w->margin.creep += 2*w->margin.drift*(double)w->clock.dt;
+    w->margin.age += (double)w->clock.dt;
 }
 static int demi_near_due(const dem_world *w) {
-    return w->near_age > w->near_span*(1 - 1e-9) || w->near_creep > w->near_margin;
+    return w->margin.age > w->margin.span*(1 - 1e-9) || w->margin.creep > w->margin.slack;
 }
 /* Makes the near list; fresh: after a search. 0 when memory ran out: the list before is in use. */
 static int demi_near_make(dem_world *w, int fresh) {
@@ -7026,9 +7065,10 @@ static int demi_near_make(dem_world *w, int fresh) {
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_adopt);
     if (!fresh && demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
-    w->near_age = w->near_creep = 0;
-    w->near_stale = 0;
-    w->near_drift = w->near_kick;  /* speeds now, and those that move, are as much as this apart */
+    w->margin.age = w->margin.creep = 0;
+    w->stage.near_stale = 0;
+    /* speeds now, and those that move, are as much as this apart */
+    w->margin.drift = w->margin.kick;
     return 1;
 }
 
@@ -7041,7 +7081,7 @@ static int demi_near_make(dem_world *w, int fresh) {
 
 /* What the laws in force keep per contact. */
 static void demi_effects_memory(dem_world *w) {
-    demi_laws_set(&w->laws, w->normal, w->tangent, w->rolling);
+    demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling);
     w->memory_stride = w->laws.memory;
     w->vector_mask = w->laws.vectors;
     if (!w->desc.law) return;
@@ -7064,31 +7104,32 @@ static void demi_effects(dem_world *w) {
     int i, friction, rolling;
     demi_pairs_rub(w, &friction, &rolling);
     w->normal = (int)w->desc.normal_law;
-    w->tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
-    w->rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
+    w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
+    w->effects.rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
     demi_effects_memory(w);
-    w->uniform = w->count > 0;
-    w->fixed_count = 0;
-    w->radius_min = w->radius_max = w->count ? w->pos[3] : 0;
+    w->effects.uniform = w->count > 0;
+    w->effects.fixed_count = 0;
+    w->effects.radius_min = w->effects.radius_max = w->count ? w->pos[3] : 0;
     for (i = 0; i < w->count; i++) {
         const dem_real r = w->pos[4*i + 3];
-        w->radius_min = DEMI_MIN(w->radius_min, r);
-        w->radius_max = DEMI_MAX(w->radius_max, r);
-        w->fixed_count += w->inv_mass[i] <= 0;
-        w->uniform &= w->body_material[i] == w->body_material[0];
+        w->effects.radius_min = DEMI_MIN(w->effects.radius_min, r);
+        w->effects.radius_max = DEMI_MAX(w->effects.radius_max, r);
+        w->effects.fixed_count += w->inv_mass[i] <= 0;
+        w->effects.uniform &= w->body_material[i] == w->body_material[0];
     }
-    w->tight = 0;
+    w->effects.tight = 0;
     for (i = 0; i < w->count && w->shaped_count; i++) {
         const demi_form *form = demi_form_of(w, i);
-        w->uniform &= w->body_shape[i] == w->body_shape[0];
-        w->tight |= form && form->radius > 2*form->equal;
+        w->effects.uniform &= w->body_shape[i] == w->body_shape[0];
+        w->effects.tight |= form && form->radius > 2*form->equal;
     }
-    w->uniform = w->uniform && w->radius_max <= w->radius_min && !w->fixed_count;
-    if (w->uniform) {
-        w->uniform_radius = w->pos[3];
-        w->uniform_inv_mass = w->inv_mass[0];
+    w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
+        !w->effects.fixed_count;
+    if (w->effects.uniform) {
+        w->effects.uniform_radius = w->pos[3];
+        w->effects.uniform_inv_mass = w->inv_mass[0];
         demi_coefficients(w, w->body_material[0] - 1, w->body_material[0] - 1, (double)w->pos[3]/2,
-                          1/((double)w->inv_mass[0]*2), 0, w->uniform_coef);
+                          1/((double)w->inv_mass[0]*2), 0, w->effects.uniform_coef);
     }
 }
 
@@ -7096,34 +7137,36 @@ static void demi_effects(dem_world *w) {
    search 40 per body (bench/ measures both); candidates, looked at whenever the near list is made,
    grow with the skin, searches shrink with it. */
 static void demi_skin_choose(dem_world *w) {
-    const double r = (double)(w->radius_min > 0 ? w->radius_min : 1);
-    const double steps = (double)(w->steps - w->last_rebuild);
+    const double r = (double)(w->effects.radius_min > 0 ? w->effects.radius_min : 1);
+    const double steps = (double)(w->clock.steps - w->clock.last_rebuild);
     int k;
-    w->skin_auto = DEMI_MIN(w->skin_auto, 2*r);   /* all bodies may be others by now */
-    if (w->desc.skin > 0) { w->skin = (double)w->desc.skin; return; }
-    if (w->desc.skin < 0) { w->skin = 0; return; }
-    if (w->skin_auto <= 0) w->skin_auto = 0.1*r;
-    else if (steps > 0 && w->rebuilds > 1 && w->count > 0) {
+    /* all bodies may be others by now */
+    w->margin.skin_auto = DEMI_MIN(w->margin.skin_auto, 2*r);
+    if (w->desc.skin > 0) { w->margin.skin = (double)w->desc.skin; return; }
+    if (w->desc.skin < 0) { w->margin.skin = 0; return; }
+    if (w->margin.skin_auto <= 0) w->margin.skin_auto = 0.1*r;
+    else if (steps > 0 && w->clock.rebuilds > 1 && w->count > 0) {
         double n = 0, hits = 0, slope, best;
-        const double per_step = DEMI_MAX(2*w->reach, w->reach + w->wall_reach)/steps;
-        const double looks = DEMI_MIN(DEMI_MAX(w->near_span/(double)w->dt, 1), 100);
+        const double per_step =
+            DEMI_MAX(2*w->margin.reach, w->margin.reach + w->margin.wall_reach)/steps;
+        const double looks = DEMI_MIN(DEMI_MAX(w->margin.span/(double)w->clock.dt, 1), 100);
         int d;
         for (d = 0; d < w->domain_count; d++) {
             n += w->domains[d].own + w->domains[d].cross;
             hits += w->domains[d].contacts;
         }
-        slope = DEMI_MAX((n - hits)/w->count, 0.02)/w->skin_auto;
+        slope = DEMI_MAX((n - hits)/w->count, 0.02)/w->margin.skin_auto;
         best = sqrt(40*per_step*looks/slope);
-        best = DEMI_MIN(DEMI_MAX(best, 0.5*w->skin_auto), 2*w->skin_auto);
-        w->skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->skin_auto), 0.01*r), 2*r);
+        best = DEMI_MIN(DEMI_MAX(best, 0.5*w->margin.skin_auto), 2*w->margin.skin_auto);
+        w->margin.skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->margin.skin_auto), 0.01*r), 2*r);
     }
     for (k = 0; k < 3; k++) {  /* a period must hold two grains and the skin, twice */
         const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) -
-            2*(double)w->radius_max;
-        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0) w->skin_auto =
-            DEMI_MIN(w->skin_auto, room);
+            2*(double)w->effects.radius_max;
+        if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0)
+            w->margin.skin_auto = DEMI_MIN(w->margin.skin_auto, room);
     }
-    w->skin = w->skin_auto;
+    w->margin.skin = w->margin.skin_auto;
 }
 
 /* Does a function of the user's answer forces? */
@@ -7132,8 +7175,8 @@ static int demi_own(const dem_world *w) {
 }
 /* Do laws ask for spins in this scene? Does any body have one that matters? */
 static int demi_spins(const dem_world *w) {
-    return w->desc.law || w->desc.body_force || w->tangent != DEM_TANGENT_NONE ||
-           w->rolling != DEM_ROLLING_NONE;
+    return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
+           w->effects.rolling != DEM_ROLLING_NONE;
 }
 static int demi_turns(const dem_world *w) { return w->orienting || demi_spins(w); }
 
@@ -7160,7 +7203,7 @@ static dem_result demi_lost(dem_world *w, int body) {
                      "(%g, %g, %g) m, must be finite and at most %g m from the origin; the run "
                      "blew up before (two grains at one place, dt too large, or a law, field "
                      "or motion of your own that divides by zero): take the body out, or go back "
-                     "to a checkpoint", (unsigned long long)w->steps,
+                     "to a checkpoint", (unsigned long long)w->clock.steps,
                      (unsigned)w->body_slot[body] + 1, (double)x[0], (double)x[1], (double)x[2],
                      DEMI_REACH);
 }
@@ -7188,7 +7231,7 @@ static int demi_crowd_refuse(dem_world *w) {
    says so when one ends too near. */
 static int demi_walls_end(dem_world *w, const char *call) {
     const demi_periods p = demi_periods_of(w);
-    const dem_real need = w->radius_max*DEM_R(0.999);
+    const dem_real need = w->effects.radius_max*DEM_R(0.999);
     int j, k;
     for (j = 0; j < w->wall_count; j++)
         for (k = 0; k < 3; k++) {
@@ -7202,7 +7245,7 @@ static int demi_walls_end(dem_world *w, const char *call) {
                       "must reach %g m, the largest radius, beyond the faces at %g and %g m, or be "
                       "no longer than the period", call, j + 1,
                       (double)wall->span_lo[k], (double)wall->span_hi[k], k, (double)p.period[k],
-                      (double)w->radius_max, (double)lo, (double)hi);
+                      (double)w->effects.radius_max, (double)lo, (double)hi);
             return 1;
         }
     return 0;
@@ -7225,16 +7268,18 @@ static int demi_join_lack(const dem_world *w) {
 }
 /* May a sphere join? Not when it would bring an effect in, nor beside bodies of other shapes. */
 static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
-    if (!w->list_valid || w->pairs_changed || !w->count || w->shaped_count || w->visitor) return 0;
-    return !w->uniform || (w->body_material[0] == material + 1 && !(radius < w->uniform_radius) &&
-                           !(radius > w->uniform_radius));
+    if (!w->stage.list_valid || w->stage.pairs_changed || !w->count || w->shaped_count ||
+        w->visitor) return 0;
+    return !w->effects.uniform ||
+           (w->body_material[0] == material + 1 && !(radius < w->effects.uniform_radius) &&
+                           !(radius > w->effects.uniform_radius));
 }
 /* Could the two touch before the near list is made anew? As demi_near_pick asks. */
 static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int b) {
     const dem_vec3 x = demi_nearest(p, demi_sub(demi_at(w->pos + 4*b), demi_at(w->pos + 4*a)));
     const dem_vec3 u = demi_sub(demi_at(w->vel + 4*b), demi_at(w->vel + 4*a));
-    return demi_length(x) < w->pos[4*a + 3] + w->pos[4*b + 3] + (dem_real)w->near_margin +
-                            (dem_real)w->near_span*demi_length(u);
+    return demi_length(x) < w->pos[4*a + 3] + w->pos[4*b + 3] + (dem_real)w->margin.slack +
+                            (dem_real)w->margin.span*demi_length(u);
 }
 /* Body i, just appended, joins the list; `found`, ascending: all whose gap to it may be below the
    skin. 0: there was no room, the list must be made anew. */
@@ -7251,9 +7296,9 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
         demi_list *list = d == last ? &w->own : &w->cross;
         const int at = d == last ? domain->own : domain->cross;
         list->place[d*list->stride + at] = 0;
-        demi_pair_offer(w, d, &p, (dem_real)w->skin, a, i);
+        demi_pair_offer(w, d, &p, (dem_real)w->margin.skin, a, i);
         leading |= d < last;
-        w->near_stale |= demi_join_near(w, &p, a, i);
+        w->stage.near_stale |= demi_join_near(w, &p, a, i);
     }
     if (leading && !demi_cross_index(w)) return 0;
     demi_body_walls(w, last, i);
@@ -7262,8 +7307,8 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     if (w->domains[last].walls > walls) w->touching_valid = 0;
     if (!DEMI_GROW(w, w->quiet, (size_t)(w->count/DEMI_SOME + w->domain_count + 1))) return 0;
     demi_quiet_at(w, last, i)->restless = 2;
-    w->radius_min = DEMI_MIN(w->radius_min, w->pos[4*i + 3]);
-    w->radius_max = DEMI_MAX(w->radius_max, w->pos[4*i + 3]);
+    w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->pos[4*i + 3]);
+    w->effects.radius_max = DEMI_MAX(w->effects.radius_max, w->pos[4*i + 3]);
     return 1;
 }
 
@@ -7311,20 +7356,20 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
    with the laws. 0 when memory ran out: the laws of before stay in force. */
 static int demi_effects_take(dem_world *w) {
     const demi_laws was = w->laws;
-    const int tangent = w->tangent, rolling = w->rolling;
+    const int tangent = w->effects.tangent, rolling = w->effects.rolling;
     demi_effects(w);
     if (w->desc.law || !was.normal ||
         (was.tangent == w->laws.tangent && was.rolling == w->laws.rolling) ||
         demi_memory_move(w, &was)) return 1;
-    w->tangent = tangent;
-    w->rolling = rolling;
+    w->effects.tangent = tangent;
+    w->effects.rolling = rolling;
     demi_effects_memory(w);
     return 0;
 }
 /* Answers 1 with a sentence when a period is too short for one image of each partner. */
 static int demi_periods_refuse(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
-    const double need = 2*(2*(double)w->radius_max + w->skin);
+    const double need = 2*(2*(double)w->effects.radius_max + w->margin.skin);
     int k;
     for (k = 0; k < 3; k++)
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
@@ -7400,40 +7445,41 @@ static void demi_slots_release(dem_world *w) {
    put in order, then lists are made and memory moves to them. DEM_ERROR_MEMORY leaves bodies and
    memory as they were (the next call tries again). */
 static dem_result demi_rebuild(dem_world *w, const char *call) {
+    double least;
     int k;
     for (k = 0; k < w->count; k++)
         if (!demi_place(demi_at(w->pos + 4*k))) return demi_lost(w, k);
     if (!demi_list_drop(w) || !demi_effects_take(w)) return demi_no_memory(w, call);
-    if (!w->skin_chosen || w->visitor) demi_skin_choose(w);
-    w->skin_chosen = 1;
+    if (!w->stage.skin_chosen || w->visitor) demi_skin_choose(w);
+    w->stage.skin_chosen = 1;
     if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_walls_repeat(w);
     if (demi_walls_end(w, call)) return DEM_ERROR_ARGUMENT;
     demi_wrap(w);                               /* after what may be refused: places stay then */
     if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
-    if (!demi_grid_lay(w, 2*(w->wide ? w->level_fine : (double)w->radius_max) + w->skin + 1e-300))
-        return demi_no_memory(w, call);
+    least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) + w->margin.skin;
+    if (!demi_grid_lay(w, least + 1e-300)) return demi_no_memory(w, call);
     demi_bodies_sort(w);
-    if (!w->level_count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
-    if ((w->shaped_count && !demi_spots_lay(w)) || (w->level_count && !demi_levels_lay(w)))
+    if (!w->levels.count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
+    if ((w->shaped_count && !demi_spots_lay(w)) || (w->levels.count && !demi_levels_lay(w)))
         return demi_no_memory(w, call);
     demi_image_shifts(w);
     demi_domains_deal(w);
     if (!demi_pairs_find(w)) return demi_no_memory(w, call);
-    if (!w->near_chosen) demi_near_choose(w);
-    w->near_chosen = 1;
+    if (!w->stage.near_chosen) demi_near_choose(w);
+    w->stage.near_chosen = 1;
     if (!demi_near_make(w, 1) || !demi_walls_find(w) || !demi_contacts_move(w))
         return demi_no_memory(w, call);
     if (demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
     demi_slots_release(w);
     w->carry_count = 0;
-    w->skin_chosen = w->near_chosen = 0;
-    w->reach = w->wall_reach = 0;
-    w->last_rebuild = w->steps;
-    w->rebuilds++;
-    w->list_valid = 1;
+    w->stage.skin_chosen = w->stage.near_chosen = 0;
+    w->margin.reach = w->margin.wall_reach = 0;
+    w->clock.last_rebuild = w->clock.steps;
+    w->clock.rebuilds++;
+    w->stage.list_valid = 1;
     return DEM_OK;
 }
 
@@ -7447,7 +7493,7 @@ static int demi_list_stale(const dem_world *world, const char *call) {
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
     if (demi_null(w, "dem_candidates_get", w, "world")) return -1;
     int d, l, k, n = 0;
-    if (!w->list_valid) return demi_list_stale(w, "dem_candidates_get");
+    if (!w->stage.list_valid) return demi_list_stale(w, "dem_candidates_get");
     for (d = 0; d < w->domain_count; d++)
         for (l = 0; l < 2; l++) {
             const demi_list *list = l ? &w->cross : &w->own;
@@ -8034,14 +8080,14 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
        point, answers the overlap (negative: apart). Candidates are told by it, too. --- */
 typedef dem_real (*demi_near_fn)(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                  dem_vec3 *normal, dem_vec3 *point);
-static dem_real demi_plane_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+DEM_INLINE dem_real demi_plane_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                 dem_vec3 *normal, dem_vec3 *point) {
     (void)wall; (void)element;
     *normal = demi_v(0, 0, -1);
     *point = demi_v(x.x, x.y, 0);
     return r - x.z;
 }
-static dem_real demi_cylinder_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+DEM_INLINE dem_real demi_cylinder_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                    dem_vec3 *normal, dem_vec3 *point) {
     const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
     const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
@@ -8061,7 +8107,7 @@ static dem_real demi_sieve_near(const demi_wall *wall, int element, dem_vec3 x, 
     *point = demi_v(x.x, x.y, 0);
     return r - l;
 }
-/* A ball of radius `edge` about a point `d` away. */
+/* A place `d` away that a ball of radius `reach`, the grain's own included, may touch. */
 DEM_INLINE dem_real demi_point_near(dem_vec3 d, dem_real reach, dem_vec3 *normal) {
     const dem_real l = demi_length(d);
     *normal = l > 0 ? demi_scale(d, 1/l) : demi_v(0, 0, -1);
@@ -8614,16 +8660,17 @@ static demi_stage demi_whole_stage(const dem_world *w) {
     if (w->desc.law) return demi_stage_own;
 #ifndef DEM_NO_SPECIALIZE
     if (w->composed || !demi_laws_usual(w) || w->normal != DEM_NORMAL_HERTZ) return 0;
-    if (w->tangent == DEM_TANGENT_NONE && w->rolling == DEM_ROLLING_NONE && !w->desc.ledger)
+    if (w->effects.tangent == DEM_TANGENT_NONE && w->effects.rolling == DEM_ROLLING_NONE &&
+        !w->desc.ledger)
         return demi_stage_hertz_alone;
-    if (w->tangent == DEM_TANGENT_SPRING && w->rolling == DEM_ROLLING_NONE)
+    if (w->effects.tangent == DEM_TANGENT_SPRING && w->effects.rolling == DEM_ROLLING_NONE)
         return w->desc.ledger
-            ? w->uniform ? demi_stage_spring_alike_ledger : demi_stage_spring_mixed_ledger
-            : w->uniform ? demi_stage_spring_alike : demi_stage_spring_mixed;
-    if (w->tangent == DEM_TANGENT_SPRING && w->rolling == DEM_ROLLING_EPSD)
+            ? w->effects.uniform ? demi_stage_spring_alike_ledger : demi_stage_spring_mixed_ledger
+            : w->effects.uniform ? demi_stage_spring_alike : demi_stage_spring_mixed;
+    if (w->effects.tangent == DEM_TANGENT_SPRING && w->effects.rolling == DEM_ROLLING_EPSD)
         return w->desc.ledger
-            ? w->uniform ? demi_stage_rolling_alike_ledger : demi_stage_rolling_mixed_ledger
-            : w->uniform ? demi_stage_rolling_alike : demi_stage_rolling_mixed;
+            ? w->effects.uniform ? demi_stage_rolling_alike_ledger : demi_stage_rolling_mixed_ledger
+            : w->effects.uniform ? demi_stage_rolling_alike : demi_stage_rolling_mixed;
 #endif
     return 0;
 }
@@ -8639,7 +8686,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt) {
     int k = 0;
     memset(&r, 0, sizeof r);
     r.w = w;
-    r.uniform = w->uniform;
+    r.uniform = w->effects.uniform;
     r.ledger = w->desc.ledger;
     r.keep = w->memory_stride;
     r.turning = own || turns || rolls;
@@ -8651,17 +8698,17 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt) {
     r.same.friction_load = (int)w->desc.friction_load;
     r.same.slider = (int)w->desc.slider;
     r.same.dt = dt;
-    r.same.radius = w->uniform_radius;
-    r.same.inv_radius = 1/w->uniform_radius;
+    r.same.radius = w->effects.uniform_radius;
+    r.same.inv_radius = 1/w->effects.uniform_radius;
     r.stage[k++] = r.following ? r.uniform ? demi_stage_alike_following : demi_stage_mixed_following
         : r.turning ? r.uniform ? demi_stage_alike_turning : demi_stage_mixed_turning
         : r.uniform ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
     r.stage[k++] = precise ? demi_normal_stages[w->normal].all
                            : demi_normal_stages[w->normal].common;
-    if (turns) r.stage[k++] = all ? demi_tangent_stages[w->tangent].all
-                                  : demi_tangent_stages[w->tangent].common;
-    if (rolls) r.stage[k++] = demi_rolling_stages[w->rolling].common;
+    if (turns) r.stage[k++] = all ? demi_tangent_stages[w->effects.tangent].all
+                                  : demi_tangent_stages[w->effects.tangent].common;
+    if (rolls) r.stage[k++] = demi_rolling_stages[w->effects.rolling].common;
     r.stage[k] = !r.turning ? demi_stage_answer_bare
         : rolls ? r.uniform ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
         : r.uniform ? demi_stage_answer_alike : demi_stage_answer_mixed;
@@ -8669,7 +8716,7 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt) {
 }
 /* Column e of pairs of bodies that are all alike. */
 static dem_real demi_uniform_coef(const dem_world *w, int e) {
-    return e == DEMI_M_EFF ? 1/(2*w->uniform_inv_mass) : w->uniform_coef[e];
+    return e == DEMI_M_EFF ? 1/(2*w->effects.uniform_inv_mass) : w->effects.uniform_coef[e];
 }
 /* Rows that no stage of the run fills: coefficients of alike bodies, friction of none. */
 static void demi_tile_begin(const dem_world *w, const demi_run *r, demi_tile *t) {
@@ -8770,7 +8817,7 @@ static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
 /* All pairs of one domain: those inside it, then those that lead out. */
 static void demi_pairs(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    demi_run r = demi_run_of(w, w->forces_valid ? w->dt : 0);  /* 0: looking only */
+    demi_run r = demi_run_of(w, w->stage.forces_valid ? w->clock.dt : 0);  /* 0: looking only */
     DEMI_ALIGNED demi_tile tile;
     demi_tally tally = {0, 0};
     int l, p;
@@ -8925,7 +8972,7 @@ DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_conta
 
 /* m: as far as any grain and any wall have come towards each other since the list was made. */
 DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
-    return (dem_real)(w->reach + w->wall_reach);
+    return (dem_real)(w->margin.reach + w->margin.wall_reach);
 }
 /* Room in which the places of one body and one wall are found. candidates: how many there are. */
 DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidates) {
@@ -9031,11 +9078,11 @@ static int demi_facets_spheres(const dem_world *w, int d, int first, int last, d
    segments that push with a fraction, 2: as a sieve, one candidate and as many contacts as there
    are. */
 DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                                  dem_vec3 at, dem_real r, demi_touching **places, int how) {
+                                  dem_vec3 at, dem_real r, demi_touching **places, int how,
+                                  demi_near_fn near) {
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
-    const demi_near_fn near = demi_nears[wall->kind];
     demi_touching *out;
     int k, q, end, count = 0;
     *places = out = w->touching + w->domains[d].touching_first;
@@ -9069,17 +9116,30 @@ DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last
     }
     return count;
 }
+static int demi_plane_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                              dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
+                              demi_plane_near);
+}
+static int demi_cylinder_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
+                              demi_cylinder_near);
+}
+/* Any other wall of elements. */
 static int demi_elements_touch(const dem_world *w, int d, int first, int last, dem_real gone,
                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0);
+    const int kind = w->walls[w->wall_id[d*w->wall_stride + first]].kind;
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 0,
+                              demi_nears[kind]);
 }
 static int demi_segments_touch(const dem_world *w, int d, int first, int last, dem_real gone,
                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 1);
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 1, 0);
 }
 static int demi_sieve_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
                               dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 2);
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 2, 0);
 }
 /* By the table of who touches what, which stands in >>shaped. */
 static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
@@ -9173,7 +9233,7 @@ DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *p
 /* All wall contacts of one domain's spheres: law, forces, sums. */
 static void demi_walls_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const dem_real dt = w->forces_valid ? w->dt : 0;
+    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
     demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
     int k;
     for (k = 0; k < domain->wall_contacts_next; k++) {
@@ -9945,7 +10005,7 @@ static dem_real demi_shaped_still(const dem_world *w, const demi_shaped *k, cons
 /* All contacts of one domain: law, forces on both ends, walls' sums, energies. */
 static void demi_shaped_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const dem_real dt = w->forces_valid ? w->dt : 0;
+    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
     demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
     int i;
     domain->shaped_walls = 0;
@@ -10063,8 +10123,8 @@ DEM_INLINE demi_lane demi_lane_turn(const dem_world *w, int i) {
 /* x(t+dt) = x + dt (v + a dt/2): kick half, drift, predict, later kick half. By rows of four, the
    last of which stays zero (in pos: the radius, which zero does not move): rows make vectors. */
 static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->dt, h = (dem_real)w->half_kick;
-    const int synced = w->synced;
+    const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
+    const int synced = w->stage.synced;
     dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT v = w->vel, *DEMI_RESTRICT u = w->half_vel;
     const dem_real *DEMI_RESTRICT f = w->force, *DEMI_RESTRICT inv = w->inv_mass;
     dem_real g[4];
@@ -10091,7 +10151,7 @@ static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turn
 }
 /* v(t+dt/2) = v(t-dt/2) + a dt, x(t+dt) = x + v(t+dt/2) dt */
 static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->dt, h = (dem_real)w->half_kick;
+    const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
     int i, k;
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i);
@@ -10106,7 +10166,7 @@ static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
 }
 /* x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 [ALK07] eq 2.3; v from differences, predicted with a */
 static void demi_move_position_verlet(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->dt, h = (dem_real)w->half_kick;
+    const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
     int i, k;
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i);
@@ -10127,7 +10187,7 @@ static void demi_move_position_verlet(dem_world *w, int begin, int end, int turn
 }
 /* v(t+dt) = v + a dt, x(t+dt) = x + v(t+dt) dt */
 static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->dt;
+    const dem_real dt = w->clock.dt;
     int i, k;
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
@@ -10140,7 +10200,7 @@ static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int tur
 }
 /* x(t+dt) = x + v(t) dt, v(t+dt) = v + a dt [MIL] 4.6 */
 static void demi_move_forward_euler(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->dt;
+    const dem_real dt = w->clock.dt;
     int i, k;
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
@@ -10156,7 +10216,7 @@ static void demi_move_forward_euler(dem_world *w, int begin, int end, int turnin
 static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (void)begin;
     (void)end; }
 static void demi_finish_halves(dem_world *w, int begin, int end) {
-    const dem_real h = (dem_real)w->half_kick;
+    const dem_real h = (dem_real)w->clock.half_kick;
     int i;
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
@@ -10166,7 +10226,7 @@ static void demi_finish_halves(dem_world *w, int begin, int end) {
 }
 /* What half_vel and half_spin must be before the first step from a state at t. */
 static void demi_prime_body(dem_world *w, int i) {
-    const dem_real dt = w->dt, h = dt/2;
+    const dem_real dt = w->clock.dt, h = dt/2;
     const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
     int k;
     for (k = 0; k < 3; k++) {
@@ -10182,7 +10242,7 @@ static void demi_prime_body(dem_world *w, int i) {
 static void demi_prime(dem_world *w) {
     int i;
     for (i = 0; i < w->count; i++) demi_prime_body(w, i);
-    w->primed = 1;
+    w->stage.primed = 1;
 }
 /* --- rotation. A sphere's spin runs along in the scheme of its translation; its orientation, when
        somebody asked for it, follows. A body that is not a sphere keeps its angular momentum in the
@@ -10324,7 +10384,7 @@ DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real
 }
 /* Turns the bodies listed, at most a tile; notes how fast and by how much they changed. */
 static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count) {
-    const dem_real dt = w->dt;
+    const dem_real dt = w->clock.dt;
     demi_turning t;
     int l, e;
     const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
@@ -10360,7 +10420,7 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
 /* Orientations of bodies begin .. end - 1 over one step, and spins of those that are not spheres.
    */
 static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
-    const dem_real dt = w->dt;
+    const dem_real dt = w->clock.dt;
     int who[DEMI_TILE], count = 0, i;
     for (i = begin; i < end; i++) {
         if (w->inv_mass[i] <= 0) continue;
@@ -10378,7 +10438,7 @@ static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int e
 }
 /* Spins at the full step, from angular momentum at the half step and the torque of now. */
 static void demi_orient_finish(dem_world *w, int begin, int end) {
-    const dem_real h = (dem_real)w->half_kick;
+    const dem_real h = (dem_real)w->clock.half_kick;
     int i;
     for (i = begin; i < end; i++)
         if (w->body_shape[i] && w->inv_mass[i] > 0) {
@@ -10413,9 +10473,9 @@ static void demi_domain_finish(dem_world *w, int d) {
 /* Completes the half kick that a step leaves open: velocities are then those of the present time.
    */
 static void demi_finish(dem_world *w) {
-    if (w->synced) return;
+    if (w->stage.synced) return;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);
-    w->synced = 1;
+    w->stage.synced = 1;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -10452,33 +10512,34 @@ static void demi_ledger_book(dem_world *w) {
     size_t i;
     for (i = 0; i < sizeof flows/sizeof *flows; i++) {
         const double part = demi_sum_energy(w, flows[i]);
-        w->energy[flows[i]] += part;
-        if (flows[i] == DEMI_E_FORCE) w->throughput += fabs(part);
+        w->booked.energy[flows[i]] += part;
+        if (flows[i] == DEMI_E_FORCE) w->booked.throughput += fabs(part);
     }
-    w->energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
-    w->energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
+    w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
+    w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = 0; i < (size_t)w->wall_count;
-         i++) walls += (double)w->walls[i].channels.power*(w->forces_valid ? (double)w->dt : 0);
-    w->energy[DEMI_E_WALLS] += walls;
-    w->throughput += fabs(walls);
+         i++) walls += (double)w->walls[i].channels.power*(w->stage.forces_valid
+                                                           ? (double)w->clock.dt : 0);
+    w->booked.energy[DEMI_E_WALLS] += walls;
+    w->booked.throughput += fabs(walls);
 }
 DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     dem_ledger l;
     memset(&l, 0, sizeof l);
     if (!w || !w->desc.ledger) return l;
     demi_kinetic(w, &l.kinetic, &l.rotational);
-    l.elastic = w->energy[DEMI_E_ELASTIC] + w->energy[DEMI_E_SHEAR_STORED];
-    l.gravity = w->energy[DEMI_E_GRAVITY];
-    l.walls = w->energy[DEMI_E_WALLS];
-    l.force = w->energy[DEMI_E_FORCE];
-    l.inserted = w->energy_inserted;
-    l.removed = w->energy_removed;
-    l.normal = w->energy[DEMI_E_DASHPOT];
-    l.slide = w->energy[DEMI_E_SLIDE];
-    l.tangent = w->energy[DEMI_E_SHEAR_WORK] - w->energy[DEMI_E_SLIDE] -
-        w->energy[DEMI_E_SHEAR_STORED];
-    l.rolling = w->energy[DEMI_E_ROLL];
-    l.throughput = w->throughput + w->energy_inserted;
+    l.elastic = w->booked.energy[DEMI_E_ELASTIC] + w->booked.energy[DEMI_E_SHEAR_STORED];
+    l.gravity = w->booked.energy[DEMI_E_GRAVITY];
+    l.walls = w->booked.energy[DEMI_E_WALLS];
+    l.force = w->booked.energy[DEMI_E_FORCE];
+    l.inserted = w->booked.inserted;
+    l.removed = w->booked.removed;
+    l.normal = w->booked.energy[DEMI_E_DASHPOT];
+    l.slide = w->booked.energy[DEMI_E_SLIDE];
+    l.tangent = w->booked.energy[DEMI_E_SHEAR_WORK] - w->booked.energy[DEMI_E_SLIDE] -
+        w->booked.energy[DEMI_E_SHEAR_STORED];
+    l.rolling = w->booked.energy[DEMI_E_ROLL];
+    l.throughput = w->booked.throughput + w->booked.inserted;
     l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force -
         l.inserted + l.removed +
                  l.normal + l.slide + l.tangent + l.rolling;
@@ -11147,7 +11208,7 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     feed.random = d->seed;
     feed.next = -1;
     *demi_feed_at(w, w->feed_count++) = feed;
-    w->dt_valid = 0;                            /* for grains that are to come */
+    w->stage.dt_valid = 0;                            /* for grains that are to come */
     demi_built(w, call);
     id.id = w->feed_count;
     return id;
@@ -11192,9 +11253,10 @@ static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_
     if (!free_place) return 0;
     x = demi_place_of(&c->p, x);
     joins = demi_join_possible(w, d->material.id - 1, r);
-    if (!joins || !w->primed) demi_finish(w);   /* one that joins may stand at the half step, too */
+    /* one that joins may stand at the half step, too */
+    if (!joins || !w->stage.primed) demi_finish(w);
     if (joins)
-        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*(dem_real)w->skin, found,
+        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*(dem_real)w->margin.skin, found,
                                 DEMI_FEED_NEAR);
     joins = joins && count <= DEMI_FEED_NEAR;
     if (!demi_crowd_put(w, c, x, r, w->count) || (!joins && !demi_list_drop(w)) ||
@@ -11205,15 +11267,16 @@ static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_
     i = w->slot_index[demi_body_append(w, d->material.id - 1, r, x)];
     demi_put(w->vel + 4*i, v);
     demi_put(w->half_vel + 4*i, v);
-    w->energy_inserted += demi_body_energy(w, i);
-    w->speed_max = DEMI_MAX(w->speed_max, (double)demi_length(v));
+    w->booked.inserted += demi_body_energy(w, i);
+    w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
     if (joins) {
         qsort(found, (size_t)count, sizeof *found, demi_int_compare);
         joins = demi_list_join(w, i, found, count);
-        w->pairs_changed |= !joins;             /* then the list is made anew */
+        w->stage.pairs_changed |= !joins;             /* then the list is made anew */
     }
     if (!joins || w->desc.force || w->desc.body_force) demi_scene_changed(w);
-    else if (w->primed) demi_prime_body(w, i);  /* it touches nobody: no force on it is known yet */
+    /* it touches nobody: no force on it is known yet */
+    else if (w->stage.primed) demi_prime_body(w, i);
     f->state.fed[f->next]++;
     f->state.total++;
     f->state.mass += f->mass[f->next];
@@ -11233,12 +11296,12 @@ static dem_result demi_feeds_run(dem_world *w) {
     for (i = 0; i < w->feed_count; i++) {
         demi_feed *f = demi_feed_at(w, i);
         const dem_feed_desc *d = &f->desc;
-        const double until = d->end > 0 && w->time > d->end ? d->end : w->time;
+        const double until = d->end > 0 && w->clock.time > d->end ? d->end : w->clock.time;
         const double due = d->rate > 0 ? d->rate*(until - d->start) : 1e300;
         int looked = 0;                         /* is the crowd there? */
         demi_region g;
         demi_crowd c;
-        while (w->time >= d->start && w->steps >= f->again && demi_feed_left(f)) {
+        while (w->clock.time >= d->start && w->clock.steps >= f->again && demi_feed_left(f)) {
             const double rounded = 1e-9*(1 + due);           /* the third of 3/s is due at 1 s */
             int done;
             if (f->next < 0) {
@@ -11255,13 +11318,13 @@ static dem_result demi_feeds_run(dem_world *w) {
                 dem_real r = 0;
                 for (k = 0; k < d->class_count; k++) r = DEMI_MAX(r, d->radius[k]);
                 demi_feed_region(w, d, &g);
-                if (!demi_crowd_begin(w, &c, &g, r + (dem_real)w->skin))
+                if (!demi_crowd_begin(w, &c, &g, r + (dem_real)w->margin.skin))
                     return demi_no_memory(w, "dem_world_step");
                 looked = 1;
             }
             done = demi_feed_put(w, f, &g, &c);
             if (done < 0) return demi_no_memory(w, "dem_world_step");
-            if (!done) f->again = w->steps + DEMI_FEED_REST;
+            if (!done) f->again = w->clock.steps + DEMI_FEED_REST;
         }
         f->state.waiting = 0;
         if (f->next >= 0) {
@@ -11272,7 +11335,8 @@ static dem_result demi_feeds_run(dem_world *w) {
             waits = DEMI_MIN(DEMI_MAX(waits, 0), 1e18);        /* fits a whole number */
             f->state.waiting = (uint64_t)(waits + 1e-9*waits);
         }
-        f->state.done = f->next < 0 && (!demi_feed_left(f) || (d->end > 0 && w->time > d->end));
+        f->state.done = f->next < 0 &&
+            (!demi_feed_left(f) || (d->end > 0 && w->clock.time > d->end));
     }
     return DEM_OK;
 }
@@ -11316,7 +11380,7 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     }
     memset(&outlet, 0, sizeof outlet);
     outlet.desc = *d;
-    outlet.state.since = w->time;
+    outlet.state.since = w->clock.time;
     *demi_outlet_at(w, w->outlet_count++) = outlet;
     demi_built(w, call);
     id.id = w->outlet_count;
@@ -11335,7 +11399,7 @@ static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
     o->state.total_mass += m;
     *(wanted ? &o->state.sorted : &o->state.gangue) += 1;
     *(wanted ? &o->state.sorted_mass : &o->state.gangue_mass) += m;
-    o->state.last = w->time;
+    o->state.last = w->clock.time;
 }
 static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {
     return x.x >= d->box.lo.x && x.x <= d->box.hi.x && x.y >= d->box.lo.y && x.y <= d->box.hi.y &&
@@ -11398,7 +11462,7 @@ DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
     demi_outlet *o = demi_outlet_find(w, "dem_outlet_reset", id);
     if (!o) return DEM_ERROR_ARGUMENT;
     memset(&o->state, 0, sizeof o->state);
-    o->state.since = w->time;
+    o->state.since = w->clock.time;
     return DEM_OK;
 }
 
@@ -11689,10 +11753,12 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             int e;
             if (!(l < sum) || !(l > 0)) continue;
             if (whole && !press[a].whole && !press[b].whole) continue;
-            for (e = 0; e < DEMI_PAIR_COLUMNS && !w->uniform; e++)
+            for (e = 0; e < DEMI_PAIR_COLUMNS && !w->effects.uniform; e++)
                 coef[e] = span.coef[(size_t)e*span.stride];
-            c.s = demi_stiffness_of(w, w->uniform ? w->uniform_coef : coef, w->uniform
-                                    ? 1/(2*(double)w->uniform_inv_mass) : (double)coef[DEMI_M_EFF],
+            c.s = demi_stiffness_of(w, w->effects.uniform ? w->effects.uniform_coef : coef,
+                                    w->effects.uniform
+                                    ? 1/(2*(double)w->effects.uniform_inv_mass)
+                                    : (double)coef[DEMI_M_EFF],
                                     (double)(sum - l));
             c.n = demi_scale(gap, 1/l);
             c.overlap = sum - l;
@@ -11753,12 +11819,12 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
     return demi_fail(w, DEM_ERROR_TIME_STEP, "%s: step %llu: a body that is not a sphere turns by "
                      "%.3g rad in a step of %g s, must be at most 1; its spin is %.3g rad/s: use "
                      "dt = 0 or at most %.2g s, or look for what spun it up", call,
-                     (unsigned long long)w->steps, rate*(double)w->dt, (double)w->dt, rate,
-                     0.1/rate);
+                     (unsigned long long)w->clock.steps, rate*(double)w->clock.dt,
+                     (double)w->clock.dt, rate, 0.1/rate);
 }
 /* The fastest spin among those bodies, rad/s. */
 static double demi_spin_fastest(const dem_world *w) {
-    double most = w->spin_elsewhere;
+    double most = w->clock.spin_elsewhere;
     int i;
     for (i = 0; i < w->count && w->shaped_count; i++)
         if (w->body_shape[i])
@@ -11776,9 +11842,9 @@ DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
 static dem_result demi_dt_settle(dem_world *w) {
     dem_advice a;
     double spin;
-    if (w->dt_valid) return DEM_OK;
+    if (w->stage.dt_valid) return DEM_OK;
     if (!w->count && !w->feed_count) {          /* nothing to limit it: walls still move */
-        if (!(w->dt > 0)) w->dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
+        if (!(w->clock.dt > 0)) w->clock.dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
         return DEM_OK;
     }
     demi_finish(w);                             /* speeds are those of now, whoever asks */
@@ -11790,19 +11856,19 @@ static dem_result demi_dt_settle(dem_world *w) {
                              "t_c/20 = %g s (t_c of %s"
                              "); use dt = 0, a softer material or a smaller dt",
                              (double)w->desc.dt, (double)a.dt_max, a.binds);
-        w->dt = w->desc.dt;
-        if (!w->desc.allow_large_dt && spin*(double)w->dt > 1)
+        w->clock.dt = w->desc.dt;
+        if (!w->desc.allow_large_dt && spin*(double)w->clock.dt > 1)
             return demi_spins_refuse(w, spin, "dem_world_step");
     } else {
         const dem_real easy = a.contact_time > 0 ? a.dt : DEM_R(1e-3);
         const dem_real dt = spin*(double)easy > 0.1 ? (dem_real)(0.1/spin) : easy;
         /* half steps were of the old dt */
-        if (dt < w->dt || dt > w->dt) { demi_finish(w); w->primed = 0; }
-        w->dt = dt;
+        if (dt < w->clock.dt || dt > w->clock.dt) { demi_finish(w); w->stage.primed = 0; }
+        w->clock.dt = dt;
     }
-    w->assumed_speed = (double)a.speed;
-    w->dt_valid = 1;
-    w->press_due = w->press_since = w->steps;
+    w->clock.assumed_speed = (double)a.speed;
+    w->stage.dt_valid = 1;
+    w->clock.press_due = w->clock.press_since = w->clock.steps;
     return DEM_OK;
 }
 /* The fastest body that moves, m/s. */
@@ -11819,34 +11885,37 @@ static double demi_fastest(const dem_world *w) {
    anything moves. Pressed contacts are looked at more and more rarely while the scene stays, at
    least every thousand steps; the speed at every step. */
 static dem_result demi_dt_check(dem_world *w) {
-    const double radius = (double)w->radius_min;
+    const double radius = (double)w->effects.radius_min;
     int worst = 0, auto_dt = !(w->desc.dt > 0);
-    double speed = w->speed_max, limit;
+    double speed = w->booked.speed_max, limit;
     if (w->desc.allow_large_dt || !w->count) return DEM_OK;
-    if (w->steps == w->press_since) speed = demi_fastest(w);
-    speed += w->near_kick;
-    if (speed*(double)w->dt > radius && radius > 0)
+    if (w->clock.steps == w->clock.press_since) speed = demi_fastest(w);
+    speed += w->margin.kick;
+    if (speed*(double)w->clock.dt > radius && radius > 0)
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: a body at %.3g m/s "
                          "moves %.3g radii of the smallest grain (%g m) in a step of %g s, must be "
                          "at most 1: it would pass others and walls unseen; use dt = 0 or at most "
-                         "%.2g s, or look for what made it so fast", (unsigned long long)w->steps,
-                         speed, speed*(double)w->dt/radius, radius, (double)w->dt,
+                         "%.2g s, or look for what made it so fast",
+                         (unsigned long long)w->clock.steps, speed,
+                             speed*(double)w->clock.dt/radius, radius, (double)w->clock.dt,
                          0.1*radius/speed);
-    if (w->steps < w->press_due) return DEM_OK;
-    limit = demi_press_limit(w, (double)w->dt*(auto_dt ? 2 : 1), &worst);
+    if (w->clock.steps < w->clock.press_due) return DEM_OK;
+    limit = demi_press_limit(w, (double)w->clock.dt*(auto_dt ? 2 : 1), &worst);
     if (limit < 0) return demi_no_memory(w, "dem_world_step");
-    w->press_due = w->steps + DEMI_MIN(8*(w->steps - w->press_since) + 8, 1000);
+    w->clock.press_due = w->clock.steps +
+        DEMI_MIN(8*(w->clock.steps - w->clock.press_since) + 8, 1000);
     if (!(limit > 0)) return DEM_OK;
     if (auto_dt) {
         demi_finish(w);
-        w->primed = 0;
-        w->dt = (dem_real)(limit/2);
+        w->stage.primed = 0;
+        w->clock.dt = (dem_real)(limit/2);
         return DEM_OK;
     }
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be at "
                      "most %g s: body %u is pressed by %d contacts, by %.3g of its radius at most; "
-                     "use dt = 0, a smaller dt, or less overlap", (unsigned long long)w->steps,
-                     (double)w->dt, limit, (unsigned)w->body_slot[worst] + 1,
+                     "use dt = 0, a smaller dt, or less overlap",
+                     (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
+                         (unsigned)w->body_slot[worst] + 1,
                      (int)w->press[worst].contacts,
                      (double)w->press[worst].deepest);
 }
@@ -11897,7 +11966,7 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
 /* The same for a domain in which some bodies may be quiet. */
 static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
     demi_domain *domain = &w->domains[d];
-    const dem_real *DEMI_RESTRICT u = w->half_vel, dt = w->dt;
+    const dem_real *DEMI_RESTRICT u = w->half_vel, dt = w->clock.dt;
     dem_real *DEMI_RESTRICT x = w->pos;
     int i, k, end, l;
     for (i = domain->begin; i < domain->end; i = end) {
@@ -11944,7 +12013,7 @@ static void demi_domain_move(dem_world *w, int d) {
             const dem_real *u = w->half_vel + 4*i;
             if (w->inv_mass[i] <= 0) continue;
             domain->energy[DEMI_E_GRAVITY] += (double)w->mass[i]*(double)(g.x*u[0] + g.y*u[1] +
-                g.z*u[2])*(double)w->dt;
+                g.z*u[2])*(double)w->clock.dt;
         }
     }
 }
@@ -11959,12 +12028,13 @@ static void demi_domain_fields(dem_world *w, int d) {
         dem_vec3 force = none, torque = none;
         dem_body_state body;
         if (demi_visits(w, i) || dem_body_get(w, id, &body) != DEM_OK) continue;
-        w->desc.body_force(&body, id, w->time, &force, &torque, w->desc.force_user);
+        w->desc.body_force(&body, id, w->clock.time, &force, &torque, w->desc.force_user);
         demi_push_add(w->force + 4*i, force);
         demi_push_add(w->torque + 4*i, torque);
-        if (w->desc.ledger && w->forces_valid && w->inv_mass[i] > 0)
+        if (w->desc.ledger && w->stage.forces_valid && w->inv_mass[i] > 0)
             domain->energy[DEMI_E_FORCE] += (double)(demi_dot(force, body.velocity) +
-                                                     demi_dot(torque, body.spin))*(double)w->dt;
+                                                     demi_dot(torque,
+                                                              body.spin))*(double)w->clock.dt;
     }
 }
 /* Force field, or nothing, to start the sums with; after a move forces are clear already. */
@@ -11972,7 +12042,7 @@ static void demi_domain_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
     int i;
-    if (n && !w->moved) {
+    if (n && !w->stage.moved) {
         memset(w->force + 4*domain->begin, 0, n);
         memset(w->torque + 4*domain->begin, 0, n);
     }
@@ -11980,11 +12050,11 @@ static void demi_domain_clear(dem_world *w, int d) {
         if (demi_visits(w, i)) continue;
         const dem_vec3 f = w->desc.force(demi_at(w->pos + 4*i), demi_at(w->vel + 4*i),
                                          w->pos[4*i + 3], w->mass[i],
-                                         w->time, w->desc.force_user);
+                                         w->clock.time, w->desc.force_user);
         demi_put(w->force + 4*i, f);
-        if (w->desc.ledger && w->forces_valid && w->inv_mass[i] > 0)
+        if (w->desc.ledger && w->stage.forces_valid && w->inv_mass[i] > 0)
             w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f,
-                demi_at(w->vel + 4*i))*(double)w->dt;
+                demi_at(w->vel + 4*i))*(double)w->clock.dt;
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
 }
@@ -12014,7 +12084,7 @@ static void demi_domain_gather(dem_world *w, int d) {
 }
 /* Forces at the present positions and velocities; wall channels. */
 static void demi_forces(dem_world *w) {
-    const double dt = w->forces_valid ? (double)w->dt : 0;
+    const double dt = w->stage.forces_valid ? (double)w->clock.dt : 0;
     demi_wall_contact *wall_contacts = w->wall_now;
     demi_shaped *shaped = w->shaped_now;
     int d, i, k;
@@ -12054,7 +12124,7 @@ static void demi_forces(dem_world *w) {
         c->time += dt;
     }
     for (d = 0; d < w->domain_count; d++)
-        w->overlap_max = DEMI_MAX(w->overlap_max, w->domains[d].overlap);
+        w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, w->domains[d].overlap);
     if (w->desc.ledger) demi_ledger_book(w);
 }
 
@@ -12070,8 +12140,8 @@ static dem_result demi_unstable(dem_world *w) {
                              "position, velocity or spin is no "
                              "longer a finite number; likely two grains stand at the same place, a "
                              "law, force field or motion of your own divided by zero, or dt "
-                             "= %g s is too large", (unsigned long long)w->steps,
-                             (unsigned)w->body_slot[i] + 1, (double)w->dt);
+                             "= %g s is too large", (unsigned long long)w->clock.steps,
+                             (unsigned)w->body_slot[i] + 1, (double)w->clock.dt);
     for (d = 0; d < w->domain_count; d++) deepest = DEMI_MAX(deepest, w->domains[d].overlap);
     for (d = 0; d < w->domain_count; d++)
         for (i = 0; i < w->domains[d].wall_contacts; i++) {
@@ -12081,16 +12151,16 @@ static dem_result demi_unstable(dem_world *w) {
                                  "overlaps wall %d by %.3g of its "
                                  "radius, must be below 1; it started inside the wall, hit it too "
                                  "fast for dt = %g s, or the "
-                                 "material is too soft", (unsigned long long)w->steps,
+                                 "material is too soft", (unsigned long long)w->clock.steps,
                                  (unsigned)w->body_slot[c->body] + 1,
                                  (int)c->wall + 1, (double)(c->overlap/w->pos[4*c->body + 3]),
-                                 (double)w->dt);
+                                 (double)w->clock.dt);
         }
     return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: two grains overlap by %.3g "
                      "of the smaller radius, must "
                      "be below 1; they started inside each other, met too fast for dt = %g s, or "
                      "the material is too soft",
-                     (unsigned long long)w->steps, deepest, (double)w->dt);
+                     (unsigned long long)w->clock.steps, deepest, (double)w->clock.dt);
 }
 
 /* Bodies whose centre left through an outflow boundary are taken out. */
@@ -12147,10 +12217,12 @@ static void demi_fields_sample(dem_world *w) {
         const dem_field_desc *d = &field->desc;
         dem_real lo[3], hi[3];
         int images[3], n;
-        if (!field->used || w->time < field->next || (d->end > 0 && w->time > d->end)) continue;
-        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->time) : w->time +
-            100*(double)w->dt;
-        if (field->next <= w->time) field->next = w->time + (double)w->dt/2;
+        if (!field->used || w->clock.time < field->next ||
+            (d->end > 0 && w->clock.time > d->end)) continue;
+        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->clock.time)
+            : w->clock.time +
+            100*(double)w->clock.dt;
+        if (field->next <= w->clock.time) field->next = w->clock.time + (double)w->clock.dt/2;
         demi_put(lo, d->box.lo);
         demi_put(hi, d->box.hi);
         for (k = 0; k < 3; k++) {
@@ -12174,22 +12246,22 @@ static void demi_fields_sample(dem_world *w) {
 
 /* Time after one more step. */
 static void demi_time_pass(dem_world *w) {
-    const double dt = (double)w->dt;
-    if (w->since.dt < dt || w->since.dt > dt) {
-        w->since.time = w->time;
-        w->since.steps = w->steps;
-        w->since.dt = dt;
+    const double dt = (double)w->clock.dt;
+    if (w->clock.since.dt < dt || w->clock.since.dt > dt) {
+        w->clock.since.time = w->clock.time;
+        w->clock.since.steps = w->clock.steps;
+        w->clock.since.dt = dt;
     }
-    w->steps++;
-    w->time = w->since.time + (double)(w->steps - w->since.steps)*dt;
+    w->clock.steps++;
+    w->clock.time = w->clock.since.time + (double)(w->clock.steps - w->clock.since.steps)*dt;
 }
 /* 1 move: first half kick, drift, predicted velocities; walls follow. */
 static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
-    w->half_kick = (double)w->dt/2;
+    w->clock.half_kick = (double)w->clock.dt/2;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
-    w->synced = 0;
+    w->stage.synced = 0;
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -12200,32 +12272,34 @@ static dem_result demi_step_move(dem_world *w) {
         turn_speed = DEMI_MAX(turn_speed, w->domains[d].turn_speed);
         turn_rate = DEMI_MAX(turn_rate, w->domains[d].turn_rate);
     }
-    if (sqrt(turn_rate)*(double)w->dt > (w->desc.allow_large_dt ? 2 : 1)) /* series end there */
+    /* series end there */
+    if (sqrt(turn_rate)*(double)w->clock.dt > (w->desc.allow_large_dt ? 2 : 1))
         return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
-    w->speed_max = sqrt(speed2);
-    w->step_reach = (w->speed_max + (w->tight ? sqrt(turn_speed) : 0))*(double)w->dt;
-    w->reach += w->step_reach;
-    w->near_kick = sqrt(acceleration2)*(double)w->dt + sqrt(turn);
+    w->booked.speed_max = sqrt(speed2);
+    w->margin.step_reach =
+        (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt;
+    w->margin.reach += w->margin.step_reach;
+    w->margin.kick = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
-        w->energy[DEMI_E_GRAVITY] += work;
-        w->throughput += fabs(work);
+        w->booked.energy[DEMI_E_GRAVITY] += work;
+        w->booked.throughput += fabs(work);
     }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         double speed;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(wall, w->time, &wall->pose);
-        demi_wall_pose_at(wall, w->time - w->half_kick, &wall->mid);
+        demi_wall_pose_at(wall, w->clock.time, &wall->pose);
+        demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &wall->mid);
         if (!demi_pose_finite(&wall->pose) || !demi_pose_finite(&wall->mid))
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: the motion of wall "
                              "%d gave a pose that is not finite at %g s; check the motion function",
-                             (unsigned long long)w->steps, i + 1, w->time);
+                             (unsigned long long)w->clock.steps, i + 1, w->clock.time);
         speed = demi_wall_speed(wall);
-        if (speed < 0) w->wall_reach = 1e300;   /* no bound: look anew */
+        if (speed < 0) w->margin.wall_reach = 1e300;   /* no bound: look anew */
         else w->wall_fastest = DEMI_MAX(w->wall_fastest, speed);
     }
-    w->wall_reach += w->wall_fastest*(double)w->dt;
+    w->margin.wall_reach += w->wall_fastest*(double)w->clock.dt;
     w->wall_fastest = 0;
     return DEM_OK;
 }
@@ -12236,37 +12310,37 @@ static dem_result demi_step_once(dem_world *w) {
     double overlap = 0;
     dem_result result;
     int d, search;
-    if (!w->moved) {
+    if (!w->stage.moved) {
         result = demi_step_move(w);
         if (result != DEM_OK) return result;
-        demi_near_pass(w, w->near_kick);
-        w->moved = 1;
+        demi_near_pass(w, w->margin.kick);
+        w->stage.moved = 1;
     }
     /* 2 search: when something may have come near that is not in the list. Outlets look then:
        nobody gets farther than half a skin between two lists */
     result = demi_outflow(w);
-    search = !w->list_valid || w->skin <= 0 || 2*w->reach > w->skin ||
-             w->reach + w->wall_reach > w->skin;
-    if (result == DEM_OK && w->outlet_count && (search || w->steps%DEMI_OUTLET_REST == 0))
+    search = !w->stage.list_valid || w->margin.skin <= 0 || 2*w->margin.reach > w->margin.skin ||
+             w->margin.reach + w->margin.wall_reach > w->margin.skin;
+    if (result == DEM_OK && w->outlet_count && (search || w->clock.steps%DEMI_OUTLET_REST == 0))
         result = demi_outlets_run(w);
     if (result != DEM_OK) return result;
-    if (search || !w->list_valid) {
+    if (search || !w->stage.list_valid) {
         result = demi_rebuild(w, "dem_world_step");
         if (result != DEM_OK) return result;
         demi_kernel_choose(w);
         /* faster than thought: ask again */
-        if (w->speed_max > 1.5*w->assumed_speed) w->dt_valid = 0;
-    } else if (w->near_stale || demi_near_due(w)) {
-        if (!w->near_chosen && demi_near_due(w)) demi_near_choose(w);
-        w->near_chosen = 1;
+        if (w->booked.speed_max > 1.5*w->clock.assumed_speed) w->stage.dt_valid = 0;
+    } else if (w->stage.near_stale || demi_near_due(w)) {
+        if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
+        w->stage.near_chosen = 1;
         if (!demi_near_make(w, 0)) return demi_no_memory(w, "dem_world_step");
-        w->near_chosen = 0;
+        w->stage.near_chosen = 0;
     }
 
     /* 3 touch, 4 respond, 5 gather */
     if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
-    w->moved = 0;
+    w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
         if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
 
@@ -12281,17 +12355,17 @@ static dem_result demi_step_once(dem_world *w) {
 static dem_result demi_refresh(dem_world *w) {
     dem_result result;
     demi_finish(w);
-    if (w->pairs_changed && !demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
-    if (!w->list_valid) {
+    if (w->stage.pairs_changed && !demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+    if (!w->stage.list_valid) {
         result = demi_rebuild(w, "dem_world_step");
         if (result != DEM_OK) return result;
     }
-    w->pairs_changed = 0;
+    w->stage.pairs_changed = 0;
     demi_kernel_choose(w);
-    w->forces_valid = 0;
+    w->stage.forces_valid = 0;
     if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
-    w->forces_valid = 1;
+    w->stage.forces_valid = 1;
     return DEM_OK;
 }
 
@@ -12304,25 +12378,27 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     if (steps && demi_unbuilt(w, "dem_world_step") != DEM_OK) return DEM_ERROR_ARGUMENT;
     for (i = 0; i < steps && result == DEM_OK; i++) {
         int sampling = 0;
-        if (!w->moved) {
+        if (!w->stage.moved) {
             result = demi_dt_settle(w);
             if (result == DEM_OK && w->feed_count) {
                 result = demi_feeds_run(w);
                 if (result == DEM_OK) result = demi_dt_settle(w);   /* there may be new grains */
             }
-            if (result == DEM_OK && (!w->forces_valid || !w->list_valid || w->pairs_changed))
+            if (result == DEM_OK &&
+                (!w->stage.forces_valid || !w->stage.list_valid || w->stage.pairs_changed))
                 result = demi_refresh(w);
             if (result == DEM_OK) result = demi_dt_check(w);
             if (result != DEM_OK) break;
-            if (!w->primed) { demi_finish(w); demi_prime(w); }
+            if (!w->stage.primed) { demi_finish(w); demi_prime(w); }
         }
         result = demi_step_once(w);
         whole = result == DEM_OK;
         for (f = 0; f < w->field_count; f++)
-            sampling |= w->fields[f].used && w->time >= w->fields[f].next;
+            sampling |= w->fields[f].used && w->clock.time >= w->fields[f].next;
         if (sampling && whole) { demi_finish(w); demi_fields_sample(w); }
     }
-    if (!whole && w->moved) return result;      /* half a step: its velocities stay as predicted */
+    /* half a step: its velocities stay as predicted */
+    if (!whole && w->stage.moved) return result;
     demi_finish(w);
     return result;
 }
@@ -12330,7 +12406,7 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
 DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
                                  void *user) {
     if (demi_null(w, "dem_world_run", w, "world")) return DEM_ERROR_ARGUMENT;
-    const double start = w->time, begun = demi_clock();
+    const double start = w->clock.time, begun = demi_clock();
     double last = begun, end;
     int chunk = 1;
     if (!demi_finite_double(seconds) || !(seconds >= 0) || !(seconds < 1e300))
@@ -12338,32 +12414,33 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
                          ">= 0", seconds);
     if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
     end = start + seconds;
-    if (w->run_steps == w->steps && fabs(w->run_end - start) <= (double)w->dt)
-        end = w->run_end + seconds;
+    if (w->clock.run_steps == w->clock.steps &&
+        fabs(w->clock.run_end - start) <= (double)w->clock.dt)
+        end = w->clock.run_end + seconds;
     for (;;) {
-        const double left = end - w->time;
+        const double left = end - w->clock.time;
         double now;
         int steps = chunk;
         dem_result result = demi_dt_settle(w);
         if (result != DEM_OK) return result;
-        if (left < (double)w->dt/2) break;
-        if (left/(double)w->dt < chunk) steps = (int)(left/(double)w->dt + 0.5);
+        if (left < (double)w->clock.dt/2) break;
+        if (left/(double)w->clock.dt < chunk) steps = (int)(left/(double)w->clock.dt + 0.5);
         if (steps < 1) steps = 1;
         result = dem_world_step(w, steps);
         if (result != DEM_OK) return result;
         now = demi_clock();
         if (now - last > 0.1 && progress) {
-            const double done = (w->time - start)/seconds;
+            const double done = (w->clock.time - start)/seconds;
             last = now;
             if (progress(w, done, (now - begun)*(1 - done)/DEMI_MAX(done, 1e-9), user))
                 return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_run: stopped by the progress "
-                                 "function at %g s", w->time);
+                                 "function at %g s", w->clock.time);
         }
         /* short steps: look at the clock less often */
-        if (now - begun < 0.05*(double)w->steps && chunk < 1000) chunk++;
+        if (now - begun < 0.05*(double)w->clock.steps && chunk < 1000) chunk++;
     }
-    w->run_end = end;
-    w->run_steps = w->steps;
+    w->clock.run_end = end;
+    w->clock.run_steps = w->clock.steps;
     if (progress) progress(w, 1, 0, user);
     return DEM_OK;
 }
@@ -12371,7 +12448,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
 DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
     if (demi_null(w, "dem_progress_print", user, "user")) return 0;
     fprintf((FILE *)user, "\r%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", 100*done,
-            w->time, w->count,
+            w->clock.time, w->count,
             seconds_left, done >= 1 ? "\n" : "");
     fflush((FILE *)user);
     return 0;
@@ -12379,11 +12456,11 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
 
 DEM_API double dem_world_time(const dem_world *w) {
     if (demi_null(w, "dem_world_time", w, "world")) return 0;
-    return w->time;
+    return w->clock.time;
 }
 DEM_API uint64_t dem_world_steps(const dem_world *w) {
     if (demi_null(w, "dem_world_steps", w, "world")) return 0;
-    return w->steps;
+    return w->clock.steps;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -12465,17 +12542,17 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     int d;
     memset(&c, 0, sizeof c);
     if (!w) return c;
-    c.steps = w->steps;
-    c.rebuilds = w->rebuilds;
-    for (d = 0; d < w->domain_count && w->list_valid; d++) {
+    c.steps = w->clock.steps;
+    c.rebuilds = w->clock.rebuilds;
+    for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
         c.contacts += w->domains[d].contacts;
         c.wall_contacts += w->domains[d].wall_contacts + w->domains[d].shaped_walls;
     }
-    c.overlap_max = (dem_real)w->overlap_max;
-    c.speed_max = (dem_real)w->speed_max;
-    c.skin = (dem_real)w->skin;
-    c.dt = w->dt;
+    c.overlap_max = (dem_real)w->booked.overlap_max;
+    c.speed_max = (dem_real)w->booked.speed_max;
+    c.skin = (dem_real)w->margin.skin;
+    c.dt = w->clock.dt;
     c.search = w->desc.search;
     c.threads = w->desc.threads;
     c.domains = w->domain_count;
@@ -12484,7 +12561,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
 }
 DEM_API void dem_overlap_reset(dem_world *w) {
     if (demi_null(w, "dem_overlap_reset", w, "world")) return;
-    w->overlap_max = 0;
+    w->booked.overlap_max = 0;
 }
 
 /* One near pair, if it touches: its force by the law of the run on a copy of its memory. */
@@ -12529,7 +12606,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
     if (demi_null(w, "dem_contacts_get", w, "world")) return -1;
     const demi_periods p = demi_periods_of(w);
     int d, k, n = 0;
-    if (!w->list_valid) return demi_list_stale(w, "dem_contacts_get");
+    if (!w->stage.list_valid) return demi_list_stale(w, "dem_contacts_get");
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
@@ -12595,7 +12672,7 @@ static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
 }
 /* Digest of one contact, whichever of its bodies is a. */
 static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
-    const int pushes = c->share > 0, slots = !w->list_valid;   /* while there is no list */
+    const int pushes = c->share > 0, slots = !w->stage.list_valid;   /* while there is no list */
     uint32_t who[4];
     uint64_t h = DEMI_HASH_START;
     int i, flip;
@@ -12615,7 +12692,8 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
     int d, k, i;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
-        for (k = w->list_valid ? demi_near_first(domain) : domain->near_end; k < domain->near_end;
+        for (k = w->stage.list_valid ? demi_near_first(domain)
+             : domain->near_end; k < domain->near_end;
              k = demi_near_next(domain, k)) {
             const demi_span span = demi_span_of(w, d, k, 1);
             if (demi_near_remembers(w, d, k))
@@ -12625,7 +12703,7 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
         for (k = 0; k < domain->wall_contacts; k++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
             const int pushes = c->share > 0;    /* or is it under way through a reduced hole? */
-            const uint32_t slot = w->list_valid ? w->body_slot[c->body] : (uint32_t)c->body;
+            const uint32_t slot = w->stage.list_valid ? w->body_slot[c->body] : (uint32_t)c->body;
             uint64_t one = demi_hash(DEMI_HASH_START, &slot, sizeof slot);
             one = demi_hash(one, &c->wall, sizeof c->wall);
             one = demi_hash(one, &c->element, sizeof c->element);
@@ -12636,7 +12714,7 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
             sum += demi_shaped_hash(w, &w->shaped_now[(size_t)d*(size_t)w->shaped_stride +
                                                       (size_t)k]);
     }
-    for (i = 0; !w->list_valid && w->carry_count && w->carry_stride == w->memory_stride &&
+    for (i = 0; !w->stage.list_valid && w->carry_count && w->carry_stride == w->memory_stride &&
                 i < w->carry_rows; i++)
         for (k = w->carry_start[i]; k < w->carry_start[i + 1]; k++) {
             const int32_t p = w->carry_partner[k];
@@ -12682,7 +12760,7 @@ DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed
                   "give what dem_sieve_add returned", (int)sieve.id);
         return -1;
     }
-    if (!w->list_valid) return demi_list_stale(w, "dem_sieve_blinded");
+    if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded");
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
         const int all = w->domains[d].wall_contacts + w->domains[d].shaped;
@@ -12718,7 +12796,7 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     uint64_t h = DEMI_HASH_START;
     int i;
-    h = demi_hash(h, &w->time, sizeof w->time);
+    h = demi_hash(h, &w->clock.time, sizeof w->clock.time);
     for (i = 0; i < w->slot_count; i++) {
         const int b = w->slot_index[i];
         dem_real x[4];
@@ -14064,40 +14142,15 @@ static uint64_t demi_scene_digest(const dem_world *w) {
 /* Numbers that are not arrays. */
 static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->count);          DEMI_VISIT(s, w->slot_count);
-    DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->list_valid);
+    DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);
     DEMI_VISIT(s, w->orienting);      DEMI_VISIT(s, w->shaped_count);
     DEMI_VISIT(s, w->carry_count);    DEMI_VISIT(s, w->carry_rows);
     DEMI_VISIT(s, w->carry_stride);
     DEMI_VISIT(s, w->slot_free);      DEMI_VISIT(s, w->slot_pending);
-    DEMI_VISIT(s, w->balance);
-    /* effects, of the time the list was made */
-    DEMI_VISIT(s, w->tangent);        DEMI_VISIT(s, w->rolling);
-    DEMI_VISIT(s, w->uniform);        DEMI_VISIT(s, w->fixed_count);
-    DEMI_VISIT(s, w->tight);          DEMI_VISIT(s, w->uniform_coef);
-    DEMI_VISIT(s, w->uniform_radius); DEMI_VISIT(s, w->uniform_inv_mass);
-    DEMI_VISIT(s, w->radius_min);     DEMI_VISIT(s, w->radius_max);
-    DEMI_VISIT(s, w->dt_valid);       DEMI_VISIT(s, w->forces_valid);
-    DEMI_VISIT(s, w->synced);         DEMI_VISIT(s, w->primed);
-    DEMI_VISIT(s, w->moved);          DEMI_VISIT(s, w->pairs_changed);
-    DEMI_VISIT(s, w->last_rebuild);   DEMI_VISIT(s, w->steps);
-    DEMI_VISIT(s, w->rebuilds);       DEMI_VISIT(s, w->dt);
-    DEMI_VISIT(s, w->time);           DEMI_VISIT(s, w->since);
-    DEMI_VISIT(s, w->run_end);        DEMI_VISIT(s, w->run_steps);
-    DEMI_VISIT(s, w->skin_chosen);    DEMI_VISIT(s, w->near_chosen);
-    DEMI_VISIT(s, w->skin);           DEMI_VISIT(s, w->reach);
-    DEMI_VISIT(s, w->wall_reach);     DEMI_VISIT(s, w->skin_auto);
-    DEMI_VISIT(s, w->assumed_speed);  DEMI_VISIT(s, w->near_span);
-    DEMI_VISIT(s, w->near_age);       DEMI_VISIT(s, w->near_margin);
-    DEMI_VISIT(s, w->near_drift);     DEMI_VISIT(s, w->near_kick);
-    DEMI_VISIT(s, w->near_creep);     DEMI_VISIT(s, w->near_stale);
-    DEMI_VISIT(s, w->join_room);      DEMI_VISIT(s, w->overlap_max);
-    DEMI_VISIT(s, w->desc.search);    DEMI_VISIT(s, w->levels);
-    DEMI_VISIT(s, w->level_count);    DEMI_VISIT(s, w->level_fine);
-    DEMI_VISIT(s, w->level_looks);    DEMI_VISIT(s, w->wide);
-    DEMI_VISIT(s, w->speed_max);      DEMI_VISIT(s, w->half_kick);
-    DEMI_VISIT(s, w->press_due);      DEMI_VISIT(s, w->press_since);
-    DEMI_VISIT(s, w->energy);         DEMI_VISIT(s, w->energy_inserted);
-    DEMI_VISIT(s, w->energy_removed); DEMI_VISIT(s, w->throughput);
+    DEMI_VISIT(s, w->balance);        DEMI_VISIT(s, w->desc.search);
+    DEMI_VISIT(s, w->clock);          DEMI_VISIT(s, w->stage);
+    DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
+    DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
 }
 static void demi_visit_bodies(dem_world *w, demi_stream *s) {
     int k;
@@ -14130,14 +14183,14 @@ static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
     for (e = 0; e < w->memory_stride; e++)
         demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
                    (size_t)e*(size_t)w->near.stride), remembering*r);
-    for (e = 0; e < DEMI_PAIR_COLUMNS && w->pairs_changed && !w->uniform; e++)
+    for (e = 0; e < DEMI_PAIR_COLUMNS && w->stage.pairs_changed && !w->effects.uniform; e++)
         demi_visit(s, w->near.coef + (from*DEMI_PAIR_COLUMNS + (size_t)e*(size_t)w->near.stride),
                    remembering*r);
 }
 /* Candidates, near pairs, wall candidates: of a list that fits the bodies. */
 static void demi_visit_lists(dem_world *w, demi_stream *s) {
     int d, i;
-    for (d = 0; d < w->domain_count && w->list_valid; d++) {
+    for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
         const demi_domain *domain = &w->domains[d];
         const size_t walls = (size_t)domain->walls;
         for (i = 0; i < 2; i++) {
@@ -14170,7 +14223,7 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
             demi_visit(s, w->shaped_now + (size_t)d*(size_t)w->shaped_stride,
                        (size_t)domain->shaped*sizeof(demi_shaped));
     }
-    if (w->list_valid || !w->carry_count) return;
+    if (w->stage.list_valid || !w->carry_count) return;
     demi_visit(s, w->carry_start, ((size_t)w->carry_rows + 1)*4);
     demi_visit(s, w->carry_partner, (size_t)w->carry_count*4);
     demi_visit(s, w->carry_memory,
@@ -14234,7 +14287,9 @@ typedef struct demi_checkpoint_head {
 
 /* Of structs that are saved whole, and of what bodies keep: tells files of another dem.h. */
 static uint32_t demi_checkpoint_layout(void) {
-    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_wall_contact), sizeof(demi_shaped)};
+    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_wall_contact), sizeof(demi_shaped),
+                            sizeof(demi_timing), sizeof(demi_stages), sizeof(demi_margin),
+                            sizeof(demi_in_force), sizeof(demi_levels), sizeof(demi_booked)};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -14283,7 +14338,7 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
                          path ? path : "the file");
     result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
-    if (w->list_valid) w->carry_count = 0;      /* filed once, and taken up by the list */
+    if (w->stage.list_valid) w->carry_count = 0;      /* filed once, and taken up by the list */
     if (!w->carry_count) w->carry_rows = w->carry_stride = 0;
     memset(&head, 0, sizeof head);
     memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
@@ -14475,10 +14530,13 @@ static int demi_sane(double x, double least) { return demi_finite_double(x) && x
 static int demi_numbers_check(const demi_reader *r) {
     const dem_world *t = r->t, *w = r->w;
     const int tangent = demi_tangent_meant(w), rolling = demi_rolling_meant(w);
-    const double positive[] = {t->skin, t->reach, t->wall_reach, t->skin_auto,
-        t->assumed_speed, t->near_span, t->near_age, t->near_margin, t->near_drift, t->near_kick,
-        t->near_creep, t->speed_max, t->half_kick, (double)t->radius_min, (double)t->radius_max,
-        (double)t->dt};
+    const double positive[] =
+        {t->margin.skin, t->margin.reach, t->margin.wall_reach, t->margin.skin_auto,
+        t->clock.assumed_speed, t->margin.span, t->margin.age, t->margin.slack, t->margin.drift,
+            t->margin.kick,
+        t->margin.creep, t->booked.speed_max, t->clock.half_kick, (double)t->effects.radius_min,
+            (double)t->effects.radius_max,
+        (double)t->clock.dt};
     size_t i, per = 0;
     for (i = 0; i < DEMI_BODY_ARRAYS; i++) {
         const demi_body_array *a = &demi_body_arrays[i];
@@ -14488,35 +14546,39 @@ static int demi_numbers_check(const demi_reader *r) {
         t->count > INT_MAX/64 || t->slot_count > INT_MAX/64 || t->count > t->slot_count)
         return demi_lie(r, "its number of bodies or of slots", -1);
     if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
-        (t->list_valid && (!t->domain_count ||
+        (t->stage.list_valid && (!t->domain_count ||
                            t->domain_count > demi_domains_for(4*t->count + 16))) ||
         !demi_left(r, t->domain_count, sizeof(demi_domain)))
         return demi_lie(r, "its number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
         return demi_lie(r, "the room in its lists", -1);
-    if ((int)t->desc.search < 0 || t->desc.search > DEM_SEARCH_LEVELS || t->level_count < 0 ||
-        t->level_count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
+    if ((int)t->desc.search < 0 || t->desc.search > DEM_SEARCH_LEVELS || t->levels.count < 0 ||
+        t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
         return demi_lie(r, "its search", -1);
     if (t->shaped_count < 0 || t->shaped_count > (t->orienting ? t->count : 0) ||
         (w->asked.orientations && !t->orienting))
         return demi_lie(r, "its number of bodies that are not spheres", -1);
     if (!demi_left(r, t->carry_count, 4) || t->carry_rows < 0 || t->carry_rows > t->slot_count ||
-        t->carry_stride < 0 || t->carry_stride > DEMI_MEMORY || (t->list_valid && t->carry_count))
+        t->carry_stride < 0 || t->carry_stride > DEMI_MEMORY ||
+            (t->stage.list_valid && t->carry_count))
         return demi_lie(r, "its contact memory", -1);
-    if (((t->tangent || t->list_valid) && t->tangent != tangent &&
-         t->tangent != DEM_TANGENT_NONE) || ((t->rolling || t->list_valid) &&
-         t->rolling != rolling && t->rolling != DEM_ROLLING_NONE) || (t->uniform & ~1))
+    if (((t->effects.tangent || t->stage.list_valid) && t->effects.tangent != tangent &&
+         t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
+         t->effects.rolling != rolling && t->effects.rolling != DEM_ROLLING_NONE) ||
+             (t->effects.uniform & ~1))
         return demi_lie(r, "the laws in force", -1);
     for (i = 0; i < sizeof positive/sizeof *positive; i++)
         if (!demi_sane(positive[i], 0))
             return demi_lie(r, "its time, time step, skin or one of the lengths that go with the "
                             "list", -1);
-    if (!demi_finite_double(t->time) || fabs(t->time) > DEMI_REACH ||
-        !demi_finite_double(t->since.time) || fabs(t->since.time) > DEMI_REACH ||
-        t->since.steps > t->steps || !demi_sane(t->since.dt, 0) ||
-        !demi_finite_double(t->run_end) || (t->dt_valid && t->count && !(t->dt > 0)) ||
-        (t->dt_valid && t->count && w->desc.dt > 0 && (t->dt < w->desc.dt || t->dt > w->desc.dt)))
+    if (!demi_finite_double(t->clock.time) || fabs(t->clock.time) > DEMI_REACH ||
+        !demi_finite_double(t->clock.since.time) || fabs(t->clock.since.time) > DEMI_REACH ||
+        t->clock.since.steps > t->clock.steps || !demi_sane(t->clock.since.dt, 0) ||
+        !demi_finite_double(t->clock.run_end) ||
+            (t->stage.dt_valid && t->count && !(t->clock.dt > 0)) ||
+        (t->stage.dt_valid && t->count && w->desc.dt > 0 &&
+         (t->clock.dt < w->desc.dt || t->clock.dt > w->desc.dt)))
         return demi_lie(r, "its time or time step", -1);
     if (t->balance.present != (uint64_t)t->count ||
         t->balance.inserted != t->balance.present + t->balance.removed + t->balance.left)
@@ -14538,7 +14600,7 @@ static int demi_domain_check(const demi_reader *r, int d) {
         if (counts[i] < 0 || counts[i] > INT_MAX/64) return 0;
     if (!demi_left(r, o->wall_contacts, sizeof(demi_wall_contact)) ||
         !demi_left(r, o->shaped, sizeof(demi_shaped)) || (o->shaped && !t->orienting)) return 0;
-    if (!t->list_valid) return 1;
+    if (!t->stage.list_valid) return 1;
     return o->begin == (d ? t->domains[d - 1].end : 0) && o->end >= o->begin &&
            o->end <= t->count && (d + 1 < t->domain_count || o->end == t->count) &&
            demi_left(r, o->own, 8) && demi_left(r, o->cross, 8) &&
@@ -14556,7 +14618,7 @@ static int demi_domains_check(const demi_reader *r) {
         demi_domain *o = &t->domains[d];
         if (!demi_domain_check(r, d)) return demi_lie(r, "the counts of domain", d);
         o->overflow = 0;
-        if (t->list_valid) continue;
+        if (t->stage.list_valid) continue;
         o->begin = DEMI_MIN(DEMI_MAX(o->begin, 0), t->count);    /* of a list that is no more */
         o->end = DEMI_MIN(DEMI_MAX(o->end, o->begin), t->count);
     }
@@ -14631,7 +14693,7 @@ static int demi_near_check(const demi_reader *r, int d, const demi_list *list, i
 static int demi_lists_check(const demi_reader *r) {
     dem_world *t = r->t;
     int d, l, k;
-    for (d = 0; d < t->domain_count && t->list_valid; d++) {
+    for (d = 0; d < t->domain_count && t->stage.list_valid; d++) {
         const demi_domain *o = &t->domains[d];
         for (l = 0; l < 2; l++) {
             const demi_list *list = l ? &t->cross : &t->own;
@@ -14661,25 +14723,25 @@ static int demi_lists_check(const demi_reader *r) {
 /* Contacts that last: of bodies, or of slots while there is no list. */
 static int demi_contacts_check(const demi_reader *r) {
     const dem_world *t = r->t;
-    const int who = t->list_valid ? t->count : t->slot_count;
+    const int who = t->stage.list_valid ? t->count : t->slot_count;
     int d, k;
     for (d = 0; d < t->domain_count; d++) {
         for (k = 0; k < t->domains[d].wall_contacts; k++) {
             const demi_wall_contact *c = t->wall_now + d*t->wall_now_stride + k;
             if (c->body < 0 || c->body >= who || c->wall < 0 || c->wall >= t->wall_count ||
                 !demi_finite3(c->shift) ||
-                (t->list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))
+                (t->stage.list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))
                 return demi_lie(r, "a wall contact of domain", d);
         }
         for (k = 0; k < t->domains[d].shaped; k++) {
             const demi_shaped *c = t->shaped_now + (size_t)d*(size_t)t->shaped_stride + k;
             if (c->a < 0 || c->a >= who || c->b < -1 || c->b >= who || (c->b < 0 &&
                 (c->wall < 0 || c->wall >= t->wall_count ||
-                 (t->list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))))
+                 (t->stage.list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))))
                 return demi_lie(r, "a contact of shaped bodies in domain", d);
         }
     }
-    if (t->list_valid || !t->carry_count) return 1;
+    if (t->stage.list_valid || !t->carry_count) return 1;
     for (k = 0; k <= t->carry_rows; k++)
         if (t->carry_start[k] < (k ? t->carry_start[k - 1] : 0) ||
             t->carry_start[k] > t->carry_count || (!k && t->carry_start[k]))
@@ -14746,12 +14808,13 @@ static int demi_twin_lists_room(dem_world *t) {
     const int each = t->domain_count ? t->count/t->domain_count : 0;
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
-        const int counts[] = {t->list_valid ? o->own : 0, t->list_valid ? o->cross : 0,
-                              t->list_valid ? o->near_shaped_end : 0, t->list_valid ? o->walls : 0,
+        const int counts[] = {t->stage.list_valid ? o->own : 0, t->stage.list_valid ? o->cross : 0,
+                              t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
+                                  ? o->walls : 0,
                               o->wall_contacts, o->shaped, t->domain_count > 1};
         for (k = 0; k < 7; k++) most[k] = DEMI_MAX(most[k], counts[k]);
     }
-    if (t->list_valid) {
+    if (t->stage.list_valid) {
         most[0] = DEMI_MAX(most[0], DEMI_MAX(64, each*3));
         most[1] = DEMI_MAX(most[1], most[6] ? DEMI_MAX(64, each*3)/4 : 0);
         most[2] = DEMI_MAX(most[2], DEMI_MAX(64, each*5/2));
@@ -14768,7 +14831,7 @@ static int demi_twin_lists_room(dem_world *t) {
         (t->orienting && !demi_shaped_reserve(t, most[5])) ||
         !demi_carry_reserve(t, t->carry_rows, t->carry_count, t->carry_stride)) return 0;
     t->shaped_stride = t->orienting ? most[5] : 0;
-    return !t->list_valid ||
+    return !t->stage.list_valid ||
            (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&
             demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
             demi_near_reserve(t, &t->near, t->domain_count, most[2]) &&
@@ -14783,7 +14846,7 @@ static int demi_twin_follow(dem_world *t) {
     demi_walls_repeat(t);
     for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
     demi_kernel_choose(t);
-    if (!t->list_valid) return 1;
+    if (!t->stage.list_valid) return 1;
     if (t->shaped_count && !demi_spots_lay(t)) return 0;
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
@@ -14797,7 +14860,8 @@ static int demi_twin_follow(dem_world *t) {
         for (k = demi_near_first(o); k < o->near_end; k = demi_near_next(o, k)) {
             const int a = t->near.a[first + k], b = t->near.b[first + k];
             t->near.image[first + k] = demi_pair_image(t, &p, a, b);
-            if (!t->uniform && !t->pairs_changed) demi_near_coefs(t, &t->near, d, k, a, b);
+            if (!t->effects.uniform && !t->stage.pairs_changed) demi_near_coefs(t, &t->near, d, k,
+                                                                                a, b);
         }
         for (k = o->near_shaped; k < o->near_shaped_end; k++)
             t->near.image[first + k] = demi_pair_image(t, &p, t->near.a[first + k],
@@ -14978,7 +15042,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
     w->slot_free = w->slot_pending = -1;
-    w->synced = 1;
+    w->stage.synced = 1;
     w->orienting = desc->orientations != 0;
     w->backward = demi_integrator_rows[desc->integrator].backward;
     w->pairs = (demi_pair *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
@@ -15010,8 +15074,8 @@ DEM_API const char *dem_world_error(const dem_world *w) {
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
     if (!w) return DEM_WORLD_DESC;
     dem_world_desc d = w->desc;
-    if (w->dt > 0) d.dt = w->dt;
-    d.skin = (dem_real)w->skin;
+    if (w->clock.dt > 0) d.dt = w->clock.dt;
+    d.skin = (dem_real)w->margin.skin;
     return d;
 }
 
@@ -15025,18 +15089,19 @@ static const char *demi_search_name(const dem_world *w) {
 static void demi_levels_report(const dem_world *w, FILE *out) {
     const int auto_ = w->asked.search == DEM_SEARCH_AUTO;
     int i;
-    if (w->desc.search == DEM_SEARCH_LEVELS && w->level_count) {
-        fprintf(out, "           %d level%s for radii 1 : %.3g, of up to", w->level_count,
-                w->level_count == 1 ? "" : "s",
-                (double)w->radius_max/DEMI_MAX((double)w->radius_min, 1e-300));
-        for (i = 0; i < w->level_count; i++)
-            fprintf(out, "%s %.3g m (%d)", i ? "," : "", w->levels[i].radius, w->levels[i].count);
+    if (w->desc.search == DEM_SEARCH_LEVELS && w->levels.count) {
+        fprintf(out, "           %d level%s for radii 1 : %.3g, of up to", w->levels.count,
+                w->levels.count == 1 ? "" : "s",
+                (double)w->effects.radius_max/DEMI_MAX((double)w->effects.radius_min, 1e-300));
+        for (i = 0; i < w->levels.count; i++)
+            fprintf(out, "%s %.3g m (%d)", i ? "," : "", w->levels.level[i].radius,
+                    w->levels.level[i].count);
         fprintf(out, "\n");
     }
-    if (w->level_looks[0] > 0)
+    if (w->levels.looks[0] > 0)
         fprintf(out, "           %s: about %.3g tests per body and search by levels, %.3g on one "
-                "grid\n", auto_ ? "chosen" : "by levels or not", w->level_looks[1],
-                w->level_looks[0]);
+                "grid\n", auto_ ? "chosen" : "by levels or not", w->levels.looks[1],
+                w->levels.looks[0]);
 }
 
 static int demi_shaped_total(const dem_world *w) {
@@ -15135,7 +15200,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     const dem_counters c = dem_counters_get(w);
     const double per = w->count ? 1.0/w->count : 0;
     dem_advice a;
-    if (!w->list_valid) { demi_effects(w); demi_levels_choose(w); }
+    if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
     fprintf(out, "dem.h %d.%d.%d, %s precision, %d thread%s, %d domain%s, %.1f MB\n",
             DEM_VERSION_MAJOR, DEM_VERSION_MINOR,
@@ -15144,32 +15209,35 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             c.domains == 1 ? "" : "s", (double)c.memory/1e6);
     fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
             "+ %llu left\n", w->count,
-            (double)w->radius_min, (double)w->radius_max, (unsigned long long)w->balance.inserted,
+            (double)w->effects.radius_min, (double)w->effects.radius_max,
+                (unsigned long long)w->balance.inserted,
             (unsigned long long)w->balance.present, (unsigned long long)w->balance.removed,
             (unsigned long long)w->balance.left);
-    fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->time,
-            (unsigned long long)w->steps, (double)w->dt,
+    fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
+            (unsigned long long)w->clock.steps, (double)w->clock.dt,
             demi_integrator_rows[w->desc.integrator].name,
             demi_integrator_rows[w->desc.integrator].order);
     fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit t_c/20 = %.4g s; Rayleigh %.4g s; "
             "bound by %s\n", (double)a.contact_time,
-            w->dt > 0 ? (double)a.contact_time/(double)w->dt : 0, (double)a.dt_max,
+            w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0, (double)a.dt_max,
             (double)a.rayleigh, a.binds);
     fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
             "candidates, %.2f contacts\n",
-            demi_search_name(w), w->skin, (unsigned long long)w->rebuilds, w->rebuilds
-            ? (double)w->steps/(double)w->rebuilds : 0,
+            demi_search_name(w), w->margin.skin, (unsigned long long)w->clock.rebuilds,
+                w->clock.rebuilds
+            ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
             per*c.candidates, per*c.contacts);
     demi_levels_report(w, out);
     demi_laws_report(w, out);
     demi_shapes_report(w, out);
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
-            w->uniform ? "all alike (coefficients once per run)"
+            w->effects.uniform ? "all alike (coefficients once per run)"
             : "differ (coefficients per candidate)", w->wall_count,
             w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
             demi_kernel_choose(w));
-    fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->overlap_max,
-            w->overlap_max > 0.05 ? "  (beyond .05: stiffen the material or slow down)" : "");
+    fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->booked.overlap_max,
+            w->booked.overlap_max > 0.05 ? "  (beyond .05: stiffen the material or slow down)"
+                : "");
     dem_pairs_print(w, out);
     demi_flows_report(w, out);
     if (w->desc.ledger) demi_ledger_report(w, out);
@@ -15307,12 +15375,12 @@ static int demi_grain_append(dem_world *w, const char **from) {
 /* Takes a grain out of a slab without its having left the scene. */
 static void demi_grain_forget(dem_world *w, int i) {
     const int slot = (int)w->body_slot[i], pending = w->slot_pending;
-    const double removed = w->energy_removed;
+    const double removed = w->booked.removed;
     demi_body_take_out(w, i);
     w->slot_pending = pending;
     w->slot_index[slot] = -1;
     w->slot_generation[slot]--;
-    w->energy_removed = removed;
+    w->booked.removed = removed;
     w->visitor[slot] = 0;
 }
 
@@ -15347,7 +15415,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
     for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
         for (k = 0; k < w->domains[d].wall_contacts && ok; k++) {
             demi_wall_contact c = w->wall_now[d*w->wall_now_stride + k];
-            if (w->list_valid) c.body = (int32_t)w->body_slot[c.body];
+            if (w->stage.list_valid) c.body = (int32_t)w->body_slot[c.body];
             if (mark != DEMI_ALL && marks[c.body] != mark) continue;
             ok = demi_parcel_put(host, out, &c, sizeof c);
             head.contacts++;
@@ -15355,7 +15423,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
     for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
         for (k = 0; k < w->domains[d].shaped && ok; k++) {
             demi_shaped c = w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
-            if (w->list_valid) {
+            if (w->stage.list_valid) {
                 c.a = (int32_t)w->body_slot[c.a];
                 if (c.b >= 0) c.b = (int32_t)w->body_slot[c.b];
             }
@@ -15604,7 +15672,8 @@ static dem_result demi_slabs_balance(dem_slabs *s) {
     double *v = s->values, ends[2] = {-1e300, -1e300}, most = 0, total = 0;
     dem_result result;
     int k;
-    if (s->desc.balance < 0 || s->head.rebuilds == 0 || s->head.rebuilds%(uint64_t)every)
+    if (s->desc.balance < 0 || s->head.clock.rebuilds == 0 ||
+        s->head.clock.rebuilds%(uint64_t)every)
         return DEM_OK;
     for (k = 0; k < s->count; k++) v[k] = 0;
     for (k = 0; k < s->local; k++) v[s->first + k] = s->slabs[k].work;
@@ -15638,7 +15707,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     int k, i, d;
     for (k = 0; k < s->local; k++) {
         const dem_world *w = s->slabs[k].world;
-        radii[2] = DEMI_MAX(radii[2], w->near_span);
+        radii[2] = DEMI_MAX(radii[2], w->margin.span);
         for (d = 0; d < w->domain_count; d++) {
             sums[0] += w->domains[d].own + w->domains[d].cross;
             sums[1] += w->domains[d].contacts;
@@ -15658,16 +15727,16 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     s->total.own = (int)DEMI_MIN(sums[0], (double)INT_MAX);
     s->total.contacts = (int)DEMI_MIN(sums[1], (double)INT_MAX);
     h->count = (int)sums[2];
-    h->radius_max = (dem_real)radii[0];
-    h->radius_min = (dem_real)(h->count ? -radii[1] : 0);
-    h->near_span = radii[2];
+    h->effects.radius_max = (dem_real)radii[0];
+    h->effects.radius_min = (dem_real)(h->count ? -radii[1] : 0);
+    h->margin.span = radii[2];
     demi_skin_choose(h);
     if (s->ring && h->desc.skin >= 0 && h->desc.skin <= 0) {
         const double room = s->period/s->count/(1 + 2e-6) - 2*radii[0];
-        if (room > 0) h->skin = h->skin_auto = DEMI_MIN(h->skin, room);
+        if (room > 0) h->margin.skin = h->margin.skin_auto = DEMI_MIN(h->margin.skin, room);
     }
-    h->skin = (double)(dem_real)h->skin;        /* as the slabs get it */
-    s->cut = (2*radii[0] + h->skin)*(1 + 1e-6); /* rounding must not cost a visitor */
+    h->margin.skin = (double)(dem_real)h->margin.skin;        /* as the slabs get it */
+    s->cut = (2*radii[0] + h->margin.skin)*(1 + 1e-6); /* rounding must not cost a visitor */
     if (s->ring && s->cut*s->count > s->period)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
                          "%g m thick, must be at least %g m (two grains and the skin); use at most "
@@ -15774,7 +15843,8 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     }
     for (i = 0; i < w->count; i++) {
         const double x = (double)w->pos[4*i + s->axis], r = (double)w->pos[4*i + 3];
-        if (!(x + s->cut - (double)s->head.radius_max + r > s->borders[b->index + 1])) continue;
+        if (!(x + s->cut - (double)s->head.effects.radius_max +
+              r > s->borders[b->index + 1])) continue;
         w->visitor[w->body_slot[i]] = DEMI_GOES_VISITING;
         b->halo[n++] = (int32_t)w->body_slot[i];
     }
@@ -15808,7 +15878,7 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
         b->guest_inv[2*i + 1] = w->inv_inertia[at];
     }
     b->guest_count = h.grains;
-    if (s->count > 1) w->desc.skin = s->head.skin > 0 ? (dem_real)s->head.skin : -1;
+    if (s->count > 1) w->desc.skin = s->head.margin.skin > 0 ? (dem_real)s->head.margin.skin : -1;
     b->result = demi_rebuild(w, "dem_world_step");
     if (b->result != DEM_OK) return;
     demi_kernel_choose(w);
@@ -15855,9 +15925,9 @@ static dem_result demi_slabs_migrate(dem_slabs *s) {
    again. */
 static dem_result demi_slabs_rebuild(dem_slabs *s) {
     dem_world *h = &s->head;
-    const double skin_before = h->skin_auto;
+    const double skin_before = h->margin.skin_auto;
     dem_result result;
-    h->list_valid = 0;
+    h->stage.list_valid = 0;
     demi_slabs_phase(s, demi_slab_drop);
     result = demi_slabs_agree(s, 0, 0);
     if (s->count > 1) {
@@ -15878,12 +15948,12 @@ static dem_result demi_slabs_rebuild(dem_slabs *s) {
         demi_slabs_phase(s, demi_slab_settle);
         result = demi_slabs_agree(s, 0, 0);
     }
-    if (result != DEM_OK) { h->skin_auto = skin_before; return result; }
-    if (s->count == 1) h->skin = s->slabs[0].world->skin;
-    h->reach = h->wall_reach = 0;
-    h->last_rebuild = h->steps;
-    h->rebuilds++;
-    h->list_valid = 1;
+    if (result != DEM_OK) { h->margin.skin_auto = skin_before; return result; }
+    if (s->count == 1) h->margin.skin = s->slabs[0].world->margin.skin;
+    h->margin.reach = h->margin.wall_reach = 0;
+    h->clock.last_rebuild = h->clock.steps;
+    h->clock.rebuilds++;
+    h->stage.list_valid = 1;
     return DEM_OK;
 }
 
@@ -15894,7 +15964,7 @@ static void demi_slab_move(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     int k;
     if (b->result != DEM_OK) return;            /* from the forces before: told with this step */
-    for (k = 0; k < b->guest_count && !s->head.moved; k++) {
+    for (k = 0; k < b->guest_count && !s->head.stage.moved; k++) {
         const int i = b->guest[k];
         w->inv_mass[i] = w->inv_inertia[i] = 0;
         demi_put(w->vel + 4*i, demi_v(0, 0, 0));      demi_put(w->half_vel + 4*i, demi_v(0, 0, 0));
@@ -15902,7 +15972,7 @@ static void demi_slab_move(dem_slabs *s, demi_slab *b) {
         demi_put(w->force + 4*i, demi_v(0, 0, 0));    demi_put(w->torque + 4*i, demi_v(0, 0, 0));
         if (w->backward) demi_put(w->last_pos + 4*i, demi_at(w->pos + 4*i));
     }
-    if (!s->head.moved) b->result = demi_step_move(w);
+    if (!s->head.stage.moved) b->result = demi_step_move(w);
     if (b->result == DEM_OK) b->result = demi_outflow(w);
 }
 /* What the walls did, for those slabs whose walls do not move by themselves. */
@@ -15983,7 +16053,7 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
         memcpy(out, w->force + 4*b->guest[k], three);
         if (down == 6) memcpy(out + 3, w->torque + 4*b->guest[k], three);
     }
-    if (!w->forces_valid) return;               /* only looking */
+    if (!w->stage.forces_valid) return;               /* only looking */
     for (d = 0; d < w->domain_count; d++) {
         deepest = DEMI_MAX(deepest, w->domains[d].overlap);
         if (demi_own(w)) finite &= w->domains[d].check < 1e300;
@@ -16036,7 +16106,7 @@ static void demi_slab_prime(dem_slabs *s, demi_slab *b) {
 static void demi_slab_refresh(dem_slabs *s, demi_slab *b) {
     (void)s;
     demi_kernel_choose(b->world);
-    b->world->forces_valid = 0;
+    b->world->stage.forces_valid = 0;
 }
 static void demi_slab_sample(dem_slabs *s, demi_slab *b) {
     (void)s;
@@ -16076,7 +16146,7 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
         }
     }
     result = demi_slabs_reduce(s, v, 2*m + 4, 0);
-    h->spin_elsewhere = v[2*m + 3];
+    h->clock.spin_elsewhere = v[2*m + 3];
     if (result == DEM_OK) result = demi_slabs_reduce(s, many, m, 1);
     h->count = 0;
     for (j = 0; j < m && result == DEM_OK; j++)
@@ -16095,18 +16165,18 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
 }
 static dem_result demi_slabs_settle(dem_slabs *s) {
     dem_world *h = &s->head, *w = s->slabs[0].world;
-    const dem_real before = h->dt;
+    const dem_real before = h->clock.dt;
     dem_result result;
     int k;
-    if (h->dt_valid) return DEM_OK;
+    if (h->stage.dt_valid) return DEM_OK;
     if (s->count == 1) {
-        w->dt_valid = 0;
+        w->stage.dt_valid = 0;
         result = demi_dt_settle(w);
         memcpy(h->error, w->error, sizeof h->error);
-        h->dt = w->dt;
-        h->dt_valid = w->dt_valid;
-        h->assumed_speed = w->assumed_speed;
-        h->primed = w->primed;
+        h->clock.dt = w->clock.dt;
+        h->stage.dt_valid = w->stage.dt_valid;
+        h->clock.assumed_speed = w->clock.assumed_speed;
+        h->stage.primed = w->stage.primed;
         return result;
     }
     demi_slabs_phase(s, demi_slab_finish);
@@ -16114,29 +16184,29 @@ static dem_result demi_slabs_settle(dem_slabs *s) {
     h->walls = w->walls;
     if (result == DEM_OK) result = demi_dt_settle(h);
     h->walls = 0;
-    if (h->dt < before || h->dt > before) h->primed = 0;
+    if (h->clock.dt < before || h->clock.dt > before) h->stage.primed = 0;
     for (k = 0; k < s->local; k++) {
-        s->slabs[k].world->dt = h->dt;
-        s->slabs[k].world->assumed_speed = h->assumed_speed;
-        s->slabs[k].world->dt_valid = 1;
+        s->slabs[k].world->clock.dt = h->clock.dt;
+        s->slabs[k].world->clock.assumed_speed = h->clock.assumed_speed;
+        s->slabs[k].world->stage.dt_valid = 1;
     }
     return result;
 }
 
 static dem_result demi_slabs_refresh(dem_slabs *s) {
     dem_result result;
-    double stale = !s->head.list_valid;
+    double stale = !s->head.stage.list_valid;
     int k;
     demi_slabs_phase(s, demi_slab_finish);
-    for (k = 0; k < s->local; k++) stale = DEMI_MAX(stale, !s->slabs[k].world->list_valid);
+    for (k = 0; k < s->local; k++) stale = DEMI_MAX(stale, !s->slabs[k].world->stage.list_valid);
     result = demi_slabs_agree(s, &stale, 1);
     if (result == DEM_OK && stale > 0) result = demi_slabs_rebuild(s);
     if (result != DEM_OK) return result;
     demi_slabs_phase(s, demi_slab_refresh);
     result = demi_slabs_forces(s, 0);
     if (result != DEM_OK) return result;
-    for (k = 0; k < s->local; k++) s->slabs[k].world->forces_valid = 1;
-    s->head.forces_valid = 1;
+    for (k = 0; k < s->local; k++) s->slabs[k].world->stage.forces_valid = 1;
+    s->head.stage.forces_valid = 1;
     return DEM_OK;
 }
 
@@ -16146,49 +16216,50 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
     const dem_world *first = s->slabs[0].world;
     /* speed, list stale, walls' reach, kick; near lists' creep, age over what they allow; reach */
     double flags[7] = {0, 0, 0, 0, -1e300, -1e300, 0};
-    const double dt = (double)h->dt;
+    const double dt = (double)h->clock.dt;
     dem_result result;
     int k, near;
     demi_slabs_phase(s, demi_slab_move);
     for (k = 0; k < s->local; k++) {
         const dem_world *w = s->slabs[k].world;
-        flags[0] = DEMI_MAX(flags[0], w->speed_max);
-        flags[1] = DEMI_MAX(flags[1], !w->list_valid);
-        flags[3] = DEMI_MAX(flags[3], w->near_kick);
-        flags[4] = DEMI_MAX(flags[4], w->near_creep + 2*w->near_drift*dt - w->near_margin);
-        flags[5] = DEMI_MAX(flags[5], w->near_age + dt - w->near_span*(1 - 1e-9));
-        flags[6] = DEMI_MAX(flags[6], w->step_reach);
+        flags[0] = DEMI_MAX(flags[0], w->booked.speed_max);
+        flags[1] = DEMI_MAX(flags[1], !w->stage.list_valid);
+        flags[3] = DEMI_MAX(flags[3], w->margin.kick);
+        flags[4] = DEMI_MAX(flags[4], w->margin.creep + 2*w->margin.drift*dt - w->margin.slack);
+        flags[5] = DEMI_MAX(flags[5], w->margin.age + dt - w->margin.span*(1 - 1e-9));
+        flags[6] = DEMI_MAX(flags[6], w->margin.step_reach);
     }
-    flags[2] = first->wall_reach;
-    if (!h->moved) {
-        h->moved = 1;
-        h->time = first->time;
-        h->since = first->since;
-        h->steps++;
+    flags[2] = first->margin.wall_reach;
+    if (!h->stage.moved) {
+        h->stage.moved = 1;
+        h->clock.time = first->clock.time;
+        h->clock.since = first->clock.since;
+        h->clock.steps++;
         demi_slabs_poses(s);
         result = demi_slabs_agree(s, flags, 7);
-        h->speed_max = flags[0];
-        h->reach += flags[6];
+        h->booked.speed_max = flags[0];
+        h->margin.reach += flags[6];
         for (k = 0; k < s->local; k++) demi_near_pass(s->slabs[k].world, flags[3]);
-        h->near_due = flags[4] + 2*flags[3]*dt > -1e-6*h->skin || flags[5] > -1e-6*dt;
+        h->near_due = flags[4] + 2*flags[3]*dt > -1e-6*h->margin.skin || flags[5] > -1e-6*dt;
     } else result = demi_slabs_agree(s, flags, 7);
     if (result != DEM_OK) return result;
     near = s->count == 1 || h->near_due;        /* each looks for itself again */
-    if (s->count == 1) h->reach = first->reach;
-    h->wall_reach = flags[2];
+    if (s->count == 1) h->margin.reach = first->margin.reach;
+    h->margin.wall_reach = flags[2];
     for (k = 0; k < s->local && s->count > 1; k++) {           /* what lists count on */
-        s->slabs[k].world->reach = h->reach;
-        s->slabs[k].world->wall_reach = h->wall_reach;
+        s->slabs[k].world->margin.reach = h->margin.reach;
+        s->slabs[k].world->margin.wall_reach = h->margin.wall_reach;
     }
-    if (flags[1] > 0 || !h->list_valid || h->skin <= 0 || 2*h->reach > h->skin ||
-        h->reach + h->wall_reach > h->skin) {
+    if (flags[1] > 0 || !h->stage.list_valid || h->margin.skin <= 0 ||
+        2*h->margin.reach > h->margin.skin ||
+        h->margin.reach + h->margin.wall_reach > h->margin.skin) {
         result = demi_slabs_rebuild(s);
         if (result != DEM_OK) return result;
-        if (h->speed_max > 1.5*h->assumed_speed) h->dt_valid = 0;
+        if (h->booked.speed_max > 1.5*h->clock.assumed_speed) h->stage.dt_valid = 0;
         near = 0;
     }
     result = demi_slabs_forces(s, near);
-    if (result == DEM_OK) h->moved = 0;
+    if (result == DEM_OK) h->stage.moved = 0;
     return result;
 }
 
@@ -16210,22 +16281,22 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const dem_world *w = s->slabs[0].world;
         int sampling = 0;
-        if (!h->moved) {
+        if (!h->stage.moved) {
             result = demi_slabs_settle(s);
-            if (result == DEM_OK && !h->forces_valid) result = demi_slabs_refresh(s);
-            else if (result == DEM_OK && !h->list_valid) result = demi_slabs_rebuild(s);
+            if (result == DEM_OK && !h->stage.forces_valid) result = demi_slabs_refresh(s);
+            else if (result == DEM_OK && !h->stage.list_valid) result = demi_slabs_rebuild(s);
             if (result != DEM_OK) break;
-            if (!h->primed) { demi_slabs_phase(s, demi_slab_prime); h->primed = 1; }
+            if (!h->stage.primed) { demi_slabs_phase(s, demi_slab_prime); h->stage.primed = 1; }
         }
         result = demi_slabs_step_once(s);
         whole = result == DEM_OK;
         for (f = 0; f < w->field_count; f++)
-            sampling |= w->fields[f].used && w->time >= w->fields[f].next;
+            sampling |= w->fields[f].used && w->clock.time >= w->fields[f].next;
         if (sampling && whole) demi_slabs_phase(s, demi_slab_sample);
     }
     if (!whole) return result;
     if (result == DEM_OK) result = demi_slabs_agree(s, 0, 0);  /* of the last forces */
-    if (!h->moved) demi_slabs_phase(s, demi_slab_finish);
+    if (!h->stage.moved) demi_slabs_phase(s, demi_slab_finish);
     return result;
 }
 
@@ -16292,8 +16363,8 @@ static int demi_slab_forms(dem_world *to, const dem_world *from, const dem_world
 /* Sums over time begin in slab 0 where the world has got to, elsewhere at nothing. */
 static void demi_slab_sums_clear(dem_world *w) {
     int i;
-    memset(w->energy, 0, sizeof w->energy);
-    w->energy_removed = w->throughput = w->energy_inserted = 0;
+    memset(w->booked.energy, 0, sizeof w->booked.energy);
+    w->booked.removed = w->booked.throughput = w->booked.inserted = 0;
     w->balance.left = 0;
     for (i = 0; i < w->wall_count; i++) {
         const double time = w->walls[i].channels.time;
@@ -16346,18 +16417,26 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
         !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0)) return w;
     memset(w->slot_index, 0xff, slots*sizeof(int32_t));
     if (slots) memcpy(w->slot_generation, from->slot_generation, slots*sizeof(uint32_t));
-    w->time = from->time;           w->steps = from->steps;       w->rebuilds = from->rebuilds;
-    w->since = from->since;
-    w->last_rebuild = from->steps;  w->skin_auto = from->skin_auto;
-    w->skin = from->skin;           w->dt = from->dt;             w->dt_valid = from->dt_valid;
-    w->wall_fastest = from->wall_fastest;                         w->near_span = from->near_span;
-    w->near_margin = from->near_margin;
-    w->assumed_speed = from->assumed_speed;                       w->primed = from->primed;
-    w->overlap_max = from->overlap_max;                           w->speed_max = from->speed_max;
-    w->balance = from->balance;     w->energy_removed = from->energy_removed;
-    w->throughput = from->throughput;                             w->half_kick = from->half_kick;
-    w->forces_valid = from->forces_valid && !from->pairs_changed;
-    memcpy(w->energy, from->energy, sizeof w->energy);
+    w->clock.time = from->clock.time;           w->clock.steps =
+        from->clock.steps;       w->clock.rebuilds = from->clock.rebuilds;
+    w->clock.since = from->clock.since;
+    w->clock.last_rebuild = from->clock.steps;  w->margin.skin_auto = from->margin.skin_auto;
+    w->margin.skin = from->margin.skin;           w->clock.dt =
+        from->clock.dt;             w->stage.dt_valid = from->stage.dt_valid;
+    w->wall_fastest = from->wall_fastest;                         w->margin.span =
+        from->margin.span;
+    w->margin.slack = from->margin.slack;
+    w->clock.assumed_speed = from->clock.assumed_speed;                       w->stage.primed =
+        from->stage.primed;
+    w->booked.overlap_max =
+        from->booked.overlap_max;                           w->booked.speed_max =
+            from->booked.speed_max;
+    w->balance = from->balance;     w->booked.removed = from->booked.removed;
+    w->booked.throughput =
+        from->booked.throughput;                             w->clock.half_kick =
+            from->clock.half_kick;
+    w->stage.forces_valid = from->stage.forces_valid && !from->stage.pairs_changed;
+    memcpy(w->booked.energy, from->booked.energy, sizeof w->booked.energy);
     if (index > 0) demi_slab_sums_clear(w);
     return w;
 }
@@ -16411,7 +16490,7 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval %d, must "
                          "be 0, >= 1 or < 0 (never), and >= 0", call, (double)d->balance,
                          d->balance_interval);
-    if (w->moved)
+    if (w->stage.moved)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world stands in the middle of a step that "
                          "ran out of memory; finish it with dem_world_step first", call);
     if (w->feed_count || w->outlet_count)
@@ -16450,18 +16529,21 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     dem_world *h = &s->head;
     const size_t most = 3*DEMI_MATERIALS, n = (size_t)s->count;
     h->asked = w->asked;
-    h->synced = 1;
+    h->stage.synced = 1;
     h->slot_free = h->slot_pending = -1;
     h->domains = &s->total;
     h->material_count = w->material_count;
     h->wall_count = w->wall_count;
     memcpy(h->materials, w->materials, sizeof h->materials);
-    h->time = w->time;           h->steps = w->steps;         h->rebuilds = w->rebuilds;
-    h->since = w->since;         h->balance = w->balance;
-    h->last_rebuild = w->steps;  h->skin_auto = w->skin_auto; h->skin = w->skin;
-    h->dt = w->dt;               h->dt_valid = w->dt_valid;   h->primed = w->primed;
-    h->assumed_speed = w->assumed_speed;
-    h->forces_valid = w->forces_valid && !w->pairs_changed;
+    h->clock.time = w->clock.time;           h->clock.steps =
+        w->clock.steps;         h->clock.rebuilds = w->clock.rebuilds;
+    h->clock.since = w->clock.since;         h->balance = w->balance;
+    h->clock.last_rebuild = w->clock.steps;  h->margin.skin_auto =
+        w->margin.skin_auto; h->margin.skin = w->margin.skin;
+    h->clock.dt = w->clock.dt;               h->stage.dt_valid =
+        w->stage.dt_valid;   h->stage.primed = w->stage.primed;
+    h->clock.assumed_speed = w->clock.assumed_speed;
+    h->stage.forces_valid = w->stage.forces_valid && !w->stage.pairs_changed;
     h->pairs = (demi_pair *)demi_hold(h, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
     h->pos = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
@@ -16510,7 +16592,8 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     int k, ok;
     if (demi_unbuilt(w, "dem_slabs_create") != DEM_OK || demi_slabs_check(w, desc) != DEM_OK)
         return 0;
-    if (w->list_valid && !demi_carry_collect(w)) {  /* the world keeps its list: it is only read */
+    /* the world keeps its list: it is only read */
+    if (w->stage.list_valid && !demi_carry_collect(w)) {
         demi_no_memory(w, "dem_slabs_create");
         return 0;
     }
@@ -16563,10 +16646,10 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     sums.index = b->index;
     sums.walls = w->wall_count;
     sums.left = w->balance.left;
-    memcpy(sums.energy, w->energy, sizeof sums.energy);
-    sums.removed = w->energy_removed;
-    sums.throughput = w->throughput;
-    sums.overlap_max = w->overlap_max;
+    memcpy(sums.energy, w->booked.energy, sizeof sums.energy);
+    sums.removed = w->booked.removed;
+    sums.throughput = w->booked.throughput;
+    sums.overlap_max = w->booked.overlap_max;
     ok = demi_parcel_put(h, out, &sums, sizeof sums);
     for (i = 0; i < w->wall_count && ok; i++)
         ok = demi_parcel_put(h, out, &w->walls[i].channels, sizeof(dem_channels));
@@ -16576,7 +16659,7 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
         ok = demi_parcel_put(h, out, f->solid, n) && demi_parcel_put(h, out, f->mass, n) &&
              demi_parcel_put(h, out, f->momentum, 3*n);
     }
-    ok = ok && (!w->list_valid || demi_carry_collect(w)) &&
+    ok = ok && (!w->stage.list_valid || demi_carry_collect(w)) &&
          demi_pack(h, w, w->visitor, DEMI_ALL, 1, s->axis, 0, out);
     if (!ok) return 0;
     sums.size = out->size - start;
@@ -16626,11 +16709,11 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
 /* Adds a slab's sums to the world's, which were cleared before. Answers where its parcel begins. */
 static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
     int i, k;
-    for (i = 0; i < DEMI_ENERGIES; i++) w->energy[i] += sums->energy[i];
-    w->energy_removed += sums->removed;
-    w->throughput += sums->throughput;
+    for (i = 0; i < DEMI_ENERGIES; i++) w->booked.energy[i] += sums->energy[i];
+    w->booked.removed += sums->removed;
+    w->booked.throughput += sums->throughput;
     w->balance.left += sums->left;
-    w->overlap_max = DEMI_MAX(w->overlap_max, sums->overlap_max);
+    w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, sums->overlap_max);
     for (i = 0; i < sums->walls; i++) {
         dem_channels *c = &w->walls[i].channels, part;
         demi_take(&from, &part, sizeof part);
@@ -16669,19 +16752,24 @@ static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sum
 static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     const dem_world *h = &s->head, *from = s->slabs[0].world;
     int i;
-    w->time = h->time;           w->steps = h->steps;         w->rebuilds = h->rebuilds;
-    w->since = h->since;
-    w->last_rebuild = h->last_rebuild;                        w->skin_auto = h->skin_auto;
-    if (s->count == 1) w->skin_auto = from->skin_auto;
-    w->skin = h->skin;           w->dt = h->dt;               w->dt_valid = h->dt_valid;
-    w->assumed_speed = h->assumed_speed;                      w->primed = h->primed;
-    w->speed_max = h->speed_max; w->moved = h->moved;         w->synced = from->synced;
-    w->half_kick = from->half_kick;
-    w->reach = h->reach;         w->wall_reach = h->wall_reach;
-    w->forces_valid = h->forces_valid;
+    w->clock.time = h->clock.time;           w->clock.steps =
+        h->clock.steps;         w->clock.rebuilds = h->clock.rebuilds;
+    w->clock.since = h->clock.since;
+    w->clock.last_rebuild = h->clock.last_rebuild;                        w->margin.skin_auto =
+        h->margin.skin_auto;
+    if (s->count == 1) w->margin.skin_auto = from->margin.skin_auto;
+    w->margin.skin = h->margin.skin;           w->clock.dt =
+        h->clock.dt;               w->stage.dt_valid = h->stage.dt_valid;
+    w->clock.assumed_speed = h->clock.assumed_speed;                      w->stage.primed =
+        h->stage.primed;
+    w->booked.speed_max = h->booked.speed_max; w->stage.moved =
+        h->stage.moved;         w->stage.synced = from->stage.synced;
+    w->clock.half_kick = from->clock.half_kick;
+    w->margin.reach = h->margin.reach;         w->margin.wall_reach = h->margin.wall_reach;
+    w->stage.forces_valid = h->stage.forces_valid;
     w->balance.left = 0;
-    w->energy_removed = w->throughput = w->overlap_max = 0;
-    memset(w->energy, 0, sizeof w->energy);
+    w->booked.removed = w->booked.throughput = w->booked.overlap_max = 0;
+    memset(w->booked.energy, 0, sizeof w->booked.energy);
     for (i = 0; i < w->wall_count; i++) {
         memset(&w->walls[i].channels, 0, sizeof w->walls[i].channels);
         w->walls[i].pose = from->walls[i].pose;
@@ -16782,9 +16870,9 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         }
         for (i = w->count - 1; i >= 0; i--)     /* in no slab: left through an outflow boundary */
             if (!seen[w->body_slot[i]]) {
-                const double removed = w->energy_removed;
+                const double removed = w->booked.removed;
                 demi_body_take_out(w, i);
-                w->energy_removed = removed;
+                w->booked.removed = removed;
             }
         w->balance.inserted = s->head.balance.inserted;   /* whatever happened here since */
         w->balance.removed = s->head.balance.removed;
@@ -16800,7 +16888,7 @@ DEM_API void dem_slabs_channels_reset(dem_slabs *s) {
     int k, i;
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
-        w->overlap_max = 0;
+        w->booked.overlap_max = 0;
         for (i = 0; i < w->wall_count; i++) {
             dem_channels *c = &w->walls[i].channels;
             memset(c->impulse, 0, sizeof c->impulse);
@@ -16834,13 +16922,13 @@ DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
     int k;
     memset(&c, 0, sizeof c);
     if (!s) return c;
-    c.time = s->head.time;
-    c.steps = s->head.steps;
-    c.rebuilds = s->head.rebuilds;
+    c.time = s->head.clock.time;
+    c.steps = s->head.clock.steps;
+    c.rebuilds = s->head.clock.rebuilds;
     c.border_moves = s->border_moves;
     for (k = 0; k < s->local; k++) c.migrated += s->slabs[k].migrated;
-    c.skin = (dem_real)s->head.skin;
-    c.dt = s->head.dt;
+    c.skin = (dem_real)s->head.margin.skin;
+    c.dt = s->head.clock.dt;
     return c;
 }
 

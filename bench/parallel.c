@@ -198,7 +198,7 @@ static double runs_agree(const subject *s, run *serial, run *r, int early) {
             study_fail("%s: 1 and %d %ss do not agree to the last bit", s->name, r->workers, r->how->worker);
     } else if (early) {
         apart = grains_apart(a, b);
-        if (!(apart < (sizeof(dem_real) == 4 ? 1e-2 : 1e-9)*(double)a->radius_max))
+        if (!(apart < (sizeof(dem_real) == 4 ? 1e-2 : 1e-9)*(double)a->effects.radius_max))
             study_fail("%s: after %d steps on %d %ss a grain is %g m from where it is on one thread", s->name, s->warm_up,
                        r->workers, r->how->worker, apart);
     } else if (a->count != b->count)

@@ -171,10 +171,10 @@ static int step_timed(dem_world *w, double time[PHASES]) {
     double moved, found, done;
     int phase = MOVE;
     if (demi_step_move(w) != DEM_OK) return 0;
-    demi_near_pass(w, w->near_kick);
-    w->moved = 1;
+    demi_near_pass(w, w->margin.kick);
+    w->stage.moved = 1;
     moved = found = study_clock();
-    if (!w->list_valid || w->skin <= 0 || 2*w->reach > w->skin || w->reach + w->wall_reach > w->skin) {
+    if (!w->stage.list_valid || w->margin.skin <= 0 || 2*w->margin.reach > w->margin.skin || w->margin.reach + w->margin.wall_reach > w->margin.skin) {
         if (demi_rebuild(w, "dem_world_step") != DEM_OK) return 0;
         kernel_choose(w);
         phase = SEARCH;
@@ -189,7 +189,7 @@ static int step_timed(dem_world *w, double time[PHASES]) {
     kernel_time = 0;
     if (!demi_touch(w)) return 0;               /* counted with the rest: walls */
     demi_forces(w);
-    w->moved = 0;
+    w->stage.moved = 0;
     done = study_clock();
     time[MOVE] += moved - begun;
     time[phase] += found - moved;

@@ -252,7 +252,7 @@ static void mix_compare(mix x, int levels) {
         x.threads = 1 + m%2;
         world = mix_world(&x, methods[m]);
         CHECK(mix_same(right, world));
-        if (methods[m] == DEM_SEARCH_LEVELS) CHECK(world->level_count >= levels);
+        if (methods[m] == DEM_SEARCH_LEVELS) CHECK(world->levels.count >= levels);
         dem_world_destroy(world);
     }
     dem_world_destroy(right);
@@ -440,9 +440,9 @@ int main(int argc, char **argv) {
                 scene_block(world, scene_material(world, 1e7, 0.7, 0.4, 0), 6, 6, 6, 1e-3, 1,
                             0.3, 7);
                 for (k = 0; k < 1500; k++) {
-                    if (!late) world->near_span = 0;
+                    if (!late) world->margin.span = 0;
                     CHECK_EQ(scene_step(world, 1), DEM_OK);
-                    makes[late] += world->near_age <= 0;
+                    makes[late] += world->margin.age <= 0;
                     contacts += (uint64_t)dem_counters_get(world).contacts;
                 }
                 CHECK(contacts > 50000);
