@@ -1986,30 +1986,10 @@ typedef struct demi_booked {       /* >>ledger: sums since the beginning, and th
     double overlap_max, speed_max; /* of the radius; m/s */
 } demi_booked;
 
-struct dem_world {
-    dem_world_desc desc;           /* as given, with choices filled in */
-    dem_world_desc asked;          /* as given */
-    char error[512];
-    char refusal[512];             /* of the first call that builds the scene and was refused */
-    int refused;                   /* calls that were, since dem_world_error was read */
-    char refused_calls[24][32];    /* their names */
-    size_t bytes;
-    /* told by numbers alone, saved and copied whole */
-    demi_timing clock;
-    demi_stages stage;
-    demi_margin margin;
-    demi_in_force effects;
-    demi_levels levels;
-    demi_booked booked;
-    struct demi_block *chains[DEMI_CHAINS];
-
-    int material_count;
-    dem_material_desc materials[DEMI_MATERIALS];
-    demi_pair *pairs;              /* DEMI_MATERIALS x DEMI_MATERIALS */
-
-    int form_count;
-    demi_form *forms;
-
+/* Bodies: who they are (slots, which never move) and where they stand in the arrays (indices, which
+   change whenever the list is rebuilt). Part >>bodies owns them; integrators move them, contacts
+   push them. What is done with each array: demi_body_arrays. */
+typedef struct demi_bodies {
     int count, capacity;           /* bodies */
     dem_real *pos, *vel, *spin;    /* x 4; at the full step (predicted while a step is under way) */
     dem_real *half_vel, *half_spin;/* x 4; mean over the step just taken: at the half step */
@@ -2021,13 +2001,13 @@ struct dem_world {
     dem_real *orient;              /* x 4: w x y z, principal axes -> world */
     dem_real *angular;             /* x 4: angular momentum at the half step; shaped bodies only */
     dem_real *moment;              /* x 4: principal moments of inertia, kg m2; lever, m */
-    int32_t *body_shape;           /* dem_shape ids; 0: a sphere */
-    int shaped_count;              /* bodies that are not spheres */
+    int32_t *shape;                /* dem_shape ids; 0: a sphere */
+    int shaped;                    /* bodies that are not spheres */
     dem_real *spot;                /* x 4: spheres of clusters: centre from the body's, radius, m */
     int32_t *spot_start;           /* where those of each body begin */
     int spots_valid;               /* they fit the bodies and their orientations */
-    uint32_t *body_slot;
-    int32_t *body_material;
+    uint32_t *slot;                /* of each body: who it is */
+    int32_t *material;             /* 1 + index */
     int32_t *slot_index;           /* slot -> index, -1 when free */
     uint32_t *slot_generation;
     int slot_count, slot_capacity; /* slots used so far, room */
@@ -2037,78 +2017,112 @@ struct dem_world {
     dem_real *scratch;             /* x 4, for permuting */
     int32_t *order, *cell_of;      /* permutation, cell of each body */
     dem_balance balance;
+} demi_bodies;
+/* Contact memory of pairs of spheres on its way from one list to the next, by slot: that of entries
+   start[row] .. start[row + 1] - 1 belongs to the row, the pair's lower slot. */
+typedef struct demi_filed {
+    int32_t *start;                /* rows + 2 */
+    int32_t *partner;              /* the higher slot; ~ of it when body a of the pair was that */
+    dem_real *memory;              /* x stride */
+    int count, rows;               /* entries; slots there were when they were filed */
+    int stride;                    /* reals per entry */
+} demi_filed;
 
+/* A world, by owners: each part writes its own, all read. Where more write, they are named. */
+struct dem_world {
+    /* >>world */
+    dem_world_desc desc;           /* as given, with choices filled in */
+    dem_world_desc asked;          /* as given */
+    /* >>memory: sentences (demi_fail), and all that was allocated */
+    char error[512];
+    char refusal[512];             /* of the first call that builds the scene and was refused */
+    int refused;                   /* calls that were, since dem_world_error was read */
+    char refused_calls[24][32];    /* their names */
+    size_t bytes;
+    struct demi_block *chains[DEMI_CHAINS];
+    /* numbers alone, saved and copied whole */
+    demi_timing clock;             /* >>step; dt and what hangs on it: >>advice */
+    demi_stages stage;             /* undone by whoever changes the scene, made good by >>step */
+    demi_margin margin;            /* skin: >>rebuild; the near list's: >>near; reach: >>step */
+    demi_in_force effects;         /* >>rebuild */
+    demi_levels levels;            /* >>search */
+    demi_booked booked;            /* >>ledger; what comes and goes: >>bodies, >>feed, >>step */
+    /* >>materials */
+    int material_count;
+    dem_material_desc materials[DEMI_MATERIALS];
+    demi_pair *pairs;              /* DEMI_MATERIALS x DEMI_MATERIALS */
+    /* >>shapes */
+    int form_count;
+    demi_form *forms;
+    /* >>bodies; moved by >>integrators, pushed by >>respond, >>on-walls and >>shaped */
+    demi_bodies bodies;
+    demi_filed filed;
+    /* >>walls; weights of facets: >>facets; poses and loads: >>step */
     int wall_count;
     demi_wall *walls;
+    double wall_fastest;           /* m/s, fastest wall point of the step */
+    dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
+    int repeating;                 /* does any wall repeat? */
+    int facets_valid;              /* what facets count fits the walls and their motions */
+    /* >>measure, >>feed, >>placing, >>advice */
     int field_count;
     demi_field *fields;
     int feed_count, outlet_count;
     demi_feed *feeds;
     demi_outlet *outlets;
-    struct demi_sphere *crowd;     /* see >>placing */
+    struct demi_sphere *crowd;
     struct demi_node *crowd_nodes;
     dem_real *crowd_turned;        /* x 4 */
-
-    /* effects, worked out when the scene changes */
+    struct demi_press *press;      /* what presses bodies, while a step is judged */
+    struct demi_press_whole *press_whole;
+    /* >>rebuild: laws in force, domains */
     int normal;                    /* law in force */
     demi_laws laws;                /* their rows; not used where the user's own acts */
     int memory_stride, vector_mask;/* reals per contact; which of them are vectors */
     int composed;                  /* one stage per law even where one for all would do (tests) */
-
-    /* search */
-    double wall_fastest;           /* m/s, fastest wall point of the step */
-    dem_real image_shift[27*4];    /* m, from a body to another's image; 0: none */
     int domain_count;
-    demi_domain *domains;
+    demi_domain *domains;          /* counts of each list by who makes it */
+    /* >>search */
+    dem_real image_shift[27*4];    /* m, from a body to another's image; 0: none */
+    int32_t *cell_start;
+    int cells[3];
+    double cell_origin[3], cell_size[3];
+    demi_end *lll_ends[3];
+    struct demi_pair_key *lll_table;
+    int32_t *lll_rows, *lll_row_start;
+    int lll_valid, lll_boxes, lll_size;
+    /* >>lists: candidates of pairs and on walls; contacts that last */
     demi_list own, cross;
-    demi_near near, near_last;     /* in use, and the one before: swapped when made anew */
-    struct demi_quiet *quiet;      /* what may push each few bodies, see demi_domain_quiet */
-    int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
     int join_room;                 /* candidates that newcomers may bring, see demi_list_join */
     int *cross_incoming_start;     /* domain_count + 1 */
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
     dem_real *cross_push;          /* x 6: force and torque on the far end */
     int cross_entries;
-    int32_t *cell_start;
-    int cells[3];
-    double cell_origin[3], cell_size[3];
-    struct demi_press *press;      /* what presses bodies, while a step is judged */
-    struct demi_press_whole *press_whole;
-    /* contact memory on its way to a new list */
-    int32_t *carry_start, *carry_partner;
-    dem_real *carry_memory;
-    int carry_count, carry_rows;   /* entries; slots there were when they were filed */
-    int carry_stride;              /* reals per entry */
     int wall_stride;               /* wall candidates per domain */
-    int wall_now_stride;           /* wall contacts per domain */
     int32_t *wall_body, *wall_id, *wall_element;
     dem_real *wall_gap;            /* m, between grain and element when the list was made, or a
                                       little less */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image that is near */
-    dem_real wall_period[3], ring_period[3];   /* m, of walls; of a ring of slabs */
-    int repeating;                 /* does any wall repeat? */
+    int wall_now_stride;           /* wall contacts per domain */
     demi_wall_contact *wall_now, *wall_next;
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
-    int facets_valid;              /* what facets count fits the walls and their motions */
-    int touching_valid;            /* the next two have room for the present candidates */
-    /* room for one body and wall, by domain */
-    demi_touching *touching;
+    int touching_valid;            /* the next three have room for the present candidates */
+    demi_touching *touching;       /* of one body and wall, by domain */
     int32_t *touching_table;
     demi_link *touching_links;
     int shaped_stride;             /* contacts of shaped bodies per domain */
     demi_shaped *shaped_now, *shaped_next;
-    demi_end *lll_ends[3];
-    struct demi_pair_key *lll_table;
-    int32_t *lll_rows, *lll_row_start;
-    int lll_valid, lll_boxes, lll_size;
-
-    /* step */
+    /* >>near */
+    demi_near near, near_last;     /* in use, and the one before: swapped when made anew */
+    struct demi_quiet *quiet;      /* what may push each few bodies, see demi_domain_quiet */
+    int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
+    /* >>respond */
     void (*kernel)(dem_world *w, int domain);
 };
 
 /* --- what each body has, told once. Making room, adding, removing, sorting, checking, saving and
        sending to another slab are loops over these rows (>>bodies). >>add-array: a field in
-       dem_world above and a row here. Who has it: DEMI_EVERY body; DEMI_BACK: those of a scheme
+       demi_bodies above and a row here. Who has it: DEMI_EVERY body; DEMI_BACK: those of a scheme
        that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_SLOTS: every slot.
        What is done with it: DEMI_KEPT: it is state, and 0 in a new body unless set; DEMI_REALS:
        kept, and finite; DEMI_PLACES: reals that begin with a place, which moves by a period; 0:
@@ -2116,14 +2130,14 @@ struct dem_world {
 enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_SLOTS };
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
-    size_t field, item;            /* where its pointer stands in dem_world; bytes of one body */
+    size_t field, item;            /* where its pointer stands in demi_bodies; bytes of one body */
     int who, what;
 } demi_body_array;
 #define DEMI_ARRAY(field, count, who, what) \
-    {offsetof(dem_world, field), (count)*sizeof *((dem_world *)0)->field, who, what}
+    {offsetof(demi_bodies, field), (count)*sizeof *((demi_bodies *)0)->field, who, what}
 static const demi_body_array demi_body_arrays[] = {
-    DEMI_ARRAY(body_slot,       1, DEMI_EVERY,  DEMI_KEPT),     /* the first: see demi_body_take */
-    DEMI_ARRAY(body_material,   1, DEMI_EVERY,  DEMI_KEPT),
+    DEMI_ARRAY(slot,            1, DEMI_EVERY,  DEMI_KEPT),     /* the first: see demi_body_take */
+    DEMI_ARRAY(material,        1, DEMI_EVERY,  DEMI_KEPT),
     DEMI_ARRAY(pos,             4, DEMI_EVERY,  DEMI_PLACES),
     DEMI_ARRAY(vel,             4, DEMI_EVERY,  DEMI_REALS),
     DEMI_ARRAY(spin,            4, DEMI_EVERY,  DEMI_REALS),
@@ -2138,7 +2152,7 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(orient,          4, DEMI_TURNED, DEMI_REALS),
     DEMI_ARRAY(angular,         4, DEMI_TURNED, DEMI_REALS),
     DEMI_ARRAY(moment,          4, DEMI_TURNED, DEMI_REALS),
-    DEMI_ARRAY(body_shape,      1, DEMI_TURNED, DEMI_KEPT),
+    DEMI_ARRAY(shape,           1, DEMI_TURNED, DEMI_KEPT),
     DEMI_ARRAY(scratch,         4, DEMI_EVERY,  0),
     DEMI_ARRAY(order,           1, DEMI_EVERY,  0),
     DEMI_ARRAY(cell_of,         1, DEMI_EVERY,  0),
@@ -3224,14 +3238,14 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
 /* --- a body and its form --- */
 
 DEM_INLINE const demi_form *demi_form_of(const dem_world *w, int body) {  /* null: a sphere */
-    return w->body_shape && w->body_shape[body] ? &w->forms[w->body_shape[body] - 1] : 0;
+    return w->bodies.shape && w->bodies.shape[body] ? &w->forms[w->bodies.shape[body] - 1] : 0;
 }
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_form *form) {
-    return w->pos[4*body + 3]/form->radius;
+    return w->bodies.pos[4*body + 3]/form->radius;
 }
 static dem_vec3 demi_moments_of(const dem_world *w, int body) {        /* kg m2, principal */
     const demi_form *form = demi_form_of(w, body);
-    const double m = (double)w->mass[body], r = (double)w->pos[4*body + 3];
+    const double m = (double)w->bodies.mass[body], r = (double)w->bodies.pos[4*body + 3];
     dem_real one;
     if (form) {
         one = demi_scale_of(w, body, form);
@@ -3242,11 +3256,11 @@ static dem_vec3 demi_moments_of(const dem_world *w, int body) {        /* kg m2,
 }
 /* Angular momentum of a body, of its spin at the full step; kg m2/s. */
 static dem_vec3 demi_angular_of(const dem_world *w, int body) {
-    const dem_vec3 I = demi_moments_of(w, body), spin = demi_at(w->spin + 4*body);
+    const dem_vec3 I = demi_moments_of(w, body), spin = demi_at(w->bodies.spin + 4*body);
     dem_quat q;
     dem_vec3 own;
     if (!demi_form_of(w, body)) return demi_scale(spin, I.x);
-    q = demi_quat_at(w->orient + 4*body);
+    q = demi_quat_at(w->bodies.orient + 4*body);
     own = dem_quat_unturn(q, spin);
     return dem_quat_turn(q, demi_v(I.x*own.x, I.y*own.y, I.z*own.z));
 }
@@ -3256,9 +3270,9 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
     dem_real scale, far = -1;
     dem_vec3 e;
     int i;
-    if (!form) return w->pos[4*body + 3];
+    if (!form) return w->bodies.pos[4*body + 3];
     scale = demi_scale_of(w, body, form);
-    e = dem_quat_unturn(demi_quat_at(w->orient + 4*body), n);
+    e = dem_quat_unturn(demi_quat_at(w->bodies.orient + 4*body), n);
     if (!form->count) {
         e = demi_v(e.x*form->axes.x, e.y*form->axes.y, e.z*form->axes.z);
         return scale*demi_length(e);
@@ -3453,10 +3467,10 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
     demi_part p;
     memset(&p, 0, sizeof p);
     p.ball = !form || form->count;
-    p.radius = w->pos[4*body + 3];
+    p.radius = w->bodies.pos[4*body + 3];
     if (form) {
         const dem_real scale = demi_scale_of(w, body, form);
-        p.q = demi_quat_at(w->orient + 4*body);
+        p.q = demi_quat_at(w->bodies.orient + 4*body);
         if (form->count) {
             p.centre = demi_scale(dem_quat_turn(p.q, demi_at(form->parts + 4*k)), scale);
             p.radius = form->parts[4*k + 3]*scale;
@@ -3466,13 +3480,13 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
 }
 /* The spheres of a cluster, as they are turned now: rows of centre and radius. */
 static const dem_real *demi_spots_of(const dem_world *w, int body) {
-    return w->spot + 4*w->spot_start[body];
+    return w->bodies.spot + 4*w->bodies.spot_start[body];
 }
 static void demi_spots_turn(dem_world *w, int body) {
     const demi_form *form = demi_form_of(w, body);
-    const dem_quat q = demi_quat_at(w->orient + 4*body);
+    const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
     const dem_real scale = demi_scale_of(w, body, form);
-    dem_real *spot = w->spot + 4*w->spot_start[body];
+    dem_real *spot = w->bodies.spot + 4*w->bodies.spot_start[body];
     int k;
     for (k = 0; k < form->count; k++, spot += 4) {
         demi_put(spot, demi_scale(dem_quat_turn(q, demi_at(form->parts + 4*k)), scale));
@@ -3483,17 +3497,17 @@ static void demi_spots_turn(dem_world *w, int body) {
 static int demi_spots_lay(dem_world *w) {
     int32_t *start;
     int i, n = 0;
-    if (!DEMI_GROW(w, w->spot_start, (size_t)w->count + 1)) return 0;
-    start = w->spot_start;
-    for (i = 0; i < w->count; i++) {
+    if (!DEMI_GROW(w, w->bodies.spot_start, (size_t)w->bodies.count + 1)) return 0;
+    start = w->bodies.spot_start;
+    for (i = 0; i < w->bodies.count; i++) {
         const demi_form *form = demi_form_of(w, i);
         start[i] = n;
         if (form && n > INT_MAX/8 - form->count) return 0;
         n += form ? form->count : 0;
     }
-    if (!DEMI_GROW(w, w->spot, 4*((size_t)n + 1))) return 0;
-    w->spots_valid = 1;
-    for (i = 0; i < w->count; i++)
+    if (!DEMI_GROW(w, w->bodies.spot, 4*((size_t)n + 1))) return 0;
+    w->bodies.spots_valid = 1;
+    for (i = 0; i < w->bodies.count; i++)
         if (demi_form_of(w, i) && demi_form_of(w, i)->count) demi_spots_turn(w, i);
     return 1;
 }
@@ -3556,9 +3570,9 @@ static dem_real demi_parts_gap(const demi_part *p, const demi_part *q, dem_vec3 
 /* The same for two bodies; shift leads from b to the image of it that is nearest to a. */
 static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real *shift,
                                 dem_real enough) {
-    const dem_vec3 r = demi_add(demi_sub(demi_at(w->pos + 4*b), demi_at(w->pos + 4*a)),
-                                demi_at(shift));
-    const dem_real d = demi_length(r), rb = w->pos[4*b + 3];
+    const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
+                                         demi_at(w->bodies.pos + 4*a)), demi_at(shift));
+    const dem_real d = demi_length(r), rb = w->bodies.pos[4*b + 3];
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
     dem_real least = enough;
     int i, j;
@@ -3636,17 +3650,18 @@ static dem_vec3 demi_nearest(const demi_periods *p, dem_vec3 d) {
                   demi_into(d.y, -p->half[1], p->period[1]),
                   demi_into(d.z, -p->half[2], p->period[2]));
 }
-/* All bodies in the periodic box: count x 4, as w->pos. Holds until bodies move or are sorted. */
+/* All bodies in the periodic box: count x 4, as bodies.pos. Holds until bodies move or are
+   sorted. */
 static const dem_real *demi_wrapped(const dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
-    if (!p.any) return w->pos;
-    for (i = 0; i < w->count; i++) {
+    if (!p.any) return w->bodies.pos;
+    for (i = 0; i < w->bodies.count; i++) {
         for (k = 0; k < 3; k++)
-            w->scratch[4*i + k] = demi_into(w->pos[4*i + k], p.lo[k], p.period[k]);
-        w->scratch[4*i + 3] = w->pos[4*i + 3];
+            w->bodies.scratch[4*i + k] = demi_into(w->bodies.pos[4*i + k], p.lo[k], p.period[k]);
+        w->bodies.scratch[4*i + 3] = w->bodies.pos[4*i + 3];
     }
-    return w->scratch;
+    return w->bodies.scratch;
 }
 static void demi_domain_limits(const dem_world *w, double *lo, double *hi) {
     lo[0] = (double)w->desc.domain.lo.x; lo[1] = (double)w->desc.domain.lo.y;
@@ -3659,25 +3674,26 @@ static void demi_wrap(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
     for (k = 0; k < 3 && p.any; k++) {
-        for (i = 0; i < w->count && p.period[k] > 0; i++) {
-            const dem_real from = w->pos[4*i + k], to = demi_into(from, p.lo[k], p.period[k]);
-            if (w->backward) w->last_pos[4*i + k] += to - from;
-            w->pos[4*i + k] = to;
+        for (i = 0; i < w->bodies.count && p.period[k] > 0; i++) {
+            const dem_real from = w->bodies.pos[4*i + k];
+            const dem_real to = demi_into(from, p.lo[k], p.period[k]);
+            if (w->bodies.backward) w->bodies.last_pos[4*i + k] += to - from;
+            w->bodies.pos[4*i + k] = to;
         }
     }
 }
 
 /* Is this body a copy of one that is at home in another slab? (>>slabs; never elsewhere) */
 DEM_INLINE int demi_visits(const dem_world *w, int i) {
-    return w->visitor && w->visitor[w->body_slot[i]] == 1;
+    return w->bodies.visitor && w->bodies.visitor[w->bodies.slot[i]] == 1;
 }
 
 /* Room for filed memory. 0 when memory ran out. */
 static int demi_carry_reserve(dem_world *w, int rows, int count, int stride) {
     const size_t reals = (size_t)count*(size_t)stride;
-    const int ok = DEMI_GROW(w, w->carry_start, (size_t)rows + 2) &&
-                   DEMI_GROW(w, w->carry_partner, (size_t)count) &&
-                   DEMI_GROW(w, w->carry_memory, reals);
+    const int ok = DEMI_GROW(w, w->filed.start, (size_t)rows + 2) &&
+                   DEMI_GROW(w, w->filed.partner, (size_t)count) &&
+                   DEMI_GROW(w, w->filed.memory, reals);
     return ok;
 }
 
@@ -3705,10 +3721,10 @@ DEM_INLINE int demi_near_first(const demi_domain *domain) {
 static int demi_carry_collect(dem_world *w) {
     const int stride = w->memory_stride;
     int d, p, e, k, total = 0, pass;
-    w->carry_count = 0;
+    w->filed.count = 0;
     if (!stride || !w->domain_count) return 1;
-    if (!demi_carry_reserve(w, w->slot_count, 0, stride)) return 0;
-    memset(w->carry_start, 0, ((size_t)w->slot_count + 2)*sizeof(int32_t));
+    if (!demi_carry_reserve(w, w->bodies.slot_count, 0, stride)) return 0;
+    memset(w->filed.start, 0, ((size_t)w->bodies.slot_count + 2)*sizeof(int32_t));
     for (pass = 0; pass < 2; pass++) {          /* count by row, then fill */
         for (d = 0; d < w->domain_count; d++) {
             const demi_domain *domain = &w->domains[d];
@@ -3718,24 +3734,25 @@ static int demi_carry_collect(dem_world *w) {
                 int32_t a, b, row;
                 dem_real *to;
                 if (!demi_near_remembers(w, d, p)) continue;
-                a = (int32_t)w->body_slot[w->near.a[at]];
-                b = (int32_t)w->body_slot[w->near.b[at]];
+                a = (int32_t)w->bodies.slot[w->near.a[at]];
+                b = (int32_t)w->bodies.slot[w->near.b[at]];
                 row = DEMI_MIN(a, b);
-                if (pass == 0) { w->carry_start[row + 2]++; total++; continue; }
-                w->carry_partner[w->carry_start[row + 1]] = a < b ? b : ~a;
-                to = w->carry_memory + (size_t)w->carry_start[row + 1]++*(size_t)stride;
+                if (pass == 0) { w->filed.start[row + 2]++; total++; continue; }
+                w->filed.partner[w->filed.start[row + 1]] = a < b ? b : ~a;
+                to = w->filed.memory + (size_t)w->filed.start[row + 1]++*(size_t)stride;
                 for (e = 0; e < stride; e++)
                     to[e] = m[(size_t)e*(size_t)w->near.stride + (size_t)p];
             }
         }
         if (pass == 0) {
-            if (!demi_carry_reserve(w, w->slot_count, total, stride)) return 0;
-            for (k = 2; k < w->slot_count + 2; k++) w->carry_start[k] += w->carry_start[k - 1];
+            if (!demi_carry_reserve(w, w->bodies.slot_count, total, stride)) return 0;
+            for (k = 2; k < w->bodies.slot_count +
+                 2; k++) w->filed.start[k] += w->filed.start[k - 1];
         }
     }
-    w->carry_count = total;
-    w->carry_rows = w->slot_count;
-    w->carry_stride = stride;
+    w->filed.count = total;
+    w->filed.rows = w->bodies.slot_count;
+    w->filed.stride = stride;
     return 1;
 }
 
@@ -3743,19 +3760,19 @@ static int demi_carry_collect(dem_world *w) {
    then. */
 static int demi_list_drop(dem_world *w) {
     int d, k;
-    w->spots_valid = 0;
+    w->bodies.spots_valid = 0;
     if (!w->stage.list_valid) return 1;
     if (!demi_carry_collect(w)) return 0;
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
-            c->body = (int32_t)w->body_slot[c->body];      /* from here on a slot */
+            c->body = (int32_t)w->bodies.slot[c->body];      /* from here on a slot */
         }
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].shaped; k++) {
             demi_shaped *c = &w->shaped_now[d*w->shaped_stride + k];
-            c->a = (int32_t)w->body_slot[c->a];
-            if (c->b >= 0) c->b = (int32_t)w->body_slot[c->b];
+            c->a = (int32_t)w->bodies.slot[c->a];
+            if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
         }
     w->stage.list_valid = 0;
     return 1;
@@ -3765,11 +3782,12 @@ static int demi_list_drop(dem_world *w) {
 
 /* Does each body of this world (or slot) have one? */
 static int demi_has(const dem_world *w, const demi_body_array *a) {
-    return a->who == DEMI_BACK ? w->backward : a->who == DEMI_TURNED ? w->orienting : 1;
+    return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
+           : 1;
 }
 static char *demi_data(const dem_world *w, const demi_body_array *a) {
     char *data;
-    memcpy(&data, (const char *)w + a->field, sizeof data);
+    memcpy(&data, (const char *)&w->bodies + a->field, sizeof data);
     return data;
 }
 /* What body i has of it. */
@@ -3795,25 +3813,27 @@ static int demi_bodies_room(dem_world *w, int chosen, size_t used, size_t room) 
         if (!fresh[k]) continue;
         if (used) memcpy(fresh[k], demi_data(w, a), used*a->item);
         demi_free(w, demi_data(w, a));
-        memcpy((char *)w + a->field, &fresh[k], sizeof fresh[k]);
+        memcpy((char *)&w->bodies + a->field, &fresh[k], sizeof fresh[k]);
     }
     return 1;
 }
 static int demi_bodies_reserve(dem_world *w, size_t count) {
-    const size_t old = (size_t)w->capacity, room = DEMI_MAX(count, old + old/4 + 16);
+    const size_t old = (size_t)w->bodies.capacity, room = DEMI_MAX(count, old + old/4 + 16);
     /* slots of removed bodies rest until the next list: each body to come may need a new one */
-    const size_t more = count > (size_t)w->count ? count - (size_t)w->count : 0;
-    const size_t slots = (size_t)w->slot_count + more;
-    const int sets = 1 << DEMI_EVERY | w->backward << DEMI_BACK | w->orienting << DEMI_TURNED;
+    const size_t more = count > (size_t)w->bodies.count ? count - (size_t)w->bodies.count : 0;
+    const size_t slots = (size_t)w->bodies.slot_count + more;
+    const int sets =
+        1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
-    if (count > (size_t)w->capacity) {
-        if (!demi_bodies_room(w, sets, (size_t)w->count, room)) return 0;
-        w->capacity = (int)room;
+    if (count > (size_t)w->bodies.capacity) {
+        if (!demi_bodies_room(w, sets, (size_t)w->bodies.count, room)) return 0;
+        w->bodies.capacity = (int)room;
     }
-    if (slots > (size_t)w->slot_capacity) {
-        const size_t slot_room = DEMI_MAX(slots, (size_t)w->slot_capacity*5/4 + 16);
-        if (!demi_bodies_room(w, 1 << DEMI_SLOTS, (size_t)w->slot_count, slot_room)) return 0;
-        w->slot_capacity = (int)slot_room;
+    if (slots > (size_t)w->bodies.slot_capacity) {
+        const size_t slot_room = DEMI_MAX(slots, (size_t)w->bodies.slot_capacity*5/4 + 16);
+        if (!demi_bodies_room(w, 1 << DEMI_SLOTS, (size_t)w->bodies.slot_count,
+                              slot_room)) return 0;
+        w->bodies.slot_capacity = (int)slot_room;
     }
     return 1;
 }
@@ -3839,22 +3859,22 @@ static void demi_body_copy(dem_world *w, int from, int to) {
 /* From now on bodies have orientations. 0 when memory ran out; nothing changed then. */
 static int demi_orient_begin(dem_world *w) {
     int i;
-    if (w->orienting) return 1;
-    if (!demi_bodies_room(w, 1 << DEMI_TURNED, 0, (size_t)w->capacity)) return 0;
-    w->orienting = 1;
-    for (i = 0; i < w->count; i++) {
-        w->orient[4*i] = 1;
-        demi_put(w->moment + 4*i, demi_moments_of(w, i));
+    if (w->bodies.orienting) return 1;
+    if (!demi_bodies_room(w, 1 << DEMI_TURNED, 0, (size_t)w->bodies.capacity)) return 0;
+    w->bodies.orienting = 1;
+    for (i = 0; i < w->bodies.count; i++) {
+        w->bodies.orient[4*i] = 1;
+        demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
     }
     return 1;
 }
 
 static double demi_body_energy(const dem_world *w, int i) {
-    const dem_real *v = w->vel + 4*i;
-    const double m = (double)w->mass[i];
-    if (w->inv_mass[i] <= 0) return 0;
+    const dem_real *v = w->bodies.vel + 4*i;
+    const double m = (double)w->bodies.mass[i];
+    if (w->bodies.inv_mass[i] <= 0) return 0;
     return m*(double)(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2 +
-        (double)demi_dot(demi_angular_of(w, i), demi_at(w->spin + 4*i))/2;
+        (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
 }
 
 /* What follows from bodies having changed: forces, list and advice must be made anew. */
@@ -3864,28 +3884,29 @@ static void demi_scene_changed(dem_world *w) {
 
 /* Puts one body at the end of the arrays; room and list have been seen to. */
 static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, dem_vec3 x) {
-    const int i = w->count++;
+    const int i = w->bodies.count++;
     const double m = demi_sphere_mass(w, material, (double)radius);
-    int slot = w->slot_free;
-    if (slot >= 0) w->slot_free = -2 - w->slot_index[slot];       /* chain: index = -2 - next */
-    else { slot = w->slot_count++; w->slot_generation[slot] = 1; }
+    int slot = w->bodies.slot_free;
+    /* chain: index = -2 - next */
+    if (slot >= 0) w->bodies.slot_free = -2 - w->bodies.slot_index[slot];
+    else { slot = w->bodies.slot_count++; w->bodies.slot_generation[slot] = 1; }
     demi_body_clear(w, i);
-    demi_put(w->pos + 4*i, x);
-    if (w->desc.planar) w->pos[4*i + 2] = 0;
-    w->pos[4*i + 3] = radius;
-    w->mass[i] = (dem_real)m;
-    w->inv_mass[i] = (dem_real)(1/m);
-    w->inv_inertia[i] = (dem_real)(1/demi_sphere_inertia(w, m, (double)radius));
-    w->body_slot[i] = (uint32_t)slot;
-    w->body_material[i] = material + 1;
-    w->slot_index[slot] = i;
-    if (w->orienting) {
-        demi_quat_put(w->orient + 4*i, dem_quat_make(1, 0, 0, 0));
-        demi_put(w->moment + 4*i, demi_moments_of(w, i));
+    demi_put(w->bodies.pos + 4*i, x);
+    if (w->desc.planar) w->bodies.pos[4*i + 2] = 0;
+    w->bodies.pos[4*i + 3] = radius;
+    w->bodies.mass[i] = (dem_real)m;
+    w->bodies.inv_mass[i] = (dem_real)(1/m);
+    w->bodies.inv_inertia[i] = (dem_real)(1/demi_sphere_inertia(w, m, (double)radius));
+    w->bodies.slot[i] = (uint32_t)slot;
+    w->bodies.material[i] = material + 1;
+    w->bodies.slot_index[slot] = i;
+    if (w->bodies.orienting) {
+        demi_quat_put(w->bodies.orient + 4*i, dem_quat_make(1, 0, 0, 0));
+        demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
     }
     w->lll_valid = 0;
-    w->balance.inserted++;
-    w->balance.present++;
+    w->bodies.balance.inserted++;
+    w->bodies.balance.present++;
     return (uint32_t)slot;
 }
 /* Do bodies of this shape (DEMI_BALL, ...) and walls of this kind know each other? (>>shaped) */
@@ -3907,7 +3928,7 @@ static int demi_walls_strange(dem_world *w, const char *call, int form) {
     for (j = 0; j < w->wall_count; j++) {
         const int kind = w->walls[j].kind;
         if (kind == DEMI_WALL_NONE || demi_touch_known(kind, shape)) continue;
-        demi_strangers(w, call, j, kind, w->slot_count);
+        demi_strangers(w, call, j, kind, w->bodies.slot_count);
         return 1;
     }
     return 0;
@@ -3916,17 +3937,17 @@ static int demi_walls_strange(dem_world *w, const char *call, int form) {
 static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_quat orientation) {
     const demi_form *form = &w->forms[shape];
     const double s = (double)scale;
-    const double density = (double)w->materials[w->body_material[i] - 1].density;
+    const double density = (double)w->materials[w->bodies.material[i] - 1].density;
     const double m = density*form->volume*s*s*s;
-    w->body_shape[i] = shape + 1;
-    w->pos[4*i + 3] = form->radius*scale;
-    w->mass[i] = (dem_real)m;
-    w->inv_mass[i] = (dem_real)(1/m);
-    w->inv_inertia[i] = 0;
-    demi_put(w->moment + 4*i, demi_moments_of(w, i));
-    w->moment[4*i + 3] = form->lever*scale;
-    demi_quat_put(w->orient + 4*i, demi_quat_unit(dem_quat_times(orientation, form->frame)));
-    w->shaped_count++;
+    w->bodies.shape[i] = shape + 1;
+    w->bodies.pos[4*i + 3] = form->radius*scale;
+    w->bodies.mass[i] = (dem_real)m;
+    w->bodies.inv_mass[i] = (dem_real)(1/m);
+    w->bodies.inv_inertia[i] = 0;
+    demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
+    w->bodies.moment[4*i + 3] = form->lever*scale;
+    demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(dem_quat_times(orientation, form->frame)));
+    w->bodies.shaped++;
 }
 
 DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int count,
@@ -3955,15 +3976,15 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
                              "%g m from the origin; check the data it came from; no sphere was "
                              "added", i, DEMI_REACH);
     }
-    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count))
+    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count))
         return demi_no_memory(w, "dem_spheres_add");
     for (i = 0; i < count; i++) {
         const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius,
                                                demi_at(positions + 3*i));
-        const int k = w->slot_index[slot];
-        if (velocities) demi_put(w->vel + 4*k, demi_at(velocities + 3*i));
-        if (w->desc.planar) w->vel[4*k + 2] = 0;
-        demi_put(w->half_vel + 4*k, demi_at(w->vel + 4*k));
+        const int k = w->bodies.slot_index[slot];
+        if (velocities) demi_put(w->bodies.vel + 4*k, demi_at(velocities + 3*i));
+        if (w->desc.planar) w->bodies.vel[4*k + 2] = 0;
+        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
         w->booked.inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
@@ -3979,7 +4000,7 @@ DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real ra
     id.slot = id.generation = 0;
     demi_put(x, position);
     if (dem_spheres_add(w, material, 1, x, 0, 0, radius) != DEM_OK) return id;
-    return dem_bodies_id(w, w->count - 1);
+    return dem_bodies_id(w, w->bodies.count - 1);
 }
 
 /* 0 with a sentence when an array for bodies has a bad value. */
@@ -4047,19 +4068,19 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
     for (i = 0; i < count; i++)
         if (demi_shape_mass_refuse(w, call, m, f, scales ? scales[i] : 1, i))
             return DEM_ERROR_ARGUMENT;
-    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->count + (size_t)count) ||
+    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) ||
         !demi_orient_begin(w)) return demi_no_memory(w, call);
     for (i = 0; i < count; i++) {
         const uint32_t slot = demi_body_append(w, m, 1, demi_at(positions + 3*i));
-        const int k = w->slot_index[slot];
+        const int k = w->bodies.slot_index[slot];
         demi_body_shape(w, k, f, scales ? scales[i] : 1, orientations
                         ? demi_quat_unit(demi_quat_at(orientations + 4*i))
                         : dem_quat_make(1, 0, 0, 0));
-        if (velocities) demi_put(w->vel + 4*k, demi_at(velocities + 3*i));
-        if (spins) demi_put(w->spin + 4*k, demi_at(spins + 3*i));
-        demi_put(w->half_vel + 4*k, demi_at(w->vel + 4*k));
-        demi_put(w->half_spin + 4*k, demi_at(w->spin + 4*k));
-        demi_put(w->angular + 4*k, demi_angular_of(w, k));
+        if (velocities) demi_put(w->bodies.vel + 4*k, demi_at(velocities + 3*i));
+        if (spins) demi_put(w->bodies.spin + 4*k, demi_at(spins + 3*i));
+        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
+        demi_put(w->bodies.half_spin + 4*k, demi_at(w->bodies.spin + 4*k));
+        demi_put(w->bodies.angular + 4*k, demi_angular_of(w, k));
         w->booked.inserted += demi_body_energy(w, k);
     }
     demi_scene_changed(w);
@@ -4083,36 +4104,36 @@ DEM_API dem_body dem_body_add(dem_world *w, dem_material material, dem_shape sha
     demi_put(x, position);
     demi_quat_put(q, orientation);
     if (demi_bodies_add(w, "dem_body_add", material, shape, 1, x, q, 0, 0, 0) != DEM_OK) return id;
-    return dem_bodies_id(w, w->count - 1);
+    return dem_bodies_id(w, w->bodies.count - 1);
 }
 
 /* Index of a body, or -1 with a sentence. */
 static int demi_body_index(dem_world *w, const char *call, dem_body b) {
-    if (b.slot < 1 || b.slot > (uint32_t)w->slot_count ||
-        w->slot_generation[b.slot - 1] != b.generation ||
-        w->slot_index[b.slot - 1] < 0) {
+    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
+        w->bodies.slot_generation[b.slot - 1] != b.generation ||
+        w->bodies.slot_index[b.slot - 1] < 0) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u (generation %u) does not exist; it was "
                   "removed, has left the "
                   "domain, or never was", call, (unsigned)b.slot, (unsigned)b.generation);
         return -1;
     }
-    return w->slot_index[b.slot - 1];
+    return w->bodies.slot_index[b.slot - 1];
 }
 
 static void demi_body_take_out(dem_world *w, int i) {
-    const int last = w->count - 1, slot = (int)w->body_slot[i];
+    const int last = w->bodies.count - 1, slot = (int)w->bodies.slot[i];
     w->booked.removed += demi_body_energy(w, i);
-    if (demi_form_of(w, i)) w->shaped_count--;
+    if (demi_form_of(w, i)) w->bodies.shaped--;
     if (i != last) {
         demi_body_copy(w, last, i);
-        w->slot_index[w->body_slot[i]] = i;
+        w->bodies.slot_index[w->bodies.slot[i]] = i;
     }
-    w->slot_index[slot] = -2 - w->slot_pending;
-    w->slot_pending = slot;
-    w->slot_generation[slot]++;
+    w->bodies.slot_index[slot] = -2 - w->bodies.slot_pending;
+    w->bodies.slot_pending = slot;
+    w->bodies.slot_generation[slot]++;
     w->lll_valid = 0;
-    w->count = last;
-    w->balance.present--;
+    w->bodies.count = last;
+    w->bodies.balance.present--;
 }
 
 DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
@@ -4121,7 +4142,7 @@ DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_remove");
     demi_body_take_out(w, i);
-    w->balance.removed++;
+    w->bodies.balance.removed++;
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -4133,20 +4154,20 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
     int i = demi_body_index(w, "dem_body_get", body);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     p = demi_periods_of(w);
-    s->position = demi_place_of(&p, demi_at(w->pos + 4*i));
-    s->velocity = demi_at(w->vel + 4*i);
-    s->spin = demi_at(w->spin + 4*i);
-    s->force = demi_at(w->force + 4*i);
-    s->torque = demi_at(w->torque + 4*i);
-    s->radius = w->pos[4*i + 3];
-    s->mass = w->mass[i];
+    s->position = demi_place_of(&p, demi_at(w->bodies.pos + 4*i));
+    s->velocity = demi_at(w->bodies.vel + 4*i);
+    s->spin = demi_at(w->bodies.spin + 4*i);
+    s->force = demi_at(w->bodies.force + 4*i);
+    s->torque = demi_at(w->bodies.torque + 4*i);
+    s->radius = w->bodies.pos[4*i + 3];
+    s->mass = w->bodies.mass[i];
     s->moments = demi_moments_of(w, i);
     s->inertia = DEMI_MIN(s->moments.x, DEMI_MIN(s->moments.y, s->moments.z));
-    s->material.id = w->body_material[i];
-    s->fixed = w->inv_mass[i] <= 0;
-    s->shape.id = w->orienting ? w->body_shape[i] : 0;
+    s->material.id = w->bodies.material[i];
+    s->fixed = w->bodies.inv_mass[i] <= 0;
+    s->shape.id = w->bodies.orienting ? w->bodies.shape[i] : 0;
     s->orientation = dem_quat_make(1, 0, 0, 0);
-    if (w->orienting) s->orientation = demi_quat_at(w->orient + 4*i);
+    if (w->bodies.orienting) s->orientation = demi_quat_at(w->bodies.orient + 4*i);
     if (demi_form_of(w, i))                     /* as its user gave it */
         s->orientation = dem_quat_times(s->orientation,
                                         demi_quat_conjugate(demi_form_of(w, i)->frame));
@@ -4161,7 +4182,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     double before, m;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     form = demi_form_of(w, i);
-    if (w->orienting && (!demi_quat_finite(q) || !(demi_quat_most(q) > 0)))
+    if (w->bodies.orienting && (!demi_quat_finite(q) || !(demi_quat_most(q) > 0)))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: orientation of body %u is (%g, %g, "
                          "%g, %g), must be finite and not zero; fill the state with dem_body_get "
                          "first", (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y,
@@ -4173,23 +4194,25 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
                          DEMI_REACH);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_set");
     before = demi_body_energy(w, i);
-    m = (double)w->mass[i];
-    demi_put(w->pos + 4*i, s->position);
-    demi_put(w->vel + 4*i, s->velocity);
-    demi_put(w->spin + 4*i, s->spin);
+    m = (double)w->bodies.mass[i];
+    demi_put(w->bodies.pos + 4*i, s->position);
+    demi_put(w->bodies.vel + 4*i, s->velocity);
+    demi_put(w->bodies.spin + 4*i, s->spin);
     if (w->desc.planar)
-        w->pos[4*i + 2] = w->vel[4*i + 2] = w->spin[4*i] = w->spin[4*i + 1] = 0;
+        w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = w->bodies.spin[4*i] =
+            w->bodies.spin[4*i + 1] = 0;
     /* never moves, whatever it is told */
-    if (s->fixed) demi_put(w->vel + 4*i, demi_v(0, 0, 0));
-    if (s->fixed) demi_put(w->spin + 4*i, demi_v(0, 0, 0));
-    demi_put(w->half_vel + 4*i, demi_at(w->vel + 4*i));
-    demi_put(w->half_spin + 4*i, demi_at(w->spin + 4*i));
-    w->inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
-    w->inv_inertia[i] = s->fixed || form ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
-        (double)w->pos[4*i + 3]));
-    if (w->orienting) {
-        demi_quat_put(w->orient + 4*i, demi_quat_unit(form ? dem_quat_times(q, form->frame) : q));
-        demi_put(w->angular + 4*i, demi_angular_of(w, i));
+    if (s->fixed) demi_put(w->bodies.vel + 4*i, demi_v(0, 0, 0));
+    if (s->fixed) demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));
+    demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
+    demi_put(w->bodies.half_spin + 4*i, demi_at(w->bodies.spin + 4*i));
+    w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
+    w->bodies.inv_inertia[i] = s->fixed || form ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
+        (double)w->bodies.pos[4*i + 3]));
+    if (w->bodies.orienting) {
+        demi_quat_put(w->bodies.orient + 4*i,
+                      demi_quat_unit(form ? dem_quat_times(q, form->frame) : q));
+        demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
     }
     w->booked.inserted += demi_body_energy(w, i) - before;
     demi_scene_changed(w);
@@ -4200,27 +4223,30 @@ DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
     dem_bodies b;
     memset(&b, 0, sizeof b);
     if (!w) return b;
-    b.count = w->count;
-    b.positions = demi_wrapped(w); b.velocities = w->vel; b.spins = w->spin; b.forces = w->force;
-    b.torques = w->torque;
-    b.masses = w->mass; b.slots = w->body_slot; b.materials = w->body_material;
-    b.orientations = w->orient;
-    b.shapes = w->body_shape;
+    b.count = w->bodies.count;
+    b.positions = demi_wrapped(w);
+    b.velocities = w->bodies.vel;
+    b.spins = w->bodies.spin;
+    b.forces = w->bodies.force;
+    b.torques = w->bodies.torque;
+    b.masses = w->bodies.mass; b.slots = w->bodies.slot; b.materials = w->bodies.material;
+    b.orientations = w->bodies.orient;
+    b.shapes = w->bodies.shape;
     return b;
 }
 DEM_API dem_body dem_bodies_id(const dem_world *w, int index) {
     if (demi_null(w, "dem_bodies_id", w, "world")) return demi_no_body;
     dem_body id;
     id.slot = id.generation = 0;
-    if (index < 0 || index >= w->count) return id;
-    id.slot = w->body_slot[index] + 1;
-    id.generation = w->slot_generation[w->body_slot[index]];
+    if (index < 0 || index >= w->bodies.count) return id;
+    id.slot = w->bodies.slot[index] + 1;
+    id.generation = w->bodies.slot_generation[w->bodies.slot[index]];
     return id;
 }
 DEM_API dem_balance dem_balance_get(const dem_world *w) {
     dem_balance none;
     memset(&none, 0, sizeof none);
-    return w ? w->balance : none;
+    return w ? w->bodies.balance : none;
 }
 
 
@@ -5333,9 +5359,9 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     int i;
     id.id = 0;
     wall->pose = wall->mid = wall->first = wall->home;
-    for (i = 0; i < w->count && w->shaped_count; i++)
+    for (i = 0; i < w->bodies.count && w->bodies.shaped; i++)
         if (!demi_touch_known(wall->kind, demi_form_shape(demi_form_of(w, i)))) {
-            demi_strangers(w, call, w->wall_count, wall->kind, (int)w->body_slot[i]);
+            demi_strangers(w, call, w->wall_count, wall->kind, (int)w->bodies.slot[i]);
             demi_wall_free(w, wall);
             return id;
         }
@@ -5743,32 +5769,33 @@ static int demi_grid_lay(dem_world *w, double least) {
     for (k = 0; k < 3; k++) {
         const int periodic = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
         if (periodic) continue;
-        lo[k] = w->count ? (double)w->pos[k] : 0;
+        lo[k] = w->bodies.count ? (double)w->bodies.pos[k] : 0;
         hi[k] = lo[k];
-        for (i = 1; i < w->count; i++) {
-            const double x = (double)w->pos[4*i + k];
+        for (i = 1; i < w->bodies.count; i++) {
+            const double x = (double)w->bodies.pos[4*i + k];
             lo[k] = DEMI_MIN(lo[k], x);
             hi[k] = DEMI_MAX(hi[k], x);
         }
     }
-    demi_cells_lay(lo, hi, least, w->count, w->cells, w->cell_size);
+    demi_cells_lay(lo, hi, least, w->bodies.count, w->cells, w->cell_size);
     for (k = 0; k < 3; k++) w->cell_origin[k] = lo[k];
     n = w->cells[0]*w->cells[1]*w->cells[2];
     if (!DEMI_GROW(w, w->cell_start, (size_t)n + 2)) return 0;
-    for (i = 0; i < w->count; i++)
-        w->cell_of[i] = demi_cell_of(w->cell_origin, w->cell_size, w->cells, w->pos + 4*i);
+    for (i = 0; i < w->bodies.count; i++)
+        w->bodies.cell_of[i] =
+            demi_cell_of(w->cell_origin, w->cell_size, w->cells, w->bodies.pos + 4*i);
     return 1;
 }
 
-/* Puts what bodies have of it in the order of w->order. The sizes there are, by name: copies of
+/* Puts what bodies have of it in the order of bodies.order. The sizes there are, by name: copies of
    constant length are instructions, others calls. */
 static void demi_permute(dem_world *w, const demi_body_array *a) {
-    char *to = (char *)w->scratch;
+    char *to = (char *)w->bodies.scratch;
     const char *from = demi_data(w, a);
-    const size_t n = (size_t)w->count;
+    const size_t n = (size_t)w->bodies.count;
     size_t i;
 #define DEMI_PERMUTE(size) \
-    for (i = 0; i < n; i++) memcpy(to + i*(size), from + (size_t)w->order[i]*(size), size)
+    for (i = 0; i < n; i++) memcpy(to + i*(size), from + (size_t)w->bodies.order[i]*(size), size)
     if (a->item == 4*sizeof(dem_real)) DEMI_PERMUTE(4*sizeof(dem_real));
     else if (a->item == sizeof(dem_real)) DEMI_PERMUTE(sizeof(dem_real));
     else if (a->item == sizeof(int32_t)) DEMI_PERMUTE(sizeof(int32_t));
@@ -5782,12 +5809,12 @@ static int demi_cells_fill(dem_world *w, int n) {
     int32_t *start = w->cell_start;
     int i, sorted = 1;
     memset(start, 0, ((size_t)n + 2)*sizeof(int32_t));
-    for (i = 0; i < w->count; i++) {
-        start[w->cell_of[i] + 2]++;
-        if (i && w->cell_of[i] < w->cell_of[i - 1]) sorted = 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        start[w->bodies.cell_of[i] + 2]++;
+        if (i && w->bodies.cell_of[i] < w->bodies.cell_of[i - 1]) sorted = 0;
     }
     for (i = 2; i < n + 2; i++) start[i] += start[i - 1];
-    for (i = 0; i < w->count; i++) w->order[start[w->cell_of[i] + 1]++] = i;
+    for (i = 0; i < w->bodies.count; i++) w->bodies.order[start[w->bodies.cell_of[i] + 1]++] = i;
     return sorted;
 }
 /* Sorts bodies by cell; within a cell they keep their order. */
@@ -5798,19 +5825,19 @@ static void demi_bodies_sort(dem_world *w) {
         const demi_body_array *a = &demi_body_arrays[i];
         if (a->what && a->who != DEMI_SLOTS && demi_has(w, a)) demi_permute(w, a);
     }
-    for (i = 0; i < w->count; i++) w->slot_index[w->body_slot[i]] = i;
+    for (i = 0; i < w->bodies.count; i++) w->bodies.slot_index[w->bodies.slot[i]] = i;
 }
 
 /* Memory of a pair in the filed list: its place, or -1; *flip when a and b have changed places
    since. */
 static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
-    const int32_t sa = (int32_t)w->body_slot[a], sb = (int32_t)w->body_slot[b];
+    const int32_t sa = (int32_t)w->bodies.slot[a], sb = (int32_t)w->bodies.slot[b];
     const int32_t row = DEMI_MIN(sa, sb), other = DEMI_MAX(sa, sb);
     int k;
-    if (!w->carry_count || row >= w->carry_rows) return -1;
-    if (w->carry_stride != w->memory_stride) return -1;     /* of other laws: it means nothing */
-    for (k = w->carry_start[row]; k < w->carry_start[row + 1]; k++) {
-        const int32_t p = w->carry_partner[k];
+    if (!w->filed.count || row >= w->filed.rows) return -1;
+    if (w->filed.stride != w->memory_stride) return -1;     /* of other laws: it means nothing */
+    for (k = w->filed.start[row]; k < w->filed.start[row + 1]; k++) {
+        const int32_t p = w->filed.partner[k];
         if (p == other) { *flip = sa > sb; return k; }
         if (p == ~other) { *flip = sa < sb; return k; }
     }
@@ -5820,7 +5847,7 @@ static int demi_carry_find(const dem_world *w, int a, int b, int *flip) {
 /* Notes which image of b is nearest to a. It stays so until the next list: positions are brought
    back into the periodic box only then, and a period holds more than two candidates' lengths. */
 static unsigned char demi_pair_image(const dem_world *w, const demi_periods *p, int a, int b) {
-    const dem_real *x = w->pos + 4*a, *y = w->pos + 4*b;
+    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
     int code = 0, e, weight = 4;
     for (e = 0; e < 3; e++, weight *= 3) {
         const dem_real d = y[e] - x[e];
@@ -5851,7 +5878,7 @@ static int demi_pair_reaches(const dem_world *w, int a, int b, dem_vec3 gap, dem
 /* Tests one pair (a < b) and, if near enough, enters it in the list of a's domain. */
 static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real skin, int a,
                             int b) {
-    const dem_real *x = w->pos + 4*a, *y = w->pos + 4*b;
+    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
     const dem_real dx = demi_image(y[0] - x[0], p->half[0], p->period[0]);
     const dem_real dy = demi_image(y[1] - x[1], p->half[1], p->period[1]);
     const dem_real dz = demi_image(y[2] - x[2], p->half[2], p->period[2]);
@@ -5860,7 +5887,7 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     demi_list *list;
     int k;
     if (!(dx*dx + dy*dy + dz*dz < cut*cut)) return;
-    if (w->effects.fixed_count && w->inv_mass[a] <= 0 && w->inv_mass[b] <= 0) return;
+    if (w->effects.fixed_count && w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0) return;
     if (demi_visits(w, a) && demi_visits(w, b)) return;
     if (w->effects.tight && !demi_pair_reaches(w, a, b, demi_v(dx, dy, dz), skin)) return;
     list = b < domain->end ? &w->own : &w->cross;
@@ -5880,7 +5907,7 @@ static void demi_rows_all_pairs(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     int a, b;
     for (a = w->domains[d].begin; a < w->domains[d].end; a++)
-        for (b = a + 1; b < w->count; b++)
+        for (b = a + 1; b < w->bodies.count; b++)
             demi_pair_offer(w, d, &p, (dem_real)w->margin.skin, a, b);
 }
 
@@ -5908,7 +5935,7 @@ static void demi_rows_grid(dem_world *w, int d) {
     int a, c, i, j, k, b, last = -1, ranges = 0;
     int32_t from[27], to[27];
     for (a = w->domains[d].begin; a < w->domains[d].end; a++) {
-        c = w->cell_of[w->order[a]];
+        c = w->bodies.cell_of[w->bodies.order[a]];
         if (c != last) {  /* bodies of a cell share the ranges of index to look at */
             int nx[3], ny[3], nz[3], cx, cy, cz, x = c%w->cells[0], y = c/w->cells[0]%w->cells[1];
             const int z = c/w->cells[0]/w->cells[1];
@@ -5968,8 +5995,9 @@ static double demi_radii_count(const dem_world *w, double *top, int *below) {
         top[k] = 0;
         below[k] = 0;
     }
-    for (i = 0, k = 0; i < w->count; i++) {     /* neighbours are often alike: from where k is */
-        const double r = (double)w->pos[4*i + 3], side = 2*r;
+    /* neighbours are often alike: from where k is */
+    for (i = 0, k = 0; i < w->bodies.count; i++) {
+        const double r = (double)w->bodies.pos[4*i + 3], side = 2*r;
         while (k > 0 && r > limit[k]) k--;
         while (k < DEMI_LEVELS - 1 && r <= limit[k + 1]) k++;
         below[k]++;
@@ -5991,7 +6019,7 @@ static void demi_levels_choose(dem_world *w) {
     w->levels.wide = w->levels.count = 0;
     w->levels.looks[0] = w->levels.looks[1] = 0;
     if (w->asked.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
-    if (!w->count || (alike && !by_name)) return;
+    if (!w->bodies.count || (alike && !by_name)) return;
     below[DEMI_LEVELS] = 0;
     room = demi_radii_count(w, top, below);
     least[DEMI_LEVELS] = 0;
@@ -6012,16 +6040,16 @@ static void demi_levels_choose(dem_world *w) {
         w->levels.level[w->levels.count].radius = w->levels.fine = top[i];
         w->levels.level[w->levels.count++].count = below[i] - below[next[i]];
     }
-    one = demi_level_work(w, (double)w->effects.radius_max, room, w->count, 0);
+    one = demi_level_work(w, (double)w->effects.radius_max, room, w->bodies.count, 0);
     w->levels.wide = !alike && w->levels.count > 1 && 2*least[0] < one;
-    w->levels.looks[0] = one/w->count;
-    w->levels.looks[1] = least[0]/w->count;
+    w->levels.looks[0] = one/w->bodies.count;
+    w->levels.looks[1] = least[0]/w->bodies.count;
     if (w->asked.search == DEM_SEARCH_AUTO && w->levels.wide) w->desc.search = DEM_SEARCH_LEVELS;
     if (w->desc.search == DEM_SEARCH_LEVELS) return;
     /* bodies are sorted by finer cells than those of the grid asked for: one level is that grid */
     w->levels.count = w->levels.wide && w->desc.search == DEM_SEARCH_GRID;
     w->levels.level[0].radius = (double)w->effects.radius_max;
-    w->levels.level[0].count = w->count;
+    w->levels.level[0].count = w->bodies.count;
 }
 
 /* Lays the cells of all levels and deals the bodies, sorted by now, to them; the arrays that the
@@ -6038,13 +6066,13 @@ static int demi_levels_lay(dem_world *w) {
         n += level->cells[0]*level->cells[1]*level->cells[2];
     }
     if (!DEMI_GROW(w, w->cell_start, (size_t)n + 2)) return 0;
-    for (i = 0; i < w->count; i++) {
+    for (i = 0; i < w->bodies.count; i++) {
         const demi_level *level = w->levels.level;
         while (level < w->levels.level + w->levels.count - 1 &&
-               (double)w->pos[4*i + 3] <= level[1].radius)
+               (double)w->bodies.pos[4*i + 3] <= level[1].radius)
             level++;
-        w->cell_of[i] = level->first + demi_cell_of(w->cell_origin, level->size, level->cells,
-                                                    w->pos + 4*i);
+        w->bodies.cell_of[i] = level->first +
+            demi_cell_of(w->cell_origin, level->size, level->cells, w->bodies.pos + 4*i);
     }
     demi_cells_fill(w, n);
     return 1;
@@ -6083,17 +6111,20 @@ static void demi_level_offer(dem_world *w, int d, const demi_periods *p, int a, 
     const int end = start[row + last + 1];
     int i;
     for (i = start[row + first]; i < end; i++)
-        if (w->order[i] > a) demi_pair_offer(w, d, p, (dem_real)w->margin.skin, a, w->order[i]);
+        if (w->bodies.order[i] > a)
+            demi_pair_offer(w, d, p, (dem_real)w->margin.skin, a, w->bodies.order[i]);
 }
 /* Offers a what it can reach in one level. */
 static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
                            const demi_level *level) {
-    const double x = (double)w->pos[4*a], y = (double)w->pos[4*a + 1], z = (double)w->pos[4*a + 2];
+    const dem_real *at = w->bodies.pos + 4*a;
+    const double x = (double)at[0], y = (double)at[1], z = (double)at[2];
     const int *n = level->cells;
     /* what round-off of distances over a whole period may add */
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
         w->cell_size[1]*w->cells[1] + w->cell_size[2]*w->cells[2]);
-    const double reach = ((double)w->pos[4*a + 3] + level->radius + w->margin.skin)*(1 + 1e-5) +
+    const double reach =
+        ((double)w->bodies.pos[4*a + 3] + level->radius + w->margin.skin)*(1 + 1e-5) +
         slack;
     const demi_reach sx = demi_level_span(w, level, 0, x, reach);
     const demi_reach sy = demi_level_span(w, level, 1, y, reach);
@@ -6242,9 +6273,9 @@ static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
     }
 }
 static dem_real demi_box_end(const dem_world *w, int slot, int axis, int upper) {
-    const int i = w->slot_index[slot];
-    const dem_real grow = w->pos[4*i + 3] + (dem_real)w->margin.skin/2;
-    return upper ? w->pos[4*i + axis] + grow : w->pos[4*i + axis] - grow;
+    const int i = w->bodies.slot_index[slot];
+    const dem_real grow = w->bodies.pos[4*i + 3] + (dem_real)w->margin.skin/2;
+    return upper ? w->bodies.pos[4*i + axis] + grow : w->bodies.pos[4*i + axis] - grow;
 }
 static int demi_boxes_overlap(const dem_world *w, int s, int t) {
     int k;
@@ -6268,7 +6299,7 @@ static int demi_end_compare(const void *x, const void *y) {
 /* First time, or after bodies came or went: sort outright and sweep the first axis that is not
    periodic. */
 static int demi_lll_start(dem_world *w) {
-    const int n = w->count;
+    const int n = w->bodies.count;
     size_t i;
     int axis, k, j, open = 0, sweep = 0;
     int32_t *active;
@@ -6277,7 +6308,7 @@ static int demi_lll_start(dem_world *w) {
         if (!DEMI_GROW(w, w->lll_ends[axis], (size_t)n*2)) return 0;
         ends = w->lll_ends[axis];
         for (k = 0; k < 2*n; k++) {
-            ends[k].box = (int32_t)w->body_slot[k/2];
+            ends[k].box = (int32_t)w->bodies.slot[k/2];
             ends[k].upper = k & 1;
             ends[k].value = demi_box_end(w, ends[k].box, axis, k & 1);
         }
@@ -6290,8 +6321,8 @@ static int demi_lll_start(dem_world *w) {
     if (sweep == 3) {                           /* endless everywhere: every pair */
         for (k = 0; k < n; k++)
             for (j = k + 1; j < n; j++)
-                if (!demi_pair_table_add(w, (int32_t)w->body_slot[k],
-                                         (int32_t)w->body_slot[j])) return 0;
+                if (!demi_pair_table_add(w, (int32_t)w->bodies.slot[k],
+                                         (int32_t)w->bodies.slot[j])) return 0;
         return 1;
     }
     if (!DEMI_GROW(w, w->lll_rows, (size_t)n)) return 0;
@@ -6349,24 +6380,24 @@ static int demi_lll_rows(dem_world *w) {
     w->lll_valid = 0;                           /* until it is whole again */
     if (fresh ? !demi_lll_start(w) : !demi_lll_update(w)) return 0;
     w->lll_valid = 1;
-    if (!DEMI_GROW(w, w->lll_row_start, (size_t)w->count + 2) ||
+    if (!DEMI_GROW(w, w->lll_row_start, (size_t)w->bodies.count + 2) ||
         !DEMI_GROW(w, w->lll_rows, (size_t)w->lll_size)) return 0;
     start = w->lll_row_start;
     rows = w->lll_rows;
-    memset(start, 0, ((size_t)w->count + 2)*sizeof(int32_t));
+    memset(start, 0, ((size_t)w->bodies.count + 2)*sizeof(int32_t));
     for (pass = 0; pass < 2; pass++) {
         for (i = 0; i < demi_room(w->lll_table, sizeof *w->lll_table); i++) {
             const demi_pair_key *key = w->lll_table + i;
             int a, b;
             if (key->lo < 0) continue;
-            a = w->slot_index[key->lo];
-            b = w->slot_index[key->hi];
+            a = w->bodies.slot_index[key->lo];
+            b = w->bodies.slot_index[key->hi];
             if (pass == 0) start[DEMI_MIN(a, b) + 2]++;
             else rows[start[DEMI_MIN(a, b) + 1]++] = DEMI_MAX(a, b);
         }
-        if (pass == 0) for (k = 2; k < w->count + 2; k++) start[k] += start[k - 1];
+        if (pass == 0) for (k = 2; k < w->bodies.count + 2; k++) start[k] += start[k - 1];
     }
-    for (k = 0; k < w->count; k++)
+    for (k = 0; k < w->bodies.count; k++)
         if (start[k + 1] > start[k])
             qsort(rows + start[k], (size_t)(start[k + 1] - start[k]), sizeof *rows,
                   demi_int_compare);
@@ -6414,7 +6445,7 @@ static void demi_wall_offer(dem_world *w, demi_domain *domain, int d, int body, 
     w->wall_body[k] = body;
     w->wall_id[k] = wall;
     w->wall_element[k] = element;
-    w->wall_gap[k] = gap - w->pos[4*body + 3]/10000;    /* a little for rounding */
+    w->wall_gap[k] = gap - w->bodies.pos[4*body + 3]/10000;    /* a little for rounding */
     demi_put(w->wall_shift + 3*(size_t)k, shift);
 }
 static dem_real demi_wall_distance(const demi_wall *wall, int element, dem_vec3 local,
@@ -6448,10 +6479,11 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
 /* Elements of one wall near body i as it is seen `shift` farther on. */
 static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
     const demi_wall *wall = &w->walls[j];
-    const dem_real r = w->pos[4*i + 3], near_by = r + (dem_real)w->margin.skin;
+    const dem_real r = w->bodies.pos[4*i + 3], near_by = r + (dem_real)w->margin.skin;
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
-    dem_vec3 at = demi_unturn(wall->pose.rotation, demi_sub(demi_add(demi_at(w->pos + 4*i), shift),
+    dem_vec3 at = demi_unturn(wall->pose.rotation,
+                              demi_sub(demi_add(demi_at(w->bodies.pos + 4*i), shift),
                                                             wall->pose.position));
     dem_real away;
     int k, x, y, z, f[3], l[3];
@@ -6485,7 +6517,7 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
     int j, a, b, c, f[3], l[3];
-    if ((w->effects.fixed_count && w->inv_mass[i] <= 0) || demi_visits(w, i)) return;
+    if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_visits(w, i)) return;
     for (j = 0; j < w->wall_count; j++) {
         const demi_wall *wall = &w->walls[j];
         if (wall->kind == DEMI_WALL_NONE) continue;
@@ -6493,8 +6525,8 @@ static void demi_body_walls(dem_world *w, int d, int i) {
             demi_wall_look(w, domain, d, i, j, demi_v(0, 0, 0));
             continue;
         }
-        demi_wall_images(w, wall, demi_at(w->pos + 4*i),
-                         w->pos[4*i + 3] + (dem_real)w->margin.skin, f, l);
+        demi_wall_images(w, wall, demi_at(w->bodies.pos + 4*i),
+                         w->bodies.pos[4*i + 3] + (dem_real)w->margin.skin, f, l);
         for (c = f[2]; c <= l[2]; c++)
             for (b = f[1]; b <= l[1]; b++)
                 for (a = f[0]; a <= l[0]; a++)
@@ -6556,7 +6588,7 @@ static int demi_wall_contacts_reserve(dem_world *w, size_t now, size_t next) {
 
 /* The domain a body belongs to. */
 static int demi_domain_of(const dem_world *w, int body) {
-    int d = (int)((int64_t)body*w->domain_count/w->count);
+    int d = (int)((int64_t)body*w->domain_count/w->bodies.count);
     while (body >= w->domains[d].end) d++;
     while (body < w->domains[d].begin) d--;
     return d;
@@ -6600,12 +6632,12 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
 }
 static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
     const demi_wall *wall = &w->walls[c->wall];
-    const double r_eff = demi_wall_r_eff(wall, (double)w->pos[4*c->body + 3]);
+    const double r_eff = demi_wall_r_eff(wall, (double)w->bodies.pos[4*c->body + 3]);
     const int grains = demi_wall_is(wall, DEMI_BALLS);
     /* there a grain of a wall has mass */
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
-    demi_coefficients(w, w->body_material[c->body] - 1, wall->material, r_eff,
-                      (double)w->mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
+    demi_coefficients(w, w->bodies.material[c->body] - 1, wall->material, r_eff,
+                      (double)w->bodies.mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
 }
 
 /* Places that candidate k of domain d may give at most. */
@@ -6654,13 +6686,13 @@ static int demi_wall_contacts_move(dem_world *w) {
     int d, k, e = 0, total = 0, stride = DEMI_MAX(w->wall_now_stride, w->wall_stride);
     for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
     /* slabs cannot stop in the middle of a step to make room: as much as there may ever be */
-    if (w->visitor) stride = DEMI_MAX(stride, demi_places_most(w));
+    if (w->bodies.visitor) stride = DEMI_MAX(stride, demi_places_most(w));
     memset(here, 0, sizeof here);
     for (d = 0; d < DEMI_DOMAINS; d++)          /* how many each domain will have */
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             const demi_wall_contact *c = &w->wall_now[(size_t)d*(size_t)w->wall_now_stride +
                                                       (size_t)k];
-            const int body = w->slot_index[c->body];
+            const int body = w->bodies.slot_index[c->body];
             if (body < 0 || w->walls[c->wall].kind == DEMI_WALL_NONE) continue;
             stride = DEMI_MAX(stride, ++here[demi_domain_of(w, body)]);
         }
@@ -6669,7 +6701,7 @@ static int demi_wall_contacts_move(dem_world *w) {
     for (d = 0; d < DEMI_DOMAINS; d++) {  /* gather all in wall_next, slots turned to indices */
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             demi_wall_contact c = w->wall_now[(size_t)d*(size_t)w->wall_now_stride + (size_t)k];
-            c.body = w->slot_index[c.body];
+            c.body = w->bodies.slot_index[c.body];
             if (c.body < 0 || w->walls[c.wall].kind == DEMI_WALL_NONE) continue;
             demi_wall_coefs(w, &c);
             w->wall_next[e++] = c;
@@ -6705,17 +6737,17 @@ static int demi_wall_contacts_widen(dem_world *w) {
 /* Room for the contacts of shaped bodies in the domains of a new list; nothing moves yet. Answers
    how many a domain then holds, 0: there are none to move, -1: memory ran out. */
 static int demi_shaped_room(dem_world *w) {
-    int d, k, total = 0, stride = DEMI_MAX(64, w->count/w->domain_count*4);
+    int d, k, total = 0, stride = DEMI_MAX(64, w->bodies.count/w->domain_count*4);
     int crowd[DEMI_DOMAINS], ok;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         total += w->domains[d].shaped;
         crowd[d] = 0;
     }
-    if (!w->shaped_count && !total) return 0;
+    if (!w->bodies.shaped && !total) return 0;
     for (d = 0; d < DEMI_DOMAINS; d++)          /* how many will come to each domain at most */
         for (k = 0; k < w->domains[d].shaped; k++) {
             const demi_shaped *c = &w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
-            const int a = w->slot_index[c->a], b = c->b < 0 ? a : w->slot_index[c->b];
+            const int a = w->bodies.slot_index[c->a], b = c->b < 0 ? a : w->bodies.slot_index[c->b];
             if (a >= 0 && b >= 0) crowd[demi_domain_of(w, DEMI_MIN(a, b))]++;
         }
     for (d = 0; d < DEMI_DOMAINS; d++) stride = DEMI_MAX(stride, crowd[d]);
@@ -6734,8 +6766,8 @@ static void demi_shaped_move(dem_world *w, int stride) {
         for (k = 0; k < w->domains[d].shaped; k++) {
             demi_shaped c = w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
             const int pair = c.b >= 0;
-            c.a = w->slot_index[c.a];
-            if (pair) c.b = w->slot_index[c.b];
+            c.a = w->bodies.slot_index[c.a];
+            if (pair) c.b = w->bodies.slot_index[c.b];
             if (c.a < 0 || (pair && c.b < 0) ||
                 (!pair && w->walls[c.wall].kind == DEMI_WALL_NONE)) continue;
             if (pair && c.b < c.a) {
@@ -6754,18 +6786,18 @@ static void demi_shaped_move(dem_world *w, int stride) {
     }
     w->shaped_stride = stride;
     /* deal out in the order of body a; `order` has done its work in the search and counts here */
-    memset(w->order, 0, (size_t)w->count*sizeof *w->order);
-    for (k = 0; k < e; k++) w->order[w->shaped_next[k].a]++;
+    memset(w->bodies.order, 0, (size_t)w->bodies.count*sizeof *w->bodies.order);
+    for (k = 0; k < e; k++) w->bodies.order[w->shaped_next[k].a]++;
     for (d = 0; d < w->domain_count; d++)
         for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
-            const int here = w->order[i];
-            w->order[i] = w->domains[d].shaped;
+            const int here = w->bodies.order[i];
+            w->bodies.order[i] = w->domains[d].shaped;
             w->domains[d].shaped += here;
         }
     for (k = 0; k < e; k++) {
         const demi_shaped *c = &w->shaped_next[k];
-        w->shaped_now[(size_t)demi_domain_of(w, c->a)*(size_t)stride + (size_t)w->order[c->a]++] =
-            *c;
+        w->shaped_now[(size_t)demi_domain_of(w, c->a)*(size_t)stride +
+            (size_t)w->bodies.order[c->a]++] = *c;
     }
 }
 
@@ -6783,15 +6815,15 @@ static void demi_shaped_move(dem_world *w, int stride) {
 
 /* Coefficients of a pair, into its columns; only needed when bodies differ. */
 static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
-    const double ra = (double)w->pos[4*a + 3], rb = (double)w->pos[4*b + 3];
-    const double sum = (double)w->inv_mass[a] + (double)w->inv_mass[b];
+    const double ra = (double)w->bodies.pos[4*a + 3], rb = (double)w->bodies.pos[4*b + 3];
+    const double sum = (double)w->bodies.inv_mass[a] + (double)w->bodies.inv_mass[b];
     /* there a fixed grain has mass too */
     const double inv = w->desc.convention == DEM_CONVENTION_MILL
-        ? 1/(double)w->mass[a] + 1/(double)w->mass[b] : sum;
+        ? 1/(double)w->bodies.mass[a] + 1/(double)w->bodies.mass[b] : sum;
     dem_real coef[DEMI_PAIR_COLUMNS], *to;
     int e;
-    demi_coefficients(w, w->body_material[a] - 1, w->body_material[b] - 1, ra*rb/(ra + rb), 1/inv,
-                      0, coef);
+    demi_coefficients(w, w->bodies.material[a] - 1, w->bodies.material[b] - 1, ra*rb/(ra + rb),
+                      1/inv, 0, coef);
     coef[DEMI_M_EFF] = (dem_real)(1/sum);
     to = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride + (size_t)p;
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) to[(size_t)e*(size_t)near->stride] = coef[e];
@@ -6800,10 +6832,10 @@ static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, i
    Answers where they end, or -1 when there is no room. */
 DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p, int mixed) {
-    const dem_real *x = w->pos, *u = w->vel, *shift = w->image_shift;
+    const dem_real *x = w->bodies.pos, *u = w->bodies.vel, *shift = w->image_shift;
     const dem_real margin = (dem_real)w->margin.slack, span = (dem_real)w->margin.span;
     const int room = w->near.stride - DEMI_LANES;
-    const int32_t *shape = w->body_shape;
+    const int32_t *shape = w->bodies.shape;
     int32_t *out = w->near.k + d*w->near.stride;
     int k;
     for (k = begin; k < end && p < room; k++) {
@@ -6820,7 +6852,7 @@ DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin,
     return k < end ? -1 : p;
 }
 static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int end, int d, int p) {
-    return w->shaped_count ? demi_near_pick_as(w, list, begin, end, d, p, 1)
+    return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
         : demi_near_pick_as(w, list, begin, end, d, p, 0);
 }
 /* The same for pairs that are not of two spheres: by the distance of their surfaces, and with what
@@ -6836,9 +6868,11 @@ static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin,
         const demi_form *fa = demi_form_of(w, a), *fb = demi_form_of(w, b);
         dem_real speed, cut;
         if (!fa && !fb) continue;
-        speed = demi_length(demi_sub(demi_at(w->vel + 4*b), demi_at(w->vel + 4*a)));
-        if (fa) speed += demi_length(demi_at(w->spin + 4*a))*fa->lever*demi_scale_of(w, a, fa);
-        if (fb) speed += demi_length(demi_at(w->spin + 4*b))*fb->lever*demi_scale_of(w, b, fb);
+        speed = demi_length(demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a)));
+        if (fa) speed += demi_length(demi_at(w->bodies.spin + 4*a))*fa->lever*
+                         demi_scale_of(w, a, fa);
+        if (fb) speed += demi_length(demi_at(w->bodies.spin + 4*b))*fb->lever*
+                         demi_scale_of(w, b, fb);
         cut = margin + span*speed;
         out[p] = k;
         p += demi_bodies_gap(w, a, b, w->image_shift + list->image[k], cut) < cut;
@@ -6869,7 +6903,7 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
     if (!keep || !w->near_fresh ||
         (from = demi_carry_find(w, near->a[at], near->b[at], &flip)) < 0) return;
     for (e = 0; e < keep; e++) {
-        const dem_real value = w->carry_memory[(size_t)from*keep + e];
+        const dem_real value = w->filed.memory[(size_t)from*keep + e];
         m[e*stride] = flip && (w->vector_mask >> e & 1) ? -value : value;
     }
 }
@@ -6950,7 +6984,7 @@ static void demi_domain_near(dem_world *w, int d) {
         const int begin = d*list->stride, end = begin + (l ? domain->cross : domain->own);
         const int first = p;
         if (l) domain->near_next_shaped_cross = p;
-        if (w->shaped_count) p = demi_near_pick_shaped(w, list, begin, end, d, p);
+        if (w->bodies.shaped) p = demi_near_pick_shaped(w, list, begin, end, d, p);
         if (p < 0) { domain->overflow |= 8; return; }
         for (q = first; q < p; q++) {
             const int at = d*near->stride + q, k = near->k[at];
@@ -6974,8 +7008,8 @@ DEM_INLINE demi_quiet *demi_quiet_at(const dem_world *w, int d, int i) {
 }
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
-    return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->visitor &&
-           !w->backward;
+    return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.visitor &&
+           !w->bodies.backward;
 }
 static void demi_domain_quiet(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
@@ -7015,9 +7049,9 @@ static void demi_near_choose(dem_world *w) {
             touching += domain->contacts + 3*(domain->shaped - domain->shaped_walls);
             candidates += domain->own + domain->cross;
         }
-        if (w->shaped_count) candidates *= 6;   /* supports, and some meetings */
+        if (w->bodies.shaped) candidates *= 6;   /* supports, and some meetings */
         longer = sqrt((0.15*candidates + near)*dt/
-                      (w->margin.age*DEMI_MAX(near - touching, 0.01*w->count)));
+                      (w->margin.age*DEMI_MAX(near - touching, 0.01*w->bodies.count)));
         longer = sqrt(DEMI_MIN(DEMI_MAX(longer, 0.5), 2.0));
         span = DEMI_MIN(DEMI_MAX(w->margin.age*longer, 2*dt), 1000*dt);
         /* creep grows with the square of time */
@@ -7043,12 +7077,12 @@ static int demi_near_make(dem_world *w, int fresh) {
     w->near = w->near_last;
     w->near_last = swap;
     w->near_fresh = fresh;
-    if (!DEMI_GROW(w, w->quiet, (size_t)(w->count/DEMI_SOME + w->domain_count + 1))) {
+    if (!DEMI_GROW(w, w->quiet, (size_t)(w->bodies.count/DEMI_SOME + w->domain_count + 1))) {
         w->near_last = w->near;
         w->near = swap;
         return 0;
     }
-    stride = DEMI_MAX(w->near_last.stride, DEMI_MAX(64, w->count/w->domain_count*5/2));
+    stride = DEMI_MAX(w->near_last.stride, DEMI_MAX(64, w->bodies.count/w->domain_count*5/2));
     stride = (stride + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     do {                                        /* until every domain's pairs fit */
         again = 0;
@@ -7107,29 +7141,30 @@ static void demi_effects(dem_world *w) {
     w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
     w->effects.rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
     demi_effects_memory(w);
-    w->effects.uniform = w->count > 0;
+    w->effects.uniform = w->bodies.count > 0;
     w->effects.fixed_count = 0;
-    w->effects.radius_min = w->effects.radius_max = w->count ? w->pos[3] : 0;
-    for (i = 0; i < w->count; i++) {
-        const dem_real r = w->pos[4*i + 3];
+    w->effects.radius_min = w->effects.radius_max = w->bodies.count ? w->bodies.pos[3] : 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_real r = w->bodies.pos[4*i + 3];
         w->effects.radius_min = DEMI_MIN(w->effects.radius_min, r);
         w->effects.radius_max = DEMI_MAX(w->effects.radius_max, r);
-        w->effects.fixed_count += w->inv_mass[i] <= 0;
-        w->effects.uniform &= w->body_material[i] == w->body_material[0];
+        w->effects.fixed_count += w->bodies.inv_mass[i] <= 0;
+        w->effects.uniform &= w->bodies.material[i] == w->bodies.material[0];
     }
     w->effects.tight = 0;
-    for (i = 0; i < w->count && w->shaped_count; i++) {
+    for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
         const demi_form *form = demi_form_of(w, i);
-        w->effects.uniform &= w->body_shape[i] == w->body_shape[0];
+        w->effects.uniform &= w->bodies.shape[i] == w->bodies.shape[0];
         w->effects.tight |= form && form->radius > 2*form->equal;
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count;
     if (w->effects.uniform) {
-        w->effects.uniform_radius = w->pos[3];
-        w->effects.uniform_inv_mass = w->inv_mass[0];
-        demi_coefficients(w, w->body_material[0] - 1, w->body_material[0] - 1, (double)w->pos[3]/2,
-                          1/((double)w->inv_mass[0]*2), 0, w->effects.uniform_coef);
+        w->effects.uniform_radius = w->bodies.pos[3];
+        w->effects.uniform_inv_mass = w->bodies.inv_mass[0];
+        demi_coefficients(w, w->bodies.material[0] - 1, w->bodies.material[0] - 1,
+                          (double)w->bodies.pos[3]/2,
+                          1/((double)w->bodies.inv_mass[0]*2), 0, w->effects.uniform_coef);
     }
 }
 
@@ -7145,7 +7180,7 @@ static void demi_skin_choose(dem_world *w) {
     if (w->desc.skin > 0) { w->margin.skin = (double)w->desc.skin; return; }
     if (w->desc.skin < 0) { w->margin.skin = 0; return; }
     if (w->margin.skin_auto <= 0) w->margin.skin_auto = 0.1*r;
-    else if (steps > 0 && w->clock.rebuilds > 1 && w->count > 0) {
+    else if (steps > 0 && w->clock.rebuilds > 1 && w->bodies.count > 0) {
         double n = 0, hits = 0, slope, best;
         const double per_step =
             DEMI_MAX(2*w->margin.reach, w->margin.reach + w->margin.wall_reach)/steps;
@@ -7155,7 +7190,7 @@ static void demi_skin_choose(dem_world *w) {
             n += w->domains[d].own + w->domains[d].cross;
             hits += w->domains[d].contacts;
         }
-        slope = DEMI_MAX((n - hits)/w->count, 0.02)/w->margin.skin_auto;
+        slope = DEMI_MAX((n - hits)/w->bodies.count, 0.02)/w->margin.skin_auto;
         best = sqrt(40*per_step*looks/slope);
         best = DEMI_MIN(DEMI_MAX(best, 0.5*w->margin.skin_auto), 2*w->margin.skin_auto);
         w->margin.skin_auto = DEMI_MIN(DEMI_MAX(sqrt(best*w->margin.skin_auto), 0.01*r), 2*r);
@@ -7178,7 +7213,7 @@ static int demi_spins(const dem_world *w) {
     return w->desc.law || w->desc.body_force || w->effects.tangent != DEM_TANGENT_NONE ||
            w->effects.rolling != DEM_ROLLING_NONE;
 }
-static int demi_turns(const dem_world *w) { return w->orienting || demi_spins(w); }
+static int demi_turns(const dem_world *w) { return w->bodies.orienting || demi_spins(w); }
 
 /* How many domains: of the number of bodies alone, so that bits do not depend on threads; 1, 2, 4,
    or a multiple of 8, which most numbers of threads share fairly. */
@@ -7198,13 +7233,13 @@ static void demi_domain_forget(demi_domain *o) {
 }
 /* Says that a body is nowhere: a run that blew up before, and was gone on with. */
 static dem_result demi_lost(dem_world *w, int body) {
-    const dem_real *x = w->pos + 4*body;
+    const dem_real *x = w->bodies.pos + 4*body;
     return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its position is "
                      "(%g, %g, %g) m, must be finite and at most %g m from the origin; the run "
                      "blew up before (two grains at one place, dt too large, or a law, field "
                      "or motion of your own that divides by zero): take the body out, or go back "
                      "to a checkpoint", (unsigned long long)w->clock.steps,
-                     (unsigned)w->body_slot[body] + 1, (double)x[0], (double)x[1], (double)x[2],
+                     (unsigned)w->bodies.slot[body] + 1, (double)x[0], (double)x[1], (double)x[2],
                      DEMI_REACH);
 }
 /* Bodies that lie on each other, or far from all others, share a cell, and a cell's bodies are all
@@ -7220,11 +7255,12 @@ static int demi_crowd_refuse(dem_world *w) {
         crowd = DEMI_MAX(crowd, here);
     }
     if (w->desc.search == DEM_SEARCH_ALL_PAIRS || w->desc.search == DEM_SEARCH_LINKED_LIST ||
-        work <= 1e9 + 2e4*w->count) return 0;
+        work <= 1e9 + 2e4*w->bodies.count) return 0;
     demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: a search would compare %.2g pairs: %d of %d "
               "bodies are in one cell of %.3g by %.3g by %.3g m; they lie on each other, or some "
               "are far from all others: take those out (an outflow boundary does), or spread the "
-              "others", work, crowd, w->count, w->cell_size[0], w->cell_size[1], w->cell_size[2]);
+              "others", work, crowd, w->bodies.count, w->cell_size[0], w->cell_size[1],
+              w->cell_size[2]);
     return 1;
 }
 /* A wall longer than the period does not repeat, and must be there for all that stands in the box;
@@ -7238,7 +7274,7 @@ static int demi_walls_end(dem_world *w, const char *call) {
             const demi_wall *wall = &w->walls[j];
             const dem_real lo = p.lo[k], hi = lo + p.period[k];
             if (wall->kind == DEMI_WALL_NONE || wall->reach < 0 || wall->repeats[k] ||
-                !(p.period[k] > 0) || !(w->count > 0) ||
+                !(p.period[k] > 0) || !(w->bodies.count > 0) ||
                 (wall->span_lo[k] <= lo - need && wall->span_hi[k] >= hi + need)) continue;
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic axis "
                       "%d, which is longer than the period of %g m, so that it does not repeat; it "
@@ -7268,17 +7304,19 @@ static int demi_join_lack(const dem_world *w) {
 }
 /* May a sphere join? Not when it would bring an effect in, nor beside bodies of other shapes. */
 static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
-    if (!w->stage.list_valid || w->stage.pairs_changed || !w->count || w->shaped_count ||
-        w->visitor) return 0;
+    if (!w->stage.list_valid || w->stage.pairs_changed || !w->bodies.count || w->bodies.shaped ||
+        w->bodies.visitor) return 0;
     return !w->effects.uniform ||
-           (w->body_material[0] == material + 1 && !(radius < w->effects.uniform_radius) &&
+           (w->bodies.material[0] == material + 1 && !(radius < w->effects.uniform_radius) &&
                            !(radius > w->effects.uniform_radius));
 }
 /* Could the two touch before the near list is made anew? As demi_near_pick asks. */
 static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int b) {
-    const dem_vec3 x = demi_nearest(p, demi_sub(demi_at(w->pos + 4*b), demi_at(w->pos + 4*a)));
-    const dem_vec3 u = demi_sub(demi_at(w->vel + 4*b), demi_at(w->vel + 4*a));
-    return demi_length(x) < w->pos[4*a + 3] + w->pos[4*b + 3] + (dem_real)w->margin.slack +
+    const dem_vec3 x = demi_nearest(p, demi_sub(demi_at(w->bodies.pos + 4*b),
+                                                demi_at(w->bodies.pos + 4*a)));
+    const dem_vec3 u = demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a));
+    return demi_length(x) < w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3] +
+           (dem_real)w->margin.slack +
                             (dem_real)w->margin.span*demi_length(u);
 }
 /* Body i, just appended, joins the list; `found`, ascending: all whose gap to it may be below the
@@ -7305,10 +7343,11 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     if (w->domains[last].walls - walls >= w->join_room) return 0;
     w->join_room -= w->domains[last].walls - walls;
     if (w->domains[last].walls > walls) w->touching_valid = 0;
-    if (!DEMI_GROW(w, w->quiet, (size_t)(w->count/DEMI_SOME + w->domain_count + 1))) return 0;
+    if (!DEMI_GROW(w, w->quiet,
+                   (size_t)(w->bodies.count/DEMI_SOME + w->domain_count + 1))) return 0;
     demi_quiet_at(w, last, i)->restless = 2;
-    w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->pos[4*i + 3]);
-    w->effects.radius_max = DEMI_MAX(w->effects.radius_max, w->pos[4*i + 3]);
+    w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
+    w->effects.radius_max = DEMI_MAX(w->effects.radius_max, w->bodies.pos[4*i + 3]);
     return 1;
 }
 
@@ -7325,17 +7364,17 @@ static void demi_memory_map(const demi_laws *was, const demi_laws *now, const de
 /* All memory on its way to the next list (there is none now). 0 when memory ran out; nothing
    changed then. */
 static int demi_memory_move(dem_world *w, const demi_laws *was) {
-    const size_t from = (size_t)w->carry_stride, to = (size_t)w->laws.memory;
+    const size_t from = (size_t)w->filed.stride, to = (size_t)w->laws.memory;
     dem_real old[DEMI_MEMORY], *fresh = 0;
     int d, k;
-    if (w->carry_stride != was->memory) w->carry_count = 0;    /* of no use: not these laws' */
-    if (!DEMI_GROW(w, fresh, (size_t)w->carry_count*to)) return 0;
-    for (k = 0; k < w->carry_count; k++)
-        demi_memory_map(was, &w->laws, w->carry_memory + (size_t)k*from,
+    if (w->filed.stride != was->memory) w->filed.count = 0;    /* of no use: not these laws' */
+    if (!DEMI_GROW(w, fresh, (size_t)w->filed.count*to)) return 0;
+    for (k = 0; k < w->filed.count; k++)
+        demi_memory_map(was, &w->laws, w->filed.memory + (size_t)k*from,
                         fresh + (size_t)k*to);
-    demi_free(w, w->carry_memory);
-    w->carry_memory = fresh;
-    w->carry_stride = (int)to;
+    demi_free(w, w->filed.memory);
+    w->filed.memory = fresh;
+    w->filed.stride = (int)to;
     for (d = 0; d < w->domain_count; d++) {
         for (k = 0; k < w->domains[d].wall_contacts; k++) {
             demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
@@ -7384,10 +7423,10 @@ static int demi_periods_refuse(dem_world *w) {
 static void demi_domains_deal(dem_world *w) {
     int d;
     for (d = w->domain_count; d < DEMI_DOMAINS; d++) demi_domain_forget(&w->domains[d]);
-    w->domain_count = demi_domains_for(w->count);
+    w->domain_count = demi_domains_for(w->bodies.count);
     for (d = 0; d < w->domain_count; d++) {
-        w->domains[d].begin = (int)((int64_t)w->count*d/w->domain_count);
-        w->domains[d].end = (int)((int64_t)w->count*(d + 1)/w->domain_count);
+        w->domains[d].begin = (int)((int64_t)w->bodies.count*d/w->domain_count);
+        w->domains[d].end = (int)((int64_t)w->bodies.count*(d + 1)/w->domain_count);
         w->domains[d].overflow = 0;
     }
 }
@@ -7399,10 +7438,10 @@ static int demi_lists_overflow(const dem_world *w, int lists) {
 }
 /* Neighbour lists of bodies: searched anew until every domain's pairs fit. 0: no memory. */
 static int demi_pairs_find(dem_world *w) {
-    const int n = w->domain_count, stride = DEMI_MAX(64, w->count/n*3);
+    const int n = w->domain_count, stride = DEMI_MAX(64, w->bodies.count/n*3);
     int over;
     if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w)) return 0;
-    w->join_room = w->feed_count ? DEMI_MIN(512 + w->count/16, DEMI_JOIN_MOST) : 0;
+    w->join_room = w->feed_count ? DEMI_MIN(512 + w->bodies.count/16, DEMI_JOIN_MOST) : 0;
     if (!demi_list_reserve(w, &w->own, n, DEMI_MAX(stride, (int)w->own.stride)) ||
         !demi_list_reserve(w, &w->cross, n, n == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
         return 0;
@@ -7434,11 +7473,11 @@ static int demi_contacts_move(dem_world *w) {
 }
 /* Slots freed since the last list may be used again. */
 static void demi_slots_release(dem_world *w) {
-    while (w->slot_pending >= 0) {
-        const int slot = w->slot_pending;
-        w->slot_pending = -2 - w->slot_index[slot];
-        w->slot_index[slot] = -2 - w->slot_free;
-        w->slot_free = slot;
+    while (w->bodies.slot_pending >= 0) {
+        const int slot = w->bodies.slot_pending;
+        w->bodies.slot_pending = -2 - w->bodies.slot_index[slot];
+        w->bodies.slot_index[slot] = -2 - w->bodies.slot_free;
+        w->bodies.slot_free = slot;
     }
 }
 /* Rebuilds everything the step needs to find contacts: first what may be refused, then bodies are
@@ -7447,10 +7486,10 @@ static void demi_slots_release(dem_world *w) {
 static dem_result demi_rebuild(dem_world *w, const char *call) {
     double least;
     int k;
-    for (k = 0; k < w->count; k++)
-        if (!demi_place(demi_at(w->pos + 4*k))) return demi_lost(w, k);
+    for (k = 0; k < w->bodies.count; k++)
+        if (!demi_place(demi_at(w->bodies.pos + 4*k))) return demi_lost(w, k);
     if (!demi_list_drop(w) || !demi_effects_take(w)) return demi_no_memory(w, call);
-    if (!w->stage.skin_chosen || w->visitor) demi_skin_choose(w);
+    if (!w->stage.skin_chosen || w->bodies.visitor) demi_skin_choose(w);
     w->stage.skin_chosen = 1;
     if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_walls_repeat(w);
@@ -7462,7 +7501,7 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     if (!demi_grid_lay(w, least + 1e-300)) return demi_no_memory(w, call);
     demi_bodies_sort(w);
     if (!w->levels.count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
-    if ((w->shaped_count && !demi_spots_lay(w)) || (w->levels.count && !demi_levels_lay(w)))
+    if ((w->bodies.shaped && !demi_spots_lay(w)) || (w->levels.count && !demi_levels_lay(w)))
         return demi_no_memory(w, call);
     demi_image_shifts(w);
     demi_domains_deal(w);
@@ -7474,7 +7513,7 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     if (demi_quiet_possible(w))
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_quiet);
     demi_slots_release(w);
-    w->carry_count = 0;
+    w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;
     w->margin.reach = w->margin.wall_reach = 0;
     w->clock.last_rebuild = w->clock.steps;
@@ -7500,8 +7539,8 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
             const int count = l ? w->domains[d].cross : w->domains[d].own;
             for (k = d*list->stride; k < d*list->stride + count; k++, n++) {
                 if (n >= capacity || !out) continue;
-                out[2*n] = w->body_slot[list->a[k]] + 1;
-                out[2*n + 1] = w->body_slot[list->b[k]] + 1;
+                out[2*n] = w->bodies.slot[list->a[k]] + 1;
+                out[2*n + 1] = w->bodies.slot[list->b[k]] + 1;
             }
         }
     return n;
@@ -8311,9 +8350,9 @@ struct demi_run {
 DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t, int uniform,
                            int turning, int parting, int following) {
     const dem_world *w = r->w;
-    const dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT shift = w->image_shift;
-    const dem_real *DEMI_RESTRICT u = w->vel, *DEMI_RESTRICT s = w->spin;
-    const dem_real *DEMI_RESTRICT uh = w->half_vel, *DEMI_RESTRICT sh = w->half_spin;
+    const dem_real *DEMI_RESTRICT x = w->bodies.pos, *DEMI_RESTRICT shift = w->image_shift;
+    const dem_real *DEMI_RESTRICT u = w->bodies.vel, *DEMI_RESTRICT s = w->bodies.spin;
+    const dem_real *DEMI_RESTRICT uh = w->bodies.half_vel, *DEMI_RESTRICT sh = w->bodies.half_spin;
     const int32_t *DEMI_RESTRICT la = r->span->a, *DEMI_RESTRICT lb = r->span->b;
     const unsigned char *DEMI_RESTRICT image = r->span->image;
     int n;
@@ -8607,8 +8646,8 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, int 
     dem_push f;
     dem_real m[DEMI_MEMORY];
     demi_tile_contact(t, &r->same, q, &c);
-    c.material_a = r->w->body_material[r->span->a[q]];
-    c.material_b = r->w->body_material[r->span->b[q]];
+    c.material_a = r->w->bodies.material[r->span->a[q]];
+    c.material_b = r->w->bodies.material[r->span->b[q]];
     c.user = r->w->desc.law_user;
     demi_push_clear(&f);
     demi_recall(t, q, 0, r->keep, m);
@@ -8830,8 +8869,8 @@ static void demi_pairs(dem_world *w, int d) {
             const demi_span span = demi_span_of(w, d, p, count);
             demi_tile_respond(w, &span, &r, &tile, domain->energy);
             demi_tile_tally(&tile, count, &tally);
-            if (!l) demi_tile_scatter(&tile, &span, &r, w->force, w->torque);
-            else demi_tile_send(&tile, &span, &r, w->force, w->torque,
+            if (!l) demi_tile_scatter(&tile, &span, &r, w->bodies.force, w->bodies.torque);
+            else demi_tile_send(&tile, &span, &r, w->bodies.force, w->bodies.torque,
                                 w->cross_push + 6*((size_t)d*(size_t)w->cross.stride +
                                                    (size_t)(p - begin)));
         }
@@ -8855,8 +8894,8 @@ static void demi_cross_gather(dem_world *w, int d) {
         p -= shaped ? w->domains[from].near_shaped_cross - w->domains[from].near_end : 0;
         push = w->cross_push + 6*(size_t)(from*stride + p - w->domains[from].near_cross);
         for (e = 0; e < 3; e++) {
-            w->force[j + e] += push[e];
-            if (turning || shaped) w->torque[j + e] += push[3 + e];
+            w->bodies.force[j + e] += push[e];
+            if (turning || shaped) w->bodies.torque[j + e] += push[3 + e];
         }
     }
 }
@@ -8925,20 +8964,20 @@ DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_conta
                                        dem_contact *c, dem_vec3 *surface) {
     const dem_vec3 normal_before = k->normal_before;
     const demi_wall *wall = &w->walls[k->wall];
-    const dem_real *x = w->pos + 4*k->body, r = x[3];
-    const dem_vec3 n = k->normal, spin = demi_at(w->spin + 4*k->body);
+    const dem_real *x = w->bodies.pos + 4*k->body, r = x[3];
+    const dem_vec3 n = k->normal, spin = demi_at(w->bodies.spin + 4*k->body);
     const dem_vec3 centre = demi_add(demi_at(x), k->shift), at = demi_add(centre, demi_scale(n, r));
     const dem_vec3 arm = demi_sub(at, wall->pose.position);
     /* where the contact was in the middle of the step: taken where it is now instead, a grain that
        is carried round creeps outwards by w^2 R dt/2 */
     const dem_vec3 was = demi_sub(demi_add(centre, demi_scale(demi_add(n, normal_before), r/2)),
-                                  demi_scale(demi_at(w->half_vel + 4*k->body), dt/2));
+                                  demi_scale(demi_at(w->bodies.half_vel + 4*k->body), dt/2));
     const dem_vec3 mid = demi_add(wall->mid.velocity, demi_cross(wall->mid.spin,
         demi_sub(was, wall->mid.position)));
-    const dem_vec3 spin_step = demi_at(w->half_spin + 4*k->body);
+    const dem_vec3 spin_step = demi_at(w->bodies.half_spin + 4*k->body);
     dem_vec3 u;
     *surface = demi_add(wall->pose.velocity, demi_cross(wall->pose.spin, arm));
-    u = demi_sub(demi_at(w->vel + 4*k->body), *surface);
+    u = demi_sub(demi_at(w->bodies.vel + 4*k->body), *surface);
     memset(c, 0, sizeof *c);
     c->overlap = k->overlap;
     c->normal = n;
@@ -8947,7 +8986,7 @@ DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_conta
                        demi_scale(demi_cross(spin, n), r));
     c->spin = demi_sub(spin, wall->pose.spin);
     c->slip_step = demi_slip_step(n, demi_scale(demi_add(n, normal_before), DEM_R(0.5)),
-                                  demi_sub(demi_at(w->half_vel + 4*k->body), mid),
+                                  demi_sub(demi_at(w->bodies.half_vel + 4*k->body), mid),
                                   demi_scale(spin_step, r));
     c->spin_step = demi_sub(spin_step, wall->mid.spin);
     c->dt = dt;
@@ -8957,13 +8996,13 @@ DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_conta
     }
     c->twist = demi_dot(demi_add(spin_step, wall->mid.spin), n)/2;
     c->r_eff = k->coef[DEMI_R_EFF];
-    c->m_eff = w->mass[k->body];
+    c->m_eff = w->bodies.mass[k->body];
     c->kn = k->coef[DEMI_KN]; c->cn = k->coef[DEMI_CN]; c->kt = k->coef[DEMI_KT];
     c->ct = k->coef[DEMI_CT];
     c->kun = k->coef[DEMI_K_UN]; c->kad = k->coef[DEMI_K_AD];
     c->friction = k->coef[DEMI_MU]; c->friction_static = k->coef[DEMI_MU_STATIC];
     c->rolling_friction = k->coef[DEMI_MU_ROLL];
-    c->material_a = w->body_material[k->body];
+    c->material_a = w->bodies.material[k->body];
     c->material_b = wall->material + 1;
     c->wall = k->wall + 1;
     demi_contact_choices(w, c);
@@ -9167,9 +9206,9 @@ static void demi_domain_walls_touch(dem_world *w, int d) {
         if (w->wall_gap[base + k] > gone) continue;     /* the body is not looked at */
         while (last < domain->walls && w->wall_body[base + last] == body &&
                w->wall_id[base + last] == wall) last++;
-        if (w->shaped_count && demi_form_of(w, body)) continue;     /* in >>shaped */
-        sphere.radius = w->pos[4*body + 3];
-        n = demi_wall_collect(w, d, k, last, demi_at(w->pos + 4*body), &sphere, &at);
+        if (w->bodies.shaped && demi_form_of(w, body)) continue;     /* in >>shaped */
+        sphere.radius = w->bodies.pos[4*body + 3];
+        n = demi_wall_collect(w, d, k, last, demi_at(w->bodies.pos + 4*body), &sphere, &at);
         if (!n) continue;
         if (count + n > w->wall_now_stride) { domain->overflow |= 32; return; }
         while (o < domain->wall_contacts && old[o].body < body) o++;
@@ -9239,7 +9278,7 @@ static void demi_walls_respond(dem_world *w, int d) {
     for (k = 0; k < domain->wall_contacts_next; k++) {
         demi_wall_contact *c = w->wall_next + (size_t)d*(size_t)w->wall_now_stride + k;
         const int body = c->body;
-        const dem_real r = w->pos[4*body + 3];
+        const dem_real r = w->bodies.pos[4*body + 3];
         dem_contact contact;
         dem_push f;
         dem_vec3 surface, force, torque;
@@ -9251,10 +9290,11 @@ static void demi_walls_respond(dem_world *w, int d) {
         f.moment = demi_scale(f.moment, c->share);
         torque = demi_add(demi_scale(demi_cross(contact.normal, force), r), f.moment);
         c->force = force;
-        demi_push_add(w->force + 4*body, force);
-        demi_push_add(w->torque + 4*body, torque);
-        demi_wall_sum_add(w, &sums[c->wall], c->wall, demi_add(demi_add(demi_at(w->pos + 4*body),
-                          c->shift), demi_scale(contact.normal, r)), force, f.moment, surface);
+        demi_push_add(w->bodies.force + 4*body, force);
+        demi_push_add(w->bodies.torque + 4*body, torque);
+        demi_wall_sum_add(w, &sums[c->wall], c->wall,
+                          demi_add(demi_add(demi_at(w->bodies.pos + 4*body), c->shift),
+                                   demi_scale(contact.normal, r)), force, f.moment, surface);
         domain->overlap = DEMI_MAX(domain->overlap, (double)(c->overlap/r));
         demi_energy_add(domain, &f.energy, c->share, c->share);
     }
@@ -9382,11 +9422,11 @@ static void demi_shaped_recall(demi_shaped *c, const demi_shaped *old) {
 
 /* 1/mass that a push along n through arm feels at a body: 1/m + (arm x n).I^-1 (arm x n). */
 static double demi_contact_give(const dem_world *w, int body, dem_vec3 arm, dem_vec3 n) {
-    const double inv = (double)w->inv_mass[body];
-    const dem_real *I = w->orienting ? w->moment + 4*body : 0;
+    const double inv = (double)w->bodies.inv_mass[body];
+    const dem_real *I = w->bodies.orienting ? w->bodies.moment + 4*body : 0;
     dem_vec3 t;
     if (!(inv > 0) || !demi_form_of(w, body)) return inv;
-    t = dem_quat_unturn(demi_quat_at(w->orient + 4*body), demi_cross(arm, n));
+    t = dem_quat_unturn(demi_quat_at(w->bodies.orient + 4*body), demi_cross(arm, n));
     return inv + (double)(t.x*t.x/I[0] + t.y*t.y/I[1] + t.z*t.z/I[2]);
 }
 
@@ -9480,7 +9520,7 @@ static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
         dem_real A = d2, rate;
         double give;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
-        c[i].m_eff = w->mass[c[i].a];
+        c[i].m_eff = w->bodies.mass[c[i].a];
         if (!(c[i].overlap > 0)) continue;      /* pushes nobody */
         for (j = 0; j < n && one; j++) {
             const dem_real t = j == i ? 0 : demi_shaped_alike(&c[i], &c[j], &rate);
@@ -9511,14 +9551,15 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
                              int olds) {
     const int a = w->near.a[at], b = w->near.b[at];
     const dem_real *shift = w->image_shift + w->near.image[at];
-    const dem_vec3 r = demi_add(demi_sub(demi_at(w->pos + 4*b), demi_at(w->pos + 4*a)),
+    const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
+                                         demi_at(w->bodies.pos + 4*a)),
                                 demi_at(shift));
-    const dem_real rb = w->pos[4*b + 3];
+    const dem_real rb = w->bodies.pos[4*b + 3];
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
     const int first = w->domains[d].shaped_next;
     demi_shaped *from = w->shaped_next + (size_t)d*(size_t)w->shaped_stride + first;
     int i, j;
-    if (!(demi_length(r) < w->pos[4*a + 3] + rb)) return;
+    if (!(demi_length(r) < w->bodies.pos[4*a + 3] + rb)) return;
     for (i = 0; i < na; i++) {
         const demi_part p = demi_part_now(w, a, i);
         const dem_vec3 to = demi_sub(r, p.centre);
@@ -9804,7 +9845,7 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
     const int id = w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
-    const dem_vec3 centre = demi_at(w->pos + 4*body);
+    const dem_vec3 centre = demi_at(w->bodies.pos + 4*body);
     const demi_part p = demi_part_now(w, body, k);
     demi_touching *found = 0;
     const int count = demi_wall_collect(w, d, first, last, p.ball ? demi_add(centre, p.centre)
@@ -9899,12 +9940,12 @@ static int demi_shaped_reserve(dem_world *w, int stride) {
 }
 static void demi_domain_touch(dem_world *w, int d) {
     if (w->wall_count) demi_domain_walls_touch(w, d);
-    if (w->shaped_count) demi_domain_shaped_touch(w, d);
+    if (w->bodies.shaped) demi_domain_shaped_touch(w, d);
 }
 /* All contacts that are kept one by one. 0 when memory ran out. */
 static int demi_touch(dem_world *w) {
     int d, again;
-    if (!w->wall_count && !w->shaped_count) return 1;
+    if (!w->wall_count && !w->bodies.shaped) return 1;
     if ((!w->facets_valid && !demi_facets_weigh(w)) ||
         (!w->touching_valid && !demi_touching_reserve(w))) return 0;
     do {
@@ -9942,28 +9983,29 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     const dem_vec3 n = k->normal, half = demi_v(DEM_R(0.5), DEM_R(0.5), DEM_R(0.5));
     const dem_vec3 mid = demi_scale(demi_add(n, k->normal_before), half.x);
     const dem_vec3 mid_a = demi_scale(demi_add(k->arm_a, k->arm_before_a), half.x);
-    dem_vec3 u = demi_velocity_at(w->vel, w->spin, a, k->arm_a), gone, around, spin, spin_step;
-    gone = demi_velocity_at(w->half_vel, w->half_spin, a, mid_a);
+    dem_vec3 u = demi_velocity_at(w->bodies.vel, w->bodies.spin, a, k->arm_a);
+    dem_vec3 gone, around, spin, spin_step;
+    gone = demi_velocity_at(w->bodies.half_vel, w->bodies.half_spin, a, mid_a);
     if (b >= 0) {
         const dem_vec3 mid_b = demi_scale(demi_add(k->arm_b, k->arm_before_b), half.x);
-        u = demi_sub(u, demi_velocity_at(w->vel, w->spin, b, k->arm_b));
-        gone = demi_sub(gone, demi_velocity_at(w->half_vel, w->half_spin, b, mid_b));
-        spin = demi_at(w->spin + 4*b);
-        spin_step = demi_at(w->half_spin + 4*b);
+        u = demi_sub(u, demi_velocity_at(w->bodies.vel, w->bodies.spin, b, k->arm_b));
+        gone = demi_sub(gone, demi_velocity_at(w->bodies.half_vel, w->bodies.half_spin, b, mid_b));
+        spin = demi_at(w->bodies.spin + 4*b);
+        spin_step = demi_at(w->bodies.half_spin + 4*b);
         *surface = demi_v(0, 0, 0);
     } else {
         const demi_wall *wall = &w->walls[k->wall];
-        const dem_vec3 x = demi_add(demi_at(w->pos + 4*a), k->shift);
+        const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*a), k->shift);
         /* where the contact was in the middle of the step */
-        const dem_vec3 was = demi_add(mid_a, demi_sub(x, demi_scale(demi_at(w->half_vel + 4*a),
-                                                                    dt/2)));
+        const dem_vec3 was =
+            demi_add(mid_a, demi_sub(x, demi_scale(demi_at(w->bodies.half_vel + 4*a), dt/2)));
         *surface = demi_surface_at(&wall->pose, demi_add(x, k->arm_a));
         u = demi_sub(u, *surface);
         gone = demi_sub(gone, demi_surface_at(&wall->mid, was));
         spin = wall->pose.spin;
         spin_step = wall->mid.spin;
     }
-    around = demi_add(demi_at(w->half_spin + 4*a), spin_step);
+    around = demi_add(demi_at(w->bodies.half_spin + 4*a), spin_step);
     memset(c, 0, sizeof *c);
     c->overlap = k->overlap;
     c->normal = n;
@@ -9971,8 +10013,8 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     c->slip = demi_sub(u, demi_scale(n, c->closing_speed));
     gone = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
     c->slip_step = demi_sub(gone, demi_scale(n, demi_dot(gone, n)));
-    c->spin = demi_sub(demi_at(w->spin + 4*a), spin);
-    c->spin_step = demi_sub(demi_at(w->half_spin + 4*a), spin_step);
+    c->spin = demi_sub(demi_at(w->bodies.spin + 4*a), spin);
+    c->spin_step = demi_sub(demi_at(w->bodies.half_spin + 4*a), spin_step);
     c->dt = dt;
     if (dt > 0) {
         const dem_vec3 turn = demi_scale(demi_sub(n, k->normal_before), 1/dt);
@@ -9985,8 +10027,8 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     c->kun = coef[DEMI_K_UN]; c->kad = coef[DEMI_K_AD];
     c->friction = coef[DEMI_MU]; c->friction_static = coef[DEMI_MU_STATIC];
     c->rolling_friction = coef[DEMI_MU_ROLL];
-    c->material_a = w->body_material[a];
-    c->material_b = b >= 0 ? w->body_material[b] : w->walls[k->wall].material + 1;
+    c->material_a = w->bodies.material[a];
+    c->material_b = b >= 0 ? w->bodies.material[b] : w->walls[k->wall].material + 1;
     c->wall = b >= 0 ? 0 : k->wall + 1;
     demi_contact_choices(w, c);
     c->user = w->desc.law_user;
@@ -10011,8 +10053,8 @@ static void demi_shaped_respond(dem_world *w, int d) {
     domain->shaped_walls = 0;
     for (i = 0; i < domain->shaped_next; i++) {
         demi_shaped *c = w->shaped_next + (size_t)d*(size_t)w->shaped_stride + i;
-        const int a = c->a, b = c->b, ma = w->body_material[a] - 1;
-        const int mb = b >= 0 ? w->body_material[b] - 1 : w->walls[c->wall].material;
+        const int a = c->a, b = c->b, ma = w->bodies.material[a] - 1;
+        const int mb = b >= 0 ? w->bodies.material[b] - 1 : w->walls[c->wall].material;
         dem_real coef[DEMI_COEFS], press, still;
         dem_contact contact;
         dem_push f;
@@ -10038,24 +10080,24 @@ static void demi_shaped_respond(dem_world *w, int d) {
             moment_b = demi_add(moment_b, demi_cross(far, aside));
         }
         c->force = force;
-        demi_push_add(w->force + 4*a, force);
-        demi_push_add(w->torque + 4*a, demi_add(demi_cross(c->arm_a, force), moment));
+        demi_push_add(w->bodies.force + 4*a, force);
+        demi_push_add(w->bodies.torque + 4*a, demi_add(demi_cross(c->arm_a, force), moment));
         if (c->inset < 1)
-            demi_push_add(w->torque + 4*a, demi_scale(demi_cross(c->arm_a, contact.normal),
-                                                      (1 - c->inset)*press));
+            demi_push_add(w->bodies.torque + 4*a, demi_scale(demi_cross(c->arm_a, contact.normal),
+                                                             (1 - c->inset)*press));
         if (b >= 0) {
             const dem_vec3 back = demi_scale(demi_add(demi_cross(c->arm_b, force), moment_b), -1);
             if (c->send) {                      /* several may go by one near pair */
                 demi_push_add(w->cross_push + 6*(size_t)(c->send - 1), demi_scale(force, -1));
                 demi_push_add(w->cross_push + 6*(size_t)(c->send - 1) + 3, back);
             } else {
-                demi_push_add(w->force + 4*b, demi_scale(force, -1));
-                demi_push_add(w->torque + 4*b, back);
+                demi_push_add(w->bodies.force + 4*b, demi_scale(force, -1));
+                demi_push_add(w->bodies.torque + 4*b, back);
             }
             domain->contacts++;
         } else {
-            demi_wall_sum_add(w, &sums[c->wall], c->wall, demi_add(demi_add(demi_at(w->pos + 4*a),
-                              c->shift), c->arm_a),
+            demi_wall_sum_add(w, &sums[c->wall], c->wall,
+                              demi_add(demi_add(demi_at(w->bodies.pos + 4*a), c->shift), c->arm_a),
                               force, moment_b, surface);
             domain->shaped_walls++;
         }
@@ -10105,8 +10147,8 @@ DEM_INLINE void demi_finish_half(const demi_lane *b, dem_real h) {
 
 DEM_INLINE demi_lane demi_lane_move(const dem_world *w, int i) {
     demi_lane b;
-    b.v = w->vel + 4*i; b.half = w->half_vel + 4*i; b.f = w->force + 4*i;
-    b.inv = w->inv_mass[i];
+    b.v = w->bodies.vel + 4*i; b.half = w->bodies.half_vel + 4*i; b.f = w->bodies.force + 4*i;
+    b.inv = w->bodies.inv_mass[i];
     b.g[0] = b.inv > 0 ? w->desc.gravity.x : 0;
     b.g[1] = b.inv > 0 ? w->desc.gravity.y : 0;
     b.g[2] = b.inv > 0 ? w->desc.gravity.z : 0;
@@ -10114,8 +10156,8 @@ DEM_INLINE demi_lane demi_lane_move(const dem_world *w, int i) {
 }
 DEM_INLINE demi_lane demi_lane_turn(const dem_world *w, int i) {
     demi_lane b;
-    b.v = w->spin + 4*i; b.half = w->half_spin + 4*i; b.f = w->torque + 4*i;
-    b.inv = w->inv_inertia[i];
+    b.v = w->bodies.spin + 4*i; b.half = w->bodies.half_spin + 4*i; b.f = w->bodies.torque + 4*i;
+    b.inv = w->bodies.inv_inertia[i];
     b.g[0] = b.g[1] = b.g[2] = 0;
     return b;
 }
@@ -10125,8 +10167,9 @@ DEM_INLINE demi_lane demi_lane_turn(const dem_world *w, int i) {
 static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->clock.dt, h = (dem_real)w->clock.half_kick;
     const int synced = w->stage.synced;
-    dem_real *DEMI_RESTRICT x = w->pos, *DEMI_RESTRICT v = w->vel, *DEMI_RESTRICT u = w->half_vel;
-    const dem_real *DEMI_RESTRICT f = w->force, *DEMI_RESTRICT inv = w->inv_mass;
+    dem_real *DEMI_RESTRICT x = w->bodies.pos, *DEMI_RESTRICT v = w->bodies.vel,
+        *DEMI_RESTRICT u = w->bodies.half_vel;
+    const dem_real *DEMI_RESTRICT f = w->bodies.force, *DEMI_RESTRICT inv = w->bodies.inv_mass;
     dem_real g[4];
     int i, k;
     g[0] = w->desc.gravity.x; g[1] = w->desc.gravity.y; g[2] = w->desc.gravity.z; g[3] = 0;
@@ -10141,7 +10184,7 @@ static void demi_move_velocity_verlet(dem_world *w, int begin, int end, int turn
         }
     }
     if (!turning) return;
-    v = w->spin; u = w->half_spin; f = w->torque; inv = w->inv_inertia;
+    v = w->bodies.spin; u = w->bodies.half_spin; f = w->bodies.torque; inv = w->bodies.inv_inertia;
     for (i = begin; i < end; i++)
         for (k = 4*i; k < 4*i + 4; k++) {
             const dem_real kick = f[k]*inv[i]*h, half = (synced ? v[k] : u[k] + kick) + kick;
@@ -10156,7 +10199,7 @@ static void demi_move_leapfrog(dem_world *w, int begin, int end, int turning) {
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i);
         demi_kick_leapfrog(&b, h);
-        for (k = 0; k < 3; k++) w->pos[4*i + k] += b.half[k]*dt;
+        for (k = 0; k < 3; k++) w->bodies.pos[4*i + k] += b.half[k]*dt;
     }
     if (!turning) return;
     for (i = begin; i < end; i++) {
@@ -10171,12 +10214,12 @@ static void demi_move_position_verlet(dem_world *w, int begin, int end, int turn
     for (i = begin; i < end; i++) {
         const demi_lane b = demi_lane_move(w, i);
         for (k = 0; k < 3; k++) {
-            const dem_real a = b.f[k]*b.inv + b.g[k], x = w->pos[4*i + k];
-            const dem_real next = 2*x - w->last_pos[4*i + k] + a*dt*dt;
+            const dem_real a = b.f[k]*b.inv + b.g[k], x = w->bodies.pos[4*i + k];
+            const dem_real next = 2*x - w->bodies.last_pos[4*i + k] + a*dt*dt;
             b.half[k] = (next - x)/dt;
             b.v[k] = b.half[k] + a*h;
-            w->last_pos[4*i + k] = x;
-            w->pos[4*i + k] = next;
+            w->bodies.last_pos[4*i + k] = x;
+            w->bodies.pos[4*i + k] = next;
         }
     }
     if (!turning) return;
@@ -10193,7 +10236,7 @@ static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int tur
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
         for (k = 0; k < 3; k++) {
             b.half[k] = b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
-            w->pos[4*i + k] += b.v[k]*dt;
+            w->bodies.pos[4*i + k] += b.v[k]*dt;
             if (turning) s.half[k] = s.v[k] += s.f[k]*s.inv*dt;
         }
     }
@@ -10206,7 +10249,7 @@ static void demi_move_forward_euler(dem_world *w, int begin, int end, int turnin
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
         for (k = 0; k < 3; k++) {
             b.half[k] = b.v[k];
-            w->pos[4*i + k] += b.v[k]*dt;
+            w->bodies.pos[4*i + k] += b.v[k]*dt;
             b.v[k] += (b.f[k]*b.inv + b.g[k])*dt;
             s.half[k] = s.v[k];
             if (turning) s.v[k] += s.f[k]*s.inv*dt;
@@ -10232,16 +10275,16 @@ static void demi_prime_body(dem_world *w, int i) {
     for (k = 0; k < 3; k++) {
         const dem_real a = b.f[k]*b.inv + b.g[k];
         b.half[k] = b.v[k] - a*h;
-        if (w->backward) w->last_pos[4*i + k] = w->pos[4*i + k] - b.half[k]*dt;
+        if (w->bodies.backward) w->bodies.last_pos[4*i + k] = w->bodies.pos[4*i + k] - b.half[k]*dt;
         s.half[k] = s.v[k] - s.f[k]*s.inv*h;
     }
-    if (w->shaped_count && w->body_shape[i])
-        demi_put(w->angular + 4*i, demi_sub(demi_angular_of(w, i),
-                                            demi_scale(demi_at(w->torque + 4*i), h)));
+    if (w->bodies.shaped && w->bodies.shape[i])
+        demi_put(w->bodies.angular + 4*i,
+                 demi_sub(demi_angular_of(w, i), demi_scale(demi_at(w->bodies.torque + 4*i), h)));
 }
 static void demi_prime(dem_world *w) {
     int i;
-    for (i = 0; i < w->count; i++) demi_prime_body(w, i);
+    for (i = 0; i < w->bodies.count; i++) demi_prime_body(w, i);
     w->stage.primed = 1;
 }
 /* --- rotation. A sphere's spin runs along in the scheme of its translation; its orientation, when
@@ -10392,21 +10435,22 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
     for (l = 0; l < full; l++) {                /* groups filled up with the last one */
         size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
         DEMI_ONE_BY_ONE(i);
-        for (e = 0; e < 4; e++) t.q[e][l] = w->orient[i + (size_t)e];
-        for (e = 0; e < 4; e++) t.I[e][l] = w->moment[i + (size_t)e];
-        for (e = 0; e < 3; e++) t.L[e][l] = w->angular[i + (size_t)e];
-        for (e = 0; e < 3; e++) t.T[e][l] = w->torque[i + (size_t)e];
+        for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[i + (size_t)e];
+        for (e = 0; e < 4; e++) t.I[e][l] = w->bodies.moment[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.L[e][l] = w->bodies.angular[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.T[e][l] = w->bodies.torque[i + (size_t)e];
     }
     if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(&t, full, dt);
     else for (l = 0; l < count; l++) demi_turning_fly(&t, l, (int)w->desc.rotation, dt);
     for (l = 0; l < count; l++) {
         size_t i = 4*(size_t)who[l];
         DEMI_ONE_BY_ONE(i);
-        for (e = 0; e < 4; e++) w->orient[i + (size_t)e] = t.q[e][l];
-        for (e = 0; e < 3; e++) w->angular[i + (size_t)e] = t.L[e][l];
-        for (e = 0; e < 3; e++) w->half_spin[i + (size_t)e] = t.half[e][l];
-        for (e = 0; e < 3; e++) w->spin[i + (size_t)e] = t.spin[e][l];
-        if (w->spots_valid && w->forms[w->body_shape[who[l]] - 1].count) demi_spots_turn(w, who[l]);
+        for (e = 0; e < 4; e++) w->bodies.orient[i + (size_t)e] = t.q[e][l];
+        for (e = 0; e < 3; e++) w->bodies.angular[i + (size_t)e] = t.L[e][l];
+        for (e = 0; e < 3; e++) w->bodies.half_spin[i + (size_t)e] = t.half[e][l];
+        for (e = 0; e < 3; e++) w->bodies.spin[i + (size_t)e] = t.spin[e][l];
+        if (w->bodies.spots_valid &&
+            w->forms[w->bodies.shape[who[l]] - 1].count) demi_spots_turn(w, who[l]);
         turn = DEMI_MAX(turn, t.change2[l]);
         speed = DEMI_MAX(speed, t.speed2[l]);
         rate = DEMI_MAX(rate, t.rate2[l]);
@@ -10423,14 +10467,14 @@ static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int e
     const dem_real dt = w->clock.dt;
     int who[DEMI_TILE], count = 0, i;
     for (i = begin; i < end; i++) {
-        if (w->inv_mass[i] <= 0) continue;
-        if (w->body_shape[i]) {
+        if (w->bodies.inv_mass[i] <= 0) continue;
+        if (w->bodies.shape[i]) {
             who[count++] = i;
             if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count); count = 0; }
         } else if (w->desc.orientations) {
-            const dem_quat q = demi_quat_at(w->orient + 4*i);
-            const dem_vec3 by = demi_scale(demi_at(w->half_spin + 4*i), dt);
-            demi_quat_put(w->orient + 4*i,
+            const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
+            const dem_vec3 by = demi_scale(demi_at(w->bodies.half_spin + 4*i), dt);
+            demi_quat_put(w->bodies.orient + 4*i,
                           demi_quat_again(demi_quat_spin(q, dem_quat_unturn(q, by))));
         }
     }
@@ -10441,10 +10485,11 @@ static void demi_orient_finish(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->clock.half_kick;
     int i;
     for (i = begin; i < end; i++)
-        if (w->body_shape[i] && w->inv_mass[i] > 0) {
-            const dem_vec3 I = demi_at(w->moment + 4*i);
-            demi_put(w->spin + 4*i, demi_spin_of(demi_quat_at(w->orient + 4*i),
-                demi_add(demi_at(w->angular + 4*i), demi_scale(demi_at(w->torque + 4*i), h)),
+        if (w->bodies.shape[i] && w->bodies.inv_mass[i] > 0) {
+            const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+            demi_put(w->bodies.spin + 4*i, demi_spin_of(demi_quat_at(w->bodies.orient + 4*i),
+                demi_add(demi_at(w->bodies.angular + 4*i),
+                         demi_scale(demi_at(w->bodies.torque + 4*i), h)),
                 demi_v(1/I.x, 1/I.y, 1/I.z)));
         }
 }
@@ -10467,7 +10512,7 @@ enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integra
 
 static void demi_domain_finish(dem_world *w, int d) {
     demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
-    if (w->shaped_count) demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
+    if (w->bodies.shaped) demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
 }
 
 /* Completes the half kick that a step leaves open: velocities are then those of the present time.
@@ -10494,13 +10539,13 @@ static double demi_sum_energy(const dem_world *w, int what) {
 static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational) {
     int i;
     *kinetic = *rotational = 0;
-    for (i = 0; i < w->count; i++) {
-        const dem_real *v = w->vel + 4*i;
-        const double m = (double)w->mass[i];
-        if (w->inv_mass[i] <= 0) continue;
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_real *v = w->bodies.vel + 4*i;
+        const double m = (double)w->bodies.mass[i];
+        if (w->bodies.inv_mass[i] <= 0) continue;
         *kinetic += m*((double)v[0]*(double)v[0] + (double)v[1]*(double)v[1] +
                        (double)v[2]*(double)v[2])/2;
-        *rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->spin + 4*i))/2;
+        *rotational += (double)demi_dot(demi_angular_of(w, i), demi_at(w->bodies.spin + 4*i))/2;
     }
 }
 /* After a force evaluation: adds the domains' flows to the totals; stored energies replace the
@@ -10551,14 +10596,17 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
     memset(&t, 0, sizeof t);
     if (!w) return t;
     demi_kinetic(w, &t.kinetic, &t.rotational);
-    for (i = 0; i < w->count; i++) {
-        const double m = (double)w->mass[i];
+    for (i = 0; i < w->bodies.count; i++) {
+        const double m = (double)w->bodies.mass[i];
         dem_real own[3];
         double x[3], v[3];
         int k;
-        if (w->inv_mass[i] <= 0) continue;
+        if (w->bodies.inv_mass[i] <= 0) continue;
         demi_put(own, demi_angular_of(w, i));
-        for (k = 0; k < 3; k++) { x[k] = (double)w->pos[4*i + k]; v[k] = (double)w->vel[4*i + k]; }
+        for (k = 0; k < 3; k++) {
+            x[k] = (double)w->bodies.pos[4*i + k];
+            v[k] = (double)w->bodies.vel[4*i + k];
+        }
         t.mass += m;
         for (k = 0; k < 3; k++) {
             t.centre[k] += m*x[k];
@@ -10819,14 +10867,14 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
         c->lo[k] = (double)c->p.lo[k];
         c->size[k] = (double)c->p.period[k];
     }
-    for (i = 0; i < w->count; i++) {
-        const dem_real r = w->pos[4*i + 3];
-        const dem_vec3 d = demi_nearest(&c->p, demi_sub(demi_at(w->pos + 4*i), mid));
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_real r = w->bodies.pos[4*i + 3];
+        const dem_vec3 d = demi_nearest(&c->p, demi_sub(demi_at(w->bodies.pos + 4*i), mid));
         /* a part in a thousand more: rounding must not lose a neighbour */
         const double s = 1.001*(double)(r + radius);
         if (fabs((double)d.x) > half[0]*1.001 + s || fabs((double)d.y) > half[1]*1.001 + s ||
             fabs((double)d.z) > half[2]*1.001 + s) continue;
-        if (!demi_crowd_put(w, c, demi_at(w->pos + 4*i), r, i)) return 0;
+        if (!demi_crowd_put(w, c, demi_at(w->bodies.pos + 4*i), r, i)) return 0;
     }
     return 1;
 }
@@ -10902,12 +10950,13 @@ static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int m
     const dem_real *q = w->crowd_turned;
     int i;
     if (!demi_list_drop(w) ||
-        !demi_bodies_reserve(w, (size_t)w->count + (size_t)(c->count - first)) ||
+        !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)(c->count - first)) ||
         (form >= 0 && !demi_orient_begin(w))) return 0;
     for (i = first; i < c->count; i++) {
         demi_body_append(w, material, s[i].radius, s[i].at);
         if (form >= 0)
-            demi_body_shape(w, w->count - 1, form, 1, demi_quat_at(q + 4*(size_t)(i - first)));
+            demi_body_shape(w, w->bodies.count - 1, form, 1,
+                            demi_quat_at(q + 4*(size_t)(i - first)));
     }
     if (c->count > first) demi_scene_changed(w);
     return 1;
@@ -11259,14 +11308,14 @@ static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_
         count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*(dem_real)w->margin.skin, found,
                                 DEMI_FEED_NEAR);
     joins = joins && count <= DEMI_FEED_NEAR;
-    if (!demi_crowd_put(w, c, x, r, w->count) || (!joins && !demi_list_drop(w)) ||
-        !demi_bodies_reserve(w, (size_t)w->count + 1)) {
+    if (!demi_crowd_put(w, c, x, r, w->bodies.count) || (!joins && !demi_list_drop(w)) ||
+        !demi_bodies_reserve(w, (size_t)w->bodies.count + 1)) {
         f->random = random;
         return -1;
     }
-    i = w->slot_index[demi_body_append(w, d->material.id - 1, r, x)];
-    demi_put(w->vel + 4*i, v);
-    demi_put(w->half_vel + 4*i, v);
+    i = w->bodies.slot_index[demi_body_append(w, d->material.id - 1, r, x)];
+    demi_put(w->bodies.vel + 4*i, v);
+    demi_put(w->bodies.half_vel + 4*i, v);
     w->booked.inserted += demi_body_energy(w, i);
     w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
     if (joins) {
@@ -11388,8 +11437,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
 }
 static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
     const dem_outlet_desc *d = &o->desc;
-    const dem_real r = w->pos[4*i + 3];
-    const double m = (double)w->mass[i];
+    const dem_real r = w->bodies.pos[4*i + 3];
+    const double m = (double)w->bodies.mass[i];
     const int wanted = r >= d->wanted_min && (!(d->wanted_max > 0) || r <= d->wanted_max);
     int k = 0;
     while (k + 1 < d->class_count && 2*r > d->radius[k] + d->radius[k + 1]) k++;
@@ -11429,17 +11478,18 @@ static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
 static dem_result demi_outlets_run(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
-    for (i = 0; i < w->count && w->outlet_count; i++)
+    for (i = 0; i < w->bodies.count && w->outlet_count; i++)
         for (k = 0; k < w->outlet_count; k++) {
             demi_outlet *o = demi_outlet_at(w, k);
             const int frame = o->desc.frame.id;
             if (frame && w->walls[frame - 1].kind == DEMI_WALL_NONE) continue;
             if (!demi_outlet_has(&o->desc, demi_outlet_place(w, &p, &o->desc,
-                                                             demi_at(w->pos + 4*i)))) continue;
+                                                             demi_at(w->bodies.pos +
+                                                                     4*i)))) continue;
             if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
             demi_outlet_book(w, o, i);
             demi_body_take_out(w, i--);
-            w->balance.left++;
+            w->bodies.balance.left++;
             break;
         }
     return DEM_OK;
@@ -11480,9 +11530,10 @@ static double demi_speed_estimate(const dem_world *w) {
     dem_vec3 down = g > 0 ? demi_unit(w->desc.gravity) : demi_v(0, 0, 0);
     int i, k;
     if (w->desc.impact_speed > 0) return (double)w->desc.impact_speed;
-    for (i = 0; i < w->count; i++) {
-        const dem_vec3 v = demi_at(w->vel + 4*i);
-        const double h = (double)demi_dot(demi_at(w->pos + 4*i), down), r = (double)w->pos[4*i + 3];
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
+        const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
+        const double r = (double)w->bodies.pos[4*i + 3];
         speed = DEMI_MAX(speed, (double)demi_length(v));
         lo = DEMI_MIN(lo, h - r);
         hi = DEMI_MAX(hi, h + r);
@@ -11523,7 +11574,7 @@ static double demi_speed_estimate(const dem_world *w) {
    (m^2/R)^(1/5), lighter still by the root of how much blunter the body is somewhere. */
 static double demi_advise_radius(const dem_world *w, int body) {
     const demi_form *form = demi_form_of(w, body);
-    double r = (double)w->pos[4*body + 3], scale, sharp;
+    double r = (double)w->bodies.pos[4*body + 3], scale, sharp;
     if (!form) return r;
     scale = r/(double)form->radius;
     r = (double)form->equal*scale*pow(form->light, 1.0/3);
@@ -11579,10 +11630,10 @@ typedef struct demi_grades {
 static void demi_grades_of(const dem_world *w, demi_grades *g) {
     int i, j;
     memset(g, 0, sizeof *g);
-    for (i = 0; i < w->count; i++) {
-        const int m = w->body_material[i] - 1;
+    for (i = 0; i < w->bodies.count; i++) {
+        const int m = w->bodies.material[i] - 1;
         const double r = demi_advise_radius(w, i);
-        if (w->inv_mass[i] <= 0) { g->peg[m] = DEMI_MAX(g->peg[m], r); continue; }
+        if (w->bodies.inv_mass[i] <= 0) { g->peg[m] = DEMI_MAX(g->peg[m], r); continue; }
         if (!g->many[m]++ || r < g->smallest[m]) g->smallest[m] = r;
     }
     for (i = 0; i < w->feed_count; i++) {
@@ -11699,21 +11750,21 @@ typedef struct demi_press_whole {  /* per mass, inertia, root of both */
 typedef struct demi_pressed { demi_stiffness s; dem_vec3 n; dem_real overlap; } demi_pressed;
 static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, int moving,
                            double arm, demi_press *p) {
-    const double m = (double)w->mass[body], f = moving ? 2 : 1;
-    const double I = demi_sphere_inertia(w, m, (double)w->pos[4*body + 3]);
-    if (w->inv_mass[body] <= 0) return;
+    const double m = (double)w->bodies.mass[body], f = moving ? 2 : 1;
+    const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
+    if (w->bodies.inv_mass[body] <= 0) return;
     p->omega2 += f*DEMI_MAX(c->s.k/m, c->s.kt*(1/m + arm*arm/I) + c->s.kr/I);
     p->rate += f*DEMI_MAX(c->s.c/m, c->s.ct*(1/m + arm*arm/I) + c->s.cr/I);
     p->contacts++;
-    p->deepest = DEMI_MAX(p->deepest, c->overlap/w->pos[4*body + 3]);
+    p->deepest = DEMI_MAX(p->deepest, c->overlap/w->bodies.pos[4*body + 3]);
 }
 static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, int moving,
                                  double arm, demi_press_whole *p) {
-    const double m = (double)w->mass[body], f = moving ? 2 : 1;
-    const double I = demi_sphere_inertia(w, m, (double)w->pos[4*body + 3]);
+    const double m = (double)w->bodies.mass[body], f = moving ? 2 : 1;
+    const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
     const double n[3] = {(double)c->n.x, (double)c->n.y, (double)c->n.z};
     int i, j, e = 0, d;
-    if (w->inv_mass[body] <= 0) return;
+    if (w->bodies.inv_mass[body] <= 0) return;
     for (i = 0; i < 3; i++)
         for (j = i; j < 3; j++, e++)
             for (d = 0; d < 2; d++) {
@@ -11743,11 +11794,11 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
         for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
             const demi_span span = demi_span_of(w, d, p, 1);
             const int a = span.a[0], b = span.b[0];
-            const dem_real *x = w->pos + 4*a, *y = w->pos + 4*b;
+            const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
             const dem_vec3 gap = demi_add(demi_sub(demi_at(y), demi_at(x)),
                                           demi_at(w->image_shift + span.image[0]));
             const dem_real l = demi_length(gap), sum = x[3] + y[3];
-            const int both = w->inv_mass[a] > 0 && w->inv_mass[b] > 0;
+            const int both = w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0;
             dem_real coef[DEMI_PAIR_COLUMNS];
             demi_pressed c;
             int e;
@@ -11774,10 +11825,11 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             const demi_wall_contact *k = w->wall_now + (size_t)d*(size_t)w->wall_now_stride +
                                          (size_t)p;
             const int i = k->body;
-            const double arm = (double)w->pos[4*i + 3];
+            const double arm = (double)w->bodies.pos[4*i + 3];
             demi_pressed c;
             if (!(k->overlap > 0) || (whole && !press[i].whole)) continue;
-            c.s = demi_stiffness_of(w, k->coef, (double)w->mass[k->body], (double)k->overlap);
+            c.s = demi_stiffness_of(w, k->coef, (double)w->bodies.mass[k->body],
+                                    (double)k->overlap);
             c.n = k->normal;
             c.overlap = k->overlap;
             if (!whole) demi_press_add(w, i, &c, 0, arm, press + i);
@@ -11792,19 +11844,19 @@ static double demi_press_limit(dem_world *w, double dt, int *worst) {
     demi_press_whole *whole;
     double least = dt;
     int i, found = 0;
-    if (!w->count) return 0;
-    if (!DEMI_GROW(w, w->press, (size_t)w->count)) return -1;
+    if (!w->bodies.count) return 0;
+    if (!DEMI_GROW(w, w->press, (size_t)w->bodies.count)) return -1;
     press = w->press;
-    memset(press, 0, (size_t)w->count*sizeof *press);
+    memset(press, 0, (size_t)w->bodies.count*sizeof *press);
     demi_press_visit(w, press, 0);
-    for (i = 0; i < w->count; i++)
+    for (i = 0; i < w->bodies.count; i++)
         if (dt > demi_dt_stable(press[i].omega2, press[i].rate)) press[i].whole = ++found;
     if (!found) return 0;
     if (!DEMI_GROW(w, w->press_whole, (size_t)found)) return -1;
     whole = w->press_whole;
     memset(whole, 0, (size_t)found*sizeof *whole);
     demi_press_visit(w, press, whole);
-    for (i = 0; i < w->count; i++) {
+    for (i = 0; i < w->bodies.count; i++) {
         const demi_press_whole *p = whole + press[i].whole - 1;
         double limit;
         if (!press[i].whole) continue;
@@ -11826,9 +11878,9 @@ static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call)
 static double demi_spin_fastest(const dem_world *w) {
     double most = w->clock.spin_elsewhere;
     int i;
-    for (i = 0; i < w->count && w->shaped_count; i++)
-        if (w->body_shape[i])
-            most = DEMI_MAX(most, (double)demi_length(demi_at(w->spin + 4*i)));
+    for (i = 0; i < w->bodies.count && w->bodies.shaped; i++)
+        if (w->bodies.shape[i])
+            most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.spin + 4*i)));
     return most;
 }
 /* Settles dt before stepping: chosen or checked. */
@@ -11843,7 +11895,7 @@ static dem_result demi_dt_settle(dem_world *w) {
     dem_advice a;
     double spin;
     if (w->stage.dt_valid) return DEM_OK;
-    if (!w->count && !w->feed_count) {          /* nothing to limit it: walls still move */
+    if (!w->bodies.count && !w->feed_count) {          /* nothing to limit it: walls still move */
         if (!(w->clock.dt > 0)) w->clock.dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
         return DEM_OK;
     }
@@ -11875,9 +11927,10 @@ static dem_result demi_dt_settle(dem_world *w) {
 static double demi_fastest(const dem_world *w) {
     double most = 0;
     int i;
-    for (i = 0; i < w->count; i++)
-        if (w->inv_mass[i] > 0)
-            most = DEMI_MAX(most, (double)demi_dot(demi_at(w->vel + 4*i), demi_at(w->vel + 4*i)));
+    for (i = 0; i < w->bodies.count; i++)
+        if (w->bodies.inv_mass[i] > 0)
+            most = DEMI_MAX(most, (double)demi_dot(demi_at(w->bodies.vel + 4*i),
+                                                   demi_at(w->bodies.vel + 4*i)));
     return sqrt(most);
 }
 /* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast
@@ -11888,7 +11941,7 @@ static dem_result demi_dt_check(dem_world *w) {
     const double radius = (double)w->effects.radius_min;
     int worst = 0, auto_dt = !(w->desc.dt > 0);
     double speed = w->booked.speed_max, limit;
-    if (w->desc.allow_large_dt || !w->count) return DEM_OK;
+    if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
     if (w->clock.steps == w->clock.press_since) speed = demi_fastest(w);
     speed += w->margin.kick;
     if (speed*(double)w->clock.dt > radius && radius > 0)
@@ -11915,7 +11968,7 @@ static dem_result demi_dt_check(dem_world *w) {
                      "most %g s: body %u is pressed by %d contacts, by %.3g of its radius at most; "
                      "use dt = 0, a smaller dt, or less overlap",
                      (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
-                         (unsigned)w->body_slot[worst] + 1,
+                         (unsigned)w->bodies.slot[worst] + 1,
                      (int)w->press[worst].contacts,
                      (double)w->press[worst].deepest);
 }
@@ -11933,7 +11986,8 @@ typedef struct demi_pace {
     dem_real speed2[DEMI_LANES], acceleration2[DEMI_LANES], sum[DEMI_LANES];
 } demi_pace;
 DEM_INLINE void demi_pace_look(const dem_world *w, int i, demi_pace *DEMI_RESTRICT pace, int l) {
-    const dem_real *v = w->half_vel + 4*i, *f = w->force + 4*i, inv = w->inv_mass[i];
+    const dem_real *v = w->bodies.half_vel + 4*i, *f = w->bodies.force + 4*i,
+        inv = w->bodies.inv_mass[i];
     const dem_vec3 g = w->desc.gravity;
     const dem_real s = v[0]*v[0] + v[1]*v[1] + v[2]*v[2];
     const dem_real x = f[0]*inv + g.x, y = f[1]*inv + g.y, z = f[2]*inv + g.z;
@@ -11950,24 +12004,25 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
     demi_integrator_rows[w->desc.integrator].move(w, begin, end, turning);
     if (w->desc.planar)
         for (i = begin; i < end; i++) {
-            w->pos[4*i + 2] = w->vel[4*i + 2] = 0;
-            w->spin[4*i] = w->spin[4*i + 1] = 0;
-            w->half_vel[4*i + 2] = w->half_spin[4*i] = w->half_spin[4*i + 1] = 0;
+            w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = 0;
+            w->bodies.spin[4*i] = w->bodies.spin[4*i + 1] = 0;
+            w->bodies.half_vel[4*i + 2] = w->bodies.half_spin[4*i] = w->bodies.half_spin[4*i + 1] =
+                0;
         }
-    if (w->orienting) demi_orient_move(w, domain, begin, end);
+    if (w->bodies.orienting) demi_orient_move(w, domain, begin, end);
     for (i = begin; i + DEMI_LANES <= end; i += DEMI_LANES) {
         DEMI_VECTOR
         for (l = 0; l < DEMI_LANES; l++) demi_pace_look(w, i + l, pace, l);
     }
     for (; i < end; i++) demi_pace_look(w, i, pace, 0);
-    memset(w->force + 4*begin, 0, bytes);
-    if (turning) memset(w->torque + 4*begin, 0, bytes);
+    memset(w->bodies.force + 4*begin, 0, bytes);
+    if (turning) memset(w->bodies.torque + 4*begin, 0, bytes);
 }
 /* The same for a domain in which some bodies may be quiet. */
 static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
     demi_domain *domain = &w->domains[d];
-    const dem_real *DEMI_RESTRICT u = w->half_vel, dt = w->clock.dt;
-    dem_real *DEMI_RESTRICT x = w->pos;
+    const dem_real *DEMI_RESTRICT u = w->bodies.half_vel, dt = w->clock.dt;
+    dem_real *DEMI_RESTRICT x = w->bodies.pos;
     int i, k, end, l;
     for (i = domain->begin; i < domain->end; i = end) {
         demi_quiet *q = demi_quiet_at(w, d, i);
@@ -11985,7 +12040,7 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
             if (q->restless == 1) q->restless = 0;
         } else {
             for (k = 4*i; k < 4*end; k++) x[k] += u[k]*dt;
-            if (w->orienting) demi_orient_move(w, domain, i, end);
+            if (w->bodies.orienting) demi_orient_move(w, domain, i, end);
         }
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
@@ -12010,9 +12065,10 @@ static void demi_domain_move(dem_world *w, int d) {
     if (w->desc.ledger) {
         const dem_vec3 g = w->desc.gravity;
         for (i = domain->begin; i < domain->end; i++) {
-            const dem_real *u = w->half_vel + 4*i;
-            if (w->inv_mass[i] <= 0) continue;
-            domain->energy[DEMI_E_GRAVITY] += (double)w->mass[i]*(double)(g.x*u[0] + g.y*u[1] +
+            const dem_real *u = w->bodies.half_vel + 4*i;
+            if (w->bodies.inv_mass[i] <= 0) continue;
+            domain->energy[DEMI_E_GRAVITY] += (double)w->bodies.mass[i]*(double)(g.x*u[0] +
+                                                                                 g.y*u[1] +
                 g.z*u[2])*(double)w->clock.dt;
         }
     }
@@ -12029,9 +12085,9 @@ static void demi_domain_fields(dem_world *w, int d) {
         dem_body_state body;
         if (demi_visits(w, i) || dem_body_get(w, id, &body) != DEM_OK) continue;
         w->desc.body_force(&body, id, w->clock.time, &force, &torque, w->desc.force_user);
-        demi_push_add(w->force + 4*i, force);
-        demi_push_add(w->torque + 4*i, torque);
-        if (w->desc.ledger && w->stage.forces_valid && w->inv_mass[i] > 0)
+        demi_push_add(w->bodies.force + 4*i, force);
+        demi_push_add(w->bodies.torque + 4*i, torque);
+        if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
             domain->energy[DEMI_E_FORCE] += (double)(demi_dot(force, body.velocity) +
                                                      demi_dot(torque,
                                                               body.spin))*(double)w->clock.dt;
@@ -12043,18 +12099,18 @@ static void demi_domain_clear(dem_world *w, int d) {
     const size_t n = (size_t)(domain->end - domain->begin)*4*sizeof(dem_real);
     int i;
     if (n && !w->stage.moved) {
-        memset(w->force + 4*domain->begin, 0, n);
-        memset(w->torque + 4*domain->begin, 0, n);
+        memset(w->bodies.force + 4*domain->begin, 0, n);
+        memset(w->bodies.torque + 4*domain->begin, 0, n);
     }
     for (i = domain->begin; i < domain->end && w->desc.force; i++) {
         if (demi_visits(w, i)) continue;
-        const dem_vec3 f = w->desc.force(demi_at(w->pos + 4*i), demi_at(w->vel + 4*i),
-                                         w->pos[4*i + 3], w->mass[i],
+        const dem_vec3 f = w->desc.force(demi_at(w->bodies.pos + 4*i), demi_at(w->bodies.vel + 4*i),
+                                         w->bodies.pos[4*i + 3], w->bodies.mass[i],
                                          w->clock.time, w->desc.force_user);
-        demi_put(w->force + 4*i, f);
-        if (w->desc.ledger && w->stage.forces_valid && w->inv_mass[i] > 0)
+        demi_put(w->bodies.force + 4*i, f);
+        if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
             w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f,
-                demi_at(w->vel + 4*i))*(double)w->clock.dt;
+                demi_at(w->bodies.vel + 4*i))*(double)w->clock.dt;
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
 }
@@ -12063,7 +12119,7 @@ static void demi_domain_respond(dem_world *w, int d) {
     demi_domain_clear(w, d);
     if (walls) memset(w->wall_sums + (size_t)d*walls, 0, walls*sizeof *w->wall_sums);
     w->kernel(w, d);
-    if (!w->shaped_count) return;
+    if (!w->bodies.shaped) return;
     demi_shaped_clear(w, d);
     demi_shaped_respond(w, d);
 }
@@ -12074,13 +12130,13 @@ static void demi_domain_gather(dem_world *w, int d) {
     if (demi_own(w)) {                          /* those of your own may answer anything */
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
-            sum += fabs((double)w->force[i]) + fabs((double)w->torque[i]);
+            sum += fabs((double)w->bodies.force[i]) + fabs((double)w->bodies.torque[i]);
         w->domains[d].check = sum;
     }
     if (!w->desc.planar) return;
     /* nothing pushes a disc out of its plane */
     for (i = w->domains[d].begin; i < w->domains[d].end; i++)
-        w->force[4*i + 2] = w->torque[4*i] = w->torque[4*i + 1] = 0;
+        w->bodies.force[4*i + 2] = w->bodies.torque[4*i] = w->bodies.torque[4*i + 1] = 0;
 }
 /* Forces at the present positions and velocities; wall channels. */
 static void demi_forces(dem_world *w) {
@@ -12099,8 +12155,8 @@ static void demi_forces(dem_world *w) {
     w->shaped_now = w->shaped_next;
     w->shaped_next = shaped;
     for (d = 0; d < w->domain_count; d++) {
-        w->domains[d].shaped = w->shaped_count ? w->domains[d].shaped_next : 0;
-        if (!w->shaped_count) w->domains[d].shaped_walls = 0;
+        w->domains[d].shaped = w->bodies.shaped ? w->domains[d].shaped_next : 0;
+        if (!w->bodies.shaped) w->domains[d].shaped_walls = 0;
     }
     for (i = 0; i < w->wall_count; i++) {  /* domains in order: one order whatever the threads */
         dem_channels *c = &w->walls[i].channels;
@@ -12132,28 +12188,31 @@ static void demi_forces(dem_world *w) {
 static dem_result demi_unstable(dem_world *w) {
     int i, d;
     double deepest = 0;
-    for (i = 0; i < w->count; i++)
-        if (!demi_finite3(demi_at(w->pos + 4*i)) || !demi_finite3(demi_at(w->vel + 4*i)) ||
-            !demi_finite3(demi_at(w->spin + 4*i)) || !demi_finite3(demi_at(w->force + 4*i)) ||
-            !demi_finite3(demi_at(w->torque + 4*i)))
+    for (i = 0; i < w->bodies.count; i++)
+        if (!demi_finite3(demi_at(w->bodies.pos + 4*i)) ||
+            !demi_finite3(demi_at(w->bodies.vel + 4*i)) ||
+            !demi_finite3(demi_at(w->bodies.spin + 4*i)) ||
+                !demi_finite3(demi_at(w->bodies.force + 4*i)) ||
+            !demi_finite3(demi_at(w->bodies.torque + 4*i)))
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its "
                              "position, velocity or spin is no "
                              "longer a finite number; likely two grains stand at the same place, a "
                              "law, force field or motion of your own divided by zero, or dt "
                              "= %g s is too large", (unsigned long long)w->clock.steps,
-                             (unsigned)w->body_slot[i] + 1, (double)w->clock.dt);
+                             (unsigned)w->bodies.slot[i] + 1, (double)w->clock.dt);
     for (d = 0; d < w->domain_count; d++) deepest = DEMI_MAX(deepest, w->domains[d].overlap);
     for (d = 0; d < w->domain_count; d++)
         for (i = 0; i < w->domains[d].wall_contacts; i++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + i];
-            if (c->overlap > w->pos[4*c->body + 3])
+            if (c->overlap > w->bodies.pos[4*c->body + 3])
                 return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
                                  "overlaps wall %d by %.3g of its "
                                  "radius, must be below 1; it started inside the wall, hit it too "
                                  "fast for dt = %g s, or the "
                                  "material is too soft", (unsigned long long)w->clock.steps,
-                                 (unsigned)w->body_slot[c->body] + 1,
-                                 (int)c->wall + 1, (double)(c->overlap/w->pos[4*c->body + 3]),
+                                 (unsigned)w->bodies.slot[c->body] + 1,
+                                 (int)c->wall + 1, (double)(c->overlap/w->bodies.pos[4*c->body +
+                                                                                     3]),
                                  (double)w->clock.dt);
         }
     return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: two grains overlap by %.3g "
@@ -12170,13 +12229,13 @@ static dem_result demi_outflow(dem_world *w) {
     demi_domain_limits(w, lo, hi);
     for (k = 0; k < 3; k++) any |= w->desc.boundary[k] == DEM_BOUNDARY_OUTFLOW;
     if (!any) return DEM_OK;
-    for (i = 0; i < w->count; i++)
+    for (i = 0; i < w->bodies.count; i++)
         for (k = 0; k < 3; k++) {
-            const double x = (double)w->pos[4*i + k];
+            const double x = (double)w->bodies.pos[4*i + k];
             if (w->desc.boundary[k] != DEM_BOUNDARY_OUTFLOW || (x >= lo[k] && x <= hi[k])) continue;
             if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
             demi_body_take_out(w, i--);
-            w->balance.left++;
+            w->bodies.balance.left++;
             break;
         }
     return DEM_OK;
@@ -12189,7 +12248,7 @@ static size_t demi_field_cells(const demi_field *f) {
 /* What one body at x adds to a field, if it is there. */
 static void demi_field_add(const dem_world *w, demi_field *field, int i, const double *x) {
     const dem_field_desc *d = &field->desc;
-    const double m = (double)w->mass[i], r = (double)w->pos[4*i + 3];
+    const double m = (double)w->bodies.mass[i], r = (double)w->bodies.pos[4*i + 3];
     double lo[3], size[3];
     size_t cell = 0;
     int k;
@@ -12203,9 +12262,9 @@ static void demi_field_add(const dem_world *w, demi_field *field, int i, const d
         cell = cell*(size_t)d->cells[k] + (size_t)t;
     }
     field->solid[cell] += (w->desc.planar ? DEMI_PI*r*r*size[2]
-        : m/(double)w->materials[w->body_material[i] - 1].density)/(size[0]*size[1]*size[2]);
+        : m/(double)w->materials[w->bodies.material[i] - 1].density)/(size[0]*size[1]*size[2]);
     field->mass[cell] += m;
-    for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->vel[4*i + k];
+    for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->bodies.vel[4*i + k];
 }
 /* In a periodic world a body is in a field wherever one of its images is: once, unless the field is
    longer than the period. */
@@ -12229,12 +12288,12 @@ static void demi_fields_sample(dem_world *w) {
             const double sides = p.period[k] > 0 ? (double)((hi[k] - lo[k])/p.period[k]) : 0;
             images[k] = (int)DEMI_MIN(ceil(DEMI_MAX(sides - 1e-6, 1e-6)), 100);
         }
-        for (i = 0; i < w->count; i++) {
+        for (i = 0; i < w->bodies.count; i++) {
             if (demi_visits(w, i)) continue;
             for (n = 0; n < images[0]*images[1]*images[2]; n++) {
                 double x[3];
                 for (k = 0; k < 3; k++)
-                    x[k] = (double)demi_into(w->pos[4*i + k], lo[k], p.period[k]) +
+                    x[k] = (double)demi_into(w->bodies.pos[4*i + k], lo[k], p.period[k]) +
                         (double)p.period[k]*(k == 0 ? n%images[0] : k == 1 ? n/images[0]%images[1]
                                              : n/images[0]/images[1]);
                 demi_field_add(w, field, i, x);
@@ -12448,7 +12507,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
 DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
     if (demi_null(w, "dem_progress_print", user, "user")) return 0;
     fprintf((FILE *)user, "\r%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", 100*done,
-            w->clock.time, w->count,
+            w->clock.time, w->bodies.count,
             seconds_left, done >= 1 ? "\n" : "");
     fflush((FILE *)user);
     return 0;
@@ -12587,8 +12646,8 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
         tile.coef[e][0] = r.uniform ? demi_uniform_coef(w, e) : span.coef[(size_t)e*span.stride];
     demi_motion_one(&tile, &r.same, 0, r.uniform, r.turning, r.following);
     demi_tile_contact(&tile, &r.same, 0, &c);
-    c.material_a = w->body_material[a];
-    c.material_b = w->body_material[b];
+    c.material_a = w->bodies.material[a];
+    c.material_b = w->bodies.material[b];
     c.user = w->desc.law_user;
     demi_law(w, &c, memory, &f);
     demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.uniform, r.turning, r.parting);
@@ -12597,8 +12656,8 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     out->wall = 0;
     out->normal = demi_row(tile.normal, 0);
     out->overlap = tile.overlap[0];
-    gap = demi_scale(gap, w->pos[4*a + 3]/(w->pos[4*a + 3] + w->pos[4*b + 3]));
-    out->point = demi_place_of(&periods, demi_add(demi_at(w->pos + 4*a), gap));
+    gap = demi_scale(gap, w->bodies.pos[4*a + 3]/(w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3]));
+    out->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), gap));
     out->force = demi_row(tile.force, 0);
     return 1;
 }
@@ -12629,7 +12688,8 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
             out[n - 1].b = dem_bodies_id(w, c->b);
             out[n - 1].wall = c->b < 0 ? c->wall + 1 : 0;
             out[n - 1].normal = c->normal;
-            out[n - 1].point = demi_place_of(&p, demi_add(demi_at(w->pos + 4*c->a), c->arm_a));
+            out[n - 1].point = demi_place_of(&p,
+                                             demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a));
             out[n - 1].overlap = c->overlap;
             out[n - 1].force = c->force;
         }
@@ -12676,8 +12736,8 @@ static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
     uint32_t who[4];
     uint64_t h = DEMI_HASH_START;
     int i, flip;
-    who[0] = slots ? (uint32_t)c->a : w->body_slot[c->a];
-    who[1] = c->b < 0 ? (uint32_t)c->element : slots ? (uint32_t)c->b : w->body_slot[c->b];
+    who[0] = slots ? (uint32_t)c->a : w->bodies.slot[c->a];
+    who[1] = c->b < 0 ? (uint32_t)c->element : slots ? (uint32_t)c->b : w->bodies.slot[c->b];
     who[2] = (uint32_t)c->part_a;
     who[3] = c->b >= 0 ? (uint32_t)c->part_b : (uint32_t)c->wall;
     flip = c->b >= 0 && who[0] > who[1];
@@ -12697,13 +12757,13 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
              k = demi_near_next(domain, k)) {
             const demi_span span = demi_span_of(w, d, k, 1);
             if (demi_near_remembers(w, d, k))
-                sum += demi_pair_digest(w, w->body_slot[span.a[0]], w->body_slot[span.b[0]],
+                sum += demi_pair_digest(w, w->bodies.slot[span.a[0]], w->bodies.slot[span.b[0]],
                                         span.memory, span.stride);
         }
         for (k = 0; k < domain->wall_contacts; k++) {
             const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
             const int pushes = c->share > 0;    /* or is it under way through a reduced hole? */
-            const uint32_t slot = w->stage.list_valid ? w->body_slot[c->body] : (uint32_t)c->body;
+            const uint32_t slot = w->stage.list_valid ? w->bodies.slot[c->body] : (uint32_t)c->body;
             uint64_t one = demi_hash(DEMI_HASH_START, &slot, sizeof slot);
             one = demi_hash(one, &c->wall, sizeof c->wall);
             one = demi_hash(one, &c->element, sizeof c->element);
@@ -12714,13 +12774,13 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
             sum += demi_shaped_hash(w, &w->shaped_now[(size_t)d*(size_t)w->shaped_stride +
                                                       (size_t)k]);
     }
-    for (i = 0; !w->stage.list_valid && w->carry_count && w->carry_stride == w->memory_stride &&
-                i < w->carry_rows; i++)
-        for (k = w->carry_start[i]; k < w->carry_start[i + 1]; k++) {
-            const int32_t p = w->carry_partner[k];
+    for (i = 0; !w->stage.list_valid && w->filed.count && w->filed.stride == w->memory_stride &&
+                i < w->filed.rows; i++)
+        for (k = w->filed.start[i]; k < w->filed.start[i + 1]; k++) {
+            const int32_t p = w->filed.partner[k];
             const uint32_t row = (uint32_t)i, other = (uint32_t)(p < 0 ? ~p : p);
             sum += demi_pair_digest(w, p < 0 ? other : row, p < 0 ? row : other,
-                                    w->carry_memory + (size_t)k*(size_t)w->carry_stride, 1);
+                                    w->filed.memory + (size_t)k*(size_t)w->filed.stride, 1);
         }
     return demi_hash(h, &sum, sizeof sum);
 }
@@ -12740,7 +12800,7 @@ static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body
         const demi_shaped *c = w->shaped_now + (size_t)d*(size_t)w->shaped_stride + (k - spheres);
         *body = c->a;
         *normal = c->normal;
-        *mu = demi_static_friction(w, w->body_material[c->a] - 1, w->walls[wall].material);
+        *mu = demi_static_friction(w, w->bodies.material[c->a] - 1, w->walls[wall].material);
         return c->b < 0 && c->wall == wall;
     }
 }
@@ -12769,8 +12829,8 @@ DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed
             dem_vec3 v, flat;
             dem_real z;
             if (!demi_wall_press(w, d, k, id, &body, &n, &mu) || body == last) continue;
-            v = demi_sub(demi_at(w->vel + 4*body), demi_add(wall->pose.velocity,
-                demi_cross(wall->pose.spin, demi_sub(demi_at(w->pos + 4*body),
+            v = demi_sub(demi_at(w->bodies.vel + 4*body), demi_add(wall->pose.velocity,
+                demi_cross(wall->pose.spin, demi_sub(demi_at(w->bodies.pos + 4*body),
                                                      wall->pose.position))));
             z = demi_dot(n, across);
             flat = demi_sub(n, demi_scale(across, z));
@@ -12797,19 +12857,20 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
     uint64_t h = DEMI_HASH_START;
     int i;
     h = demi_hash(h, &w->clock.time, sizeof w->clock.time);
-    for (i = 0; i < w->slot_count; i++) {
-        const int b = w->slot_index[i];
+    for (i = 0; i < w->bodies.slot_count; i++) {
+        const int b = w->bodies.slot_index[i];
         dem_real x[4];
         if (b < 0) continue;
-        demi_put(x, demi_place_of(&p, demi_at(w->pos + 4*b)));  /* a new list puts them there */
-        x[3] = w->pos[4*b + 3];
+        /* a new list puts them there */
+        demi_put(x, demi_place_of(&p, demi_at(w->bodies.pos + 4*b)));
+        x[3] = w->bodies.pos[4*b + 3];
         h = demi_hash(h, &i, sizeof i);
         h = demi_hash(h, x, sizeof x);
-        h = demi_hash(h, w->vel + 4*b, 3*sizeof(dem_real));
-        h = demi_hash(h, w->spin + 4*b, 3*sizeof(dem_real));
-        if (!w->orienting) continue;
-        h = demi_hash(h, w->orient + 4*b, 4*sizeof(dem_real));
-        h = demi_hash(h, w->angular + 4*b, 3*sizeof(dem_real));
+        h = demi_hash(h, w->bodies.vel + 4*b, 3*sizeof(dem_real));
+        h = demi_hash(h, w->bodies.spin + 4*b, 3*sizeof(dem_real));
+        if (!w->bodies.orienting) continue;
+        h = demi_hash(h, w->bodies.orient + 4*b, 4*sizeof(dem_real));
+        h = demi_hash(h, w->bodies.angular + 4*b, 3*sizeof(dem_real));
     }
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE) {
@@ -13624,31 +13685,31 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     dem_real *row;
     int i, k, e, n = 0;
     memset(g, 0, sizeof *g);
-    g->count = w->count;
-    g->pos = places; g->vel = w->vel; g->spin = w->spin;
-    g->slots = w->body_slot; g->materials = w->body_material;
-    if (!w->orienting) return 1;
+    g->count = w->bodies.count;
+    g->pos = places; g->vel = w->bodies.vel; g->spin = w->bodies.spin;
+    g->slots = w->bodies.slot; g->materials = w->bodies.material;
+    if (!w->bodies.orienting) return 1;
     g->count = 0;
-    for (i = 0; i < w->count; i++) g->count += demi_parts_count(w, i);
+    for (i = 0; i < w->bodies.count; i++) g->count += demi_parts_count(w, i);
     g->own = (dem_real *)demi_alloc(w, 20*(size_t)g->count + 1, sizeof(dem_real));
     g->own_ids = (int32_t *)demi_alloc(w, 2*(size_t)g->count + 1, sizeof(int32_t));
     if (!g->own || !g->own_ids) return 0;
-    for (i = 0; i < w->count; i++)
+    for (i = 0; i < w->bodies.count; i++)
         for (k = 0; k < demi_parts_count(w, i); k++, n++) {
             const demi_part p = demi_part_of(w, i, k);
             row = g->own + 4*n;
             demi_put(row, demi_add(demi_at(places + 4*i), p.centre));
             row[3] = p.radius;
             row += 4*(size_t)g->count;
-            demi_put(row, demi_velocity_at(w->vel, w->spin, i, p.centre));
+            demi_put(row, demi_velocity_at(w->bodies.vel, w->bodies.spin, i, p.centre));
             row += 4*(size_t)g->count;
-            demi_put(row, demi_at(w->spin + 4*i));
+            demi_put(row, demi_at(w->bodies.spin + 4*i));
             row += 4*(size_t)g->count;
-            for (e = 0; e < 4; e++) row[e] = w->orient[4*i + e];
+            for (e = 0; e < 4; e++) row[e] = w->bodies.orient[4*i + e];
             row += 4*(size_t)g->count;
             demi_put(row, p.ball ? demi_v(p.radius, p.radius, p.radius) : p.axes);
-            g->own_ids[n] = (int32_t)w->body_slot[i];
-            g->own_ids[n + g->count] = w->body_material[i];
+            g->own_ids[n] = (int32_t)w->bodies.slot[i];
+            g->own_ids[n + g->count] = w->bodies.material[i];
         }
     g->pos = g->own;
     g->vel = g->own + 4*(size_t)g->count;
@@ -13660,7 +13721,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     return 1;
 }
 static void demi_drawing_free(dem_world *w, demi_drawing *g) {
-    if (!w->orienting) return;
+    if (!w->bodies.orienting) return;
     demi_free(w, g->own);
     demi_free(w, g->own_ids);
 }
@@ -14141,13 +14202,13 @@ static uint64_t demi_scene_digest(const dem_world *w) {
 
 /* Numbers that are not arrays. */
 static void demi_visit_numbers(dem_world *w, demi_stream *s) {
-    DEMI_VISIT(s, w->count);          DEMI_VISIT(s, w->slot_count);
+    DEMI_VISIT(s, w->bodies.count);          DEMI_VISIT(s, w->bodies.slot_count);
     DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);
-    DEMI_VISIT(s, w->orienting);      DEMI_VISIT(s, w->shaped_count);
-    DEMI_VISIT(s, w->carry_count);    DEMI_VISIT(s, w->carry_rows);
-    DEMI_VISIT(s, w->carry_stride);
-    DEMI_VISIT(s, w->slot_free);      DEMI_VISIT(s, w->slot_pending);
-    DEMI_VISIT(s, w->balance);        DEMI_VISIT(s, w->desc.search);
+    DEMI_VISIT(s, w->bodies.orienting);      DEMI_VISIT(s, w->bodies.shaped);
+    DEMI_VISIT(s, w->filed.count);    DEMI_VISIT(s, w->filed.rows);
+    DEMI_VISIT(s, w->filed.stride);
+    DEMI_VISIT(s, w->bodies.slot_free);      DEMI_VISIT(s, w->bodies.slot_pending);
+    DEMI_VISIT(s, w->bodies.balance);        DEMI_VISIT(s, w->desc.search);
     DEMI_VISIT(s, w->clock);          DEMI_VISIT(s, w->stage);
     DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
     DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
@@ -14156,7 +14217,7 @@ static void demi_visit_bodies(dem_world *w, demi_stream *s) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
-        const size_t n = (size_t)(a->who == DEMI_SLOTS ? w->slot_count : w->count);
+        const size_t n = (size_t)(a->who == DEMI_SLOTS ? w->bodies.slot_count : w->bodies.count);
         if (a->what && demi_has(w, a)) demi_visit(s, demi_data(w, a), n*a->item);
     }
 }
@@ -14223,11 +14284,11 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
             demi_visit(s, w->shaped_now + (size_t)d*(size_t)w->shaped_stride,
                        (size_t)domain->shaped*sizeof(demi_shaped));
     }
-    if (w->stage.list_valid || !w->carry_count) return;
-    demi_visit(s, w->carry_start, ((size_t)w->carry_rows + 1)*4);
-    demi_visit(s, w->carry_partner, (size_t)w->carry_count*4);
-    demi_visit(s, w->carry_memory,
-               (size_t)w->carry_count*(size_t)w->carry_stride*sizeof(dem_real));
+    if (w->stage.list_valid || !w->filed.count) return;
+    demi_visit(s, w->filed.start, ((size_t)w->filed.rows + 1)*4);
+    demi_visit(s, w->filed.partner, (size_t)w->filed.count*4);
+    demi_visit(s, w->filed.memory,
+               (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
 }
 static void demi_visit_walls(dem_world *w, demi_stream *s) {
     int i;
@@ -14311,7 +14372,7 @@ static void demi_visit_digests(const dem_world *w, demi_stream *s, const int32_t
 static int demi_body_lost(const dem_world *w) {
     int i, k;
     size_t e;
-    for (i = 0; i < w->count; i++) {
+    for (i = 0; i < w->bodies.count; i++) {
         for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
             const demi_body_array *a = &demi_body_arrays[k];
             const dem_real *x;
@@ -14319,7 +14380,7 @@ static int demi_body_lost(const dem_world *w) {
             x = (const dem_real *)(const void *)demi_datum(w, a, i);
             for (e = 0; e < a->item/sizeof *x; e++) if (!demi_finite(x[e])) return i;
         }
-        if (demi_size(demi_at(w->pos + 4*i)) > DEMI_REACH) return i;
+        if (demi_size(demi_at(w->bodies.pos + 4*i)) > DEMI_REACH) return i;
     }
     return -1;
 }
@@ -14334,12 +14395,12 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     if (lost >= 0)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_write: body %u is no longer at a "
                          "finite place and speed: the run has blown up; go back to an earlier "
-                         "checkpoint, %s is left as it was", (unsigned)w->body_slot[lost] + 1,
+                         "checkpoint, %s is left as it was", (unsigned)w->bodies.slot[lost] + 1,
                          path ? path : "the file");
     result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
-    if (w->stage.list_valid) w->carry_count = 0;      /* filed once, and taken up by the list */
-    if (!w->carry_count) w->carry_rows = w->carry_stride = 0;
+    if (w->stage.list_valid) w->filed.count = 0;      /* filed once, and taken up by the list */
+    if (!w->filed.count) w->filed.rows = w->filed.stride = 0;
     memset(&head, 0, sizeof head);
     memcpy(head.magic, DEMI_CHECKPOINT_MAGIC, 8);
     head.version = DEMI_CHECKPOINT_VERSION;
@@ -14479,7 +14540,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->form_count = w->form_count;
     t->forms = w->forms;
     t->normal = (int)w->desc.normal_law;
-    t->backward = w->backward;
+    t->bodies.backward = w->bodies.backward;
     if (demi_twin_parts(t, w)) return t;
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);
@@ -14542,12 +14603,13 @@ static int demi_numbers_check(const demi_reader *r) {
         const demi_body_array *a = &demi_body_arrays[i];
         if (a->what && a->who != DEMI_SLOTS && demi_has(t, a)) per += a->item;
     }
-    if (!demi_left(r, t->count, per) || !demi_left(r, t->slot_count, 8) ||
-        t->count > INT_MAX/64 || t->slot_count > INT_MAX/64 || t->count > t->slot_count)
+    if (!demi_left(r, t->bodies.count, per) || !demi_left(r, t->bodies.slot_count, 8) ||
+        t->bodies.count > INT_MAX/64 || t->bodies.slot_count > INT_MAX/64 ||
+            t->bodies.count > t->bodies.slot_count)
         return demi_lie(r, "its number of bodies or of slots", -1);
     if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
         (t->stage.list_valid && (!t->domain_count ||
-                           t->domain_count > demi_domains_for(4*t->count + 16))) ||
+                           t->domain_count > demi_domains_for(4*t->bodies.count + 16))) ||
         !demi_left(r, t->domain_count, sizeof(demi_domain)))
         return demi_lie(r, "its number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
@@ -14556,12 +14618,13 @@ static int demi_numbers_check(const demi_reader *r) {
         t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
         return demi_lie(r, "its search", -1);
-    if (t->shaped_count < 0 || t->shaped_count > (t->orienting ? t->count : 0) ||
-        (w->asked.orientations && !t->orienting))
+    if (t->bodies.shaped < 0 || t->bodies.shaped > (t->bodies.orienting ? t->bodies.count : 0) ||
+        (w->asked.orientations && !t->bodies.orienting))
         return demi_lie(r, "its number of bodies that are not spheres", -1);
-    if (!demi_left(r, t->carry_count, 4) || t->carry_rows < 0 || t->carry_rows > t->slot_count ||
-        t->carry_stride < 0 || t->carry_stride > DEMI_MEMORY ||
-            (t->stage.list_valid && t->carry_count))
+    if (!demi_left(r, t->filed.count, 4) || t->filed.rows < 0 ||
+        t->filed.rows > t->bodies.slot_count ||
+        t->filed.stride < 0 || t->filed.stride > DEMI_MEMORY ||
+            (t->stage.list_valid && t->filed.count))
         return demi_lie(r, "its contact memory", -1);
     if (((t->effects.tangent || t->stage.list_valid) && t->effects.tangent != tangent &&
          t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
@@ -14576,12 +14639,13 @@ static int demi_numbers_check(const demi_reader *r) {
         !demi_finite_double(t->clock.since.time) || fabs(t->clock.since.time) > DEMI_REACH ||
         t->clock.since.steps > t->clock.steps || !demi_sane(t->clock.since.dt, 0) ||
         !demi_finite_double(t->clock.run_end) ||
-            (t->stage.dt_valid && t->count && !(t->clock.dt > 0)) ||
-        (t->stage.dt_valid && t->count && w->desc.dt > 0 &&
+            (t->stage.dt_valid && t->bodies.count && !(t->clock.dt > 0)) ||
+        (t->stage.dt_valid && t->bodies.count && w->desc.dt > 0 &&
          (t->clock.dt < w->desc.dt || t->clock.dt > w->desc.dt)))
         return demi_lie(r, "its time or time step", -1);
-    if (t->balance.present != (uint64_t)t->count ||
-        t->balance.inserted != t->balance.present + t->balance.removed + t->balance.left)
+    if (t->bodies.balance.present != (uint64_t)t->bodies.count ||
+        t->bodies.balance.inserted != t->bodies.balance.present + t->bodies.balance.removed +
+            t->bodies.balance.left)
         return demi_lie(r, "its balance of bodies", -1);
     return 1;
 }
@@ -14599,10 +14663,11 @@ static int demi_domain_check(const demi_reader *r, int d) {
     for (i = 0; i < sizeof counts/sizeof *counts; i++)
         if (counts[i] < 0 || counts[i] > INT_MAX/64) return 0;
     if (!demi_left(r, o->wall_contacts, sizeof(demi_wall_contact)) ||
-        !demi_left(r, o->shaped, sizeof(demi_shaped)) || (o->shaped && !t->orienting)) return 0;
+        !demi_left(r, o->shaped, sizeof(demi_shaped)) ||
+            (o->shaped && !t->bodies.orienting)) return 0;
     if (!t->stage.list_valid) return 1;
     return o->begin == (d ? t->domains[d - 1].end : 0) && o->end >= o->begin &&
-           o->end <= t->count && (d + 1 < t->domain_count || o->end == t->count) &&
+           o->end <= t->bodies.count && (d + 1 < t->domain_count || o->end == t->bodies.count) &&
            demi_left(r, o->own, 8) && demi_left(r, o->cross, 8) &&
            demi_left(r, o->walls, 12 + 4*sizeof(dem_real)) &&
            demi_left(r, o->near_shaped_end, 8) &&
@@ -14619,27 +14684,29 @@ static int demi_domains_check(const demi_reader *r) {
         if (!demi_domain_check(r, d)) return demi_lie(r, "the counts of domain", d);
         o->overflow = 0;
         if (t->stage.list_valid) continue;
-        o->begin = DEMI_MIN(DEMI_MAX(o->begin, 0), t->count);    /* of a list that is no more */
-        o->end = DEMI_MIN(DEMI_MAX(o->end, o->begin), t->count);
+        /* of a list that is no more */
+        o->begin = DEMI_MIN(DEMI_MAX(o->begin, 0), t->bodies.count);
+        o->end = DEMI_MIN(DEMI_MAX(o->end, o->begin), t->bodies.count);
     }
     return 1;
 }
 /* Slots: those of bodies, and two chains of free ones that nothing else is in. */
 static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
     const dem_world *t = r->t;
-    int i, chain, left = t->slot_count - t->count;
-    for (i = 0; i < t->count; i++) {
-        const uint32_t slot = t->body_slot[i];
-        if (slot >= (uint32_t)t->slot_count || t->slot_index[slot] != i)
+    int i, chain, left = t->bodies.slot_count - t->bodies.count;
+    for (i = 0; i < t->bodies.count; i++) {
+        const uint32_t slot = t->bodies.slot[i];
+        if (slot >= (uint32_t)t->bodies.slot_count || t->bodies.slot_index[slot] != i)
             return demi_lie(r, "the slot of body", i);
     }
     for (chain = 0; chain < 2; chain++) {
-        int slot = chain ? t->slot_pending : t->slot_free;
+        int slot = chain ? t->bodies.slot_pending : t->bodies.slot_free;
         while (slot != -1) {
-            if (slot < 0 || slot >= t->slot_count || seen[slot]++ || t->slot_index[slot] >= 0 ||
-                t->slot_index[slot] < -2 - t->slot_count || !left--)
+            if (slot < 0 || slot >= t->bodies.slot_count || seen[slot]++ ||
+                t->bodies.slot_index[slot] >= 0 ||
+                t->bodies.slot_index[slot] < -2 - t->bodies.slot_count || !left--)
                 return demi_lie(r, "a chain of free slots", -1);
-            slot = -2 - t->slot_index[slot];
+            slot = -2 - t->bodies.slot_index[slot];
         }
     }
     return left == 0 ? 1 : demi_lie(r, "the number of free slots", -1);
@@ -14652,25 +14719,26 @@ static int demi_bodies_sane(const demi_reader *r) {
     const int lost = demi_body_lost(t);
     int i, k, shaped = 0;
     if (lost >= 0) return demi_lie(r, "a number of body", lost);
-    for (i = 0; i < t->count; i++) {
-        if (!(t->pos[4*i + 3] > 0) ||
-            !demi_sane((double)t->mass[i], 0) || !(t->mass[i] > 0) ||
-            !demi_sane((double)t->inv_mass[i], 0) || !demi_sane((double)t->inv_inertia[i], 0))
+    for (i = 0; i < t->bodies.count; i++) {
+        if (!(t->bodies.pos[4*i + 3] > 0) ||
+            !demi_sane((double)t->bodies.mass[i], 0) || !(t->bodies.mass[i] > 0) ||
+            !demi_sane((double)t->bodies.inv_mass[i], 0) ||
+                !demi_sane((double)t->bodies.inv_inertia[i], 0))
             return demi_lie(r, "position, radius or mass of body", i);
-        if (t->body_material[i] < 1 || t->body_material[i] > t->material_count)
+        if (t->bodies.material[i] < 1 || t->bodies.material[i] > t->material_count)
             return demi_lie(r, "the material of body", i);
-        if (!t->orienting) continue;
-        if (t->body_shape[i] < 0 || t->body_shape[i] > t->form_count)
+        if (!t->bodies.orienting) continue;
+        if (t->bodies.shape[i] < 0 || t->bodies.shape[i] > t->form_count)
             return demi_lie(r, "the shape of body", i);
-        if (!(demi_quat_size2(t->orient + 4*i) > DEM_R(0.98)) ||
-            !(demi_quat_size2(t->orient + 4*i) < DEM_R(1.02)))
+        if (!(demi_quat_size2(t->bodies.orient + 4*i) > DEM_R(0.98)) ||
+            !(demi_quat_size2(t->bodies.orient + 4*i) < DEM_R(1.02)))
             return demi_lie(r, "the orientation of body", i);
-        if (!t->body_shape[i]) continue;
+        if (!t->bodies.shape[i]) continue;
         shaped++;
         for (k = 0; k < 3; k++)
-            if (!(t->moment[4*i + k] > 0)) return demi_lie(r, "the inertia of body", i);
+            if (!(t->bodies.moment[4*i + k] > 0)) return demi_lie(r, "the inertia of body", i);
     }
-    return shaped == t->shaped_count ? 1 : demi_lie(r, "the number of shaped bodies", -1);
+    return shaped == t->bodies.shaped ? 1 : demi_lie(r, "the number of shaped bodies", -1);
 }
 /* Near pairs p = begin .. end - 1 of domain d: entries of this list, ascending, all of spheres or
    none; from here on counted in all domains. */
@@ -14700,7 +14768,8 @@ static int demi_lists_check(const demi_reader *r) {
             const int count = l ? o->cross : o->own, first = d*list->stride;
             for (k = first; k < first + count; k++) {
                 const int a = list->a[k], b = list->b[k];
-                if (a < o->begin || a >= o->end || b <= a || b >= t->count || (b >= o->end) != l)
+                if (a < o->begin || a >= o->end || b <= a || b >= t->bodies.count ||
+                    (b >= o->end) != l)
                     return demi_lie(r, "a candidate pair of domain", d);
             }
             if (!demi_near_check(r, d, list, count, l ? o->near_cross : 0,
@@ -14723,7 +14792,7 @@ static int demi_lists_check(const demi_reader *r) {
 /* Contacts that last: of bodies, or of slots while there is no list. */
 static int demi_contacts_check(const demi_reader *r) {
     const dem_world *t = r->t;
-    const int who = t->stage.list_valid ? t->count : t->slot_count;
+    const int who = t->stage.list_valid ? t->bodies.count : t->bodies.slot_count;
     int d, k;
     for (d = 0; d < t->domain_count; d++) {
         for (k = 0; k < t->domains[d].wall_contacts; k++) {
@@ -14741,16 +14810,17 @@ static int demi_contacts_check(const demi_reader *r) {
                 return demi_lie(r, "a contact of shaped bodies in domain", d);
         }
     }
-    if (t->stage.list_valid || !t->carry_count) return 1;
-    for (k = 0; k <= t->carry_rows; k++)
-        if (t->carry_start[k] < (k ? t->carry_start[k - 1] : 0) ||
-            t->carry_start[k] > t->carry_count || (!k && t->carry_start[k]))
+    if (t->stage.list_valid || !t->filed.count) return 1;
+    for (k = 0; k <= t->filed.rows; k++)
+        if (t->filed.start[k] < (k ? t->filed.start[k - 1] : 0) ||
+            t->filed.start[k] > t->filed.count || (!k && t->filed.start[k]))
             return demi_lie(r, "contact memory of slot", k);
-    if (t->carry_start[t->carry_rows] != t->carry_count)
-        return demi_lie(r, "contact memory of slot", t->carry_rows);
-    for (k = 0; k < t->carry_count; k++) {
-        const int32_t p = t->carry_partner[k], other = p < 0 ? ~p : p;
-        if (other >= t->slot_count) return demi_lie(r, "a partner in contact memory, entry", k);
+    if (t->filed.start[t->filed.rows] != t->filed.count)
+        return demi_lie(r, "contact memory of slot", t->filed.rows);
+    for (k = 0; k < t->filed.count; k++) {
+        const int32_t p = t->filed.partner[k], other = p < 0 ? ~p : p;
+        if (other >= t->bodies.slot_count) return demi_lie(r, "a partner in contact memory, entry",
+                                                           k);
     }
     return 1;
 }
@@ -14794,18 +14864,20 @@ static int demi_measured_check(const demi_reader *r) {
 /* --- reading: room, and what follows from the rest --- */
 
 static int demi_twin_bodies_room(dem_world *t) {
-    const int orienting = t->orienting, count = t->count, slots = t->slot_count;
+    const int orienting = t->bodies.orienting, count = t->bodies.count,
+        slots = t->bodies.slot_count;
     int ok;
-    t->orienting = t->count = t->slot_count = 0;              /* nothing to keep yet */
+    /* nothing to keep yet */
+    t->bodies.orienting = t->bodies.count = t->bodies.slot_count = 0;
     ok = demi_bodies_reserve(t, (size_t)slots) && (!orienting || demi_orient_begin(t));
-    t->count = count;
-    t->slot_count = slots;
+    t->bodies.count = count;
+    t->bodies.slot_count = slots;
     return ok;
 }
 /* The lists' rows are as long as the longest asks for, and as a rebuild would make them. */
 static int demi_twin_lists_room(dem_world *t) {
     int most[7] = {0, 0, 0, 0, 0, 0, 0}, d, k;
-    const int each = t->domain_count ? t->count/t->domain_count : 0;
+    const int each = t->domain_count ? t->bodies.count/t->domain_count : 0;
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
         const int counts[] = {t->stage.list_valid ? o->own : 0, t->stage.list_valid ? o->cross : 0,
@@ -14820,7 +14892,7 @@ static int demi_twin_lists_room(dem_world *t) {
         most[2] = DEMI_MAX(most[2], DEMI_MAX(64, each*5/2));
         most[3] = DEMI_MAX(most[3], 64);
         most[4] = DEMI_MAX(most[4], 16);
-        if (t->shaped_count) most[5] = DEMI_MAX(most[5], DEMI_MAX(64, each*4));
+        if (t->bodies.shaped) most[5] = DEMI_MAX(most[5], DEMI_MAX(64, each*4));
     }
     for (k = 0; k < 4; k++) if (k != 2) most[k] += t->join_room;
     most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
@@ -14828,15 +14900,15 @@ static int demi_twin_lists_room(dem_world *t) {
     t->shaped_stride = 0;
     if (!demi_wall_contacts_reserve(t, (size_t)t->domain_count*(size_t)most[4],
                                     (size_t)t->domain_count*(size_t)most[4]) ||
-        (t->orienting && !demi_shaped_reserve(t, most[5])) ||
-        !demi_carry_reserve(t, t->carry_rows, t->carry_count, t->carry_stride)) return 0;
-    t->shaped_stride = t->orienting ? most[5] : 0;
+        (t->bodies.orienting && !demi_shaped_reserve(t, most[5])) ||
+        !demi_carry_reserve(t, t->filed.rows, t->filed.count, t->filed.stride)) return 0;
+    t->shaped_stride = t->bodies.orienting ? most[5] : 0;
     return !t->stage.list_valid ||
            (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&
             demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
             demi_near_reserve(t, &t->near, t->domain_count, most[2]) &&
             demi_wall_lists_reserve(t, most[3]) &&
-            DEMI_GROW(t, t->quiet, (size_t)(t->count/DEMI_SOME + t->domain_count + 1)));
+            DEMI_GROW(t, t->quiet, (size_t)(t->bodies.count/DEMI_SOME + t->domain_count + 1)));
 }
 /* What follows from the rest, and is not stored. 0 when memory ran out. */
 static int demi_twin_follow(dem_world *t) {
@@ -14847,7 +14919,7 @@ static int demi_twin_follow(dem_world *t) {
     for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
     demi_kernel_choose(t);
     if (!t->stage.list_valid) return 1;
-    if (t->shaped_count && !demi_spots_lay(t)) return 0;
+    if (t->bodies.shaped && !demi_spots_lay(t)) return 0;
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
         const int first = d*t->near.stride;
@@ -14884,7 +14956,7 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     demi_effects_memory(t);
     demi_visit(s, t->domains, (size_t)t->domain_count*sizeof(demi_domain));
     if (!demi_domains_check(r)) return DEM_ERROR_FORMAT;
-    *seen = (unsigned char *)demi_alloc(t, (size_t)t->slot_count + 1, 1);
+    *seen = (unsigned char *)demi_alloc(t, (size_t)t->bodies.slot_count + 1, 1);
     if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t)) return DEM_ERROR_MEMORY;
     demi_visit_bodies(t, s);
     if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
@@ -15041,10 +15113,10 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     /* until bodies are there to decide */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
-    w->slot_free = w->slot_pending = -1;
+    w->bodies.slot_free = w->bodies.slot_pending = -1;
     w->stage.synced = 1;
-    w->orienting = desc->orientations != 0;
-    w->backward = demi_integrator_rows[desc->integrator].backward;
+    w->bodies.orienting = desc->orientations != 0;
+    w->bodies.backward = demi_integrator_rows[desc->integrator].backward;
     w->pairs = (demi_pair *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
     w->domains = (demi_domain *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
@@ -15151,13 +15223,13 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
 static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
-    if (w->shaped_count)
+    if (w->bodies.shaped)
         fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap "
-                "%s; a cluster's contacts %s; %.2f contacts per body\n", w->shaped_count,
+                "%s; a cluster's contacts %s; %.2f contacts per body\n", w->bodies.shaped,
                 rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_SHARING_ONE ? "are shared" : "add up",
-                w->count ? (double)demi_shaped_total(w)/w->count : 0);
-    else if (w->orienting)
+                w->bodies.count ? (double)demi_shaped_total(w)/w->bodies.count : 0);
+    else if (w->bodies.orienting)
         fprintf(out, "           orientations of spheres are followed, because you asked\n");
 }
 /* What each wall bears, and what came in and went out. */
@@ -15198,7 +15270,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     if (demi_null(world, "dem_world_report", out, "out")) return;
     dem_world look = *world, *w = &look;        /* effects not yet worked out are so in a copy */
     const dem_counters c = dem_counters_get(w);
-    const double per = w->count ? 1.0/w->count : 0;
+    const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
     dem_advice a;
     if (!w->stage.list_valid) { demi_effects(w); demi_levels_choose(w); }
     demi_advise(w, &a);
@@ -15208,11 +15280,12 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             : "s", c.domains,
             c.domains == 1 ? "" : "s", (double)c.memory/1e6);
     fprintf(out, "bodies     %d of radius %g to %g m; %llu inserted = %llu present + %llu removed "
-            "+ %llu left\n", w->count,
+            "+ %llu left\n", w->bodies.count,
             (double)w->effects.radius_min, (double)w->effects.radius_max,
-                (unsigned long long)w->balance.inserted,
-            (unsigned long long)w->balance.present, (unsigned long long)w->balance.removed,
-            (unsigned long long)w->balance.left);
+                (unsigned long long)w->bodies.balance.inserted,
+            (unsigned long long)w->bodies.balance.present,
+                (unsigned long long)w->bodies.balance.removed,
+            (unsigned long long)w->bodies.balance.left);
     fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
             (unsigned long long)w->clock.steps, (double)w->clock.dt,
             demi_integrator_rows[w->desc.integrator].name,
@@ -15365,23 +15438,23 @@ static uint32_t demi_grain_slot(const char *from) {
 }
 /* Room has been seen to. Answers its index. */
 static int demi_grain_append(dem_world *w, const char **from) {
-    const int i = w->count++;
+    const int i = w->bodies.count++;
     demi_grain_take(w, i, from);
-    w->slot_index[w->body_slot[i]] = i;
-    if (demi_form_of(w, i)) w->shaped_count++;
+    w->bodies.slot_index[w->bodies.slot[i]] = i;
+    if (demi_form_of(w, i)) w->bodies.shaped++;
     w->lll_valid = 0;
     return i;
 }
 /* Takes a grain out of a slab without its having left the scene. */
 static void demi_grain_forget(dem_world *w, int i) {
-    const int slot = (int)w->body_slot[i], pending = w->slot_pending;
+    const int slot = (int)w->bodies.slot[i], pending = w->bodies.slot_pending;
     const double removed = w->booked.removed;
     demi_body_take_out(w, i);
-    w->slot_pending = pending;
-    w->slot_index[slot] = -1;
-    w->slot_generation[slot]--;
+    w->bodies.slot_pending = pending;
+    w->bodies.slot_index[slot] = -1;
+    w->bodies.slot_generation[slot]--;
     w->booked.removed = removed;
-    w->visitor[slot] = 0;
+    w->bodies.visitor[slot] = 0;
 }
 
 /* Grains whose mark is `mark`; with them, when asked, the filed memory of pairs that name one of
@@ -15393,29 +15466,29 @@ typedef struct demi_parcel_head { int32_t grains, pairs, contacts, shaped,
 static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, int mark,
                      int memory, int axis, dem_real shift, demi_parcel *out) {
     const size_t start = out->size;
-    const int stride = w->carry_stride;
+    const int stride = w->filed.stride;
     demi_parcel_head head = {0, 0, 0, 0, 0};
     int i, k, d, ok = demi_parcel_put(host, out, &head, sizeof head);
     head.stride = stride;
-    for (i = 0; i < w->count && ok; i++) {
-        if (marks[w->body_slot[i]] != mark) continue;
+    for (i = 0; i < w->bodies.count && ok; i++) {
+        if (marks[w->bodies.slot[i]] != mark) continue;
         ok = demi_grain_put(host, out, w, i, axis, shift);
         head.grains++;
     }
-    for (i = 0; memory && w->carry_count && i < w->carry_rows && ok; i++)
-        for (k = w->carry_start[i]; k < w->carry_start[i + 1] && ok; k++) {
-            const int32_t p = w->carry_partner[k], other = p < 0 ? ~p : p, row = i;
+    for (i = 0; memory && w->filed.count && i < w->filed.rows && ok; i++)
+        for (k = w->filed.start[i]; k < w->filed.start[i + 1] && ok; k++) {
+            const int32_t p = w->filed.partner[k], other = p < 0 ? ~p : p, row = i;
             if (mark != DEMI_ALL && marks[row] != mark && marks[other] != mark) continue;
             ok = demi_parcel_put(host, out, &row, sizeof row) &&
                  demi_parcel_put(host, out, &p, sizeof p) &&
-                 demi_parcel_put(host, out, w->carry_memory + (size_t)k*(size_t)stride,
+                 demi_parcel_put(host, out, w->filed.memory + (size_t)k*(size_t)stride,
                                  (size_t)stride*sizeof(dem_real));
             head.pairs++;
         }
     for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
         for (k = 0; k < w->domains[d].wall_contacts && ok; k++) {
             demi_wall_contact c = w->wall_now[d*w->wall_now_stride + k];
-            if (w->stage.list_valid) c.body = (int32_t)w->body_slot[c.body];
+            if (w->stage.list_valid) c.body = (int32_t)w->bodies.slot[c.body];
             if (mark != DEMI_ALL && marks[c.body] != mark) continue;
             ok = demi_parcel_put(host, out, &c, sizeof c);
             head.contacts++;
@@ -15424,8 +15497,8 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
         for (k = 0; k < w->domains[d].shaped && ok; k++) {
             demi_shaped c = w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
             if (w->stage.list_valid) {
-                c.a = (int32_t)w->body_slot[c.a];
-                if (c.b >= 0) c.b = (int32_t)w->body_slot[c.b];
+                c.a = (int32_t)w->bodies.slot[c.a];
+                if (c.b >= 0) c.b = (int32_t)w->bodies.slot[c.b];
             }
             if (mark != DEMI_ALL && marks[c.a] != mark && (c.b < 0 || marks[c.b] != mark)) continue;
             ok = demi_parcel_put(host, out, &c, sizeof c);
@@ -15438,7 +15511,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
 /* Room for what is to arrive by these heads, beside what is filed already; `add` for
    demi_pairs_take. Contacts that are there move to the first domain. 0 when memory ran out. */
 static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_parcel_head *come) {
-    const int had = w->carry_count, rows = w->slot_count;
+    const int had = w->filed.count, rows = w->bodies.slot_count;
     int d, total = 0, shaped = 0;
     demi_wall_contact *to;
     demi_shaped *shaped_to;
@@ -15452,10 +15525,10 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_parcel_hea
                                     (size_t)(total + come->contacts)) ||
         !DEMI_GROW(w, w->shaped_now, (size_t)(shaped + come->shaped)))
         return 0;
-    if (!had) memset(w->carry_start, 0, ((size_t)rows + 2)*sizeof(int32_t));
-    for (d = had ? w->carry_rows : rows; d < rows; d++) w->carry_start[d + 1] = w->carry_start[d];
-    w->carry_rows = rows;
-    w->carry_stride = come->stride;
+    if (!had) memset(w->filed.start, 0, ((size_t)rows + 2)*sizeof(int32_t));
+    for (d = had ? w->filed.rows : rows; d < rows; d++) w->filed.start[d + 1] = w->filed.start[d];
+    w->filed.rows = rows;
+    w->filed.stride = come->stride;
     to = w->wall_now;
     shaped_to = w->shaped_now;
     for (d = 0; d < DEMI_DOMAINS; d++) {
@@ -15478,33 +15551,33 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_parcel_hea
 }
 /* Files pairs that arrived behind those already in their rows. */
 static void demi_pairs_take(dem_world *w, int32_t *add, const char *from, int pairs) {
-    const size_t per = (size_t)w->carry_stride*sizeof(dem_real), item = 2*sizeof(int32_t) + per;
-    int32_t *start = w->carry_start, row, shift = pairs;
+    const size_t per = (size_t)w->filed.stride*sizeof(dem_real), item = 2*sizeof(int32_t) + per;
+    int32_t *start = w->filed.start, row, shift = pairs;
     int k;
     if (!pairs) return;
-    memset(add, 0, ((size_t)w->carry_rows + 1)*sizeof(int32_t));
+    memset(add, 0, ((size_t)w->filed.rows + 1)*sizeof(int32_t));
     for (k = 0; k < pairs; k++) {
         memcpy(&row, from + (size_t)k*item, sizeof row);
         add[row]++;
     }
-    for (row = w->carry_rows - 1; row >= 0; row--) {          /* make gaps, from the far end on */
+    for (row = w->filed.rows - 1; row >= 0; row--) {          /* make gaps, from the far end on */
         const int32_t begin = start[row], n = start[row + 1] - begin;
         start[row + 1] += shift;
         shift -= add[row];
         if (!n || !shift) continue;
-        memmove(w->carry_partner + begin + shift, w->carry_partner + begin,
+        memmove(w->filed.partner + begin + shift, w->filed.partner + begin,
                 (size_t)n*sizeof(int32_t));
-        memmove(w->carry_memory + (size_t)(begin + shift)*(size_t)w->carry_stride,
-                w->carry_memory + (size_t)begin*(size_t)w->carry_stride, (size_t)n*per);
+        memmove(w->filed.memory + (size_t)(begin + shift)*(size_t)w->filed.stride,
+                w->filed.memory + (size_t)begin*(size_t)w->filed.stride, (size_t)n*per);
     }
     for (k = 0; k < pairs; k++) {
         int32_t to;
         demi_take(&from, &row, sizeof row);
         to = start[row + 1] - add[row]--;
-        demi_take(&from, &w->carry_partner[to], sizeof(int32_t));
-        demi_take(&from, w->carry_memory + (size_t)to*(size_t)w->carry_stride, per);
+        demi_take(&from, &w->filed.partner[to], sizeof(int32_t));
+        demi_take(&from, w->filed.memory + (size_t)to*(size_t)w->filed.stride, per);
     }
-    w->carry_count += pairs;
+    w->filed.count += pairs;
 }
 /* What a message has besides grains, which end at `from`: files all of it. */
 static void demi_filed_take(dem_world *w, int32_t *add, const demi_parcel_head *h,
@@ -15649,15 +15722,15 @@ static void demi_slabs_space(dem_slabs *s) {
 static void demi_slabs_bin(const dem_slabs *s, const dem_world *w, double weight, double *bins,
                            int n, double lo, double hi) {
     int i;
-    for (i = 0; i < w->count; i++) {
-        const double t = ((double)w->pos[4*i + s->axis] - lo)/(hi - lo)*n;
+    for (i = 0; i < w->bodies.count; i++) {
+        const double t = ((double)w->bodies.pos[4*i + s->axis] - lo)/(hi - lo)*n;
         if (!demi_visits(w, i)) bins[t > 0 ? t < n ? (int)t : n - 1 : 0] += weight;
     }
 }
 static void demi_slabs_extent(const dem_slabs *s, const dem_world *w, double *ends) {
     int i;
-    for (i = 0; i < w->count; i++) {
-        const double x = (double)w->pos[4*i + s->axis];
+    for (i = 0; i < w->bodies.count; i++) {
+        const double x = (double)w->bodies.pos[4*i + s->axis];
         if (demi_visits(w, i)) continue;
         ends[0] = DEMI_MAX(ends[0], x);
         ends[1] = DEMI_MAX(ends[1], -x);
@@ -15687,7 +15760,7 @@ static dem_result demi_slabs_balance(dem_slabs *s) {
     for (k = 0; k < n; k++) v[k] = 0;
     for (k = 0; k < s->local; k++) {
         const dem_world *w = s->slabs[k].world;
-        const int home = w->count - s->slabs[k].guest_count;
+        const int home = w->bodies.count - s->slabs[k].guest_count;
         const double each = home > 0 ? floor(16*s->slabs[k].work/home + 0.5) : 1;
         demi_slabs_bin(s, w, DEMI_MAX(each, 1), v, n, -ends[1], ends[0]);
     }
@@ -15712,8 +15785,8 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
             sums[0] += w->domains[d].own + w->domains[d].cross;
             sums[1] += w->domains[d].contacts;
         }
-        for (i = 0; i < w->count; i++) {
-            const double r = (double)w->pos[4*i + 3];
+        for (i = 0; i < w->bodies.count; i++) {
+            const double r = (double)w->bodies.pos[4*i + 3];
             if (demi_visits(w, i)) continue;
             sums[2]++;
             radii[0] = DEMI_MAX(radii[0], r);
@@ -15726,9 +15799,9 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     h->domain_count = 1;
     s->total.own = (int)DEMI_MIN(sums[0], (double)INT_MAX);
     s->total.contacts = (int)DEMI_MIN(sums[1], (double)INT_MAX);
-    h->count = (int)sums[2];
+    h->bodies.count = (int)sums[2];
     h->effects.radius_max = (dem_real)radii[0];
-    h->effects.radius_min = (dem_real)(h->count ? -radii[1] : 0);
+    h->effects.radius_min = (dem_real)(h->bodies.count ? -radii[1] : 0);
     h->margin.span = radii[2];
     demi_skin_choose(h);
     if (s->ring && h->desc.skin >= 0 && h->desc.skin <= 0) {
@@ -15753,7 +15826,7 @@ static void demi_slab_drop(dem_slabs *s, demi_slab *b) {
     int i;
     (void)s;
     if (!demi_list_drop(w)) { b->result = demi_no_memory(w, "dem_slabs_step"); return; }
-    for (i = w->count - 1; i >= 0; i--) if (demi_visits(w, i)) demi_grain_forget(w, i);
+    for (i = w->bodies.count - 1; i >= 0; i--) if (demi_visits(w, i)) demi_grain_forget(w, i);
     b->guest_count = b->halo_count = 0;
 }
 /* Where a grain belongs: -1 below, 0 here, 1 above; *shift: what its position changes by on the
@@ -15780,19 +15853,19 @@ static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     dem_real shift;
     int i, side, ok = 1, going[2] = {0, 0};
-    for (i = 0; i < w->count; i++) {
-        side = demi_slab_side(s, b, w->pos[4*i + s->axis], &shift);
+    for (i = 0; i < w->bodies.count; i++) {
+        side = demi_slab_side(s, b, w->bodies.pos[4*i + s->axis], &shift);
         if (!side) continue;
-        w->visitor[w->body_slot[i]] = side < 0 ? DEMI_GOES_DOWN : DEMI_GOES_UP;
+        w->bodies.visitor[w->bodies.slot[i]] = side < 0 ? DEMI_GOES_DOWN : DEMI_GOES_UP;
         going[side > 0]++;
     }
     b->leavers = going[0] + going[1];
     for (side = 0; side < 2; side++) {
         b->out[side].size = 0;
-        ok = ok && demi_pack(w, w, w->visitor, side ? DEMI_GOES_UP : DEMI_GOES_DOWN,
+        ok = ok && demi_pack(w, w, w->bodies.visitor, side ? DEMI_GOES_UP : DEMI_GOES_DOWN,
                              going[side] > 0, s->axis, demi_slab_shift(s, b, side), &b->out[side]);
     }
-    for (i = 0; b->leavers && i < w->count; i++) w->visitor[w->body_slot[i]] = 0;
+    for (i = 0; b->leavers && i < w->bodies.count; i++) w->bodies.visitor[w->bodies.slot[i]] = 0;
     if (!ok) b->result = demi_no_memory(w, "dem_slabs_step");
 }
 static demi_parcel_head demi_slab_head(const dem_slabs *s, const demi_slab *b, int side,
@@ -15811,8 +15884,8 @@ static void demi_slab_room(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     demi_parcel_head come = {l.grains + u.grains, l.pairs + u.pairs, l.contacts + u.contacts,
                              l.shaped + u.shaped, 0};
-    come.stride = l.pairs ? l.stride : u.pairs ? u.stride : w->carry_stride;
-    if (!demi_bodies_reserve(w, (size_t)w->count + (size_t)come.grains) ||
+    come.stride = l.pairs ? l.stride : u.pairs ? u.stride : w->filed.stride;
+    if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)come.grains) ||
         !demi_filed_reserve(w, &b->add, &come))
         b->result = demi_no_memory(w, "dem_slabs_step");
 }
@@ -15821,8 +15894,8 @@ static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     dem_real shift;
     int i, side;
-    for (i = w->count - 1; i >= 0; i--)
-        if (demi_slab_side(s, b, w->pos[4*i + s->axis], &shift)) demi_grain_forget(w, i);
+    for (i = w->bodies.count - 1; i >= 0; i--)
+        if (demi_slab_side(s, b, w->bodies.pos[4*i + s->axis], &shift)) demi_grain_forget(w, i);
     b->migrated += (uint64_t)b->leavers;
     for (side = 0; side < 2; side++) {
         const char *from = 0;
@@ -15837,25 +15910,26 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     int i, n = 0;
     b->out[1].size = 0;
     if (!demi_slab_has(s, b, 1)) return;
-    if (!DEMI_GROW(w, b->halo, (size_t)w->count)) {
+    if (!DEMI_GROW(w, b->halo, (size_t)w->bodies.count)) {
         b->result = demi_no_memory(w, "dem_slabs_step");
         return;
     }
-    for (i = 0; i < w->count; i++) {
-        const double x = (double)w->pos[4*i + s->axis], r = (double)w->pos[4*i + 3];
+    for (i = 0; i < w->bodies.count; i++) {
+        const double x = (double)w->bodies.pos[4*i + s->axis], r = (double)w->bodies.pos[4*i + 3];
         if (!(x + s->cut - (double)s->head.effects.radius_max +
               r > s->borders[b->index + 1])) continue;
-        w->visitor[w->body_slot[i]] = DEMI_GOES_VISITING;
-        b->halo[n++] = (int32_t)w->body_slot[i];
+        w->bodies.visitor[w->bodies.slot[i]] = DEMI_GOES_VISITING;
+        b->halo[n++] = (int32_t)w->bodies.slot[i];
     }
-    if (!demi_pack(w, w, w->visitor, DEMI_GOES_VISITING, 0, s->axis, demi_slab_shift(s, b, 1),
+    if (!demi_pack(w, w, w->bodies.visitor, DEMI_GOES_VISITING, 0, s->axis,
+                   demi_slab_shift(s, b, 1),
                    &b->out[1])) b->result = demi_no_memory(w, "dem_slabs_step");
-    for (i = 0; i < n; i++) w->visitor[b->halo[i]] = 0;
+    for (i = 0; i < n; i++) w->bodies.visitor[b->halo[i]] = 0;
     b->halo_count = n;
 }
 /* Reals sent up and down per visitor and step. */
 static size_t demi_slab_up(const dem_world *w) {
-    return w->orienting ? 19 : demi_spins(w) ? 15 : 6;
+    return w->bodies.orienting ? 19 : demi_spins(w) ? 15 : 6;
 }
 static size_t demi_slab_down(const dem_world *w) { return demi_turns(w) ? 6 : 3; }
 
@@ -15866,28 +15940,28 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     const demi_parcel_head h = demi_slab_head(s, b, 0, &from);
     const size_t real = sizeof(dem_real);
     int i, d, ok;
-    ok = demi_bodies_reserve(w, (size_t)w->count + (size_t)h.grains) &&
+    ok = demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)h.grains) &&
          DEMI_GROW(w, b->guest, (size_t)h.grains) &&
          DEMI_GROW(w, b->guest_inv, 2*(size_t)h.grains);
     if (!ok) { b->result = demi_no_memory(w, "dem_slabs_step"); return; }
     for (i = 0; i < h.grains; i++) {
         const int at = demi_grain_append(w, &from);
-        w->visitor[w->body_slot[at]] = DEMI_VISITOR;
-        b->guest[i] = (int32_t)w->body_slot[at];
-        b->guest_inv[2*i] = w->inv_mass[at];
-        b->guest_inv[2*i + 1] = w->inv_inertia[at];
+        w->bodies.visitor[w->bodies.slot[at]] = DEMI_VISITOR;
+        b->guest[i] = (int32_t)w->bodies.slot[at];
+        b->guest_inv[2*i] = w->bodies.inv_mass[at];
+        b->guest_inv[2*i + 1] = w->bodies.inv_inertia[at];
     }
     b->guest_count = h.grains;
     if (s->count > 1) w->desc.skin = s->head.margin.skin > 0 ? (dem_real)s->head.margin.skin : -1;
     b->result = demi_rebuild(w, "dem_world_step");
     if (b->result != DEM_OK) return;
     demi_kernel_choose(w);
-    for (i = 0; i < b->guest_count; i++) b->guest[i] = w->slot_index[b->guest[i]];
-    for (i = 0; i < b->halo_count; i++) b->halo[i] = w->slot_index[b->halo[i]];
+    for (i = 0; i < b->guest_count; i++) b->guest[i] = w->bodies.slot_index[b->guest[i]];
+    for (i = 0; i < b->halo_count; i++) b->halo[i] = w->bodies.slot_index[b->halo[i]];
     b->in[0].size = (size_t)b->guest_count*demi_slab_up(w)*real;
     b->in[1].size = (size_t)b->halo_count*demi_slab_down(w)*real;
     b->out[0].size = (size_t)b->guest_count*demi_slab_down(w)*real;
-    b->work = 4.0*w->count;
+    b->work = 4.0*w->bodies.count;
     for (d = 0; d < w->domain_count; d++)
         b->work += w->domains[d].own + w->domains[d].cross + w->domains[d].walls;
 }
@@ -15966,11 +16040,14 @@ static void demi_slab_move(dem_slabs *s, demi_slab *b) {
     if (b->result != DEM_OK) return;            /* from the forces before: told with this step */
     for (k = 0; k < b->guest_count && !s->head.stage.moved; k++) {
         const int i = b->guest[k];
-        w->inv_mass[i] = w->inv_inertia[i] = 0;
-        demi_put(w->vel + 4*i, demi_v(0, 0, 0));      demi_put(w->half_vel + 4*i, demi_v(0, 0, 0));
-        demi_put(w->spin + 4*i, demi_v(0, 0, 0));     demi_put(w->half_spin + 4*i, demi_v(0, 0, 0));
-        demi_put(w->force + 4*i, demi_v(0, 0, 0));    demi_put(w->torque + 4*i, demi_v(0, 0, 0));
-        if (w->backward) demi_put(w->last_pos + 4*i, demi_at(w->pos + 4*i));
+        w->bodies.inv_mass[i] = w->bodies.inv_inertia[i] = 0;
+        demi_put(w->bodies.vel + 4*i, demi_v(0, 0, 0));      demi_put(w->bodies.half_vel + 4*i,
+                                                                      demi_v(0, 0, 0));
+        demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));     demi_put(w->bodies.half_spin + 4*i,
+                                                                      demi_v(0, 0, 0));
+        demi_put(w->bodies.force + 4*i, demi_v(0, 0, 0));    demi_put(w->bodies.torque + 4*i,
+                                                                      demi_v(0, 0, 0));
+        if (w->bodies.backward) demi_put(w->bodies.last_pos + 4*i, demi_at(w->bodies.pos + 4*i));
     }
     if (!s->head.stage.moved) b->result = demi_step_move(w);
     if (b->result == DEM_OK) b->result = demi_outflow(w);
@@ -15993,14 +16070,14 @@ static void demi_slab_send(dem_slabs *s, demi_slab *b) {
     int k;
     for (k = 0; k < b->halo_count; k++, out += reals) {
         const int i = 4*b->halo[k];
-        memcpy(out, w->pos + i, three);
+        memcpy(out, w->bodies.pos + i, three);
         out[s->axis] += shift;
-        memcpy(out + 3, w->vel + i, three);
+        memcpy(out + 3, w->bodies.vel + i, three);
         if (reals == 6) continue;
-        memcpy(out + 6, w->spin + i, three);
-        memcpy(out + 9, w->half_vel + i, three);
-        memcpy(out + 12, w->half_spin + i, three);
-        if (reals == 19) memcpy(out + 15, w->orient + i, 4*sizeof(dem_real));
+        memcpy(out + 6, w->bodies.spin + i, three);
+        memcpy(out + 9, w->bodies.half_vel + i, three);
+        memcpy(out + 12, w->bodies.half_spin + i, three);
+        if (reals == 19) memcpy(out + 15, w->bodies.orient + i, 4*sizeof(dem_real));
     }
 }
 /* Visitors are where their owners say. */
@@ -16012,17 +16089,17 @@ static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
     int k;
     for (k = 0; k < b->guest_count; k++, in += up) {
         const int i = b->guest[k];
-        memcpy(w->pos + 4*i, in, three);
-        memcpy(w->vel + 4*i, in + 3, three);
-        w->inv_mass[i] = b->guest_inv[2*k];
-        w->inv_inertia[i] = b->guest_inv[2*k + 1];
+        memcpy(w->bodies.pos + 4*i, in, three);
+        memcpy(w->bodies.vel + 4*i, in + 3, three);
+        w->bodies.inv_mass[i] = b->guest_inv[2*k];
+        w->bodies.inv_inertia[i] = b->guest_inv[2*k + 1];
         if (up == 6) continue;
-        memcpy(w->spin + 4*i, in + 6, three);
-        memcpy(w->half_vel + 4*i, in + 9, three);
-        memcpy(w->half_spin + 4*i, in + 12, three);
+        memcpy(w->bodies.spin + 4*i, in + 6, three);
+        memcpy(w->bodies.half_vel + 4*i, in + 9, three);
+        memcpy(w->bodies.half_spin + 4*i, in + 12, three);
         if (up == 15) continue;
-        memcpy(w->orient + 4*i, in + 15, 4*sizeof(dem_real));
-        if (w->spots_valid && demi_form_of(w, i) && demi_form_of(w, i)->count)
+        memcpy(w->bodies.orient + 4*i, in + 15, 4*sizeof(dem_real));
+        if (w->bodies.spots_valid && demi_form_of(w, i) && demi_form_of(w, i)->count)
             demi_spots_turn(w, i);
     }
 }
@@ -16047,11 +16124,11 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     dem_real *out = (dem_real *)b->out[0].bytes;
     double deepest = 0;
     int k, d, finite = 1;
-    if (!w->orienting) demi_slab_touch(s, b);
+    if (!w->bodies.orienting) demi_slab_touch(s, b);
     demi_forces(w);
     for (k = 0; k < b->guest_count; k++, out += down) {
-        memcpy(out, w->force + 4*b->guest[k], three);
-        if (down == 6) memcpy(out + 3, w->torque + 4*b->guest[k], three);
+        memcpy(out, w->bodies.force + 4*b->guest[k], three);
+        if (down == 6) memcpy(out + 3, w->bodies.torque + 4*b->guest[k], three);
     }
     if (!w->stage.forces_valid) return;               /* only looking */
     for (d = 0; d < w->domain_count; d++) {
@@ -16068,8 +16145,8 @@ static void demi_slab_add(dem_slabs *s, demi_slab *b) {
     int k, e;
     for (k = 0; k < b->halo_count; k++, in += down)
         for (e = 0; e < 3; e++) {
-            w->force[4*b->halo[k] + e] += in[e];
-            if (down == 6) w->torque[4*b->halo[k] + e] += in[3 + e];
+            w->bodies.force[4*b->halo[k] + e] += in[e];
+            if (down == 6) w->bodies.torque[4*b->halo[k] + e] += in[3 + e];
         }
 }
 /* near: some slab's near list may have to be made anew first. */
@@ -16085,7 +16162,7 @@ static dem_result demi_slabs_forces(dem_slabs *s, int near) {
         result = demi_slabs_agree(s, 0, 0);
         if (result != DEM_OK) return result;
     }
-    if (s->slabs[0].world->orienting) {
+    if (s->slabs[0].world->bodies.orienting) {
         demi_slabs_phase(s, demi_slab_touch);
         result = demi_slabs_agree(s, 0, 0);
         if (result != DEM_OK) return result;
@@ -16131,35 +16208,37 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
     memset(many, 0, sizeof many);
     for (k = 0; k < s->local; k++) {
         const dem_world *w = s->slabs[k].world;
-        for (i = 0; i < w->count; i++) {
-            const double x = (double)demi_dot(demi_at(w->pos + 4*i), down);
-            const double r = (double)w->pos[4*i + 3];
+        for (i = 0; i < w->bodies.count; i++) {
+            const double x = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
+            const double r = (double)w->bodies.pos[4*i + 3];
             if (demi_visits(w, i)) continue;
-            j = w->body_material[i] - 1;
-            if (w->inv_mass[i] > 0) { v[j] = DEMI_MAX(v[j], -demi_advise_radius(w, i)); many[j]++; }
+            j = w->bodies.material[i] - 1;
+            if (w->bodies.inv_mass[i] > 0) { v[j] =
+                                            DEMI_MAX(v[j], -demi_advise_radius(w, i)); many[j]++; }
             else v[m + j] = DEMI_MAX(v[m + j], demi_advise_radius(w, i));
-            v[2*m] = DEMI_MAX(v[2*m], (double)demi_length(demi_at(w->vel + 4*i)));
+            v[2*m] = DEMI_MAX(v[2*m], (double)demi_length(demi_at(w->bodies.vel + 4*i)));
             v[2*m + 1] = DEMI_MAX(v[2*m + 1], r - x);
             v[2*m + 2] = DEMI_MAX(v[2*m + 2], r + x);
             if (demi_form_of(w, i))
-                v[2*m + 3] = DEMI_MAX(v[2*m + 3], (double)demi_length(demi_at(w->spin + 4*i)));
+                v[2*m + 3] = DEMI_MAX(v[2*m + 3],
+                                      (double)demi_length(demi_at(w->bodies.spin + 4*i)));
         }
     }
     result = demi_slabs_reduce(s, v, 2*m + 4, 0);
     h->clock.spin_elsewhere = v[2*m + 3];
     if (result == DEM_OK) result = demi_slabs_reduce(s, many, m, 1);
-    h->count = 0;
+    h->bodies.count = 0;
     for (j = 0; j < m && result == DEM_OK; j++)
         for (k = 0; k < 3; k++) {
             const double r = k < 2 ? -v[j] : v[m + j];
-            const double at = h->count == 0 ? r - v[2*m + 1] : v[2*m + 2] - r;
+            const double at = h->bodies.count == 0 ? r - v[2*m + 1] : v[2*m + 2] - r;
             if (k < 2 ? many[j] <= k : !(r > 0)) continue;
-            i = h->count++;
-            demi_put(h->pos + 4*i, demi_scale(down, (dem_real)at));
-            h->pos[4*i + 3] = (dem_real)r;
-            demi_put(h->vel + 4*i, demi_v((dem_real)v[2*m], 0, 0));
-            h->inv_mass[i] = k < 2 ? DEM_R(1) : DEM_R(0);
-            h->body_material[i] = j + 1;
+            i = h->bodies.count++;
+            demi_put(h->bodies.pos + 4*i, demi_scale(down, (dem_real)at));
+            h->bodies.pos[4*i + 3] = (dem_real)r;
+            demi_put(h->bodies.vel + 4*i, demi_v((dem_real)v[2*m], 0, 0));
+            h->bodies.inv_mass[i] = k < 2 ? DEM_R(1) : DEM_R(0);
+            h->bodies.material[i] = j + 1;
         }
     return result;
 }
@@ -16365,7 +16444,7 @@ static void demi_slab_sums_clear(dem_world *w) {
     int i;
     memset(w->booked.energy, 0, sizeof w->booked.energy);
     w->booked.removed = w->booked.throughput = w->booked.inserted = 0;
-    w->balance.left = 0;
+    w->bodies.balance.left = 0;
     for (i = 0; i < w->wall_count; i++) {
         const double time = w->walls[i].channels.time;
         memset(&w->walls[i].channels, 0, sizeof w->walls[i].channels);
@@ -16391,7 +16470,7 @@ static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
 static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index,
                                   const dem_world *first, dem_allocator *allocator) {
     dem_world_desc desc = from->asked;
-    const size_t slots = (size_t)from->slot_count;
+    const size_t slots = (size_t)from->bodies.slot_count;
     dem_world *w;
     desc.threads = s->local == 1 ? from->desc.threads : 1;
     if (s->ring) desc.boundary[s->axis] = DEM_BOUNDARY_OPEN;
@@ -16406,17 +16485,18 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     w->material_count = from->material_count;
-    w->visitor = (uint8_t *)demi_hold(w, DEMI_RUN, slots + 1, 1);
-    w->slot_index = (int32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(int32_t));
-    w->slot_generation = (uint32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(uint32_t));
-    w->slot_capacity = (int)slots + 1;
-    w->slot_count = (int)slots;
-    if (!w->visitor || !w->slot_index || !w->slot_generation ||
-        (from->orienting && !demi_orient_begin(w)) ||
+    w->bodies.visitor = (uint8_t *)demi_hold(w, DEMI_RUN, slots + 1, 1);
+    w->bodies.slot_index = (int32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(int32_t));
+    w->bodies.slot_generation = (uint32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(uint32_t));
+    w->bodies.slot_capacity = (int)slots + 1;
+    w->bodies.slot_count = (int)slots;
+    if (!w->bodies.visitor || !w->bodies.slot_index || !w->bodies.slot_generation ||
+        (from->bodies.orienting && !demi_orient_begin(w)) ||
         !demi_slab_forms(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0)) return w;
-    memset(w->slot_index, 0xff, slots*sizeof(int32_t));
-    if (slots) memcpy(w->slot_generation, from->slot_generation, slots*sizeof(uint32_t));
+    memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
+    if (slots) memcpy(w->bodies.slot_generation, from->bodies.slot_generation,
+                      slots*sizeof(uint32_t));
     w->clock.time = from->clock.time;           w->clock.steps =
         from->clock.steps;       w->clock.rebuilds = from->clock.rebuilds;
     w->clock.since = from->clock.since;
@@ -16431,7 +16511,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->booked.overlap_max =
         from->booked.overlap_max;                           w->booked.speed_max =
             from->booked.speed_max;
-    w->balance = from->balance;     w->booked.removed = from->booked.removed;
+    w->bodies.balance = from->bodies.balance;     w->booked.removed = from->booked.removed;
     w->booked.throughput =
         from->booked.throughput;                             w->clock.half_kick =
             from->clock.half_kick;
@@ -16441,8 +16521,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     return w;
 }
 static int demi_slab_ready(const dem_world *w, const dem_world *from) {
-    return w && w->visitor && w->slot_index && w->slot_generation &&
-           w->form_count == from->form_count && w->orienting == from->orienting &&
+    return w && w->bodies.visitor && w->bodies.slot_index && w->bodies.slot_generation &&
+           w->form_count == from->form_count && w->bodies.orienting == from->bodies.orienting &&
            w->wall_count == from->wall_count && w->field_count == from->field_count;
 }
 /* The grains of one slab, from the world. */
@@ -16451,9 +16531,9 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
     const char *at;
     demi_parcel_head h;
     int i;
-    for (i = 0; i < from->count; i++) {
-        const double x = (double)from->pos[4*i + s->axis];
-        marks[from->body_slot[i]] = (b->index == 0 || x >= s->borders[b->index]) &&
+    for (i = 0; i < from->bodies.count; i++) {
+        const double x = (double)from->bodies.pos[4*i + s->axis];
+        marks[from->bodies.slot[i]] = (b->index == 0 || x >= s->borders[b->index]) &&
             (b->index == s->count - 1 || x < s->borders[b->index + 1]);
     }
     b->out[0].size = 0;
@@ -16530,14 +16610,14 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     const size_t most = 3*DEMI_MATERIALS, n = (size_t)s->count;
     h->asked = w->asked;
     h->stage.synced = 1;
-    h->slot_free = h->slot_pending = -1;
+    h->bodies.slot_free = h->bodies.slot_pending = -1;
     h->domains = &s->total;
     h->material_count = w->material_count;
     h->wall_count = w->wall_count;
     memcpy(h->materials, w->materials, sizeof h->materials);
     h->clock.time = w->clock.time;           h->clock.steps =
         w->clock.steps;         h->clock.rebuilds = w->clock.rebuilds;
-    h->clock.since = w->clock.since;         h->balance = w->balance;
+    h->clock.since = w->clock.since;         h->bodies.balance = w->bodies.balance;
     h->clock.last_rebuild = w->clock.steps;  h->margin.skin_auto =
         w->margin.skin_auto; h->margin.skin = w->margin.skin;
     h->clock.dt = w->clock.dt;               h->stage.dt_valid =
@@ -16546,15 +16626,16 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     h->stage.forces_valid = w->stage.forces_valid && !w->stage.pairs_changed;
     h->pairs = (demi_pair *)demi_hold(h, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
-    h->pos = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
-    h->vel = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
-    h->inv_mass = (dem_real *)demi_hold(h, DEMI_RUN, most, sizeof(dem_real));
-    h->body_material = (int32_t *)demi_hold(h, DEMI_RUN, most, sizeof(int32_t));
+    h->bodies.pos = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
+    h->bodies.vel = (dem_real *)demi_hold(h, DEMI_RUN, most, 4*sizeof(dem_real));
+    h->bodies.inv_mass = (dem_real *)demi_hold(h, DEMI_RUN, most, sizeof(dem_real));
+    h->bodies.material = (int32_t *)demi_hold(h, DEMI_RUN, most, sizeof(int32_t));
     s->value_room = n*DEMI_SLAB_BINS + 2*DEMI_MATERIALS + 8;
     s->values = (double *)demi_hold(h, DEMI_RUN, s->value_room, sizeof(double));
     s->borders = (double *)demi_hold(h, DEMI_RUN, n + 1, sizeof(double));
     s->slabs = (demi_slab *)demi_hold(h, DEMI_RUN, (size_t)s->local, sizeof(demi_slab));
-    if (!h->pairs || !h->pos || !h->vel || !h->inv_mass || !h->body_material || !s->values ||
+    if (!h->pairs || !h->bodies.pos || !h->bodies.vel || !h->bodies.inv_mass ||
+        !h->bodies.material || !s->values ||
         !s->borders || !s->slabs) return 0;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     return 1;
@@ -16569,7 +16650,7 @@ static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
     s->borders[s->count] = s->ring ? hi[s->axis] : 1e300;
     demi_slabs_extent(s, w, ends);
     if (s->ring) { ends[0] = hi[s->axis]; ends[1] = -lo[s->axis]; }
-    if (!(ends[0] > -ends[1])) { ends[0] = w->count ? ends[0] + 1e-3 : 1; ends[1] = 0; }
+    if (!(ends[0] > -ends[1])) { ends[0] = w->bodies.count ? ends[0] + 1e-3 : 1; ends[1] = 0; }
     for (k = 0; k < n; k++) s->values[k] = 0;
     demi_slabs_bin(s, w, 1, s->values, n, -ends[1], ends[0]);
     demi_slabs_lay(s, s->values, n, -ends[1], ends[0]);
@@ -16586,7 +16667,7 @@ DEM_API void dem_slabs_destroy(dem_slabs *s) {
 }
 DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     if (demi_null(w, "dem_slabs_create", desc, "desc")) return 0;
-    const size_t slots = (size_t)w->slot_count + 1;
+    const size_t slots = (size_t)w->bodies.slot_count + 1;
     dem_slabs *s;
     uint8_t *marks;
     int k, ok;
@@ -16611,8 +16692,8 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     marks = (uint8_t *)demi_alloc(w, slots, 1);
     ok = marks && demi_slabs_head(s, w);
     ok = ok && DEMI_GROW(&s->head, s->known, slots);
-    for (k = 0; k < w->slot_count && ok; k++)
-        s->known[k] = w->slot_index[k] < 0 ? 0 : w->slot_generation[k];
+    for (k = 0; k < w->bodies.slot_count && ok; k++)
+        s->known[k] = w->bodies.slot_index[k] < 0 ? 0 : w->bodies.slot_generation[k];
     if (ok) demi_slabs_first_borders(s, w);
     for (k = 0; k < s->local && ok; k++) {
         demi_slab *b = &s->slabs[k];
@@ -16645,7 +16726,7 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     memset(&sums, 0, sizeof sums);
     sums.index = b->index;
     sums.walls = w->wall_count;
-    sums.left = w->balance.left;
+    sums.left = w->bodies.balance.left;
     memcpy(sums.energy, w->booked.energy, sizeof sums.energy);
     sums.removed = w->booked.removed;
     sums.throughput = w->booked.throughput;
@@ -16660,7 +16741,7 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
              demi_parcel_put(h, out, f->momentum, 3*n);
     }
     ok = ok && (!w->stage.list_valid || demi_carry_collect(w)) &&
-         demi_pack(h, w, w->visitor, DEMI_ALL, 1, s->axis, 0, out);
+         demi_pack(h, w, w->bodies.visitor, DEMI_ALL, 1, s->axis, 0, out);
     if (!ok) return 0;
     sums.size = out->size - start;
     memcpy(out->bytes + start, &sums, sizeof sums);
@@ -16712,7 +16793,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     for (i = 0; i < DEMI_ENERGIES; i++) w->booked.energy[i] += sums->energy[i];
     w->booked.removed += sums->removed;
     w->booked.throughput += sums->throughput;
-    w->balance.left += sums->left;
+    w->bodies.balance.left += sums->left;
     w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, sums->overlap_max);
     for (i = 0; i < sums->walls; i++) {
         dem_channels *c = &w->walls[i].channels, part;
@@ -16767,7 +16848,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     w->clock.half_kick = from->clock.half_kick;
     w->margin.reach = h->margin.reach;         w->margin.wall_reach = h->margin.wall_reach;
     w->stage.forces_valid = h->stage.forces_valid;
-    w->balance.left = 0;
+    w->bodies.balance.left = 0;
     w->booked.removed = w->booked.throughput = w->booked.overlap_max = 0;
     memset(w->booked.energy, 0, sizeof w->booked.energy);
     for (i = 0; i < w->wall_count; i++) {
@@ -16792,7 +16873,7 @@ static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const ch
     demi_take(&from, &head, sizeof head);
     for (i = 0; i < head.grains; i++) {
         const uint32_t slot = demi_grain_slot(from);
-        demi_grain_take(w, w->slot_index[slot], &from);
+        demi_grain_take(w, w->bodies.slot_index[slot], &from);
         seen[slot] = 1;
     }
     demi_filed_take(w, add, &head, from);
@@ -16804,21 +16885,23 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     demi_slab_sums sums;
     demi_parcel_head come = {0, 0, 0, 0, 0};
     int k, i;
-    if (w->orienting != s->slabs[0].world->orienting)
+    if (w->bodies.orienting != s->slabs[0].world->bodies.orienting)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations in %s only; collect "
                          "into the world the slabs were created from, unchanged, or one built like "
-                         "it", call, w->orienting ? "the world" : "the slabs");
-    if (w->slot_count != s->slabs[0].world->slot_count || w->wall_count != h->wall_count ||
+                         "it", call, w->bodies.orienting ? "the world" : "the slabs");
+    if (w->bodies.slot_count != s->slabs[0].world->bodies.slot_count ||
+        w->wall_count != h->wall_count ||
         w->material_count != h->material_count ||
         w->field_count != s->slabs[0].world->field_count)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
                          "materials, the slabs %d, %d, %d; collect into the world they were "
-                         "created from, unchanged, or one built like it", call, w->slot_count,
-                         w->wall_count, w->material_count, s->slabs[0].world->slot_count,
+                         "created from, unchanged, or one built like it", call,
+                             w->bodies.slot_count,
+                         w->wall_count, w->material_count, s->slabs[0].world->bodies.slot_count,
                          h->wall_count, h->material_count);
-    for (i = 0; i < w->count; i++) {
-        const uint32_t slot = w->body_slot[i];
-        if (w->slot_generation[slot] != s->known[slot])
+    for (i = 0; i < w->bodies.count; i++) {
+        const uint32_t slot = w->bodies.slot[i];
+        if (w->bodies.slot_generation[slot] != s->known[slot])
             return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u was added to the world after the "
                              "slabs had been created; collect before adding grains, or create the "
                              "slabs anew after it", call, (unsigned)slot + 1);
@@ -16838,7 +16921,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         for (i = 0; i < head.grains; i++) {
             const uint32_t slot = demi_grain_slot(from);
             from += demi_grain_size(w);
-            if (w->slot_index[slot] < 0)
+            if (w->bodies.slot_index[slot] < 0)
                 return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u is in slab %d, but no longer "
                                  "in the world; collect before removing grains, or create the "
                                  "slabs anew after it", call, (unsigned)slot + 1, k);
@@ -16846,10 +16929,11 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     }
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
     for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].wall_contacts = w->domains[k].shaped = 0;
-    w->carry_count = 0;
-    if (!DEMI_GROW(h, *seen, (size_t)w->slot_count + 1) || !demi_filed_reserve(w, add, &come))
+    w->filed.count = 0;
+    if (!DEMI_GROW(h, *seen, (size_t)w->bodies.slot_count + 1) ||
+        !demi_filed_reserve(w, add, &come))
         return demi_no_memory(h, call);
-    memset(*seen, 0, (size_t)w->slot_count + 1);
+    memset(*seen, 0, (size_t)w->bodies.slot_count + 1);
     return DEM_OK;
 }
 DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
@@ -16868,14 +16952,16 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
             from = demi_slabs_add(w, &sums, from);
             demi_slabs_write(w, add, seen, from);
         }
-        for (i = w->count - 1; i >= 0; i--)     /* in no slab: left through an outflow boundary */
-            if (!seen[w->body_slot[i]]) {
+        /* in no slab: left through an outflow boundary */
+        for (i = w->bodies.count - 1; i >= 0; i--)
+            if (!seen[w->bodies.slot[i]]) {
                 const double removed = w->booked.removed;
                 demi_body_take_out(w, i);
                 w->booked.removed = removed;
             }
-        w->balance.inserted = s->head.balance.inserted;   /* whatever happened here since */
-        w->balance.removed = s->head.balance.removed;
+        /* whatever happened here since */
+        w->bodies.balance.inserted = s->head.bodies.balance.inserted;
+        w->bodies.balance.removed = s->head.bodies.balance.removed;
         demi_effects(w);                        /* the world may never have taken a step itself */
         demi_kernel_choose(w);
     }
@@ -16908,7 +16994,7 @@ DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
                          "here, this process holds %d to %d of %d; ask the process that holds it",
                          index, s->first, s->first + s->local - 1, s->count);
     b = &s->slabs[index - s->first];
-    out->grains = b->world->count - b->guest_count;
+    out->grains = b->world->bodies.count - b->guest_count;
     out->visitors = b->guest_count;
     out->lo = s->borders[index];
     out->hi = s->borders[index + 1];

@@ -178,12 +178,12 @@ static double grains_apart(const dem_world *a, const dem_world *b) {
     const demi_periods p = demi_periods_of(a);
     double most = 0;
     int k, e;
-    if (a->count != b->count || a->slot_count != b->slot_count) return 1e300;
-    for (k = 0; k < a->slot_count; k++) {
-        const int i = a->slot_index[k], j = b->slot_index[k];
+    if (a->bodies.count != b->bodies.count || a->bodies.slot_count != b->bodies.slot_count) return 1e300;
+    for (k = 0; k < a->bodies.slot_count; k++) {
+        const int i = a->bodies.slot_index[k], j = b->bodies.slot_index[k];
         if ((i < 0) != (j < 0)) return 1e300;
         for (e = 0; e < 3 && i >= 0; e++)
-            most = fmax(most, fabs((double)demi_image(b->pos[4*j + e] - a->pos[4*i + e], p.half[e], p.period[e])));
+            most = fmax(most, fabs((double)demi_image(b->bodies.pos[4*j + e] - a->bodies.pos[4*i + e], p.half[e], p.period[e])));
     }
     return most;
 }
@@ -201,8 +201,8 @@ static double runs_agree(const subject *s, run *serial, run *r, int early) {
         if (!(apart < (sizeof(dem_real) == 4 ? 1e-2 : 1e-9)*(double)a->effects.radius_max))
             study_fail("%s: after %d steps on %d %ss a grain is %g m from where it is on one thread", s->name, s->warm_up,
                        r->workers, r->how->worker, apart);
-    } else if (a->count != b->count)
-        study_fail("%s: %d grains on one thread, %d on %d %ss", s->name, a->count, b->count, r->workers, r->how->worker);
+    } else if (a->bodies.count != b->bodies.count)
+        study_fail("%s: %d grains on one thread, %d on %d %ss", s->name, a->bodies.count, b->bodies.count, r->workers, r->how->worker);
     return apart;
 }
 /* What slabs send to each other, from the end of the warm-up on, to be counted between processes too. */

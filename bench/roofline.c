@@ -210,7 +210,7 @@ typedef struct tallies { double candidates, near, cross, contacts, walls, quiet,
 
 static void look(const dem_world *w, tallies *t) {
     const dem_counters c = dem_counters_get(w);
-    const double n = w->count;
+    const double n = w->bodies.count;
     int d, i, k = t->looks++;
     double near = 0, cross = 0, quiet = 0;
     for (d = 0; d < w->domain_count; d++) {
@@ -335,7 +335,7 @@ static double search_rare(dem_world *w, double *times, int turns, double rebuild
     if (!(rebuilds > 0)) {
         begun = study_clock();
         if (demi_rebuild(w, "dem_world_step") != DEM_OK) study_fail("%s", dem_world_error(w));
-        spent = (study_clock() - begun)/steps/w->count;
+        spent = (study_clock() - begun)/steps/w->bodies.count;
         rebuilds = 1.0/(steps*turns);
     }
     mean_of_turns(times, turns, spent);

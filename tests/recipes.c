@@ -191,21 +191,22 @@ int main(int argc, char **argv) {
         dem_slabs *slabs;
         const char *path = "build/recipes/charge.ckpt";
         int i, round;
-        for (i = 0; i < a->count; i++) a->charge[i] = (dem_real)(1 + a->body_slot[i]);
+        for (i = 0; i < a->bodies.count; i++)
+            a->bodies.charge[i] = (dem_real)(1 + a->bodies.slot[i]);
         dem_body_remove(a, dem_bodies_id(a, 5));
         CHECK_EQ(scene_step(a, 1000), DEM_OK);
         CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
         dem_body_remove(b, dem_bodies_id(b, 5));
         CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
-        CHECK_EQ(b->count, 26);
+        CHECK_EQ(b->bodies.count, 26);
         for (round = 0; round < 2; round++) {
-            for (i = 0; i < b->count; i++)
-                CHECK_NEAR(b->charge[i], (dem_real)(1 + b->body_slot[i]), 0);
+            for (i = 0; i < b->bodies.count; i++)
+                CHECK_NEAR(b->bodies.charge[i], (dem_real)(1 + b->bodies.slot[i]), 0);
             if (round) break;
             deal.count = 2;
             slabs = dem_slabs_create(b, &deal);
             CHECK_EQ(dem_slabs_step(slabs, 300), DEM_OK);
-            for (i = 0; i < b->count; i++) b->charge[i] = 0;
+            for (i = 0; i < b->bodies.count; i++) b->bodies.charge[i] = 0;
             CHECK_EQ(dem_slabs_collect(slabs, b), DEM_OK);
             dem_slabs_destroy(slabs);
         }

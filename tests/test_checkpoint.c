@@ -340,17 +340,17 @@ static int lie_tell(dem_world *w, int lie) {
     demi_feed *f = demi_feed_at(w, 0);
     const int huge = 0x7fffffff, twice = w->near.k[1];
     int shaped = 0;
-    while (!w->body_shape[shaped]) shaped++;
+    while (!w->bodies.shape[shaped]) shaped++;
     switch (lie) {
-    case 0: w->balance.present++; break;
-    case 1: w->slot_count = huge; break;
+    case 0: w->bodies.balance.present++; break;
+    case 1: w->bodies.slot_count = huge; break;
     case 2: w->domain_count = 257; break;
     case 3: w->domain_count = 0; break;
-    case 4: w->shaped_count = 13; break;
-    case 5: w->shaped_count--; break;
-    case 6: w->slot_free = 77; break;
-    case 7: w->slot_pending = 1; break;
-    case 8: w->slot_free = -2; break;
+    case 4: w->bodies.shaped = 13; break;
+    case 5: w->bodies.shaped--; break;
+    case 6: w->bodies.slot_free = 77; break;
+    case 7: w->bodies.slot_pending = 1; break;
+    case 8: w->bodies.slot_free = -2; break;
     case 9: w->effects.tangent = DEM_TANGENT_MINDLIN; break;
     case 10: w->effects.rolling = 99; break;
     case 11: w->clock.dt = DEM_R(-1e-6); break;
@@ -376,7 +376,7 @@ static int lie_tell(dem_world *w, int lie) {
     case 31: o->begin = 1; break;
     case 32: o->end = 12345; break;
     case 33: w->own.a[0] = -1; break;
-    case 34: w->own.b[0] = w->count; break;
+    case 34: w->own.b[0] = w->bodies.count; break;
     case 35: w->own.b[0] = w->own.a[0]; break;
     case 36: w->near.k[0] = huge; break;
     case 37: w->near.k[0] = -1; break;
@@ -390,33 +390,33 @@ static int lie_tell(dem_world *w, int lie) {
     case 45: w->wall_now[0].wall = 7; break;
     case 46: w->shaped_now[0].a = 1 << 20; break;
     case 47: w->shaped_now[0].b = -2; break;
-    case 48: w->body_slot[0] = 0xffffffffu; break;
-    case 49: w->body_slot[0] = w->body_slot[1]; break;
-    case 50: w->slot_index[w->body_slot[0]] = 5; break;
-    case 51: w->body_material[0] = 0; break;
-    case 52: w->body_material[0] = 2; break;
-    case 53: w->body_shape[shaped] = 3; break;
-    case 54: w->body_shape[shaped] = -1; break;
-    case 55: w->pos[3] = 0; break;
-    case 56: w->pos[0] = DEM_R(1e20); break;
-    case 57: w->mass[0] = -1; break;
-    case 58: w->orient[0] = 3; break;
-    case 59: w->moment[4*shaped] = 0; break;
+    case 48: w->bodies.slot[0] = 0xffffffffu; break;
+    case 49: w->bodies.slot[0] = w->bodies.slot[1]; break;
+    case 50: w->bodies.slot_index[w->bodies.slot[0]] = 5; break;
+    case 51: w->bodies.material[0] = 0; break;
+    case 52: w->bodies.material[0] = 2; break;
+    case 53: w->bodies.shape[shaped] = 3; break;
+    case 54: w->bodies.shape[shaped] = -1; break;
+    case 55: w->bodies.pos[3] = 0; break;
+    case 56: w->bodies.pos[0] = DEM_R(1e20); break;
+    case 57: w->bodies.mass[0] = -1; break;
+    case 58: w->bodies.orient[0] = 3; break;
+    case 59: w->bodies.moment[4*shaped] = 0; break;
     case 60: w->walls[1].pose.rotation[0] = DEM_R(1e30); break;
     case 61: w->walls[1].motion.kind = (dem_motion_kind)DEM_MOTION_USER; break;
     case 62: w->fields[0].next = HUGE_VAL; break;
     case 63: f->next = 2; break;
     case 64: f->next = -5; break;
     case 65: f->state.fed[0] = 6; break;
-    case 66: w->carry_count = 1; break;
-    case 100: w->carry_rows = huge; break;
-    case 101: w->carry_stride = 9; break;
-    case 102: w->carry_count = huge; break;
-    case 103: w->carry_start[1] = -1; break;
-    case 104: w->carry_start[w->carry_rows] = 0; break;
-    case 105: w->carry_partner[0] = 12345; break;
-    case 106: w->carry_partner[0] = ~12345; break;
-    case 107: w->wall_now[0].body = w->slot_count; break;
+    case 66: w->filed.count = 1; break;
+    case 100: w->filed.rows = huge; break;
+    case 101: w->filed.stride = 9; break;
+    case 102: w->filed.count = huge; break;
+    case 103: w->filed.start[1] = -1; break;
+    case 104: w->filed.start[w->filed.rows] = 0; break;
+    case 105: w->filed.partner[0] = 12345; break;
+    case 106: w->filed.partner[0] = ~12345; break;
+    case 107: w->wall_now[0].body = w->bodies.slot_count; break;
     case 108: w->shaped_now[0].a = -1; break;
     default: return 0;
     }
@@ -508,14 +508,14 @@ static void kept_fill(dem_world *w, uint64_t seed) {
     int i, k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
-        for (i = 0; i < w->count && a->what >= DEMI_REALS; i++)
+        for (i = 0; i < w->bodies.count && a->what >= DEMI_REALS; i++)
             for (e = 0; e < a->item/sizeof(dem_real); e++) {
                 const dem_real x = (dem_real)(0.5 + scene_random(&seed));
                 memcpy(demi_datum(w, a, i) + e*sizeof x, &x, sizeof x);
             }
     }
-    for (i = 0; i < w->count; i++)
-        demi_quat_put(w->orient + 4*i, demi_quat_unit(demi_quat_at(w->orient + 4*i)));
+    for (i = 0; i < w->bodies.count; i++)
+        demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(demi_quat_at(w->bodies.orient + 4*i)));
 }
 /* All that the body of a slot keeps, one array after the other; answers how many bytes. */
 static size_t kept_row(const dem_world *w, int slot, char *out) {
@@ -524,7 +524,7 @@ static size_t kept_row(const dem_world *w, int slot, char *out) {
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         if (!a->what || a->who == DEMI_SLOTS) continue;
-        memcpy(out + size, demi_datum(w, a, w->slot_index[slot]), a->item);
+        memcpy(out + size, demi_datum(w, a, w->bodies.slot_index[slot]), a->item);
         size += a->item;
     }
     return size;
@@ -533,10 +533,10 @@ static size_t kept_row(const dem_world *w, int slot, char *out) {
 static int kept_differ(const dem_world *a, const dem_world *b) {
     char x[1024], y[1024];
     int slot, n = 0;
-    for (slot = 0; slot < a->slot_count; slot++) {
+    for (slot = 0; slot < a->bodies.slot_count; slot++) {
         size_t size;
-        if (b->slot_index[slot] < 0) continue;
-        if (a->slot_index[slot] < 0) { n++; continue; }
+        if (b->bodies.slot_index[slot] < 0) continue;
+        if (a->bodies.slot_index[slot] < 0) { n++; continue; }
         size = kept_row(a, slot, x);
         n += kept_row(b, slot, y) != size || memcmp(x, y, size);
     }
@@ -563,17 +563,17 @@ int main(int argc, char **argv) {
         CHECK_EQ(kept_differ(a, b), 40);
         CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
         CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
-        CHECK_EQ(b->count, 40);
+        CHECK_EQ(b->bodies.count, 40);
         CHECK_EQ(kept_differ(a, b), 0);
 
         CHECK(demi_grid_lay(b, 0.1));
         demi_bodies_sort(b);
         CHECK_EQ(kept_differ(a, b), 0);
-        for (i = 0; i < 39 && b->body_slot[i] < b->body_slot[i + 1];) i++;
+        for (i = 0; i < 39 && b->bodies.slot[i] < b->bodies.slot[i + 1];) i++;
         CHECK(i < 39);                          /* they do stand in another order */
 
-        for (i = 0; i < 20; i++) demi_body_take_out(b, (7*i)%b->count);
-        CHECK_EQ(b->count, 20);
+        for (i = 0; i < 20; i++) demi_body_take_out(b, (7*i)%b->bodies.count);
+        CHECK_EQ(b->bodies.count, 20);
         CHECK_EQ(kept_differ(a, b), 0);
 
         kept_fill(c, 8);
@@ -583,7 +583,7 @@ int main(int argc, char **argv) {
         from = parcel.bytes;
         for (i = 0; i < 40; i++) {
             const int slot = (int)demi_grain_slot(from);
-            demi_grain_take(c, c->slot_index[slot], &from);
+            demi_grain_take(c, c->bodies.slot_index[slot], &from);
         }
         CHECK_EQ(kept_differ(a, c), 0);
         dem_world_destroy(a);
@@ -953,7 +953,7 @@ int main(int argc, char **argv) {
         scene_step(world, 3);
         CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
         old = file_get(path, &before);
-        world->vel[1] = (dem_real)(HUGE_VAL - HUGE_VAL);
+        world->bodies.vel[1] = (dem_real)(HUGE_VAL - HUGE_VAL);
         CHECK_EQ(dem_checkpoint_write(world, path), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_world_error(world), "the run has blown up");
         present = file_get(path, &after);

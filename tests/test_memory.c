@@ -299,9 +299,9 @@ static int search_refused(long refuse) {
         scene_move(world, dem_bodies_id(world, i), at(-2, -2, -2), at(0, 0, 0));
     for (k = 0, i = 300; k < 100 && i == 300; k++) {
         CHECK_EQ(scene_step(world, 10), DEM_OK);
-        for (i = 0; i < 300 && world->pos[4*i] >= 0; i++) continue;
+        for (i = 0; i < 300 && world->bodies.pos[4*i] >= 0; i++) continue;
     }
-    CHECK(i < world->count);                   /* one stands outside */
+    CHECK(i < world->bodies.count);                   /* one stands outside */
     CHECK_EQ(dem_spheres_fill(world, stuff, DEM_R(0.002), desc.domain, 1200, 2), 1200);
     hash = dem_world_hash(world);
     c.refuse = c.calls + refuse;

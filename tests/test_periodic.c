@@ -313,10 +313,10 @@ static void places(void) {
         }
         for (i = 0; i < 300; i++) {
             CHECK_EQ(dem_world_step(world, 1), DEM_OK);
-            for (k = 0; k < world->count; k++) out += !(world->pos[4*k] >= 0 && world->pos[4*k] < DEM_R(0.1));
+            for (k = 0; k < world->bodies.count; k++) out += !(world->bodies.pos[4*k] >= 0 && world->bodies.pos[4*k] < DEM_R(0.1));
         }
         CHECK(out > 0);                         /* else this shows nothing */
-        for (i = 0; i < 200; i++) all += (double)world->mass[i];
+        for (i = 0; i < 200; i++) all += (double)world->bodies.mass[i];
         for (f = 0; f < 4; f++) {
             CHECK_EQ(dem_field_get(world, field[f], &data), DEM_OK);
             CHECK(data.samples >= 2);
@@ -340,7 +340,7 @@ static void places(void) {
                 const dem_vec3 x = scene_state(world, dem_bodies_id(world, k)).position;
                 one += !(x.x >= 0 && x.x < DEM_R(0.1) && x.y >= 0 && x.y < DEM_R(0.1) && x.z >= 0 &&
                          x.z < DEM_R(0.1));
-                raw += !(world->pos[4*k] >= 0 && world->pos[4*k] < DEM_R(0.1));
+                raw += !(world->bodies.pos[4*k] >= 0 && world->bodies.pos[4*k] < DEM_R(0.1));
             }
             n = dem_contacts_get(world, touching, 200);
             for (k = 0; k < n; k++) {
@@ -382,7 +382,7 @@ static void places(void) {
         for (i = 0; i < 300 && !raw; i++) {
             int k;
             CHECK_EQ(dem_world_step(world, 1), DEM_OK);
-            for (k = 0; k < 200; k++) raw += !(world->pos[4*k] >= 0 && world->pos[4*k] < DEM_R(0.1));
+            for (k = 0; k < 200; k++) raw += !(world->bodies.pos[4*k] >= 0 && world->bodies.pos[4*k] < DEM_R(0.1));
         }
         CHECK(raw > 0);
         remove(path);

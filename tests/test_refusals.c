@@ -602,9 +602,9 @@ int main(int argc, char **argv) {
         CHECK(dem_contacts_get(world, 0, 0) > 10);
         hash = dem_world_hash(world);
         CHECK(demi_list_drop(world));
-        CHECK(world->carry_count > 10);
+        CHECK(world->filed.count > 10);
         CHECK_EQ(dem_world_hash(world), hash);
-        world->carry_memory[0] += DEM_R(1e-6);
+        world->filed.memory[0] += DEM_R(1e-6);
         CHECK(dem_world_hash(world) != hash);
         dem_world_destroy(world);
     }
@@ -636,7 +636,7 @@ int main(int argc, char **argv) {
                     region.box = box_of(0, 0, 1, 1, 1, 2);
                     dem_sphere_add(world, m, DEM_R(1e-3), at(0, 0, 0.5));
                     for (turn = 0; turn < 2; turn++) {
-                        const int before = world->count, walls = world->wall_count;
+                        const int before = world->bodies.count, walls = world->wall_count;
                         int done;
                         if (turn) was = dem_world_hash(world);
                         if (order == turn)
@@ -653,7 +653,7 @@ int main(int argc, char **argv) {
                         else done = dem_region_fill(world, &region, m, egg, 0, 3, 1) == 3;
                         CHECK_EQ(done, !turn);
                         if (!turn) continue;
-                        CHECK_EQ(world->count, before);
+                        CHECK_EQ(world->bodies.count, before);
                         CHECK_EQ(world->wall_count, walls);
                         CHECK_EQ(dem_world_hash(world), was);
                     }
@@ -683,7 +683,7 @@ int main(int argc, char **argv) {
         int i;
         for (i = 0; i < 20; i++) dem_sphere_add(world, m, DEM_R(1e-3), at(0.003*i, 0, 0));
         CHECK_EQ(scene_step(world, 1), DEM_OK);
-        world->pos[4*7 + 1] = (dem_real)(HUGE_VAL - HUGE_VAL);
+        world->bodies.pos[4*7 + 1] = (dem_real)(HUGE_VAL - HUGE_VAL);
         CHECK_EQ(dem_search_now(world), DEM_ERROR_UNSTABLE);
         CHECK_STR(dem_world_error(world), "body");
         dem_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));

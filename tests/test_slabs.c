@@ -117,11 +117,11 @@ static double apart(const dem_world *a, const dem_world *b) {
     const demi_periods p = demi_periods_of(a);
     double most = 0;
     int k, e;
-    for (k = 0; k < a->slot_count; k++) {
-        const int i = a->slot_index[k], j = b->slot_index[k];
+    for (k = 0; k < a->bodies.slot_count; k++) {
+        const int i = a->bodies.slot_index[k], j = b->bodies.slot_index[k];
         if ((i < 0) != (j < 0)) return 1e300;
         for (e = 0; e < 3 && i >= 0; e++) {
-            const dem_real d = demi_image(b->pos[4*j + e] - a->pos[4*i + e], p.half[e],
+            const dem_real d = demi_image(b->bodies.pos[4*j + e] - a->bodies.pos[4*i + e], p.half[e],
                                           p.period[e]);
             most = DEMI_MAX(most, fabs((double)d));
         }
@@ -133,13 +133,13 @@ static int whole(const dem_slabs *s, int count) {
     int *homes = (int *)calloc((size_t)count, sizeof(int)), i, k, right = homes != 0;
     for (k = 0; k < s->local && right; k++) {
         const dem_world *w = s->slabs[k].world;
-        for (i = 0; i < w->count; i++) if (!demi_visits(w, i)) homes[w->body_slot[i]] += k + 1;
+        for (i = 0; i < w->bodies.count; i++) if (!demi_visits(w, i)) homes[w->bodies.slot[i]] += k + 1;
     }
     for (k = 0; k < s->local && right; k++) {
         const dem_world *w = s->slabs[k].world;
         const int below = (k + s->local - 1)%s->local + 1;
-        for (i = 0; i < w->count; i++)
-            if (demi_visits(w, i)) right = right && homes[w->body_slot[i]] == below;
+        for (i = 0; i < w->bodies.count; i++)
+            if (demi_visits(w, i)) right = right && homes[w->bodies.slot[i]] == below;
     }
     for (k = 0, i = 0; k < s->local && right; k++) {
         dem_slab slab;
@@ -251,7 +251,7 @@ static dem_world *gas(int periodic, int threads) {
     for (k = 2; k >= 0; k--)
         dem_spheres_fill(world, glass, (dem_real)(5e-4*(1 + k)), desc.domain, 40*(3 - k),
                          (uint64_t)k + 1);
-    for (i = 0; i < world->count; i++)
+    for (i = 0; i < world->bodies.count; i++)
         scene_move(world, dem_bodies_id(world, i),
                    scene_at(&seed, 1, -0.5, 1, -0.5, 1, -0.5), at(0, 0, 0));
     return world;
@@ -596,7 +596,7 @@ int main(int argc, char **argv) {
             const dem_totals first = dem_totals_get(world);
             dem_slabs *slabs = deal(world, 0, 4);
             const double speed = sqrt(2*first.kinetic/first.mass);
-            CHECK_EQ(world->count, 240);
+            CHECK_EQ(world->bodies.count, 240);
             for (i = 0; i < 25; i++) {
                 dem_totals now;
                 CHECK_EQ(go(slabs, 2000), DEM_OK);
@@ -634,17 +634,17 @@ int main(int argc, char **argv) {
                     CHECK_EQ(scene_step(one, steps), DEM_OK);
                     CHECK_EQ(go(slabs, steps), DEM_OK);
                     CHECK_EQ(collect(slabs, other), DEM_OK);
-                    CHECK(whole(slabs, one->count));
+                    CHECK(whole(slabs, one->bodies.count));
                     CHECK_NEAR(apart(one, other), 0, wide ? bound[k] : 2e-8);
                     if (getenv("SLABS_NUMBERS"))
                         printf("scene %d, %d slabs, step %d: %.2g m apart; %d bodies, %d contacts\n",
                                scene, count, (int)dem_world_steps(one), apart(one, other),
-                               one->count, dem_counters_get(one).contacts);
+                               one->bodies.count, dem_counters_get(one).contacts);
                 }
-                for (k = 0; k < one->slot_count; k++) {
-                    const int i = one->slot_index[k], j = other->slot_index[k];
-                    const dem_quat q = demi_quat_at(one->orient + 4*i);
-                    const dem_quat p = demi_quat_at(other->orient + 4*j);
+                for (k = 0; k < one->bodies.slot_count; k++) {
+                    const int i = one->bodies.slot_index[k], j = other->bodies.slot_index[k];
+                    const dem_quat q = demi_quat_at(one->bodies.orient + 4*i);
+                    const dem_quat p = demi_quat_at(other->bodies.orient + 4*j);
                     most = DEMI_MAX(most, 1 - fabs((double)(q.w*p.w + q.x*p.x + q.y*p.y +
                                                             q.z*p.z)));
                 }
@@ -837,7 +837,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(collect(slabs, world[1]), DEM_OK);
         dem_slabs_destroy(slabs);
         for (k = 0; k < 2; k++)                /* from now on one is much faster */
-            scene_move(world[k], dem_bodies_id(world[k], world[k]->slot_index[5]), at(0, 0, 4),
+            scene_move(world[k], dem_bodies_id(world[k], world[k]->bodies.slot_index[5]), at(0, 0, 4),
                        at(0, 0, 0));
         slabs = deal(world[1], 0, 3);
         scene_step(world[0], 50);
@@ -985,7 +985,7 @@ int main(int argc, char **argv) {
         dem_body_state s;
         int i, one = 0;
         for (i = 1; i < 60; i++)
-            if (world->pos[4*i] > world->pos[4*one]) one = i;
+            if (world->bodies.pos[4*i] > world->bodies.pos[4*one]) one = i;
         s = scene_state(world, dem_bodies_id(world, one));
         s.velocity.x = 3000;
         dem_body_set(world, dem_bodies_id(world, one), &s);
