@@ -6677,13 +6677,19 @@ static int demi_touching_reserve(dem_world *w) {
                         DEMI_GROW(w, w->touching_table, 4*n);
     return w->touching_valid;
 }
+/* Room for one domain's contacts: what is needed, or what there was where that is not much more: so
+   it does not go up and down, and what arrives all in one domain (from slabs) does not count for
+   each. */
+static int demi_stride_keep(int needed, int had) {
+    return had > needed && had <= 2*needed ? had : needed;
+}
 /* Contacts with walls that still last, from the last list (by slot) into the domains of the new
    one. */
 static int demi_wall_contacts_move(dem_world *w) {
     int32_t here[DEMI_DOMAINS];
     size_t n;
     /* hardly ever more contacts than candidates */
-    int d, k, e = 0, total = 0, stride = DEMI_MAX(w->wall_now_stride, w->wall_stride);
+    int d, k, e = 0, total = 0, stride = w->wall_stride;
     for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
     /* slabs cannot stop in the middle of a step to make room: as much as there may ever be */
     if (w->bodies.visitor) stride = DEMI_MAX(stride, demi_places_most(w));
@@ -6696,6 +6702,7 @@ static int demi_wall_contacts_move(dem_world *w) {
             if (body < 0 || w->walls[c->wall].kind == DEMI_WALL_NONE) continue;
             stride = DEMI_MAX(stride, ++here[demi_domain_of(w, body)]);
         }
+    stride = demi_stride_keep(stride, w->wall_now_stride);
     n = (size_t)w->domain_count*(size_t)stride;
     if (!demi_wall_contacts_reserve(w, n, DEMI_MAX(n, (size_t)total))) return 0;
     for (d = 0; d < DEMI_DOMAINS; d++) {  /* gather all in wall_next, slots turned to indices */
@@ -6751,7 +6758,7 @@ static int demi_shaped_room(dem_world *w) {
             if (a >= 0 && b >= 0) crowd[demi_domain_of(w, DEMI_MIN(a, b))]++;
         }
     for (d = 0; d < DEMI_DOMAINS; d++) stride = DEMI_MAX(stride, crowd[d]);
-    stride = DEMI_MAX(stride, w->shaped_stride);
+    stride = demi_stride_keep(stride, w->shaped_stride);
     ok = DEMI_GROW(w, w->shaped_next,
                    DEMI_MAX((size_t)stride*(size_t)w->domain_count, (size_t)total)) &&
          DEMI_GROW(w, w->shaped_now, (size_t)stride*(size_t)w->domain_count);
