@@ -1945,7 +1945,7 @@ typedef struct demi_timing {       /* >>step, >>advice */
 /* How far a world has got on its way to the next step. A change of the scene undoes dt_valid,
    forces_valid and primed; one of who is where, list_valid, too. dem_world_step makes good what is
    missing, in this order: */
-typedef struct demi_stage {
+typedef struct demi_stages {
     int dt_valid;                  /* 1: the time step suits the scene */
     int list_valid;                /* 2: candidates fit the bodies */
     int pairs_changed;             /* 0, or 1: what holds between materials has changed since */
@@ -7490,7 +7490,7 @@ static void demi_slots_release(dem_world *w) {
 /* Rebuilds everything the step needs to find contacts: first what may be refused, then bodies are
    put in order, then lists are made and memory moves to them. DEM_ERROR_MEMORY leaves bodies and
    memory as they were (the next call tries again). */
-static dem_result demi_rebuild(dem_world *w, const char *call) {
+static dem_result demi_lists_make(dem_world *w, const char *call) {
     double least;
     int k;
     for (k = 0; k < w->bodies.count; k++)
@@ -7527,6 +7527,12 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
     w->clock.rebuilds++;
     w->stage.list_valid = 1;
     return DEM_OK;
+}
+static dem_result demi_rebuild(dem_world *w, const char *call) {
+    const int domains = w->domain_count;
+    const dem_result result = demi_lists_make(w, call);
+    if (result != DEM_OK) w->domain_count = domains;    /* contacts still stand in those */
+    return result;
 }
 
 /* Answers -1 with a sentence, for those who ask about a list that no longer fits. */

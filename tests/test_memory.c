@@ -449,5 +449,55 @@ int main(int argc, char **argv) {
         while (search_refused(k)) k++;
         CHECK(k > 5);
     }
+    TEST("contacts of domains that a refused search would have given up are told by the hash, stand "
+         "in a checkpoint and go on") {
+        const char *path = "build/tmp/domains.ckpt";
+        const int count = DEM_DOMAIN_BODIES + 10;      /* two domains; without 20 of them one */
+        counter c, none;
+        dem_world_desc desc = counted(&c), plain = counted(&none);
+        dem_world *world[3];
+        dem_material m;
+        uint64_t hash;
+        int i, k;
+        desc.dt = plain.dt = DEM_R(1e-5);
+        for (k = 0; k < 3; k++) {              /* refused once; never; from a checkpoint */
+            world[k] = dem_world_create(k ? &plain : &desc);
+            m = scene_material(world[k], 1e6, 0.5, 0.3, 0);
+            dem_plane_add(world[k], m, at(0, 0, 0), at(0, 0, 1));
+            for (i = 0; i < count; i++) {
+                const dem_body b = dem_sphere_add(world[k], m, DEM_R(1e-3),
+                                                  at(0.0021*(i%50), 0.0021*(i/50), 9.99e-4));
+                scene_move(world[k], b, at(0.01, 0, 0), at(0, 0, 0));
+            }
+            CHECK_EQ(scene_step(world[k], 50), DEM_OK);
+            CHECK_EQ(world[k]->domain_count, 2);
+            for (i = 0; i < 20; i++)
+                dem_body_remove(world[k], dem_bodies_id(world[k], world[k]->bodies.count - 1));
+        }
+        hash = dem_world_hash(world[0]);
+        CHECK(hash == dem_world_hash(world[1]));
+        CHECK_EQ(dem_checkpoint_write(world[0], path), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(world[0], path), DEM_OK);  /* its lists fit now: new ones take room */
+        for (i = 1, k = 0; i < 40; i++) {
+            c.refuse = c.calls + i;
+            c.refused = 0;
+            if (dem_search_now(world[0]) == DEM_OK) break;
+            k++;
+            CHECK(c.refused);
+            CHECK(dem_world_hash(world[0]) == hash);
+            CHECK_EQ(dem_checkpoint_write(world[0], path), DEM_OK);
+            CHECK_EQ(dem_checkpoint_read(world[2], path), DEM_OK);
+            CHECK(dem_world_hash(world[2]) == hash);
+        }
+        CHECK(k > 0);
+        c.refuse = 0;
+        CHECK_EQ(world[0]->domain_count, 1);
+        for (k = 0; k < 3; k++) CHECK_EQ(scene_step(world[k], 50), DEM_OK);
+        CHECK(dem_world_hash(world[0]) == dem_world_hash(world[1]));
+        CHECK(dem_world_hash(world[0]) == dem_world_hash(world[2]));
+        for (k = 0; k < 3; k++) dem_world_destroy(world[k]);
+        CHECK_EQ(c.blocks + none.blocks, 0);
+        remove(path);
+    }
     return test_end();
 }
