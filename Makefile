@@ -69,7 +69,7 @@ examples: $(LESSONS) snippets ## build and run the numbered examples, compile th
 
 studies: $(STUDIES) ## build the studies into build/: each takes --help
 
-mpi: ## build examples/mpi and run it on 1, 2 and 3 processes, where mpicc and its headers are found
+mpi: ## build examples/mpi and run them on 1, 2 and 3 processes, where mpicc and its headers are found
 	@printf '%s\n' '$(hash)include <mpi.h>' 'int main(void) { return MPI_Finalize(); }' > build/probe.c; \
 	if ! command -v $(MPICC) >/dev/null; then \
 	    echo "SKIP: $(MPICC) not found (Debian package libopenmpi-dev)"; \
@@ -77,7 +77,12 @@ mpi: ## build examples/mpi and run it on 1, 2 and 3 processes, where mpicc and i
 	    echo "SKIP: $(MPICC) lacks mpi.h or its library (Debian package libopenmpi-dev)"; \
 	else set -e; echo "$(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mpi_slabs examples/mpi/slabs.c $(LDLIBS)"; \
 	    $(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mpi_slabs examples/mpi/slabs.c $(LDFLAGS) $(LDLIBS); \
-	    for n in 1 2 3; do echo "== $$n"; $(MPIRUN) -n $$n build/mpi_slabs; done; fi
+	    for n in 1 2 3; do echo "== $$n"; $(MPIRUN) -n $$n build/mpi_slabs; done; \
+	    $(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mill_mpi examples/mpi/mill.c $(LDFLAGS) $(LDLIBS); \
+	    for n in 1 2; do echo "== mill in 2 slabs, processes: $$n"; $(MPIRUN) -n $$n build/mill_mpi --slabs 2 --quick \
+	        --diameter 0.06 --settle 0.02 --revolutions 0.05 --frames 0 --out build/out/mill_mpi_$$n > build/mill_mpi.$$n; \
+	        grep '^hash' build/mill_mpi.$$n; done; cmp build/out/mill_mpi_1/grains.svg build/out/mill_mpi_2/grains.svg; \
+	    test "$$(grep '^hash' build/mill_mpi.1)" = "$$(grep '^hash' build/mill_mpi.2)"; fi
 
 all: $(STUDIES) $(LESSONS) build/tests $(ALONE) $(BENCHES) $(BENCH_ALSO) ## build everything, run nothing
 

@@ -14,6 +14,7 @@
 
    build:  cc -O2 -std=c99 -fopenmp examples/mill.c -o build/mill -lm    (-fopenmp if you like)
    run:    build/mill, build/mill --quick, build/mill --help
+           over MPI: examples/mpi/mill.c
 
    The axis is z, gravity points to -y, the mill turns about +z: with x to the right it turns to
    the left, and carries the charge up on the right. Critical speed is that of the thesis:
@@ -57,10 +58,10 @@ static struct mill_options {
     double contact_steps, revolutions, settle;
     const char *ends, *profile, *wall, *stiffness, *law, *integrator, *tangent, *study, *out;
     const char *checkpoint, *resume, *write_profile;
-    int threads, frames, quick;
+    int threads, slabs, frames, quick;
 } options = {0.3, 0.0064, 0.0015, 0.7, 0.3, 0.154, 0.32, 500, 0, 30, 0.5, 0.5,
              "periodic", "lifters", "mesh", "soft", "hertz", "verlet", "auto", "mill",
-             "build/out/mill", 0, 0, 0, 0, 4, 0};
+             "build/out/mill", 0, 0, 0, 0, 0, 4, 0};
 
 /* in the order of dem_integrator and dem_tangent_law */
 #define INTEGRATORS "verlet|euler|symplectic|position|leapfrog"
@@ -92,6 +93,8 @@ static const study_option table[] = {
     {"revolutions", STUDY_REAL, &options.revolutions, 0.05, 1000, "", "measured"},
     {"settle", STUDY_REAL, &options.settle, 0, 1000, "", "revolutions before that"},
     {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
+    {"slabs", STUDY_INT, &options.slabs, 0, 1024, "",
+        "the drum dealt across x to as many slabs; 0: one world"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "a smaller mill, under 20 s on two cores"},
     {"frames", STUDY_INT, &options.frames, 0, 100000, "",
@@ -125,6 +128,9 @@ typedef struct mill {
 } mill;
 
 static const char *program_path; /* argv[0]: the data lie relative to it */
+/* which of how many processes this is, and how they talk: set by examples/mpi/mill.c */
+static int mill_rank, mill_ranks = 1;
+static dem_transport mill_transport;
 
 static int is(const char *a, const char *b) { return !strcmp(a, b); }
 
@@ -427,6 +433,7 @@ static int samples_file(mill *m, const char *path, int writing, int *count) {
 static void frame_write(mill *m, int number) {
     char name[32];
     double z = m->o.length/2;
+    if (study.quiet) return;
     snprintf(name, sizeof name, "grains_%04d.vtp", number);
     study.files += !refused(m->world, dem_vtp_write(m->world, study_path(name)));
     if (!m->profile.segment_count) return;
@@ -434,7 +441,29 @@ static void frame_write(mill *m, int number) {
     study.files += !refused(m->world, dem_walls_vtp_write(m->world, study_path(name), -z, z));
 }
 
+/* The drum dealt to slabs, this process's share of them; null: one world does it all. */
+static dem_slabs *slabs_begin(mill *m) {
+    dem_slabs_desc desc = DEM_SLABS_DESC;
+    dem_slabs *slabs;
+    desc.count = m->o.slabs;
+    desc.first = mill_rank*desc.count/mill_ranks;
+    desc.local = (mill_rank + 1)*desc.count/mill_ranks - desc.first;
+    desc.transport = mill_transport;
+    slabs = desc.count ? dem_slabs_create(m->world, &desc) : 0;
+    if (desc.count && !slabs) refused(m->world, DEM_ERROR_ARGUMENT);
+    return slabs;
+}
+/* Goes on to the next sample, and has the whole state in the world. */
+static int mill_step(mill *m, dem_slabs *slabs) {
+    if (!slabs) return refused(m->world, dem_world_step(m->world, m->sample_steps));
+    if (dem_slabs_step(slabs, m->sample_steps) == DEM_OK &&
+        dem_slabs_collect(slabs, m->world) == DEM_OK) return 0;
+    study_fail("%s", dem_slabs_error(slabs));
+    return 1;
+}
 static int mill_turn(mill *m) { /* the run itself */
+    dem_slabs *slabs;
+    int bad = 0;
     int k = 0, first, total, count, frames = m->o.frames;
     double begun, work = (double)m->grains*m->sample_steps;
     char what[64];
@@ -446,22 +475,26 @@ static int mill_turn(mill *m) { /* the run itself */
         if (samples_file(m, m->o.resume, 0, &count)) return 1;
         k = count - 1;
     }
+    slabs = slabs_begin(m);
+    if (m->o.slabs && !slabs) return 1;
     total = m->sample_count;
     snprintf(what, sizeof what, "mill: %d grains, %.3g revolutions", m->grains,
              total/(double)SAMPLES);
     study_progress(what, 0, 0);
-    for (begun = study_clock(), first = k; k < total; k++) {
+    for (begun = study_clock(), first = k; k < total && !bad; k++) {
         if (frames && (int64_t)k*frames%total < frames)
             frame_write(m, (int)((int64_t)k*frames/total));
-        if (refused(m->world, dem_world_step(m->world, m->sample_steps))) return 1;
+        bad = mill_step(m, slabs);
+        if (bad) break;
         sample_take(m, &m->samples[k + 1]);
         count = k + 2;
-        if (m->o.checkpoint && ((k + 1)%(SAMPLES/4) == 0 || k + 1 == total)) {
-            if (samples_file(m, m->o.checkpoint, 1, &count)) return 1;
-            if (refused(m->world, dem_checkpoint_write(m->world, m->o.checkpoint))) return 1;
-        }
+        if (m->o.checkpoint && !study.quiet && ((k + 1)%(SAMPLES/4) == 0 || k + 1 == total))
+            bad = samples_file(m, m->o.checkpoint, 1, &count) ||
+                  refused(m->world, dem_checkpoint_write(m->world, m->o.checkpoint));
         study_progress(what, (k + 1 - first)/(double)(total - first), work*(k + 1 - first));
     }
+    dem_slabs_destroy(slabs);
+    if (bad) return 1;
     study_result("rate", work*(k - first)/fmax(study_clock() - begun, 1e-3), "particle-steps/s");
     if (frames) frame_write(m, frames);
     return 0;

@@ -41,6 +41,7 @@ typedef struct study_state {
     char root[400], folder[480];  /* results of the whole study; of the present part of it */
     char prefix[64];              /* put before the names of results */
     int files, failures;          /* written; things that went wrong */
+    int quiet;                    /* 1: nothing is written or told but failures: another process does */
     double begun, shown;          /* s, wall clock: of this progress line */
     int tenths, open;             /* tenths told; a line is open on the terminal */
     char told[64];                /* what the line is about */
@@ -177,7 +178,9 @@ STUDY_FN const char *study_path(const char *name) {
     return paths[next];
 }
 STUDY_FN FILE *study_open(const char *name) {
-    FILE *file = fopen(study_path(name), "wb");
+    FILE *file;
+    if (study.quiet) return 0;
+    file = fopen(study_path(name), "wb");
     if (!file) study_fail("cannot write %s: %s", study_path(name), strerror(errno));
     return file;
 }
@@ -192,6 +195,7 @@ STUDY_FN void study_close(FILE *file, const char *name) {
 STUDY_FN void study_begin(const char *folder) {
     snprintf(study.root, sizeof study.root, "%s", folder);
     snprintf(study.folder, sizeof study.folder, "%s", folder);
+    if (study.quiet) return;
     study_make_folder(folder);
     study_close(study_open("summary.txt"), "summary.txt");
     if (study.failures) exit(1);
@@ -207,6 +211,7 @@ STUDY_FN void study_part(const char *name) {
 STUDY_FN void study_result_text(const char *name, const char *value, const char *unit) {
     char text[512];
     FILE *file;
+    if (study.quiet) return;
     snprintf(text, sizeof text, "%s/summary.txt", study.root);
     file = fopen(text, "ab");
     snprintf(text, sizeof text, "%s%s = %s%s%s\n", study.prefix, name, value, *unit ? " " : "",
@@ -225,7 +230,8 @@ STUDY_FN void study_result(const char *name, double value, const char *unit) {
 }
 
 STUDY_FN int study_end(void) { /* exit code */
-    fprintf(stderr, "%s: %d files in %s\n", study.program, study.files, study.root);
+    if (!study.quiet)
+        fprintf(stderr, "%s: %d files in %s\n", study.program, study.files, study.root);
     if (study.failures) fprintf(stderr, "%s: failures above: %d\n", study.program, study.failures);
     return study.failures ? 1 : 0;
 }
@@ -251,6 +257,7 @@ STUDY_FN void study_csv(const char *name, const char *heading, int rows, int col
 STUDY_FN void study_progress(const char *what, double done, double work) {
     double now = study_clock(), spent, left;
     int terminal = study_terminal();
+    if (study.quiet) return;
     if (strcmp(study.told, what)) {
         snprintf(study.told, sizeof study.told, "%s", what);
         study.begun = study.shown = now;

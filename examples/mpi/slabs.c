@@ -4,41 +4,16 @@
        mpicc -O2 -ffp-contract=off -I. examples/mpi/slabs.c -o slabs -lm       (or: make mpi)
        mpirun -n 3 ./slabs [steps]
 
-   The transport is two functions: send to both neighbours in the ring, and reduce. Every process
+   The transport is two functions (transport.h): send to both neighbours in the ring, and reduce.
+   Every process
    builds the same world, deals it, and steps; dem_slabs_collect writes the whole state back into
    each process's world. Expected: the bits of the slabs in one process, and grains within 1e-11 m
    of those in one world (after 4000 steps; collisions multiply round-off, so later it is more). */
 #define DEM_IMPLEMENTATION
 #include "dem.h"
-#include <mpi.h>
+#include "transport.h"
 
-enum { GRAINS = 1200, TAG_UP = 1, TAG_DOWN = 2 };
-
-static int exchange(const void *to_lower, size_t to_lower_size, void *from_lower,
-                    size_t from_lower_size, const void *to_upper, size_t to_upper_size,
-                    void *from_upper, size_t from_upper_size, void *user) {
-    MPI_Request requests[4];
-    int rank, size, lower, upper;
-    (void)user;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    lower = (rank + size - 1)%size;
-    upper = (rank + 1)%size;
-    MPI_Irecv(from_lower, (int)from_lower_size, MPI_BYTE, lower, TAG_UP, MPI_COMM_WORLD,
-              &requests[0]);
-    MPI_Irecv(from_upper, (int)from_upper_size, MPI_BYTE, upper, TAG_DOWN, MPI_COMM_WORLD,
-              &requests[1]);
-    MPI_Isend((void *)to_upper, (int)to_upper_size, MPI_BYTE, upper, TAG_UP, MPI_COMM_WORLD,
-              &requests[2]);
-    MPI_Isend((void *)to_lower, (int)to_lower_size, MPI_BYTE, lower, TAG_DOWN, MPI_COMM_WORLD,
-              &requests[3]);
-    return MPI_Waitall(4, requests, MPI_STATUSES_IGNORE) != MPI_SUCCESS;
-}
-static int reduce(double *values, int count, int sum, void *user) {
-    (void)user;
-    return MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, sum ? MPI_SUM : MPI_MAX,
-                         MPI_COMM_WORLD) != MPI_SUCCESS;
-}
+enum { GRAINS = 1200 };
 
 /* Grains of three radii in a drum about x, between end planes. */
 static dem_world *drum(void) {
@@ -116,8 +91,8 @@ int main(int argc, char **argv) {
     desc.count = size;
     desc.first = rank;
     desc.local = 1;
-    desc.transport.exchange_fn = exchange;
-    desc.transport.reduce_fn = reduce;
+    desc.transport.exchange_fn = mpi_exchange;
+    desc.transport.reduce_fn = mpi_reduce;
     slabs = dem_slabs_create(world, &desc);
     if (!slabs) { puts(dem_world_error(world)); MPI_Abort(MPI_COMM_WORLD, 1); }
     begun = MPI_Wtime();
@@ -143,7 +118,7 @@ int main(int argc, char **argv) {
     dem_slabs_destroy(here);
     distance = apart(one, world, &twos);
     good = twos && distance < 1e-11 && digest(same) == digest(world);
-    reduce(&distance, 1, 0, 0);
+    mpi_reduce(&distance, 1, 0, 0);
     if (rank == 0) {
         printf("grains lost or doubled = %s\n", twos ? "none" : "SOME");
         printf("distance from one world = %.3g m\n", distance);
