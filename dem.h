@@ -3,13 +3,16 @@
    It simulates grains: spheres of any radius (or discs, in a plane), ellipsoids and rigid clusters
    of spheres that touch, rub, roll and bounce on each other and on moving walls.
 
-   Do this in *one* C or C++ file to get the implementation, and include it plainly elsewhere:
+   Include it plainly wherever you use it, and define DEM_IMPLEMENTATION before the include in *one*
+   C or C++ file to get the implementation. dem.c is such a file: compile it once (some 20 s with
+   gcc at -O2), and your own files compile in a moment:
 
-       #define DEM_IMPLEMENTATION
-       #include "dem.h"                       build:  cc -O2 program.c -lm   (-fopenmp if you like)
+       cc -O2 -c dem.c                        -fopenmp if you like
+       cc -O2 program.c dem.o -lm
 
    Contents; jump to a part by searching for its tag:
-       >>manual      a complete program, conventions, one step, options, errors, threads, extending
+       >>manual      a complete program, conventions, one step, options, materials, lifetimes, the
+                     report, errors, threads, extending, a glossary
        >>api         ids, choices, contacts and the built-in laws
        >>scene       worlds, materials, bodies, walls, feeds
        >>run         steps, measuring, files, slabs, report
@@ -103,7 +106,53 @@
    What dem.h does not do: fluids, breakage, bonds, heat; implicit integration; graphics.
 
    Options are fields of `dem_world_desc`; zero there means absent, or "chosen for you". What was
-   chosen is told by dem_world_report. Compile-time options:
+   chosen is told by dem_world_report. By what one wants to say:
+
+       the world is ...           gravity, boundary and domain (open, periodic, outflow), planar
+                                  and thickness (discs)
+       contacts push by ...       normal_law; impact_speed for the linear law's stiffness; tension:
+                                  may a dashpot pull as grains part?
+       they rub by ...            tangent_law; friction_load and slider: what friction counts on.
+                                  No friction in any pair: no spins, no memory, no price
+       they roll by ...           rolling_law
+       a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness; force,
+                                  body_force, force_user
+       bodies turn by ...         rotation, orientations; ellipsoid_overlap, cluster_contacts
+       time goes by ...           integrator, dt, allow_large_dt
+       it shall be fast           search, skin, threads
+       where does energy go?      ledger
+       whose memory?              allocator
+
+   Materials for a first day. Density, Young's modulus and Poisson's ratio are in tables of
+   materials; restitution is measured by dropping a grain (rebound height over drop height is its
+   square), friction by tilting a plate. A grain needs a time step of t_c/20 to t_c/50, t_c the
+   duration of a collision, which for Hertz's law is about 2.9 (m^2/(E^2 R v))^(1/5) of the reduced
+   mass, modulus and radius: for glass beads of 3 mm at 1 m/s some 10 us. That is why one softens:
+   E smaller by 100 makes steps longer by 100^(2/5) = 6.3 and impacts deeper by as much.
+   Restitution, angles of repose and flow hardly notice while overlaps stay below 0.01 radii; what
+   goes with the true stiffness (speed of sound, adhesion) does. The report tells the largest
+   overlap.
+
+   Lifetimes. What you hand over is copied at the call: descs, arrays, meshes, profiles. Functions
+   and user pointers in a desc must live as long as the world. Pointers that you are handed:
+       dem_bodies_get, dem_field_get     until the next call that steps or changes the world
+       dem_world_error                   until the next call that fails
+       dem_mesh_read and the like        until you free them, with the world that read them
+   Ids stay good until what they name is removed; that of a removed body is told from that of the
+   one that got its place. Indices (0 .. count - 1) change whenever bodies are sorted.
+
+   The report (dem_world_report), line by line:
+       bodies      how many, of which radii; inserted = present + removed + left
+       time step   t_c, how many steps it has, what binds it: stiffen, soften or slow down that
+       search      method, skin, steps from one list to the next; candidates per body: more than
+                   three times the contacts is much
+       effects     the laws in force, and what they remember per contact. "none" costs nothing
+       overlap     the largest so far, over the radius: beyond 0.05 the material is too soft
+       pair        what holds between each two materials, after mixing
+       wall, feed, outlet   what they bear, bring and take
+       ledger      the residual is what the time step gets wrong: it falls with its square
+
+   Compile-time options:
        DEM_REAL           double (default) or float: the type of all state
        DEM_STATIC         makes every function static
        DEM_LAW            name of your contact law, to have it inlined (see >>add-law)
@@ -130,8 +179,25 @@
    order. To compare bits between builds, compile with -ffp-contract=off. Slabs (dem_slabs_create)
    deal a scene to processes, over MPI or what you have: docs/parallel.md.
 
-   Extending. A contact law is one function (>>add-law), a wall a function and a table row
-   (>>add-wall), an integrator likewise (>>add-integrator). docs/extending.md walks through each.
+   Extending. A contact law is a function and a row (>>add-law), so are a wall (>>add-wall) and an
+   integrator (>>add-integrator); a number of each body is a field and a row (>>add-array).
+   docs/extending.md walks through each, and `make recipes` performs it. Who owns what in a world
+   stands at struct dem_world (>>memory).
+
+   Glossary, of words that are ours or used in one sense:
+       candidate   a pair, or a body and an element of a wall, nearer than the skin
+       skin        m, how much nearer than touching two may come before a new list of candidates
+       near list   candidates that may touch within some steps; forces are worked out for these
+       slot        the number by which a body is known while indices change
+       domain      some 2000 bodies that lie together: what one thread works on at a time
+       tile        some 32 or 64 pairs whose forces are worked out together
+       memory      reals that a contact keeps from step to step: springs, largest load
+       slip        velocity of one surface along the other, at the contact
+       place       where a surface of facets is nearest to a body; counted by its share
+       form, spot  a shape in its principal frame; where a sphere of a cluster is now
+       reduced     of two bodies: R* = Ra Rb/(Ra + Rb), m* likewise, E* in series (Hertz)
+       visitor     copy of a grain that is at home in the slab below
+       ledger      account of energy: put in, stored, lost, and what is left over
 
    References, by the keys used below:
      [AI11]    Ai, Chen, Rotter & Ooi, Powder Technol. 206 (2011) 269: rolling resistance
