@@ -1065,7 +1065,8 @@ typedef struct dem_shape_info {
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info);
 
 /* Adds a body at rest: centre of mass at position (m), turned by orientation (any length but 0)
-   from the frame its shape was given in. Null id on bad values or when memory runs out. */
+   from the frame its shape was given in. Null id on bad values, when memory runs out, or where a
+   wall does not know the shape: sieves and profiles of DEM_EDGE_FRACTION do not know ellipsoids. */
 DEM_API dem_body dem_body_add(dem_world *world, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation);
 /* Adds count bodies. Arrays but positions may be null: orientations (count x 4: w x y z; null: as
@@ -15538,10 +15539,10 @@ static void demi_grain_forget(dem_world *w, int i) {
 
 /* Grains whose mark is `mark`; with them, when asked, the filed memory of pairs that name one of
    them, their contacts with walls and those of shaped bodies (all there are, for mark DEMI_ALL).
-   shift: added along axis.
-   Memory must be filed: after demi_list_drop or demi_carry_collect. */
-typedef struct demi_parcel_head { int32_t grains, pairs, contacts, shaped,
-                                 stride; } demi_parcel_head;
+   shift: added along axis. Memory must be filed: after demi_list_drop or demi_carry_collect. */
+typedef struct demi_parcel_head {
+    int32_t grains, pairs, contacts, shaped, stride;
+} demi_parcel_head;
 static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, int mark,
                      int memory, int axis, dem_real shift, demi_parcel *out) {
     const size_t start = out->size;
