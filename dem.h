@@ -144,8 +144,7 @@
    The report (dem_world_report), line by line:
        bodies      how many, of which radii; inserted = present + removed + left
        time step   t_c, how many steps it has, what binds it: stiffen, soften or slow down that
-       search      method, skin, steps from one list to the next; candidates per body: more than
-                   three times the contacts is much
+       search      method, skin, steps from one list to the next; candidates and contacts per body
        effects     the laws in force, and what they remember per contact. "none" costs nothing
        overlap     the largest so far, over the radius: beyond 0.05 the material is too soft
        pair        what holds between each two materials, after mixing
