@@ -11558,7 +11558,7 @@ static dem_result demi_outlets_run(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
     for (i = 0; i < w->bodies.count && w->outlet_count; i++)
-        for (k = 0; k < w->outlet_count; k++) {
+        for (k = 0; k < w->outlet_count && !demi_visits(w, i); k++) {
             demi_outlet *o = demi_outlet_at(w, k);
             const int frame = o->desc.frame.id;
             if (frame && w->walls[frame - 1].kind == DEMI_WALL_NONE) continue;
@@ -16131,6 +16131,22 @@ static void demi_slab_move(dem_slabs *s, demi_slab *b) {
     if (!s->head.stage.moved) b->result = demi_step_move(w);
     if (b->result == DEM_OK) b->result = demi_outflow(w);
 }
+/* Outlets take what is at home here; whoever lost one needs a new list. */
+static void demi_slab_outlets(dem_slabs *s, demi_slab *b) {
+    (void)s;
+    b->result = demi_outlets_run(b->world);
+}
+static dem_result demi_slabs_outlets(dem_slabs *s, int *search) {
+    dem_result result;
+    double stale = 0;
+    int k;
+    demi_slabs_phase(s, demi_slab_outlets);
+    for (k = 0; k < s->local; k++)
+        stale = DEMI_MAX(stale, !s->slabs[k].world->stage.list_valid);
+    result = demi_slabs_agree(s, &stale, 1);
+    *search |= stale > 0;
+    return result;
+}
 /* What the walls did, for those slabs whose walls do not move by themselves. */
 static void demi_slabs_poses(dem_slabs *s) {
     const dem_world *from = s->slabs[0].world;
@@ -16376,7 +16392,7 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
     double flags[7] = {0, 0, 0, 0, -1e300, -1e300, 0};
     const double dt = (double)h->clock.dt;
     dem_result result;
-    int k, near;
+    int k, near, search;
     demi_slabs_phase(s, demi_slab_move);
     for (k = 0; k < s->local; k++) {
         const dem_world *w = s->slabs[k].world;
@@ -16408,9 +16424,14 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         s->slabs[k].world->margin.reach = h->margin.reach;
         s->slabs[k].world->margin.wall_reach = h->margin.wall_reach;
     }
-    if (flags[1] > 0 || !h->stage.list_valid || h->margin.skin <= 0 ||
-        2*h->margin.reach > h->margin.skin ||
-        h->margin.reach + h->margin.wall_reach > h->margin.skin) {
+    search = flags[1] > 0 || !h->stage.list_valid || h->margin.skin <= 0 ||
+             2*h->margin.reach > h->margin.skin ||
+             h->margin.reach + h->margin.wall_reach > h->margin.skin;
+    if (first->outlet_count && (search || h->clock.steps%DEMI_OUTLET_REST == 0)) {
+        result = demi_slabs_outlets(s, &search);
+        if (result != DEM_OK) return result;
+    }
+    if (search) {
         result = demi_slabs_rebuild(s);
         if (result != DEM_OK) return result;
         if (h->booked.speed_max > 1.5*h->clock.assumed_speed) h->stage.dt_valid = 0;
@@ -16518,6 +16539,13 @@ static int demi_slab_forms(dem_world *to, const dem_world *from, const dem_world
     }
     return 1;
 }
+/* What an outlet has let out, of which nothing is known yet. */
+static void demi_outlet_clear(demi_outlet *o) {
+    const double since = o->state.since, last = o->state.last;
+    memset(&o->state, 0, sizeof o->state);
+    o->state.since = since;
+    o->state.last = last;
+}
 /* Sums over time begin in slab 0 where the world has got to, elsewhere at nothing. */
 static void demi_slab_sums_clear(dem_world *w) {
     int i;
@@ -16529,6 +16557,14 @@ static void demi_slab_sums_clear(dem_world *w) {
         memset(&w->walls[i].channels, 0, sizeof w->walls[i].channels);
         w->walls[i].channels.time = time;
     }
+    for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
+}
+static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
+    if (!DEMI_GROW(to, to->outlets, (size_t)from->outlet_count)) return 0;
+    if (from->outlet_count)
+        memcpy(to->outlets, from->outlets, (size_t)from->outlet_count*sizeof *to->outlets);
+    to->outlet_count = from->outlet_count;
+    return 1;
 }
 static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     int i;
@@ -16572,7 +16608,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     if (!w->bodies.visitor || !w->bodies.slot_index || !w->bodies.slot_generation ||
         (from->bodies.orienting && !demi_orient_begin(w)) ||
         !demi_slab_forms(w, from, first) ||
-        !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0)) return w;
+        !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
+        !demi_slab_outlets_copy(w, from)) return w;
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
     if (slots) memcpy(w->bodies.slot_generation, from->bodies.slot_generation,
                       slots*sizeof(uint32_t));
@@ -16602,7 +16639,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
 static int demi_slab_ready(const dem_world *w, const dem_world *from) {
     return w && w->bodies.visitor && w->bodies.slot_index && w->bodies.slot_generation &&
            w->form_count == from->form_count && w->bodies.orienting == from->bodies.orienting &&
-           w->wall_count == from->wall_count && w->field_count == from->field_count;
+           w->wall_count == from->wall_count && w->field_count == from->field_count &&
+           w->outlet_count == from->outlet_count;
 }
 /* The grains of one slab, from the world. */
 static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uint8_t *marks) {
@@ -16652,10 +16690,9 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     if (w->stage.moved)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world stands in the middle of a step that "
                          "ran out of memory; finish it with dem_world_step first", call);
-    if (w->feed_count || w->outlet_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world has %d feeds and %d outlets, must "
-                         "have none, because slabs cannot feed yet; use dem_world_step", call,
-                         w->feed_count, w->outlet_count);
+    if (w->feed_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world has %d feeds, must have none, "
+                         "because slabs cannot feed yet; use dem_world_step", call, w->feed_count);
     return DEM_OK;
 }
 /* Do all processes hold the same scene, have they got their memory, and all slabs between them?
@@ -16789,7 +16826,8 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
 
 /* --- collect --- */
 
-/* What a slab has besides grains and memory; then come the walls' channels, fields, a parcel. */
+/* What a slab has besides grains and memory; then come the walls' channels, fields, outlets, a
+   parcel. */
 typedef struct demi_slab_sums {
     int32_t index, walls;
     uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
@@ -16819,6 +16857,8 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
         ok = demi_parcel_put(h, out, f->solid, n) && demi_parcel_put(h, out, f->mass, n) &&
              demi_parcel_put(h, out, f->momentum, 3*n);
     }
+    for (i = 0; i < w->outlet_count && ok; i++)
+        ok = demi_parcel_put(h, out, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
     ok = ok && (!w->stage.list_valid || demi_carry_collect(w)) &&
          demi_pack(h, w, w->bodies.visitor, DEMI_ALL, 1, s->axis, 0, out);
     if (!ok) return 0;
@@ -16866,6 +16906,23 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
     }
     return 0;
 }
+static const char *demi_outlet_add(demi_outlet *o, const char *from) {
+    dem_outlet_state *to = &o->state, part;
+    int k;
+    demi_take(&from, &part, sizeof part);
+    for (k = 0; k < DEM_CLASSES; k++) {
+        to->count[k] += part.count[k];
+        to->mass[k] += part.mass[k];
+    }
+    to->total += part.total;
+    to->total_mass += part.total_mass;
+    to->sorted += part.sorted;
+    to->sorted_mass += part.sorted_mass;
+    to->gangue += part.gangue;
+    to->gangue_mass += part.gangue_mass;
+    to->last = DEMI_MAX(to->last, part.last);
+    return from;
+}
 /* Adds a slab's sums to the world's, which were cleared before. Answers where its parcel begins. */
 static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
     int i, k;
@@ -16899,6 +16956,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
             else f->momentum[n - 2*cells] += part;
         }
     }
+    for (i = 0; i < w->outlet_count; i++) from = demi_outlet_add(demi_outlet_at(w, i), from);
     return from;
 }
 static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sums,
@@ -16906,7 +16964,7 @@ static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sum
     int i;
     from += (size_t)sums->walls*sizeof(dem_channels);
     for (i = 0; i < w->field_count; i++) from += 5*demi_field_cells(&w->fields[i])*sizeof(double);
-    return from;
+    return from + (size_t)w->outlet_count*sizeof(dem_outlet_state);
 }
 /* Time, step, and what else is the same in all slabs. */
 static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
@@ -16935,6 +16993,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
         w->walls[i].pose = from->walls[i].pose;
         w->walls[i].mid = from->walls[i].mid;
     }
+    for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
         const size_t n = demi_field_cells(f)*sizeof(double);
@@ -16971,7 +17030,8 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     if (w->bodies.slot_count != s->slabs[0].world->bodies.slot_count ||
         w->wall_count != h->wall_count ||
         w->material_count != h->material_count ||
-        w->field_count != s->slabs[0].world->field_count)
+        w->field_count != s->slabs[0].world->field_count ||
+        w->outlet_count != s->slabs[0].world->outlet_count)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
                          "materials, the slabs %d, %d, %d; collect into the world they were "
                          "created from, unchanged, or one built like it", call,

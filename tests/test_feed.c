@@ -540,7 +540,7 @@ int main(int argc, char **argv) {
         remove(path);
     }
 
-    TEST("feeds and outlets with bad values, and slabs of a world that has some, are refused by name") {
+    TEST("feeds and outlets with bad values, and slabs of a world that has feeds, are refused by name") {
         dem_world *world = world_of(0, 1e-3);
         dem_material stuff = soft(world, 1);
         dem_feed_desc d = feed_of(stuff, 0);
