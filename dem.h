@@ -3851,6 +3851,18 @@ static int demi_has(const dem_world *w, const demi_body_array *a) {
     return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
            : 1;
 }
+/* Is it state that each body of this world keeps? */
+static int demi_keeps(const dem_world *w, const demi_body_array *a) {
+    return a->what && a->who != DEMI_SLOTS && demi_has(w, a);
+}
+/* Bytes that one body keeps in all. */
+static size_t demi_body_size(const dem_world *w) {
+    size_t size = 0;
+    int k;
+    for (k = 0; k < DEMI_BODY_ARRAYS; k++)
+        if (demi_keeps(w, &demi_body_arrays[k])) size += demi_body_arrays[k].item;
+    return size;
+}
 static char *demi_data(const dem_world *w, const demi_body_array *a) {
     char *data;
     memcpy(&data, (const char *)&w->bodies + a->field, sizeof data);
@@ -3908,7 +3920,7 @@ static void demi_body_clear(dem_world *w, int i) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
-        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a))
+        if (demi_keeps(w, a))
             memset(demi_datum(w, a, i), 0, a->item);
     }
 }
@@ -3917,7 +3929,7 @@ static void demi_body_copy(dem_world *w, int from, int to) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
-        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a))
+        if (demi_keeps(w, a))
             memcpy(demi_datum(w, a, to), demi_datum(w, a, from), a->item);
     }
 }
@@ -3977,11 +3989,14 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
 }
 /* Do bodies of this shape (DEMI_BALL, ...) and walls of this kind know each other? (>>shaped) */
 static int demi_touch_known(int kind, int shape);
+/* body: its slot, -1: it is yet to come. */
 static dem_result demi_strangers(dem_world *w, const char *call, int wall, int kind, int body) {
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and body %u an ellipsoid: the two "
-                     "do not know each other; make bodies clusters of spheres, or the wall a mesh "
-                     "or a resolved profile; nothing was added", call, wall + 1,
-                     demi_wall_kinds[kind].name, (unsigned)body + 1);
+    char who[32] = "the body";
+    if (body >= 0) snprintf(who, sizeof who, "body %d", body + 1);
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s an ellipsoid: the two do "
+                     "not know each other; make bodies clusters of spheres, or the wall a mesh or "
+                     "a resolved profile; nothing was added", call, wall + 1,
+                     demi_wall_kinds[kind].name, who);
 }
 /* What a form's parts are. */
 static int demi_form_shape(const demi_form *form) {
@@ -3994,7 +4009,7 @@ static int demi_walls_strange(dem_world *w, const char *call, int form) {
     for (j = 0; j < w->wall_count; j++) {
         const int kind = w->walls[j].kind;
         if (kind == DEMI_WALL_NONE || demi_touch_known(kind, shape)) continue;
-        demi_strangers(w, call, j, kind, w->bodies.slot_count);
+        demi_strangers(w, call, j, kind, -1);
         return 1;
     }
     return 0;
@@ -4755,7 +4770,7 @@ typedef struct demi_join {
     demi_side *side, *piece;       /* as they are, and with cuts: side 3 + k is a piece of side k */
     int32_t *cut;                  /* cuts x 6: wall, element, points, number, side */
     double *cut_weight;
-    size_t point_room, facet_room, piece_room, cut_room;
+    size_t point_room, facet_room, cut_room;
 } demi_join;
 
 static void demi_join_free(dem_world *w, demi_join *j) {
@@ -4991,7 +5006,6 @@ static int demi_join_cut(dem_world *w, demi_join *j) {
         }
         if (pass) break;
         if (room > INT_MAX/8) return 0;
-        j->piece_room = room;
         j->piece = (demi_side *)demi_alloc(w, room, sizeof *j->piece);
         between = (int32_t *)demi_alloc(w, most, sizeof *between);
         j->cut = (int32_t *)demi_alloc(w, j->cut_room*6, sizeof *j->cut);
@@ -5889,7 +5903,7 @@ static void demi_bodies_sort(dem_world *w) {
     if (demi_cells_fill(w, w->cells[0]*w->cells[1]*w->cells[2])) return;
     for (i = 0; i < DEMI_BODY_ARRAYS; i++) {
         const demi_body_array *a = &demi_body_arrays[i];
-        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a)) demi_permute(w, a);
+        if (demi_keeps(w, a)) demi_permute(w, a);
     }
     for (i = 0; i < w->bodies.count; i++) w->bodies.slot_index[w->bodies.slot[i]] = i;
 }
@@ -14677,12 +14691,9 @@ static int demi_numbers_check(const demi_reader *r) {
         t->margin.creep, t->booked.speed_max, t->clock.half_kick, (double)t->effects.radius_min,
             (double)t->effects.radius_max,
         (double)t->clock.dt};
-    size_t i, per = 0;
-    for (i = 0; i < DEMI_BODY_ARRAYS; i++) {
-        const demi_body_array *a = &demi_body_arrays[i];
-        if (a->what && a->who != DEMI_SLOTS && demi_has(t, a)) per += a->item;
-    }
-    if (!demi_left(r, t->bodies.count, per) || !demi_left(r, t->bodies.slot_count, 8) ||
+    size_t i;
+    if (!demi_left(r, t->bodies.count, demi_body_size(t)) ||
+        !demi_left(r, t->bodies.slot_count, 8) ||
         t->bodies.count > INT_MAX/64 || t->bodies.slot_count > INT_MAX/64 ||
             t->bodies.count > t->bodies.slot_count)
         return demi_lie(r, "its number of bodies or of slots", -1);
@@ -15473,16 +15484,9 @@ static void demi_take(const char **from, void *to, size_t size) {
     *from += size;
 }
 
-/* One grain with all it keeps: the rows of demi_body_arrays one after the other, its slot first. */
-static size_t demi_grain_size(const dem_world *w) {
-    size_t size = 0;
-    int k;
-    for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
-        const demi_body_array *a = &demi_body_arrays[k];
-        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a)) size += a->item;
-    }
-    return size;
-}
+/* --- a grain in a message: all it keeps, the rows of demi_body_arrays one after the other, its
+       slot first --- */
+
 /* Body i, its places moved by `shift` along axis. 0 when memory ran out. */
 static int demi_grain_put(dem_world *host, demi_parcel *out, const dem_world *w, int i, int axis,
                           dem_real shift) {
@@ -15490,7 +15494,7 @@ static int demi_grain_put(dem_world *host, demi_parcel *out, const dem_world *w,
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         dem_real place[4];
-        if (!a->what || a->who == DEMI_SLOTS || !demi_has(w, a)) continue;
+        if (!demi_keeps(w, a)) continue;
         if (a->what != DEMI_PLACES) {
             if (!demi_parcel_put(host, out, demi_datum(w, a, i), a->item)) return 0;
             continue;
@@ -15506,7 +15510,7 @@ static void demi_grain_take(dem_world *w, int i, const char **from) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
-        if (a->what && a->who != DEMI_SLOTS && demi_has(w, a))
+        if (demi_keeps(w, a))
             demi_take(from, demi_datum(w, a, i), a->item);
     }
 }
@@ -17059,7 +17063,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         if (head.pairs) come.stride = head.stride;
         for (i = 0; i < head.grains; i++) {
             const uint32_t slot = demi_grain_slot(from);
-            from += demi_grain_size(w);
+            from += demi_body_size(w);
             if (w->bodies.slot_index[slot] < 0)
                 return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u is in slab %d, but no longer "
                                  "in the world; collect before removing grains, or create the "

@@ -579,7 +579,7 @@ int main(int argc, char **argv) {
         kept_fill(c, 8);
         CHECK_EQ(kept_differ(a, c), 40);
         for (i = 0; i < 40; i++) CHECK(demi_grain_put(a, &parcel, a, i, 0, 0));
-        CHECK_EQ((int)parcel.size, 40*(int)demi_grain_size(a));
+        CHECK_EQ((int)parcel.size, 40*(int)demi_body_size(a));
         from = parcel.bytes;
         for (i = 0; i < 40; i++) {
             const int slot = (int)demi_grain_slot(from);
