@@ -32,8 +32,8 @@
        >>rebuild     effects, skin, order of bodies, domains: all lists made anew
        >>touch       candidate pairs -> contacts: geometry only
        >>respond     contact -> force and torque: the loops that bring touch and law together
-       >>on-walls    spheres on walls: touch and respond, one by one
-       >>shaped      contacts of bodies that are not spheres: touch and respond, one by one
+       >>on-walls    where spheres touch walls: geometry only
+       >>kept        contacts kept by themselves, all but sphere on sphere: touch and respond
        >>integrators kick, drift, predict; rotation
        >>ledger      where the energy went
        >>placing     room for new grains: regions, fills, packings
@@ -1574,10 +1574,12 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #if defined(__GNUC__) && !defined(__TINYC__)
 #define DEMI_ALIGNED __attribute__((aligned(64)))           /* to a cache line */
 #define DEMI_RESTRICT __restrict__
+#define DEMI_FETCH(p) __builtin_prefetch(p)                 /* will be read soon */
 #define DEMI_FORMAT(f, a) __attribute__((format(printf, f, a)))
 #else
 #define DEMI_ALIGNED
 #define DEMI_RESTRICT
+#define DEMI_FETCH(p) (void)(p)
 #define DEMI_FORMAT(f, a)
 #endif
 #if defined(__clang__)
@@ -1786,16 +1788,6 @@ typedef struct demi_link {
     dem_real more;                 /* how much more its place counts by pieces */
     dem_vec3 point;                /* from the body's centre */
 } demi_link;
-/* A contact with a wall; lives as long as the two touch. */
-typedef struct demi_wall_contact {
-    int32_t body, wall, element;
-    dem_vec3 normal, normal_before, point;     /* unit, grain -> wall, now and a step ago; m */
-    dem_real overlap, share;       /* m, 0: under way through a reduced hole; as above */
-    dem_real coef[DEMI_COEFS], memory[DEMI_MEMORY];
-    dem_vec3 force;                /* N, on the grain */
-    dem_vec3 shift;                /* as above */
-} demi_wall_contact;
-
 /* A shape, in its principal frame, per unit of mass and scale. */
 typedef struct demi_form {
     int count;                     /* spheres of a cluster; 0: an ellipsoid */
@@ -1811,18 +1803,19 @@ typedef struct demi_form {
     dem_vec3 centre;               /* m, centre of mass in that frame */
 } demi_form;
 
-/* A contact of a body that is not a sphere, with another body or a wall; lives as long as the two
-   touch. */
-typedef struct demi_shaped {
+/* A contact that is kept by itself: every one but those of sphere and sphere, whose memory stands
+   in the columns of the near list. Lives as long as the two touch. */
+typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
-    int32_t part_a, part_b;        /* spheres of clusters */
+    int32_t part_a, part_b;        /* spheres of clusters, else 0 */
     int32_t wall, element;
     int32_t send;                  /* 1 + where the far end's push goes; 0: b is of this domain */
+    int32_t from;                  /* which of its domain's a step ago it continues; -1: none */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to where they push */
-    dem_vec3 normal_before, arm_before_a, arm_before_b;     /* in the step before */
-    dem_real overlap, deep;        /* m; over the smallest radius */
+    dem_real overlap, deep;        /* m, 0: under way through a reduced hole; over the smallest
+                                      radius */
     dem_real share, lift, grip;    /* how often it counts: damping, elastic force, friction */
-    dem_real weight;               /* share before contacts are shared: see demi_shaped_share */
+    dem_real weight;               /* share before contacts are shared: see demi_kept_share */
     dem_real area, added, rate;    /* m2, A; what others add to it, over d^2; how A follows that */
     dem_real bend;                 /* 1/m: the normal turns by this times the way part_a goes */
     dem_vec3 axis;                 /* but for ways along the normal, and along this, if not 0 */
@@ -1831,10 +1824,13 @@ typedef struct demi_shaped {
     dem_real inset;                /* the normal force passes at this part of arm_a */
     dem_real r_eff, m_eff;         /* m, kg */
     double lambda;                 /* of Perram and Wertheim, where to begin next; 0: unknown */
-    dem_real memory[DEMI_MEMORY];
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as above */
-} demi_shaped;
+    /* what goes from step to step: respond writes it, touch does not */
+    dem_real coef[DEMI_COEFS];     /* for the next two: worked out anew when they change */
+    dem_real coef_r, coef_m;       /* m, kg; 0: none yet */
+    dem_real memory[DEMI_MEMORY];
+} demi_kept;
 
 /* What the grains of one domain do to one wall in one step. */
 typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; } demi_wall_sum;
@@ -1846,9 +1842,9 @@ typedef struct demi_domain {
     int near_shaped, near_shaped_cross, near_shaped_end;   /* after those: pairs not of spheres */
     int near_next_own, near_next_cross, near_next_end;     /* of the list being made */
     int near_next_shaped, near_next_shaped_cross, near_next_shaped_end;
-    int contacts, wall_contacts, wall_contacts_next;       /* touching now; being found */
-    int shaped, shaped_next;       /* contacts of bodies that are not spheres: now, being found */
-    int shaped_walls;              /* those of them with walls */
+    int contacts;                  /* of bodies with bodies */
+    int kept, kept_next;           /* contacts kept by themselves: now; being found */
+    int kept_walls;                /* those of them with walls */
     int touching_first;            /* where its places in touching_ begin */
     int overflow;                  /* a list ran out of room while being built */
     double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
@@ -1860,7 +1856,7 @@ typedef struct demi_domain {
 } demi_domain;
 
 /* Kinds of walls, a row each; nothing else names a kind but its own functions. >>add-wall: a row
-   here, a declaration in >>scene, functions above the tables in >>shaped. A row: constant; corners
+   here, a declaration in >>scene, functions above the tables in >>kept. A row: constant; corners
    of an element (0: it has none); places a candidate may give at most; traits; name in sentences;
    how near a sphere is to one element; how spheres touch it, how ellipsoids do (0: they do not know
    each other, which is said when the second of the two is added); how its normals turn as a ball
@@ -2120,7 +2116,7 @@ struct dem_world {
     /* >>shapes */
     int form_count;
     demi_form *forms;
-    /* >>bodies; moved by >>integrators, pushed by >>respond, >>on-walls and >>shaped */
+    /* >>bodies; moved by >>integrators, pushed by >>respond and >>kept */
     demi_bodies bodies;
     demi_filed filed;
     /* >>walls; weights of facets: >>facets; poses and loads: >>step */
@@ -2169,15 +2165,13 @@ struct dem_world {
     dem_real *wall_gap;            /* m, between grain and element when the list was made, or a
                                       little less */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image that is near */
-    int wall_now_stride;           /* wall contacts per domain */
-    demi_wall_contact *wall_now, *wall_next;
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
     int touching_valid;            /* the next three have room for the present candidates */
     demi_touching *touching;       /* of one body and wall, by domain */
     int32_t *touching_table;
     demi_link *touching_links;
-    int shaped_stride;             /* contacts of shaped bodies per domain */
-    demi_shaped *shaped_now, *shaped_next;
+    int kept_stride;               /* contacts per domain */
+    demi_kept *kept_now, *kept_next;
     /* >>near */
     demi_near near, near_last;     /* in use, and the one before: swapped when made anew */
     struct demi_quiet *quiet;      /* what may push each few bodies, see demi_domain_quiet */
@@ -3607,10 +3601,10 @@ DEM_INLINE demi_part demi_part_now(const dem_world *w, int body, int k) {
     const demi_form *form = demi_form_of(w, body);
     demi_part p;
     const dem_real *spot;
-    if (!form || !form->count) return demi_part_of(w, body, k);
-    spot = demi_spots_of(w, body) + 4*k;
+    if (form && !form->count) return demi_part_of(w, body, k);
+    spot = form ? demi_spots_of(w, body) + 4*k : w->bodies.pos + 4*body;
     p.ball = 1;
-    p.centre = demi_at(spot);
+    p.centre = form ? demi_at(spot) : demi_v(0, 0, 0);
     p.radius = spot[3];
     p.axes = demi_v(0, 0, 0);
     p.q = dem_quat_make(1, 0, 0, 0);
@@ -3830,14 +3824,9 @@ static int demi_list_drop(dem_world *w) {
     if (!w->stage.list_valid) return 1;
     if (!demi_carry_collect(w)) return 0;
     for (d = 0; d < w->domain_count; d++)
-        for (k = 0; k < w->domains[d].wall_contacts; k++) {
-            demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
-            c->body = (int32_t)w->bodies.slot[c->body];      /* from here on a slot */
-        }
-    for (d = 0; d < w->domain_count; d++)
-        for (k = 0; k < w->domains[d].shaped; k++) {
-            demi_shaped *c = &w->shaped_now[d*w->shaped_stride + k];
-            c->a = (int32_t)w->bodies.slot[c->a];
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept *c = &w->kept_now[d*w->kept_stride + k];
+            c->a = (int32_t)w->bodies.slot[c->a];            /* from here on slots */
             if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
         }
     w->stage.list_valid = 0;
@@ -3987,7 +3976,7 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.balance.present++;
     return (uint32_t)slot;
 }
-/* Do bodies of this shape (DEMI_BALL, ...) and walls of this kind know each other? (>>shaped) */
+/* Do bodies of this shape (DEMI_BALL, ...) and walls of this kind know each other? (>>kept) */
 static int demi_touch_known(int kind, int shape);
 /* body: its slot, -1: it is yet to come. */
 static dem_result demi_strangers(dem_world *w, const char *call, int wall, int kind, int body) {
@@ -6510,8 +6499,8 @@ static void demi_domain_search(dem_world *w, int d) {
 /* ---------------------------------------------------------------------------------------------
    >>lists
    What a rebuild puts next to the neighbour list: candidates on walls (elements that a body may
-   touch before the next rebuild), room for all lists, and the contacts with walls and of shaped
-   bodies that last: their memory goes from the lists of before, by slot, to those that are new. All
+   touch before the next rebuild), room for all lists, and the contacts that are kept (>>kept): they
+   go from the lists of before, by slot, to those that are new. All
    room is made before anything moves, so that a rebuild which gets no memory has changed nothing.
    --------------------------------------------------------------------------------------------- */
 
@@ -6657,15 +6646,6 @@ static int demi_cross_reserve(dem_world *w, size_t entries) {
                    DEMI_GROW(w, w->cross_push, 6*(entries + DEMI_LANES + 1));
     return ok;
 }
-/* Room for contacts with walls, now and next, and for the walls' sums. */
-static int demi_wall_contacts_reserve(dem_world *w, size_t now, size_t next) {
-    const size_t sums = (size_t)w->domain_count*(size_t)w->wall_count;
-    const int ok = DEMI_GROW(w, w->wall_now, now) &&
-                   DEMI_GROW(w, w->wall_next, next) &&
-                   DEMI_GROW(w, w->wall_sums, sums);
-    return ok;
-}
-
 /* The domain a body belongs to. */
 static int demi_domain_of(const dem_world *w, int body) {
     int d = (int)((int64_t)body*w->domain_count/w->bodies.count);
@@ -6697,27 +6677,6 @@ static int demi_cross_index(dem_world *w) {
         w->cross_incoming_start[d] = w->cross_incoming_start[d + 1];
     w->cross_incoming_start[w->domain_count] = w->cross_entries;
     return 1;
-}
-
-/* Writes the coefficients of a grain's contact with a wall. On a round wire the two radii of the
-   contact differ, r and r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's
-   ellipse for a wire as thick as the grain, 7 % for one of a fifth. */
-/* R* of a sphere of radius r with a wall. */
-static double demi_wall_r_eff(const demi_wall *wall, double r) {
-    const double q = (double)wall->sieve.bar/2;
-    if (demi_wall_is(wall, DEMI_BALLS)) return r*(double)wall->radius/(r + (double)wall->radius);
-    if (wall->sieve.kind == DEM_SIEVE_WIRES || wall->sieve.kind == DEM_SIEVE_BARS)
-        return r*sqrt(q/(r + q));
-    return r;
-}
-static void demi_wall_coefs(const dem_world *w, demi_wall_contact *c) {
-    const demi_wall *wall = &w->walls[c->wall];
-    const double r_eff = demi_wall_r_eff(wall, (double)w->bodies.pos[4*c->body + 3]);
-    const int grains = demi_wall_is(wall, DEMI_BALLS);
-    /* there a grain of a wall has mass */
-    const int mill = w->desc.convention == DEM_CONVENTION_MILL;
-    demi_coefficients(w, w->bodies.material[c->body] - 1, wall->material, r_eff,
-                      (double)w->bodies.mass[c->body]/(mill && grains ? 2 : 1), !grains, c->coef);
 }
 
 /* Places that candidate k of domain d may give at most. */
@@ -6763,95 +6722,43 @@ static int demi_touching_reserve(dem_world *w) {
 static int demi_stride_keep(int needed, int had) {
     return had > needed && had <= 2*needed ? had : needed;
 }
-/* Contacts with walls that still last, from the last list (by slot) into the domains of the new
-   one. */
-static int demi_wall_contacts_move(dem_world *w) {
-    int32_t here[DEMI_DOMAINS];
-    size_t n;
-    /* hardly ever more contacts than candidates */
-    int d, k, e = 0, total = 0, stride = w->wall_stride;
-    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].wall_contacts;
-    /* slabs cannot stop in the middle of a step to make room: as much as there may ever be */
-    if (w->bodies.visitor) stride = DEMI_MAX(stride, demi_places_most(w));
-    memset(here, 0, sizeof here);
-    for (d = 0; d < DEMI_DOMAINS; d++)          /* how many each domain will have */
-        for (k = 0; k < w->domains[d].wall_contacts; k++) {
-            const demi_wall_contact *c = &w->wall_now[(size_t)d*(size_t)w->wall_now_stride +
-                                                      (size_t)k];
-            const int body = w->bodies.slot_index[c->body];
-            if (body < 0 || w->walls[c->wall].kind == DEMI_WALL_NONE) continue;
-            stride = DEMI_MAX(stride, ++here[demi_domain_of(w, body)]);
-        }
-    stride = demi_stride_keep(stride, w->wall_now_stride);
-    n = (size_t)w->domain_count*(size_t)stride;
-    if (!demi_wall_contacts_reserve(w, n, DEMI_MAX(n, (size_t)total))) return 0;
-    for (d = 0; d < DEMI_DOMAINS; d++) {  /* gather all in wall_next, slots turned to indices */
-        for (k = 0; k < w->domains[d].wall_contacts; k++) {
-            demi_wall_contact c = w->wall_now[(size_t)d*(size_t)w->wall_now_stride + (size_t)k];
-            c.body = w->bodies.slot_index[c.body];
-            if (c.body < 0 || w->walls[c.wall].kind == DEMI_WALL_NONE) continue;
-            demi_wall_coefs(w, &c);
-            w->wall_next[e++] = c;
-        }
-        w->domains[d].wall_contacts = 0;
-    }
-    w->wall_now_stride = stride;
-    for (k = 0; k < e; k++) {  /* deal out; insertion keeps each domain sorted by body */
-        const demi_wall_contact c = w->wall_next[k];
-        demi_wall_contact *to;
-        int i;
-        d = demi_domain_of(w, c.body);
-        to = w->wall_now + (size_t)d*(size_t)stride;
-        for (i = w->domains[d].wall_contacts++; i > 0 && to[i - 1].body > c.body; i--)
-            to[i] = to[i - 1];
-        to[i] = c;
-    }
-    return 1;
-}
-/* More room for each domain's, in a step. 0 when memory ran out; nothing is lost. */
-static int demi_wall_contacts_widen(dem_world *w) {
-    const size_t old = (size_t)w->wall_now_stride, stride = old + old/2 + 16;
-    const size_t n = (size_t)w->domain_count*stride;
-    int d;
-    if (n > (size_t)INT_MAX/8 || !demi_wall_contacts_reserve(w, n, n)) return 0;
-    for (d = w->domain_count - 1; d > 0; d--)
-        memmove(w->wall_now + (size_t)d*stride, w->wall_now + (size_t)d*old,
-                (size_t)w->domains[d].wall_contacts*sizeof(demi_wall_contact));
-    w->wall_now_stride = (int)stride;
-    return 1;
-}
-
-/* Room for the contacts of shaped bodies in the domains of a new list; nothing moves yet. Answers
-   how many a domain then holds, 0: there are none to move, -1: memory ran out. */
-static int demi_shaped_room(dem_world *w) {
-    int d, k, total = 0, stride = DEMI_MAX(64, w->bodies.count/w->domain_count*4);
+/* Room for contacts in the domains of a new list, and for the walls' sums; nothing moves yet.
+   Answers how many contacts a domain then holds, 0: there can be none, -1: memory ran out. */
+static int demi_kept_room(dem_world *w) {
+    const int shaped = w->bodies.shaped ? DEMI_MAX(64, w->bodies.count/w->domain_count*4) : 0;
+    int d, k, total = 0, stride = w->wall_count ? w->wall_stride : 0;
     int crowd[DEMI_DOMAINS], ok;
+    /* slabs of spheres do not stop in the middle of a step to make room: as much as there may ever
+       be, where else there are hardly more contacts than candidates */
+    if (w->bodies.visitor) stride = DEMI_MAX(stride, demi_places_most(w));
+    stride += shaped;
     for (d = 0; d < DEMI_DOMAINS; d++) {
-        total += w->domains[d].shaped;
+        total += w->domains[d].kept;
         crowd[d] = 0;
     }
-    if (!w->bodies.shaped && !total) return 0;
+    if (!stride && !total) return 0;
     for (d = 0; d < DEMI_DOMAINS; d++)          /* how many will come to each domain at most */
-        for (k = 0; k < w->domains[d].shaped; k++) {
-            const demi_shaped *c = &w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
+        for (k = 0; k < w->domains[d].kept; k++) {
+            const demi_kept *c = &w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
             const int a = w->bodies.slot_index[c->a], b = c->b < 0 ? a : w->bodies.slot_index[c->b];
             if (a >= 0 && b >= 0) crowd[demi_domain_of(w, DEMI_MIN(a, b))]++;
         }
     for (d = 0; d < DEMI_DOMAINS; d++) stride = DEMI_MAX(stride, crowd[d]);
-    stride = demi_stride_keep(stride, w->shaped_stride);
-    ok = DEMI_GROW(w, w->shaped_next,
+    stride = demi_stride_keep(stride, w->kept_stride);
+    ok = DEMI_GROW(w, w->wall_sums, (size_t)w->domain_count*(size_t)w->wall_count) &&
+         DEMI_GROW(w, w->kept_next,
                    DEMI_MAX((size_t)stride*(size_t)w->domain_count, (size_t)total)) &&
-         DEMI_GROW(w, w->shaped_now, (size_t)stride*(size_t)w->domain_count);
+         DEMI_GROW(w, w->kept_now, (size_t)stride*(size_t)w->domain_count);
     return ok ? stride : -1;
 }
-/* Contacts of shaped bodies that still last, from the last list (by slot) into the domains of the
-   new one, each with its lower body as a: what turns round, turns round. */
-static void demi_shaped_move(dem_world *w, int stride) {
+/* Contacts that still last, from the last list (by slot) into the domains of the new one, each with
+   its lower body as a: what turns round, turns round. */
+static void demi_kept_move(dem_world *w, int stride) {
     int d, k, e = 0, i;
     if (!stride) return;
     for (d = 0; d < DEMI_DOMAINS; d++) {
-        for (k = 0; k < w->domains[d].shaped; k++) {
-            demi_shaped c = w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept c = w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
             const int pair = c.b >= 0;
             c.a = w->bodies.slot_index[c.a];
             if (pair) c.b = w->bodies.slot_index[c.b];
@@ -6867,23 +6774,25 @@ static void demi_shaped_move(dem_world *w, int stride) {
                 for (i = 0; i < w->memory_stride; i++)
                     if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
             }
-            w->shaped_next[e++] = c;
+            c.coef_m = 0;                       /* materials may have changed */
+            if (!pair && !demi_form_of(w, c.a)) c.m_eff = w->bodies.mass[c.a];
+            w->kept_next[e++] = c;
         }
-        w->domains[d].shaped = 0;
+        w->domains[d].kept = 0;
     }
-    w->shaped_stride = stride;
+    w->kept_stride = stride;
     /* deal out in the order of body a; `order` has done its work in the search and counts here */
     memset(w->bodies.order, 0, (size_t)w->bodies.count*sizeof *w->bodies.order);
-    for (k = 0; k < e; k++) w->bodies.order[w->shaped_next[k].a]++;
+    for (k = 0; k < e; k++) w->bodies.order[w->kept_next[k].a]++;
     for (d = 0; d < w->domain_count; d++)
         for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
             const int here = w->bodies.order[i];
-            w->bodies.order[i] = w->domains[d].shaped;
-            w->domains[d].shaped += here;
+            w->bodies.order[i] = w->domains[d].kept;
+            w->domains[d].kept += here;
         }
     for (k = 0; k < e; k++) {
-        const demi_shaped *c = &w->shaped_next[k];
-        w->shaped_now[(size_t)demi_domain_of(w, c->a)*(size_t)stride +
+        const demi_kept *c = &w->kept_next[k];
+        w->kept_now[(size_t)demi_domain_of(w, c->a)*(size_t)stride +
             (size_t)w->bodies.order[c->a]++] = *c;
     }
 }
@@ -7133,7 +7042,7 @@ static void demi_near_choose(dem_world *w) {
             const demi_domain *domain = &w->domains[d];
             near += domain->near_own + domain->near_end - domain->near_cross;
             near += 4*(domain->near_shaped_end - domain->near_shaped);
-            touching += domain->contacts + 3*(domain->shaped - domain->shaped_walls);
+            touching += domain->contacts + 3*(domain->kept - domain->kept_walls);
             candidates += domain->own + domain->cross;
         }
         if (w->bodies.shaped) candidates *= 6;   /* supports, and some meetings */
@@ -7313,10 +7222,9 @@ static int demi_domains_for(int count) {
 /* A domain out of use: what it counted long ago must not steer the next lists. Contacts that last
    are still to be moved. */
 static void demi_domain_forget(demi_domain *o) {
-    const int wall_contacts = o->wall_contacts, shaped = o->shaped;
+    const int kept = o->kept;
     memset(o, 0, sizeof *o);
-    o->wall_contacts = wall_contacts;
-    o->shaped = shaped;
+    o->kept = kept;
 }
 /* Says that a body is nowhere: a run that blew up before, and was gone on with. */
 static dem_result demi_lost(dem_world *w, int body) {
@@ -7463,14 +7371,8 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     w->filed.memory = fresh;
     w->filed.stride = (int)to;
     for (d = 0; d < w->domain_count; d++) {
-        for (k = 0; k < w->domains[d].wall_contacts; k++) {
-            demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
-            memcpy(old, c->memory, sizeof old);
-            memset(c->memory, 0, sizeof c->memory);
-            demi_memory_map(was, &w->laws, old, c->memory);
-        }
-        for (k = 0; k < w->domains[d].shaped; k++) {
-            demi_shaped *c = &w->shaped_now[d*w->shaped_stride + k];
+        for (k = 0; k < w->domains[d].kept; k++) {
+            demi_kept *c = &w->kept_now[d*w->kept_stride + k];
             memcpy(old, c->memory, sizeof old);
             memset(c->memory, 0, sizeof c->memory);
             demi_memory_map(was, &w->laws, old, c->memory);
@@ -7550,12 +7452,12 @@ static int demi_walls_find(dem_world *w) {
     } while (demi_lists_overflow(w, 4));
     return 1;
 }
-/* Memory of contacts with walls and of shaped bodies moves to the new lists: all room first, for
-   what has moved cannot go back. */
+/* Contacts that are kept move to the new lists: all room first, for what has moved cannot go
+   back. */
 static int demi_contacts_move(dem_world *w) {
-    const int stride = demi_shaped_room(w);
-    if (stride < 0 || !demi_touching_reserve(w) || !demi_wall_contacts_move(w)) return 0;
-    demi_shaped_move(w, stride);
+    const int stride = demi_kept_room(w);
+    if (stride < 0 || !demi_touching_reserve(w)) return 0;
+    demi_kept_move(w, stride);
     return 1;
 }
 /* Slots freed since the last list may be used again. */
@@ -9009,98 +8911,9 @@ static const char *demi_kernel_choose(dem_world *w) {
 
 /* ---------------------------------------------------------------------------------------------
    >>on-walls
-   Spheres on walls: touch and respond, one contact after the other. touch collects the places where
-   a sphere and a wall meet and gives each the memory it had a step ago; respond asks the law,
-   pushes the body and adds up what the wall bears.
+   Where spheres, clusters being many of them, touch walls, and what ellipsoids share with them on
+   surfaces of facets: geometry only. What becomes of the places that are found stands in >>kept.
    --------------------------------------------------------------------------------------------- */
-
-/* How well an old contact fits a new one: by their normals; where those are nearly the same (within
-   some 3 degrees), rather one that nothing continues yet; then the same wall, and the same sign of
-   what they count. */
-DEM_INLINE dem_real demi_match(dem_vec3 old, dem_vec3 now, int taken, int wall, int sign) {
-    const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
-    return demi_dot(old, now) + (taken ? 0 : DEM_R(1e-3)) + (wall ? hair : 0) + (sign ? 2*hair : 0);
-}
-/* The old contact that a new one continues: same wall and element; else the one of nearest normal,
-   within about 18 degrees, that nothing else continues: the grain slid on to the neighbour. A place
-   of a surface that begins at depth has split off another one, and takes a copy of its memory: as
-   often as two come, one that takes away comes with them (>>facets). Walls that do not move against
-   each other are one here. */
-static const demi_wall_contact *demi_wall_match(const dem_world *w, const demi_wall_contact *old,
-                                                int olds, const demi_wall_contact *fresh,
-                                                int freshs, const demi_wall_contact *c) {
-    const demi_wall_contact *best = 0;
-    dem_real nearest = 0;
-    int i, j;
-    for (i = 0; i < olds; i++) if (old[i].wall == c->wall &&
-                                   old[i].element == c->element) return &old[i];
-    for (i = 0; i < olds; i++) {
-        dem_real along;
-        int taken = 0;
-        if (!(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) ||
-            w->walls[old[i].wall].group != w->walls[c->wall].group) continue;
-        for (j = 0; j < freshs && !taken; j++) taken = fresh[j].wall == old[i].wall &&
-            fresh[j].element == old[i].element;
-        along = demi_match(old[i].normal, c->normal, taken, old[i].wall == c->wall,
-                           (old[i].share < 0) == (c->share < 0));
-        if (!(along > nearest)) continue;
-        if (taken && (!demi_faceted(&w->walls[c->wall]) || !(2*c->overlap > old[i].overlap)))
-            continue;
-        nearest = along;
-        best = &old[i];
-    }
-    return best;
-}
-
-/* The contact between a grain and a wall as a law sees it. */
-DEM_INLINE void demi_wall_contact_fill(const dem_world *w, const demi_wall_contact *k, dem_real dt,
-                                       dem_contact *c, dem_vec3 *surface) {
-    const dem_vec3 normal_before = k->normal_before;
-    const demi_wall *wall = &w->walls[k->wall];
-    const dem_real *x = w->bodies.pos + 4*k->body, r = x[3];
-    const dem_vec3 n = k->normal, spin = demi_at(w->bodies.spin + 4*k->body);
-    const dem_vec3 centre = demi_add(demi_at(x), k->shift), at = demi_add(centre, demi_scale(n, r));
-    const dem_vec3 arm = demi_sub(at, wall->pose.position);
-    /* where the contact was in the middle of the step: taken where it is now instead, a grain that
-       is carried round creeps outwards by w^2 R dt/2 */
-    const dem_vec3 was = demi_sub(demi_add(centre, demi_scale(demi_add(n, normal_before), r/2)),
-                                  demi_scale(demi_at(w->bodies.half_vel + 4*k->body), dt/2));
-    const dem_vec3 mid = demi_add(wall->mid.velocity, demi_cross(wall->mid.spin,
-        demi_sub(was, wall->mid.position)));
-    const dem_vec3 spin_step = demi_at(w->bodies.half_spin + 4*k->body);
-    dem_vec3 u;
-    *surface = demi_add(wall->pose.velocity, demi_cross(wall->pose.spin, arm));
-    u = demi_sub(demi_at(w->bodies.vel + 4*k->body), *surface);
-    memset(c, 0, sizeof *c);
-    c->overlap = k->overlap;
-    c->normal = n;
-    c->closing_speed = demi_dot(u, n);
-    c->slip = demi_add(demi_sub(u, demi_scale(n, c->closing_speed)),
-                       demi_scale(demi_cross(spin, n), r));
-    c->spin = demi_sub(spin, wall->pose.spin);
-    c->slip_step = demi_slip_step(n, demi_scale(demi_add(n, normal_before), DEM_R(0.5)),
-                                  demi_sub(demi_at(w->bodies.half_vel + 4*k->body), mid),
-                                  demi_scale(spin_step, r));
-    c->spin_step = demi_sub(spin_step, wall->mid.spin);
-    c->dt = dt;
-    if (dt > 0) {
-        const dem_vec3 turn = demi_scale(demi_sub(n, normal_before), 1/dt);
-        c->normal_rate = demi_sub(turn, demi_scale(n, demi_dot(turn, n)));
-    }
-    c->twist = demi_dot(demi_add(spin_step, wall->mid.spin), n)/2;
-    c->r_eff = k->coef[DEMI_R_EFF];
-    c->m_eff = w->bodies.mass[k->body];
-    c->kn = k->coef[DEMI_KN]; c->cn = k->coef[DEMI_CN]; c->kt = k->coef[DEMI_KT];
-    c->ct = k->coef[DEMI_CT];
-    c->kun = k->coef[DEMI_K_UN]; c->kad = k->coef[DEMI_K_AD];
-    c->friction = k->coef[DEMI_MU]; c->friction_static = k->coef[DEMI_MU_STATIC];
-    c->rolling_friction = k->coef[DEMI_MU_ROLL];
-    c->material_a = w->bodies.material[k->body];
-    c->material_b = wall->material + 1;
-    c->wall = k->wall + 1;
-    demi_contact_choices(w, c);
-    c->user = w->desc.law_user;
-}
 
 /* m: as far as any grain and any wall have come towards each other since the list was made. */
 DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
@@ -9273,143 +9086,25 @@ static int demi_sieve_spheres(const dem_world *w, int d, int first, int last, de
                               dem_vec3 at, const demi_part *part, demi_touching **places) {
     return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 2, 0);
 }
-/* By the table of who touches what, which stands in >>shaped. */
-static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
-                             const demi_part *part, demi_touching **places);
-
-/* Spheres and walls of one domain: who touches where, with the memory of the step before. Runs out
-   of room: the caller makes more and begins anew, nothing lost. */
-static void demi_domain_walls_touch(dem_world *w, int d) {
-    demi_domain *domain = &w->domains[d];
-    const int base = d*w->wall_stride;
-    const demi_wall_contact *old = w->wall_now + (size_t)d*(size_t)w->wall_now_stride;
-    demi_wall_contact *out = w->wall_next + (size_t)d*(size_t)w->wall_now_stride;
-    const dem_real gone = demi_walls_gone(w);
-    demi_part sphere;
-    int k, last, q, e, count = 0, o = 0, o_end;
-    memset(&sphere, 0, sizeof sphere);
-    sphere.ball = 1;
-    domain->wall_contacts_next = 0;
-    domain->overflow &= ~32;
-    for (k = 0; k < domain->walls; k = last) {
-        const int body = w->wall_body[base + k], wall = w->wall_id[base + k];
-        demi_touching *at;
-        int n;
-        last = k + 1;
-        if (w->wall_gap[base + k] > gone) continue;     /* the body is not looked at */
-        while (last < domain->walls && w->wall_body[base + last] == body &&
-               w->wall_id[base + last] == wall) last++;
-        if (w->bodies.shaped && demi_form_of(w, body)) continue;     /* in >>shaped */
-        sphere.radius = w->bodies.pos[4*body + 3];
-        n = demi_wall_collect(w, d, k, last, demi_at(w->bodies.pos + 4*body), &sphere, &at);
-        if (!n) continue;
-        if (count + n > w->wall_now_stride) { domain->overflow |= 32; return; }
-        while (o < domain->wall_contacts && old[o].body < body) o++;
-        for (o_end = o; o_end < domain->wall_contacts && old[o_end].body == body;) o_end++;
-        for (q = 0; q < n; q++) {
-            demi_wall_contact *c = &out[count + q];
-            c->body = body;
-            c->wall = wall;
-            c->element = at[q].element;
-        }
-        for (q = 0; q < n; q++) {
-            demi_wall_contact *c = &out[count + q];
-            const demi_wall_contact *from;
-            c->normal = at[q].normal;
-            c->point = at[q].point;
-            c->overlap = at[q].overlap;
-            c->share = at[q].share;
-            c->shift = at[q].shift;
-            from = demi_wall_match(w, old + o, o_end - o, out + count, n, c);
-            c->normal_before = from ? from->normal : c->normal;
-            if (from) memcpy(c->memory, from->memory, sizeof c->memory);
-            else memset(c->memory, 0, sizeof c->memory);
-            if (from && from->wall == wall) memcpy(c->coef, from->coef, sizeof c->coef);
-            else demi_wall_coefs(w, c);
-            if (w->walls[wall].sieve.kind != DEM_SIEVE_REDUCED) continue;
-            for (e = o; e < o_end; e++)         /* under way: to the end */
-                if (old[e].wall == wall && !(old[e].overlap > 0)) c->share = 0;
-            if (!(c->share > 0)) c->overlap = 0;
-        }
-        count += n;
-    }
-    domain->wall_contacts_next = count;
-}
-
-DEM_INLINE void demi_push_add(dem_real *sum, dem_vec3 f) {
-    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
-}
-/* What a push of `force` at a place, with a moment, adds to its wall's sums. */
-DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
-                              dem_vec3 force, dem_vec3 moment, dem_vec3 surface) {
-    const dem_vec3 arm = demi_sub(at, w->walls[wall].motion.point);
-    const dem_vec3 torque = demi_add(demi_cross(arm, force), moment);
-    sum->force[0] -= (double)force.x; sum->force[1] -= (double)force.y;
-    sum->force[2] -= (double)force.z;
-    sum->torque[0] -= (double)torque.x; sum->torque[1] -= (double)torque.y;
-    sum->torque[2] -= (double)torque.z;
-    sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
-    sum->contacts++;
-}
-/* grip: how often friction and rolling count, which may differ from the rest (>>shaped). */
-DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *part, dem_real share,
-                                dem_real grip) {
-    domain->energy[DEMI_E_DASHPOT] += (double)(share*(part->dashpot + part->sag));
-    domain->energy[DEMI_E_ELASTIC] += (double)(share*part->elastic);
-    domain->energy[DEMI_E_SHEAR_WORK] += (double)(grip*part->shear_work);
-    domain->energy[DEMI_E_SLIDE] += (double)(grip*part->slide);
-    domain->energy[DEMI_E_SHEAR_STORED] += (double)(grip*part->shear_stored);
-    domain->energy[DEMI_E_ROLL] += (double)(grip*part->roll);
-}
-
-/* All wall contacts of one domain's spheres: law, forces, sums. */
-static void demi_walls_respond(dem_world *w, int d) {
-    demi_domain *domain = &w->domains[d];
-    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
-    demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
-    int k;
-    for (k = 0; k < domain->wall_contacts_next; k++) {
-        demi_wall_contact *c = w->wall_next + (size_t)d*(size_t)w->wall_now_stride + k;
-        const int body = c->body;
-        const dem_real r = w->bodies.pos[4*body + 3];
-        dem_contact contact;
-        dem_push f;
-        dem_vec3 surface, force, torque;
-        c->force = demi_v(0, 0, 0);
-        if (!(c->overlap > 0)) continue;        /* under way: nobody is pushed, nothing is told */
-        demi_wall_contact_fill(w, c, dt, &contact, &surface);
-        demi_law(w, &contact, c->memory, &f);
-        force = demi_scale(demi_sub(f.tangent, demi_scale(contact.normal, f.normal)), c->share);
-        f.moment = demi_scale(f.moment, c->share);
-        torque = demi_add(demi_scale(demi_cross(contact.normal, force), r), f.moment);
-        c->force = force;
-        demi_push_add(w->bodies.force + 4*body, force);
-        demi_push_add(w->bodies.torque + 4*body, torque);
-        demi_wall_sum_add(w, &sums[c->wall], c->wall,
-                          demi_add(demi_add(demi_at(w->bodies.pos + 4*body), c->shift),
-                                   demi_scale(contact.normal, r)), force, f.moment, surface);
-        domain->overlap = DEMI_MAX(domain->overlap, (double)(c->overlap/r));
-        demi_energy_add(domain, &f.energy, c->share, c->share);
-    }
-    domain->wall_contacts = domain->wall_contacts_next;
-}
 
 /* ---------------------------------------------------------------------------------------------
-   >>shaped
-   Contacts of bodies that are not spheres, with each other, with spheres and with walls. Two bodies
-   may touch in several places and each may push past the centre, so these contacts are kept one by
-   one: touch finds them (geometry only: parts against parts, parts against wall elements), with the
-   memory of the step before; respond asks the law and pushes. Within a domain they stand in the
-   order of their body a. Touch may run out of room; it then begins anew with more, nothing lost.
+   >>kept
+   Contacts that are kept by themselves: all but those of sphere and sphere (>>respond). Two bodies
+   may touch in several places and each may push past the centre; a wall is touched in as many
+   places as it has surfaces near: so these contacts are kept one by one. touch finds them (geometry
+   only: parts against parts, parts against wall elements) and which of the step before each
+   continues; respond takes memory over from that one, asks the law and pushes. Within a domain they
+   stand in the order of their body a. Touch may run out of room; it then begins anew with more,
+   nothing lost.
    --------------------------------------------------------------------------------------------- */
 
 /* One contact as touch finds it. */
-static demi_shaped *demi_shaped_new(dem_world *w, int d) {
+static demi_kept *demi_kept_new(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    demi_shaped *c;
-    if (domain->shaped_next >= w->shaped_stride) { domain->overflow |= 16; return 0; }
-    c = w->shaped_next + (size_t)d*(size_t)w->shaped_stride + domain->shaped_next++;
-    memset(c, 0, sizeof *c);
+    demi_kept *c;
+    if (domain->kept_next >= w->kept_stride) { domain->overflow |= 16; return 0; }
+    c = w->kept_next + (size_t)d*(size_t)w->kept_stride + domain->kept_next++;
+    memset(c, 0, offsetof(demi_kept, coef));
     c->b = -1;
     c->share = c->slope = c->inset = 1;
     return c;
@@ -9419,10 +9114,10 @@ static demi_shaped *demi_shaped_new(dem_world *w, int d) {
 
 /* --- two parts, if they touch: geometry into c. lambda: where to begin, 0: unknown --- */
 typedef int (*demi_meet_fn)(const dem_world *w, const demi_part *p, const demi_part *q,
-                            dem_vec3 gap, double lambda, demi_shaped *c);
+                            dem_vec3 gap, double lambda, demi_kept *c);
 /* Two spheres share the distance as their radii do. */
 static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                            dem_vec3 gap, double lambda, demi_shaped *c) {
+                            dem_vec3 gap, double lambda, demi_kept *c) {
     const dem_real d = demi_length(gap), sum = p->radius + q->radius;
     (void)w; (void)lambda;
     if (!(d < sum)) return 0;
@@ -9437,7 +9132,7 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
 }
 /* Ellipsoids, or one and a sphere, as Perram and Wertheim's point does. */
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                 dem_vec3 gap, double lambda, demi_shaped *c) {
+                                 dem_vec3 gap, double lambda, demi_kept *c) {
     const dem_real d = demi_length(gap);
     double A[6], B[6], r[3], n[3], ha, hb, w0, ra, rb;
     demi_meet m;
@@ -9474,18 +9169,34 @@ static const demi_meet_fn demi_meets[DEMI_SHAPES][DEMI_SHAPES] = {
     {demi_balls_touch, demi_ellipsoids_touch},
     {demi_ellipsoids_touch, demi_ellipsoids_touch}};
 
-/* The old contact that a new one continues, among those of the same body a: same partner and parts.
-   On a wall, failing that, what demi_wall_match takes, of the same part. */
-static const demi_shaped *demi_shaped_match(const dem_world *w, const demi_shaped *old, int olds,
-                                            const demi_shaped *fresh, int freshs,
-                                            const demi_shaped *c) {
-    const demi_shaped *best = 0;
-    dem_real nearest = 0;
-    int i, j;
+/* Number in its domain of the old contact with the same partner and parts, or with the same wall,
+   part and element, among those that body a had; -1: none. */
+DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, int olds, int b,
+                              int part_a, int part_b, int wall, int element) {
+    int i;
     for (i = 0; i < olds; i++)
-        if (old[i].b == c->b && old[i].part_a == c->part_a && old[i].part_b == c->part_b &&
-            old[i].wall == c->wall && old[i].element == c->element) return &old[i];
-    if (c->b >= 0) return 0;
+        if (old[i].element == element && old[i].wall == wall && old[i].part_a == part_a &&
+            old[i].b == b && old[i].part_b == part_b)
+            return (int)(old - (w->kept_now + (size_t)d*(size_t)w->kept_stride)) + i;
+    return -1;
+}
+/* How well an old contact fits a new one: by their normals; where those are nearly the same (within
+   some 3 degrees), rather one that nothing continues yet; then the same wall, and the same sign of
+   what they count. */
+DEM_INLINE dem_real demi_match(dem_vec3 old, dem_vec3 now, int taken, int wall, int sign) {
+    const dem_real hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
+    return demi_dot(old, now) + (taken ? 0 : DEM_R(1e-3)) + (wall ? hair : 0) + (sign ? 2*hair : 0);
+}
+/* The same for a contact with a wall where that finds none: the one of the same part and of nearest
+   normal, within about 18 degrees, that nothing else continues: the grain slid on to the neighbour.
+   A place of a surface that begins at depth has split off another one, and takes a copy of its
+   memory: as often as two come, one that takes away comes with them (>>facets). Walls that do not
+   move against each other are one here. fresh: all that are new with this wall. */
+static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int olds,
+                          const demi_kept *fresh, int freshs, const demi_kept *c) {
+    const int first = (int)(old - (w->kept_now + (size_t)d*(size_t)w->kept_stride));
+    dem_real nearest = 0;
+    int i, j, best = -1;
     for (i = 0; i < olds; i++) {
         dem_real along;
         int taken = 0;
@@ -9493,26 +9204,17 @@ static const demi_shaped *demi_shaped_match(const dem_world *w, const demi_shape
             old[i].part_a != c->part_a ||
             w->walls[old[i].wall].group != w->walls[c->wall].group) continue;
         for (j = 0; j < freshs && !taken; j++)
-            taken = fresh[j].b < 0 && fresh[j].wall == old[i].wall &&
-                    fresh[j].element == old[i].element && fresh[j].part_a == old[i].part_a;
+            taken = fresh[j].wall == old[i].wall && fresh[j].element == old[i].element;
         along = demi_match(old[i].normal, c->normal, taken, old[i].wall == c->wall,
                            (old[i].weight < 0) == (c->share < 0));
         if (!(along > nearest)) continue;
         if (taken && (!demi_faceted(&w->walls[c->wall]) || !(2*c->overlap > old[i].overlap)))
             continue;
         nearest = along;
-        best = &old[i];
+        best = first + i;
     }
     return best;
 }
-static void demi_shaped_recall(demi_shaped *c, const demi_shaped *old) {
-    c->normal_before = old ? old->normal : c->normal;
-    c->arm_before_a = old ? old->arm_a : c->arm_a;
-    c->arm_before_b = old ? old->arm_b : c->arm_b;
-    if (!old) return;
-    memcpy(c->memory, old->memory, sizeof c->memory);
-}
-
 /* 1/mass that a push along n through arm feels at a body: 1/m + (arm x n).I^-1 (arm x n). */
 static double demi_contact_give(const dem_world *w, int body, dem_vec3 arm, dem_vec3 n) {
     const double inv = (double)w->bodies.inv_mass[body];
@@ -9526,25 +9228,25 @@ static double demi_contact_give(const dem_world *w, int body, dem_vec3 arm, dem_
 /* How far two contacts of one pair push the same way, t: 1 within 25 degrees, 0 beyond 45. *rate:
    how t changes with the cosine between their normals. Those of one part are not shared: they are
    counted already, by what they weigh. */
-DEM_INLINE dem_real demi_shaped_along(const demi_shaped *a, const demi_shaped *b, dem_real *rate) {
+DEM_INLINE dem_real demi_kept_along(const demi_kept *a, const demi_kept *b, dem_real *rate) {
     const dem_real zero = DEM_R(0.7071067811865476), one = DEM_R(0.9063077870366499);
     const dem_real t = (demi_dot(a->normal, b->normal) - zero)/(one - zero);
     *rate = t > 0 && t < 1 ? 6*t*(1 - t)/(one - zero) : 0;
     return !(t > 0) ? 0 : t < 1 ? t*t*(3 - 2*t) : 1;
 }
-DEM_INLINE dem_real demi_shaped_alike(const demi_shaped *a, const demi_shaped *b, dem_real *rate) {
+DEM_INLINE dem_real demi_kept_alike(const demi_kept *a, const demi_kept *b, dem_real *rate) {
     *rate = 0;
-    return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_shaped_along(a, b, rate);
+    return a->part_a == b->part_a && a->part_b == b->part_b ? 0 : demi_kept_along(a, b, rate);
 }
 /* The force aside on contact c's ball that has c's normal turn towards, or away from, another's:
    -(dE/dt)(dt/dcos) d(n.other)/dx. push: the first two. */
-DEM_INLINE void demi_shaped_aside(demi_shaped *c, dem_vec3 other, dem_real push) {
+DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
     dem_vec3 turn = demi_sub(other, demi_scale(c->normal, demi_dot(other, c->normal)));
     turn = demi_sub(turn, demi_scale(c->axis, demi_dot(other, c->axis)));
     c->aside = demi_add(c->aside, demi_scale(turn, push*c->bend));
 }
 /* What the shared energy (below) asks of contacts whose shares are known: lift, aside, grip. */
-static void demi_shaped_lift(const dem_world *w, demi_shaped *c, int n) {
+static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
     const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2);
     dem_real rate;
@@ -9554,7 +9256,7 @@ static void demi_shaped_lift(const dem_world *w, demi_shaped *c, int n) {
         if (!(d > 0)) continue;
         c[k].lift = c[k].share*(1 + 2/p*c[k].rate*c[k].added*d*d/c[k].area);
         for (i = 0; i < n; i++) {
-            const dem_real t = i == k ? 0 : demi_shaped_alike(&c[i], &c[k], &rate);
+            const dem_real t = i == k ? 0 : demi_kept_alike(&c[i], &c[k], &rate);
             const dem_real e = c[i].overlap, more = e/d;
             /* U'(d_i) over U'(d_k); E_i over U'(d_k) and A_i */
             const dem_real steep = hertz ? more*DEMI_SQRT(more*c[i].r_eff/c[k].r_eff) : more;
@@ -9562,14 +9264,14 @@ static void demi_shaped_lift(const dem_world *w, demi_shaped *c, int n) {
             if (!(t > 0) || !(e > 0)) continue;
             c[k].lift -= far*2*t*c[k].weight*d;
             if (rate > 0)
-                demi_shaped_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
+                demi_kept_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
                                   own*c[k].rate/c[k].area*c[i].weight*e*e));
         }
     }
     for (k = 0; k < n; k++) {
         dem_real lift = 0, share = 0, own = 0;
         for (i = 0; i < n; i++) {
-            const dem_real t = i == k ? 1 : demi_shaped_along(&c[i], &c[k], &rate);
+            const dem_real t = i == k ? 1 : demi_kept_along(&c[i], &c[k], &rate);
             const dem_real e = c[i].overlap > 0 ? c[i].overlap : 0;
             const dem_real press = t*(hertz ? e*DEMI_SQRT(e*c[i].r_eff) : e);   /* ~ U'(d_i) */
             lift += press*c[i].lift;
@@ -9582,7 +9284,7 @@ static void demi_shaped_lift(const dem_world *w, demi_shaped *c, int n) {
 }
 /* Room that contact i leaves to itself: 1 + x, x what the others add, over d_i^2; where others take
    away (>>facets) smoothly no less than a quarter. *rate: how it changes with x. */
-static dem_real demi_shaped_room_of(dem_real x, dem_real *rate) {
+static dem_real demi_kept_room_of(dem_real x, dem_real *rate) {
     const dem_real below = DEM_R(0.0625)/(DEM_R(-0.25) - x);    /* x < -1/2 */
     *rate = x < DEM_R(-0.5) ? 16*below*below : DEM_R(1);
     return x < DEM_R(-0.5) ? DEM_R(0.25) + below : 1 + x;
@@ -9604,7 +9306,7 @@ static dem_real demi_shaped_room_of(dem_real x, dem_real *rate) {
    number can do without. Damping goes by s, and feels the mass at their common middle; friction by
    s times (sum of lift U' over sum of s U'), so that mu is the ratio of both sums. Checked by "a
    cluster that lands on one, two and three spheres" and tests/test_facets.c. */
-static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
+static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
     const int one = w->desc.cluster_contacts == DEM_SHARING_ONE;
     int i, j;
     for (i = 0; i < n; i++) {
@@ -9616,7 +9318,7 @@ static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
         c[i].m_eff = w->bodies.mass[c[i].a];
         if (!(c[i].overlap > 0)) continue;      /* pushes nobody */
         for (j = 0; j < n && one; j++) {
-            const dem_real t = j == i ? 0 : demi_shaped_alike(&c[i], &c[j], &rate);
+            const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0)) continue;
             A += add;
@@ -9624,7 +9326,7 @@ static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
             arm_b = demi_add(arm_b, demi_scale(c[j].arm_b, add));
         }
         c[i].added = A/d2 - 1;
-        c[i].area = d2*demi_shaped_room_of(c[i].added, &c[i].rate);
+        c[i].area = d2*demi_kept_room_of(c[i].added, &c[i].rate);
         c[i].share = c[i].weight*d2/c[i].area;
         if (!(A > d2/2)) {                      /* others take away: its own place will do */
             A = d2;
@@ -9636,11 +9338,11 @@ static void demi_shaped_share(const dem_world *w, demi_shaped *c, int n) {
             give += demi_contact_give(w, c[i].b, demi_scale(arm_b, 1/A), c[i].normal);
         c[i].m_eff = (dem_real)(1/give);
     }
-    if (one && n > 1) demi_shaped_lift(w, c, n);
+    if (one && n > 1) demi_kept_lift(w, c, n);
 }
 
 /* All contacts of one near pair. old: those body a had in the step before. */
-static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_shaped *old,
+static void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
                              int olds) {
     const int a = w->near.a[at], b = w->near.b[at];
     const dem_real *shift = w->image_shift + w->near.image[at];
@@ -9649,8 +9351,9 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
                                 demi_at(shift));
     const dem_real rb = w->bodies.pos[4*b + 3];
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
-    const int first = w->domains[d].shaped_next;
-    demi_shaped *from = w->shaped_next + (size_t)d*(size_t)w->shaped_stride + first;
+    const int first = w->domains[d].kept_next;
+    const demi_kept *now = w->kept_now + (size_t)d*(size_t)w->kept_stride;
+    demi_kept *from = w->kept_next + (size_t)d*(size_t)w->kept_stride + first;
     int i, j;
     if (!(demi_length(r) < w->bodies.pos[4*a + 3] + rb)) return;
     for (i = 0; i < na; i++) {
@@ -9662,22 +9365,20 @@ static void demi_shaped_pair(dem_world *w, int d, int at, int send, const demi_s
             const demi_part q = demi_part_now(w, b, j);
             const dem_vec3 gap = demi_add(to, q.centre);
             const dem_real sum = p.radius + q.radius;
-            const demi_shaped *before;
-            demi_shaped *c;
+            demi_kept *c;
             if (!(demi_dot(gap, gap) < sum*sum)) continue;
-            c = demi_shaped_new(w, d);
+            c = demi_kept_new(w, d);
             if (!c) return;
             c->a = a; c->b = b; c->part_a = i; c->part_b = j;
             c->wall = c->element = -1;
             c->send = send;
-            before = demi_shaped_match(w, old, olds, from, 0, c);    /* two balls touch by now */
-            if (demi_meets[demi_part_shape(&p)][demi_part_shape(&q)](w, &p, &q, gap, before
-                                                                     ? before->lambda : 0, c))
-                demi_shaped_recall(c, before);
-            else w->domains[d].shaped_next--;
+            c->from = demi_kept_same(w, d, old, olds, b, i, j, -1, -1);
+            if (!demi_meets[demi_part_shape(&p)][demi_part_shape(&q)](w, &p, &q, gap, c->from < 0
+                                                                      ? 0 : now[c->from].lambda, c))
+                w->domains[d].kept_next--;
         }
     }
-    demi_shaped_share(w, from, w->domains[d].shaped_next - first);
+    demi_kept_share(w, from, w->domains[d].kept_next - first);
 }
 
 /* --- touch: an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
@@ -9865,7 +9566,7 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem
    The arm is to the point that lies deepest, as a sphere's is; what is l (1 - W0)'s gradient
    passes through the point of the wall, at W0 of it. */
 static void demi_ellipsoid_contact(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                   dem_real left, demi_shaped *c) {
+                                   dem_real left, demi_kept *c) {
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
     const dem_real edge = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0);
     c->overlap = left*(h + edge);
@@ -9924,7 +9625,7 @@ static dem_real demi_mesh_bend(const demi_wall *wall, const int32_t *among, int 
 #define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, S, L, BEND) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
 static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
-                           demi_shaped *c) {
+                           demi_kept *c) {
     dem_vec3 axis = demi_v(0, 0, 0);
     if (!demi_bends[wall->kind]) return;
     dist = demi_bends[wall->kind](wall, among, count, c->element, dist, &axis);
@@ -9932,22 +9633,33 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
     c->bend = -1/dist;
     c->axis = demi_turn(wall->pose.rotation, axis);
 }
-/* Contacts of one part with one wall, from candidates first .. last - 1 of its body. */
-static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int k,
-                                  const demi_shaped *old, int olds, int from) {
+/* R* of a part of radius r with a wall. On a round wire the two radii of the contact differ, r and
+   r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's ellipse for a wire as
+   thick as the grain, 7 % for one of a fifth. */
+static double demi_wall_r_eff(const demi_wall *wall, double r) {
+    const double q = (double)wall->sieve.bar/2;
+    if (demi_wall_is(wall, DEMI_BALLS)) return r*(double)wall->radius/(r + (double)wall->radius);
+    if (wall->sieve.kind == DEM_SIEVE_WIRES || wall->sieve.kind == DEM_SIEVE_BARS)
+        return r*sqrt(q/(r + q));
+    return r;
+}
+/* Contacts of one part with one wall, from candidates first .. last - 1 of its body: all of them,
+   then what each continues. */
+static void demi_kept_on_wall(dem_world *w, int d, int first, int last, int k,
+                              const demi_kept *old, int olds) {
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
     const int id = w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
-    const dem_vec3 centre = demi_at(w->bodies.pos + 4*body);
     const demi_part p = demi_part_now(w, body, k);
     demi_touching *found = 0;
-    const int count = demi_wall_collect(w, d, first, last, p.ball ? demi_add(centre, p.centre)
-                                        : centre, &p, &found);
+    const int count = demi_wall_collect(w, d, first, last, demi_add(demi_at(w->bodies.pos + 4*body),
+                                                                    p.centre), &p, &found);
+    demi_kept *fresh = 0, *c;
     int i, e;
     for (i = 0; i < count; i++) {
-        demi_shaped *c = demi_shaped_new(w, d), *fresh;
+        c = demi_kept_new(w, d);
         if (!c) return;
-        fresh = w->shaped_next + (size_t)d*(size_t)w->shaped_stride + from;
+        if (!i) fresh = c;
         c->a = body;
         c->part_a = k;
         c->wall = id;
@@ -9960,107 +9672,116 @@ static void demi_shaped_wall_part(dem_world *w, int d, int first, int last, int 
             c->deep = c->overlap/p.radius;
             c->r_eff = p.radius;
             c->arm_a = demi_add(p.centre, demi_scale(c->normal, p.radius));
-            if (w->desc.cluster_contacts == DEM_SHARING_ONE && c->overlap > 0)
+            if (demi_form_of(w, body) && w->desc.cluster_contacts == DEM_SHARING_ONE &&
+                c->overlap > 0)
                 demi_wall_bend(wall, w->wall_element + base + first, last - first,
                                DEMI_MAX(p.radius - c->overlap, p.radius/10), c);
         } else demi_ellipsoid_contact(w, wall, &p, found[i].overlap, c);
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
-        if (wall->sieve.kind == DEM_SIEVE_REDUCED) {            /* under way: to the end */
-            for (e = 0; e < olds; e++)
-                if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k &&
-                    !(old[e].overlap > 0)) c->share = 0;
-            if (!(c->share > 0)) c->overlap = c->deep = 0;
-        }
-        demi_shaped_recall(c, demi_shaped_match(w, old, olds, fresh, (int)(c - fresh), c));
+    }
+    for (i = 0, c = fresh; i < count; i++, c++) {
+        c->from = demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element);
+        if (c->from < 0 && olds) c->from = demi_kept_slid(w, d, old, olds, fresh, count, c);
+        if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
+        for (e = 0; e < olds; e++)              /* under way: to the end */
+            if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k && !(old[e].overlap > 0))
+                c->share = 0;
+        if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
 }
-static void demi_shaped_wall(dem_world *w, int d, int first, int last, const demi_shaped *old,
-                             int olds) {
-    const int from = w->domains[d].shaped_next, body = w->wall_body[d*w->wall_stride + first];
+/* Of one body with one wall. A sphere's are as they are found: its places weigh by themselves. */
+static void demi_kept_wall(dem_world *w, int d, int first, int last, const demi_kept *old,
+                           int olds) {
+    const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
+    demi_kept *c = w->kept_next + (size_t)d*(size_t)w->kept_stride + from;
     int k;
-    for (k = 0; k < parts; k++) demi_shaped_wall_part(w, d, first, last, k, old, olds, from);
-    demi_shaped_share(w, w->shaped_next + (size_t)d*(size_t)w->shaped_stride + from,
-                      w->domains[d].shaped_next - from);
+    for (k = 0; k < parts; k++) demi_kept_on_wall(w, d, first, last, k, old, olds);
+    if (demi_form_of(w, body)) {
+        demi_kept_share(w, c, w->domains[d].kept_next - from);
+        return;
+    }
+    for (k = from; k < w->domains[d].kept_next; k++, c++)
+        c->weight = c->lift = c->grip = c->share;
 }
 
 /* All of one domain, in the order of body a: its pairs inside, its pairs that lead out, its walls.
    */
-static void demi_domain_shaped_touch(dem_world *w, int d) {
+static void demi_domain_kept_touch(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const demi_shaped *old = w->shaped_now + (size_t)d*(size_t)w->shaped_stride;
+    const demi_kept *old = w->kept_now + (size_t)d*(size_t)w->kept_stride;
     const int base = d*w->near.stride, walls = d*w->wall_stride;
+    const dem_real gone = demi_walls_gone(w);
     int p = domain->near_shaped, q = domain->near_shaped_cross, k = 0, o = 0, o_end, a, last;
-    domain->shaped_next = 0;
+    domain->kept_next = 0;
     domain->overflow &= ~16;
     for (;;) {
-        while (k < domain->walls && !demi_form_of(w, w->wall_body[walls + k])) k++;
+        while (k < domain->walls && w->wall_gap[walls + k] > gone) k++;    /* not near yet */
         a = INT_MAX;
         if (p < domain->near_shaped_cross) a = w->near.a[base + p];
         if (q < domain->near_shaped_end) a = DEMI_MIN(a, w->near.a[base + q]);
         if (k < domain->walls) a = DEMI_MIN(a, w->wall_body[walls + k]);
         if (a == INT_MAX) return;
-        while (o < domain->shaped && old[o].a < a) o++;
-        for (o_end = o; o_end < domain->shaped && old[o_end].a == a;) o_end++;
+        while (o < domain->kept && old[o].a < a) o++;
+        for (o_end = o; o_end < domain->kept && old[o_end].a == a;) o_end++;
+        if (o_end + 1 < domain->kept) DEMI_FETCH(old + o_end + 1);  /* too far apart for hardware */
         for (; p < domain->near_shaped_cross && w->near.a[base + p] == a; p++)
-            demi_shaped_pair(w, d, base + p, 0, old + o, o_end - o);
+            demi_kept_pair(w, d, base + p, 0, old + o, o_end - o);
         for (; q < domain->near_shaped_end && w->near.a[base + q] == a; q++)
-            demi_shaped_pair(w, d, base + q, 1 + d*w->cross.stride + domain->near_end -
+            demi_kept_pair(w, d, base + q, 1 + d*w->cross.stride + domain->near_end -
                              domain->near_cross + q - domain->near_shaped_cross, old + o,
                              o_end - o);
         for (; k < domain->walls && w->wall_body[walls + k] == a; k = last) {
-            for (last = k + 1; last < domain->walls && w->wall_body[walls + last] == a &&
-                 w->wall_id[walls + last] == w->wall_id[walls + k];) last++;
-            demi_shaped_wall(w, d, k, last, old + o, o_end - o);
+            last = k + 1;
+            if (w->wall_gap[walls + k] > gone) continue;
+            while (last < domain->walls && w->wall_body[walls + last] == a &&
+                   w->wall_id[walls + last] == w->wall_id[walls + k]) last++;
+            demi_kept_wall(w, d, k, last, old + o, o_end - o);
         }
         if (domain->overflow & 16) return;
     }
 }
 /* Room for contacts, now and next. 0 when memory ran out; nothing changed then. */
-static int demi_shaped_reserve(dem_world *w, int stride) {
-    const int old = w->shaped_stride;
+static int demi_kept_reserve(dem_world *w, int stride) {
+    const int old = w->kept_stride;
     const size_t n = (size_t)DEMI_DOMAINS < (size_t)w->domain_count ? 0 : (size_t)w->domain_count;
     int d;
-    if (stride <= old && demi_room(w->shaped_now, sizeof(demi_shaped)) >= n*(size_t)old) stride =
+    if (stride <= old && demi_room(w->kept_now, sizeof(demi_kept)) >= n*(size_t)old) stride =
            old;
-    if (!DEMI_GROW(w, w->shaped_next, n*(size_t)stride) ||
-        !DEMI_GROW(w, w->shaped_now, n*(size_t)stride)) return 0;
+    if (!DEMI_GROW(w, w->kept_next, n*(size_t)stride) ||
+        !DEMI_GROW(w, w->kept_now, n*(size_t)stride)) return 0;
     for (d = w->domain_count - 1; d > 0 && stride > old; d--)
-        memmove(w->shaped_now + (size_t)d*(size_t)stride, w->shaped_now + (size_t)d*(size_t)old,
-                (size_t)w->domains[d].shaped*sizeof(demi_shaped));
-    w->shaped_stride = stride;
+        memmove(w->kept_now + (size_t)d*(size_t)stride, w->kept_now + (size_t)d*(size_t)old,
+                (size_t)w->domains[d].kept*sizeof(demi_kept));
+    w->kept_stride = stride;
     return 1;
 }
-static void demi_domain_touch(dem_world *w, int d) {
-    if (w->wall_count) demi_domain_walls_touch(w, d);
-    if (w->bodies.shaped) demi_domain_shaped_touch(w, d);
-}
-/* All contacts that are kept one by one. 0 when memory ran out. */
+/* All of them. 0 when memory ran out. */
 static int demi_touch(dem_world *w) {
     int d, again;
+    for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = 0;
     if (!w->wall_count && !w->bodies.shaped) return 1;
     if ((!w->facets_valid && !demi_facets_weigh(w)) ||
         (!w->touching_valid && !demi_touching_reserve(w))) return 0;
     do {
-        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_touch);
-        for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow;
-        if ((again & 16 && !demi_shaped_reserve(w, w->shaped_stride/2*3 + 64)) ||
-            (again & 32 && !demi_wall_contacts_widen(w))) return 0;
-    } while (again & (16 | 32));
+        demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_kept_touch);
+        for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;
+        if (again && !demi_kept_reserve(w, w->kept_stride/2*3 + 64)) return 0;
+    } while (again);
     return 1;
 }
 
 /* --- respond --- */
 
-/* Coefficients of a contact whose overlap grows by `slope` per m of approach. */
-static void demi_shaped_coefs(const dem_world *w, const demi_shaped *k, int a, int b,
-                              dem_real *out) {
-    demi_coefficients(w, a, b, (double)k->r_eff, (double)k->m_eff,
-                      k->b < 0 && !demi_wall_is(&w->walls[k->wall], DEMI_BALLS), out);
-    out[DEMI_KN] *= k->slope;
-    out[DEMI_K_UN] *= k->slope;
-    out[DEMI_K_AD] *= k->slope;
-    out[DEMI_CN] *= k->slope;
+/* Coefficients of a contact, as yet without its slope. */
+static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out) {
+    const demi_wall *wall = k->b < 0 ? &w->walls[k->wall] : 0;
+    const int grains = wall && demi_wall_is(wall, DEMI_BALLS);
+    /* there a grain of a wall has mass */
+    const int mill = w->desc.convention == DEM_CONVENTION_MILL;
+    demi_coefficients(w, w->bodies.material[k->a] - 1,
+                      wall ? wall->material : w->bodies.material[k->b] - 1, (double)k->r_eff,
+                      (double)k->m_eff/(mill && grains ? 2 : 1), wall && !grains, out);
 }
 /* Velocity of a body at an arm: now, or its mean over the step. */
 static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int body, dem_vec3 arm) {
@@ -10069,18 +9790,38 @@ static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int bo
 static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
     return demi_add(pose->velocity, demi_cross(pose->spin, demi_sub(at, pose->position)));
 }
-/* The contact as a law sees it. surface: velocity of the wall there. */
-static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem_real *coef,
-                             dem_real dt, dem_contact *c, dem_vec3 *surface) {
+/* What contact c takes over from the one it continues: memory, and coefficients where what they
+   follow from is as it was. Answers that one; c itself when it is new: then nothing has turned. */
+DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept *now,
+                                             demi_kept *c) {
+    const demi_kept *old = c->from < 0 ? c : now + c->from;
+    /* a sphere's, which touch does not fetch */
+    const dem_real m = c->m_eff > 0 ? c->m_eff : old != c ? old->m_eff : w->bodies.mass[c->a];
+    const int fits = old != c && old->wall == c->wall &&
+        !(old->coef_r < c->r_eff || old->coef_r > c->r_eff) &&
+        !(old->coef_m < m || old->coef_m > m);
+    c->m_eff = m;
+    if (old != c) memcpy(c->memory, old->memory, sizeof c->memory);
+    else memset(c->memory, 0, sizeof c->memory);
+    if (fits) memcpy(c->coef, old->coef, sizeof c->coef);
+    else demi_kept_coefs(w, c, c->coef);
+    c->coef_r = c->r_eff;
+    c->coef_m = c->m_eff;
+    return old;
+}
+/* The contact as a law sees it; old: a step ago. surface: velocity of the wall there. */
+static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_kept *old,
+                           dem_real dt, dem_contact *c, dem_vec3 *surface) {
+    const dem_real *coef = k->coef, slope = k->slope;    /* m of overlap per m of approach */
     const int a = k->a, b = k->b;
     const dem_vec3 n = k->normal, half = demi_v(DEM_R(0.5), DEM_R(0.5), DEM_R(0.5));
-    const dem_vec3 mid = demi_scale(demi_add(n, k->normal_before), half.x);
-    const dem_vec3 mid_a = demi_scale(demi_add(k->arm_a, k->arm_before_a), half.x);
+    const dem_vec3 mid = demi_scale(demi_add(n, old->normal), half.x);
+    const dem_vec3 mid_a = demi_scale(demi_add(k->arm_a, old->arm_a), half.x);
     dem_vec3 u = demi_velocity_at(w->bodies.vel, w->bodies.spin, a, k->arm_a);
     dem_vec3 gone, around, spin, spin_step;
     gone = demi_velocity_at(w->bodies.half_vel, w->bodies.half_spin, a, mid_a);
     if (b >= 0) {
-        const dem_vec3 mid_b = demi_scale(demi_add(k->arm_b, k->arm_before_b), half.x);
+        const dem_vec3 mid_b = demi_scale(demi_add(k->arm_b, old->arm_b), half.x);
         u = demi_sub(u, demi_velocity_at(w->bodies.vel, w->bodies.spin, b, k->arm_b));
         gone = demi_sub(gone, demi_velocity_at(w->bodies.half_vel, w->bodies.half_spin, b, mid_b));
         spin = demi_at(w->bodies.spin + 4*b);
@@ -10110,14 +9851,15 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     c->spin_step = demi_sub(demi_at(w->bodies.half_spin + 4*a), spin_step);
     c->dt = dt;
     if (dt > 0) {
-        const dem_vec3 turn = demi_scale(demi_sub(n, k->normal_before), 1/dt);
+        const dem_vec3 turn = demi_scale(demi_sub(n, old->normal), 1/dt);
         c->normal_rate = demi_sub(turn, demi_scale(n, demi_dot(turn, n)));
     }
     c->twist = demi_dot(around, n)/2;
     c->r_eff = k->r_eff;
     c->m_eff = k->m_eff;
-    c->kn = coef[DEMI_KN]; c->cn = coef[DEMI_CN]; c->kt = coef[DEMI_KT]; c->ct = coef[DEMI_CT];
-    c->kun = coef[DEMI_K_UN]; c->kad = coef[DEMI_K_AD];
+    c->kn = slope*coef[DEMI_KN]; c->cn = slope*coef[DEMI_CN];
+    c->kun = slope*coef[DEMI_K_UN]; c->kad = slope*coef[DEMI_K_AD];
+    c->kt = coef[DEMI_KT]; c->ct = coef[DEMI_CT];
     c->friction = coef[DEMI_MU]; c->friction_static = coef[DEMI_MU_STATIC];
     c->rolling_friction = coef[DEMI_MU_ROLL];
     c->material_a = w->bodies.material[a];
@@ -10127,7 +9869,7 @@ static void demi_shaped_fill(const dem_world *w, const demi_shaped *k, const dem
     c->user = w->desc.law_user;
 }
 /* N, the elastic force alone, where it counts more, or less, than what dissipates; else 0. */
-static dem_real demi_shaped_still(const dem_world *w, const demi_shaped *k, const dem_contact *c) {
+static dem_real demi_kept_still(const dem_world *w, const demi_kept *k, const dem_contact *c) {
     dem_real memory[DEMI_MEMORY];
     dem_contact still = *c;
     dem_push f;
@@ -10137,29 +9879,56 @@ static dem_real demi_shaped_still(const dem_world *w, const demi_shaped *k, cons
     demi_law(w, &still, memory, &f);
     return f.normal;
 }
+DEM_INLINE void demi_push_add(dem_real *sum, dem_vec3 f) {
+    sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
+}
+/* What a push of `force` at a place, with a moment, adds to its wall's sums. */
+DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
+                              dem_vec3 force, dem_vec3 moment, dem_vec3 surface) {
+    const dem_vec3 arm = demi_sub(at, w->walls[wall].motion.point);
+    const dem_vec3 torque = demi_add(demi_cross(arm, force), moment);
+    sum->force[0] -= (double)force.x; sum->force[1] -= (double)force.y;
+    sum->force[2] -= (double)force.z;
+    sum->torque[0] -= (double)torque.x; sum->torque[1] -= (double)torque.y;
+    sum->torque[2] -= (double)torque.z;
+    sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
+    sum->contacts++;
+}
+/* grip: how often friction and rolling count, which may differ from the rest: demi_kept_lift. */
+DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *part, dem_real share,
+                                dem_real grip) {
+    domain->energy[DEMI_E_DASHPOT] += (double)(share*(part->dashpot + part->sag));
+    domain->energy[DEMI_E_ELASTIC] += (double)(share*part->elastic);
+    domain->energy[DEMI_E_SHEAR_WORK] += (double)(grip*part->shear_work);
+    domain->energy[DEMI_E_SLIDE] += (double)(grip*part->slide);
+    domain->energy[DEMI_E_SHEAR_STORED] += (double)(grip*part->shear_stored);
+    domain->energy[DEMI_E_ROLL] += (double)(grip*part->roll);
+}
+
 /* All contacts of one domain: law, forces on both ends, walls' sums, energies. */
-static void demi_shaped_respond(dem_world *w, int d) {
+static void demi_kept_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
+    const demi_kept *now = w->kept_now + (size_t)d*(size_t)w->kept_stride;
     demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
     int i;
-    domain->shaped_walls = 0;
-    for (i = 0; i < domain->shaped_next; i++) {
-        demi_shaped *c = w->shaped_next + (size_t)d*(size_t)w->shaped_stride + i;
-        const int a = c->a, b = c->b, ma = w->bodies.material[a] - 1;
-        const int mb = b >= 0 ? w->bodies.material[b] - 1 : w->walls[c->wall].material;
-        dem_real coef[DEMI_COEFS], press, still;
+    domain->kept_walls = 0;
+    for (i = 0; i < domain->kept_next; i++) {
+        demi_kept *c = w->kept_next + (size_t)d*(size_t)w->kept_stride + i;
+        const int a = c->a, b = c->b;
+        const demi_kept *old;
+        dem_real press, still;
         dem_contact contact;
         dem_push f;
         dem_vec3 surface, force, moment, moment_b;
+        old = demi_kept_recall(w, now, c);
         if (!(c->overlap > 0)) {                /* under way through a reduced hole */
             c->force = demi_v(0, 0, 0);
-            domain->shaped_walls += b < 0;
+            domain->kept_walls += b < 0;
             continue;
         }
-        demi_shaped_coefs(w, c, ma, mb, coef);
-        demi_shaped_fill(w, c, coef, dt, &contact, &surface);
-        still = demi_shaped_still(w, c, &contact);
+        demi_kept_fill(w, c, old, dt, &contact, &surface);
+        still = demi_kept_still(w, c, &contact);
         demi_law(w, &contact, c->memory, &f);
         press = c->share*f.normal + (c->lift - c->share)*still;
         force = demi_sub(demi_scale(f.tangent, c->grip), demi_scale(contact.normal, press));
@@ -10192,7 +9961,7 @@ static void demi_shaped_respond(dem_world *w, int d) {
             demi_wall_sum_add(w, &sums[c->wall], c->wall,
                               demi_add(demi_add(demi_at(w->bodies.pos + 4*a), c->shift), c->arm_a),
                               force, moment_b, surface);
-            domain->shaped_walls++;
+            domain->kept_walls++;
         }
         domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
         f.energy.elastic /= c->slope;           /* V = k overlap^2/2; the law was given k slope */
@@ -10201,7 +9970,7 @@ static void demi_shaped_respond(dem_world *w, int d) {
     }
 }
 /* Slots of far ends are summed into: cleared before. */
-static void demi_shaped_clear(dem_world *w, int d) {
+static void demi_kept_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const int pairs = domain->near_shaped_end - domain->near_shaped_cross;
     if (pairs > 0)
@@ -11914,15 +11683,16 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
                     demi_press_add_whole(w, i, &c, both, arm, whole + press[i].whole - 1);
             }
         }
-        for (p = 0; p < domain->wall_contacts; p++) {
-            const demi_wall_contact *k = w->wall_now + (size_t)d*(size_t)w->wall_now_stride +
-                                         (size_t)p;
-            const int i = k->body;
+        for (p = 0; p < domain->kept; p++) {
+            const demi_kept *k = w->kept_now + (size_t)d*(size_t)w->kept_stride + (size_t)p;
+            const int i = k->a;
             const double arm = (double)w->bodies.pos[4*i + 3];
+            dem_real coef[DEMI_COEFS];
             demi_pressed c;
-            if (!(k->overlap > 0) || (whole && !press[i].whole)) continue;
-            c.s = demi_stiffness_of(w, k->coef, (double)w->bodies.mass[k->body],
-                                    (double)k->overlap);
+            if (!(k->overlap > 0) || k->b >= 0 || demi_form_of(w, i) ||
+                (whole && !press[i].whole)) continue;
+            demi_kept_coefs(w, k, coef);
+            c.s = demi_stiffness_of(w, coef, (double)w->bodies.mass[i], (double)k->overlap);
             c.n = k->normal;
             c.overlap = k->overlap;
             if (!whole) demi_press_add(w, i, &c, 0, arm, press + i);
@@ -12212,14 +11982,12 @@ static void demi_domain_respond(dem_world *w, int d) {
     demi_domain_clear(w, d);
     if (walls) memset(w->wall_sums + (size_t)d*walls, 0, walls*sizeof *w->wall_sums);
     w->kernel(w, d);
-    if (!w->bodies.shaped) return;
-    demi_shaped_clear(w, d);
-    demi_shaped_respond(w, d);
+    demi_kept_clear(w, d);
+    demi_kept_respond(w, d);
 }
 static void demi_domain_gather(dem_world *w, int d) {
     int i;
     if (w->cross_entries) demi_cross_gather(w, d);
-    demi_walls_respond(w, d);
     if (demi_own(w)) {                          /* those of your own may answer anything */
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
@@ -12234,8 +12002,7 @@ static void demi_domain_gather(dem_world *w, int d) {
 /* Forces at the present positions and velocities; wall channels. */
 static void demi_forces(dem_world *w) {
     const double dt = w->stage.forces_valid ? (double)w->clock.dt : 0;
-    demi_wall_contact *wall_contacts = w->wall_now;
-    demi_shaped *shaped = w->shaped_now;
+    demi_kept *kept = w->kept_now;
     int d, i, k;
     for (d = 0; d < w->domain_count; d++) {
         w->domains[d].overlap = 0;
@@ -12243,14 +12010,9 @@ static void demi_forces(dem_world *w) {
     }
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_respond);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gather);
-    w->wall_now = w->wall_next;
-    w->wall_next = wall_contacts;
-    w->shaped_now = w->shaped_next;
-    w->shaped_next = shaped;
-    for (d = 0; d < w->domain_count; d++) {
-        w->domains[d].shaped = w->bodies.shaped ? w->domains[d].shaped_next : 0;
-        if (!w->bodies.shaped) w->domains[d].shaped_walls = 0;
-    }
+    w->kept_now = w->kept_next;
+    w->kept_next = kept;
+    for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
     for (i = 0; i < w->wall_count; i++) {  /* domains in order: one order whatever the threads */
         dem_channels *c = &w->walls[i].channels;
         const dem_vec3 axis = w->walls[i].motion.axis;
@@ -12295,18 +12057,16 @@ static dem_result demi_unstable(dem_world *w) {
                              (unsigned)w->bodies.slot[i] + 1, (double)w->clock.dt);
     for (d = 0; d < w->domain_count; d++) deepest = DEMI_MAX(deepest, w->domains[d].overlap);
     for (d = 0; d < w->domain_count; d++)
-        for (i = 0; i < w->domains[d].wall_contacts; i++) {
-            const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + i];
-            if (c->overlap > w->bodies.pos[4*c->body + 3])
+        for (i = 0; i < w->domains[d].kept; i++) {
+            const demi_kept *c = &w->kept_now[d*w->kept_stride + i];
+            if (c->b < 0 && c->deep > 1)
                 return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
                                  "overlaps wall %d by %.3g of its "
                                  "radius, must be below 1; it started inside the wall, hit it too "
                                  "fast for dt = %g s, or the "
                                  "material is too soft", (unsigned long long)w->clock.steps,
-                                 (unsigned)w->bodies.slot[c->body] + 1,
-                                 (int)c->wall + 1, (double)(c->overlap/w->bodies.pos[4*c->body +
-                                                                                     3]),
-                                 (double)w->clock.dt);
+                                 (unsigned)w->bodies.slot[c->a] + 1, (int)c->wall + 1,
+                                 (double)c->deep, (double)w->clock.dt);
         }
     return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: two grains overlap by %.3g "
                      "of the smaller radius, must "
@@ -12699,7 +12459,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
         c.contacts += w->domains[d].contacts;
-        c.wall_contacts += w->domains[d].wall_contacts + w->domains[d].shaped_walls;
+        c.wall_contacts += w->domains[d].kept_walls;
     }
     c.overlap_max = (dem_real)w->booked.overlap_max;
     c.speed_max = (dem_real)w->booked.speed_max;
@@ -12757,32 +12517,23 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
     if (demi_null(w, "dem_contacts_get", w, "world")) return -1;
     const demi_periods p = demi_periods_of(w);
+    dem_vec3 x;
     int d, k, n = 0;
     if (!w->stage.list_valid) return demi_list_stale(w, "dem_contacts_get");
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
             n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0);
-        for (k = 0; k < w->domains[d].wall_contacts; k++) {
-            const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
-            if (!(c->overlap > 0) || ++n > capacity || !out) continue;
-            out[n - 1].a = dem_bodies_id(w, c->body);
-            out[n - 1].b.slot = out[n - 1].b.generation = 0;
-            out[n - 1].wall = c->wall + 1;
-            out[n - 1].normal = c->normal;
-            out[n - 1].point = demi_place_of(&p, c->point);
-            out[n - 1].overlap = c->overlap;
-            out[n - 1].force = c->force;
-        }
-        for (k = 0; k < w->domains[d].shaped; k++) {
-            const demi_shaped *c = &w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
+        for (k = 0; k < w->domains[d].kept; k++) {
+            const demi_kept *c = &w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
             if (!(c->overlap > 0) || ++n > capacity || !out) continue;
             out[n - 1].a = dem_bodies_id(w, c->a);
             out[n - 1].b = dem_bodies_id(w, c->b);
             out[n - 1].wall = c->b < 0 ? c->wall + 1 : 0;
             out[n - 1].normal = c->normal;
-            out[n - 1].point = demi_place_of(&p,
-                                             demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a));
+            x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
+            if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
+            out[n - 1].point = demi_place_of(&p, x);
             out[n - 1].overlap = c->overlap;
             out[n - 1].force = c->force;
         }
@@ -12824,7 +12575,7 @@ static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
     return any ? one : 0;
 }
 /* Digest of one contact, whichever of its bodies is a. */
-static uint64_t demi_shaped_hash(const dem_world *w, const demi_shaped *c) {
+static uint64_t demi_kept_hash(const dem_world *w, const demi_kept *c) {
     const int pushes = c->share > 0, slots = !w->stage.list_valid;   /* while there is no list */
     uint32_t who[4];
     uint64_t h = DEMI_HASH_START;
@@ -12853,18 +12604,8 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
                 sum += demi_pair_digest(w, w->bodies.slot[span.a[0]], w->bodies.slot[span.b[0]],
                                         span.memory, span.stride);
         }
-        for (k = 0; k < domain->wall_contacts; k++) {
-            const demi_wall_contact *c = &w->wall_now[d*w->wall_now_stride + k];
-            const int pushes = c->share > 0;    /* or is it under way through a reduced hole? */
-            const uint32_t slot = w->stage.list_valid ? w->bodies.slot[c->body] : (uint32_t)c->body;
-            uint64_t one = demi_hash(DEMI_HASH_START, &slot, sizeof slot);
-            one = demi_hash(one, &c->wall, sizeof c->wall);
-            one = demi_hash(one, &c->element, sizeof c->element);
-            one = demi_hash(one, &pushes, sizeof pushes);
-            sum += demi_memory_hash(w, one, c->memory, 1, 0, &i);
-        }
-        for (k = 0; k < domain->shaped; k++)
-            sum += demi_shaped_hash(w, &w->shaped_now[(size_t)d*(size_t)w->shaped_stride +
+        for (k = 0; k < domain->kept; k++)
+            sum += demi_kept_hash(w, &w->kept_now[(size_t)d*(size_t)w->kept_stride +
                                                       (size_t)k]);
     }
     for (i = 0; !w->stage.list_valid && w->filed.count && w->filed.stride == w->memory_stride &&
@@ -12878,24 +12619,15 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
     return demi_hash(h, &sum, sizeof sum);
 }
 
-/* Contact k of domain d: spheres' with walls first, then all of the other bodies. Whose it is; and
-   when it is one with this wall, 1, its normal and its friction. */
+/* Contact k of domain d: whose it is; and when it is one with this wall, 1, its normal and its
+   friction. */
 static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body, dem_vec3 *normal,
                            dem_real *mu) {
-    const int spheres = w->domains[d].wall_contacts;
-    if (k < spheres) {
-        const demi_wall_contact *c = w->wall_now + d*w->wall_now_stride + k;
-        *body = c->body;
-        *normal = c->normal;
-        *mu = c->coef[DEMI_MU_STATIC];
-        return c->wall == wall;
-    } else {
-        const demi_shaped *c = w->shaped_now + (size_t)d*(size_t)w->shaped_stride + (k - spheres);
-        *body = c->a;
-        *normal = c->normal;
-        *mu = demi_static_friction(w, w->bodies.material[c->a] - 1, w->walls[wall].material);
-        return c->b < 0 && c->wall == wall;
-    }
+    const demi_kept *c = w->kept_now + (size_t)d*(size_t)w->kept_stride + k;
+    *body = c->a;
+    *normal = c->normal;
+    *mu = demi_static_friction(w, w->bodies.material[c->a] - 1, w->walls[wall].material);
+    return c->b < 0 && c->wall == wall;
 }
 /* Contacts of one grain follow each other. Stuck: two of them push against each other in the
    sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
@@ -12916,7 +12648,7 @@ DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed
     if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded");
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
-        const int all = w->domains[d].wall_contacts + w->domains[d].shaped;
+        const int all = w->domains[d].kept;
         int last = -1;                          /* the grain counted last: once is enough */
         for (k = 0; k < all; k++) {
             dem_vec3 v, flat;
@@ -14370,12 +14102,9 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
     int d;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
-        if (domain->wall_contacts)
-            demi_visit(s, w->wall_now + d*w->wall_now_stride,
-                       (size_t)domain->wall_contacts*sizeof(demi_wall_contact));
-        if (domain->shaped)
-            demi_visit(s, w->shaped_now + (size_t)d*(size_t)w->shaped_stride,
-                       (size_t)domain->shaped*sizeof(demi_shaped));
+        if (domain->kept)
+            demi_visit(s, w->kept_now + (size_t)d*(size_t)w->kept_stride,
+                       (size_t)domain->kept*sizeof(demi_kept));
     }
     if (w->stage.list_valid || !w->filed.count) return;
     demi_visit(s, w->filed.start, ((size_t)w->filed.rows + 1)*4);
@@ -14441,9 +14170,9 @@ typedef struct demi_checkpoint_head {
 
 /* Of structs that are saved whole, and of what bodies keep: tells files of another dem.h. */
 static uint32_t demi_checkpoint_layout(void) {
-    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_wall_contact), sizeof(demi_shaped),
-                            sizeof(demi_timing), sizeof(demi_stages), sizeof(demi_margin),
-                            sizeof(demi_in_force), sizeof(demi_levels), sizeof(demi_booked)};
+    const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
+                            sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
+                            sizeof(demi_levels), sizeof(demi_booked)};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -14745,16 +14474,15 @@ static int demi_domain_check(const demi_reader *r, int d) {
     const demi_domain *o = &t->domains[d];
     const int64_t counts[] = {o->own, o->cross, o->walls, o->near_own,
         (int64_t)o->near_end - o->near_cross, (int64_t)o->near_shaped_cross - o->near_shaped,
-        (int64_t)o->near_shaped_end - o->near_shaped_cross, o->contacts, o->wall_contacts,
-        o->shaped, o->shaped_walls, o->near_cross, o->near_end, o->near_shaped,
+        (int64_t)o->near_shaped_end - o->near_shaped_cross, o->contacts,
+        o->kept, o->kept_walls, o->near_cross, o->near_end, o->near_shaped,
         o->near_shaped_cross, o->near_shaped_end};
     const int group = DEMI_LANES;
     size_t i;
     for (i = 0; i < sizeof counts/sizeof *counts; i++)
         if (counts[i] < 0 || counts[i] > INT_MAX/64) return 0;
-    if (!demi_left(r, o->wall_contacts, sizeof(demi_wall_contact)) ||
-        !demi_left(r, o->shaped, sizeof(demi_shaped)) ||
-            (o->shaped && !t->bodies.orienting)) return 0;
+    if (!demi_left(r, o->kept, sizeof(demi_kept)) ||
+        (o->kept && !t->wall_count && !t->bodies.orienting)) return 0;
     if (!t->stage.list_valid) return 1;
     return o->begin == (d ? t->domains[d - 1].end : 0) && o->end >= o->begin &&
            o->end <= t->bodies.count && (d + 1 < t->domain_count || o->end == t->bodies.count) &&
@@ -14885,19 +14613,13 @@ static int demi_contacts_check(const demi_reader *r) {
     const int who = t->stage.list_valid ? t->bodies.count : t->bodies.slot_count;
     int d, k;
     for (d = 0; d < t->domain_count; d++) {
-        for (k = 0; k < t->domains[d].wall_contacts; k++) {
-            const demi_wall_contact *c = t->wall_now + d*t->wall_now_stride + k;
-            if (c->body < 0 || c->body >= who || c->wall < 0 || c->wall >= t->wall_count ||
-                !demi_finite3(c->shift) ||
-                (t->stage.list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))
-                return demi_lie(r, "a wall contact of domain", d);
-        }
-        for (k = 0; k < t->domains[d].shaped; k++) {
-            const demi_shaped *c = t->shaped_now + (size_t)d*(size_t)t->shaped_stride + k;
-            if (c->a < 0 || c->a >= who || c->b < -1 || c->b >= who || (c->b < 0 &&
-                (c->wall < 0 || c->wall >= t->wall_count ||
+        for (k = 0; k < t->domains[d].kept; k++) {
+            const demi_kept *c = t->kept_now + (size_t)d*(size_t)t->kept_stride + k;
+            if (c->a < 0 || c->a >= who || c->b < -1 || c->b >= who || !demi_finite3(c->shift) ||
+                (c->b >= 0 && !t->bodies.orienting) ||
+                    (c->b < 0 && (c->wall < 0 || c->wall >= t->wall_count ||
                  (t->stage.list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))))
-                return demi_lie(r, "a contact of shaped bodies in domain", d);
+                return demi_lie(r, "a contact of domain", d);
         }
     }
     if (t->stage.list_valid || !t->filed.count) return 1;
@@ -14966,33 +14688,30 @@ static int demi_twin_bodies_room(dem_world *t) {
 }
 /* The lists' rows are as long as the longest asks for, and as a rebuild would make them. */
 static int demi_twin_lists_room(dem_world *t) {
-    int most[7] = {0, 0, 0, 0, 0, 0, 0}, d, k;
+    int most[6] = {0, 0, 0, 0, 0, 0}, d, k;
     const int each = t->domain_count ? t->bodies.count/t->domain_count : 0;
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
         const int counts[] = {t->stage.list_valid ? o->own : 0, t->stage.list_valid ? o->cross : 0,
                               t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
                                   ? o->walls : 0,
-                              o->wall_contacts, o->shaped, t->domain_count > 1};
-        for (k = 0; k < 7; k++) most[k] = DEMI_MAX(most[k], counts[k]);
+                              o->kept, t->domain_count > 1};
+        for (k = 0; k < 6; k++) most[k] = DEMI_MAX(most[k], counts[k]);
     }
     if (t->stage.list_valid) {
         most[0] = DEMI_MAX(most[0], DEMI_MAX(64, each*3));
-        most[1] = DEMI_MAX(most[1], most[6] ? DEMI_MAX(64, each*3)/4 : 0);
+        most[1] = DEMI_MAX(most[1], most[5] ? DEMI_MAX(64, each*3)/4 : 0);
         most[2] = DEMI_MAX(most[2], DEMI_MAX(64, each*5/2));
         most[3] = DEMI_MAX(most[3], 64);
-        most[4] = DEMI_MAX(most[4], 16);
-        if (t->bodies.shaped) most[5] = DEMI_MAX(most[5], DEMI_MAX(64, each*4));
+        most[4] = DEMI_MAX(most[4], t->bodies.shaped ? DEMI_MAX(64, each*4) : 16);
     }
     for (k = 0; k < 4; k++) if (k != 2) most[k] += t->join_room;
     most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
-    t->wall_now_stride = most[4];
-    t->shaped_stride = 0;
-    if (!demi_wall_contacts_reserve(t, (size_t)t->domain_count*(size_t)most[4],
-                                    (size_t)t->domain_count*(size_t)most[4]) ||
-        (t->bodies.orienting && !demi_shaped_reserve(t, most[5])) ||
+    t->kept_stride = 0;
+    if (!DEMI_GROW(t, t->wall_sums, (size_t)t->domain_count*(size_t)t->wall_count) ||
+        !demi_kept_reserve(t, most[4]) ||
         !demi_carry_reserve(t, t->filed.rows, t->filed.count, t->filed.stride)) return 0;
-    t->shaped_stride = t->bodies.orienting ? most[5] : 0;
+    t->kept_stride = most[4];
     return !t->stage.list_valid ||
            (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&
             demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
@@ -15266,9 +14985,9 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
                 w->levels.looks[0]);
 }
 
-static int demi_shaped_total(const dem_world *w) {
+static int demi_kept_total(const dem_world *w) {
     int d, n = 0;
-    for (d = 0; d < w->domain_count; d++) n += w->domains[d].shaped;
+    for (d = 0; d < w->domain_count; d++) n += w->domains[d].kept;
     return n;
 }
 /* What a law remembers, in words. */
@@ -15318,7 +15037,7 @@ static void demi_shapes_report(const dem_world *w, FILE *out) {
                 "%s; a cluster's contacts %s; %.2f contacts per body\n", w->bodies.shaped,
                 rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
                 w->desc.cluster_contacts == DEM_SHARING_ONE ? "are shared" : "add up",
-                w->bodies.count ? (double)demi_shaped_total(w)/w->bodies.count : 0);
+                w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
     else if (w->bodies.orienting)
         fprintf(out, "           orientations of spheres are followed, because you asked\n");
 }
@@ -15541,16 +15260,16 @@ static void demi_grain_forget(dem_world *w, int i) {
 }
 
 /* Grains whose mark is `mark`; with them, when asked, the filed memory of pairs that name one of
-   them, their contacts with walls and those of shaped bodies (all there are, for mark DEMI_ALL).
+   them, their contacts that are kept (all there are, for mark DEMI_ALL).
    shift: added along axis. Memory must be filed: after demi_list_drop or demi_carry_collect. */
 typedef struct demi_parcel_head {
-    int32_t grains, pairs, contacts, shaped, stride;
+    int32_t grains, pairs, contacts, stride;
 } demi_parcel_head;
 static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, int mark,
                      int memory, int axis, dem_real shift, demi_parcel *out) {
     const size_t start = out->size;
     const int stride = w->filed.stride;
-    demi_parcel_head head = {0, 0, 0, 0, 0};
+    demi_parcel_head head = {0, 0, 0, 0};
     int i, k, d, ok = demi_parcel_put(host, out, &head, sizeof head);
     head.stride = stride;
     for (i = 0; i < w->bodies.count && ok; i++) {
@@ -15569,23 +15288,15 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
             head.pairs++;
         }
     for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
-        for (k = 0; k < w->domains[d].wall_contacts && ok; k++) {
-            demi_wall_contact c = w->wall_now[d*w->wall_now_stride + k];
-            if (w->stage.list_valid) c.body = (int32_t)w->bodies.slot[c.body];
-            if (mark != DEMI_ALL && marks[c.body] != mark) continue;
-            ok = demi_parcel_put(host, out, &c, sizeof c);
-            head.contacts++;
-        }
-    for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
-        for (k = 0; k < w->domains[d].shaped && ok; k++) {
-            demi_shaped c = w->shaped_now[(size_t)d*(size_t)w->shaped_stride + (size_t)k];
+        for (k = 0; k < w->domains[d].kept && ok; k++) {
+            demi_kept c = w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
             if (w->stage.list_valid) {
                 c.a = (int32_t)w->bodies.slot[c.a];
                 if (c.b >= 0) c.b = (int32_t)w->bodies.slot[c.b];
             }
             if (mark != DEMI_ALL && marks[c.a] != mark && (c.b < 0 || marks[c.b] != mark)) continue;
             ok = demi_parcel_put(host, out, &c, sizeof c);
-            head.shaped++;
+            head.contacts++;
         }
     if (ok) memcpy(out->bytes + start, &head, sizeof head);
     return ok;
@@ -15595,41 +15306,28 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
    demi_pairs_take. Contacts that are there move to the first domain. 0 when memory ran out. */
 static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_parcel_head *come) {
     const int had = w->filed.count, rows = w->bodies.slot_count;
-    int d, total = 0, shaped = 0;
-    demi_wall_contact *to;
-    demi_shaped *shaped_to;
-    for (d = 0; d < DEMI_DOMAINS; d++) {
-        total += w->domains[d].wall_contacts;
-        shaped += w->domains[d].shaped;
-    }
+    int d, total = 0;
+    demi_kept *to;
+    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].kept;
     if (!demi_carry_reserve(w, rows, had + come->pairs, come->stride) ||
         !DEMI_GROW(w, *add, (size_t)rows + 1) ||
-        !demi_wall_contacts_reserve(w, (size_t)(total + come->contacts),
-                                    (size_t)(total + come->contacts)) ||
-        !DEMI_GROW(w, w->shaped_now, (size_t)(shaped + come->shaped)))
+        !DEMI_GROW(w, w->kept_now, (size_t)(total + come->contacts)))
         return 0;
     if (!had) memset(w->filed.start, 0, ((size_t)rows + 2)*sizeof(int32_t));
     for (d = had ? w->filed.rows : rows; d < rows; d++) w->filed.start[d + 1] = w->filed.start[d];
     w->filed.rows = rows;
     w->filed.stride = come->stride;
-    to = w->wall_now;
-    shaped_to = w->shaped_now;
+    to = w->kept_now;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         demi_domain *o = &w->domains[d];
-        if (o->wall_contacts && d)
-            memmove(to, w->wall_now + (size_t)d*(size_t)w->wall_now_stride,
-                    (size_t)o->wall_contacts*sizeof *to);
-        if (o->shaped && d)
-            memmove(shaped_to, w->shaped_now + (size_t)d*(size_t)w->shaped_stride,
-                    (size_t)o->shaped*sizeof *shaped_to);
-        to += o->wall_contacts;
-        shaped_to += o->shaped;
-        o->wall_contacts = o->shaped = 0;
+        if (o->kept && d)
+            memmove(to, w->kept_now + (size_t)d*(size_t)w->kept_stride,
+                    (size_t)o->kept*sizeof *to);
+        to += o->kept;
+        o->kept = 0;
     }
-    w->domains[0].wall_contacts = total;
-    w->domains[0].shaped = shaped;
-    w->wall_now_stride = total + come->contacts;
-    w->shaped_stride = shaped + come->shaped;
+    w->domains[0].kept = total;
+    w->kept_stride = total + come->contacts;
     return 1;
 }
 /* Files pairs that arrived behind those already in their rows. */
@@ -15669,12 +15367,8 @@ static void demi_filed_take(dem_world *w, int32_t *add, const demi_parcel_head *
     demi_pairs_take(w, add, from, h->pairs);
     from += (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
     if (h->contacts)
-        demi_take(&from, w->wall_now + first->wall_contacts,
-                  (size_t)h->contacts*sizeof(demi_wall_contact));
-    if (h->shaped)
-        demi_take(&from, w->shaped_now + first->shaped, (size_t)h->shaped*sizeof(demi_shaped));
-    first->wall_contacts += h->contacts;
-    first->shaped += h->shaped;
+        demi_take(&from, w->kept_now + first->kept, (size_t)h->contacts*sizeof(demi_kept));
+    first->kept += h->contacts;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -15953,7 +15647,7 @@ static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
 }
 static demi_parcel_head demi_slab_head(const dem_slabs *s, const demi_slab *b, int side,
                                        const char **grains) {
-    demi_parcel_head head = {0, 0, 0, 0, 0};
+    demi_parcel_head head = {0, 0, 0, 0};
     if (demi_slab_has(s, b, side)) {
         *grains = demi_slab_inbox(s, b, side)->bytes;
         demi_take(grains, &head, sizeof head);
@@ -15965,8 +15659,7 @@ static void demi_slab_room(dem_slabs *s, demi_slab *b) {
     const demi_parcel_head l = demi_slab_head(s, b, 0, &from);
     const demi_parcel_head u = demi_slab_head(s, b, 1, &from);
     dem_world *w = b->world;
-    demi_parcel_head come = {l.grains + u.grains, l.pairs + u.pairs, l.contacts + u.contacts,
-                             l.shaped + u.shaped, 0};
+    demi_parcel_head come = {l.grains + u.grains, l.pairs + u.pairs, l.contacts + u.contacts, 0};
     come.stride = l.pairs ? l.stride : u.pairs ? u.stride : w->filed.stride;
     if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)come.grains) ||
         !demi_filed_reserve(w, &b->add, &come))
@@ -16211,7 +15904,7 @@ static void demi_slab_near(dem_slabs *s, demi_slab *b) {
     if (!demi_near_make(w, 0)) b->result = demi_no_memory(w, "dem_slabs_step");
 }
 /* 3 touch. Where bodies are not spheres it may run out of room; all agree before any force is
-   worked out, since memory follows a step once. Else there is room, see demi_wall_contacts_move. */
+   worked out, since memory follows a step once. Else there is room, see demi_kept_room. */
 static void demi_slab_touch(dem_slabs *s, demi_slab *b) {
     demi_slab_receive(s, b);
     if (!demi_touch(b->world)) b->result = demi_no_memory(b->world, "dem_slabs_step");
@@ -17025,7 +16718,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     const char *call = "dem_slabs_collect";
     dem_world *h = &s->head;
     demi_slab_sums sums;
-    demi_parcel_head come = {0, 0, 0, 0, 0};
+    demi_parcel_head come = {0, 0, 0, 0};
     int k, i;
     if (w->bodies.orienting != s->slabs[0].world->bodies.orienting)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations in %s only; collect "
@@ -17059,7 +16752,6 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         demi_take(&from, &head, sizeof head);
         come.pairs += head.pairs;
         come.contacts += head.contacts;
-        come.shaped += head.shaped;
         if (head.pairs) come.stride = head.stride;
         for (i = 0; i < head.grains; i++) {
             const uint32_t slot = demi_grain_slot(from);
@@ -17071,7 +16763,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         }
     }
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
-    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].wall_contacts = w->domains[k].shaped = 0;
+    for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].kept = 0;
     w->filed.count = 0;
     if (!DEMI_GROW(h, *seen, (size_t)w->bodies.slot_count + 1) ||
         !demi_filed_reserve(w, add, &come))
