@@ -48,6 +48,7 @@
        >>world       create, destroy, report
        >>slabs       one scene dealt to threads or processes: what grains take along
        >>slabs-step  one step of all slabs
+       >>slabs-run   what is fed into slabs; one step after the other
        >>deal        slabs made and collected
 */
 
@@ -1497,14 +1498,15 @@ typedef struct dem_slabs dem_slabs;
 
 /* Deals the grains of a world to slabs, which take along everything a step needs; the world itself
    stays as it is and may even be destroyed. Every process builds the same world and asks for its
-   own slabs. Null on bad values or when memory runs out; dem_world_error(world) says why. */
+   own slabs. Feeds and outlets go on in the slabs. Null on bad values or when memory runs out;
+   dem_world_error(world) says why. */
 DEM_API dem_slabs *dem_slabs_create(dem_world *world, const dem_slabs_desc *desc);
 DEM_API void dem_slabs_destroy(dem_slabs *slabs);
 DEM_API dem_result dem_slabs_step(dem_slabs *slabs, int steps);
 /* Writes the state of all slabs into a world of the same scene, in every process: grains, contact
-   memory, walls, channels, fields, ledger, time. The world may then be looked at, written, stepped,
-   or dealt to slabs anew; the slabs go on unaware of it. It has no list of contacts until
-   dem_search_now; after that it steps on as the slabs would. */
+   memory, walls, channels, fields, feeds, outlets, ledger, time. The world may then be looked at,
+   written, stepped, or dealt to slabs anew; the slabs go on unaware of it. It has no list of
+   contacts until dem_search_now; after that it steps on as the slabs would. */
 DEM_API dem_result dem_slabs_collect(dem_slabs *slabs, dem_world *world);
 /* Begins the walls' sums over time and the largest overlap anew. */
 DEM_API void dem_slabs_channels_reset(dem_slabs *slabs);
@@ -6782,10 +6784,10 @@ static void demi_kept_move(dem_world *w, int stride) {
     }
     w->kept_stride = stride;
     /* deal out in the order of body a; `order` has done its work in the search and counts here */
-    memset(w->bodies.order, 0, (size_t)w->bodies.count*sizeof *w->bodies.order);
+    if (e) memset(w->bodies.order, 0, (size_t)w->bodies.count*sizeof *w->bodies.order);
     for (k = 0; k < e; k++) w->bodies.order[w->kept_next[k].a]++;
     for (d = 0; d < w->domain_count; d++)
-        for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
+        for (i = w->domains[d].begin; e && i < w->domains[d].end; i++) {
             const int here = w->bodies.order[i];
             w->bodies.order[i] = w->domains[d].kept;
             w->domains[d].kept += here;
@@ -10704,13 +10706,14 @@ static int demi_region_at(const demi_region *g, const double *u, dem_real radius
 }
 
 /* Begins a crowd with the bodies that spheres of this radius in the region could overlap; one look
-   at each body. 0 when memory ran out. */
-static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, dem_real radius) {
+   at each body. p: the scene's, which a slab does not have. 0 when memory ran out. */
+static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, dem_real radius,
+                            demi_periods p) {
     dem_vec3 mid;
     double half[3];
     demi_node *root;
     int i, k;
-    c->p = demi_periods_of(w);
+    c->p = p;
     demi_walls_repeat(w);
     c->count = 0;
     c->nodes = 1;
@@ -10875,7 +10878,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                   "give lo below hi by at least a diameter", call, (double)radius);
         return 0;
     }
-    done = demi_crowd_begin(w, &c, &g, radius) ? 0 : -1;
+    done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
     if (!done) done = demi_fill_places(w, &c, &g, radius, form >= 0, count, seed);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, form)) done = -1;
@@ -11022,7 +11025,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
                   "give a count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
         return 0;
     }
-    done = demi_crowd_begin(w, &c, &room, radius) ? 0 : -1;
+    done = demi_crowd_begin(w, &c, &room, radius, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
     if (!done) done = demi_lattice_fill(w, &c, &g);
     c.count += DEMI_MAX(done, 0);
@@ -11045,7 +11048,8 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
    Grains come in between two steps, joining the list of candidates (demi_list_join), and go out in
    the middle of one, when all have moved and a list is due. What a feed draws comes from its own
    random state in a fixed order: class, then place and velocity until a place is free. How much is
-   due follows from the time alone.
+   due follows from the time alone. Who asks for room and puts grains in is told by a demi_feeder:
+   here a world, in >>slabs-step all slabs.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* places tried; steps until the next try */
 enum { DEMI_FEED_NEAR = 256 };                       /* bodies near one that joins the list */
@@ -11143,24 +11147,61 @@ static void demi_feed_draw(demi_feed *f) {
     while (k > 0 && !(weight[k] > 0)) k--;      /* round-off at the end */
     f->next = k;
 }
-/* Puts in one grain of the class drawn. 1: done, 0: no room, -1: no memory, nothing happened. */
-static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_crowd *c) {
+/* Who feeds: looks at who is near a feed's region, then puts in grains of the class drawn, as long
+   as it answers 1; 0: no room; less: minus the result, the sentence is told, nothing happened. */
+typedef struct demi_feeder {
+    dem_result (*look)(void *who, const demi_region *g, dem_real radius);
+    int (*put)(void *who, demi_feed *f, const demi_region *g);
+    void *who;
+} demi_feeder;
+/* Draws a place and a velocity. 0: the place is not of the region. */
+static int demi_feed_try(const dem_world *w, demi_feed *f, const demi_region *g, dem_vec3 *x,
+                         dem_vec3 *v) {
+    const dem_feed_desc *d = &f->desc;
+    double u[6];
+    int k;
+    for (k = 0; k < 6; k++) u[k] = demi_uniform(&f->random);
+    *v = demi_v(d->velocity.x + d->spread*(dem_real)(2*u[3] - 1),
+                d->velocity.y + d->spread*(dem_real)(2*u[4] - 1),
+                d->velocity.z + d->spread*(dem_real)(2*u[5] - 1));
+    if (w->desc.planar) v->z = 0;
+    return demi_region_at(g, u, d->radius[f->next], x);
+}
+/* The grain of the class drawn becomes a body; room has been seen to. Answers its index. */
+static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_vec3 v) {
+    const dem_feed_desc *d = &f->desc;
+    const uint32_t slot = demi_body_append(w, d->material.id - 1, d->radius[f->next], x);
+    const int i = w->bodies.slot_index[slot];
+    demi_put(w->bodies.vel + 4*i, v);
+    demi_put(w->bodies.half_vel + 4*i, v);
+    w->booked.inserted += demi_body_energy(w, i);
+    w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
+    return i;
+}
+static void demi_feed_count(demi_feed *f) {
+    f->state.fed[f->next]++;
+    f->state.total++;
+    f->state.mass += f->mass[f->next];
+    f->next = -1;
+}
+/* A world that feeds, and who is near the region. */
+typedef struct demi_world_feeder { dem_world *w; demi_crowd crowd; } demi_world_feeder;
+static dem_result demi_world_look(void *who, const demi_region *g, dem_real radius) {
+    demi_world_feeder *to = (demi_world_feeder *)who;
+    return demi_crowd_begin(to->w, &to->crowd, g, radius, demi_periods_of(to->w)) ? DEM_OK
+        : demi_no_memory(to->w, "dem_world_step");
+}
+static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
+    dem_world *w = ((demi_world_feeder *)who)->w;
+    demi_crowd *c = &((demi_world_feeder *)who)->crowd;
     const dem_feed_desc *d = &f->desc;
     const dem_real r = d->radius[f->next];
     const uint64_t random = f->random;
     dem_vec3 x, v;
     int32_t found[DEMI_FEED_NEAR];
     int tries, i, count = 0, free_place = 0, joins;
-    for (tries = 0; tries < DEMI_FEED_TRIES && !free_place; tries++) {
-        double u[6];
-        int k;
-        for (k = 0; k < 6; k++) u[k] = demi_uniform(&f->random);
-        v = demi_v(d->velocity.x + d->spread*(dem_real)(2*u[3] - 1),
-                   d->velocity.y + d->spread*(dem_real)(2*u[4] - 1),
-                   d->velocity.z + d->spread*(dem_real)(2*u[5] - 1));
-        if (w->desc.planar) v.z = 0;
-        free_place = demi_region_at(g, u, r, &x) && demi_room_free(w, c, x, r);
-    }
+    for (tries = 0; tries < DEMI_FEED_TRIES && !free_place; tries++)
+        free_place = demi_feed_try(w, f, g, &x, &v) && demi_room_free(w, c, x, r);
     if (!free_place) return 0;
     x = demi_place_of(&c->p, x);
     joins = demi_join_possible(w, d->material.id - 1, r);
@@ -11173,13 +11214,9 @@ static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_
     if (!demi_crowd_put(w, c, x, r, w->bodies.count) || (!joins && !demi_list_drop(w)) ||
         !demi_bodies_reserve(w, (size_t)w->bodies.count + 1)) {
         f->random = random;
-        return -1;
+        return -(int)demi_no_memory(w, "dem_world_step");
     }
-    i = w->bodies.slot_index[demi_body_append(w, d->material.id - 1, r, x)];
-    demi_put(w->bodies.vel + 4*i, v);
-    demi_put(w->bodies.half_vel + 4*i, v);
-    w->booked.inserted += demi_body_energy(w, i);
-    w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
+    i = demi_feed_append(w, f, x, v);
     if (joins) {
         qsort(found, (size_t)count, sizeof *found, demi_int_compare);
         joins = demi_list_join(w, i, found, count);
@@ -11188,10 +11225,7 @@ static int demi_feed_put(dem_world *w, demi_feed *f, const demi_region *g, demi_
     if (!joins || w->desc.force || w->desc.body_force) demi_scene_changed(w);
     /* it touches nobody: no force on it is known yet */
     else if (w->stage.primed) demi_prime_body(w, i);
-    f->state.fed[f->next]++;
-    f->state.total++;
-    f->state.mass += f->mass[f->next];
-    f->next = -1;
+    demi_feed_count(f);
     return 1;
 }
 static int demi_feed_region(const dem_world *w, const dem_feed_desc *d, demi_region *g) {
@@ -11201,8 +11235,9 @@ static int demi_feed_region(const dem_world *w, const dem_feed_desc *d, demi_reg
     region.user = d->inside_user;
     return demi_region_make(w, &region, 0, g);
 }
-/* All that is due now. */
-static dem_result demi_feeds_run(dem_world *w) {
+/* All that is due now by the clock of w, whose feeds they are. */
+static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
+    dem_result result;
     int i, k;
     for (i = 0; i < w->feed_count; i++) {
         demi_feed *f = demi_feed_at(w, i);
@@ -11211,7 +11246,6 @@ static dem_result demi_feeds_run(dem_world *w) {
         const double due = d->rate > 0 ? d->rate*(until - d->start) : 1e300;
         int looked = 0;                         /* is the crowd there? */
         demi_region g;
-        demi_crowd c;
         while (w->clock.time >= d->start && w->clock.steps >= f->again && demi_feed_left(f)) {
             const double rounded = 1e-9*(1 + due);           /* the third of 3/s is due at 1 s */
             int done;
@@ -11229,12 +11263,12 @@ static dem_result demi_feeds_run(dem_world *w) {
                 dem_real r = 0;
                 for (k = 0; k < d->class_count; k++) r = DEMI_MAX(r, d->radius[k]);
                 demi_feed_region(w, d, &g);
-                if (!demi_crowd_begin(w, &c, &g, r + (dem_real)w->margin.skin))
-                    return demi_no_memory(w, "dem_world_step");
+                result = feeder->look(feeder->who, &g, r + (dem_real)w->margin.skin);
+                if (result != DEM_OK) return result;
                 looked = 1;
             }
-            done = demi_feed_put(w, f, &g, &c);
-            if (done < 0) return demi_no_memory(w, "dem_world_step");
+            done = feeder->put(feeder->who, f, &g);
+            if (done < 0) return (dem_result)-done;
             if (!done) f->again = w->clock.steps + DEMI_FEED_REST;
         }
         f->state.waiting = 0;
@@ -11250,6 +11284,15 @@ static dem_result demi_feeds_run(dem_world *w) {
             (!demi_feed_left(f) || (d->end > 0 && w->clock.time > d->end));
     }
     return DEM_OK;
+}
+static dem_result demi_world_feed(dem_world *w) {
+    demi_world_feeder to;
+    demi_feeder feeder;
+    to.w = w;
+    feeder.look = demi_world_look;
+    feeder.put = demi_world_put;
+    feeder.who = &to;
+    return demi_feeds_run(w, &feeder);
 }
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
     if (demi_null(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
@@ -12293,7 +12336,7 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
         if (!w->stage.moved) {
             result = demi_dt_settle(w);
             if (result == DEM_OK && w->feed_count) {
-                result = demi_feeds_run(w);
+                result = demi_world_feed(w);
                 if (result == DEM_OK) result = demi_dt_settle(w);   /* there may be new grains */
             }
             if (result == DEM_OK &&
@@ -15169,6 +15212,7 @@ typedef struct demi_slab {
     int halo_count, guest_count, leavers;
     uint64_t bytes, migrated;
     double work, seconds;
+    demi_crowd crowd;              /* who is near the region of a feed */
 } demi_slab;
 
 /* The head is a world without grains of its own: it holds what the slabs have in common (time,
@@ -15185,7 +15229,8 @@ struct dem_slabs {
     demi_slab *slabs;              /* local */
     demi_domain total;             /* the head's only domain */
     demi_parcel mine, all;         /* for dem_slabs_collect */
-    uint32_t *known;               /* by slot: generation of the body dealt, 0: none */
+    uint32_t *known;               /* by slot: generation of the body dealt or fed, 0: none */
+    int dealt, told, slots;        /* how many slots: dealt, known to the world, there are */
     uint64_t border_moves;
     void (*phase)(struct dem_slabs *s, demi_slab *b);
 };
@@ -16139,6 +16184,115 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
     return result;
 }
 
+/* ---------------------------------------------------------------------------------------------
+   >>slabs-run
+   Feeds into slabs, and one step after the other. The head has the feeds and draws, in every
+   process the same; each slab says who is near; the one whose part of the scene a new grain is in
+   takes it. Its slot is one nobody has had, and all lists are made anew before the step; forces
+   stay as they are, for it touches nobody.
+   --------------------------------------------------------------------------------------------- */
+
+/* Slot numbers are those of the whole scene: every slab gets room for one more. 0: no memory. */
+static int demi_slab_widen(demi_slab *b, int slot) {
+    dem_world *w = b->world;
+    return demi_bodies_reserve(w, (size_t)w->bodies.count + 1) &&
+           DEMI_GROW(w, w->bodies.visitor, (size_t)slot + 2);
+}
+static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radius) {
+    dem_slabs *s = (dem_slabs *)who;
+    int k;
+    if (!s->head.stage.primed) demi_slabs_phase(s, demi_slab_finish);
+    for (k = 0; k < s->local; k++) {
+        demi_slab *b = &s->slabs[k];
+        if (!demi_crowd_begin(b->world, &b->crowd, g, radius, demi_periods_of(&s->head)))
+            b->result = demi_no_memory(b->world, "dem_slabs_step");
+    }
+    return demi_slabs_agree(s, 0, 0);
+}
+/* Room for a grain at x of radius r, and for its slot; `owner`: the slab that takes it, if it is in
+   this process. */
+static dem_result demi_slabs_feed_room(dem_slabs *s, demi_slab *owner, dem_vec3 x, dem_real r) {
+    int k;
+    for (k = 0; k < s->local; k++)
+        if (!demi_slab_widen(&s->slabs[k], s->slots))
+            s->slabs[k].result = demi_no_memory(s->slabs[k].world, "dem_slabs_step");
+    if (!DEMI_GROW(&s->head, s->known, (size_t)s->slots + 2))
+        s->slabs[0].result = demi_no_memory(s->slabs[0].world, "dem_slabs_step");
+    if (owner && owner->result == DEM_OK &&
+        (!demi_crowd_put(owner->world, &owner->crowd, x, r, owner->world->bodies.count) ||
+         !demi_list_drop(owner->world)))
+        owner->result = demi_no_memory(owner->world, "dem_slabs_step");
+    return demi_slabs_agree(s, 0, 0);
+}
+/* All places that may be tried are asked about at once: is anybody in the way? Then the first that
+   is free counts, as in a world that tries one after the other. */
+static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
+    dem_slabs *s = (dem_slabs *)who;
+    dem_world *h = &s->head;
+    const dem_real r = f->desc.radius[f->next];
+    const demi_periods p = demi_periods_of(h);
+    const uint64_t random = f->random;
+    uint64_t after[DEMI_FEED_TRIES];
+    double taken[DEMI_FEED_TRIES], at[3];
+    dem_vec3 x[DEMI_FEED_TRIES], v[DEMI_FEED_TRIES];
+    demi_slab *owner = 0;
+    dem_result result;
+    int n, k;
+    for (n = 0; n < DEMI_FEED_TRIES; n++) {
+        taken[n] = !demi_feed_try(h, f, g, &x[n], &v[n]) ||
+                   !demi_walls_clear(s->slabs[0].world, x[n], r);
+        after[n] = f->random;
+        for (k = 0; k < s->local && !(taken[n] > 0); k++)
+            taken[n] = !demi_crowd_free(s->slabs[k].world, &s->slabs[k].crowd, x[n], r);
+    }
+    result = demi_slabs_reduce(s, taken, DEMI_FEED_TRIES, 0);
+    for (n = 0; n < DEMI_FEED_TRIES && taken[n] > 0; n++) continue;
+    if (result == DEM_OK && n == DEMI_FEED_TRIES) return 0;
+    if (result == DEM_OK) {
+        x[n] = demi_place_of(&p, x[n]);
+        at[0] = (double)x[n].x; at[1] = (double)x[n].y; at[2] = (double)x[n].z;
+        for (k = 0; k < s->local; k++)
+            if ((s->slabs[k].index == 0 || at[s->axis] >= s->borders[s->slabs[k].index]) &&
+                (s->slabs[k].index == s->count - 1 ||
+                 at[s->axis] < s->borders[s->slabs[k].index + 1])) owner = &s->slabs[k];
+        result = demi_slabs_feed_room(s, owner, x[n], r);
+    }
+    if (result != DEM_OK) { f->random = random; return -(int)result; }
+    f->random = after[n];
+    for (k = 0; k < s->local; k++) {
+        demi_bodies *bodies = &s->slabs[k].world->bodies;
+        const int rest = bodies->slot_free;
+        bodies->slot_free = -1;                 /* a number nobody has had: the next */
+        bodies->slot_index[s->slots] = -1;
+        bodies->slot_generation[s->slots] = 1;
+        bodies->visitor[s->slots] = 0;
+        bodies->slot_count = s->slots + (&s->slabs[k] != owner);
+        if (&s->slabs[k] == owner) {
+            const int i = demi_feed_append(owner->world, f, x[n], v[n]);
+            if (h->stage.primed) demi_prime_body(owner->world, i);
+        }
+        bodies->slot_free = rest;
+    }
+    s->known[s->slots++] = 1;
+    h->bodies.balance.inserted++;
+    h->booked.speed_max = DEMI_MAX(h->booked.speed_max, (double)demi_length(v[n]));
+    h->stage.list_valid = 0;
+    if (h->desc.force || h->desc.body_force) demi_scene_changed(h);
+    demi_feed_count(f);
+    return 1;
+}
+/* All that is due; then the time step may be another. */
+static dem_result demi_slabs_feed(dem_slabs *s) {
+    demi_feeder feeder;
+    dem_result result;
+    if (!s->head.feed_count) return DEM_OK;
+    feeder.look = demi_slabs_look;
+    feeder.put = demi_slabs_put;
+    feeder.who = s;
+    result = demi_feeds_run(&s->head, &feeder);
+    return result == DEM_OK ? demi_slabs_settle(s) : result;
+}
+
 static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
     if (!s->broken) return DEM_OK;
     return demi_fail(&s->head, DEM_ERROR_STOPPED, "%s: the transport failed before, so slabs may "
@@ -16159,6 +16313,7 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
         int sampling = 0;
         if (!h->stage.moved) {
             result = demi_slabs_settle(s);
+            if (result == DEM_OK) result = demi_slabs_feed(s);
             if (result == DEM_OK && !h->stage.forces_valid) result = demi_slabs_refresh(s);
             else if (result == DEM_OK && !h->stage.list_valid) result = demi_slabs_rebuild(s);
             if (result != DEM_OK) break;
@@ -16263,6 +16418,13 @@ static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
     to->outlet_count = from->outlet_count;
     return 1;
 }
+/* The head has the feeds; slabs look at them. 0 when memory ran out. */
+static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
+    if (!DEMI_GROW(h, h->feeds, (size_t)w->feed_count)) return 0;
+    if (w->feed_count) memcpy(h->feeds, w->feeds, (size_t)w->feed_count*sizeof *h->feeds);
+    h->feed_count = w->feed_count;
+    return 1;
+}
 static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     int i;
     for (i = 0; i < from->field_count; i++) {
@@ -16297,6 +16459,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
     w->material_count = from->material_count;
+    w->feeds = s->head.feeds;
+    w->feed_count = s->head.feed_count;
     w->bodies.visitor = (uint8_t *)demi_hold(w, DEMI_RUN, slots + 1, 1);
     w->bodies.slot_index = (int32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(int32_t));
     w->bodies.slot_generation = (uint32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(uint32_t));
@@ -16325,6 +16489,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
         from->booked.overlap_max;                           w->booked.speed_max =
             from->booked.speed_max;
     w->bodies.balance = from->bodies.balance;     w->booked.removed = from->booked.removed;
+    w->booked.inserted = from->booked.inserted;
     w->booked.throughput =
         from->booked.throughput;                             w->clock.half_kick =
             from->clock.half_kick;
@@ -16387,9 +16552,6 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     if (w->stage.moved)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world stands in the middle of a step that "
                          "ran out of memory; finish it with dem_world_step first", call);
-    if (w->feed_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world has %d feeds, must have none, "
-                         "because slabs cannot feed yet; use dem_world_step", call, w->feed_count);
     return DEM_OK;
 }
 /* Do all processes hold the same scene, have they got their memory, and all slabs between them?
@@ -16451,7 +16613,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
         !h->bodies.material || !s->values ||
         !s->borders || !s->slabs) return 0;
     memcpy(h->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
-    return 1;
+    return demi_slabs_feeds_copy(h, w);
 }
 /* First borders: the same number of grains in every slab. */
 static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
@@ -16504,6 +16666,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     s->period = (double)demi_periods_of(w).period[s->axis];
     marks = (uint8_t *)demi_alloc(w, slots, 1);
     ok = marks && demi_slabs_head(s, w);
+    s->slots = s->told = s->dealt = w->bodies.slot_count;
     ok = ok && DEMI_GROW(&s->head, s->known, slots);
     for (k = 0; k < w->bodies.slot_count && ok; k++)
         s->known[k] = w->bodies.slot_index[k] < 0 ? 0 : w->bodies.slot_generation[k];
@@ -16528,7 +16691,7 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
 typedef struct demi_slab_sums {
     int32_t index, walls;
     uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
-    double energy[DEMI_ENERGIES], removed, throughput, overlap_max;
+    double energy[DEMI_ENERGIES], removed, inserted, throughput, overlap_max;
 } demi_slab_sums;
 
 static int demi_slab_report(dem_slabs *s, demi_slab *b) {
@@ -16543,6 +16706,7 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     sums.left = w->bodies.balance.left;
     memcpy(sums.energy, w->booked.energy, sizeof sums.energy);
     sums.removed = w->booked.removed;
+    sums.inserted = w->booked.inserted;
     sums.throughput = w->booked.throughput;
     sums.overlap_max = w->booked.overlap_max;
     ok = demi_parcel_put(h, out, &sums, sizeof sums);
@@ -16625,6 +16789,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     int i, k;
     for (i = 0; i < DEMI_ENERGIES; i++) w->booked.energy[i] += sums->energy[i];
     w->booked.removed += sums->removed;
+    w->booked.inserted += sums->inserted;
     w->booked.throughput += sums->throughput;
     w->bodies.balance.left += sums->left;
     w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, sums->overlap_max);
@@ -16683,7 +16848,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     w->margin.reach = h->margin.reach;         w->margin.wall_reach = h->margin.wall_reach;
     w->stage.forces_valid = h->stage.forces_valid;
     w->bodies.balance.left = 0;
-    w->booked.removed = w->booked.throughput = w->booked.overlap_max = 0;
+    w->booked.removed = w->booked.inserted = w->booked.throughput = w->booked.overlap_max = 0;
     memset(w->booked.energy, 0, sizeof w->booked.energy);
     for (i = 0; i < w->wall_count; i++) {
         memset(&w->walls[i].channels, 0, sizeof w->walls[i].channels);
@@ -16691,6 +16856,11 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
         w->walls[i].mid = from->walls[i].mid;
     }
     for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc desc = w->feeds[i].desc;           /* pointers are the world's own */
+        w->feeds[i] = h->feeds[i];
+        w->feeds[i].desc = desc;
+    }
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
         const size_t n = demi_field_cells(f)*sizeof(double);
@@ -16701,17 +16871,39 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
         f->next = from->fields[i].next;
     }
 }
-/* Grains, memory and contacts of one slab. */
+/* Grains, memory and contacts of one slab; those that were fed since are new in the world. */
 static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const char *from) {
     demi_parcel_head head;
     int i;
     demi_take(&from, &head, sizeof head);
     for (i = 0; i < head.grains; i++) {
         const uint32_t slot = demi_grain_slot(from);
+        if (w->bodies.slot_index[slot] < 0) {
+            w->bodies.slot_index[slot] = w->bodies.count++;
+            w->bodies.balance.present++;
+        }
         demi_grain_take(w, w->bodies.slot_index[slot], &from);
         seen[slot] = 1;
     }
+    w->lll_valid = 0;
     demi_filed_take(w, add, &head, from);
+}
+/* Slots of grains that were fed since the world was told the last time, nobody's as yet. */
+static void demi_slabs_slots(const dem_slabs *s, dem_world *w) {
+    for (; w->bodies.slot_count < s->slots; w->bodies.slot_count++) {
+        w->bodies.slot_generation[w->bodies.slot_count] = 1;
+        w->bodies.slot_index[w->bodies.slot_count] = -1;
+    }
+}
+/* Those from `first` on whose grains have gone again are free. */
+static void demi_slabs_slots_free(dem_world *w, const uint8_t *seen, int first) {
+    int slot;
+    for (slot = w->bodies.slot_count - 1; slot >= first; slot--) {
+        if (seen[slot]) continue;
+        w->bodies.slot_generation[slot]++;
+        w->bodies.slot_index[slot] = -2 - w->bodies.slot_free;
+        w->bodies.slot_free = slot;
+    }
 }
 /* Room for all that was gathered, and whether the world can hold it. */
 static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uint8_t **seen) {
@@ -16724,20 +16916,18 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations in %s only; collect "
                          "into the world the slabs were created from, unchanged, or one built like "
                          "it", call, w->bodies.orienting ? "the world" : "the slabs");
-    if (w->bodies.slot_count != s->slabs[0].world->bodies.slot_count ||
-        w->wall_count != h->wall_count ||
-        w->material_count != h->material_count ||
+    if (w->bodies.slot_count < s->dealt || w->wall_count != h->wall_count ||
+        w->material_count != h->material_count || w->feed_count != h->feed_count ||
         w->field_count != s->slabs[0].world->field_count ||
         w->outlet_count != s->slabs[0].world->outlet_count)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
-                         "materials, the slabs %d, %d, %d; collect into the world they were "
-                         "created from, unchanged, or one built like it", call,
-                             w->bodies.slot_count,
-                         w->wall_count, w->material_count, s->slabs[0].world->bodies.slot_count,
-                         h->wall_count, h->material_count);
+                         "materials, %d feeds, the slabs %d, %d, %d, %d; collect into the world "
+                         "they were created from, unchanged, or one built like it", call,
+                         w->bodies.slot_count, w->wall_count, w->material_count, w->feed_count,
+                         s->dealt, h->wall_count, h->material_count, h->feed_count);
     for (i = 0; i < w->bodies.count; i++) {
         const uint32_t slot = w->bodies.slot[i];
-        if (w->bodies.slot_generation[slot] != s->known[slot])
+        if ((int)slot >= s->told || w->bodies.slot_generation[slot] != s->known[slot])
             return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u was added to the world after the "
                              "slabs had been created; collect before adding grains, or create the "
                              "slabs anew after it", call, (unsigned)slot + 1);
@@ -16756,7 +16946,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
         for (i = 0; i < head.grains; i++) {
             const uint32_t slot = demi_grain_slot(from);
             from += demi_body_size(w);
-            if (w->bodies.slot_index[slot] < 0)
+            if ((int)slot < w->bodies.slot_count && w->bodies.slot_index[slot] < 0)
                 return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u is in slab %d, but no longer "
                                  "in the world; collect before removing grains, or create the "
                                  "slabs anew after it", call, (unsigned)slot + 1, k);
@@ -16765,10 +16955,16 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
     for (k = 0; k < DEMI_DOMAINS; k++) w->domains[k].kept = 0;
     w->filed.count = 0;
-    if (!DEMI_GROW(h, *seen, (size_t)w->bodies.slot_count + 1) ||
-        !demi_filed_reserve(w, add, &come))
+    i = w->bodies.slot_count;
+    if (!DEMI_GROW(h, *seen, (size_t)s->slots + 1) ||
+        !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)DEMI_MAX(s->slots - i, 0)))
         return demi_no_memory(h, call);
-    memset(*seen, 0, (size_t)w->bodies.slot_count + 1);
+    demi_slabs_slots(s, w);
+    if (!demi_filed_reserve(w, add, &come)) {
+        w->bodies.slot_count = i;
+        return demi_no_memory(h, call);
+    }
+    memset(*seen, 0, (size_t)s->slots + 1);
     return DEM_OK;
 }
 DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
@@ -16776,6 +16972,7 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
     int32_t *add = 0;
     uint8_t *seen = 0;
     dem_result result = demi_slabs_usable(s, "dem_slabs_collect");
+    const int slots = w->bodies.slot_count;
     demi_slab_sums sums;
     int k, i;
     if (result == DEM_OK) result = demi_slabs_gather(s);
@@ -16787,7 +16984,9 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
             from = demi_slabs_add(w, &sums, from);
             demi_slabs_write(w, add, seen, from);
         }
-        /* in no slab: left through an outflow boundary */
+        demi_slabs_slots_free(w, seen, slots);
+        s->told = s->slots;
+        /* in no slab: left through an outflow boundary or an outlet */
         for (i = w->bodies.count - 1; i >= 0; i--)
             if (!seen[w->bodies.slot[i]]) {
                 const double removed = w->booked.removed;

@@ -326,7 +326,7 @@ static dem_world *mixture(int on, dem_boundary end, int threads, int each, count
 }
 /* Where bits are compared: a gas, whose sums are of one or two forces and hide their order; a heap
    that runs to one side, whose borders move; bodies of all shapes on triangles and on a sieve. */
-enum { GAS, HEAP, OUTLETS, SHAPES, SHAPES_RING, SIEVE, BITS };
+enum { GAS, HEAP, OUTLETS, FED, FED_RING, SHAPES, SHAPES_RING, SIEVE, BITS };
 /* The heap, with two outlets that let grains of it out: one stays, one shakes with a plane. */
 static dem_world *leaking(void) {
     dem_world *world = crate(-30, -1, DEM_BOUNDARY_OPEN, 200, 0);
@@ -350,8 +350,30 @@ static dem_world *leaking(void) {
     CHECK_EQ(dem_outlet_add(world, &d).id, 2);
     return world;
 }
+/* Grains of three classes rain on the heap, all along the crate: 1000 a second. */
+static dem_feed rain(dem_world *world) {
+    dem_feed_desc d;
+    memset(&d, 0, sizeof d);
+    d.material.id = 1;
+    d.box = box_of(0, 0.001, 0.006, 0.06, 0.011, 0.011);
+    d.class_count = 3;
+    d.radius[0] = DEM_R(1e-3); d.radius[1] = DEM_R(9e-4); d.radius[2] = DEM_R(8.5e-4);
+    d.amount[0] = d.amount[1] = 20; d.amount[2] = 1000;
+    d.limited = 1;
+    d.rate = 1000;
+    d.velocity = at(0, 0, -0.5);
+    d.spread = DEM_R(0.1);
+    d.seed = 7;
+    return dem_feed_add(world, &d);
+}
+static dem_world *fed(int ring) {
+    dem_world *world = ring ? crate(0, -5, DEM_BOUNDARY_PERIODIC, 200, 0) : leaking();
+    CHECK_EQ(rain(world).id, 1);
+    return world;
+}
 static dem_world *bits_world(int scene, int threads) {
     dem_world *world = scene == OUTLETS ? leaking() : scene == GAS ? gas(1, threads)
+        : scene == FED || scene == FED_RING ? fed(scene == FED_RING)
         : scene == HEAP ? crate(-30, -1, DEM_BOUNDARY_OPEN, 200, 0)
         : mixture(scene == SIEVE ? ON_SIEVE : ON_FLOOR, scene == SHAPES_RING
                   ? DEM_BOUNDARY_PERIODIC : DEM_BOUNDARY_OPEN, threads, 150, 0);
@@ -671,6 +693,58 @@ int main(int argc, char **argv) {
             dem_world_destroy(one);
             dem_world_destroy(other);
         }
+    }
+    TEST("feeds put into slabs the grains they put into one world, at the same places; they are "
+         "collected as often as one likes, and the world goes on with them") {
+        int ring, count, k;
+        for (ring = 0; ring < 2; ring++)
+            for (count = 1; count <= 4; count++) {
+                dem_world *one = ring ? crate(0, -5, DEM_BOUNDARY_PERIODIC, 200, 0)
+                    : crate(-30, -1, DEM_BOUNDARY_OPEN, 200, 0);
+                dem_world *other = ring ? crate(0, -5, DEM_BOUNDARY_PERIODIC, 200, 0)
+                    : crate(-30, -1, DEM_BOUNDARY_OPEN, 200, 0);
+                const dem_feed a = rain(one), b = rain(other);
+                dem_feed_state x, y;
+                dem_material glass;
+                dem_slabs *slabs;
+                glass.id = 1;
+                for (k = 0; k < 2; k++)         /* of two radii from the first: new ones join the list */
+                    CHECK_EQ(dem_spheres_fill(k ? one : other, glass, DEM_R(9e-4),
+                                              box_of(0, 0, 0, 0.06, 0.012, 0.012), 1, 3), 1);
+                CHECK_EQ(scene_step(one, 20), DEM_OK);
+                CHECK_EQ(scene_step(other, 20), DEM_OK);
+                slabs = deal(other, 0, count);
+                for (k = 0; k < 3; k++) {
+                    const int steps = 500*(k + 1);
+                    CHECK_EQ(scene_step(one, steps), DEM_OK);
+                    CHECK_EQ(go(slabs, steps), DEM_OK);
+                    CHECK_EQ(collect(slabs, other), DEM_OK);
+                    CHECK_EQ(dem_feed_get(one, a, &x), DEM_OK);
+                    CHECK_EQ(dem_feed_get(other, b, &y), DEM_OK);
+                    CHECK(x.total > 3);
+                    CHECK_EQ((int)y.total, (int)x.total);
+                    CHECK_EQ((int)y.fed[0], (int)x.fed[0]);
+                    CHECK_EQ((int)y.waiting, (int)x.waiting);
+                    CHECK(whole(slabs, one->bodies.count));
+                    CHECK_EQ((int)dem_balance_get(other).inserted,
+                             (int)dem_balance_get(one).inserted);
+                    CHECK_EQ((int)dem_balance_get(other).present,
+                             (int)dem_balance_get(one).present);
+                    CHECK_NEAR(apart(one, other), 0, wide ? 1e-7 : 1e-3);
+                    CHECK_NEAR(dem_ledger_get(other).inserted, dem_ledger_get(one).inserted,
+                               1e-9*dem_ledger_get(one).throughput);
+                }
+                CHECK_EQ(scene_step(other, 300), DEM_OK);
+                CHECK_EQ(scene_step(one, 300), DEM_OK);
+                CHECK_EQ(other->bodies.count, one->bodies.count);
+                /* what came into the world since is not the slabs' */
+                CHECK(dem_sphere_add(other, glass, DEM_R(5e-4), at(0.02, 0.005, 0.05)).slot > 0);
+                CHECK_EQ(dem_slabs_collect(slabs, other), DEM_ERROR_ARGUMENT);
+                CHECK_STR(dem_slabs_error(slabs), "added to the world after");
+                dem_slabs_destroy(slabs);
+                dem_world_destroy(one);
+                dem_world_destroy(other);
+            }
     }
     TEST("ellipsoids, clusters, orientations, a sieve that shakes and a field are in slabs what they "
          "are in one world: the same bits in one slab, the same but for the order of sums in more") {
