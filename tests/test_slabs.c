@@ -366,14 +366,14 @@ static dem_feed rain(dem_world *world) {
     d.seed = 7;
     return dem_feed_add(world, &d);
 }
-static dem_world *fed(int ring) {
+static dem_world *rained_on(int ring) {
     dem_world *world = ring ? crate(0, -5, DEM_BOUNDARY_PERIODIC, 200, 0) : leaking();
     CHECK_EQ(rain(world).id, 1);
     return world;
 }
 static dem_world *bits_world(int scene, int threads) {
     dem_world *world = scene == OUTLETS ? leaking() : scene == GAS ? gas(1, threads)
-        : scene == FED || scene == FED_RING ? fed(scene == FED_RING)
+        : scene == FED || scene == FED_RING ? rained_on(scene == FED_RING)
         : scene == HEAP ? crate(-30, -1, DEM_BOUNDARY_OPEN, 200, 0)
         : mixture(scene == SIEVE ? ON_SIEVE : ON_FLOOR, scene == SHAPES_RING
                   ? DEM_BOUNDARY_PERIODIC : DEM_BOUNDARY_OPEN, threads, 150, 0);
