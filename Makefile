@@ -59,7 +59,7 @@ run: build/mill ## the tumbling mill: progress on the terminal, pictures in buil
 test: build/tests $(ALONE) ## build and run all tests; FILTER=words runs the sentences that contain them
 	@JOBS=$(JOBS) sh tests/run.sh "$(FILTER)" $(TOGETHER:build/%=build/tests@%) $(ALONE)
 
-hard: build/tests ## the long forms of the hard cases: 1e5 impacts of each kind of body; FILTER=words as in test
+hard: build/tests ## the long shapes of the hard cases: 1e5 impacts of each kind of body; FILTER=words as in test
 	@JOBS=$(JOBS) TEST_LONG=1 TEST_TABLES=1 sh tests/run.sh "$(FILTER)" build/tests@test_facets build/tests@test_sieve
 
 examples: $(LESSONS) snippets ## build and run the numbered examples, compile the snippets of the manual

@@ -40,7 +40,7 @@
        >>feed        grains fed in, taken out and counted
        >>advice      which time step a scene bears
        >>step        one step after the other
-       >>measure     fields on a grid, channels, balance
+       >>measure     fields on a grid, loads, balance
        >>read        meshes and profiles in
        >>write       VTP, VTK, XYZ and CSV out
        >>checkpoint  everything, to the last bit
@@ -88,8 +88,8 @@
 
    Conventions. SI units throughout. Overlap is positive when two bodies touch. The normal of a
    contact points from body a to body b; of a wall contact, from the grain to the wall.
-   `closing_speed` is positive when the two approach. Forces in a `dem_push` are those on body a,
-   except `normal`, which is the repulsion (positive pushes the two apart). Rotations are
+   `closing_speed` is positive when the two approach. A `dem_contact_force` acts on body a, but for
+   `normal`, which is the repulsion (positive pushes the two apart). Rotations are
    right-handed. Angles are in radians.
 
    One step, in the order in which data flows (the same numbers stand in demi_step_once):
@@ -194,9 +194,11 @@
        memory      reals that a contact keeps from step to step: springs, largest load
        slip        velocity of one surface along the other, at the contact
        place       where a surface of facets is nearest to a body; counted by its share
-       form, spot  a shape in its principal frame; where a sphere of a cluster is now
+       part        a sphere of a cluster, or the one sphere or ellipsoid that a body is
+       kept        of a contact: by itself, in a list, not in a column of the near list
+       spin        angular velocity of a body, as in the literature of granular gases
        reduced     of two bodies: R* = Ra Rb/(Ra + Rb), m* likewise, E* in series (Hertz)
-       visitor     copy of a grain that is at home in the slab below
+       ghost       copy of a grain that belongs to the slab below
        ledger      account of energy: put in, stored, lost, and what is left over
 
    References, by the keys used below:
@@ -315,14 +317,14 @@ DEM_INLINE dem_quat dem_quat_times(dem_quat a, dem_quat b) {
                          a.w*b.z + a.x*b.y - a.y*b.x + a.z*b.w);
 }
 /* v of the body's frame, in the world. */
-DEM_INLINE dem_vec3 dem_quat_turn(dem_quat q, dem_vec3 v) {
+DEM_INLINE dem_vec3 dem_quat_rotate(dem_quat q, dem_vec3 v) {
     const dem_real x = 2*(q.y*v.z - q.z*v.y), y = 2*(q.z*v.x - q.x*v.z), z = 2*(q.x*v.y - q.y*v.x);
     return dem_vec3_make(v.x + q.w*x + q.y*z - q.z*y, v.y + q.w*y + q.z*x - q.x*z,
                          v.z + q.w*z + q.x*y - q.y*x);
 }
 /* v of the world, in the body's frame. */
-DEM_INLINE dem_vec3 dem_quat_unturn(dem_quat q, dem_vec3 v) {
-    return dem_quat_turn(dem_quat_make(q.w, -q.x, -q.y, -q.z), v);
+DEM_INLINE dem_vec3 dem_quat_unrotate(dem_quat q, dem_vec3 v) {
+    return dem_quat_rotate(dem_quat_make(q.w, -q.x, -q.y, -q.z), v);
 }
 
 /* ---- ids: all-zero names nothing ---- */
@@ -487,7 +489,7 @@ typedef struct dem_contact {
     dem_vec3 spin;           /* rad/s, spin of a minus spin of b */
     dem_vec3 slip_step;  /* m/s, slip averaged over the step just taken: what memory integrates */
     dem_vec3 spin_step;      /* rad/s, spin averaged over the step just taken */
-    dem_vec3 normal_rate;    /* 1/s, how the normal turned in that step; for dem_memory_turn */
+    dem_vec3 normal_rate;    /* 1/s, how the normal turned in that step; for dem_memory_rotate */
     dem_real twist;          /* rad/s, how the contact plane turned about the normal */
     dem_real r_eff;          /* m,  1/(1/Ra + 1/Rb);  Ra against a wall */
     dem_real m_eff;          /* kg, 1/(1/ma + 1/mb);  ma against a wall */
@@ -513,7 +515,7 @@ typedef struct dem_contact_energy {
 } dem_contact_energy;
 
 /* What a law answers. Zeroed before the law is called. */
-typedef struct dem_push {
+typedef struct dem_contact_force {
     dem_real normal;         /* N, repulsion: positive pushes apart */
     dem_vec3 tangent;        /* N, on a (b gets the opposite), at the contact point */
     dem_vec3 moment;         /* N m, on a (b gets the opposite): rolling resistance */
@@ -525,20 +527,20 @@ typedef struct dem_push {
     dem_real kt, kt_step;    /* N/m, tangential stiffness: the same */
     dem_real ct;             /* N s/m, tangential dashpot */
     dem_contact_energy energy;   /* for the ledger: what your law leaves at 0 it cannot know */
-} dem_push;
+} dem_contact_force;
 
 /* A contact law. memory holds law_memory reals that start at zero when the contact begins and are
    kept while it lasts. Must not look at anything but its arguments and c->user; is called from
    several threads. When a contact turns round (a and b change places) the first 3*law_vectors reals
    of the memory change sign: put there what is a vector, such as a tangential spring, and scalars
    after them. */
-typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_push *push);
+typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_force *push);
 
 /* A vector kept in contact memory, carried along with the contact plane over the last step: turned
    with the normal, spun with the mean twist of the two bodies; lies in the tangent plane, keeps its
    length. Laws with memory begin with this. (Rotation by n_old -> n is exact to sixth order of the
    angle of one step.) */
-DEM_INLINE dem_vec3 dem_memory_turn(const dem_contact *c, dem_vec3 v) {
+DEM_INLINE dem_vec3 dem_memory_rotate(const dem_contact *c, dem_vec3 v) {
     const dem_vec3 n = c->normal, r = c->normal_rate;
     const dem_real g = v.x*n.x + v.y*n.y + v.z*n.z;      /* what sticks out of the plane */
     const dem_real e = c->dt*c->dt*(r.x*r.x + r.y*r.y + r.z*r.z);  /* sin^2 of the angle */
@@ -564,7 +566,7 @@ DEM_INLINE dem_vec3 dem_memory_turn(const dem_contact *c, dem_vec3 v) {
 /* For a normal law: sets what friction may count on from the elastic and the whole normal force, as
    friction_load says, and takes away what pulls, if tension says so. hold: N, what adhesion holds
    besides, 0 if there is none. */
-DEM_INLINE void dem_law_load(const dem_contact *c, dem_push *f, dem_real hold) {
+DEM_INLINE void dem_law_load(const dem_contact *c, dem_contact_force *f, dem_real hold) {
     const int clipped = c->tension != DEM_TENSION_KEPT;
     const dem_real least = f->elastic < 0 ? f->elastic : 0;  /* adhesion may pull, no dashpot */
     const dem_real whole = (clipped || c->friction_load != DEM_LOAD_ELASTIC ? f->normal
@@ -589,7 +591,7 @@ DEM_INLINE dem_real demi_law_middle(const dem_contact *c) {
 }
 
 /* F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92]; kt as d^(1/2), ct as d^(1/4). No memory. */
-DEM_INLINE void dem_law_hertz(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_hertz(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real root = DEMI_SQRT(c->overlap), fourth = DEMI_SQRT(root);
     const dem_real middle = DEMI_SQRT(demi_law_middle(c));
     (void)memory;
@@ -604,7 +606,7 @@ DEM_INLINE void dem_law_hertz(const dem_contact *c, dem_real *memory, dem_push *
     f->energy.elastic = f->elastic*c->overlap*2/5;
 }
 /* F = kn d + cn v. No memory. */
-DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory;
     f->elastic = c->kn*c->overlap;
     f->normal = f->elastic + c->cn*c->closing_speed;
@@ -629,7 +631,7 @@ DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_push 
    normal_damping calms it. Stored is F^2/(2 kun); a D that changes dissipates F (1 - kn/kun) dD,
    summed exactly along either line. Memory: D, m, no vector.
    Tests: "a hysteretic contact dissipates the area of its loop". */
-DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real kn = c->kn, kun = c->kun, kad = c->kad, soft = kun - kn, before = memory[0];
     const dem_real loaded = c->overlap > before ? c->overlap : before;
     const dem_real most = c->overlap*(kun + kad)/(soft + DEMI_TINY);
@@ -648,7 +650,7 @@ DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_p
 
 /* Friction caps a trial force t by Coulomb: by friction_static while it holds, by friction when it
    slides. Answers which part of t is left; what is cut off is sliding. */
-DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_push *f, dem_vec3 t) {
+DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_contact_force *f, dem_vec3 t) {
     const dem_real size = DEMI_SQRT(demi_dot(t, t)), cap = f->load*c->friction;
     dem_real cut = size > f->load*c->friction_static ? size : cap;
     cut = (cap + DEMI_TINY)/(cut + DEMI_TINY);
@@ -657,18 +659,18 @@ DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_push *f, dem_vec3 t) 
     return cut;
 }
 /* No memory, a dashpot of so many N s/m. */
-DEM_INLINE void demi_law_dashpot(const dem_contact *c, dem_push *f, dem_real ct) {
+DEM_INLINE void demi_law_dashpot(const dem_contact *c, dem_contact_force *f, dem_real ct) {
     const dem_vec3 v = c->slip;
     const dem_real cut = demi_law_cap(c, f, demi_v(-ct*v.x, -ct*v.y, -ct*v.z));
     f->energy.slide = cut < 1 ? f->energy.shear_work : 0;
 }
 /* -ct v, capped; [MIL] 4.3. No memory. */
-DEM_INLINE void dem_law_viscous(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_viscous(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory;
     demi_law_dashpot(c, f, f->ct);
 }
 /* -kt (v dt) - ct v, capped; [MIL] 4.2. No memory. */
-DEM_INLINE void dem_law_step(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_step(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory;
     demi_law_dashpot(c, f, f->kt*c->dt + f->ct);
 }
@@ -678,7 +680,8 @@ DEM_INLINE void dem_law_step(const dem_contact *c, dem_real *memory, dem_push *f
        rest     all, so that spring and dashpot of the present slip do
        spring   all and the dashpot's share besides, so that the spring alone does.
    The dashpot's share comes from nowhere there. */
-DEM_INLINE dem_vec3 demi_law_give(const dem_contact *c, dem_push *f, dem_vec3 t, dem_real cut) {
+DEM_INLINE dem_vec3 demi_law_give(const dem_contact *c, dem_contact_force *f, dem_vec3 t,
+                                  dem_real cut) {
     const dem_real shared = (1 - cut)*c->dt/(f->kt*c->dt + f->ct + DEMI_TINY);
     const dem_real all = (c->dt > 0 ? 1 - cut : 0)/(f->kt + DEMI_TINY);      /* m/N */
     dem_vec3 lost = demi_scale(t, c->slider == DEM_SLIDER_SHARED ? shared : all);
@@ -690,10 +693,10 @@ DEM_INLINE dem_vec3 demi_law_give(const dem_contact *c, dem_push *f, dem_vec3 t,
 }
 /* -kt s - ct v, capped; s: displacement, carried along with the contact plane [CS79]. Memory: s, m,
    a vector. */
-DEM_INLINE void dem_law_spring(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_spring(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_vec3 v = c->slip;
     const dem_real kt = f->kt, ct = f->ct;
-    dem_vec3 s = dem_memory_turn(c, demi_at(memory)), t;
+    dem_vec3 s = dem_memory_rotate(c, demi_at(memory)), t;
     dem_real cut;
     s = demi_add(s, demi_scale(c->slip_step, demi_law_share(c)*c->dt));
     t = demi_v(-kt*s.x - ct*v.x, -kt*s.y - ct*v.y, -kt*s.z - ct*v.z);
@@ -704,11 +707,11 @@ DEM_INLINE void dem_law_spring(const dem_contact *c, dem_real *memory, dem_push 
 }
 /* Increments of force at the stiffness of the step's middle [DIR05]; old: what is left of the force
    of the step before. */
-DEM_INLINE void demi_law_increment(const dem_contact *c, dem_real *memory, dem_push *f,
+DEM_INLINE void demi_law_increment(const dem_contact *c, dem_real *memory, dem_contact_force *f,
                                    dem_real kt_step, dem_real old) {
     const dem_vec3 v = c->slip;
     const dem_real kt = f->kt, ct = f->ct;
-    dem_vec3 s = demi_scale(dem_memory_turn(c, demi_at(memory)), old), t;
+    dem_vec3 s = demi_scale(dem_memory_rotate(c, demi_at(memory)), old), t;
     dem_real cut;
     s = demi_sub(s, demi_scale(c->slip_step, kt_step*demi_law_share(c)*c->dt));
     t = demi_v(s.x - ct*v.x, s.y - ct*v.y, s.z - ct*v.z);
@@ -720,12 +723,13 @@ DEM_INLINE void demi_law_increment(const dem_contact *c, dem_real *memory, dem_p
 }
 /* [DIR05]: s grows by -kt ds at kt of the present overlap; s - ct v, capped. Memory: s, N, a
    vector, and kt of the last step, N/m. */
-DEM_INLINE void dem_law_mindlin(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_mindlin(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     demi_law_increment(c, memory, f, f->kt_step, 1);
 }
 /* [THO13]: the same, but unloading keeps the length s/kt: where kt falls, s falls with it. Memory
    as above. */
-DEM_INLINE void dem_law_mindlin_rescaled(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_mindlin_rescaled(const dem_contact *c, dem_real *memory,
+                                         dem_contact_force *f) {
     const dem_real kt = f->kt, before = memory[3];
     demi_law_increment(c, memory, f, kt < before ? kt : f->kt_step, kt < before ? kt/before : 1);
 }
@@ -734,7 +738,7 @@ DEM_INLINE void dem_law_mindlin_rescaled(const dem_contact *c, dem_real *memory,
    step's middle, N m. */
 DEM_INLINE dem_vec3 demi_law_roll(const dem_contact *c, const dem_real *memory, dem_real kr) {
     const dem_vec3 n = c->normal, w = c->spin_step;
-    return demi_sub(dem_memory_turn(c, demi_at(memory)),
+    return demi_sub(dem_memory_rotate(c, demi_at(memory)),
                     demi_scale(demi_sub(w, demi_scale(n, demi_dot(w, n))),
                                kr*demi_law_share(c)*c->dt));
 }
@@ -743,7 +747,7 @@ DEM_INLINE dem_real demi_law_left(dem_real size, dem_real most) {
     return (most + DEMI_TINY)/((size > most ? size : most) + DEMI_TINY);
 }
 /* mu_r R min(F, |w|) against the relative spin w: [MIL] 4.5, dimensions as printed. No memory. */
-DEM_INLINE void dem_law_roll_step(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_roll_step(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real size = demi_length(c->spin), least = f->load < size ? f->load : size;
     (void)memory;
     f->moment = demi_scale(c->spin, -c->rolling_friction*c->r_eff*least/(size + DEMI_TINY));
@@ -753,7 +757,8 @@ DEM_INLINE void dem_law_roll_step(const dem_contact *c, dem_real *memory, dem_pu
    spring, as stiff as a step can resolve, kr = (.3/dt)^2 I of the lighter's inertia I = 2/5 m*
    R*^2, critically damped and shared with the limit. What it yields goes with dt^2; nothing creeps.
    Memory: its moment, N m, a vector. */
-DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory,
+                                      dem_contact_force *f) {
     const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
     const dem_real per = c->dt > 0 ? 1/(c->dt + DEMI_TINY) : 0;
     const dem_real hard = 2*(c->m_eff*c->r_eff*c->r_eff)/5*per, kr = DEM_R(0.09)*hard*per;
@@ -768,7 +773,7 @@ DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory, de
 /* EPSD [AI11]: a spring kr = 2.25 k (mu_r R*)^2, k = dF/dd the normal stiffness, held at mu_r R* F;
    below that a dashpot of .3 times the critical one of I = 7/5 m* R*^2. Memory: the spring's
    moment, N m, a vector. */
-DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_push *f) {
+DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
     const dem_real arm = c->rolling_friction*c->r_eff, mr2 = c->m_eff*c->r_eff*c->r_eff;
     const dem_real kr = DEM_R(2.25)*f->slope*arm*arm, most = arm*f->load;
@@ -1085,17 +1090,17 @@ DEM_API int dem_region_fill(dem_world *world, const dem_region *region, dem_mate
 
 /* Two ellipsoids by themselves, for analysis. orientation: of any length; 0: not turned. */
 typedef struct dem_ellipsoid { dem_vec3 position, semi_axes; dem_quat orientation; } dem_ellipsoid;
-typedef struct dem_meeting {
+typedef struct dem_ellipsoid_contact {
     dem_real scale;              /* W0: both scaled by this touch in one point; < 1: they overlap */
     dem_real lambda;             /* 0..1, where Perram and Wertheim's function is largest */
     dem_vec3 point, normal;      /* m, where they touch; unit, from a to b */
     dem_real depth_normal, depth_chord, depth_conservative;   /* m, overlaps, see dem_overlap;
                                     < 0: apart; depth_chord then is 0 */
     int iterations;              /* evaluations it took */
-} dem_meeting;
-/* lambda: where to begin, from a meeting a little while ago; 0: unknown. */
-DEM_API dem_meeting dem_ellipsoids_meet(const dem_ellipsoid *a, const dem_ellipsoid *b,
-                                        dem_real lambda);
+} dem_ellipsoid_contact;
+/* lambda: where to begin, from a contact a little while ago; 0: unknown. */
+DEM_API dem_ellipsoid_contact dem_ellipsoids_contact(const dem_ellipsoid *a,
+                                                     const dem_ellipsoid *b, dem_real lambda);
 
 /* inserted = present + removed + left, always. */
 typedef struct dem_balance { uint64_t inserted, present, removed, left; } dem_balance;
@@ -1209,19 +1214,19 @@ DEM_API dem_result dem_wall_remove(dem_world *world, dem_wall wall);
 
 /* What the grains do to a wall. Torque is about the point of its motion; axial is its part along
    axis. */
-typedef struct dem_channels {
+typedef struct dem_wall_loads {
     dem_vec3 force;           /* N, of the last step */
     dem_vec3 torque;          /* N m, of the last step */
     dem_real torque_axial;    /* N m */
     dem_real power;           /* W, the wall gives to the grains: -(force . v + torque . w) */
     int contacts;             /* now */
-    double impulse[3];        /* N s, since dem_wall_channels_reset */
+    double impulse[3];        /* N s, since dem_wall_loads_reset */
     double torque_impulse;    /* N m s, of torque_axial */
     double work;              /* J, done on the grains */
     double time;              /* s, over which the last three were summed */
-} dem_channels;
-DEM_API dem_result dem_wall_channels(const dem_world *world, dem_wall wall, dem_channels *channels);
-DEM_API dem_result dem_wall_channels_reset(dem_world *world, dem_wall wall);
+} dem_wall_loads;
+DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall wall, dem_wall_loads *loads);
+DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
 
 /* ---- feed and outlets ---- */
 enum { DEM_CLASSES = 16 };
@@ -1450,9 +1455,9 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
    */
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1);
-/* Appends the channels of a wall as one CSV line; writes the heading first when the file is new or
+/* Appends the loads of a wall as one CSV line; writes the heading first when the file is new or
    empty. */
-DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char *path);
+DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const char *path);
 
 /* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters.
    Reading replaces the state of a world that was created with the same desc, materials and walls
@@ -1504,17 +1509,17 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *world, const dem_slabs_desc *desc
 DEM_API void dem_slabs_destroy(dem_slabs *slabs);
 DEM_API dem_result dem_slabs_step(dem_slabs *slabs, int steps);
 /* Writes the state of all slabs into a world of the same scene, in every process: grains, contact
-   memory, walls, channels, fields, feeds, outlets, ledger, time. The world may then be looked at,
+   memory, walls, loads, fields, feeds, outlets, ledger, time. The world may then be looked at,
    written, stepped, or dealt to slabs anew; the slabs go on unaware of it. It has no list of
    contacts until dem_search_now; after that it steps on as the slabs would. */
 DEM_API dem_result dem_slabs_collect(dem_slabs *slabs, dem_world *world);
 /* Begins the walls' sums over time and the largest overlap anew. */
-DEM_API void dem_slabs_channels_reset(dem_slabs *slabs);
+DEM_API void dem_slabs_loads_reset(dem_slabs *slabs);
 /* The sentence of the last failed call; "" when none failed yet. */
 DEM_API const char *dem_slabs_error(const dem_slabs *slabs);
 
 typedef struct dem_slab {
-    int grains, visitors;      /* at home; copies of the lower neighbour's grains */
+    int grains, ghosts;      /* its own; copies of the lower neighbour's */
     double lo, hi;             /* m, its borders; an outermost one is +-1e300 */
     double work;               /* counted: candidates + 4 per body, at the last rebuild */
     double seconds;            /* of wall time spent on it so far */
@@ -1683,11 +1688,11 @@ static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y
 static int demi_place(dem_vec3 v) { return demi_finite3(v) && demi_size(v) <= DEMI_REACH; }
 
 /* local -> world and back, for points and for directions */
-DEM_INLINE dem_vec3 demi_turn(const dem_real *R, dem_vec3 a) {
+DEM_INLINE dem_vec3 demi_rotate(const dem_real *R, dem_vec3 a) {
     return demi_v(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z, R[6]*a.x +
                   R[7]*a.y + R[8]*a.z);
 }
-DEM_INLINE dem_vec3 demi_unturn(const dem_real *R, dem_vec3 a) {
+DEM_INLINE dem_vec3 demi_unrotate(const dem_real *R, dem_vec3 a) {
     return demi_v(R[0]*a.x + R[3]*a.y + R[6]*a.z, R[1]*a.x + R[4]*a.y + R[7]*a.z, R[2]*a.x +
                   R[5]*a.y + R[8]*a.z);
 }
@@ -1791,19 +1796,19 @@ typedef struct demi_link {
     dem_vec3 point;                /* from the body's centre */
 } demi_link;
 /* A shape, in its principal frame, per unit of mass and scale. */
-typedef struct demi_form {
+typedef struct demi_shape {
     int count;                     /* spheres of a cluster; 0: an ellipsoid */
     dem_real *parts;               /* count x 4: centre, radius, m */
     dem_vec3 axes;                 /* m, semi-axes of an ellipsoid */
     dem_vec3 inertia;              /* m2, principal moments per mass */
     double volume;                 /* m3 */
     dem_real radius;               /* m, of the bounding sphere */
-    dem_real lever;                /* m, how far from the centre a push may pass at most */
+    dem_real moment_arm;           /* m, how far from the centre a force may pass at most */
     dem_real thin, blunt, equal;   /* m, radii: smallest, of the flattest place, of equal volume */
     double light;                  /* share of the mass that a contact feels at least */
     dem_quat frame;                /* principal axes -> the frame it was given in */
     dem_vec3 centre;               /* m, centre of mass in that frame */
-} demi_form;
+} demi_shape;
 
 /* A contact that is kept by itself: every one but those of sphere and sphere, whose memory stands
    in the columns of the near list. Lives as long as the two touch. */
@@ -1851,8 +1856,8 @@ typedef struct demi_domain {
     int overflow;                  /* a list ran out of room while being built */
     double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
     double acceleration2;          /* max |a|^2 */
-    double turn;                   /* m/s, max change of |spin| times lever in the step */
-    double turn_speed;             /* m/s, max |spin| times lever */
+    double turn;                   /* m/s, max change of |spin| times moment_arm in the step */
+    double turn_speed;             /* m/s, max |spin| times moment_arm */
     double turn_rate;              /* rad/s, max |spin| of those that are not spheres */
     double energy[DEMI_ENERGIES];
 } demi_domain;
@@ -1938,7 +1943,7 @@ typedef struct demi_wall {
     dem_real cell;                 /* m */
     int32_t *cell_start, *cell_items;
     int cell_item_count;
-    dem_channels channels;
+    dem_wall_loads loads;
 } demi_wall;
 
 typedef struct demi_field {
@@ -2043,7 +2048,7 @@ typedef struct demi_levels {       /* >>search */
     int count, wide;               /* wide: radii differ so much that levels pay */
     demi_level level[DEMI_LEVELS]; /* the coarsest first; none in use: count is 0 */
     double fine;                   /* m, largest radius of the finest class */
-    double looks[2];               /* estimated work of a search per body: by one grid, by levels */
+    double tests[2];               /* estimated work of a search per body: by one grid, by levels */
 } demi_levels;
 typedef struct demi_booked {       /* >>ledger: sums since the beginning, and the largest seen */
     double energy[DEMI_ENERGIES], inserted, removed, throughput;       /* J */
@@ -2064,12 +2069,12 @@ typedef struct demi_bodies {
     int orienting;                 /* the next four exist */
     dem_real *orient;              /* x 4: w x y z, principal axes -> world */
     dem_real *angular;             /* x 4: angular momentum at the half step; shaped bodies only */
-    dem_real *moment;              /* x 4: principal moments of inertia, kg m2; lever, m */
+    dem_real *moment;              /* x 4: principal moments of inertia, kg m2; moment_arm, m */
     int32_t *shape;                /* dem_shape ids; 0: a sphere */
     int shaped;                    /* bodies that are not spheres */
-    dem_real *spot;                /* x 4: spheres of clusters: centre from the body's, radius, m */
-    int32_t *spot_start;           /* where those of each body begin */
-    int spots_valid;               /* they fit the bodies and their orientations */
+    dem_real *centre;              /* x 4: spheres of clusters: centre from the body's, radius, m */
+    int32_t *centre_start;           /* where those of each body begin */
+    int centres_valid;               /* they fit the bodies and their orientations */
     uint32_t *slot;                /* of each body: who it is */
     int32_t *material;             /* 1 + index */
     int32_t *slot_index;           /* slot -> index, -1 when free */
@@ -2077,7 +2082,7 @@ typedef struct demi_bodies {
     int slot_count, slot_capacity; /* slots used so far, room */
     /* chains of free slots (-1: none); pending ones rest until a rebuild */
     int slot_free, slot_pending;
-    uint8_t *visitor;              /* by slot; null outside >>slabs: 1: a copy, at home elsewhere */
+    uint8_t *ghost;              /* by slot; null outside >>slabs: 1: a copy, owned elsewhere */
     dem_real *scratch;             /* x 4, for permuting */
     int32_t *order, *cell_of;      /* permutation, cell of each body */
     dem_balance balance;
@@ -2116,8 +2121,8 @@ struct dem_world {
     dem_material_desc materials[DEMI_MATERIALS];
     demi_pair *pairs;              /* DEMI_MATERIALS x DEMI_MATERIALS */
     /* >>shapes */
-    int form_count;
-    demi_form *forms;
+    int shape_count;
+    demi_shape *shapes;
     /* >>bodies; moved by >>integrators, pushed by >>respond and >>kept */
     demi_bodies bodies;
     demi_filed filed;
@@ -2160,7 +2165,7 @@ struct dem_world {
     int join_room;                 /* candidates that newcomers may bring, see demi_list_join */
     int *cross_incoming_start;     /* domain_count + 1 */
     int32_t *cross_incoming;       /* entries of `cross`, by domain of b, ascending */
-    dem_real *cross_push;          /* x 6: force and torque on the far end */
+    dem_real *cross_force;          /* x 6: force and torque on the far end */
     int cross_entries;
     int wall_stride;               /* wall candidates per domain */
     int32_t *wall_body, *wall_id, *wall_element;
@@ -2504,7 +2509,7 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling)
 }
 /* An answer before its law is called. Number by number: a memset would keep the struct in memory,
    and loops from becoming vector code. */
-DEM_INLINE void demi_push_clear(dem_push *f) {
+DEM_INLINE void demi_force_clear(dem_contact_force *f) {
     f->tangent = f->moment = demi_v(0, 0, 0);
     f->normal = f->elastic = f->load = f->slope = f->slope_step = 0;
     f->kt = f->kt_step = f->ct = 0;
@@ -2528,9 +2533,10 @@ DEM_INLINE void demi_contact_choices(const dem_world *w, dem_contact *c) {
     c->slider = (int)w->desc.slider;
 }
 /* The force of one contact by the laws in force, or by the user's. */
-static void demi_law(const dem_world *w, const dem_contact *c, dem_real *memory, dem_push *f) {
+static void demi_law(const dem_world *w, const dem_contact *c, dem_real *memory,
+                     dem_contact_force *f) {
     const demi_laws *laws = &w->laws;
-    demi_push_clear(f);
+    demi_force_clear(f);
     if (w->desc.law) { w->desc.law(c, memory, f); return; }
     laws->normal->law(c, memory + laws->at_normal, f);
     if (laws->tangent->law) laws->tangent->law(c, memory, f);
@@ -2975,14 +2981,14 @@ static void demi_moments_add(demi_moments *m, double v, const double *c, double 
 /* The union of spheres by rays along x through the middles of rays x rays squares of their outline:
    along a ray the union of intervals is exact. 512 rays: a few 1e-6 for three spheres. room: two
    doubles per sphere. */
-static void demi_moments_union(const demi_form *form, int rays, double *room, demi_moments *m) {
+static void demi_moments_union(const demi_shape *shape, int rays, double *room, demi_moments *m) {
     double lo[2], hi[2], step[2];
     int i, j, k, e, n;
     lo[0] = lo[1] = 1e300;
     hi[0] = hi[1] = -1e300;
-    for (i = 0; i < form->count; i++)
+    for (i = 0; i < shape->count; i++)
         for (e = 0; e < 2; e++) {
-            const double c = (double)form->parts[4*i + 1 + e], r = (double)form->parts[4*i + 3];
+            const double c = (double)shape->parts[4*i + 1 + e], r = (double)shape->parts[4*i + 3];
             lo[e] = DEMI_MIN(lo[e], c - r);
             hi[e] = DEMI_MAX(hi[e], c + r);
         }
@@ -2992,13 +2998,13 @@ static void demi_moments_union(const demi_form *form, int rays, double *room, de
             double c[3], from, to;
             c[1] = lo[0] + (j + 0.5)*step[0];
             c[2] = lo[1] + (k + 0.5)*step[1];
-            for (i = n = 0; i < form->count; i++) {     /* intervals, sorted as they come */
-                const double y = c[1] - (double)form->parts[4*i + 1];
-                const double z = c[2] - (double)form->parts[4*i + 2];
-                const double r = (double)form->parts[4*i + 3], h = r*r - y*y - z*z;
+            for (i = n = 0; i < shape->count; i++) {     /* intervals, sorted as they come */
+                const double y = c[1] - (double)shape->parts[4*i + 1];
+                const double z = c[2] - (double)shape->parts[4*i + 2];
+                const double r = (double)shape->parts[4*i + 3], h = r*r - y*y - z*z;
                 if (h <= 0) continue;
-                from = (double)form->parts[4*i] - sqrt(h);
-                to = (double)form->parts[4*i] + sqrt(h);
+                from = (double)shape->parts[4*i] - sqrt(h);
+                to = (double)shape->parts[4*i] + sqrt(h);
                 for (e = n++; e > 0 && room[2*e - 2] > from; e--) {
                     room[2*e] = room[2*e - 2];
                     room[2*e + 1] = room[2*e - 1];
@@ -3019,13 +3025,13 @@ static void demi_moments_union(const demi_form *form, int rays, double *room, de
         }
 }
 
-/* Turns moments into the form's volume, centre, principal frame and moments per mass. */
-static void demi_form_principal(demi_form *form, const demi_moments *m) {
+/* Turns moments into the shape's volume, centre, principal frame and moments per mass. */
+static void demi_shape_principal(demi_shape *shape, const demi_moments *m) {
     double M[3][3], E[3][3], c[3], trace, I[6];
     int i, k;
-    form->volume = m->one;
+    shape->volume = m->one;
     for (k = 0; k < 3; k++) c[k] = m->x[k]/m->one;
-    form->centre = demi_v((dem_real)c[0], (dem_real)c[1], (dem_real)c[2]);
+    shape->centre = demi_v((dem_real)c[0], (dem_real)c[1], (dem_real)c[2]);
     for (k = 0; k < 6; k++) I[k] = m->xx[k]/m->one;
     for (k = 0; k < 3; k++) I[k] -= c[k]*c[k];
     I[3] -= c[0]*c[1]; I[4] -= c[0]*c[2]; I[5] -= c[1]*c[2];
@@ -3035,65 +3041,66 @@ static void demi_form_principal(demi_form *form, const demi_moments *m) {
     for (i = 0; i < 3; i++)                     /* round-off is no reason to turn the frame */
         for (k = 0; k < 3; k++) if (i != k && fabs(M[i][k]) < 1e-12*trace) M[i][k] = 0;
     demi_jacobi3(M, E);
-    form->inertia = demi_v((dem_real)(trace - M[0][0]), (dem_real)(trace - M[1][1]),
+    shape->inertia = demi_v((dem_real)(trace - M[0][0]), (dem_real)(trace - M[1][1]),
                            (dem_real)(trace - M[2][2]));
-    form->frame = demi_quat_of(E);
+    shape->frame = demi_quat_of(E);
 }
 
-/* What the search and the time step want to know of a form: how far it reaches, how far from the
+/* What the search and the time step want to know of a shape: how far it reaches, how far from the
    centre a contact's force may pass, its smallest radius, and how light and blunt it may seem in a
    contact: mass 1/g over (l/h)^2 at worst, g = n.K n of its own half.
    */
-static void demi_form_bounds(demi_form *form) {
-    const double I[3] = {(double)form->inertia.x, (double)form->inertia.y, (double)form->inertia.z};
+static void demi_shape_bounds(demi_shape *shape) {
+    const double I[3] = {(double)shape->inertia.x, (double)shape->inertia.y,
+                         (double)shape->inertia.z};
     double least = DEMI_MIN(I[0], DEMI_MIN(I[1], I[2]));
     int i, k, j;
-    form->light = 1;
-    if (form->count) {
-        form->radius = form->lever = form->blunt = 0;
-        form->thin = form->parts[3];
-        for (i = 0; i < form->count; i++) {
-            const dem_real l = demi_length(demi_at(form->parts + 4*i)), r = form->parts[4*i + 3];
-            form->radius = DEMI_MAX(form->radius, l + r);
-            form->lever = DEMI_MAX(form->lever, l);
-            form->thin = DEMI_MIN(form->thin, r);
-            form->blunt = DEMI_MAX(form->blunt, r);
+    shape->light = 1;
+    if (shape->count) {
+        shape->radius = shape->moment_arm = shape->blunt = 0;
+        shape->thin = shape->parts[3];
+        for (i = 0; i < shape->count; i++) {
+            const dem_real l = demi_length(demi_at(shape->parts + 4*i)), r = shape->parts[4*i + 3];
+            shape->radius = DEMI_MAX(shape->radius, l + r);
+            shape->moment_arm = DEMI_MAX(shape->moment_arm, l);
+            shape->thin = DEMI_MIN(shape->thin, r);
+            shape->blunt = DEMI_MAX(shape->blunt, r);
         }
-        form->light = 1/(1 + (double)form->lever*(double)form->lever/least);
+        shape->light = 1/(1 + (double)shape->moment_arm*(double)shape->moment_arm/least);
     } else {
-        const double a[3] = {(double)form->axes.x, (double)form->axes.y, (double)form->axes.z};
+        const double a[3] = {(double)shape->axes.x, (double)shape->axes.y, (double)shape->axes.z};
         const double l = pow(a[0]*a[1]*a[2], 1.0/3);
-        form->radius = (dem_real)DEMI_MAX(a[0], DEMI_MAX(a[1], a[2]));
-        form->thin = (dem_real)DEMI_MIN(a[0], DEMI_MIN(a[1], a[2]));
-        form->lever = form->radius - form->thin;
-        form->blunt = (dem_real)(l*l*l)/(form->thin*form->thin);
+        shape->radius = (dem_real)DEMI_MAX(a[0], DEMI_MAX(a[1], a[2]));
+        shape->thin = (dem_real)DEMI_MIN(a[0], DEMI_MIN(a[1], a[2]));
+        shape->moment_arm = shape->radius - shape->thin;
+        shape->blunt = (dem_real)(l*l*l)/(shape->thin*shape->thin);
         for (k = 0; k < 3; k++)                 /* normals in the three principal planes */
             for (i = 0; i <= 64; i++) {
                 const double n0 = cos(DEMI_PI/2*i/64), n1 = sin(DEMI_PI/2*i/64);
                 const double u = a[k], v = a[(k + 1)%3], h = sqrt(n0*n0*u*u + n1*n1*v*v);
                 const double arm = n0*n1*(u*u - v*v)/h;
                 j = (k + 2)%3;
-                form->light = DEMI_MIN(form->light, h*h/(l*l)/(1 + arm*arm/I[j]));
+                shape->light = DEMI_MIN(shape->light, h*h/(l*l)/(1 + arm*arm/I[j]));
             }
     }
-    form->equal = (dem_real)pow(form->volume*3/(4*DEMI_PI), 1.0/3);
+    shape->equal = (dem_real)pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
 }
 
-/* Takes over a prepared form (its array included) or frees it. */
-static void demi_form_free(dem_world *w, demi_form *form) {
-    demi_free(w, form->parts);
+/* Takes over a prepared shape (its array included) or frees it. */
+static void demi_shape_free(dem_world *w, demi_shape *shape) {
+    demi_free(w, shape->parts);
 }
-static dem_shape demi_form_adopt(dem_world *w, const char *call, demi_form *form) {
+static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *shape) {
     dem_shape id;
     id.id = 0;
-    if (!demi_grow(w, DEMI_SCENE, &w->forms, sizeof *w->forms, (size_t)w->form_count + 1)) {
-        demi_form_free(w, form);
+    if (!demi_grow(w, DEMI_SCENE, &w->shapes, sizeof *w->shapes, (size_t)w->shape_count + 1)) {
+        demi_shape_free(w, shape);
         demi_no_memory(w, call);
         return id;
     }
-    w->forms[w->form_count++] = *form;
+    w->shapes[w->shape_count++] = *shape;
     demi_built(w, call);
-    id.id = w->form_count;
+    id.id = w->shape_count;
     return id;
 }
 static int demi_shape_planar(dem_world *w, const char *call) {
@@ -3105,7 +3112,7 @@ static int demi_shape_planar(dem_world *w, const char *call) {
 
 DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
     if (demi_null(w, "dem_shape_ellipsoid_add", w, "world")) return demi_no_shape;
-    demi_form form;
+    demi_shape shape;
     dem_shape none;
     const double lo = (double)DEMI_MIN(a.x, DEMI_MIN(a.y, a.z));
     const double hi = (double)DEMI_MAX(a.x, DEMI_MAX(a.y, a.z));
@@ -3117,29 +3124,29 @@ DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
                   "lengths, in metres", (double)a.x, (double)a.y, (double)a.z);
         return none;
     }
-    memset(&form, 0, sizeof form);
-    form.axes = a;
-    form.volume = 4*DEMI_PI/3*(double)a.x*(double)a.y*(double)a.z;
-    form.inertia = demi_v((a.y*a.y + a.z*a.z)/5, (a.x*a.x + a.z*a.z)/5, (a.x*a.x + a.y*a.y)/5);
-    form.frame = dem_quat_make(1, 0, 0, 0);
-    demi_form_bounds(&form);
-    return demi_form_adopt(w, "dem_shape_ellipsoid_add", &form);
+    memset(&shape, 0, sizeof shape);
+    shape.axes = a;
+    shape.volume = 4*DEMI_PI/3*(double)a.x*(double)a.y*(double)a.z;
+    shape.inertia = demi_v((a.y*a.y + a.z*a.z)/5, (a.x*a.x + a.z*a.z)/5, (a.x*a.x + a.y*a.y)/5);
+    shape.frame = dem_quat_make(1, 0, 0, 0);
+    demi_shape_bounds(&shape);
+    return demi_shape_adopt(w, "dem_shape_ellipsoid_add", &shape);
 }
 
 /* Do no two spheres overlap? Then there is nothing to count twice. */
-static int demi_cluster_apart(const demi_form *form) {
+static int demi_cluster_apart(const demi_shape *shape) {
     int i, j;
-    for (i = 0; i < form->count; i++)
-        for (j = i + 1; j < form->count; j++) {
-            const dem_real sum = form->parts[4*i + 3] + form->parts[4*j + 3];
-            const dem_vec3 d = demi_sub(demi_at(form->parts + 4*j), demi_at(form->parts + 4*i));
+    for (i = 0; i < shape->count; i++)
+        for (j = i + 1; j < shape->count; j++) {
+            const dem_real sum = shape->parts[4*i + 3] + shape->parts[4*j + 3];
+            const dem_vec3 d = demi_sub(demi_at(shape->parts + 4*j), demi_at(shape->parts + 4*i));
             if (demi_dot(d, d) < sum*sum*DEM_R(0.999999)) return 0;
         }
     return 1;
 }
 /* Moments of a cluster, by the way its desc asks for. 0 when memory ran out. ([MIL] gives its
    tetrahedra the inertia of a sphere, and updates spins without the gyroscopic part.) */
-static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, const demi_form *form,
+static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, const demi_shape *shape,
                                 demi_moments *m) {
     int i, k;
     memset(m, 0, sizeof *m);
@@ -3152,19 +3159,19 @@ static int demi_cluster_moments(dem_world *w, const dem_cluster_desc *desc, cons
         for (k = 3; k < 6; k++) m->xx[k] -= (double)desc->inertia[k];
         return 1;
     }
-    if (desc->mass == DEM_CLUSTER_SUM || demi_cluster_apart(form)) {
-        for (i = 0; i < form->count; i++) {
-            const double r = (double)form->parts[4*i + 3], v = 4*DEMI_PI/3*r*r*r;
+    if (desc->mass == DEM_CLUSTER_SUM || demi_cluster_apart(shape)) {
+        for (i = 0; i < shape->count; i++) {
+            const double r = (double)shape->parts[4*i + 3], v = 4*DEMI_PI/3*r*r*r;
             double c[3];
-            for (k = 0; k < 3; k++) c[k] = (double)form->parts[4*i + k];
+            for (k = 0; k < 3; k++) c[k] = (double)shape->parts[4*i + k];
             demi_moments_add(m, v, c, r*r/5);
         }
         return 1;
     } else {
-        const size_t n = 2*(size_t)form->count;
+        const size_t n = 2*(size_t)shape->count;
         double *room = (double *)demi_alloc(w, n, sizeof(double));
         if (!room) return 0;
-        demi_moments_union(form, desc->rays > 0 ? desc->rays : 512, room, m);
+        demi_moments_union(shape, desc->rays > 0 ? desc->rays : 512, room, m);
         demi_free(w, room);
         return 1;
     }
@@ -3205,17 +3212,17 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
     return 0;
 }
 /* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
-static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const demi_form *form,
+static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const demi_shape *shape,
                                dem_real least) {
     const int rays = desc->rays > 0 ? desc->rays : 512;
     double side = 0;
     int i, j, e;
-    if (desc->mass != DEM_CLUSTER_UNION || demi_cluster_apart(form)) return 0;
-    for (i = 0; i < form->count; i++)
-        for (j = 0; j < form->count; j++)
+    if (desc->mass != DEM_CLUSTER_UNION || demi_cluster_apart(shape)) return 0;
+    for (i = 0; i < shape->count; i++)
+        for (j = 0; j < shape->count; j++)
             for (e = 1; e < 3; e++) {
-                const double to = (double)(form->parts[4*i + e] + form->parts[4*i + 3]);
-                side = DEMI_MAX(side, to - (double)(form->parts[4*j + e] - form->parts[4*j + 3]));
+                const double to = (double)(shape->parts[4*i + e] + shape->parts[4*i + 3]);
+                side = DEMI_MAX(side, to - (double)(shape->parts[4*j + e] - shape->parts[4*j + 3]));
             }
     if (side/rays <= (double)least/4) return 0;
     demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: rays is %d, so that rays lie %.3g m "
@@ -3226,7 +3233,7 @@ static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const
 }
 DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *desc) {
     if (demi_null(w, "dem_shape_cluster_add", desc, "desc")) return demi_no_shape;
-    demi_form form;
+    demi_shape shape;
     demi_moments m;
     dem_shape none;
     dem_vec3 about = demi_v(0, 0, 0);
@@ -3234,84 +3241,85 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     int i;
     none.id = 0;
     if (demi_shape_planar(w, "dem_shape_cluster_add") || !demi_cluster_check(w, desc)) return none;
-    memset(&form, 0, sizeof form);
-    form.count = desc->count;
-    form.parts = (dem_real *)demi_hold(w, DEMI_SCENE, 4*(size_t)form.count, sizeof(dem_real));
-    if (!form.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
+    memset(&shape, 0, sizeof shape);
+    shape.count = desc->count;
+    shape.parts = (dem_real *)demi_hold(w, DEMI_SCENE, 4*(size_t)shape.count, sizeof(dem_real));
+    if (!shape.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
     /* a frame may be far off */
     if (desc->mass != DEM_CLUSTER_GIVEN) about = demi_at(desc->positions);
-    for (i = 0; i < form.count; i++) {
-        demi_put(form.parts + 4*i, demi_sub(demi_at(desc->positions + 3*i), about));
-        form.parts[4*i + 3] = desc->radii ? desc->radii[i] : desc->radius;
-        least = DEMI_MIN(least, form.parts[4*i + 3]);
+    for (i = 0; i < shape.count; i++) {
+        demi_put(shape.parts + 4*i, demi_sub(demi_at(desc->positions + 3*i), about));
+        shape.parts[4*i + 3] = desc->radii ? desc->radii[i] : desc->radius;
+        least = DEMI_MIN(least, shape.parts[4*i + 3]);
     }
-    if (demi_cluster_coarse(w, desc, &form, least)) { demi_form_free(w, &form); return none; }
-    if (!demi_cluster_moments(w, desc, &form, &m)) {
-        demi_form_free(w, &form);
+    if (demi_cluster_coarse(w, desc, &shape, least)) { demi_shape_free(w, &shape); return none; }
+    if (!demi_cluster_moments(w, desc, &shape, &m)) {
+        demi_shape_free(w, &shape);
         demi_no_memory(w, "dem_shape_cluster_add");
         return none;
     }
-    demi_form_principal(&form, &m);
-    if (!(form.inertia.x > 0 && form.inertia.y > 0 && form.inertia.z > 0)) {
-        demi_form_free(w, &form);
+    demi_shape_principal(&shape, &m);
+    if (!(shape.inertia.x > 0 && shape.inertia.y > 0 && shape.inertia.z > 0)) {
+        demi_shape_free(w, &shape);
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: a principal moment of inertia is "
                   "not > 0; %s", desc->mass == DEM_CLUSTER_GIVEN
                   ? "the off-diagonal parts given are too large" : "use more rays");
         return none;
     }
-    for (i = 0; i < form.count; i++)
-        demi_put(form.parts + 4*i, dem_quat_unturn(form.frame, demi_sub(demi_at(form.parts + 4*i),
-                                                                        form.centre)));
-    form.centre = demi_add(form.centre, about);
-    demi_form_bounds(&form);
-    return demi_form_adopt(w, "dem_shape_cluster_add", &form);
+    for (i = 0; i < shape.count; i++)
+        demi_put(shape.parts + 4*i,
+                 dem_quat_unrotate(shape.frame, demi_sub(demi_at(shape.parts + 4*i),
+                                                                        shape.centre)));
+    shape.centre = demi_add(shape.centre, about);
+    demi_shape_bounds(&shape);
+    return demi_shape_adopt(w, "dem_shape_cluster_add", &shape);
 }
 
 /* Index of a shape, or -1 with a sentence. */
-static int demi_form_index(dem_world *w, const char *call, dem_shape shape) {
-    if (shape.id >= 1 && shape.id <= w->form_count) return shape.id - 1;
+static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
+    if (shape.id >= 1 && shape.id <= w->shape_count) return shape.id - 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d does not exist, there are %d; add it with "
               "dem_shape_ellipsoid_add or dem_shape_cluster_add and check what that returned",
-              call, (int)shape.id, w->form_count);
+              call, (int)shape.id, w->shape_count);
     return -1;
 }
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info) {
     if (demi_null(world, "dem_shape_get", info, "info")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_form_index((dem_world *)world, "dem_shape_get", shape);
-    const demi_form *form;
+    const int i = demi_shape_index((dem_world *)world, "dem_shape_get", shape);
+    const demi_shape *s;
     dem_vec3 I;
     if (i < 0) return DEM_ERROR_ARGUMENT;
-    form = &world->forms[i];
-    I = form->inertia;
-    info->spheres = form->count;
-    info->volume = (dem_real)form->volume;
-    info->centre = form->centre;
-    info->frame = form->frame;
-    info->inertia = demi_scale(I, (dem_real)form->volume);
-    info->semi_axes = form->axes;
-    if (form->count)
+    s = &world->shapes[i];
+    I = s->inertia;
+    info->spheres = s->count;
+    info->volume = (dem_real)s->volume;
+    info->centre = s->centre;
+    info->frame = s->frame;
+    info->inertia = demi_scale(I, (dem_real)s->volume);
+    info->semi_axes = s->axes;
+    if (s->count)
         info->semi_axes = demi_v(DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.y + I.z - I.x, 0)),
                                  DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.z - I.y, 0)),
                                  DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));
-    info->radius = form->radius;
+    info->radius = s->radius;
     return DEM_OK;
 }
 
-/* --- a body and its form --- */
+/* --- a body and its shape --- */
 
-DEM_INLINE const demi_form *demi_form_of(const dem_world *w, int body) {  /* null: a sphere */
-    return w->bodies.shape && w->bodies.shape[body] ? &w->forms[w->bodies.shape[body] - 1] : 0;
+DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* null: a sphere */
+    return w->bodies.shape && w->bodies.shape[body] ? &w->shapes[w->bodies.shape[body] - 1] : 0;
 }
-DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_form *form) {
-    return w->bodies.pos[4*body + 3]/form->radius;
+DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
+    return w->bodies.pos[4*body + 3]/shape->radius;
 }
 static dem_vec3 demi_moments_of(const dem_world *w, int body) {        /* kg m2, principal */
-    const demi_form *form = demi_form_of(w, body);
+    const demi_shape *shape = demi_shape_of(w, body);
     const double m = (double)w->bodies.mass[body], r = (double)w->bodies.pos[4*body + 3];
     dem_real one;
-    if (form) {
-        one = demi_scale_of(w, body, form);
-        return demi_scale(form->inertia, (dem_real)m*one*one);
+    if (shape) {
+        one = demi_scale_of(w, body, shape);
+        return demi_scale(shape->inertia, (dem_real)m*one*one);
     }
     one = (dem_real)(w->desc.planar ? m*r*r/2 : 0.4*m*r*r);
     return demi_v(one, one, one);
@@ -3321,26 +3329,26 @@ static dem_vec3 demi_angular_of(const dem_world *w, int body) {
     const dem_vec3 I = demi_moments_of(w, body), spin = demi_at(w->bodies.spin + 4*body);
     dem_quat q;
     dem_vec3 own;
-    if (!demi_form_of(w, body)) return demi_scale(spin, I.x);
+    if (!demi_shape_of(w, body)) return demi_scale(spin, I.x);
     q = demi_quat_at(w->bodies.orient + 4*body);
-    own = dem_quat_unturn(q, spin);
-    return dem_quat_turn(q, demi_v(I.x*own.x, I.y*own.y, I.z*own.z));
+    own = dem_quat_unrotate(q, spin);
+    return dem_quat_rotate(q, demi_v(I.x*own.x, I.y*own.y, I.z*own.z));
 }
 /* How far a body reaches from its centre in direction n (unit), m. */
 static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
-    const demi_form *form = demi_form_of(w, body);
+    const demi_shape *shape = demi_shape_of(w, body);
     dem_real scale, far = -1;
     dem_vec3 e;
     int i;
-    if (!form) return w->bodies.pos[4*body + 3];
-    scale = demi_scale_of(w, body, form);
-    e = dem_quat_unturn(demi_quat_at(w->bodies.orient + 4*body), n);
-    if (!form->count) {
-        e = demi_v(e.x*form->axes.x, e.y*form->axes.y, e.z*form->axes.z);
+    if (!shape) return w->bodies.pos[4*body + 3];
+    scale = demi_scale_of(w, body, shape);
+    e = dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*body), n);
+    if (!shape->count) {
+        e = demi_v(e.x*shape->axes.x, e.y*shape->axes.y, e.z*shape->axes.z);
         return scale*demi_length(e);
     }
-    for (i = 0; i < form->count; i++) {
-        const dem_real s = demi_dot(demi_at(form->parts + 4*i), e) + form->parts[4*i + 3];
+    for (i = 0; i < shape->count; i++) {
+        const dem_real s = demi_dot(demi_at(shape->parts + 4*i), e) + shape->parts[4*i + 3];
         far = i && far > s ? far : s;
     }
     return scale*far;
@@ -3360,7 +3368,7 @@ typedef struct demi_meet {
     double l, f, fa, fb;           /* lambda; the function; scaled distances squared */
     double s[3], a[3], b[3];       /* s, QA s, QB s */
     double v[3];                   /* K^-1 QB s */
-    int looks;
+    int iterations;
 } demi_meet;
 
 static void demi_sym_times(const double *Q, const double *x, double *out) {  /* xx yy zz xy xz yz */
@@ -3419,7 +3427,7 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
                             double near, demi_meet *m) {
     double lo = 0, hi = 1, l = m->l;
     int k;
-    for (m->looks = 1;; m->looks++) {
+    for (m->iterations = 1;; m->iterations++) {
         double K[6], J[6], t, C, u, sum, step;
         for (k = 0; k < 6; k++) K[k] = (1 - l)*A[k] + l*B[k];
         J[0] = K[1]*K[2] - K[5]*K[5]; J[3] = K[4]*K[5] - K[3]*K[2]; J[4] = K[3]*K[5] - K[1]*K[4];
@@ -3443,7 +3451,7 @@ static void demi_meet_solve(const double *A, const double *B, const double *r, d
         C = demi_dot3(m->a, m->v);
         step = u*(15 - 4*u*u)*m->fa*m->fb/
             ((15 - 9*u*u)*C*((1 - l)*m->fb + l*m->fa));
-        if (fabs(u) < near || m->looks >= 100 || hi - lo < 1e-15) {
+        if (fabs(u) < near || m->iterations >= 100 || hi - lo < 1e-15) {
             demi_meet_finish(A, C, step, m);
             return;
         }
@@ -3474,15 +3482,16 @@ static double demi_meet_chord(const demi_meet *m, const double *A) {
     in = (m->l*ds - sqrt(m->l*m->l*ds*ds + du*(1 - m->fb)))/du;
     return (out - in)*sqrt(demi_dot3(d, d));
 }
-DEM_API dem_meeting dem_ellipsoids_meet(const dem_ellipsoid *a, const dem_ellipsoid *b,
+DEM_API dem_ellipsoid_contact dem_ellipsoids_contact(const dem_ellipsoid *a, const dem_ellipsoid *b,
                                         dem_real lambda) {
-    if (!a || !b) { dem_meeting nothing; memset(&nothing, 0, sizeof nothing); return nothing; }
+    if (!a || !b) { dem_ellipsoid_contact nothing; memset(&nothing, 0,
+                                                          sizeof nothing); return nothing; }
     const dem_quat none = dem_quat_make(1, 0, 0, 0);
     const dem_quat qa = demi_quat_most(a->orientation) > 0 ? demi_quat_unit(a->orientation) : none;
     const dem_quat qb = demi_quat_most(b->orientation) > 0 ? demi_quat_unit(b->orientation) : none;
     const dem_vec3 gap = demi_sub(b->position, a->position);
     double A[6], B[6], r[3], n[3], ha, hb, w0;
-    dem_meeting out;
+    dem_ellipsoid_contact out;
     demi_meet m;
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
     memset(&out, 0, sizeof out);
@@ -3497,7 +3506,7 @@ DEM_API dem_meeting dem_ellipsoids_meet(const dem_ellipsoid *a, const dem_ellips
     w0 = sqrt(m.f);
     out.scale = (dem_real)w0;
     out.lambda = (dem_real)m.l;
-    out.iterations = m.looks;
+    out.iterations = m.iterations;
     out.normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
     out.point = demi_add(a->position, demi_v((dem_real)((1 - m.l)*m.a[0]),
         (dem_real)((1 - m.l)*m.a[1]), (dem_real)((1 - m.l)*m.a[2])));
@@ -3521,56 +3530,56 @@ typedef struct demi_part {
 } demi_part;
 static int demi_part_shape(const demi_part *p) { return p->ball ? DEMI_BALL : DEMI_ELLIPSOID; }
 static int demi_parts_count(const dem_world *w, int body) {
-    const demi_form *form = demi_form_of(w, body);
-    return form && form->count ? form->count : 1;
+    const demi_shape *shape = demi_shape_of(w, body);
+    return shape && shape->count ? shape->count : 1;
 }
 static demi_part demi_part_of(const dem_world *w, int body, int k) {
-    const demi_form *form = demi_form_of(w, body);
+    const demi_shape *shape = demi_shape_of(w, body);
     demi_part p;
     memset(&p, 0, sizeof p);
-    p.ball = !form || form->count;
+    p.ball = !shape || shape->count;
     p.radius = w->bodies.pos[4*body + 3];
-    if (form) {
-        const dem_real scale = demi_scale_of(w, body, form);
+    if (shape) {
+        const dem_real scale = demi_scale_of(w, body, shape);
         p.q = demi_quat_at(w->bodies.orient + 4*body);
-        if (form->count) {
-            p.centre = demi_scale(dem_quat_turn(p.q, demi_at(form->parts + 4*k)), scale);
-            p.radius = form->parts[4*k + 3]*scale;
-        } else p.axes = demi_scale(form->axes, scale);
+        if (shape->count) {
+            p.centre = demi_scale(dem_quat_rotate(p.q, demi_at(shape->parts + 4*k)), scale);
+            p.radius = shape->parts[4*k + 3]*scale;
+        } else p.axes = demi_scale(shape->axes, scale);
     }
     return p;
 }
 /* The spheres of a cluster, as they are turned now: rows of centre and radius. */
-static const dem_real *demi_spots_of(const dem_world *w, int body) {
-    return w->bodies.spot + 4*w->bodies.spot_start[body];
+static const dem_real *demi_centres_of(const dem_world *w, int body) {
+    return w->bodies.centre + 4*w->bodies.centre_start[body];
 }
-static void demi_spots_turn(dem_world *w, int body) {
-    const demi_form *form = demi_form_of(w, body);
+static void demi_centres_rotate(dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
     const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
-    const dem_real scale = demi_scale_of(w, body, form);
-    dem_real *spot = w->bodies.spot + 4*w->bodies.spot_start[body];
+    const dem_real scale = demi_scale_of(w, body, shape);
+    dem_real *sphere = w->bodies.centre + 4*w->bodies.centre_start[body];
     int k;
-    for (k = 0; k < form->count; k++, spot += 4) {
-        demi_put(spot, demi_scale(dem_quat_turn(q, demi_at(form->parts + 4*k)), scale));
-        spot[3] = form->parts[4*k + 3]*scale;
+    for (k = 0; k < shape->count; k++, sphere += 4) {
+        demi_put(sphere, demi_scale(dem_quat_rotate(q, demi_at(shape->parts + 4*k)), scale));
+        sphere[3] = shape->parts[4*k + 3]*scale;
     }
 }
 /* Lays all of them. 0 when memory ran out. */
-static int demi_spots_lay(dem_world *w) {
+static int demi_centres_lay(dem_world *w) {
     int32_t *start;
     int i, n = 0;
-    if (!DEMI_GROW(w, w->bodies.spot_start, (size_t)w->bodies.count + 1)) return 0;
-    start = w->bodies.spot_start;
+    if (!DEMI_GROW(w, w->bodies.centre_start, (size_t)w->bodies.count + 1)) return 0;
+    start = w->bodies.centre_start;
     for (i = 0; i < w->bodies.count; i++) {
-        const demi_form *form = demi_form_of(w, i);
+        const demi_shape *shape = demi_shape_of(w, i);
         start[i] = n;
-        if (form && n > INT_MAX/8 - form->count) return 0;
-        n += form ? form->count : 0;
+        if (shape && n > INT_MAX/8 - shape->count) return 0;
+        n += shape ? shape->count : 0;
     }
-    if (!DEMI_GROW(w, w->bodies.spot, 4*((size_t)n + 1))) return 0;
-    w->bodies.spots_valid = 1;
+    if (!DEMI_GROW(w, w->bodies.centre, 4*((size_t)n + 1))) return 0;
+    w->bodies.centres_valid = 1;
     for (i = 0; i < w->bodies.count; i++)
-        if (demi_form_of(w, i) && demi_form_of(w, i)->count) demi_spots_turn(w, i);
+        if (demi_shape_of(w, i) && demi_shape_of(w, i)->count) demi_centres_rotate(w, i);
     return 1;
 }
 static void demi_part_matrix(const demi_part *p, double *Q) {
@@ -3598,16 +3607,16 @@ static double demi_part_round(const dem_world *w, const demi_part *p, double h) 
         : demi_part_curve(p, h);
 }
 
-/* Part k of a body as demi_part_of has it, from the spots. */
+/* Part k of a body as demi_part_of has it, from the centres that are turned already. */
 DEM_INLINE demi_part demi_part_now(const dem_world *w, int body, int k) {
-    const demi_form *form = demi_form_of(w, body);
+    const demi_shape *shape = demi_shape_of(w, body);
     demi_part p;
-    const dem_real *spot;
-    if (form && !form->count) return demi_part_of(w, body, k);
-    spot = form ? demi_spots_of(w, body) + 4*k : w->bodies.pos + 4*body;
+    const dem_real *sphere;
+    if (shape && !shape->count) return demi_part_of(w, body, k);
+    sphere = shape ? demi_centres_of(w, body) + 4*k : w->bodies.pos + 4*body;
     p.ball = 1;
-    p.centre = form ? demi_at(spot) : demi_v(0, 0, 0);
-    p.radius = spot[3];
+    p.centre = shape ? demi_at(sphere) : demi_v(0, 0, 0);
+    p.radius = sphere[3];
     p.axes = demi_v(0, 0, 0);
     p.q = dem_quat_make(1, 0, 0, 0);
     return p;
@@ -3745,9 +3754,9 @@ static void demi_wrap(dem_world *w) {
     }
 }
 
-/* Is this body a copy of one that is at home in another slab? (>>slabs; never elsewhere) */
-DEM_INLINE int demi_visits(const dem_world *w, int i) {
-    return w->bodies.visitor && w->bodies.visitor[w->bodies.slot[i]] == 1;
+/* Is this body a copy of one that another slab owns? (>>slabs; never elsewhere) */
+DEM_INLINE int demi_is_ghost(const dem_world *w, int i) {
+    return w->bodies.ghost && w->bodies.ghost[w->bodies.slot[i]] == 1;
 }
 
 /* Room for filed memory. 0 when memory ran out. */
@@ -3822,7 +3831,7 @@ static int demi_carry_collect(dem_world *w) {
    then. */
 static int demi_list_drop(dem_world *w) {
     int d, k;
-    w->bodies.spots_valid = 0;
+    w->bodies.centres_valid = 0;
     if (!w->stage.list_valid) return 1;
     if (!demi_carry_collect(w)) return 0;
     for (d = 0; d < w->domain_count; d++)
@@ -3989,17 +3998,17 @@ static dem_result demi_strangers(dem_world *w, const char *call, int wall, int k
                      "a resolved profile; nothing was added", call, wall + 1,
                      demi_wall_kinds[kind].name, who);
 }
-/* What a form's parts are. */
-static int demi_form_shape(const demi_form *form) {
-    return !form || form->count ? DEMI_BALL : DEMI_ELLIPSOID;
+/* What a shape's parts are. */
+static int demi_shape_kind(const demi_shape *shape) {
+    return !shape || shape->count ? DEMI_BALL : DEMI_ELLIPSOID;
 }
-/* 1 with a sentence when some wall does not know bodies of a form that are to be added. */
-static int demi_walls_strange(dem_world *w, const char *call, int form) {
-    const int shape = demi_form_shape(&w->forms[form]);
+/* 1 with a sentence when some wall does not know bodies of a shape that are to be added. */
+static int demi_walls_strange(dem_world *w, const char *call, int shape) {
+    const int part = demi_shape_kind(&w->shapes[shape]);
     int j;
     for (j = 0; j < w->wall_count; j++) {
         const int kind = w->walls[j].kind;
-        if (kind == DEMI_WALL_NONE || demi_touch_known(kind, shape)) continue;
+        if (kind == DEMI_WALL_NONE || demi_touch_known(kind, part)) continue;
         demi_strangers(w, call, j, kind, -1);
         return 1;
     }
@@ -4007,18 +4016,18 @@ static int demi_walls_strange(dem_world *w, const char *call, int form) {
 }
 /* Makes the body just appended one of a shape, scaled. */
 static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_quat orientation) {
-    const demi_form *form = &w->forms[shape];
+    const demi_shape *as = &w->shapes[shape];
     const double s = (double)scale;
     const double density = (double)w->materials[w->bodies.material[i] - 1].density;
-    const double m = density*form->volume*s*s*s;
+    const double m = density*as->volume*s*s*s;
     w->bodies.shape[i] = shape + 1;
-    w->bodies.pos[4*i + 3] = form->radius*scale;
+    w->bodies.pos[4*i + 3] = as->radius*scale;
     w->bodies.mass[i] = (dem_real)m;
     w->bodies.inv_mass[i] = (dem_real)(1/m);
     w->bodies.inv_inertia[i] = 0;
     demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
-    w->bodies.moment[4*i + 3] = form->lever*scale;
-    demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(dem_quat_times(orientation, form->frame)));
+    w->bodies.moment[4*i + 3] = as->moment_arm*scale;
+    demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(dem_quat_times(orientation, as->frame)));
     w->bodies.shaped++;
 }
 
@@ -4109,11 +4118,11 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
     return 1;
 }
 /* 1 with a sentence when a body of a shape, scaled, would weigh nothing or too much. */
-static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, int form,
+static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, int shape,
                                   dem_real scale, int i) {
     const double s = (double)scale, density = (double)w->materials[material].density;
-    const double m = density*w->forms[form].volume*s*s*s;
-    const dem_vec3 I = w->forms[form].inertia;
+    const double m = density*w->shapes[shape].volume*s*s*s;
+    const dem_vec3 I = w->shapes[shape].inertia;
     const double least = m*s*s*(double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
     const double most = m*s*s*(double)DEMI_MAX(I.x, DEMI_MAX(I.y, I.z));
     const dem_real six[] = {(dem_real)m, (dem_real)(1/m), (dem_real)least, (dem_real)(1/least),
@@ -4133,7 +4142,7 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
                                   const dem_real *spins, const dem_real *scales) {
     int i, m = 0, f;
     if (demi_material_index(w, call, material, &m) != DEM_OK ||
-        (f = demi_form_index(w, call, shape)) < 0 ||
+        (f = demi_shape_index(w, call, shape)) < 0 ||
         !demi_bodies_check(w, call, count, positions, orientations, velocities, spins, scales) ||
         demi_walls_strange(w, call, f))
         return DEM_ERROR_ARGUMENT;
@@ -4195,7 +4204,7 @@ static int demi_body_index(dem_world *w, const char *call, dem_body b) {
 static void demi_body_take_out(dem_world *w, int i) {
     const int last = w->bodies.count - 1, slot = (int)w->bodies.slot[i];
     w->booked.removed += demi_body_energy(w, i);
-    if (demi_form_of(w, i)) w->bodies.shaped--;
+    if (demi_shape_of(w, i)) w->bodies.shaped--;
     if (i != last) {
         demi_body_copy(w, last, i);
         w->bodies.slot_index[w->bodies.slot[i]] = i;
@@ -4240,20 +4249,20 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
     s->shape.id = w->bodies.orienting ? w->bodies.shape[i] : 0;
     s->orientation = dem_quat_make(1, 0, 0, 0);
     if (w->bodies.orienting) s->orientation = demi_quat_at(w->bodies.orient + 4*i);
-    if (demi_form_of(w, i))                     /* as its user gave it */
+    if (demi_shape_of(w, i))                     /* as its user gave it */
         s->orientation = dem_quat_times(s->orientation,
-                                        demi_quat_conjugate(demi_form_of(w, i)->frame));
+                                        demi_quat_conjugate(demi_shape_of(w, i)->frame));
     return DEM_OK;
 }
 
 DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_state *s) {
     if (demi_null(w, "dem_body_set", s, "state")) return DEM_ERROR_ARGUMENT;
     int i = demi_body_index(w, "dem_body_set", body);
-    const demi_form *form;
+    const demi_shape *shape;
     const dem_quat q = s->orientation;
     double before, m;
     if (i < 0) return DEM_ERROR_ARGUMENT;
-    form = demi_form_of(w, i);
+    shape = demi_shape_of(w, i);
     if (w->bodies.orienting && (!demi_quat_finite(q) || !(demi_quat_most(q) > 0)))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: orientation of body %u is (%g, %g, "
                          "%g, %g), must be finite and not zero; fill the state with dem_body_get "
@@ -4279,11 +4288,11 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
     demi_put(w->bodies.half_spin + 4*i, demi_at(w->bodies.spin + 4*i));
     w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
-    w->bodies.inv_inertia[i] = s->fixed || form ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
+    w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
         (double)w->bodies.pos[4*i + 3]));
     if (w->bodies.orienting) {
         demi_quat_put(w->bodies.orient + 4*i,
-                      demi_quat_unit(form ? dem_quat_times(q, form->frame) : q));
+                      demi_quat_unit(shape ? dem_quat_times(q, shape->frame) : q));
         demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
     }
     w->booked.inserted += demi_body_energy(w, i) - before;
@@ -4692,7 +4701,7 @@ static void demi_wall_span(demi_wall *wall) {
     dem_real lo[3] = {far, far, far}, hi[3] = {-far, -far, -far};
     int i;
     for (i = 0; i < wall->vertex_count; i++)
-        demi_reach_add(lo, hi, demi_add(p->position, demi_turn(p->rotation,
+        demi_reach_add(lo, hi, demi_add(p->position, demi_rotate(p->rotation,
                                         demi_at(wall->vertices + 3*i))), pad);
     if (!wall->vertex_count) demi_reach_add(lo, hi, p->position, wall->reach);
     if (demi_wall_is(wall, DEMI_DRAWN)) {
@@ -4818,7 +4827,7 @@ static void demi_join_images(const dem_world *w, demi_join *j, int group, int fi
                 int near = 1;
                 for (c = 0; c < j->per; c++) {
                     const dem_vec3 at = demi_add(by, demi_add(wall->pose.position,
-                        demi_turn(wall->pose.rotation, demi_at(wall->vertices + 3*
+                        demi_rotate(wall->pose.rotation, demi_at(wall->vertices + 3*
                                                                wall->corners[j->per*e + c]))));
                     x[3*c] = (double)at.x; x[3*c + 1] = (double)at.y; x[3*c + 2] = (double)at.z;
                 }
@@ -4874,7 +4883,7 @@ static int demi_join_begin(dem_world *w, demi_join *j, int group, int per) {
         const demi_wall *wall = &w->walls[i];
         if (!demi_join_member(w, i, group, per)) continue;
         for (k = 0; k < wall->vertex_count; k++) {
-            const dem_vec3 at = demi_add(wall->home.position, demi_turn(wall->home.rotation,
+            const dem_vec3 at = demi_add(wall->home.position, demi_rotate(wall->home.rotation,
                                          demi_at(wall->vertices + 3*k)));
             double *x = j->x + 3*j->points++;
             x[0] = (double)at.x; x[1] = (double)at.y; x[2] = (double)at.z;
@@ -5100,7 +5109,7 @@ static void demi_join_corners(dem_world *w, demi_join *j) {
 }
 static dem_vec3 demi_join_local(const demi_join *j, const demi_wall *wall, int32_t point) {
     const double *x = j->x + 3*point;
-    return demi_unturn(wall->home.rotation, demi_sub(demi_v((dem_real)x[0], (dem_real)x[1],
+    return demi_unrotate(wall->home.rotation, demi_sub(demi_v((dem_real)x[0], (dem_real)x[1],
                                                             (dem_real)x[2]), wall->home.position));
 }
 /* Hands the cuts over to their walls, by element. 0 when memory ran out. */
@@ -5239,7 +5248,7 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
                 pose->rotation[3*i + j] = (dem_real)(turn[3*i]*(double)wall->home.rotation[j] +
                     turn[3*i + 1]*(double)wall->home.rotation[3 + j] +
                     turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
-        pose->position = demi_add(m->point, demi_turn(T, arm));
+        pose->position = demi_add(m->point, demi_rotate(T, arm));
         pose->spin = demi_scale(axis, m->speed);
         pose->velocity = demi_cross(pose->spin, demi_sub(pose->position, m->point));
         break;
@@ -5431,7 +5440,7 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     id.id = 0;
     wall->pose = wall->mid = wall->first = wall->home;
     for (i = 0; i < w->bodies.count && w->bodies.shaped; i++)
-        if (!demi_touch_known(wall->kind, demi_form_shape(demi_form_of(w, i)))) {
+        if (!demi_touch_known(wall->kind, demi_shape_kind(demi_shape_of(w, i)))) {
             demi_strangers(w, call, w->wall_count, wall->kind, (int)w->bodies.slot[i]);
             demi_wall_free(w, wall);
             return id;
@@ -5782,21 +5791,21 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
     return DEM_OK;
 }
 
-DEM_API dem_result dem_wall_channels(const dem_world *world, dem_wall id, dem_channels *channels) {
-    if (demi_null(world, "dem_wall_channels", channels, "channels")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find((dem_world *)world, "dem_wall_channels", id);
+DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall id, dem_wall_loads *loads) {
+    if (demi_null(world, "dem_wall_loads_get", loads, "loads")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, "dem_wall_loads_get", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
-    *channels = world->walls[i].channels;
+    *loads = world->walls[i].loads;
     return DEM_OK;
 }
-DEM_API dem_result dem_wall_channels_reset(dem_world *w, dem_wall id) {
-    if (demi_null(w, "dem_wall_channels_reset", w, "world")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_channels_reset", id);
+DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
+    if (demi_null(w, "dem_wall_loads_reset", w, "world")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_loads_reset", id);
     demi_wall *wall;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     wall = &w->walls[i];
-    memset(wall->channels.impulse, 0, sizeof wall->channels.impulse);
-    wall->channels.torque_impulse = wall->channels.work = wall->channels.time = 0;
+    memset(wall->loads.impulse, 0, sizeof wall->loads.impulse);
+    wall->loads.torque_impulse = wall->loads.work = wall->loads.time = 0;
     return DEM_OK;
 }
 
@@ -5959,7 +5968,7 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
     int k;
     if (!(dx*dx + dy*dy + dz*dz < cut*cut)) return;
     if (w->effects.fixed_count && w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0) return;
-    if (demi_visits(w, a) && demi_visits(w, b)) return;
+    if (demi_is_ghost(w, a) && demi_is_ghost(w, b)) return;
     if (w->effects.tight && !demi_pair_reaches(w, a, b, demi_v(dx, dy, dz), skin)) return;
     list = b < domain->end ? &w->own : &w->cross;
     k = list == &w->own ? domain->own : domain->cross;
@@ -6088,7 +6097,7 @@ static void demi_levels_choose(dem_world *w) {
     const int alike = w->effects.radius_max <= 2*w->effects.radius_min;    /* enough for one grid */
     const int by_name = w->desc.search == DEM_SEARCH_LEVELS && w->asked.search != DEM_SEARCH_AUTO;
     w->levels.wide = w->levels.count = 0;
-    w->levels.looks[0] = w->levels.looks[1] = 0;
+    w->levels.tests[0] = w->levels.tests[1] = 0;
     if (w->asked.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (!w->bodies.count || (alike && !by_name)) return;
     below[DEMI_LEVELS] = 0;
@@ -6113,8 +6122,8 @@ static void demi_levels_choose(dem_world *w) {
     }
     one = demi_level_work(w, (double)w->effects.radius_max, room, w->bodies.count, 0);
     w->levels.wide = !alike && w->levels.count > 1 && 2*least[0] < one;
-    w->levels.looks[0] = one/w->bodies.count;
-    w->levels.looks[1] = least[0]/w->bodies.count;
+    w->levels.tests[0] = one/w->bodies.count;
+    w->levels.tests[1] = least[0]/w->bodies.count;
     if (w->asked.search == DEM_SEARCH_AUTO && w->levels.wide) w->desc.search = DEM_SEARCH_LEVELS;
     if (w->desc.search == DEM_SEARCH_LEVELS) return;
     /* bodies are sorted by finer cells than those of the grid asked for: one level is that grid */
@@ -6553,7 +6562,7 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
     const dem_real r = w->bodies.pos[4*i + 3], near_by = r + (dem_real)w->margin.skin;
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
-    dem_vec3 at = demi_unturn(wall->pose.rotation,
+    dem_vec3 at = demi_unrotate(wall->pose.rotation,
                               demi_sub(demi_add(demi_at(w->bodies.pos + 4*i), shift),
                                                             wall->pose.position));
     dem_real away;
@@ -6588,7 +6597,7 @@ static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int 
 static void demi_body_walls(dem_world *w, int d, int i) {
     demi_domain *domain = &w->domains[d];
     int j, a, b, c, f[3], l[3];
-    if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_visits(w, i)) return;
+    if ((w->effects.fixed_count && w->bodies.inv_mass[i] <= 0) || demi_is_ghost(w, i)) return;
     for (j = 0; j < w->wall_count; j++) {
         const demi_wall *wall = &w->walls[j];
         if (wall->kind == DEMI_WALL_NONE) continue;
@@ -6645,7 +6654,7 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
 }
 static int demi_cross_reserve(dem_world *w, size_t entries) {
     const int ok = DEMI_GROW(w, w->cross_incoming, entries) &&
-                   DEMI_GROW(w, w->cross_push, 6*(entries + DEMI_LANES + 1));
+                   DEMI_GROW(w, w->cross_force, 6*(entries + DEMI_LANES + 1));
     return ok;
 }
 /* The domain a body belongs to. */
@@ -6725,20 +6734,19 @@ static int demi_stride_keep(int needed, int had) {
     return had > needed && had <= 2*needed ? had : needed;
 }
 /* Room for contacts in the domains of a new list, and for the walls' sums; nothing moves yet.
-   Answers how many contacts a domain then holds, 0: there can be none, -1: memory ran out. */
+   Answers how many contacts a domain then holds; -1: memory ran out. */
 static int demi_kept_room(dem_world *w) {
     const int shaped = w->bodies.shaped ? DEMI_MAX(64, w->bodies.count/w->domain_count*4) : 0;
     int d, k, total = 0, stride = w->wall_count ? w->wall_stride : 0;
     int crowd[DEMI_DOMAINS], ok;
     /* slabs of spheres do not stop in the middle of a step to make room: as much as there may ever
        be, where else there are hardly more contacts than candidates */
-    if (w->bodies.visitor) stride = DEMI_MAX(stride, demi_places_most(w));
+    if (w->bodies.ghost) stride = DEMI_MAX(stride, demi_places_most(w));
     stride += shaped;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         total += w->domains[d].kept;
         crowd[d] = 0;
     }
-    if (!stride && !total) return 0;
     for (d = 0; d < DEMI_DOMAINS; d++)          /* how many will come to each domain at most */
         for (k = 0; k < w->domains[d].kept; k++) {
             const demi_kept *c = &w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
@@ -6757,7 +6765,6 @@ static int demi_kept_room(dem_world *w) {
    its lower body as a: what turns round, turns round. */
 static void demi_kept_move(dem_world *w, int stride) {
     int d, k, e = 0, i;
-    if (!stride) return;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept c = w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
@@ -6777,7 +6784,7 @@ static void demi_kept_move(dem_world *w, int stride) {
                     if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
             }
             c.coef_m = 0;                       /* materials may have changed */
-            if (!pair && !demi_form_of(w, c.a)) c.m_eff = w->bodies.mass[c.a];
+            if (!pair && !demi_shape_of(w, c.a)) c.m_eff = w->bodies.mass[c.a];
             w->kept_next[e++] = c;
         }
         w->domains[d].kept = 0;
@@ -6863,13 +6870,13 @@ static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin,
     int k;
     for (k = begin; k < end && p < room; k++) {
         const int a = list->a[k], b = list->b[k];
-        const demi_form *fa = demi_form_of(w, a), *fb = demi_form_of(w, b);
+        const demi_shape *fa = demi_shape_of(w, a), *fb = demi_shape_of(w, b);
         dem_real speed, cut;
         if (!fa && !fb) continue;
         speed = demi_length(demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a)));
-        if (fa) speed += demi_length(demi_at(w->bodies.spin + 4*a))*fa->lever*
+        if (fa) speed += demi_length(demi_at(w->bodies.spin + 4*a))*fa->moment_arm*
                          demi_scale_of(w, a, fa);
-        if (fb) speed += demi_length(demi_at(w->bodies.spin + 4*b))*fb->lever*
+        if (fb) speed += demi_length(demi_at(w->bodies.spin + 4*b))*fb->moment_arm*
                          demi_scale_of(w, b, fb);
         cut = margin + span*speed;
         out[p] = k;
@@ -7006,7 +7013,7 @@ DEM_INLINE demi_quiet *demi_quiet_at(const dem_world *w, int d, int i) {
 }
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
-    return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.visitor &&
+    return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
            !w->bodies.backward;
 }
 static void demi_domain_quiet(dem_world *w, int d) {
@@ -7151,9 +7158,9 @@ static void demi_effects(dem_world *w) {
     }
     w->effects.tight = 0;
     for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
-        const demi_form *form = demi_form_of(w, i);
+        const demi_shape *shape = demi_shape_of(w, i);
         w->effects.uniform &= w->bodies.shape[i] == w->bodies.shape[0];
-        w->effects.tight |= form && form->radius > 2*form->equal;
+        w->effects.tight |= shape && shape->radius > 2*shape->equal;
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count;
@@ -7302,7 +7309,7 @@ static int demi_join_lack(const dem_world *w) {
 /* May a sphere join? Not when it would bring an effect in, nor beside bodies of other shapes. */
 static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
     if (!w->stage.list_valid || w->stage.pairs_changed || !w->bodies.count || w->bodies.shaped ||
-        w->bodies.visitor) return 0;
+        w->bodies.ghost) return 0;
     return !w->effects.uniform ||
            (w->bodies.material[0] == material + 1 && !(radius < w->effects.uniform_radius) &&
                            !(radius > w->effects.uniform_radius));
@@ -7480,7 +7487,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     for (k = 0; k < w->bodies.count; k++)
         if (!demi_place(demi_at(w->bodies.pos + 4*k))) return demi_lost(w, k);
     if (!demi_list_drop(w) || !demi_effects_take(w)) return demi_no_memory(w, call);
-    if (!w->stage.skin_chosen || w->bodies.visitor) demi_skin_choose(w);
+    if (!w->stage.skin_chosen || w->bodies.ghost) demi_skin_choose(w);
     w->stage.skin_chosen = 1;
     if (demi_periods_refuse(w)) return DEM_ERROR_ARGUMENT;
     demi_walls_repeat(w);
@@ -7492,7 +7499,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     if (!demi_grid_lay(w, least + 1e-300)) return demi_no_memory(w, call);
     demi_bodies_sort(w);
     if (!w->levels.count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
-    if ((w->bodies.shaped && !demi_spots_lay(w)) || (w->levels.count && !demi_levels_lay(w)))
+    if ((w->bodies.shaped && !demi_centres_lay(w)) || (w->levels.count && !demi_levels_lay(w)))
         return demi_no_memory(w, call);
     demi_image_shifts(w);
     demi_domains_deal(w);
@@ -7657,7 +7664,7 @@ static void demi_places_merge(demi_places *p, dem_real near_by) {
 }
 /* A vector in the measure in which an ellipsoid is the unit sphere. */
 DEM_INLINE dem_vec3 demi_in_measure(const demi_part *part, dem_vec3 v) {
-    v = dem_quat_unturn(part->q, v);
+    v = dem_quat_unrotate(part->q, v);
     return demi_v(v.x/part->axes.x, v.y/part->axes.y, v.z/part->axes.z);
 }
 /* Corners of an element as seen from a body at x: in the body's measure, where part is an
@@ -8253,7 +8260,7 @@ typedef struct demi_tile {
     dem_real slip[3][DEMI_ROW], slip_step[3][DEMI_ROW];   /* m/s */
     dem_real lean[DEMI_ROW];       /* m, from the middle to the contact, towards b */
     dem_real closing[DEMI_ROW], twist[DEMI_ROW];
-    /* laws: what each leaves for the next (see dem_push), what does not touch included */
+    /* laws: what each leaves for the next (see dem_contact_force), what does not touch included */
     dem_real repulsion[DEMI_ROW], load[DEMI_ROW], slope[2][DEMI_ROW], kt[2][DEMI_ROW];
     dem_real ct[DEMI_ROW], tangent[3][DEMI_ROW], moment[3][DEMI_ROW];
     dem_real part[6][DEMI_ROW];                           /* energies */
@@ -8493,18 +8500,19 @@ DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count,
 #undef DEMI_RECALL
 #undef DEMI_KEEP
 /* What a law says of energy, for the ledger. */
-DEM_INLINE void demi_normal_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f) {
+DEM_INLINE void demi_normal_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f) {
     t->part[0][q] = (f->energy.dashpot + f->energy.sag)*t->touch[q];
     t->part[1][q] = f->energy.elastic*t->touch[q];
 }
-DEM_INLINE void demi_tangent_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f) {
+DEM_INLINE void demi_tangent_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f) {
     t->part[2][q] = f->energy.shear_work*t->touch[q];
     t->part[3][q] = f->energy.slide*t->touch[q];
     t->part[4][q] = f->energy.shear_stored*t->touch[q];
 }
 /* What a law has put into its answer, for the next; `all`: what only some of them ask for, and the
    energies, too. */
-DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f, int all) {
+DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
+                                int all) {
     t->repulsion[q] = f->normal;
     t->load[q] = f->load;
     t->kt[0][q] = f->kt;
@@ -8515,18 +8523,20 @@ DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_pus
     t->slope[1][q] = f->slope_step;
     demi_normal_energy(t, q, f);
 }
-DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_push *f) {
-    demi_push_clear(f);
+DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_contact_force *f) {
+    demi_force_clear(f);
     f->load = t->load[q];
     f->kt = t->kt[0][q]; f->kt_step = t->kt[1][q];
     f->slope = t->slope[0][q]; f->slope_step = t->slope[1][q];
     f->ct = t->ct[q];
 }
-DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f, int all) {
+DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
+                                 int all) {
     demi_row_put(t->tangent, q, f->tangent);
     if (all) demi_tangent_energy(t, q, f);
 }
-DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_push *f, int all) {
+DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
+                                 int all) {
     (void)all;
     demi_row_put(t->moment, q, f->moment);
     t->part[5][q] = f->energy.roll*t->touch[q];
@@ -8537,7 +8547,7 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_pu
     DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
         const demi_same s = r->same; \
         DEMI_ROWS(full) \
-            dem_contact c; dem_push f; dem_real m[DEMI_MEMORY]; \
+            dem_contact c; dem_contact_force f; dem_real m[DEMI_MEMORY]; \
             demi_tile_contact(t, &s, q, &c); \
             if (!(ALL)) demi_contact_usual(&c); \
             demi_normal_get(t, q, &f); \
@@ -8602,10 +8612,10 @@ DEMI_ANSWER_STAGE(answer_mixed_rolling, 0, 1, 1, 1)
                                               int full) { \
         const demi_same s = r->same; \
         DEMI_ROWS(full) \
-            dem_contact c; dem_push f; dem_real m[DEMI_MEMORY]; \
+            dem_contact c; dem_contact_force f; dem_real m[DEMI_MEMORY]; \
             demi_tile_contact(t, &s, q, &c); \
             demi_contact_usual(&c); \
-            demi_push_clear(&f); \
+            demi_force_clear(&f); \
             NORMAL(&c, 0, &f); \
             demi_recall(t, q, 0, MEMORY, m); \
             TANGENT(&c, m, &f); \
@@ -8640,13 +8650,13 @@ DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
 DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, int q,
                              dem_law_fn law) {
     dem_contact c;
-    dem_push f;
+    dem_contact_force f;
     dem_real m[DEMI_MEMORY];
     demi_tile_contact(t, &r->same, q, &c);
     c.material_a = r->w->bodies.material[r->span->a[q]];
     c.material_b = r->w->bodies.material[r->span->b[q]];
     c.user = r->w->desc.law_user;
-    demi_push_clear(&f);
+    demi_force_clear(&f);
     demi_recall(t, q, 0, r->keep, m);
     law(&c, m, &f);
     demi_keep(t, q, 0, r->keep, m);
@@ -8868,7 +8878,7 @@ static void demi_pairs(dem_world *w, int d) {
             demi_tile_tally(&tile, count, &tally);
             if (!l) demi_tile_scatter(&tile, &span, &r, w->bodies.force, w->bodies.torque);
             else demi_tile_send(&tile, &span, &r, w->bodies.force, w->bodies.torque,
-                                w->cross_push + 6*((size_t)d*(size_t)w->cross.stride +
+                                w->cross_force + 6*((size_t)d*(size_t)w->cross.stride +
                                                    (size_t)(p - begin)));
         }
     }
@@ -8889,7 +8899,7 @@ static void demi_cross_gather(dem_world *w, int d) {
         if (p < 0) continue;
         shaped = p >= w->domains[from].near_shaped;
         p -= shaped ? w->domains[from].near_shaped_cross - w->domains[from].near_end : 0;
-        push = w->cross_push + 6*(size_t)(from*stride + p - w->domains[from].near_cross);
+        push = w->cross_force + 6*(size_t)(from*stride + p - w->domains[from].near_cross);
         for (e = 0; e < 3; e++) {
             w->bodies.force[j + e] += push[e];
             if (turning || shaped) w->bodies.torque[j + e] += push[3 + e];
@@ -8967,7 +8977,7 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
     int k, q, from, end, one, reached;
     for (k = first; k < last; k = end, p.offset += numbers) {   /* image by image */
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
         from = p.count;
         end = demi_image_end(w, base, k, last);
         for (q = k, one = end, reached = 0; q < end && !part; q++) {
@@ -9001,13 +9011,13 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
         t->element %= numbers;
         if (part) {
             const dem_vec3 a = part->axes;
-            to = dem_quat_turn(part->q, demi_v(n.x*a.x, n.y*a.y, n.z*a.z));
-            n = dem_quat_turn(part->q, demi_v(n.x/a.x, n.y/a.y, n.z/a.z));
+            to = dem_quat_rotate(part->q, demi_v(n.x*a.x, n.y*a.y, n.z*a.z));
+            n = dem_quat_rotate(part->q, demi_v(n.x/a.x, n.y/a.y, n.z/a.z));
         }
         n = t->overlap > 0 ? demi_scale(n, 1/demi_length(n)) : demi_v(0, 0, -1);
         t->overlap = within - t->overlap;
-        t->normal = demi_turn(R, n);
-        t->point = demi_add(at, demi_turn(R, to));
+        t->normal = demi_rotate(R, n);
+        t->point = demi_add(at, demi_rotate(R, to));
     }
     *out = p.at;
     return p.count;
@@ -9035,7 +9045,7 @@ DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last
     *places = out = w->touching + w->domains[d].touching_first;
     for (k = first; k < last; k = end) {
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
-        const dem_vec3 x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
         const int from = count;
         end = demi_image_end(w, base, k, last);
         if (how == 2) count += demi_sieve_touch(&wall->sieve, x, r, out + count);
@@ -9055,8 +9065,8 @@ DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last
             count++;
         }
         for (q = from; q < count; q++) {
-            out[q].normal = demi_turn(R, out[q].normal);
-            out[q].point = demi_sub(demi_add(wall->pose.position, demi_turn(R, out[q].point)),
+            out[q].normal = demi_rotate(R, out[q].normal);
+            out[q].point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, out[q].point)),
                                     shift);
             out[q].shift = shift;
         }
@@ -9218,12 +9228,12 @@ static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int o
     return best;
 }
 /* 1/mass that a push along n through arm feels at a body: 1/m + (arm x n).I^-1 (arm x n). */
-static double demi_contact_give(const dem_world *w, int body, dem_vec3 arm, dem_vec3 n) {
+static double demi_inverse_mass_at(const dem_world *w, int body, dem_vec3 arm, dem_vec3 n) {
     const double inv = (double)w->bodies.inv_mass[body];
     const dem_real *I = w->bodies.orienting ? w->bodies.moment + 4*body : 0;
     dem_vec3 t;
-    if (!(inv > 0) || !demi_form_of(w, body)) return inv;
-    t = dem_quat_unturn(demi_quat_at(w->bodies.orient + 4*body), demi_cross(arm, n));
+    if (!(inv > 0) || !demi_shape_of(w, body)) return inv;
+    t = dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*body), demi_cross(arm, n));
     return inv + (double)(t.x*t.x/I[0] + t.y*t.y/I[1] + t.z*t.z/I[2]);
 }
 
@@ -9335,9 +9345,9 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
             arm_a = demi_scale(c[i].arm_a, d2);
             arm_b = demi_scale(c[i].arm_b, d2);
         }
-        give = demi_contact_give(w, c[i].a, demi_scale(arm_a, 1/A), c[i].normal);
+        give = demi_inverse_mass_at(w, c[i].a, demi_scale(arm_a, 1/A), c[i].normal);
         if (c[i].b >= 0)
-            give += demi_contact_give(w, c[i].b, demi_scale(arm_b, 1/A), c[i].normal);
+            give += demi_inverse_mass_at(w, c[i].b, demi_scale(arm_b, 1/A), c[i].normal);
         c[i].m_eff = (dem_real)(1/give);
     }
     if (one && n > 1) demi_kept_lift(w, c, n);
@@ -9412,10 +9422,10 @@ static double demi_ellipse_reach(const double *Q, double x, double y, int out, d
 }
 /* Height of an ellipsoid in direction n, and the arm to its surface point there: Q n/h. */
 static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm) {
-    const dem_vec3 e = dem_quat_unturn(p->q, n), a = p->axes;
+    const dem_vec3 e = dem_quat_unrotate(p->q, n), a = p->axes;
     const dem_vec3 s = demi_v(a.x*e.x, a.y*e.y, a.z*e.z);
     const dem_real h = demi_length(s);
-    *arm = demi_scale(dem_quat_turn(p->q, demi_v(a.x*s.x, a.y*s.y, a.z*s.z)), 1/h);
+    *arm = demi_scale(dem_quat_rotate(p->q, demi_v(a.x*s.x, a.y*s.y, a.z*s.z)), 1/h);
     return h;
 }
 /* What is left of an ellipsoid about x inside a cylinder's radius R as it shrinks (or, from
@@ -9523,13 +9533,13 @@ static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, 
         demi_touching *c = &out[count];
         if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
         shift = demi_at(w->wall_shift + 3*(size_t)(base + DEMI_MIN(i, last - 1)));
-        x = demi_unturn(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
         c->element = i < last ? w->wall_element[base + i] : 1;
         c->overlap = on(wall, c->element, &local, x, &c->normal, &c->point);
         if (!(c->overlap > 0)) continue;
-        c->normal = demi_turn(R, c->normal);
+        c->normal = demi_rotate(R, c->normal);
         if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
-        c->point = demi_sub(demi_add(wall->pose.position, demi_turn(R, c->point)), shift);
+        c->point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, c->point)), shift);
         c->shift = shift;
         c->share = wall->share;
         count++;
@@ -9633,7 +9643,7 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
     dist = demi_bends[wall->kind](wall, among, count, c->element, dist, &axis);
     if (!(dist < 0 || dist > 0)) return;
     c->bend = -1/dist;
-    c->axis = demi_turn(wall->pose.rotation, axis);
+    c->axis = demi_rotate(wall->pose.rotation, axis);
 }
 /* R* of a part of radius r with a wall. On a round wire the two radii of the contact differ, r and
    r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's ellipse for a wire as
@@ -9674,7 +9684,7 @@ static void demi_kept_on_wall(dem_world *w, int d, int first, int last, int k,
             c->deep = c->overlap/p.radius;
             c->r_eff = p.radius;
             c->arm_a = demi_add(p.centre, demi_scale(c->normal, p.radius));
-            if (demi_form_of(w, body) && w->desc.cluster_contacts == DEM_SHARING_ONE &&
+            if (demi_shape_of(w, body) && w->desc.cluster_contacts == DEM_SHARING_ONE &&
                 c->overlap > 0)
                 demi_wall_bend(wall, w->wall_element + base + first, last - first,
                                DEMI_MAX(p.radius - c->overlap, p.radius/10), c);
@@ -9699,7 +9709,7 @@ static void demi_kept_wall(dem_world *w, int d, int first, int last, const demi_
     demi_kept *c = w->kept_next + (size_t)d*(size_t)w->kept_stride + from;
     int k;
     for (k = 0; k < parts; k++) demi_kept_on_wall(w, d, first, last, k, old, olds);
-    if (demi_form_of(w, body)) {
+    if (demi_shape_of(w, body)) {
         demi_kept_share(w, c, w->domains[d].kept_next - from);
         return;
     }
@@ -9874,14 +9884,14 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
 static dem_real demi_kept_still(const dem_world *w, const demi_kept *k, const dem_contact *c) {
     dem_real memory[DEMI_MEMORY];
     dem_contact still = *c;
-    dem_push f;
+    dem_contact_force f;
     if (!(k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0)) return 0;
     memcpy(memory, k->memory, sizeof memory);
     still.closing_speed = 0;
     demi_law(w, &still, memory, &f);
     return f.normal;
 }
-DEM_INLINE void demi_push_add(dem_real *sum, dem_vec3 f) {
+DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
     sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
 }
 /* What a push of `force` at a place, with a moment, adds to its wall's sums. */
@@ -9921,7 +9931,7 @@ static void demi_kept_respond(dem_world *w, int d) {
         const demi_kept *old;
         dem_real press, still;
         dem_contact contact;
-        dem_push f;
+        dem_contact_force f;
         dem_vec3 surface, force, moment, moment_b;
         old = demi_kept_recall(w, now, c);
         if (!(c->overlap > 0)) {                /* under way through a reduced hole */
@@ -9944,19 +9954,19 @@ static void demi_kept_respond(dem_world *w, int d) {
             moment_b = demi_add(moment_b, demi_cross(far, aside));
         }
         c->force = force;
-        demi_push_add(w->bodies.force + 4*a, force);
-        demi_push_add(w->bodies.torque + 4*a, demi_add(demi_cross(c->arm_a, force), moment));
+        demi_force_add(w->bodies.force + 4*a, force);
+        demi_force_add(w->bodies.torque + 4*a, demi_add(demi_cross(c->arm_a, force), moment));
         if (c->inset < 1)
-            demi_push_add(w->bodies.torque + 4*a, demi_scale(demi_cross(c->arm_a, contact.normal),
+            demi_force_add(w->bodies.torque + 4*a, demi_scale(demi_cross(c->arm_a, contact.normal),
                                                              (1 - c->inset)*press));
         if (b >= 0) {
             const dem_vec3 back = demi_scale(demi_add(demi_cross(c->arm_b, force), moment_b), -1);
             if (c->send) {                      /* several may go by one near pair */
-                demi_push_add(w->cross_push + 6*(size_t)(c->send - 1), demi_scale(force, -1));
-                demi_push_add(w->cross_push + 6*(size_t)(c->send - 1) + 3, back);
+                demi_force_add(w->cross_force + 6*(size_t)(c->send - 1), demi_scale(force, -1));
+                demi_force_add(w->cross_force + 6*(size_t)(c->send - 1) + 3, back);
             } else {
-                demi_push_add(w->bodies.force + 4*b, demi_scale(force, -1));
-                demi_push_add(w->bodies.torque + 4*b, back);
+                demi_force_add(w->bodies.force + 4*b, demi_scale(force, -1));
+                demi_force_add(w->bodies.torque + 4*b, back);
             }
             domain->contacts++;
         } else {
@@ -9976,7 +9986,7 @@ static void demi_kept_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const int pairs = domain->near_shaped_end - domain->near_shaped_cross;
     if (pairs > 0)
-        memset(w->cross_push + 6*((size_t)d*(size_t)w->cross.stride +
+        memset(w->cross_force + 6*((size_t)d*(size_t)w->cross.stride +
                                   (size_t)(domain->near_end - domain->near_cross)), 0,
                6*(size_t)pairs*sizeof(dem_real));
 }
@@ -10187,7 +10197,7 @@ DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
    frame. */
 DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_vec3 inv,
                                        dem_real h) {
-    const dem_vec3 m = dem_quat_unturn(*q, L);
+    const dem_vec3 m = dem_quat_unrotate(*q, L);
     const dem_vec3 w = demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z);
     const dem_vec3 a = demi_v((I.y - I.z)*inv.x, (I.z - I.x)*inv.y, (I.x - I.y)*inv.z);
     const dem_vec3 w1 = demi_v(a.x*w.y*w.z, a.y*w.z*w.x, a.z*w.x*w.y);
@@ -10205,7 +10215,7 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     magnus = demi_scale(demi_cross(w, end), h*DEM_R(1.0/12));
     *q = demi_quat_spin(*q, demi_scale(demi_add(mean, magnus), h));
     end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
-    g = dem_quat_unturn(*q, L);
+    g = dem_quat_unrotate(*q, L);
     c = demi_scale(demi_cross(end, g), ll > DEMI_TINY ? DEM_R(0.5)/ll : 0);
     *q = demi_quat_again(dem_quat_times(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
@@ -10215,24 +10225,24 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
    that. */
 static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
     const dem_quat start = *q;
-    dem_vec3 m = dem_quat_unturn(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
+    dem_vec3 m = dem_quat_unrotate(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
     dem_quat mid, by;
     by = dem_quat_times(start, dem_quat_make(0, w.x*h/4, w.y*h/4, w.z*h/4));
     mid = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
                                        start.z + by.z));
-    m = dem_quat_unturn(mid, L);
+    m = dem_quat_unrotate(mid, L);
     w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
     by = dem_quat_times(mid, dem_quat_make(0, w.x*h/2, w.y*h/2, w.z*h/2));
     *q = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
                                       start.z + by.z));
-    return dem_quat_unturn(start, dem_quat_turn(mid, w));
+    return dem_quat_unrotate(start, dem_quat_rotate(mid, w));
 }
 /* NO_SQUISH's splitting [DLM97]: free rotation about x, y, z, y, x in turn, each exact; symplectic,
    so that energy swings and does not drift. */
 static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_real h) {
     static const int order[5] = {0, 1, 2, 1, 0};
     const dem_quat start = *q;
-    dem_vec3 m = dem_quat_unturn(start, L), w0 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z), w1;
+    dem_vec3 m = dem_quat_unrotate(start, L), w0 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z), w1;
     int k;
     for (k = 0; k < 5; k++) {
         const double step = (double)(k == 2 ? h : h/2);
@@ -10242,24 +10252,24 @@ static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_r
         const dem_quat r = dem_quat_make(c, order[k] == 0 ? s : 0, order[k] == 1 ? s : 0,
                                          order[k] == 2 ? s : 0);
         *q = dem_quat_times(*q, r);
-        m = dem_quat_unturn(r, m);
+        m = dem_quat_unrotate(r, m);
     }
     *q = demi_quat_unit(*q);
-    m = dem_quat_unturn(*q, L);
+    m = dem_quat_unrotate(*q, L);
     w1 = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
-    return demi_scale(demi_add(w0, dem_quat_unturn(start, dem_quat_turn(*q, w1))), DEM_R(0.5));
+    return demi_scale(demi_add(w0, dem_quat_unrotate(start, dem_quat_rotate(*q, w1))), DEM_R(0.5));
 }
 /* Spin of a body with angular momentum L. */
 DEM_INLINE dem_vec3 demi_spin_of(dem_quat q, dem_vec3 L, dem_vec3 inv) {
-    const dem_vec3 m = dem_quat_unturn(q, L);
-    return dem_quat_turn(q, demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z));
+    const dem_vec3 m = dem_quat_unrotate(q, L);
+    return dem_quat_rotate(q, demi_v(m.x*inv.x, m.y*inv.y, m.z*inv.z));
 }
 
 /* Bodies that turn, a tile at a time: rows of numbers, so that compilers make vectors of it. */
 typedef struct demi_turning {
     dem_real q[4][DEMI_ROW], L[3][DEMI_ROW], T[3][DEMI_ROW], I[4][DEMI_ROW];
     dem_real half[3][DEMI_ROW], spin[3][DEMI_ROW];
-    dem_real speed2[DEMI_ROW], change2[DEMI_ROW];        /* (m/s)^2, at the lever's end */
+    dem_real speed2[DEMI_ROW], change2[DEMI_ROW];        /* (m/s)^2, at the moment_arm's end */
     dem_real rate2[DEMI_ROW];                            /* (rad/s)^2 */
 } demi_turning;
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real dt) {
@@ -10271,7 +10281,7 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
     const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
         : rotation == DEM_ROTATION_FINCHAM ? demi_flight_fincham(&q, L, I, dt)
         : demi_flight_splitting(&q, L, I, dt);
-    const dem_vec3 half = dem_quat_turn(start, mean);
+    const dem_vec3 half = dem_quat_rotate(start, mean);
     const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, dt/2)), inv);
     const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
     t->rate2[l] = demi_dot(half, half);
@@ -10313,8 +10323,8 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
         for (e = 0; e < 3; e++) w->bodies.angular[i + (size_t)e] = t.L[e][l];
         for (e = 0; e < 3; e++) w->bodies.half_spin[i + (size_t)e] = t.half[e][l];
         for (e = 0; e < 3; e++) w->bodies.spin[i + (size_t)e] = t.spin[e][l];
-        if (w->bodies.spots_valid &&
-            w->forms[w->bodies.shape[who[l]] - 1].count) demi_spots_turn(w, who[l]);
+        if (w->bodies.centres_valid &&
+            w->shapes[w->bodies.shape[who[l]] - 1].count) demi_centres_rotate(w, who[l]);
         turn = DEMI_MAX(turn, t.change2[l]);
         speed = DEMI_MAX(speed, t.speed2[l]);
         rate = DEMI_MAX(rate, t.rate2[l]);
@@ -10339,7 +10349,7 @@ static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int e
             const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
             const dem_vec3 by = demi_scale(demi_at(w->bodies.half_spin + 4*i), dt);
             demi_quat_put(w->bodies.orient + 4*i,
-                          demi_quat_again(demi_quat_spin(q, dem_quat_unturn(q, by))));
+                          demi_quat_again(demi_quat_spin(q, dem_quat_unrotate(q, by))));
         }
     }
     if (count) demi_orient_some(w, domain, who, count);
@@ -10427,7 +10437,7 @@ static void demi_ledger_book(dem_world *w) {
     w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
     for (i = 0; i < (size_t)w->wall_count;
-         i++) walls += (double)w->walls[i].channels.power*(w->stage.forces_valid
+         i++) walls += (double)w->walls[i].loads.power*(w->stage.forces_valid
                                                            ? (double)w->clock.dt : 0);
     w->booked.energy[DEMI_E_WALLS] += walls;
     w->booked.throughput += fabs(walls);
@@ -10789,7 +10799,7 @@ static int demi_walls_clear(const dem_world *w, dem_vec3 x, dem_real radius) {
             for (b = f[1]; b <= l[1]; b++)
                 for (a = f[0]; a <= l[0]; a++) {
                     const dem_vec3 at = demi_add(x, demi_wall_shift(w, a, b, c));
-                    if (!demi_wall_clear(wall, demi_unturn(wall->pose.rotation,
+                    if (!demi_wall_clear(wall, demi_unrotate(wall->pose.rotation,
                                              demi_sub(at, wall->pose.position)), radius)) return 0;
                 }
     }
@@ -10810,17 +10820,18 @@ static dem_quat demi_quat_random(uint64_t *state) {
 }
 /* Adds what was placed in the crowd from sphere `first` on, all or nothing. 0 when memory ran
    out. */
-static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int material, int form) {
+static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int material,
+                             int shape) {
     const demi_sphere *s = demi_crowd_spheres(w);
     const dem_real *q = w->crowd_turned;
     int i;
     if (!demi_list_drop(w) ||
         !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)(c->count - first)) ||
-        (form >= 0 && !demi_orient_begin(w))) return 0;
+        (shape >= 0 && !demi_orient_begin(w))) return 0;
     for (i = first; i < c->count; i++) {
         demi_body_append(w, material, s[i].radius, s[i].at);
-        if (form >= 0)
-            demi_body_shape(w, w->bodies.count - 1, form, 1,
+        if (shape >= 0)
+            demi_body_shape(w, w->bodies.count - 1, shape, 1,
                             demi_quat_at(q + 4*(size_t)(i - first)));
     }
     if (c->count > first) demi_scene_changed(w);
@@ -10851,9 +10862,9 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const demi_region *g, d
     }
     return count;
 }
-/* Fills a region with spheres, or with bodies of a form (>= 0), whose bounding sphere has this
+/* Fills a region with spheres, or with bodies of a shape (>= 0), whose bounding sphere has this
    radius. */
-static int demi_fill(dem_world *w, const char *call, dem_material material, int form,
+static int demi_fill(dem_world *w, const char *call, dem_material material, int shape,
                      dem_real radius, const dem_region *region, int count, uint64_t seed) {
     demi_region g;
     demi_crowd c;
@@ -10864,9 +10875,9 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                   call, (double)radius, count);
         return 0;
     }
-    if (form < 0 ? demi_mass_refuse(w, call, m, radius, 0)
-                 : demi_shape_mass_refuse(w, call, m, form, 1, 0) ||
-                   demi_walls_strange(w, call, form)) return 0;
+    if (shape < 0 ? demi_mass_refuse(w, call, m, radius, 0)
+                 : demi_shape_mass_refuse(w, call, m, shape, 1, 0) ||
+                   demi_walls_strange(w, call, shape)) return 0;
     if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z')) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the "
                   "axis it is along, or 0 for all of the box", call, region->cylinder);
@@ -10880,8 +10891,8 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     }
     done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
-    if (!done) done = demi_fill_places(w, &c, &g, radius, form >= 0, count, seed);
-    if (done >= 0 && !demi_crowd_settle(w, &c, first, m, form)) done = -1;
+    if (!done) done = demi_fill_places(w, &c, &g, radius, shape >= 0, count, seed);
+    if (done >= 0 && !demi_crowd_settle(w, &c, first, m, shape)) done = -1;
     demi_crowd_end(w);
     if (done < 0) {
         demi_no_memory(w, call);
@@ -10890,8 +10901,8 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (done < count)
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a place in %d "
                   "tries each, free of other bodies and of walls; enlarge the %s, or %s", call,
-                  done, count, form < 0 ? "spheres" : "bodies with bounding spheres",
-                  (double)radius, (int)DEMI_FILL_TRIES, region->inside ? "region" : "box", form < 0
+                  done, count, shape < 0 ? "spheres" : "bodies with bounding spheres",
+                  (double)radius, (int)DEMI_FILL_TRIES, region->inside ? "region" : "box", shape < 0
                   ? "pack them with dem_spheres_pack" : "place them yourself with dem_bodies_add");
     demi_built(w, call);                        /* fewer than asked: the answer says so */
     return done;
@@ -10908,23 +10919,23 @@ DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radiu
     if (demi_null(w, "dem_spheres_fill", w, "world")) return 0;
     return demi_fill(w, "dem_spheres_fill", material, -1, radius, &region, count, seed);
 }
-static int demi_form_fill(dem_world *w, const char *call, dem_material material, dem_shape shape,
+static int demi_shape_fill(dem_world *w, const char *call, dem_material material, dem_shape shape,
                           const dem_region *region, int count, uint64_t seed) {
-    const int form = demi_form_index(w, call, shape);
-    if (form < 0) return 0;
-    return demi_fill(w, call, material, form, w->forms[form].radius, region, count, seed);
+    const int i = demi_shape_index(w, call, shape);
+    if (i < 0) return 0;
+    return demi_fill(w, call, material, i, w->shapes[i].radius, region, count, seed);
 }
 DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape, dem_box box,
                             int count, uint64_t seed) {
     const dem_region region = demi_region_box(box);
     if (demi_null(w, "dem_bodies_fill", w, "world")) return 0;
-    return demi_form_fill(w, "dem_bodies_fill", material, shape, &region, count, seed);
+    return demi_shape_fill(w, "dem_bodies_fill", material, shape, &region, count, seed);
 }
 DEM_API int dem_region_fill(dem_world *w, const dem_region *region, dem_material material,
                             dem_shape shape, dem_real radius, int count, uint64_t seed) {
     const char *call = "dem_region_fill";
     if (demi_null(w, call, region, "region")) return 0;
-    return shape.id ? demi_form_fill(w, call, material, shape, region, count, seed)
+    return shape.id ? demi_shape_fill(w, call, material, shape, region, count, seed)
                     : demi_fill(w, call, material, -1, radius, region, count, seed);
 }
 
@@ -11369,7 +11380,7 @@ static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
     if (p->any) {
         dem_real at[3], mid[3];
         int k;
-        if (pose) c = demi_add(pose->position, demi_turn(pose->rotation, c));
+        if (pose) c = demi_add(pose->position, demi_rotate(pose->rotation, c));
         demi_put(at, x);
         demi_put(mid, c);
         for (k = 0; k < 3; k++)
@@ -11377,14 +11388,14 @@ static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
                               ? mid[k] - p->half[k] : p->lo[k], p->period[k]);
         x = demi_at(at);
     }
-    return pose ? demi_unturn(pose->rotation, demi_sub(x, pose->position)) : x;
+    return pose ? demi_unrotate(pose->rotation, demi_sub(x, pose->position)) : x;
 }
 /* After a move: the first outlet that a grain is in takes it. */
 static dem_result demi_outlets_run(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
     for (i = 0; i < w->bodies.count && w->outlet_count; i++)
-        for (k = 0; k < w->outlet_count && !demi_visits(w, i); k++) {
+        for (k = 0; k < w->outlet_count && !demi_is_ghost(w, i); k++) {
             demi_outlet *o = demi_outlet_at(w, k);
             const int frame = o->desc.frame.id;
             if (frame && w->walls[frame - 1].kind == DEMI_WALL_NONE) continue;
@@ -11463,7 +11474,7 @@ static double demi_speed_estimate(const dem_world *w) {
             const int n = DEMI_MAX(wall->vertex_count, 1);
             for (k = 0; k < n; k++) {
                 const dem_vec3 p = !wall->vertex_count ? wall->pose.position :
-                    demi_add(wall->pose.position, demi_turn(wall->pose.rotation,
+                    demi_add(wall->pose.position, demi_rotate(wall->pose.rotation,
                                                             demi_at(wall->vertices + 3*k)));
                 hi = DEMI_MAX(hi, (double)demi_dot(p, down));
             }
@@ -11478,12 +11489,12 @@ static double demi_speed_estimate(const dem_world *w) {
    one as light as a contact may find the body at worst; for Hertz, whose time goes with
    (m^2/R)^(1/5), lighter still by the root of how much blunter the body is somewhere. */
 static double demi_advise_radius(const dem_world *w, int body) {
-    const demi_form *form = demi_form_of(w, body);
+    const demi_shape *shape = demi_shape_of(w, body);
     double r = (double)w->bodies.pos[4*body + 3], scale, sharp;
-    if (!form) return r;
-    scale = r/(double)form->radius;
-    r = (double)form->equal*scale*pow(form->light, 1.0/3);
-    sharp = r/((double)form->blunt*scale);
+    if (!shape) return r;
+    scale = r/(double)shape->radius;
+    r = (double)shape->equal*scale*pow(shape->light, 1.0/3);
+    sharp = r/((double)shape->blunt*scale);
     return demi_normal_is(w, DEMI_HERTZIAN) && sharp < 1 ? r*pow(sharp, 1.0/6) : r;
 }
 /* The largest step at which x'' = -omega2 x - rate x' keeps still by velocity Verlet with predicted
@@ -11732,7 +11743,7 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             const double arm = (double)w->bodies.pos[4*i + 3];
             dem_real coef[DEMI_COEFS];
             demi_pressed c;
-            if (!(k->overlap > 0) || k->b >= 0 || demi_form_of(w, i) ||
+            if (!(k->overlap > 0) || k->b >= 0 || demi_shape_of(w, i) ||
                 (whole && !press[i].whole)) continue;
             demi_kept_coefs(w, k, coef);
             c.s = demi_stiffness_of(w, coef, (double)w->bodies.mass[i], (double)k->overlap);
@@ -11989,10 +12000,10 @@ static void demi_domain_fields(dem_world *w, int d) {
         const dem_vec3 none = demi_v(0, 0, 0);
         dem_vec3 force = none, torque = none;
         dem_body_state body;
-        if (demi_visits(w, i) || dem_body_get(w, id, &body) != DEM_OK) continue;
+        if (demi_is_ghost(w, i) || dem_body_get(w, id, &body) != DEM_OK) continue;
         w->desc.body_force(&body, id, w->clock.time, &force, &torque, w->desc.force_user);
-        demi_push_add(w->bodies.force + 4*i, force);
-        demi_push_add(w->bodies.torque + 4*i, torque);
+        demi_force_add(w->bodies.force + 4*i, force);
+        demi_force_add(w->bodies.torque + 4*i, torque);
         if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
             domain->energy[DEMI_E_FORCE] += (double)(demi_dot(force, body.velocity) +
                                                      demi_dot(torque,
@@ -12009,7 +12020,7 @@ static void demi_domain_clear(dem_world *w, int d) {
         memset(w->bodies.torque + 4*domain->begin, 0, n);
     }
     for (i = domain->begin; i < domain->end && w->desc.force; i++) {
-        if (demi_visits(w, i)) continue;
+        if (demi_is_ghost(w, i)) continue;
         const dem_vec3 f = w->desc.force(demi_at(w->bodies.pos + 4*i), demi_at(w->bodies.vel + 4*i),
                                          w->bodies.pos[4*i + 3], w->bodies.mass[i],
                                          w->clock.time, w->desc.force_user);
@@ -12042,7 +12053,7 @@ static void demi_domain_gather(dem_world *w, int d) {
     for (i = w->domains[d].begin; i < w->domains[d].end; i++)
         w->bodies.force[4*i + 2] = w->bodies.torque[4*i] = w->bodies.torque[4*i + 1] = 0;
 }
-/* Forces at the present positions and velocities; wall channels. */
+/* Forces at the present positions and velocities; wall loads. */
 static void demi_forces(dem_world *w) {
     const double dt = w->stage.forces_valid ? (double)w->clock.dt : 0;
     demi_kept *kept = w->kept_now;
@@ -12057,7 +12068,7 @@ static void demi_forces(dem_world *w) {
     w->kept_next = kept;
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept = w->domains[d].kept_next;
     for (i = 0; i < w->wall_count; i++) {  /* domains in order: one order whatever the threads */
-        dem_channels *c = &w->walls[i].channels;
+        dem_wall_loads *c = &w->walls[i].loads;
         const dem_vec3 axis = w->walls[i].motion.axis;
         double f[3] = {0, 0, 0}, t[3] = {0, 0, 0}, power = 0;
         if (w->walls[i].kind == DEMI_WALL_NONE) continue;
@@ -12185,7 +12196,7 @@ static void demi_fields_sample(dem_world *w) {
             images[k] = (int)DEMI_MIN(ceil(DEMI_MAX(sides - 1e-6, 1e-6)), 100);
         }
         for (i = 0; i < w->bodies.count; i++) {
-            if (demi_visits(w, i)) continue;
+            if (demi_is_ghost(w, i)) continue;
             for (n = 0; n < images[0]*images[1]*images[2]; n++) {
                 double x[3];
                 for (k = 0; k < 3; k++)
@@ -12528,7 +12539,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     dem_real memory[DEMI_MEMORY];
     demi_tile tile;
     dem_contact c;
-    dem_push f;
+    dem_contact_force f;
     dem_vec3 gap;
     int e;
     r.span = &span;
@@ -13397,7 +13408,7 @@ static int demi_link_follow(char *place, size_t room) {
     for (i = 0; i < DEMI_LINKS; i++) {
         const long n = demi_readlink(place, to, sizeof to);
         const char *slash = strrchr(place, '/');
-        const size_t folder = to[0] == '/' || !slash || n < 0 ? 0 : (size_t)(slash - place) + 1;
+        const size_t folder = n < 1 || to[0] == '/' || !slash ? 0 : (size_t)(slash - place) + 1;
         if (n < 0) return 1;
         if ((size_t)n >= sizeof to || folder + (size_t)n + 5 > room) return 0;
         memcpy(place + folder, to, (size_t)n);
@@ -13768,7 +13779,7 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     return demi_out_close(&o);
 }
 
-/* ---- walls and channels out ---- */
+/* ---- walls and loads out ---- */
 
 /* Adds wall i as it lies now: its points (those of a profile at z[0], then at z[1]) and triangles
    (a segment a b, with A B above it, becomes a b B and a B A). Without arrays it only counts. */
@@ -13787,7 +13798,7 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
     for (k = 0; k < sides*up; k++) {
         dem_vec3 local = demi_at(wall->vertices + 3*(k%up));
         if (profile) local.z = z[k/up];
-        demi_put(place + 3*(base + k), demi_add(pose.position, demi_turn(pose.rotation, local)));
+        demi_put(place + 3*(base + k), demi_add(pose.position, demi_rotate(pose.rotation, local)));
     }
     for (k = 0; k < sides*(int64_t)wall->element_count; k++) {
         int64_t at = *triangles - sides*(int64_t)wall->element_count + k;
@@ -13849,20 +13860,20 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
 
 /* Appending cannot go by way of a temporary name. Instead the line goes out in one piece, and after
    one that was cut short (a full disk, a killed run) a new line is begun. */
-DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char *path) {
-    if (demi_null(world, "dem_channels_csv", world, "world")) return DEM_ERROR_ARGUMENT;
+DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const char *path) {
+    if (demi_null(world, "dem_wall_loads_csv", world, "world")) return DEM_ERROR_ARGUMENT;
     static const char heading[] = "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts\n";
-    dem_channels c;
+    dem_wall_loads c;
     dem_real value[8];
     double time = dem_world_time(world);
     char text[sizeof heading + 10*32], number[32];
     int i, n = 0, last = '\n', whole, cause;
     FILE *file;
     if (!path)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_channels_csv: path is null; give a file "
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_wall_loads_csv: path is null; give a file "
                          "name");
-    if (dem_wall_channels(world, wall, &c) != DEM_OK)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_channels_csv: wall %ld names none; give "
+    if (dem_wall_loads_get(world, wall, &c) != DEM_OK)
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_wall_loads_csv: wall %ld names none; give "
                          "one that was added and not removed", (long)wall.id);
     value[0] = c.force.x;
     value[1] = c.force.y;
@@ -13891,7 +13902,8 @@ DEM_API dem_result dem_channels_csv(dem_world *world, dem_wall wall, const char 
     cause = errno;
     if (file) fclose(file);
     if (whole) return DEM_OK;
-    return demi_fail(world, DEM_ERROR_FILE, "dem_channels_csv: cannot write %.200s: %s; check that "
+    return demi_fail(world, DEM_ERROR_FILE,
+                     "dem_wall_loads_csv: cannot write %.200s: %s; check that "
                      "its folder exists, may be written to and has room", path,
                      cause ? strerror(cause) : "unknown cause");
 }
@@ -13964,13 +13976,13 @@ static uint64_t demi_digest_pairs(const dem_world *w, int i) {
         h = demi_hash(h, &w->pairs[i*DEMI_MATERIALS + j].given, sizeof(dem_pair));
     return h;
 }
-static uint64_t demi_digest_form(const dem_world *w, int i) {
-    const demi_form *form = &w->forms[i];
-    uint64_t h = demi_hash(DEMI_HASH_START, &form->count, sizeof form->count);
-    h = demi_hash(h, &form->axes, sizeof form->axes);
-    h = demi_hash(h, &form->inertia, sizeof form->inertia);
-    h = demi_hash(h, &form->volume, sizeof form->volume);
-    return form->count ? demi_hash(h, form->parts, 4*(size_t)form->count*sizeof(dem_real)) : h;
+static uint64_t demi_digest_shape(const dem_world *w, int i) {
+    const demi_shape *shape = &w->shapes[i];
+    uint64_t h = demi_hash(DEMI_HASH_START, &shape->count, sizeof shape->count);
+    h = demi_hash(h, &shape->axes, sizeof shape->axes);
+    h = demi_hash(h, &shape->inertia, sizeof shape->inertia);
+    h = demi_hash(h, &shape->volume, sizeof shape->volume);
+    return shape->count ? demi_hash(h, shape->parts, 4*(size_t)shape->count*sizeof(dem_real)) : h;
 }
 static uint64_t demi_digest_sieve(const dem_sieve_desc *s, uint64_t h) {
     const int which[] = {(int)s->kind, s->staggered, s->model};
@@ -14037,7 +14049,7 @@ static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
     {"the desc of the world", "descs", demi_digest_desc},
     {"material", "materials", demi_digest_material},
     {"the pairs (dem_pair_set) of material", "materials with pairs", demi_digest_pairs},
-    {"shape", "shapes", demi_digest_form},
+    {"shape", "shapes", demi_digest_shape},
     {"wall", "walls", demi_digest_wall},
     {"field", "fields", demi_digest_field},
     {"feed", "feeds", demi_digest_feed},
@@ -14045,7 +14057,7 @@ static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
 static void demi_scene_counts(const dem_world *w, int32_t *counts) {
     counts[0] = 1;
     counts[1] = counts[2] = w->material_count;
-    counts[3] = w->form_count;
+    counts[3] = w->shape_count;
     counts[DEMI_PART_WALLS] = w->wall_count;
     counts[5] = w->field_count;
     counts[6] = w->feed_count;
@@ -14159,15 +14171,14 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
-        dem_motion motion = wall->motion;
+        dem_motion *m = &wall->motion;          /* all but pointers: they are the reader's own */
         demi_visit(s, &wall->home, sizeof wall->home);
         demi_visit(s, &wall->pose, sizeof wall->pose);
         demi_visit(s, &wall->mid, sizeof wall->mid);
-        demi_visit(s, &wall->channels, sizeof wall->channels);
-        demi_visit(s, &motion, sizeof motion);
-        motion.function = wall->motion.function;             /* pointers are the reader's own */
-        motion.user = wall->motion.user;
-        wall->motion = motion;
+        demi_visit(s, &wall->loads, sizeof wall->loads);
+        DEMI_VISIT(s, m->kind);     DEMI_VISIT(s, m->velocity);   DEMI_VISIT(s, m->point);
+        DEMI_VISIT(s, m->axis);     DEMI_VISIT(s, m->speed);      DEMI_VISIT(s, m->amplitude);
+        DEMI_VISIT(s, m->frequency); DEMI_VISIT(s, m->phase);     DEMI_VISIT(s, m->start);
     }
 }
 /* Fields, feeds, outlets. */
@@ -14402,8 +14413,8 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->material_count = w->material_count;
     memcpy(t->materials, w->materials, sizeof t->materials);
     t->pairs = w->pairs;
-    t->form_count = w->form_count;
-    t->forms = w->forms;
+    t->shape_count = w->shape_count;
+    t->shapes = w->shapes;
     t->normal = (int)w->desc.normal_law;
     t->bodies.backward = w->bodies.backward;
     if (demi_twin_parts(t, w)) return t;
@@ -14589,7 +14600,7 @@ static int demi_bodies_sane(const demi_reader *r) {
         if (t->bodies.material[i] < 1 || t->bodies.material[i] > t->material_count)
             return demi_lie(r, "the material of body", i);
         if (!t->bodies.orienting) continue;
-        if (t->bodies.shape[i] < 0 || t->bodies.shape[i] > t->form_count)
+        if (t->bodies.shape[i] < 0 || t->bodies.shape[i] > t->shape_count)
             return demi_lie(r, "the shape of body", i);
         if (!(demi_quat_size2(t->bodies.orient + 4*i) > DEM_R(0.98)) ||
             !(demi_quat_size2(t->bodies.orient + 4*i) < DEM_R(1.02)))
@@ -14612,7 +14623,7 @@ static int demi_near_check(const demi_reader *r, int d, const demi_list *list, i
         const int at = d*t->near.stride + p, k = t->near.k[at];
         if (k <= last || k >= count || t->near.a[at] != list->a[first + k] ||
             t->near.b[at] != list->b[first + k] ||
-            shaped != (demi_form_of(t, t->near.a[at]) || demi_form_of(t, t->near.b[at])))
+            shaped != (demi_shape_of(t, t->near.a[at]) || demi_shape_of(t, t->near.b[at])))
             return demi_lie(r, "a near pair of domain", d);
         last = k;
         t->near.k[at] = first + k;
@@ -14771,7 +14782,7 @@ static int demi_twin_follow(dem_world *t) {
     for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
     demi_kernel_choose(t);
     if (!t->stage.list_valid) return 1;
-    if (t->bodies.shaped && !demi_spots_lay(t)) return 0;
+    if (t->bodies.shaped && !demi_centres_lay(t)) return 0;
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
         const int first = d*t->near.stride;
@@ -15022,10 +15033,10 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
                     w->levels.level[i].count);
         fprintf(out, "\n");
     }
-    if (w->levels.looks[0] > 0)
+    if (w->levels.tests[0] > 0)
         fprintf(out, "           %s: about %.3g tests per body and search by levels, %.3g on one "
-                "grid\n", auto_ ? "chosen" : "by levels or not", w->levels.looks[1],
-                w->levels.looks[0]);
+                "grid\n", auto_ ? "chosen" : "by levels or not", w->levels.tests[1],
+                w->levels.tests[0]);
 }
 
 static int demi_kept_total(const dem_world *w) {
@@ -15088,7 +15099,7 @@ static void demi_shapes_report(const dem_world *w, FILE *out) {
 static void demi_flows_report(const dem_world *w, FILE *out) {
     int i;
     for (i = 0; i < w->wall_count; i++) {
-        const dem_channels *ch = &w->walls[i].channels;
+        const dem_wall_loads *ch = &w->walls[i].loads;
         if (w->walls[i].kind == DEMI_WALL_NONE) continue;
         fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
                 "power %.4g W\n", i + 1,
@@ -15171,18 +15182,18 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
 /* ---------------------------------------------------------------------------------------------
    >>slabs
    Spatial decomposition along one axis, after [ALK07] 3.5. Each slab is a world of its own: the
-   walls of the scene, its home grains, and copies of those grains of its lower neighbour that may
-   touch them: its visitors. Slots are those of the whole scene, so that contact memory, filed by
+   walls of the scene, its own grains, and copies of those grains of its lower neighbour that may
+   touch them: its ghosts. Slots are those of the whole scene, so that contact memory, filed by
    slot, finds its pair in any slab. One step:
-       move     home grains; visitors stand still
+       move     own grains; ghosts stand still
        decide   a new list? a new near list? one maximum over all slabs
-       send up  state of the grains that visit the upper neighbour
-       respond  home - home, home - visitor, home - wall; visitor - visitor belongs to the owner
-       return   forces on visitors go down to their owners, who add them
+       send up  state of the grains that are ghosts in the upper neighbour
+       respond  own - own, own - ghost, own - wall; ghost - ghost belongs to the owner
+       return   forces on ghosts go down to their owners, who add them
    [ALK07] sends copies down; up is the mirror image. At a rebuild grains that crossed a border
    migrate, with a copy of every entry of contact memory that names them: so whichever slab computes
    a pair next has its memory. (It is the upper of the pair's two homes; the pair was computed where
-   one of them was, and that one either stays or passes through.) Then visitors are chosen anew.
+   one of them was, and that one either stays or passes through.) Then ghosts are chosen anew.
    A slab is never thinner than two grains and the skin, so that only neighbours touch.
 
    Work is done in phases: one function per slab, all slabs of this process in demi_parallel; a
@@ -15195,21 +15206,21 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
    copied, so that a motion of the user's own is called as often as ever.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_SLABS = 1024, DEMI_SLAB_BINS = 32, DEMI_UP = 1, DEMI_DOWN = 2, DEMI_ALL = 0,
-       DEMI_VISITOR = 1, DEMI_GOES_DOWN = 2, DEMI_GOES_UP = 3, DEMI_GOES_VISITING = 4 };
+       DEMI_GHOST = 1, DEMI_GOES_DOWN = 2, DEMI_GOES_UP = 3, DEMI_GHOST_ABOVE = 4 };
 
 /* A message: bytes that grow. */
-typedef struct demi_parcel { char *bytes; size_t size; } demi_parcel;
+typedef struct demi_message { char *bytes; size_t size; } demi_message;
 
 typedef struct demi_slab {
     dem_world *world;
     int index;                     /* among all */
     dem_result result;             /* of the last phases; looked at by demi_slabs_agree */
-    demi_parcel out[2];            /* to the lower, to the upper neighbour */
-    demi_parcel in[2];             /* from them, when they are in another process */
-    int32_t *halo, *guest;         /* indices of home grains that visit above; of visitors here */
-    dem_real *guest_inv;           /* x 2: 1/mass, 1/inertia of visitors */
+    demi_message out[2];            /* to the lower, to the upper neighbour */
+    demi_message in[2];             /* from them, when they are in another process */
+    int32_t *lent, *ghost;         /* indices of own grains that are ghosts above; of ghosts here */
+    dem_real *ghost_inv;           /* x 2: 1/mass, 1/inertia of ghosts */
     int32_t *add;                  /* see demi_pairs_take */
-    int halo_count, guest_count, leavers;
+    int lent_count, ghost_count, leavers;
     uint64_t bytes, migrated;
     double work, seconds;
     demi_crowd crowd;              /* who is near the region of a feed */
@@ -15228,23 +15239,24 @@ struct dem_slabs {
     size_t value_room;
     demi_slab *slabs;              /* local */
     demi_domain total;             /* the head's only domain */
-    demi_parcel mine, all;         /* for dem_slabs_collect */
+    demi_message mine, all;         /* for dem_slabs_collect */
     uint32_t *known;               /* by slot: generation of the body dealt or fed, 0: none */
     int dealt, told, slots;        /* how many slots: dealt, known to the world, there are */
     uint64_t border_moves;
     void (*phase)(struct dem_slabs *s, demi_slab *b);
 };
 
-/* --- parcels --- */
+/* --- messages --- */
 
-static int demi_parcel_put(dem_world *w, demi_parcel *p, const void *data, size_t size) {
+static int demi_message_put(dem_world *w, demi_message *p, const void *data, size_t size) {
     if (!DEMI_GROW(w, p->bytes, p->size + size)) return 0;
     if (size) memcpy(p->bytes + p->size, data, size);
     p->size += size;
     return 1;
 }
-static void demi_take(const char **from, void *to, size_t size) {
-    if (size) memcpy(to, *from, size);
+static void demi_unpack(const char **from, void *to, size_t size) {
+    if (!size) return;                          /* of a message that is not there, too */
+    memcpy(to, *from, size);
     *from += size;
 }
 
@@ -15252,7 +15264,7 @@ static void demi_take(const char **from, void *to, size_t size) {
        slot first --- */
 
 /* Body i, its places moved by `shift` along axis. 0 when memory ran out. */
-static int demi_grain_put(dem_world *host, demi_parcel *out, const dem_world *w, int i, int axis,
+static int demi_grain_put(dem_world *host, demi_message *out, const dem_world *w, int i, int axis,
                           dem_real shift) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -15260,12 +15272,12 @@ static int demi_grain_put(dem_world *host, demi_parcel *out, const dem_world *w,
         dem_real place[4];
         if (!demi_keeps(w, a)) continue;
         if (a->what != DEMI_PLACES) {
-            if (!demi_parcel_put(host, out, demi_datum(w, a, i), a->item)) return 0;
+            if (!demi_message_put(host, out, demi_datum(w, a, i), a->item)) return 0;
             continue;
         }
         memcpy(place, demi_datum(w, a, i), sizeof place);
         place[axis] += shift;
-        if (!demi_parcel_put(host, out, place, sizeof place)) return 0;
+        if (!demi_message_put(host, out, place, sizeof place)) return 0;
     }
     return 1;
 }
@@ -15275,7 +15287,7 @@ static void demi_grain_take(dem_world *w, int i, const char **from) {
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         if (demi_keeps(w, a))
-            demi_take(from, demi_datum(w, a, i), a->item);
+            demi_unpack(from, demi_datum(w, a, i), a->item);
     }
 }
 static uint32_t demi_grain_slot(const char *from) {
@@ -15288,7 +15300,7 @@ static int demi_grain_append(dem_world *w, const char **from) {
     const int i = w->bodies.count++;
     demi_grain_take(w, i, from);
     w->bodies.slot_index[w->bodies.slot[i]] = i;
-    if (demi_form_of(w, i)) w->bodies.shaped++;
+    if (demi_shape_of(w, i)) w->bodies.shaped++;
     w->lll_valid = 0;
     return i;
 }
@@ -15301,21 +15313,21 @@ static void demi_grain_forget(dem_world *w, int i) {
     w->bodies.slot_index[slot] = -1;
     w->bodies.slot_generation[slot]--;
     w->booked.removed = removed;
-    w->bodies.visitor[slot] = 0;
+    w->bodies.ghost[slot] = 0;
 }
 
 /* Grains whose mark is `mark`; with them, when asked, the filed memory of pairs that name one of
    them, their contacts that are kept (all there are, for mark DEMI_ALL).
    shift: added along axis. Memory must be filed: after demi_list_drop or demi_carry_collect. */
-typedef struct demi_parcel_head {
+typedef struct demi_message_head {
     int32_t grains, pairs, contacts, stride;
-} demi_parcel_head;
+} demi_message_head;
 static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, int mark,
-                     int memory, int axis, dem_real shift, demi_parcel *out) {
+                     int memory, int axis, dem_real shift, demi_message *out) {
     const size_t start = out->size;
     const int stride = w->filed.stride;
-    demi_parcel_head head = {0, 0, 0, 0};
-    int i, k, d, ok = demi_parcel_put(host, out, &head, sizeof head);
+    demi_message_head head = {0, 0, 0, 0};
+    int i, k, d, ok = demi_message_put(host, out, &head, sizeof head);
     head.stride = stride;
     for (i = 0; i < w->bodies.count && ok; i++) {
         if (marks[w->bodies.slot[i]] != mark) continue;
@@ -15326,9 +15338,9 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
         for (k = w->filed.start[i]; k < w->filed.start[i + 1] && ok; k++) {
             const int32_t p = w->filed.partner[k], other = p < 0 ? ~p : p, row = i;
             if (mark != DEMI_ALL && marks[row] != mark && marks[other] != mark) continue;
-            ok = demi_parcel_put(host, out, &row, sizeof row) &&
-                 demi_parcel_put(host, out, &p, sizeof p) &&
-                 demi_parcel_put(host, out, w->filed.memory + (size_t)k*(size_t)stride,
+            ok = demi_message_put(host, out, &row, sizeof row) &&
+                 demi_message_put(host, out, &p, sizeof p) &&
+                 demi_message_put(host, out, w->filed.memory + (size_t)k*(size_t)stride,
                                  (size_t)stride*sizeof(dem_real));
             head.pairs++;
         }
@@ -15340,7 +15352,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
                 if (c.b >= 0) c.b = (int32_t)w->bodies.slot[c.b];
             }
             if (mark != DEMI_ALL && marks[c.a] != mark && (c.b < 0 || marks[c.b] != mark)) continue;
-            ok = demi_parcel_put(host, out, &c, sizeof c);
+            ok = demi_message_put(host, out, &c, sizeof c);
             head.contacts++;
         }
     if (ok) memcpy(out->bytes + start, &head, sizeof head);
@@ -15349,7 +15361,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
 
 /* Room for what is to arrive by these heads, beside what is filed already; `add` for
    demi_pairs_take. Contacts that are there move to the first domain. 0 when memory ran out. */
-static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_parcel_head *come) {
+static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_head *come) {
     const int had = w->filed.count, rows = w->bodies.slot_count;
     int d, total = 0;
     demi_kept *to;
@@ -15398,21 +15410,22 @@ static void demi_pairs_take(dem_world *w, int32_t *add, const char *from, int pa
     }
     for (k = 0; k < pairs; k++) {
         int32_t to;
-        demi_take(&from, &row, sizeof row);
+        demi_unpack(&from, &row, sizeof row);
         to = start[row + 1] - add[row]--;
-        demi_take(&from, &w->filed.partner[to], sizeof(int32_t));
-        demi_take(&from, w->filed.memory + (size_t)to*(size_t)w->filed.stride, per);
+        demi_unpack(&from, &w->filed.partner[to], sizeof(int32_t));
+        demi_unpack(&from, w->filed.memory + (size_t)to*(size_t)w->filed.stride, per);
     }
     w->filed.count += pairs;
 }
 /* What a message has besides grains, which end at `from`: files all of it. */
-static void demi_filed_take(dem_world *w, int32_t *add, const demi_parcel_head *h,
+static void demi_filed_take(dem_world *w, int32_t *add, const demi_message_head *h,
                             const char *from) {
     demi_domain *first = &w->domains[0];
+    if (!h->pairs && !h->contacts) return;
     demi_pairs_take(w, add, from, h->pairs);
     from += (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
     if (h->contacts)
-        demi_take(&from, w->kept_now + first->kept, (size_t)h->contacts*sizeof(demi_kept));
+        demi_unpack(&from, w->kept_now + first->kept, (size_t)h->contacts*sizeof(demi_kept));
     first->kept += h->contacts;
 }
 
@@ -15437,7 +15450,7 @@ static int demi_slab_has(const dem_slabs *s, const demi_slab *b, int side) {
     return s->ring || (side ? b->index + 1 < s->count : b->index > 0);
 }
 /* What the neighbour on one side sent here. */
-static const demi_parcel *demi_slab_inbox(const dem_slabs *s, const demi_slab *b, int side) {
+static const demi_message *demi_slab_inbox(const dem_slabs *s, const demi_slab *b, int side) {
     int k = b->index - s->first + (side ? 1 : -1);
     if (s->local == s->count) k = (k + s->count)%s->count;
     return k >= 0 && k < s->local ? &s->slabs[k].out[!side] : &b->in[side];
@@ -15540,20 +15553,20 @@ static void demi_slabs_space(dem_slabs *s) {
     for (j = s->ring ? 1 : 2; j < s->count; j++) b[j] = DEMI_MAX(b[j], b[j - 1] + s->cut);
     for (j = s->count - 1; s->ring && j > 0; j--) b[j] = DEMI_MIN(b[j], b[j + 1] - s->cut);
 }
-/* Adds a slab's home grains to bins. */
+/* Adds a slab's own grains to bins. */
 static void demi_slabs_bin(const dem_slabs *s, const dem_world *w, double weight, double *bins,
                            int n, double lo, double hi) {
     int i;
     for (i = 0; i < w->bodies.count; i++) {
         const double t = ((double)w->bodies.pos[4*i + s->axis] - lo)/(hi - lo)*n;
-        if (!demi_visits(w, i)) bins[t > 0 ? t < n ? (int)t : n - 1 : 0] += weight;
+        if (!demi_is_ghost(w, i)) bins[t > 0 ? t < n ? (int)t : n - 1 : 0] += weight;
     }
 }
 static void demi_slabs_extent(const dem_slabs *s, const dem_world *w, double *ends) {
     int i;
     for (i = 0; i < w->bodies.count; i++) {
         const double x = (double)w->bodies.pos[4*i + s->axis];
-        if (demi_visits(w, i)) continue;
+        if (demi_is_ghost(w, i)) continue;
         ends[0] = DEMI_MAX(ends[0], x);
         ends[1] = DEMI_MAX(ends[1], -x);
     }
@@ -15582,7 +15595,7 @@ static dem_result demi_slabs_balance(dem_slabs *s) {
     for (k = 0; k < n; k++) v[k] = 0;
     for (k = 0; k < s->local; k++) {
         const dem_world *w = s->slabs[k].world;
-        const int home = w->bodies.count - s->slabs[k].guest_count;
+        const int home = w->bodies.count - s->slabs[k].ghost_count;
         const double each = home > 0 ? floor(16*s->slabs[k].work/home + 0.5) : 1;
         demi_slabs_bin(s, w, DEMI_MAX(each, 1), v, n, -ends[1], ends[0]);
     }
@@ -15609,7 +15622,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
         }
         for (i = 0; i < w->bodies.count; i++) {
             const double r = (double)w->bodies.pos[4*i + 3];
-            if (demi_visits(w, i)) continue;
+            if (demi_is_ghost(w, i)) continue;
             sums[2]++;
             radii[0] = DEMI_MAX(radii[0], r);
             radii[1] = DEMI_MAX(radii[1], -r);
@@ -15631,7 +15644,7 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
         if (room > 0) h->margin.skin = h->margin.skin_auto = DEMI_MIN(h->margin.skin, room);
     }
     h->margin.skin = (double)(dem_real)h->margin.skin;        /* as the slabs get it */
-    s->cut = (2*radii[0] + h->margin.skin)*(1 + 1e-6); /* rounding must not cost a visitor */
+    s->cut = (2*radii[0] + h->margin.skin)*(1 + 1e-6); /* rounding must not cost a ghost */
     if (s->ring && s->cut*s->count > s->period)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
                          "%g m thick, must be at least %g m (two grains and the skin); use at most "
@@ -15642,14 +15655,14 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
 
 /* --- a rebuild, phase by phase --- */
 
-/* Memory is filed, visitors go home. */
+/* Memory is filed, ghosts are dropped. */
 static void demi_slab_drop(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     int i;
     (void)s;
     if (!demi_list_drop(w)) { b->result = demi_no_memory(w, "dem_slabs_step"); return; }
-    for (i = w->bodies.count - 1; i >= 0; i--) if (demi_visits(w, i)) demi_grain_forget(w, i);
-    b->guest_count = b->halo_count = 0;
+    for (i = w->bodies.count - 1; i >= 0; i--) if (demi_is_ghost(w, i)) demi_grain_forget(w, i);
+    b->ghost_count = b->lent_count = 0;
 }
 /* Where a grain belongs: -1 below, 0 here, 1 above; *shift: what its position changes by on the
    way. A grain that a whole period would put back on the same border stays. */
@@ -15678,33 +15691,33 @@ static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
     for (i = 0; i < w->bodies.count; i++) {
         side = demi_slab_side(s, b, w->bodies.pos[4*i + s->axis], &shift);
         if (!side) continue;
-        w->bodies.visitor[w->bodies.slot[i]] = side < 0 ? DEMI_GOES_DOWN : DEMI_GOES_UP;
+        w->bodies.ghost[w->bodies.slot[i]] = side < 0 ? DEMI_GOES_DOWN : DEMI_GOES_UP;
         going[side > 0]++;
     }
     b->leavers = going[0] + going[1];
     for (side = 0; side < 2; side++) {
         b->out[side].size = 0;
-        ok = ok && demi_pack(w, w, w->bodies.visitor, side ? DEMI_GOES_UP : DEMI_GOES_DOWN,
+        ok = ok && demi_pack(w, w, w->bodies.ghost, side ? DEMI_GOES_UP : DEMI_GOES_DOWN,
                              going[side] > 0, s->axis, demi_slab_shift(s, b, side), &b->out[side]);
     }
-    for (i = 0; b->leavers && i < w->bodies.count; i++) w->bodies.visitor[w->bodies.slot[i]] = 0;
+    for (i = 0; b->leavers && i < w->bodies.count; i++) w->bodies.ghost[w->bodies.slot[i]] = 0;
     if (!ok) b->result = demi_no_memory(w, "dem_slabs_step");
 }
-static demi_parcel_head demi_slab_head(const dem_slabs *s, const demi_slab *b, int side,
+static demi_message_head demi_slab_head(const dem_slabs *s, const demi_slab *b, int side,
                                        const char **grains) {
-    demi_parcel_head head = {0, 0, 0, 0};
+    demi_message_head head = {0, 0, 0, 0};
     if (demi_slab_has(s, b, side)) {
         *grains = demi_slab_inbox(s, b, side)->bytes;
-        demi_take(grains, &head, sizeof head);
+        demi_unpack(grains, &head, sizeof head);
     }
     return head;
 }
 static void demi_slab_room(dem_slabs *s, demi_slab *b) {
     const char *from = 0;
-    const demi_parcel_head l = demi_slab_head(s, b, 0, &from);
-    const demi_parcel_head u = demi_slab_head(s, b, 1, &from);
+    const demi_message_head l = demi_slab_head(s, b, 0, &from);
+    const demi_message_head u = demi_slab_head(s, b, 1, &from);
     dem_world *w = b->world;
-    demi_parcel_head come = {l.grains + u.grains, l.pairs + u.pairs, l.contacts + u.contacts, 0};
+    demi_message_head come = {l.grains + u.grains, l.pairs + u.pairs, l.contacts + u.contacts, 0};
     come.stride = l.pairs ? l.stride : u.pairs ? u.stride : w->filed.stride;
     if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)come.grains) ||
         !demi_filed_reserve(w, &b->add, &come))
@@ -15720,7 +15733,7 @@ static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
     b->migrated += (uint64_t)b->leavers;
     for (side = 0; side < 2; side++) {
         const char *from = 0;
-        const demi_parcel_head h = demi_slab_head(s, b, side, &from);
+        const demi_message_head h = demi_slab_head(s, b, side, &from);
         for (i = 0; i < h.grains; i++) demi_grain_append(w, &from);
         demi_filed_take(w, b->add, &h, from);
     }
@@ -15731,7 +15744,7 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     int i, n = 0;
     b->out[1].size = 0;
     if (!demi_slab_has(s, b, 1)) return;
-    if (!DEMI_GROW(w, b->halo, (size_t)w->bodies.count)) {
+    if (!DEMI_GROW(w, b->lent, (size_t)w->bodies.count)) {
         b->result = demi_no_memory(w, "dem_slabs_step");
         return;
     }
@@ -15739,49 +15752,49 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
         const double x = (double)w->bodies.pos[4*i + s->axis], r = (double)w->bodies.pos[4*i + 3];
         if (!(x + s->cut - (double)s->head.effects.radius_max +
               r > s->borders[b->index + 1])) continue;
-        w->bodies.visitor[w->bodies.slot[i]] = DEMI_GOES_VISITING;
-        b->halo[n++] = (int32_t)w->bodies.slot[i];
+        w->bodies.ghost[w->bodies.slot[i]] = DEMI_GHOST_ABOVE;
+        b->lent[n++] = (int32_t)w->bodies.slot[i];
     }
-    if (!demi_pack(w, w, w->bodies.visitor, DEMI_GOES_VISITING, 0, s->axis,
+    if (!demi_pack(w, w, w->bodies.ghost, DEMI_GHOST_ABOVE, 0, s->axis,
                    demi_slab_shift(s, b, 1),
                    &b->out[1])) b->result = demi_no_memory(w, "dem_slabs_step");
-    for (i = 0; i < n; i++) w->bodies.visitor[b->halo[i]] = 0;
-    b->halo_count = n;
+    for (i = 0; i < n; i++) w->bodies.ghost[b->lent[i]] = 0;
+    b->lent_count = n;
 }
-/* Reals sent up and down per visitor and step. */
+/* Reals sent up and down per ghost and step. */
 static size_t demi_slab_up(const dem_world *w) {
     return w->bodies.orienting ? 19 : demi_spins(w) ? 15 : 6;
 }
 static size_t demi_slab_down(const dem_world *w) { return demi_turns(w) ? 6 : 3; }
 
-/* Visitors come in; then the list is made as in any world, and steps get their room. */
+/* Ghosts come in; then the list is made as in any world, and steps get their room. */
 static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const char *from = 0;
-    const demi_parcel_head h = demi_slab_head(s, b, 0, &from);
+    const demi_message_head h = demi_slab_head(s, b, 0, &from);
     const size_t real = sizeof(dem_real);
     int i, d, ok;
     ok = demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)h.grains) &&
-         DEMI_GROW(w, b->guest, (size_t)h.grains) &&
-         DEMI_GROW(w, b->guest_inv, 2*(size_t)h.grains);
+         DEMI_GROW(w, b->ghost, (size_t)h.grains) &&
+         DEMI_GROW(w, b->ghost_inv, 2*(size_t)h.grains);
     if (!ok) { b->result = demi_no_memory(w, "dem_slabs_step"); return; }
     for (i = 0; i < h.grains; i++) {
         const int at = demi_grain_append(w, &from);
-        w->bodies.visitor[w->bodies.slot[at]] = DEMI_VISITOR;
-        b->guest[i] = (int32_t)w->bodies.slot[at];
-        b->guest_inv[2*i] = w->bodies.inv_mass[at];
-        b->guest_inv[2*i + 1] = w->bodies.inv_inertia[at];
+        w->bodies.ghost[w->bodies.slot[at]] = DEMI_GHOST;
+        b->ghost[i] = (int32_t)w->bodies.slot[at];
+        b->ghost_inv[2*i] = w->bodies.inv_mass[at];
+        b->ghost_inv[2*i + 1] = w->bodies.inv_inertia[at];
     }
-    b->guest_count = h.grains;
+    b->ghost_count = h.grains;
     if (s->count > 1) w->desc.skin = s->head.margin.skin > 0 ? (dem_real)s->head.margin.skin : -1;
     b->result = demi_rebuild(w, "dem_world_step");
     if (b->result != DEM_OK) return;
     demi_kernel_choose(w);
-    for (i = 0; i < b->guest_count; i++) b->guest[i] = w->bodies.slot_index[b->guest[i]];
-    for (i = 0; i < b->halo_count; i++) b->halo[i] = w->bodies.slot_index[b->halo[i]];
-    b->in[0].size = (size_t)b->guest_count*demi_slab_up(w)*real;
-    b->in[1].size = (size_t)b->halo_count*demi_slab_down(w)*real;
-    b->out[0].size = (size_t)b->guest_count*demi_slab_down(w)*real;
+    for (i = 0; i < b->ghost_count; i++) b->ghost[i] = w->bodies.slot_index[b->ghost[i]];
+    for (i = 0; i < b->lent_count; i++) b->lent[i] = w->bodies.slot_index[b->lent[i]];
+    b->in[0].size = (size_t)b->ghost_count*demi_slab_up(w)*real;
+    b->in[1].size = (size_t)b->lent_count*demi_slab_down(w)*real;
+    b->out[0].size = (size_t)b->ghost_count*demi_slab_down(w)*real;
     b->work = 4.0*w->bodies.count;
     for (d = 0; d < w->domain_count; d++)
         b->work += w->domains[d].own + w->domains[d].cross + w->domains[d].walls;
@@ -15790,7 +15803,7 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
 static void demi_slab_settle(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     (void)s;
-    b->out[1].size = (size_t)b->halo_count*demi_slab_up(w)*sizeof(dem_real);
+    b->out[1].size = (size_t)b->lent_count*demi_slab_up(w)*sizeof(dem_real);
     if (!DEMI_GROW(w, b->in[0].bytes, b->in[0].size) ||
         !DEMI_GROW(w, b->in[1].bytes, b->in[1].size) ||
         !DEMI_GROW(w, b->out[0].bytes, b->out[0].size) ||
@@ -15854,13 +15867,13 @@ static dem_result demi_slabs_rebuild(dem_slabs *s) {
 
 /* --- a step --- */
 
-/* 1 move. Visitors stand still, weightless: their owner moves them. */
+/* 1 move. Ghosts stand still, weightless: their owner moves them. */
 static void demi_slab_move(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     int k;
     if (b->result != DEM_OK) return;            /* from the forces before: told with this step */
-    for (k = 0; k < b->guest_count && !s->head.stage.moved; k++) {
-        const int i = b->guest[k];
+    for (k = 0; k < b->ghost_count && !s->head.stage.moved; k++) {
+        const int i = b->ghost[k];
         w->bodies.inv_mass[i] = w->bodies.inv_inertia[i] = 0;
         demi_put(w->bodies.vel + 4*i, demi_v(0, 0, 0));      demi_put(w->bodies.half_vel + 4*i,
                                                                       demi_v(0, 0, 0));
@@ -15873,7 +15886,7 @@ static void demi_slab_move(dem_slabs *s, demi_slab *b) {
     if (!s->head.stage.moved) b->result = demi_step_move(w);
     if (b->result == DEM_OK) b->result = demi_outflow(w);
 }
-/* Outlets take what is at home here; whoever lost one needs a new list. */
+/* Outlets take what this slab owns; whoever lost one needs a new list. */
 static void demi_slab_outlets(dem_slabs *s, demi_slab *b) {
     (void)s;
     b->result = demi_outlets_run(b->world);
@@ -15905,8 +15918,8 @@ static void demi_slab_send(dem_slabs *s, demi_slab *b) {
     const dem_real shift = demi_slab_shift(s, b, 1);
     dem_real *out = (dem_real *)b->out[1].bytes;
     int k;
-    for (k = 0; k < b->halo_count; k++, out += reals) {
-        const int i = 4*b->halo[k];
+    for (k = 0; k < b->lent_count; k++, out += reals) {
+        const int i = 4*b->lent[k];
         memcpy(out, w->bodies.pos + i, three);
         out[s->axis] += shift;
         memcpy(out + 3, w->bodies.vel + i, three);
@@ -15917,27 +15930,27 @@ static void demi_slab_send(dem_slabs *s, demi_slab *b) {
         if (reals == 19) memcpy(out + 15, w->bodies.orient + i, 4*sizeof(dem_real));
     }
 }
-/* Visitors are where their owners say. */
+/* Ghosts are where their owners say. */
 static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t three = 3*sizeof(dem_real), up = demi_slab_up(w);
-    const dem_real *in = b->guest_count ? (const dem_real *)demi_slab_inbox(s, b, 0)->bytes
+    const dem_real *in = b->ghost_count ? (const dem_real *)demi_slab_inbox(s, b, 0)->bytes
         : 0;
     int k;
-    for (k = 0; k < b->guest_count; k++, in += up) {
-        const int i = b->guest[k];
+    for (k = 0; k < b->ghost_count; k++, in += up) {
+        const int i = b->ghost[k];
         memcpy(w->bodies.pos + 4*i, in, three);
         memcpy(w->bodies.vel + 4*i, in + 3, three);
-        w->bodies.inv_mass[i] = b->guest_inv[2*k];
-        w->bodies.inv_inertia[i] = b->guest_inv[2*k + 1];
+        w->bodies.inv_mass[i] = b->ghost_inv[2*k];
+        w->bodies.inv_inertia[i] = b->ghost_inv[2*k + 1];
         if (up == 6) continue;
         memcpy(w->bodies.spin + 4*i, in + 6, three);
         memcpy(w->bodies.half_vel + 4*i, in + 9, three);
         memcpy(w->bodies.half_spin + 4*i, in + 12, three);
         if (up == 15) continue;
         memcpy(w->bodies.orient + 4*i, in + 15, 4*sizeof(dem_real));
-        if (w->bodies.spots_valid && demi_form_of(w, i) && demi_form_of(w, i)->count)
-            demi_spots_turn(w, i);
+        if (w->bodies.centres_valid && demi_shape_of(w, i) && demi_shape_of(w, i)->count)
+            demi_centres_rotate(w, i);
     }
 }
 /* The near list, where it is due. */
@@ -15954,7 +15967,7 @@ static void demi_slab_touch(dem_slabs *s, demi_slab *b) {
     demi_slab_receive(s, b);
     if (!demi_touch(b->world)) b->result = demi_no_memory(b->world, "dem_slabs_step");
 }
-/* 4 respond, 5 gather, here; forces on visitors go into the lower outbox. */
+/* 4 respond, 5 gather, here; forces on ghosts go into the lower outbox. */
 static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t three = 3*sizeof(dem_real), down = demi_slab_down(w);
@@ -15963,9 +15976,9 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     int k, d, finite = 1;
     if (!w->bodies.orienting) demi_slab_touch(s, b);
     demi_forces(w);
-    for (k = 0; k < b->guest_count; k++, out += down) {
-        memcpy(out, w->bodies.force + 4*b->guest[k], three);
-        if (down == 6) memcpy(out + 3, w->bodies.torque + 4*b->guest[k], three);
+    for (k = 0; k < b->ghost_count; k++, out += down) {
+        memcpy(out, w->bodies.force + 4*b->ghost[k], three);
+        if (down == 6) memcpy(out + 3, w->bodies.torque + 4*b->ghost[k], three);
     }
     if (!w->stage.forces_valid) return;               /* only looking */
     for (d = 0; d < w->domain_count; d++) {
@@ -15977,13 +15990,13 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
 static void demi_slab_add(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t down = demi_slab_down(w);
-    const dem_real *in = b->halo_count ? (const dem_real *)demi_slab_inbox(s, b, 1)->bytes
+    const dem_real *in = b->lent_count ? (const dem_real *)demi_slab_inbox(s, b, 1)->bytes
         : 0;
     int k, e;
-    for (k = 0; k < b->halo_count; k++, in += down)
+    for (k = 0; k < b->lent_count; k++, in += down)
         for (e = 0; e < 3; e++) {
-            w->bodies.force[4*b->halo[k] + e] += in[e];
-            if (down == 6) w->bodies.torque[4*b->halo[k] + e] += in[3 + e];
+            w->bodies.force[4*b->lent[k] + e] += in[e];
+            if (down == 6) w->bodies.torque[4*b->lent[k] + e] += in[3 + e];
         }
 }
 /* near: some slab's near list may have to be made anew first. */
@@ -16048,7 +16061,7 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
         for (i = 0; i < w->bodies.count; i++) {
             const double x = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
             const double r = (double)w->bodies.pos[4*i + 3];
-            if (demi_visits(w, i)) continue;
+            if (demi_is_ghost(w, i)) continue;
             j = w->bodies.material[i] - 1;
             if (w->bodies.inv_mass[i] > 0) { v[j] =
                                             DEMI_MAX(v[j], -demi_advise_radius(w, i)); many[j]++; }
@@ -16056,7 +16069,7 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
             v[2*m] = DEMI_MAX(v[2*m], (double)demi_length(demi_at(w->bodies.vel + 4*i)));
             v[2*m + 1] = DEMI_MAX(v[2*m + 1], r - x);
             v[2*m + 2] = DEMI_MAX(v[2*m + 2], r + x);
-            if (demi_form_of(w, i))
+            if (demi_shape_of(w, i))
                 v[2*m + 3] = DEMI_MAX(v[2*m + 3],
                                       (double)demi_length(demi_at(w->bodies.spin + 4*i)));
         }
@@ -16196,7 +16209,7 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
 static int demi_slab_widen(demi_slab *b, int slot) {
     dem_world *w = b->world;
     return demi_bodies_reserve(w, (size_t)w->bodies.count + 1) &&
-           DEMI_GROW(w, w->bodies.visitor, (size_t)slot + 2);
+           DEMI_GROW(w, w->bodies.ghost, (size_t)slot + 2);
 }
 static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radius) {
     dem_slabs *s = (dem_slabs *)who;
@@ -16265,7 +16278,7 @@ static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
         bodies->slot_free = -1;                 /* a number nobody has had: the next */
         bodies->slot_index[s->slots] = -1;
         bodies->slot_generation[s->slots] = 1;
-        bodies->visitor[s->slots] = 0;
+        bodies->ghost[s->slots] = 0;
         bodies->slot_count = s->slots + (&s->slabs[k] != owner);
         if (&s->slabs[k] == owner) {
             const int i = demi_feed_append(owner->world, f, x[n], v[n]);
@@ -16372,22 +16385,22 @@ static int demi_slab_walls(dem_world *to, const dem_world *from, const dem_world
     return to->facets_valid || demi_facets_weigh(to);
 }
 /* Copies the shapes; slabs after the first share those of the first. 0 when memory ran out. */
-static int demi_slab_forms(dem_world *to, const dem_world *from, const dem_world *first) {
+static int demi_slab_shapes(dem_world *to, const dem_world *from, const dem_world *first) {
     int i;
     if (first) {
-        to->forms = first->forms;
-        to->form_count = first->form_count;
+        to->shapes = first->shapes;
+        to->shape_count = first->shape_count;
         return 1;
     }
-    for (i = 0; i < from->form_count; i++) {
-        demi_form form = from->forms[i];
-        const size_t reals = 4*(size_t)form.count;
+    for (i = 0; i < from->shape_count; i++) {
+        demi_shape shape = from->shapes[i];
+        const size_t reals = 4*(size_t)shape.count;
         if (reals) {
-            form.parts = (dem_real *)demi_hold(to, DEMI_SCENE, reals, sizeof(dem_real));
-            if (!form.parts) return 0;
-            memcpy(form.parts, from->forms[i].parts, reals*sizeof(dem_real));
+            shape.parts = (dem_real *)demi_hold(to, DEMI_SCENE, reals, sizeof(dem_real));
+            if (!shape.parts) return 0;
+            memcpy(shape.parts, from->shapes[i].parts, reals*sizeof(dem_real));
         }
-        if (!demi_form_adopt(to, "dem_slabs_create", &form).id) return 0;
+        if (!demi_shape_adopt(to, "dem_slabs_create", &shape).id) return 0;
     }
     return 1;
 }
@@ -16405,9 +16418,9 @@ static void demi_slab_sums_clear(dem_world *w) {
     w->booked.removed = w->booked.throughput = w->booked.inserted = 0;
     w->bodies.balance.left = 0;
     for (i = 0; i < w->wall_count; i++) {
-        const double time = w->walls[i].channels.time;
-        memset(&w->walls[i].channels, 0, sizeof w->walls[i].channels);
-        w->walls[i].channels.time = time;
+        const double time = w->walls[i].loads.time;
+        memset(&w->walls[i].loads, 0, sizeof w->walls[i].loads);
+        w->walls[i].loads.time = time;
     }
     for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
 }
@@ -16461,14 +16474,14 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     w->material_count = from->material_count;
     w->feeds = s->head.feeds;
     w->feed_count = s->head.feed_count;
-    w->bodies.visitor = (uint8_t *)demi_hold(w, DEMI_RUN, slots + 1, 1);
+    w->bodies.ghost = (uint8_t *)demi_hold(w, DEMI_RUN, slots + 1, 1);
     w->bodies.slot_index = (int32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(int32_t));
     w->bodies.slot_generation = (uint32_t *)demi_hold(w, DEMI_RUN, slots + 1, sizeof(uint32_t));
     w->bodies.slot_capacity = (int)slots + 1;
     w->bodies.slot_count = (int)slots;
-    if (!w->bodies.visitor || !w->bodies.slot_index || !w->bodies.slot_generation ||
+    if (!w->bodies.ghost || !w->bodies.slot_index || !w->bodies.slot_generation ||
         (from->bodies.orienting && !demi_orient_begin(w)) ||
-        !demi_slab_forms(w, from, first) ||
+        !demi_slab_shapes(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
         !demi_slab_outlets_copy(w, from)) return w;
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
@@ -16499,8 +16512,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     return w;
 }
 static int demi_slab_ready(const dem_world *w, const dem_world *from) {
-    return w && w->bodies.visitor && w->bodies.slot_index && w->bodies.slot_generation &&
-           w->form_count == from->form_count && w->bodies.orienting == from->bodies.orienting &&
+    return w && w->bodies.ghost && w->bodies.slot_index && w->bodies.slot_generation &&
+           w->shape_count == from->shape_count && w->bodies.orienting == from->bodies.orienting &&
            w->wall_count == from->wall_count && w->field_count == from->field_count &&
            w->outlet_count == from->outlet_count;
 }
@@ -16508,7 +16521,7 @@ static int demi_slab_ready(const dem_world *w, const dem_world *from) {
 static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uint8_t *marks) {
     dem_world *w = b->world;
     const char *at;
-    demi_parcel_head h;
+    demi_message_head h;
     int i;
     for (i = 0; i < from->bodies.count; i++) {
         const double x = (double)from->bodies.pos[4*i + s->axis];
@@ -16518,7 +16531,7 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
     b->out[0].size = 0;
     if (!demi_pack(w, from, marks, 1, 1, s->axis, 0, &b->out[0])) return 0;
     at = b->out[0].bytes;
-    demi_take(&at, &h, sizeof h);
+    demi_unpack(&at, &h, sizeof h);
     if (!demi_bodies_reserve(w, (size_t)h.grains) || !demi_filed_reserve(w, &b->add, &h)) return 0;
     for (i = 0; i < h.grains; i++) demi_grain_append(w, &at);
     demi_filed_take(w, b->add, &h, at);
@@ -16686,8 +16699,8 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
 
 /* --- collect --- */
 
-/* What a slab has besides grains and memory; then come the walls' channels, fields, outlets, a
-   parcel. */
+/* What a slab has besides grains and memory; then come the walls' loads, fields, outlets, a
+   message. */
 typedef struct demi_slab_sums {
     int32_t index, walls;
     uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
@@ -16696,7 +16709,7 @@ typedef struct demi_slab_sums {
 
 static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world, *h = &s->head;
-    demi_parcel *out = &s->mine;
+    demi_message *out = &s->mine;
     const size_t start = out->size;
     demi_slab_sums sums;
     int i, ok;
@@ -16709,19 +16722,19 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     sums.inserted = w->booked.inserted;
     sums.throughput = w->booked.throughput;
     sums.overlap_max = w->booked.overlap_max;
-    ok = demi_parcel_put(h, out, &sums, sizeof sums);
+    ok = demi_message_put(h, out, &sums, sizeof sums);
     for (i = 0; i < w->wall_count && ok; i++)
-        ok = demi_parcel_put(h, out, &w->walls[i].channels, sizeof(dem_channels));
+        ok = demi_message_put(h, out, &w->walls[i].loads, sizeof(dem_wall_loads));
     for (i = 0; i < w->field_count && ok; i++) {
         const demi_field *f = &w->fields[i];
         const size_t n = demi_field_cells(f)*sizeof(double);
-        ok = demi_parcel_put(h, out, f->solid, n) && demi_parcel_put(h, out, f->mass, n) &&
-             demi_parcel_put(h, out, f->momentum, 3*n);
+        ok = demi_message_put(h, out, f->solid, n) && demi_message_put(h, out, f->mass, n) &&
+             demi_message_put(h, out, f->momentum, 3*n);
     }
     for (i = 0; i < w->outlet_count && ok; i++)
-        ok = demi_parcel_put(h, out, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
+        ok = demi_message_put(h, out, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
     ok = ok && (!w->stage.list_valid || demi_carry_collect(w)) &&
-         demi_pack(h, w, w->bodies.visitor, DEMI_ALL, 1, s->axis, 0, out);
+         demi_pack(h, w, w->bodies.ghost, DEMI_ALL, 1, s->axis, 0, out);
     if (!ok) return 0;
     sums.size = out->size - start;
     memcpy(out->bytes + start, &sums, sizeof sums);
@@ -16740,16 +16753,16 @@ static dem_result demi_slabs_gather(dem_slabs *s) {
         if (s->slabs[k].result == DEM_OK && !demi_slab_report(s, &s->slabs[k]))
             s->slabs[k].result = demi_no_memory(s->slabs[k].world, "dem_slabs_collect");
     top->out[1].size = 0;
-    if (!demi_parcel_put(&s->head, &s->all, s->mine.bytes, s->mine.size) ||
-        !demi_parcel_put(top->world, &top->out[1], s->mine.bytes, s->mine.size))
+    if (!demi_message_put(&s->head, &s->all, s->mine.bytes, s->mine.size) ||
+        !demi_message_put(top->world, &top->out[1], s->mine.bytes, s->mine.size))
         top->result = demi_no_memory(top->world, "dem_slabs_collect");
     if (result == DEM_OK) result = demi_slabs_agree(s, 0, 0);
     for (round = 1; round < (int)processes && result == DEM_OK; round++) {
         result = demi_slabs_exchange(s, DEMI_UP, 0);
         if (result != DEM_OK) break;
         top->out[1].size = 0;
-        if (!demi_parcel_put(&s->head, &s->all, low->in[0].bytes, low->in[0].size) ||
-            !demi_parcel_put(top->world, &top->out[1], low->in[0].bytes, low->in[0].size))
+        if (!demi_message_put(&s->head, &s->all, low->in[0].bytes, low->in[0].size) ||
+            !demi_message_put(top->world, &top->out[1], low->in[0].bytes, low->in[0].size))
             top->result = demi_no_memory(top->world, "dem_slabs_collect");
         result = demi_slabs_agree(s, 0, 0);
     }
@@ -16770,7 +16783,7 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
 static const char *demi_outlet_add(demi_outlet *o, const char *from) {
     dem_outlet_state *to = &o->state, part;
     int k;
-    demi_take(&from, &part, sizeof part);
+    demi_unpack(&from, &part, sizeof part);
     for (k = 0; k < DEM_CLASSES; k++) {
         to->count[k] += part.count[k];
         to->mass[k] += part.mass[k];
@@ -16784,7 +16797,8 @@ static const char *demi_outlet_add(demi_outlet *o, const char *from) {
     to->last = DEMI_MAX(to->last, part.last);
     return from;
 }
-/* Adds a slab's sums to the world's, which were cleared before. Answers where its parcel begins. */
+/* Adds a slab's sums to the world's, which were cleared before. Answers where its message
+   begins. */
 static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, const char *from) {
     int i, k;
     for (i = 0; i < DEMI_ENERGIES; i++) w->booked.energy[i] += sums->energy[i];
@@ -16794,8 +16808,8 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     w->bodies.balance.left += sums->left;
     w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, sums->overlap_max);
     for (i = 0; i < sums->walls; i++) {
-        dem_channels *c = &w->walls[i].channels, part;
-        demi_take(&from, &part, sizeof part);
+        dem_wall_loads *c = &w->walls[i].loads, part;
+        demi_unpack(&from, &part, sizeof part);
         c->force = demi_add(c->force, part.force);
         c->torque = demi_add(c->torque, part.torque);
         c->torque_axial += part.torque_axial;
@@ -16812,7 +16826,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
         size_t n;
         for (n = 0; n < 5*cells; n++) {
             double part;
-            demi_take(&from, &part, sizeof part);
+            demi_unpack(&from, &part, sizeof part);
             if (n < cells) f->solid[n] += part;
             else if (n < 2*cells) f->mass[n - cells] += part;
             else f->momentum[n - 2*cells] += part;
@@ -16824,7 +16838,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
 static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sums,
                                    const char *from) {
     int i;
-    from += (size_t)sums->walls*sizeof(dem_channels);
+    from += (size_t)sums->walls*sizeof(dem_wall_loads);
     for (i = 0; i < w->field_count; i++) from += 5*demi_field_cells(&w->fields[i])*sizeof(double);
     return from + (size_t)w->outlet_count*sizeof(dem_outlet_state);
 }
@@ -16851,7 +16865,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     w->booked.removed = w->booked.inserted = w->booked.throughput = w->booked.overlap_max = 0;
     memset(w->booked.energy, 0, sizeof w->booked.energy);
     for (i = 0; i < w->wall_count; i++) {
-        memset(&w->walls[i].channels, 0, sizeof w->walls[i].channels);
+        memset(&w->walls[i].loads, 0, sizeof w->walls[i].loads);
         w->walls[i].pose = from->walls[i].pose;
         w->walls[i].mid = from->walls[i].mid;
     }
@@ -16873,9 +16887,9 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
 }
 /* Grains, memory and contacts of one slab; those that were fed since are new in the world. */
 static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const char *from) {
-    demi_parcel_head head;
+    demi_message_head head;
     int i;
-    demi_take(&from, &head, sizeof head);
+    demi_unpack(&from, &head, sizeof head);
     for (i = 0; i < head.grains; i++) {
         const uint32_t slot = demi_grain_slot(from);
         if (w->bodies.slot_index[slot] < 0) {
@@ -16910,7 +16924,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     const char *call = "dem_slabs_collect";
     dem_world *h = &s->head;
     demi_slab_sums sums;
-    demi_parcel_head come = {0, 0, 0, 0};
+    demi_message_head come = {0, 0, 0, 0};
     int k, i;
     if (w->bodies.orienting != s->slabs[0].world->bodies.orienting)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations in %s only; collect "
@@ -16934,12 +16948,12 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     }
     for (k = 0; k < s->count; k++) {
         const char *from = demi_slabs_find(s, k, &sums);
-        demi_parcel_head head;
+        demi_message_head head;
         if (!from)
             return demi_fail(h, DEM_ERROR_STOPPED, "%s: slab %d did not report; see that every "
                              "process makes the call and the ring is closed", call, k);
         from = demi_slabs_skip(w, &sums, from);
-        demi_take(&from, &head, sizeof head);
+        demi_unpack(&from, &head, sizeof head);
         come.pairs += head.pairs;
         come.contacts += head.contacts;
         if (head.pairs) come.stride = head.stride;
@@ -17003,14 +17017,14 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
     demi_free(&s->head, seen);
     return result;
 }
-DEM_API void dem_slabs_channels_reset(dem_slabs *s) {
+DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
     if (!s) return;
     int k, i;
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
         w->booked.overlap_max = 0;
         for (i = 0; i < w->wall_count; i++) {
-            dem_channels *c = &w->walls[i].channels;
+            dem_wall_loads *c = &w->walls[i].loads;
             memset(c->impulse, 0, sizeof c->impulse);
             c->torque_impulse = c->work = c->time = 0;
         }
@@ -17028,8 +17042,8 @@ DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
                          "here, this process holds %d to %d of %d; ask the process that holds it",
                          index, s->first, s->first + s->local - 1, s->count);
     b = &s->slabs[index - s->first];
-    out->grains = b->world->bodies.count - b->guest_count;
-    out->visitors = b->guest_count;
+    out->grains = b->world->bodies.count - b->ghost_count;
+    out->ghosts = b->ghost_count;
     out->lo = s->borders[index];
     out->hi = s->borders[index + 1];
     out->work = b->work;

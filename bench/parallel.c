@@ -219,7 +219,7 @@ static sent slabs_sent(const dealt *d) {
     for (k = 0; k < d->count; k++) {
         if (dem_slab_get(d->slabs, k, &slab) != DEM_OK) continue;
         borders += slab.lo > -1e299;         /* in a ring all slabs have one below */
-        of.halo += slab.visitors;
+        of.halo += slab.ghosts;
         busiest = fmax(busiest, slab.seconds);
         busy += slab.seconds/d->count;
     }

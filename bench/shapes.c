@@ -29,7 +29,7 @@ static uint64_t seed = 7;
 
 static void jog(double *x) { *x += 2e-4*(demi_uniform(&seed) - 0.5); }
 static void pair_make(int i, double ratio) {
-    const dem_vec3 e = dem_quat_turn(demi_quat_random(&seed), dem_vec3_make(0, 0, 1));
+    const dem_vec3 e = dem_quat_rotate(demi_quat_random(&seed), dem_vec3_make(0, 0, 1));
     meeting *m = &now[i], *was = &then[i];
     demi_meet found;
     double s, by[3];
@@ -95,8 +95,8 @@ static void meet_run(double ratio) {
             m.l = demi_meet_start(now[i].A, now[i].B, now[i].r);
             demi_meet_solve(now[i].A, now[i].B, now[i].r, 1, DEMI_MEET_NEAR, &m);
             sum += m.s[0];
-            looks[0] += m.looks;
-            worst[0] = m.looks > worst[0] ? m.looks : worst[0];
+            looks[0] += m.iterations;
+            worst[0] = m.iterations > worst[0] ? m.iterations : worst[0];
         }
         cold[turn] = 1e9*(study_clock() - begun)/PAIRS;
         begun = study_clock();
@@ -104,8 +104,8 @@ static void meet_run(double ratio) {
             m.l = now[i].l;
             demi_meet_solve(now[i].A, now[i].B, now[i].r, 1, DEMI_MEET_NEAR, &m);
             sum += m.s[0];
-            looks[1] += m.looks;
-            worst[1] = m.looks > worst[1] ? m.looks : worst[1];
+            looks[1] += m.iterations;
+            worst[1] = m.iterations > worst[1] ? m.iterations : worst[1];
         }
         warm[turn] = 1e9*(study_clock() - begun)/PAIRS;
     }
@@ -128,7 +128,7 @@ static void meet_run(double ratio) {
         for (k = 0; k < 3; k++) r[k] = now[i].r[k]*far;
         m.l = demi_meet_start(now[i].A, now[i].B, r);
         demi_meet_solve(now[i].A, now[i].B, r, 1, DEMI_MEET_NEAR, &m);
-        early += m.looks == 1 && m.f > 1;
+        early += m.iterations == 1 && m.f > 1;
     }
     snprintf(name, sizeof name, "meet.ratio%g.cold", ratio < 1.01 ? 1 : ratio);
     bench_result_short(name, bench_median(cold, TURNS), "ns");

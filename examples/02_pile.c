@@ -1,7 +1,7 @@
 /* 02_pile.c - beads settle in a tube, the tube is drawn up, and they slump into a heap.
 
    Beads of three sizes, with friction and rolling friction (without the latter spheres on a smooth floor
-   run apart). What floor and tube carry is read from the channels of these walls, averaged over a while.
+   run apart). What floor and tube carry is read from the loads of these walls, averaged over a while.
 
    How much of the weight hangs on the tube by friction depends on how the beads came to rest: those that
    fell in and bounced may even be wedged downwards. Once the tube moves up slowly, all of the friction
@@ -43,12 +43,12 @@ int main(void) {
     double on_floor = 0, on_tube = 0;                               /* shares of the weight */
     int wrong = 0;
     for (int i = 1; i <= 12; i++) {
-        dem_channels below, around = {0};
-        dem_wall_channels_reset(world, ground);
-        if (i <= 6) dem_wall_channels_reset(world, tube);
+        dem_wall_loads below, around = {0};
+        dem_wall_loads_reset(world, ground);
+        if (i <= 6) dem_wall_loads_reset(world, tube);
         if (dem_world_run(world, 0.1, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
-        dem_wall_channels(world, ground, &below);
-        if (i <= 6) dem_wall_channels(world, tube, &around);
+        dem_wall_loads_get(world, ground, &below);
+        if (i <= 6) dem_wall_loads_get(world, tube, &around);
         dem_totals totals = dem_totals_get(world);
         on_floor = -below.impulse[2]/below.time/weight;             /* the force on the floor points down */
         on_tube = i <= 6 ? -around.impulse[2]/around.time/weight : 0;

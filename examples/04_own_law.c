@@ -15,7 +15,7 @@
 
 typedef struct springs { double k1, k2; } springs;                  /* N/m */
 
-static void hysteretic(const dem_contact *c, dem_real *memory, dem_push *push) {
+static void hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     const springs *k = (const springs *)c->user;
     dem_real dmax = memory[0] > c->overlap ? memory[0] : c->overlap;    /* m */
     dem_real loading = k->k1*c->overlap;

@@ -48,15 +48,15 @@ int main(void) {
         printf("%8.3f  %11.4f  %8.4f\n", t, state.velocity.x, sliding < rolling ? sliding : rolling);
     }
 
-    dem_channels channels;
-    dem_wall_channels(world, belt, &channels);
+    dem_wall_loads loads;
+    dem_wall_loads_get(world, belt, &loads);
     dem_ledger ledger = dem_ledger_get(world);
     double mv2 = state.mass*belt_speed*belt_speed;                  /* J */
     int wrong = 0;
     printf("%-22s %12s  %12s\n", "", "measured", "expected");
     wrong += row("speed [m/s]", state.velocity.x, 2*belt_speed/7);
     wrong += row("-R w [m/s]", -radius*state.spin.y, 5*belt_speed/7);
-    wrong += row("work of the belt [J]", channels.work, 2*mv2/7);
+    wrong += row("work of the belt [J]", loads.work, 2*mv2/7);
     wrong += row("heat of sliding [J]", ledger.slide + ledger.tangent, mv2/7);
     printf("%-22s %12.6g\n", "unaccounted [J]", ledger.residual);
     wrong += !(fabs(ledger.residual) < 1e-3*ledger.throughput);

@@ -134,7 +134,7 @@ int main(int argc, char **argv) {
             for (int k = 0; k < (kind == TETRAHEDRA ? 4 : 1); k++) {    /* principal axes: the corners' own */
                 static const int corner[12] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
                 const dem_real a = kind == TETRAHEDRA ? (dem_real)((double)radius/sqrt(2.0)) : 0;
-                const dem_vec3 c = dem_quat_turn(q, dem_vec3_make(a*(dem_real)corner[3*k], a*(dem_real)corner[3*k + 1],
+                const dem_vec3 c = dem_quat_rotate(q, dem_vec3_make(a*(dem_real)corner[3*k], a*(dem_real)corner[3*k + 1],
                                                                   a*(dem_real)corner[3*k + 2]));
                 double *b = ball + 5*balls++;
                 b[0] = (double)(x[0] + c.x); b[1] = (double)(x[1] + c.y); b[2] = (double)(x[2] + c.z);

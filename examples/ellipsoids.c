@@ -257,7 +257,7 @@ static void gas_destroy(gas *g) {
 
 /* The damping of [RUB15]: gamma = sqrt(4 k m12/(1 + (pi/ln e)^2)), whatever the inertia. */
 static double seed_gamma;                     /* N s/m; 0 while running in */
-static void seed_law(const dem_contact *c, dem_real *memory, dem_push *push) {
+static void seed_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     (void)memory;
     push->normal = c->kn*c->overlap + *(const double *)c->user*c->closing_speed;
 }
@@ -340,7 +340,7 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
         across.x = spin*normal(g);
         across.y = spin*normal(g);
         across.z = 0;
-        across = dem_quat_turn(q, across);
+        across = dem_quat_rotate(q, across);
         w[3*i] = across.x; w[3*i + 1] = across.y; w[3*i + 2] = across.z;
     }
     for (i = 0; i < 3*g->count; i++) {
@@ -367,7 +367,7 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
             const dem_body id = dem_bodies_id(g->world, i);
             dem_body_get(g->world, id, &s);
             s.velocity = dem_vec3_make(v[3*i], v[3*i + 1], v[3*i + 2]);
-            if (!g->spheres) s.spin = dem_quat_turn(s.orientation, dem_quat_unturn(
+            if (!g->spheres) s.spin = dem_quat_rotate(s.orientation, dem_quat_unrotate(
                 dem_quat_make(turned[4*i], turned[4*i + 1], turned[4*i + 2], turned[4*i + 3]),
                 dem_vec3_make(w[3*i], w[3*i + 1], w[3*i + 2])));
             bad = refused(g->world, dem_body_set(g->world, id, &s));
@@ -647,7 +647,7 @@ static void unit3(double *a) {
 }
 
 /* What one body brings to a meeting at n (outward): arm x n, p, q, and its axis across n. */
-typedef struct side { double lever[3], p, q, e[3], speed; } side;
+typedef struct side { double moment_arm[3], p, q, e[3], speed; } side;
 static void side_of(gas *g, draw *d, const double *n, double sign, side *o) {
     const double more = g->xi*g->xi - 1, spin = sqrt(dot3(d->w, d->w));
     double turned[3], x, h, l = 0;
@@ -660,16 +660,16 @@ static void side_of(gas *g, draw *d, const double *n, double sign, side *o) {
     }
     x = dot3(d->u, n);
     h = sqrt(1 + more*x*x);
-    cross3(d->u, n, o->lever);
+    cross3(d->u, n, o->moment_arm);
     for (k = 0; k < 3; k++) {
-        o->lever[k] *= sign*more*x/h;              /* (M n/h) x n, M n = n + more x u */
+        o->moment_arm[k] *= sign*more*x/h;              /* (M n/h) x n, M n = n + more x u */
         o->e[k] = d->u[k] - x*n[k];
         l += o->e[k]*o->e[k];
     }
     for (k = 0; k < 3; k++) o->e[k] /= sqrt(l) + 1e-300;
     o->p = g->xi*g->xi/(h*h*h);
     o->q = 1/h;
-    o->speed = dot3(d->v, n) + dot3(d->w, o->lever);
+    o->speed = dot3(d->v, n) + dot3(d->w, o->moment_arm);
 }
 
 static void direct_case(double xi, double e) {
@@ -729,20 +729,20 @@ static void direct_case(double xi, double e) {
             unit3(n);
             side_of(&g, a, n, 1, &A);
             side_of(&g, b, n, -1, &B);
-            /* b's outward normal is -n: its contact point is at -(M n/h), and so is its lever */
-            close = A.speed - (dot3(b->v, n) + dot3(b->w, B.lever));
+            /* b's outward normal is -n: its contact point is at -(M n/h), and so is its moment_arm */
+            close = A.speed - (dot3(b->v, n) + dot3(b->w, B.moment_arm));
             if (close <= 0) continue;
             along = dot3(A.e, B.e);
             along *= along;
             det = A.p*A.q + B.p*B.q + (A.p*B.q + A.q*B.p)*along +
                   (A.p*B.p + A.q*B.q)*(1 - along);
             if (uniform(&g)*bound > det*close) continue;
-            push = (1 + e)*close/(2 + (dot3(A.lever, A.lever) + dot3(B.lever, B.lever))/inertia);
+            push = (1 + e)*close/(2 + (dot3(A.moment_arm, A.moment_arm) + dot3(B.moment_arm, B.moment_arm))/inertia);
             for (k = 0; k < 3; k++) {
                 a->v[k] -= push*n[k];
                 b->v[k] += push*n[k];
-                a->w[k] -= push*A.lever[k]/inertia;
-                b->w[k] += push*B.lever[k]/inertia;
+                a->w[k] -= push*A.moment_arm[k]/inertia;
+                b->w[k] += push*B.moment_arm[k]/inertia;
             }
         }
     }

@@ -403,8 +403,8 @@ static void sample_take(const mill *m, sample *s) {
     s->x = totals.centre[0];
     s->angular = totals.angular[2];
     for (i = 0; i < m->wall_count; i++) {
-        dem_channels c;
-        if (refused(m->world, dem_wall_channels(m->world, m->walls[i], &c))) return;
+        dem_wall_loads c;
+        if (refused(m->world, dem_wall_loads_get(m->world, m->walls[i], &c))) return;
         s->impulse -= c.torque_impulse; /* of the mill on the grains */
         s->work += c.work;
     }

@@ -965,7 +965,7 @@ static void moldyn_str_body(FILE *file, const dem_body_state *s) {
     dem_real R[9];
     int i;
     for (i = 0; i < 3; i++) {
-        const dem_vec3 e = dem_quat_turn(s->orientation, dem_vec3_make(i == 0, i == 1, i == 2));
+        const dem_vec3 e = dem_quat_rotate(s->orientation, dem_vec3_make(i == 0, i == 1, i == 2));
         R[i] = e.x; R[3 + i] = e.y; R[6 + i] = e.z;
     }
     moldyn_str_row(file, R, s->position);

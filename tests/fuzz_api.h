@@ -6,7 +6,7 @@
    the arguments of the others.
 
    Every call is made in two worlds, A on one thread and B on two. After each one, both must give the same
-   answers, the same hash and the same looks (counters, channels, contacts in order, ...). Also demanded:
+   answers, the same hash and the same looks (counters, loads, contacts in order, ...). Also demanded:
      - a call that is refused says why and leaves the hash as it was;
      - looking changes nothing (some looks are made in A alone, and the two go on together);
      - a checkpoint read back into its world, or into a fresh one with the same scene, gives the same hash
@@ -205,9 +205,9 @@ static const char *fuzz_path(const char *name, char who, char *out) {
 }
 
 /* ---- laws, fields, motions of one's own ---- */
-static void fuzz_law(const dem_contact *c, dem_real *memory, dem_push *push) {
+static void fuzz_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     const dem_real k = DEM_R(2e3);
-    dem_vec3 xi = dem_memory_turn(c, dem_vec3_make(memory[0], memory[1], memory[2]));
+    dem_vec3 xi = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
     xi = dem_vec3_make(xi.x + c->slip_step.x*c->dt, xi.y + c->slip_step.y*c->dt,
                        xi.z + c->slip_step.z*c->dt);
     push->normal = k*c->overlap + DEM_R(0.01)*c->closing_speed;
@@ -824,12 +824,12 @@ static void fuzz_look_walls(fuzz_machine *m) {
     int i, k;
     for (i = 1; i <= m->walls; i++) {
         dem_wall id;
-        dem_channels c;
+        dem_wall_loads c;
         dem_pose p;
         id.id = i;
         memset(&c, 0, sizeof c);
         memset(&p, 0, sizeof p);
-        fuzz_note_int(m, (int)dem_wall_channels(m->world, id, &c));
+        fuzz_note_int(m, (int)dem_wall_loads_get(m->world, id, &c));
         fuzz_note_vector(m, c.force); fuzz_note_vector(m, c.torque);
         fuzz_note_real(m, (double)c.torque_axial); fuzz_note_real(m, (double)c.power);
         fuzz_note_int(m, c.contacts);
@@ -923,10 +923,10 @@ static void fuzz_resets(fuzz_machine *m) {
     const int what = fuzz_below(m, 4);
     field.id = m->fields ? 1 + fuzz_below(m, m->fields) : 1;
     outlet.id = m->outlets ? 1 + fuzz_below(m, m->outlets) : 1;
-    fuzz_say(m, what == 0 ? "dem_overlap_reset" : what == 1 ? "dem_wall_channels_reset" : what == 2 ?
+    fuzz_say(m, what == 0 ? "dem_overlap_reset" : what == 1 ? "dem_wall_loads_reset" : what == 2 ?
              "dem_field_reset" : "dem_outlet_reset");
     if (what == 0) dem_overlap_reset(m->world);
-    if (what == 1) fuzz_result(m, dem_wall_channels_reset(m->world, fuzz_wall(m)));
+    if (what == 1) fuzz_result(m, dem_wall_loads_reset(m->world, fuzz_wall(m)));
     if (what == 2) fuzz_result(m, dem_field_reset(m->world, field));
     if (what == 3) fuzz_result(m, dem_outlet_reset(m->world, outlet));
 }
@@ -950,7 +950,7 @@ static void fuzz_files(fuzz_machine *m) {
     if (what == 1) r = dem_vtk_write(m->world, path);
     if (what == 2) r = dem_xyz_write(m->world, path);
     if (what == 3) r = dem_walls_vtp_write(m->world, path, 0, DEM_R(0.03));
-    if (what == 4) r = dem_channels_csv(m->world, wall, path);
+    if (what == 4) r = dem_wall_loads_csv(m->world, wall, path);
     if (what == 5) r = moldyn_xb_append(&d, m->world, path, dem_box_make(0, 0, 0, 1, 1, 1));
     if (what == 6) r = moldyn_str_append(&d, m->world, path, 1e-3, 10, &wall, 1);
     if (what < 5 ? fuzz_result(m, r) : fuzz_moldyn_result(m, &d, r)) fuzz_note_file(m, path);
@@ -997,7 +997,7 @@ static void fuzz_slabs_step(fuzz_machine *m) {
     fuzz_note(m, &c.steps, sizeof c.steps);
     fuzz_note(m, &c.rebuilds, sizeof c.rebuilds);
     fuzz_note_real(m, c.time);
-    if (!fuzz_below(m, 4)) dem_slabs_channels_reset(m->slabs);
+    if (!fuzz_below(m, 4)) dem_slabs_loads_reset(m->slabs);
 }
 static void fuzz_slabs_collect(fuzz_machine *m) {
     fuzz_say(m, "dem_slabs_collect");
@@ -1132,7 +1132,7 @@ static void fuzz_bad_wall(fuzz_machine *m) {
     dem_profile profile;
     dem_sieve_desc sieve = DEM_SIEVE_DESC;
     dem_motion motion = DEM_MOTION;
-    dem_channels channels;
+    dem_wall_loads loads;
     dem_pose pose;
     dem_wall wall;
     fuzz_say(m, "bad wall %d (%g)", what, (double)bad);
@@ -1159,7 +1159,7 @@ static void fuzz_bad_wall(fuzz_machine *m) {
         break;
     case 12: fuzz_result(m, dem_wall_motion(m->world, wall, &motion)); break;
     case 13: fuzz_result(m, dem_wall_pose(m->world, wall, &pose)); break;
-    case 14: fuzz_result(m, dem_wall_channels(m->world, wall, &channels)); break;
+    case 14: fuzz_result(m, dem_wall_loads_get(m->world, wall, &loads)); break;
     default:
         motion.kind = fuzz_below(m, 2) ? DEM_MOTION_USER : DEM_MOTION_ROTATING;   /* no function, no axis */
         fuzz_result(m, dem_wall_motion(m->world, fuzz_wall(m), &motion));
@@ -1283,7 +1283,7 @@ static void fuzz_null(fuzz_machine *m) {
     case 8: fuzz_id(m, dem_sieve_add(m->world, stuff, 0).id); break;
     case 9: fuzz_result(m, dem_wall_motion(m->world, wall, 0)); break;
     case 10: fuzz_result(m, dem_wall_pose(m->world, wall, 0)); break;
-    case 11: fuzz_result(m, dem_wall_channels(m->world, wall, 0)); break;
+    case 11: fuzz_result(m, dem_wall_loads_get(m->world, wall, 0)); break;
     case 12: fuzz_id(m, dem_feed_add(m->world, 0).id); break;
     case 13: fuzz_id(m, dem_outlet_add(m->world, 0).id); break;
     case 14: fuzz_id(m, dem_field_add(m->world, 0).id); break;

@@ -1,4 +1,4 @@
-/* Closed forms of mechanics, and the worked numbers of the two theses that dem.h reproduces:
+/* Closed shapes of mechanics, and the worked numbers of the two theses that dem.h reproduces:
      [MIL] tumbling mill on a GPU: Fig 5.23 and 5.24, drop test Fig 6.1
      [ALK07] tumbling screening machine, MOLDYN: eq 2.25 to 2.31 */
 #define DEM_IMPLEMENTATION

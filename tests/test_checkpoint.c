@@ -1,5 +1,5 @@
 /* Checkpoints: run(2N) = run(N) + checkpoint + run(N) bit for bit, hash, ledger, fields and
-   channels; and files that must be refused by name, with the world as it was. Files go to
+   loads; and files that must be refused by name, with the world as it was. Files go to
    build/tmp/. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
@@ -11,8 +11,8 @@ enum { LAW_SPRING, LAW_MINDLIN, LAW_RESCALED, LAW_EPSD, LAW_OWN, LAWS };
 
 /* A law of one's own: linear spring and dashpot, a spring in the tangent plane, a count of steps.
    */
-static void own_law(const dem_contact *c, dem_real *memory, dem_push *push) {
-    dem_vec3 s = dem_memory_turn(c, dem_vec3_make(memory[0], memory[1], memory[2]));
+static void own_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
+    dem_vec3 s = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
     const dem_real k = 2000;
     s = dem_vec3_make(s.x + c->dt*c->slip.x, s.y + c->dt*c->slip.y, s.z + c->dt*c->slip.z);
     push->normal = k*c->overlap + c->closing_speed/100;
@@ -26,6 +26,8 @@ static dem_vec3 swirl(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, do
     (void)radius; (void)user;
     return at(s - (double)v.x*1e-6, -s*(double)x.x*100, 0);
 }
+
+static void stand_still(double time, dem_pose *pose, void *user) { (void)time; (void)pose; (void)user; }
 
 typedef struct play {
     dem_integrator integrator;
@@ -146,11 +148,11 @@ static void check_same(const dem_world *a, const dem_world *b) {
         CHECK(memcmp(fa.momentum, fb.momentum, 3*n) == 0);
     }
     for (i = 1; i <= 4; i++) {
-        dem_channels wa, wb;
+        dem_wall_loads wa, wb;
         dem_pose pa, pb;
         dem_wall wall;
         wall.id = i;
-        if (dem_wall_channels(a, wall, &wa) || dem_wall_channels(b, wall, &wb)) continue;
+        if (dem_wall_loads_get(a, wall, &wa) || dem_wall_loads_get(b, wall, &wb)) continue;
         CHECK(memcmp(wa.impulse, wb.impulse, sizeof wa.impulse) == 0);
         CHECK(memcmp(&wa.force, &wb.force, sizeof wa.force) == 0);
         CHECK(memcmp(&wa.work, &wb.work, sizeof wa.work) == 0);
@@ -550,7 +552,7 @@ int main(int argc, char **argv) {
     TEST("every byte that bodies keep is found again after a checkpoint, a sort, a removal, and in "
          "a message to another slab") {
         dem_world *a = kept_world(40), *b = kept_world(40), *c = kept_world(40);
-        demi_parcel parcel = {0, 0};
+        demi_message message = {0, 0};
         const char *from;
         int i, arrays = 0;
         for (i = 0; i < DEMI_BODY_ARRAYS; i++) {
@@ -579,9 +581,9 @@ int main(int argc, char **argv) {
 
         kept_fill(c, 8);
         CHECK_EQ(kept_differ(a, c), 40);
-        for (i = 0; i < 40; i++) CHECK(demi_grain_put(a, &parcel, a, i, 0, 0));
-        CHECK_EQ((int)parcel.size, 40*(int)demi_body_size(a));
-        from = parcel.bytes;
+        for (i = 0; i < 40; i++) CHECK(demi_grain_put(a, &message, a, i, 0, 0));
+        CHECK_EQ((int)message.size, 40*(int)demi_body_size(a));
+        from = message.bytes;
         for (i = 0; i < 40; i++) {
             const int slot = (int)demi_grain_slot(from);
             demi_grain_take(c, c->bodies.slot_index[slot], &from);
@@ -655,6 +657,36 @@ int main(int argc, char **argv) {
             dem_world_destroy(first);
             dem_world_destroy(second);
         }
+        remove(path);
+    }
+    TEST("a checkpoint holds no addresses and nothing that the memory of a desc happened to hold: the same "
+         "state is the same bytes") {
+        char *file[2];
+        size_t size[2];
+        int i, user[2] = {0, 0};
+        for (i = 0; i < 2; i++) {
+            dem_world *world = tiny_world(2500);
+            dem_wall wall;
+            dem_motion motion;
+            memset(&motion, i ? 0xa5 : 0x5a, sizeof motion);       /* between its fields, too */
+            motion.kind = DEM_MOTION_USER;
+            motion.velocity = motion.point = at(0, 0, 0);
+            motion.axis = at(0, 0, 1);
+            motion.speed = motion.amplitude = motion.frequency = motion.phase = 0;
+            motion.start = 0;
+            motion.function = stand_still;
+            motion.user = &user[i];
+            wall.id = 1;
+            CHECK_EQ(dem_wall_motion(world, wall, &motion), DEM_OK);
+            scene_step(world, 30);
+            CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
+            file[i] = file_get(path, &size[i]);
+            dem_world_destroy(world);
+        }
+        CHECK_EQ((int)size[0], (int)size[1]);
+        CHECK(size[0] == size[1] && !memcmp(file[0], file[1], size[0]));
+        free(file[0]);
+        free(file[1]);
         remove(path);
     }
     TEST("a motion given while the world runs goes on from a checkpoint as without") {

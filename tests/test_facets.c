@@ -825,13 +825,13 @@ int main(int argc, char **argv) {
                     const dem_vec3 p = place_above(&s, a, way, 1), o = place_above(&s, b, way, 1);
                     const dem_real angle = (dem_real)(3*scene_random(&seed));
                     const dem_quat turned = dem_quat_about(direction(&seed), angle);
-                    const dem_vec3 spin = dem_quat_turn(turned, at(0, 0, 1));    /* of moment 2 of 3 */
+                    const dem_vec3 spin = dem_quat_rotate(turned, at(0, 0, 1));    /* of moment 2 of 3 */
                     for (k = 0; k < 2; k++) {
                         dem_body_state state = scene_state(q.world, q.body);
                         ride one;
                         state.orientation = turned;
                         dem_body_set(q.world, q.body, &state);
-                        one = rail_ride(&q, p, o, dem_quat_turn(turned, at(2, 0, 0)), k ? 4000 : 250);
+                        one = rail_ride(&q, p, o, dem_quat_rotate(turned, at(2, 0, 0)), k ? 4000 : 250);
                         r.jump[k] = DEMI_MAX(r.jump[k], one.jump);
                         r.error[k] = DEMI_MAX(r.error[k], fabs(one.work + one.stored));
                         r.most = DEMI_MAX(r.most, one.most);
@@ -1036,12 +1036,12 @@ int main(int argc, char **argv) {
             q.body = dem_sphere_add(q.world, q.material, 1, at(0, 0, 50));
             for (o = 0; o < overlap_count; o++)
                 for (i = -40; i <= 40; i++) {
-                    dem_channels l, r;
+                    dem_wall_loads l, r;
                     const double h = 1 - overlaps[o], x = i/80.0*(i & 1 ? 0.02 : 1), side = 0.3*(i%5)/5;
                     const dem_vec3 f = rail_at(&q, a.per == 2 ? at(x, h, side) : at(x, side, h));
                     const double push = (double)(a.per == 2 ? f.y : f.z);
-                    dem_wall_channels(q.world, left, &l);
-                    dem_wall_channels(q.world, right, &r);
+                    dem_wall_loads_get(q.world, left, &l);
+                    dem_wall_loads_get(q.world, right, &r);
                     worst = DEMI_MAX(worst, size_of(demi_sub(f, a.per == 2 ? at(0, overlaps[o], 0)
                                                              : at(0, 0, overlaps[o])))/overlaps[o]);
                     sums = DEMI_MAX(sums, size_of(demi_add(f, demi_add(l.force, r.force)))/push);
@@ -1354,15 +1354,15 @@ int main(int argc, char **argv) {
             rail q;
             for (i = 0; i < 3*s.facets; i++) {
                 double *p = s.x + 3*i;
-                const dem_vec3 x = demi_add(shift, dem_quat_turn(turned, at(p[0], p[1], p[2])));
+                const dem_vec3 x = demi_add(shift, dem_quat_rotate(turned, at(p[0], p[1], p[2])));
                 p[0] = (double)x.x; p[1] = (double)x.y; p[2] = (double)x.z;
             }
             q = rail_on(&s);
             for (i = 0; i < 6; i++)
                 for (side = -1; side <= 1; side += 2) {
                     const dem_vec3 x = at(spot[i][0], spot[i][1], side*0.99);
-                    const dem_vec3 f = rail_at(&q, demi_add(shift, dem_quat_turn(turned, x)));
-                    const dem_vec3 g = dem_quat_unturn(turned, f);
+                    const dem_vec3 f = rail_at(&q, demi_add(shift, dem_quat_rotate(turned, x)));
+                    const dem_vec3 g = dem_quat_unrotate(turned, f);
                     CHECK_NEAR(g.z, side*0.01, DEMI_SINGLE ? 1e-4 : 1e-12);     /* rounding of places of 20 r */
                     CHECK_NEAR(hypot((double)g.x, (double)g.y), 0, DEMI_SINGLE ? 1e-4 : 1e-12);
                 }
@@ -1418,14 +1418,14 @@ int main(int argc, char **argv) {
             dem_vec3 x, f;
             scene_step(q.world, 2);
             dem_wall_pose(q.world, w[0], &pose);
-            x = demi_add(pose.position, demi_turn(pose.rotation, at(0.004*(i - 50), 0.1, 0.99)));
+            x = demi_add(pose.position, demi_rotate(pose.rotation, at(0.004*(i - 50), 0.1, 0.99)));
             rail_put(&q, x, at(0, 0, 0), at(0, 0, 0));
             dem_search_now(q.world);
             scene_step(q.world, 1);             /* by then the walls are one step on: .04 rad r less or more */
             f = rail_force(&q);
             dem_wall_pose(q.world, w[0], &pose);
-            x = demi_unturn(pose.rotation, demi_sub(x, pose.position));
-            f = demi_unturn(pose.rotation, f);
+            x = demi_unrotate(pose.rotation, demi_sub(x, pose.position));
+            f = demi_unrotate(pose.rotation, f);
             CHECK_NEAR(f.z, DEMI_MAX(1 - (double)x.z, 0.0), DEMI_SINGLE ? 1e-4 : 1e-11);
         }
         dem_world_destroy(q.world);

@@ -577,11 +577,11 @@ static void walls(void) {
         CHECK_EQ(dem_walls_vtp_write(world, "build/tmp/walls.vtp", 1, 1), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_world_error(world), "z0 is 1 and z1 is 1");
     }
-    TEST("channels are appended line by line under one heading") {
-        const char *const path = "build/tmp/channels.csv";
+    TEST("loads are appended line by line under one heading") {
+        const char *const path = "build/tmp/loads.csv";
         remove(path);
-        CHECK_EQ(dem_channels_csv(world, plane, path), DEM_OK);
-        CHECK_EQ(dem_channels_csv(world, plane, path), DEM_OK);
+        CHECK_EQ(dem_wall_loads_csv(world, plane, path), DEM_OK);
+        CHECK_EQ(dem_wall_loads_csv(world, plane, path), DEM_OK);
         char *text = file_get(path, &size);
         int lines = 0, commas = 0;
         CHECK(text != 0);
@@ -591,30 +591,30 @@ static void walls(void) {
         CHECK(text && strncmp(text, "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts\n0,", 53) == 0);
         free(text);
         file_put(path, "", 0);
-        CHECK_EQ(dem_channels_csv(world, plane, path), DEM_OK);
+        CHECK_EQ(dem_wall_loads_csv(world, plane, path), DEM_OK);
         text = file_get(path, &size);
         CHECK(text && strncmp(text, "time,", 5) == 0);
         free(text);
         file_put(path, "time\n0.5,1,2", 12); /* cut short by a full disk */
-        CHECK_EQ(dem_channels_csv(world, plane, path), DEM_OK);
+        CHECK_EQ(dem_wall_loads_csv(world, plane, path), DEM_OK);
         text = file_get(path, &size);
         CHECK(text && strncmp(text, "time\n0.5,1,2\n0,", 15) == 0);
         free(text);
         remove(path);
     }
-    TEST("channels of a wall that is not there, or into a folder that is not there, are refused") {
+    TEST("loads of a wall that is not there, or into a folder that is not there, are refused") {
         dem_wall none;
         none.id = 77;
-        CHECK_EQ(dem_channels_csv(world, none, "build/tmp/none.csv"), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "dem_channels_csv: wall 77");
+        CHECK_EQ(dem_wall_loads_csv(world, none, "build/tmp/none.csv"), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "dem_wall_loads_csv: wall 77");
         CHECK(!file_is_there("build/tmp/none.csv"));
-        CHECK_EQ(dem_channels_csv(world, plane, "build/tmp/no_folder/x.csv"), DEM_ERROR_FILE);
+        CHECK_EQ(dem_wall_loads_csv(world, plane, "build/tmp/no_folder/x.csv"), DEM_ERROR_FILE);
         CHECK_STR(dem_world_error(world), "cannot write build/tmp/no_folder/x.csv: ");
-        CHECK_EQ(dem_channels_csv(world, plane, 0), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_wall_loads_csv(world, plane, 0), DEM_ERROR_ARGUMENT);
         FILE *full = fopen("/dev/full", "rb");
         if (full) {
             fclose(full);
-            CHECK_EQ(dem_channels_csv(world, plane, "/dev/full"), DEM_ERROR_FILE);
+            CHECK_EQ(dem_wall_loads_csv(world, plane, "/dev/full"), DEM_ERROR_FILE);
         }
     }
     dem_mesh_free(world, &mesh);

@@ -168,10 +168,10 @@ static dem_vec3 towards_axis(dem_vec3 x, dem_vec3 v, dem_real r, dem_real m, dou
               -(double)m*c->pull*(double)off.z);
 }
 /* A spring frozen at its first value: the tangential force is the memory, turned, nothing else. */
-static void frozen_spring(const dem_contact *c, dem_real *memory, dem_push *push) {
+static void frozen_spring(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     const dem_vec3 first = *(const dem_vec3 *)c->user;
     dem_vec3 s = dem_vec3_make(memory[0], memory[1], memory[2]);
-    s = memory[3] > 0 ? dem_memory_turn(c, s) : first;
+    s = memory[3] > 0 ? dem_memory_rotate(c, s) : first;
     memory[0] = s.x; memory[1] = s.y; memory[2] = s.z; memory[3] = 1;
     push->tangent = s;
 }

@@ -30,7 +30,7 @@ static dem_world *world_of(double dt, double g) {
 /* The law alone, at an overlap, on a memory. */
 static double force_at(double overlap, dem_real *memory, dem_contact_energy *part) {
     dem_contact c;
-    dem_push push;
+    dem_contact_force push;
     memset(&c, 0, sizeof c);
     memset(&push, 0, sizeof push);
     c.normal = at(1, 0, 0);

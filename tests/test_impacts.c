@@ -1,4 +1,4 @@
-/* Single impacts against closed forms and against published benchmarks.
+/* Single impacts against closed shapes and against published benchmarks.
      Chung & Ooi, Granul. Matter 13 (2011) 643: eight impact tests; figures digitised from them
      Hertz (1882): largest overlap, largest force, duration
      Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution when a contact may not pull
@@ -432,7 +432,7 @@ int main(int argc, char **argv) {
         for (i = 0; i < 7; i++) for (linear = 0; linear < 2; linear++) {
             shot s = shot_make(glass, 5e-3, rows[i][0], 0, 1);
             s.stiffness = linear ? 1e6 : 0;
-            s.steps = 20000; /* closed forms are for dt -> 0: first order at the ends */
+            s.steps = 20000; /* closed shapes are for dt -> 0: first order at the ends */
             CHECK_NEAR(fire(s).e, rows[i][0], 1e-4);
             s.tension = DEM_TENSION_CLIPPED;
             CHECK_NEAR(fire(s).e, rows[i][1], 1e-4);

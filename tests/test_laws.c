@@ -286,7 +286,7 @@ static double pressed(double depth, double frac) {
 enum { MAGNET = 3 };                            /* MU B = 3 N m */
 static void compass(const dem_body_state *body, dem_body id, double time, dem_vec3 *force,
                     dem_vec3 *torque, void *user) {
-    const dem_vec3 x = dem_quat_turn(body->orientation, at(1, 0, 0));
+    const dem_vec3 x = dem_quat_rotate(body->orientation, at(1, 0, 0));
     (void)id; (void)time; (void)force; (void)user;
     torque->y = x.z*MAGNET;                     /* MU x B */
     torque->z = -x.y*MAGNET;
@@ -301,12 +301,12 @@ static void spin_up(const dem_body_state *body, dem_body id, double time, dem_ve
 }
 
 /* --- the built-in laws, called by one of the user's --- */
-static void hertz_spring_epsd(const dem_contact *c, dem_real *memory, dem_push *f) {
+static void hertz_spring_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     dem_law_hertz(c, memory, f);
     dem_law_spring(c, memory, f);
     dem_law_roll_epsd(c, memory + 3, f);
 }
-static void linear_rescaled(const dem_contact *c, dem_real *memory, dem_push *f) {
+static void linear_rescaled(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     dem_law_linear(c, memory, f);
     dem_law_mindlin_rescaled(c, memory, f);
 }
@@ -563,7 +563,7 @@ int main(int argc, char **argv) {
         for (k = 0; k < (int)(3*period/1e-4) && crossings < 2; k++) {
             dem_vec3 x;
             CHECK_EQ(scene_step(world, 1), DEM_OK);
-            x = dem_quat_turn(scene_state(world, needle).orientation, at(1, 0, 0));
+            x = dem_quat_rotate(scene_state(world, needle).orientation, at(1, 0, 0));
             angle = atan2((double)x.y, (double)x.x);
             if ((angle < 0) != (last < 0))
                 zero[crossings++] = (k + last/(last - angle))*1e-4;      /* between two steps */

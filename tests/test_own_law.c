@@ -5,10 +5,10 @@
 /* Hertz with friction and memory, as a user would write it: stiffness and damping of the desc's
    user. */
 typedef struct own_numbers { dem_real stiffness, damping, friction; } own_numbers;
-DEM_INLINE void own_law(const dem_contact *c, dem_real *memory, dem_push *push) {
+DEM_INLINE void own_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     const own_numbers *u = (const own_numbers *)c->user;
     const dem_real k = u->stiffness*c->overlap;
-    const dem_vec3 s = dem_memory_turn(c, dem_vec3_make(memory[0], memory[1], memory[2]));
+    const dem_vec3 s = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
     const dem_real x = s.x + c->dt*c->slip.x, y = s.y + c->dt*c->slip.y, z = s.z + c->dt*c->slip.z;
     const dem_real square = k*k*(x*x + y*y + z*z), fn = k*c->overlap + u->damping*c->closing_speed;
     const dem_real limit = fn > 0 ? u->friction*fn : 0;
@@ -24,7 +24,7 @@ DEM_INLINE void own_law(const dem_contact *c, dem_real *memory, dem_push *push) 
 #include "test.h"
 #include "scene.h"
 
-static void by_pointer(const dem_contact *c, dem_real *memory, dem_push *push) {
+static void by_pointer(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     own_law(c, memory, push);
 }
 

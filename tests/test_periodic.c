@@ -167,7 +167,7 @@ static void fills(void) {
             dem_motion motion = DEM_MOTION;
             dem_sieve_desc sieve = DEM_SIEVE_DESC;
             dem_wall wall = {0};
-            dem_channels loads;
+            dem_wall_loads loads;
             dem_real grains[3*9];
             int i;
             for (i = 0; i < 9; i++) {
@@ -198,7 +198,7 @@ static void fills(void) {
             CHECK_EQ(dem_spheres_fill(world, m, DEM_R(0.03), box_of(0, 0, 0, 1, 1, 1), 300, 3), 300);
             CHECK_EQ(dem_world_step(world, 0), DEM_OK);
             CHECK_EQ(scene_step(world, 1), DEM_OK);
-            CHECK_EQ(dem_wall_channels(world, wall, &loads), DEM_OK);
+            CHECK_EQ(dem_wall_loads_get(world, wall, &loads), DEM_OK);
             CHECK_EQ(loads.contacts, 0);
             for (i = 0; i < 300; i++) {
                 const dem_vec3 x = scene_state(world, dem_bodies_id(world, i)).position;

@@ -69,8 +69,8 @@ static void null_world(void) {
     REFUSES(dem_wall_motion(world, wall, 0));
     REFUSES(dem_wall_pose(world, wall, 0));
     REFUSES(dem_wall_remove(world, wall));
-    REFUSES(dem_wall_channels(world, wall, 0));
-    REFUSES(dem_wall_channels_reset(world, wall));
+    REFUSES(dem_wall_loads_get(world, wall, 0));
+    REFUSES(dem_wall_loads_reset(world, wall));
     CHECK_EQ(dem_feed_add(world, 0).id, 0);
     REFUSES(dem_feed_get(world, feed, 0));
     CHECK_EQ(dem_outlet_add(world, 0).id, 0);
@@ -103,7 +103,7 @@ static void null_world(void) {
     REFUSES(dem_vtk_write(world, 0));
     REFUSES(dem_xyz_write(world, 0));
     REFUSES(dem_walls_vtp_write(world, 0, 0, 1));
-    REFUSES(dem_channels_csv(world, wall, 0));
+    REFUSES(dem_wall_loads_csv(world, wall, 0));
     REFUSES(dem_checkpoint_write(world, 0));
     REFUSES(dem_checkpoint_read(world, 0));
     CHECK(dem_slabs_create(world, 0) == 0);
@@ -141,7 +141,7 @@ static void null_pointers(dem_world *world) {
     ANSWERS(dem_sieve_add(world, m, 0).id, 0);
     REFUSES(dem_wall_motion(world, wall, 0));
     REFUSES(dem_wall_pose(world, wall, 0));
-    REFUSES(dem_wall_channels(world, wall, 0));
+    REFUSES(dem_wall_loads_get(world, wall, 0));
     ANSWERS(dem_feed_add(world, 0).id, 0);
     REFUSES(dem_feed_get(world, feed, 0));
     ANSWERS(dem_outlet_add(world, 0).id, 0);
@@ -163,7 +163,7 @@ static void null_pointers(dem_world *world) {
     REFUSES(dem_vtk_write(world, 0));
     REFUSES(dem_xyz_write(world, 0));
     REFUSES(dem_walls_vtp_write(world, 0, 0, 1));
-    REFUSES(dem_channels_csv(world, wall, 0));
+    REFUSES(dem_wall_loads_csv(world, wall, 0));
     REFUSES(dem_checkpoint_write(world, 0));
     REFUSES(dem_checkpoint_read(world, 0));
     dem_world_report(world, 0);
@@ -181,19 +181,19 @@ static void null_others(void) {
     dem_slab slab;
     CHECK_STR(dem_create_error(0), "desc is null");
     CHECK(dem_world_create(0) == 0);
-    CHECK(!(dem_ellipsoids_meet(0, 0, 0).scale > 0));
+    CHECK(!(dem_ellipsoids_contact(0, 0, 0).scale > 0));
     CHECK_EQ(drum_grains(1, 1, 0, 1, 0), 0);
     dem_slabs_destroy(0);
     CHECK_EQ(dem_slabs_step(0, 1), DEM_ERROR_ARGUMENT);
     CHECK_EQ(dem_slabs_collect(0, 0), DEM_ERROR_ARGUMENT);
-    dem_slabs_channels_reset(0);
+    dem_slabs_loads_reset(0);
     CHECK_STR(dem_slabs_error(0), "null");
     CHECK_EQ(dem_slab_get(0, 0, &slab), DEM_ERROR_ARGUMENT);
     CHECK_EQ(dem_slabs_counters_get(0).steps, 0);
     CHECK_STR(dem_result_name((dem_result)-1), "unknown");
 }
 
-static void own_law(const dem_contact *c, dem_real *memory, dem_push *push) {
+static void own_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     memory[0] += c->dt;
     push->normal = 1000*c->overlap;
 }

@@ -42,7 +42,7 @@ static dem_world *free_world(dem_rotation rotation, double dt) {
 typedef struct turned { double w[3], q[4], energy, angular[3], norm; } turned;
 static turned look(const dem_world *world, dem_body body) { /* spin in the body's own frame */
     const dem_body_state s = scene_state(world, body);
-    const dem_vec3 w = dem_quat_unturn(s.orientation, s.spin);
+    const dem_vec3 w = dem_quat_unrotate(s.orientation, s.spin);
     const dem_totals t = dem_totals_get(world);
     turned out;
     out.w[0] = (double)w.x; out.w[1] = (double)w.y; out.w[2] = (double)w.z;
@@ -72,7 +72,7 @@ static turned fly(dem_rotation rotation, const double *inertia, const double *w,
     turned out;
     if (q) s.orientation = dem_quat_make((dem_real)q[0], (dem_real)q[1], (dem_real)q[2],
                                          (dem_real)q[3]);
-    s.spin = dem_quat_turn(s.orientation, at(w[0], w[1], w[2]));
+    s.spin = dem_quat_rotate(s.orientation, at(w[0], w[1], w[2]));
     CHECK_EQ(dem_body_set(world, body, &s), DEM_OK);
     scene_step(world, (int)(time/dt + 0.5));
     out = look(world, body);
@@ -158,7 +158,7 @@ static top spin_on_floor(dem_rotation rotation, double dt, double time, double l
                         at(0, 0, h - mass*g/stiffness),
                         dem_quat_about(at(0, 1, 0), (dem_real)lean));
     s = scene_state(world, body);
-    axis = dem_quat_turn(s.orientation, at(0, 0, 1));
+    axis = dem_quat_rotate(s.orientation, at(0, 0, 1));
     { /* w = rate z + (w3 - rate cos) axis */
         const double along = w3 - rate*cos(lean);
         s.spin = at(along*(double)axis.x, along*(double)axis.y, rate + along*(double)axis.z);
@@ -167,7 +167,7 @@ static top spin_on_floor(dem_rotation rotation, double dt, double time, double l
     l0 = dem_totals_get(world).angular[2];
     scene_step(world, (int)(time/dt + 0.5));
     s = scene_state(world, body);
-    axis = dem_quat_turn(s.orientation, at(0, 0, 1));
+    axis = dem_quat_rotate(s.orientation, at(0, 0, 1));
     out.lean = acos((double)axis.z);
     out.azimuth = atan2((double)axis.y, (double)axis.x);
     out.height = (double)s.position.z;
@@ -182,11 +182,11 @@ int main(int argc, char **argv) {
     TEST("quaternions turn and turn back, and the product turns by its right factor first") {
         const dem_quat p = dem_quat_about(at(1, 2, 3), DEM_R(0.7));
         const dem_quat q = dem_quat_about(at(-2, 0.5, 1), DEM_R(2.1));
-        const dem_vec3 v = at(0.3, -1.2, 0.8), z = dem_quat_turn(dem_quat_about(at(0, 0, 2),
+        const dem_vec3 v = at(0.3, -1.2, 0.8), z = dem_quat_rotate(dem_quat_about(at(0, 0, 2),
                                                                  (dem_real)(pi/2)), at(1, 0, 0));
-        const dem_vec3 back = dem_quat_unturn(p, dem_quat_turn(p, v));
-        const dem_vec3 once = dem_quat_turn(dem_quat_times(p, q), v);
-        const dem_vec3 twice = dem_quat_turn(p, dem_quat_turn(q, v));
+        const dem_vec3 back = dem_quat_unrotate(p, dem_quat_rotate(p, v));
+        const dem_vec3 once = dem_quat_rotate(dem_quat_times(p, q), v);
+        const dem_vec3 twice = dem_quat_rotate(p, dem_quat_rotate(q, v));
         const double eps = SINGLE ? 1e-6 : 1e-15;      /* round-off */
         CHECK_NEAR(back.x, v.x, 2*eps); CHECK_NEAR(back.y, v.y, 2*eps);
         CHECK_NEAR(back.z, v.z, 2*eps);

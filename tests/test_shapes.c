@@ -290,7 +290,7 @@ static void meeting_tests(void) {
 
     TEST("two ellipsoids that are spheres meet as spheres do, by all three depths") {
         dem_ellipsoid a, b;
-        dem_meeting m;
+        dem_ellipsoid_contact m;
         uint64_t seed = 3;
         a.position = at(1, 2, 3);
         a.semi_axes = at(0.5, 0.5, 0.5);
@@ -298,7 +298,7 @@ static void meeting_tests(void) {
         b.position = at(1.6, 2.8, 3);                  /* 1 apart */
         b.semi_axes = at(0.7, 0.7, 0.7);
         b.orientation = random_quat(&seed);
-        m = dem_ellipsoids_meet(&a, &b, 0);
+        m = dem_ellipsoids_contact(&a, &b, 0);
         CHECK_NEAR(m.scale, 1/1.2, 10*eps);
         CHECK_NEAR(m.lambda, 0.5/1.2, 100*eps);
         CHECK_NEAR(m.normal.x, 0.6, 10*eps);
@@ -318,12 +318,12 @@ static void meeting_tests(void) {
         for (k = 0; k < 4; k++)
             for (i = 0; i < 60; i++) {
                 dem_ellipsoid a, b;
-                dem_meeting m;
+                dem_ellipsoid_contact m;
                 random_pair(&a, &b, aspects[k], far[i%3], &seed);
-                m = dem_ellipsoids_meet(&a, &b, 0);
+                m = dem_ellipsoids_contact(&a, &b, 0);
                 CHECK_REL(m.scale, far[i%3], SINGLE ? 1e-3 : 1e-10);  /* as asked */
                 CHECK(m.depth_normal > 0 ? far[i%3] < 1 : far[i%3] > 1);
-                m = dem_ellipsoids_meet(&a, &b, m.lambda);            /* warm */
+                m = dem_ellipsoids_contact(&a, &b, m.lambda);            /* warm */
                 CHECK_REL(m.scale, far[i%3], SINGLE ? 1e-3 : 1e-10);
             }
     }
@@ -333,20 +333,20 @@ static void meeting_tests(void) {
         int i;
         for (i = 0; i < 60; i++) {
             dem_ellipsoid a, b, *e[2];
-            dem_meeting m;
+            dem_ellipsoid_contact m;
             int k;
             e[0] = &a;
             e[1] = &b;
             random_pair(&a, &b, i%2 ? 3 : 10, 0.999, &seed);
-            m = dem_ellipsoids_meet(&a, &b, 0);
+            m = dem_ellipsoids_contact(&a, &b, 0);
             for (k = 0; k < 2; k++) {
-                const dem_vec3 x = dem_quat_unturn(e[k]->orientation,
+                const dem_vec3 x = dem_quat_unrotate(e[k]->orientation,
                                                    plus(m.point, e[k]->position, -1));
                 const dem_vec3 s = e[k]->semi_axes;
                 dem_vec3 g = at((double)(x.x/(s.x*s.x)), (double)(x.y/(s.y*s.y)),
                                 (double)(x.z/(s.z*s.z)));
                 const double f = dot(x, g);
-                g = dem_quat_turn(e[k]->orientation, g);
+                g = dem_quat_rotate(e[k]->orientation, g);
                 CHECK_NEAR(sqrt(f), m.scale, SINGLE ? 1e-3 : 1e-7);
                 CHECK_NEAR(dot(g, m.normal)/sqrt(dot(g, g)), k ? -1 : 1, SINGLE ? 1e-3 : 1e-8);
             }
@@ -373,9 +373,9 @@ static void meeting_tests(void) {
 #endif
         for (i = 0; i < 24; i++) {
             dem_ellipsoid a, b;
-            dem_meeting m;
+            dem_ellipsoid_contact m;
             random_pair(&a, &b, i%2 ? 3 : 1.5, 0.98, &seed);
-            m = dem_ellipsoids_meet(&a, &b, 0);
+            m = dem_ellipsoids_contact(&a, &b, 0);
             for (k = 0; k < 2; k++) {
                 const literal l = construct(&a, &b, (double)m.scale, (double)m.lambda,
                                             k ? 1e-5 : 1e-3);
@@ -395,7 +395,7 @@ static void meeting_tests(void) {
 
     TEST("equal and parallel ellipsoids touch half way, at a scale of half the scaled distance") {
         dem_ellipsoid a, b;
-        dem_meeting m;
+        dem_ellipsoid_contact m;
         uint64_t seed = 9;
         dem_vec3 r, back;
         double half;
@@ -404,18 +404,18 @@ static void meeting_tests(void) {
         a.orientation = random_quat(&seed);
         b = a;
         b.position = r = at(1.1, -0.9, 1.7);
-        back = dem_quat_unturn(a.orientation, r);
+        back = dem_quat_unrotate(a.orientation, r);
         back = at((double)back.x/1, (double)back.y/2, (double)back.z/3);
         half = sqrt(dot(back, back))/2;
-        m = dem_ellipsoids_meet(&a, &b, 0);
+        m = dem_ellipsoids_contact(&a, &b, 0);
         CHECK_NEAR(m.scale, half, 10*eps);
         CHECK_NEAR(m.lambda, 0.5, 1e3*eps);
         CHECK_NEAR(apart(m.point, at(0.55, -0.45, 0.85)), 0, 1e3*eps);
-        back = dem_quat_turn(a.orientation, at((double)back.x/1, (double)back.y/2,
+        back = dem_quat_rotate(a.orientation, at((double)back.x/1, (double)back.y/2,
                                                (double)back.z/3));
         CHECK_NEAR(dot(back, m.normal)/sqrt(dot(back, back)), 1, 10*eps);
         b.position = at(0, 0, 0);                      /* the same place: still numbers */
-        m = dem_ellipsoids_meet(&a, &b, 0);
+        m = dem_ellipsoids_contact(&a, &b, 0);
         CHECK_NEAR(m.scale, 0, 1e-9);
         CHECK(m.depth_normal > 0);
         CHECK(dot(m.normal, m.normal) < 1.01 && dot(m.normal, m.normal) > 0.99);
@@ -423,7 +423,7 @@ static void meeting_tests(void) {
 
     TEST("an ellipsoid inside another overlaps it, which the sign test of [RUB15] denies") {
         dem_ellipsoid a, b;
-        dem_meeting m;
+        dem_ellipsoid_contact m;
         uint64_t seed = 2;
         int i;
         for (i = 0; i < 20; i++) {
@@ -433,7 +433,7 @@ static void meeting_tests(void) {
             b.semi_axes = at(0.3, 0.35, 0.4);
             b.orientation = random_quat(&seed);
             b.position = any_vector(&seed, 0.2);
-            m = dem_ellipsoids_meet(&a, &b, 0);
+            m = dem_ellipsoids_contact(&a, &b, 0);
             CHECK_REL(m.scale, scale_by_force(&a, &b), SINGLE ? 1e-4 : 1e-10);
             CHECK(m.scale < 1);
             CHECK(m.depth_normal > 0 && m.depth_chord > 0 && m.depth_conservative > 0);
@@ -447,18 +447,18 @@ static void meeting_tests(void) {
         for (i = 0; i < 20; i++) {
             const double huge = 1e5, z = 0.9;
             dem_ellipsoid a, b;
-            dem_meeting m;
+            dem_ellipsoid_contact m;
             dem_vec3 up;
             double h;
             a.semi_axes = at(1, 1.5, 2);
             a.orientation = random_quat(&seed);
-            up = dem_quat_unturn(a.orientation, at(0, 0, 1));
+            up = dem_quat_unrotate(a.orientation, at(0, 0, 1));
             h = sqrt(pow(1*(double)up.x, 2) + pow(1.5*(double)up.y, 2) + pow(2*(double)up.z, 2));
             a.position = at(0, 0, z*h);
             b.position = at(0, 0, -huge);
             b.semi_axes = at(huge, huge, huge);
             b.orientation = upright();
-            m = dem_ellipsoids_meet(&a, &b, 0);
+            m = dem_ellipsoids_contact(&a, &b, 0);
             CHECK_NEAR(m.normal.z, -1, 1e-8);          /* leans by size over huge, squared */
             CHECK_NEAR(m.depth_normal, h - z*h, 1e-4); /* size squared over huge */
             CHECK_NEAR(m.depth_conservative, h - z*h, 1e-4);
@@ -470,22 +470,22 @@ static void meeting_tests(void) {
         int i;
         for (i = 0; i < 40; i++) {
             dem_ellipsoid a, b, c, d;
-            dem_meeting m, n;
+            dem_ellipsoid_contact m, n;
             const dem_quat q = random_quat(&seed);
             const dem_vec3 shift = at(3, -2, 5);
             random_pair(&a, &b, i%2 ? 2 : 20, 0.99, &seed);
-            m = dem_ellipsoids_meet(&a, &b, 0);
+            m = dem_ellipsoids_contact(&a, &b, 0);
             c = a;
             d = b;
-            c.position = plus(shift, dem_quat_turn(q, a.position), 1);
-            d.position = plus(shift, dem_quat_turn(q, b.position), 1);
+            c.position = plus(shift, dem_quat_rotate(q, a.position), 1);
+            d.position = plus(shift, dem_quat_rotate(q, b.position), 1);
             c.orientation = dem_quat_times(q, a.orientation);
             d.orientation = dem_quat_times(q, b.orientation);
-            n = dem_ellipsoids_meet(&c, &d, 0);
+            n = dem_ellipsoids_contact(&c, &d, 0);
             CHECK_REL(n.scale, m.scale, SINGLE ? 1e-3 : 1e-11);
-            CHECK_NEAR(apart(n.normal, dem_quat_turn(q, m.normal)), 0, SINGLE ? 0.1 : 1e-6);
+            CHECK_NEAR(apart(n.normal, dem_quat_rotate(q, m.normal)), 0, SINGLE ? 0.1 : 1e-6);
             CHECK_REL(n.depth_chord, m.depth_chord, SINGLE ? 0.1 : 1e-6);
-            n = dem_ellipsoids_meet(&b, &a, 0);
+            n = dem_ellipsoids_contact(&b, &a, 0);
             CHECK_REL(n.scale, m.scale, SINGLE ? 1e-3 : 1e-11);
             CHECK_NEAR(n.lambda, 1 - (double)m.lambda, SINGLE ? 1e-2 : 1e-6);
             CHECK_NEAR(apart(n.normal, plus(at(0, 0, 0), m.normal, -1)), 0, SINGLE ? 0.1 : 1e-6);
@@ -746,7 +746,7 @@ static void cluster_tests(void) {
             dem_shape_info info;
             double s[3];
             for (i = 0; i < 5; i++) {
-                const dem_vec3 v = plus(dem_quat_turn(q, at(p[i][0], p[i][1], p[i][2])),
+                const dem_vec3 v = plus(dem_quat_rotate(q, at(p[i][0], p[i][1], p[i][2])),
                                         at(k, -2*k, 0.5*k), 1);
                 turned[3*i] = v.x; turned[3*i + 1] = v.y; turned[3*i + 2] = v.z;
             }
@@ -783,9 +783,9 @@ static void cluster_tests(void) {
         CHECK_NEAR(apart(info.centre, desc.centre), 0, 1e-15);
         moment[0] = (double)info.inertia.x; moment[1] = (double)info.inertia.y;
         moment[2] = (double)info.inertia.z;
-        axis[0] = dem_quat_turn(info.frame, at(1, 0, 0));
-        axis[1] = dem_quat_turn(info.frame, at(0, 1, 0));
-        axis[2] = dem_quat_turn(info.frame, at(0, 0, 1));
+        axis[0] = dem_quat_rotate(info.frame, at(1, 0, 0));
+        axis[1] = dem_quat_rotate(info.frame, at(0, 1, 0));
+        axis[2] = dem_quat_rotate(info.frame, at(0, 0, 1));
         for (i = 0; i < 3; i++)
             for (j = 0; j < 3; j++) {
                 tensor[3*i + j] = 0;
@@ -896,7 +896,7 @@ static void wall_tests(void) {
             const double equal = pow(0.01*0.015*0.02, 1.0/3);
             dem_contact_info c[2];
             const dem_quat q = random_quat(&seed);
-            const dem_vec3 up = dem_quat_unturn(q, at(0, 0, 1));
+            const dem_vec3 up = dem_quat_unrotate(q, at(0, 0, 1));
             const double h = sqrt(pow(0.01*(double)up.x, 2) + pow(0.015*(double)up.y, 2) +
                                   pow(0.02*(double)up.z, 2));
             const double x = 0.02*scene_random(&seed), y = 0.02*scene_random(&seed);
@@ -944,7 +944,7 @@ static void wall_tests(void) {
             const double k = 1e6, e = 0.6;
             const double dt = pi*sqrt(mass_of(2500, 0.01, 0.015, 0.02)/k)/800;
             const dem_quat q = random_quat(&seed);
-            dem_vec3 up = dem_quat_unturn(q, at(0, 0, 1));
+            dem_vec3 up = dem_quat_unrotate(q, at(0, 0, 1));
             const double h = sqrt(pow(0.01*(double)up.x, 2) + pow(0.015*(double)up.y, 2) +
                                   pow(0.02*(double)up.z, 2));
             dem_world_desc desc = linear_desc(dt);
@@ -965,11 +965,11 @@ static void wall_tests(void) {
                 if (n > 10 && fabs((double)s.force.z) <= 0) break;
             }
             CHECK(n < 3000);
-            up = dem_quat_unturn(s.orientation, at(0, 0, 1));
+            up = dem_quat_unrotate(s.orientation, at(0, 0, 1));
             arm = at(-0.01*0.01*(double)up.x, -0.015*0.015*(double)up.y, -0.02*0.02*(double)up.z);
             { const double l = sqrt(pow(0.01*(double)up.x, 2) + pow(0.015*(double)up.y, 2) +
                                     pow(0.02*(double)up.z, 2));
-              arm = dem_quat_turn(s.orientation, at((double)arm.x/l, (double)arm.y/l,
+              arm = dem_quat_rotate(s.orientation, at((double)arm.x/l, (double)arm.y/l,
                                                     (double)arm.z/l)); }
             after = (double)s.velocity.z + (double)s.spin.x*(double)arm.y -
                     (double)s.spin.y*(double)arm.x;
@@ -1058,7 +1058,7 @@ static void wall_tests(void) {
                             at(0, 0, 0.03), dem_quat_about(at(1, 0.4, 0.2), DEM_R(0.9)));
         dem_world_run(world, 6, 0, 0);
         s = scene_state(world, body);
-        up = dem_quat_unturn(s.orientation, at(0, 0, 1));
+        up = dem_quat_unrotate(s.orientation, at(0, 0, 1));
         CHECK(fabs((double)up.x) > 0.98);              /* rolling resistance holds some lean */
         CHECK_NEAR(s.position.z, 0.01, 3e-4);
         CHECK_NEAR(s.velocity.z, 0, 1e-3);
@@ -1235,7 +1235,7 @@ static cloud cloud_make(double xi, int side, double fraction, double overlap, do
     for (i = 0; i < c.count; i++) {
         const dem_quat turned = random_quat(&seed);
         const dem_vec3 free = any_vector(&seed, 1);
-        const dem_vec3 across = dem_quat_turn(turned, at((double)free.x, (double)free.y, 0));
+        const dem_vec3 across = dem_quat_rotate(turned, at((double)free.x, (double)free.y, 0));
         x[3*i] = (dem_real)(c.cube/side*(i%side + 0.5));
         x[3*i + 1] = (dem_real)(c.cube/side*(i/side%side + 0.5));
         x[3*i + 2] = (dem_real)(c.cube/side*(i/side/side + 0.5));
@@ -1610,13 +1610,13 @@ static int rebound(uint64_t seed, double e, double *measured) {
             body[0] = dem_body_add(world, m, shape, at(0, 0, 0), random_quat(&seed));
             s = scene_state(world, body[0]);
         } else { /* just clear of the first, off its line */
-            dem_meeting met;
+            dem_ellipsoid_contact met;
             a.position = at(0, 0, 0);
             a.orientation = scene_state(world, body[0]).orientation;
             a.semi_axes = b.semi_axes = at(0.01, 0.012, 0.02);
             b.orientation = random_quat(&seed);
             b.position = at(0.03*(double)way.x, 0.03*(double)way.y, 0.03*(double)way.z);
-            met = dem_ellipsoids_meet(&a, &b, 0);
+            met = dem_ellipsoids_contact(&a, &b, 0);
             b.position = at((double)(b.position.x/met.scale)*1.0001,
                             (double)(b.position.y/met.scale)*1.0001,
                             (double)(b.position.z/met.scale)*1.0001);
@@ -1663,7 +1663,7 @@ static int rebound(uint64_t seed, double e, double *measured) {
     return touched == 2;
 }
 
-static void own_linear(const dem_contact *c, dem_real *memory, dem_push *push) {
+static void own_linear(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     (void)memory;
     push->normal = c->kn*c->overlap + c->cn*c->closing_speed;
 }
@@ -1860,7 +1860,7 @@ static void more_tests(void) {
             const dem_body id = dem_bodies_id(world, i);
             const dem_quat q = scene_state(world, id).orientation;
             const dem_vec3 v = any_vector(&seed, 1), w = any_vector(&seed, 90);
-            scene_move(world, id, v, dem_quat_turn(q, at((double)w.x, (double)w.y, 0)));
+            scene_move(world, id, v, dem_quat_rotate(q, at((double)w.x, (double)w.y, 0)));
         }
         scene_step(world, 1);
         first = dem_ledger_get(world);
@@ -1896,6 +1896,28 @@ static void more_tests(void) {
         dem_world_destroy(world);
     }
 
+    TEST("when the last bodies that are not spheres go, their contacts go with them") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material glass;
+        dem_shape egg;
+        int i;
+        desc.dt = DEM_R(1e-6);
+        world = dem_world_create(&desc);
+        glass = scene_material(world, 1e7, 0.5, 0.3, 0);
+        egg = dem_shape_ellipsoid_add(world, at(1e-3, 8e-4, 8e-4));
+        for (i = 0; i < 2; i++)
+            dem_body_add(world, glass, egg, at(1.99e-3*i, 0, 0), dem_quat_make(1, 0, 0, 0));
+        dem_sphere_add(world, glass, DEM_R(1e-3), at(1, 0, 0));
+        CHECK_EQ(scene_step(world, 3), DEM_OK);
+        CHECK_EQ(dem_contacts_get(world, 0, 0), 1);
+        for (i = 0; i < 2; i++) CHECK_EQ(dem_body_remove(world, dem_bodies_id(world, 0)), DEM_OK);
+        CHECK_EQ(dem_search_now(world), DEM_OK);
+        CHECK_EQ(world->bodies.count, 1);
+        CHECK_EQ(dem_contacts_get(world, 0, 0), 0);
+        for (i = 0; i < DEMI_DOMAINS; i++) CHECK_EQ(world->domains[i].kept, 0);
+        dem_world_destroy(world);
+    }
     TEST("bodies of all shapes are removed and leave, and the rest goes on") {
         dem_world_desc desc = mixture_desc();
         dem_world *world;

@@ -126,10 +126,10 @@ static double shake(shaking *q, int *out) {
         const int steps = (int)(q->period/dt/10 + 0.5);
         dem_bodies b;
         for (i = 0; i < steps; i++) {
-            dem_channels c;
+            dem_wall_loads c;
             memset(&c, 0, sizeof c);
             if (scene_step(world, 10) != DEM_OK) { CHECK(0); break; }
-            dem_wall_channels(world, wall, &c);
+            dem_wall_loads_get(world, wall, &c);
             began += c.contacts > before ? c.contacts - before : 0;
             before = c.contacts;
         }

@@ -128,18 +128,18 @@ static double apart(const dem_world *a, const dem_world *b) {
     }
     return most;
 }
-/* Is every grain at home in one slab, and a visitor nowhere but in the one above? */
+/* Is every grain at home in one slab, and a ghost nowhere but in the one above? */
 static int whole(const dem_slabs *s, int count) {
     int *homes = (int *)calloc((size_t)count, sizeof(int)), i, k, right = homes != 0;
     for (k = 0; k < s->local && right; k++) {
         const dem_world *w = s->slabs[k].world;
-        for (i = 0; i < w->bodies.count; i++) if (!demi_visits(w, i)) homes[w->bodies.slot[i]] += k + 1;
+        for (i = 0; i < w->bodies.count; i++) if (!demi_is_ghost(w, i)) homes[w->bodies.slot[i]] += k + 1;
     }
     for (k = 0; k < s->local && right; k++) {
         const dem_world *w = s->slabs[k].world;
         const int below = (k + s->local - 1)%s->local + 1;
         for (i = 0; i < w->bodies.count; i++)
-            if (demi_visits(w, i)) right = right && homes[w->bodies.slot[i]] == below;
+            if (demi_is_ghost(w, i)) right = right && homes[w->bodies.slot[i]] == below;
     }
     for (k = 0, i = 0; k < s->local && right; k++) {
         dem_slab slab;
@@ -154,8 +154,8 @@ static int whole(const dem_slabs *s, int count) {
 static double energy_of(const dem_totals *t) { return t->kinetic + t->rotational; }
 
 /* A law with memory: a spring that remembers, and a scalar that does not turn. */
-static void own_law(const dem_contact *c, dem_real *memory, dem_push *push) {
-    const dem_vec3 old = dem_memory_turn(c, dem_vec3_make(memory[0], memory[1], memory[2]));
+static void own_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
+    const dem_vec3 old = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
     memory[0] = old.x + c->slip_step.x*c->dt;
     memory[1] = old.y + c->slip_step.y*c->dt;
     memory[2] = old.z + c->slip_step.z*c->dt;
@@ -486,7 +486,7 @@ static uint64_t ring_bits(int scene, int count, int steps, int *ranks) {
 int main(int argc, char **argv) {
     const int wide = sizeof(dem_real) == sizeof(double);
     test_begin(argc, argv);
-    TEST("one slab gives the very bits of the world, ledger and wall channels, whatever the "
+    TEST("one slab gives the very bits of the world, ledger and wall loads, whatever the "
          "integrator") {
         int integrator, periodic;
         for (integrator = 0; integrator < 5; integrator++)
@@ -495,7 +495,7 @@ int main(int argc, char **argv) {
                 dem_world *one, *other;
                 dem_slabs *slabs;
                 dem_ledger a, b;
-                dem_channels c, e;
+                dem_wall_loads c, e;
                 dem_wall wall;
                 d.integrator = integrator;
                 d.periodic = periodic;
@@ -515,8 +515,8 @@ int main(int argc, char **argv) {
                 CHECK(a.slide > 0 && a.rolling > 0 && a.walls > 0);
                 CHECK(memcmp(&a.elastic, &b.elastic, 9*sizeof(double)) == 0);
                 wall.id = 1;
-                dem_wall_channels(one, wall, &c);
-                dem_wall_channels(other, wall, &e);
+                dem_wall_loads_get(one, wall, &c);
+                dem_wall_loads_get(other, wall, &e);
                 CHECK(c.contacts > 0 && memcmp(&c, &e, sizeof c) == 0);
                 CHECK_EQ(digest(other), digest(one));
                 dem_slabs_destroy(slabs);
@@ -542,7 +542,7 @@ int main(int argc, char **argv) {
                 for (k = 0; k < (wide ? 4 : 2); k++) {
                     const int steps = after[k] - (int)dem_world_steps(one);
                     dem_ledger a, b;
-                    dem_channels c, e;
+                    dem_wall_loads c, e;
                     dem_wall wall;
                     CHECK_EQ(scene_step(one, steps), DEM_OK);
                     CHECK_EQ(go(slabs, steps), DEM_OK);
@@ -559,8 +559,8 @@ int main(int argc, char **argv) {
                     CHECK_NEAR(b.walls, a.walls, 1e-4*fabs(a.walls));
                     CHECK_NEAR(b.residual, a.residual, 1e-4*a.throughput);
                     wall.id = 1;
-                    dem_wall_channels(one, wall, &c);
-                    dem_wall_channels(other, wall, &e);
+                    dem_wall_loads_get(one, wall, &c);
+                    dem_wall_loads_get(other, wall, &e);
                     CHECK(c.contacts > 50);
                     CHECK_EQ(e.contacts, c.contacts);
                     CHECK_NEAR(e.torque_axial, c.torque_axial, 1e-3*fabs((double)c.torque_axial));
@@ -1036,13 +1036,13 @@ int main(int argc, char **argv) {
             CHECK(calls > 100);
         }
     }
-    TEST("channels can be begun anew; what cannot be is refused in a sentence") {
+    TEST("loads can be begun anew; what cannot be is refused in a sentence") {
         drum_desc d = DRUM;
         dem_world *world = drum(&d), *small = gas(1, 1), *flat;
         dem_slabs_desc desc = DEM_SLABS_DESC;
         dem_world_desc planar = DEM_WORLD_DESC;
         dem_slabs *slabs;
-        dem_channels c;
+        dem_wall_loads c;
         dem_slab slab;
         dem_material first;
         dem_wall wall;
@@ -1073,11 +1073,11 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_slabs_error(0), "dem_slabs_create: returned null");
         slabs = deal(world, 0, 3);
         CHECK_EQ(go(slabs, 20), DEM_OK);
-        dem_slabs_channels_reset(slabs);
+        dem_slabs_loads_reset(slabs);
         CHECK_EQ(go(slabs, 10), DEM_OK);
         CHECK_EQ(collect(slabs, world), DEM_OK);
         wall.id = 1;
-        dem_wall_channels(world, wall, &c);
+        dem_wall_loads_get(world, wall, &c);
         CHECK_NEAR(c.time, 1e-4, 1e-9);
         CHECK_EQ(dem_slab_get(slabs, 3, &slab), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_slabs_error(slabs), "slab 3 is not here, this process holds 0 to 2 of 3");

@@ -9,7 +9,7 @@
 typedef struct outcome {
     uint64_t hash;
     dem_ledger ledger;
-    dem_channels floor;
+    dem_wall_loads floor;
     int domains;
 } outcome;
 
@@ -48,7 +48,7 @@ static outcome bed(int threads, int steps, int at_once) {
     memset(&out, 0, sizeof out);
     out.hash = dem_world_hash(world);
     out.ledger = dem_ledger_get(world);
-    dem_wall_channels(world, plane, &out.floor);
+    dem_wall_loads_get(world, plane, &out.floor);
     out.domains = dem_counters_get(world).domains;
     CHECK(dem_counters_get(world).contacts > 6000);
     CHECK(dem_counters_get(world).wall_contacts > 300);

@@ -83,7 +83,7 @@ static void circling(double time, dem_pose *pose, void *user) {
 }
 
 /* The built-in linear law with viscous friction, spelled out. */
-static void linear_law(const dem_contact *c, dem_real *memory, dem_push *push) {
+static void linear_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     const dem_real fn = c->kn*c->overlap + c->cn*c->closing_speed, limit =
         fn > 0 ? c->friction*fn : 0;
     const dem_vec3 t = dem_vec3_make(-c->ct*c->slip.x, -c->ct*c->slip.y, -c->ct*c->slip.z);
@@ -127,7 +127,7 @@ static void slide(int floor_kind, dem_tangent_law law, dem_vec3 start, dem_vec3 
 }
 
 /* A grain of 1 mm held `overlap` deep at x against one wall; its force. */
-static dem_vec3 press(dem_world *world, dem_vec3 x, dem_channels *channels, dem_wall wall) {
+static dem_vec3 press(dem_world *world, dem_vec3 x, dem_wall_loads *loads, dem_wall wall) {
     dem_material glass;
     dem_body ball;
     dem_body_state s;
@@ -137,8 +137,8 @@ static dem_vec3 press(dem_world *world, dem_vec3 x, dem_channels *channels, dem_
     s.fixed = 0;
     CHECK_EQ(scene_step(world, 1), DEM_OK);
     s = scene_state(world, ball);
-    CHECK_EQ(dem_wall_channels(world, wall, channels), DEM_OK);
-    CHECK_NEAR(apart(channels->force, at(-(double)s.force.x, -(double)s.force.y,
+    CHECK_EQ(dem_wall_loads_get(world, wall, loads), DEM_OK);
+    CHECK_NEAR(apart(loads->force, at(-(double)s.force.x, -(double)s.force.y,
                                          -(double)s.force.z)), 0,
                1e-12*length(s.force));
     return s.force;
@@ -449,7 +449,7 @@ int main(int argc, char **argv) {
         dem_wall floor, no;
         dem_motion m = DEM_MOTION;
         dem_pose pose;
-        dem_channels ch;
+        dem_wall_loads ch;
         uint64_t hash;
         dem_material glass;
         int i;
@@ -461,10 +461,10 @@ int main(int argc, char **argv) {
                 "wall 2", "there are 1");
         refused(world, dem_wall_remove(world, no), DEM_ERROR_ARGUMENT, hash, "dem_wall_remove: ",
                 "wall 2", "there are 1");
-        refused(world, dem_wall_channels(world, no, &ch), DEM_ERROR_ARGUMENT, hash,
-                "dem_wall_channels: ", "wall 2", "there are 1");
-        refused(world, dem_wall_channels_reset(world, no), DEM_ERROR_ARGUMENT, hash,
-                "dem_wall_channels_reset: ", "wall 2", "there are 1");
+        refused(world, dem_wall_loads_get(world, no, &ch), DEM_ERROR_ARGUMENT, hash,
+                "dem_wall_loads_get: ", "wall 2", "there are 1");
+        refused(world, dem_wall_loads_reset(world, no), DEM_ERROR_ARGUMENT, hash,
+                "dem_wall_loads_reset: ", "wall 2", "there are 1");
         m.kind = DEM_MOTION_ROTATING;
         refused(world, dem_wall_motion(world, floor, &m), DEM_ERROR_ARGUMENT, hash,
                 "dem_wall_motion: ", "axis", "direction");
@@ -1023,7 +1023,7 @@ int main(int argc, char **argv) {
             dem_world *world = one_wall_world(&glass);
             dem_profile profile;
             dem_wall wall;
-            dem_channels ch;
+            dem_wall_loads ch;
             dem_coefficients k;
             dem_vec3 x, n, f;                  /* place, direction away from the wall */
             double hertz;
@@ -1105,7 +1105,7 @@ int main(int argc, char **argv) {
         for (fine = 0; fine < 2; fine++) {
             dem_material glass;
             dem_world *world = one_wall_world(&glass);
-            dem_channels ch;
+            dem_wall_loads ch;
             dem_wall wall = scene_floor(world, glass, -1e-3, -1e-3, 1e-3, 1e-3, fine ? 40 : 1,
                                         fine ? 40 : 1);
             force[fine] = (double)press(world, at(1.23e-5, 0.37e-5, 0.9e-3), &ch, wall).z;
@@ -1127,7 +1127,7 @@ int main(int argc, char **argv) {
             dem_material glass;
             dem_world *world = one_wall_world(&glass);
             dem_profile profile;
-            dem_channels ch;
+            dem_wall_loads ch;
             dem_wall wall;
             dem_vec3 f;
             profile.vertex_count = 2; profile.segment_count = 1;
@@ -1147,7 +1147,7 @@ int main(int argc, char **argv) {
         dem_world *world;
         dem_material glass;
         dem_wall floor;
-        dem_channels ch;
+        dem_wall_loads ch;
         dem_totals t;
         double weight;
         int k;
@@ -1165,9 +1165,9 @@ int main(int argc, char **argv) {
         CHECK_EQ(scene_step(world, 12000), DEM_OK);
         t = dem_totals_get(world);
         weight = t.mass*9.81;
-        dem_wall_channels_reset(world, floor);
+        dem_wall_loads_reset(world, floor);
         CHECK_EQ(scene_step(world, 500), DEM_OK);
-        dem_wall_channels(world, floor, &ch);
+        dem_wall_loads_get(world, floor, &ch);
         CHECK_REL(-(double)ch.force.z, weight, 2e-3);          /* what still quivers */
         CHECK_REL(-ch.impulse[2], weight*ch.time, 2e-3);
         CHECK_REL(ch.time, 500*(double)dem_counters_get(world).dt, 1e-9);
@@ -1180,7 +1180,7 @@ int main(int argc, char **argv) {
         dem_material glass;
         dem_wall drum;
         dem_motion m = DEM_MOTION;
-        dem_channels ch;
+        dem_wall_loads ch;
         double most = 0;
         int i;
         memset(&ch, 0, sizeof ch);
@@ -1199,7 +1199,7 @@ int main(int argc, char **argv) {
                                                    2.1e-3*(i/4%2)));
         for (i = 0; i < 100; i++) {
             CHECK_EQ(scene_step(world, 50), DEM_OK);
-            dem_wall_channels(world, drum, &ch);
+            dem_wall_loads_get(world, drum, &ch);
             CHECK_NEAR(ch.power, -30*(double)ch.torque_axial, 1e-9*(1e-6 + fabs((double)ch.power)));
             CHECK_REL(ch.torque_axial, (double)ch.torque.z, 1e-12);
             most = fmax(most, fabs((double)ch.power));

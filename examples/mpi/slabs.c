@@ -102,8 +102,8 @@ int main(int argc, char **argv) {
     }
     seconds = MPI_Wtime() - begun;
     dem_slab_get(slabs, rank, &slab);
-    printf("slab %d: %d grains, %d visitors, %.2f s of %.2f s at work, %.1f kB sent a step\n", rank,
-           slab.grains, slab.visitors, slab.seconds, seconds, 1e-3*(double)slab.bytes/steps);
+    printf("slab %d: %d grains, %d ghosts, %.2f s of %.2f s at work, %.1f kB sent a step\n", rank,
+           slab.grains, slab.ghosts, slab.seconds, seconds, 1e-3*(double)slab.bytes/steps);
     if (dem_slabs_collect(slabs, world) != DEM_OK) puts(dem_slabs_error(slabs));
     dem_slabs_destroy(slabs);
 
