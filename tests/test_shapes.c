@@ -1901,17 +1901,18 @@ static void more_tests(void) {
         dem_world *world;
         dem_material glass;
         dem_shape egg;
+        dem_body eggs[2];
         int i;
         desc.dt = DEM_R(1e-6);
         world = dem_world_create(&desc);
         glass = scene_material(world, 1e7, 0.5, 0.3, 0);
         egg = dem_shape_ellipsoid_add(world, at(1e-3, 8e-4, 8e-4));
         for (i = 0; i < 2; i++)
-            dem_body_add(world, glass, egg, at(1.99e-3*i, 0, 0), dem_quat_make(1, 0, 0, 0));
+            eggs[i] = dem_body_add(world, glass, egg, at(1.99e-3*i, 0, 0), dem_quat_make(1, 0, 0, 0));
         dem_sphere_add(world, glass, DEM_R(1e-3), at(1, 0, 0));
         CHECK_EQ(scene_step(world, 3), DEM_OK);
         CHECK_EQ(dem_contacts_get(world, 0, 0), 1);
-        for (i = 0; i < 2; i++) CHECK_EQ(dem_body_remove(world, dem_bodies_id(world, 0)), DEM_OK);
+        for (i = 0; i < 2; i++) CHECK_EQ(dem_body_remove(world, eggs[i]), DEM_OK);
         CHECK_EQ(dem_search_now(world), DEM_OK);
         CHECK_EQ(world->bodies.count, 1);
         CHECK_EQ(dem_contacts_get(world, 0, 0), 0);
