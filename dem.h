@@ -1640,6 +1640,7 @@ static void demi_parallel(dem_world *w, int threads, int count, demi_task task) 
     (void)threads;
     for (i = 0; i < count; i++) task(w, i);
 }
+/* Threads that a world may have when its desc leaves the number open. */
 static int demi_threads_available(void) {
 #if DEMI_OPENMP
     return omp_get_max_threads();
@@ -1811,7 +1812,11 @@ typedef struct demi_shape {
 } demi_shape;
 
 /* A contact that is kept by itself: every one but those of sphere and sphere, whose memory stands
-   in the columns of the near list. Lives as long as the two touch. */
+   in the columns of the near list. Lives as long as the two touch. Within a domain they stand in
+   the order of body a, pairs before walls, and that is the order in which forces are added. touch
+   makes the list of a step from nothing (kept_next), each naming the one it continues among those
+   of the step before (kept_now); respond takes over what is remembered and answers; then the two
+   lists change places. So touch may begin anew, and nothing is lost when it runs out of room. */
 typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* spheres of clusters, else 0 */
@@ -1842,6 +1847,15 @@ typedef struct demi_kept {
 /* What the grains of one domain do to one wall in one step. */
 typedef struct demi_wall_sum { double force[3], torque[3], power; int contacts; } demi_wall_sum;
 
+/* A domain: bodies that stand next to each other in the arrays, since the sort has put together
+   what is near. It is what one thread works on at a time, and what the order of every sum
+   follows: how many domains there are, and where they begin, is told by the number of bodies
+   alone. A contact belongs to the domain of its lower body; a force on a body of a later domain
+   waits in a slot and is fetched there, in the order of the list. So threads change who does the
+   work, never what is added to what, and bits are the same for any number of them. Lists are one
+   array each, in which every domain has a stretch of its own, as long as the longest needs: no
+   thread waits for another to find room, and one that runs out says so in `overflow` and is
+   asked again. */
 typedef struct demi_domain {
     int begin, end;                /* bodies */
     int own, cross, walls;         /* candidates: pairs inside, pairs leading out, wall elements */
@@ -1853,7 +1867,8 @@ typedef struct demi_domain {
     int kept, kept_next;           /* contacts kept by themselves: now; being found */
     int kept_walls;                /* those of them with walls */
     int touching_first;            /* where its places in touching_ begin */
-    int overflow;                  /* a list ran out of room while being built */
+    int overflow;                  /* a list ran out of room while being built: 1: pairs inside, 2:
+                                      pairs leading out, 4: walls, 8: near pairs, 16: kept */
     double speed2, check, overlap; /* max |v|^2, sum |v|^2, max overlap over radius, of this step */
     double acceleration2;          /* max |a|^2 */
     double turn;                   /* m/s, max change of |spin| times moment_arm in the step */
@@ -2033,7 +2048,7 @@ typedef struct demi_margin {       /* >>rebuild, >>near: how long lists hold */
     double skin_auto;              /* m: what the cost model proposes; 0: nothing yet */
     double span, age;              /* s: how long the near list is meant to last, lasts already */
     double slack;                  /* m: what velocities may bring by having changed since */
-    double drift, kick;            /* m/s: how much a velocity may have changed since; last step */
+    double change, last_change;    /* m/s: most that a velocity may have changed since; last step */
     double creep;                  /* m: what that may have brought two bodies together */
 } demi_margin;
 typedef struct demi_in_force {     /* >>rebuild: worked out when the list is made */
@@ -2087,8 +2102,17 @@ typedef struct demi_bodies {
     int32_t *order, *cell_of;      /* permutation, cell of each body */
     dem_balance balance;
 } demi_bodies;
-/* Contact memory of pairs of spheres on its way from one list to the next, by slot: that of entries
-   start[row] .. start[row + 1] - 1 belongs to the row, the pair's lower slot. */
+/* The road of a contact's memory. While a list holds, memory of two spheres stands in columns of
+   the near list, beside its pair; every other contact carries its own (demi_kept). A near list
+   that is made anew takes columns over from the one before, pair by pair (near_last). Before a
+   search, and when bodies come or go (demi_list_drop), indices are about to change: memory of
+   spheres is filed here, by slot, and kept contacts name slots instead of indices. The next list
+   fetches what is filed (demi_near_make), kept contacts move to the domains of their bodies
+   (demi_kept_move), and what turns round on the way, because a body has got the lower index,
+   changes its sign where it is a vector. Nothing is thrown away before all of the new list has
+   its room: a rebuild that is refused memory can be asked for again. A checkpoint writes
+   whatever of this there is. Entries start[row] .. start[row + 1] - 1 belong to the row, the
+   pair's lower slot. */
 typedef struct demi_filed {
     int32_t *start;                /* rows + 2 */
     int32_t *partner;              /* the higher slot; ~ of it when body a of the pair was that */
@@ -2651,12 +2675,15 @@ static double demi_damping_for(double e, dem_tension tension) {
     return (lo + hi)/2;
 }
 
+/* What holds between two materials, in both orders; the damping that gives their restitution is
+   worked out here, once, since it takes a search (algorithm at demi_damping_for). */
 static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
     demi_pair *pair = &w->pairs[i*DEMI_MATERIALS + j];
     pair->given = *p;
     pair->damping = demi_damping_for((double)p->restitution, w->desc.tension);
     w->pairs[j*DEMI_MATERIALS + i] = *pair;
 }
+/* Unset, or below the sliding one, it follows that. */
 static dem_real demi_static_friction(const dem_world *w, int a, int b) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
     return DEMI_MAX(p->friction, p->friction_static);
@@ -2684,6 +2711,7 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
     return id;
 }
 
+/* From the id that a user holds to an index, or a sentence in the name of `call`. */
 static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
     if (m.id < 1 || m.id > w->material_count)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; add "
@@ -2967,6 +2995,8 @@ static void demi_jacobi3(double M[3][3], double E[3][3]) {
 
 /* Volume, first and second moments of matter about the origin: 1, x y z, xx yy zz xy xz yz. */
 typedef struct demi_moments { double one, x[3], xx[6]; } demi_moments;
+/* Adds matter of volume v about c; own: its mean square extent along an axis, about its own
+   centre. */
 static void demi_moments_add(demi_moments *m, double v, const double *c, double own) {
     int k;
     m->one += v;
@@ -3103,6 +3133,7 @@ static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *sh
     id.id = w->shape_count;
     return id;
 }
+/* 1 with a sentence where bodies are discs: shapes are of three dimensions. */
 static int demi_shape_planar(dem_world *w, const char *call) {
     if (!w->desc.planar) return 0;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is planar, where bodies are discs; set planar "
@@ -3313,6 +3344,7 @@ DEM_INLINE const demi_shape *demi_shape_of(const dem_world *w, int body) {  /* n
 DEM_INLINE dem_real demi_scale_of(const dem_world *w, int body, const demi_shape *shape) {
     return w->bodies.pos[4*body + 3]/shape->radius;
 }
+/* Of a shape: per mass and scale, once and for all; of a sphere or disc: the textbook's. */
 static dem_vec3 demi_moments_of(const dem_world *w, int body) {        /* kg m2, principal */
     const demi_shape *shape = demi_shape_of(w, body);
     const double m = (double)w->bodies.mass[body], r = (double)w->bodies.pos[4*body + 3];
@@ -3423,6 +3455,9 @@ static void demi_meet_finish(const double *A, double C, double step, demi_meet *
    f(l) exceeds `enough`. DEMI_MEET_NEAR: normals to 1e-10 (aspect ratio 2) to 4e-6 at worst (100),
    and as cheap as it gets; docs/shapes.md has the numbers. */
 #define DEMI_MEET_NEAR 1e-4
+/* Newton's method on ln(fa/fb), kept between lo and hi: where both are alike, the ellipsoids,
+   scaled by their root, touch at one point. Ends early with f > enough: then they are apart,
+   whatever the rest would say. */
 static void demi_meet_solve(const double *A, const double *B, const double *r, double enough,
                             double near, demi_meet *m) {
     double lo = 0, hi = 1, l = m->l;
@@ -3533,6 +3568,7 @@ static int demi_parts_count(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return shape && shape->count ? shape->count : 1;
 }
+/* Part k as the body is turned now, worked out from its quaternion. */
 static demi_part demi_part_of(const dem_world *w, int body, int k) {
     const demi_shape *shape = demi_shape_of(w, body);
     demi_part p;
@@ -3553,6 +3589,7 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
 static const dem_real *demi_centres_of(const dem_world *w, int body) {
     return w->bodies.centre + 4*w->bodies.centre_start[body];
 }
+/* Spheres of one cluster after it has turned: once a step, not once a contact. */
 static void demi_centres_rotate(dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
@@ -3679,6 +3716,8 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
        fields, getters, writers. Tests: tests/test_periodic.c. --- */
 /* lo: m, where the box begins; period: m, 0 where an axis is not periodic, and half then huge. */
 typedef struct demi_periods { dem_real lo[3], half[3], period[3]; int any; } demi_periods;
+/* The same numbers for every axis, periodic or not, so that loops need not ask: an axis that is not
+   has a period of 0, and half of it is out of reach. */
 static demi_periods demi_periods_of(const dem_world *w) {
     const dem_vec3 lo = w->desc.domain.lo, size = demi_sub(w->desc.domain.hi, lo);
     demi_periods p;
@@ -3895,6 +3934,8 @@ static int demi_bodies_room(dem_world *w, int chosen, size_t used, size_t room) 
     }
     return 1;
 }
+/* Room for so many bodies in all, and for the slots that those to come may need. 0 when memory ran
+   out; arrays that have grown already stay so. */
 static int demi_bodies_reserve(dem_world *w, size_t count) {
     const size_t old = (size_t)w->bodies.capacity, room = DEMI_MAX(count, old + old/4 + 16);
     /* slots of removed bodies rest until the next list: each body to come may need a new one */
@@ -3947,6 +3988,7 @@ static int demi_orient_begin(dem_world *w) {
     return 1;
 }
 
+/* J, kinetic, of what moves. */
 static double demi_body_energy(const dem_world *w, int i) {
     const dem_real *v = w->bodies.vel + 4*i;
     const double m = (double)w->bodies.mass[i];
@@ -4136,6 +4178,8 @@ static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, 
                   DEMI_SINGLE ? "single" : "double");
     return bad;
 }
+/* All that may be refused comes first, then the one place where memory may run out, then what
+   cannot fail: so a refused call adds nobody. */
 static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material material,
                                   dem_shape shape, int count, const dem_real *positions,
                                   const dem_real *orientations, const dem_real *velocities,
@@ -4201,6 +4245,9 @@ static int demi_body_index(dem_world *w, const char *call, dem_body b) {
     return w->bodies.slot_index[b.slot - 1];
 }
 
+/* The last body moves to the place that becomes free. The slot rests until the next list is made
+   (demi_slots_release): contact memory on its way still names it. Its generation goes up, so that
+   ids of old find nobody. */
 static void demi_body_take_out(dem_world *w, int i) {
     const int last = w->bodies.count - 1, slot = (int)w->bodies.slot[i];
     w->booked.removed += demi_body_energy(w, i);
@@ -4413,6 +4460,8 @@ static void demi_tree_select(const double *x, int axis, int32_t *order, int coun
         if (i > k) hi = j;
     }
 }
+/* The box of points from .. to - 1 of the order, halved across its longest side until few are
+   left. */
 static void demi_tree_node(demi_tree *t, size_t node, int from, int to) {
     double *box = t->box + 6*node;
     const int mid = from + (to - from)/2;
@@ -4460,6 +4509,7 @@ static int demi_line_meets(const double *a, const double *b, double off, const d
     }
     return enter <= leave*(1 + 1e-12) + 1e-300;
 }
+/* Begins to look for points within `off` of the line from a to b. */
 static void demi_tree_line(demi_search_line *s, const demi_tree *t, const double *a,
                            const double *b, double off) {
     s->tree = t;
@@ -4563,6 +4613,7 @@ static int demi_facet_counts(const double *x, const double *near_by, const int32
 
 /* A side of a facet, from point lo to point hi. */
 typedef struct demi_side { int32_t lo, hi, facet, side; } demi_side;
+/* Sides between the same corners come next to each other, the lowest facet first. */
 static int demi_side_compare(const void *x, const void *y) {
     const demi_side *a = (const demi_side *)x, *b = (const demi_side *)y;
     if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
@@ -4570,6 +4621,7 @@ static int demi_side_compare(const void *x, const void *y) {
     if (a->facet != b->facet) return a->facet < b->facet ? -1 : 1;
     return a->side < b->side ? -1 : a->side > b->side;
 }
+/* A side has no direction: its corners in ascending order. */
 static demi_side demi_side_of(int32_t a, int32_t b, int facet, int side) {
     demi_side s;
     s.lo = DEMI_MIN(a, b);
@@ -4773,6 +4825,7 @@ typedef struct demi_join {
     size_t point_room, facet_room, cut_room;
 } demi_join;
 
+/* What was needed to join surfaces; weights, pieces and owners are the walls' own by then. */
 static void demi_join_free(dem_world *w, demi_join *j) {
     demi_free(w, j->x);
     demi_free(w, j->near_by);
@@ -5155,6 +5208,7 @@ static int demi_join_hand(dem_world *w, const demi_join *j, int group) {
     }
     return 1;
 }
+/* Without pieces: facets have no neighbours but those that share corners. */
 static void demi_facets_drop_cuts(dem_world *w, demi_wall *wall) {
     demi_free(w, wall->cut_start);
     demi_free(w, wall->cuts);
@@ -5286,6 +5340,7 @@ static double demi_wall_speed(const demi_wall *wall) {
 #define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
     &(wall)->weight, &(wall)->owns, &(wall)->planes, &(wall)->cut_start, &(wall)->cuts, \
     &(wall)->cell_start, &(wall)->cell_items}
+/* Its arrays, by the one list of them; what is left is a wall that was removed. */
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
     void *places[] = DEMI_WALL_ARRAYS(wall), *data;
     size_t k;
@@ -5459,6 +5514,7 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     return id;
 }
 
+/* What all kinds of walls have in common. 0 with a sentence when there is no such material. */
 static int demi_wall_begin(dem_world *w, const char *call, dem_material material, int kind,
                            demi_wall *wall) {
     memset(wall, 0, sizeof *wall);
@@ -5831,6 +5887,7 @@ static void demi_cells_lay(const double *lo, const double *hi, double least, int
     }
     for (k = 0; k < 3; k++) size[k] = DEMI_MAX((hi[k] - lo[k])/cells[k], least*1e-9);
 }
+/* Bodies outside count to the nearest cell, so that everybody is in one. */
 static int demi_cell_of(const double *origin, const double *size, const int *cells,
                         const dem_real *x) {
     int c[3], k;
@@ -5935,6 +5992,7 @@ static unsigned char demi_pair_image(const dem_world *w, const demi_periods *p, 
     }
     return (unsigned char)code;
 }
+/* Where the 27 images of a body are; candidates name theirs by its number, a byte. */
 static void demi_image_shifts(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int code, e;
@@ -5983,6 +6041,7 @@ static void demi_pair_offer(dem_world *w, int d, const demi_periods *p, dem_real
 /* --- methods: each offers, for every body a of domain d in turn, its possible partners b > a in
        ascending order --- */
 
+/* Everybody with everybody: slow, and so plain that the others are tested against it. */
 static void demi_rows_all_pairs(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     int a, b;
@@ -6009,6 +6068,9 @@ static int demi_neighbours(int c, int n, int periodic, int *out) {
     return count;
 }
 
+/* Bodies stand in the order of their cells, so that a cell is a range of indices, and neighbouring
+   cells along x are often one range together. Each pair is found once: in the lower cell, or the
+   lower body. */
 static void demi_rows_grid(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     const int32_t *start = w->cell_start;
@@ -6161,6 +6223,7 @@ static int demi_levels_lay(dem_world *w) {
 /* Cells of a level along one axis within `reach` of x. On a periodic axis they may lie beyond its
    ends, and when they go all the way round, each is there once and `round` is set. */
 typedef struct demi_reach { int first, last, round; } demi_reach;
+/* Cells of a level, along one axis, that are within `reach` of x. */
 static demi_reach demi_level_span(const dem_world *w, const demi_level *level, int axis, double x,
                                  double reach) {
     const int n = level->cells[axis];
@@ -6244,6 +6307,7 @@ static void demi_heap_sink(int32_t *v, int at, int n) {
     }
     v[at] = t;
 }
+/* Few by insertion, many by Williams' heap sort: no recursion, no memory. */
 static void demi_ints_sort(int32_t *v, int n) {
     int i, j;
     if (n <= 32) {
@@ -6277,6 +6341,7 @@ static void demi_row_sort(const demi_list *list, int d, int from, int to) {
         b[k] /= 32;
     }
 }
+/* Each body against all levels, its partners then put in order: rows are those of one grid. */
 static void demi_rows_levels(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     const demi_domain *domain = &w->domains[d];
@@ -6330,6 +6395,8 @@ static int demi_pair_table_add(dem_world *w, int32_t a, int32_t b) {
     w->lll_size++;
     return 1;
 }
+/* Open addressing without tombstones: what stood behind moves up, so that no search stops at a gap
+   [Knuth, 6.4, algorithm R]. */
 static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
     demi_pair_key *table = w->lll_table;
     const size_t room = demi_room(table, sizeof *table);
@@ -6357,6 +6424,7 @@ static dem_real demi_box_end(const dem_world *w, int slot, int axis, int upper) 
     const dem_real grow = w->bodies.pos[4*i + 3] + (dem_real)w->margin.skin/2;
     return upper ? w->bodies.pos[4*i + axis] + grow : w->bodies.pos[4*i + axis] - grow;
 }
+/* Do the boxes of two bodies, by slot, overlap on every axis that is not periodic? */
 static int demi_boxes_overlap(const dem_world *w, int s, int t) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -6483,6 +6551,7 @@ static int demi_lll_rows(dem_world *w) {
                   demi_int_compare);
     return 1;
 }
+/* The pairs of the table, by their lower body, as demi_lll_rows has put them. */
 static void demi_rows_linked(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     const int32_t *start = w->lll_row_start;
@@ -6495,6 +6564,7 @@ static void demi_rows_linked(dem_world *w, int d) {
 
 /* --- what is common --- */
 
+/* One domain's candidates, by the search in force: all of them find the same pairs. */
 static void demi_domain_search(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     domain->own = domain->cross = 0;
@@ -6613,6 +6683,7 @@ static void demi_body_walls(dem_world *w, int d, int i) {
                     demi_wall_look(w, domain, d, i, j, demi_wall_shift(w, a, b, c));
     }
 }
+/* Candidates on walls of one domain, body by body; those of a body and wall stand together. */
 static void demi_domain_walls(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     int i;
@@ -6631,6 +6702,7 @@ static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int str
     if (ok) list->stride = stride;
     return ok;
 }
+/* The same for the near list; coefficients have columns only where bodies differ. */
 static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, near->a, n) &&
@@ -6642,6 +6714,7 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
     if (ok) near->stride = stride;
     return ok;
 }
+/* The same for candidates on walls. */
 static int demi_wall_lists_reserve(dem_world *w, int stride) {
     const size_t n = (size_t)w->domain_count*(size_t)stride;
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, w->wall_body, n) &&
@@ -6697,6 +6770,7 @@ static int demi_places_of(const dem_world *w, int d, int k) {
         : 0;
     return demi_wall_kinds[wall->kind].most + (cut ? 2*(cut[1] - cut[0]) : 0);
 }
+/* The most contacts with walls that any domain may ever have with these candidates. */
 static int demi_places_most(const dem_world *w) {
     int d, k, most = 0;
     for (d = 0; d < w->domain_count; d++) {
@@ -6808,14 +6882,18 @@ static void demi_kept_move(dem_world *w, int stride) {
 
 /* ---------------------------------------------------------------------------------------------
    >>near
-   The near list: candidates that touch or may within near_span, were they to meet head-on at the
-   speed they have now; and near_margin more, because speeds change. Forces are worked out for all
+   The near list: candidates that touch or may within margin.span, were they to meet head-on at the
+   speed they have now; and margin.slack more, because speeds change. Forces are worked out for all
    of it, touching or not, so that a step neither looks at candidates nor packs them; what does not
    touch answers zero. It is made anew, from the candidates, when the time is over or accelerations
-   may have used up the margin: two bodies have come nearer than their speeds of then say by at most
-   near_creep, the sum over steps of 2 dt times near_drift, itself the sum of dt times the largest
-   acceleration. Memory comes from the list before or, after a search, from where it was filed.
-   Numbers do not depend on how long a list lasts: a zero more or less does not change a sum.
+   may have used up the slack. Memory comes from the list before or, after a search, from where it
+   was filed. Numbers do not depend on how long a list lasts: a zero more or less does not change a
+   sum.
+   Why nothing is missed: let v be the speed at which two bodies approach when the list is made. A
+   step changes a velocity by at most last_change, dt times the largest acceleration of all; after n
+   steps two have changed by at most 2 (change), change the sum of these. So they have come nearer
+   than v t by at most creep, the sum over steps of 2 dt change. A pair that was left out had a gap
+   of more than v span + slack: as long as the age is below span and creep below slack, it is open.
    --------------------------------------------------------------------------------------------- */
 
 /* Coefficients of a pair, into its columns; only needed when bodies differ. */
@@ -6947,6 +7025,7 @@ static void demi_near_adopt(dem_world *w, int d) {
             list->place[near->k[d*near->stride + p]] = p + 1;
     }
 }
+/* The near list that was being made is the one in use now; memory comes over with its pairs. */
 static void demi_domain_adopt(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     domain->near_own = domain->near_next_own;
@@ -7016,6 +7095,8 @@ static int demi_quiet_possible(const dem_world *w) {
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
            !w->bodies.backward;
 }
+/* Says of every few bodies whether anything is near any of them: where nothing is, and no field
+   acts, they fly by themselves, and a step need not gather, nor clear, forces for them. */
 static void demi_domain_quiet(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const demi_near *near = &w->near;
@@ -7065,11 +7146,11 @@ static void demi_near_choose(dem_world *w) {
     w->margin.slack = DEMI_MIN(DEMI_MAX(w->margin.slack, 1e-5*r), 0.1*r);
     w->margin.span = span;
 }
-/* A step has gone by, in which no velocity changed by more than kick. */
-static void demi_near_pass(dem_world *w, double kick) {
-    w->margin.kick = kick;
-    w->margin.drift += kick;
-    w->margin.creep += 2*w->margin.drift*(double)w->clock.dt;
+/* A step has gone by, in which no velocity changed by more than `change`. */
+static void demi_near_pass(dem_world *w, double change) {
+    w->margin.last_change = change;
+    w->margin.change += change;
+    w->margin.creep += 2*w->margin.change*(double)w->clock.dt;
     w->margin.age += (double)w->clock.dt;
 }
 static int demi_near_due(const dem_world *w) {
@@ -7107,18 +7188,22 @@ static int demi_near_make(dem_world *w, int fresh) {
     w->margin.age = w->margin.creep = 0;
     w->stage.near_stale = 0;
     /* speeds now, and those that move, are as much as this apart */
-    w->margin.drift = w->margin.kick;
+    w->margin.change = w->margin.last_change;
     return 1;
 }
 
 /* ---------------------------------------------------------------------------------------------
    >>rebuild
-   Everything that hangs on which bodies are near which, made anew: the effects in force, the skin,
-   the order of bodies, domains, lists. Refusals come first: a rebuild that fails leaves places,
-   memory and the old list as they were. New bodies may join a list that stands (demi_list_join).
+   Everything that hangs on which bodies are near which, made anew: the effects in force, the
+   skin, the order of bodies, domains, lists. Why so often: a list is right as long as nobody has
+   gone farther than half the skin (margin.reach), since all pairs nearer than the skin are in
+   it; a wide skin makes lists last and each of them long, and the skin is chosen where both
+   together cost least. Refusals come first: a rebuild that fails leaves places, memory and the
+   old list as they were. New bodies may join a list that stands (demi_list_join).
    --------------------------------------------------------------------------------------------- */
 
-/* What the laws in force keep per contact. */
+/* What the laws in force keep per contact: the user's own what desc says, built-in ones what their
+   rows say, one after the other (demi_laws_set). */
 static void demi_effects_memory(dem_world *w) {
     demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling);
     w->memory_stride = w->laws.memory;
@@ -7519,6 +7604,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     w->stage.list_valid = 1;
     return DEM_OK;
 }
+/* A rebuild that is refused leaves the domains of before: contacts still stand in those. */
 static dem_result demi_rebuild(dem_world *w, const char *call) {
     const int domains = w->domain_count;
     const dem_result result = demi_lists_make(w, call);
@@ -7583,6 +7669,8 @@ static dem_vec3 demi_sides_point(const dem_vec3 *y, int *where) {
     }
     return best;
 }
+/* Closest point of a segment (n = 2) or triangle (n = 3) to the origin [ERI05, 5.1.5]. where: 0:
+   inside, 1 .. 3: on a side, 4 .. 6: at a corner. */
 DEM_INLINE dem_vec3 demi_facet_point(const dem_vec3 *y, int n, int *where) {
     dem_vec3 ab, ac, normal;
     dem_real d1, d2, d3, d4, d5, d6, nn;
@@ -7624,6 +7712,7 @@ typedef struct demi_places {
     uint32_t mask;
     int count, offset;             /* what numbers begin with: an image of the body each */
 } demi_places;
+/* One more facet says that place `number` is at d and counts so much: places add up. */
 static void demi_places_add(demi_places *p, int32_t number, dem_real weight, dem_vec3 d,
                             dem_real d2) {
     uint32_t slot = (uint32_t)(number + p->offset)*UINT32_C(2654435769) & p->mask;
@@ -7992,6 +8081,7 @@ static int demi_sieve_wires(const dem_sieve_desc *s, int set, dem_vec3 x, dem_re
     }
     return count;
 }
+/* The sheet of a sieve as if it had no holes. */
 static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
                            demi_touching *out) {
     const dem_real up = x.z >= 0 ? DEM_R(1) : DEM_R(-1);
@@ -8002,6 +8092,8 @@ static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
     out->share = 1;
     return out->overlap > 0;
 }
+/* A plate with round holes, square ones or slots: the hole that the centre is over, and of its rim
+   the nearest place and the one across (round), or a place on each side. Over a bar: the sheet. */
 static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
                             demi_touching *out) {
     const dem_real half = s->thickness/2, z = x.z > half ? half : x.z < -half ? -half : x.z;
@@ -8123,6 +8215,7 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
        point, answers the overlap (negative: apart). Candidates are told by it, too. --- */
 typedef dem_real (*demi_near_fn)(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                  dem_vec3 *normal, dem_vec3 *point);
+/* z = 0 of the wall's frame, grains above. */
 DEM_INLINE dem_real demi_plane_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                 dem_vec3 *normal, dem_vec3 *point) {
     (void)wall; (void)element;
@@ -8130,6 +8223,7 @@ DEM_INLINE dem_real demi_plane_near(const demi_wall *wall, int element, dem_vec3
     *point = demi_v(x.x, x.y, 0);
     return r - x.z;
 }
+/* About z; a grain on the axis is pushed along x, for want of anything better. */
 DEM_INLINE dem_real demi_cylinder_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                    dem_vec3 *normal, dem_vec3 *point) {
     const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
@@ -8276,6 +8370,7 @@ typedef struct demi_span {
     size_t stride;
     int count;
 } demi_span;
+/* Where `count` near pairs of domain d, from entry p on, have their numbers. */
 static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     const demi_near *near = &w->near;
     const size_t stride = (size_t)near->stride, at = (size_t)d*stride + (size_t)p;
@@ -8303,6 +8398,7 @@ static void demi_row_copy(dem_real *DEMI_RESTRICT to, const dem_real *DEMI_RESTR
     for (q = 0; q < count; q += DEMI_LANES)
         for (l = 0; l < DEMI_LANES; l++) to[q + l] = from[q + l];
 }
+/* Rows of a tile are filled from bodies here and below: a - b, a + b, a - b + shift. */
 DEM_INLINE void demi_rows_minus(demi_rows *DEMI_RESTRICT rows, size_t q, const dem_real *a,
                                 const dem_real *b) {
     const dem_real x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
@@ -8378,6 +8474,8 @@ DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRIC
         if (parting) demi_rows_minus(&t->parted, q, DEMI_AT(sh, i), DEMI_AT(sh, j));
     }
 }
+/* What the scene asks for is known before the tile: a copy of the loop for each case, without a
+   question inside. */
 static void demi_tile_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRICT t) {
     /* where differences of spins are wanted, radii cost little, even those of alike bodies */
     if (r->parting && r->following) demi_fetch(r, count, t, 0, 1, 1, 1);
@@ -8523,6 +8621,7 @@ DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_con
     t->slope[1][q] = f->slope_step;
     demi_normal_energy(t, q, f);
 }
+/* What the normal law has told, for the laws that come after it. */
 DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_contact_force *f) {
     demi_force_clear(f);
     f->load = t->load[q];
@@ -8666,6 +8765,7 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, int 
     demi_tangent_energy(t, q, &f);
     t->part[5][q] = f.energy.roll*t->touch[q];
 }
+/* A law of the user's own is asked pair by pair, and only about those that touch. */
 static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
     int q, e;
     (void)full;
@@ -8803,6 +8903,7 @@ static void demi_tile_respond(const dem_world *w, const demi_span *span, demi_ru
 
 /* What a tile adds up to besides forces. */
 typedef struct demi_tally { dem_real deepest, contacts; } demi_tally;
+/* Pairs that fill up the last group are left out here: `count` is that of the real ones. */
 static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_tally *sum) {
     int q;
     for (q = 0; q < count; q++) {
@@ -8834,6 +8935,8 @@ DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                      t->torque[second][2][q]);
     }
 }
+/* Forces of a tile go to both bodies, pair after pair in the order of the list: sums of several
+   reals depend on their order, which therefore never changes. */
 static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                               const demi_run *r, dem_real *DEMI_RESTRICT force,
                               dem_real *DEMI_RESTRICT torque) {
@@ -9177,7 +9280,7 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     return 1;
 }
 /* Who meets whom. */
-static const demi_meet_fn demi_meets[DEMI_SHAPES][DEMI_SHAPES] = {
+static const demi_meet_fn demi_meets[DEMI_SHAPES][DEMI_SHAPES] = {  /* by demi_part_shape */
     {demi_balls_touch, demi_ellipsoids_touch},
     {demi_ellipsoids_touch, demi_ellipsoids_touch}};
 
@@ -9453,6 +9556,7 @@ static double demi_ellipse_shrink(const double *Q, double x, double y, int out, 
        and point, answers 1 - W0, 0 or less when apart --- */
 typedef dem_real (*demi_ellipsoid_fn)(const demi_wall *wall, int element, const demi_part *p,
                                       dem_vec3 x, dem_vec3 *normal, dem_vec3 *point);
+/* Its lowest point; W0 is the height of its centre over its own. */
 static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, const demi_part *p,
                                         dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
     dem_vec3 arm;
@@ -9564,6 +9668,7 @@ static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, 
 #define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, SPHERES, ELLIPSOIDS, B) {SPHERES, ELLIPSOIDS},
 static const demi_touch_fn demi_touches[][DEMI_SHAPES] = {{0, 0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
 static int demi_touch_known(int kind, int shape) { return demi_touches[kind][shape] != 0; }
+/* By that table, once it is known that the body may have come near any of the candidates. */
 static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
                              const demi_part *part, demi_touching **places) {
     const int base = d*w->wall_stride, kind = w->walls[w->wall_id[base + first]].kind;
@@ -9608,12 +9713,14 @@ static dem_real demi_grain_bend(const demi_wall *wall, const int32_t *among, int
     (void)among; (void)count; (void)number; (void)axis;
     return dist + wall->radius;
 }
+/* Lines do not turn the normal, corners do, about the direction that a profile is drawn out in. */
 static dem_real demi_profile_bend(const demi_wall *wall, const int32_t *among, int count,
                                   int number, dem_real dist, dem_vec3 *axis) {
     (void)among; (void)count;
     axis->z = 1;
     return number < wall->element_count ? 0 : dist;
 }
+/* Faces do not turn the normal; an edge does, about itself; a corner, every way. */
 static dem_real demi_mesh_bend(const demi_wall *wall, const int32_t *among, int count, int number,
                                dem_real dist, dem_vec3 *axis) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
@@ -9636,6 +9743,7 @@ static dem_real demi_mesh_bend(const demi_wall *wall, const int32_t *among, int 
 }
 #define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, S, L, BEND) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
+/* By the table of kinds. */
 static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
                            demi_kept *c) {
     dem_vec3 axis = demi_v(0, 0, 0);
@@ -10005,6 +10113,7 @@ typedef struct demi_lane {           /* one body's translation or rotation */
     dem_real inv, g[3];              /* inverse mass or inertia; acceleration besides forces */
 } demi_lane;
 
+/* v(t + dt/2) = v(t - dt/2) + a dt, and what a law will see: v(t + dt), a taken as constant. */
 DEM_INLINE void demi_kick_leapfrog(const demi_lane *b, dem_real h) {
     int k;
     for (k = 0; k < 3; k++) {
@@ -10019,6 +10128,8 @@ DEM_INLINE void demi_finish_half(const demi_lane *b, dem_real h) {
     for (k = 0; k < 3; k++) b->v[k] = b->half[k] + (b->f[k]*b->inv + b->g[k])*h;
 }
 
+/* A body as the schemes see it, its motion and its spin alike: what does not move has 1/mass 0, and
+   no weight. */
 DEM_INLINE demi_lane demi_lane_move(const dem_world *w, int i) {
     demi_lane b;
     b.v = w->bodies.vel + 4*i; b.half = w->bodies.half_vel + 4*i; b.f = w->bodies.force + 4*i;
@@ -10132,6 +10243,7 @@ static void demi_move_forward_euler(dem_world *w, int begin, int end, int turnin
 }
 static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (void)begin;
     (void)end; }
+/* Velocities of the present time, for schemes that stand at the half step. */
 static void demi_finish_halves(dem_world *w, int begin, int end) {
     const dem_real h = (dem_real)w->clock.half_kick;
     int i;
@@ -10272,6 +10384,7 @@ typedef struct demi_turning {
     dem_real speed2[DEMI_ROW], change2[DEMI_ROW];        /* (m/s)^2, at the moment_arm's end */
     dem_real rate2[DEMI_ROW];                            /* (rad/s)^2 */
 } demi_turning;
+/* One body of the tile: kick L, fly, and say what a law will see and how fast it was. */
 DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real dt) {
     dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
     const dem_vec3 T = demi_v(t->T[0][l], t->T[1][l], t->T[2][l]);
@@ -10292,6 +10405,7 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
     t->half[0][l] = half.x; t->half[1][l] = half.y; t->half[2][l] = half.z;
     t->spin[0][l] = spin.x; t->spin[1][l] = spin.y; t->spin[2][l] = spin.z;
 }
+/* The common one, without a question inside, so that it becomes vectors. */
 DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real dt) {
     int l, q;
     for (q = 0; q < count; q += DEMI_LANES) {
@@ -10410,6 +10524,7 @@ static double demi_sum_energy(const dem_world *w, int what) {
     for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
     return sum;
 }
+/* J, of all that moves. */
 static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational) {
     int i;
     *kinetic = *rotational = 0;
@@ -10547,6 +10662,7 @@ static int demi_nook_upper(const demi_nook *n, dem_vec3 x) {
     const int k = demi_longest(n->size);
     return (double)(k == 0 ? x.x : k == 1 ? x.y : x.z) >= n->lo[k] + n->size[k]/2;
 }
+/* The whole of the tree's box. */
 static demi_nook demi_crowd_root(const demi_crowd *c) {
     demi_nook n;
     n.node = 0;
@@ -10554,6 +10670,7 @@ static demi_nook demi_crowd_root(const demi_crowd *c) {
     memcpy(n.size, c->size, sizeof n.size);
     return n;
 }
+/* Sphere i, first in the leaf's chain. */
 static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
     all[i].next = leaf->first;
     leaf->first = i;
@@ -10753,6 +10870,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
     }
     return 1;
 }
+/* Its arrays go when the placing is done; feeds, which place again and again, keep theirs. */
 static void demi_crowd_end(dem_world *w) {
     demi_free(w, w->crowd);
     demi_free(w, w->crowd_nodes);
@@ -10907,6 +11025,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     demi_built(w, call);                        /* fewer than asked: the answer says so */
     return done;
 }
+/* All of a box. */
 static dem_region demi_region_box(dem_box box) {
     dem_region region;
     memset(&region, 0, sizeof region);
@@ -11144,6 +11263,8 @@ static int demi_feed_left(const demi_feed *f) {              /* is there anythin
     for (k = 0; k < f->desc.class_count && !more; k++) more = f->limit[k] > f->state.fed[k];
     return more;
 }
+/* Draws the class of the next grain: by what is left of each, where that is limited, else by the
+   share of each in numbers. */
 static void demi_feed_draw(demi_feed *f) {
     double weight[DEM_CLASSES], sum = 0, at;
     const int n = f->desc.class_count;
@@ -11189,6 +11310,7 @@ static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_ve
     w->booked.speed_max = DEMI_MAX(w->booked.speed_max, (double)demi_length(v));
     return i;
 }
+/* The grain drawn last is in. */
 static void demi_feed_count(demi_feed *f) {
     f->state.fed[f->next]++;
     f->state.total++;
@@ -11202,6 +11324,8 @@ static dem_result demi_world_look(void *who, const demi_region *g, dem_real radi
     return demi_crowd_begin(to->w, &to->crowd, g, radius, demi_periods_of(to->w)) ? DEM_OK
         : demi_no_memory(to->w, "dem_world_step");
 }
+/* The first of some places that is free. The grain joins the list there is, if it can: then nothing
+   of the others' state is made anew. Else the list is, before the step. */
 static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     dem_world *w = ((demi_world_feeder *)who)->w;
     demi_crowd *c = &((demi_world_feeder *)who)->crowd;
@@ -11239,6 +11363,7 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     demi_feed_count(f);
     return 1;
 }
+/* Where a feed's grains may begin: centres of all sizes alike. */
 static int demi_feed_region(const dem_world *w, const dem_feed_desc *d, demi_region *g) {
     dem_region region = demi_region_box(d->box);
     region.cylinder = d->round ? 'z' : 0;
@@ -11296,6 +11421,7 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
     }
     return DEM_OK;
 }
+/* What is due in a world that is not dealt to slabs. */
 static dem_result demi_world_feed(dem_world *w) {
     demi_world_feeder to;
     demi_feeder feeder;
@@ -11351,6 +11477,7 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     id.id = w->outlet_count;
     return id;
 }
+/* Counts grain i: in the class whose radius is nearest, and as wanted or not. */
 static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
     const dem_outlet_desc *d = &o->desc;
     const dem_real r = w->bodies.pos[4*i + 3];
@@ -11505,6 +11632,8 @@ static double demi_dt_stable(double omega2, double rate) {
 /* How stiff and how damped one contact is at an overlap, for small motions: N/m and N s/m, rolling
    N m and N m s. */
 typedef struct demi_stiffness { double k, kt, kr, c, ct, cr; } demi_stiffness;
+/* Slopes of force against way, and of damping against speed, at an overlap: what the stability of a
+   step hangs on. Of a law of the user's own, what desc.law_stiffness says. */
 static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef, double m_eff,
                                         double overlap) {
     const double root = sqrt(overlap), r = (double)coef[DEMI_R_EFF];
@@ -11543,6 +11672,7 @@ typedef struct demi_grades {
     double smallest[DEMI_MATERIALS], peg[DEMI_MATERIALS];  /* m: moving; largest that is fixed */
     int many[DEMI_MATERIALS];                              /* that move, or more of their like */
 } demi_grades;
+/* Feeds count as if two grains of each class were there already. */
 static void demi_grades_of(const dem_world *w, demi_grades *g) {
     int i, j;
     memset(g, 0, sizeof *g);
@@ -11664,6 +11794,7 @@ typedef struct demi_press_whole {  /* per mass, inertia, root of both */
     double A[2][6], B[2][6], q[2][3];          /* 0: stiffness, 1: damping */
 } demi_press_whole;
 typedef struct demi_pressed { demi_stiffness s; dem_vec3 n; dem_real overlap; } demi_pressed;
+/* The cheap bound: stiffnesses of all contacts of a body added as if they were along one line. */
 static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, int moving,
                            double arm, demi_press *p) {
     const double m = (double)w->bodies.mass[body], f = moving ? 2 : 1;
@@ -11674,6 +11805,8 @@ static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, 
     p->contacts++;
     p->deepest = DEMI_MAX(p->deepest, c->overlap/w->bodies.pos[4*body + 3]);
 }
+/* The close one, where the cheap bound is not enough: the matrices of stiffness and damping of the
+   body, for its way (A), its turning (B), and how one asks for the other (q). */
 static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, int moving,
                                  double arm, demi_press_whole *p) {
     const double m = (double)w->bodies.mass[body], f = moving ? 2 : 1;
@@ -11692,6 +11825,7 @@ static void demi_press_add_whole(const dem_world *w, int body, const demi_presse
     for (d = 0; d < 2; d++)
         for (i = 0; i < 3; i++) p->q[d][i] += f*(d ? c->s.ct : c->s.kt)*arm*n[i]/sqrt(m*I);
 }
+/* The largest sum of a row, of a symmetric matrix of six numbers: no eigenvalue is larger. */
 static double demi_press_norm(const double *A) {
     const double x = fabs(A[0]) + fabs(A[1]) + fabs(A[2]), y = fabs(A[1]) + fabs(A[3]) + fabs(A[4]);
     return DEMI_MAX(DEMI_MAX(x, y), fabs(A[2]) + fabs(A[4]) + fabs(A[5]));
@@ -11808,6 +11942,8 @@ DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
     return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: the world has no grain "
                      "that moves; add grains before asking for a time step");
 }
+/* The time step for the scene as it is, asked for or advised; one that is not stable is refused.
+   A change of the step ends half steps of the old one first. */
 static dem_result demi_dt_settle(dem_world *w) {
     dem_advice a;
     double spin;
@@ -11860,7 +11996,7 @@ static dem_result demi_dt_check(dem_world *w) {
     double speed = w->booked.speed_max, limit;
     if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
     if (w->clock.steps == w->clock.press_since) speed = demi_fastest(w);
-    speed += w->margin.kick;
+    speed += w->margin.last_change;
     if (speed*(double)w->clock.dt > radius && radius > 0)
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: a body at %.3g m/s "
                          "moves %.3g radii of the smallest grain (%g m) in a step of %g s, must be "
@@ -11892,8 +12028,15 @@ static dem_result demi_dt_check(dem_world *w) {
 
 /* ---------------------------------------------------------------------------------------------
    >>step
-   One step in the order of the manual, and runs of many. The parts of a step run over domains, in
-   parallel. Errors of a run are found in the step that caused them and name the body.
+   One step in the order of the manual, and runs of many. The parts of a step run over domains,
+   in parallel, and wait for each other where one needs what another domain has done: after the
+   move (who has come near?), after touch (had all contacts room?), after respond (forces that
+   are fetched). A step begins where the one before ended its forces; its last half kick is left
+   open until somebody looks (demi_finish), since the next step's first one is the same sum:
+   velocities are touched once a step, not twice. What only a look needs, kinetic energy among
+   it, is worked out at the look. Errors of a run are found in the step that caused them and name
+   the body; a step that ran out of memory after its move is marked (stage.moved) and goes on
+   from there.
    --------------------------------------------------------------------------------------------- */
 
 /* How fast the fastest is, how much the most accelerated, and a sum that keeps what is not finite
@@ -11902,6 +12045,7 @@ static dem_result demi_dt_check(dem_world *w) {
 typedef struct demi_pace {
     dem_real speed2[DEMI_LANES], acceleration2[DEMI_LANES], sum[DEMI_LANES];
 } demi_pace;
+/* Maxima and a sum, per lane: the sum is not finite when any velocity is not. */
 DEM_INLINE void demi_pace_look(const dem_world *w, int i, demi_pace *DEMI_RESTRICT pace, int l) {
     const dem_real *v = w->bodies.half_vel + 4*i, *f = w->bodies.force + 4*i,
         inv = w->bodies.inv_mass[i];
@@ -11962,6 +12106,7 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
 }
+/* All bodies of a domain, a few at a time; what is found on the way goes into the domain's sums. */
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const int turning = demi_turns(w), some = 64;   /* these stay in the nearest cache */
@@ -12031,6 +12176,8 @@ static void demi_domain_clear(dem_world *w, int d) {
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
 }
+/* All contacts that a domain owns. Its own bodies are summed here; forces on bodies of other
+   domains stay in slots until all have answered (demi_cross_gather). */
 static void demi_domain_respond(dem_world *w, int d) {
     const size_t walls = (size_t)w->wall_count;
     demi_domain_clear(w, d);
@@ -12039,6 +12186,7 @@ static void demi_domain_respond(dem_world *w, int d) {
     demi_kept_clear(w, d);
     demi_kept_respond(w, d);
 }
+/* What others did to this domain's bodies, in the order of their entries. */
 static void demi_domain_gather(dem_world *w, int d) {
     int i;
     if (w->cross_entries) demi_cross_gather(w, d);
@@ -12245,7 +12393,7 @@ static dem_result demi_step_move(dem_world *w) {
     w->margin.step_reach =
         (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt;
     w->margin.reach += w->margin.step_reach;
-    w->margin.kick = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
+    w->margin.last_change = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->booked.energy[DEMI_E_GRAVITY] += work;
@@ -12279,7 +12427,7 @@ static dem_result demi_step_once(dem_world *w) {
     if (!w->stage.moved) {
         result = demi_step_move(w);
         if (result != DEM_OK) return result;
-        demi_near_pass(w, w->margin.kick);
+        demi_near_pass(w, w->margin.last_change);
         w->stage.moved = 1;
     }
     /* 2 search: when something may have come near that is not in the list. Outlets look then:
@@ -12472,6 +12620,7 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     id.id = w->field_count;
     return id;
 }
+/* From an id to a field, or a sentence in the name of `call`. */
 static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
     if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d", call,
@@ -12620,6 +12769,7 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
     }
     return h;
 }
+/* Memory of two spheres, the same whichever of them is a; 0 when there is nothing to remember. */
 static uint64_t demi_pair_digest(const dem_world *w, uint32_t sa, uint32_t sb,
                                  const dem_real *memory, size_t stride) {
     const uint32_t lo = DEMI_MIN(sa, sb), hi = DEMI_MAX(sa, sb);
@@ -12801,6 +12951,8 @@ typedef struct demi_text {
     char half[24];              /* 0.5 in this locale: strtod wants its decimal point             */
 } demi_text;
 
+/* A text at its beginning. Numbers in it have a point, whatever the locale says: `half` learns what
+   that puts between digits. */
 static demi_text demi_text_make(dem_world *w, const char *call, const char *name, const char *data,
                                 size_t size) {
     demi_text t;
@@ -13495,6 +13647,7 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
     return o->file ? DEM_OK : demi_out_close(o);
 }
 
+/* Of this machine: formats say which order they want. */
 static int demi_is_little_endian(void) {
     const uint16_t one = 1;
     unsigned char first;
@@ -13528,6 +13681,7 @@ static uint64_t demi_column_bytes(const demi_column *c) {
     return (uint64_t)c->count*(uint64_t)c->components*demi_column_size(c);
 }
 
+/* A column without data counts: first, first + stride, and so on. */
 static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
     const char *data = (const char *)c->data;
     size_t size = demi_column_size(c);
@@ -13952,6 +14106,8 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
 
 /* --- the scene: what a file and the world that reads it must have in common --- */
 
+/* --- digests of the parts of a scene: numbers that decide what a run does; pointers only as far as
+       whether there is one --- */
 static uint64_t demi_digest_desc(const dem_world *w, int index) {
     const dem_world_desc *d = &w->asked;
     const int flags[] = {(int)d->boundary[0], (int)d->boundary[1], (int)d->boundary[2], d->planar,
@@ -13969,6 +14125,7 @@ static uint64_t demi_digest_desc(const dem_world *w, int index) {
 static uint64_t demi_digest_material(const dem_world *w, int i) {
     return demi_hash(DEMI_HASH_START, &w->materials[i], sizeof w->materials[i]);
 }
+/* A row of the table: the material with every other. */
 static uint64_t demi_digest_pairs(const dem_world *w, int i) {
     uint64_t h = DEMI_HASH_START;
     int j;
@@ -13976,6 +14133,7 @@ static uint64_t demi_digest_pairs(const dem_world *w, int i) {
         h = demi_hash(h, &w->pairs[i*DEMI_MATERIALS + j].given, sizeof(dem_pair));
     return h;
 }
+/* What a shape is, not what was worked out from it. */
 static uint64_t demi_digest_shape(const dem_world *w, int i) {
     const demi_shape *shape = &w->shapes[i];
     uint64_t h = demi_hash(DEMI_HASH_START, &shape->count, sizeof shape->count);
@@ -14054,6 +14212,7 @@ static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
     {"field", "fields", demi_digest_field},
     {"feed", "feeds", demi_digest_feed},
     {"outlet", "outlets", demi_digest_outlet}};
+/* How many there are of each part, in the order of the rows. */
 static void demi_scene_counts(const dem_world *w, int32_t *counts) {
     counts[0] = 1;
     counts[1] = counts[2] = w->material_count;
@@ -14093,6 +14252,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
     DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
 }
+/* By the table: what a row declares as state is in the file, and nothing else. */
 static void demi_visit_bodies(dem_world *w, demi_stream *s) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -14167,6 +14327,7 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
     demi_visit(s, w->filed.memory,
                (size_t)w->filed.count*(size_t)w->filed.stride*sizeof(dem_real));
 }
+/* Where walls are, what they bear, how they move; their geometry is the scene's. */
 static void demi_visit_walls(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->wall_count; i++) {
@@ -14203,6 +14364,7 @@ static void demi_visit_measured(dem_world *w, demi_stream *s) {
     for (i = 0; i < w->outlet_count; i++)
         demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
 }
+/* Everything, in the one order that writing and reading share. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit_numbers(w, s);
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
@@ -14236,6 +14398,7 @@ static uint32_t demi_checkpoint_layout(void) {
     }
     return (uint32_t)(h ^ h >> 32);
 }
+/* One number for each part of the scene, so that a refusal can name the part that differs. */
 static void demi_visit_digests(const dem_world *w, demi_stream *s, const int32_t *counts) {
     int part, i;
     for (part = 0; part < DEMI_PARTS; part++)
@@ -14299,6 +14462,8 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
 
 /* --- reading: is it a checkpoint, whole, and of this scene? --- */
 
+/* Is it a checkpoint, whole, and of a program like this one? Nothing behind the head is looked at
+   before all of that is certain. */
 static dem_result demi_checkpoint_check(dem_world *w, const char *path, const char *data,
                                         size_t size, demi_checkpoint_head *head) {
     const char *call = "dem_checkpoint_read";
@@ -14449,6 +14614,7 @@ typedef struct demi_reader {
     demi_stream s;
 } demi_reader;
 
+/* The check sum is right and a number cannot be: says which. Answers 0. */
 static int demi_lie(const demi_reader *r, const char *what, long long which) {
     char number[32] = "";
     if (which >= 0) snprintf(number, sizeof number, " %lld", which + 1);
@@ -14464,13 +14630,14 @@ static int demi_left(const demi_reader *r, int64_t count, size_t size) {
 /* Finite, and at least `least`. */
 static int demi_sane(double x, double least) { return demi_finite_double(x) && x >= least; }
 
+/* Counts bound what is allocated and read next, so they come first. */
 static int demi_numbers_check(const demi_reader *r) {
     const dem_world *t = r->t, *w = r->w;
     const int tangent = demi_tangent_meant(w), rolling = demi_rolling_meant(w);
     const double positive[] =
         {t->margin.skin, t->margin.reach, t->margin.wall_reach, t->margin.skin_auto,
-        t->clock.assumed_speed, t->margin.span, t->margin.age, t->margin.slack, t->margin.drift,
-            t->margin.kick,
+        t->clock.assumed_speed, t->margin.span, t->margin.age, t->margin.slack, t->margin.change,
+            t->margin.last_change,
         t->margin.creep, t->booked.speed_max, t->clock.half_kick, (double)t->effects.radius_min,
             (double)t->effects.radius_max,
         (double)t->clock.dt};
@@ -14548,6 +14715,7 @@ static int demi_domain_check(const demi_reader *r, int d) {
            o->near_own + o->near_shaped_cross - o->near_shaped <= o->own &&
            o->near_end - o->near_cross + o->near_shaped_end - o->near_shaped_cross <= o->cross;
 }
+/* Bodies of all domains in a row; without a list, as much of it as the next one starts from. */
 static int demi_domains_check(const demi_reader *r) {
     dem_world *t = r->t;
     int d;
@@ -14586,6 +14754,8 @@ static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
 static dem_real demi_quat_size2(const dem_real *q) {
     return q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3];
 }
+/* Numbers of bodies that can be: finite, positive where they must be, of materials and shapes that
+   exist. */
 static int demi_bodies_sane(const demi_reader *r) {
     const dem_world *t = r->t;
     const int lost = demi_body_lost(t);
@@ -14630,6 +14800,8 @@ static int demi_near_check(const demi_reader *r, int d, const demi_list *list, i
     }
     return 1;
 }
+/* Every index in the lists: a pair stands where its lower body is, near pairs are candidates,
+   elements exist. After that steps may trust them. */
 static int demi_lists_check(const demi_reader *r) {
     dem_world *t = r->t;
     int d, l, k;
@@ -14690,12 +14862,14 @@ static int demi_contacts_check(const demi_reader *r) {
     }
     return 1;
 }
+/* A rotation, as far as its numbers tell, and a place that can be. */
 static int demi_pose_sane(const dem_pose *p) {
     int k;
     for (k = 0; k < 9; k++)
         if (!demi_finite(p->rotation[k]) || DEMI_ABS(p->rotation[k]) > 2) return 0;
     return demi_pose_finite(p) && demi_size(p->position) <= DEMI_REACH;
 }
+/* Poses turn and do not stretch; motions are of the kind that the scene has. */
 static int demi_walls_check(const demi_reader *r) {
     int i;
     for (i = 0; i < r->t->wall_count; i++) {
@@ -14711,6 +14885,7 @@ static int demi_walls_check(const demi_reader *r) {
     }
     return 1;
 }
+/* What fields and feeds count cannot be more than they were given. */
 static int demi_measured_check(const demi_reader *r) {
     int i, k;
     for (i = 0; i < r->t->field_count; i++)
@@ -14729,6 +14904,7 @@ static int demi_measured_check(const demi_reader *r) {
 
 /* --- reading: room, and what follows from the rest --- */
 
+/* Bodies get their room as if they were added. */
 static int demi_twin_bodies_room(dem_world *t) {
     const int orienting = t->bodies.orienting, count = t->bodies.count,
         slots = t->bodies.slot_count;
@@ -15083,6 +15259,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
             demi_law_memory_text(laws->rolling, text));
 }
+/* A line about bodies that turn, where there are any. */
 static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
@@ -15120,6 +15297,7 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                 o->sorted_mass);
     }
 }
+/* The account of energy; a residual that is not small says that the step is too large. */
 static void demi_ledger_report(const dem_world *w, FILE *out) {
     const dem_ledger l = dem_ledger_get(w);
     fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
@@ -15227,8 +15405,9 @@ typedef struct demi_slab {
 } demi_slab;
 
 /* The head is a world without grains of its own: it holds what the slabs have in common (time,
-   step, skin, errors), and lends itself to functions that ask a world for totals. It comes first,
-   so that a task finds its slabs. */
+   step, skin, errors), and lends itself to functions that ask a world for totals. It has the feeds,
+   too: every process draws for all slabs, and so all draw the same. It comes first, so that a task
+   finds its slabs. */
 struct dem_slabs {
     dem_world head;
     dem_slabs_desc desc;
@@ -15248,6 +15427,7 @@ struct dem_slabs {
 
 /* --- messages --- */
 
+/* Appends bytes. 0 when memory ran out; what was there stays. */
 static int demi_message_put(dem_world *w, demi_message *p, const void *data, size_t size) {
     if (!DEMI_GROW(w, p->bytes, p->size + size)) return 0;
     if (size) memcpy(p->bytes + p->size, data, size);
@@ -15434,6 +15614,7 @@ static void demi_filed_take(dem_world *w, int32_t *add, const demi_message_head 
    One step of all slabs: phases, what goes to neighbours, what is agreed on, new lists, borders.
    --------------------------------------------------------------------------------------------- */
 
+/* One slab's share of a phase, timed. */
 static void demi_slab_task(dem_world *w, int k) {
     dem_slabs *s = (dem_slabs *)(void *)w;      /* the head comes first */
     const double begun = demi_clock();
@@ -15456,12 +15637,14 @@ static const demi_message *demi_slab_inbox(const dem_slabs *s, const demi_slab *
     return k >= 0 && k < s->local ? &s->slabs[k].out[!side] : &b->in[side];
 }
 
+/* From here on processes may differ: nothing but collecting from elsewhere makes sense. */
 static dem_result demi_slabs_transport_failed(dem_slabs *s, const char *what, int answer) {
     s->broken = 1;
     return demi_fail(&s->head, DEM_ERROR_STOPPED, "dem_slabs_step: the transport's %s answered %d, "
                      "must be 0; the slabs cannot go on: mend the connection and create them anew "
                      "from the last collected world or checkpoint", what, answer);
 }
+/* Maxima over processes, or sums, which are of whole numbers. */
 static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int sum) {
     int answer;
     if (s->local == s->count) return DEM_OK;
@@ -15562,6 +15745,7 @@ static void demi_slabs_bin(const dem_slabs *s, const dem_world *w, double weight
         if (!demi_is_ghost(w, i)) bins[t > 0 ? t < n ? (int)t : n - 1 : 0] += weight;
     }
 }
+/* The highest place of its own grains, and minus the lowest: one reduction finds both. */
 static void demi_slabs_extent(const dem_slabs *s, const dem_world *w, double *ends) {
     int i;
     for (i = 0; i < w->bodies.count; i++) {
@@ -15703,6 +15887,7 @@ static void demi_slab_leave(dem_slabs *s, demi_slab *b) {
     for (i = 0; b->leavers && i < w->bodies.count; i++) w->bodies.ghost[w->bodies.slot[i]] = 0;
     if (!ok) b->result = demi_no_memory(w, "dem_slabs_step");
 }
+/* What a neighbour sent, in numbers, and where its grains begin; zeros where there is none. */
 static demi_message_head demi_slab_head(const dem_slabs *s, const demi_slab *b, int side,
                                        const char **grains) {
     demi_message_head head = {0, 0, 0, 0};
@@ -15712,6 +15897,7 @@ static demi_message_head demi_slab_head(const dem_slabs *s, const demi_slab *b, 
     }
     return head;
 }
+/* Room for all that arrives from both sides, before anything leaves. */
 static void demi_slab_room(dem_slabs *s, demi_slab *b) {
     const char *from = 0;
     const demi_message_head l = demi_slab_head(s, b, 0, &from);
@@ -15891,6 +16077,7 @@ static void demi_slab_outlets(dem_slabs *s, demi_slab *b) {
     (void)s;
     b->result = demi_outlets_run(b->world);
 }
+/* Outlets of all slabs; *search: somebody lost a grain. */
 static dem_result demi_slabs_outlets(dem_slabs *s, int *search) {
     dem_result result;
     double stale = 0;
@@ -15912,6 +16099,7 @@ static void demi_slabs_poses(dem_slabs *s) {
             s->slabs[k].world->walls[i].mid = from->walls[i].mid;
         }
 }
+/* State of the grains that are ghosts above: as much of it as the laws in force look at. */
 static void demi_slab_send(dem_slabs *s, demi_slab *b) {
     const dem_world *w = b->world;
     const size_t three = 3*sizeof(dem_real), reals = demi_slab_up(w);
@@ -15987,6 +16175,7 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     }
     if (!finite || !(deepest < 1)) b->result = demi_unstable(w);
 }
+/* Forces on own grains that are ghosts above come back, in the order in which they were lent. */
 static void demi_slab_add(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t down = demi_slab_down(w);
@@ -16092,6 +16281,7 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
         }
     return result;
 }
+/* The time step of all: one slab asks itself, more are stood in for by the head. */
 static dem_result demi_slabs_settle(dem_slabs *s) {
     dem_world *h = &s->head, *w = s->slabs[0].world;
     const dem_real before = h->clock.dt;
@@ -16122,6 +16312,7 @@ static dem_result demi_slabs_settle(dem_slabs *s) {
     return result;
 }
 
+/* As demi_refresh: forces at the present time, by a new list where somebody has none. */
 static dem_result demi_slabs_refresh(dem_slabs *s) {
     dem_result result;
     double stale = !s->head.stage.list_valid;
@@ -16143,7 +16334,8 @@ static dem_result demi_slabs_refresh(dem_slabs *s) {
 static dem_result demi_slabs_step_once(dem_slabs *s) {
     dem_world *h = &s->head;
     const dem_world *first = s->slabs[0].world;
-    /* speed, list stale, walls' reach, kick; near lists' creep, age over what they allow; reach */
+    /* speed, list stale, walls' reach, last change; near lists' creep, age over what they allow;
+       reach */
     double flags[7] = {0, 0, 0, 0, -1e300, -1e300, 0};
     const double dt = (double)h->clock.dt;
     dem_result result;
@@ -16153,8 +16345,9 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         const dem_world *w = s->slabs[k].world;
         flags[0] = DEMI_MAX(flags[0], w->booked.speed_max);
         flags[1] = DEMI_MAX(flags[1], !w->stage.list_valid);
-        flags[3] = DEMI_MAX(flags[3], w->margin.kick);
-        flags[4] = DEMI_MAX(flags[4], w->margin.creep + 2*w->margin.drift*dt - w->margin.slack);
+        flags[3] = DEMI_MAX(flags[3], w->margin.last_change);
+        flags[4] = DEMI_MAX(flags[4],
+                            w->margin.creep + 2*w->margin.change*dt - w->margin.slack);
         flags[5] = DEMI_MAX(flags[5], w->margin.age + dt - w->margin.span*(1 - 1e-9));
         flags[6] = DEMI_MAX(flags[6], w->margin.step_reach);
     }
@@ -16211,6 +16404,8 @@ static int demi_slab_widen(demi_slab *b, int slot) {
     return demi_bodies_reserve(w, (size_t)w->bodies.count + 1) &&
            DEMI_GROW(w, w->bodies.ghost, (size_t)slot + 2);
 }
+/* Who is near a feed's region, each slab for itself; distances are those of the whole scene, which
+   may be periodic where a slab is not. */
 static dem_result demi_slabs_look(void *who, const demi_region *g, dem_real radius) {
     dem_slabs *s = (dem_slabs *)who;
     int k;
@@ -16306,6 +16501,7 @@ static dem_result demi_slabs_feed(dem_slabs *s) {
     return result == DEM_OK ? demi_slabs_settle(s) : result;
 }
 
+/* Not after the transport has failed. */
 static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
     if (!s->broken) return DEM_OK;
     return demi_fail(&s->head, DEM_ERROR_STOPPED, "%s: the transport failed before, so slabs may "
@@ -16346,10 +16542,14 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
 
 /* ---------------------------------------------------------------------------------------------
    >>deal
-   Dealing a scene to slabs and collecting it again: their worlds, what each process finds out about
-   the others' when they are made, and the state of all of them written into one world.
+   Dealing a scene to slabs and collecting it again: their worlds, what each process finds out
+   about the others' when they are made, and the state of all of them written into one world. A
+   slab's world has the scene's materials, shapes, walls, fields and outlets, and slots for all
+   bodies there are; geometry is held once in a process. Collecting first asks whether the world
+   can take everything, then gets all its room, then writes: refused, it has changed nothing.
    --------------------------------------------------------------------------------------------- */
 
+/* --- an allocator of the user's own, as slabs on several threads see it --- */
 static void *demi_slabs_alloc(size_t size, void *user) {
     const dem_allocator *a = (const dem_allocator *)user;
     void *p;
@@ -16424,6 +16624,7 @@ static void demi_slab_sums_clear(dem_world *w) {
     }
     for (i = 0; i < w->outlet_count; i++) demi_outlet_clear(demi_outlet_at(w, i));
 }
+/* Every slab has all outlets: they stand where they stand, and take what is in that slab. */
 static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
     if (!DEMI_GROW(to, to->outlets, (size_t)from->outlet_count)) return 0;
     if (from->outlet_count)
@@ -16438,6 +16639,7 @@ static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
     h->feed_count = w->feed_count;
     return 1;
 }
+/* Each slab sums what its own grains add; what there is already, one slab inherits. */
 static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     int i;
     for (i = 0; i < from->field_count; i++) {
@@ -16511,6 +16713,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     if (index > 0) demi_slab_sums_clear(w);
     return w;
 }
+/* Has it got all it was to get? */
 static int demi_slab_ready(const dem_world *w, const dem_world *from) {
     return w && w->bodies.ghost && w->bodies.slot_index && w->bodies.slot_generation &&
            w->shape_count == from->shape_count && w->bodies.orienting == from->bodies.orienting &&
@@ -16707,6 +16910,7 @@ typedef struct demi_slab_sums {
     double energy[DEMI_ENERGIES], removed, inserted, throughput, overlap_max;
 } demi_slab_sums;
 
+/* All that one slab holds, as one message. */
 static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world, *h = &s->head;
     demi_message *out = &s->mine;
@@ -16780,6 +16984,7 @@ static const char *demi_slabs_find(const dem_slabs *s, int index, demi_slab_sums
     }
     return 0;
 }
+/* What one slab's outlet has let out, on top of the others'. */
 static const char *demi_outlet_add(demi_outlet *o, const char *from) {
     dem_outlet_state *to = &o->state, part;
     int k;
@@ -16835,6 +17040,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     for (i = 0; i < w->outlet_count; i++) from = demi_outlet_add(demi_outlet_at(w, i), from);
     return from;
 }
+/* From a slab's sums to its grains. */
 static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sums,
                                    const char *from) {
     int i;

@@ -171,7 +171,7 @@ static int step_timed(dem_world *w, double time[PHASES]) {
     double moved, found, done;
     int phase = MOVE;
     if (demi_step_move(w) != DEM_OK) return 0;
-    demi_near_pass(w, w->margin.kick);
+    demi_near_pass(w, w->margin.last_change);
     w->stage.moved = 1;
     moved = found = study_clock();
     if (!w->stage.list_valid || w->margin.skin <= 0 || 2*w->margin.reach > w->margin.skin || w->margin.reach + w->margin.wall_reach > w->margin.skin) {
