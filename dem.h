@@ -7642,8 +7642,12 @@ DEM_API dem_result dem_search_now(dem_world *w) {
 
 /* ---------------------------------------------------------------------------------------------
    >>touch
-   Geometry only: where a sphere meets a wall element, and which of the elements it overlaps count.
-   (Where two spheres meet is demi_tile_touch.) Knows no law and no material.
+   Geometry only: where a sphere, and what else is put in its place, meets a wall element, and
+   which of the elements it overlaps count. (Where two spheres meet is demi_tile_touch; which of
+   them are near is known from the candidates.) Knows no law and no material, works in the wall's
+   frame, and finds places: normal, point, overlap, share. A place that several facets name is
+   one; those whose weights cancel are gone before a law is asked. Room for places was counted
+   when the list was made.
    --------------------------------------------------------------------------------------------- */
 
 /* --- surfaces of facets: which places are nearest, and how often each counts (>>facets) --- */
@@ -11179,7 +11183,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
    the middle of one, when all have moved and a list is due. What a feed draws comes from its own
    random state in a fixed order: class, then place and velocity until a place is free. How much is
    due follows from the time alone. Who asks for room and puts grains in is told by a demi_feeder:
-   here a world, in >>slabs-step all slabs.
+   here a world, in >>slabs-run all slabs.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* places tried; steps until the next try */
 enum { DEMI_FEED_NEAR = 256 };                       /* bodies near one that joins the list */
@@ -15063,7 +15067,10 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
 
 /* ---------------------------------------------------------------------------------------------
    >>world
-   Making one, taking it down, saying what it does.
+   Making one, taking it down, saying what it does. A world is made of its desc, of which every 0
+   is replaced by a choice; the report tells what was chosen and which effects the scene calls
+   for, by the same functions that a run asks, on a copy: a report changes nothing. Taking it
+   down frees two chains of blocks (demi_hold), so that no array can be forgotten.
    --------------------------------------------------------------------------------------------- */
 DEM_API const char *dem_result_name(dem_result r) {
     static const char *names[] = {"ok", "bad argument", "out of memory", "file error",
