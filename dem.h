@@ -9915,7 +9915,9 @@ static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
     return demi_add(pose->velocity, demi_cross(pose->spin, demi_sub(at, pose->position)));
 }
 /* What contact c takes over from the one it continues: memory, and coefficients where what they
-   follow from is as it was. Answers that one; c itself when it is new: then nothing has turned. */
+   follow from is as it was (a sphere's on a wall always, a cluster's hardly ever: the mass that it
+   feels there changes as it turns). Answers that one; c itself when it is new: then nothing has
+   turned. */
 DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept *now,
                                              demi_kept *c) {
     const demi_kept *old = c->from < 0 ? c : now + c->from;
