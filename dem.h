@@ -1665,7 +1665,7 @@ static double demi_clock(void) {                          /* s of wall time, for
    Small vectors by value, poses, random numbers. Finite is tested on the exponent bits, which
    -ffast-math cannot fold away.
    --------------------------------------------------------------------------------------------- */
-#define DEMI_REACH 1e15             /* m: coordinates beyond are mistakes; squares could overflow */
+#define DEMI_FARTHEST 1e15          /* m: coordinates beyond are mistakes; squares could overflow */
 #define DEMI_LEAST 1e-12            /* m: surfaces smaller than that in all are mistakes, too */
 static double demi_size(dem_vec3 a) {                     /* largest component */
     return fmax(fabs((double)a.x), fmax(fabs((double)a.y), fabs((double)a.z)));
@@ -1686,7 +1686,7 @@ static int demi_finite_double(double x) {
 static int demi_finite(dem_real x) { return demi_finite_double((double)x); }
 static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y) &&
                                      demi_finite(v.z); }
-static int demi_place(dem_vec3 v) { return demi_finite3(v) && demi_size(v) <= DEMI_REACH; }
+static int demi_place(dem_vec3 v) { return demi_finite3(v) && demi_size(v) <= DEMI_FARTHEST; }
 
 /* local -> world and back, for points and for directions */
 DEM_INLINE dem_vec3 demi_rotate(const dem_real *R, dem_vec3 a) {
@@ -1947,7 +1947,7 @@ typedef struct demi_wall {
     int lone;                      /* its facets have neighbours of its own alone */
     dem_real span_lo[3], span_hi[3];   /* m, from where to where it goes, in a periodic world */
     int repeats[3];                /* along a periodic axis: it is not longer than the period */
-    dem_real reach;                /* m, farthest vertex from the frame's origin; < 0: endless */
+    dem_real extent;               /* m, farthest vertex from the frame's origin; < 0: endless */
     dem_pose home, pose;           /* pose at motion start, pose now */
     dem_pose first;                /* as it was added */
     dem_pose mid;                  /* in the middle of the step just taken */
@@ -2043,8 +2043,8 @@ typedef struct demi_stages {
     int skin_chosen, near_chosen;
 } demi_stages;
 typedef struct demi_margin {       /* >>rebuild, >>near: how long lists hold */
-    double skin, reach, wall_reach;/* m: margin, farthest a body / a wall point went since */
-    double step_reach;             /* m, farthest that any point of a body went in the last step */
+    double skin, gone, walls_gone; /* m: margin, farthest a body / a wall point went since */
+    double step_gone;              /* m, farthest that any point of a body went in the last step */
     double skin_auto;              /* m: what the cost model proposes; 0: nothing yet */
     double span, age;              /* s: how long the near list is meant to last, lasts already */
     double slack;                  /* m: what velocities may bring by having changed since */
@@ -2136,7 +2136,7 @@ struct dem_world {
     /* numbers alone, saved and copied whole */
     demi_timing clock;             /* >>step; dt and what hangs on it: >>advice */
     demi_stages stage;             /* undone by whoever changes the scene, made good by >>step */
-    demi_margin margin;            /* skin: >>rebuild; the near list's: >>near; reach: >>step */
+    demi_margin margin;            /* skin: >>rebuild; the near list's: >>near; gone: >>step */
     demi_in_force effects;         /* >>rebuild */
     demi_levels levels;            /* >>search */
     demi_booked booked;            /* >>ledger; what comes and goes: >>bodies, >>feed, >>step */
@@ -2838,7 +2838,7 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
     const dem_real four[] = {(dem_real)m, (dem_real)(1/m), (dem_real)inertia,
                              (dem_real)(1/inertia)};
     int k, bad = !demi_finite_double(m) || !(m > 0) || !demi_finite_double(inertia) ||
-        !(inertia > 0) || r > DEMI_REACH;
+        !(inertia > 0) || r > DEMI_FARTHEST;
     for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
     if (bad)
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius of number %d is %g m, which gives it a mass "
@@ -4097,7 +4097,7 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of "
                              "sphere %d is not a finite number, or the position is farther than "
                              "%g m from the origin; check the data it came from; no sphere was "
-                             "added", i, DEMI_REACH);
+                             "added", i, DEMI_FARTHEST);
     }
     if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count))
         return demi_no_memory(w, "dem_spheres_add");
@@ -4142,7 +4142,7 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
             (spin && !demi_finite3(demi_at(spin + 3*i)))) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: position, velocity or spin of body %d is not a "
                       "finite number, or the position is farther than %g m from the origin; check "
-                      "the data it came from; no body was added", call, i, DEMI_REACH);
+                      "the data it came from; no body was added", call, i, DEMI_FARTHEST);
             return 0;
         }
         if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
@@ -4319,7 +4319,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: position, velocity or spin of body "
                          "%u is not a finite number, or the position is farther than %g m from the "
                          "origin; check what it was computed from", (unsigned)body.slot,
-                         DEMI_REACH);
+                         DEMI_FARTHEST);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_set");
     before = demi_body_energy(w, i);
     m = (double)w->bodies.mass[i];
@@ -4755,7 +4755,7 @@ static void demi_wall_span(demi_wall *wall) {
     for (i = 0; i < wall->vertex_count; i++)
         demi_reach_add(lo, hi, demi_add(p->position, demi_rotate(p->rotation,
                                         demi_at(wall->vertices + 3*i))), pad);
-    if (!wall->vertex_count) demi_reach_add(lo, hi, p->position, wall->reach);
+    if (!wall->vertex_count) demi_reach_add(lo, hi, p->position, wall->extent);
     if (demi_wall_is(wall, DEMI_DRAWN)) {
         lo[2] = -far/4;
         hi[2] = far/4;
@@ -4772,7 +4772,7 @@ static void demi_walls_repeat(dem_world *w) {
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         memset(wall->repeats, 0, sizeof wall->repeats);
-        if (wall->kind == DEMI_WALL_NONE || wall->reach < 0) continue;
+        if (wall->kind == DEMI_WALL_NONE || wall->extent < 0) continue;
         if (!(w->wall_period[0] > 0 || w->wall_period[1] > 0 || w->wall_period[2] > 0)) continue;
         demi_wall_span(wall);
         for (k = 0; k < 3; k++) {
@@ -5330,10 +5330,10 @@ static int demi_pose_finite(const dem_pose *p) {
 static double demi_wall_speed(const demi_wall *wall) {
     const dem_pose *p = &wall->pose;
     if (wall->kind == DEMI_WALL_NONE || wall->symmetric) return 0;
-    if (wall->reach < 0 && demi_length(p->spin) > 0) return -1;   /* endless: no bound, look again
+    if (wall->extent < 0 && demi_length(p->spin) > 0) return -1;   /* endless: no bound, look again
                                                                      every step */
-    if (wall->reach < 0) return (double)demi_length(p->velocity);
-    return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->reach;
+    if (wall->extent < 0) return (double)demi_length(p->velocity);
+    return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->extent;
 }
 
 /* The arrays a wall owns: where their pointers stand. What is freed, and copied into slabs. */
@@ -5413,7 +5413,7 @@ static dem_box demi_wall_element_box(const demi_wall *wall, int element) {
 /* Box of all, and how far from the frame's origin they go. */
 static void demi_wall_bounds(demi_wall *wall) {
     const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
-    dem_real reach = 0;
+    dem_real extent = 0;
     int i;
     wall->box = demi_wall_element_box(wall, 0);
     for (i = 1; i < wall->element_count; i++) {
@@ -5424,8 +5424,8 @@ static void demi_wall_bounds(demi_wall *wall) {
                               DEMI_MAX(wall->box.hi.z, b.hi.z));
     }
     for (i = 0; i < wall->vertex_count; i++)
-        reach = DEMI_MAX(reach, demi_length(demi_at(wall->vertices + 3*i)) + pad);
-    wall->reach = reach;
+        extent = DEMI_MAX(extent, demi_length(demi_at(wall->vertices + 3*i)) + pad);
+    wall->extent = extent;
 }
 /* Size of the cells: the mean element, so that each is in few, but finer where elements are long
    and thin; coarser until neither cells nor entries are too many. */
@@ -5543,7 +5543,7 @@ DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 poi
     wall.motion.point = point;
     wall.motion.axis = demi_unit(normal);
     demi_frame_of(wall.home.rotation, demi_unit(normal));
-    wall.reach = -1;
+    wall.extent = -1;
     return demi_wall_adopt(w, "dem_plane_add", &wall);
 }
 
@@ -5569,7 +5569,7 @@ DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 
     wall.motion.point = point;
     wall.motion.axis = demi_unit(axis);
     demi_frame_of(wall.home.rotation, demi_unit(axis));
-    wall.reach = -1;
+    wall.extent = -1;
     return demi_wall_adopt(w, "dem_cylinder_add", &wall);
 }
 
@@ -5587,10 +5587,10 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
         return 0;
     }
     for (i = 0; i < vertices*per_vertex; i++)
-        if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_REACH) {
+        if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_FARTHEST) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
                       "finite and between -%g and %g; was the file read whole, in metres?", call,
-                      i/per_vertex, (double)xyz[i], DEMI_REACH, DEMI_REACH);
+                      i/per_vertex, (double)xyz[i], DEMI_FARTHEST, DEMI_FARTHEST);
             return 0;
         }
     for (i = 0; i < elements*per_element; i++)
@@ -5751,7 +5751,7 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
     wall.radius = d->radius;
     wall.home.position = wall.motion.point = d->point;
     wall.motion.axis = n;
-    wall.reach = d->radius > 0 ? d->radius + d->thickness + d->lift + d->bar : -1;
+    wall.extent = d->radius > 0 ? d->radius + d->thickness + d->lift + d->bar : -1;
     return demi_wall_adopt(w, "dem_sieve_add", &wall);
 }
 
@@ -5771,7 +5771,7 @@ static int demi_wall_symmetric(const demi_wall *wall) {
     const dem_motion *m = &wall->motion;
     dem_vec3 z, off;
     if (m->kind == DEM_MOTION_FIXED) return 1;
-    if (m->kind != DEM_MOTION_ROTATING || wall->reach >= 0) return 0;
+    if (m->kind != DEM_MOTION_ROTATING || wall->extent >= 0) return 0;
     z = demi_v(wall->home.rotation[2], wall->home.rotation[5], wall->home.rotation[8]);
     if (demi_length(demi_cross(z, demi_unit(m->axis))) > DEM_R(1e-6)) return 0;
     if (demi_wall_is(wall, DEMI_FLAT)) return 1;
@@ -6222,13 +6222,13 @@ static int demi_levels_lay(dem_world *w) {
 
 /* Cells of a level along one axis within `reach` of x. On a periodic axis they may lie beyond its
    ends, and when they go all the way round, each is there once and `round` is set. */
-typedef struct demi_reach { int first, last, round; } demi_reach;
+typedef struct demi_stretch { int first, last, round; } demi_stretch;
 /* Cells of a level, along one axis, that are within `reach` of x. */
-static demi_reach demi_level_span(const dem_world *w, const demi_level *level, int axis, double x,
+static demi_stretch demi_level_span(const dem_world *w, const demi_level *level, int axis, double x,
                                  double reach) {
     const int n = level->cells[axis];
     const double at = (x - w->cell_origin[axis])/level->size[axis], far = reach/level->size[axis];
-    demi_reach s;
+    demi_stretch s;
     s.round = 0;
     if (w->desc.boundary[axis] != DEM_BOUNDARY_PERIODIC) {
         s.first = (int)DEMI_MIN(DEMI_MAX(at - far, 0), n - 1);
@@ -6269,9 +6269,9 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     const double reach =
         ((double)w->bodies.pos[4*a + 3] + level->radius + w->margin.skin)*(1 + 1e-5) +
         slack;
-    const demi_reach sx = demi_level_span(w, level, 0, x, reach);
-    const demi_reach sy = demi_level_span(w, level, 1, y, reach);
-    const demi_reach sz = demi_level_span(w, level, 2, z, reach);
+    const demi_stretch sx = demi_level_span(w, level, 0, x, reach);
+    const demi_stretch sy = demi_level_span(w, level, 1, y, reach);
+    const demi_stretch sz = demi_level_span(w, level, 2, z, reach);
     int j, k;
     for (k = sz.first; k <= sz.last; k++) {
         const double left = reach*reach - (sz.round ? 0 : demi_level_gap2(w, level, 2, z, k));
@@ -6279,7 +6279,7 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
         for (j = sy.first; j <= sy.last; j++) {
             const double still = left - (sy.round ? 0 : demi_level_gap2(w, level, 1, y, j));
             const int row = slice + n[0]*(j < 0 ? j + n[1] : j >= n[1] ? j - n[1] : j);
-            demi_reach s = sx;
+            demi_stretch s = sx;
             if (still < 0) continue;
             /* the row leaves the sphere of reach before it leaves the cube around it */
             if (s.last - s.first > 3 && !s.round) s = demi_level_span(w, level, 0, x, sqrt(still));
@@ -7196,7 +7196,7 @@ static int demi_near_make(dem_world *w, int fresh) {
    >>rebuild
    Everything that hangs on which bodies are near which, made anew: the effects in force, the
    skin, the order of bodies, domains, lists. Why so often: a list is right as long as nobody has
-   gone farther than half the skin (margin.reach), since all pairs nearer than the skin are in
+   gone farther than half the skin (margin.gone), since all pairs nearer than the skin are in
    it; a wide skin makes lists last and each of them long, and the skin is chosen where both
    together cost least. Refusals come first: a rebuild that fails leaves places, memory and the
    old list as they were. New bodies may join a list that stands (demi_list_join).
@@ -7273,7 +7273,7 @@ static void demi_skin_choose(dem_world *w) {
     else if (steps > 0 && w->clock.rebuilds > 1 && w->bodies.count > 0) {
         double n = 0, hits = 0, slope, best;
         const double per_step =
-            DEMI_MAX(2*w->margin.reach, w->margin.reach + w->margin.wall_reach)/steps;
+            DEMI_MAX(2*w->margin.gone, w->margin.gone + w->margin.walls_gone)/steps;
         const double looks = DEMI_MIN(DEMI_MAX(w->margin.span/(double)w->clock.dt, 1), 100);
         int d;
         for (d = 0; d < w->domain_count; d++) {
@@ -7329,7 +7329,7 @@ static dem_result demi_lost(dem_world *w, int body) {
                      "or motion of your own that divides by zero): take the body out, or go back "
                      "to a checkpoint", (unsigned long long)w->clock.steps,
                      (unsigned)w->bodies.slot[body] + 1, (double)x[0], (double)x[1], (double)x[2],
-                     DEMI_REACH);
+                     DEMI_FARTHEST);
 }
 /* Bodies that lie on each other, or far from all others, share a cell, and a cell's bodies are all
    compared. 1 with a sentence when that would take minutes. */
@@ -7362,7 +7362,7 @@ static int demi_walls_end(dem_world *w, const char *call) {
         for (k = 0; k < 3; k++) {
             const demi_wall *wall = &w->walls[j];
             const dem_real lo = p.lo[k], hi = lo + p.period[k];
-            if (wall->kind == DEMI_WALL_NONE || wall->reach < 0 || wall->repeats[k] ||
+            if (wall->kind == DEMI_WALL_NONE || wall->extent < 0 || wall->repeats[k] ||
                 !(p.period[k] > 0) || !(w->bodies.count > 0) ||
                 (wall->span_lo[k] <= lo - need && wall->span_hi[k] >= hi + need)) continue;
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic axis "
@@ -7598,7 +7598,7 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     demi_slots_release(w);
     w->filed.count = 0;
     w->stage.skin_chosen = w->stage.near_chosen = 0;
-    w->margin.reach = w->margin.wall_reach = 0;
+    w->margin.gone = w->margin.walls_gone = 0;
     w->clock.last_rebuild = w->clock.steps;
     w->clock.rebuilds++;
     w->stage.list_valid = 1;
@@ -9036,7 +9036,7 @@ static const char *demi_kernel_choose(dem_world *w) {
 
 /* m: as far as any grain and any wall have come towards each other since the list was made. */
 DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
-    return (dem_real)(w->margin.reach + w->margin.wall_reach);
+    return (dem_real)(w->margin.gone + w->margin.walls_gone);
 }
 /* Room in which the places of one body and one wall are found. candidates: how many there are. */
 DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidates) {
@@ -9506,7 +9506,7 @@ static void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kep
    h
    (out = -1: the nearest, as a distance), h = sqrt(n.Q n), n = (cos, sin), for the ellipse of Q's
    first two rows about x: by Newton's method, uphill where the curve bends up. n: the direction. */
-static double demi_ellipse_reach(const double *Q, double x, double y, int out, double angle,
+static double demi_ellipse_far(const double *Q, double x, double y, int out, double angle,
                                  double *n) {
     int k;
     for (k = 0;; k++) {
@@ -9551,7 +9551,7 @@ static double demi_ellipse_shrink(const double *Q, double x, double y, int out, 
         W += step;
         if (!(W > 1e-3)) return 1 - 1e-3;
         for (e = 0; e < 6; e++) S[e] = W*W*Q[e];
-        far = demi_ellipse_reach(S, x, y, out, atan2(n[1], n[0]), n);
+        far = demi_ellipse_far(S, x, y, out, atan2(n[1], n[0]), n);
         if (fabs(step) < 1e-15) break;
     }
     return 1 - W;
@@ -9577,7 +9577,7 @@ static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, c
     double Q[6], n[3], far, left;
     dem_vec3 arm;
     demi_ellipsoid_matrix(p->q, p->axes, Q);
-    far = demi_ellipse_reach(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
+    far = demi_ellipse_far(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
                              ? atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
                              : atan2((double)x.y, (double)x.x), n);
     left = far - (double)wall->radius;
@@ -10634,7 +10634,7 @@ enum { DEMI_FILL_TRIES = 2000, DEMI_FILL_OUTSIDE = 200000 };
 typedef struct demi_node {
     int32_t child;                 /* the first of its two halves; 0: a leaf */
     int32_t first, count;          /* of a leaf: spheres, from `first` on by `next` */
-    dem_real reach;                /* m, largest radius below it */
+    dem_real largest;              /* m, largest radius below it */
 } demi_node;
 typedef struct demi_sphere { dem_vec3 at; dem_real radius; int32_t next, body; } demi_sphere;
 typedef struct demi_crowd {
@@ -10681,7 +10681,7 @@ static void demi_leaf_put(demi_node *leaf, demi_sphere *all, int32_t i) {
     all[i].next = leaf->first;
     leaf->first = i;
     leaf->count++;
-    leaf->reach = DEMI_MAX(leaf->reach, all[i].radius);
+    leaf->largest = DEMI_MAX(leaf->largest, all[i].radius);
 }
 /* Halves a leaf. 0 when memory ran out; it is as it was. */
 static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
@@ -10696,7 +10696,7 @@ static int demi_leaf_split(dem_world *w, demi_crowd *c, const demi_nook *at) {
         demi_node *half = nodes + c->nodes++;
         half->child = half->count = 0;
         half->first = -1;
-        half->reach = 0;
+        half->largest = 0;
     }
     for (i = nodes[at->node].first; i >= 0; i = next) {
         next = all[i].next;
@@ -10719,7 +10719,7 @@ static int demi_crowd_put(dem_world *w, demi_crowd *c, dem_vec3 x, dem_real radi
     s->body = body;
     for (;;) {
         node = demi_crowd_nodes(w) + at.node;
-        node->reach = DEMI_MAX(node->reach, radius);
+        node->largest = DEMI_MAX(node->largest, radius);
         if (!node->child && node->count >= DEMI_CROWD_LEAF && depth < DEMI_CROWD_DEPTH &&
             !demi_leaf_split(w, c, &at)) return 0;
         node = demi_crowd_nodes(w) + at.node;
@@ -10763,7 +10763,7 @@ static int demi_crowd_look(const dem_world *w, const demi_crowd *c, dem_vec3 cen
     while (top) {
         const demi_nook n = stack[--top];
         const demi_node *node = nodes + n.node;
-        const double cut = (double)(radius + node->reach);
+        const double cut = (double)(radius + node->largest);
         if (demi_nook_far2(c, &n, x) >= cut*cut) continue;
         if (node->child) {                      /* the half it is in comes first */
             const int upper = demi_nook_upper(&n, at);
@@ -10854,7 +10854,7 @@ static int demi_crowd_begin(dem_world *w, demi_crowd *c, const demi_region *g, d
     root = demi_crowd_nodes(w);
     root->child = root->count = 0;
     root->first = -1;
-    root->reach = 0;
+    root->largest = 0;
     c->lo[0] = (double)g->lo.x; c->lo[1] = (double)g->lo.y; c->lo[2] = (double)g->lo.z;
     for (k = 0; k < 3; k++) half[k] = g->size[k]/2;
     mid = demi_v((dem_real)(c->lo[0] + half[0]), (dem_real)(c->lo[1] + half[1]),
@@ -11601,7 +11601,7 @@ static double demi_speed_estimate(const dem_world *w) {
         if (wall->kind == DEMI_WALL_NONE) continue;
         speed = DEMI_MAX(speed, (double)demi_length(wall->pose.velocity) +
                          (double)demi_length(wall->pose.spin)*
-                         (double)DEMI_MAX(wall->reach, wall->radius));
+                         (double)DEMI_MAX(wall->extent, wall->radius));
         if (demi_wall_is(wall, DEMI_FLAT) || (wall->vertex_count &&
                                               !demi_wall_is(wall, DEMI_DRAWN))) {
             const int n = DEMI_MAX(wall->vertex_count, 1);
@@ -11612,7 +11612,7 @@ static double demi_speed_estimate(const dem_world *w) {
                 hi = DEMI_MAX(hi, (double)demi_dot(p, down));
             }
         } else hi = DEMI_MAX(hi, (double)demi_dot(wall->pose.position, down) +
-                             (double)DEMI_MAX(wall->radius, wall->reach));
+                             (double)DEMI_MAX(wall->radius, wall->extent));
     }
     if (g > 0 && hi > lo) speed = DEMI_MAX(speed, sqrt(2*g*(hi - lo)));
     return DEMI_MAX(speed, 1e-3);
@@ -12396,9 +12396,9 @@ static dem_result demi_step_move(dem_world *w) {
     if (sqrt(turn_rate)*(double)w->clock.dt > (w->desc.allow_large_dt ? 2 : 1))
         return demi_spins_refuse(w, sqrt(turn_rate), "dem_world_step");
     w->booked.speed_max = sqrt(speed2);
-    w->margin.step_reach =
+    w->margin.step_gone =
         (w->booked.speed_max + (w->effects.tight ? sqrt(turn_speed) : 0))*(double)w->clock.dt;
-    w->margin.reach += w->margin.step_reach;
+    w->margin.gone += w->margin.step_gone;
     w->margin.last_change = sqrt(acceleration2)*(double)w->clock.dt + sqrt(turn);
     if (w->desc.ledger) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
@@ -12416,10 +12416,10 @@ static dem_result demi_step_move(dem_world *w) {
                              "%d gave a pose that is not finite at %g s; check the motion function",
                              (unsigned long long)w->clock.steps, i + 1, w->clock.time);
         speed = demi_wall_speed(wall);
-        if (speed < 0) w->margin.wall_reach = 1e300;   /* no bound: look anew */
+        if (speed < 0) w->margin.walls_gone = 1e300;   /* no bound: look anew */
         else w->wall_fastest = DEMI_MAX(w->wall_fastest, speed);
     }
-    w->margin.wall_reach += w->wall_fastest*(double)w->clock.dt;
+    w->margin.walls_gone += w->wall_fastest*(double)w->clock.dt;
     w->wall_fastest = 0;
     return DEM_OK;
 }
@@ -12439,8 +12439,8 @@ static dem_result demi_step_once(dem_world *w) {
     /* 2 search: when something may have come near that is not in the list. Outlets look then:
        nobody gets farther than half a skin between two lists */
     result = demi_outflow(w);
-    search = !w->stage.list_valid || w->margin.skin <= 0 || 2*w->margin.reach > w->margin.skin ||
-             w->margin.reach + w->margin.wall_reach > w->margin.skin;
+    search = !w->stage.list_valid || w->margin.skin <= 0 || 2*w->margin.gone > w->margin.skin ||
+             w->margin.gone + w->margin.walls_gone > w->margin.skin;
     if (result == DEM_OK && w->outlet_count && (search || w->clock.steps%DEMI_OUTLET_REST == 0))
         result = demi_outlets_run(w);
     if (result != DEM_OK) return result;
@@ -13051,7 +13051,7 @@ static dem_result demi_text_real(demi_text *t, dem_real *value) {
     }
     copy[bad ? 0 : n] = 0;
     if (!bad) number = strtod(copy, &end);
-    if (bad || end != copy + n || number > DEMI_REACH || number < -DEMI_REACH)
+    if (bad || end != copy + n || number > DEMI_FARTHEST || number < -DEMI_FARTHEST)
         return demi_text_fail(t, "a coordinate is expected, a decimal number within +-1e15 (m); "
                               "correct it or export the file again");
     *value = (dem_real)number;
@@ -13226,7 +13226,7 @@ static dem_result demi_stl_binary(const demi_text *t, const char *data, dem_mesh
             uint32_t bits = demi_little32(data + byte);
             float value;
             memcpy(&value, &bits, sizeof value);
-            if ((bits >> 23 & 255) == 255 || fabs((double)value) > DEMI_REACH) /* 255: nan, inf */
+            if ((bits >> 23 & 255) == 255 || fabs((double)value) > DEMI_FARTHEST) /* nan, inf */
                 return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s byte %.0f: found a coordinate "
                                  "of triangle %.0f that is not a number within +-1e15 (m); export "
                                  "the mesh again", t->call, t->name, (double)byte, (double)i + 1);
@@ -14425,7 +14425,7 @@ static int demi_body_lost(const dem_world *w) {
             x = (const dem_real *)(const void *)demi_datum(w, a, i);
             for (e = 0; e < a->item/sizeof *x; e++) if (!demi_finite(x[e])) return i;
         }
-        if (demi_size(demi_at(w->bodies.pos + 4*i)) > DEMI_REACH) return i;
+        if (demi_size(demi_at(w->bodies.pos + 4*i)) > DEMI_FARTHEST) return i;
     }
     return -1;
 }
@@ -14641,7 +14641,7 @@ static int demi_numbers_check(const demi_reader *r) {
     const dem_world *t = r->t, *w = r->w;
     const int tangent = demi_tangent_meant(w), rolling = demi_rolling_meant(w);
     const double positive[] =
-        {t->margin.skin, t->margin.reach, t->margin.wall_reach, t->margin.skin_auto,
+        {t->margin.skin, t->margin.gone, t->margin.walls_gone, t->margin.skin_auto,
         t->clock.assumed_speed, t->margin.span, t->margin.age, t->margin.slack, t->margin.change,
             t->margin.last_change,
         t->margin.creep, t->booked.speed_max, t->clock.half_kick, (double)t->effects.radius_min,
@@ -14681,8 +14681,8 @@ static int demi_numbers_check(const demi_reader *r) {
         if (!demi_sane(positive[i], 0))
             return demi_lie(r, "its time, time step, skin or one of the lengths that go with the "
                             "list", -1);
-    if (!demi_finite_double(t->clock.time) || fabs(t->clock.time) > DEMI_REACH ||
-        !demi_finite_double(t->clock.since.time) || fabs(t->clock.since.time) > DEMI_REACH ||
+    if (!demi_finite_double(t->clock.time) || fabs(t->clock.time) > DEMI_FARTHEST ||
+        !demi_finite_double(t->clock.since.time) || fabs(t->clock.since.time) > DEMI_FARTHEST ||
         t->clock.since.steps > t->clock.steps || !demi_sane(t->clock.since.dt, 0) ||
         !demi_finite_double(t->clock.run_end) ||
             (t->stage.dt_valid && t->bodies.count && !(t->clock.dt > 0)) ||
@@ -14873,7 +14873,7 @@ static int demi_pose_sane(const dem_pose *p) {
     int k;
     for (k = 0; k < 9; k++)
         if (!demi_finite(p->rotation[k]) || DEMI_ABS(p->rotation[k]) > 2) return 0;
-    return demi_pose_finite(p) && demi_size(p->position) <= DEMI_REACH;
+    return demi_pose_finite(p) && demi_size(p->position) <= DEMI_FARTHEST;
 }
 /* Poses turn and do not stretch; motions are of the kind that the scene has. */
 static int demi_walls_check(const demi_reader *r) {
@@ -15406,7 +15406,7 @@ typedef struct demi_slab {
     demi_message in[2];             /* from them, when they are in another process */
     int32_t *lent, *ghost;         /* indices of own grains that are ghosts above; of ghosts here */
     dem_real *ghost_inv;           /* x 2: 1/mass, 1/inertia of ghosts */
-    int32_t *add;                  /* see demi_pairs_take */
+    int32_t *add;                  /* see demi_pairs_unpack */
     int lent_count, ghost_count, leavers;
     uint64_t bytes, migrated;
     double work, seconds;
@@ -15471,7 +15471,7 @@ static int demi_grain_put(dem_world *host, demi_message *out, const dem_world *w
     return 1;
 }
 /* Body i becomes the one that arrived. */
-static void demi_grain_take(dem_world *w, int i, const char **from) {
+static void demi_grain_unpack(dem_world *w, int i, const char **from) {
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
@@ -15487,7 +15487,7 @@ static uint32_t demi_grain_slot(const char *from) {
 /* Room has been seen to. Answers its index. */
 static int demi_grain_append(dem_world *w, const char **from) {
     const int i = w->bodies.count++;
-    demi_grain_take(w, i, from);
+    demi_grain_unpack(w, i, from);
     w->bodies.slot_index[w->bodies.slot[i]] = i;
     if (demi_shape_of(w, i)) w->bodies.shaped++;
     w->lll_valid = 0;
@@ -15549,7 +15549,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
 }
 
 /* Room for what is to arrive by these heads, beside what is filed already; `add` for
-   demi_pairs_take. Contacts that are there move to the first domain. 0 when memory ran out. */
+   demi_pairs_unpack. Contacts that are there move to the first domain. 0 when memory ran out. */
 static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_head *come) {
     const int had = w->filed.count, rows = w->bodies.slot_count;
     int d, total = 0;
@@ -15577,7 +15577,7 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
     return 1;
 }
 /* Files pairs that arrived behind those already in their rows. */
-static void demi_pairs_take(dem_world *w, int32_t *add, const char *from, int pairs) {
+static void demi_pairs_unpack(dem_world *w, int32_t *add, const char *from, int pairs) {
     const size_t per = (size_t)w->filed.stride*sizeof(dem_real), item = 2*sizeof(int32_t) + per;
     int32_t *start = w->filed.start, row, shift = pairs;
     int k;
@@ -15607,11 +15607,11 @@ static void demi_pairs_take(dem_world *w, int32_t *add, const char *from, int pa
     w->filed.count += pairs;
 }
 /* What a message has besides grains, which end at `from`: files all of it. */
-static void demi_filed_take(dem_world *w, int32_t *add, const demi_message_head *h,
+static void demi_filed_unpack(dem_world *w, int32_t *add, const demi_message_head *h,
                             const char *from) {
     demi_domain *first = &w->domains[0];
     if (!h->pairs && !h->contacts) return;
-    demi_pairs_take(w, add, from, h->pairs);
+    demi_pairs_unpack(w, add, from, h->pairs);
     from += (size_t)h->pairs*(2*sizeof(int32_t) + (size_t)h->stride*sizeof(dem_real));
     if (h->contacts)
         demi_unpack(&from, w->kept_now + first->kept, (size_t)h->contacts*sizeof(demi_kept));
@@ -15930,7 +15930,7 @@ static void demi_slab_migrate(dem_slabs *s, demi_slab *b) {
         const char *from = 0;
         const demi_message_head h = demi_slab_head(s, b, side, &from);
         for (i = 0; i < h.grains; i++) demi_grain_append(w, &from);
-        demi_filed_take(w, b->add, &h, from);
+        demi_filed_unpack(w, b->add, &h, from);
     }
 }
 /* Grains near enough to the upper border to touch something beyond it. */
@@ -16053,7 +16053,7 @@ static dem_result demi_slabs_rebuild(dem_slabs *s) {
     }
     if (result != DEM_OK) { h->margin.skin_auto = skin_before; return result; }
     if (s->count == 1) h->margin.skin = s->slabs[0].world->margin.skin;
-    h->margin.reach = h->margin.wall_reach = 0;
+    h->margin.gone = h->margin.walls_gone = 0;
     h->clock.last_rebuild = h->clock.steps;
     h->clock.rebuilds++;
     h->stage.list_valid = 1;
@@ -16358,9 +16358,9 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         flags[4] = DEMI_MAX(flags[4],
                             w->margin.creep + 2*w->margin.change*dt - w->margin.slack);
         flags[5] = DEMI_MAX(flags[5], w->margin.age + dt - w->margin.span*(1 - 1e-9));
-        flags[6] = DEMI_MAX(flags[6], w->margin.step_reach);
+        flags[6] = DEMI_MAX(flags[6], w->margin.step_gone);
     }
-    flags[2] = first->margin.wall_reach;
+    flags[2] = first->margin.walls_gone;
     if (!h->stage.moved) {
         h->stage.moved = 1;
         h->clock.time = first->clock.time;
@@ -16369,21 +16369,21 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         demi_slabs_poses(s);
         result = demi_slabs_agree(s, flags, 7);
         h->booked.speed_max = flags[0];
-        h->margin.reach += flags[6];
+        h->margin.gone += flags[6];
         for (k = 0; k < s->local; k++) demi_near_pass(s->slabs[k].world, flags[3]);
         h->near_due = flags[4] + 2*flags[3]*dt > -1e-6*h->margin.skin || flags[5] > -1e-6*dt;
     } else result = demi_slabs_agree(s, flags, 7);
     if (result != DEM_OK) return result;
     near = s->count == 1 || h->near_due;        /* each looks for itself again */
-    if (s->count == 1) h->margin.reach = first->margin.reach;
-    h->margin.wall_reach = flags[2];
+    if (s->count == 1) h->margin.gone = first->margin.gone;
+    h->margin.walls_gone = flags[2];
     for (k = 0; k < s->local && s->count > 1; k++) {           /* what lists count on */
-        s->slabs[k].world->margin.reach = h->margin.reach;
-        s->slabs[k].world->margin.wall_reach = h->margin.wall_reach;
+        s->slabs[k].world->margin.gone = h->margin.gone;
+        s->slabs[k].world->margin.walls_gone = h->margin.walls_gone;
     }
     search = flags[1] > 0 || !h->stage.list_valid || h->margin.skin <= 0 ||
-             2*h->margin.reach > h->margin.skin ||
-             h->margin.reach + h->margin.wall_reach > h->margin.skin;
+             2*h->margin.gone > h->margin.skin ||
+             h->margin.gone + h->margin.walls_gone > h->margin.skin;
     if (first->outlet_count && (search || h->clock.steps%DEMI_OUTLET_REST == 0)) {
         result = demi_slabs_outlets(s, &search);
         if (result != DEM_OK) return result;
@@ -16746,7 +16746,7 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
     demi_unpack(&at, &h, sizeof h);
     if (!demi_bodies_reserve(w, (size_t)h.grains) || !demi_filed_reserve(w, &b->add, &h)) return 0;
     for (i = 0; i < h.grains; i++) demi_grain_append(w, &at);
-    demi_filed_take(w, b->add, &h, at);
+    demi_filed_unpack(w, b->add, &h, at);
     return 1;
 }
 
@@ -17074,7 +17074,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     w->booked.speed_max = h->booked.speed_max; w->stage.moved =
         h->stage.moved;         w->stage.synced = from->stage.synced;
     w->clock.half_kick = from->clock.half_kick;
-    w->margin.reach = h->margin.reach;         w->margin.wall_reach = h->margin.wall_reach;
+    w->margin.gone = h->margin.gone;         w->margin.walls_gone = h->margin.walls_gone;
     w->stage.forces_valid = h->stage.forces_valid;
     w->bodies.balance.left = 0;
     w->booked.removed = w->booked.inserted = w->booked.throughput = w->booked.overlap_max = 0;
@@ -17111,11 +17111,11 @@ static void demi_slabs_write(dem_world *w, int32_t *add, uint8_t *seen, const ch
             w->bodies.slot_index[slot] = w->bodies.count++;
             w->bodies.balance.present++;
         }
-        demi_grain_take(w, w->bodies.slot_index[slot], &from);
+        demi_grain_unpack(w, w->bodies.slot_index[slot], &from);
         seen[slot] = 1;
     }
     w->lll_valid = 0;
-    demi_filed_take(w, add, &head, from);
+    demi_filed_unpack(w, add, &head, from);
 }
 /* Slots of grains that were fed since the world was told the last time, nobody's as yet. */
 static void demi_slabs_slots(const dem_slabs *s, dem_world *w) {

@@ -174,7 +174,7 @@ static int step_timed(dem_world *w, double time[PHASES]) {
     demi_near_pass(w, w->margin.last_change);
     w->stage.moved = 1;
     moved = found = study_clock();
-    if (!w->stage.list_valid || w->margin.skin <= 0 || 2*w->margin.reach > w->margin.skin || w->margin.reach + w->margin.wall_reach > w->margin.skin) {
+    if (!w->stage.list_valid || w->margin.skin <= 0 || 2*w->margin.gone > w->margin.skin || w->margin.gone + w->margin.walls_gone > w->margin.skin) {
         if (demi_rebuild(w, "dem_world_step") != DEM_OK) return 0;
         kernel_choose(w);
         phase = SEARCH;

@@ -439,7 +439,7 @@ int main(int argc, char **argv) {
                 d.box = box_of(-0.03, -0.03, 0.02, 0.03, 0.03, 0.04);
                 dem_feed_add(world[way], &d);
                 for (i = 0; i < 800; i++) {
-                    if (way) world[way]->margin.reach = 1;
+                    if (way) world[way]->margin.gone = 1;
                     CHECK_EQ(scene_step(world[way], 1), DEM_OK);
                 }
                 dem_feed_get(world[way], first, &f);
