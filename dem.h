@@ -11031,7 +11031,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     demi_built(w, call);                        /* fewer than asked: the answer says so */
     return done;
 }
-/* All of a box. */
+/* All of a box: no cylinder, no function. */
 static dem_region demi_region_box(dem_box box) {
     dem_region region;
     memset(&region, 0, sizeof region);
@@ -11427,7 +11427,7 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
     }
     return DEM_OK;
 }
-/* What is due in a world that is not dealt to slabs. */
+/* What is due in a world that is not dealt to slabs; before a step. */
 static dem_result demi_world_feed(dem_world *w) {
     demi_world_feeder to;
     demi_feeder feeder;
