@@ -586,7 +586,7 @@ int main(int argc, char **argv) {
         from = message.bytes;
         for (i = 0; i < 40; i++) {
             const int slot = (int)demi_grain_slot(from);
-            demi_grain_take(c, c->bodies.slot_index[slot], &from);
+            demi_grain_unpack(c, c->bodies.slot_index[slot], &from);
         }
         CHECK_EQ(kept_differ(a, c), 0);
         dem_world_destroy(a);
