@@ -32,7 +32,7 @@
        >>rebuild     effects, skin, order of bodies, domains: all lists made anew
        >>touch       candidate pairs -> contacts: geometry only
        >>respond     contact -> force and torque: the loops that bring touch and law together
-       >>on-walls    where spheres touch walls: geometry only
+       >>on-walls    where parts of bodies touch walls: geometry only
        >>kept        contacts kept by themselves, all but sphere on sphere: touch and respond
        >>integrators kick, drift, predict; rotation
        >>ledger      where the energy went
@@ -1798,9 +1798,10 @@ typedef struct demi_link {
 } demi_link;
 /* A shape, in its principal frame, per unit of mass and scale. */
 typedef struct demi_shape {
-    int count;                     /* spheres of a cluster; 0: an ellipsoid */
+    int kind;                      /* of its parts: DEMI_BALL, ... */
+    int count;                     /* spheres of a cluster; 0: it is one part */
     dem_real *parts;               /* count x 4: centre, radius, m */
-    dem_vec3 axes;                 /* m, semi-axes of an ellipsoid */
+    dem_vec3 axes;                 /* m, of one part: lengths as its kind has them */
     dem_vec3 inertia;              /* m2, principal moments per mass */
     double volume;                 /* m3 */
     dem_real radius;               /* m, of the bounding sphere */
@@ -1877,13 +1878,30 @@ typedef struct demi_domain {
     double energy[DEMI_ENERGIES];
 } demi_domain;
 
+/* What touches: kinds of a body's parts (a cluster is of balls), a row each; nothing else names a
+   kind but its own functions. >>add-shape: a declaration in >>scene; a row here, and in the rows of
+   walls below how they touch it; functions above the tables in >>kept. A row: constant; NAME; name
+   in sentences; how far apart two parts are, the other one of this kind or of one above, or less;
+   how the two touch, for each kind above and its own, in that order (0, or left out: they do not
+   know each other, which is said when the second of the two is added; all must know balls).
+   The functions of that NAME: demi_NAME_support, _thin, _equal, _curve, _drawn (>>shapes says what
+   they tell) and _on_wall (>>kept). */
+#define DEMI_SHAPES(X) \
+    X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
+    X(ELLIPSOID, ellipsoid, "ellipsoid", demi_ellipsoids_gap, \
+      (demi_ellipsoids_touch, demi_ellipsoids_touch)) \
+    /* the last */
+#define DEMI_SHAPE_CONSTANT(KIND, NAME, WORD, GAP, TOUCH) DEMI_##KIND,
+enum { DEMI_SHAPES(DEMI_SHAPE_CONSTANT) DEMI_SHAPE_KINDS };
+#define DEMI_LIST(...) {__VA_ARGS__}            /* one field of a row that is a list: (a, b) */
+
 /* Kinds of walls, a row each; nothing else names a kind but its own functions. >>add-wall: a row
    here, a declaration in >>scene, functions above the tables in >>kept. A row: constant; corners
    of an element (0: it has none); places a candidate may give at most; traits; name in sentences;
-   how near a sphere is to one element; how spheres touch it, how ellipsoids do (0: they do not know
-   each other, which is said when the second of the two is added); how its normals turn as a ball
-   moves (0: not at all). demi_elements_touch serves any wall; planes and cylinders have copies with
-   theirs inlined. */
+   how near a sphere is to one element; how parts touch it, by their kinds in the order above (0,
+   or left out: they do not know each other, which is said when the second of the two is added);
+   how its normals turn as a ball moves (0: not at all). demi_elements_touch serves any wall; planes
+   and cylinders have copies with theirs inlined. */
 enum {
     DEMI_FACETS = 1,               /* a surface of facets, see >>facets */
     DEMI_DRAWN = 2,                /* drawn out along its own z without end: seen at z = 0 */
@@ -1893,28 +1911,27 @@ enum {
 enum { DEMI_SIEVE_MOST = 12 };                  /* contacts of a grain with a sieve */
 #define DEMI_WALLS(X) \
     X(PLANE,    0, 7, DEMI_FLAT, "plane", \
-      demi_plane_near, demi_plane_spheres, demi_plane_ellipsoid, 0) \
+      demi_plane_near, (demi_plane_spheres, demi_plane_ellipsoid), 0) \
     X(CYLINDER, 0, 7, 0, "cylinder", \
-      demi_cylinder_near, demi_cylinder_spheres, demi_cylinder_ellipsoid, demi_cylinder_bend) \
+      demi_cylinder_near, (demi_cylinder_spheres, demi_cylinder_ellipsoid), demi_cylinder_bend) \
     X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", \
-      demi_facet_distance, demi_facets_spheres, demi_facets_ellipsoid, demi_profile_bend) \
+      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid), demi_profile_bend) \
     X(SEGMENTS, 2, 7, DEMI_DRAWN, "profile of DEM_EDGE_FRACTION", \
-      demi_facet_distance, demi_segments_touch, 0, 0) \
+      demi_facet_distance, (demi_segments_touch), 0) \
     X(MESH,     3, 7, DEMI_FACETS, "mesh", \
-      demi_facet_distance, demi_facets_spheres, demi_facets_ellipsoid, demi_mesh_bend) \
+      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid), demi_mesh_bend) \
     X(GRAINS,   1, 7, DEMI_BALLS, "wall of grains", \
-      demi_grain_near, demi_elements_touch, demi_grain_ellipsoid, demi_grain_bend) \
+      demi_grain_near, (demi_elements_touch, demi_grain_ellipsoid), demi_grain_bend) \
     X(SIEVE,    0, DEMI_SIEVE_MOST, 0, "sieve", \
-      demi_sieve_near, demi_sieve_spheres, 0, 0) \
+      demi_sieve_near, (demi_sieve_spheres), 0) \
     /* the last */
-#define DEMI_WALL_CONSTANT(KIND, C, M, T, N, E, S, L, B) DEMI_WALL_##KIND,
+#define DEMI_WALL_CONSTANT(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_WALL_##KIND,
 enum { DEMI_WALL_NONE = 0, DEMI_WALLS(DEMI_WALL_CONSTANT) DEMI_WALL_KINDS };
 typedef struct demi_wall_kind { int corners, most, traits; const char *name; } demi_wall_kind;
-#define DEMI_WALL_KIND(KIND, CORNERS, MOST, TRAITS, NAME, E, S, L, B) {CORNERS, MOST, TRAITS, NAME},
+#define DEMI_WALL_KIND(KIND, CORNERS, MOST, TRAITS, NAME, NEAR, TOUCH, BEND) \
+    {CORNERS, MOST, TRAITS, NAME},
 static const demi_wall_kind demi_wall_kinds[] = {{0, 0, 0, "wall that was removed"},
     DEMI_WALLS(DEMI_WALL_KIND)};
-/* What touches: spheres, clusters being many of them, and ellipsoids. */
-enum { DEMI_BALL, DEMI_ELLIPSOID, DEMI_SHAPES };
 
 /* A piece of a triangle's side that ends at corners of other triangles. */
 typedef struct demi_cut {
@@ -2993,6 +3010,40 @@ static void demi_jacobi3(double M[3][3], double E[3][3]) {
     }
 }
 
+/* Parts of a body: the spheres of a cluster, or the one it is. */
+typedef struct demi_part {
+    int kind;                      /* DEMI_BALL, ... */
+    dem_real radius;               /* m, of the bounding sphere: a ball's own */
+    dem_vec3 centre;               /* m, from the body's */
+    dem_vec3 axes;                 /* m, of all but balls: lengths as its kind has them */
+    dem_quat q;                    /* of all but balls */
+} demi_part;
+/* What a kind of part tells of itself, and how two keep apart; what touches stands in >>kept. */
+typedef struct demi_shape_row {
+    const char *name;
+    dem_real (*support)(dem_vec3 axes, dem_vec3 n);     /* m, how far it reaches along n (unit) */
+    dem_real (*thin)(const demi_part *p);               /* m, smallest radius */
+    double (*equal)(const demi_part *p);                /* m, radius of the sphere of its volume */
+    double (*curve)(const demi_part *p, double h);      /* m, of curvature where its height is h */
+    dem_vec3 (*drawn)(const demi_part *p);              /* m, semi-axes of what files show */
+    dem_real (*gap)(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
+} demi_shape_row;
+#define DEMI_SHAPE_DECLARE(KIND, NAME, WORD, GAP, TOUCH) \
+    static dem_real demi_##NAME##_support(dem_vec3 axes, dem_vec3 n); \
+    static dem_real demi_##NAME##_thin(const demi_part *p); \
+    static double demi_##NAME##_equal(const demi_part *p); \
+    static double demi_##NAME##_curve(const demi_part *p, double h); \
+    static dem_vec3 demi_##NAME##_drawn(const demi_part *p); \
+    static dem_real GAP(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
+DEMI_SHAPES(DEMI_SHAPE_DECLARE)
+#define DEMI_SHAPE_ROW(KIND, NAME, WORD, GAP, TOUCH) \
+    {WORD, demi_##NAME##_support, demi_##NAME##_thin, demi_##NAME##_equal, demi_##NAME##_curve, \
+     demi_##NAME##_drawn, GAP},
+static const demi_shape_row demi_shape_rows[] = {DEMI_SHAPES(DEMI_SHAPE_ROW)};
+static int demi_shape_kind(const demi_shape *shape) { return shape ? shape->kind : DEMI_BALL; }
+/* "a sphere", "an ellipsoid". */
+static const char *demi_an(const char *name) { return strchr("aeiou", name[0]) ? "n" : ""; }
+
 /* Volume, first and second moments of matter about the origin: 1, x y z, xx yy zz xy xz yz. */
 typedef struct demi_moments { double one, x[3], xx[6]; } demi_moments;
 /* Adds matter of volume v about c; own: its mean square extent along an axis, about its own
@@ -3078,56 +3129,74 @@ static void demi_shape_principal(demi_shape *shape, const demi_moments *m) {
 
 /* What the search and the time step want to know of a shape: how far it reaches, how far from the
    centre a contact's force may pass, its smallest radius, and how light and blunt it may seem in a
-   contact: mass 1/g over (l/h)^2 at worst, g = n.K n of its own half.
-   */
-static void demi_shape_bounds(demi_shape *shape) {
+   contact: mass 1/g over (l/h)^2 at worst, g = n.K n of its own half. */
+static void demi_cluster_bounds(demi_shape *shape) {
+    const dem_vec3 I = shape->inertia;
+    const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
+    int i;
+    shape->radius = shape->moment_arm = shape->blunt = 0;
+    shape->thin = shape->parts[3];
+    for (i = 0; i < shape->count; i++) {
+        const dem_real l = demi_length(demi_at(shape->parts + 4*i)), r = shape->parts[4*i + 3];
+        shape->radius = DEMI_MAX(shape->radius, l + r);
+        shape->moment_arm = DEMI_MAX(shape->moment_arm, l);
+        shape->thin = DEMI_MIN(shape->thin, r);
+        shape->blunt = DEMI_MAX(shape->blunt, r);
+    }
+    shape->light = 1/(1 + (double)shape->moment_arm*(double)shape->moment_arm/least);
+}
+static void demi_ellipsoid_bounds(demi_shape *shape) {
     const double I[3] = {(double)shape->inertia.x, (double)shape->inertia.y,
                          (double)shape->inertia.z};
-    double least = DEMI_MIN(I[0], DEMI_MIN(I[1], I[2]));
+    const double a[3] = {(double)shape->axes.x, (double)shape->axes.y, (double)shape->axes.z};
+    const double l = pow(a[0]*a[1]*a[2], 1.0/3);
     int i, k, j;
+    shape->radius = (dem_real)DEMI_MAX(a[0], DEMI_MAX(a[1], a[2]));
+    shape->thin = (dem_real)DEMI_MIN(a[0], DEMI_MIN(a[1], a[2]));
+    shape->moment_arm = shape->radius - shape->thin;
+    shape->blunt = (dem_real)(l*l*l)/(shape->thin*shape->thin);
     shape->light = 1;
-    if (shape->count) {
-        shape->radius = shape->moment_arm = shape->blunt = 0;
-        shape->thin = shape->parts[3];
-        for (i = 0; i < shape->count; i++) {
-            const dem_real l = demi_length(demi_at(shape->parts + 4*i)), r = shape->parts[4*i + 3];
-            shape->radius = DEMI_MAX(shape->radius, l + r);
-            shape->moment_arm = DEMI_MAX(shape->moment_arm, l);
-            shape->thin = DEMI_MIN(shape->thin, r);
-            shape->blunt = DEMI_MAX(shape->blunt, r);
+    for (k = 0; k < 3; k++)                     /* normals in the three principal planes */
+        for (i = 0; i <= 64; i++) {
+            const double n0 = cos(DEMI_PI/2*i/64), n1 = sin(DEMI_PI/2*i/64);
+            const double u = a[k], v = a[(k + 1)%3], h = sqrt(n0*n0*u*u + n1*n1*v*v);
+            const double arm = n0*n1*(u*u - v*v)/h;
+            j = (k + 2)%3;
+            shape->light = DEMI_MIN(shape->light, h*h/(l*l)/(1 + arm*arm/I[j]));
         }
-        shape->light = 1/(1 + (double)shape->moment_arm*(double)shape->moment_arm/least);
-    } else {
-        const double a[3] = {(double)shape->axes.x, (double)shape->axes.y, (double)shape->axes.z};
-        const double l = pow(a[0]*a[1]*a[2], 1.0/3);
-        shape->radius = (dem_real)DEMI_MAX(a[0], DEMI_MAX(a[1], a[2]));
-        shape->thin = (dem_real)DEMI_MIN(a[0], DEMI_MIN(a[1], a[2]));
-        shape->moment_arm = shape->radius - shape->thin;
-        shape->blunt = (dem_real)(l*l*l)/(shape->thin*shape->thin);
-        for (k = 0; k < 3; k++)                 /* normals in the three principal planes */
-            for (i = 0; i <= 64; i++) {
-                const double n0 = cos(DEMI_PI/2*i/64), n1 = sin(DEMI_PI/2*i/64);
-                const double u = a[k], v = a[(k + 1)%3], h = sqrt(n0*n0*u*u + n1*n1*v*v);
-                const double arm = n0*n1*(u*u - v*v)/h;
-                j = (k + 2)%3;
-                shape->light = DEMI_MIN(shape->light, h*h/(l*l)/(1 + arm*arm/I[j]));
-            }
-    }
-    shape->equal = (dem_real)pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
 }
 
 /* Takes over a prepared shape (its array included) or frees it. */
 static void demi_shape_free(dem_world *w, demi_shape *shape) {
     demi_free(w, shape->parts);
 }
+/* Do parts of these two kinds know each other? (>>kept) */
+static int demi_meet_known(int kind, int other);
+/* 1 with a sentence when a shape that is to be added does not know another, its like or spheres. */
+static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
+    int i, other;
+    for (i = -1; i <= w->shape_count; i++) {
+        other = i < 0 ? DEMI_BALL : i < w->shape_count ? w->shapes[i].kind : kind;
+        if (demi_meet_known(kind, other)) continue;
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d, a%s %s, and shape %d, a%s %s, do not know "
+                  "each other: a world holds one or the other; nothing was added", call,
+                  w->shape_count + 1, demi_an(demi_shape_rows[kind].name),
+                  demi_shape_rows[kind].name, i + 1, demi_an(demi_shape_rows[other].name),
+                  demi_shape_rows[other].name);
+        return 1;
+    }
+    return 0;
+}
 static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *shape) {
     dem_shape id;
     id.id = 0;
+    if (demi_shapes_strange(w, call, shape->kind)) { demi_shape_free(w, shape); return id; }
     if (!demi_grow(w, DEMI_SCENE, &w->shapes, sizeof *w->shapes, (size_t)w->shape_count + 1)) {
         demi_shape_free(w, shape);
         demi_no_memory(w, call);
         return id;
     }
+    shape->equal = (dem_real)pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
     w->shapes[w->shape_count++] = *shape;
     demi_built(w, call);
     id.id = w->shape_count;
@@ -3156,11 +3225,12 @@ DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
         return none;
     }
     memset(&shape, 0, sizeof shape);
+    shape.kind = DEMI_ELLIPSOID;
     shape.axes = a;
     shape.volume = 4*DEMI_PI/3*(double)a.x*(double)a.y*(double)a.z;
     shape.inertia = demi_v((a.y*a.y + a.z*a.z)/5, (a.x*a.x + a.z*a.z)/5, (a.x*a.x + a.y*a.y)/5);
     shape.frame = dem_quat_make(1, 0, 0, 0);
-    demi_shape_bounds(&shape);
+    demi_ellipsoid_bounds(&shape);
     return demi_shape_adopt(w, "dem_shape_ellipsoid_add", &shape);
 }
 
@@ -3273,6 +3343,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
     none.id = 0;
     if (demi_shape_planar(w, "dem_shape_cluster_add") || !demi_cluster_check(w, desc)) return none;
     memset(&shape, 0, sizeof shape);
+    shape.kind = DEMI_BALL;
     shape.count = desc->count;
     shape.parts = (dem_real *)demi_hold(w, DEMI_SCENE, 4*(size_t)shape.count, sizeof(dem_real));
     if (!shape.parts) { demi_no_memory(w, "dem_shape_cluster_add"); return none; }
@@ -3302,7 +3373,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
                  dem_quat_unrotate(shape.frame, demi_sub(demi_at(shape.parts + 4*i),
                                                                         shape.centre)));
     shape.centre = demi_add(shape.centre, about);
-    demi_shape_bounds(&shape);
+    demi_cluster_bounds(&shape);
     return demi_shape_adopt(w, "dem_shape_cluster_add", &shape);
 }
 
@@ -3328,7 +3399,7 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
     info->frame = s->frame;
     info->inertia = demi_scale(I, (dem_real)s->volume);
     info->semi_axes = s->axes;
-    if (s->count)
+    if (s->kind != DEMI_ELLIPSOID)
         info->semi_axes = demi_v(DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.y + I.z - I.x, 0)),
                                  DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.z - I.y, 0)),
                                  DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));
@@ -3375,10 +3446,7 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
     if (!shape) return w->bodies.pos[4*body + 3];
     scale = demi_scale_of(w, body, shape);
     e = dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*body), n);
-    if (!shape->count) {
-        e = demi_v(e.x*shape->axes.x, e.y*shape->axes.y, e.z*shape->axes.z);
-        return scale*demi_length(e);
-    }
+    if (!shape->count) return scale*demi_shape_rows[shape->kind].support(shape->axes, e);
     for (i = 0; i < shape->count; i++) {
         const dem_real s = demi_dot(demi_at(shape->parts + 4*i), e) + shape->parts[4*i + 3];
         far = i && far > s ? far : s;
@@ -3555,15 +3623,6 @@ DEM_API dem_ellipsoid_contact dem_ellipsoids_contact(const dem_ellipsoid *a, con
 
 /* --- parts of bodies, and how far apart they are --- */
 
-/* Parts of a body: the spheres of a cluster, or the one it is. ball: a sphere of that radius,
-   centre from the body's; else an ellipsoid. */
-typedef struct demi_part {
-    int ball;
-    dem_real radius;
-    dem_vec3 centre, axes;
-    dem_quat q;
-} demi_part;
-static int demi_part_shape(const demi_part *p) { return p->ball ? DEMI_BALL : DEMI_ELLIPSOID; }
 static int demi_parts_count(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return shape && shape->count ? shape->count : 1;
@@ -3573,7 +3632,7 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
     const demi_shape *shape = demi_shape_of(w, body);
     demi_part p;
     memset(&p, 0, sizeof p);
-    p.ball = !shape || shape->count;
+    p.kind = demi_shape_kind(shape);
     p.radius = w->bodies.pos[4*body + 3];
     if (shape) {
         const dem_real scale = demi_scale_of(w, body, shape);
@@ -3620,28 +3679,41 @@ static int demi_centres_lay(dem_world *w) {
     return 1;
 }
 static void demi_part_matrix(const demi_part *p, double *Q) {
-    if (p->ball) demi_ball_matrix(p->radius, Q);
+    if (p->kind == DEMI_BALL) demi_ball_matrix(p->radius, Q);
     else demi_ellipsoid_matrix(p->q, p->axes, Q);
 }
-/* Radii of a part: smallest; of the sphere of its volume; of curvature where its height is h:
-   Gauss's, a b c/h^2. */
-static dem_real demi_part_thin(const demi_part *p) {
-    return p->ball ? p->radius : DEMI_MIN(p->axes.x, DEMI_MIN(p->axes.y, p->axes.z));
+/* --- what a kind of part tells of itself (DEMI_SHAPES) --- */
+
+static dem_real demi_ball_support(dem_vec3 axes, dem_vec3 n) { (void)n; return axes.x; }
+static dem_real demi_ball_thin(const demi_part *p) { return p->radius; }
+static double demi_ball_equal(const demi_part *p) { return (double)p->radius; }
+static double demi_ball_curve(const demi_part *p, double h) { (void)h; return (double)p->radius; }
+static dem_vec3 demi_ball_drawn(const demi_part *p) {
+    return demi_v(p->radius, p->radius, p->radius);
 }
-static double demi_part_equal(const demi_part *p) {
-    return p->ball ? (double)p->radius
-        : pow((double)p->axes.x*(double)p->axes.y*(double)p->axes.z, 1.0/3);
+static dem_real demi_ellipsoid_support(dem_vec3 axes, dem_vec3 n) {
+    return demi_length(demi_v(n.x*axes.x, n.y*axes.y, n.z*axes.z));
 }
-static double demi_part_curve(const demi_part *p, double h) {
-    return p->ball ? (double)p->radius
-        : (double)p->axes.x*(double)p->axes.y*(double)p->axes.z/(h*h);
+static dem_real demi_ellipsoid_thin(const demi_part *p) {
+    return DEMI_MIN(p->axes.x, DEMI_MIN(p->axes.y, p->axes.z));
 }
+static double demi_ellipsoid_equal(const demi_part *p) {
+    return pow((double)p->axes.x*(double)p->axes.y*(double)p->axes.z, 1.0/3);
+}
+/* Gauss's: a b c/h^2. */
+static double demi_ellipsoid_curve(const demi_part *p, double h) {
+    return (double)p->axes.x*(double)p->axes.y*(double)p->axes.z/(h*h);
+}
+static dem_vec3 demi_ellipsoid_drawn(const demi_part *p) { return p->axes; }
+/* By the table of kinds. */
+static dem_real demi_part_thin(const demi_part *p) { return demi_shape_rows[p->kind].thin(p); }
+static double demi_part_equal(const demi_part *p) { return demi_shape_rows[p->kind].equal(p); }
 /* The radius that a contact's stiffness is worked out with. A stiffness that changes as the two
    roll would make or lose energy (Hertz: 1 % a collision at aspect ratio 3): where energy is to be
    conserved it is that of equal volume. */
 static double demi_part_round(const dem_world *w, const demi_part *p, double h) {
     return w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE ? demi_part_equal(p)
-        : demi_part_curve(p, h);
+        : demi_shape_rows[p->kind].curve(p, h);
 }
 
 /* Part k of a body as demi_part_of has it, from the centres that are turned already. */
@@ -3651,29 +3723,37 @@ DEM_INLINE demi_part demi_part_now(const dem_world *w, int body, int k) {
     const dem_real *sphere;
     if (shape && !shape->count) return demi_part_of(w, body, k);
     sphere = shape ? demi_centres_of(w, body) + 4*k : w->bodies.pos + 4*body;
-    p.ball = 1;
+    p.kind = DEMI_BALL;
     p.centre = shape ? demi_at(sphere) : demi_v(0, 0, 0);
     p.radius = sphere[3];
     p.axes = demi_v(0, 0, 0);
     p.q = dem_quat_make(1, 0, 0, 0);
     return p;
 }
-/* A lower bound of the distance between two parts, gap = from centre to centre; -`enough` where the
-   centres coincide. */
-static dem_real demi_parts_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
+static dem_real demi_balls_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
                                dem_real enough) {
-    const dem_real d = demi_length(gap);
+    (void)enough;
+    return demi_length(gap) - p->radius - q->radius;
+}
+/* Two ellipsoids, or one and a sphere. */
+static dem_real demi_ellipsoids_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
+                                    dem_real enough) {
     double A[6], B[6], r[3], n[3], ha, hb;
     demi_meet m;
-    if (p->ball && q->ball) return d - p->radius - q->radius;
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    if (!(d > 0)) return -enough;
+    if (!(demi_length(gap) > 0)) return -enough;
     demi_part_matrix(p, A);
     demi_part_matrix(q, B);
     m.l = demi_meet_start(A, B, r);
     demi_meet_solve(A, B, r, 1e300, DEMI_MEET_NEAR, &m);
     demi_meet_heights(&m, n, &ha, &hb);
     return (dem_real)((sqrt(m.f) - 1)*(ha + hb));
+}
+/* A lower bound of the distance between two parts, gap = from centre to centre; -`enough` where the
+   centres coincide. */
+static dem_real demi_parts_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
+                               dem_real enough) {
+    return demi_shape_rows[DEMI_MAX(p->kind, q->kind)].gap(p, q, gap, enough);
 }
 /* The same for two bodies; shift leads from b to the image of it that is nearest to a. */
 static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real *shift,
@@ -4029,20 +4109,18 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.balance.present++;
     return (uint32_t)slot;
 }
-/* Do bodies of this shape (DEMI_BALL, ...) and walls of this kind know each other? (>>kept) */
-static int demi_touch_known(int kind, int shape);
-/* body: its slot, -1: it is yet to come. */
-static dem_result demi_strangers(dem_world *w, const char *call, int wall, int kind, int body) {
+/* Do walls of this kind and parts of that one know each other? (>>kept) */
+static int demi_touch_known(int kind, int part);
+/* body: its slot, -1: it is yet to come. part: what it is. */
+static dem_result demi_strangers(dem_world *w, const char *call, int wall, int kind, int body,
+                                 int part) {
     char who[32] = "the body";
     if (body >= 0) snprintf(who, sizeof who, "body %d", body + 1);
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s an ellipsoid: the two do "
-                     "not know each other; make bodies clusters of spheres, or the wall a mesh or "
-                     "a resolved profile; nothing was added", call, wall + 1,
-                     demi_wall_kinds[kind].name, who);
-}
-/* What a shape's parts are. */
-static int demi_shape_kind(const demi_shape *shape) {
-    return !shape || shape->count ? DEMI_BALL : DEMI_ELLIPSOID;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s a%s %s: the two do not "
+                     "know each other; make bodies clusters of spheres, or the wall a mesh or a "
+                     "resolved profile; nothing was added", call, wall + 1,
+                     demi_wall_kinds[kind].name, who, demi_an(demi_shape_rows[part].name),
+                     demi_shape_rows[part].name);
 }
 /* 1 with a sentence when some wall does not know bodies of a shape that are to be added. */
 static int demi_walls_strange(dem_world *w, const char *call, int shape) {
@@ -4051,7 +4129,7 @@ static int demi_walls_strange(dem_world *w, const char *call, int shape) {
     for (j = 0; j < w->wall_count; j++) {
         const int kind = w->walls[j].kind;
         if (kind == DEMI_WALL_NONE || demi_touch_known(kind, part)) continue;
-        demi_strangers(w, call, j, kind, -1);
+        demi_strangers(w, call, j, kind, -1, part);
         return 1;
     }
     return 0;
@@ -5494,12 +5572,13 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     int i;
     id.id = 0;
     wall->pose = wall->mid = wall->first = wall->home;
-    for (i = 0; i < w->bodies.count && w->bodies.shaped; i++)
-        if (!demi_touch_known(wall->kind, demi_shape_kind(demi_shape_of(w, i)))) {
-            demi_strangers(w, call, w->wall_count, wall->kind, (int)w->bodies.slot[i]);
-            demi_wall_free(w, wall);
-            return id;
-        }
+    for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
+        const int part = demi_shape_kind(demi_shape_of(w, i));
+        if (demi_touch_known(wall->kind, part)) continue;
+        demi_strangers(w, call, w->wall_count, wall->kind, (int)w->bodies.slot[i], part);
+        demi_wall_free(w, wall);
+        return id;
+    }
     if (!demi_list_drop(w)) { demi_wall_free(w, wall); demi_no_memory(w, call); return id; }
     if (!DEMI_GROW(w, w->walls, (size_t)w->wall_count + 1)) {
         demi_wall_free(w, wall);
@@ -6564,17 +6643,35 @@ static void demi_rows_linked(dem_world *w, int d) {
 
 /* --- what is common --- */
 
-/* One domain's candidates, by the search in force: all of them find the same pairs. */
+/* By cells: of one size, or of several (levels). */
+static void demi_rows_cells(dem_world *w, int d) {
+    if (w->levels.count) demi_rows_levels(w, d); else demi_rows_grid(w, d);
+}
+/* Searches, a row each, in the order of their enum (>>add-search): name in reports; a domain's
+   candidates, all of which go through demi_pair_offer; what is laid before, 0 when memory ran out
+   (none: cells are enough); 1 where the bodies of a cell are compared with each other, so that
+   crowds in one cell cost. All find the same pairs. */
+typedef struct demi_search_row {
+    const char *name;
+    void (*rows)(dem_world *w, int d);
+    int (*lay)(dem_world *w);
+    int crowds;
+} demi_search_row;
+static const demi_search_row demi_searches[] = {
+    {"automatic", demi_rows_cells, 0, 1},       /* becomes one of the others at the first list */
+    {"all pairs", demi_rows_all_pairs, 0, 0},
+    {"uniform grid", demi_rows_cells, 0, 1},
+    {"linked linear list", demi_rows_linked, demi_lll_rows, 0},
+    {"levels (hierarchical grid)", demi_rows_cells, 0, 1},
+};
+enum { DEMI_SEARCHES = (int)(sizeof demi_searches/sizeof *demi_searches) };
+
+/* One domain's candidates, by the search in force. */
 static void demi_domain_search(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     domain->own = domain->cross = 0;
     domain->overflow &= ~3;
-    switch (w->desc.search) {
-    case DEM_SEARCH_ALL_PAIRS: demi_rows_all_pairs(w, d); break;
-    case DEM_SEARCH_LINKED_LIST: demi_rows_linked(w, d); break;
-    default:
-        if (w->levels.count) demi_rows_levels(w, d); else demi_rows_grid(w, d);
-    }
+    demi_searches[w->desc.search].rows(w, d);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -7343,8 +7440,7 @@ static int demi_crowd_refuse(dem_world *w) {
         work += (double)here*here;
         crowd = DEMI_MAX(crowd, here);
     }
-    if (w->desc.search == DEM_SEARCH_ALL_PAIRS || w->desc.search == DEM_SEARCH_LINKED_LIST ||
-        work <= 1e9 + 2e4*w->bodies.count) return 0;
+    if (!demi_searches[w->desc.search].crowds || work <= 1e9 + 2e4*w->bodies.count) return 0;
     demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: a search would compare %.2g pairs: %d of %d "
               "bodies are in one cell of %.3g by %.3g by %.3g m; they lie on each other, or some "
               "are far from all others: take those out (an outflow boundary does), or spread the "
@@ -7523,7 +7619,7 @@ static int demi_lists_overflow(const dem_world *w, int lists) {
 static int demi_pairs_find(dem_world *w) {
     const int n = w->domain_count, stride = DEMI_MAX(64, w->bodies.count/n*3);
     int over;
-    if (w->desc.search == DEM_SEARCH_LINKED_LIST && !demi_lll_rows(w)) return 0;
+    if (demi_searches[w->desc.search].lay && !demi_searches[w->desc.search].lay(w)) return 0;
     w->join_room = w->feed_count ? DEMI_MIN(512 + w->bodies.count/16, DEMI_JOIN_MOST) : 0;
     if (!demi_list_reserve(w, &w->own, n, DEMI_MAX(stride, (int)w->own.stride)) ||
         !demi_list_reserve(w, &w->cross, n, n == 1 ? 0 : DEMI_MAX(stride/4, (int)w->cross.stride)))
@@ -8267,7 +8363,7 @@ static dem_real demi_grain_near(const demi_wall *wall, int element, dem_vec3 x, 
     *point = demi_at(wall->vertices + 3*element);
     return demi_point_near(demi_sub(*point, x), r + wall->radius, normal);
 }
-#define DEMI_WALL_NEAR(KIND, C, M, T, N, NEAR, S, L, B) NEAR,
+#define DEMI_WALL_NEAR(KIND, C, M, T, N, NEAR, TOUCH, BEND) NEAR,
 static const demi_near_fn demi_nears[] = {0, DEMI_WALLS(DEMI_WALL_NEAR)};
 
 /* Distance from a point to an element; `enough` or more is not worked out: a triangle whose plane
@@ -9030,8 +9126,9 @@ static const char *demi_kernel_choose(dem_world *w) {
 
 /* ---------------------------------------------------------------------------------------------
    >>on-walls
-   Where spheres, clusters being many of them, touch walls, and what ellipsoids share with them on
-   surfaces of facets: geometry only. What becomes of the places that are found stands in >>kept.
+   Where parts of bodies touch walls: geometry only; first spheres, clusters being many of them;
+   then ellipsoids, which share what is done on surfaces of facets; then who touches what.
+   What becomes of the places that are found stands in >>kept.
    --------------------------------------------------------------------------------------------- */
 
 /* m: as far as any grain and any wall have come towards each other since the list was made. */
@@ -9206,6 +9303,188 @@ static int demi_sieve_spheres(const dem_world *w, int d, int first, int last, de
     return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 2, 0);
 }
 
+/* --- an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
+
+/* A largest value, near an angle, of n.x + h (out = 1: the farthest point from the origin) or n.x -
+   h
+   (out = -1: the nearest, as a distance), h = sqrt(n.Q n), n = (cos, sin), for the ellipse of Q's
+   first two rows about x: by Newton's method, uphill where the curve bends up. n: the direction. */
+static double demi_ellipse_far(const double *Q, double x, double y, int out, double angle,
+                                 double *n) {
+    int k;
+    for (k = 0;; k++) {
+        const double c = cos(angle), s = sin(angle);
+        const double qn0 = Q[0]*c + Q[3]*s, qn1 = Q[3]*c + Q[1]*s;
+        const double h = sqrt(c*qn0 + s*qn1), cross = -s*qn0 + c*qn1;
+        const double best = c*x + s*y + out*h, size = fabs(x) + fabs(y) + h;
+        const double slope = -s*x + c*y + out*cross/h;
+        const double bend = -(c*x + s*y) +
+            out*((Q[0] + Q[1])/h - 2*h - cross*cross/(h*h*h));
+        const int still = fabs(slope) < 1e-14*size;
+        double step;
+        n[0] = c;
+        n[1] = s;
+        if (k == 60 || (still && bend < 1e-9*size)) return best;
+        /* where it bends up: away from the lowest point, never more than half a radian */
+        step = still ? 0.01 : bend < 0 ? -slope/bend : slope > 0 ? 0.3 : -0.3;
+        angle += step > 0.5 ? 0.5 : step < -0.5 ? -0.5 : step;
+    }
+}
+/* Height of an ellipsoid in direction n, and the arm to its surface point there: Q n/h. */
+static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm) {
+    const dem_vec3 e = dem_quat_unrotate(p->q, n), a = p->axes;
+    const dem_vec3 s = demi_v(a.x*e.x, a.y*e.y, a.z*e.z);
+    const dem_real h = demi_length(s);
+    *arm = demi_scale(dem_quat_rotate(p->q, demi_v(a.x*s.x, a.y*s.y, a.z*s.z)), 1/h);
+    return h;
+}
+/* What is left of an ellipsoid about x inside a cylinder's radius R as it shrinks (or, from
+   outside, beyond it): 1 - W0, at the scale W0 it only just touches; n: where, across the axis.
+   Newton's method on W, whose far end goes with its height there; from W = 1, where n has been
+   found. */
+static double demi_ellipse_shrink(const double *Q, double x, double y, int out, double R,
+                                  double far, double *n) {
+    double W = 1;
+    int k;
+    for (k = 0; k < 20; k++) {
+        const double h = sqrt(n[0]*n[0]*Q[0] + 2*n[0]*n[1]*Q[3] + n[1]*n[1]*Q[1]);
+        const double step = out*(R - far)/h;
+        double S[6];
+        int e;
+        W += step;
+        if (!(W > 1e-3)) return 1 - 1e-3;
+        for (e = 0; e < 6; e++) S[e] = W*W*Q[e];
+        far = demi_ellipse_far(S, x, y, out, atan2(n[1], n[0]), n);
+        if (fabs(step) < 1e-15) break;
+    }
+    return 1 - W;
+}
+/* --- one ellipsoid, turned into the wall's frame, against one element, centre x: fills in normal
+       and point, answers 1 - W0, 0 or less when apart --- */
+typedef dem_real (*demi_ellipsoid_fn)(const demi_wall *wall, int element, const demi_part *p,
+                                      dem_vec3 x, dem_vec3 *normal, dem_vec3 *point);
+/* Its lowest point; W0 is the height of its centre over its own. */
+static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, const demi_part *p,
+                                        dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+    dem_vec3 arm;
+    dem_real h;
+    (void)wall; (void)element;
+    *normal = demi_v(0, 0, -1);
+    h = demi_ellipsoid_arm(p, *normal, &arm);
+    *point = demi_v(x.x + arm.x*x.z/h, x.y + arm.y*x.z/h, 0);
+    return 1 - x.z/h;
+}
+/* Inside, either end of a long body may touch: element 0 and 1. */
+static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, const demi_part *p,
+                                           dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+    double Q[6], n[3], far, left;
+    dem_vec3 arm;
+    demi_ellipsoid_matrix(p->q, p->axes, Q);
+    far = demi_ellipse_far(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
+                             ? atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
+                             : atan2((double)x.y, (double)x.x), n);
+    left = far - (double)wall->radius;
+    if (!(wall->inside ? left > 0 : left < 0)) return 0;
+    left = demi_ellipse_shrink(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1,
+                               (double)wall->radius, far, n);
+    *normal = demi_v((dem_real)n[0], (dem_real)n[1], 0);
+    if (!wall->inside) *normal = demi_scale(*normal, -1);
+    demi_ellipsoid_arm(p, *normal, &arm);
+    *point = demi_v((dem_real)n[0]*wall->radius, (dem_real)n[1]*wall->radius,
+                    x.z + arm.z*(dem_real)(1 - left));
+    return (dem_real)left;
+}
+static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, const demi_part *p,
+                                        dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+    const dem_vec3 gap = demi_sub(demi_at(wall->vertices + 3*element), x);
+    double Q[6], B[6], r[3], n[3], ha, hb;
+    demi_meet m;
+    demi_ellipsoid_matrix(p->q, p->axes, Q);
+    demi_ball_matrix(wall->radius, B);
+    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
+    if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
+    m.l = demi_meet_start(Q, B, r);
+    demi_meet_solve(Q, B, r, 1, DEMI_MEET_NEAR, &m);
+    if (!(m.f < 1)) return 0;
+    demi_meet_heights(&m, n, &ha, &hb);
+    *normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+    *point = demi_add(x, demi_v((dem_real)((1 - m.l)*m.a[0]), (dem_real)((1 - m.l)*m.a[1]),
+                                (dem_real)((1 - m.l)*m.a[2])));
+    return (dem_real)(1 - sqrt(m.f));
+}
+/* An ellipsoid as the wall's frame sees it. */
+static demi_part demi_part_local(const demi_wall *wall, const demi_part *p) {
+    const dem_real *R = wall->pose.rotation;
+    demi_part local = *p;
+    double turn[3][3];
+    int i, e;
+    for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
+    local.q = demi_quat_unit(dem_quat_times(demi_quat_of(turn), p->q));
+    return local;
+}
+static int demi_facets_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    const demi_part local = demi_part_local(&w->walls[w->wall_id[d*w->wall_stride + first]], part);
+    return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
+}
+/* An ellipsoid and a wall, element by element. */
+static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places,
+                                demi_ellipsoid_fn on) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const dem_real *R = wall->pose.rotation;
+    const demi_part local = demi_part_local(wall, part);
+    const int two = wall->inside;
+    demi_touching *out;
+    dem_vec3 x, shift;
+    int i, count = 0;
+    *places = out = w->touching + w->domains[d].touching_first;
+    for (i = first; i < last + two; i++) {
+        demi_touching *c = &out[count];
+        if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
+        shift = demi_at(w->wall_shift + 3*(size_t)(base + DEMI_MIN(i, last - 1)));
+        x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        c->element = i < last ? w->wall_element[base + i] : 1;
+        c->overlap = on(wall, c->element, &local, x, &c->normal, &c->point);
+        if (!(c->overlap > 0)) continue;
+        c->normal = demi_rotate(R, c->normal);
+        if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
+        c->point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, c->point)), shift);
+        c->shift = shift;
+        c->share = wall->share;
+        count++;
+    }
+    return count;
+}
+static int demi_plane_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_plane);
+}
+static int demi_cylinder_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                   dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places,
+                                demi_ellipsoid_on_cylinder);
+}
+static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_grain);
+}
+
+/* Who touches what: walls by kind, and parts by theirs. */
+#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
+static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
+static int demi_touch_known(int kind, int part) { return demi_touches[kind][part] != 0; }
+/* By that table, once it is known that the body may have come near any of the candidates. */
+static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
+                             const demi_part *part, demi_touching **places) {
+    const int base = d*w->wall_stride, kind = w->walls[w->wall_id[base + first]].kind;
+    const dem_real gone = demi_walls_gone(w);
+    while (first < last && w->wall_gap[base + first] > gone) first++;
+    if (first == last) return 0;
+    return demi_touches[kind][part->kind](w, d, first, last, gone, at, part, places);
+}
+
 /* ---------------------------------------------------------------------------------------------
    >>kept
    Contacts that are kept by themselves: all but those of sphere and sphere (>>respond). Two bodies
@@ -9283,10 +9562,13 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
-/* Who meets whom. */
-static const demi_meet_fn demi_meets[DEMI_SHAPES][DEMI_SHAPES] = {  /* by demi_part_shape */
-    {demi_balls_touch, demi_ellipsoids_touch},
-    {demi_ellipsoids_touch, demi_ellipsoids_touch}};
+/* Who meets whom: kinds of parts, the later one first. */
+#define DEMI_SHAPE_MEET(KIND, NAME, WORD, GAP, TOUCH) DEMI_LIST TOUCH,
+static const demi_meet_fn demi_meets[][DEMI_SHAPE_KINDS] = {DEMI_SHAPES(DEMI_SHAPE_MEET)};
+DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {
+    return demi_meets[DEMI_MAX(kind, other)][DEMI_MIN(kind, other)];
+}
+static int demi_meet_known(int kind, int other) { return demi_meet_of(kind, other) != 0; }
 
 /* Number in its domain of the old contact with the same partner and parts, or with the same wall,
    part and element, among those that body a had; -1: none. */
@@ -9492,203 +9774,32 @@ static void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kep
             c->wall = c->element = -1;
             c->send = send;
             c->from = demi_kept_same(w, d, old, olds, b, i, j, -1, -1);
-            if (!demi_meets[demi_part_shape(&p)][demi_part_shape(&q)](w, &p, &q, gap, c->from < 0
-                                                                      ? 0 : now[c->from].lambda, c))
+            if (!demi_meet_of(p.kind, q.kind)(w, &p, &q, gap,
+                                              c->from < 0 ? 0 : now[c->from].lambda, c))
                 w->domains[d].kept_next--;
         }
     }
     demi_kept_share(w, from, w->domains[d].kept_next - first);
 }
 
-/* --- touch: an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
-
-/* A largest value, near an angle, of n.x + h (out = 1: the farthest point from the origin) or n.x -
-   h
-   (out = -1: the nearest, as a distance), h = sqrt(n.Q n), n = (cos, sin), for the ellipse of Q's
-   first two rows about x: by Newton's method, uphill where the curve bends up. n: the direction. */
-static double demi_ellipse_far(const double *Q, double x, double y, int out, double angle,
-                                 double *n) {
-    int k;
-    for (k = 0;; k++) {
-        const double c = cos(angle), s = sin(angle);
-        const double qn0 = Q[0]*c + Q[3]*s, qn1 = Q[3]*c + Q[1]*s;
-        const double h = sqrt(c*qn0 + s*qn1), cross = -s*qn0 + c*qn1;
-        const double best = c*x + s*y + out*h, size = fabs(x) + fabs(y) + h;
-        const double slope = -s*x + c*y + out*cross/h;
-        const double bend = -(c*x + s*y) +
-            out*((Q[0] + Q[1])/h - 2*h - cross*cross/(h*h*h));
-        const int still = fabs(slope) < 1e-14*size;
-        double step;
-        n[0] = c;
-        n[1] = s;
-        if (k == 60 || (still && bend < 1e-9*size)) return best;
-        /* where it bends up: away from the lowest point, never more than half a radian */
-        step = still ? 0.01 : bend < 0 ? -slope/bend : slope > 0 ? 0.3 : -0.3;
-        angle += step > 0.5 ? 0.5 : step < -0.5 ? -0.5 : step;
-    }
+/* --- overlap, arm and radius of a part's contact with a wall at a place that was found --- */
+typedef void (*demi_on_wall_fn)(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                                const demi_touching *place, demi_kept *c);
+DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                                  const demi_touching *place, demi_kept *c) {
+    (void)w; (void)wall;
+    c->overlap = place->overlap;
+    c->deep = c->overlap/p->radius;
+    c->r_eff = p->radius;
+    c->arm_a = demi_add(p->centre, demi_scale(c->normal, p->radius));
 }
-/* Height of an ellipsoid in direction n, and the arm to its surface point there: Q n/h. */
-static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm) {
-    const dem_vec3 e = dem_quat_unrotate(p->q, n), a = p->axes;
-    const dem_vec3 s = demi_v(a.x*e.x, a.y*e.y, a.z*e.z);
-    const dem_real h = demi_length(s);
-    *arm = demi_scale(dem_quat_rotate(p->q, demi_v(a.x*s.x, a.y*s.y, a.z*s.z)), 1/h);
-    return h;
-}
-/* What is left of an ellipsoid about x inside a cylinder's radius R as it shrinks (or, from
-   outside, beyond it): 1 - W0, at the scale W0 it only just touches; n: where, across the axis.
-   Newton's method on W, whose far end goes with its height there; from W = 1, where n has been
-   found. */
-static double demi_ellipse_shrink(const double *Q, double x, double y, int out, double R,
-                                  double far, double *n) {
-    double W = 1;
-    int k;
-    for (k = 0; k < 20; k++) {
-        const double h = sqrt(n[0]*n[0]*Q[0] + 2*n[0]*n[1]*Q[3] + n[1]*n[1]*Q[1]);
-        const double step = out*(R - far)/h;
-        double S[6];
-        int e;
-        W += step;
-        if (!(W > 1e-3)) return 1 - 1e-3;
-        for (e = 0; e < 6; e++) S[e] = W*W*Q[e];
-        far = demi_ellipse_far(S, x, y, out, atan2(n[1], n[0]), n);
-        if (fabs(step) < 1e-15) break;
-    }
-    return 1 - W;
-}
-/* --- one ellipsoid, turned into the wall's frame, against one element, centre x: fills in normal
-       and point, answers 1 - W0, 0 or less when apart --- */
-typedef dem_real (*demi_ellipsoid_fn)(const demi_wall *wall, int element, const demi_part *p,
-                                      dem_vec3 x, dem_vec3 *normal, dem_vec3 *point);
-/* Its lowest point; W0 is the height of its centre over its own. */
-static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, const demi_part *p,
-                                        dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
-    dem_vec3 arm;
-    dem_real h;
-    (void)wall; (void)element;
-    *normal = demi_v(0, 0, -1);
-    h = demi_ellipsoid_arm(p, *normal, &arm);
-    *point = demi_v(x.x + arm.x*x.z/h, x.y + arm.y*x.z/h, 0);
-    return 1 - x.z/h;
-}
-/* Inside, either end of a long body may touch: element 0 and 1. */
-static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, const demi_part *p,
-                                           dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
-    double Q[6], n[3], far, left;
-    dem_vec3 arm;
-    demi_ellipsoid_matrix(p->q, p->axes, Q);
-    far = demi_ellipse_far(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
-                             ? atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
-                             : atan2((double)x.y, (double)x.x), n);
-    left = far - (double)wall->radius;
-    if (!(wall->inside ? left > 0 : left < 0)) return 0;
-    left = demi_ellipse_shrink(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1,
-                               (double)wall->radius, far, n);
-    *normal = demi_v((dem_real)n[0], (dem_real)n[1], 0);
-    if (!wall->inside) *normal = demi_scale(*normal, -1);
-    demi_ellipsoid_arm(p, *normal, &arm);
-    *point = demi_v((dem_real)n[0]*wall->radius, (dem_real)n[1]*wall->radius,
-                    x.z + arm.z*(dem_real)(1 - left));
-    return (dem_real)left;
-}
-static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, const demi_part *p,
-                                        dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
-    const dem_vec3 gap = demi_sub(demi_at(wall->vertices + 3*element), x);
-    double Q[6], B[6], r[3], n[3], ha, hb;
-    demi_meet m;
-    demi_ellipsoid_matrix(p->q, p->axes, Q);
-    demi_ball_matrix(wall->radius, B);
-    r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
-    m.l = demi_meet_start(Q, B, r);
-    demi_meet_solve(Q, B, r, 1, DEMI_MEET_NEAR, &m);
-    if (!(m.f < 1)) return 0;
-    demi_meet_heights(&m, n, &ha, &hb);
-    *normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-    *point = demi_add(x, demi_v((dem_real)((1 - m.l)*m.a[0]), (dem_real)((1 - m.l)*m.a[1]),
-                                (dem_real)((1 - m.l)*m.a[2])));
-    return (dem_real)(1 - sqrt(m.f));
-}
-/* An ellipsoid as the wall's frame sees it. */
-static demi_part demi_part_local(const demi_wall *wall, const demi_part *p) {
-    const dem_real *R = wall->pose.rotation;
-    demi_part local = *p;
-    double turn[3][3];
-    int i, e;
-    for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
-    local.q = demi_quat_unit(dem_quat_times(demi_quat_of(turn), p->q));
-    return local;
-}
-static int demi_facets_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const demi_part local = demi_part_local(&w->walls[w->wall_id[d*w->wall_stride + first]], part);
-    return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
-}
-/* An ellipsoid and a wall, element by element. */
-static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places,
-                                demi_ellipsoid_fn on) {
-    const int base = d*w->wall_stride;
-    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
-    const dem_real *R = wall->pose.rotation;
-    const demi_part local = demi_part_local(wall, part);
-    const int two = wall->inside;
-    demi_touching *out;
-    dem_vec3 x, shift;
-    int i, count = 0;
-    *places = out = w->touching + w->domains[d].touching_first;
-    for (i = first; i < last + two; i++) {
-        demi_touching *c = &out[count];
-        if (w->wall_gap[base + DEMI_MIN(i, last - 1)] > gone) continue;
-        shift = demi_at(w->wall_shift + 3*(size_t)(base + DEMI_MIN(i, last - 1)));
-        x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
-        c->element = i < last ? w->wall_element[base + i] : 1;
-        c->overlap = on(wall, c->element, &local, x, &c->normal, &c->point);
-        if (!(c->overlap > 0)) continue;
-        c->normal = demi_rotate(R, c->normal);
-        if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
-        c->point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, c->point)), shift);
-        c->shift = shift;
-        c->share = wall->share;
-        count++;
-    }
-    return count;
-}
-static int demi_plane_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_plane);
-}
-static int demi_cylinder_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                   dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places,
-                                demi_ellipsoid_on_cylinder);
-}
-static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
-                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_grain);
-}
-
-/* Who touches what: walls by kind, and spheres and ellipsoids. */
-#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, SPHERES, ELLIPSOIDS, B) {SPHERES, ELLIPSOIDS},
-static const demi_touch_fn demi_touches[][DEMI_SHAPES] = {{0, 0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
-static int demi_touch_known(int kind, int shape) { return demi_touches[kind][shape] != 0; }
-/* By that table, once it is known that the body may have come near any of the candidates. */
-static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
-                             const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride, kind = w->walls[w->wall_id[base + first]].kind;
-    const dem_real gone = demi_walls_gone(w);
-    while (first < last && w->wall_gap[base + first] > gone) first++;
-    if (first == last) return 0;
-    return demi_touches[kind][demi_part_shape(part)](w, d, first, last, gone, at, part, places);
-}
-
-/* Overlap, arm and radius of an ellipsoid's contact with a wall, of which `left` is 1 - W0: as
-   with other ellipsoids: l (1 - W0), with the sphere of a wall's grain in l, or along the normal.
-   The arm is to the point that lies deepest, as a sphere's is; what is l (1 - W0)'s gradient
-   passes through the point of the wall, at W0 of it. */
-static void demi_ellipsoid_contact(const dem_world *w, const demi_wall *wall, const demi_part *p,
-                                   dem_real left, demi_kept *c) {
-    const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
+/* An ellipsoid's, whose place has 1 - W0 for an overlap: as with other ellipsoids, l (1 - W0), with
+   the sphere of a wall's grain in l, or along the normal. The arm is to the point that lies
+   deepest, as a sphere's is; what is l (1 - W0)'s gradient passes through the point of the wall, at
+   W0 of it. */
+static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                                   const demi_touching *place, demi_kept *c) {
+    const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a), left = place->overlap;
     const dem_real edge = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0);
     c->overlap = left*(h + edge);
     c->deep = c->overlap/demi_part_thin(p);
@@ -9700,6 +9811,8 @@ static void demi_ellipsoid_contact(const dem_world *w, const demi_wall *wall, co
         c->inset = 1 - left;
     }
 }
+#define DEMI_SHAPE_ON_WALL(KIND, NAME, WORD, GAP, TOUCH) demi_##NAME##_on_wall,
+static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)};
 /* --- how the normal of a ball's contact with a wall turns as the ball moves. dist: m, from the
        ball's centre to the surface. Answers that to what the normal turns about (0: it does not),
        and the axis along which nothing turns, if there is one. among: the elements where the
@@ -9745,7 +9858,7 @@ static dem_real demi_mesh_bend(const demi_wall *wall, const int32_t *among, int 
     }
     return dist;
 }
-#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, S, L, BEND) BEND,
+#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
 /* By the table of kinds. */
 static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
@@ -9791,16 +9904,13 @@ static void demi_kept_on_wall(dem_world *w, int d, int first, int last, int k,
         c->normal = found[i].normal;
         c->share = found[i].share;
         c->shift = found[i].shift;
-        if (p.ball) {
-            c->overlap = found[i].overlap;
-            c->deep = c->overlap/p.radius;
-            c->r_eff = p.radius;
-            c->arm_a = demi_add(p.centre, demi_scale(c->normal, p.radius));
+        if (p.kind == DEMI_BALL) {              /* the commonest, without a call */
+            demi_ball_on_wall(w, wall, &p, &found[i], c);
             if (demi_shape_of(w, body) && w->desc.cluster_contacts == DEM_SHARING_ONE &&
                 c->overlap > 0)
                 demi_wall_bend(wall, w->wall_element + base + first, last - first,
                                DEMI_MAX(p.radius - c->overlap, p.radius/10), c);
-        } else demi_ellipsoid_contact(w, wall, &p, found[i].overlap, c);
+        } else demi_on_walls[p.kind](w, wall, &p, &found[i], c);
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     for (i = 0, c = fresh; i < count; i++, c++) {
@@ -12953,6 +13063,7 @@ typedef struct demi_text {
     size_t length;              /* of the word; 0 at the end of a line                            */
     const char *at, *line_end;  /* what is left of the line                                       */
     const char *next, *end;     /* what is left after it                                          */
+    const char *data;           /* where all of it begins                                         */
     long line;                  /* counted from 1                                                 */
     char half[24];              /* 0.5 in this locale: strtod wants its decimal point             */
 } demi_text;
@@ -12967,6 +13078,7 @@ static demi_text demi_text_make(dem_world *w, const char *call, const char *name
     t.world = w;
     t.call = call;
     t.name = !name ? "data" : length > 200 ? name + (length - 200) : name;
+    t.data = data;
     t.end = data + size;
     t.next = size >= 3 && memcmp(data, "\xEF\xBB\xBF", 3) == 0 ? data + 3 : data; /* order mark */
     t.at = t.line_end = t.next;
@@ -13216,23 +13328,29 @@ static uint32_t demi_little32(const char *data) {
 }
 
 /* Binary STL: 80 bytes, the number of triangles, then 50 bytes for each: a normal, three corners,
-   two bytes; all little-endian, in single precision. demi_parse has compared number and size. */
-static dem_result demi_stl_binary(const demi_text *t, const char *data, dem_mesh *mesh) {
-    size_t i, k, count = demi_little32(data + 80);
-    dem_result result = demi_mesh_allocate(t, mesh, 3, 3*count, count);
-    for (i = 0; i < count && result == DEM_OK; i++)
+   two bytes; all little-endian, in single precision. */
+static int demi_stl_binary_is(demi_text t) {
+    const size_t size = (size_t)(t.end - t.data);
+    return size >= 84 && size == 84 + 50*(uint64_t)demi_little32(t.data + 80);
+}
+static dem_result demi_stl_binary_pass(demi_text t, dem_mesh *mesh, int fill) {
+    const char *data = t.data;
+    const size_t count = demi_little32(data + 80);
+    size_t i, k;
+    if (!fill) return demi_mesh_allocate(&t, mesh, 3, 3*count, count);
+    for (i = 0; i < count; i++)
         for (k = 0; k < 9; k++) {
             size_t byte = 84 + 50*i + 12 + 4*k;
             uint32_t bits = demi_little32(data + byte);
             float value;
             memcpy(&value, &bits, sizeof value);
             if ((bits >> 23 & 255) == 255 || fabs((double)value) > DEMI_FARTHEST) /* nan, inf */
-                return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s byte %.0f: found a coordinate "
+                return demi_fail(t.world, DEM_ERROR_FORMAT, "%s: %s byte %.0f: found a coordinate "
                                  "of triangle %.0f that is not a number within +-1e15 (m); export "
-                                 "the mesh again", t->call, t->name, (double)byte, (double)i + 1);
+                                 "the mesh again", t.call, t.name, (double)byte, (double)i + 1);
             mesh->vertices[9*i + k] = value == 0 ? 0 : (dem_real)value;
         }
-    return result;
+    return DEM_OK;
 }
 
 /* For every key of `width` bytes the index of the first equal one: count int32, to be
@@ -13369,35 +13487,59 @@ static dem_result demi_health_edges(const demi_text *t, const dem_mesh *mesh,
     return result == DEM_OK ? result : demi_text_memory(t);
 }
 
+/* Formats of meshes, a row each (>>add-format), in the order in which they are looked for: binary
+   STL comes first, as it too may begin with `solid`. A row: do contents look like it (it moves a
+   copy of the text); one of two passes, the first counts and allocates, the second fills; whether
+   corners come by place instead of by number, so that equal ones are made one; whether it may hold
+   bytes that are not text. What nothing looks like is two counts and lists, as profiles are. */
+typedef struct demi_mesh_format {
+    int (*is)(demi_text t);
+    dem_result (*pass)(demi_text t, dem_mesh *mesh, int fill);
+    int by_place, binary;
+} demi_mesh_format;
+static int demi_stl_is(demi_text t) {
+    demi_text_line(&t);
+    return demi_text_is(&t, "solid") || demi_text_is(&t, "facet");
+}
+static int demi_obj_is(demi_text t) {
+    static const char *const words[] = {"v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl"};
+    size_t i;
+    int is = 0;
+    demi_text_line(&t);
+    for (i = 0; i < sizeof words/sizeof *words; i++) is |= demi_text_is(&t, words[i]);
+    return is;
+}
+static const demi_mesh_format demi_mesh_formats[] = {
+    {demi_stl_binary_is, demi_stl_binary_pass, 1, 1},
+    {demi_stl_is, demi_stl_pass, 1, 0},
+    {demi_obj_is, demi_obj_pass, 0, 0},
+};
+static const demi_mesh_format *demi_mesh_format_of(demi_text t) {  /* null: lists */
+    size_t i;
+    for (i = 0; i < sizeof demi_mesh_formats/sizeof *demi_mesh_formats; i++)
+        if (demi_mesh_formats[i].is(t)) return &demi_mesh_formats[i];
+    return 0;
+}
+
 /* Any bytes -> a mesh (width 3) or the segments of a profile (2), or a sentence and an empty mesh.
-   Contents tell formats apart; binary STL is looked for first, as it too may begin with `solid`. */
+   Contents tell formats apart. */
 static dem_result demi_parse(dem_world *w, const char *call, const char *name, const char *data,
                              size_t size, size_t width, dem_mesh *mesh, dem_mesh_health *health) {
-    static const char *const obj[] = {"v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl"};
-    demi_text t = demi_text_make(w, call, name, data, size), start = t;
+    demi_text t = demi_text_make(w, call, name, data, size);
+    const demi_mesh_format *format = width == 3 ? demi_mesh_format_of(t) : 0;
     dem_result result;
-    size_t i;
-    int merged = 0, is_obj = 0, is_stl;
-    if (width == 3 && size >= 84 && size == 84 + 50*(uint64_t)demi_little32(data + 80)) {
-        result = demi_stl_binary(&t, data, mesh);
-        if (result == DEM_OK) result = demi_mesh_merge(&t, mesh, &merged);
-    } else if (memchr(data, 0, size)) {
+    int merged = 0;
+    if (!(format && format->binary) && memchr(data, 0, size)) {
         result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s: found %.0f bytes that are not text%s; the "
                            "file is cut short or of another format, so copy or export it again",
                            call, t.name, (double)size, width == 2 ? "" : ", where a binary STL has "
                            "84 and 50 for each triangle it counts");
+    } else if (format) {
+        result = format->pass(t, mesh, 0);
+        if (result == DEM_OK) result = format->pass(t, mesh, 1);
+        if (result == DEM_OK && format->by_place) result = demi_mesh_merge(&t, mesh, &merged);
     } else {
-        demi_text_line(&t);
-        for (i = 0; i < sizeof obj/sizeof *obj; i++) is_obj |= demi_text_is(&t, obj[i]);
-        is_stl = demi_text_is(&t, "solid") || demi_text_is(&t, "facet");
-        if (width == 2 || !(is_obj || is_stl)) {
-            result = demi_lists_read(&start, width, mesh);
-        } else {
-            result = is_obj ? demi_obj_pass(start, mesh, 0) : demi_stl_pass(start, mesh, 0);
-            if (result == DEM_OK)
-                result = is_obj ? demi_obj_pass(start, mesh, 1) : demi_stl_pass(start, mesh, 1);
-            if (result == DEM_OK && is_stl) result = demi_mesh_merge(&t, mesh, &merged);
-        }
+        result = demi_lists_read(&t, width, mesh);
     }
     if (result == DEM_OK && health) {
         health->merged_vertices = merged;
@@ -13746,7 +13888,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
             row += 4*(size_t)g->count;
             for (e = 0; e < 4; e++) row[e] = w->bodies.orient[4*i + e];
             row += 4*(size_t)g->count;
-            demi_put(row, p.ball ? demi_v(p.radius, p.radius, p.radius) : p.axes);
+            demi_put(row, demi_shape_rows[p.kind].drawn(&p));
             g->own_ids[n] = (int32_t)w->bodies.slot[i];
             g->own_ids[n + g->count] = w->bodies.material[i];
         }
@@ -14081,7 +14223,7 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
    which the next one is chosen.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 8 };
+enum { DEMI_CHECKPOINT_VERSION = 9 };
 
 /* Writes to file, or reads the `left` bytes that are at `from`, or (with neither) counts bytes. */
 typedef struct demi_stream {
@@ -14143,6 +14285,7 @@ static uint64_t demi_digest_pairs(const dem_world *w, int i) {
 static uint64_t demi_digest_shape(const dem_world *w, int i) {
     const demi_shape *shape = &w->shapes[i];
     uint64_t h = demi_hash(DEMI_HASH_START, &shape->count, sizeof shape->count);
+    h = demi_hash(h, &shape->kind, sizeof shape->kind);
     h = demi_hash(h, &shape->axes, sizeof shape->axes);
     h = demi_hash(h, &shape->inertia, sizeof shape->inertia);
     h = demi_hash(h, &shape->volume, sizeof shape->volume);
@@ -14660,7 +14803,7 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "its number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
         return demi_lie(r, "the room in its lists", -1);
-    if ((int)t->desc.search < 0 || t->desc.search > DEM_SEARCH_LEVELS || t->levels.count < 0 ||
+    if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
         t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
         return demi_lie(r, "its search", -1);
@@ -15132,7 +15275,7 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         return "dem_world_create: friction_load or slider is unknown, must be one of the enum "
                "values; start from DEM_WORLD_DESC";
     if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
-        d->search > DEM_SEARCH_LEVELS)
+        (int)d->search >= DEMI_SEARCHES)
         return "dem_world_create: integrator or search is unknown, must be one of the enum values; "
             "start from DEM_WORLD_DESC";
     if ((int)d->rotation < 0 || d->rotation > DEM_ROTATION_NO_SQUISH ||
@@ -15197,12 +15340,6 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
     if (w->clock.dt > 0) d.dt = w->clock.dt;
     d.skin = (dem_real)w->margin.skin;
     return d;
-}
-
-static const char *demi_search_name(const dem_world *w) {
-    return w->desc.search == DEM_SEARCH_ALL_PAIRS ? "all pairs"
-        : w->desc.search == DEM_SEARCH_LINKED_LIST ? "linked linear list"
-        : w->desc.search == DEM_SEARCH_LEVELS ? "levels (hierarchical grid)" : "uniform grid";
 }
 
 /* How many levels there are, of which radii, and why. */
@@ -15346,7 +15483,8 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             (double)a.rayleigh, a.binds);
     fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
             "candidates, %.2f contacts\n",
-            demi_search_name(w), w->margin.skin, (unsigned long long)w->clock.rebuilds,
+            demi_searches[w->desc.search].name, w->margin.skin,
+                (unsigned long long)w->clock.rebuilds,
                 w->clock.rebuilds
             ? (double)w->clock.steps/(double)w->clock.rebuilds : 0,
             per*c.candidates, per*c.contacts);
