@@ -69,16 +69,16 @@ examples: $(LESSONS) snippets ## build and run the numbered examples, compile th
 
 studies: $(STUDIES) ## build the studies into build/: each takes --help
 
-mpi: ## build examples/mpi and run them on 1, 2 and 3 processes, where mpicc and its headers are found
+mpi: build/dem.o ## build examples/mpi and run them on 1, 2 and 3 processes, where mpicc and its headers are found
 	@printf '%s\n' '$(hash)include <mpi.h>' 'int main(void) { return MPI_Finalize(); }' > build/probe.c; \
 	if ! command -v $(MPICC) >/dev/null; then \
 	    echo "SKIP: $(MPICC) not found (Debian package libopenmpi-dev)"; \
 	elif ! $(MPICC) build/probe.c -o build/probe >build/probe.log 2>&1; then \
 	    echo "SKIP: $(MPICC) lacks mpi.h or its library (Debian package libopenmpi-dev)"; \
-	else set -e; echo "$(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mpi_slabs examples/mpi/slabs.c $(LDLIBS)"; \
-	    $(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mpi_slabs examples/mpi/slabs.c $(LDFLAGS) $(LDLIBS); \
+	else set -e; echo "$(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mpi_slabs examples/mpi/slabs.c build/dem.o $(LINK)"; \
+	    $(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mpi_slabs examples/mpi/slabs.c build/dem.o $(LINK); \
 	    for n in 1 2 3; do echo "== $$n"; $(MPIRUN) -n $$n build/mpi_slabs; done; \
-	    $(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mill_mpi examples/mpi/mill.c $(LDFLAGS) $(LDLIBS); \
+	    $(MPICC) $(CFLAGS) -O2 $(CPPFLAGS) -I. -o build/mill_mpi examples/mpi/mill.c build/dem.o $(LINK); \
 	    for n in 1 2; do echo "== mill in 2 slabs, processes: $$n"; $(MPIRUN) -n $$n build/mill_mpi --slabs 2 --quick \
 	        --diameter 0.07 --settle 0.15 --revolutions 0.1 --frames 0 --out build/out/mill_mpi_$$n > build/mill_mpi.$$n; \
 	        grep '^hash' build/mill_mpi.$$n; done; cmp build/out/mill_mpi_1/grains.svg build/out/mill_mpi_2/grains.svg; \
@@ -139,22 +139,26 @@ snippets: build/flags
 clean: ## remove build/
 	rm -rf build
 
-# ---- how a program is built: one source, one header ----
+# ---- how a program is built: tests and benches with dem.h in them, whose inside they look at; all others
+# with dem.c, which is compiled once ----
 # examples/*.h are companions of dem.h (moldyn.h, tumbler.h, ...), which tests and benches include, too
 HEADERS := $(wildcard examples/*.h)
 $(TESTS): build/%: tests/%.c $(wildcard tests/*.h) $(HEADERS)
 build/tests.c: tests/together.awk $(TOGETHER:build/%=tests/%.c)
 	awk -f tests/together.awk $(TOGETHER:build/%=tests/%.c) > $@
 build/tests: build/tests.c $(wildcard tests/*.h) $(HEADERS)
-$(LESSONS): build/%: examples/%.c
-$(STUDIES): build/%: examples/%.c $(HEADERS)
+$(LESSONS) $(STUDIES): build/%: examples/%.c $(HEADERS)
 $(BENCHES): build/%: bench/%.c $(HEADERS) $(wildcard bench/*.h)
 build/parallel: examples/mill.c
 build/write_files: tests/write_files.c
 # -O3 takes three times as long to compile as -O2 and is for those that run long
-build/tests $(TESTS) $(LESSONS) build/write_files: LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
-build/tests $(TESTS) $(LESSONS) $(STUDIES) $(BENCHES) build/write_files: dem.h build/flags
+build/tests $(TESTS): LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
+build/tests $(TESTS) $(BENCHES): dem.h build/flags
 	$(COMPILE) $(LEVEL) -o $@ $(filter %/$(@F).c,$^) $(LINK)
+build/dem.o: dem.c dem.h build/flags
+	$(COMPILE) $(OMP) -c -o $@ dem.c
+$(LESSONS) $(STUDIES) build/write_files: build/dem.o
+	$(COMPILE) -o $@ $(filter %/$(@F).c,$^) build/dem.o $(LINK)
 # benches say how they were built; bench.c also in single precision, and as plain as can be
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'
 build/bench_single: bench/bench.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags

@@ -179,8 +179,9 @@
    order. To compare bits between builds, compile with -ffp-contract=off. Slabs (dem_slabs_create)
    deal a scene to processes, over MPI or what you have: docs/parallel.md.
 
-   Extending. A contact law is a function and a row (>>add-law), so are a wall (>>add-wall) and an
-   integrator (>>add-integrator); a number of each body is a field and a row (>>add-array).
+   Extending. A contact law is a function and a row (>>add-law), so are a wall (>>add-wall), a shape
+   (>>add-shape), an integrator (>>add-integrator), a search (>>add-search) and a mesh format
+   (>>add-format); a number of each body is a field and a row (>>add-array).
    docs/extending.md walks through each, and `make recipes` performs it. Who owns what in a world
    stands at struct dem_world (>>memory).
 
@@ -1878,30 +1879,24 @@ typedef struct demi_domain {
     double energy[DEMI_ENERGIES];
 } demi_domain;
 
-/* What touches: kinds of a body's parts (a cluster is of balls), a row each; nothing else names a
-   kind but its own functions. >>add-shape: a declaration in >>scene; a row here, and in the rows of
-   walls below how they touch it; functions above the tables in >>kept. A row: constant; NAME; name
-   in sentences; how far apart two parts are, the other one of this kind or of one above, or less;
-   how the two touch, for each kind above and its own, in that order (0, or left out: they do not
-   know each other, which is said when the second of the two is added; all must know balls).
-   The functions of that NAME: demi_NAME_support, _thin, _equal, _curve, _drawn (>>shapes says what
-   they tell) and _on_wall (>>kept). */
-#define DEMI_SHAPES(X) \
-    X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
-    X(ELLIPSOID, ellipsoid, "ellipsoid", demi_ellipsoids_gap, \
-      (demi_ellipsoids_touch, demi_ellipsoids_touch)) \
-    /* the last */
-#define DEMI_SHAPE_CONSTANT(KIND, NAME, WORD, GAP, TOUCH) DEMI_##KIND,
-enum { DEMI_SHAPES(DEMI_SHAPE_CONSTANT) DEMI_SHAPE_KINDS };
-#define DEMI_LIST(...) {__VA_ARGS__}            /* one field of a row that is a list: (a, b) */
+/* Two tables, of what touches and of what is touched: nothing else names a kind but its own
+   functions.
 
-/* Kinds of walls, a row each; nothing else names a kind but its own functions. >>add-wall: a row
-   here, a declaration in >>scene, functions above the tables in >>kept. A row: constant; corners
-   of an element (0: it has none); places a candidate may give at most; traits; name in sentences;
-   how near a sphere is to one element; how parts touch it, by their kinds in the order above (0,
-   or left out: they do not know each other, which is said when the second of the two is added);
-   how its normals turn as a ball moves (0: not at all). demi_elements_touch serves any wall; planes
-   and cylinders have copies with theirs inlined. */
+   Shapes: kinds of a body's parts (a cluster is of balls). >>add-shape: a declaration in >>scene; a
+   row here, and in the rows of walls how they touch it; functions, above demi_touches. A row:
+   constant; NAME; name in sentences; how far apart two parts are, the other one of this kind or of
+   one above (or less than that); how the two touch, for each kind above and its own, in that order.
+   The functions of that NAME: demi_NAME_support, _thin, _equal, _curve, _drawn (>>shapes says what
+   they tell) and _on_wall (>>kept).
+
+   Walls. >>add-wall: a row here, a declaration in >>scene, functions, above demi_nears. A row:
+   constant; corners of an element (0: it has none); places a candidate may give at most; traits;
+   name in sentences; how near a sphere is to one element; how parts touch it, by their kinds in the
+   order above; how its normals turn as a ball moves (0: not at all). demi_elements_touch serves any
+   wall; planes and cylinders have copies with theirs inlined.
+
+   0, or nothing, where two do not know each other: that is said when the second of the two is
+   added. All know balls. */
 enum {
     DEMI_FACETS = 1,               /* a surface of facets, see >>facets */
     DEMI_DRAWN = 2,                /* drawn out along its own z without end: seen at z = 0 */
@@ -1909,6 +1904,11 @@ enum {
     DEMI_FLAT = 8                  /* a half space beyond z = 0 */
 };
 enum { DEMI_SIEVE_MOST = 12 };                  /* contacts of a grain with a sieve */
+#define DEMI_SHAPES(X) \
+    X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
+    X(ELLIPSOID, ellipsoid, "ellipsoid", demi_ellipsoids_gap, \
+      (demi_ellipsoids_touch, demi_ellipsoids_touch)) \
+    /* the last */
 #define DEMI_WALLS(X) \
     X(PLANE,    0, 7, DEMI_FLAT, "plane", \
       demi_plane_near, (demi_plane_spheres, demi_plane_ellipsoid), 0) \
@@ -1925,6 +1925,9 @@ enum { DEMI_SIEVE_MOST = 12 };                  /* contacts of a grain with a si
     X(SIEVE,    0, DEMI_SIEVE_MOST, 0, "sieve", \
       demi_sieve_near, (demi_sieve_spheres), 0) \
     /* the last */
+#define DEMI_LIST(...) {__VA_ARGS__}            /* one field of a row that is a list: (a, b) */
+#define DEMI_SHAPE_CONSTANT(KIND, NAME, WORD, GAP, TOUCH) DEMI_##KIND,
+enum { DEMI_SHAPES(DEMI_SHAPE_CONSTANT) DEMI_SHAPE_KINDS };
 #define DEMI_WALL_CONSTANT(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_WALL_##KIND,
 enum { DEMI_WALL_NONE = 0, DEMI_WALLS(DEMI_WALL_CONSTANT) DEMI_WALL_KINDS };
 typedef struct demi_wall_kind { int corners, most, traits; const char *name; } demi_wall_kind;

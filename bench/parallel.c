@@ -31,6 +31,7 @@
                       720 N/m the weight of balls would press them through each other); no friction
      scaling          the bed, cut down to 1000 beads and laid side by side up to a million */
 #define main mill_main           /* the mill is that of the study, not a copy of it                     */
+#define DEM_IMPLEMENTATION
 #include "examples/mill.c"
 #undef main
 #include "bench/measure.h"

@@ -1,8 +1,7 @@
 /* 01_bounce.c - a glass ball falls half a metre and bounces; every rebound reaches e^2 of the last height.
 
-   Build:     cc -O2 01_bounce.c -lm
+   Build:     cc -O2 01_bounce.c ../dem.c -lm
    Expected:  heights .32 .2048 .1311 .0839 .0537 m for e = .8, each within 2 % */
-#define DEM_IMPLEMENTATION
 #include "../dem.h"
 
 int main(void) {

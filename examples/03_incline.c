@@ -6,9 +6,8 @@
        a = g (sin(angle) - mu cos(angle)),  R dw/dt = 5/2 mu g cos(angle).
    mu = .2: the border is at 34.99 degrees. Instead of tilting the plane we tilt gravity.
 
-   Build:     cc -O2 03_incline.c -lm
+   Build:     cc -O2 03_incline.c ../dem.c -lm
    Expected:  accelerations within .1 %, slip only at 40 and 50 degrees */
-#define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include <math.h>
 

@@ -6,10 +6,9 @@
        e = sqrt(k1/k2)
    The law sees one contact, remembers one number (dmax), and answers with a force.
 
-   Build:     cc -O2 04_own_law.c -lm
+   Build:     cc -O2 04_own_law.c ../dem.c -lm
               (docs/extending.md tells how to have the law compiled into the loop)
    Expected:  e within .2 % for four ratios and two speeds */
-#define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include <math.h>
 

@@ -5,10 +5,9 @@
    A mesh is looked over when read: its open edges, duplicates, slivers and a likely mistake in units are
    told, and never stop a run.
 
-   Build:     cc -O2 06_mesh.c -lm
+   Build:     cc -O2 06_mesh.c ../dem.c -lm
    Expected:  both balls at the same place to 1e-9 m, 8 open edges (the border of the floor);
               floor.vtp opens in ParaView */
-#define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include <math.h>
 #include <string.h>

@@ -7,11 +7,10 @@
        tan(slope) = H/R,  H = 4 (z_mean - z of the lowest layer),  R = 2 r_mean
    At rest: kinetic energy below 1e-9 of what the fall brought, and still so a while later.
 
-   Build:     cc -O2 07_clusters.c -lm
+   Build:     cc -O2 07_clusters.c ../dem.c -lm
    Run:       07_clusters [count]                  (2000: five minutes on one core, 500: one)
    Expected:  a slope of about 20 degrees for tetrahedra and 9 for spheres; heap_tetrahedra.svg and
               heap_spheres.svg to look at, and .vtp for ParaView */
-#define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include <math.h>
 

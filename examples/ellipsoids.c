@@ -18,7 +18,7 @@
    Hard bodies have no time of their own, so --hold doubles all energies whenever half is lost, and
    counts time and temperature as if it had not: a step is as good in a cold gas as in a hot one.
 
-   build:  cc -O3 -march=native -std=c99 examples/ellipsoids.c -o build/ellipsoids -lm
+   build:  cc -O3 -march=native -std=c99 examples/ellipsoids.c dem.c -o build/ellipsoids -lm
    run:    build/ellipsoids, build/ellipsoids --quick, --xi 2 --restitution 0.9 --count 4096,
            --all (hours), --theory (no gas), --direct, --speeds (Table 2), --help
 
@@ -56,7 +56,6 @@
      run_in_drift             energy gained in the run-in, relative
      contact_share            duration of a collision over the time between two, at the start
    [RUB15] Rubio-Largo, Lind, Maza & Hidalgo (2015); [SON90] Song & Mason, Phys. Rev. A 41 (1990) 3121, eq 25. */
-#define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "study.h"
 

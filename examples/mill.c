@@ -12,7 +12,7 @@
    examples/data/mill_300mm.profile has as many of each, with 12 trapezoidal lifters of our own
    choice: 9 mm high, 16 mm wide at the foot, 8 mm at the top (made by --write-profile).
 
-   build:  cc -O2 -std=c99 -fopenmp examples/mill.c -o build/mill -lm    (-fopenmp if you like)
+   build:  cc -O2 -std=c99 -fopenmp examples/mill.c dem.c -o build/mill -lm    (-fopenmp if you like)
    run:    build/mill, build/mill --quick, build/mill --help
            over MPI: examples/mpi/mill.c
 
@@ -43,7 +43,6 @@
      hash                 of the final state: the same for any number of threads
    Files: solidicity and velocity at 64, 128 and 256 cells, torque, power, grains (SVG);
    torque.csv, ledger.csv; frames for ParaView (VTP); report.txt; summary.txt. */
-#define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "drum.h"
 #include "study.h"

@@ -20,7 +20,7 @@
      eccentricity 40 mm where the figure does not say (all but 4.20), u = e = 0
      fed from a disc of .1 m in the middle, above the first sieve
 
-   build:  cc -O2 -std=c99 examples/screener.c -o build/screener -lm
+   build:  cc -O2 -std=c99 examples/screener.c dem.c -o build/screener -lm
    run:    build/screener, build/screener --study speed, build/screener --help
 
    --machine small is no machine of the thesis: R = 15 cm, three decks, fed without end; --study hour
@@ -38,7 +38,6 @@
      overlap                              largest over radius
      compute                              s of wall time
      steps, unbalanced_steps              of --study hour: those at which a size was not in balance */
-#define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "sorting.h"
 #include "study.h"

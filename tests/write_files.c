@@ -1,6 +1,5 @@
 /* write_files.c - make readers: writes one small scene in every picture format, and what a reader must
    find in it as plain text: expected.txt, lines of a name and numbers. */
-#define DEM_IMPLEMENTATION
 #include "dem.h"
 #include <stdlib.h>
 

@@ -9,7 +9,6 @@
    builds the same world, deals it, and steps; dem_slabs_collect writes the whole state back into
    each process's world. Expected: the bits of the slabs in one process, and grains within 1e-11 m
    of those in one world (after 4000 steps; collisions multiply round-off, so later it is more). */
-#define DEM_IMPLEMENTATION
 #include "dem.h"
 #include "transport.h"
 
