@@ -173,8 +173,11 @@
    finite, an overlap larger than a radius) stops at the step that caused it. dem.h never prints,
    exits or aborts.
 
-   Threads. Different worlds may be used from different threads. Within a world, `threads` of the
-   desc sets the OpenMP threads; the same input gives the same bits for any number of them: bodies
+   Threads. Different worlds may be used from different threads. Several threads may look at one
+   world at once, by functions that take it as const, while none changes it. Of those only these
+   write: one that fails (its sentence), dem_world_error (that it was read), and dem_bodies_get in a
+   periodic world (the places, wrapped into the box). Within a world, `threads` of the desc sets the
+   OpenMP threads; the same input gives the same bits for any number of them: bodies
    are dealt to domains that depend on the number of bodies only, and every sum runs in a fixed
    order. To compare bits between builds, compile with -ffp-contract=off. Slabs (dem_slabs_create)
    deal a scene to processes, over MPI or what you have: docs/parallel.md.
@@ -2221,7 +2224,7 @@ struct dem_world {
     demi_touching *touching;       /* of one body and wall, by domain */
     int32_t *touching_table;
     demi_link *touching_links;
-    int kept_stride;               /* contacts per domain */
+    int kept_first[DEMI_DOMAINS + 1];   /* where those of domain d begin, in either list */
     demi_kept *kept_now, *kept_next;
     /* >>near */
     demi_near near, near_last;     /* in use, and the one before: swapped when made anew */
@@ -3949,6 +3952,10 @@ static int demi_carry_collect(dem_world *w) {
     return 1;
 }
 
+/* Contacts that domain d keeps. */
+DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
+    return w->kept_now + w->kept_first[d];
+}
 /* The candidate list no longer fits: save what it remembers. 0 when memory ran out; nothing changed
    then. */
 static int demi_list_drop(dem_world *w) {
@@ -3958,7 +3965,7 @@ static int demi_list_drop(dem_world *w) {
     if (!demi_carry_collect(w)) return 0;
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = &w->kept_now[d*w->kept_stride + k];
+            demi_kept *c = demi_kept_of(w, d) + k;
             c->a = (int32_t)w->bodies.slot[c->a];            /* from here on slots */
             if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
         }
@@ -6870,15 +6877,11 @@ static int demi_places_of(const dem_world *w, int d, int k) {
         : 0;
     return demi_wall_kinds[wall->kind].most + (cut ? 2*(cut[1] - cut[0]) : 0);
 }
-/* The most contacts with walls that any domain may ever have with these candidates. */
-static int demi_places_most(const dem_world *w) {
-    int d, k, most = 0;
-    for (d = 0; d < w->domain_count; d++) {
-        int n = 0;
-        for (k = 0; k < w->domains[d].walls; k++) n += demi_places_of(w, d, k);
-        most = DEMI_MAX(most, n);
-    }
-    return most;
+/* The most contacts with walls that domain d may ever have with these candidates. */
+static int demi_places_most(const dem_world *w, int d) {
+    int k, n = 0;
+    for (k = 0; k < w->domains[d].walls; k++) n += demi_places_of(w, d, k);
+    return n;
 }
 /* Room for the places of one body and wall, for each domain its own. 0 when memory ran out. */
 static int demi_touching_reserve(dem_world *w) {
@@ -6901,47 +6904,47 @@ static int demi_touching_reserve(dem_world *w) {
                         DEMI_GROW(w, w->touching_table, 4*n);
     return w->touching_valid;
 }
-/* Room for one domain's contacts: what is needed, or what there was where that is not much more: so
-   it does not go up and down, and what arrives all in one domain (from slabs) does not count for
-   each. */
-static int demi_stride_keep(int needed, int had) {
-    return had > needed && had <= 2*needed ? had : needed;
+/* Where each domain's contacts stand when there is room for what its candidates may give: as a rule
+   hardly more than one contact for each, and what lasts (crowd), and a quarter. Slabs of spheres do
+   not stop in the middle of a step to make room: as much as there may ever be. listed: domains in
+   use; the others only hold what lasts. */
+static void demi_kept_lay(const dem_world *w, int listed, const int *crowd, int *first) {
+    int d;
+    for (d = 0, first[0] = 0; d < DEMI_DOMAINS; d++) {
+        const demi_domain *domain = &w->domains[d];
+        int n = d < listed ? domain->walls : 0;
+        if (d == listed - 1 && w->wall_count) n += w->join_room;
+        n = DEMI_MAX(n, crowd[d]);
+        n += n ? n/4 + 16 : 0;
+        if (d < listed && w->bodies.ghost) n = DEMI_MAX(n, demi_places_most(w, d));
+        if (d < listed && w->bodies.shaped) n += DEMI_MAX(64, 4*(domain->end - domain->begin));
+        first[d + 1] = first[d] + n;
+    }
 }
 /* Room for contacts in the domains of a new list, and for the walls' sums; nothing moves yet.
-   Answers how many contacts a domain then holds; -1: memory ran out. */
-static int demi_kept_room(dem_world *w) {
-    const int shaped = w->bodies.shaped ? DEMI_MAX(64, w->bodies.count/w->domain_count*4) : 0;
-    int d, k, total = 0, stride = w->wall_count ? w->wall_stride : 0;
-    int crowd[DEMI_DOMAINS], ok;
-    /* slabs of spheres do not stop in the middle of a step to make room: as much as there may ever
-       be, where else there are hardly more contacts than candidates */
-    if (w->bodies.ghost) stride = DEMI_MAX(stride, demi_places_most(w));
-    stride += shaped;
-    for (d = 0; d < DEMI_DOMAINS; d++) {
-        total += w->domains[d].kept;
-        crowd[d] = 0;
-    }
+   first: where those of each domain will begin. 0 when memory ran out. */
+static int demi_kept_room(dem_world *w, int *first) {
+    int crowd[DEMI_DOMAINS], d, k, total = 0;
+    memset(crowd, 0, sizeof crowd);
+    for (d = 0; d < DEMI_DOMAINS; d++) total += w->domains[d].kept;
     for (d = 0; d < DEMI_DOMAINS; d++)          /* how many will come to each domain at most */
         for (k = 0; k < w->domains[d].kept; k++) {
-            const demi_kept *c = &w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
+            const demi_kept *c = demi_kept_of(w, d) + k;
             const int a = w->bodies.slot_index[c->a], b = c->b < 0 ? a : w->bodies.slot_index[c->b];
             if (a >= 0 && b >= 0) crowd[demi_domain_of(w, DEMI_MIN(a, b))]++;
         }
-    for (d = 0; d < DEMI_DOMAINS; d++) stride = DEMI_MAX(stride, crowd[d]);
-    stride = demi_stride_keep(stride, w->kept_stride);
-    ok = DEMI_GROW(w, w->wall_sums, (size_t)w->domain_count*(size_t)w->wall_count) &&
-         DEMI_GROW(w, w->kept_next,
-                   DEMI_MAX((size_t)stride*(size_t)w->domain_count, (size_t)total)) &&
-         DEMI_GROW(w, w->kept_now, (size_t)stride*(size_t)w->domain_count);
-    return ok ? stride : -1;
+    demi_kept_lay(w, w->domain_count, crowd, first);
+    return DEMI_GROW(w, w->wall_sums, (size_t)w->domain_count*(size_t)w->wall_count) &&
+           DEMI_GROW(w, w->kept_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
+           DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]);
 }
 /* Contacts that still last, from the last list (by slot) into the domains of the new one, each with
    its lower body as a: what turns round, turns round. */
-static void demi_kept_move(dem_world *w, int stride) {
+static void demi_kept_move(dem_world *w, const int *first) {
     int d, k, e = 0, i;
     for (d = 0; d < DEMI_DOMAINS; d++) {
         for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept c = w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
+            demi_kept c = demi_kept_of(w, d)[k];
             const int pair = c.b >= 0;
             c.a = w->bodies.slot_index[c.a];
             if (pair) c.b = w->bodies.slot_index[c.b];
@@ -6963,7 +6966,7 @@ static void demi_kept_move(dem_world *w, int stride) {
         }
         w->domains[d].kept = 0;
     }
-    w->kept_stride = stride;
+    memcpy(w->kept_first, first, sizeof w->kept_first);
     /* deal out in the order of body a; `order` has done its work in the search and counts here */
     if (e) memset(w->bodies.order, 0, (size_t)w->bodies.count*sizeof *w->bodies.order);
     for (k = 0; k < e; k++) w->bodies.order[w->kept_next[k].a]++;
@@ -6975,8 +6978,7 @@ static void demi_kept_move(dem_world *w, int stride) {
         }
     for (k = 0; k < e; k++) {
         const demi_kept *c = &w->kept_next[k];
-        w->kept_now[(size_t)demi_domain_of(w, c->a)*(size_t)stride +
-            (size_t)w->bodies.order[c->a]++] = *c;
+        demi_kept_of(w, demi_domain_of(w, c->a))[w->bodies.order[c->a]++] = *c;
     }
 }
 
@@ -7565,7 +7567,7 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
     w->filed.stride = (int)to;
     for (d = 0; d < w->domain_count; d++) {
         for (k = 0; k < w->domains[d].kept; k++) {
-            demi_kept *c = &w->kept_now[d*w->kept_stride + k];
+            demi_kept *c = demi_kept_of(w, d) + k;
             memcpy(old, c->memory, sizeof old);
             memset(c->memory, 0, sizeof c->memory);
             demi_memory_map(was, &w->laws, old, c->memory);
@@ -7648,9 +7650,9 @@ static int demi_walls_find(dem_world *w) {
 /* Contacts that are kept move to the new lists: all room first, for what has moved cannot go
    back. */
 static int demi_contacts_move(dem_world *w) {
-    const int stride = demi_kept_room(w);
-    if (stride < 0 || !demi_touching_reserve(w)) return 0;
-    demi_kept_move(w, stride);
+    int first[DEMI_DOMAINS + 1];
+    if (!demi_kept_room(w, first) || !demi_touching_reserve(w)) return 0;
+    demi_kept_move(w, first);
     return 1;
 }
 /* Slots freed since the last list may be used again. */
@@ -9503,8 +9505,11 @@ static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem
 static demi_kept *demi_kept_new(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     demi_kept *c;
-    if (domain->kept_next >= w->kept_stride) { domain->overflow |= 16; return 0; }
-    c = w->kept_next + (size_t)d*(size_t)w->kept_stride + domain->kept_next++;
+    if (domain->kept_next >= w->kept_first[d + 1] - w->kept_first[d]) {
+        domain->overflow |= 16;
+        return 0;
+    }
+    c = w->kept_next + w->kept_first[d] + domain->kept_next++;
     memset(c, 0, offsetof(demi_kept, coef));
     c->b = -1;
     c->share = c->slope = c->inset = 1;
@@ -9581,7 +9586,7 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
     for (i = 0; i < olds; i++)
         if (old[i].element == element && old[i].wall == wall && old[i].part_a == part_a &&
             old[i].b == b && old[i].part_b == part_b)
-            return (int)(old - (w->kept_now + (size_t)d*(size_t)w->kept_stride)) + i;
+            return (int)(old - demi_kept_of(w, d)) + i;
     return -1;
 }
 /* How well an old contact fits a new one: by their normals; where those are nearly the same (within
@@ -9598,7 +9603,7 @@ DEM_INLINE dem_real demi_match(dem_vec3 old, dem_vec3 now, int taken, int wall, 
    move against each other are one here. fresh: all that are new with this wall. */
 static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int olds,
                           const demi_kept *fresh, int freshs, const demi_kept *c) {
-    const int first = (int)(old - (w->kept_now + (size_t)d*(size_t)w->kept_stride));
+    const int first = (int)(old - demi_kept_of(w, d));
     dem_real nearest = 0;
     int i, j, best = -1;
     for (i = 0; i < olds; i++) {
@@ -9756,8 +9761,8 @@ static void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kep
     const dem_real rb = w->bodies.pos[4*b + 3];
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
     const int first = w->domains[d].kept_next;
-    const demi_kept *now = w->kept_now + (size_t)d*(size_t)w->kept_stride;
-    demi_kept *from = w->kept_next + (size_t)d*(size_t)w->kept_stride + first;
+    const demi_kept *now = demi_kept_of(w, d);
+    demi_kept *from = w->kept_next + w->kept_first[d] + first;
     int i, j;
     if (!(demi_length(r) < w->bodies.pos[4*a + 3] + rb)) return;
     for (i = 0; i < na; i++) {
@@ -9931,7 +9936,7 @@ static void demi_kept_wall(dem_world *w, int d, int first, int last, const demi_
                            int olds) {
     const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
-    demi_kept *c = w->kept_next + (size_t)d*(size_t)w->kept_stride + from;
+    demi_kept *c = w->kept_next + w->kept_first[d] + from;
     int k;
     for (k = 0; k < parts; k++) demi_kept_on_wall(w, d, first, last, k, old, olds);
     if (demi_shape_of(w, body)) {
@@ -9946,7 +9951,7 @@ static void demi_kept_wall(dem_world *w, int d, int first, int last, const demi_
    */
 static void demi_domain_kept_touch(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const demi_kept *old = w->kept_now + (size_t)d*(size_t)w->kept_stride;
+    const demi_kept *old = demi_kept_of(w, d);
     const int base = d*w->near.stride, walls = d*w->wall_stride;
     const dem_real gone = demi_walls_gone(w);
     int p = domain->near_shaped, q = domain->near_shaped_cross, k = 0, o = 0, o_end, a, last;
@@ -9978,19 +9983,20 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
         if (domain->overflow & 16) return;
     }
 }
-/* Room for contacts, now and next. 0 when memory ran out; nothing changed then. */
-static int demi_kept_reserve(dem_world *w, int stride) {
-    const int old = w->kept_stride;
-    const size_t n = (size_t)DEMI_DOMAINS < (size_t)w->domain_count ? 0 : (size_t)w->domain_count;
-    int d;
-    if (stride <= old && demi_room(w->kept_now, sizeof(demi_kept)) >= n*(size_t)old) stride =
-           old;
-    if (!DEMI_GROW(w, w->kept_next, n*(size_t)stride) ||
-        !DEMI_GROW(w, w->kept_now, n*(size_t)stride)) return 0;
-    for (d = w->domain_count - 1; d > 0 && stride > old; d--)
-        memmove(w->kept_now + (size_t)d*(size_t)stride, w->kept_now + (size_t)d*(size_t)old,
+/* More room for the domains that ran out of it. 0 when memory ran out; nothing changed then. */
+static int demi_kept_widen(dem_world *w) {
+    int first[DEMI_DOMAINS + 1], d;
+    for (d = 0, first[0] = 0; d < DEMI_DOMAINS; d++) {
+        const int had = w->kept_first[d + 1] - w->kept_first[d];
+        const int more = d < w->domain_count && w->domains[d].overflow & 16 ? had/2 + 64 : 0;
+        first[d + 1] = first[d] + had + more;
+    }
+    if (!DEMI_GROW(w, w->kept_next, (size_t)first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS])) return 0;
+    for (d = w->domain_count - 1; d > 0; d--)
+        memmove(w->kept_now + first[d], demi_kept_of(w, d),
                 (size_t)w->domains[d].kept*sizeof(demi_kept));
-    w->kept_stride = stride;
+    memcpy(w->kept_first, first, sizeof w->kept_first);
     return 1;
 }
 /* All of them. 0 when memory ran out. */
@@ -10003,7 +10009,7 @@ static int demi_touch(dem_world *w) {
     do {
         demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_kept_touch);
         for (d = 0, again = 0; d < w->domain_count; d++) again |= w->domains[d].overflow & 16;
-        if (again && !demi_kept_reserve(w, w->kept_stride/2*3 + 64)) return 0;
+        if (again && !demi_kept_widen(w)) return 0;
     } while (again);
     return 1;
 }
@@ -10148,12 +10154,12 @@ DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *p
 static void demi_kept_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
-    const demi_kept *now = w->kept_now + (size_t)d*(size_t)w->kept_stride;
+    const demi_kept *now = demi_kept_of(w, d);
     demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
     int i;
     domain->kept_walls = 0;
     for (i = 0; i < domain->kept_next; i++) {
-        demi_kept *c = w->kept_next + (size_t)d*(size_t)w->kept_stride + i;
+        demi_kept *c = w->kept_next + w->kept_first[d] + i;
         const int a = c->a, b = c->b;
         const demi_kept *old;
         dem_real press, still;
@@ -11991,7 +11997,7 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             }
         }
         for (p = 0; p < domain->kept; p++) {
-            const demi_kept *k = w->kept_now + (size_t)d*(size_t)w->kept_stride + (size_t)p;
+            const demi_kept *k = demi_kept_of(w, d) + p;
             const int i = k->a;
             const double arm = (double)w->bodies.pos[4*i + 3];
             dem_real coef[DEMI_COEFS];
@@ -12105,44 +12111,52 @@ static double demi_fastest(const dem_world *w) {
                                                    demi_at(w->bodies.vel + 4*i)));
     return sqrt(most);
 }
-/* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast
-   bodies move. A step that was chosen is made smaller; one that was given is refused, before
-   anything moves. Pressed contacts are looked at more and more rarely while the scene stays, at
-   least every thousand steps; the speed at every step. */
-static dem_result demi_dt_check(dem_world *w) {
-    const double radius = (double)w->effects.radius_min;
-    int worst = 0, auto_dt = !(w->desc.dt > 0);
-    double speed = w->booked.speed_max, limit;
-    if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
-    if (w->clock.steps == w->clock.press_since) speed = demi_fastest(w);
-    speed += w->margin.last_change;
-    if (speed*(double)w->clock.dt > radius && radius > 0)
-        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: a body at %.3g m/s "
-                         "moves %.3g radii of the smallest grain (%g m) in a step of %g s, must be "
-                         "at most 1: it would pass others and walls unseen; use dt = 0 or at most "
-                         "%.2g s, or look for what made it so fast",
-                         (unsigned long long)w->clock.steps, speed,
-                             speed*(double)w->clock.dt/radius, radius, (double)w->clock.dt,
-                         0.1*radius/speed);
-    if (w->clock.steps < w->clock.press_due) return DEM_OK;
-    limit = demi_press_limit(w, (double)w->clock.dt*(auto_dt ? 2 : 1), &worst);
-    if (limit < 0) return demi_no_memory(w, "dem_world_step");
-    w->clock.press_due = w->clock.steps +
-        DEMI_MIN(8*(w->clock.steps - w->clock.press_since) + 8, 1000);
-    if (!(limit > 0)) return DEM_OK;
-    if (auto_dt) {
-        demi_finish(w);
-        w->stage.primed = 0;
-        w->clock.dt = (dem_real)(limit/2);
-        return DEM_OK;
-    }
+/* Refuses a step in which the fastest moves farther than the smallest radius: it would pass others
+   and walls unseen. */
+static dem_result demi_speed_check(dem_world *w, double speed) {
+    const double radius = (double)w->effects.radius_min, dt = (double)w->clock.dt;
+    if (!(speed*dt > radius && radius > 0)) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: a body at %.3g m/s moves "
+                     "%.3g radii of the smallest grain (%g m) in a step of %g s, must be at most "
+                     "1: it would pass others and walls unseen; use dt = 0 or at most %.2g s, or "
+                     "look for what made it so fast", (unsigned long long)w->clock.steps, speed,
+                     speed*dt/radius, radius, dt, 0.1*radius/speed);
+}
+/* What presses has been looked at: again more and more rarely while the scene stays, at least every
+   thousand steps. */
+static void demi_press_looked(demi_timing *clock) {
+    clock->press_due = clock->steps + DEMI_MIN(8*(clock->steps - clock->press_since) + 8, 1000);
+}
+/* Refuses a step that was given, for this body is pressed so that `limit` is the largest. */
+static dem_result demi_press_refuse(dem_world *w, double limit, int worst) {
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be at "
                      "most %g s: body %u is pressed by %d contacts, by %.3g of its radius at most; "
                      "use dt = 0, a smaller dt, or less overlap",
                      (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
-                         (unsigned)w->bodies.slot[worst] + 1,
-                     (int)w->press[worst].contacts,
+                     (unsigned)w->bodies.slot[worst] + 1, (int)w->press[worst].contacts,
                      (double)w->press[worst].deepest);
+}
+/* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast
+   bodies move. A step that was chosen is made smaller; one that was given is refused, before
+   anything moves. */
+static dem_result demi_dt_check(dem_world *w) {
+    const int chosen = !(w->desc.dt > 0);
+    dem_result result;
+    double limit;
+    int worst = 0;
+    if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
+    result = demi_speed_check(w, w->margin.last_change + (w->clock.steps == w->clock.press_since
+                                                          ? demi_fastest(w) : w->booked.speed_max));
+    if (result != DEM_OK || w->clock.steps < w->clock.press_due) return result;
+    limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2 : 1), &worst);
+    if (limit < 0) return demi_no_memory(w, "dem_world_step");
+    demi_press_looked(&w->clock);
+    if (!(limit > 0)) return DEM_OK;
+    if (!chosen) return demi_press_refuse(w, limit, worst);
+    demi_finish(w);
+    w->stage.primed = 0;
+    w->clock.dt = (dem_real)(limit/2);
+    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -12379,7 +12393,7 @@ static dem_result demi_unstable(dem_world *w) {
     for (d = 0; d < w->domain_count; d++) deepest = DEMI_MAX(deepest, w->domains[d].overlap);
     for (d = 0; d < w->domain_count; d++)
         for (i = 0; i < w->domains[d].kept; i++) {
-            const demi_kept *c = &w->kept_now[d*w->kept_stride + i];
+            const demi_kept *c = demi_kept_of(w, d) + i;
             if (c->b < 0 && c->deep > 1)
                 return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
                                  "overlaps wall %d by %.3g of its "
@@ -12847,7 +12861,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
             n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0);
         for (k = 0; k < w->domains[d].kept; k++) {
-            const demi_kept *c = &w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
+            const demi_kept *c = demi_kept_of(w, d) + k;
             if (!(c->overlap > 0) || ++n > capacity || !out) continue;
             out[n - 1].a = dem_bodies_id(w, c->a);
             out[n - 1].b = dem_bodies_id(w, c->b);
@@ -12928,8 +12942,7 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
                                         span.memory, span.stride);
         }
         for (k = 0; k < domain->kept; k++)
-            sum += demi_kept_hash(w, &w->kept_now[(size_t)d*(size_t)w->kept_stride +
-                                                      (size_t)k]);
+            sum += demi_kept_hash(w, demi_kept_of(w, d) + k);
     }
     for (i = 0; !w->stage.list_valid && w->filed.count && w->filed.stride == w->memory_stride &&
                 i < w->filed.rows; i++)
@@ -12946,7 +12959,7 @@ static uint64_t demi_contacts_hash(const dem_world *w, uint64_t h) {
    friction. */
 static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body, dem_vec3 *normal,
                            dem_real *mu) {
-    const demi_kept *c = w->kept_now + (size_t)d*(size_t)w->kept_stride + k;
+    const demi_kept *c = demi_kept_of(w, d) + k;
     *body = c->a;
     *normal = c->normal;
     *mu = demi_static_friction(w, w->bodies.material[c->a] - 1, w->walls[wall].material);
@@ -14470,7 +14483,7 @@ static void demi_visit_contacts(dem_world *w, demi_stream *s) {
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         if (domain->kept)
-            demi_visit(s, w->kept_now + (size_t)d*(size_t)w->kept_stride,
+            demi_visit(s, demi_kept_of(w, d),
                        (size_t)domain->kept*sizeof(demi_kept));
     }
     if (w->stage.list_valid || !w->filed.count) return;
@@ -14992,7 +15005,7 @@ static int demi_contacts_check(const demi_reader *r) {
     int d, k;
     for (d = 0; d < t->domain_count; d++) {
         for (k = 0; k < t->domains[d].kept; k++) {
-            const demi_kept *c = t->kept_now + (size_t)d*(size_t)t->kept_stride + k;
+            const demi_kept *c = demi_kept_of(t, d) + k;
             if (c->a < 0 || c->a >= who || c->b < -1 || c->b >= who || !demi_finite3(c->shift) ||
                 (c->b >= 0 && !t->bodies.orienting) ||
                     (c->b < 0 && (c->wall < 0 || c->wall >= t->wall_count ||
@@ -15070,30 +15083,31 @@ static int demi_twin_bodies_room(dem_world *t) {
 }
 /* The lists' rows are as long as the longest asks for, and as a rebuild would make them. */
 static int demi_twin_lists_room(dem_world *t) {
-    int most[6] = {0, 0, 0, 0, 0, 0}, d, k;
+    int most[5] = {0, 0, 0, 0, 0}, crowd[DEMI_DOMAINS], d, k;
     const int each = t->domain_count ? t->bodies.count/t->domain_count : 0;
+    memset(crowd, 0, sizeof crowd);
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
         const int counts[] = {t->stage.list_valid ? o->own : 0, t->stage.list_valid ? o->cross : 0,
                               t->stage.list_valid ? o->near_shaped_end : 0, t->stage.list_valid
                                   ? o->walls : 0,
-                              o->kept, t->domain_count > 1};
-        for (k = 0; k < 6; k++) most[k] = DEMI_MAX(most[k], counts[k]);
+                              t->domain_count > 1};
+        for (k = 0; k < 5; k++) most[k] = DEMI_MAX(most[k], counts[k]);
+        crowd[d] = o->kept;
     }
     if (t->stage.list_valid) {
         most[0] = DEMI_MAX(most[0], DEMI_MAX(64, each*3));
-        most[1] = DEMI_MAX(most[1], most[5] ? DEMI_MAX(64, each*3)/4 : 0);
+        most[1] = DEMI_MAX(most[1], most[4] ? DEMI_MAX(64, each*3)/4 : 0);
         most[2] = DEMI_MAX(most[2], DEMI_MAX(64, each*5/2));
         most[3] = DEMI_MAX(most[3], 64);
-        most[4] = DEMI_MAX(most[4], t->bodies.shaped ? DEMI_MAX(64, each*4) : 16);
     }
     for (k = 0; k < 4; k++) if (k != 2) most[k] += t->join_room;
     most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
-    t->kept_stride = 0;
+    demi_kept_lay(t, t->stage.list_valid ? t->domain_count : 0, crowd, t->kept_first);
     if (!DEMI_GROW(t, t->wall_sums, (size_t)t->domain_count*(size_t)t->wall_count) ||
-        !demi_kept_reserve(t, most[4]) ||
+        !DEMI_GROW(t, t->kept_now, (size_t)t->kept_first[DEMI_DOMAINS]) ||
+        !DEMI_GROW(t, t->kept_next, (size_t)t->kept_first[DEMI_DOMAINS]) ||
         !demi_carry_reserve(t, t->filed.rows, t->filed.count, t->filed.stride)) return 0;
-    t->kept_stride = most[4];
     return !t->stage.list_valid ||
            (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&
             demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
@@ -15551,6 +15565,8 @@ typedef struct demi_slab {
     int lent_count, ghost_count, leavers;
     uint64_t bytes, migrated;
     double work, seconds;
+    double press_limit;            /* s, of the body that is pressed most: press_worst */
+    int press_worst;
     demi_crowd crowd;              /* who is near the region of a feed */
 } demi_slab;
 
@@ -15676,7 +15692,7 @@ static int demi_pack(dem_world *host, const dem_world *w, const uint8_t *marks, 
         }
     for (d = 0; memory && d < DEMI_DOMAINS && ok; d++)
         for (k = 0; k < w->domains[d].kept && ok; k++) {
-            demi_kept c = w->kept_now[(size_t)d*(size_t)w->kept_stride + (size_t)k];
+            demi_kept c = demi_kept_of(w, d)[k];
             if (w->stage.list_valid) {
                 c.a = (int32_t)w->bodies.slot[c.a];
                 if (c.b >= 0) c.b = (int32_t)w->bodies.slot[c.b];
@@ -15708,13 +15724,13 @@ static int demi_filed_reserve(dem_world *w, int32_t **add, const demi_message_he
     for (d = 0; d < DEMI_DOMAINS; d++) {
         demi_domain *o = &w->domains[d];
         if (o->kept && d)
-            memmove(to, w->kept_now + (size_t)d*(size_t)w->kept_stride,
+            memmove(to, demi_kept_of(w, d),
                     (size_t)o->kept*sizeof *to);
         to += o->kept;
         o->kept = 0;
     }
     w->domains[0].kept = total;
-    w->kept_stride = total + come->contacts;
+    for (d = 1; d <= DEMI_DOMAINS; d++) w->kept_first[d] = total + come->contacts;
     return 1;
 }
 /* Files pairs that arrived behind those already in their rows. */
@@ -16103,12 +16119,20 @@ static size_t demi_slab_up(const dem_world *w) {
 }
 static size_t demi_slab_down(const dem_world *w) { return demi_turns(w) ? 6 : 3; }
 
+/* Bytes of what goes up and down in a step. */
+static void demi_slab_sizes(dem_slabs *s, demi_slab *b) {
+    const size_t up = demi_slab_up(b->world)*sizeof(dem_real);
+    const size_t down = demi_slab_down(b->world)*sizeof(dem_real);
+    (void)s;
+    b->in[0].size = (size_t)b->ghost_count*up;
+    b->in[1].size = (size_t)b->lent_count*down;
+    b->out[0].size = (size_t)b->ghost_count*down;
+}
 /* Ghosts come in; then the list is made as in any world, and steps get their room. */
 static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const char *from = 0;
     const demi_message_head h = demi_slab_head(s, b, 0, &from);
-    const size_t real = sizeof(dem_real);
     int i, d, ok;
     ok = demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)h.grains) &&
          DEMI_GROW(w, b->ghost, (size_t)h.grains) &&
@@ -16128,9 +16152,7 @@ static void demi_slab_list(dem_slabs *s, demi_slab *b) {
     demi_kernel_choose(w);
     for (i = 0; i < b->ghost_count; i++) b->ghost[i] = w->bodies.slot_index[b->ghost[i]];
     for (i = 0; i < b->lent_count; i++) b->lent[i] = w->bodies.slot_index[b->lent[i]];
-    b->in[0].size = (size_t)b->ghost_count*demi_slab_up(w)*real;
-    b->in[1].size = (size_t)b->lent_count*demi_slab_down(w)*real;
-    b->out[0].size = (size_t)b->ghost_count*demi_slab_down(w)*real;
+    demi_slab_sizes(s, b);
     b->work = 4.0*w->bodies.count;
     for (d = 0; d < w->domain_count; d++)
         b->work += w->domains[d].own + w->domains[d].cross + w->domains[d].walls;
@@ -16392,7 +16414,7 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
     dem_result result;
     int k, i, j;
     for (i = 0; i < 2*m; i++) v[i] = i < m ? -1e300 : 0;       /* minus smallest; largest fixed */
-    v[2*m] = v[2*m + 3] = 0;                                   /* speed; lowest, highest; spin */
+    v[2*m] = v[2*m + 3] = v[2*m + 4] = 0;       /* speed; lowest, highest; spin; of what moves */
     v[2*m + 1] = v[2*m + 2] = -1e300;
     memset(many, 0, sizeof many);
     for (k = 0; k < s->local; k++) {
@@ -16400,12 +16422,16 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
         for (i = 0; i < w->bodies.count; i++) {
             const double x = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
             const double r = (double)w->bodies.pos[4*i + 3];
+            double speed;
             if (demi_is_ghost(w, i)) continue;
             j = w->bodies.material[i] - 1;
-            if (w->bodies.inv_mass[i] > 0) { v[j] =
-                                            DEMI_MAX(v[j], -demi_advise_radius(w, i)); many[j]++; }
-            else v[m + j] = DEMI_MAX(v[m + j], demi_advise_radius(w, i));
-            v[2*m] = DEMI_MAX(v[2*m], (double)demi_length(demi_at(w->bodies.vel + 4*i)));
+            speed = (double)demi_length(demi_at(w->bodies.vel + 4*i));
+            if (w->bodies.inv_mass[i] > 0) {
+                v[j] = DEMI_MAX(v[j], -demi_advise_radius(w, i));
+                v[2*m + 4] = DEMI_MAX(v[2*m + 4], speed);
+                many[j]++;
+            } else v[m + j] = DEMI_MAX(v[m + j], demi_advise_radius(w, i));
+            v[2*m] = DEMI_MAX(v[2*m], speed);
             v[2*m + 1] = DEMI_MAX(v[2*m + 1], r - x);
             v[2*m + 2] = DEMI_MAX(v[2*m + 2], r + x);
             if (demi_shape_of(w, i))
@@ -16413,8 +16439,9 @@ static dem_result demi_slabs_stand_in(dem_slabs *s) {
                                       (double)demi_length(demi_at(w->bodies.spin + 4*i)));
         }
     }
-    result = demi_slabs_reduce(s, v, 2*m + 4, 0);
+    result = demi_slabs_reduce(s, v, 2*m + 5, 0);
     h->clock.spin_elsewhere = v[2*m + 3];
+    h->booked.speed_max = v[2*m + 4];
     if (result == DEM_OK) result = demi_slabs_reduce(s, many, m, 1);
     h->bodies.count = 0;
     for (j = 0; j < m && result == DEM_OK; j++)
@@ -16460,6 +16487,102 @@ static dem_result demi_slabs_settle(dem_slabs *s) {
         s->slabs[k].world->stage.dt_valid = 1;
     }
     return result;
+}
+
+/* --- as demi_dt_check: a body's contacts are known to its own slab and, across the border, to the
+       one above, which sends what it knows of its ghosts down --- */
+typedef struct demi_slab_pressed { demi_press sum; demi_press_whole whole; } demi_slab_pressed;
+/* What presses each body here; of ghosts into the lower outbox. */
+static void demi_slab_press(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    const size_t n = (size_t)w->bodies.count, one = sizeof(demi_slab_pressed);
+    demi_slab_pressed told;
+    int i, k;
+    (void)s;
+    memset(&told, 0, sizeof told);
+    if (!DEMI_GROW(w, w->press, n) || !DEMI_GROW(w, w->press_whole, n) ||
+        !DEMI_GROW(w, b->out[0].bytes, (size_t)b->ghost_count*one) ||
+        !DEMI_GROW(w, b->in[1].bytes, (size_t)b->lent_count*one)) {
+        b->result = demi_no_memory(w, "dem_slabs_step");
+        return;
+    }
+    if (n) memset(w->press, 0, n*sizeof *w->press);
+    if (n) memset(w->press_whole, 0, n*sizeof *w->press_whole);
+    demi_press_visit(w, w->press, 0);
+    for (i = 0; i < w->bodies.count; i++) w->press[i].whole = i + 1;
+    demi_press_visit(w, w->press, w->press_whole);
+    b->out[0].size = (size_t)b->ghost_count*one;
+    b->in[1].size = (size_t)b->lent_count*one;
+    for (k = 0; k < b->ghost_count; k++) {
+        told.sum = w->press[b->ghost[k]];
+        told.whole = w->press_whole[b->ghost[k]];
+        memcpy(b->out[0].bytes + (size_t)k*one, &told, one);
+    }
+}
+/* Adds what comes from above, and says what the worst of this slab's own bodies bears. */
+static void demi_slab_press_take(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    const char *from = b->lent_count ? demi_slab_inbox(s, b, 1)->bytes : 0;
+    demi_slab_pressed told;
+    int i, k;
+    for (k = 0; k < b->lent_count; k++) {
+        demi_press *sum = w->press + b->lent[k];
+        double *to = (double *)(void *)(w->press_whole + b->lent[k]);
+        const double *add = (const double *)(const void *)&told.whole;
+        demi_unpack(&from, &told, sizeof told);
+        sum->contacts += told.sum.contacts;
+        sum->deepest = DEMI_MAX(sum->deepest, told.sum.deepest);
+        for (i = 0; i < (int)(sizeof told.whole/sizeof *to); i++) to[i] += add[i];
+    }
+    b->press_limit = 1e300;
+    for (i = 0; i < w->bodies.count; i++) {
+        const demi_press_whole *p = w->press_whole + i;
+        const double limit = demi_is_ghost(w, i) ? 1e300
+            : demi_dt_stable(demi_press_bound(p, 0), demi_press_bound(p, 1));
+        if (limit < b->press_limit) { b->press_limit = limit; b->press_worst = i; }
+    }
+}
+static dem_result demi_slabs_press(dem_slabs *s) {
+    dem_world *h = &s->head;
+    const double dt = (double)h->clock.dt;
+    double least = -1e300;                      /* less the limit: maxima are what is agreed on */
+    dem_result result;
+    int k;
+    demi_slabs_phase(s, demi_slab_press);
+    result = demi_slabs_agree(s, 0, 0);
+    if (result == DEM_OK) result = demi_slabs_exchange(s, DEMI_DOWN, 1);
+    if (result == DEM_OK) demi_slabs_phase(s, demi_slab_press_take);
+    demi_slabs_phase(s, demi_slab_sizes);
+    if (result != DEM_OK) return result;
+    demi_press_looked(&h->clock);
+    for (k = 0; k < s->local; k++) least = DEMI_MAX(least, -s->slabs[k].press_limit);
+    result = demi_slabs_agree(s, &least, 1);
+    if (result != DEM_OK || -least >= (h->desc.dt > 0 ? dt : 2*dt)) return result;
+    for (k = 0; k < s->local; k++) {
+        demi_slab *b = &s->slabs[k];
+        if (!(h->desc.dt > 0)) b->world->clock.dt = (dem_real)(-least/2);
+        else if (!(b->press_limit > -least))
+            b->result = demi_press_refuse(b->world, -least, b->press_worst);
+    }
+    if (h->desc.dt > 0) return demi_slabs_agree(s, 0, 0);
+    demi_slabs_phase(s, demi_slab_finish);
+    h->clock.dt = (dem_real)(-least/2);
+    h->stage.primed = 0;
+    return DEM_OK;
+}
+static dem_result demi_slabs_dt_check(dem_slabs *s) {
+    dem_world *h = &s->head, *w = s->slabs[0].world;
+    dem_result result;
+    if (h->desc.allow_large_dt) return DEM_OK;
+    if (s->count == 1) {
+        result = demi_dt_check(w);
+        memcpy(h->error, w->error, sizeof h->error);
+        h->clock.dt = w->clock.dt;
+        h->stage.primed = h->stage.primed && w->stage.primed;
+        return result;
+    }
+    result = demi_speed_check(h, h->booked.speed_max + w->margin.last_change);
+    return result != DEM_OK || h->clock.steps < h->clock.press_due ? result : demi_slabs_press(s);
 }
 
 /* As demi_refresh: forces at the present time, by a new list where somebody has none. */
@@ -16675,6 +16798,7 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
             if (result == DEM_OK) result = demi_slabs_feed(s);
             if (result == DEM_OK && !h->stage.forces_valid) result = demi_slabs_refresh(s);
             else if (result == DEM_OK && !h->stage.list_valid) result = demi_slabs_rebuild(s);
+            if (result == DEM_OK) result = demi_slabs_dt_check(s);
             if (result != DEM_OK) break;
             if (!h->stage.primed) { demi_slabs_phase(s, demi_slab_prime); h->stage.primed = 1; }
         }

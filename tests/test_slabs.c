@@ -24,6 +24,34 @@ static dem_result collect(dem_slabs *slabs, dem_world *world) {
     if (result != DEM_OK) puts(dem_slabs_error(slabs));
     return result;
 }
+/* A close packing of 1024 hard balls of 1 mm, pressed into each other by 1 % of their radius, periodic: 12 contacts each.
+   One of them has a speed (m/s); all are pulled along (m/s2). */
+static dem_world *crystal(double dt, double speed, double pull) {
+    const double radius = 1e-3, edge = 2*radius*0.995*sqrt(2.0);
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material stuff;
+    static dem_real x[3*1024], v[3*1024];
+    int i, l, n = 0;
+    desc.dt = (dem_real)dt;
+    desc.threads = 1;
+    desc.impact_speed = DEM_R(1e-4);
+    desc.gravity.x = (dem_real)pull;
+    desc.domain = box_of(0, 0, 0, 16*edge, 4*edge, 4*edge);
+    for (i = 0; i < 3; i++) desc.boundary[i] = DEM_BOUNDARY_PERIODIC;
+    world = dem_world_create(&desc);
+    stuff = scene_material(world, 1e9, 1, 0.5, 0);
+    for (i = 0; i < 256; i++)
+        for (l = 0; l < 4; l++, n += 3) {
+            x[n] = (dem_real)((i/16 + (l == 1 || l == 2 ? 0.5 : 0) + 0.1)*edge);
+            x[n + 1] = (dem_real)((i/4%4 + (l == 1 || l == 3 ? 0.5 : 0) + 0.1)*edge);
+            x[n + 2] = (dem_real)((i%4 + (l == 2 || l == 3 ? 0.5 : 0) + 0.1)*edge);
+            v[n] = v[n + 1] = v[n + 2] = 0;
+        }
+    v[1500] = (dem_real)speed;
+    dem_spheres_add(world, stuff, 1024, x, v, 0, (dem_real)radius);
+    return world;
+}
 /* Digest with contact memory: that is in it only while there is a list. */
 static uint64_t digest(dem_world *world) {
     dem_search_now(world);
@@ -979,6 +1007,53 @@ int main(int argc, char **argv) {
         dem_slabs_destroy(slabs);
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
+    TEST("a time step that is too large for what presses, also across borders, is refused in slabs with the limit "
+         "of one world, and one that is chosen is made as small") {
+        int count, chosen;
+        for (count = 1; count <= 3; count++)
+            for (chosen = 0; chosen < 2; chosen++) {
+                dem_world *world = crystal(chosen ? 0 : 1e-5, 0, 0), *twin = crystal(chosen ? 0 : 1e-5, 0, 0);
+                dem_slabs *slabs = deal(twin, 0, count);
+                const dem_result expected = chosen ? DEM_OK : DEM_ERROR_TIME_STEP;
+                const char *limit;
+                CHECK_EQ(dem_world_step(world, 1), expected);
+                CHECK_EQ(dem_slabs_step(slabs, 1), expected);
+                if (chosen) {
+                    dem_advice advice;
+                    CHECK_EQ(dem_step_advice(world, &advice), DEM_OK);
+                    CHECK(world->clock.dt < DEM_R(0.9)*advice.dt);      /* what presses binds */
+                    CHECK_REL(slabs->head.clock.dt, world->clock.dt, 1e-9);
+                    CHECK_EQ(go(slabs, 100), DEM_OK);
+                } else {
+                    limit = strstr(dem_world_error(world), "must be at most");
+                    CHECK(limit && strstr(limit, "is pressed by 12 contacts"));
+                    CHECK_STR(dem_slabs_error(slabs), "is pressed by 12 contacts");
+                    CHECK(limit && !strncmp(limit, strstr(dem_slabs_error(slabs), "must be at most"), 24));
+                }
+                dem_slabs_destroy(slabs);
+                dem_world_destroy(world);
+                dem_world_destroy(twin);
+            }
+    }
+    TEST("a grain that would pass others within one step is refused by name in slabs, at the start and on the way") {
+        int count;
+        for (count = 1; count <= 3; count++) {
+            dem_world *world = crystal(1e-7, 2e4, 0);
+            dem_slabs *slabs = deal(world, 0, count);
+            CHECK_EQ(dem_slabs_step(slabs, 1), DEM_ERROR_TIME_STEP);
+            CHECK_STR(dem_slabs_error(slabs), "radii of the smallest grain");
+            CHECK_NEAR(slabs->head.clock.time, 0, 0);
+            dem_slabs_destroy(slabs);
+            dem_world_destroy(world);
+            world = crystal(1e-7, 0, 1e9);
+            slabs = deal(world, 0, count);
+            CHECK_EQ(dem_slabs_step(slabs, 1000), DEM_ERROR_TIME_STEP);
+            CHECK_STR(dem_slabs_error(slabs), "radii of the smallest grain");
+            CHECK(slabs->head.clock.time > 0);
+            dem_slabs_destroy(slabs);
+            dem_world_destroy(world);
+        }
+    }
     TEST("memory that is refused at any moment is named, and the run goes on from there to the "
          "same bits") {
         /* a heap of spheres; bodies of all shapes, at every fifth request */
@@ -1118,7 +1193,7 @@ int main(int argc, char **argv) {
         for (i = 1; i < 60; i++)
             if (world->bodies.pos[4*i] > world->bodies.pos[4*one]) one = i;
         s = scene_state(world, dem_bodies_id(world, one));
-        s.velocity.x = 3000;
+        s.velocity.x = 45;                    /* nearly a radius a step */
         dem_body_set(world, dem_bodies_id(world, one), &s);
         slabs = deal(world, 0, 3);
         CHECK_EQ(dem_slabs_step(slabs, 20), DEM_ERROR_UNSTABLE);
