@@ -538,7 +538,7 @@ typedef struct dem_contact_force {
    several threads. When a contact turns round (a and b change places) the first 3*law_vectors reals
    of the memory change sign: put there what is a vector, such as a tangential spring, and scalars
    after them. */
-typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_force *push);
+typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_force *force);
 
 /* A vector kept in contact memory, carried along with the contact plane over the last step: turned
    with the normal, spun with the mean twist of the two bodies; lies in the tangent plane, keeps its
@@ -1826,7 +1826,7 @@ typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* spheres of clusters, else 0 */
     int32_t wall, element;
-    int32_t send;                  /* 1 + where the far end's push goes; 0: b is of this domain */
+    int32_t send;                  /* 1 + where the force on b goes; 0: b is of this domain */
     int32_t from;                  /* which of its domain's a step ago it continues; -1: none */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to where they push */
     dem_real overlap, deep;        /* m, 0: under way through a reduced hole; over the smallest
@@ -4824,7 +4824,7 @@ static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
        repeats there: bodies look for it at their own images, and where it ends just where its image
        begins the two are one surface. One that is longer stands for all its images and must reach
        a grain beyond both faces. Endless walls are their own images. --- */
-static void demi_reach_add(dem_real *lo, dem_real *hi, dem_vec3 x, dem_real pad) {
+static void demi_extent_add(dem_real *lo, dem_real *hi, dem_vec3 x, dem_real pad) {
     dem_real at[3];
     int k;
     demi_put(at, x);
@@ -4841,9 +4841,9 @@ static void demi_wall_span(demi_wall *wall) {
     dem_real lo[3] = {far, far, far}, hi[3] = {-far, -far, -far};
     int i;
     for (i = 0; i < wall->vertex_count; i++)
-        demi_reach_add(lo, hi, demi_add(p->position, demi_rotate(p->rotation,
+        demi_extent_add(lo, hi, demi_add(p->position, demi_rotate(p->rotation,
                                         demi_at(wall->vertices + 3*i))), pad);
-    if (!wall->vertex_count) demi_reach_add(lo, hi, p->position, wall->extent);
+    if (!wall->vertex_count) demi_extent_add(lo, hi, p->position, wall->extent);
     if (demi_wall_is(wall, DEMI_DRAWN)) {
         lo[2] = -far/4;
         hi[2] = far/4;
@@ -8428,7 +8428,7 @@ static dem_real demi_segment_share(const demi_wall *wall, int element, dem_vec3 
    constant length, which compilers turn into vectors at -O2 too); pushes are added to both bodies.
    A scene runs the stages that it calls for, so that any combination of laws costs the sum of its
    parts; the commonest ones have a stage for all of it, which saves the rows in between. Pairs that
-   lead out of a domain leave their push in a slot of its own; the other domain fetches it after all
+   lead out of a domain leave that force in a slot of its own; the other domain fetches it after all
    are done, in the order of the list. So every body's sum has one order whatever the number of
    threads.
    --------------------------------------------------------------------------------------------- */
@@ -9101,16 +9101,16 @@ static void demi_cross_gather(dem_world *w, int d) {
     int k, e, p, shaped, from = 0;
     for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
         const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
-        const dem_real *push;
+        const dem_real *force;
         while (entry >= (from + 1)*stride) from++;
         p = w->cross.place[entry] - 1;
         if (p < 0) continue;
         shaped = p >= w->domains[from].near_shaped;
         p -= shaped ? w->domains[from].near_shaped_cross - w->domains[from].near_end : 0;
-        push = w->cross_force + 6*(size_t)(from*stride + p - w->domains[from].near_cross);
+        force = w->cross_force + 6*(size_t)(from*stride + p - w->domains[from].near_cross);
         for (e = 0; e < 3; e++) {
-            w->bodies.force[j + e] += push[e];
-            if (turning || shaped) w->bodies.torque[j + e] += push[3 + e];
+            w->bodies.force[j + e] += force[e];
+            if (turning || shaped) w->bodies.torque[j + e] += force[3 + e];
         }
     }
 }
@@ -9624,7 +9624,7 @@ static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int o
     }
     return best;
 }
-/* 1/mass that a push along n through arm feels at a body: 1/m + (arm x n).I^-1 (arm x n). */
+/* 1/mass that a force along n through arm feels at a body: 1/m + (arm x n).I^-1 (arm x n). */
 static double demi_inverse_mass_at(const dem_world *w, int body, dem_vec3 arm, dem_vec3 n) {
     const double inv = (double)w->bodies.inv_mass[body];
     const dem_real *I = w->bodies.orienting ? w->bodies.moment + 4*body : 0;
@@ -10127,7 +10127,7 @@ static dem_real demi_kept_still(const dem_world *w, const demi_kept *k, const de
 DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
     sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
 }
-/* What a push of `force` at a place, with a moment, adds to its wall's sums. */
+/* What a force at a place, with a moment, adds to its wall's sums. */
 DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wall, dem_vec3 at,
                               dem_vec3 force, dem_vec3 moment, dem_vec3 surface) {
     const dem_vec3 arm = demi_sub(at, w->walls[wall].motion.point);
@@ -12575,7 +12575,7 @@ static dem_result demi_step_once(dem_world *w) {
         result = demi_rebuild(w, "dem_world_step");
         if (result != DEM_OK) return result;
         demi_kernel_choose(w);
-        /* faster than thought: ask again */
+        /* grains are faster than the step was chosen for: choose it anew */
         if (w->booked.speed_max > 1.5*w->clock.assumed_speed) w->stage.dt_valid = 0;
     } else if (w->stage.near_stale || demi_near_due(w)) {
         if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);

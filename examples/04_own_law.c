@@ -14,13 +14,13 @@
 
 typedef struct springs { double k1, k2; } springs;                  /* N/m */
 
-static void hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
+static void hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *force) {
     const springs *k = (const springs *)c->user;
     dem_real dmax = memory[0] > c->overlap ? memory[0] : c->overlap;    /* m */
     dem_real loading = k->k1*c->overlap;
     dem_real unloading = k->k2*(c->overlap - (1 - k->k1/k->k2)*dmax);
-    push->normal = unloading < loading ? unloading : loading;
-    if (push->normal < 0) push->normal = 0;                         /* inside the dent: nothing */
+    force->normal = unloading < loading ? unloading : loading;
+    if (force->normal < 0) force->normal = 0;                         /* inside the dent: nothing */
     if (c->dt > 0) memory[0] = dmax;                                /* dt = 0: only asked, not run */
 }
 

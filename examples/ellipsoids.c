@@ -256,9 +256,9 @@ static void gas_destroy(gas *g) {
 
 /* The damping of [RUB15]: gamma = sqrt(4 k m12/(1 + (pi/ln e)^2)), whatever the inertia. */
 static double seed_gamma;                     /* N s/m; 0 while running in */
-static void seed_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
+static void seed_law(const dem_contact *c, dem_real *memory, dem_contact_force *force) {
     (void)memory;
-    push->normal = c->kn*c->overlap + *(const double *)c->user*c->closing_speed;
+    force->normal = c->kn*c->overlap + *(const double *)c->user*c->closing_speed;
 }
 
 /* Sizes, temperature and world; e = 1 until the run-in is over. */
