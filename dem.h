@@ -9310,10 +9310,10 @@ static int demi_sieve_spheres(const dem_world *w, int d, int first, int last, de
 
 /* --- an ellipsoid and a wall element, in the wall's frame; Q: of the ellipsoid there --- */
 
-/* A largest value, near an angle, of n.x + h (out = 1: the farthest point from the origin) or n.x -
-   h
-   (out = -1: the nearest, as a distance), h = sqrt(n.Q n), n = (cos, sin), for the ellipse of Q's
-   first two rows about x: by Newton's method, uphill where the curve bends up. n: the direction. */
+/* A largest value, near an angle, of n.x + h (out = 1: the farthest point from the origin) or of
+   n.x - h (out = -1: the nearest, as a distance), h = sqrt(n.Q n), n = (cos, sin), for the ellipse
+   of Q's first two rows about x: by Newton's method, uphill where the curve bends up. n: the
+   direction. */
 static double demi_ellipse_far(const double *Q, double x, double y, int out, double angle,
                                  double *n) {
     int k;
