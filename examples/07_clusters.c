@@ -13,6 +13,7 @@
               heap_spheres.svg to look at, and .vtp for ParaView */
 #include "../dem.h"
 #include <math.h>
+#include <stdlib.h>
 
 enum { TETRAHEDRA, SPHERES };
 static const char *const names[] = {"tetrahedra", "spheres"};
