@@ -39,6 +39,7 @@
        >>placing     room for new grains: regions, fills, packings
        >>feed        grains fed in, taken out and counted
        >>advice      which time step a scene bears
+       >>check       what is likely to be wrong with a scene, before it runs
        >>step        one step after the other
        >>measure     fields on a grid, loads, balance
        >>read        meshes and profiles in
@@ -172,6 +173,10 @@
    answered: DEM_ERROR_ARGUMENT, a null id, 0. A run that cannot be right (a force that is not
    finite, an overlap larger than a radius) stops at the step that caused it. dem.h never prints,
    exits or aborts.
+
+   A scene that does something else than it should: dem_check_print(world, stdout) before the first
+   run says what looks wrong (units, overlaps, a floor that is missing), dem_world_report after it
+   what was simulated.
 
    Threads. Different worlds may be used from different threads. Several threads may look at one
    world at once, by functions that take it as const, while none changes it. Of those only these
@@ -1318,6 +1323,25 @@ typedef struct dem_advice {
 /* What contacts that are pressed already allow is looked at when the run begins, and as it goes on:
    a step that is too large for them is refused then, or made smaller where it was chosen. */
 DEM_API dem_result dem_step_advice(const dem_world *world, dem_advice *advice);
+
+/* What is likely to be wrong with a scene, found before it runs: nothing moves. */
+typedef enum dem_severity {
+    DEM_SEVERITY_NOTE = 1,     /* worth a look */
+    DEM_SEVERITY_WARNING,      /* most likely not what was meant */
+    DEM_SEVERITY_ERROR         /* it will not run, or makes no sense */
+} dem_severity;
+typedef struct dem_finding {
+    dem_severity severity;
+    char text[240];            /* one sentence: what, its value, the likely cause, the remedy */
+} dem_finding;
+/* Looks for grains that start inside each other or in walls, overlaps to be expected from speed and
+   weight (more than 5 % of a radius, with the modulus that would keep them below 1 %), units
+   (metres, kg/m3, Pa), scenes in which nothing moves or all falls for ever, walls that nothing can
+   reach, a time step that is too large or needlessly small. Makes a list of neighbours. Returns how
+   many findings there are, most severe first; writes at most capacity of them. */
+DEM_API int dem_world_check(dem_world *world, dem_finding *findings, int capacity);
+/* The same as lines of text, the first 16 of them; nothing where nothing is found. */
+DEM_API int dem_check_print(dem_world *world, FILE *out);
 
 DEM_API dem_result dem_world_step(dem_world *world, int steps);
 /* Runs on for seconds, to the step nearest to the end. Runs that follow each other add up: twenty
@@ -11691,8 +11715,26 @@ DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
    Reads everything, writes only dt and room of its own.
    --------------------------------------------------------------------------------------------- */
 
-/* Impact speed to reckon with: given, or the largest of what grains and walls do now and what
-   gravity can make of the height there is. */
+/* m/s, how fast a wall's surface will move, whether it has begun to or not; of a motion that is the
+   user's own, how fast it does now. */
+static double demi_motion_speed(const demi_wall *wall) {
+    const dem_motion *m = &wall->motion;
+    const double far = (double)DEMI_MAX(wall->extent, wall->radius);
+    dem_vec3 spin;
+    switch (m->kind) {
+    case DEM_MOTION_FIXED: return 0;
+    case DEM_MOTION_TRANSLATING: return (double)demi_length(m->velocity);
+    case DEM_MOTION_ROTATING:
+        spin = demi_scale(demi_unit(m->axis), m->speed);
+        return (double)demi_length(demi_cross(spin, demi_sub(wall->pose.position, m->point))) +
+               (double)demi_length(spin)*far;
+    case DEM_MOTION_OSCILLATING: return 2*DEMI_PI*fabs((double)m->frequency*(double)m->amplitude);
+    default: break;
+    }
+    return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
+}
+/* Impact speed to reckon with: given, or the largest of what grains do now, what walls will do and
+   what gravity can make of the height there is. */
 static double demi_speed_estimate(const dem_world *w) {
     double g = (double)demi_length(w->desc.gravity), speed = 0, lo = 1e300, hi = -1e300;
     dem_vec3 down = g > 0 ? demi_unit(w->desc.gravity) : demi_v(0, 0, 0);
@@ -11718,9 +11760,7 @@ static double demi_speed_estimate(const dem_world *w) {
     for (i = 0; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
         if (wall->kind == DEMI_WALL_NONE) continue;
-        speed = DEMI_MAX(speed, (double)demi_length(wall->pose.velocity) +
-                         (double)demi_length(wall->pose.spin)*
-                         (double)DEMI_MAX(wall->extent, wall->radius));
+        speed = DEMI_MAX(speed, demi_motion_speed(wall));
         if (demi_wall_is(wall, DEMI_FLAT) || (wall->vertex_count &&
                                               !demi_wall_is(wall, DEMI_DRAWN))) {
             const int n = DEMI_MAX(wall->vertex_count, 1);
@@ -12157,6 +12197,363 @@ static dem_result demi_dt_check(dem_world *w) {
     w->stage.primed = 0;
     w->clock.dt = (dem_real)(limit/2);
     return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>check
+   What is likely to be wrong with a scene, before it runs. Each function looks for mistakes of one
+   kind and puts a sentence in for each. Limits are such that scenes of practice pass: grains from
+   0.1 um to 0.5 m, matter from foam to osmium, moduli softened to 1e4 Pa.
+   --------------------------------------------------------------------------------------------- */
+
+/* The most severe of all findings; what is found first comes first among its like. */
+typedef struct demi_findings { dem_finding *to; int room, kept, count; } demi_findings;
+static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...)
+    DEMI_FORMAT(3, 4);
+static void demi_find(demi_findings *f, dem_severity severity, const char *format, ...) {
+    int i = f->kept;
+    va_list arguments;
+    f->count++;
+    while (i > 0 && f->to[i - 1].severity < severity) i--;
+    if (i >= f->room) return;
+    if (f->kept < f->room) f->kept++;
+    memmove(f->to + i + 1, f->to + i, (size_t)(f->kept - 1 - i)*sizeof *f->to);
+    f->to[i].severity = severity;
+    va_start(arguments, format);
+    vsnprintf(f->to[i].text, sizeof f->to[i].text, format, arguments);
+    va_end(arguments);
+}
+
+/* Units and sizes of matter. */
+static void demi_check_materials(const dem_world *w, demi_findings *f) {
+    int used[DEMI_MATERIALS], i;
+    memset(used, 0, sizeof used);
+    for (i = 0; i < w->bodies.count; i++) used[w->bodies.material[i] - 1] = 1;
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE) used[w->walls[i].material] = 1;
+    for (i = 0; i < w->feed_count; i++) used[demi_feed_at(w, i)->desc.material.id - 1] = 1;
+    for (i = 0; i < w->material_count; i++) {
+        const dem_material_desc *m = &w->materials[i];
+        if (!used[i])
+            demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
+        if (m->density < 10 || m->density > 25000)
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
+                      "are in kg/m3 (water 1000), was %g g/cm3 meant?", i + 1, (double)m->density,
+                      (double)(m->density < 10 ? m->density : m->density/1000));
+        if (!w->desc.law && !(m->stiffness > 0) &&
+            (m->young < DEM_R(1e4) || m->young > DEM_R(2e12)))
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: moduli "
+                      "are in Pa (glass 7e10, softened 1e6 to 1e8)", i + 1, (double)m->young);
+        if (m->friction > 2)
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a friction of %g: it is a "
+                      "coefficient, not an angle; tan of %g degrees is %.3g", i + 1,
+                      (double)m->friction, (double)m->friction,
+                      tan((double)m->friction*DEMI_PI/180));
+        if (m->rolling_friction > 1)
+            demi_find(f, DEM_SEVERITY_WARNING,
+                      "material %d has a rolling friction of %g: it counts "
+                      "in effective radii, 0.01 to 0.3 as a rule", i + 1,
+                      (double)m->rolling_friction);
+        if (m->rolling_friction > 0 && !(m->friction > 0))
+            demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction and no sliding "
+                      "friction: its grains slide instead of rolling", i + 1);
+    }
+    if (w->desc.threads > demi_threads_available() && demi_threads_available() > 0)
+        demi_find(f, DEM_SEVERITY_NOTE, "threads is %d, but only %d can run at once: more are "
+                  "slower", w->desc.threads, demi_threads_available());
+}
+static void demi_check_radii(const dem_world *w, demi_findings *f) {
+    double least = 1e300, most = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++) {
+        least = DEMI_MIN(least, (double)w->bodies.pos[4*i + 3]);
+        most = DEMI_MAX(most, (double)w->bodies.pos[4*i + 3]);
+    }
+    if (most > 0.5)
+        demi_find(f, DEM_SEVERITY_WARNING, "the largest grain has a radius of %g m: lengths are in "
+                  "metres, was %g mm meant?", most, most);
+    if (least < 1e-7)
+        demi_find(f, DEM_SEVERITY_WARNING, "the smallest grain has a radius of %g m: below 1e-7 m "
+                  "attraction and thermal motion outweigh what is simulated here", least);
+}
+
+/* m, how far along n (unit) from the origin a wall may stop what comes that way; 1e300: without
+   end, -1e300: nowhere (a plane seen along itself or from behind, a tube through its opening). */
+static double demi_wall_far(const demi_wall *wall, dem_vec3 n) {
+    const dem_vec3 own = demi_unrotate(wall->pose.rotation, n);
+    const int drawn = demi_wall_is(wall, DEMI_DRAWN);
+    double far = -1e300;
+    int i;
+    if (demi_wall_is(wall, DEMI_FLAT)) return own.z < DEM_R(-1e-3) ? 1e300 : -1e300;
+    if (DEMI_ABS(own.z) > DEM_R(0.999) && (drawn || (wall->extent < 0 && wall->radius > 0)))
+        return -1e300;
+    if (wall->extent < 0 || (drawn && DEMI_ABS(own.z) > DEM_R(1e-6))) return 1e300;
+    for (i = 0; i < wall->vertex_count; i++)
+        far = DEMI_MAX(far, (double)demi_dot(demi_at(wall->vertices + 3*i), own));
+    if (!wall->vertex_count) far = (double)DEMI_MAX(wall->extent, wall->radius);
+    else if (demi_wall_is(wall, DEMI_BALLS)) far += (double)wall->radius;
+    return far + (double)demi_dot(wall->pose.position, n);
+}
+/* m, the longest side of its box, or its diameter. */
+static double demi_wall_size(const demi_wall *wall) {
+    const dem_vec3 box = demi_sub(wall->box.hi, wall->box.lo);
+    if (!wall->vertex_count) return 2*(double)wall->extent;
+    return (double)DEMI_MAX(box.x, DEMI_MAX(box.y, demi_wall_is(wall, DEMI_DRAWN) ? 0 : box.z));
+}
+/* Does anything move, and does anything stop it? */
+static void demi_check_motion(const dem_world *w, demi_findings *f) {
+    const dem_vec3 g = w->desc.gravity;
+    const int pulled = demi_dot(g, g) > 0, forced = w->desc.force || w->desc.body_force;
+    dem_vec3 down = pulled ? demi_unit(g) : demi_v(0, 0, 0);
+    double lowest = -1e300, floor = -1e300, speed = 0;
+    int i, moving = 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        const double h = (double)demi_dot(demi_at(w->bodies.pos + 4*i), down);
+        if (w->bodies.inv_mass[i] <= 0) { floor = DEMI_MAX(floor, h); continue; }
+        moving++;
+        lowest = DEMI_MAX(lowest, h);
+        speed = DEMI_MAX(speed, (double)demi_length(demi_at(w->bodies.vel + 4*i)));
+    }
+    if (!moving && !w->feed_count) {
+        demi_find(f, DEM_SEVERITY_ERROR, "no grain moves, and no feed brings any: add grains, with "
+                  "dem_spheres_fill for one");
+        return;
+    }
+    if (!pulled && !forced && !(speed > 0) && moving)
+        demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity nor a "
+                  "force: set gravity (0, 0, -9.81 m/s2) or velocities");
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE)
+            floor = DEMI_MAX(floor, demi_wall_far(&w->walls[i], down));
+    if (pulled && moving && !forced && floor < lowest && !(DEMI_ABS(down.x) > DEM_R(0.1) &&
+        w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.y) > DEM_R(0.1) &&
+        w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.z) > DEM_R(0.1) &&
+        w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC))
+        demi_find(f, DEM_SEVERITY_WARNING, "gravity is (%g, %g, %g) m/s2, and no wall or fixed "
+                  "grain is below the lowest grain: they fall for ever; add a floor, or turn "
+                  "gravity", (double)g.x, (double)g.y, (double)g.z);
+}
+
+/* Is a wall with ends all behind some plane, or beyond a face where grains leave? */
+static int demi_wall_hidden(const dem_world *w, const demi_wall *wall) {
+    double lo[3], hi[3];
+    int k;
+    if (demi_wall_is(wall, DEMI_DRAWN)) return 0;       /* it goes on and on */
+    demi_domain_limits(w, lo, hi);
+    for (k = 0; k < w->wall_count; k++) {
+        const demi_wall *plane = &w->walls[k];
+        const dem_vec3 n = demi_rotate(plane->pose.rotation, demi_v(0, 0, 1));
+        if (plane->kind == DEMI_WALL_NONE || !demi_wall_is(plane, DEMI_FLAT)) continue;
+        if (demi_wall_far(wall, n) < (double)demi_dot(plane->pose.position, n)) return 1;
+    }
+    for (k = 0; k < 3; k++) {
+        const dem_vec3 n = demi_v(k == 0, k == 1, k == 2);
+        if (w->desc.boundary[k] == DEM_BOUNDARY_OUTFLOW &&
+            (demi_wall_far(wall, n) < lo[k] || -demi_wall_far(wall, demi_scale(n, -1)) > hi[k]))
+            return 1;
+    }
+    return 0;
+}
+/* Sizes and places of walls, beside those of grains. */
+static void demi_check_walls(const dem_world *w, demi_findings *f) {
+    double least = 1e300, most = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++) {
+        least = DEMI_MIN(least, (double)w->bodies.pos[4*i + 3]);
+        most = DEMI_MAX(most, (double)w->bodies.pos[4*i + 3]);
+    }
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        const double size = demi_wall_size(wall);
+        if (wall->kind == DEMI_WALL_NONE || wall->extent < 0) continue;
+        if (most > 0 && size > 2e4*most)
+            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, %.3g radii of the "
+                      "largest grain: was it in millimetres? scale it by 0.001", i + 1,
+                      demi_wall_kinds[wall->kind].name, size, size/most);
+        else if (most > 0 && size < least)
+            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, less than the radius "
+                      "of the smallest grain, %g m: is it in other units?", i + 1,
+                      demi_wall_kinds[wall->kind].name, size, least);
+        if (demi_wall_hidden(w, wall))
+            demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is behind a plane or outside the "
+                      "domain: nothing can reach it; does the plane's normal point to the grains?",
+                      i + 1, demi_wall_kinds[wall->kind].name);
+    }
+}
+
+/* Grains inside each other, in walls, or out of the domain. Needs lists. */
+static void demi_check_pairs(const dem_world *w, demi_findings *f) {
+    double worst = 0.01;
+    int d, k, cross, count = 0, who[2] = {0, 0};
+    for (d = 0; d < w->domain_count; d++)
+        for (cross = 0; cross < 2; cross++) {
+            const demi_list *list = cross ? &w->cross : &w->own;
+            const int from = d*list->stride, n = cross ? w->domains[d].cross : w->domains[d].own;
+            for (k = from; k < from + n; k++) {
+                const int a = list->a[k], b = list->b[k];
+                const dem_real r = DEMI_MIN(w->bodies.pos[4*a + 3], w->bodies.pos[4*b + 3]);
+                const double deep = -(double)(demi_bodies_gap(w, a, b, w->image_shift +
+                                                              list->image[k], r)/r);
+                if (!(deep > 0.01) || (w->bodies.inv_mass[a] <= 0 && w->bodies.inv_mass[b] <= 0))
+                    continue;
+                count++;
+                if (deep <= worst) continue;
+                worst = deep;
+                who[0] = (int)w->bodies.slot[a] + 1;
+                who[1] = (int)w->bodies.slot[b] + 1;
+            }
+        }
+    if (count)
+        demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
+                  : DEM_SEVERITY_NOTE,
+                      "%d pair%s of grains begin%s inside each other, bodies %d and "
+                  "%d by %.3g of the smaller radius: they will fly apart; place them by "
+                  "dem_spheres_fill, or farther from each other", count, count > 1 ? "s" : "",
+                  count > 1 ? "" : "s", who[0], who[1], worst);
+}
+static void demi_check_in_walls(dem_world *w, demi_findings *f) {
+    double worst = 0.01;
+    int d, k, count = 0, body = 0, wall = 0;
+    if (!demi_touch(w)) return;                 /* no memory: the run will say so */
+    for (d = 0; d < w->domain_count; d++)
+        for (k = 0; k < w->domains[d].kept_next; k++) {
+            const demi_kept *c = w->kept_next + w->kept_first[d] + k;
+            if (c->b >= 0 || !((double)c->deep > 0.01)) continue;
+            count++;
+            if ((double)c->deep <= worst) continue;
+            worst = (double)c->deep;
+            body = (int)w->bodies.slot[c->a] + 1;
+            wall = c->wall + 1;
+        }
+    if (count)
+        demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
+                  : DEM_SEVERITY_NOTE, "grains begin in walls at %d place%s, body %d in wall %d by "
+                  "%.3g of its radius: move it, or does the wall's normal (inside) point the wrong "
+                  "way?", count, count > 1 ? "s" : "", body, wall, worst);
+}
+static void demi_check_outside(const dem_world *w, demi_findings *f) {
+    double lo[3], hi[3];
+    int i, k, count = 0;
+    demi_domain_limits(w, lo, hi);
+    for (i = 0; i < w->bodies.count; i++)
+        for (k = 0; k < 3; k++) {
+            const double x = (double)w->bodies.pos[4*i + k];
+            if (w->desc.boundary[k] != DEM_BOUNDARY_OUTFLOW || (x >= lo[k] && x <= hi[k])) continue;
+            count++;
+            break;
+        }
+    if (count)
+        demi_find(f, DEM_SEVERITY_WARNING, "%d grain%s outside the domain, whose faces take out "
+                  "what crosses them: gone with the first step; make the domain larger", count,
+                  count > 1 ? "s are" : " is");
+}
+
+/* The time step that was asked for, beside what the scene bears. */
+static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
+    const double dt = (double)w->desc.dt;
+    double limit, fastest = demi_fastest(w);
+    int i, worst = 0;
+    if (!(dt > 0) || !(a->contact_time > 0)) return;
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE)
+            fastest = DEMI_MAX(fastest, demi_motion_speed(&w->walls[i]));
+    if (dt > (double)a->dt_max)
+        demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is %g "
+                  "s, more than %g s, which %s bear: use dt = 0, or softer material", dt,
+                  (double)a->dt_max, a->binds);
+    else if ((limit = demi_press_limit(w, dt, &worst)) > 0)
+        demi_find(f, DEM_SEVERITY_ERROR,
+                  "dt is %g s, more than %g s, which body %d bears, pressed by "
+                  "%d contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
+                  (int)w->press[worst].contacts);
+    else if (dt < (double)a->dt/20)
+        demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than need be (t_c/50 = %g "
+                  "s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
+                  (double)a->dt);
+    if (w->effects.radius_min > 0 && fastest*dt > (double)w->effects.radius_min)
+        demi_find(f, DEM_SEVERITY_ERROR, "at %.3g m/s a grain or wall moves %.3g radii of the "
+                  "smallest grain in a step of %g s: they would pass each other unseen; use dt = 0",
+                  fastest, fastest*dt/(double)w->effects.radius_min, dt);
+}
+/* Overlaps, over the radius, of the smallest grains of each material with their like: when they
+   meet at the speed there may be, and under the weight of all, were they stacked where they are. */
+static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_findings *f) {
+    const double g = (double)demi_length(w->desc.gravity), v = (double)a->speed;
+    const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
+    double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, area = 0, mass = 0;
+    const double n[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
+                         (double)w->desc.gravity.z};
+    demi_grades grades;
+    int i, k;
+    if (w->desc.law) return;                    /* nothing is known of it */
+    for (i = 0; i < w->bodies.count; i++) {
+        if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
+        for (k = 0; k < 3; k++) {
+            const double x = (double)w->bodies.pos[4*i + k], r = (double)w->bodies.pos[4*i + 3];
+            lo[k] = DEMI_MIN(lo[k], x - r);
+            hi[k] = DEMI_MAX(hi[k], x + r);
+        }
+    }
+    for (k = 0; k < 3 && g > 0 && mass > 0; k++)
+        area += fabs(n[k])/g*(hi[(k + 1)%3] - lo[(k + 1)%3])*(hi[(k + 2)%3] - lo[(k + 2)%3]);
+    demi_grades_of(w, &grades);
+    for (i = 0; i < w->material_count; i++) {
+        const double r = grades.smallest[i], m = r > 0 ? demi_sphere_mass(w, i, r)/2 : 0;
+        double deep[2] = {0, 0}, force, kn;
+        dem_real coef[DEMI_COEFS];
+        if (!(r > 0)) continue;
+        demi_coefficients(w, i, i, r/2, m, 0, coef);
+        kn = (double)coef[DEMI_KN];
+        force = area > 0 && !w->desc.planar ? 4*r*r*mass*g/area : 0;
+        deep[0] = hertz ? pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
+        deep[1] = (hertz ? pow(force/kn, 2.0/3) : force/kn)/r;
+        for (k = 0; k < 2; k++) {
+            const double more = pow(deep[k]/0.01, k ? (hertz ? 1.5 : 1) : hertz ? 2.5 : 2);
+            if (!(deep[k] > 0.05)) continue;
+            demi_find(f, deep[k] > 0.3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "grains of "
+                      "material %d (radius %g m) will overlap by %.2g of their radius %s%.3g %s: "
+                      "below 0.01 with %s of %.2g %s", i + 1, r, deep[k], k ? "under a weight of "
+                      : "at ", k ? force : v, k ? "N each" : "m/s", w->materials[i].stiffness > 0
+                      ? "a stiffness" : "a Young's modulus", more*(double)
+                      (w->materials[i].stiffness > 0 ? w->materials[i].stiffness
+                                                     : w->materials[i].young),
+                      w->materials[i].stiffness > 0 ? "N/m" : "Pa");
+        }
+    }
+}
+
+DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
+    demi_findings f;
+    dem_advice advice;
+    if (demi_null(w, "dem_world_check", w, "world")) return 0;
+    memset(&f, 0, sizeof f);
+    f.to = findings;
+    f.room = findings && capacity > 0 ? capacity : 0;
+    demi_advise(w, &advice);
+    demi_check_motion(w, &f);
+    demi_check_radii(w, &f);
+    demi_check_materials(w, &f);
+    demi_check_walls(w, &f);
+    demi_check_outside(w, &f);
+    demi_check_overlaps(w, &advice, &f);
+    if (!w->bodies.count) return f.count;
+    if (!w->stage.list_valid && demi_rebuild(w, "dem_world_check") != DEM_OK) {
+        demi_find(&f, DEM_SEVERITY_ERROR, "%.230s", w->error);
+        return f.count;
+    }
+    demi_check_pairs(w, &f);
+    demi_check_in_walls(w, &f);
+    demi_check_step(w, &advice, &f);
+    return f.count;
+}
+
+DEM_API int dem_check_print(dem_world *w, FILE *out) {
+    static const char *const severities[] = {"note", "note", "warning", "error"};
+    dem_finding findings[16];
+    int i, n = dem_world_check(w, findings, 16);
+    for (i = 0; out && i < n && i < 16; i++)
+        fprintf(out, "%s: %s\n", severities[findings[i].severity], findings[i].text);
+    return n;
 }
 
 /* ---------------------------------------------------------------------------------------------

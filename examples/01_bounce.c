@@ -21,6 +21,7 @@ int main(void) {
     dem_body_state state;
     double expected = height, last_speed = 0;
     int bounces = 0, wrong = 0;
+    dem_check_print(world, stdout);                                 /* says what looks wrong: here, nothing */
     printf("bounce  time [s]  height [m]  expected\n");
     while (bounces < 5 && dem_world_time(world) < 5) {
         if (dem_world_step(world, 1) != DEM_OK) { puts(dem_world_error(world)); return 1; }

@@ -38,6 +38,7 @@ int main(void) {
     double weight = 9.81*dem_totals_get(world).mass;                /* N */
     printf("%d beads, %.4f N\n", count, weight);
 
+    dem_check_print(world, stdout);
     printf("time [s]  kinetic energy [J]  centre of mass [mm]  floor/weight  tube/weight\n");
     double on_floor = 0, on_tube = 0;                               /* shares of the weight */
     int wrong = 0;

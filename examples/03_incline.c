@@ -33,6 +33,7 @@ int main(void) {
 
         /* let it settle onto the plane, then measure over half a second */
         dem_body_state from, to;
+        dem_check_print(world, stdout);
         if (dem_world_run(world, 0.1, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
         double start = dem_world_time(world);
         dem_body_get(world, ball, &from);

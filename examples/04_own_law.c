@@ -58,6 +58,7 @@ int main(void) {
         state.velocity.x = -speed/2;
         dem_body_set(world, right, &state);
 
+        dem_check_print(world, stdout);
         if (dem_world_run(world, 0.1*radius/speed + 5e-3, 0, 0) != DEM_OK) {
             puts(dem_world_error(world));
             return 1;

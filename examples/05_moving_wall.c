@@ -39,6 +39,7 @@ int main(void) {
 
     /* on the way: speed mu g t, up to 2/7 V */
     dem_body_state state;
+    dem_check_print(world, stdout);
     printf("time [s]  speed [m/s]  expected\n");
     for (int i = 1; i <= 6; i++) {
         if (dem_world_run(world, 0.025, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }

@@ -57,6 +57,7 @@ int main(void) {
         dem_body_get(world, balls[i], &state);
         state.velocity = dem_vec3_make(-2.5, -0.5, 0);                /* m/s */
         dem_body_set(world, balls[i], &state);
+        dem_check_print(world, stdout);
     }
 
     double worst = 0;

@@ -107,6 +107,7 @@ int main(int argc, char **argv) {
         if (placed < count) { puts(dem_world_error(world)); return 1; }
 
         /* fall, come to rest; how still it is then and a while later */
+        dem_check_print(world, stdout);
         const dem_totals before = dem_totals_get(world);
         const double fall = before.mass*9.81*before.centre[2];      /* J, from there to the floor */
         double still[2] = {0, 0}, height[2] = {0, 0};

@@ -379,6 +379,7 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
                                                v, w, 0));
     }
     free(at); free(turned); free(v); free(w);
+    if (!bad) dem_check_print(g->world, stderr);
     return bad;
 }
 

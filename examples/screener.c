@@ -500,6 +500,7 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
     if (bad) return 1;
     s->dt = (double)advice.contact_time/s->o.steps;
     if (screener_create(s, s->dt)) return 1;
+    dem_check_print(s->world, stderr);
     begun = study_clock();
     while (!bad && dem_world_time(s->world) < s->o.seconds - s->dt/2) {
         const double left = (next - dem_world_time(s->world))/s->dt;

@@ -448,6 +448,29 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
+    TEST("a time step is chosen for the speed that walls will have, also before they begin to move") {
+        int kind;
+        for (kind = DEM_MOTION_TRANSLATING; kind <= DEM_MOTION_OSCILLATING; kind++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_motion motion = DEM_MOTION;
+            dem_world *world = dem_world_create(&desc);
+            const dem_material m = scene_material(world, 1e7, 0.5, 0, 0);
+            const dem_wall wall = scene_floor(world, m, 0, 0, 0.02, 0.02, 2, 2);
+            dem_advice a;
+            dem_sphere_add(world, m, DEM_R(1e-3), at(0, 0, 0.01));
+            motion.kind = (dem_motion_kind)kind;
+            motion.velocity = at(0, 0, 30);     /* m/s, or a direction */
+            motion.axis = at(1, 0, 0);
+            motion.speed = 1500;                /* 30 m/s at 0.02 m */
+            motion.amplitude = DEM_R(0.01);
+            motion.frequency = DEM_R(477.5);    /* 30 m/s as it passes the middle */
+            motion.phase = DEM_R(1.5707963);    /* where it rests */
+            CHECK_EQ(dem_wall_motion(world, wall, &motion), DEM_OK);
+            CHECK_EQ(dem_step_advice(world, &a), DEM_OK);
+            CHECK((double)a.speed > 29.9 && (double)a.speed < 50);
+            dem_world_destroy(world);
+        }
+    }
     TEST("a grain that would pass a wall or another grain within one step is refused by name") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material_desc m = scene_stuff(1e8, 0.5, 0.3, 0);
