@@ -740,6 +740,18 @@ static void fuzz_search(fuzz_machine *m) {
     if (fuzz_result(m, dem_search_now(m->world))) m->bodies_gone = 0;
 }
 
+/* Makes a list, too, where there is none. */
+static void fuzz_check(fuzz_machine *m) {
+    const uint64_t rebuilds = dem_counters_get(m->world).rebuilds;
+    dem_finding f[32];
+    int n, i;
+    fuzz_say(m, "dem_world_check");
+    n = dem_world_check(m->world, f, 32);
+    for (i = 0; i < n && i < 32; i++)           /* threads are not the same in both */
+        if (strncmp(f[i].text, "threads is", 10)) fuzz_note(m, f[i].text, strlen(f[i].text));
+    if (dem_counters_get(m->world).rebuilds != rebuilds) m->bodies_gone = m->pairs_new = 0;
+}
+
 /* ---- looking: everything that can be asked; changes nothing ---- */
 static void fuzz_look_contacts(fuzz_machine *m) {
     static dem_contact_info c[FUZZ_CONTACTS];
@@ -1343,6 +1355,7 @@ static const struct fuzz_kind { const char *name; void (*play)(fuzz_machine *m);
     {"step", fuzz_step, 30, FUZZ_EVERYTHING},
     {"run", fuzz_run, 6, FUZZ_EVERYTHING},
     {"search", fuzz_search, 4, FUZZ_MEMORY | FUZZ_GRAINS},
+    {"check", fuzz_check, 2, FUZZ_GRAINS},
     {"look", fuzz_look_all, 4, FUZZ_LOOK | FUZZ_EVERYTHING},
     {"report", fuzz_report, 3, FUZZ_LOOK | FUZZ_GRAINS},
     {"resets", fuzz_resets, 3, FUZZ_GRAINS | FUZZ_FLOW},
