@@ -62,6 +62,48 @@ static inline dem_result scene_step(dem_world *world, int steps) {
     return result;
 }
 
+/* An allocator that counts, refuses one request, hands out rubbish and leaves rubbish behind. */
+typedef struct scene_memory {
+    long calls, blocks, wrong;                 /* requests so far, blocks out, wrong sizes on free */
+    size_t bytes, most;                        /* out, and at most so far */
+    long refuse;                               /* this request gets nothing; 0: none */
+    int refused;
+} scene_memory;
+enum { SCENE_FRONT = 32 };                     /* bytes in front of a block; keeps the alignment */
+static inline void *scene_alloc(size_t size, void *user) {
+    scene_memory *m = (scene_memory *)user;
+    char *p;
+    m->calls++;
+    if (m->calls == m->refuse) { m->refused = 1; return 0; }
+    p = (char *)malloc(size + SCENE_FRONT);
+    if (!p) return 0;
+    memcpy(p, &size, sizeof size);
+    memset(p + SCENE_FRONT, 0xA5, size);       /* whoever counts on zeros finds none */
+    m->blocks++;
+    m->bytes += size;
+    if (m->bytes > m->most) m->most = m->bytes;
+    return p + SCENE_FRONT;
+}
+static inline void scene_free(void *memory, size_t size, void *user) {
+    scene_memory *m = (scene_memory *)user;
+    char *p = (char *)memory - SCENE_FRONT;
+    size_t was;
+    if (!memory) return;
+    memcpy(&was, p, sizeof was);
+    m->wrong += was != size;
+    m->blocks--;
+    m->bytes -= was;
+    memset(p, 0x5A, was + SCENE_FRONT);        /* whoever looks again finds rubbish */
+    free(p);
+}
+/* From here on a world of this desc takes its memory from there. */
+static inline void scene_memory_use(scene_memory *m, dem_world_desc *desc) {
+    memset(m, 0, sizeof *m);
+    desc->allocator.alloc_fn = scene_alloc;
+    desc->allocator.free_fn = scene_free;
+    desc->allocator.user = m;
+}
+
 /* A lattice of grains that overlap slightly, radii within 3 % of each other (mixed) or all alike,
    with random velocities of up to `speed`: contacts everywhere from the first step on. */
 static inline dem_result scene_block(dem_world *world, dem_material material, int nx, int ny,

@@ -3,31 +3,14 @@
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "test.h"
+#include "scene.h"
 #include <locale.h>
 
-/* An allocator that counts what is held, and fails the call number fail_at. */
-typedef struct purse { long calls, fail_at; long long held; } purse;
-static void *purse_alloc(size_t size, void *user) {
-    purse *p = (purse *)user;
-    if (++p->calls == p->fail_at) return 0;
-    p->held += (long long)size;
-    return malloc(size);
-}
-static void purse_free(void *memory, size_t size, void *user) {
-    if (memory) ((purse *)user)->held -= (long long)size;
-    free(memory);
-}
-
-static dem_world *world_make(purse *p) {
+static dem_world *world_make(scene_memory *p) {
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.dt = DEM_R(1e-5);
     desc.threads = 1;
-    if (p) {
-        memset(p, 0, sizeof *p);
-        desc.allocator.alloc_fn = purse_alloc;
-        desc.allocator.free_fn = purse_free;
-        desc.allocator.user = p;
-    }
+    if (p) scene_memory_use(p, &desc);
     return dem_world_create(&desc);
 }
 
@@ -41,7 +24,7 @@ static dem_material material_make(dem_world *world) {
 }
 
 /* Three grains of two materials and known radii. */
-static dem_world *three_make(purse *p) {
+static dem_world *three_make(scene_memory *p) {
     dem_world *world = world_make(p);
     dem_material first = material_make(world), second = material_make(world);
     dem_body body = dem_sphere_add(world, first, DEM_R(0.125), dem_vec3_make(1, 2, 3));
@@ -237,9 +220,9 @@ static void meshes(void) {
 }
 
 static void bad_meshes(void) {
-    purse p;
+    scene_memory p;
     dem_world *world = world_make(&p);
-    const long long held = p.held;
+    const size_t held = p.bytes;
     dem_mesh mesh;
     dem_mesh_health health;
 
@@ -285,7 +268,7 @@ static void bad_meshes(void) {
             CHECK_STR(dem_world_error(world), "dem_mesh_parse: some.mesh");
             CHECK_STR(dem_world_error(world), bad[i][1]);
             CHECK(strlen(dem_world_error(world)) < 400);
-            CHECK_EQ(p.held, held);
+            CHECK_EQ(p.bytes, held);
         }
     }
     TEST("a count that promises more than the file holds is refused before memory is asked for") {
@@ -302,7 +285,7 @@ static void bad_meshes(void) {
         CHECK_STR(dem_world_error(world), "a binary STL has 84 and 50 for each triangle");
         binary[80] = binary[81] = binary[82] = binary[83] = 0;
         CHECK_EQ(dem_mesh_parse(world, "x.stl", binary, 84, &mesh, 0), DEM_ERROR_FORMAT);
-        CHECK_EQ(p.held, held);
+        CHECK_EQ(p.bytes, held);
     }
     TEST("a binary STL with a coordinate that is not a number is refused with its byte") {
         unsigned char bytes[134] = {0};
@@ -312,7 +295,7 @@ static void bad_meshes(void) {
         CHECK_STR(dem_world_error(world), "x.stl byte 112");
         bytes[84 + 12 + 4*4 + 2] = 0x80;                                  /* inf */
         CHECK_EQ(dem_mesh_parse(world, "x.stl", bytes, sizeof bytes, &mesh, 0), DEM_ERROR_FORMAT);
-        CHECK_EQ(p.held, held);
+        CHECK_EQ(p.bytes, held);
     }
     TEST("no beginning of a valid file crashes or leaks") {
         static char text[20000];
@@ -335,7 +318,7 @@ static void bad_meshes(void) {
         }
         dem_mesh_free(world, &box);
         CHECK(readable >= 4);
-        CHECK_EQ(p.held, held);
+        CHECK_EQ(p.bytes, held);
     }
     TEST("every allocation of a reader may fail: DEM_ERROR_MEMORY, an empty mesh, nothing leaked") {
         static char text[20000];
@@ -347,11 +330,11 @@ static void bad_meshes(void) {
                 form == 2 ? stl_text_make(text, &box) : form == 3 ? stl_binary_make((unsigned char *)text, &box, "x") :
                 form == 4 ? strlen(profile_text) : strlen(box_text);
             const char *whole = form == 0 || form == 5 ? box_text : form == 1 ? box_obj : form == 4 ? profile_text : text;
-            const long long before = p.held;
+            const size_t before = p.bytes;
             dem_result result = DEM_ERROR_MEMORY;
             if (form == 5) file_put("build/tmp/box.txt", box_text, strlen(box_text));
             for (long k = 1; result != DEM_OK && k < 50; k++) {
-                p.fail_at = p.calls + k;
+                p.refuse = p.calls + k;
                 if (form == 4) result = dem_profile_parse(world, "x", whole, size, &profile);
                 else if (form == 5) result = dem_mesh_read(world, "build/tmp/box.txt", &mesh, &health);
                 else result = dem_mesh_parse(world, "x", whole, size, &mesh, &health);
@@ -359,13 +342,13 @@ static void bad_meshes(void) {
                 CHECK_EQ(result, DEM_ERROR_MEMORY);
                 CHECK_STR(dem_world_error(world), "memory");
                 if (form != 4) CHECK(mesh_is_empty(&mesh));
-                CHECK_EQ(p.held, before);
+                CHECK_EQ(p.bytes, before);
             }
-            p.fail_at = 0;
+            p.refuse = 0;
             CHECK_EQ(result, DEM_OK);
             if (form == 4) dem_profile_free(world, &profile);
             else dem_mesh_free(world, &mesh);
-            CHECK_EQ(p.held, before);
+            CHECK_EQ(p.bytes, before);
         }
         dem_mesh_free(world, &box);
         remove("build/tmp/box.txt");
@@ -379,7 +362,7 @@ static void bad_meshes(void) {
         CHECK_EQ(dem_mesh_parse(world, "x", "", 0, 0, 0), DEM_ERROR_ARGUMENT);
         CHECK(mesh_is_empty(&mesh));
         dem_mesh_free(world, 0);
-        CHECK_EQ(p.held, held);
+        CHECK_EQ(p.bytes, held);
     }
     TEST("a large file is read whole, and errors in it name the line") {
         const int n = 20000;
@@ -400,16 +383,16 @@ static void bad_meshes(void) {
         CHECK_STR(dem_world_error(world), "dem_mesh_read: build/tmp/strip.txt line 40003: found '2000x'");
         remove("build/tmp/strip.txt");
         free(text);
-        CHECK_EQ(p.held, held);
+        CHECK_EQ(p.bytes, held);
     }
     dem_world_destroy(world);
-    TEST("a world that read meshes gives back all its memory") CHECK_EQ(p.held, 0);
+    TEST("a world that read meshes gives back all its memory") CHECK_EQ(p.bytes, 0);
 }
 
 static void profiles(void) {
-    purse p;
+    scene_memory p;
     dem_world *world = world_make(&p);
-    const long long held = p.held;
+    const size_t held = p.bytes;
     dem_profile profile;
     TEST("a profile is read from memory and from a file") {
         for (int from_file = 0; from_file < 2; from_file++) {
@@ -422,7 +405,7 @@ static void profiles(void) {
             if (profile.segments) CHECK(profile.segments[0] == 0 && profile.segments[5] == 3);
             dem_profile_free(world, &profile);
             CHECK(!profile.vertices && profile.vertex_count == 0);
-            CHECK_EQ(p.held, held);
+            CHECK_EQ(p.bytes, held);
         }
         remove("build/tmp/profile.txt");
     }
@@ -435,7 +418,7 @@ static void profiles(void) {
             CHECK_STR(dem_world_error(world), "dem_profile_parse: p.txt");
             CHECK_STR(dem_world_error(world), bad[i][1]);
             CHECK(!profile.vertices && !profile.segments && profile.vertex_count == 0 && profile.segment_count == 0);
-            CHECK_EQ(p.held, held);
+            CHECK_EQ(p.bytes, held);
         }
         CHECK_EQ(dem_profile_read(world, "build/tmp/none.txt", &profile), DEM_ERROR_FILE);
         CHECK_EQ(dem_profile_read(world, 0, &profile), DEM_ERROR_ARGUMENT);
@@ -623,7 +606,7 @@ static void walls(void) {
 }
 
 static void whole_or_absent(void) {
-    purse p;
+    scene_memory p;
     dem_world *world = three_make(&p);
     dem_mesh mesh;
     size_t size;
@@ -673,18 +656,18 @@ static void whole_or_absent(void) {
     }
     TEST("every allocation of a writer may fail: DEM_ERROR_MEMORY, no file, nothing leaked") {
         for (int i = 0; i < 4; i++) {
-            const long long held = p.held;
+            const size_t held = p.bytes;
             dem_result result = DEM_ERROR_MEMORY;
             for (long k = 1; k < 20; k++) {
                 remove("build/tmp/memory.out");
-                p.fail_at = p.calls + k;
+                p.refuse = p.calls + k;
                 result = writers[i](world, "build/tmp/memory.out");
-                CHECK_EQ(p.held, held);
+                CHECK_EQ(p.bytes, held);
                 if (result == DEM_OK) break;
                 CHECK_EQ(result, DEM_ERROR_MEMORY);
                 CHECK(!file_is_there("build/tmp/memory.out") && !file_is_there("build/tmp/memory.out.tmp"));
             }
-            p.fail_at = 0;
+            p.refuse = 0;
             CHECK_EQ(result, DEM_OK);
         }
         remove("build/tmp/memory.out");

@@ -7,54 +7,17 @@
 #include "test.h"
 #include "scene.h"
 
-typedef struct counter {
-    /* requests so far, blocks out, wrong sizes on free */
-    long calls, blocks, wrong;
-    size_t bytes, most;
-    long refuse;                               /* this request gets nothing; 0: none */
-    int refused;
-} counter;
-enum { FRONT = 32 };                           /* bytes in front of a block; keeps the alignment */
-
-static void *count_alloc(size_t size, void *user) {
-    counter *c = (counter *)user;
-    char *p;
-    c->calls++;
-    if (c->calls == c->refuse) { c->refused = 1; return 0; }
-    p = (char *)malloc(size + FRONT);
-    if (!p) return 0;
-    memcpy(p, &size, sizeof size);
-    memset(p + FRONT, 0xA5, size);             /* whoever counts on zeros finds none */
-    c->blocks++;
-    c->bytes += size;
-    if (c->bytes > c->most) c->most = c->bytes;
-    return p + FRONT;
-}
-static void count_free(void *memory, size_t size, void *user) {
-    counter *c = (counter *)user;
-    char *p = (char *)memory - FRONT;
-    size_t was;
-    memcpy(&was, p, sizeof was);
-    c->wrong += was != size;
-    c->blocks--;
-    c->bytes -= was;
-    memset(p, 0x5A, was + FRONT);              /* whoever looks again finds rubbish */
-    free(p);
-}
-static dem_world_desc counted(counter *c) {
+static dem_world_desc counted(scene_memory *c) {
     dem_world_desc desc = DEM_WORLD_DESC;
-    memset(c, 0, sizeof *c);
     desc.threads = 1;
     desc.gravity = at(0, 0, -9.81);
-    desc.allocator.alloc_fn = count_alloc;
-    desc.allocator.free_fn = count_free;
-    desc.allocator.user = c;
+    scene_memory_use(c, &desc);
     return desc;
 }
 
 /* Whether the call that just failed may be made again: only when memory was refused, and then it
    must have said so. */
-static int again(dem_world *world, counter *c, int failed, const char *call) {
+static int again(dem_world *world, scene_memory *c, int failed, const char *call) {
     if (!failed) {
         if (c->refused) c->refused = 0;        /* it coped: fine */
         return 0;
@@ -79,7 +42,7 @@ static int again(dem_world *world, counter *c, int failed, const char *call) {
         if (!again(world, c, value.id == 0, name)) break; } while (1)
 
 /* Every call that takes memory, once at least; a refused one is made again. */
-static void scenario(counter *c, dem_search search, long refuse, uint64_t *hash) {
+static void scenario(scene_memory *c, dem_search search, long refuse, uint64_t *hash) {
     static const char stl[] =
         "9 1\n0 0 0\n1 0 0\n0 1 0\n1 1 1\n2 1 1\n3 1 1\n4 1 1\n5 1 1\n6 1 1\n1 2 3\n";
     static const dem_real beads[] = {DEM_R(0.05), 0, DEM_R(-0.02), DEM_R(0.052), 0, DEM_R(-0.02),
@@ -184,7 +147,7 @@ static void scenario(counter *c, dem_search search, long refuse, uint64_t *hash)
 }
 
 static void refuse_each(dem_search search) {
-    counter c;
+    scene_memory c;
     uint64_t hash;
     long k, calls, step;
     scenario(&c, search, 0, &hash);
@@ -199,7 +162,7 @@ static void refuse_each(dem_search search) {
 
 /* A packing at rest under gravity, in a box of planes over a mesh, with friction and rolling
    friction. */
-static dem_world *packing(counter *c, int threads, double skin, dem_search search) {
+static dem_world *packing(scene_memory *c, int threads, double skin, dem_search search) {
     dem_world_desc desc = counted(c);
     dem_world *world;
     dem_material glass;
@@ -248,7 +211,7 @@ static void swarm_each(int mixed) {
         uint64_t hash = 0;
         long k, calls = 1;
         for (k = 0; k <= calls && test_now.wrong == 0; k++) {
-            counter c;
+            scene_memory c;
             dem_world_desc desc = counted(&c);
             dem_world *world;
             long before;
@@ -281,7 +244,7 @@ static void swarm_each(int mixed) {
    next list needs more memory. Request `refuse` from here on gets none; 1 when that came to pass.
    Whether or not it did, what the hash tells of must be as before. */
 static int search_refused(long refuse) {
-    counter c;
+    scene_memory c;
     dem_world_desc desc = counted(&c);
     dem_world *world;
     dem_material stuff;
@@ -322,7 +285,7 @@ int main(int argc, char **argv) {
     TEST("a warm step of a packing at rest takes no memory, with one thread and with two") {
         int threads;
         for (threads = 1; threads <= 2; threads++) {
-            counter c;
+            scene_memory c;
             dem_world *world = packing(&c, threads, 0, DEM_SEARCH_AUTO);
             long before;
             CHECK_EQ(scene_step(world, 1500), DEM_OK);
@@ -336,7 +299,7 @@ int main(int argc, char **argv) {
     TEST("a warm step takes no memory when the list is rebuilt every step, whatever the search") {
         int search;
         for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
-            counter c;
+            scene_memory c;
             dem_world *world = packing(&c, 1, -1, (dem_search)search);
             long before;
             CHECK_EQ(scene_step(world, 1500), DEM_OK);     /* grains still spread, and cells with
@@ -351,13 +314,13 @@ int main(int argc, char **argv) {
     }
     TEST("all memory is of the allocator of the world, and all of it goes back, in the sizes it "
          "came") {
-        counter c;
+        scene_memory c;
         uint64_t hash;
         scenario(&c, DEM_SEARCH_AUTO, 0, &hash);
         CHECK(c.most > 100000);
     }
     TEST("looking costs no memory: contacts, candidates, ledger, totals, report, hash") {
-        counter c;
+        scene_memory c;
         dem_world *world = packing(&c, 1, 0, DEM_SEARCH_AUTO);
         static dem_contact_info infos[2000];
         static uint32_t slots[8000];
@@ -397,7 +360,7 @@ int main(int argc, char **argv) {
     }
     TEST("a large checkpoint that runs out of memory while being read leaves the small world as "
          "it was") {
-        counter c, d;
+        scene_memory c, d;
         dem_world_desc desc = counted(&c);
         dem_world *big, *small;
         dem_material glass;
@@ -453,7 +416,7 @@ int main(int argc, char **argv) {
          "in a checkpoint and go on") {
         const char *path = "build/tmp/domains.ckpt";
         const int count = DEM_DOMAIN_BODIES + 10;      /* two domains; without 20 of them one */
-        counter c, none;
+        scene_memory c, none;
         dem_world_desc desc = counted(&c), plain = counted(&none);
         dem_world *world[3];
         dem_material m;

@@ -203,16 +203,8 @@ static int everywhere(dem_vec3 x, dem_real radius, void *user) {
     return 1;
 }
 
-/* An allocator that gives nothing once, the fuse-th time from when it is lit. */
-typedef struct fuse { int left, blown; } fuse;
-static void *fuse_alloc(size_t size, void *user) {
-    fuse *f = (fuse *)user;
-    if (f->left > 0 && --f->left == 0) { f->blown = 1; return 0; }
-    return malloc(size);
-}
-static void fuse_free(void *p, size_t size, void *user) { (void)size; (void)user; free(p); }
 /* Grains that fly about in a box and, when asked, a feed above them. */
-static dem_world *fuse_world(fuse *f, int fed) {
+static dem_world *spare_world(scene_memory *f, int fed) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_feed_desc feed;
     dem_world *world;
@@ -220,10 +212,7 @@ static dem_world *fuse_world(fuse *f, int fed) {
     desc.threads = 1;
     desc.dt = DEM_R(2e-5);
     desc.allow_large_dt = 1;
-    desc.allocator.alloc_fn = fuse_alloc;
-    desc.allocator.free_fn = fuse_free;
-    desc.allocator.user = f;
-    f->left = f->blown = 0;
+    scene_memory_use(f, &desc);
     world = dem_world_create(&desc);
     m = scene_material(world, 1e6, 0.9, 0.3, 0);
     scene_block(world, m, 5, 5, 4, 1e-3, 1, 1, 3);
@@ -237,7 +226,7 @@ static dem_world *fuse_world(fuse *f, int fed) {
     return world;
 }
 /* Step by step; one that got no memory is called again. */
-static void fuse_run(dem_world *world, int steps) {
+static void spare_run(dem_world *world, int steps) {
     int i;
     for (i = 0; i < steps; i++) {
         dem_result result = dem_world_step(world, 1);
@@ -551,14 +540,14 @@ int main(int argc, char **argv) {
          "fed, the same candidates, the same bits") {
         int fed, k;
         for (fed = 0; fed < 2; fed++) {
-            fuse f, none;
-            dem_world *plain = fuse_world(&none, fed);
-            fuse_run(plain, 300);
-            for (k = 1, f.blown = 1; f.blown && k < 60; k++) {
-                dem_world *world = fuse_world(&f, fed);
+            scene_memory f, none;
+            dem_world *plain = spare_world(&none, fed);
+            spare_run(plain, 300);
+            for (k = 1, f.refused = 1; f.refused && k < 60; k++) {
+                dem_world *world = spare_world(&f, fed);
                 const int before = test_now.wrong;
-                f.left = k;
-                fuse_run(world, 300);
+                f.refuse = f.calls + k;
+                spare_run(world, 300);
                 CHECK_EQ(dem_world_hash(world), dem_world_hash(plain));
                 CHECK_EQ(dem_counters_get(world).candidates, dem_counters_get(plain).candidates);
                 CHECK_EQ(dem_counters_get(world).rebuilds, dem_counters_get(plain).rebuilds);
@@ -572,8 +561,8 @@ int main(int argc, char **argv) {
     }
     TEST("dealing a world to slabs leaves it as it was: list, candidates, rebuilds and the way it "
          "goes on") {
-        fuse none;
-        dem_world *a = fuse_world(&none, 0), *b = fuse_world(&none, 0);
+        scene_memory none;
+        dem_world *a = spare_world(&none, 0), *b = spare_world(&none, 0);
         dem_slabs_desc two = DEM_SLABS_DESC;
         dem_slabs *slabs;
         two.count = 2;
@@ -595,8 +584,8 @@ int main(int argc, char **argv) {
     }
     TEST("the hash is the same with the list of contacts and while their memory is on its way to "
          "the next one") {
-        fuse none;
-        dem_world *world = fuse_world(&none, 0);
+        scene_memory none;
+        dem_world *world = spare_world(&none, 0);
         uint64_t hash;
         scene_step(world, 40);
         CHECK(dem_contacts_get(world, 0, 0) > 10);

@@ -213,21 +213,8 @@ static void scene_plate(dem_world *world, dem_material glass) {
     dem_mesh_add(world, glass, &mesh);
 }
 
-typedef struct counter { long calls, blocks, refuse; int refused; } counter;
-static void *count_alloc(size_t size, void *user) {
-    counter *c = (counter *)user;
-    if (++c->calls == c->refuse) { c->refused = 1; return 0; }
-    c->blocks++;
-    return malloc(size);
-}
-static void count_free(void *memory, size_t size, void *user) {
-    ((counter *)user)->blocks--;
-    memset(memory, 0x5A, size);
-    free(memory);
-}
-
 /* Heaps along x: `tilted` lets all grains run to x = 0. */
-static dem_world *crate(double gx, double gz, dem_boundary end, int count, counter *c) {
+static dem_world *crate(double gx, double gz, dem_boundary end, int count, scene_memory *c) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world;
     dem_material glass;
@@ -238,12 +225,7 @@ static dem_world *crate(double gx, double gz, dem_boundary end, int count, count
     desc.ledger = 1;
     desc.boundary[0] = end;
     desc.domain = box_of(0, -1, -1, 0.06, 1, 1);
-    if (c) {
-        memset(c, 0, sizeof *c);
-        desc.allocator.alloc_fn = count_alloc;
-        desc.allocator.free_fn = count_free;
-        desc.allocator.user = c;
-    }
+    if (c) scene_memory_use(c, &desc);
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e6, 0.5, 0.3, 0);
     if (end != DEM_BOUNDARY_PERIODIC) {
@@ -287,7 +269,7 @@ static dem_world *gas(int periodic, int threads) {
 /* Ellipsoids, clusters and spheres, which run along a floor of triangles or over a sieve that
    shakes; orientations are followed, energies booked, a field averages. */
 enum { ON_FLOOR, ON_SIEVE };
-static dem_world *mixture(int on, dem_boundary end, int threads, int each, counter *c) {
+static dem_world *mixture(int on, dem_boundary end, int threads, int each, scene_memory *c) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_field_desc field;
     dem_cluster_desc two = DEM_CLUSTER_DESC;
@@ -303,12 +285,7 @@ static dem_world *mixture(int on, dem_boundary end, int threads, int each, count
     desc.orientations = 1;
     desc.boundary[0] = end;
     desc.domain = box_of(0, -1, -1, 0.06, 1, 1);
-    if (c) {
-        memset(c, 0, sizeof *c);
-        desc.allocator.alloc_fn = count_alloc;
-        desc.allocator.free_fn = count_free;
-        desc.allocator.user = c;
-    }
+    if (c) scene_memory_use(c, &desc);
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e6, 0.5, 0.4, 0.02);
     if (end != DEM_BOUNDARY_PERIODIC) {
@@ -1060,7 +1037,7 @@ int main(int argc, char **argv) {
         int shapes;
         for (shapes = 0; shapes < 2; shapes++) {
             const int steps = shapes ? 900 : 1500;
-            counter c;
+            scene_memory c;
             uint64_t end = 0;
             long k, calls = 0;
             int tries;
