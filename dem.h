@@ -49,6 +49,7 @@
        >>world       create, destroy, report
        >>slabs       one scene dealt to threads or processes: what grains take along
        >>slabs-step  one step of all slabs
+       >>slabs-time  one time step for all slabs
        >>slabs-run   what is fed into slabs; one step after the other
        >>deal        slabs made and collected
 */
@@ -16799,6 +16800,90 @@ static void demi_slab_sample(dem_slabs *s, demi_slab *b) {
     demi_fields_sample(b->world);
 }
 
+/* As demi_refresh: forces at the present time, by a new list where somebody has none. */
+static dem_result demi_slabs_refresh(dem_slabs *s) {
+    dem_result result;
+    double stale = !s->head.stage.list_valid;
+    int k;
+    demi_slabs_phase(s, demi_slab_finish);
+    for (k = 0; k < s->local; k++) stale = DEMI_MAX(stale, !s->slabs[k].world->stage.list_valid);
+    result = demi_slabs_agree(s, &stale, 1);
+    if (result == DEM_OK && stale > 0) result = demi_slabs_rebuild(s);
+    if (result != DEM_OK) return result;
+    demi_slabs_phase(s, demi_slab_refresh);
+    result = demi_slabs_forces(s, 0);
+    if (result != DEM_OK) return result;
+    for (k = 0; k < s->local; k++) s->slabs[k].world->stage.forces_valid = 1;
+    s->head.stage.forces_valid = 1;
+    return DEM_OK;
+}
+
+/* One step, in the order of demi_step_once. */
+static dem_result demi_slabs_step_once(dem_slabs *s) {
+    dem_world *h = &s->head;
+    const dem_world *first = s->slabs[0].world;
+    /* speed, list stale, walls' reach, last change; near lists' creep, age over what they allow;
+       reach */
+    double flags[7] = {0, 0, 0, 0, -1e300, -1e300, 0};
+    const double dt = (double)h->clock.dt;
+    dem_result result;
+    int k, near, search;
+    demi_slabs_phase(s, demi_slab_move);
+    for (k = 0; k < s->local; k++) {
+        const dem_world *w = s->slabs[k].world;
+        flags[0] = DEMI_MAX(flags[0], w->booked.speed_max);
+        flags[1] = DEMI_MAX(flags[1], !w->stage.list_valid);
+        flags[3] = DEMI_MAX(flags[3], w->margin.last_change);
+        flags[4] = DEMI_MAX(flags[4],
+                            w->margin.creep + 2*w->margin.change*dt - w->margin.slack);
+        flags[5] = DEMI_MAX(flags[5], w->margin.age + dt - w->margin.span*(1 - 1e-9));
+        flags[6] = DEMI_MAX(flags[6], w->margin.step_gone);
+    }
+    flags[2] = first->margin.walls_gone;
+    if (!h->stage.moved) {
+        h->stage.moved = 1;
+        h->clock.time = first->clock.time;
+        h->clock.since = first->clock.since;
+        h->clock.steps++;
+        demi_slabs_poses(s);
+        result = demi_slabs_agree(s, flags, 7);
+        h->booked.speed_max = flags[0];
+        h->margin.gone += flags[6];
+        for (k = 0; k < s->local; k++) demi_near_pass(s->slabs[k].world, flags[3]);
+        h->near_due = flags[4] + 2*flags[3]*dt > -1e-6*h->margin.skin || flags[5] > -1e-6*dt;
+    } else result = demi_slabs_agree(s, flags, 7);
+    if (result != DEM_OK) return result;
+    near = s->count == 1 || h->near_due;        /* each looks for itself again */
+    if (s->count == 1) h->margin.gone = first->margin.gone;
+    h->margin.walls_gone = flags[2];
+    for (k = 0; k < s->local && s->count > 1; k++) {           /* what lists count on */
+        s->slabs[k].world->margin.gone = h->margin.gone;
+        s->slabs[k].world->margin.walls_gone = h->margin.walls_gone;
+    }
+    search = flags[1] > 0 || !h->stage.list_valid || h->margin.skin <= 0 ||
+             2*h->margin.gone > h->margin.skin ||
+             h->margin.gone + h->margin.walls_gone > h->margin.skin;
+    if (first->outlet_count && (search || h->clock.steps%DEMI_OUTLET_REST == 0)) {
+        result = demi_slabs_outlets(s, &search);
+        if (result != DEM_OK) return result;
+    }
+    if (search) {
+        result = demi_slabs_rebuild(s);
+        if (result != DEM_OK) return result;
+        if (h->booked.speed_max > 1.5*h->clock.assumed_speed) h->stage.dt_valid = 0;
+        near = 0;
+    }
+    result = demi_slabs_forces(s, near);
+    if (result == DEM_OK) h->stage.moved = 0;
+    return result;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>slabs-time
+   One time step for all slabs, as >>advice finds it for one world: chosen, or refused, by what all
+   of them hold together, before anything moves.
+   --------------------------------------------------------------------------------------------- */
+
 /* The head stands in for the whole scene when a time step is chosen: of each material the smallest
    grains that move and the largest that does not; all at the highest speed, and two of them at the
    ends of the fall there is. */
@@ -16887,49 +16972,78 @@ static dem_result demi_slabs_settle(dem_slabs *s) {
 }
 
 /* --- as demi_dt_check: a body's contacts are known to its own slab and, across the border, to the
-       one above, which sends what it knows of its ghosts down --- */
-typedef struct demi_slab_pressed { demi_press sum; demi_press_whole whole; } demi_slab_pressed;
-/* What presses each body here; of ghosts into the lower outbox. */
+       one above, which sends what it knows of its ghosts down. First the cheap bounds; matrices
+       only where those are not enough. --- */
+
+/* Room for `one` bytes of each ghost in the lower outbox, and of what comes from above. */
+static int demi_slab_press_room(demi_slab *b, size_t one) {
+    dem_world *w = b->world;
+    if (!DEMI_GROW(w, b->out[0].bytes, (size_t)b->ghost_count*one) ||
+        !DEMI_GROW(w, b->in[1].bytes, (size_t)b->lent_count*one)) return 0;
+    b->out[0].size = (size_t)b->ghost_count*one;
+    b->in[1].size = (size_t)b->lent_count*one;
+    return 1;
+}
 static void demi_slab_press(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
-    const size_t n = (size_t)w->bodies.count, one = sizeof(demi_slab_pressed);
-    demi_slab_pressed told;
-    int i, k;
+    const size_t n = (size_t)w->bodies.count;
+    int k;
     (void)s;
-    memset(&told, 0, sizeof told);
-    if (!DEMI_GROW(w, w->press, n) || !DEMI_GROW(w, w->press_whole, n) ||
-        !DEMI_GROW(w, b->out[0].bytes, (size_t)b->ghost_count*one) ||
-        !DEMI_GROW(w, b->in[1].bytes, (size_t)b->lent_count*one)) {
+    if (!DEMI_GROW(w, w->press, n) || !demi_slab_press_room(b, sizeof *w->press)) {
         b->result = demi_no_memory(w, "dem_slabs_step");
         return;
     }
     if (n) memset(w->press, 0, n*sizeof *w->press);
-    if (n) memset(w->press_whole, 0, n*sizeof *w->press_whole);
     demi_press_visit(w, w->press, 0);
-    for (i = 0; i < w->bodies.count; i++) w->press[i].whole = i + 1;
-    demi_press_visit(w, w->press, w->press_whole);
-    b->out[0].size = (size_t)b->ghost_count*one;
-    b->in[1].size = (size_t)b->lent_count*one;
-    for (k = 0; k < b->ghost_count; k++) {
-        told.sum = w->press[b->ghost[k]];
-        told.whole = w->press_whole[b->ghost[k]];
-        memcpy(b->out[0].bytes + (size_t)k*one, &told, one);
-    }
+    for (k = 0; k < b->ghost_count; k++)
+        memcpy(b->out[0].bytes + (size_t)k*sizeof *w->press, w->press + b->ghost[k],
+               sizeof *w->press);
 }
-/* Adds what comes from above, and says what the worst of this slab's own bodies bears. */
+/* Adds what comes from above: a bound of the step, from below. */
 static void demi_slab_press_take(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const char *from = b->lent_count ? demi_slab_inbox(s, b, 1)->bytes : 0;
-    demi_slab_pressed told;
+    demi_press told;
     int i, k;
     for (k = 0; k < b->lent_count; k++) {
         demi_press *sum = w->press + b->lent[k];
-        double *to = (double *)(void *)(w->press_whole + b->lent[k]);
-        const double *add = (const double *)(const void *)&told.whole;
         demi_unpack(&from, &told, sizeof told);
-        sum->contacts += told.sum.contacts;
-        sum->deepest = DEMI_MAX(sum->deepest, told.sum.deepest);
-        for (i = 0; i < (int)(sizeof told.whole/sizeof *to); i++) to[i] += add[i];
+        sum->omega2 += told.omega2;
+        sum->rate += told.rate;
+        sum->contacts += told.contacts;
+        sum->deepest = DEMI_MAX(sum->deepest, told.deepest);
+    }
+    b->press_limit = 1e300;
+    for (i = 0; i < w->bodies.count; i++)
+        if (!demi_is_ghost(w, i))
+            b->press_limit = DEMI_MIN(b->press_limit, demi_dt_stable(w->press[i].omega2,
+                                                                     w->press[i].rate));
+}
+static void demi_slab_press_whole(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    const size_t n = (size_t)w->bodies.count, one = sizeof *w->press_whole;
+    int i, k;
+    (void)s;
+    if (!DEMI_GROW(w, w->press_whole, n) || !demi_slab_press_room(b, one)) {
+        b->result = demi_no_memory(w, "dem_slabs_step");
+        return;
+    }
+    if (n) memset(w->press_whole, 0, n*one);
+    for (i = 0; i < w->bodies.count; i++) w->press[i].whole = i + 1;
+    demi_press_visit(w, w->press, w->press_whole);
+    for (k = 0; k < b->ghost_count; k++)
+        memcpy(b->out[0].bytes + (size_t)k*one, w->press_whole + b->ghost[k], one);
+}
+static void demi_slab_press_limit(dem_slabs *s, demi_slab *b) {
+    dem_world *w = b->world;
+    const char *from = b->lent_count ? demi_slab_inbox(s, b, 1)->bytes : 0;
+    demi_press_whole told;
+    int i, k;
+    for (k = 0; k < b->lent_count; k++) {
+        double *to = (double *)(void *)(w->press_whole + b->lent[k]);
+        const double *add = (const double *)(const void *)&told;
+        demi_unpack(&from, &told, sizeof told);
+        for (i = 0; i < (int)(sizeof told/sizeof *to); i++) to[i] += add[i];
     }
     b->press_limit = 1e300;
     for (i = 0; i < w->bodies.count; i++) {
@@ -16939,31 +17053,46 @@ static void demi_slab_press_take(dem_slabs *s, demi_slab *b) {
         if (limit < b->press_limit) { b->press_limit = limit; b->press_worst = i; }
     }
 }
-static dem_result demi_slabs_press(dem_slabs *s) {
-    dem_world *h = &s->head;
-    const double dt = (double)h->clock.dt;
-    double least = -1e300;                      /* less the limit: maxima are what is agreed on */
+/* Lets all slabs say what they know of ghosts and take what is told of their own, then agree on the
+   smallest limit. Outboxes are then as long again as steps need them. */
+static dem_result demi_slabs_press_ask(dem_slabs *s, void (*say)(dem_slabs *, demi_slab *),
+                                       void (*take)(dem_slabs *, demi_slab *), double *limit) {
+    double most = -1e300;                       /* less the limit: maxima are what is agreed on */
     dem_result result;
     int k;
-    demi_slabs_phase(s, demi_slab_press);
+    demi_slabs_phase(s, say);
     result = demi_slabs_agree(s, 0, 0);
     if (result == DEM_OK) result = demi_slabs_exchange(s, DEMI_DOWN, 1);
-    if (result == DEM_OK) demi_slabs_phase(s, demi_slab_press_take);
+    if (result == DEM_OK) demi_slabs_phase(s, take);
     demi_slabs_phase(s, demi_slab_sizes);
     if (result != DEM_OK) return result;
+    for (k = 0; k < s->local; k++) most = DEMI_MAX(most, -s->slabs[k].press_limit);
+    result = demi_slabs_agree(s, &most, 1);
+    *limit = -most;
+    return result;
+}
+static dem_result demi_slabs_press(dem_slabs *s) {
+    dem_world *h = &s->head;
+    const int chosen = !(h->desc.dt > 0);
+    const double dt = (double)h->clock.dt*(chosen ? 2 : 1);
+    double limit = 0;
+    dem_result result;
+    int k;
+    result = demi_slabs_press_ask(s, demi_slab_press, demi_slab_press_take, &limit);
+    if (result == DEM_OK && limit < dt)
+        result = demi_slabs_press_ask(s, demi_slab_press_whole, demi_slab_press_limit, &limit);
+    if (result != DEM_OK) return result;
     demi_press_looked(&h->clock);
-    for (k = 0; k < s->local; k++) least = DEMI_MAX(least, -s->slabs[k].press_limit);
-    result = demi_slabs_agree(s, &least, 1);
-    if (result != DEM_OK || -least >= (h->desc.dt > 0 ? dt : 2*dt)) return result;
+    if (limit >= dt) return DEM_OK;
     for (k = 0; k < s->local; k++) {
         demi_slab *b = &s->slabs[k];
-        if (!(h->desc.dt > 0)) b->world->clock.dt = (dem_real)(-least/2);
-        else if (!(b->press_limit > -least))
-            b->result = demi_press_refuse(b->world, -least, b->press_worst);
+        if (chosen) b->world->clock.dt = (dem_real)(limit/2);
+        else if (!(b->press_limit > limit))
+            b->result = demi_press_refuse(b->world, limit, b->press_worst);
     }
-    if (h->desc.dt > 0) return demi_slabs_agree(s, 0, 0);
+    if (!chosen) return demi_slabs_agree(s, 0, 0);
     demi_slabs_phase(s, demi_slab_finish);
-    h->clock.dt = (dem_real)(-least/2);
+    h->clock.dt = (dem_real)(limit/2);
     h->stage.primed = 0;
     return DEM_OK;
 }
@@ -16980,84 +17109,6 @@ static dem_result demi_slabs_dt_check(dem_slabs *s) {
     }
     result = demi_speed_check(h, h->booked.speed_max + w->margin.last_change);
     return result != DEM_OK || h->clock.steps < h->clock.press_due ? result : demi_slabs_press(s);
-}
-
-/* As demi_refresh: forces at the present time, by a new list where somebody has none. */
-static dem_result demi_slabs_refresh(dem_slabs *s) {
-    dem_result result;
-    double stale = !s->head.stage.list_valid;
-    int k;
-    demi_slabs_phase(s, demi_slab_finish);
-    for (k = 0; k < s->local; k++) stale = DEMI_MAX(stale, !s->slabs[k].world->stage.list_valid);
-    result = demi_slabs_agree(s, &stale, 1);
-    if (result == DEM_OK && stale > 0) result = demi_slabs_rebuild(s);
-    if (result != DEM_OK) return result;
-    demi_slabs_phase(s, demi_slab_refresh);
-    result = demi_slabs_forces(s, 0);
-    if (result != DEM_OK) return result;
-    for (k = 0; k < s->local; k++) s->slabs[k].world->stage.forces_valid = 1;
-    s->head.stage.forces_valid = 1;
-    return DEM_OK;
-}
-
-/* One step, in the order of demi_step_once. */
-static dem_result demi_slabs_step_once(dem_slabs *s) {
-    dem_world *h = &s->head;
-    const dem_world *first = s->slabs[0].world;
-    /* speed, list stale, walls' reach, last change; near lists' creep, age over what they allow;
-       reach */
-    double flags[7] = {0, 0, 0, 0, -1e300, -1e300, 0};
-    const double dt = (double)h->clock.dt;
-    dem_result result;
-    int k, near, search;
-    demi_slabs_phase(s, demi_slab_move);
-    for (k = 0; k < s->local; k++) {
-        const dem_world *w = s->slabs[k].world;
-        flags[0] = DEMI_MAX(flags[0], w->booked.speed_max);
-        flags[1] = DEMI_MAX(flags[1], !w->stage.list_valid);
-        flags[3] = DEMI_MAX(flags[3], w->margin.last_change);
-        flags[4] = DEMI_MAX(flags[4],
-                            w->margin.creep + 2*w->margin.change*dt - w->margin.slack);
-        flags[5] = DEMI_MAX(flags[5], w->margin.age + dt - w->margin.span*(1 - 1e-9));
-        flags[6] = DEMI_MAX(flags[6], w->margin.step_gone);
-    }
-    flags[2] = first->margin.walls_gone;
-    if (!h->stage.moved) {
-        h->stage.moved = 1;
-        h->clock.time = first->clock.time;
-        h->clock.since = first->clock.since;
-        h->clock.steps++;
-        demi_slabs_poses(s);
-        result = demi_slabs_agree(s, flags, 7);
-        h->booked.speed_max = flags[0];
-        h->margin.gone += flags[6];
-        for (k = 0; k < s->local; k++) demi_near_pass(s->slabs[k].world, flags[3]);
-        h->near_due = flags[4] + 2*flags[3]*dt > -1e-6*h->margin.skin || flags[5] > -1e-6*dt;
-    } else result = demi_slabs_agree(s, flags, 7);
-    if (result != DEM_OK) return result;
-    near = s->count == 1 || h->near_due;        /* each looks for itself again */
-    if (s->count == 1) h->margin.gone = first->margin.gone;
-    h->margin.walls_gone = flags[2];
-    for (k = 0; k < s->local && s->count > 1; k++) {           /* what lists count on */
-        s->slabs[k].world->margin.gone = h->margin.gone;
-        s->slabs[k].world->margin.walls_gone = h->margin.walls_gone;
-    }
-    search = flags[1] > 0 || !h->stage.list_valid || h->margin.skin <= 0 ||
-             2*h->margin.gone > h->margin.skin ||
-             h->margin.gone + h->margin.walls_gone > h->margin.skin;
-    if (first->outlet_count && (search || h->clock.steps%DEMI_OUTLET_REST == 0)) {
-        result = demi_slabs_outlets(s, &search);
-        if (result != DEM_OK) return result;
-    }
-    if (search) {
-        result = demi_slabs_rebuild(s);
-        if (result != DEM_OK) return result;
-        if (h->booked.speed_max > 1.5*h->clock.assumed_speed) h->stage.dt_valid = 0;
-        near = 0;
-    }
-    result = demi_slabs_forces(s, near);
-    if (result == DEM_OK) h->stage.moved = 0;
-    return result;
 }
 
 /* ---------------------------------------------------------------------------------------------
