@@ -11,6 +11,7 @@
    of those in one world (after 4000 steps; collisions multiply round-off, so later it is more). */
 #include "dem.h"
 #include "transport.h"
+#include <stdlib.h>
 
 enum { GRAINS = 1200 };
 
