@@ -12263,13 +12263,18 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
         demi_find(f, DEM_SEVERITY_NOTE, "threads is %d, but only %d can run at once: more are "
                   "slower", w->desc.threads, demi_threads_available());
 }
-static void demi_check_radii(const dem_world *w, demi_findings *f) {
-    double least = 1e300, most = 0;
+static void demi_radii_of(const dem_world *w, double *least, double *most) {
     int i;
+    *least = 1e300;
+    *most = 0;
     for (i = 0; i < w->bodies.count; i++) {
-        least = DEMI_MIN(least, (double)w->bodies.pos[4*i + 3]);
-        most = DEMI_MAX(most, (double)w->bodies.pos[4*i + 3]);
+        *least = DEMI_MIN(*least, (double)w->bodies.pos[4*i + 3]);
+        *most = DEMI_MAX(*most, (double)w->bodies.pos[4*i + 3]);
     }
+}
+static void demi_check_radii(const dem_world *w, demi_findings *f) {
+    double least, most;
+    demi_radii_of(w, &least, &most);
     if (most > 0.5)
         demi_find(f, DEM_SEVERITY_WARNING, "the largest grain has a radius of %g m: lengths are in "
                   "metres, was %g mm meant?", most, most);
@@ -12357,12 +12362,9 @@ static int demi_wall_hidden(const dem_world *w, const demi_wall *wall) {
 }
 /* Sizes and places of walls, beside those of grains. */
 static void demi_check_walls(const dem_world *w, demi_findings *f) {
-    double least = 1e300, most = 0;
+    double least, most;
     int i;
-    for (i = 0; i < w->bodies.count; i++) {
-        least = DEMI_MIN(least, (double)w->bodies.pos[4*i + 3]);
-        most = DEMI_MAX(most, (double)w->bodies.pos[4*i + 3]);
-    }
+    demi_radii_of(w, &least, &most);
     for (i = 0; i < w->wall_count; i++) {
         const demi_wall *wall = &w->walls[i];
         const double size = demi_wall_size(wall);
@@ -12426,6 +12428,7 @@ static void demi_check_in_walls(dem_world *w, demi_findings *f) {
             body = (int)w->bodies.slot[c->a] + 1;
             wall = c->wall + 1;
         }
+    for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = w->domains[d].kept;
     if (count)
         demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
                   : DEM_SEVERITY_NOTE, "grains begin in walls at %d place%s, body %d in wall %d by "
@@ -17492,13 +17495,16 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
                          "ran out of memory; finish it with dem_world_step first", call);
     return DEM_OK;
 }
-/* Do all processes hold the same scene, have they got their memory, and all slabs between them?
-   Digests travel as whole numbers of 32 bits. */
+/* Do all processes hold the same scene in the same order, with a list or without, have they got
+   their memory, and all slabs between them? Digests travel as whole numbers of 32 bits. */
 static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
-    const uint64_t digest = demi_scene_digest(w) ^ (dem_world_hash(w) << 1);
+    uint64_t digest = demi_scene_digest(w) ^ (dem_world_hash(w) << 1);
     double v[9], slabs = s->local;
     dem_result result;
     int k, differ = 0;
+    digest = demi_hash(digest, &w->stage.list_valid, sizeof w->stage.list_valid);
+    if (w->bodies.count)
+        digest = demi_hash(digest, w->bodies.slot, (size_t)w->bodies.count*sizeof(uint32_t));
     v[0] = (double)(digest >> 32);
     v[2] = (double)(digest & 0xffffffffu);
     v[4] = s->count;
@@ -17512,9 +17518,9 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
     for (k = 0; k < 8; k += 2) differ |= v[k] + v[k + 1] > 0;
     if (!differ && (int)slabs == s->count) return DEM_OK;
     return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_slabs_create: processes %s, %d slabs of %d are "
-                     "asked for; build the same world from the same numbers in every process and "
-                     "ask for every slab once", differ ? "built different scenes"
-                     : "do not fit together", (int)slabs, s->count);
+                     "asked for; build the same world from the same numbers in every process, "
+                     "search or step it in all or none, and ask for every slab once", differ
+                     ? "built different scenes" : "do not fit together", (int)slabs, s->count);
 }
 
 /* The head's share of a world. 0 when memory ran out. */
