@@ -203,6 +203,7 @@
        tile        some 32 or 64 pairs whose forces are worked out together
        memory      reals that a contact keeps from step to step: springs, largest load
        slip        velocity of one surface along the other, at the contact
+       species     spheres alike in material, radius, mass, and in being fixed or not
        place       where a surface of facets is nearest to a body; counted by its share
        part        a sphere of a cluster, or the one sphere or ellipsoid that a body is
        kept        of a contact: by itself, in a list, not in a column of the near list
@@ -1626,6 +1627,16 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #define DEMI_VECTOR
 #endif
 
+/* Products and sums are rounded one by one, whatever the compiler was told. Fused, as GNU C does it
+   by default where processors can, one expression gives two answers at two places, and a run that
+   is interrupted another one than a run that is not. To the end of the implementation. */
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF
+#elif defined(__GNUC__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("fp-contract=off")
+#endif
+
 /* In a loop that copies: keeps compilers from making gathers of it, which are slower. */
 #if defined(__GNUC__) && !defined(__TINYC__)
 #define DEMI_ONE_BY_ONE(i) __asm__ __volatile__("" : "+r"(i))
@@ -1798,9 +1809,18 @@ typedef struct demi_near {
     int32_t *a, *b, *k;            /* bodies, and their entry in the list of candidates */
     unsigned char *image;
     dem_real *memory;              /* w->memory_stride columns; zeros while a pair does not touch */
-    dem_real *coef;                /* DEMI_PAIR_COLUMNS columns, when bodies differ */
+    int32_t *row;                  /* of species_coef; null where bodies are all alike, or of more
+                                      species than have a table: */
+    dem_real *coef;                /* then DEMI_PAIR_COLUMNS columns */
 } demi_near;
 enum { DEMI_M_EFF = DEMI_COEFS, DEMI_PAIR_COLUMNS };
+/* Spheres alike in all that coefficients hang on. Every two of up to DEMI_SPECIES have a row of
+   coefficients in a table; where there are more (radii drawn at random), near pairs have theirs. */
+enum { DEMI_SPECIES = 32 };
+typedef struct demi_species {
+    dem_real radius, mass, inv_mass;           /* m; kg; 1/kg, 0: fixed */
+    int32_t material, none;        /* 1 + index; 0, so that no byte of it is unknown */
+} demi_species;
 
 /* Sums of one domain over one step; combined in the order of domains. */
 enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED,
@@ -2104,7 +2124,8 @@ typedef struct demi_in_force {     /* >>rebuild: worked out when the list is mad
     int uniform;                   /* one radius, one mass, one material, nothing fixed */
     int fixed_count;
     int tight;                     /* some body is so long that its bounding sphere is no guide */
-    dem_real uniform_coef[DEMI_COEFS], uniform_radius, uniform_inv_mass;
+    int species_count;             /* DEMI_SPECIES + 1: more than that */
+    demi_species species[DEMI_SPECIES];
     dem_real radius_min, radius_max;           /* m */
 } demi_in_force;
 typedef struct demi_levels {       /* >>search */
@@ -2253,6 +2274,9 @@ struct dem_world {
     demi_kept *kept_now, *kept_next;
     /* >>near */
     demi_near near, near_last;     /* in use, and the one before: swapped when made anew */
+    dem_real *species_coef;        /* row a*species_count + b: DEMI_PAIR_COLUMNS of species a and b;
+                                      as they were when lists were made */
+    int species_vary;              /* columns that are not the same for all near pairs: 1 << each */
     struct demi_quiet *quiet;      /* what may push each few bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
     /* >>respond */
@@ -2464,8 +2488,9 @@ static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t c
    of which the last two may be absent. What is kept per contact is what these keep, one after the
    other: friction, rolling, normal; each says which of it are vectors.
    >>add-law: (1) a function dem_law_... and, at the end of its enum, a constant in >>api; (2) a
-   line at the end of its list here, for a normal law with its coefficients above; (3) a sentence in
-   tests/. docs/extending.md performs it, and `make recipes` performs docs/extending.md.
+   line at the end of its list here, with DEMI_SIZED where it asks for r_eff or m_eff, and for a
+   normal law with its coefficients above; (3) a sentence in tests/. docs/extending.md performs it,
+   and `make recipes` performs docs/extending.md.
    --------------------------------------------------------------------------------------------- */
 /* What the rest of dem.h must know of a law. */
 enum {
@@ -2473,7 +2498,8 @@ enum {
     DEMI_HERTZIAN = 1,             /* force ~ overlap^(3/2), stiffness ~ sqrt(R) */
     DEMI_BRANCHED = 2,             /* unloads along another line, and may adhere: kun, kad */
     DEMI_MIDDLE = 4,               /* friction that asks for the stiffness amid the step */
-    DEMI_SPRUNG = 8                /* rolling that the time step must resolve */
+    DEMI_SPRUNG = 8,               /* rolling that the time step must resolve */
+    DEMI_SIZED = 16                /* asks for r_eff or m_eff, which others find to be NaN */
 };
 /* What a normal law's coefficients are made of: moduli (Pa), radius (m), mass (kg), damping ratio
    of one contact, and the speed (m/s) of a likely impact. */
@@ -2525,9 +2551,9 @@ static void demi_coefs_hysteretic(const demi_scales *s, demi_coefs *k) {
     X(DEM_TANGENT_MINDLIN_RESCALED, mindlin_rescaled, 4, 1, DEMI_MIDDLE, "Mindlin, rescaled") \
     /* the last */
 #define DEMI_ROLLING_LAWS(X) \
-    X(DEM_ROLLING_STEP,             roll_step,        0, 0, 0, "step") \
-    X(DEM_ROLLING_CONSTANT,         roll_constant,    3, 1, 0, "constant torque") \
-    X(DEM_ROLLING_EPSD,             roll_epsd,        3, 1, DEMI_SPRUNG, "EPSD") \
+    X(DEM_ROLLING_STEP,             roll_step,        0, 0, DEMI_SIZED, "step") \
+    X(DEM_ROLLING_CONSTANT,         roll_constant,    3, 1, DEMI_SIZED, "constant torque") \
+    X(DEM_ROLLING_EPSD,             roll_epsd,        3, 1, DEMI_SPRUNG | DEMI_SIZED, "EPSD") \
     /* the last */
 
 typedef struct demi_law_row {
@@ -2559,6 +2585,11 @@ static int demi_rolling_meant(const dem_world *w) {
 /* Has the normal law that the desc asks for such a trait? */
 DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {
     return (demi_normal_laws[w->desc.normal_law].traits & trait) != 0;
+}
+/* Does a law in force ask for r_eff or m_eff of pairs? */
+static int demi_laws_sized(const dem_world *w) {
+    return w->desc.law || ((w->laws.normal->traits | w->laws.tangent->traits |
+                            w->laws.rolling->traits) & DEMI_SIZED);
 }
 /* Is there such a law in a table? */
 static int demi_law_known(const demi_law_row *rows, int kind) {
@@ -5511,7 +5542,9 @@ static dem_box demi_wall_element_box(const demi_wall *wall, int element) {
     const dem_real pad = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : 0;
     dem_vec3 c[3];
     dem_box box;
-    int k, n = demi_wall_corners(wall, element, c);
+    int k, n;
+    c[0] = demi_v(0, 0, 0);
+    n = demi_wall_corners(wall, element, c);
     box.lo = box.hi = c[0];
     for (k = 1; k < n; k++) {
         box.lo = demi_v(DEMI_MIN(box.lo.x, c[k].x), DEMI_MIN(box.lo.y, c[k].y),
@@ -6834,7 +6867,11 @@ static int demi_list_reserve(dem_world *w, demi_list *list, int domains, int str
     if (ok) list->stride = stride;
     return ok;
 }
-/* The same for the near list; coefficients have columns only where bodies differ. */
+/* Has every near pair coefficients of its own? */
+static int demi_many_species(const dem_world *w) {
+    return w->effects.species_count > DEMI_SPECIES;
+}
+/* The same for the near list. */
 static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int stride) {
     const size_t n = (size_t)domains*(size_t)stride, m = n*(size_t)w->memory_stride;
     const int ok = n <= (size_t)INT_MAX/8 && DEMI_GROW(w, near->a, n) &&
@@ -6842,7 +6879,9 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
                    DEMI_GROW(w, near->memory, m) &&
-                   (w->effects.uniform || DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS));
+                   (w->effects.uniform || (demi_many_species(w)
+                       ? DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS)
+                       : DEMI_GROW(w, near->row, n)));
     if (ok) near->stride = stride;
     return ok;
 }
@@ -7023,20 +7062,126 @@ static void demi_kept_move(dem_world *w, const int *first) {
    of more than v span + slack: as long as the age is below span and creep below slack, it is open.
    --------------------------------------------------------------------------------------------- */
 
-/* Coefficients of a pair, into its columns; only needed when bodies differ. */
-static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
-    const double ra = (double)w->bodies.pos[4*a + 3], rb = (double)w->bodies.pos[4*b + 3];
-    const double sum = (double)w->bodies.inv_mass[a] + (double)w->bodies.inv_mass[b];
+/* --- species: which spheres are alike, and the coefficients of every two kinds --- */
+static demi_species demi_species_of(const dem_world *w, int body) {
+    demi_species s;
+    s.radius = w->bodies.pos[4*body + 3];
+    s.mass = w->bodies.mass[body];
+    s.inv_mass = w->bodies.inv_mass[body];
+    s.material = w->bodies.material[body];
+    s.none = 0;
+    return s;
+}
+/* Which one the body is of; species_count when of none. */
+static int demi_species_find(const dem_world *w, int body) {
+    const demi_species s = demi_species_of(w, body);
+    int k;
+    for (k = 0; k < w->effects.species_count; k++)
+        if (!memcmp(&w->effects.species[k], &s, sizeof s)) break;
+    return k;
+}
+/* Has the body coefficients with others? */
+static int demi_species_has(const dem_world *w, int body) {
+    return demi_many_species(w) || demi_species_find(w, body) < w->effects.species_count;
+}
+/* Those of all spheres there are; of one more than have a table when there are more. */
+static void demi_species_count(dem_world *w) {
+    demi_in_force *e = &w->effects;
+    int i;
+    e->species_count = 0;
+    for (i = 0; i < w->bodies.count && e->species_count <= DEMI_SPECIES; i++) {
+        if (demi_shape_of(w, i) || demi_species_has(w, i)) continue;
+        if (e->species_count < DEMI_SPECIES) e->species[e->species_count] = demi_species_of(w, i);
+        e->species_count++;
+    }
+}
+/* Coefficients of a pair. */
+static void demi_species_coefs(const dem_world *w, const demi_species *a, const demi_species *b,
+                               dem_real *coef) {
+    const double ra = (double)a->radius, rb = (double)b->radius;
+    const double sum = (double)a->inv_mass + (double)b->inv_mass;
     /* there a fixed grain has mass too */
     const double inv = w->desc.convention == DEM_CONVENTION_MILL
-        ? 1/(double)w->bodies.mass[a] + 1/(double)w->bodies.mass[b] : sum;
+        ? 1/(double)a->mass + 1/(double)b->mass : sum;
+    demi_coefficients(w, a->material - 1, b->material - 1,
+                      ra < rb || ra > rb ? ra*rb/(ra + rb) : ra/2, 1/inv, 0, coef);
+    coef[DEMI_M_EFF] = (dem_real)(1/sum);
+}
+/* Which columns differ from pair to pair, and are asked for. In a table one can see it; of too many
+   species it is those that hang on radii, and on materials where there are several. */
+static void demi_species_vary(dem_world *w) {
+    const int rows = w->effects.species_count*w->effects.species_count;
+    const int fixed = 1 << DEMI_MU | 1 << DEMI_MU_STATIC | 1 << DEMI_MU_ROLL | 1 << DEMI_K_AD;
+    int e, k, materials = 0;
+    w->species_vary = (1 << DEMI_PAIR_COLUMNS) - 1;
+    if (!demi_laws_sized(w)) w->species_vary &= ~(1 << DEMI_R_EFF | 1 << DEMI_M_EFF);
+    if (demi_many_species(w)) {
+        for (k = 0; k < w->bodies.count; k++)
+            materials |= w->bodies.material[k]^w->bodies.material[0];
+        if (!materials) w->species_vary &= ~fixed;
+        if (!demi_normal_is(w, DEMI_BRANCHED))
+            w->species_vary &= ~(1 << DEMI_K_UN | 1 << DEMI_K_AD);
+        return;
+    }
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) {
+        const dem_real *column = w->species_coef + e;
+        for (k = 1; k < rows; k++)
+            if (memcmp(column, column + DEMI_PAIR_COLUMNS*k, sizeof *column)) break;
+        if (k >= rows) w->species_vary &= ~(1 << e);
+    }
+}
+/* Would a new sphere find its coefficients? */
+static int demi_species_known(const dem_world *w, int material, dem_real radius) {
+    const demi_species *s = w->effects.species;
+    int k;
+    for (k = 0; k < w->effects.species_count && !demi_many_species(w); k++)
+        if (s[k].material == material + 1 && s[k].inv_mass > 0 && !(s[k].radius < radius) &&
+            !(s[k].radius > radius)) return 1;
+    return demi_many_species(w);
+}
+/* Room for the table; 0 when memory ran out. */
+static int demi_species_room(dem_world *w) {
+    const size_t n = demi_many_species(w) ? 0 : (size_t)w->effects.species_count;
+    return DEMI_GROW(w, w->species_coef, n*n*DEMI_PAIR_COLUMNS);
+}
+/* What is in it. */
+static void demi_species_lay(dem_world *w) {
+    const int n = w->effects.species_count;
+    int k;
+    for (k = 0; k < n*n && !demi_many_species(w); k++)
+        demi_species_coefs(w, &w->effects.species[k/n], &w->effects.species[k%n],
+                           w->species_coef + DEMI_PAIR_COLUMNS*k);
+}
+/* A pair learns its row, or is given columns; only needed where bodies differ. */
+static void demi_near_coefs(const dem_world *w, demi_near *near, int d, int p, int a, int b) {
+    const demi_species one = demi_species_of(w, a), other = demi_species_of(w, b);
     dem_real coef[DEMI_PAIR_COLUMNS], *to;
     int e;
-    demi_coefficients(w, w->bodies.material[a] - 1, w->bodies.material[b] - 1, ra*rb/(ra + rb),
-                      1/inv, 0, coef);
-    coef[DEMI_M_EFF] = (dem_real)(1/sum);
+    if (!demi_many_species(w)) {
+        near->row[d*near->stride + p] = demi_species_find(w, a)*w->effects.species_count +
+            demi_species_find(w, b);
+        return;
+    }
+    demi_species_coefs(w, &one, &other, coef);
     to = near->coef + (size_t)d*DEMI_PAIR_COLUMNS*(size_t)near->stride + (size_t)p;
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) to[(size_t)e*(size_t)near->stride] = coef[e];
+}
+/* Entry `to` of the domain has the coefficients of entry `from`, of the same list or another. */
+static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int to,
+                                 const demi_near *last, int from) {
+    const size_t columns = DEMI_PAIR_COLUMNS, stride = (size_t)near->stride;
+    const size_t last_stride = (size_t)last->stride;
+    dem_real *m;
+    const dem_real *old;
+    size_t e;
+    if (w->effects.uniform) return;
+    if (!demi_many_species(w)) {
+        near->row[d*near->stride + to] = last->row[d*last->stride + from];
+        return;
+    }
+    m = near->coef + (size_t)d*columns*stride + (size_t)to;
+    old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
+    for (e = 0; e < columns; e++) m[e*stride] = old[e*last_stride];
 }
 /* Picks near ones from the candidates of one list, without a branch; their entries from p on.
    Answers where they end, or -1 when there is no room. */
@@ -7094,7 +7239,7 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
     demi_near *near = &w->near;
     const demi_near *last = &w->near_last;
     const size_t keep = (size_t)w->memory_stride, stride = (size_t)near->stride;
-    const size_t last_stride = (size_t)last->stride, columns = DEMI_PAIR_COLUMNS;
+    const size_t last_stride = (size_t)last->stride;
     const int at = d*near->stride + p;
     dem_real *m = near->memory + (size_t)d*keep*stride + (size_t)p;
     size_t e;
@@ -7102,10 +7247,7 @@ static void demi_near_recall(dem_world *w, int d, int p, int from) {
     if (from >= 0) {
         const dem_real *old = last->memory + (size_t)d*keep*last_stride + (size_t)from;
         for (e = 0; e < keep; e++) m[e*stride] = old[e*last_stride];
-        if (w->effects.uniform) return;
-        m = near->coef + (size_t)d*columns*stride + (size_t)p;
-        old = last->coef + (size_t)d*columns*last_stride + (size_t)from;
-        for (e = 0; e < columns; e++) m[e*stride] = old[e*last_stride];
+        demi_near_coefs_copy(w, near, d, p, last, from);
         return;
     }
     if (!w->effects.uniform) demi_near_coefs(w, near, d, p, near->a[at], near->b[at]);
@@ -7126,7 +7268,6 @@ static void demi_near_adopt(dem_world *w, int d) {
     const size_t stride = (size_t)near->stride;
     dem_real *memory = w->memory_stride
         ? near->memory + (size_t)d*(size_t)w->memory_stride*stride : 0;
-    dem_real *coef = w->effects.uniform ? 0 : near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride;
     int l, p, e;
     for (l = 0; l < 2; l++) {
         const int end = l ? domain->near_end : domain->near_own, at = d*near->stride;
@@ -7137,8 +7278,7 @@ static void demi_near_adopt(dem_world *w, int d) {
             near->k[at + p] = near->k[at + end - 1];
             near->image[at + p] = near->image[at + end - 1];
             for (e = 0; e < w->memory_stride; e++) memory[(size_t)e*stride + (size_t)p] = 0;
-            for (e = 0; e < DEMI_PAIR_COLUMNS && !w->effects.uniform; e++)
-                coef[(size_t)e*stride + (size_t)p] = coef[(size_t)e*stride + (size_t)end - 1];
+            demi_near_coefs_copy(w, near, d, p, near, end - 1);
         }
     }
     for (l = 0; l < 2; l++) {
@@ -7376,13 +7516,7 @@ static void demi_effects(dem_world *w) {
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count;
-    if (w->effects.uniform) {
-        w->effects.uniform_radius = w->bodies.pos[3];
-        w->effects.uniform_inv_mass = w->bodies.inv_mass[0];
-        demi_coefficients(w, w->bodies.material[0] - 1, w->bodies.material[0] - 1,
-                          (double)w->bodies.pos[3]/2,
-                          1/((double)w->bodies.inv_mass[0]*2), 0, w->effects.uniform_coef);
-    }
+    demi_species_count(w);
 }
 
 /* Skin from counted work, so that it is the same on every run: looking at a candidate costs 1, a
@@ -7521,9 +7655,7 @@ static int demi_join_lack(const dem_world *w) {
 static int demi_join_possible(const dem_world *w, int material, dem_real radius) {
     if (!w->stage.list_valid || w->stage.pairs_changed || !w->bodies.count || w->bodies.shaped ||
         w->bodies.ghost) return 0;
-    return !w->effects.uniform ||
-           (w->bodies.material[0] == material + 1 && !(radius < w->effects.uniform_radius) &&
-                           !(radius > w->effects.uniform_radius));
+    return demi_species_known(w, material, radius);
 }
 /* Could the two touch before the near list is made anew? As demi_near_pick asks. */
 static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int b) {
@@ -7606,9 +7738,13 @@ static int demi_effects_take(dem_world *w) {
     const demi_laws was = w->laws;
     const int tangent = w->effects.tangent, rolling = w->effects.rolling;
     demi_effects(w);
-    if (w->desc.law || !was.normal ||
+    if (demi_species_room(w) && (w->desc.law || !was.normal ||
         (was.tangent == w->laws.tangent && was.rolling == w->laws.rolling) ||
-        demi_memory_move(w, &was)) return 1;
+        demi_memory_move(w, &was))) {
+        demi_species_lay(w);
+        demi_species_vary(w);
+        return 1;
+    }
     w->effects.tangent = tangent;
     w->effects.rolling = rolling;
     demi_effects_memory(w);
@@ -8477,6 +8613,7 @@ typedef struct demi_tile {
     demi_rows apart, parted;       /* rad/s, difference of spins: the same */
     dem_real radius[2][DEMI_ROW];
     dem_real memory[DEMI_MEMORY][DEMI_ROW], coef[DEMI_PAIR_COLUMNS][DEMI_ROW];
+    int row;                       /* of species_coef: all of coef holds it; -1: no row does */
     /* touch and motion */
     dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
     dem_real touch[DEMI_ROW];      /* 1 where the two touch, else 0 */
@@ -8496,7 +8633,8 @@ typedef struct demi_span {
     const int32_t *a, *b;
     const unsigned char *image;
     dem_real *memory;              /* column e of pair q: memory[e*stride + q] */
-    const dem_real *coef;          /* the same */
+    const int32_t *row;            /* of the table of species, or null: */
+    const dem_real *coef;          /* columns likewise; neither where all are alike */
     size_t stride;
     int count;
 } demi_span;
@@ -8509,10 +8647,20 @@ static demi_span demi_span_of(const dem_world *w, int d, int p, int count) {
     s.b = near->b + at;
     s.image = near->image + at;
     s.memory = near->memory ? near->memory + (size_t)d*(size_t)w->memory_stride*stride + p : 0;
-    s.coef = near->coef ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
+    s.row = w->effects.uniform || demi_many_species(w) ? 0 : near->row + at;
+    s.coef = demi_many_species(w) ? near->coef + (size_t)d*DEMI_PAIR_COLUMNS*stride + p : 0;
     s.stride = stride;
     s.count = count;
     return s;
+}
+
+/* Coefficients of pair q. */
+static void demi_span_coefs(const dem_world *w, const demi_span *s, int q, dem_real *coef) {
+    const int row = s->row ? s->row[q] : 0;
+    int e;
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
+        coef[e] = s->coef ? s->coef[(size_t)e*s->stride + (size_t)q]
+            : w->species_coef[DEMI_PAIR_COLUMNS*row + e];
 }
 
 DEM_INLINE dem_vec3 demi_row(dem_real rows[3][DEMI_ROW], int q) {
@@ -8569,7 +8717,7 @@ enum { DEMI_STAGES = 6 };
 struct demi_run {
     const dem_world *w;
     const demi_span *span;         /* the pairs under work */
-    int uniform, ledger, keep;     /* keep: reals of memory */
+    int alike, ledger, keep;       /* are the two of a pair alike? keep: reals of memory */
     int turning, parting;          /* are spins, differences of spins wanted? */
     int following;                 /* is the motion over the last step wanted? */
     demi_same same;
@@ -8611,7 +8759,7 @@ static void demi_tile_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRI
     if (r->parting && r->following) demi_fetch(r, count, t, 0, 1, 1, 1);
     else if (r->parting) demi_fetch(r, count, t, 0, 1, 1, 0);
     else if (r->following) demi_fetch(r, count, t, 1, 1, 0, 1);
-    else demi_fetch(r, count, t, r->uniform, r->turning, 0, 0);
+    else demi_fetch(r, count, t, r->alike, r->turning, 0, 0);
 }
 
 /* Slip over the step just taken, in the tangent plane of now: velocity and spin (times arm) are
@@ -8646,7 +8794,7 @@ DEM_INLINE void demi_touch_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, i
     } else {
         const dem_real ra = t->radius[0][q], rb = t->radius[1][q];
         overlap = ra + rb - d;
-        t->deep[q] = overlap/(ra < rb ? ra : rb);
+        t->deep[q] = overlap*(1/(ra < rb ? ra : rb));
         t->lean[q] = (ra - rb)/(ra + rb)*d/2;   /* the contact divides d as the radii do */
     }
     t->touch[q] = overlap > 0 ? DEM_R(1) : DEM_R(0);
@@ -8889,7 +9037,7 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, int 
     demi_recall(t, q, 0, r->keep, m);
     law(&c, m, &f);
     demi_keep(t, q, 0, r->keep, m);
-    demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->uniform, 1, 1);
+    demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->alike, 1, 1);
     if (!r->ledger) return;                     /* what the law says of it */
     demi_normal_energy(t, q, &f);
     demi_tangent_energy(t, q, &f);
@@ -8929,7 +9077,8 @@ static const demi_stage_row demi_rolling_stages[] = {{0, 0}, {0, 0},
     DEMI_ROLLING_LAWS(DEMI_STAGE_ROW_ONE) {0, 0}};
 
 /* The stage that does all for the laws in force, or null. */
-static demi_stage demi_whole_stage(const dem_world *w) {
+static demi_stage demi_whole_stage(const dem_world *w, int alike) {
+    (void)alike;
 #ifdef DEM_LAW
     if (w->desc.law == DEM_LAW) return demi_stage_own_inlined;
 #endif
@@ -8941,19 +9090,20 @@ static demi_stage demi_whole_stage(const dem_world *w) {
         return demi_stage_hertz_alone;
     if (w->effects.tangent == DEM_TANGENT_SPRING && w->effects.rolling == DEM_ROLLING_NONE)
         return w->desc.ledger
-            ? w->effects.uniform ? demi_stage_spring_alike_ledger : demi_stage_spring_mixed_ledger
-            : w->effects.uniform ? demi_stage_spring_alike : demi_stage_spring_mixed;
+            ? alike ? demi_stage_spring_alike_ledger : demi_stage_spring_mixed_ledger
+            : alike ? demi_stage_spring_alike : demi_stage_spring_mixed;
     if (w->effects.tangent == DEM_TANGENT_SPRING && w->effects.rolling == DEM_ROLLING_EPSD)
         return w->desc.ledger
-            ? w->effects.uniform ? demi_stage_rolling_alike_ledger : demi_stage_rolling_mixed_ledger
-            : w->effects.uniform ? demi_stage_rolling_alike : demi_stage_rolling_mixed;
+            ? alike ? demi_stage_rolling_alike_ledger : demi_stage_rolling_mixed_ledger
+            : alike ? demi_stage_rolling_alike : demi_stage_rolling_mixed;
 #endif
     return 0;
 }
-/* What the laws in force ask of a run: what is fetched, and which stages. dt 0: looking only. */
-static demi_run demi_run_of(const dem_world *w, dem_real dt) {
+/* What the laws in force ask of a run: what is fetched, and which stages. dt 0: looking only.
+   Bits of pairs of alike bodies are the same either way. */
+static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     const demi_laws *laws = &w->laws;
-    const demi_stage whole = demi_whole_stage(w);
+    const demi_stage whole = demi_whole_stage(w, alike);
     const int own = w->desc.law != 0;
     const int turns = laws->tangent->law != 0, rolls = laws->rolling->law != 0;
     const int all = w->desc.ledger || !demi_laws_usual(w);
@@ -8962,11 +9112,11 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt) {
     int k = 0;
     memset(&r, 0, sizeof r);
     r.w = w;
-    r.uniform = w->effects.uniform;
+    r.alike = alike;
     r.ledger = w->desc.ledger;
     r.keep = w->memory_stride;
     r.turning = own || turns || rolls;
-    r.parting = own || rolls || (r.turning && !r.uniform);
+    r.parting = own || rolls || (r.turning && !r.alike);
     r.following = own || laws->tangent->vectors || laws->rolling->vectors;
     r.same.at_rolling = laws->at_rolling;
     r.same.at_normal = laws->at_normal;
@@ -8974,11 +9124,11 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt) {
     r.same.friction_load = (int)w->desc.friction_load;
     r.same.slider = (int)w->desc.slider;
     r.same.dt = dt;
-    r.same.radius = w->effects.uniform_radius;
-    r.same.inv_radius = 1/w->effects.uniform_radius;
-    r.stage[k++] = r.following ? r.uniform ? demi_stage_alike_following : demi_stage_mixed_following
-        : r.turning ? r.uniform ? demi_stage_alike_turning : demi_stage_mixed_turning
-        : r.uniform ? demi_stage_alike_bare : demi_stage_mixed_bare;
+    r.same.radius = w->effects.species[0].radius;
+    r.same.inv_radius = 1/r.same.radius;
+    r.stage[k++] = r.following ? r.alike ? demi_stage_alike_following : demi_stage_mixed_following
+        : r.turning ? r.alike ? demi_stage_alike_turning : demi_stage_mixed_turning
+        : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
     r.stage[k++] = precise ? demi_normal_stages[w->normal].all
                            : demi_normal_stages[w->normal].common;
@@ -8986,36 +9136,60 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt) {
                                   : demi_tangent_stages[w->effects.tangent].common;
     if (rolls) r.stage[k++] = demi_rolling_stages[w->effects.rolling].common;
     r.stage[k] = !r.turning ? demi_stage_answer_bare
-        : rolls ? r.uniform ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
-        : r.uniform ? demi_stage_answer_alike : demi_stage_answer_mixed;
+        : rolls ? r.alike ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
+        : r.alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
     return r;
 }
-/* Column e of pairs of bodies that are all alike. */
-static dem_real demi_uniform_coef(const dem_world *w, int e) {
-    return e == DEMI_M_EFF ? 1/(2*w->effects.uniform_inv_mass) : w->effects.uniform_coef[e];
-}
-/* Rows that no stage of the run fills: coefficients of alike bodies, friction of none. */
-static void demi_tile_begin(const dem_world *w, const demi_run *r, demi_tile *t) {
+/* Rows that no stage of the run fills: coefficients that are the same for all pairs, friction of
+   none. */
+static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
+    const demi_domain *domain = &w->domains[d];
+    const int first = demi_near_first(domain);
+    dem_real coef[DEMI_PAIR_COLUMNS];
     int e, q;
-    for (e = 0; e < DEMI_PAIR_COLUMNS && r->uniform; e++)
-        for (q = 0; q < DEMI_TILE; q++)
-            t->coef[e][q] = demi_uniform_coef(w, e);
+    t->row = -1;
+    if (first < domain->near_end) {
+        const demi_span one = demi_span_of(w, d, first, 1);
+        demi_span_coefs(w, &one, 0, coef);
+        if (!demi_laws_sized(w)) coef[DEMI_R_EFF] = coef[DEMI_M_EFF] = (dem_real)NAN;
+        for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
+            for (q = 0; q < DEMI_TILE; q++) t->coef[e][q] = coef[e];
+    }
     memset(t->part, 0, sizeof t->part);
     memset(t->tangent, 0, sizeof t->tangent);
 }
+/* Coefficients of a tile's pairs, but those that never vary. Answers the run they are for: of the
+   two, that for pairs that differ, or that for pairs that are alike. */
+static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int full,
+                                 demi_tile *DEMI_RESTRICT t, demi_run *run) {
+    const int32_t *DEMI_RESTRICT row = span->row;
+    const int n = w->effects.species_count;
+    int e, q, differ = 0, same;
+    if (w->effects.uniform) return run + 1;
+    for (q = 0; q < full && row; q++) differ |= row[q]^row[0];
+    same = row && !differ;
+    for (e = 0; e < DEMI_PAIR_COLUMNS && !(same && t->row == row[0]); e++) {
+        const dem_real *DEMI_RESTRICT table = w->species_coef + e;
+        if (!(w->species_vary >> e & 1)) continue;
+        if (!row) demi_row_copy(t->coef[e], span->coef + (size_t)e*span->stride, full);
+        else for (q = 0; q < full; q++) t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[q]];
+    }
+    t->row = same ? row[0] : -1;
+    if (!same || row[0]%(n + 1)) return run;    /* species k with k: row k*n + k */
+    run[1].same.radius = w->effects.species[row[0]/(n + 1)].radius;
+    run[1].same.inv_radius = 1/run[1].same.radius;
+    return run + 1;
+}
 
-/* The whole tile; energies are summed in order. */
-static void demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *r,
-                              demi_tile *DEMI_RESTRICT t, double *energy) {
-    const int branched = demi_normal_is(w, DEMI_BRANCHED);
+/* The whole tile, by one of two runs, which is answered; energies are summed in order. */
+static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
+                                   demi_tile *DEMI_RESTRICT t, double *energy) {
     const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_run *r = demi_tile_coefs(w, span, full, t, run);
     int q, k;
     r->span = span;
     for (q = 0; q < r->keep; q++)
         demi_row_copy(t->memory[q], span->memory + (size_t)q*span->stride, full);
-    for (q = 0; q < DEMI_PAIR_COLUMNS && !r->uniform; q++)
-        if (branched || q < DEMI_K_UN || q > DEMI_K_AD)
-            demi_row_copy(t->coef[q], span->coef + (size_t)q*span->stride, full);
     demi_tile_fetch(r, full, t);
     for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
     for (q = 0; q < r->keep; q++)
@@ -9029,6 +9203,7 @@ static void demi_tile_respond(const dem_world *w, const demi_span *span, demi_ru
             energy[DEMI_E_SHEAR_STORED] += (double)t->part[4][q];
             energy[DEMI_E_ROLL] += (double)t->part[5][q];
         }
+    return r;
 }
 
 /* What a tile adds up to besides forces. */
@@ -9096,21 +9271,24 @@ static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
 /* All pairs of one domain: those inside it, then those that lead out. */
 static void demi_pairs(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    demi_run r = demi_run_of(w, w->stage.forces_valid ? w->clock.dt : 0);  /* 0: looking only */
+    const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;           /* 0: looking only */
+    demi_run run[2];
     DEMI_ALIGNED demi_tile tile;
     demi_tally tally = {0, 0};
     int l, p;
-    demi_tile_begin(w, &r, &tile);
+    run[0] = demi_run_of(w, dt, 0);
+    run[1] = demi_run_of(w, dt, 1);
+    demi_tile_begin(w, d, &tile);
     for (l = 0; l < 2; l++) {
         const int begin = l ? domain->near_cross : 0;
         const int end = l ? domain->near_end : domain->near_own;
         for (p = begin; p < end; p += DEMI_TILE) {
             const int count = DEMI_MIN((int)DEMI_TILE, end - p);
             const demi_span span = demi_span_of(w, d, p, count);
-            demi_tile_respond(w, &span, &r, &tile, domain->energy);
+            const demi_run *r = demi_tile_respond(w, &span, run, &tile, domain->energy);
             demi_tile_tally(&tile, count, &tally);
-            if (!l) demi_tile_scatter(&tile, &span, &r, w->bodies.force, w->bodies.torque);
-            else demi_tile_send(&tile, &span, &r, w->bodies.force, w->bodies.torque,
+            if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
+            else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque,
                                 w->cross_force + 6*((size_t)d*(size_t)w->cross.stride +
                                                    (size_t)(p - begin)));
         }
@@ -9147,7 +9325,7 @@ static const char *demi_kernel_choose(dem_world *w) {
     if (w->desc.law == DEM_LAW) return "your law, inlined";
 #endif
     if (w->desc.law) return "your law, called";
-    return demi_whole_stage(w) ? "all laws at once" : "law by law";
+    return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
 }
 
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
@@ -12017,16 +12195,10 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             const int both = w->bodies.inv_mass[a] > 0 && w->bodies.inv_mass[b] > 0;
             dem_real coef[DEMI_PAIR_COLUMNS];
             demi_pressed c;
-            int e;
             if (!(l < sum) || !(l > 0)) continue;
             if (whole && !press[a].whole && !press[b].whole) continue;
-            for (e = 0; e < DEMI_PAIR_COLUMNS && !w->effects.uniform; e++)
-                coef[e] = span.coef[(size_t)e*span.stride];
-            c.s = demi_stiffness_of(w, w->effects.uniform ? w->effects.uniform_coef : coef,
-                                    w->effects.uniform
-                                    ? 1/(2*(double)w->effects.uniform_inv_mass)
-                                    : (double)coef[DEMI_M_EFF],
-                                    (double)(sum - l));
+            demi_span_coefs(w, &span, 0, coef);
+            c.s = demi_stiffness_of(w, coef, (double)coef[DEMI_M_EFF], (double)(sum - l));
             c.n = demi_scale(gap, 1/l);
             c.overlap = sum - l;
             for (side = 0; side < 2; side++) {
@@ -13215,11 +13387,11 @@ DEM_API void dem_overlap_reset(dem_world *w) {
 
 /* One near pair, if it touches: its force by the law of the run on a copy of its memory. */
 static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out) {
-    demi_run r = demi_run_of(w, 0);
+    demi_run r = demi_run_of(w, 0, w->effects.uniform);
     const demi_span span = demi_span_of(w, d, p, 1);
     const int a = span.a[0], b = span.b[0];
     const demi_periods periods = demi_periods_of(w);
-    dem_real memory[DEMI_MEMORY];
+    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
     demi_tile tile;
     dem_contact c;
     dem_contact_force f;
@@ -13228,19 +13400,19 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
     gap = demi_rows_at(&tile.gap, 0);
-    demi_touch_one(&tile, &r.same, 0, r.uniform);
+    demi_touch_one(&tile, &r.same, 0, r.alike);
     if (!(tile.touch[0] > 0)) return 0;
     if (!out) return 1;
     for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
-    for (e = 0; e < DEMI_PAIR_COLUMNS; e++)
-        tile.coef[e][0] = r.uniform ? demi_uniform_coef(w, e) : span.coef[(size_t)e*span.stride];
-    demi_motion_one(&tile, &r.same, 0, r.uniform, r.turning, r.following);
+    demi_span_coefs(w, &span, 0, coef);
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
+    demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
     demi_tile_contact(&tile, &r.same, 0, &c);
     c.material_a = w->bodies.material[a];
     c.material_b = w->bodies.material[b];
     c.user = w->desc.law_user;
     demi_law(w, &c, memory, &f);
-    demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.uniform, r.turning, r.parting);
+    demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
     out->a = dem_bodies_id(w, a);
     out->b = dem_bodies_id(w, b);
     out->wall = 0;
@@ -14640,7 +14812,7 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
    which the next one is chosen.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 9 };
+enum { DEMI_CHECKPOINT_VERSION = 10 };
 
 /* Writes to file, or reads the `left` bytes that are at `from`, or (with neither) counts bytes. */
 typedef struct demi_stream {
@@ -14850,13 +15022,16 @@ static void demi_visit_near(dem_world *w, demi_stream *s, int d) {
     for (e = 0; e < w->memory_stride; e++)
         demi_visit(s, w->near.memory + (from*(size_t)w->memory_stride +
                    (size_t)e*(size_t)w->near.stride), remembering*r);
-    for (e = 0; e < DEMI_PAIR_COLUMNS && w->stage.pairs_changed && !w->effects.uniform; e++)
+    for (e = 0; e < DEMI_PAIR_COLUMNS && w->stage.pairs_changed && demi_many_species(w); e++)
         demi_visit(s, w->near.coef + (from*DEMI_PAIR_COLUMNS + (size_t)e*(size_t)w->near.stride),
                    remembering*r);
 }
 /* Candidates, near pairs, wall candidates: of a list that fits the bodies. */
 static void demi_visit_lists(dem_world *w, demi_stream *s) {
+    const int n = w->effects.species_count;
     int d, i;
+    if (w->stage.list_valid && w->stage.pairs_changed && !demi_many_species(w))
+        demi_visit(s, w->species_coef, (size_t)(n*n*DEMI_PAIR_COLUMNS)*sizeof(dem_real));
     for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
         const demi_domain *domain = &w->domains[d];
         const size_t walls = (size_t)domain->walls;
@@ -15208,6 +15383,7 @@ static int demi_numbers_check(const demi_reader *r) {
             (double)t->effects.radius_max,
         (double)t->clock.dt};
     size_t i;
+    int k;
     if (!demi_left(r, t->bodies.count, demi_body_size(t)) ||
         !demi_left(r, t->bodies.slot_count, 8) ||
         t->bodies.count > INT_MAX/64 || t->bodies.slot_count > INT_MAX/64 ||
@@ -15235,8 +15411,13 @@ static int demi_numbers_check(const demi_reader *r) {
     if (((t->effects.tangent || t->stage.list_valid) && t->effects.tangent != tangent &&
          t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
          t->effects.rolling != rolling && t->effects.rolling != DEM_ROLLING_NONE) ||
-             (t->effects.uniform & ~1))
+             (t->effects.uniform & ~1) || t->effects.species_count < 0 ||
+             t->effects.species_count > (t->effects.uniform ? 1 : DEMI_SPECIES + 1))
         return demi_lie(r, "the laws in force", -1);
+    for (k = 0; k < t->effects.species_count && k < DEMI_SPECIES; k++)
+        if (t->effects.species[k].material < 1 ||
+            t->effects.species[k].material > t->material_count)
+            return demi_lie(r, "its table of species", -1);
     for (i = 0; i < sizeof positive/sizeof *positive; i++)
         if (!demi_sane(positive[i], 0))
             return demi_lie(r, "its time, time step, skin or one of the lengths that go with the "
@@ -15359,7 +15540,9 @@ static int demi_near_check(const demi_reader *r, int d, const demi_list *list, i
         const int at = d*t->near.stride + p, k = t->near.k[at];
         if (k <= last || k >= count || t->near.a[at] != list->a[first + k] ||
             t->near.b[at] != list->b[first + k] ||
-            shaped != (demi_shape_of(t, t->near.a[at]) || demi_shape_of(t, t->near.b[at])))
+            shaped != (demi_shape_of(t, t->near.a[at]) || demi_shape_of(t, t->near.b[at])) ||
+            (!shaped && !demi_species_has(t, t->near.a[at])) ||
+            (!shaped && !demi_species_has(t, t->near.b[at])))
             return demi_lie(r, "a near pair of domain", d);
         last = k;
         t->near.k[at] = first + k;
@@ -15512,6 +15695,7 @@ static int demi_twin_lists_room(dem_world *t) {
     return !t->stage.list_valid ||
            (demi_list_reserve(t, &t->own, t->domain_count, most[0]) &&
             demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
+            demi_species_room(t) &&
             demi_near_reserve(t, &t->near, t->domain_count, most[2]) &&
             demi_wall_lists_reserve(t, most[3]) &&
             DEMI_GROW(t, t->quiet, (size_t)(t->bodies.count/DEMI_SOME + t->domain_count + 1)));
@@ -15525,6 +15709,8 @@ static int demi_twin_follow(dem_world *t) {
     for (k = 0; k < t->wall_count; k++) t->walls[k].symmetric = demi_wall_symmetric(&t->walls[k]);
     demi_kernel_choose(t);
     if (!t->stage.list_valid) return 1;
+    if (!t->stage.pairs_changed) demi_species_lay(t);
+    demi_species_vary(t);
     if (t->bodies.shaped && !demi_centres_lay(t)) return 0;
     for (d = 0; d < t->domain_count; d++) {
         const demi_domain *o = &t->domains[d];
@@ -15538,8 +15724,8 @@ static int demi_twin_follow(dem_world *t) {
         for (k = demi_near_first(o); k < o->near_end; k = demi_near_next(o, k)) {
             const int a = t->near.a[first + k], b = t->near.b[first + k];
             t->near.image[first + k] = demi_pair_image(t, &p, a, b);
-            if (!t->effects.uniform && !t->stage.pairs_changed) demi_near_coefs(t, &t->near, d, k,
-                                                                                a, b);
+            if (!t->effects.uniform && !(t->stage.pairs_changed && demi_many_species(t)))
+                demi_near_coefs(t, &t->near, d, k, a, b);
         }
         for (k = o->near_shaped; k < o->near_shaped_end; k++)
             t->near.image[first + k] = demi_pair_image(t, &p, t->near.a[first + k],
@@ -15910,8 +16096,9 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     demi_laws_report(w, out);
     demi_shapes_report(w, out);
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
-            w->effects.uniform ? "all alike (coefficients once per run)"
-            : "differ (coefficients per candidate)", w->wall_count,
+            w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
+                ? "differ (coefficients per near pair)"
+                : "of few species (coefficients once for each two)", w->wall_count,
             w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
             demi_kernel_choose(w));
     fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->booked.overlap_max,
@@ -18000,6 +18187,11 @@ DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
     return c;
 }
 
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT DEFAULT
+#elif defined(__GNUC__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
 #endif /* DEM_IMPLEMENTATION */
 
 /* MIT License

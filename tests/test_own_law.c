@@ -50,7 +50,7 @@ static uint64_t run(dem_law_fn law, int mixed, int periodic, int *inlined) {
     scene_block(world, glass, 7, 7, 7, 1e-3, mixed, 1, 3);
     CHECK_EQ(scene_step(world, 200), DEM_OK);
     CHECK(dem_counters_get(world).wall_contacts > 0);
-    *inlined = demi_whole_stage(world) == demi_stage_own_inlined;
+    *inlined = demi_whole_stage(world, world->effects.uniform) == demi_stage_own_inlined;
     hash = dem_world_hash(world);
     dem_world_destroy(world);
     return hash;

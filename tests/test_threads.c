@@ -64,9 +64,11 @@ static void check_same(const outcome *a, const outcome *b) {
     CHECK(memcmp(&a->floor.work, &b->floor.work, sizeof a->floor.work) == 0);
 }
 
-/* A block of grains between planes or in a periodic box, law by law or all laws at once: its hash. */
+static int block_species;                       /* of the last block: how many kinds of spheres */
+/* A block of grains between planes or in a periodic box, law by law or all laws at once: its hash. They
+   are of so many materials, all with the same properties; of 2, the second is that of `seconds` grains. */
 static uint64_t block(int friction, int rolling, int ledger, int mixed, int periodic, int composed,
-                      int *whole) {
+                      int materials, int seconds, int *whole) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world;
     dem_material glass;
@@ -82,10 +84,14 @@ static uint64_t block(int friction, int rolling, int ledger, int mixed, int peri
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, rolling ? 0.1 : 0);
     if (!periodic) dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    for (k = 1; k < materials; k++) scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, rolling ? 0.1 : 0);
     scene_block(world, glass, 7, 7, 7, 1e-3, mixed, 1, 5);
+    for (k = 0; k < world->bodies.count && materials > 1; k++)
+        world->bodies.material[k] = 1 + (materials == 2 ? k < seconds : k%materials);
     world->composed = composed;
     CHECK_EQ(scene_step(world, 100), DEM_OK);
-    *whole = demi_whole_stage(world) != 0;
+    *whole = demi_whole_stage(world, world->effects.uniform) != 0;
+    block_species = world->effects.species_count;
     CHECK_EQ(dem_counters_get(world).rebuilds, 1);
     hash = dem_world_hash(world);
     if (ledger) {
@@ -156,11 +162,29 @@ int main(int argc, char **argv) {
             for (mixed = 0; mixed < 2; mixed++)
                 for (periodic = 0; periodic < 2; periodic++) {
                     CHECK_EQ(block(sets[i].friction, sets[i].rolling, sets[i].ledger, mixed, periodic,
-                                   0, &at_once),
+                                   0, 1, 0, &at_once),
                              block(sets[i].friction, sets[i].rolling, sets[i].ledger, mixed, periodic,
-                                   1, &by_law));
+                                   1, 1, 0, &by_law));
                     CHECK_EQ(at_once, 1);
                     CHECK_EQ(by_law, 0);
+                }
+    }
+    TEST("coefficients that all pairs share, that stand in a table, or that every pair has for itself, "
+         "give the same bits") {
+        static const struct { int materials, seconds, species; } sets[] = {
+            {2, 1, 2}, {2, 150, 2}, {7, 0, 7}, {40, 0, DEMI_SPECIES + 1}};
+        size_t i;
+        int rolling, ledger, composed, whole;
+        CHECK(DEMI_SPECIES < 40);
+        for (rolling = 0; rolling < 2; rolling++)
+            for (ledger = 0; ledger < 2; ledger++)
+                for (composed = 0; composed < 2; composed++) {
+                    const uint64_t alike = block(1, rolling, ledger, 0, 1, composed, 1, 0, &whole);
+                    for (i = 0; i < sizeof sets/sizeof *sets; i++) {
+                        CHECK_EQ(block(1, rolling, ledger, 0, 1, composed, sets[i].materials,
+                                       sets[i].seconds, &whole), alike);
+                        CHECK_EQ(block_species, sets[i].species);
+                    }
                 }
     }
     TEST("a time step that the library chooses anew falls on the same step however the steps are "
