@@ -127,7 +127,9 @@ static void measure(const bench_scene *s) {
 
 typedef struct price_row { const char *name, *scene, *buys; bench_choice with; } price_row;
 static const price_row price_rows[] = {
-    {"mixed_radii", "bed", "grains that differ in size or material", {.mixed = 1}},
+    {"one_unlike", "bed", "one grain that differs from the others", {.mixed = 1}},
+    {"two_species", "bed", "two sizes (or materials), half of the grains each", {.mixed = 2}},
+    {"all_unlike", "bed", "every grain of a size of its own", {.mixed = 3}},
     {"ledger", "bed", "where the energy went, watched at every step", {.ledger = 1}},
     {"linear", "bed", "a linear spring in place of Hertz: contact time independent of speed", {.normal = DEM_NORMAL_LINEAR}},
     {"tangent.none", "bed", "no friction", {.tangent = DEM_TANGENT_NONE}},

@@ -61,7 +61,7 @@ typedef struct bench_choice {
     dem_rolling_law rolling;
     dem_integrator integrator;
     dem_search search;
-    int mixed;                  /* 1: one bead is 0.1 % smaller: no longer all alike           */
+    int mixed;                  /* 1: one bead is 0.1 % smaller; 2: every second one; 3: all, each a little differently */
     double rolling_friction;
     int every;                  /* 0 or 1: all beads; n: every n-th                            */
     double dt;                  /* s, 0: the scene's                                           */
@@ -284,6 +284,11 @@ STUDY_FN int bench_drum_flow(dem_world *world, dem_material glass, const bench_c
     return (!(o->feed > 0) || dem_feed_add(world, &feed).id) && (!o->outlet || dem_outlet_add(world, &outlet).id);
 }
 
+/* By how much of the radius bead i is smaller; where all are, too little to change the scene. */
+STUDY_FN double bench_smaller(int mixed, int i) {
+    if (mixed == 3) return 1e-6*(i*7919%10007)/10007;
+    return (mixed == 1 && !i) || (mixed == 2 && i%2) ? 1e-3 : 0;
+}
 /* The world of a scene at its start state. degrees: how far DRUM has turned. */
 STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, double degrees) {
     const int gas = bench_is(s, "gas"), bed = bench_is(s, "bed"), drum = bench_is(s, "drum");
@@ -343,7 +348,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     v = (dem_real *)study_alloc((size_t)count*3, sizeof *v);
     r = (dem_real *)study_alloc((size_t)count, sizeof *r);
     for (i = 0; i < count; i++) {
-        r[i] = (dem_real)(o->mixed && !i ? 0.999*s->radius : s->radius);
+        r[i] = (dem_real)(s->radius*(1 - bench_smaller(o->mixed, i)));
         for (c = 0; c < 3; c++) {
             x[3*i + c] = (dem_real)s->x[3*i*every + c];
             v[3*i + c] = (dem_real)s->v[3*i*every + c];
