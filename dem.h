@@ -46,6 +46,7 @@
        >>write       VTP, VTK, XYZ and CSV out
        >>checkpoint  everything, to the last bit
        >>restore     a checkpoint checked and read
+       >>trials      what a choice costs and changes, tried on copies of a scene
        >>world       create, destroy, report
        >>slabs       one scene dealt to threads or processes: what grains take along
        >>slabs-step  one step of all slabs
@@ -177,7 +178,7 @@
 
    A scene that does something else than it should: dem_check_print(world, stdout) before the first
    run says what looks wrong (units, overlaps, a floor that is missing), dem_world_report after it
-   what was simulated.
+   what was simulated, and dem_advise what another step, stiffness or law would change.
 
    Threads. Different worlds may be used from different threads. Several threads may look at one
    world at once, by functions that take it as const, while none changes it. Of those only these
@@ -1401,6 +1402,79 @@ typedef struct dem_totals {
     double centre[3], momentum[3], angular[3];
 } dem_totals;
 DEM_API dem_totals dem_totals_get(const dem_world *world);
+
+/* ---- what accuracy costs in a scene of one's own: tried on copies of it ---- */
+
+/* One number that a world is judged by. Averages over many grains or much time say more than
+   places: where grains collide, those depend on the last bit. */
+typedef double (*dem_observe_fn)(const dem_world *world, void *user);
+/* m, the centre of mass above the origin: against gravity, or along z where there is none. */
+DEM_API double dem_observe_height(const dem_world *world, void *user);
+/* J, kinetic and rotational energy of all bodies. */
+DEM_API double dem_observe_kinetic(const dem_world *world, void *user);
+/* Contacts per body, those with walls included: a contact of two bodies counts for both. */
+DEM_API double dem_observe_contacts(const dem_world *world, void *user);
+/* N, sum over walls of the force on each. */
+DEM_API double dem_observe_walls(const dem_world *world, void *user);
+
+enum { DEM_OBSERVABLES = 8, DEM_TRIALS = 8 };
+typedef struct dem_observable {
+    const char *name, *unit;       /* of text that outlives the call */
+    dem_observe_fn function;
+    void *user;
+    double scale;                  /* what it is measured by; 0: its own value in the reference */
+} dem_observable;
+typedef struct dem_advise_desc {
+    double duration;               /* s that each trial simulates, > 0; observables are averages
+                                      over its second half */
+    double budget;                 /* s of wall time for all trials, 0: 60; where it is too little
+                                      they simulate less */
+    double tolerance;              /* share of its scale by which an observable may be off,
+                                      0: 0.02 */
+    int seeds;                     /* runs of each trial, whose grains are put at most 1e-6 of a
+                                      radius off; 2 .. 16; 0: 3 */
+    int observable_count;          /* 0: height, kinetic energy (its scale: what there is now, and
+                                      what all would gain in falling by a radius), contacts */
+    dem_observable observables[DEM_OBSERVABLES];
+    dem_progress_fn progress;      /* called after each run with the world asked about; or null.
+                                      A non-zero answer ends the call: DEM_ERROR_STOPPED */
+    void *user;
+} dem_advise_desc;
+static const dem_advise_desc DEM_ADVISE_DESC_ZERO = {0, 0, 0, 0, 0,
+    {{0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0},
+     {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}}, 0, 0};
+#define DEM_ADVISE_DESC DEM_ADVISE_DESC_ZERO
+typedef struct dem_trial {
+    const char *name;              /* what differs from the scene */
+    double dt;                     /* s */
+    double stiffness;              /* factor on all moduli and stiffnesses */
+    int done;                      /* runs that came to their end, 0 .. seeds */
+    double seconds;                /* s of wall time per simulated second */
+    double value[DEM_OBSERVABLES], error[DEM_OBSERVABLES];   /* mean over seeds, its error */
+    double drift[DEM_OBSERVABLES]; /* from the reference, of the scale */
+    double promise;                /* all observables are within this of the reference, of the
+                                      scale: the largest |drift| and what chance may add (95 %) */
+    char refusal[200];             /* why a run did not come to its end */
+} dem_trial;
+typedef struct dem_trials {
+    int count, best;               /* best: the trial to be followed; the scene as it is: 0 */
+    int reference;                 /* that with the smallest step */
+    double duration, tolerance;    /* s simulated; as asked */
+    int seeds, observable_count;
+    dem_observable observables[DEM_OBSERVABLES];
+    dem_trial trial[DEM_TRIALS];
+    char advice[400];              /* what to do, and why */
+} dem_trials;
+/* Tries a scene with steps twice, half and a quarter as long, with grains 10 times softer and 4
+   times stiffer (their steps as fine for their collisions as the scene's), and with other laws; on
+   copies: the world stays as it is. Judges by observables: the advice is the cheapest trial that
+   promises to be within the tolerance of the one with the smallest step. Functions of the user's
+   (laws, fields, motions, regions of feeds) are asked for the copies, too, of which two at the same
+   simulated time may come one after the other. What is refused: a value out of its limits, no
+   bodies, a scene that would not run. */
+DEM_API dem_result dem_advise(dem_world *world, const dem_advise_desc *desc, dem_trials *trials);
+/* The trials as a table, and the advice. */
+DEM_API void dem_trials_print(const dem_trials *trials, FILE *out);
 
 /* Grain-grain contacts as they are now, for analysis. Calls the same law as the run, on a copy of
    the memory. Returns how many there are; fills at most capacity. -1 with a sentence when bodies or
@@ -14814,9 +14888,11 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
 enum { DEMI_CHECKPOINT_VERSION = 10 };
 
-/* Writes to file, or reads the `left` bytes that are at `from`, or (with neither) counts bytes. */
+/* Writes to file or to memory, or reads the `left` bytes that are at `from`, or (with none of them)
+   counts bytes. */
 typedef struct demi_stream {
     FILE *file;
+    char *to;
     const char *from;
     uint64_t sum;
     size_t size, left;
@@ -14829,6 +14905,9 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
     if (s->file) {
         s->sum = demi_hash(s->sum, data, size);
         fwrite(data, 1, size, s->file);
+    } else if (s->to) {
+        memcpy(s->to, data, size);
+        s->to += size;
     } else if (s->from && size <= s->left) {
         memcpy(data, s->from, size);
         s->from += size;
@@ -15169,7 +15248,7 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     const int lost = demi_body_lost(w);
     demi_checkpoint_head head;
     demi_out out;
-    demi_stream s = {0, 0, 0, 0, 0, 0};
+    demi_stream s = {0, 0, 0, 0, 0, 0, 0};
     dem_result result;
     uint64_t sum;
     if (lost >= 0)
@@ -15327,6 +15406,10 @@ static dem_world *demi_twin_make(dem_world *w) {
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);
     return 0;
+}
+static void demi_twin_free(dem_world *w, dem_world *t) {
+    demi_free_chain(t, DEMI_RUN);
+    demi_free(w, t);
 }
 /* The twin's state takes the place of the world's. */
 static void demi_twin_adopt(dem_world *w, dem_world *t) {
@@ -15798,9 +15881,46 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
         demi_twin_adopt(w, r.t);
         return DEM_OK;
     }
-    demi_free_chain(r.t, DEMI_RUN);
-    demi_free(w, r.t);
+    demi_twin_free(w, r.t);
     return result == DEM_ERROR_MEMORY ? demi_no_memory(w, "dem_checkpoint_read") : result;
+}
+/* What a checkpoint would hold, in memory. Null when that ran out. */
+static char *demi_state_keep(dem_world *w, size_t *size) {
+    dem_world look = *w;
+    demi_stream s = {0, 0, 0, 0, 0, 0, 0};
+    char *bytes;
+    if (look.stage.list_valid) look.filed.count = 0;  /* as dem_checkpoint_write has it */
+    if (!look.filed.count) look.filed.rows = look.filed.stride = 0;
+    demi_visit_state(&look, &s);
+    *size = s.size;
+    bytes = (char *)demi_alloc(w, s.size + 1, 1);
+    s.to = bytes;
+    if (bytes) demi_visit_state(&look, &s);
+    return bytes;
+}
+/* A world in that state, to be tried out: it looks at the shapes and the geometry of walls of w,
+   whose facets must have been weighed, and has all else for itself. Null when memory ran out. */
+static dem_world *demi_twin_in_state(dem_world *w, const char *bytes, size_t size) {
+    demi_reader r;
+    unsigned char *seen = 0;
+    dem_result result;
+    memset(&r, 0, sizeof r);
+    r.w = w;
+    r.path = "a copy of the world";
+    r.s.from = bytes;
+    r.s.left = size;
+    r.t = demi_twin_make(w);
+    if (!r.t) return 0;
+    r.t->pairs = (demi_pair *)demi_hold(r.t, DEMI_RUN, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
+                                        sizeof(demi_pair));
+    if (r.t->pairs)
+        memcpy(r.t->pairs, w->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
+    result = r.t->pairs ? demi_twin_read(&r, &seen) : DEM_ERROR_MEMORY;
+    demi_free(r.t, seen);
+    r.t->facets_valid = 1;
+    if (result == DEM_OK) return r.t;
+    demi_twin_free(w, r.t);
+    return 0;
 }
 
 DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
@@ -15812,6 +15932,375 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
         result = demi_checkpoint_parse(w, path, bytes, size);
     demi_free(w, bytes);
     return result;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>trials
+   What a choice costs and what it changes, tried on copies of the user's own scene. A trial is a
+   row: what it changes. Each runs several times, from places that hardly differ: what a choice
+   changes counts only as far as it is more than what chance does. Copies live within the
+   call; nothing of the world itself is stepped.
+   --------------------------------------------------------------------------------------------- */
+DEM_API double dem_observe_height(const dem_world *w, void *user) {
+    const dem_totals t = dem_totals_get(w);
+    dem_vec3 up;
+    (void)user;
+    if (!w) return 0;
+    up = demi_dot(w->desc.gravity, w->desc.gravity) > 0
+        ? demi_scale(w->desc.gravity, -1/demi_length(w->desc.gravity)) : demi_v(0, 0, 1);
+    return t.centre[0]*(double)up.x + t.centre[1]*(double)up.y + t.centre[2]*(double)up.z;
+}
+DEM_API double dem_observe_kinetic(const dem_world *w, void *user) {
+    const dem_totals t = dem_totals_get(w);
+    (void)user;
+    return t.kinetic + t.rotational;
+}
+DEM_API double dem_observe_contacts(const dem_world *w, void *user) {
+    const dem_counters c = dem_counters_get(w);
+    int d, kept = 0;
+    (void)user;
+    for (d = 0; w && d < w->domain_count && w->stage.list_valid; d++)
+        kept += w->domains[d].kept - w->domains[d].kept_walls;
+    return w && w->bodies.count ? (2.0*(c.contacts + kept) + c.wall_contacts)/w->bodies.count : 0;
+}
+DEM_API double dem_observe_walls(const dem_world *w, void *user) {
+    double sum = 0;
+    int i;
+    (void)user;
+    for (i = 0; w && i < w->wall_count; i++) sum += (double)demi_length(w->walls[i].loads.force);
+    return sum;
+}
+
+/* What a trial changes. */
+enum { DEMI_TRY_NORMAL = 1, DEMI_TRY_TANGENT = 2, DEMI_TRY_SAMPLES = 32 };
+typedef struct demi_try { const char *name; double step, stiffness; int law; } demi_try;
+static const demi_try demi_tries[DEM_TRIALS] = {
+    {"as it is",           1,    1,   0},       /* the first */
+    {"step doubled",       2,    1,   0},
+    {"step halved",        0.5,  1,   0},
+    {"step quartered",     0.25, 1,   0},
+    {"10 times softer",    1,    0.1, 0},
+    {"4 times stiffer",    1,    4,   0},
+    {"other normal law",   1,    1,   DEMI_TRY_NORMAL},
+    {"other friction law", 1,    1,   DEMI_TRY_TANGENT}};
+/* The law that is tried in place of the one in force, -1: none fits. */
+static int demi_try_normal(const dem_world *w) {
+    int i, j, moduli = 1;
+    for (i = 0; i < w->material_count; i++)
+        for (j = 0; j < w->material_count; j++)
+            moduli &= w->pairs[i*DEMI_MATERIALS + j].given.young_eff > 0;
+    if (w->desc.law || !moduli || demi_normal_is(w, DEMI_BRANCHED)) return -1;
+    return demi_normal_is(w, DEMI_HERTZIAN) ? DEM_NORMAL_LINEAR : DEM_NORMAL_HERTZ;
+}
+static int demi_try_tangent(const dem_world *w) {
+    int friction, rolling;
+    demi_pairs_rub(w, &friction, &rolling);
+    if (w->desc.law || !friction || demi_tangent_meant(w) == DEM_TANGENT_NONE) return -1;
+    if (demi_tangent_meant(w) != DEM_TANGENT_SPRING) return DEM_TANGENT_SPRING;
+    return demi_normal_is(w, DEMI_HERTZIAN) ? DEM_TANGENT_MINDLIN_RESCALED : -1;
+}
+/* Does the trial make sense in this scene? */
+static int demi_try_fits(const dem_world *w, const demi_try *row) {
+    if (row->law == DEMI_TRY_NORMAL) return demi_try_normal(w) >= 0;
+    if (row->law == DEMI_TRY_TANGENT) return demi_try_tangent(w) >= 0;
+    return !w->desc.law || row->stiffness == 1.0;
+}
+static const char *demi_try_name(const dem_world *w, const demi_try *row) {
+    if (row->law == DEMI_TRY_NORMAL)
+        return demi_try_normal(w) == DEM_NORMAL_LINEAR ? "linear springs" : "Hertz's law";
+    if (row->law == DEMI_TRY_TANGENT)
+        return demi_try_tangent(w) == DEM_TANGENT_SPRING ? "friction by a spring"
+            : "Mindlin's friction";
+    return row->name;
+}
+/* All moduli and stiffnesses times a factor. */
+static void demi_stiffen(dem_world *t, dem_real factor) {
+    int i, j;
+    for (i = 0; i < t->material_count; i++) {
+        dem_material_desc *m = &t->materials[i];
+        m->young *= factor;
+        m->stiffness *= factor;
+        m->stiffness_unloading *= factor;
+        m->stiffness_adhesion *= factor;
+    }
+    for (i = 0; i < t->material_count; i++)
+        for (j = i; j < t->material_count; j++) {
+            dem_pair p = t->pairs[i*DEMI_MATERIALS + j].given;
+            p.young_eff *= factor;
+            p.shear_eff *= factor;
+            p.stiffness *= factor;
+            p.stiffness_adhesion *= factor;
+            p.normal_damping *= DEMI_SQRT(factor);     /* the same share of the critical */
+            demi_pair_put(t, i, j, &p);
+        }
+}
+/* Makes a copy what the row says. Its step is as fine for its collisions as that of the scene. */
+static void demi_try_set(dem_world *t, const demi_try *row) {
+    const double dt = (double)t->clock.dt;
+    dem_advice was, is;
+    demi_finish(t);
+    demi_advise(t, &was);
+    if (row->law == DEMI_TRY_NORMAL) {
+        if (!(t->desc.impact_speed > 0)) t->desc.impact_speed = was.speed;
+        t->desc.normal_law = (dem_normal_law)demi_try_normal(t);
+    }
+    if (row->law == DEMI_TRY_TANGENT) t->desc.tangent_law = (dem_tangent_law)demi_try_tangent(t);
+    demi_stiffen(t, (dem_real)row->stiffness);
+    demi_advise(t, &is);
+    t->desc.dt = (dem_real)(dt*row->step);
+    if (was.contact_time > 0 && is.contact_time > 0)
+        t->desc.dt *= is.contact_time/was.contact_time;
+    t->stage.pairs_changed = 1;
+    t->stage.dt_valid = t->stage.primed = 0;
+}
+/* Puts every body a millionth of its radius off: far less than any overlap that matters, and enough
+   for chance to show soon, where collisions multiply it, as they do what a trial changes. Less than
+   that, the last bit, takes long to grow, and chance would look smaller than it is. */
+static void demi_try_shake(dem_world *t, uint64_t seed) {
+    int i, k;
+    for (i = 0; i < t->bodies.count && seed; i++)
+        for (k = 0; k < (t->desc.planar ? 2 : 3) && t->bodies.inv_mass[i] > 0; k++)
+            t->bodies.pos[4*i + k] += t->bodies.pos[4*i + 3]*
+                (dem_real)(1e-6*(2*demi_uniform(&seed) - 1));
+}
+/* Runs a copy through the trial; sums the observables' means over its second half. */
+static dem_result demi_try_run(dem_world *t, const dem_trials *all, double *sum) {
+    dem_result result = DEM_OK;
+    int k, e;
+    for (k = 0; k <= DEMI_TRY_SAMPLES && result == DEM_OK; k++) {
+        result = dem_world_run(t, all->duration/2/(k ? DEMI_TRY_SAMPLES : 1), 0, 0);
+        for (e = 0; e < all->observable_count && k && result == DEM_OK; e++) {
+            const dem_observable *o = &all->observables[e];
+            const double value = o->function(t, o->user);
+            sum[e] += value/DEMI_TRY_SAMPLES;
+            if (!demi_finite_double(value))
+                result = demi_fail(t, DEM_ERROR_UNSTABLE, "%s is not finite", o->name);
+        }
+    }
+    return result;
+}
+/* What chance adds to a difference of two means of n runs each, in standard errors: Student's t at
+   95 % for 2n - 2 degrees of freedom, by its expansion about the normal law. */
+static double demi_student(int n) {
+    const double v = 1/(2.0*n - 2);
+    return 1.96 + v*(2.372 + v*(2.822 + v*(2.556 + v*1.59)));
+}
+/* Drifts and promises, once all trials are done. */
+static void demi_trials_judge(dem_trials *out) {
+    int i, e;
+    for (i = 0; i < out->count; i++)            /* of what came to its end: the smallest step */
+        if (out->trial[i].done == out->seeds &&
+            (out->trial[out->reference].done < out->seeds ||
+             out->trial[i].dt/pow(out->trial[i].stiffness, -0.4) <
+                 out->trial[out->reference].dt/pow(out->trial[out->reference].stiffness, -0.4)))
+            out->reference = i;
+    for (i = 0; i < out->count; i++) {
+        const dem_trial *ref = &out->trial[out->reference];
+        dem_trial *t = &out->trial[i];
+        for (e = 0; e < out->observable_count && t->done == out->seeds; e++) {
+            double scale = out->observables[e].scale, chance;
+            if (!(scale > 0)) scale = fabs(ref->value[e]);
+            if (!(scale > 0)) scale = DEMI_MAX(fabs(t->value[e]), 1e-300);
+            t->drift[e] = (t->value[e] - ref->value[e])/scale;
+            chance = demi_student(out->seeds)*sqrt(t->error[e]*t->error[e] +
+                                                   ref->error[e]*ref->error[e])/scale;
+            t->promise = DEMI_MAX(t->promise, fabs(t->drift[e]) + chance);
+        }
+    }
+}
+/* The cheapest that keeps within the tolerance; a tenth less time is worth a change. */
+static void demi_trials_advise(dem_trials *out) {
+    const dem_trial *ref = &out->trial[out->reference], *scene = &out->trial[0], *best;
+    const double now = scene->seconds;
+    int i, found = -1;
+    for (i = 0; i < out->count; i++) {
+        const dem_trial *t = &out->trial[i];
+        if (t->done < out->seeds || t->promise > out->tolerance) continue;
+        if (found < 0 || t->seconds < (found ? 1 : 0.9)*out->trial[found].seconds) found = i;
+    }
+    out->best = found < 0 ? out->reference : found;
+    best = &out->trial[out->best];
+    if (found < 0)
+        snprintf(out->advice, sizeof out->advice, "chance alone moves the observables by up to "
+                 "%.2g of their scale, more than the tolerance of %.2g: give a longer duration, "
+                 "more seeds, or observables that are averages", ref->promise, out->tolerance);
+    else if (!found)
+        snprintf(out->advice, sizeof out->advice, "keep the scene as it is: all observables are "
+                 "within %.2g of those of \"%s\" (asked: %.2g), and nothing tried is as good in a "
+                 "tenth less time", best->promise, ref->name, out->tolerance);
+    else if (best->seconds < now)
+        snprintf(out->advice, sizeof out->advice, "take \"%s\": all observables are within %.2g of "
+                 "those of \"%s\" (asked: %.2g), in %.2g of the time that the scene takes as it is",
+                 best->name, best->promise, ref->name, out->tolerance, best->seconds/now);
+    else
+        snprintf(out->advice, sizeof out->advice, "take \"%s\": as it is the scene is only within "
+                 "%.2g of \"%s\" (asked: %.2g); this is within %.2g, in %.2g times the time",
+                 best->name, scene->promise, ref->name, out->tolerance, best->promise,
+                 best->seconds/now);
+}
+/* All runs of one trial. */
+static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, const demi_try *row,
+                                 dem_trials *out, dem_trial *trial) {
+    double value[16][DEM_OBSERVABLES], wall = 0;
+    int e, k;
+    memset(value, 0, sizeof value);
+    for (k = 0; k < out->seeds && !*trial->refusal; k++) {
+        dem_world *t = demi_twin_in_state(w, state, size);
+        double begun;
+        if (!t) return demi_no_memory(w, "dem_advise");
+        demi_try_set(t, row);
+        demi_try_shake(t, (uint64_t)k);
+        trial->dt = (double)t->desc.dt;
+        begun = demi_clock();
+        if (demi_try_run(t, out, value[k]) == DEM_OK) trial->done++;
+        else snprintf(trial->refusal, sizeof trial->refusal, "%.199s", t->error);
+        wall += demi_clock() - begun;
+        demi_twin_free(w, t);
+    }
+    if (trial->done < out->seeds) return DEM_OK;
+    trial->seconds = wall/out->seeds/out->duration;
+    for (e = 0; e < out->observable_count; e++) {
+        double off = 0;
+        for (k = 0; k < out->seeds; k++) trial->value[e] += value[k][e]/out->seeds;
+        for (k = 0; k < out->seeds; k++)
+            off += (value[k][e] - trial->value[e])*(value[k][e] - trial->value[e]);
+        trial->error[e] = sqrt(off/(out->seeds - 1.0)/out->seeds);
+    }
+    return DEM_OK;
+}
+/* 1 with a sentence when the desc asks for what cannot be. */
+static int demi_advise_refuse(dem_world *w, const dem_advise_desc *d) {
+    const int lost = demi_body_lost(w);
+    int e;
+    if (!(d->duration > 0) || !demi_finite_double(d->duration) || !(d->budget >= 0) ||
+        !demi_finite_double(d->budget) || !(d->tolerance >= 0) || d->seeds < 0 || d->seeds == 1 ||
+        d->seeds > 16 || d->observable_count < 0 || d->observable_count > DEM_OBSERVABLES) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: duration is %g s, budget %g s, tolerance %g, "
+                  "seeds %d, observables %d; must be > 0, >= 0, >= 0, 2 to 16 (0: 3) and 0 to %d; "
+                  "start from DEM_ADVISE_DESC and set duration", d->duration, d->budget,
+                  d->tolerance, d->seeds, d->observable_count, (int)DEM_OBSERVABLES);
+        return 1;
+    }
+    for (e = 0; e < d->observable_count; e++)
+        if (!d->observables[e].function || !d->observables[e].name) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: observable %d has no function or no "
+                      "name; give both, as {\"height\", \"m\", dem_observe_height, 0, 0}", e + 1);
+            return 1;
+        }
+    if (lost < 0 && w->bodies.count) return 0;
+    if (lost < 0)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: there are no bodies: nothing to judge by; "
+                  "add them, or run until some are fed");
+    else
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: body %u is no longer at a finite place and "
+                  "speed: the run has blown up; go back to an earlier checkpoint",
+                  (unsigned)w->bodies.slot[lost] + 1);
+    return 1;
+}
+/* What the trials shall simulate so that all end within the budget, from the time of some steps of
+   a copy. */
+static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size, double budget,
+                                   dem_trials *out) {
+    dem_world *t = demi_twin_in_state(w, state, size);
+    double steps = 0, each, begun;
+    int k;
+    dem_result result;
+    if (!t) return demi_no_memory(w, "dem_advise");
+    result = dem_world_step(t, 5);
+    begun = demi_clock();
+    if (result == DEM_OK) result = dem_world_step(t, 20);
+    each = (demi_clock() - begun)/20;
+    for (k = 0; k < DEM_TRIALS; k++)
+        if (demi_try_fits(w, &demi_tries[k]))
+            steps += out->seeds/(double)t->clock.dt/demi_tries[k].step*
+                pow(demi_tries[k].stiffness, 0.4);
+    if (each*steps*out->duration > budget) out->duration = budget/each/steps;
+    if (result != DEM_OK) demi_fail(w, result, "dem_advise: the scene as it is: %.400s", t->error);
+    else if (out->duration < 64*(double)t->clock.dt)
+        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: %g s of wall time allow for %g s of "
+                           "this scene in each trial, must be at least 64 steps of %g s; give more "
+                           "budget, fewer seeds, or a smaller part of the scene", budget,
+                           out->duration, (double)t->clock.dt);
+    demi_twin_free(w, t);
+    return result;
+}
+DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials *out) {
+    static const dem_observable usual[] = {
+        {"height", "m", dem_observe_height, 0, 0}, {"kinetic", "J", dem_observe_kinetic, 0, 0},
+        {"contacts", "", dem_observe_contacts, 0, 0}};
+    const demi_try *rows[DEM_TRIALS];
+    const double begun = demi_clock();
+    char *state;
+    size_t size;
+    dem_result result;
+    int k;
+    if (demi_null(w, "dem_advise", d, "desc") || demi_null(w, "dem_advise", out, "trials"))
+        return DEM_ERROR_ARGUMENT;
+    if (demi_advise_refuse(w, d)) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    out->duration = d->duration;
+    out->tolerance = d->tolerance > 0 ? d->tolerance : 0.02;
+    out->seeds = d->seeds ? d->seeds : 3;
+    out->observable_count = d->observable_count ? d->observable_count : 3;
+    memcpy(out->observables, d->observable_count ? d->observables : usual,
+           (size_t)out->observable_count*sizeof *usual);
+    if (!d->observable_count)
+        out->observables[1].scale = dem_observe_kinetic(w, 0) + dem_totals_get(w).mass*
+            (double)demi_length(w->desc.gravity)*(double)w->bodies.pos[3];
+    if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, "dem_advise");
+    result = demi_dt_settle(w);                 /* refused as a run would be */
+    if (result != DEM_OK) return result;
+    state = demi_state_keep(w, &size);
+    if (!state) return demi_no_memory(w, "dem_advise");
+    result = demi_advise_plan(w, state, size, d->budget > 0 ? d->budget : 60, out);
+    for (k = 0; k < DEM_TRIALS; k++)
+        if (demi_try_fits(w, &demi_tries[k])) rows[out->count++] = &demi_tries[k];
+    for (k = 0; k < out->count && result == DEM_OK; k++) {
+        dem_trial *trial = &out->trial[k];
+        trial->name = demi_try_name(w, rows[k]);
+        trial->stiffness = rows[k]->stiffness;
+        result = demi_trial_run(w, state, size, rows[k], out, trial);
+        if (result == DEM_OK && d->progress &&
+            d->progress(w, (k + 1.0)/out->count,
+                        (demi_clock() - begun)*(out->count - k - 1)/(k + 1), d->user))
+            result = demi_fail(w, DEM_ERROR_STOPPED, "dem_advise: stopped by the progress function "
+                               "after %d of %d trials", k + 1, out->count);
+    }
+    demi_free(w, state);
+    if (result != DEM_OK) return result;
+    if (out->trial[0].done < out->seeds)
+        return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_advise: the scene as it is does not run: "
+                         "%.300s", out->trial[0].refusal);
+    demi_trials_judge(out);
+    demi_trials_advise(out);
+    return DEM_OK;
+}
+DEM_API void dem_trials_print(const dem_trials *t, FILE *out) {
+    int i, e;
+    if (!t || !out) return;
+    fprintf(out, "trials     %d runs each of %.3g s, means of the second half +- their error\n",
+            t->seeds, t->duration);
+    fprintf(out, "  %-20s %-9s %-9s", "", "dt [s]", "s per s");
+    for (e = 0; e < t->observable_count; e++) {
+        const dem_observable *o = &t->observables[e];
+        char name[64];
+        snprintf(name, sizeof name, o->unit && *o->unit ? "%s [%s]" : "%s", o->name, o->unit);
+        fprintf(out, " %-22s", name);
+    }
+    fprintf(out, " within\n");
+    for (i = 0; i < t->count; i++) {
+        const dem_trial *trial = &t->trial[i];
+        fprintf(out, "%c %-20s %-9.3g ", i == t->best ? '*' : ' ', trial->name, trial->dt);
+        if (trial->done < t->seeds) { fprintf(out, "%.120s\n", trial->refusal); continue; }
+        fprintf(out, "%-9.3g", trial->seconds);
+        for (e = 0; e < t->observable_count; e++) {
+            char value[64];
+            snprintf(value, sizeof value, "%.5g +- %.1g", trial->value[e], trial->error[e]);
+            fprintf(out, " %-22s", value);
+        }
+        fprintf(out, " %.2g%s\n", trial->promise, i == t->reference ? " (reference)" : "");
+    }
+    fprintf(out, "advice     %s\n", t->advice);
 }
 
 /* ---------------------------------------------------------------------------------------------
