@@ -16068,11 +16068,11 @@ static dem_result demi_try_run(dem_world *t, const dem_trials *all, double *sum)
     dem_result result = DEM_OK;
     int k, e;
     for (k = 0; k <= DEMI_TRY_SAMPLES && result == DEM_OK; k++) {
-        result = dem_world_run(t, all->duration/2/(k ? DEMI_TRY_SAMPLES : 1), 0, 0);
+        result = dem_world_run(t, all->duration/2/(k ? (int)DEMI_TRY_SAMPLES : 1), 0, 0);
         for (e = 0; e < all->observable_count && k && result == DEM_OK; e++) {
             const dem_observable *o = &all->observables[e];
             const double value = o->function(t, o->user);
-            sum[e] += value/DEMI_TRY_SAMPLES;
+            sum[e] += value/(int)DEMI_TRY_SAMPLES;
             if (!demi_finite_double(value))
                 result = demi_fail(t, DEM_ERROR_UNSTABLE, "%s is not finite", o->name);
         }
