@@ -98,6 +98,9 @@ bench: $(BENCHES) $(BENCH_ALSO) ## the quick form of all benches, in under 3 min
 bench-compile: build/flags ## processor time that compiling dem.h takes, by compiler and level
 	@sh bench/compile.sh
 
+bench-effects: build/bench ## what each effect costs, present and absent
+	@build/bench --scene effects --threads 1
+
 bench-parallel: build/parallel ## threads, sizes, searches beside published figures, in minutes
 	@$(BIND) build/parallel
 

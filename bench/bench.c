@@ -2,7 +2,7 @@
 
    make bench                    all of it in under three minutes, in double, in single and built with -O2
    build/bench --scene bed       one scene: rate, threads, memory, ledger
-   build/bench --scene prices    what other laws, searches, integrators and lists cost
+   build/bench --scene effects   what effects, laws, searches and integrators cost, present and absent; --effect NAME
    build/bench --scene walls     what a contact with a wall costs, against facets per grain
    build/bench --scene sizes     what a grain costs among much larger ones, by levels and on one grid
    build/bench --settle bed      makes a start state anew (minutes), as build/out/bench/bed_20k.txt
@@ -21,7 +21,7 @@
 #endif
 enum { WARM_UP = 100, MOST_LOOPS = BENCH_MOST_LOOPS };
 
-static const char *scene_name = "all", *data_folder = "bench/data", *out = "", *settle = "", *codes = "";
+static const char *scene_name = "all", *data_folder = "bench/data", *out = "", *settle = "", *codes = "", *effect_asked = "";
 static int steps_asked, repeat_asked, threads_asked = 2, quick, full, cpu, raw, brief;
 static double skin_asked;
 
@@ -123,67 +123,100 @@ static void measure(const bench_scene *s) {
     names_begin("");
 }
 
-/* ---- what a choice costs: time of a step with it over that without, on the same scene in turns ---- */
+/* ---- what an effect costs: time of a step with it over that without, on the same scene in turns; and what it costs
+   where it is asked for but has no cause (no friction in any pair, a field that is over), which shall be nothing ---- */
 
-typedef struct price_row { const char *name, *scene, *buys; bench_choice with; } price_row;
-static const price_row price_rows[] = {
-    {"one_unlike", "bed", "one grain that differs from the others", {.mixed = 1}},
-    {"two_species", "bed", "two sizes (or materials), half of the grains each", {.mixed = 2}},
-    {"all_unlike", "bed", "every grain of a size of its own", {.mixed = 3}},
-    {"ledger", "bed", "where the energy went, watched at every step", {.ledger = 1}},
-    {"linear", "bed", "a linear spring in place of Hertz: contact time independent of speed", {.normal = DEM_NORMAL_LINEAR}},
-    {"tangent.none", "bed", "no friction", {.tangent = DEM_TANGENT_NONE}},
-    {"tangent.viscous", "bed", "friction without memory: heaps creep", {.tangent = DEM_TANGENT_VISCOUS}},
-    {"tangent.step", "bed", "spring of one step, as in [MIL]: heaps creep", {.tangent = DEM_TANGENT_STEP}},
-    {"tangent.mindlin", "bed", "stiffness that follows the overlap", {.tangent = DEM_TANGENT_MINDLIN}},
-    {"tangent.mindlin_rescaled", "bed", "and no energy gained while unloading", {.tangent = DEM_TANGENT_MINDLIN_RESCALED}},
-    {"rolling.step", "bed", "rolling resistance as in [MIL]", {.rolling = DEM_ROLLING_STEP, .rolling_friction = 0.1}},
-    {"rolling.constant", "bed", "a constant rolling torque", {.rolling = DEM_ROLLING_CONSTANT, .rolling_friction = 0.1}},
-    {"rolling.epsd", "bed", "rolling resistance that holds a grain on a slope", {.rolling = DEM_ROLLING_EPSD, .rolling_friction = 0.1}},
-    {"integrator.leapfrog", "bed", "the path of velocity Verlet", {.integrator = DEM_LEAPFROG}},
-    {"integrator.position_verlet", "bed", "the path of velocity Verlet", {.integrator = DEM_POSITION_VERLET}},
-    {"integrator.symplectic_euler", "bed", "first order, energy bounded", {.integrator = DEM_SYMPLECTIC_EULER}},
-    {"integrator.forward_euler", "bed", "first order, gains energy", {.integrator = DEM_FORWARD_EULER}},
-    {"skin0", "bed", "nothing: a new list at every step", {.skin = -1}},
-    {"feed", "drum", "a bead fed every fourth step", {.feed = 50000}},
-    {"outlet", "drum", "beads that fly through the middle are taken out", {.outlet = 1}},
-    {"search.linked_list", "drum", "nothing here: pays at wide size ranges [ALK07]", {.search = DEM_SEARCH_LINKED_LIST}},
-    {"search.all_pairs", "drum", "nothing: the oracle of the tests", {.search = DEM_SEARCH_ALL_PAIRS, .every = 18}}, /* of 1000 */
+typedef struct effect_row { const char *name, *scene, *buys; bench_choice with, without, absent; } effect_row;
+#define NO_FRICTION {.tangent = DEM_TANGENT_NONE}
+static const effect_row effect_rows[] = {
+    {"friction", "bed", "a spring that holds what rests", {0}, NO_FRICTION, {.tangent = DEM_TANGENT_SPRING, .smooth = 1}},
+    {"tangent.viscous", "bed", "friction without memory: heaps creep", {.tangent = DEM_TANGENT_VISCOUS}, {0}, {0}},
+    {"tangent.step", "bed", "spring of one step, as in [MIL]: heaps creep", {.tangent = DEM_TANGENT_STEP}, {0}, {0}},
+    {"tangent.mindlin", "bed", "stiffness that follows the overlap", {.tangent = DEM_TANGENT_MINDLIN}, {0}, {0}},
+    {"tangent.mindlin_rescaled", "bed", "and no energy gained while unloading",
+     {.tangent = DEM_TANGENT_MINDLIN_RESCALED}, {0}, {0}},
+    {"normal.linear", "bed", "contact time independent of speed", {.normal = DEM_NORMAL_LINEAR}, {0}, {0}},
+    {"normal.hysteretic", "bed", "loading and unloading on two lines", {.adhesion = 1}, {.normal = DEM_NORMAL_LINEAR}, {0}},
+    {"adhesion", "bed", "grains that stick", {.adhesion = 2}, {.adhesion = 1}, {0}},
+    {"rolling.step", "bed", "rolling resistance as in [MIL]",
+     {.rolling = DEM_ROLLING_STEP, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_STEP}},
+    {"rolling.constant", "bed", "a constant rolling torque",
+     {.rolling = DEM_ROLLING_CONSTANT, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_CONSTANT}},
+    {"rolling.epsd", "bed", "rolling resistance that holds a grain on a slope",
+     {.rolling = DEM_ROLLING_EPSD, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_EPSD}},
+    {"ledger", "bed", "where the energy went, watched at every step", {.ledger = 1}, {0}, {0}},
+    {"one_unlike", "bed", "one grain that differs from the others", {.mixed = 1}, {0}, {0}},
+    {"two_species", "bed", "two sizes (or materials), half of the grains each", {.mixed = 2}, {0}, {0}},
+    {"all_unlike", "bed", "every grain of a size of its own", {.mixed = 3}, {0}, {0}},
+    {"orientation", "bed", "which way a sphere points", {.orientations = 1}, {0}, {0}},
+    {"periodicity", "gas", "a box without walls", {0}, {.open = 1}, {0}},
+    {"field", "bed", "solidicity and velocity on a grid, every 100 steps", {.field = 1}, {0}, {.field = 2}},
+    {"feed", "drum", "a bead fed every fourth step", {.feed = 50000}, {0}, {.feed = 1e-3}},
+    {"outlet", "drum", "beads that fly through the middle are taken out", {.outlet = 1}, {0}, {.outlet = 2}},
+    {"integrator.leapfrog", "bed", "the path of velocity Verlet", {.integrator = DEM_LEAPFROG}, {0}, {0}},
+    {"integrator.position_verlet", "bed", "the path of velocity Verlet", {.integrator = DEM_POSITION_VERLET}, {0}, {0}},
+    {"integrator.symplectic_euler", "bed", "first order, energy bounded", {.integrator = DEM_SYMPLECTIC_EULER}, {0}, {0}},
+    {"integrator.forward_euler", "bed", "first order, gains energy", {.integrator = DEM_FORWARD_EULER}, {0}, {0}},
+    {"skin0", "bed", "nothing: a new list at every step", {.skin = -1}, {0}, {0}},
+    {"search.linked_list", "drum", "nothing here: pays at wide size ranges [ALK07]", {.search = DEM_SEARCH_LINKED_LIST}, {0}, {0}},
+    {"search.all_pairs", "drum", "nothing: the oracle of the tests",
+     {.search = DEM_SEARCH_ALL_PAIRS, .every = 18}, {.every = 18}, {0}}, /* of 1000 */
 };
 
-static void price(const price_row *row, const bench_scene *s, FILE *page) {
+/* Time of a step of the one over that of the other, in turns; 0 when a run broke. */
+static double effect_ratio(const char *name, const bench_scene *s, const bench_choice *with, const bench_choice *without,
+                           double *spread) {
     double ta[MOST_LOOPS], tb[MOST_LOOPS], ratio[MOST_LOOPS];
-    const bench_choice base = {.every = row->with.every};
-    const int many = s->count/(base.every > 1 ? base.every : 1), full_loop = steps_of(s)/2 + 1;
+    const int many = s->count/(with->every > 1 ? with->every : 1), full_loop = steps_of(s)/2 + 1;
     const int steps = many < 5000 && !steps_asked ? 4*full_loop : full_loop;
-    dem_world *a = warm(row->name, s, &base), *b = a ? warm(row->name, s, &row->with) : 0;
-    int r, turns;
-    char unit[64], name[64];
-    if (b && (turns = take_turns(row->name, a, b, steps, ta, tb)) > 0) {
-        for (r = 0; r < turns; r++) ratio[r] = tb[r]/ta[r];
-        snprintf(unit, sizeof unit, "of the default (%s, %d, +- %.0f %%)", s->name, many, bench_spread(ratio, turns));
-        snprintf(name, sizeof name, "price.%s", row->name);
-        bench_result_short(name, bench_median(ratio, turns), unit);
-        if (page) fprintf(page, "| `%s` | %s | %s, %d | %.2f | %.0f %% |\n", row->name, row->buys, s->name, many,
-                          bench_median(ratio, turns), bench_spread(ratio, turns));
-    }
+    dem_world *a = warm(name, s, without), *b = a ? warm(name, s, with) : 0;
+    const int turns = b ? take_turns(name, a, b, steps, ta, tb) : 0;
+    int r;
+    for (r = 0; r < turns; r++) ratio[r] = tb[r]/ta[r];
     if (a) dem_world_destroy(a);
     if (b) dem_world_destroy(b);
+    *spread = turns ? bench_spread(ratio, turns) : 0;
+    return turns ? bench_median(ratio, turns) : 0;
+}
+static void effect(const effect_row *row, const bench_scene *s, FILE *page) {
+    static const bench_choice none = {0};
+    const int many = s->count/(row->with.every > 1 ? row->with.every : 1);
+    double spread, price = effect_ratio(row->name, s, &row->with, &row->without, &spread), absent = 0;
+    char unit[64], name[64];
+    if (!(price > 0)) return;
+    snprintf(unit, sizeof unit, "of the step without (%s, %d, +- %.0f %%)", s->name, many, spread);
+    snprintf(name, sizeof name, "effect.%s.price", row->name);
+    bench_result_short(name, price, unit);
+    if (page) fprintf(page, "| `%s` | %s | %s, %d | %.2f | %.0f %% |", row->name, row->buys, s->name, many, price, spread);
+    if (memcmp(&row->absent, &none, sizeof none)) {
+        absent = effect_ratio(row->name, s, &row->absent, &row->without, &spread);
+        snprintf(unit, sizeof unit, "of the step without (+- %.0f %%)", spread);
+        snprintf(name, sizeof name, "effect.%s.absent_price", row->name);
+        if (absent > 0) bench_result_short(name, absent, unit);
+    }
+    if (page && absent > 0) fprintf(page, " %.2f (%.0f %%) |\n", absent, spread);
+    else if (page) fprintf(page, " |\n");
 }
 
-static void prices(double load) {
-    bench_scene bed = bench_scene_read(data_folder, "bed"), drum = bench_scene_read(data_folder, "drum");
+static void effects(double load) {
+    bench_scene scenes[3];
     FILE *page = bench_page_open();
     size_t i;
+    int k;
+    scenes[0] = bench_scene_read(data_folder, "bed");
+    scenes[1] = bench_scene_read(data_folder, "drum");
+    scenes[2] = bench_scene_read(data_folder, "gas");
     if (page) {
         bench_page_machine(page, load);
-        fprintf(page, "| choice | what it buys | scene, grains | time of a step, default = 1 | +- |\n|---|---|---|---|---|\n");
+        fprintf(page, "| effect or choice | what it buys | scene, grains | time of a step, without = 1 | +- | asked for, but "
+                "without a cause |\n|---|---|---|---|---|---|\n");
     }
-    for (i = 0; i < sizeof price_rows/sizeof *price_rows; i++)
-        price(&price_rows[i], strcmp(price_rows[i].scene, "bed") ? &drum : &bed, page);
+    for (i = 0; i < sizeof effect_rows/sizeof *effect_rows; i++)
+        for (k = 0; k < 3; k++)
+            if (bench_is(&scenes[k], effect_rows[i].scene) && strstr(effect_rows[i].name, effect_asked))
+                effect(&effect_rows[i], &scenes[k], page);
     study_close(page, "page.md");
-    bench_scene_free(&bed);
-    bench_scene_free(&drum);
+    for (k = 0; k < 3; k++) bench_scene_free(&scenes[k]);
 }
 
 /* ---- what a contact with a wall costs ---- */
@@ -551,7 +584,8 @@ static void measure_raw(const bench_scene *s) {
 
 int main(int argc, char **argv) {
     static const study_option table[] = {
-        {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|prices|sizes|walls", "what to measure"},
+        {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|effects|sizes|walls", "what to measure"},
+        {"effect", STUDY_TEXT, &effect_asked, 0, 0, "", "of the effects only those whose names contain this"},
         {"steps", STUDY_INT, &steps_asked, 0, 1e8, "", "steps of one timed loop, 0: by scene"},
         {"repeat", STUDY_INT, &repeat_asked, 0, MOST_LOOPS, "", "timed loops, 0: 5, or 9 in full"},
         {"threads", STUDY_INT, &threads_asked, 1, 64, "", "threads to compare one thread with"},
@@ -599,6 +633,6 @@ int main(int argc, char **argv) {
         }
     if (!strcmp(scene_name, "walls") || (!strcmp(scene_name, "all") && !brief)) walls();
     if (!strcmp(scene_name, "sizes") || (!strcmp(scene_name, "all") && !brief)) sizes();
-    if (!strcmp(scene_name, "prices") || (!strcmp(scene_name, "all") && !brief)) prices(load);
+    if (!strcmp(scene_name, "effects") || (!strcmp(scene_name, "all") && !brief)) effects(load);
     return study_end();
 }

@@ -57,7 +57,7 @@ at=build/out
 for page in "$@"; do
     case $page in
     accuracy)
-        build/bench --scene prices && splice accuracy.md prices $at/bench/page.md || exit 1
+        build/bench --scene effects && splice accuracy.md effects $at/bench/page.md || exit 1
         build/accuracy || exit 1
         for s in restitution energy; do picture $at/accuracy/bounce_$s.svg accuracy_$s.png $at/accuracy/page.md; done
         splice accuracy.md integrators $at/accuracy/page.md

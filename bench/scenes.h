@@ -68,10 +68,15 @@ typedef struct bench_choice {
     dem_force_fn force;
     void *force_user;
     double feed;                /* beads/s fed into the middle of DRUM, 0: none                 */
-    int outlet;                 /* 1: beads that fly through the middle of DRUM leave           */
+    int outlet;                 /* 1: beads that fly through the middle of DRUM leave; 2: far off */
+    int smooth;                 /* 1: no friction in any pair, whatever the laws                */
+    int orientations;           /* as in dem_world_desc                                         */
+    int adhesion;               /* 1: hysteretic law that unloads as steeply as it loads; 2: and sticks */
+    int field;                  /* 1: solidicity and velocity sampled every 100 steps; 2: never again */
+    int open;                   /* 1: no boundary is periodic                                   */
 } bench_choice;
 #define BENCH_CHOICE {0, 0, 0, DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, \
-    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0}
+    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
 STUDY_FN int bench_is(const bench_scene *s, const char *name) { return !strcmp(s->name, name); }
 
@@ -281,9 +286,23 @@ STUDY_FN int bench_drum_flow(dem_world *world, dem_material glass, const bench_c
     feed.box = middle;
     feed.velocity = dem_vec3_make(0, 0, -1);
     outlet.box = middle;
+    if (o->outlet == 2) { outlet.box.lo.z += 10; outlet.box.hi.z += 10; }
     return (!(o->feed > 0) || dem_feed_add(world, &feed).id) && (!o->outlet || dem_outlet_add(world, &outlet).id);
 }
 
+/* A field over BED, of cells four radii wide. */
+STUDY_FN int bench_field(dem_world *world, const bench_scene *s, const bench_choice *o) {
+    dem_field_desc field;
+    memset(&field, 0, sizeof field);
+    if (!o->field) return 1;
+    field.box = dem_box_make(0, 0, 0, (dem_real)s->side[0], (dem_real)s->side[1], (dem_real)BENCH_BED_HEIGHT);
+    field.cells[0] = (int)(s->side[0]/(4*s->radius));
+    field.cells[1] = (int)(s->side[1]/(4*s->radius));
+    field.cells[2] = (int)(BENCH_BED_HEIGHT/(4*s->radius));
+    field.interval = 100*s->dt;
+    field.end = o->field == 2 ? s->dt : 0;
+    return dem_field_add(world, &field).id != 0;
+}
 /* By how much of the radius bead i is smaller; where all are, too little to change the scene. */
 STUDY_FN double bench_smaller(int mixed, int i) {
     if (mixed == 3) return 1e-6*(i*7919%10007)/10007;
@@ -306,14 +325,15 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     desc.ledger = o->ledger;
     desc.integrator = o->integrator;
     desc.search = o->search;
-    desc.normal_law = gas ? DEM_NORMAL_LINEAR : o->normal;
+    desc.normal_law = gas ? DEM_NORMAL_LINEAR : o->adhesion ? DEM_NORMAL_HYSTERETIC : o->normal;
+    desc.orientations = o->orientations;
     desc.tangent_law = o->tangent;
     desc.rolling_law = o->rolling;
     desc.force = o->force;
     desc.force_user = o->force_user;
     desc.dt = (dem_real)(o->dt > 0 ? o->dt : s->dt);
     if (!gas) desc.gravity.z = (dem_real)-BENCH_GRAVITY;
-    if (!gas && o->normal == DEM_NORMAL_LINEAR) desc.impact_speed = DEM_R(0.03); /* as stiff as the bed's contacts */
+    if (!gas && (o->normal == DEM_NORMAL_LINEAR || o->adhesion)) desc.impact_speed = DEM_R(0.03); /* as stiff as the bed's contacts */
     if (bed) {
         desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
         desc.domain = dem_box_make(0, 0, 0, (dem_real)s->side[0], (dem_real)s->side[1],
@@ -324,6 +344,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
         desc.boundary[0] = desc.boundary[1] = desc.boundary[2] = DEM_BOUNDARY_PERIODIC;
         desc.domain = dem_box_make(0, 0, 0, L, L, L);
     }
+    for (c = 0; c < 3 && o->open; c++) desc.boundary[c] = DEM_BOUNDARY_OPEN;
     world = dem_world_create(&desc);
     if (!world) { study_fail("%s: %s", s->name, dem_create_error(&desc)); return 0; }
 
@@ -331,7 +352,9 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     m.restitution = (dem_real)(gas ? BENCH_GAS_RESTITUTION : BENCH_RESTITUTION);
     m.young = (dem_real)BENCH_YOUNG;
     m.poisson = (dem_real)BENCH_POISSON;
-    if (!gas) m.friction = (dem_real)BENCH_FRICTION;
+    if (!gas && !o->smooth) m.friction = (dem_real)BENCH_FRICTION;
+    if (o->adhesion) m.restitution = 1;
+    if (o->adhesion == 2) m.stiffness_adhesion = 100;               /* N/m */
     if (gas) m.stiffness = (dem_real)(2*BENCH_GAS_STIFFNESS);
     m.rolling_friction = (dem_real)o->rolling_friction;
     material = dem_material_add(world, &m);
@@ -343,6 +366,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     ok = ok && material.id;
     if (bed) ok = ok && dem_plane_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
     if (drum) ok = ok && bench_drum_walls(world, material, degrees) && bench_drum_flow(world, material, o);
+    ok = ok && bench_field(world, s, o);
 
     x = (dem_real *)study_alloc((size_t)count*3, sizeof *x);
     v = (dem_real *)study_alloc((size_t)count*3, sizeof *v);

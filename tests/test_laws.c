@@ -621,5 +621,64 @@ int main(int argc, char **argv) {
         }
         dem_world_destroy(world);
     }
+    TEST("an effect that is asked for and has no cause in the scene runs the code of a scene without it: the "
+         "same stages, no memory, the same bits") {
+        static const struct { dem_tangent_law tangent; dem_rolling_law rolling; double mu; int also; } sets[][2] = {
+            {{DEM_TANGENT_NONE, DEM_ROLLING_NONE, 0, 0}, {DEM_TANGENT_SPRING, DEM_ROLLING_NONE, 0, 0}},
+            {{DEM_TANGENT_NONE, DEM_ROLLING_NONE, 0, 0}, {DEM_TANGENT_MINDLIN_RESCALED, DEM_ROLLING_EPSD, 0, 0}},
+            {{DEM_TANGENT_SPRING, DEM_ROLLING_NONE, 0.3, 0}, {DEM_TANGENT_SPRING, DEM_ROLLING_STEP, 0.3, 0}},
+            {{DEM_TANGENT_SPRING, DEM_ROLLING_NONE, 0.3, 0}, {DEM_TANGENT_SPRING, DEM_ROLLING_CONSTANT, 0.3, 0}},
+            {{DEM_TANGENT_SPRING, DEM_ROLLING_NONE, 0.3, 0}, {DEM_TANGENT_SPRING, DEM_ROLLING_EPSD, 0.3, 0}},
+            {{DEM_TANGENT_SPRING, DEM_ROLLING_NONE, 0.3, 0}, {DEM_TANGENT_SPRING, DEM_ROLLING_NONE, 0.3, 1}}};
+        size_t i;
+        int k, e;
+        for (i = 0; i < sizeof sets/sizeof *sets; i++) {
+            demi_run run[2];
+            uint64_t hash[2];
+            int kept[2];
+            for (k = 0; k < 2; k++) {
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_world *world;
+                dem_material glass;
+                desc.threads = 1;
+                desc.tangent_law = sets[i][k].tangent;
+                desc.rolling_law = sets[i][k].rolling;
+                world = dem_world_create(&desc);
+                glass = scene_material(world, 1e7, 0.8, sets[i][k].mu, 0);
+                if (sets[i][k].also) {          /* a material that no grain has, a field and a feed that are over */
+                    dem_field_desc field;
+                    dem_feed_desc feed;
+                    memset(&field, 0, sizeof field);
+                    memset(&feed, 0, sizeof feed);
+                    field.box = feed.box = box_of(0, 0, 0, 1e-3, 1e-3, 1e-3);
+                    field.cells[0] = field.cells[1] = field.cells[2] = 2;
+                    field.interval = 1e-9;
+                    field.end = 1e-12;
+                    feed.material = glass;
+                    feed.class_count = 1;
+                    feed.radius[0] = DEM_R(1e-3);
+                    feed.amount[0] = 1;
+                    feed.rate = 1e-9;
+                    scene_material(world, 2e7, 0.5, 0.3, 0);
+                    CHECK(dem_field_add(world, &field).id);
+                    CHECK(dem_feed_add(world, &feed).id);
+                }
+                scene_block(world, glass, 5, 5, 5, 1e-3, 0, 0.5, 3);
+                CHECK_EQ(scene_step(world, 60), DEM_OK);
+                run[k] = demi_run_of(world, DEM_R(1e-6), 1);
+                kept[k] = world->memory_stride;
+                hash[k] = demi_hash(DEMI_HASH_START, world->bodies.pos,
+                                    4*(size_t)world->bodies.count*sizeof(dem_real));
+                CHECK(dem_counters_get(world).contacts > 50);
+                dem_world_destroy(world);
+            }
+            for (e = 0; e < DEMI_STAGES; e++) CHECK(run[0].stage[e] == run[1].stage[e]);
+            CHECK_EQ(run[1].turning, run[0].turning);
+            CHECK_EQ(run[1].parting, run[0].parting);
+            CHECK_EQ(run[1].following, run[0].following);
+            CHECK_EQ(kept[1], kept[0]);
+            CHECK_EQ(hash[1], hash[0]);
+        }
+    }
     return test_end();
 }
