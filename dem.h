@@ -2562,8 +2562,8 @@ static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t c
    of which the last two may be absent. What is kept per contact is what these keep, one after the
    other: friction, rolling, normal; each says which of it are vectors.
    >>add-law: (1) a function dem_law_... and, at the end of its enum, a constant in >>api; (2) a
-   line at the end of its list here, with DEMI_SIZED where it asks for r_eff or m_eff, and for a
-   normal law with its coefficients above; (3) a sentence in tests/. docs/extending.md performs it,
+   line at the end of its list here, which says what it asks for besides (DEMI_SIZED, DEMI_MIDDLE),
+   for a normal law with its coefficients above; (3) a sentence in tests/. docs/extending.md performs it,
    and `make recipes` performs docs/extending.md.
    --------------------------------------------------------------------------------------------- */
 /* What the rest of dem.h must know of a law. */
@@ -2571,7 +2571,7 @@ enum {
     DEMI_LINEAR = 0,               /* force ~ overlap; a stiffness that is given may be its own */
     DEMI_HERTZIAN = 1,             /* force ~ overlap^(3/2), stiffness ~ sqrt(R) */
     DEMI_BRANCHED = 2,             /* unloads along another line, and may adhere: kun, kad */
-    DEMI_MIDDLE = 4,               /* friction that asks for the stiffness amid the step */
+    DEMI_MIDDLE = 4,               /* asks for slopes or kt_step, which others find to be NaN */
     DEMI_SPRUNG = 8,               /* rolling that the time step must resolve */
     DEMI_SIZED = 16                /* asks for r_eff or m_eff, which others find to be NaN */
 };
@@ -2627,7 +2627,8 @@ static void demi_coefs_hysteretic(const demi_scales *s, demi_coefs *k) {
 #define DEMI_ROLLING_LAWS(X) \
     X(DEM_ROLLING_STEP,             roll_step,        0, 0, DEMI_SIZED, "step") \
     X(DEM_ROLLING_CONSTANT,         roll_constant,    3, 1, DEMI_SIZED, "constant torque") \
-    X(DEM_ROLLING_EPSD,             roll_epsd,        3, 1, DEMI_SPRUNG | DEMI_SIZED, "EPSD") \
+    X(DEM_ROLLING_EPSD,             roll_epsd,        3, 1, \
+      DEMI_SPRUNG | DEMI_SIZED | DEMI_MIDDLE, "EPSD") \
     /* the last */
 
 typedef struct demi_law_row {
@@ -2664,6 +2665,10 @@ DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {
 static int demi_laws_sized(const dem_world *w) {
     return w->desc.law || ((w->laws.normal->traits | w->laws.tangent->traits |
                             w->laws.rolling->traits) & DEMI_SIZED);
+}
+/* Does one ask for slopes of the normal force, or for the stiffness amid the step? */
+static int demi_laws_precise(const dem_world *w) {
+    return ((w->laws.tangent->traits | w->laws.rolling->traits) & DEMI_MIDDLE) != 0;
 }
 /* Is there such a law in a table? */
 static int demi_law_known(const demi_law_row *rows, int kind) {
@@ -8959,8 +8964,8 @@ DEM_INLINE void demi_tangent_energy(demi_tile *DEMI_RESTRICT t, int q, const dem
     t->part[3][q] = f->energy.slide*t->touch[q];
     t->part[4][q] = f->energy.shear_stored*t->touch[q];
 }
-/* What a law has put into its answer, for the next; `all`: what only some of them ask for, and the
-   energies, too. */
+/* What a law has put into its answer, for the next; `all`: 1: also what only some of them ask for,
+   2: and energies. */
 DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
                                 int all) {
     t->repulsion[q] = f->normal;
@@ -8971,7 +8976,7 @@ DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_con
     t->kt[1][q] = f->kt_step;
     t->slope[0][q] = f->slope;
     t->slope[1][q] = f->slope_step;
-    demi_normal_energy(t, q, f);
+    if (all > 1) demi_normal_energy(t, q, f);
 }
 /* What the normal law has told, for the laws that come after it. */
 DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_contact_force *f) {
@@ -8984,7 +8989,7 @@ DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_contact_f
 DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
                                  int all) {
     demi_row_put(t->tangent, q, f->tangent);
-    if (all) demi_tangent_energy(t, q, f);
+    if (all > 1) demi_tangent_energy(t, q, f);
 }
 DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
                                  int all) {
@@ -8992,15 +8997,16 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_co
     demi_row_put(t->moment, q, f->moment);
     t->part[5][q] = f->energy.roll*t->touch[q];
 }
-/* A stage of one law, whose memory begins at AT. Normal and friction laws have two: for what is
-   common, and for all choices. (A normal law overwrites all that it gets.) */
+/* A stage of one law, whose memory begins at AT. Normal and friction laws have one for what is
+   common (ALL 0) and one for all choices (2); normal laws one for what is common, with slopes (1),
+   too. (A normal law overwrites all that it gets.) */
 #define DEMI_LAW_STAGE(NAME, LAW, AT, MEMORY, ALL, PUT) \
     DEMI_CLONES static void NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
         const demi_same s = r->same; \
         DEMI_ROWS(full) \
             dem_contact c; dem_contact_force f; dem_real m[DEMI_MEMORY]; \
             demi_tile_contact(t, &s, q, &c); \
-            if (!(ALL)) demi_contact_usual(&c); \
+            if ((ALL) < 2) demi_contact_usual(&c); \
             demi_normal_get(t, q, &f); \
             demi_recall(t, q, AT, MEMORY, m); \
             dem_law_##LAW(&c, m, &f); \
@@ -9010,12 +9016,13 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_co
     }
 #define DEMI_NORMAL_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_normal, MEMORY, 0, demi_normal_put) \
-    DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, s.at_normal, MEMORY, 1, demi_normal_put)
+    DEMI_LAW_STAGE(demi_stage_##LAW##_precise, LAW, s.at_normal, MEMORY, 1, demi_normal_put) \
+    DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, s.at_normal, MEMORY, 2, demi_normal_put)
 #define DEMI_TANGENT_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
     DEMI_LAW_STAGE(demi_stage_##LAW, LAW, 0, MEMORY, 0, demi_tangent_put) \
-    DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, 0, MEMORY, 1, demi_tangent_put)
+    DEMI_LAW_STAGE(demi_stage_##LAW##_all, LAW, 0, MEMORY, 2, demi_tangent_put)
 #define DEMI_ROLLING_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
-    DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_rolling, MEMORY, 1, demi_rolling_put)
+    DEMI_LAW_STAGE(demi_stage_##LAW, LAW, s.at_rolling, MEMORY, 2, demi_rolling_put)
 DEMI_NORMAL_LAWS(DEMI_NORMAL_STAGES)
 DEMI_TANGENT_LAWS(DEMI_TANGENT_STAGES)
 DEMI_ROLLING_LAWS(DEMI_ROLLING_STAGES)
@@ -9138,17 +9145,20 @@ DEMI_CLONES static void demi_stage_own_inlined(demi_tile *DEMI_RESTRICT t, const
 #endif
 
 /* --- which stages a scene runs --- */
-typedef struct demi_stage_row { demi_stage common, all; } demi_stage_row;
-#define DEMI_STAGE_ROW(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
-    {demi_stage_##LAW, demi_stage_##LAW##_all},
-#define DEMI_STAGE_ROW_ONE(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
-    {demi_stage_##LAW, demi_stage_##LAW},
+typedef struct demi_stage_row { demi_stage common, all, precise; } demi_stage_row;
+#define DEMI_STAGE_ROW_NORMAL(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    {demi_stage_##LAW, demi_stage_##LAW##_all, demi_stage_##LAW##_precise},
+#define DEMI_STAGE_ROW_TANGENT(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    {demi_stage_##LAW, demi_stage_##LAW##_all, 0},
+#define DEMI_STAGE_ROW_ROLLING(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
+    {demi_stage_##LAW, demi_stage_##LAW, 0},
 /* in the order of the rows in >>laws */
-static const demi_stage_row demi_normal_stages[] = {DEMI_NORMAL_LAWS(DEMI_STAGE_ROW) {0, 0}};
-static const demi_stage_row demi_tangent_stages[] = {{0, 0}, {0, 0},
-    DEMI_TANGENT_LAWS(DEMI_STAGE_ROW) {0, 0}};
-static const demi_stage_row demi_rolling_stages[] = {{0, 0}, {0, 0},
-    DEMI_ROLLING_LAWS(DEMI_STAGE_ROW_ONE) {0, 0}};
+static const demi_stage_row demi_normal_stages[] = {DEMI_NORMAL_LAWS(DEMI_STAGE_ROW_NORMAL)
+    {0, 0, 0}};
+static const demi_stage_row demi_tangent_stages[] = {{0, 0, 0}, {0, 0, 0},
+    DEMI_TANGENT_LAWS(DEMI_STAGE_ROW_TANGENT) {0, 0, 0}};
+static const demi_stage_row demi_rolling_stages[] = {{0, 0, 0}, {0, 0, 0},
+    DEMI_ROLLING_LAWS(DEMI_STAGE_ROW_ROLLING) {0, 0, 0}};
 
 /* The stage that does all for the laws in force, or null. */
 static demi_stage demi_whole_stage(const dem_world *w, int alike) {
@@ -9181,7 +9191,6 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     const int own = w->desc.law != 0;
     const int turns = laws->tangent->law != 0, rolls = laws->rolling->law != 0;
     const int all = w->desc.ledger || !demi_laws_usual(w);
-    const int precise = all || rolls || laws->tangent->traits & DEMI_MIDDLE;
     demi_run r;
     int k = 0;
     memset(&r, 0, sizeof r);
@@ -9204,8 +9213,9 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
         : r.turning ? r.alike ? demi_stage_alike_turning : demi_stage_mixed_turning
         : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
-    r.stage[k++] = precise ? demi_normal_stages[w->normal].all
-                           : demi_normal_stages[w->normal].common;
+    r.stage[k++] = all ? demi_normal_stages[w->normal].all
+        : demi_laws_precise(w) ? demi_normal_stages[w->normal].precise
+        : demi_normal_stages[w->normal].common;
     if (turns) r.stage[k++] = all ? demi_tangent_stages[w->effects.tangent].all
                                   : demi_tangent_stages[w->effects.tangent].common;
     if (rolls) r.stage[k++] = demi_rolling_stages[w->effects.rolling].common;
@@ -9222,6 +9232,8 @@ static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
     dem_real coef[DEMI_PAIR_COLUMNS];
     int e, q;
     t->row = -1;
+    for (q = 0; q < DEMI_TILE && !demi_laws_precise(w); q++)
+        t->slope[0][q] = t->slope[1][q] = t->kt[1][q] = (dem_real)NAN;
     if (first < domain->near_end) {
         const demi_span one = demi_span_of(w, d, first, 1);
         demi_span_coefs(w, &one, 0, coef);
