@@ -2563,8 +2563,8 @@ static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t c
    other: friction, rolling, normal; each says which of it are vectors.
    >>add-law: (1) a function dem_law_... and, at the end of its enum, a constant in >>api; (2) a
    line at the end of its list here, which says what it asks for besides (DEMI_SIZED, DEMI_MIDDLE),
-   for a normal law with its coefficients above; (3) a sentence in tests/. docs/extending.md performs it,
-   and `make recipes` performs docs/extending.md.
+   for a normal law with its coefficients above; (3) a sentence in tests/. docs/extending.md
+   performs it, and `make recipes` performs docs/extending.md.
    --------------------------------------------------------------------------------------------- */
 /* What the rest of dem.h must know of a law. */
 enum {
