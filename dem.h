@@ -1427,16 +1427,17 @@ typedef struct dem_observable {
 typedef struct dem_advise_desc {
     double duration;               /* s that each trial simulates, > 0; observables are averages
                                       over its second half */
-    double budget;                 /* s of wall time for all trials, 0: 60; where it is too little
-                                      they simulate less */
+    double budget;                 /* s of wall time for all trials, as estimated from some steps of
+                                      the scene, 0: 60; where it is too little they simulate less */
     double tolerance;              /* share of its scale by which an observable may be off,
                                       0: 0.02 */
     int seeds;                     /* runs of each trial, whose grains are put at most 1e-6 of a
                                       radius off; 2 .. 16; 0: 3 */
-    int observable_count;          /* 0: height, kinetic energy (its scale: what there is now, and
-                                      what all would gain in falling by a radius), contacts */
+    int observable_count;          /* 0: height (its scale: above the lowest grain), kinetic energy
+                                      (its scale: what there is, and what all would gain in falling
+                                      by their radius), contacts */
     dem_observable observables[DEM_OBSERVABLES];
-    dem_progress_fn progress;      /* called after each run with the world asked about; or null.
+    dem_progress_fn progress;      /* called after each trial with the world asked about; or null.
                                       A non-zero answer ends the call: DEM_ERROR_STOPPED */
     void *user;
 } dem_advise_desc;
@@ -1446,14 +1447,17 @@ static const dem_advise_desc DEM_ADVISE_DESC_ZERO = {0, 0, 0, 0, 0,
 #define DEM_ADVISE_DESC DEM_ADVISE_DESC_ZERO
 typedef struct dem_trial {
     const char *name;              /* what differs from the scene */
-    double dt;                     /* s */
-    double stiffness;              /* factor on all moduli and stiffnesses */
+    double step, stiffness;        /* factors: on the time step that the scene has, or chooses as it
+                                      goes on; on all moduli and stiffnesses (normal_damping of a
+                                      pair: by the root of it; steps follow contact times) */
+    double dt;                     /* s, at the end */
     int done;                      /* runs that came to their end, 0 .. seeds */
     double seconds;                /* s of wall time per simulated second */
     double value[DEM_OBSERVABLES], error[DEM_OBSERVABLES];   /* mean over seeds, its error */
     double drift[DEM_OBSERVABLES]; /* from the reference, of the scale */
     double promise;                /* all observables are within this of the reference, of the
-                                      scale: the largest |drift| and what chance may add (95 %) */
+                                      scale: the largest |drift| and what chance may add (95 %
+                                      for each observable); infinite when not done */
     char refusal[200];             /* why a run did not come to its end */
 } dem_trial;
 typedef struct dem_trials {
@@ -2309,6 +2313,7 @@ struct dem_world {
     struct demi_sphere *crowd;
     struct demi_node *crowd_nodes;
     dem_real *crowd_turned;        /* x 4 */
+    double dt_share;               /* trials: of the step that would be chosen; 0: all of it */
     struct demi_press *press;      /* what presses bodies, while a step is judged */
     struct demi_press_whole *press_whole;
     /* >>rebuild: laws in force, domains */
@@ -7216,7 +7221,9 @@ static int demi_species_known(const dem_world *w, int material, dem_real radius)
     for (k = 0; k < w->effects.species_count && !demi_many_species(w); k++)
         if (s[k].material == material + 1 && s[k].inv_mass > 0 && !(s[k].radius < radius) &&
             !(s[k].radius > radius)) return 1;
-    return demi_many_species(w);
+    /* a second material makes columns vary that did not */
+    return demi_many_species(w) &&
+           (w->species_vary >> DEMI_MU & 1 || w->bodies.material[0] == material + 1);
 }
 /* Room for the table; 0 when memory ran out. */
 static int demi_species_room(dem_world *w) {
@@ -9258,7 +9265,9 @@ static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int 
         const dem_real *DEMI_RESTRICT table = w->species_coef + e;
         if (!(w->species_vary >> e & 1)) continue;
         if (!row) demi_row_copy(t->coef[e], span->coef + (size_t)e*span->stride, full);
-        else for (q = 0; q < full; q++) t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[q]];
+        else if (differ) for (q = 0; q < full; q++) t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[q]];
+        else for (q = 0; q < DEMI_TILE; q++)    /* all of it: the next tile may be longer */
+            t->coef[e][q] = table[DEMI_PAIR_COLUMNS*row[0]];
     }
     t->row = same ? row[0] : -1;
     if (!same || row[0]%(n + 1)) return run;    /* species k with k: row k*n + k */
@@ -12390,7 +12399,8 @@ static dem_result demi_dt_settle(dem_world *w) {
             return demi_spins_refuse(w, spin, "dem_world_step");
     } else {
         const dem_real easy = a.contact_time > 0 ? a.dt : DEM_R(1e-3);
-        const dem_real dt = spin*(double)easy > 0.1 ? (dem_real)(0.1/spin) : easy;
+        const dem_real share = w->dt_share > 0 ? (dem_real)w->dt_share : 1;
+        const dem_real dt = share*(spin*(double)easy > 0.1 ? (dem_real)(0.1/spin) : easy);
         /* half steps were of the old dt */
         if (dt < w->clock.dt || dt > w->clock.dt) { demi_finish(w); w->stage.primed = 0; }
         w->clock.dt = dt;
@@ -12440,6 +12450,7 @@ static dem_result demi_press_refuse(dem_world *w, double limit, int worst) {
    anything moves. */
 static dem_result demi_dt_check(dem_world *w) {
     const int chosen = !(w->desc.dt > 0);
+    const double share = w->dt_share > 0 ? w->dt_share : 1;
     dem_result result;
     double limit;
     int worst = 0;
@@ -12447,14 +12458,14 @@ static dem_result demi_dt_check(dem_world *w) {
     result = demi_speed_check(w, w->margin.last_change + (w->clock.steps == w->clock.press_since
                                                           ? demi_fastest(w) : w->booked.speed_max));
     if (result != DEM_OK || w->clock.steps < w->clock.press_due) return result;
-    limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2 : 1), &worst);
+    limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2/share : 1), &worst);
     if (limit < 0) return demi_no_memory(w, "dem_world_step");
     demi_press_looked(&w->clock);
     if (!(limit > 0)) return DEM_OK;
     if (!chosen) return demi_press_refuse(w, limit, worst);
     demi_finish(w);
     w->stage.primed = 0;
-    w->clock.dt = (dem_real)(limit/2);
+    w->clock.dt = (dem_real)(limit*DEMI_MIN(share/2, 0.95));
     return DEM_OK;
 }
 
@@ -16046,22 +16057,23 @@ static void demi_stiffen(dem_world *t, dem_real factor) {
             demi_pair_put(t, i, j, &p);
         }
 }
-/* Makes a copy what the row says. Its step is as fine for its collisions as that of the scene. */
+/* Makes a copy what the row says. Its step is as fine for its collisions as that of the scene: a
+   share of what is chosen as it goes on, where that is left to the library. */
 static void demi_try_set(dem_world *t, const demi_try *row) {
     const double dt = (double)t->clock.dt;
     dem_advice was, is;
     demi_finish(t);
     demi_advise(t, &was);
-    if (row->law == DEMI_TRY_NORMAL) {
-        if (!(t->desc.impact_speed > 0)) t->desc.impact_speed = was.speed;
-        t->desc.normal_law = (dem_normal_law)demi_try_normal(t);
-    }
+    if (row->law == DEMI_TRY_NORMAL) t->desc.normal_law = (dem_normal_law)demi_try_normal(t);
     if (row->law == DEMI_TRY_TANGENT) t->desc.tangent_law = (dem_tangent_law)demi_try_tangent(t);
     demi_stiffen(t, (dem_real)row->stiffness);
     demi_advise(t, &is);
-    t->desc.dt = (dem_real)(dt*row->step);
-    if (was.contact_time > 0 && is.contact_time > 0)
-        t->desc.dt *= is.contact_time/was.contact_time;
+    t->dt_share = row->step;
+    if (t->desc.dt > 0) {
+        t->desc.dt = (dem_real)(dt*row->step);
+        if (was.contact_time > 0 && is.contact_time > 0)
+            t->desc.dt *= is.contact_time/was.contact_time;
+    }
     t->stage.pairs_changed = 1;
     t->stage.dt_valid = t->stage.primed = 0;
 }
@@ -16102,13 +16114,11 @@ static void demi_trials_judge(dem_trials *out) {
     int i, e;
     for (i = 0; i < out->count; i++)            /* of what came to its end: the smallest step */
         if (out->trial[i].done == out->seeds &&
-            (out->trial[out->reference].done < out->seeds ||
-             out->trial[i].dt/pow(out->trial[i].stiffness, -0.4) <
-                 out->trial[out->reference].dt/pow(out->trial[out->reference].stiffness, -0.4)))
-            out->reference = i;
+            out->trial[i].step < out->trial[out->reference].step) out->reference = i;
     for (i = 0; i < out->count; i++) {
         const dem_trial *ref = &out->trial[out->reference];
         dem_trial *t = &out->trial[i];
+        t->promise = t->done < out->seeds ? HUGE_VAL : 0;
         for (e = 0; e < out->observable_count && t->done == out->seeds; e++) {
             double scale = out->observables[e].scale, chance;
             if (!(scale > 0)) scale = fabs(ref->value[e]);
@@ -16162,10 +16172,10 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
         if (!t) return demi_no_memory(w, "dem_advise");
         demi_try_set(t, row);
         demi_try_shake(t, (uint64_t)k);
-        trial->dt = (double)t->desc.dt;
         begun = demi_clock();
         if (demi_try_run(t, out, value[k]) == DEM_OK) trial->done++;
         else snprintf(trial->refusal, sizeof trial->refusal, "%.199s", t->error);
+        trial->dt = (double)t->clock.dt;
         wall += demi_clock() - begun;
         demi_twin_free(w, t);
     }
@@ -16185,7 +16195,8 @@ static int demi_advise_refuse(dem_world *w, const dem_advise_desc *d) {
     const int lost = demi_body_lost(w);
     int e;
     if (!(d->duration > 0) || !demi_finite_double(d->duration) || !(d->budget >= 0) ||
-        !demi_finite_double(d->budget) || !(d->tolerance >= 0) || d->seeds < 0 || d->seeds == 1 ||
+        !demi_finite_double(d->budget) || !(d->tolerance >= 0) ||
+        !demi_finite_double(d->tolerance) || d->seeds < 0 || d->seeds == 1 ||
         d->seeds > 16 || d->observable_count < 0 || d->observable_count > DEM_OBSERVABLES) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: duration is %g s, budget %g s, tolerance %g, "
                   "seeds %d, observables %d; must be > 0, >= 0, >= 0, 2 to 16 (0: 3) and 0 to %d; "
@@ -16197,6 +16208,13 @@ static int demi_advise_refuse(dem_world *w, const dem_advise_desc *d) {
         if (!d->observables[e].function || !d->observables[e].name) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: observable %d has no function or no "
                       "name; give both, as {\"height\", \"m\", dem_observe_height, 0, 0}", e + 1);
+            return 1;
+        }
+    for (e = 0; e < d->observable_count; e++)
+        if (!(d->observables[e].scale >= 0) || !demi_finite_double(d->observables[e].scale)) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: the scale of observable %d is %g, must "
+                      "be finite and >= 0; 0 means its own value in the reference", e + 1,
+                      d->observables[e].scale);
             return 1;
         }
     if (lost < 0 && w->bodies.count) return 0;
@@ -16214,6 +16232,7 @@ static int demi_advise_refuse(dem_world *w, const dem_advise_desc *d) {
 static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size, double budget,
                                    dem_trials *out) {
     dem_world *t = demi_twin_in_state(w, state, size);
+    const double asked = out->duration;
     double steps = 0, each, begun;
     int k;
     dem_result result;
@@ -16228,6 +16247,10 @@ static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size,
                 pow(demi_tries[k].stiffness, 0.4);
     if (each*steps*out->duration > budget) out->duration = budget/each/steps;
     if (result != DEM_OK) demi_fail(w, result, "dem_advise: the scene as it is: %.400s", t->error);
+    else if (asked < 64*(double)t->clock.dt)
+        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: duration is %g s, must be at least "
+                           "64 steps of %g s; let trials simulate as long as observables need to "
+                           "settle", asked, (double)t->clock.dt);
     else if (out->duration < 64*(double)t->clock.dt)
         result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: %g s of wall time allow for %g s of "
                            "this scene in each trial, must be at least 64 steps of %g s; give more "
@@ -16235,6 +16258,22 @@ static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size,
                            out->duration, (double)t->clock.dt);
     demi_twin_free(w, t);
     return result;
+}
+/* Of the usual observables: the height of the centre of mass above the lowest body; the kinetic
+   energy that there is, and what all would gain in falling by their radius. */
+static void demi_usual_scales(const dem_world *w, dem_trials *out) {
+    const double g = (double)demi_length(w->desc.gravity);
+    const dem_vec3 up = g > 0 ? demi_scale(w->desc.gravity, (dem_real)(-1/g)) : demi_v(0, 0, 1);
+    double lowest = 1e300, fall = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++) {
+        const double r = (double)w->bodies.pos[4*i + 3];
+        if (!(w->bodies.inv_mass[i] > 0)) continue;
+        lowest = DEMI_MIN(lowest, (double)demi_dot(demi_at(w->bodies.pos + 4*i), up) - r);
+        fall += (double)w->bodies.mass[i]*g*r;
+    }
+    out->observables[0].scale = DEMI_MAX(dem_observe_height(w, 0) - lowest, 0);
+    out->observables[1].scale = dem_observe_kinetic(w, 0) + fall;
 }
 DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials *out) {
     static const dem_observable usual[] = {
@@ -16248,7 +16287,8 @@ DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials
     int k;
     if (demi_null(w, "dem_advise", d, "desc") || demi_null(w, "dem_advise", out, "trials"))
         return DEM_ERROR_ARGUMENT;
-    if (demi_advise_refuse(w, d)) return DEM_ERROR_ARGUMENT;
+    if (demi_unbuilt(w, "dem_advise") != DEM_OK || demi_advise_refuse(w, d))
+        return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->duration = d->duration;
     out->tolerance = d->tolerance > 0 ? d->tolerance : 0.02;
@@ -16256,9 +16296,7 @@ DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials
     out->observable_count = d->observable_count ? d->observable_count : 3;
     memcpy(out->observables, d->observable_count ? d->observables : usual,
            (size_t)out->observable_count*sizeof *usual);
-    if (!d->observable_count)
-        out->observables[1].scale = dem_observe_kinetic(w, 0) + dem_totals_get(w).mass*
-            (double)demi_length(w->desc.gravity)*(double)w->bodies.pos[3];
+    if (!d->observable_count) demi_usual_scales(w, out);
     if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, "dem_advise");
     result = demi_dt_settle(w);                 /* refused as a run would be */
     if (result != DEM_OK) return result;
@@ -16270,6 +16308,7 @@ DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials
     for (k = 0; k < out->count && result == DEM_OK; k++) {
         dem_trial *trial = &out->trial[k];
         trial->name = demi_try_name(w, rows[k]);
+        trial->step = rows[k]->step;
         trial->stiffness = rows[k]->stiffness;
         result = demi_trial_run(w, state, size, rows[k], out, trial);
         if (result == DEM_OK && d->progress &&

@@ -187,6 +187,66 @@ int main(int argc, char **argv) {
                     }
                 }
     }
+    TEST("a tile of one row of coefficients, shorter than the next of the same row, leaves none of the tile "
+         "before in it") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material one;
+        demi_run run[2];
+        demi_tile *tile = (demi_tile *)calloc(1, sizeof *tile);
+        demi_span span;
+        int32_t row[DEMI_TILE];
+        int k, q, wrong = 0;
+        desc.threads = 1;
+        world = dem_world_create(&desc);
+        one = scene_material(world, 1e7, 0.8, 0.3, 0);
+        scene_material(world, 4e7, 0.5, 0.1, 0);
+        scene_block(world, one, 4, 4, 4, 1e-3, 0, 1, 5);
+        for (k = 0; k < world->bodies.count; k++) world->bodies.material[k] = 1 + k%2;
+        CHECK_EQ(scene_step(world, 1), DEM_OK);
+        CHECK_EQ(world->effects.species_count, 2);
+        memset(&span, 0, sizeof span);
+        span.row = row;
+        run[0] = demi_run_of(world, DEM_R(1e-6), 0);
+        run[1] = demi_run_of(world, DEM_R(1e-6), 1);
+        demi_tile_begin(world, 0, tile);
+        for (k = 0; k < 3; k++) {              /* mixed; short, all of row 3; long, all of row 3 */
+            const int full = k == 1 ? DEMI_LANES : DEMI_TILE;
+            for (q = 0; q < DEMI_TILE; q++) row[q] = k ? 3 : q%4;
+            span.count = full;
+            CHECK(demi_tile_coefs(world, &span, full, tile, run) == run + (k > 0));
+            for (q = 0; q < full; q++) {
+                dem_real coef[DEMI_PAIR_COLUMNS];
+                demi_span_coefs(world, &span, q, coef);
+                wrong += memcmp(&coef[DEMI_KN], &tile->coef[DEMI_KN][q], sizeof(dem_real)) != 0;
+                wrong += memcmp(&coef[DEMI_MU], &tile->coef[DEMI_MU][q], sizeof(dem_real)) != 0;
+            }
+        }
+        CHECK_EQ(wrong, 0);
+        free(tile);
+        dem_world_destroy(world);
+    }
+    TEST("a grain of a new material joins the list of a scene of many radii only where coefficients of several "
+         "materials are already told apart") {
+        int materials;
+        for (materials = 1; materials <= 2; materials++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material one;
+            int k;
+            desc.threads = 1;
+            world = dem_world_create(&desc);
+            one = scene_material(world, 1e7, 0.8, 0.1, 0);
+            scene_material(world, 1e7, 0.8, 0.9, 0);
+            scene_block(world, one, 4, 4, 4, 1e-3, 1, 0.1, 5);
+            for (k = 0; k < world->bodies.count && materials == 2; k++) world->bodies.material[k] = 1 + k%2;
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            CHECK_EQ(world->effects.species_count, DEMI_SPECIES + 1);
+            CHECK_EQ(demi_join_possible(world, 0, DEM_R(1.1e-3)), 1);      /* another radius: yes */
+            CHECK_EQ(demi_join_possible(world, 1, DEM_R(1e-3)), materials == 2);
+            dem_world_destroy(world);
+        }
+    }
     TEST("a time step that the library chooses anew falls on the same step however the steps are "
          "asked for") {
         uint64_t hash[3] = {0, 0, 0};
