@@ -8699,7 +8699,6 @@ typedef struct demi_tile {
     demi_rows apart, parted;       /* rad/s, difference of spins: the same */
     dem_real radius[2][DEMI_ROW];
     dem_real memory[DEMI_MEMORY][DEMI_ROW], coef[DEMI_PAIR_COLUMNS][DEMI_ROW];
-    int row;                       /* of species_coef: all of coef holds it; -1: no row does */
     /* touch and motion */
     dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
     dem_real touch[DEMI_ROW];      /* 1 where the two touch, else 0 */
@@ -8713,6 +8712,8 @@ typedef struct demi_tile {
     dem_real part[6][DEMI_ROW];                           /* energies */
     /* answer */
     dem_real force[3][DEMI_ROW], torque[2][3][DEMI_ROW];  /* torque on a, on b */
+    /* the last, so that rows begin on cache lines (3 % of a step) */
+    int row;                       /* of species_coef: all of coef holds it; -1: no row does */
 } demi_tile;
 /* Where the pairs of a tile stand in the near list. */
 typedef struct demi_span {
