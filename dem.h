@@ -7146,7 +7146,13 @@ static void demi_kept_move(dem_world *w, const int *first) {
    of more than v span + slack: as long as the age is below span and creep below slack, it is open.
    --------------------------------------------------------------------------------------------- */
 
-/* --- species: which spheres are alike, and the coefficients of every two kinds --- */
+/* --- species: which spheres are alike, and the coefficients of every two kinds. A scene has few of
+       them (one, two sizes of beads, balls and powder) or as many as grains (radii drawn at
+       random), seldom something between. With few, a near pair carries the number of a row, 4 byte
+       where its coefficients take 88, and tiles of pairs that are all of one row copy nothing; a
+       single steel ball among glass beads then slows only the tiles that it is in. With many, each
+       pair carries its own. The species are those of the last search: whoever comes in between, by
+       a feed, must be of one of them (demi_species_known), or the list is made anew. --- */
 static demi_species demi_species_of(const dem_world *w, int body) {
     demi_species s;
     s.radius = w->bodies.pos[4*body + 3];
@@ -7156,7 +7162,8 @@ static demi_species demi_species_of(const dem_world *w, int body) {
     s.none = 0;
     return s;
 }
-/* Which one the body is of; species_count when of none. */
+/* Which one the body is of; species_count when of none. By every bit: a radius that differs in the
+   last one has coefficients of its own. */
 static int demi_species_find(const dem_world *w, int body) {
     const demi_species s = demi_species_of(w, body);
     int k;
@@ -7164,7 +7171,8 @@ static int demi_species_find(const dem_world *w, int body) {
         if (!memcmp(&w->effects.species[k], &s, sizeof s)) break;
     return k;
 }
-/* Has the body coefficients with others? */
+/* Has the body coefficients with others? Not when a file names other species than its bodies
+   are. */
 static int demi_species_has(const dem_world *w, int body) {
     return demi_many_species(w) || demi_species_find(w, body) < w->effects.species_count;
 }
@@ -7179,7 +7187,8 @@ static void demi_species_count(dem_world *w) {
         e->species_count++;
     }
 }
-/* Coefficients of a pair. */
+/* Coefficients of a pair. R* of equal radii is half of them to the last bit, so that two alike get
+   what a world gets in which all are. */
 static void demi_species_coefs(const dem_world *w, const demi_species *a, const demi_species *b,
                                dem_real *coef) {
     const double ra = (double)a->radius, rb = (double)b->radius;
@@ -7225,7 +7234,8 @@ static int demi_species_known(const dem_world *w, int material, dem_real radius)
     return demi_many_species(w) &&
            (w->species_vary >> DEMI_MU & 1 || w->bodies.material[0] == material + 1);
 }
-/* Room for the table; 0 when memory ran out. */
+/* Room for the table; 0 when memory ran out. What is refused here is refused before any list is
+   changed; filling the table cannot fail. */
 static int demi_species_room(dem_world *w) {
     const size_t n = demi_many_species(w) ? 0 : (size_t)w->effects.species_count;
     return DEMI_GROW(w, w->species_coef, n*n*DEMI_PAIR_COLUMNS);
@@ -9252,8 +9262,11 @@ static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
     memset(t->part, 0, sizeof t->part);
     memset(t->tangent, 0, sizeof t->tangent);
 }
-/* Coefficients of a tile's pairs, but those that never vary. Answers the run they are for: of the
-   two, that for pairs that differ, or that for pairs that are alike. */
+/* Coefficients of a tile's pairs, but those that never vary (demi_species_vary, laid once by
+   demi_tile_begin). Answers the run they are for: of the two, that for pairs that differ, or that
+   for pairs that are alike, which needs no radii, no difference of spins and one torque for both.
+   What a tile of one row fills in is left for the tiles after it, and not copied again; it is
+   filled in to the tile's end, because those may be longer. */
 static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int full,
                                  demi_tile *DEMI_RESTRICT t, demi_run *run) {
     const int32_t *DEMI_RESTRICT row = span->row;
@@ -15908,7 +15921,8 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     demi_twin_free(w, r.t);
     return result == DEM_ERROR_MEMORY ? demi_no_memory(w, "dem_checkpoint_read") : result;
 }
-/* What a checkpoint would hold, in memory. Null when that ran out. */
+/* What a checkpoint would hold, in memory: the same visit, so that a copy has what a restart has.
+   Null when that ran out. */
 static char *demi_state_keep(dem_world *w, size_t *size) {
     dem_world look = *w;
     demi_stream s = {0, 0, 0, 0, 0, 0, 0};
@@ -16007,7 +16021,9 @@ static const demi_try demi_tries[DEM_TRIALS] = {
     {"4 times stiffer",    1,    4,   0},
     {"other normal law",   1,    1,   DEMI_TRY_NORMAL},
     {"other friction law", 1,    1,   DEMI_TRY_TANGENT}};
-/* The law that is tried in place of the one in force, -1: none fits. */
+/* The law that is tried in place of the one in force, -1: none fits. Hertz and linear springs take
+   each other's place where there are moduli to make both of; a law of the user's own, or one that
+   unloads along another line, has no counterpart. */
 static int demi_try_normal(const dem_world *w) {
     int i, j, moduli = 1;
     for (i = 0; i < w->material_count; i++)
@@ -16037,7 +16053,8 @@ static const char *demi_try_name(const dem_world *w, const demi_try *row) {
             : "Mindlin's friction";
     return row->name;
 }
-/* All moduli and stiffnesses times a factor. */
+/* All moduli and stiffnesses times a factor: of materials, by which steps are chosen, and of pairs,
+   by which forces are, since a pair may have been set apart from what it was mixed of. */
 static void demi_stiffen(dem_world *t, dem_real factor) {
     int i, j;
     for (i = 0; i < t->material_count; i++) {
@@ -16088,7 +16105,9 @@ static void demi_try_shake(dem_world *t, uint64_t seed) {
             t->bodies.pos[4*i + k] += t->bodies.pos[4*i + 3]*
                 (dem_real)(1e-6*(2*demi_uniform(&seed) - 1));
 }
-/* Runs a copy through the trial; sums the observables' means over its second half. */
+/* Runs a copy through the trial; sums the observables' means over its second half. The first is for
+   what a change brings with it and is not its steady effect: a heap that sinks a little when it
+   becomes softer, and rings a little when stiffer. */
 static dem_result demi_try_run(dem_world *t, const dem_trials *all, double *sum) {
     dem_result result = DEM_OK;
     int k, e;
@@ -16110,7 +16129,9 @@ static double demi_student(int n) {
     const double v = 1/(2.0*n - 2);
     return 1.96 + v*(2.372 + v*(2.822 + v*(2.556 + v*1.59)));
 }
-/* Drifts and promises, once all trials are done. */
+/* Drifts and promises, once all trials are done. The reference is the smallest step, since that is
+   the one choice of which it is known that less is better; whether a softer or stiffer grain is
+   the truer one, only the user knows. */
 static void demi_trials_judge(dem_trials *out) {
     int i, e;
     for (i = 0; i < out->count; i++)            /* of what came to its end: the smallest step */
@@ -16131,7 +16152,8 @@ static void demi_trials_judge(dem_trials *out) {
         }
     }
 }
-/* The cheapest that keeps within the tolerance; a tenth less time is worth a change. */
+/* The cheapest that keeps within the tolerance; a tenth less time is worth a change. When none
+   does, not even the scene beside itself, chance is larger than what was asked to be seen. */
 static void demi_trials_advise(dem_trials *out) {
     const dem_trial *ref = &out->trial[out->reference], *scene = &out->trial[0], *best;
     const double now = scene->seconds;
@@ -16161,7 +16183,8 @@ static void demi_trials_advise(dem_trials *out) {
                  best->name, scene->promise, ref->name, out->tolerance, best->promise,
                  best->seconds/now);
 }
-/* All runs of one trial. */
+/* All runs of one trial, each on a copy of its own. A run that is refused or blows up is the
+   trial's answer, not the call's: the step may be too large, and that is worth knowing. */
 static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, const demi_try *row,
                                  dem_trials *out, dem_trial *trial) {
     double value[16][DEM_OBSERVABLES], wall = 0;
