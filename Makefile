@@ -15,7 +15,8 @@ FILTER       ?=
 JOBS         ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 
 # ---- what there is ----
-TESTS    := $(patsubst tests/%.c,build/%,$(wildcard tests/test_*.c))
+HARD     := $(patsubst tests/hard/%.c,build/%,$(wildcard tests/hard/hard_*.c))
+TESTS    := $(patsubst tests/%.c,build/%,$(wildcard tests/test_*.c)) $(HARD)
 # these set macros of dem.h before they include it; all others are compiled as one program
 ALONE    := $(addprefix build/,test_api test_feed test_own_law)
 TOGETHER := $(filter-out $(ALONE),$(TESTS))
@@ -59,8 +60,9 @@ run: build/mill ## the tumbling mill: progress on the terminal, pictures in buil
 test: build/tests $(ALONE) ## build and run all tests; FILTER=words runs the sentences that contain them
 	@JOBS=$(JOBS) sh tests/run.sh "$(FILTER)" $(TOGETHER:build/%=build/tests@%) $(ALONE)
 
-hard: build/tests ## the long shapes of the hard cases: 1e5 impacts of each kind of body; FILTER=words as in test
-	@JOBS=$(JOBS) TEST_LONG=1 TEST_TABLES=1 sh tests/run.sh "$(FILTER)" build/tests@test_facets build/tests@test_sieve
+hard: build/tests ## the long form of the hard cases, over an hour: counts cases and impacts; FILTER=words as in test
+	@JOBS=$(JOBS) TEST_LONG=1 sh tests/run.sh "$(FILTER)" $(HARD:build/%=build/tests@%) build/tests@test_facets \
+	    build/tests@test_sieve > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
 
 examples: $(LESSONS) snippets ## build and run the numbered examples, compile the snippets of the manual
 	@failed=; for e in $(LESSONS); do n=$$(basename $$e); echo "== $$n"; mkdir -p build/out/$$n; \
@@ -146,10 +148,12 @@ clean: ## remove build/
 # with dem.c, which is compiled once ----
 # examples/*.h are companions of dem.h (moldyn.h, tumbler.h, ...), which tests and benches include, too
 HEADERS := $(wildcard examples/*.h)
-$(TESTS): build/%: tests/%.c $(wildcard tests/*.h) $(HEADERS)
-build/tests.c: tests/together.awk $(TOGETHER:build/%=tests/%.c)
-	awk -f tests/together.awk $(TOGETHER:build/%=tests/%.c) > $@
-build/tests: build/tests.c $(wildcard tests/*.h) $(HEADERS)
+$(filter-out $(HARD),$(TESTS)): build/%: tests/%.c $(wildcard tests/*.h) $(HEADERS)
+$(HARD): build/%: tests/hard/%.c $(wildcard tests/*.h tests/hard/*.h) $(HEADERS)
+SOURCES := $(patsubst build/%,tests/%.c,$(filter-out $(HARD),$(TOGETHER))) $(wildcard tests/hard/hard_*.c)
+build/tests.c: tests/together.awk $(SOURCES)
+	awk -f tests/together.awk $(SOURCES) > $@
+build/tests: build/tests.c $(wildcard tests/*.h tests/hard/*.h) $(HEADERS)
 $(LESSONS) $(STUDIES): build/%: examples/%.c $(HEADERS)
 $(BENCHES): build/%: bench/%.c $(HEADERS) $(wildcard bench/*.h)
 build/parallel: examples/mill.c

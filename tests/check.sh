@@ -97,15 +97,15 @@ else skip "gcc -m32 does not link (Debian package gcc-multilib)"; fi
 
 # the whole tests: under address and undefined-behaviour sanitizers, with tcc, in 32 bits, in C++
 alone="test_api test_feed test_own_law"        # they set macros of dem.h; the others are one program
-together=$(for source in tests/test_*.c; do test=$(basename "$source" .c)
-    case " $alone " in *" $test "*) ;; *) echo "$test" ;; esac; done)
+together=$(for source in tests/test_*.c tests/hard/hard_*.c; do
+    case " $alone " in *" $(basename "$source" .c) "*) ;; *) echo "$source" ;; esac; done)
 # tests NAME COMPILER: one case for the program of many, one per test that is a program by itself. Each runs in a
 # folder of its own: cases run side by side, and tests write files.
 tests() {
     group=$1; shift
-    try "$group: tests" "mkdir -p \$bin/build/tmp && awk -f tests/together.awk $(for t in $together; do printf 'tests/%s.c ' "$t"; done)" \
+    try "$group: tests" "mkdir -p \$bin/build/tmp && awk -f tests/together.awk $(echo $together)" \
         "> \$bin/tests.c && $* -I. \$bin/tests.c -o \$bin/tests -lm && top=\$PWD && cd \$bin &&" \
-        "sh \$top/tests/run.sh '' $(for t in $together; do printf './tests@%s ' "$t"; done)"
+        "sh \$top/tests/run.sh '' $(for t in $together; do printf './tests@%s ' "$(basename "$t" .c)"; done)"
     for test in $alone; do
         try "$group: $test" "mkdir -p \$bin/build/tmp && $* -I. tests/$test.c -o \$bin/$test -lm &&" \
             "top=\$PWD && cd \$bin && sh \$top/tests/run.sh '' ./$test"

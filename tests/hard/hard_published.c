@@ -2,8 +2,8 @@
    size ratios, long runs without dissipation. Each test names where its case or its number comes
    from. */
 #define DEM_IMPLEMENTATION
-#include "../dem.h"
-#include "test.h"
+#include "../../dem.h"
+#include "../test.h"
 #include <stdlib.h>
 
 static const double pi = 3.14159265358979323846;
