@@ -1958,7 +1958,8 @@ typedef struct demi_kept {
     dem_real weight;               /* share before contacts are shared: see demi_kept_share */
     dem_real area, added, rate;    /* m2, A; what others add to it, over d^2; how A follows that */
     dem_real bend;                 /* 1/m: the normal turns by this times the way part_a goes */
-    dem_vec3 axis;                 /* but for ways along the normal, and along this, if not 0 */
+    dem_vec3 axis;                 /* but for ways along the normal, and along this, if not 0: */
+    dem_real along;                /* there by this, 1/m */
     dem_vec3 aside;                /* elastic force across the normal, over that along it */
     dem_real slope;                /* m of overlap per m of approach */
     dem_real inset;                /* the normal force passes at this part of arm_a */
@@ -2029,7 +2030,7 @@ enum {
     DEMI_BALLS = 4,                /* elements are grains: balls of `radius` about their corner */
     DEMI_FLAT = 8                  /* a half space beyond z = 0 */
 };
-enum { DEMI_SIEVE_MOST = 12 };                  /* contacts of a grain with a sieve */
+enum { DEMI_SIEVE_MOST = 25 };                  /* contacts of a grain with a sieve */
 #define DEMI_SHAPES(X) \
     X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
     X(ELLIPSOID, ellipsoid, "ellipsoid", demi_ellipsoids_gap, \
@@ -2049,7 +2050,7 @@ enum { DEMI_SIEVE_MOST = 12 };                  /* contacts of a grain with a si
     X(GRAINS,   1, 7, DEMI_BALLS, "wall of grains", \
       demi_grain_near, (demi_elements_touch, demi_grain_ellipsoid), demi_grain_bend) \
     X(SIEVE,    0, DEMI_SIEVE_MOST, 0, "sieve", \
-      demi_sieve_near, (demi_sieve_spheres), 0) \
+      demi_sieve_near, (demi_sieve_spheres), demi_sieve_bend) \
     /* the last */
 #define DEMI_LIST(...) {__VA_ARGS__}            /* one field of a row that is a list: (a, b) */
 #define DEMI_SHAPE_CONSTANT(KIND, NAME, WORD, GAP, TOUCH) DEMI_##KIND,
@@ -2581,9 +2582,11 @@ enum {
     DEMI_SIZED = 16                /* asks for r_eff or m_eff, which others find to be NaN */
 };
 /* What a normal law's coefficients are made of: moduli (Pa), radius (m), mass (kg), damping ratio
-   of one contact, and the speed (m/s) of a likely impact. */
+   of one contact, and the speed (m/s) of a likely impact. M: kg, the mass that a stiffness may
+   follow: it stays as it is while two bodies touch, where m turns with a body that is no sphere;
+   a stiffness that did so would make energy (up to 0.1 of an impact's). */
 typedef struct demi_scales {
-    double E, G, R, m, beta, speed;
+    double E, G, R, m, M, beta, speed;
     const dem_pair *pair;
 } demi_scales;
 typedef struct demi_coefs { double kn, cn, kt, ct, kun, kad; } demi_coefs;
@@ -2597,12 +2600,12 @@ static void demi_coefs_hertz(const demi_scales *s, demi_coefs *k) {
     k->kt = 8*s->G*root;
     k->ct = 2*sqrt(5.0/6)*s->beta*sqrt(8*s->G*root*s->m);
 }
-/* F = kn d + cn v,  kn = (320/81 m* v^2 E*^4 R*^2)^(1/5) [DIM04] unless given,  cn = 2 beta sqrt(kn
-   m*) unless given,  kt = ratio kn,  ct = 2 beta sqrt(kt m*) */
+/* F = kn d + cn v,  kn = (320/81 M v^2 E*^4 R*^2)^(1/5) [DIM04] unless given,
+   cn = 2 beta sqrt(kn m*) unless given,  kt = ratio kn,  ct = 2 beta sqrt(kt m*) */
 static void demi_coefs_linear(const demi_scales *s, demi_coefs *k) {
-    const double E = s->E, R = s->R, m = s->m, v = s->speed;
+    const double E = s->E, R = s->R, m = s->m, M = s->M, v = s->speed;
     const dem_pair *p = s->pair;
-    k->kn = p->stiffness > 0 ? (double)p->stiffness : pow(320.0/81*m*v*v*E*E*E*E*R*R, 0.2);
+    k->kn = p->stiffness > 0 ? (double)p->stiffness : pow(320.0/81*M*v*v*E*E*E*E*R*R, 0.2);
     k->cn = p->normal_damping > 0 ? (double)p->normal_damping : 2*s->beta*sqrt(k->kn*m);
     k->kt = k->kn*(double)p->stiffness_ratio;
     k->ct = 2*s->beta*sqrt(k->kt*m);
@@ -2938,12 +2941,13 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
 /* The coefficients of one contact: its law's (>>laws), and what holds for all.
    DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
    between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff, m_eff: the
-   standard ones. Checked by "the thesis's eight coefficients". */
+   standard ones; stiff: kg, what a stiffness follows. Checked by "the thesis's eight coefficients".
+   */
 static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff,
-                              int wall, dem_real *out) {
+                              double stiff, int wall, dem_real *out) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
-    demi_scales s = {(double)p->young_eff, (double)p->shear_eff, r_eff, m_eff, 0, 1, p};
+    demi_scales s = {(double)p->young_eff, (double)p->shear_eff, r_eff, m_eff, stiff, 0, 1, p};
     demi_coefs k = {0, 0, 0, 0, 0, 0};
     s.beta = w->pairs[a*DEMI_MATERIALS + b].damping;
     if (w->desc.impact_speed > 0) s.speed = (double)w->desc.impact_speed;
@@ -2951,7 +2955,7 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
         const dem_material_desc *d = &w->materials[b];
         s.E = (double)d->young;
         s.G = s.E/(2*(1 + (double)d->poisson));
-        if (wall) { s.R /= 2; s.m /= 2; }
+        if (wall) { s.R /= 2; s.m /= 2; s.M /= 2; }
     }
     demi_normal_laws[w->desc.normal_law].coefs(&s, &k);
     if (mill && !wall && demi_normal_is(w, DEMI_HERTZIAN)) {   /* of half the overlap */
@@ -3029,7 +3033,7 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
     ma = demi_sphere_mass(w, i, ra);
     r = rb > 0 ? ra*rb/(ra + rb) : ra;
     m = rb > 0 ? 1/(1/ma + 1/demi_sphere_mass(w, j, rb)) : ma;
-    demi_coefficients(w, i, j, r, m, rb <= 0, coef);
+    demi_coefficients(w, i, j, r, m, m, rb <= 0, coef);
     out->r_eff = (dem_real)r; out->m_eff = (dem_real)m;
     out->kn = coef[DEMI_KN]; out->cn = coef[DEMI_CN]; out->kt = coef[DEMI_KT];
     out->ct = coef[DEMI_CT];
@@ -7197,7 +7201,7 @@ static void demi_species_coefs(const dem_world *w, const demi_species *a, const 
     const double inv = w->desc.convention == DEM_CONVENTION_MILL
         ? 1/(double)a->mass + 1/(double)b->mass : sum;
     demi_coefficients(w, a->material - 1, b->material - 1,
-                      ra < rb || ra > rb ? ra*rb/(ra + rb) : ra/2, 1/inv, 0, coef);
+                      ra < rb || ra > rb ? ra*rb/(ra + rb) : ra/2, 1/inv, 1/inv, 0, coef);
     coef[DEMI_M_EFF] = (dem_real)(1/sum);
 }
 /* Which columns differ from pair to pair, and are asked for. In a table one can see it; of too many
@@ -8382,18 +8386,38 @@ static void demi_places_rings(const demi_wall *wall, const int32_t *element, int
 
 /* --- sieves: a sphere against all of a sieve, in the sieve's frame: z across, a hole in the
        middle, wires and holes in rows along x and y. Only what is near is looked at, found from the
-       sphere's place: the cost does not depend on how many holes there are. Every wire, and every
-       side of every hole, has an element number of its own, for contact memory.
-         wires   axes at (i + 1/2)(aperture + bar): distance to the axis of each within reach,
-                 exact for straight wires
-         rims    plates and reduced holes cut out as a disc lie in a thin ring
-         plates  above the solid part: the face. Above a hole: the nearest point of each of its
-                 sides (square, slots), a rim or, within the thickness, a wall. Round holes: the
-                 nearest point and the one across, so that a grain too large for the hole sits on
-                 it. Exact for one contact; the inner corners of a square hole need no more
-       Where two wires cross, or rims meet, a grain touches both at what is one place, which
-       demi_sieve_share sorts out. Tests: tests/test_sieve.c. --- */
-enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1 };
+       sphere's place: the cost does not depend on how many holes there are.
+         rows    wires, bars, and the strips between square holes or slots: convex, endless or cut
+                 off by a disc. Rows of set 0 go along y, of set 1 along x
+         round   plates with round holes: the face, or the nearest point of the rim and the one
+                 across, so that a grain too large for the hole sits on it
+         ring    plates and reduced holes cut out as a disc lie in a thin ring
+       Where two rows cross, a grain that reaches both at one place reaches one thing. With d the
+       distances of rows and those of what two rows share (their crossings), U(d) the energy of one
+       contact and its overlap r - d,
+           E = sum of U(rows) - sum of U(those crossings that join, nearest first, what was not
+               joined yet)
+       which is the sum over separate pieces of what is reached, as it grows (Kruskal's forest, as
+       for rings of facets): never less than the nearest row's, and force is its gradient, so that
+       energy is kept; a plate pushes as one however fine its holes. A crossing at a row's own
+       nearest point takes that away: above a crossing there is one contact, half way between two
+       rows, two. One that does not takes away by itself, as a contact of share -1.
+       Every row, crossing and side has an element number of its own, for contact memory. Tests:
+       tests/test_sieve.c, tests/hard/hard_impacts.c. --- */
+enum { DEMI_SIEVE_FACE = 1 << 30, DEMI_SIEVE_RIM = DEMI_SIEVE_FACE + 1,
+       DEMI_SIEVE_ROWS = 13 };                  /* rows of both sets, and the ring */
+/* What the last three bits of a row's number say; of round holes, 0 .. 5: side, lattice. */
+enum { DEMI_SIEVE_SET = 1, DEMI_SIEVE_ABOVE = 2, DEMI_SIEVE_CROSS = 4 };
+typedef struct demi_sieve_row {
+    int32_t number;
+    int set, root;                 /* 2: the ring; of the forest */
+    double i;                      /* which of its set */
+    dem_real at, half;             /* m, its middle, and half its width (or diameter) */
+    dem_real distance, edge;       /* m, of the sphere's centre; around foot */
+    dem_vec3 foot;                 /* m, nearest point, or that of a wire's axis */
+} demi_sieve_row;
+/* Where rows a and b cross: nearest point and its distance, m. */
+typedef struct demi_sieve_shared { dem_real distance; int a, b; dem_vec3 foot; } demi_sieve_shared;
 
 /* Half of how thick it is. */
 static dem_real demi_sieve_half(const dem_sieve_desc *s) {
@@ -8419,30 +8443,6 @@ static int demi_sieve_put(demi_touching *out, int count, int32_t element, dem_ve
     c->share = 1;
     return count + 1;
 }
-/* Wires of one set: across x (set 0) or across y (set 1). */
-static int demi_sieve_wires(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real r,
-                            demi_touching *out, int count) {
-    const dem_real q = s->bar/2, h = set ? -s->lift/2 : s->lift/2, pitch = s->aperture + s->bar;
-    const dem_real u = set ? x.y : x.x, v = set ? x.x : x.y, R = s->radius;
-    const dem_real far2 = (r + q)*(r + q) - (x.z - h)*(x.z - h);
-    const dem_real S = DEMI_SQRT(x.x*x.x + x.y*x.y), held = R > 0 && S > R ? u*R/S : u;
-    const double home = floor((double)(held/pitch));   /* beside a disc: its nearest place */
-    int k;
-    if (!(far2 > 0)) return count;
-    for (k = -2; k <= 3; k++) {                 /* a grain far larger than holes lies on these */
-        const dem_real at = (dem_real)(home + k + 0.5)*pitch, off = u - at;
-        dem_real along = v;
-        if (off*off >= far2) continue;
-        if (R > 0) {                            /* ends of the wire */
-            const dem_real end = R*R > at*at ? DEMI_SQRT(R*R - at*at) : 0;
-            if (!(end > 0)) continue;
-            along = v > end ? end : v < -end ? -end : v;
-        }
-        count = demi_sieve_put(out, count, demi_sieve_number(home + k, 0, set), x, r,
-                               set ? demi_v(along, at, h) : demi_v(at, along, h), q);
-    }
-    return count;
-}
 /* The sheet of a sieve as if it had no holes. */
 static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
                            demi_touching *out) {
@@ -8454,72 +8454,241 @@ static int demi_sieve_face(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
     out->share = 1;
     return out->overlap > 0;
 }
-/* A plate with round holes, square ones or slots: the hole that the centre is over, and of its rim
-   the nearest place and the one across (round), or a place on each side. Over a bar: the sheet. */
-static int demi_sieve_plate(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
-                            demi_touching *out) {
-    const dem_real half = s->thickness/2, z = x.z > half ? half : x.z < -half ? -half : x.z;
+DEM_INLINE dem_real demi_clamp(dem_real x, dem_real lo, dem_real hi) {
+    return x < lo ? lo : x > hi ? hi : x;
+}
+/* The point of a strip at - half .. at + half across u, cut off by a disc of radius R (0: not),
+   that is nearest to (u, v). 0: there is none. */
+static int demi_strip_point(dem_real at, dem_real half, dem_real R, dem_real *u, dem_real *v) {
+    const dem_real x = *u, y = *v, lo = at - half, hi = at + half;
+    const dem_real S = DEMI_SQRT(x*x + y*y), within = demi_clamp(x, lo, hi);
+    dem_real best = -1;
+    int k;
+    *u = within;
+    if (!(R > 0) || within*within + y*y <= R*R) return 1;
+    *u = x*R/S; *v = y*R/S;                     /* the disc's, if the strip has it */
+    if (S > R && *u >= lo && *u <= hi) return 1;
+    for (k = 0; k < 2; k++) {                   /* a corner, where the strip's side ends */
+        const dem_real side = k ? hi : lo, long2 = R*R - side*side;
+        const dem_real end = long2 > 0 ? DEMI_SQRT(long2) : 0, to = demi_clamp(y, -end, end);
+        const dem_real d2 = (side - x)*(side - x) + (to - y)*(to - y);
+        if (!(long2 > 0) || (best >= 0 && d2 >= best)) continue;
+        best = d2; *u = side; *v = to;
+    }
+    return best >= 0;
+}
+/* Which rows of one set a sphere reaches. */
+static int demi_sieve_set(const dem_sieve_desc *s, int set, dem_vec3 x, dem_real r,
+                          demi_sieve_row *row, int count) {
+    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+    const dem_real q = s->bar/2, h = !wires ? 0 : set ? -s->lift/2 : s->lift/2, R = s->radius;
+    const dem_real hole = !set && s->kind == DEM_SIEVE_SLOTS ? s->length : s->aperture;
+    const dem_real pitch = hole + s->bar, half = wires ? 0 : s->thickness/2;
+    const dem_real u = set ? x.y : x.x, v = set ? x.x : x.y, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_real z = wires ? h : demi_clamp(x.z, -half, half);
+    const dem_real far2 = (r + q)*(r + q) - (x.z - z)*(x.z - z);
+    const double home = floor((double)((R > 0 && S > R ? u*R/S : u)/pitch));
+    int k;
+    if (!(far2 > 0) || !(hole > 0)) return count;
+    for (k = -2; k <= 3; k++) {                 /* a grain far larger than holes lies on these */
+        demi_sieve_row *one = &row[count];
+        const dem_real at = (dem_real)(home + k + 0.5)*pitch, off = u - at;
+        dem_real a = u, b = v;
+        dem_vec3 d;
+        if (off*off >= far2 + 2*q*(r + q) + q*q ||
+            !demi_strip_point(at, wires ? DEM_R(0) : q, R, &a, &b)) continue;
+        one->foot = set ? demi_v(b, a, z) : demi_v(a, b, z);
+        d = demi_sub(one->foot, x);
+        one->edge = wires ? q : 0;
+        one->distance = demi_length(d) - one->edge;
+        if (!(one->distance < r)) continue;
+        one->set = set;
+        one->i = home + k;
+        one->at = at;
+        one->half = q;
+        one->number = demi_sieve_number(home + k, 0, set | (!wires && !(d.x < 0 || d.x > 0) &&
+                                        !(d.y < 0 || d.y > 0) ? DEMI_SIEVE_ABOVE : 0));
+        count++;
+    }
+    return count;
+}
+/* What two wires share, X^2 + (Z - h)^2 <= q^2 and Y^2 + (Z + h)^2 <= q^2: its point nearest to p,
+   outside of both, where they meet. It is p drawn to both axes, by as much as puts it on either
+   surface: Newton's method for these two. */
+static dem_vec3 demi_wires_point(dem_vec3 p, dem_real q, dem_real h) {
+    double m = sqrt((double)(p.x*p.x + (p.z - h)*(p.z - h)))/(double)q - 1;
+    double n = sqrt((double)(p.y*p.y + (p.z + h)*(p.z + h)))/(double)q - 1;
+    const double q2 = (double)q*(double)q, H = (double)h;
+    double x = 0, y = 0, z = 0;
+    int k;
+    for (k = 0; k < 40; k++) {
+        double sum, g, f, gm, gn, fn, det, dm, dn;
+        sum = 1 + m + n;
+        x = (double)p.x/(1 + m); y = (double)p.y/(1 + n);
+        z = ((double)p.z + (m - n)*H)/sum;
+        g = x*x + (z - H)*(z - H) - q2;
+        f = y*y + (z + H)*(z + H) - q2;
+        if (fabs(g) + fabs(f) < (DEMI_SINGLE ? 1e-12 : 4e-16)*q2) break;
+        gm = -2*(x*x/(1 + m) + (z - H)*(z - H)/sum);
+        fn = -2*(y*y/(1 + n) + (z + H)*(z + H)/sum);
+        gn = -2*(z - H)*(z + H)/sum;
+        det = gm*fn - gn*gn;
+        if (!(det > 0)) break;
+        dm = (-g*fn + f*gn)/det;
+        dn = (-f*gm + g*gn)/det;
+        m = m + dm > m/4 ? m + dm : m/4;
+        n = n + dn > n/4 ? n + dn : n/4;
+    }
+    return demi_v((dem_real)x, (dem_real)y, (dem_real)z);
+}
+/* The nearest point of what rows a and b share (a of set 0 or 1, b of a later one). Answers 2 when
+   it is a's own nearest point, 3 when b's, else 1; 0: they share nothing. */
+static int demi_sieve_crossing(const dem_sieve_desc *s, const demi_sieve_row *a,
+                               const demi_sieve_row *b, dem_vec3 x, dem_vec3 *foot) {
+    const dem_real R = s->radius, half = s->thickness/2;
+    const dem_real u = a->set ? x.y : x.x, v = a->set ? x.x : x.y;
+    dem_real S, best = -1;
+    int k;
+    if (a->set == b->set) return 0;
+    if (b->set == 2) {                          /* the ring, between the strip's sides */
+        foot->z = demi_clamp(x.z, -half, half);
+        S = DEMI_SQRT(u*u + v*v);
+        for (k = 0; k < 5; k++) {
+            const dem_real p = k == 4 ? u*R/S : a->at + (k & 1 ? a->half : -a->half);
+            const dem_real far = R*R - p*p;
+            const dem_real w = k == 4 ? v*R/S : !(far > 0) ? 0 : k & 2 ? DEMI_SQRT(far)
+                : -DEMI_SQRT(far);
+            const dem_real d2 = (p - u)*(p - u) + (w - v)*(w - v);
+            if (k == 4 ? DEMI_ABS(p - a->at) > a->half : !(far > 0)) continue;
+            if (best >= 0 && d2 >= best) continue;
+            best = d2;
+            foot->x = a->set ? w : p;
+            foot->y = a->set ? p : w;
+        }
+        return best >= 0;
+    }
+    if (R > 0 && a->at*a->at + b->at*b->at >= R*R) return 0;
+    if (s->kind == DEM_SIEVE_WIRES) {
+        const dem_real q = s->bar/2, h = s->lift/2;
+        const dem_vec3 at = demi_v(a->at, b->at, 0), p = demi_sub(x, at);
+        const dem_vec3 f = demi_sub(demi_add(x, demi_scale(demi_sub(a->foot, x), a->distance/
+                              (a->distance + q))), at);      /* on a, is it in b, too? */
+        const dem_vec3 g = demi_sub(demi_add(x, demi_scale(demi_sub(b->foot, x), b->distance/
+                              (b->distance + q))), at);
+        const int in_b = f.y*f.y + (f.z + h)*(f.z + h) <= q*q;
+        const int in_a = g.x*g.x + (g.z - h)*(g.z - h) <= q*q;
+        if (h >= q) return 0;
+        *foot = demi_add(at, in_b ? f : in_a ? g : demi_wires_point(p, q, h));
+        return in_b ? 2 : in_a ? 3 : 1;
+    }
+    *foot = demi_v(demi_clamp(x.x, a->at - a->half, a->at + a->half),
+                   demi_clamp(x.y, b->at - b->half, b->at + b->half),
+                   demi_clamp(x.z, -half, half));
+    return 1;
+}
+static int demi_sieve_root(demi_sieve_row *row, int i) {
+    while (row[i].root != i) i = row[i].root;
+    return i;
+}
+/* Contacts with rows, less their crossings, as above. */
+static int demi_sieve_rows(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
+    demi_sieve_row row[DEMI_SIEVE_ROWS];
+    demi_sieve_shared all[DEMI_SIEVE_ROWS*DEMI_SIEVE_ROWS/2];
+    const dem_real half = s->thickness/2, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    int rows = demi_sieve_set(s, 0, x, r, row, 0), i, k, crossings = 0, count = 0;
+    if (s->kind != DEM_SIEVE_BARS) rows = demi_sieve_set(s, 1, x, r, row, rows);
+    if (s->kind != DEM_SIEVE_BARS && s->kind != DEM_SIEVE_WIRES && s->radius > 0 && S > 0) {
+        demi_sieve_row *ring = &row[rows];
+        memset(ring, 0, sizeof *ring);
+        ring->foot = demi_v(x.x*s->radius/S, x.y*s->radius/S, demi_clamp(x.z, -half, half));
+        ring->distance = demi_length(demi_sub(ring->foot, x));
+        ring->set = 2;
+        ring->number = DEMI_SIEVE_RIM;
+        rows += ring->distance < r;
+    }
+    for (i = 0; i < rows; i++) {
+        row[i].root = i;
+        for (k = 0; k < i; k++) {
+            demi_sieve_shared one;
+            const int how = demi_sieve_crossing(s, &row[k], &row[i], x, &one.foot);
+            one.a = k; one.b = i;
+            if (!how) continue;
+            one.distance = how == 1 ? demi_length(demi_sub(one.foot, x))
+                : row[how == 2 ? k : i].distance;
+            if (!(one.distance < r)) continue;
+            all[crossings++] = one;
+        }
+    }
+    for (; crossings > 0; all[i] = all[--crossings]) {    /* nearest first */
+        int a, b, at;
+        for (i = 0, k = 1; k < crossings; k++) if (all[k].distance < all[i].distance) i = k;
+        a = demi_sieve_root(row, all[i].a);
+        b = demi_sieve_root(row, all[i].b);
+        if (a == b) continue;
+        row[DEMI_MAX(a, b)].root = DEMI_MIN(a, b);
+        a = all[i].a; b = all[i].b;
+        at = row[a].distance > row[b].distance ? a : b;
+        if (all[i].distance <= row[at].distance && !(row[at].edge < 0))
+            row[at].edge = -1;                  /* the row's own nearest point: they cancel */
+        else {
+            k = count;
+            count = demi_sieve_put(out, count, row[b].set == 2 ? DEMI_SIEVE_RIM + 1 :
+                                   demi_sieve_number(row[a].i, row[b].i, DEMI_SIEVE_CROSS), x, r,
+                                   all[i].foot, 0);
+            if (count > k) out[k].share = -1;
+        }
+    }
+    for (i = 0; i < rows; i++) {
+        if (row[i].edge < 0) continue;
+        if (!(row[i].distance > 0) && half > 0 && s->kind != DEM_SIEVE_WIRES &&
+            s->kind != DEM_SIEVE_BARS) {        /* within the plate: out by the nearer face */
+            count += demi_sieve_face(s, x, r, out + count);
+            out[count - 1].element = row[i].number;
+        } else count = demi_sieve_put(out, count, row[i].number, x, r, row[i].foot, row[i].edge);
+    }
+    return count;
+}
+/* A plate with round holes: the hole that the centre is over, and of its rim the nearest place and
+   the one across. Over a bar: the sheet. */
+static int demi_sieve_round(const dem_sieve_desc *s, dem_vec3 x, dem_real r, demi_touching *out) {
+    const dem_real half = s->thickness/2, z = demi_clamp(x.z, -half, half);
     const dem_real a = s->aperture/2, R = s->radius, S = DEMI_SQRT(x.x*x.x + x.y*x.y);
-    const int endless = s->kind == DEM_SIEVE_SLOTS && !(s->length > 0);
-    dem_real step[2], wide[2], off[2], mid[2];
-    double i[2];
+    const dem_real pitch = s->aperture + s->bar;
+    const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
+    dem_real best = -1, l;
+    dem_vec3 way, centre = x, to;
+    int32_t number = 0;
     int k, side, count = 0;
     if (R > 0 && S > 0 && S > R - r)
         count = demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r, demi_v(x.x*R/S, x.y*R/S, z), 0);
     if (R > 0 && S > R) return count;           /* off the disc */
-    if (s->kind == DEM_SIEVE_ROUND) {
-        const dem_real pitch = s->aperture + s->bar;
-        const dem_real rows = s->staggered ? pitch*DEM_R(1.7320508075688772) : pitch;
-        dem_real best = -1, l;
-        dem_vec3 way, centre = x, to;
-        int32_t number = 0;
-        for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
-            const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
-            const double ix = floor((double)(x.x/pitch - shift) + 0.5);
-            const double iy = floor((double)(x.y/rows - shift) + 0.5);
-            const dem_vec3 c = demi_v(((dem_real)ix + shift)*pitch, ((dem_real)iy + shift)*rows, 0);
-            l = (x.x - c.x)*(x.x - c.x) + (x.y - c.y)*(x.y - c.y);
-            if (best >= 0 && l >= best) continue;
-            best = l;
-            centre = c;
-            number = demi_sieve_number(ix, iy, 4*k);
-        }
-        if (best >= a*a) return demi_sieve_face(s, x, r, out);
-        l = DEMI_SQRT(best);
-        way = l > 0 ? demi_v((x.x - centre.x)/l, (x.y - centre.y)/l, 0) : demi_v(1, 0, 0);
-        for (side = 0; side < 2; side++) {      /* nearest, and across */
-            to = demi_add(demi_v(centre.x, centre.y, z), demi_scale(way, side ? -a : a));
-            if (R > 0 && to.x*to.x + to.y*to.y > R*R) continue;
-            count = demi_sieve_put(out, count, number + side, x, r, to, 0);
-        }
-        return count;
+    for (k = 0; k < 1 + (s->staggered != 0); k++) {    /* the nearest hole of either lattice */
+        const dem_real shift = k ? DEM_R(0.5) : DEM_R(0);
+        const double ix = floor((double)(x.x/pitch - shift) + 0.5);
+        const double iy = floor((double)(x.y/rows - shift) + 0.5);
+        const dem_vec3 c = demi_v(((dem_real)ix + shift)*pitch, ((dem_real)iy + shift)*rows, 0);
+        l = (x.x - c.x)*(x.x - c.x) + (x.y - c.y)*(x.y - c.y);
+        if (best >= 0 && l >= best) continue;
+        best = l;
+        centre = c;
+        number = demi_sieve_number(ix, iy, 4*k);
     }
-    wide[0] = s->kind == DEM_SIEVE_SLOTS ? s->length/2 : a;
-    wide[1] = a;
-    for (k = 0; k < 2; k++) {
-        const dem_real at = k ? x.y : x.x;
-        step[k] = 2*wide[k] + s->bar;
-        i[k] = k == 0 && endless ? 0 : floor((double)(at/step[k]) + 0.5);
-        mid[k] = (dem_real)i[k]*step[k];
-        off[k] = k == 0 && endless ? 0 : at - mid[k];
-    }
-    if ((!endless && DEMI_ABS(off[0]) >= wide[0]) || DEMI_ABS(off[1]) >= wide[1])
-        return demi_sieve_face(s, x, r, out);
-    for (side = endless ? 2 : 0; side < 4; side++) {
-        const dem_real at = mid[side/2] + (side & 1 ? -wide[side/2] : wide[side/2]);
-        const dem_vec3 to = side < 2 ? demi_v(at, x.y, z) : demi_v(x.x, at, z);
+    if (best >= a*a) return demi_sieve_face(s, x, r, out);
+    l = DEMI_SQRT(best);
+    way = l > 0 ? demi_v((x.x - centre.x)/l, (x.y - centre.y)/l, 0) : demi_v(1, 0, 0);
+    for (side = 0; side < 2; side++) {          /* nearest, and across */
+        to = demi_add(demi_v(centre.x, centre.y, z), demi_scale(way, side ? -a : a));
         if (R > 0 && to.x*to.x + to.y*to.y > R*R) continue;
-        count = demi_sieve_put(out, count, demi_sieve_number(i[0], i[1], side), x, r, to, 0);
+        count = demi_sieve_put(out, count, number + side, x, r, to, 0);
     }
     return count;
 }
-/* Contacts that are in truth one, where wires cross or rims meet: each counts as far as its point
+/* Contacts that are in truth one, where rims meet: each counts as far as its point
    stands out of the plane that touches at the other, towards the grain. L_a: how far a's point
    stands out of b's plane.
        share_a = max(L_a/(L_a + L_b), min(1, L_a/overlap_a))
-   On top of a wire the one across is not felt (its L is 0), half way between the two each bears
-   half, and in the corner of a hole, where L is far more than the overlap, each bears all: no jump
-   on the way. */
+   Half way between the two each bears half, and where L is far more than the overlap, each bears
+   all: no jump on the way. */
 static void demi_sieve_share(demi_touching *c, int count) {
     int a, b;
     for (a = 0; a < count; a++)
@@ -8555,11 +8724,6 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
     const dem_real S = DEMI_SQRT(x.x*x.x + x.y*x.y);
     int count = 0;
     switch (s->kind) {
-    case DEM_SIEVE_WIRES:
-        count = demi_sieve_wires(s, 0, x, r, out, count);
-        count = demi_sieve_wires(s, 1, x, r, out, count);
-        break;
-    case DEM_SIEVE_BARS: count = demi_sieve_wires(s, 0, x, r, out, count); break;
     case DEM_SIEVE_REDUCED:
         if (s->radius > 0 && S > s->radius)
             return demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r,
@@ -8567,9 +8731,12 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
         count = demi_sieve_face(s, x, r, out);
         if (count && demi_sieve_passes(s, x, r)) out->share = 0;
         return count;
-    default: count = demi_sieve_plate(s, x, r, out);
+    case DEM_SIEVE_ROUND:
+        count = demi_sieve_round(s, x, r, out);
+        if (count > 1) demi_sieve_share(out, count);
+        break;
+    default: count = demi_sieve_rows(s, x, r, out);
     }
-    if (count > 1) demi_sieve_share(out, count);
     return count;
 }
 
@@ -9962,14 +10129,30 @@ DEM_INLINE dem_real demi_kept_alike(const demi_kept *a, const demi_kept *b, dem_
 /* The force aside on contact c's ball that has c's normal turn towards, or away from, another's:
    -(dE/dt)(dt/dcos) d(n.other)/dx. push: the first two. */
 DEM_INLINE void demi_kept_aside(demi_kept *c, dem_vec3 other, dem_real push) {
+    const dem_real along = demi_dot(other, c->axis);
     dem_vec3 turn = demi_sub(other, demi_scale(c->normal, demi_dot(other, c->normal)));
-    turn = demi_sub(turn, demi_scale(c->axis, demi_dot(other, c->axis)));
-    c->aside = demi_add(c->aside, demi_scale(turn, push*c->bend));
+    turn = demi_sub(turn, demi_scale(c->axis, along));
+    turn = demi_add(demi_scale(turn, c->bend), demi_scale(c->axis, along*c->along));
+    c->aside = demi_add(c->aside, demi_scale(turn, push));
+}
+/* Exponent of R* in the stiffness of a body's contacts: 1/2 for Hertz; linear: 2/5, or 0 where the
+   stiffness is given. */
+static dem_real demi_kept_power(const dem_world *w, const demi_kept *c) {
+    const int a = w->bodies.material[c->a] - 1;
+    const int b = c->b < 0 ? w->walls[c->wall].material : w->bodies.material[c->b] - 1;
+    if (demi_normal_is(w, DEMI_HERTZIAN)) return DEM_R(0.5);
+    return w->pairs[a*DEMI_MATERIALS + b].given.stiffness > 0 ? DEM_R(0) : DEM_R(0.4);
+}
+/* U'(d_i) over U'(d_k), of contacts that overlap: q, exponent of R*, as above. */
+static dem_real demi_kept_steep(const demi_kept *i, const demi_kept *k, int hertz, dem_real q) {
+    const dem_real more = i->overlap/k->overlap, R = i->r_eff/k->r_eff;
+    if (hertz) return more*DEMI_SQRT(more*R);
+    return q > 0 && (R < 1 || R > 1) ? more*(dem_real)pow((double)R, (double)q) : more;
 }
 /* What the shared energy (below) asks of contacts whose shares are known: lift, aside, grip. */
 static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
     const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
-    const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2);
+    const dem_real p = hertz ? DEM_R(2.5) : DEM_R(2), q = demi_kept_power(w, c);
     dem_real rate;
     int i, k;
     for (k = 0; k < n; k++) {
@@ -9978,11 +10161,10 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
         c[k].lift = c[k].share*(1 + 2/p*c[k].rate*c[k].added*d*d/c[k].area);
         for (i = 0; i < n; i++) {
             const dem_real t = i == k ? 0 : demi_kept_alike(&c[i], &c[k], &rate);
-            const dem_real e = c[i].overlap, more = e/d;
-            /* U'(d_i) over U'(d_k); E_i over U'(d_k) and A_i */
-            const dem_real steep = hertz ? more*DEMI_SQRT(more*c[i].r_eff/c[k].r_eff) : more;
-            const dem_real far = steep*c[i].share*e/p*c[i].rate/c[i].area;
+            const dem_real e = c[i].overlap;
+            dem_real far;                       /* E_i over U'(d_k) and A_i */
             if (!(t > 0) || !(e > 0)) continue;
+            far = demi_kept_steep(&c[i], &c[k], hertz, q)*c[i].share*e/p*c[i].rate/c[i].area;
             c[k].lift -= far*2*t*c[k].weight*d;
             if (rate > 0)
                 demi_kept_aside(&c[k], c[i].normal, rate*(far*c[k].weight*d*d +
@@ -9991,10 +10173,12 @@ static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
     }
     for (k = 0; k < n; k++) {
         dem_real lift = 0, share = 0, own = 0;
+        if (!(c[k].overlap > 0)) continue;
         for (i = 0; i < n; i++) {
             const dem_real t = i == k ? 1 : demi_kept_along(&c[i], &c[k], &rate);
-            const dem_real e = c[i].overlap > 0 ? c[i].overlap : 0;
-            const dem_real press = t*(hertz ? e*DEMI_SQRT(e*c[i].r_eff) : e);   /* ~ U'(d_i) */
+            dem_real press;                     /* U'(d_i) over U'(d_k) */
+            if (!(t > 0) || !(c[i].overlap > 0)) continue;
+            press = t*demi_kept_steep(&c[i], &c[k], hertz, q);
             lift += press*c[i].lift;
             share += press*c[i].share;
             if (i == k) own = press;
@@ -10021,7 +10205,7 @@ static dem_real demi_kept_room_of(dem_real x, dem_real *rate) {
    normal turns with its place, that of the t. With U ~ sqrt(R) d^p (Hertz) or d^p
        E_i = s_i U'(d_i) d_i/p,          dE_k/dd_k = s_k U'(d_k) (1 + 2/p (A_k - d_k^2)/A_k)
        dE_i/dd_k = -E_i 2 t_ik w_k d_k/A_i,    dE_i/dt_ik = -E_i w_k d_k^2/A_i
-   (Left out: how an ellipsoid's normal turns at a cluster's ball, and a sieve's. A ball that is
+   (Left out: how an ellipsoid's normal turns at a cluster's ball. A ball that is
    nearly at what it goes round, within a tenth of its radius, turns no faster than there.)
    It may be a little below 0 where others are far deeper: no mean that does not depend on their
    number can do without. Damping goes by s, and feels the mass at their common middle; friction by
@@ -10136,32 +10320,38 @@ static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)}
 /* --- how the normal of a ball's contact with a wall turns as the ball moves. dist: m, from the
        ball's centre to the surface. Answers that to what the normal turns about (0: it does not),
        and the axis along which nothing turns, if there is one. among: the elements where the
-       contact, with this number, was found. --- */
+       contact, with this number, was found. normal: the contact's, in the wall's frame as all else.
+       *along: 1/m, where it turns along the axis after all. --- */
 typedef dem_real (*demi_bend_fn)(const demi_wall *wall, const int32_t *among, int count, int number,
-                                 dem_real dist, dem_vec3 *axis);
+                                 dem_real dist, dem_vec3 normal, dem_vec3 *axis, dem_real *along);
 static dem_real demi_cylinder_bend(const demi_wall *wall, const int32_t *among, int count,
-                                   int number, dem_real dist, dem_vec3 *axis) {
-    (void)among; (void)count; (void)number;
+                                   int number, dem_real dist, dem_vec3 normal, dem_vec3 *axis,
+                                   dem_real *along) {
+    (void)among; (void)count; (void)number; (void)normal; (void)along;
     axis->z = 1;
     return wall->inside ? dist - wall->radius : dist + wall->radius;
 }
-static dem_real demi_grain_bend(const demi_wall *wall, const int32_t *among, int count, int number,
-                                dem_real dist, dem_vec3 *axis) {
-    (void)among; (void)count; (void)number; (void)axis;
+static dem_real demi_grain_bend(const demi_wall *wall, const int32_t *among, int count,
+                                int number, dem_real dist, dem_vec3 normal, dem_vec3 *axis,
+                                dem_real *along) {
+    (void)among; (void)count; (void)number; (void)normal; (void)axis; (void)along;
     return dist + wall->radius;
 }
 /* Lines do not turn the normal, corners do, about the direction that a profile is drawn out in. */
 static dem_real demi_profile_bend(const demi_wall *wall, const int32_t *among, int count,
-                                  int number, dem_real dist, dem_vec3 *axis) {
-    (void)among; (void)count;
+                                  int number, dem_real dist, dem_vec3 normal, dem_vec3 *axis,
+                                  dem_real *along) {
+    (void)among; (void)count; (void)normal; (void)along;
     axis->z = 1;
     return number < wall->element_count ? 0 : dist;
 }
 /* Faces do not turn the normal; an edge does, about itself; a corner, every way. */
-static dem_real demi_mesh_bend(const demi_wall *wall, const int32_t *among, int count, int number,
-                               dem_real dist, dem_vec3 *axis) {
+static dem_real demi_mesh_bend(const demi_wall *wall, const int32_t *among, int count,
+                               int number, dem_real dist, dem_vec3 normal, dem_vec3 *axis,
+                               dem_real *along) {
     const int edges = wall->element_count, corners = edges + wall->edge_count;
     int k, q, found = 0;
+    (void)normal; (void)along;
     if (number < edges) return 0;
     for (k = 0; k < count && !found && (number < corners ||
          number >= corners + wall->vertex_count); k++) {
@@ -10178,14 +10368,37 @@ static dem_real demi_mesh_bend(const demi_wall *wall, const int32_t *among, int 
     }
     return dist;
 }
+/* Rows turn it about themselves, crossings as points do, round rims about the hole, too: with n_h
+   the normal's part in the plate, rho the centre's distance from the hole's axis, by n_h/rho. */
+static dem_real demi_sieve_bend(const demi_wall *wall, const int32_t *among, int count, int number,
+                                dem_real dist, dem_vec3 normal, dem_vec3 *axis, dem_real *along) {
+    const dem_sieve_desc *s = &wall->sieve;
+    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+    const int ring = number == DEMI_SIEVE_RIM, across = number & 1;
+    const dem_real flat = DEMI_SQRT(normal.x*normal.x + normal.y*normal.y);
+    (void)among; (void)count;
+    if (number == DEMI_SIEVE_FACE) return 0;
+    if (ring || s->kind == DEM_SIEVE_ROUND) {
+        const dem_real R = ring ? s->radius : s->aperture/2;
+        const dem_real rho = ring ? R + flat*dist : across ? flat*dist - R : R - flat*dist;
+        if (!(flat > 0)) return 0;
+        *axis = demi_v(-normal.y/flat, normal.x/flat, 0);
+        *along = (ring || across ? -flat : flat)/DEMI_MAX(rho, R/10);
+    } else if (number != DEMI_SIEVE_RIM + 1 && !(number & DEMI_SIEVE_CROSS)) {
+        if (number & DEMI_SIEVE_ABOVE) return 0;
+        *axis = number & DEMI_SIEVE_SET ? demi_v(1, 0, 0) : demi_v(0, 1, 0);
+    }
+    return wires && !(number & DEMI_SIEVE_CROSS) ? dist + s->bar/2 : dist;
+}
 #define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND) BEND,
 static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
 /* By the table of kinds. */
 static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
                            demi_kept *c) {
     dem_vec3 axis = demi_v(0, 0, 0);
+    const dem_vec3 normal = demi_unrotate(wall->pose.rotation, c->normal);
     if (!demi_bends[wall->kind]) return;
-    dist = demi_bends[wall->kind](wall, among, count, c->element, dist, &axis);
+    dist = demi_bends[wall->kind](wall, among, count, c->element, dist, normal, &axis, &c->along);
     if (!(dist < 0 || dist > 0)) return;
     c->bend = -1/dist;
     c->axis = demi_rotate(wall->pose.rotation, axis);
@@ -10328,15 +10541,25 @@ static int demi_touch(dem_world *w) {
 
 /* --- respond --- */
 
+/* What a body adds to 1/M, 1/kg, where a stiffness follows masses: as light as any contact may find
+   it, which is what the time step is chosen for. */
+static double demi_give_at_most(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return (double)w->bodies.inv_mass[body]/(shape ? shape->light : 1);
+}
 /* Coefficients of a contact, as yet without its slope. */
 static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out) {
     const demi_wall *wall = k->b < 0 ? &w->walls[k->wall] : 0;
     const int grains = wall && demi_wall_is(wall, DEMI_BALLS);
     /* there a grain of a wall has mass */
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
+    const double half = mill && grains ? 0.5 : 1, m = half*(double)k->m_eff;
+    const int shaped = demi_shape_of(w, k->a) || (k->b >= 0 && demi_shape_of(w, k->b));
+    const double give = shaped ? demi_give_at_most(w, k->a) +
+        (k->b >= 0 ? demi_give_at_most(w, k->b) : 0) : 0;
     demi_coefficients(w, w->bodies.material[k->a] - 1,
-                      wall ? wall->material : w->bodies.material[k->b] - 1, (double)k->r_eff,
-                      (double)k->m_eff/(mill && grains ? 2 : 1), wall && !grains, out);
+                      wall ? wall->material : w->bodies.material[k->b] - 1, (double)k->r_eff, m,
+                      shaped ? half/give : m, wall && !grains, out);
 }
 /* Velocity of a body at an arm: now, or its mean over the step. */
 static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int body, dem_vec3 arm) {
@@ -12162,7 +12385,7 @@ static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, in
         if (!fixed) m_eff = 1/(1/m + 1/demi_sphere_mass(w, other, partner));
         r_eff = r*partner/(r + partner);
     }
-    demi_coefficients(w, i, other, r_eff, m_eff, wall >= 0, coef);
+    demi_coefficients(w, i, other, r_eff, m_eff, m_eff, wall >= 0, coef);
     if (w->desc.law && w->desc.law_stiffness > 0)
         t = DEMI_PI*sqrt(m_eff/(double)w->desc.law_stiffness);
     else {
@@ -12789,7 +13012,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
         double deep[2] = {0, 0}, force, kn;
         dem_real coef[DEMI_COEFS];
         if (!(r > 0)) continue;
-        demi_coefficients(w, i, i, r/2, m, 0, coef);
+        demi_coefficients(w, i, i, r/2, m, m, 0, coef);
         kn = (double)coef[DEMI_KN];
         force = area > 0 && !w->desc.planar ? 4*r*r*mass*g/area : 0;
         deep[0] = hertz ? pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;

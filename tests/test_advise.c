@@ -75,14 +75,54 @@ static double advise_mean(dem_world *world, double seconds, const dem_observable
     }
     return sum;
 }
-/* Runs to `begin`, is advised, follows, and runs longer beside the reference. */
+/* The scene with every grain up to a millionth of a radius off, from the beginning. */
+static dem_world *advise_again(advise_scene scene, const dem_trial *t, uint64_t seed) {
+    dem_world *world = advise_world(scene, t->dt, t->stiffness);
+    int i;
+    if (!strcmp(t->name, "Mindlin's friction"))        /* the only laws that are tried here */
+        world->desc.tangent_law = DEM_TANGENT_MINDLIN_RESCALED;
+    if (!strcmp(t->name, "linear springs")) {
+        world->desc.normal_law = DEM_NORMAL_LINEAR;
+        world->desc.impact_speed = 1;
+    }
+    for (i = 0; i < dem_bodies_get(world).count; i++) {
+        const dem_body body = dem_bodies_id(world, i);
+        dem_body_state s = scene_state(world, body);
+        const double off = 1e-6*(double)s.radius;
+        const dem_vec3 d = scene_at(&seed, 2*off, -off, 2*off, -off, 0, 0);
+        s.position = demi_add(s.position, d);
+        CHECK_EQ(dem_body_set(world, body, &s), DEM_OK);
+    }
+    return world;
+}
+/* Mean of an observable over runs from different seeds, and the variance of that mean. */
+static void advise_runs(advise_scene scene, const dem_trial *t, double begin, double seconds,
+                        const dem_observable *o, double *mean, double *variance) {
+    enum { runs = 3 };
+    double sum = 0, sum2 = 0;
+    int k;
+    for (k = 0; k < runs; k++) {
+        dem_world *world = advise_again(scene, t, (uint64_t)k + 1);
+        double m;
+        CHECK(!(begin > 0) || dem_world_run(world, begin, 0, 0) == DEM_OK);
+        m = advise_mean(world, seconds, o);
+        sum += m;
+        sum2 += m*m;
+        dem_world_destroy(world);
+    }
+    *mean = sum/runs;
+    *variance = (sum2/runs - *mean**mean)/(runs - 1);
+}
+/* Runs to `begin`, is advised, follows: runs longer beside the reference, each from 3 seeds, since one run is off
+   by chance. Followed is the largest step among trials that promise enough: the cheapest by seconds, which the
+   advice names, may be another where the machine is busy. */
 static void advise_follow(advise_scene scene, double begin, double duration, double tolerance,
                           const dem_observable *observable) {
     dem_world *world = advise_world(scene, 0, 1);
     dem_advise_desc desc = DEM_ADVISE_DESC;
     dem_trials trials;
-    double mean[2];
-    int k;
+    double right, chance, mean, variance;
+    int k, good = 0;
     CHECK(!(begin > 0) || dem_world_run(world, begin, 0, 0) == DEM_OK);
     desc.duration = duration;
     desc.budget = 1e9;
@@ -93,34 +133,25 @@ static void advise_follow(advise_scene scene, double begin, double duration, dou
     dem_world_destroy(world);
     CHECK(trials.trial[trials.best].promise <= tolerance);
     CHECK(!strcmp(trials.trial[trials.reference].name, "step quartered"));
-    for (k = 0; k < 2; k++) {
-        const dem_trial *t = &trials.trial[k ? trials.reference : trials.best];
-        world = advise_world(scene, t->dt, t->stiffness);
-        if (!strcmp(t->name, "Mindlin's friction"))    /* the only laws that are tried here */
-            world->desc.tangent_law = DEM_TANGENT_MINDLIN_RESCALED;
-        if (!strcmp(t->name, "linear springs")) {
-            world->desc.normal_law = DEM_NORMAL_LINEAR;
-            world->desc.impact_speed = 1;
-        }
-        CHECK(!(begin > 0) || dem_world_run(world, begin, 0, 0) == DEM_OK);
-        mean[k] = advise_mean(world, 2*duration, observable);
-        dem_world_destroy(world);
-    }
-    CHECK(fabs(mean[0] - mean[1]) <= tolerance*fabs(mean[1]));
+    for (k = 0; k < trials.count; k++)
+        if (trials.trial[k].promise <= tolerance && trials.trial[k].dt > trials.trial[good].dt) good = k;
+    advise_runs(scene, &trials.trial[trials.reference], begin, 2*duration, observable, &right, &chance);
+    advise_runs(scene, &trials.trial[good], begin, 2*duration, observable, &mean, &variance);
+    CHECK_NEAR(mean, right, tolerance*fabs(right) + 2*sqrt(chance + variance));    /* two standard errors */
 }
 
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("advice on grains that fall into a heap, followed, holds in a run twice as long: the height within 5 %") {
+    TEST("advice on grains that fall into a heap, followed, holds in runs twice as long: the height within 5 %") {
         const dem_observable height = {"height", "m", dem_observe_height, 0, 0};
         advise_follow(ADVISE_PILE, 0, 0.12, 0.05, &height);
     }
-    TEST("advice on a gas that cools, followed, holds in a run twice as long: the energy within 5 %") {
+    TEST("advice on a gas that cools, followed, holds in runs twice as long: the energy within 5 %") {
         const dem_observable kinetic = {"kinetic", "J", dem_observe_kinetic, 0, 0};
         advise_follow(ADVISE_GAS, 0.005, 0.02, 0.05, &kinetic);
     }
-    TEST("advice on a slice of a mill, followed, holds in a run twice as long: the power within 20 %") {
+    TEST("advice on a slice of a mill, followed, holds in runs twice as long: the power within 20 %") {
         int asked = 0;
         const dem_observable power = {"power", "W", advise_power, &asked, 0};
         advise_follow(ADVISE_MILL, 0.5, 1, 0.2, &power);

@@ -528,7 +528,7 @@ int main(int argc, char **argv) {
                 dem_real coef[DEMI_COEFS];
                 dem_pair_get(world, m[i], m[j], &pair);
                 CHECK_NEAR(pair.friction, (dem_real)table[i][j], 0);
-                demi_coefficients(world, i, j, 1, 1, 0, coef);
+                demi_coefficients(world, i, j, 1, 1, 1, 0, coef);
                 CHECK_NEAR(coef[DEMI_MU_STATIC], (dem_real)table[i][j], 0);
             }
         pair.friction_static = DEM_R(0.05);                    /* below the sliding one */
