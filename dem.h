@@ -10413,6 +10413,20 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
         return r*sqrt(q/(r + q));
     return r;
 }
+/* A sheet, which pushes to both sides, pushes a ball on once its centre is through. Then contact c
+   has turned round within a step, and nothing is left of the one before: its overlap is what is
+   seen from there. old: those the body had; fresh: all it has with this wall now. */
+static void demi_kept_through(const demi_kept *old, int olds, const demi_kept *fresh, int count,
+                              demi_kept *c) {
+    int e, i;
+    for (e = 0; e < olds && c->deep < 1; e++) {
+        if (old[e].b >= 0 || old[e].wall != c->wall || old[e].part_a != c->part_a ||
+            old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5))
+            continue;
+        for (i = 0; i < count && !(demi_dot(fresh[i].normal, old[e].normal) > 0); i++);
+        if (i == count) c->deep = 2 - c->deep;
+    }
+}
 /* Contacts of one part with one wall, from candidates first .. last - 1 of its body: all of them,
    then what each continues. */
 static void demi_kept_on_wall(dem_world *w, int d, int first, int last, int k,
@@ -10449,6 +10463,7 @@ static void demi_kept_on_wall(dem_world *w, int d, int first, int last, int k,
     for (i = 0, c = fresh; i < count; i++, c++) {
         c->from = demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element);
         if (c->from < 0 && olds) c->from = demi_kept_slid(w, d, old, olds, fresh, count, c);
+        if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* under way: to the end */
             if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k && !(old[e].overlap > 0))
@@ -12657,16 +12672,62 @@ static double demi_fastest(const dem_world *w) {
                                                    demi_at(w->bodies.vel + 4*i)));
     return sqrt(most);
 }
+/* m/s, how fast a body may be in the next step by the forces that act now. */
+static double demi_fastest_next(const dem_world *w) {
+    double most = 0;
+    int i, k;
+    for (i = 0; i < w->bodies.count; i++) {
+        const double inv = (double)w->bodies.inv_mass[i];
+        const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
+                             (double)w->desc.gravity.z};
+        double a2 = 0;
+        for (k = 0; k < 3; k++) a2 += pow((double)w->bodies.force[4*i + k]*inv + g[k], 2);
+        if (inv > 0)
+            most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.vel + 4*i)) +
+                            sqrt(a2)*(double)w->clock.dt);
+    }
+    return most;
+}
 /* Refuses a step in which the fastest moves farther than the smallest radius: it would pass others
-   and walls unseen. */
-static dem_result demi_speed_check(dem_world *w, double speed) {
+   and walls unseen. speed: a bound, m/s; named: 1 where w has bodies to look for it. */
+static dem_result demi_speed_check(dem_world *w, double speed, int named) {
     const double radius = (double)w->effects.radius_min, dt = (double)w->clock.dt;
+    double most = 0;
+    char who[80] = "a body";
+    int i;
     if (!(speed*dt > radius && radius > 0)) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: a body at %.3g m/s moves "
-                     "%.3g radii of the smallest grain (%g m) in a step of %g s, must be at most "
-                     "1: it would pass others and walls unseen; use dt = 0 or at most %.2g s, or "
-                     "look for what made it so fast", (unsigned long long)w->clock.steps, speed,
-                     speed*dt/radius, radius, dt, 0.1*radius/speed);
+    for (i = 0; i < w->bodies.count && named; i++) {
+        const double v = (double)demi_length(demi_at(w->bodies.vel + 4*i));
+        if (v <= most) continue;
+        most = v;
+        snprintf(who, sizeof who, "body %u, the fastest, is at %.3g m/s and",
+                 (unsigned)w->bodies.slot[i] + 1, v);
+    }
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: %s may reach %.3g m/s in "
+                     "this step: it moves %.3g radii of the smallest grain (%g m) in a step of %g "
+                     "s, must be at most 1: it would pass others and walls unseen; use at most "
+                     "%.2g s, or look for what made it so fast",
+                     (unsigned long long)w->clock.steps, who, speed, speed*dt/radius, radius, dt,
+                     0.1*radius/speed);
+}
+/* The same of walls that are thin: planes and cylinders cannot be passed. */
+static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) {
+    int i;
+    for (i = 0; i < w->wall_count; i++) {
+        const demi_wall *wall = &w->walls[i];
+        const int kind = wall->kind;
+        double speed;
+        if (kind == DEMI_WALL_NONE || kind == DEMI_WALL_PLANE || kind == DEMI_WALL_CYLINDER ||
+            wall->motion.kind == DEM_MOTION_FIXED || !(radius > 0)) continue;
+        speed = demi_wall_speed(wall);
+        if (!(speed*dt > radius)) continue;
+        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: wall %d moves at up "
+                         "to %.3g m/s, %.3g radii of the smallest grain (%g m) in a step of %g s, "
+                         "must be at most 1: it would pass grains unseen; use at most %.2g s, or a "
+                         "slower wall", (unsigned long long)w->clock.steps, i + 1, speed,
+                         speed*dt/radius, radius, dt, 0.1*radius/speed);
+    }
+    return DEM_OK;
 }
 /* What presses has been looked at: again more and more rarely while the scene stays, at least every
    thousand steps. */
@@ -12692,8 +12753,13 @@ static dem_result demi_dt_check(dem_world *w) {
     double limit;
     int worst = 0;
     if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
-    result = demi_speed_check(w, w->margin.last_change + (w->clock.steps == w->clock.press_since
-                                                          ? demi_fastest(w) : w->booked.speed_max));
+    /* after a change of the scene the last kick may be that of a body which is gone */
+    result = demi_speed_check(w, w->clock.steps == w->clock.press_since
+                              ? DEMI_MIN(demi_fastest(w) + w->margin.last_change,
+                                         demi_fastest_next(w))
+                              : w->margin.last_change + w->booked.speed_max, 1);
+    if (result == DEM_OK)
+        result = demi_wall_speed_check(w, (double)w->effects.radius_min, (double)w->clock.dt);
     if (result != DEM_OK || w->clock.steps < w->clock.press_due) return result;
     limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2/share : 1), &worst);
     if (limit < 0) return demi_no_memory(w, "dem_world_step");
@@ -13281,10 +13347,36 @@ static void demi_forces(dem_world *w) {
     if (w->desc.ledger) demi_ledger_book(w);
 }
 
+/* Which two bodies overlap most, of the smaller radius. Answers by how much. */
+static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
+    double most = 0;
+    int d, k;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        const demi_kept *kept = demi_kept_of(w, d);
+        for (k = 0; k < domain->near_end; k++) {
+            const int at = d*w->near.stride + k, a = w->near.a[at], b = w->near.b[at];
+            const dem_real *p = w->bodies.pos + 4*a, *q = w->bodies.pos + 4*b;
+            const dem_vec3 r = demi_add(demi_sub(demi_at(q), demi_at(p)),
+                                        demi_at(w->image_shift + w->near.image[at]));
+            const double deep = (double)((p[3] + q[3] - demi_length(r))/DEMI_MIN(p[3], q[3]));
+            if (k >= domain->near_own && k < domain->near_cross) continue;
+            if (deep > most) { most = deep; *first = a; *second = b; }
+        }
+        for (k = 0; k < domain->kept; k++)
+            if (kept[k].b >= 0 && (double)kept[k].deep > most) {
+                most = (double)kept[k].deep;
+                *first = kept[k].a;
+                *second = kept[k].b;
+            }
+    }
+    return most;
+}
+
 /* Names the body that went wrong. */
 static dem_result demi_unstable(dem_world *w) {
-    int i, d;
-    double deepest = 0;
+    int i, d, first = 0, second = 0;
+    double deepest;
     for (i = 0; i < w->bodies.count; i++)
         if (!demi_finite3(demi_at(w->bodies.pos + 4*i)) ||
             !demi_finite3(demi_at(w->bodies.vel + 4*i)) ||
@@ -13297,11 +13389,10 @@ static dem_result demi_unstable(dem_world *w) {
                              "law, force field or motion of your own divided by zero, or dt "
                              "= %g s is too large", (unsigned long long)w->clock.steps,
                              (unsigned)w->bodies.slot[i] + 1, (double)w->clock.dt);
-    for (d = 0; d < w->domain_count; d++) deepest = DEMI_MAX(deepest, w->domains[d].overlap);
     for (d = 0; d < w->domain_count; d++)
         for (i = 0; i < w->domains[d].kept; i++) {
             const demi_kept *c = demi_kept_of(w, d) + i;
-            if (c->b < 0 && c->deep > 1)
+            if (c->b < 0 && c->deep >= 1)
                 return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u "
                                  "overlaps wall %d by %.3g of its "
                                  "radius, must be below 1; it started inside the wall, hit it too "
@@ -13310,11 +13401,27 @@ static dem_result demi_unstable(dem_world *w) {
                                  (unsigned)w->bodies.slot[c->a] + 1, (int)c->wall + 1,
                                  (double)c->deep, (double)w->clock.dt);
         }
-    return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: two grains overlap by %.3g "
-                     "of the smaller radius, must "
-                     "be below 1; they started inside each other, met too fast for dt = %g s, or "
-                     "the material is too soft",
-                     (unsigned long long)w->clock.steps, deepest, (double)w->clock.dt);
+    deepest = demi_deepest_pair(w, &first, &second);
+    if (!(deepest >= 1)) {
+        double most = 0;
+        for (i = 0; i < w->bodies.count; i++)
+            for (d = 0; d < 3; d++) {
+                const double v = fabs((double)w->bodies.vel[4*i + d]);
+                const double f = fabs((double)w->bodies.force[4*i + d]);
+                const double size = DEMI_MAX(v, f*(double)w->bodies.inv_mass[i]);
+                if (size > most) { most = size; first = i; }
+            }
+        return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its force, "
+                         "speed or place is beyond what can be calculated with; a law, force "
+                         "field or motion of your own answered a huge number, or dt = %g s is too "
+                         "large", (unsigned long long)w->clock.steps,
+                         (unsigned)w->bodies.slot[first] + 1, (double)w->clock.dt);
+    }
+    return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: bodies %u and %u overlap "
+                     "by %.3g of the smaller radius, must be below 1; they started inside each "
+                     "other, met too fast for dt = %g s, or the material is too soft",
+                     (unsigned long long)w->clock.steps, (unsigned)w->bodies.slot[first] + 1,
+                     (unsigned)w->bodies.slot[second] + 1, deepest, (double)w->clock.dt);
 }
 
 /* Bodies whose centre left through an outflow boundary are taken out. */
@@ -13441,14 +13548,20 @@ static dem_result demi_step_move(dem_world *w) {
     }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
+        dem_pose pose = wall->pose, mid = wall->mid;
         double speed;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
-        demi_wall_pose_at(wall, w->clock.time, &wall->pose);
-        demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &wall->mid);
-        if (!demi_pose_finite(&wall->pose) || !demi_pose_finite(&wall->mid))
+        demi_wall_pose_at(wall, w->clock.time, &pose);
+        demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &mid);
+        if (!demi_pose_finite(&pose) || !demi_pose_finite(&mid)) {
+            w->stage.forces_valid = 0;          /* the wall stays where it was, finite */
+            w->margin.walls_gone = 1e300;
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: the motion of wall "
                              "%d gave a pose that is not finite at %g s; check the motion function",
                              (unsigned long long)w->clock.steps, i + 1, w->clock.time);
+        }
+        wall->pose = pose;
+        wall->mid = mid;
         speed = demi_wall_speed(wall);
         if (speed < 0) w->margin.walls_gone = 1e300;   /* no bound: look anew */
         else w->wall_fastest = DEMI_MAX(w->wall_fastest, speed);
@@ -13509,7 +13622,10 @@ static dem_result demi_step_once(dem_world *w) {
 static dem_result demi_refresh(dem_world *w) {
     dem_result result;
     demi_finish(w);
-    if (w->stage.pairs_changed && !demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+    if (w->stage.pairs_changed) {               /* half steps were of the old forces, and effects */
+        w->stage.primed = 0;
+        if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+    }
     if (!w->stage.list_valid) {
         result = demi_rebuild(w, "dem_world_step");
         if (result != DEM_OK) return result;
@@ -18084,7 +18200,11 @@ static dem_result demi_slabs_dt_check(dem_slabs *s) {
         h->stage.primed = h->stage.primed && w->stage.primed;
         return result;
     }
-    result = demi_speed_check(h, h->booked.speed_max + w->margin.last_change);
+    result = demi_speed_check(h, h->booked.speed_max + w->margin.last_change, 0);
+    if (result == DEM_OK) {
+        result = demi_wall_speed_check(w, (double)h->effects.radius_min, (double)h->clock.dt);
+        if (result != DEM_OK) memcpy(h->error, w->error, sizeof h->error);
+    }
     return result != DEM_OK || h->clock.steps < h->clock.press_due ? result : demi_slabs_press(s);
 }
 
