@@ -25,6 +25,7 @@ STUDIES  := $(filter-out $(LESSONS),$(patsubst examples/%.c,build/%,$(wildcard e
 FUZZERS  := $(patsubst tests/%.c,build/%,$(wildcard tests/fuzz_*.c))
 BENCHES  := $(patsubst bench/%.c,build/%,$(wildcard bench/*.c))
 BENCH_ALSO := $(if $(wildcard bench/bench.c),build/bench_single build/bench_O2)
+ACCURACY_ALSO := $(if $(wildcard bench/accuracy.c),build/accuracy_single build/accuracy_one_domain)
 
 hash := \#
 
@@ -86,7 +87,7 @@ mpi: build/dem.o ## build examples/mpi and run them on 1, 2 and 3 processes, whe
 	        grep '^hash' build/mill_mpi.$$n; done; cmp build/out/mill_mpi_1/grains.svg build/out/mill_mpi_2/grains.svg; \
 	    test "$$(grep '^hash' build/mill_mpi.1)" = "$$(grep '^hash' build/mill_mpi.2)"; fi
 
-all: $(STUDIES) $(LESSONS) build/tests $(ALONE) $(BENCHES) $(BENCH_ALSO) ## build everything, run nothing
+all: $(STUDIES) $(LESSONS) build/tests $(ALONE) $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) ## build everything, run nothing
 
 check: ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
 	@JOBS=$(JOBS) sh tests/check.sh
@@ -109,7 +110,7 @@ bench-parallel: build/parallel ## threads, sizes, searches beside published figu
 bench-peers: $(BENCHES) $(BENCH_ALSO) ## the same scenes in LAMMPS and LIGGGHTS, where those are installed
 	@sh bench/peers.sh
 
-bench-pages: $(BENCHES) $(BENCH_ALSO) build/screener ## measure anew what docs/ tells of speed; PAGES=roofline: one page
+bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener ## measure anew what docs/ tells of speed; PAGES=roofline: one page
 	@sh bench/pages.sh $(PAGES)
 
 fuzz: ## FUZZ_SECONDS (600) per reader, and for programs of calls, under clang's fuzzer and sanitizers
@@ -170,6 +171,11 @@ $(LESSONS) $(STUDIES) build/write_files: build/dem.o
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'
 build/bench_single: bench/bench.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags
 	$(COMPILE) -DDEM_REAL=float -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP)) -DDEM_REAL=float"' -o $@ $< $(LINK)
+# what single precision, and the same bits for any number of threads, cost: see bench/accuracy.c
+build/accuracy_single: OTHER = -DDEM_REAL=float -DBENCH_VARIANT='"single"'
+build/accuracy_one_domain: OTHER = -DDEM_DOMAIN_BODIES=100000000 -DBENCH_VARIANT='"one_domain"'
+$(ACCURACY_ALSO): bench/accuracy.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags
+	$(COMPILE) $(OTHER) -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"' -o $@ $< $(LINK)
 build/bench_O2: bench/bench.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags
 	$(CC) -std=c99 -O2 $(CPPFLAGS) -I. -DBENCH_LABEL='".O2"' -DBENCH_FLAGS='"-std=c99 -O2 $(OMP)"' -o $@ $< $(LINK)
 ifeq ($(wildcard examples/mill.c),)

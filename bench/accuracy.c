@@ -1,197 +1,153 @@
-/* accuracy.c - what a time step buys: the error of an elastic bounce, and of a heap of them, for every integrator.
-   MIT licence.
+/* accuracy.c - what accuracy costs: work-precision diagrams, error against processor time. MIT licence.
 
-   build/accuracy       seconds; results in build/out/accuracy, a table and two pictures among them
+   build/accuracy                      all diagrams, some 30 minutes; build/out/accuracy gets a page, pictures, CSV
+   build/accuracy --list               their names
+   build/accuracy --diagram hopper     one of them (or several: the names that begin so)
+   build/accuracy --quick              coarse: to try it out
 
-   The bounce: a bead of 1.5 mm meets a plane head on at 1 m/s, Hertz, restitution 1: it must leave as fast as it
-   came. The error is |leaving energy/arriving energy - 1|, root mean square over 16 instants of first touch within
-   a step. Through the public calls only.
-   The price: time of a bead and step with each integrator on the bed of bench/scenes.h, in turns. Cost of a bounce
-   is that times the steps it takes, in units of velocity Verlet's at 50 steps a contact, the library's own choice.
-   The long run: 1000 such bounces between two planes, at 50 steps a contact: does energy drift? */
+   A diagram is a row of the table below: a function that fills in points {cost, error, bar, label}. Cost is processor
+   time over that of the library's own setting; errors are against a converged run of our own, or an exact answer. Of
+   what depends on chance several seeds are run, and what lies below two standard errors counts as equal. Efficient
+   points are ringed and joined: nothing else is as near and as cheap.
+
+   Softening has diagrams of its own: by how much an observable changes when Young's modulus falls, and where that
+   passes 1, 2 and 5 %.
+
+   The same source compiled otherwise (-DBENCH_VARIANT='"single"' -DDEM_REAL=float, or '"one_domain"' and
+   -DDEM_DOMAIN_BODIES=100000000) runs the rows that have a part in it and leaves points.csv in a folder of its own;
+   the ordinary program draws those too when it finds them. */
 #define DEM_IMPLEMENTATION
 #include "dem.h"
 #include "examples/study.h"
 #include "bench/measure.h"
 #include "bench/scenes.h"
+#include "bench/accuracy_points.h"
+#include "bench/accuracy_scenes.h"
+#include "bench/accuracy_variants.h"
+#include "bench/accuracy_impacts.h"
+#include "bench/accuracy_beds.h"
+#include "bench/accuracy_studies.h"
 
-enum { SCHEMES = 5, STEPS = 6, PHASES = 16, TURNS = 5, BOUNCES = 1000 };
-static const struct { dem_integrator which; const char *name; } schemes[SCHEMES] = {
-    {DEM_VELOCITY_VERLET, "velocity_verlet"}, {DEM_LEAPFROG, "leapfrog"}, {DEM_POSITION_VERLET, "position_verlet"},
-    {DEM_SYMPLECTIC_EULER, "symplectic_euler"}, {DEM_FORWARD_EULER, "forward_euler"}};
-static const double steps_of_contact[STEPS] = {20, 30, 50, 100, 200, 400};
-static FILE *page;
+typedef struct row {
+    const char *name, *title, *x_label, *y_label;
+    void (*fill)(points *p);         /* work and precision; null: softening, with the next three            */
+    scene_fn scene;
+    int seeds, what;
+    int variant;                     /* 1: other builds have a part in it                                    */
+    const char *about;               /* for the page                                                         */
+} row;
 
-/* A bead between planes at z = 0 and, when gap > 0, z = 2 r + gap. */
-static dem_world *bounce_world(dem_integrator which, double dt, double height, double gap,
-                               double restitution) {
-    dem_world_desc desc = DEM_WORLD_DESC;
-    dem_material_desc m = DEM_MATERIAL_DESC;
-    dem_material glass;
-    dem_body body;
-    dem_body_state state;
-    dem_world *world;
-    int ok;
-    desc.integrator = which;
-    desc.dt = (dem_real)dt;
-    desc.allow_large_dt = 1;     /* twenty steps may be just too few by rounding */
-    desc.impact_speed = 1;
-    desc.threads = 1;
-    world = dem_world_create(&desc);
-    if (!world) { study_fail("bounce: %s", dem_create_error(&desc)); return 0; }
-    m.density = (dem_real)BENCH_DENSITY;
-    m.young = (dem_real)BENCH_YOUNG;
-    m.poisson = (dem_real)BENCH_POISSON;
-    m.restitution = (dem_real)restitution;
-    glass = dem_material_add(world, &m);
-    body = dem_sphere_add(world, glass, (dem_real)BENCH_RADIUS, dem_vec3_make(0, 0, (dem_real)(BENCH_RADIUS + height)));
-    ok = dem_body_get(world, body, &state) == DEM_OK;
-    state.velocity.z = -1;
-    ok = ok && dem_body_set(world, body, &state) == DEM_OK &&
-         dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id &&
-         (gap <= 0 || dem_plane_add(world, glass, dem_vec3_make(0, 0, (dem_real)(2*BENCH_RADIUS + gap)),
-                                    dem_vec3_make(0, 0, -1)).id);
-    if (ok) return world;
-    study_fail("bounce: %s", dem_world_error(world));
-    dem_world_destroy(world);
-    return 0;
-}
-static double contact_time(void) {
-    dem_world *world = bounce_world(DEM_VELOCITY_VERLET, 0, 1e-4, 0, 1);
-    dem_advice advice;
-    double t = 0;
-    if (world && dem_step_advice(world, &advice) == DEM_OK) t = (double)advice.contact_time;
-    dem_world_destroy(world);
-    return t;
-}
-static double kinetic(const dem_world *world) { return dem_totals_get(world).kinetic; }
+#define COST "cost (the library's own setting = 1)"
+#define IMPACT "cost of the impact (library's own: velocity Verlet, t_c/50 = 1)"
+static const row rows[] = {
+    {"restitution", "Head-on impact, restitution 0.66", IMPACT, "error of restitution", fill_restitution, 0, 0, 0, 0,
+     "A bead of 1.5 mm meets a plane at 1 m/s (Hertz); root mean square over 16 instants of first touch in a step."},
+    {"energy", "Head-on impact, elastic", IMPACT, "error of energy", fill_energy, 0, 0, 0, 0,
+     "The same at restitution 1."},
+    {"oblique", "Oblique impacts: friction law and slider", IMPACT, "error of leaving velocity and spin", fill_oblique,
+     0, 0, 0, 0,
+     "Aluminium oxide, 2.5 mm, 3.9 m/s, 5 to 60 degrees, e = 0.66, mu = 0.2; against each law's converged answer."},
+    {"oblique_mfix", "Oblique impacts of MFiX DEM05", IMPACT, "error of leaving velocity and spin", fill_oblique_mfix,
+     0, 0, 0, 0, "Linear spring without damping, mu = 0.092; dashed: the published figures of MFiX."},
+    {"ball", "A ball that bounces for 10 s", COST, "largest change of height", fill_ball, 0, 0, 0, 1,
+     "MFiX DEM02: falls 0.4 m, restitution 1, kn = 5e4 N/m."},
+    {"top", "A free top after 10 s", "cost (SPIRAL at 0.01 s = 1)", "error of orientation, rad", fill_top, 0, 0, 0, 1,
+     "Principal moments 1, 2, 3, spin (1, 1, 1); exact answer by Jacobi's elliptic functions."},
+    {"gas_energy", "Elastic gas: energy", COST, "largest change of energy", fill_gas_energy, 0, 0, 0, 1,
+     "400 smooth balls, 10 % solid, some 40 collisions each."},
+    {"gas_pressure", "Elastic gas: pressure", COST, "error of pressure", fill_gas_pressure, 0, 0, 0, 0,
+     "The same gas: p V/(N T) by the virial, sampled five times a contact."},
+    {"bed_stress", "Settled bed: force on the floor", COST, "error of the floor's force", fill_bed_stress, 0, 0, 0, 0,
+     "399 balls of three sizes fall into a periodic box of six diameters; 0.8 s later, against their weight, exactly."},
+    {"bed_porosity", "Settled bed: solid fraction", COST, "error of the solid fraction", fill_bed_porosity, 0, 0, 0, 0,
+     "The same bed: solid fraction of a column with the same centre of mass."},
+    {"bed_energy", "Settled bed: kinetic energy left", COST, "kinetic energy over m g d of one ball", fill_bed_energy,
+     0, 0, 0, 0, "The same bed."},
+    {"pile", "Pile on a shelf: slope", COST, "error of the slope", fill_pile, 0, 0, 0, 0,
+     "450 discs on a shelf whose front is taken away; slope of the triangle with the same centre of mass, 1.2 s "
+     "later."},
+    {"slow", "Slow drum: angle of repose", COST, "error of the angle", fill_slow, 0, 0, 0, 0,
+     "210 discs in a drum with small bars, omega^2 R/g = 0.023; mean angle of the centre of mass."},
+    {"hopper", "Hopper: rate of discharge", COST, "error of the rate", fill_hopper, 0, 0, 0, 1,
+     "480 discs, a slot of eight diameters; while the share that is out rises from 0.15 to 0.8."},
+    {"mill", "Mill: power", COST, "error of the power", fill_mill, 0, 0, 0, 0,
+     "210 discs in a drum with eight bars at 70 % of critical speed."},
+    {"sieve", "Shaken sieve: share that is through", COST, "error of the share", fill_sieve, 0, 0, 0, 0,
+     "210 balls of 0.5, 0.7 and 0.85 holes; against the plate with square holes. Balls that are through cost less."},
+    {"ellipsoids", "Elastic gas of ellipsoids: what counts as overlap", COST, "largest change of energy",
+     fill_spheroids, 0, 0, 0, 0, "120 ellipsoids 2 : 1 : 1, smooth, 5 % solid."},
+    {"clusters", "An ellipsoid made of spheres: rebound", "cost of a bed (the ellipsoid itself = 1)",
+     "error of the leaving velocity", fill_cluster_rebound, 0, 0, 0, 0,
+     "n spheres inside an ellipsoid 2 : 1 : 1, with its mass; 16 tilts, against a rigid ellipsoid."},
+    {"cluster_packing", "An ellipsoid made of spheres: packing", "cost of a bed (the ellipsoid itself = 1)",
+     "error of the solid fraction", fill_cluster_packing, 0, 0, 0, 0, "60 of them fall into a box of six widths."},
+    {"skin", "Skin and search: what they cost", "skin over radius", "time of a step (library's choice = 1)", fill_skin,
+     0, 0, 0, 0, "18,000 beads in a drum: the same contacts whatever the skin."},
+    {"soft_angle", "Softening: angle of repose of the slow drum", "", "change of the angle, %", 0, scene_slow, 4, 1, 0,
+     "The slow drum above."},
+    {"soft_hopper", "Softening: rate of discharge of the hopper", "", "change of the rate, %", 0, scene_hopper, 7, 0, 0,
+     "The hopper above."},
+    {"soft_mill", "Softening: power of the mill", "", "change of the power, %", 0, scene_mill, 4, 0, 0,
+     "The mill above."},
+    {"soft_sizes", "Softening: segregation in a drum", "", "change of the segregation, %", 0, scene_sizes, 4, 2, 0,
+     "45 large discs and 180 of half the size, 2.5 to 5 s after the start; mean distance of small ones from the middle "
+     "of the charge over that of large ones."}};
+enum { ROWS = (int)(sizeof rows/sizeof *rows) };
 
-/* Relative error of energy (restitution 1) or of restitution, root mean square over instants of first touch. */
-static double bounce_error(dem_integrator which, double tc, double steps, double restitution) {
-    const double dt = tc/steps;
-    double sum = 0;
-    int phase;
-    for (phase = 0; phase < PHASES; phase++) {
-        dem_world *world = bounce_world(which, dt, dt*(3 + (phase + 0.5)/PHASES), 0, restitution);
-        double before, error;
-        if (!world) return (double)NAN;
-        before = kinetic(world);
-        if (dem_world_step(world, (int)(1.5*steps) + 10) != DEM_OK) study_fail("%s", dem_world_error(world));
-        error = kinetic(world)/before;
-        error = restitution < 1 ? sqrt(error)/restitution - 1 : error - 1;
-        sum += error*error;
-        dem_world_destroy(world);
+/* One diagram: points, picture, table. */
+static void row_run(const row *r, FILE *page) {
+    static points p;
+    static softening s;
+    const double begun = cpu_clock();
+    char file[80];
+    points_clear(&p, r->name);
+    snprintf(file, sizeof file, "%s.svg", r->name);
+    if (page) fprintf(page, "\n### %s\n`--diagram %s` %s\n\n![](images/accuracy_%s.png)\n\n", r->title, r->name,
+                      r->about, r->name);
+    if (r->fill) {
+        r->fill(&p);
+        points_front(&p);
+        if (!variant_name()) points_draw(&p, r->title, r->x_label, r->y_label, file);
+        points_tell(&p, page);
+    } else {
+        soft_measure(&p, &s, r->scene, r->seeds, r->what);
+        soft_draw(&p, &s, r->title, r->y_label, file);
+        soft_tell(&p, &s, page);
     }
-    return sqrt(sum/PHASES);
-}
-/* Energy after BOUNCES of them over that before; free flight between takes a contact time. NAN: the run broke. */
-static double long_run(dem_integrator which, double tc) {
-    dem_world *world = bounce_world(which, tc/50, 0.37*tc, tc, 1);
-    double before, most = 0;
-    int k, broken = 0;
-    if (!world) return (double)NAN;
-    before = kinetic(world);
-    for (k = 0; k < 20*BOUNCES && !broken; k++) { /* a bounce and a flight are 100 steps */
-        broken = dem_world_step(world, 5) != DEM_OK;
-        if (k >= 20*(BOUNCES - 1)) most = fmax(most, kinetic(world)); /* that of flight */
-    }
-    dem_world_destroy(world);
-    return broken ? (double)NAN : most/before;
-}
-
-/* Time of a step on the bed with each integrator, over that of the first. */
-static void prices(const char *folder, double ratio[SCHEMES]) {
-    const bench_scene bed = bench_scene_read(folder, "bed");
-    static double times[SCHEMES][BENCH_MOST_LOOPS];
-    dem_world *worlds[SCHEMES];
-    double ratios[BENCH_MOST_LOOPS];
-    int k, turn, ok = 1;
-    for (k = 0; k < SCHEMES; k++) {
-        bench_choice choice = BENCH_CHOICE;
-        choice.integrator = schemes[k].which;
-        worlds[k] = bench_world(&bed, &choice);
-        ok = ok && worlds[k] && dem_world_step(worlds[k], 50) == DEM_OK;
-    }
-    for (turn = 0; turn < TURNS && ok; turn++)
-        for (k = 0; k < SCHEMES && ok; k++) {
-            const double begun = study_clock();
-            ok = dem_world_step(worlds[k], 60) == DEM_OK;
-            times[k][turn] = study_clock() - begun;
-        }
-    for (k = 0; k < SCHEMES; k++) {
-        for (turn = 0; turn < TURNS; turn++) ratios[turn] = times[k][turn]/times[0][turn];
-        ratio[k] = ok ? bench_median(ratios, TURNS) : (double)NAN;
-        dem_world_destroy(worlds[k]);
-    }
-    if (!ok) study_fail("the bed broke");
-}
-
-static void error_draw(const char *title, const char *label, const char *file, double cost[SCHEMES][STEPS],
-                       double error[SCHEMES][STEPS]) {
-    study_figure f;
-    int k;
-    memset(&f, 0, sizeof f);
-    f.title = title;
-    f.x_label = "cost of the bounce (velocity Verlet at 50 steps a contact = 1)";
-    f.y_label = label;
-    f.log_x = f.log_y = 1;
-    f.x0 = -0.5; f.x1 = 1.1;
-    for (k = 0; k < SCHEMES; k++)
-        study_curve(&f, schemes[k].name, k == 1 || k == 2 ? STUDY_DASHED : STUDY_LINE, STEPS, cost[k], error[k]);
-    study_figure_write(&f, file);
+    snprintf(file, sizeof file, "%s.time", r->name);
+    bench_result_short(file, cpu_clock() - begun, "s");
 }
 int main(int argc, char **argv) {
-    static const char *folder = "bench/data", *out = "build/out/accuracy";
+    static const char *out = "build/out/accuracy", *wanted = "";
+    static int list;
     static const study_option table[] = {
-        {"data", STUDY_TEXT, &folder, 0, 0, "", "where the start states are"},
+        {"data", STUDY_TEXT, &data_folder, 0, 0, "", "where the start states are"},
         {"out", STUDY_TEXT, &out, 0, 0, "", "folder of results"},
+        {"diagram", STUDY_TEXT, &wanted, 0, 0, "", "only those whose name begins so"},
+        {"list", STUDY_FLAG, &list, 0, 0, "", "names of all diagrams, and stop"},
+        {"quick", STUDY_FLAG, &quick, 0, 0, "", "coarse, to try it out"},
     };
-    static double cost[SCHEMES][STEPS], error[2][SCHEMES][STEPS], energy[SCHEMES];
     const double load = bench_load();
-    double ratio[SCHEMES], tc;
-    char name[64];
-    int i, k, n;
-    study_options(argc, argv, "What a time step buys, for every integrator.", table, (int)(sizeof table/sizeof *table));
+    const int single = sizeof(dem_real) < sizeof(double);
+    FILE *page;
+    int i, done = 0;
+    if (variant_name()) out = variant_folder(variant_name());
+    study_options(argc, argv, "What accuracy costs: error against processor time.", table, CHOICES(table));
+    for (i = 0; i < ROWS && list; i++) printf("%-16s %s\n", rows[i].name, rows[i].title);
+    if (list) return 0;
     study_begin(out);
     bench_machine();
-    tc = contact_time();
-    study_result("contact_time", tc, "s");
-    prices(folder, ratio);
-    page = bench_page_open();
-    for (k = 0; k < SCHEMES; k++) {
-        snprintf(study.prefix, sizeof study.prefix, "%s.", schemes[k].name);
-        bench_result_short("price", ratio[k], "of velocity Verlet");
-        for (n = 0; n < STEPS; n++) {
-            cost[k][n] = ratio[k]*steps_of_contact[n]/50;
-            for (i = 0; i < 2; i++) {
-                error[i][k][n] = bounce_error(schemes[k].which, tc, steps_of_contact[n], i ? 0.66 : 1);
-                snprintf(name, sizeof name, "steps%.0f.%s_error", steps_of_contact[n], i ? "restitution" : "energy");
-                bench_result_short(name, error[i][k][n], "");
-            }
-        }
-        energy[k] = long_run(schemes[k].which, tc);
-        if (energy[k] == energy[k]) bench_result_short("energy_after_1000", energy[k], "of that at first");
-        else study_result_text("energy_after_1000", "none", "(the run was stopped: it had become unstable)");
+    variant_begin();
+    page = variant_name() ? 0 : bench_page_open();
+    if (page) bench_page_machine(page, load);
+    variant_price(page);
+    for (i = 0; i < ROWS; i++) {
+        if (strncmp(rows[i].name, wanted, strlen(wanted)) || (variant_name() && !(rows[i].variant && single))) continue;
+        row_run(&rows[i], page);
+        done++;
     }
-    study.prefix[0] = 0;
-    if (page) {
-        bench_page_machine(page, load);
-        for (i = 0; i < 2; i++) {
-            fprintf(page, "%s\n\n| integrator | time of a step |", i ? "\nError of restitution, .66 asked:" : "Error of energy, restitution 1:");
-            for (n = 0; n < STEPS; n++) fprintf(page, " t_c/%.0f |", steps_of_contact[n]);
-            fprintf(page, " order |%s\n|---|---|---|---|---|---|---|---|---|%s\n", i ? "" : " energy after 1000 bounces |", i ? "" : "---|");
-            for (k = 0; k < SCHEMES; k++) {
-                fprintf(page, "| `%s` | %.2f |", schemes[k].name, ratio[k]);
-                for (n = 0; n < STEPS; n++) fprintf(page, " %.1e |", error[i][k][n]);
-                fprintf(page, " %.1f |", log(error[i][k][2]/error[i][k][STEPS - 1])/log(steps_of_contact[STEPS - 1]/steps_of_contact[2]));
-                if (i) fprintf(page, "\n");
-                else if (energy[k] == energy[k]) fprintf(page, " %.4f |\n", energy[k]);
-                else fprintf(page, " run stopped |\n");
-            }
-        }
-    }
-    error_draw("An elastic bounce: error of energy against cost", "error of energy", "bounce_energy.svg", cost, error[0]);
-    error_draw("A bounce at restitution .66: error against cost", "error of restitution", "bounce_restitution.svg", cost, error[1]);
-    study_close(page, "page.md");
+    if (!done && !variant_name()) study_fail("no diagram's name begins with '%s'; --list names them", wanted);
+    variant_end();
+    if (page) study_close(page, "page.md");
     return study_end();
 }

@@ -58,8 +58,10 @@ for page in "$@"; do
     case $page in
     accuracy)
         build/bench --scene effects && splice accuracy.md effects $at/bench/page.md || exit 1
-        build/accuracy || exit 1
-        for s in restitution energy; do picture $at/accuracy/bounce_$s.svg accuracy_$s.png $at/accuracy/page.md; done
+        build/accuracy_single && build/accuracy_one_domain && build/accuracy || exit 1
+        if command -v rsvg-convert >/dev/null 2>&1; then         # the page names them by itself
+            for s in $at/accuracy/*.svg; do rsvg-convert -w 760 "$s" -o "docs/images/accuracy_$(basename "$s" .svg).png"; done
+        else echo "SKIP: rsvg-convert not found (Debian package librsvg2-bin): pictures stay as they were"; fi
         splice accuracy.md integrators $at/accuracy/page.md
         build/bench --brief && build/bench_single --brief && build/bench_O2 --brief || exit 1
         rates > build/rates.md && splice accuracy.md precision build/rates.md ;;
