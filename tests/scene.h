@@ -55,6 +55,18 @@ static inline void scene_move(dem_world *world, dem_body body, dem_vec3 velocity
     s.spin = spin;
     dem_body_set(world, body, &s);
 }
+/* The report contains these words. */
+static inline void scene_report_has(const dem_world *world, const char *words) {
+    static char text[16000];
+    FILE *f = tmpfile();
+    CHECK(f != 0);
+    if (!f) return;
+    dem_world_report(world, f);
+    rewind(f);
+    text[fread(text, 1, sizeof text - 1, f)] = 0;
+    fclose(f);
+    CHECK_STR(text, words);
+}
 /* Steps and says why when that fails. */
 static inline dem_result scene_step(dem_world *world, int steps) {
     const dem_result result = dem_world_step(world, steps);

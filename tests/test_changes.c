@@ -257,18 +257,6 @@ static apart scene_apart(const scene *a, const dem_body *ia, const scene *b, con
     d.force /= most.force;
     return d;
 }
-static void report_has(const dem_world *world, const char *words) {
-    static char text[16000];
-    FILE *f = tmpfile();
-    size_t n;
-    if (!f) return;
-    dem_world_report(world, f);
-    rewind(f);
-    n = fread(text, 1, sizeof text - 1, f);
-    text[n] = 0;
-    fclose(f);
-    CHECK_STR(text, words);
-}
 /* Goes up to the change. */
 static void scene_up_to(scene *s, change what, int threads) {
     scene_begin(s, what, threads);
@@ -276,14 +264,14 @@ static void scene_up_to(scene *s, change what, int threads) {
     if (what == FRICTION_AGAIN) {               /* on, off, and now on again */
         scene_pair(s, what, 1);
         CHECK_EQ(scene_step(s->world, BEFORE/2), DEM_OK);
-        report_has(s->world, told[what].before);
+        scene_report_has(s->world, told[what].before);
         scene_pair(s, what, 0);
         CHECK_EQ(scene_step(s->world, BEFORE/2), DEM_OK);
-        report_has(s->world, "tangential: none");
+        scene_report_has(s->world, "tangential: none");
         return;
     }
     CHECK_EQ(scene_step(s->world, BEFORE/2), DEM_OK);
-    report_has(s->world, told[what].before);
+    scene_report_has(s->world, told[what].before);
     CHECK_EQ(scene_step(s->world, BEFORE - BEFORE/2), DEM_OK);
 }
 /* The run with two threads, and with a checkpoint between the change and the next step. */
@@ -350,8 +338,8 @@ static void changed(change what) {
         apart d;
         CHECK_EQ(scene_step(a.world, k ? AFTER - 1 : 1), DEM_OK);
         CHECK_EQ(scene_step(b.world, k ? AFTER - 1 : 1), DEM_OK);
-        report_has(a.world, told[what].after);
-        report_has(b.world, told[what].after);
+        scene_report_has(a.world, told[what].after);
+        scene_report_has(b.world, told[what].after);
         d = scene_apart(&a, ids[0], &b, ids[1], count);
         CHECK_NEAR(d.place, 0, small());
         CHECK_NEAR(d.speed, 0, small());
@@ -422,9 +410,9 @@ static void law_comes(dem_normal_law normal, dem_tangent_law tangent, dem_rollin
     for (w = 0; w < 2; w++) {
         CHECK_EQ(scene_step(s[w].world, AFTER), DEM_OK);
         snprintf(words, sizeof words, "tangential: %s", names[tangent]);
-        report_has(s[w].world, words);
+        scene_report_has(s[w].world, words);
         snprintf(words, sizeof words, "rolling: %s", rolls[rolling]);
-        report_has(s[w].world, words);
+        scene_report_has(s[w].world, words);
     }
     d = scene_apart(&s[0], ids[0], &s[1], ids[1], 64);
     CHECK_NEAR(d.place, 0, small());

@@ -34,18 +34,6 @@ static char *file_text(const char *path, size_t *size) {
     fclose(f);
     return text;
 }
-static void report_has(const dem_world *world, const char *words) {
-    static char text[16000];
-    FILE *f = tmpfile();
-    size_t n;
-    if (!f) return;
-    dem_world_report(world, f);
-    rewind(f);
-    n = fread(text, 1, sizeof text - 1, f);
-    text[n] = 0;
-    fclose(f);
-    CHECK_STR(text, words);
-}
 /* How many numbers of state are none; of other bodies than this one, in `others`. */
 static int not_finite(const dem_world *world, dem_body but, int *others) {
     const dem_bodies b = dem_bodies_get(world);
@@ -68,7 +56,7 @@ static void inspect_points(dem_world *world, int lost, int points) {
     const dem_balance balance = dem_balance_get(world);
     char words[60], *before, *after;
     size_t old_size, new_size;
-    report_has(world, "inserted = ");
+    scene_report_has(world, "inserted = ");
     CHECK_EQ(balance.inserted, balance.present + balance.removed + balance.left);
     CHECK_EQ(balance.present, bodies);
     CHECK(dem_contacts_get(world, 0, 0) >= -1);
@@ -262,7 +250,7 @@ static void motion_goes_wrong(int kind, int threads) {
     says(world, "dem_world_step: step 11", "motion of wall 1", "not finite at 0.00011 s",
          "check the motion function");
     CHECK_EQ(not_finite(world, odd, &others), 0);
-    report_has(world, "wall 1");
+    scene_report_has(world, "wall 1");
     t.on = 0;
     CHECK_EQ(dem_checkpoint_read(world, saved), DEM_OK);
     CHECK_EQ(scene_step(world, MORE), DEM_OK);
