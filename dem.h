@@ -1690,11 +1690,13 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
 #define DEMI_ALIGNED __attribute__((aligned(64)))           /* to a cache line */
 #define DEMI_RESTRICT __restrict__
 #define DEMI_FETCH(p) __builtin_prefetch(p)                 /* will be read soon */
+#define DEMI_APART __attribute__((noinline))                /* keeps its registers to itself */
 #define DEMI_FORMAT(f, a) __attribute__((format(printf, f, a)))
 #else
 #define DEMI_ALIGNED
 #define DEMI_RESTRICT
 #define DEMI_FETCH(p) (void)(p)
+#define DEMI_APART
 #define DEMI_FORMAT(f, a)
 #endif
 #if defined(__clang__)
@@ -9004,6 +9006,12 @@ DEM_INLINE void demi_fetch(const demi_run *r, int count, demi_tile *DEMI_RESTRIC
         uint32_t i, j;
         DEMI_ONE_BY_ONE(q);
         i = (uint32_t)la[q]; j = (uint32_t)lb[q];
+        if (n + DEMI_TILE/2 < count) {          /* neighbours may lie far apart */
+            const uint32_t next = (uint32_t)lb[q + DEMI_TILE/2];
+            DEMI_FETCH(DEMI_AT(u, next));
+            if (turning) DEMI_FETCH(DEMI_AT(s, next));
+            if (following) { DEMI_FETCH(DEMI_AT(uh, next)); DEMI_FETCH(DEMI_AT(sh, next)); }
+        }
         a = DEMI_AT(x, i); b = DEMI_AT(x, j); c = shift + image[q];
         demi_rows_shifted(&t->gap, q, b, a, c);
         if (!uniform) { t->radius[0][q] = a[3]; t->radius[1][q] = b[3]; }
@@ -9959,15 +9967,6 @@ static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, 
 #define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
 static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
 static int demi_touch_known(int kind, int part) { return demi_touches[kind][part] != 0; }
-/* By that table, once it is known that the body may have come near any of the candidates. */
-static int demi_wall_collect(const dem_world *w, int d, int first, int last, dem_vec3 at,
-                             const demi_part *part, demi_touching **places) {
-    const int base = d*w->wall_stride, kind = w->walls[w->wall_id[base + first]].kind;
-    const dem_real gone = demi_walls_gone(w);
-    while (first < last && w->wall_gap[base + first] > gone) first++;
-    if (first == last) return 0;
-    return demi_touches[kind][part->kind](w, d, first, last, gone, at, part, places);
-}
 
 /* ---------------------------------------------------------------------------------------------
    >>kept
@@ -10247,8 +10246,8 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
 }
 
 /* All contacts of one near pair. old: those body a had in the step before. */
-static void demi_kept_pair(dem_world *w, int d, int at, int send, const demi_kept *old,
-                             int olds) {
+static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
+                                      const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at];
     const dem_real *shift = w->image_shift + w->near.image[at];
     const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
@@ -10427,17 +10426,17 @@ static void demi_kept_through(const demi_kept *old, int olds, const demi_kept *f
         if (i == count) c->deep = 2 - c->deep;
     }
 }
-/* Contacts of one part with one wall, from candidates first .. last - 1 of its body: all of them,
-   then what each continues. */
-static void demi_kept_on_wall(dem_world *w, int d, int first, int last, int k,
-                              const demi_kept *old, int olds) {
+/* Contacts of part k with one wall, from candidates first .. last - 1 of its body: all of them,
+   then what each continues. shaped: 0 for a sphere, which has a copy of the code: its places weigh
+   by themselves, as they are found. */
+DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int shaped, int k,
+                                  const demi_part *p, const demi_kept *old, int olds) {
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
     const int id = w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
-    const demi_part p = demi_part_now(w, body, k);
     demi_touching *found = 0;
-    const int count = demi_wall_collect(w, d, first, last, demi_add(demi_at(w->bodies.pos + 4*body),
-                                                                    p.centre), &p, &found);
+    const int count = demi_touches[wall->kind][p->kind](w, d, first, last, demi_walls_gone(w),
+        demi_add(demi_at(w->bodies.pos + 4*body), p->centre), p, &found);
     demi_kept *fresh = 0, *c;
     int i, e;
     for (i = 0; i < count; i++) {
@@ -10449,15 +10448,14 @@ static void demi_kept_on_wall(dem_world *w, int d, int first, int last, int k,
         c->wall = id;
         c->element = found[i].element;
         c->normal = found[i].normal;
-        c->share = found[i].share;
+        c->share = c->weight = c->lift = c->grip = found[i].share;
         c->shift = found[i].shift;
-        if (p.kind == DEMI_BALL) {              /* the commonest, without a call */
-            demi_ball_on_wall(w, wall, &p, &found[i], c);
-            if (demi_shape_of(w, body) && w->desc.cluster_contacts == DEM_SHARING_ONE &&
-                c->overlap > 0)
+        if (!shaped || p->kind == DEMI_BALL) {  /* the commonest, without a call */
+            demi_ball_on_wall(w, wall, p, &found[i], c);
+            if (shaped && w->desc.cluster_contacts == DEM_SHARING_ONE && c->overlap > 0)
                 demi_wall_bend(wall, w->wall_element + base + first, last - first,
-                               DEMI_MAX(p.radius - c->overlap, p.radius/10), c);
-        } else demi_on_walls[p.kind](w, wall, &p, &found[i], c);
+                               DEMI_MAX(p->radius - c->overlap, p->radius/10), c);
+        } else demi_on_walls[p->kind](w, wall, p, &found[i], c);
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     for (i = 0, c = fresh; i < count; i++, c++) {
@@ -10467,60 +10465,62 @@ static void demi_kept_on_wall(dem_world *w, int d, int first, int last, int k,
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* under way: to the end */
             if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k && !(old[e].overlap > 0))
-                c->share = 0;
+                c->weight = c->lift = c->grip = c->share = 0;
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
 }
-/* Of one body with one wall. A sphere's are as they are found: its places weigh by themselves. */
-static void demi_kept_wall(dem_world *w, int d, int first, int last, const demi_kept *old,
-                           int olds) {
+/* Of one body with one wall. */
+static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
+                                      const demi_kept *old, int olds) {
     const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
-    demi_kept *c = w->kept_next + w->kept_first[d] + from;
     int k;
-    for (k = 0; k < parts; k++) demi_kept_on_wall(w, d, first, last, k, old, olds);
-    if (demi_shape_of(w, body)) {
-        demi_kept_share(w, c, w->domains[d].kept_next - from);
+    if (!demi_shape_of(w, body)) {
+        const demi_part sphere = demi_part_now(w, body, 0);
+        demi_kept_on_wall(w, d, first, last, 0, 0, &sphere, old, olds);
         return;
     }
-    for (k = from; k < w->domains[d].kept_next; k++, c++)
-        c->weight = c->lift = c->grip = c->share;
+    for (k = 0; k < parts; k++) {
+        const demi_part p = demi_part_now(w, body, k);
+        demi_kept_on_wall(w, d, first, last, 1, k, &p, old, olds);
+    }
+    demi_kept_share(w, w->kept_next + w->kept_first[d] + from, w->domains[d].kept_next - from);
 }
 
 /* All of one domain, in the order of body a: its pairs inside, its pairs that lead out, its walls.
    */
 static void demi_domain_kept_touch(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
-    const demi_kept *old = demi_kept_of(w, d);
-    const int base = d*w->near.stride, walls = d*w->wall_stride;
-    const dem_real gone = demi_walls_gone(w);
-    int p = domain->near_shaped, q = domain->near_shaped_cross, k = 0, o = 0, o_end, a, last;
+    const demi_kept *old = demi_kept_of(w, d), *end = old + domain->kept, *old_end;
+    const int32_t *near_a = w->near.a + d*w->near.stride;
+    const int32_t *body = w->wall_body + d*w->wall_stride, *wall = w->wall_id + d*w->wall_stride;
+    const dem_real *gap = w->wall_gap + d*w->wall_stride, gone = demi_walls_gone(w);
+    const int base = d*w->near.stride, walls = domain->walls;
+    const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
+    const int send = 1 + d*w->cross.stride + domain->near_end - domain->near_cross - own_end;
+    int p = domain->near_shaped, q = own_end, k = 0, a, last;
     domain->kept_next = 0;
     domain->overflow &= ~16;
-    for (;;) {
-        while (k < domain->walls && w->wall_gap[walls + k] > gone) k++;    /* not near yet */
-        a = INT_MAX;
-        if (p < domain->near_shaped_cross) a = w->near.a[base + p];
-        if (q < domain->near_shaped_end) a = DEMI_MIN(a, w->near.a[base + q]);
-        if (k < domain->walls) a = DEMI_MIN(a, w->wall_body[walls + k]);
+    for (; !(domain->overflow & 16); old = old_end) {
+        while (k < walls && gap[k] > gone) k++; /* not near yet */
+        a = k < walls ? body[k] : INT_MAX;
+        if (p < own_end) a = DEMI_MIN(a, near_a[p]);
+        if (q < cross_end) a = DEMI_MIN(a, near_a[q]);
         if (a == INT_MAX) return;
-        while (o < domain->kept && old[o].a < a) o++;
-        for (o_end = o; o_end < domain->kept && old[o_end].a == a;) o_end++;
-        if (o_end + 1 < domain->kept) DEMI_FETCH(old + o_end + 1);  /* too far apart for hardware */
-        for (; p < domain->near_shaped_cross && w->near.a[base + p] == a; p++)
-            demi_kept_pair(w, d, base + p, 0, old + o, o_end - o);
-        for (; q < domain->near_shaped_end && w->near.a[base + q] == a; q++)
-            demi_kept_pair(w, d, base + q, 1 + d*w->cross.stride + domain->near_end -
-                             domain->near_cross + q - domain->near_shaped_cross, old + o,
-                             o_end - o);
-        for (; k < domain->walls && w->wall_body[walls + k] == a; k = last) {
+        while (old < end && old->a < a) old++;
+        for (old_end = old; old_end < end && old_end->a == a;) old_end++;
+        if (old_end + 1 < end) DEMI_FETCH(old_end + 1);     /* too far apart for hardware */
+        if (k + DEMI_LANES < walls) DEMI_FETCH(w->bodies.pos + 4*body[k + DEMI_LANES]);
+        for (; p < own_end && near_a[p] == a; p++)
+            demi_kept_pair(w, d, base + p, 0, old, (int)(old_end - old));
+        for (; q < cross_end && near_a[q] == a; q++)
+            demi_kept_pair(w, d, base + q, send + q, old, (int)(old_end - old));
+        for (; k < walls && body[k] == a; k = last) {
             last = k + 1;
-            if (w->wall_gap[walls + k] > gone) continue;
-            while (last < domain->walls && w->wall_body[walls + last] == a &&
-                   w->wall_id[walls + last] == w->wall_id[walls + k]) last++;
-            demi_kept_wall(w, d, k, last, old + o, o_end - o);
+            if (gap[k] > gone) continue;
+            while (last < walls && body[last] == a && wall[last] == wall[k]) last++;
+            demi_kept_wall(w, d, k, last, old, (int)(old_end - old));
         }
-        if (domain->overflow & 16) return;
     }
 }
 /* More room for the domains that ran out of it. 0 when memory ran out; nothing changed then. */
@@ -10606,7 +10606,7 @@ DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept
 }
 /* The contact as a law sees it; old: a step ago. surface: velocity of the wall there. */
 static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_kept *old,
-                           dem_real dt, dem_contact *c, dem_vec3 *surface) {
+                           dem_real dt, dem_contact *c, dem_vec3 *at, dem_vec3 *surface) {
     const dem_real *coef = k->coef, slope = k->slope;    /* m of overlap per m of approach */
     const int a = k->a, b = k->b;
     const dem_vec3 n = k->normal, half = demi_v(DEM_R(0.5), DEM_R(0.5), DEM_R(0.5));
@@ -10621,14 +10621,15 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
         gone = demi_sub(gone, demi_velocity_at(w->bodies.half_vel, w->bodies.half_spin, b, mid_b));
         spin = demi_at(w->bodies.spin + 4*b);
         spin_step = demi_at(w->bodies.half_spin + 4*b);
-        *surface = demi_v(0, 0, 0);
+        *at = *surface = demi_v(0, 0, 0);
     } else {
         const demi_wall *wall = &w->walls[k->wall];
         const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*a), k->shift);
         /* where the contact was in the middle of the step */
         const dem_vec3 was =
             demi_add(mid_a, demi_sub(x, demi_scale(demi_at(w->bodies.half_vel + 4*a), dt/2)));
-        *surface = demi_surface_at(&wall->pose, demi_add(x, k->arm_a));
+        *at = demi_add(x, k->arm_a);
+        *surface = demi_surface_at(&wall->pose, *at);
         u = demi_sub(u, *surface);
         gone = demi_sub(gone, demi_surface_at(&wall->mid, was));
         spin = wall->pose.spin;
@@ -10663,12 +10664,15 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
     demi_contact_choices(w, c);
     c->user = w->desc.law_user;
 }
-/* N, the elastic force alone, where it counts more, or less, than what dissipates; else 0. */
-static dem_real demi_kept_still(const dem_world *w, const demi_kept *k, const dem_contact *c) {
+/* Whether the elastic force counts more, or less, than what dissipates; and that force, N. */
+DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
+    return k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0;
+}
+static DEMI_APART dem_real demi_kept_still(const dem_world *w, const demi_kept *k,
+                                          const dem_contact *c) {
     dem_real memory[DEMI_MEMORY];
     dem_contact still = *c;
     dem_contact_force f;
-    if (!(k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0)) return 0;
     memcpy(memory, k->memory, sizeof memory);
     still.closing_speed = 0;
     demi_law(w, &still, memory, &f);
@@ -10700,6 +10704,15 @@ DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *p
     domain->energy[DEMI_E_ROLL] += (double)(grip*part->roll);
 }
 
+/* A body that a contact will soon read and push. */
+DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
+    DEMI_FETCH(w->bodies.vel + 4*body);
+    DEMI_FETCH(w->bodies.half_vel + 4*body);
+    DEMI_FETCH(w->bodies.spin + 4*body);
+    DEMI_FETCH(w->bodies.half_spin + 4*body);
+    DEMI_FETCH(w->bodies.force + 4*body);
+    DEMI_FETCH(w->bodies.torque + 4*body);
+}
 /* All contacts of one domain: law, forces on both ends, walls' sums, energies. */
 static void demi_kept_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -10715,15 +10728,16 @@ static void demi_kept_respond(dem_world *w, int d) {
         dem_real press, still;
         dem_contact contact;
         dem_contact_force f;
-        dem_vec3 surface, force, moment, moment_b;
+        dem_vec3 at, surface, force, moment, moment_b;
+        if (i + 2 < domain->kept_next) demi_body_fetch(w, c[2].a);
         old = demi_kept_recall(w, now, c);
         if (!(c->overlap > 0)) {                /* under way through a reduced hole */
             c->force = demi_v(0, 0, 0);
             domain->kept_walls += b < 0;
             continue;
         }
-        demi_kept_fill(w, c, old, dt, &contact, &surface);
-        still = demi_kept_still(w, c, &contact);
+        demi_kept_fill(w, c, old, dt, &contact, &at, &surface);
+        still = demi_kept_lifted(c) ? demi_kept_still(w, c, &contact) : 0;
         demi_law(w, &contact, c->memory, &f);
         press = c->share*f.normal + (c->lift - c->share)*still;
         force = demi_sub(demi_scale(f.tangent, c->grip), demi_scale(contact.normal, press));
@@ -10753,9 +10767,7 @@ static void demi_kept_respond(dem_world *w, int d) {
             }
             domain->contacts++;
         } else {
-            demi_wall_sum_add(w, &sums[c->wall], c->wall,
-                              demi_add(demi_add(demi_at(w->bodies.pos + 4*a), c->shift), c->arm_a),
-                              force, moment_b, surface);
+            demi_wall_sum_add(w, &sums[c->wall], c->wall, at, force, moment_b, surface);
             domain->kept_walls++;
         }
         domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
