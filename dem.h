@@ -47,6 +47,7 @@
        >>checkpoint  everything, to the last bit
        >>restore     a checkpoint checked and read
        >>trials      what a choice costs and changes, tried on copies of a scene
+       >>effects     what a scene calls for, what of it has happened, what each costs
        >>world       create, destroy, report
        >>slabs       one scene dealt to threads or processes: what grains take along
        >>slabs-step  one step of all slabs
@@ -149,7 +150,9 @@
        bodies      how many, of which radii; inserted = present + removed + left
        time step   t_c, how many steps it has, what binds it: stiffen, soften or slow down that
        search      method, skin, steps from one list to the next; candidates and contacts per body
-       effects     the laws in force, and what they remember per contact. "none" costs nothing
+       effects     the laws in force, and what they remember per contact. "none" costs nothing. What
+                   was asked for and has not happened: materials that have not touched, walls
+                   (dem_effects_print: all of it, and the share of a step that each takes)
        overlap     the largest so far, over the radius: beyond 0.05 the material is too soft
        pair        what holds between each two materials, after mixing
        wall, feed, outlet   what they bear, bring and take
@@ -1232,6 +1235,7 @@ typedef struct dem_wall_loads {
     dem_real torque_axial;    /* N m */
     dem_real power;           /* W, the wall gives to the grains: -(force . v + torque . w) */
     int contacts;             /* now */
+    int touched;              /* 1: something has touched it since it was added */
     double impulse[3];        /* N s, since dem_wall_loads_reset */
     double torque_impulse;    /* N m s, of torque_axial */
     double work;              /* J, done on the grains */
@@ -1643,6 +1647,36 @@ typedef struct dem_slabs_counters {
 } dem_slabs_counters;
 DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *slabs);
 
+/* ---- effects: what a scene calls for, what of it has happened, and what each costs ---- */
+
+typedef enum dem_effect_state {
+    DEM_EFFECT_OFF,                /* not asked for, or nothing has it: it costs nothing */
+    DEM_EFFECT_IDLE,               /* asked for, and has not happened so far */
+    DEM_EFFECT_ACTIVE
+} dem_effect_state;
+typedef struct dem_effect {
+    const char *name;
+    dem_effect_state state;
+    double share, error;           /* of the time of a step: what goes when the effect is left out,
+                                      +- its standard error */
+    int measured;                  /* 0: no budget, no way to leave it out, or a copy failed */
+    int missing;                   /* pairs of materials, walls, ... that have it and that nothing
+                                      has touched; 0: all that was asked for has happened */
+    char text[200];                /* what acts; why nothing does; what has not happened */
+} dem_effect;
+enum { DEM_EFFECTS = 15 };
+/* What is active, what is off and why, what was asked for and never happened (a material with
+   rolling friction that nothing has rolled on, a wall that nothing has touched), as far as lists of
+   neighbours saw it. With a budget (s of wall time, 0: none) also the share of each in the time of
+   a step: two copies, one without the effect, take turns; a law of one's own and a field are asked
+   twice instead. Friction is left out together with rolling friction. Shares need not add up to 1;
+   on a busy machine they are noise. The world stays as it is. Functions of the user's are asked for
+   the copies, too. Returns how many it filled in; -1 with a sentence when there is no world or no
+   room, the budget is below 0, or the scene would not run. */
+DEM_API int dem_effects_get(dem_world *world, double budget, dem_effect effects[DEM_EFFECTS]);
+/* The same as lines of text. */
+DEM_API void dem_effects_print(dem_world *world, double budget, FILE *out);
+
 /* ---- report ---- */
 
 /* Effects active and their price, time step and what binds it, search, balance, ledger. */
@@ -2006,6 +2040,7 @@ typedef struct demi_domain {
     double turn_speed;             /* m/s, max |spin| times moment_arm */
     double turn_rate;              /* rad/s, max |spin| of those that are not spheres */
     double energy[DEMI_ENERGIES];
+    uint64_t met[DEMI_MATERIALS];  /* as in demi_booked: by contacts that began since the search */
 } demi_domain;
 
 /* Two tables, of what touches and of what is touched: nothing else names a kind but its own
@@ -2218,6 +2253,7 @@ typedef struct demi_levels {       /* >>search */
 typedef struct demi_booked {       /* >>ledger: sums since the beginning, and the largest seen */
     double energy[DEMI_ENERGIES], inserted, removed, throughput;       /* J */
     double overlap_max, speed_max; /* of the radius; m/s */
+    uint64_t met[DEMI_MATERIALS];  /* bit j of i, i <= j: materials i and j have touched */
 } demi_booked;
 
 /* Bodies: who they are (slots, which never move) and where they stand in the arrays (indices, which
@@ -4102,6 +4138,27 @@ static int demi_carry_collect(dem_world *w) {
 DEM_INLINE demi_kept *demi_kept_of(const dem_world *w, int d) {
     return w->kept_now + w->kept_first[d];
 }
+/* Marks which materials have touched. Contacts that are kept tell when they begin. Two spheres are
+   looked at before a list is given up, not in every step: a contact shorter than a list's life may
+   be missed; all that lasts is seen. */
+static void demi_met_look(const dem_world *w, uint64_t *met) {
+    int d, p;
+    for (d = 0; d < w->domain_count && w->material_count > 1; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (p = 0; p < w->material_count; p++) met[p] |= domain->met[p];
+        for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+            const int at = d*w->near.stride + p, a = w->near.a[at], b = w->near.b[at];
+            const int i = w->bodies.material[a] - 1, j = w->bodies.material[b] - 1;
+            const uint64_t bit = UINT64_C(1) << DEMI_MAX(i, j);
+            const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+            dem_vec3 gap;
+            if (met[DEMI_MIN(i, j)] & bit) continue;
+            gap = demi_add(demi_sub(demi_at(y), demi_at(x)),
+                           demi_at(w->image_shift + w->near.image[at]));
+            if (demi_dot(gap, gap) < (x[3] + y[3])*(x[3] + y[3])) met[DEMI_MIN(i, j)] |= bit;
+        }
+    }
+}
 /* The candidate list no longer fits: save what it remembers. 0 when memory ran out; nothing changed
    then. */
 static int demi_list_drop(dem_world *w) {
@@ -4109,12 +4166,15 @@ static int demi_list_drop(dem_world *w) {
     w->bodies.centres_valid = 0;
     if (!w->stage.list_valid) return 1;
     if (!demi_carry_collect(w)) return 0;
-    for (d = 0; d < w->domain_count; d++)
+    demi_met_look(w, w->booked.met);
+    for (d = 0; d < w->domain_count; d++) {
+        memset(w->domains[d].met, 0, sizeof w->domains[d].met);
         for (k = 0; k < w->domains[d].kept; k++) {
             demi_kept *c = demi_kept_of(w, d) + k;
             c->a = (int32_t)w->bodies.slot[c->a];            /* from here on slots */
             if (c->b >= 0) c->b = (int32_t)w->bodies.slot[c->b];
         }
+    }
     w->stage.list_valid = 0;
     return 1;
 }
@@ -10737,6 +10797,9 @@ static void demi_kept_respond(dem_world *w, int d) {
             continue;
         }
         demi_kept_fill(w, c, old, dt, &contact, &at, &surface);
+        if (c->from < 0)
+            domain->met[DEMI_MIN(contact.material_a, contact.material_b) - 1] |= UINT64_C(1) <<
+                (DEMI_MAX(contact.material_a, contact.material_b) - 1);
         still = demi_kept_lifted(c) ? demi_kept_still(w, c, &contact) : 0;
         demi_law(w, &contact, c->memory, &f);
         press = c->share*f.normal + (c->lift - c->share)*still;
@@ -13349,6 +13412,7 @@ static void demi_forces(dem_world *w) {
         c->torque = demi_v((dem_real)t[0], (dem_real)t[1], (dem_real)t[2]);
         c->torque_axial = demi_dot(c->torque, demi_unit(axis));
         c->power = (dem_real)power;
+        c->touched |= c->contacts > 0;
         for (k = 0; k < 3; k++) c->impulse[k] += f[k]*dt;
         c->torque_impulse += (double)c->torque_axial*dt;
         c->work += power*dt;
@@ -13356,6 +13420,7 @@ static void demi_forces(dem_world *w) {
     }
     for (d = 0; d < w->domain_count; d++)
         w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, w->domains[d].overlap);
+    if (w->material_count == 1 && w->booked.overlap_max > 0) w->booked.met[0] = 1;
     if (w->desc.ledger) demi_ledger_book(w);
 }
 
@@ -16730,6 +16795,455 @@ DEM_API void dem_trials_print(const dem_trials *t, FILE *out) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>effects
+   What a scene calls for, a row each: is it asked for, has it happened, and how a copy goes without
+   it. The time of a step with and without is measured on two copies that take turns, so that what
+   the machine does, it does to both.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_EFFECT_TURNS = 41, DEMI_EFFECT_STEPS = 24 };
+/* What a row tells: its state, in words what acts or why nothing does, and what is missing. */
+typedef dem_effect_state (*demi_look_fn)(const dem_world *w, dem_effect *e);
+
+DEMI_FORMAT(2, 3) static void demi_say(dem_effect *e, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(e->text, sizeof e->text, format, arguments);
+    va_end(arguments);
+}
+DEM_INLINE int demi_met(const dem_world *w, int i, int j) {
+    return (int)(w->booked.met[DEMI_MIN(i, j)] >> DEMI_MAX(i, j) & 1);
+}
+/* Materials of which there are grains, or will be, and of which there are walls, bit by bit. */
+static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) {
+    int i;
+    *grains = *walls = 0;
+    for (i = 0; i < w->bodies.count; i++) *grains |= UINT64_C(1) << (w->bodies.material[i] - 1);
+    for (i = 0; i < w->feed_count; i++)
+        *grains |= UINT64_C(1) << (demi_feed_at(w, i)->desc.material.id - 1);
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
+}
+/* Of what pairs of materials have: is there any of which both can meet, and has one touched? */
+static dem_effect_state demi_look_pairs(const dem_world *w, dem_real (*of)(const dem_pair *p),
+                                        const char *what, dem_effect *e) {
+    int i, j, have = 0, possible = 0, met = 0, first = 0, second = 0;
+    uint64_t grains, walls;
+    demi_made_of(w, &grains, &walls);
+    for (i = 0; i < w->material_count; i++)
+        for (j = i; j < w->material_count; j++) {
+            const int a = (int)(grains >> i & 1), b = (int)(grains >> j & 1);
+            if (!(of(&w->pairs[i*DEMI_MATERIALS + j].given) > 0)) continue;
+            have++;
+            if (!(a && (b || walls >> j & 1)) && !(b && walls >> i & 1)) continue;
+            possible++;
+            if (demi_met(w, i, j)) { met++; continue; }
+            first = i + 1;
+            second = j + 1;
+        }
+    e->missing = possible - met;
+    if (!have) demi_say(e, "no pair of materials has it");
+    else if (!possible) demi_say(e, "%s; no two that can touch have it", what);
+    else if (met == possible) demi_say(e, "%s", what);
+    else if (first == second)
+        demi_say(e, "%s; material %d has not touched itself", what, first);
+    else demi_say(e, "%s; materials %d and %d have not touched", what, first, second);
+    return !have ? DEM_EFFECT_OFF : met ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_off(dem_effect *e, const char *why) {
+    demi_say(e, "%s", why);
+    return DEM_EFFECT_OFF;
+}
+static dem_real demi_any(const dem_pair *p) { (void)p; return 1; }
+static dem_real demi_rubs(const dem_pair *p) { return DEMI_MAX(p->friction, p->friction_static); }
+static dem_real demi_rolls(const dem_pair *p) { return p->rolling_friction; }
+static dem_real demi_sticks(const dem_pair *p) { return p->stiffness_adhesion; }
+
+static dem_effect_state demi_look_contacts(const dem_world *w, dem_effect *e) {
+    if (w->desc.law) return demi_look_off(e, "left to your own law");
+    return demi_look_pairs(w, demi_any, demi_normal_laws[w->desc.normal_law].name, e);
+}
+static dem_effect_state demi_look_law(const dem_world *w, dem_effect *e) {
+    if (!w->desc.law) return demi_look_off(e, "desc.law is null");
+    return demi_look_pairs(w, demi_any, "in place of the built-in ones", e);
+}
+static dem_effect_state demi_look_friction(const dem_world *w, dem_effect *e) {
+    const int law = demi_tangent_meant(w);
+    if (w->desc.law) return demi_look_off(e, "left to your own law");
+    if (law == DEM_TANGENT_NONE) return demi_look_off(e, "tangent_law is DEM_TANGENT_NONE");
+    return demi_look_pairs(w, demi_rubs, demi_tangent_laws[law].name, e);
+}
+static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
+    const int law = demi_rolling_meant(w);
+    if (w->desc.law) return demi_look_off(e, "left to your own law");
+    if (law == DEM_ROLLING_NONE) return demi_look_off(e, "rolling_law is DEM_ROLLING_NONE");
+    return demi_look_pairs(w, demi_rolls, demi_rolling_laws[law].name, e);
+}
+static dem_effect_state demi_look_adhesion(const dem_world *w, dem_effect *e) {
+    if (w->desc.law) return demi_look_off(e, "left to your own law");
+    if (!demi_normal_is(w, DEMI_BRANCHED))
+        return demi_look_off(e, "only the hysteretic normal law has it");
+    return demi_look_pairs(w, demi_sticks, "of the hysteretic law", e);
+}
+/* Is there a force now? The field is asked for every body that moves. */
+static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
+    int i, pushed = 0;
+    if (!w->desc.force && !w->desc.body_force)
+        return demi_look_off(e, "desc.force and desc.body_force are null");
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_body id = dem_bodies_id(w, i);
+        dem_vec3 force = demi_v(0, 0, 0), torque = force;
+        dem_body_state body;
+        if (!(w->bodies.inv_mass[i] > 0) || dem_body_get(w, id, &body) != DEM_OK) continue;
+        if (w->desc.body_force)
+            w->desc.body_force(&body, id, w->clock.time, &force, &torque, w->desc.force_user);
+        if (w->desc.force)
+            force = demi_add(force, w->desc.force(body.position, body.velocity,
+                                                  w->bodies.pos[4*i + 3], w->bodies.mass[i],
+                                                  w->clock.time, w->desc.force_user));
+        pushed += demi_dot(force, force) > 0 || demi_dot(torque, torque) > 0;
+    }
+    demi_say(e, "pushes %d of %d bodies now", pushed, w->bodies.count);
+    return pushed ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_walls(const dem_world *w, dem_effect *e) {
+    int i, count = 0, touched = 0, some = 0;
+    for (i = 0; i < w->wall_count; i++) {
+        if (w->walls[i].kind == DEMI_WALL_NONE) continue;
+        count++;
+        if (w->walls[i].loads.touched) touched++;
+        else if (!some) some = i + 1;
+    }
+    if (!count) return demi_look_off(e, "there are none");
+    e->missing = count - touched;
+    if (touched == count) demi_say(e, "%d", count);
+    else demi_say(e, "%d; wall %d%s never touched", count, some,
+                  count - touched == 1 ? " was" : " and others were");
+    return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
+    int i, count = 0, touched = 0;
+    for (i = 0; i < w->wall_count; i++) {
+        if (w->walls[i].kind == DEMI_WALL_NONE || w->walls[i].motion.kind == DEM_MOTION_FIXED)
+            continue;
+        count++;
+        touched += w->walls[i].loads.touched;
+    }
+    if (!count) return demi_look_off(e, "no wall moves");
+    e->missing = count - touched;
+    demi_say(e, "%d wall%s%s", count, count == 1 ? "" : "s", touched ? ""
+             : ", that nothing has touched");
+    return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+/* Does any near pair reach across a face? */
+static dem_effect_state demi_look_periodic(const dem_world *w, dem_effect *e) {
+    int d, p, k, faces = 0, across = 0;
+    for (k = 0; k < 3; k++) faces += w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
+    if (!faces) return demi_look_off(e, "no boundary is periodic");
+    for (d = 0; d < w->domain_count && w->stage.list_valid; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (p = 0; p < domain->near_shaped_end; p++) {
+            const dem_real *shift;
+            if (p >= domain->near_own && p < domain->near_cross) continue;
+            if (p >= domain->near_end && p < domain->near_shaped) continue;
+            shift = w->image_shift + w->near.image[d*w->near.stride + p];
+            across += demi_dot(demi_at(shift), demi_at(shift)) > 0;
+        }
+    }
+    if (across) demi_say(e, "along %d ax%s; %d near pairs reach across", faces,
+                         faces == 1 ? "is" : "es", across);
+    else demi_say(e, "along %d ax%s; no two grains are near each other across a face now",
+                  faces, faces == 1 ? "is" : "es");
+    return across ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_unlike(const dem_world *w, dem_effect *e) {
+    if (w->effects.uniform || !w->bodies.count)
+        return demi_look_off(e, "all bodies are alike: coefficients are worked out once");
+    demi_say(e, "%s", demi_many_species(w) ? "coefficients of each near pair"
+             : "coefficients of each two kinds");
+    return DEM_EFFECT_ACTIVE;
+}
+static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
+    if (!w->bodies.shaped) return demi_look_off(e, "all bodies are spheres");
+    demi_say(e, "%d of %d bodies are not spheres", w->bodies.shaped, w->bodies.count);
+    return DEM_EFFECT_ACTIVE;
+}
+static dem_effect_state demi_look_orientations(const dem_world *w, dem_effect *e) {
+    if (w->bodies.shaped) return demi_look_off(e, "part of what shapes cost");
+    if (!w->bodies.orienting) return demi_look_off(e, "desc.orientations is 0");
+    demi_say(e, "followed because you asked; no force hangs on them");
+    return DEM_EFFECT_ACTIVE;
+}
+static dem_effect_state demi_look_ledger(const dem_world *w, dem_effect *e) {
+    if (!w->desc.ledger) return demi_look_off(e, "desc.ledger is 0");
+    demi_say(e, "every contact tells where its energy goes");
+    return DEM_EFFECT_ACTIVE;
+}
+static dem_effect_state demi_look_feeds(const dem_world *w, dem_effect *e) {
+    uint64_t came = 0;
+    int i;
+    if (!w->feed_count) return demi_look_off(e, "there are none");
+    for (i = 0; i < w->feed_count; i++) came += demi_feed_at(w, i)->state.total;
+    demi_say(e, "%d; %llu grains so far", w->feed_count, (unsigned long long)came);
+    return came ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+static dem_effect_state demi_look_outlets(const dem_world *w, dem_effect *e) {
+    uint64_t went = 0;
+    int i;
+    if (!w->outlet_count) return demi_look_off(e, "there are none");
+    for (i = 0; i < w->outlet_count; i++) went += demi_outlet_at(w, i)->state.total;
+    demi_say(e, "%d; %llu grains so far", w->outlet_count, (unsigned long long)went);
+    return went ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
+
+/* --- without it --- */
+
+/* What the user's functions are asked through, by copies that ask them once, or twice, of which the
+   first answer is thrown away. */
+typedef struct demi_again { dem_world_desc desc; int times, memory; } demi_again;
+typedef void (*demi_leave_fn)(dem_world *t, demi_again *own);
+/* With what rolls: loops are written for neither, for friction, and for both. */
+static void demi_leave_friction(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.tangent_law = DEM_TANGENT_NONE;
+    t->desc.rolling_law = DEM_ROLLING_NONE;
+}
+static void demi_leave_rolling(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.rolling_law = DEM_ROLLING_NONE;
+}
+static void demi_leave_ledger(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.ledger = 0;
+}
+static void demi_leave_orientations(dem_world *t, demi_again *own) {
+    (void)own;
+    t->desc.orientations = t->bodies.orienting = 0;
+}
+static void demi_leave_adhesion(dem_world *t, demi_again *own) {
+    int i, j;
+    (void)own;
+    for (i = 0; i < t->material_count; i++)
+        for (j = i; j < t->material_count; j++) {
+            dem_pair p = t->pairs[i*DEMI_MATERIALS + j].given;
+            p.stiffness_adhesion = 0;
+            demi_pair_put(t, i, j, &p);
+        }
+}
+static void demi_leave_motions(dem_world *t, demi_again *own) {
+    dem_wall id;
+    (void)own;
+    for (id.id = 1; id.id <= t->wall_count; id.id++)
+        if (t->walls[id.id - 1].kind != DEMI_WALL_NONE) dem_wall_motion(t, id, &DEM_MOTION);
+}
+static void demi_leave_walls(dem_world *t, demi_again *own) {
+    dem_wall id;
+    (void)own;
+    for (id.id = 1; id.id <= t->wall_count; id.id++)
+        if (t->walls[id.id - 1].kind != DEMI_WALL_NONE) dem_wall_remove(t, id);
+}
+static void demi_law_again(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const demi_again *own = (const demi_again *)c->user;
+    dem_contact mine = *c;
+    int i;
+    mine.user = own->desc.law_user;
+    for (i = 1; i < own->times; i++) {
+        dem_real spare[DEMI_MEMORY];
+        dem_contact_force other = *f;
+        memcpy(spare, memory, (size_t)own->memory*sizeof *spare);
+        own->desc.law(&mine, spare, &other);
+    }
+    own->desc.law(&mine, memory, f);
+}
+static dem_vec3 demi_force_again(dem_vec3 position, dem_vec3 velocity, dem_real radius,
+                                 dem_real mass, double time, void *user) {
+    const demi_again *own = (const demi_again *)user;
+    int i;
+    for (i = 1; i < own->times; i++)
+        own->desc.force(position, velocity, radius, mass, time, own->desc.force_user);
+    return own->desc.force(position, velocity, radius, mass, time, own->desc.force_user);
+}
+static void demi_body_force_again(const dem_body_state *body, dem_body id, double time,
+                                  dem_vec3 *force, dem_vec3 *torque, void *user) {
+    const demi_again *own = (const demi_again *)user;
+    int i;
+    for (i = 1; i < own->times; i++) {
+        dem_vec3 f = *force, t = *torque;
+        own->desc.body_force(body, id, time, &f, &t, own->desc.force_user);
+    }
+    own->desc.body_force(body, id, time, force, torque, own->desc.force_user);
+}
+static void demi_again_law(dem_world *t, demi_again *own) {
+    t->desc.law = demi_law_again;
+    t->desc.law_user = own;
+}
+static void demi_again_field(dem_world *t, demi_again *own) {
+    if (t->desc.force) t->desc.force = demi_force_again;
+    if (t->desc.body_force) t->desc.body_force = demi_body_force_again;
+    t->desc.force_user = own;
+}
+
+/* >>add-effect: a row, its functions above. Where nothing can be left out: 0. twice: the copies ask
+   the user's function once and twice, since nothing would do its work. */
+typedef struct demi_effect_row {
+    const char *name;
+    demi_look_fn look;
+    demi_leave_fn leave;
+    int twice;
+} demi_effect_row;
+static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
+    {"contacts",         demi_look_contacts,     0,                       0},
+    {"friction",         demi_look_friction,     demi_leave_friction,     0},
+    {"rolling friction", demi_look_rolling,      demi_leave_rolling,      0},
+    {"adhesion",         demi_look_adhesion,     demi_leave_adhesion,     0},
+    {"law of your own",  demi_look_law,          demi_again_law,          1},
+    {"force field",      demi_look_field,        demi_again_field,        1},
+    {"walls",            demi_look_walls,        demi_leave_walls,        0},
+    {"moving walls",     demi_look_motions,      demi_leave_motions,      0},
+    {"periodic faces",   demi_look_periodic,     0,                       0},
+    {"unlike grains",    demi_look_unlike,       0,                       0},
+    {"shapes",           demi_look_shapes,       0,                       0},
+    {"orientations",     demi_look_orientations, demi_leave_orientations, 0},
+    {"ledger",           demi_look_ledger,       demi_leave_ledger,       0},
+    {"feeds",            demi_look_feeds,        0,                       0},
+    {"outlets",          demi_look_outlets,      0,                       0}};
+
+/* --- what it costs --- */
+
+/* A copy that goes on with the time step of now. */
+static dem_world *demi_effect_twin(dem_world *w, const char *state, size_t size,
+                                   demi_leave_fn leave, demi_again *own) {
+    dem_world *t = demi_twin_in_state(w, state, size);
+    if (!t) return 0;
+    demi_finish(t);
+    t->desc.dt = t->clock.dt;
+    if (leave) leave(t, own);
+    t->stage.pairs_changed = 1;
+    t->stage.dt_valid = t->stage.primed = 0;
+    return t;
+}
+static double demi_steps_time(dem_world *t, int steps, dem_result *result) {
+    const double begun = demi_clock();
+    if (*result == DEM_OK) *result = dem_world_step(t, steps);
+    return demi_clock() - begun;
+}
+static void demi_sort_doubles(double *v, int n) {
+    int i, k;
+    for (i = 1; i < n; i++) {
+        const double x = v[i];
+        for (k = i; k > 0 && v[k - 1] > x; k--) v[k] = v[k - 1];
+        v[k] = x;
+    }
+}
+/* One turn: fresh copies, a few steps for their lists and memory, then some that are timed, less
+   than a contact lasts, so that both still are the same scene. Answers the time without over that
+   with the effect; 0 when memory ran out, below 0 where a copy does not run. */
+static double demi_effect_turn(dem_world *w, const char *state, size_t size,
+                               const demi_effect_row *row, int turn) {
+    demi_again once, twice;
+    dem_world *with, *without;
+    dem_result result = DEM_OK;
+    double first, second, ratio = 0;
+    once.desc = w->desc;
+    once.memory = w->desc.law_memory;
+    once.times = 1;
+    twice = once;
+    twice.times = 2;
+    with = demi_effect_twin(w, state, size, row->twice ? row->leave : 0, &once);
+    without = with ? demi_effect_twin(w, state, size, row->leave, &twice) : 0;
+    if (without) {
+        demi_steps_time(with, DEMI_EFFECT_STEPS/4, &result);
+        demi_steps_time(without, DEMI_EFFECT_STEPS/4, &result);
+        first = demi_steps_time(turn & 1 ? with : without, DEMI_EFFECT_STEPS, &result) + 1e-9;
+        second = demi_steps_time(turn & 1 ? without : with, DEMI_EFFECT_STEPS, &result) + 1e-9;
+        ratio = result != DEM_OK ? -1 : turn & 1 ? second/first : first/second;
+        demi_twin_free(w, without);
+    }
+    if (with) demi_twin_free(w, with);
+    return ratio;
+}
+/* The median of as many turns as the budget allows, and how far medians of so many scatter, by the
+   middle half of them. 0 when memory ran out. */
+static int demi_effect_cost(dem_world *w, const char *state, size_t size,
+                            const demi_effect_row *row, double budget, dem_effect *out) {
+    double ratio[DEMI_EFFECT_TURNS];
+    const double begun = demi_clock();
+    int n = 0;
+    while (n < 5 || (n < DEMI_EFFECT_TURNS && demi_clock() - begun < budget)) {
+        ratio[n] = demi_effect_turn(w, state, size, row, n);
+        if (!(ratio[n] > 0)) return ratio[n] < 0;
+        n++;
+    }
+    demi_sort_doubles(ratio, n);
+    out->measured = 1;
+    out->share = (row->twice ? -1 : 1)*(1 - ratio[n/2]);
+    /* the middle half of a normal law is 1.35 standard deviations wide; a median has 1.25 times
+       the error of a mean */
+    out->error = (ratio[3*n/4] - ratio[n/4])/1.35*1.25/sqrt((double)n);
+    return 1;
+}
+/* States alone. */
+static int demi_effects_look(const dem_world *w, dem_effect *out) {
+    int k;
+    memset(out, 0, DEM_EFFECTS*sizeof *out);
+    for (k = 0; k < DEM_EFFECTS; k++) {
+        out[k].name = demi_effect_rows[k].name;
+        out[k].state = demi_effect_rows[k].look(w, &out[k]);
+        if (out[k].state == DEM_EFFECT_IDLE && !out[k].missing) out[k].missing = 1;
+    }
+    return DEM_EFFECTS;
+}
+DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
+    dem_result result = DEM_OK;
+    int k, count = 0, ok = 1;
+    size_t size;
+    char *state;
+    if (demi_null(w, "dem_effects_get", out, "effects")) return -1;
+    if (!(budget >= 0) || !demi_finite_double(budget)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_effects_get: budget is %g s, must be >= 0 and "
+                  "finite; 0 means states alone, 5 is enough on a quiet machine", budget);
+        return -1;
+    }
+    if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
+    if (budget > 0 && w->bodies.count) {
+        if (!w->facets_valid && !demi_facets_weigh(w))
+            result = demi_no_memory(w, "dem_effects_get");
+        else result = demi_dt_settle(w);        /* refused as a run would be */
+        if (result != DEM_OK) return -1;
+    }
+    if (w->stage.list_valid) demi_met_look(w, w->booked.met);
+    else if (w->bodies.count) demi_effects(w);
+    demi_effects_look(w, out);
+    for (k = 0; k < DEM_EFFECTS; k++)
+        count += out[k].state != DEM_EFFECT_OFF && demi_effect_rows[k].leave;
+    if (!(budget > 0) || !count || !w->bodies.count) return DEM_EFFECTS;
+    state = demi_state_keep(w, &size);
+    for (k = 0; k < DEM_EFFECTS && state && ok; k++)
+        if (out[k].state != DEM_EFFECT_OFF && demi_effect_rows[k].leave)
+            ok = demi_effect_cost(w, state, size, &demi_effect_rows[k], budget/count, &out[k]);
+    if (state) demi_free(w, state);
+    if (state && ok) return DEM_EFFECTS;
+    demi_no_memory(w, "dem_effects_get");
+    return -1;
+}
+static void demi_effects_lines(const dem_effect *e, FILE *out) {
+    static const char *states[] = {"off", "idle", "active"};
+    int k;
+    for (k = 0; k < DEM_EFFECTS; k++) {
+        char share[32] = "";
+        if (e[k].measured)
+            snprintf(share, sizeof share, "%5.1f %% +- %.1f", 100*e[k].share, 100*e[k].error);
+        fprintf(out, "  %-17s%-7s%-17s%s\n", e[k].name, states[e[k].state], share, e[k].text);
+    }
+}
+DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
+    dem_effect effects[DEM_EFFECTS];
+    if (demi_null(w, "dem_effects_print", out, "out")) return;
+    if (dem_effects_get(w, budget, effects) < 0) return;
+    fprintf(out, "effects, and the share of a step's time that goes without each\n");
+    demi_effects_lines(effects, out);
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>world
    Making one, taking it down, saying what it does. A world is made of its desc, of which every 0
    is replaced by a choice; the report tells what was chosen and which effects the scene calls
@@ -16972,6 +17486,16 @@ static void demi_ledger_report(const dem_world *w, FILE *out) {
             l.inserted, l.removed, l.kinetic, l.rotational, l.elastic, l.normal, l.slide, l.tangent,
             l.rolling, l.residual, l.throughput > 0 ? l.residual/l.throughput : 0);
 }
+/* What was asked for and has not happened. */
+static void demi_idle_report(dem_world *look, FILE *out) {
+    dem_effect e[DEM_EFFECTS];
+    int k;
+    if (look->stage.list_valid) demi_met_look(look, look->booked.met);
+    demi_effects_look(look, e);
+    for (k = 0; k < DEM_EFFECTS; k++)
+        if (e[k].missing)
+            fprintf(out, "           %s: %s\n", e[k].name, e[k].text);
+}
 DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     if (demi_null(world, "dem_world_report", out, "out")) return;
     dem_world look = *world, *w = &look;        /* effects not yet worked out are so in a copy */
@@ -17016,6 +17540,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
                 : "of few species (coefficients once for each two)", w->wall_count,
             w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
             demi_kernel_choose(w));
+    demi_idle_report(w, out);
     fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->booked.overlap_max,
             w->booked.overlap_max > 0.05 ? "  (beyond .05: stiffen the material or slow down)"
                 : "");
@@ -18742,6 +19267,7 @@ typedef struct demi_slab_sums {
     int32_t index, walls;
     uint64_t size, left;                        /* bytes of all of it; grains gone by outflow */
     double energy[DEMI_ENERGIES], removed, inserted, throughput, overlap_max;
+    uint64_t met[DEMI_MATERIALS];
 } demi_slab_sums;
 
 /* All that one slab holds, as one message. */
@@ -18760,6 +19286,8 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
     sums.inserted = w->booked.inserted;
     sums.throughput = w->booked.throughput;
     sums.overlap_max = w->booked.overlap_max;
+    memcpy(sums.met, w->booked.met, sizeof sums.met);
+    if (w->stage.list_valid) demi_met_look(w, sums.met);
     ok = demi_message_put(h, out, &sums, sizeof sums);
     for (i = 0; i < w->wall_count && ok; i++)
         ok = demi_message_put(h, out, &w->walls[i].loads, sizeof(dem_wall_loads));
@@ -18846,6 +19374,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     w->booked.throughput += sums->throughput;
     w->bodies.balance.left += sums->left;
     w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, sums->overlap_max);
+    for (i = 0; i < DEMI_MATERIALS; i++) w->booked.met[i] |= sums->met[i];
     for (i = 0; i < sums->walls; i++) {
         dem_wall_loads *c = &w->walls[i].loads, part;
         demi_unpack(&from, &part, sizeof part);
@@ -18854,6 +19383,7 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
         c->torque_axial += part.torque_axial;
         c->power += part.power;
         c->contacts += part.contacts;
+        c->touched |= part.touched;
         for (k = 0; k < 3; k++) c->impulse[k] += part.impulse[k];
         c->torque_impulse += part.torque_impulse;
         c->work += part.work;

@@ -39,6 +39,15 @@ peers() {
                 printf "| %s | %s | %s | %s | %s |\n", about[p[1]], name[p[2]], ratio[p[1] ".double.vs_" p[2]],
                     ratio[p[1] ".double.vs_" p[2] ".threads2"], ratio[p[1] ".single.vs_" p[2]] } }' "$1"
 }
+# the price list of the README: some rows of the page of effects, in words
+prices() {
+    awk -F'|' '/^\*\*Preliminary/ { print; print "" }
+        /^\| `/ { gsub(/[` ]/, "", $2); price[$2] = $5; spread[$2] = $6; gsub(/ /, "", price[$2]); gsub(/^ | $/, "", spread[$2]) }
+        END { print "| effect | time of a step, without it = 1 |"; print "|---|---|"
+            n = split("friction tangent.mindlin_rescaled rolling.epsd rolling.constant ledger one_unlike two_species all_unlike orientation periodicity feed", row, " ")
+            split("friction by a spring/Mindlin'"'"'s friction in its place/rolling resistance (EPSD)/a constant rolling torque/the ledger of energy/one grain unlike 20,000 others/two sizes, half of the grains each/every grain of a size of its own/orientations of spheres/a periodic box/a bead fed every fourth step", word, "/")
+            for (i = 1; i <= n; i++) if (row[i] in price) printf "| %s | %s (+- %s) |\n", word[i], price[row[i]], spread[row[i]] }' "$1"
+}
 # times of the glass screener beside the thesis's, for two stiffnesses, from their summaries
 screener_times() {
     cat "$1" "$2" | awk '
@@ -57,7 +66,8 @@ at=build/out
 for page in "$@"; do
     case $page in
     accuracy)
-        build/bench --scene effects && splice accuracy.md effects $at/bench/page.md || exit 1
+        build/bench --scene effects --threads 1 && splice accuracy.md effects $at/bench/page.md || exit 1
+        prices $at/bench/page.md > build/prices.md && splice ../README.md prices build/prices.md || exit 1
         build/accuracy_single && build/accuracy_one_domain && build/accuracy || exit 1
         if command -v rsvg-convert >/dev/null 2>&1; then         # the page names them by itself
             for s in $at/accuracy/*.svg; do rsvg-convert -w 760 "$s" -o "docs/images/accuracy_$(basename "$s" .svg).png"; done
