@@ -80,12 +80,30 @@ STUDY_FN int bench_processors(char *name, size_t room) { /* how many; 0: not kno
     if (file) fclose(file);
     return count;
 }
-STUDY_FN double bench_load(void) { /* processes that ran, of the last minute; 0: not known              */
-    double load = 0;
-    FILE *file = fopen("/proc/loadavg", "r");
-    if (file && fscanf(file, "%lf", &load) != 1) load = 0;
-    if (file) fclose(file);
-    return load;
+/* Processors that others keep busy, in the second that this takes; 0: not known. The load of the last minute would be that
+   of the bench before, where several run one after the other. */
+STUDY_FN double bench_load(void) {
+    char name[256];
+    double busy[2] = {0, 0}, all[2] = {0, 0}, own;
+    const clock_t begun = clock();
+    const double first = study_clock();
+    int k, e;
+    for (k = 0; k < 2; k++) {
+        FILE *file = fopen("/proc/stat", "r");
+        double part[8] = {0, 0, 0, 0, 0, 0, 0, 0};      /* user nice system idle iowait irq softirq steal */
+        if (!file) return 0;
+        if (fscanf(file, "cpu %lf %lf %lf %lf %lf %lf %lf %lf", part, part + 1, part + 2, part + 3, part + 4, part + 5, part + 6,
+                   part + 7) != 8) part[3] = -1;
+        fclose(file);
+        if (part[3] < 0) return 0;
+        for (e = 0; e < 8; e++) {
+            all[k] += part[e];
+            busy[k] += e == 3 || e == 4 ? 0 : part[e];
+        }
+        while (!k && study_clock() - first < 1) continue;
+    }
+    own = (double)(clock() - begun)/CLOCKS_PER_SEC;
+    return all[1] > all[0] ? (busy[1] - busy[0])/(all[1] - all[0])*bench_processors(name, sizeof name) - own : 0;
 }
 /* The load is asked at the beginning only: later it is our own. */
 STUDY_FN int bench_machine(void) { /* answers how many processors                                      */
