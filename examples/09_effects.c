@@ -6,12 +6,12 @@
    A bed of beads on a floor, in a periodic box. Each row of the table asks for one thing more than the row
    above it. What is not asked for is not computed: there is nothing to switch off. Worlds take turns, and
    medians are told, since other programs use the machine too; expect a few percent of noise. At last the scene
-   with everything says what each effect takes of a step, and what was asked for and never happened: a lid that
-   nothing touches, a material with rolling friction of which nothing is made.
+   with everything says what each effect takes of a step, and what was asked for and never happened: there is a
+   lid of steel that nothing touches, so that glass has not met steel.
 
    Build:     cc -O2 09_effects.c ../dem.c -lm
    Run:       09_effects [budget]                   (2 s of wall time for the shares at the end)
-   Expected:  a price list, from 1 to about 2; then the effects, of which the lid and steel are idle */
+   Expected:  a price list, from 1 to about 2; then the effects: wall 2 was never touched, and materials 1 and 2 neither */
 #include "../dem.h"
 #include <stdlib.h>
 #include <time.h>
