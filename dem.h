@@ -1682,7 +1682,8 @@ DEM_API void dem_effects_print(dem_world *world, double budget, FILE *out);
 
 /* ---- report ---- */
 
-/* Effects active and their price, time step and what binds it, search, balance, ledger. */
+/* Effects active, what was asked for and never happened, time step and what binds it, search,
+   balance, ledger. A force field of yours is asked once for each body. */
 DEM_API void dem_world_report(const dem_world *world, FILE *out);
 
 /* version and size of dem_real are checked against the implementation's. Use dem_world_create. */
@@ -17130,13 +17131,9 @@ static double demi_steps_time(dem_world *t, int steps, dem_result *result) {
     if (*result == DEM_OK) *result = dem_world_step(t, steps);
     return demi_clock() - begun;
 }
-static void demi_sort_doubles(double *v, int n) {
-    int i, k;
-    for (i = 1; i < n; i++) {
-        const double x = v[i];
-        for (k = i; k > 0 && v[k - 1] > x; k--) v[k] = v[k - 1];
-        v[k] = x;
-    }
+static int demi_double_compare(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
 }
 /* One turn: fresh copies, a few steps for their lists and memory, then some that are timed, less
    than a contact lasts, so that both still are the same scene. Answers the time without over that
@@ -17177,7 +17174,7 @@ static int demi_effect_cost(dem_world *w, const char *state, size_t size,
         if (!(ratio[n] > 0)) return ratio[n] < 0;
         n++;
     }
-    demi_sort_doubles(ratio, n);
+    qsort(ratio, (size_t)n, sizeof *ratio, demi_double_compare);
     out->measured = 1;
     out->share = (row->twice ? -1 : 1)*(1 - ratio[n/2]);
     /* the middle half of a normal law is 1.35 standard deviations wide; a median has 1.25 times
