@@ -1353,6 +1353,10 @@ DEM_API int dem_world_check(dem_world *world, dem_finding *findings, int capacit
 /* The same as lines of text, the first 16 of them; nothing where nothing is found. */
 DEM_API int dem_check_print(dem_world *world, FILE *out);
 
+/* Takes so many steps (>= 0), or fewer where one cannot be taken: its reason is then the answer, and
+   the sentence in dem_world_error names the step. A step that ran out of memory (DEM_ERROR_MEMORY)
+   may have moved the bodies already, and be counted; the first of the next call is then what is
+   left of it, here or in a world that read what was saved meanwhile: no bit is lost. */
 DEM_API dem_result dem_world_step(dem_world *world, int steps);
 /* Runs on for seconds, to the step nearest to the end. Runs that follow each other add up: twenty
    of 0.05 s end within half a step of 1 s, since each counts from where the one before should have
@@ -7050,7 +7054,9 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
     if (ok) w->wall_stride = stride;
     return ok;
 }
-static int demi_cross_reserve(dem_world *w, size_t entries) {
+/* Room for all entries that the cross lists can hold. */
+static int demi_cross_reserve(dem_world *w) {
+    const size_t entries = (size_t)w->domain_count*(size_t)w->cross.stride;
     const int ok = DEMI_GROW(w, w->cross_incoming, entries) &&
                    DEMI_GROW(w, w->cross_force, 6*(entries + DEMI_LANES + 1));
     return ok;
@@ -7064,9 +7070,8 @@ static int demi_domain_of(const dem_world *w, int body) {
 }
 /* Entries of the cross lists by the domain of b, so that each domain can add what reaches in from
    before it. */
-static int demi_cross_index(dem_world *w) {
-    int d, k, e, entries = w->domain_count*w->cross.stride;
-    if (!demi_cross_reserve(w, (size_t)entries)) return 0;
+static void demi_cross_index(dem_world *w) {
+    int d, k, e;
     for (d = 0; d <= w->domain_count; d++) w->cross_incoming_start[d] = 0;
     for (d = 0; d < w->domain_count; d++)
         for (k = 0; k < w->domains[d].cross; k++) {
@@ -7085,7 +7090,6 @@ static int demi_cross_index(dem_world *w) {
     for (d = 0; d < w->domain_count; d++)
         w->cross_incoming_start[d] = w->cross_incoming_start[d + 1];
     w->cross_incoming_start[w->domain_count] = w->cross_entries;
-    return 1;
 }
 
 /* Places that candidate k of domain d may give at most. */
@@ -7523,6 +7527,9 @@ typedef struct demi_quiet {
 DEM_INLINE demi_quiet *demi_quiet_at(const dem_world *w, int d, int i) {
     return w->quiet + d + i/DEMI_SOME;     /* no two domains share one */
 }
+static int demi_quiet_reserve(dem_world *w, int bodies) {
+    return DEMI_GROW(w, w->quiet, (size_t)(bodies/DEMI_SOME + w->domain_count + 1));
+}
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
@@ -7596,7 +7603,7 @@ static int demi_near_make(dem_world *w, int fresh) {
     w->near = w->near_last;
     w->near_last = swap;
     w->near_fresh = fresh;
-    if (!DEMI_GROW(w, w->quiet, (size_t)(w->bodies.count/DEMI_SOME + w->domain_count + 1))) {
+    if (!demi_quiet_reserve(w, w->bodies.count)) {
         w->near_last = w->near;
         w->near = swap;
         return 0;
@@ -7833,7 +7840,8 @@ static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int 
                             (dem_real)w->margin.span*demi_length(u);
 }
 /* Body i, just appended, joins the list; `found`, ascending: all whose gap to it may be below the
-   skin. 0: there was no room, the list must be made anew. */
+   skin. 0: there was no room, the list must be made anew. Asks for no memory: what it needs was
+   there before the body came (demi_world_put), or a refusal would look like a lack of room. */
 static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) {
     const int last = w->domain_count - 1, walls = w->domains[last].walls;
     const demi_periods p = demi_periods_of(w);
@@ -7851,13 +7859,11 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
         leading |= d < last;
         w->stage.near_stale |= demi_join_near(w, &p, a, i);
     }
-    if (leading && !demi_cross_index(w)) return 0;
+    if (leading) demi_cross_index(w);
     demi_body_walls(w, last, i);
     if (w->domains[last].walls - walls >= w->join_room) return 0;
     w->join_room -= w->domains[last].walls - walls;
     if (w->domains[last].walls > walls) w->touching_valid = 0;
-    if (!DEMI_GROW(w, w->quiet,
-                   (size_t)(w->bodies.count/DEMI_SOME + w->domain_count + 1))) return 0;
     demi_quiet_at(w, last, i)->restless = 2;
     w->effects.radius_min = DEMI_MIN(w->effects.radius_min, w->bodies.pos[4*i + 3]);
     w->effects.radius_max = DEMI_MAX(w->effects.radius_max, w->bodies.pos[4*i + 3]);
@@ -7962,7 +7968,9 @@ static int demi_pairs_find(dem_world *w) {
         if ((over & 1 && !demi_list_reserve(w, &w->own, n, w->own.stride/2*3 + 64)) ||
             (over & 2 && !demi_list_reserve(w, &w->cross, n, w->cross.stride/2*3 + 64))) return 0;
     } while (over);
-    return demi_cross_index(w);
+    if (!demi_cross_reserve(w)) return 0;
+    demi_cross_index(w);
+    return 1;
 }
 /* Candidates on walls, likewise. */
 static int demi_walls_find(dem_world *w) {
@@ -12101,7 +12109,8 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
                                 DEMI_FEED_NEAR);
     joins = joins && count <= DEMI_FEED_NEAR;
     if (!demi_crowd_put(w, c, x, r, w->bodies.count) || (!joins && !demi_list_drop(w)) ||
-        !demi_bodies_reserve(w, (size_t)w->bodies.count + 1)) {
+        !demi_bodies_reserve(w, (size_t)w->bodies.count + 1) ||
+        (joins && !demi_quiet_reserve(w, w->bodies.count + 1))) {
         f->random = random;
         return -(int)demi_no_memory(w, "dem_world_step");
     }
@@ -16237,8 +16246,9 @@ static int demi_twin_lists_room(dem_world *t) {
             demi_list_reserve(t, &t->cross, t->domain_count, most[1]) &&
             demi_species_room(t) &&
             demi_near_reserve(t, &t->near, t->domain_count, most[2]) &&
+            demi_cross_reserve(t) &&
             demi_wall_lists_reserve(t, most[3]) &&
-            DEMI_GROW(t, t->quiet, (size_t)(t->bodies.count/DEMI_SOME + t->domain_count + 1)));
+            demi_quiet_reserve(t, t->bodies.count));
 }
 /* What follows from the rest, and is not stored. 0 when memory ran out. */
 static int demi_twin_follow(dem_world *t) {
@@ -16273,7 +16283,7 @@ static int demi_twin_follow(dem_world *t) {
         demi_near_adopt(t, d);
     }
     t->touching_valid = 0;
-    if (!demi_cross_index(t)) return 0;
+    demi_cross_index(t);
     for (d = 0; d < t->domain_count; d++) demi_domain_quiet(t, d);
     return 1;
 }
