@@ -1353,7 +1353,7 @@ DEM_API int dem_world_check(dem_world *world, dem_finding *findings, int capacit
 /* The same as lines of text, the first 16 of them; nothing where nothing is found. */
 DEM_API int dem_check_print(dem_world *world, FILE *out);
 
-/* Takes so many steps (>= 0), or fewer where one cannot be taken: its reason is then the answer, and
+/* Takes so many steps (>= 0), or fewer where one cannot be taken: the answer is its reason, and
    the sentence in dem_world_error names the step. A step that ran out of memory (DEM_ERROR_MEMORY)
    may have moved the bodies already, and be counted; the first of the next call is then what is
    left of it, here or in a world that read what was saved meanwhile: no bit is lost. */
@@ -1381,7 +1381,9 @@ DEM_API uint64_t dem_world_hash(const dem_world *world);
 typedef struct dem_counters {
     uint64_t steps, rebuilds;
     int candidates, contacts, wall_contacts;  /* at the last step */
-    dem_real overlap_max;       /* largest overlap over the smaller radius, since the last reset */
+    dem_real overlap_max;       /* largest overlap over the smaller radius, since the last reset; of
+                                   ellipsoids over the smaller half width along the normal. A run
+                                   stops at 1 */
     dem_real speed_max;         /* m/s, at the last step */
     dem_real skin;              /* m, in force */
     dem_real dt;                /* s, in force */
@@ -1996,8 +1998,8 @@ typedef struct demi_kept {
     int32_t send;                  /* 1 + where the force on b goes; 0: b is of this domain */
     int32_t from;                  /* which of its domain's a step ago it continues; -1: none */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to where they push */
-    dem_real overlap, deep;        /* m, 0: under way through a reduced hole; over the smallest
-                                      radius */
+    dem_real overlap, deep;        /* m, 0: under way through a reduced hole; over the smaller half
+                                      width along the normal, of a sphere its radius */
     dem_real share, lift, grip;    /* how often it counts: damping, elastic force, friction */
     dem_real weight;               /* share before contacts are shared: see demi_kept_share */
     dem_real area, added, rate;    /* m2, A; what others add to it, over d^2; how A follows that */
@@ -10103,7 +10105,7 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     demi_meet_heights(&m, n, &ha, &hb);
     c->lambda = m.l;
     c->normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
-    c->deep = (dem_real)((1 - w0)*(ha + hb))/DEMI_MIN(demi_part_thin(p), demi_part_thin(q));
+    c->deep = (dem_real)((1 - w0)*(ha + hb)/DEMI_MIN(ha, hb));
     c->overlap = (dem_real)((1 - w0)*(ha + hb));
     if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
         const double l = demi_part_equal(p) + demi_part_equal(q);
@@ -10377,7 +10379,7 @@ static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, co
     const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a), left = place->overlap;
     const dem_real edge = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0);
     c->overlap = left*(h + edge);
-    c->deep = c->overlap/demi_part_thin(p);
+    c->deep = c->overlap/h;
     c->r_eff = (dem_real)demi_part_round(w, p, (double)h);
     if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
         const dem_real l = (dem_real)demi_part_equal(p) + edge;
@@ -11043,16 +11045,15 @@ static void demi_prime(dem_world *w) {
        and spin, predicted with the last torque. All are of second order under torques. Checked by
        tests of rotation (free flight against elliptic functions, order, tops). --- */
 
-/* q turned by the rotation vector v of the body's frame (rad), |v| < 2: q exp(v/2), by series to
-   1e-12. */
-DEM_INLINE dem_quat demi_quat_spin(dem_quat q, dem_vec3 v) {
+/* The rotation by the vector v (rad), |v| < 2: exp(v/2), by series to 1e-12. */
+DEM_INLINE dem_quat demi_quat_exp(dem_vec3 v) {
     const dem_real x = demi_dot(v, v)*DEM_R(0.25);         /* (half angle)^2 */
     /* cos and half of sin x/x; products with constants, which quotients would not become */
     const dem_real c = 1 + x*(DEM_R(-1.0/2) + x*(DEM_R(1.0/24) + x*(DEM_R(-1.0/720) +
         x*(DEM_R(1.0/40320) + x*(DEM_R(-1.0/3628800) + x*DEM_R(1.0/479001600))))));
     const dem_real s = DEM_R(0.5) + x*(DEM_R(-1.0/12) + x*(DEM_R(1.0/240) + x*(DEM_R(-1.0/10080) +
         x*(DEM_R(1.0/725760) + x*(DEM_R(-1.0/79833600) + x*DEM_R(1.0/12454041600.0))))));
-    return dem_quat_times(q, dem_quat_make(c, s*v.x, s*v.y, s*v.z));
+    return dem_quat_make(c, s*v.x, s*v.y, s*v.z);
 }
 /* As demi_quat_unit, for what is nearly one, in kernels. */
 DEM_INLINE dem_quat demi_quat_again(dem_quat q) {
@@ -11087,7 +11088,7 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     end = demi_add(w, demi_add(demi_scale(w1, h), end));
     mean = demi_add(w, demi_add(demi_scale(w1, h*DEM_R(0.5)), mean));
     magnus = demi_scale(demi_cross(w, end), h*DEM_R(1.0/12));
-    *q = demi_quat_spin(*q, demi_scale(demi_add(mean, magnus), h));
+    *q = dem_quat_times(*q, demi_quat_exp(demi_scale(demi_add(mean, magnus), h)));
     end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
     g = dem_quat_unrotate(*q, L);
     c = demi_scale(demi_cross(end, g), ll > DEMI_TINY ? DEM_R(0.5)/ll : 0);
@@ -11211,24 +11212,54 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
     domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
     domain->check += (double)check;
 }
+/* The same for spheres, whose spins L has: exp(w dt/2) q, w of the world's frame. As long as 1 but
+   for the series' error, so that one step of Newton's method for 1/|q| does. */
+DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real dt) {
+    int l, k;
+    for (k = 0; k < count; k += DEMI_LANES) {
+        DEMI_VECTOR
+        for (l = k; l < k + DEMI_LANES; l++) {
+            const dem_quat q = dem_quat_times(
+                demi_quat_exp(demi_v(t->L[0][l]*dt, t->L[1][l]*dt, t->L[2][l]*dt)),
+                dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]));
+            const dem_real by = DEM_R(1.5) -
+                                DEM_R(0.5)*(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z);
+            t->q[0][l] = q.w*by; t->q[1][l] = q.x*by; t->q[2][l] = q.y*by; t->q[3][l] = q.z*by;
+        }
+    }
+}
+static void demi_orient_balls(dem_world *w, const int *who, int count) {
+    const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    demi_turning t;
+    int l, e;
+    for (l = 0; l < full; l++) {
+        const size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
+        for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.L[e][l] = w->bodies.half_spin[i + (size_t)e];
+    }
+    demi_turning_balls(&t, full, w->clock.dt);
+    for (l = 0; l < count; l++)
+        for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
+}
 /* Orientations of bodies begin .. end - 1 over one step, and spins of those that are not spheres.
    */
 static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
-    const dem_real dt = w->clock.dt;
-    int who[DEMI_TILE], count = 0, i;
+    int who[DEMI_TILE], balls[DEMI_TILE], count = 0, ball_count = 0, i;
     for (i = begin; i < end; i++) {
         if (w->bodies.inv_mass[i] <= 0) continue;
         if (w->bodies.shape[i]) {
             who[count++] = i;
             if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count); count = 0; }
         } else if (w->desc.orientations) {
-            const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
-            const dem_vec3 by = demi_scale(demi_at(w->bodies.half_spin + 4*i), dt);
-            demi_quat_put(w->bodies.orient + 4*i,
-                          demi_quat_again(demi_quat_spin(q, dem_quat_unrotate(q, by))));
+            balls[ball_count++] = i;
+            if (ball_count == DEMI_TILE) {
+                demi_orient_balls(w, balls, ball_count);
+                ball_count = 0;
+            }
         }
     }
     if (count) demi_orient_some(w, domain, who, count);
+    if (ball_count) demi_orient_balls(w, balls, ball_count);
 }
 /* Spins at the full step, from angular momentum at the half step and the torque of now. */
 static void demi_orient_finish(dem_world *w, int begin, int end) {

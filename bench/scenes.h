@@ -74,9 +74,10 @@ typedef struct bench_choice {
     int adhesion;               /* 1: hysteretic law that unloads as steeply as it loads; 2: and sticks */
     int field;                  /* 1: solidicity and velocity sampled every 100 steps; 2: never again */
     int open;                   /* 1: no boundary is periodic                                   */
+    int shaped;                 /* beads given as 1: ellipsoids of three equal axes; 2: clusters of one sphere */
 } bench_choice;
 #define BENCH_CHOICE {0, 0, 0, DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, \
-    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
 STUDY_FN int bench_is(const bench_scene *s, const char *name) { return !strcmp(s->name, name); }
 
@@ -303,6 +304,16 @@ STUDY_FN int bench_field(dem_world *world, const bench_scene *s, const bench_cho
     field.end = o->field == 2 ? s->dt : 0;
     return dem_field_add(world, &field).id != 0;
 }
+/* A bead as a shape: what goes the way of bodies that are not spheres, at the places spheres have. */
+STUDY_FN dem_shape bench_shape(dem_world *world, int shaped, dem_real radius) {
+    static const dem_real centre[3] = {0, 0, 0};
+    dem_cluster_desc one = DEM_CLUSTER_DESC;
+    one.count = 1;
+    one.positions = centre;
+    one.radius = radius;
+    return shaped == 1 ? dem_shape_ellipsoid_add(world, dem_vec3_make(radius, radius, radius))
+                       : dem_shape_cluster_add(world, &one);
+}
 /* By how much of the radius bead i is smaller; where all are, too little to change the scene. */
 STUDY_FN double bench_smaller(int mixed, int i) {
     if (mixed == 3) return 1e-6*(i*7919%10007)/10007;
@@ -315,6 +326,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_material_desc m = DEM_MATERIAL_DESC;
     dem_material material;
+    dem_shape shape = {0};
     dem_pair pair;
     dem_world *world;
     dem_real *x, *v, *r;
@@ -378,7 +390,10 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
             v[3*i + c] = (dem_real)s->v[3*i*every + c];
         }
     }
-    result = ok ? dem_spheres_add(world, material, count, x, v, r, 0) : DEM_ERROR_ARGUMENT;
+    if (o->shaped) shape = bench_shape(world, o->shaped, (dem_real)s->radius);
+    result = !ok ? DEM_ERROR_ARGUMENT
+        : o->shaped ? dem_bodies_add(world, material, shape, count, x, 0, v, 0, 0)
+        : dem_spheres_add(world, material, count, x, v, r, 0);
     for (i = 0; i < count && result == DEM_OK; i++) {
         const double *spin = s->spin + 3*i*every;
         dem_body_state state;
