@@ -117,6 +117,33 @@ int main(int argc, char **argv) {
         if (demi_threads_available() < 64) PLANT(t.threads = 64, DEM_SEVERITY_NOTE, "threads is 64");
 #undef PLANT
     }
+    TEST("a grain so far from the origin that its place has too few digits is named, as a note from 2e-4 of its "
+         "radius on and as a warning from 2e-3 on") {
+        static const struct { double part; dem_severity severity; } row[3] =
+            {{1e-4, (dem_severity)0}, {4e-4, DEM_SEVERITY_NOTE}, {4e-3, DEM_SEVERITY_WARNING}};
+        const double digit = sizeof(dem_real) == sizeof(float) ? 1.1920929e-7 : 2.220446e-16;
+        int i, k;
+        for (i = 0; i < 3; i++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_finding f[8];
+            dem_severity found = (dem_severity)0;
+            desc.threads = 1;
+            desc.gravity = at(0, 0, -9.81);
+            world = dem_world_create(&desc);
+            dem_sphere_add(world, scene_material(world, 1e7, 0.5, 0.3, 0), DEM_R(1e-3),
+                           at(0, -1e-3*row[i].part/digit, 0));
+            for (k = dem_world_check(world, f, 8) - 1; k >= 0; k--)
+                if (strstr(f[k].text, "so far from the origin")) {
+                    found = f[k].severity;
+                    CHECK_STR(f[k].text, "body 1 is so far");
+                    CHECK_STR(f[k].text, row[i].severity == DEM_SEVERITY_NOTE ? "0.0004 of its radius"
+                                                                              : "0.004 of its radius");
+                }
+            CHECK_EQ(found, row[i].severity);
+            dem_world_destroy(world);
+        }
+    }
     TEST("the most severe findings are kept where there is room for few, and counted all") {
         tray t = TRAY;
         dem_world *world;

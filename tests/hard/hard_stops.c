@@ -724,6 +724,50 @@ int main(int argc, char **argv) {
         CHECK_STR(sentence[0], "is pressed by 6 contacts, by 0.03 of its radius");
         CHECK_STR(sentence[0], "use dt = 0, a smaller dt, or less overlap");
     }
+    TEST("a grain that begins 1.02 radii deep in another or in a wall, be it sphere, ellipsoid or "
+         "cluster, stops the run before it moves; at 0.98 it runs") {
+        static const dem_real centre[3] = {0, 0, 0};
+        int kind, wall, deep;
+        for (kind = 0; kind < 3; kind++)
+            for (wall = 0; wall < 2; wall++)
+                for (deep = 0; deep < 2; deep++) {
+                    const double gone = deep ? 1.02 : 0.98;
+                    dem_world_desc desc = DEM_WORLD_DESC;
+                    dem_cluster_desc one = DEM_CLUSTER_DESC;
+                    dem_shape shape = {0};
+                    dem_material m;
+                    dem_world *world;
+                    dem_body a, b = {0, 0};
+                    dem_result result;
+                    desc.threads = 1;
+                    desc.dt = DEM_R(1e-6);
+                    world = dem_world_create(&desc);
+                    m = scene_material(world, 1e6, 0.5, 0, 0);
+                    one.count = 1;
+                    one.positions = centre;
+                    one.radius = DEM_R(1e-3);
+                    if (kind == 1) shape = dem_shape_ellipsoid_add(world, at(1e-3, 1e-3, 1e-3));
+                    if (kind == 2) shape = dem_shape_cluster_add(world, &one);
+                    a = kind ? dem_body_add(world, m, shape, at(0, 0, 0), dem_quat_make(1, 0, 0, 0))
+                             : dem_sphere_add(world, m, DEM_R(1e-3), at(0, 0, 0));
+                    if (wall) dem_plane_add(world, m, at(0, 0, -1e-3*(1 - gone)), at(0, 0, 1));
+                    else if (kind)
+                        b = dem_body_add(world, m, shape, at(0, 0, 1e-3*(2 - gone)),
+                                         dem_quat_make(1, 0, 0, 0));
+                    else b = dem_sphere_add(world, m, DEM_R(1e-3), at(0, 0, 1e-3*(2 - gone)));
+                    result = dem_world_step(world, 1);
+                    CHECK_EQ(result, deep ? DEM_ERROR_UNSTABLE : DEM_OK);
+                    if (deep) {
+                        says(world, "step 0", wall ? "body 1 overlaps wall 1 by 1.02 of its radius"
+                                                   : "bodies 1 and 2 overlap by 1.02 of",
+                             "must be below 1", "started in");
+                        CHECK_EQ(dem_world_steps(world), 0);
+                        CHECK_NEAR(scene_state(world, a).position.z, 0, 0);
+                        if (!wall) CHECK_NEAR(scene_state(world, b).velocity.z, 0, 0);
+                    }
+                    dem_world_destroy(world);
+                }
+    }
     TEST("with 1 and 2 threads a request for memory that is refused in a run leaves a whole world: "
          "it can be looked at and saved, goes on to the same bits, and so does a world that reads "
          "what was saved") {
