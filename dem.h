@@ -3417,7 +3417,7 @@ DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
     const double hi = (double)DEMI_MAX(a.x, DEMI_MAX(a.y, a.z));
     none.id = 0;
     if (demi_shape_planar(w, "dem_shape_ellipsoid_add")) return none;
-    if (!demi_finite3(a) || !(lo > 0) || !(hi <= 1000*lo)) {
+    if (!demi_finite3(a) || !(lo > 0) || !(hi <= 1000.001*lo)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_ellipsoid_add: semi-axes are %g, %g and %g m, "
                   "must be > 0 and the longest at most 1000 times the shortest; give half "
                   "lengths, in metres", (double)a.x, (double)a.y, (double)a.z);
@@ -9905,21 +9905,30 @@ static dem_real demi_ellipsoid_arm(const demi_part *p, dem_vec3 n, dem_vec3 *arm
     *arm = demi_scale(dem_quat_rotate(p->q, demi_v(a.x*s.x, a.y*s.y, a.z*s.z)), 1/h);
     return h;
 }
+/* Half its width along n, across the axis. */
+static double demi_ellipse_height(const double *Q, const double *n) {
+    return sqrt(n[0]*n[0]*Q[0] + 2*n[0]*n[1]*Q[3] + n[1]*n[1]*Q[1]);
+}
 /* What is left of an ellipsoid about x inside a cylinder's radius R as it shrinks (or, from
    outside, beyond it): 1 - W0, at the scale W0 it only just touches; n: where, across the axis.
    Newton's method on W, whose far end goes with its height there; from W = 1, where n has been
-   found. */
+   found. Once the centre has come to the wall it is next to a point there: W0 falls on below 0
+   behind the wall, so that what has gone through is seen. */
 static double demi_ellipse_shrink(const double *Q, double x, double y, int out, double R,
                                   double far, double *n) {
+    const double from_axis = sqrt(x*x + y*y);
     double W = 1;
     int k;
     for (k = 0; k < 20; k++) {
-        const double h = sqrt(n[0]*n[0]*Q[0] + 2*n[0]*n[1]*Q[3] + n[1]*n[1]*Q[1]);
-        const double step = out*(R - far)/h;
+        const double step = out*(R - far)/demi_ellipse_height(Q, n);
         double S[6];
         int e;
         W += step;
-        if (!(W > 1e-3)) return 1 - 1e-3;
+        if (!(W > 1e-3) && from_axis > 0) {
+            n[0] = x/from_axis;
+            n[1] = y/from_axis;
+            return 1 - out*(R - from_axis)/demi_ellipse_height(Q, n);
+        }
         for (e = 0; e < 6; e++) S[e] = W*W*Q[e];
         far = demi_ellipse_far(S, x, y, out, atan2(n[1], n[0]), n);
         if (fabs(step) < 1e-15) break;

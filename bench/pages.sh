@@ -1,7 +1,7 @@
-# sh bench/pages.sh [accuracy] [roofline] [clusters] [shapes] [screener] [peers]: measures anew what stands in those pages
-# of docs/ (screener: its times in studies.md; peers: the table in README.md), the first three when none is named, and puts
-# tables and pictures in place. Needs a quiet machine: a busy one is told in the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
-[ "$1" ] || set -- accuracy roofline clusters
+# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers]: measures anew what stands in those pages
+# of docs/ (effects: the prices in accuracy.md and README.md; screener: its times in studies.md; peers: the table in README.md),
+# effects to clusters when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
+[ "$1" ] || set -- effects accuracy roofline clusters
 export OMP_PROC_BIND=true OMP_PLACES=cores
 
 # splice PAGE NAME FILE
@@ -65,9 +65,10 @@ screener_times() {
 at=build/out
 for page in "$@"; do
     case $page in
-    accuracy)
+    effects)
         build/bench --scene effects --threads 1 && splice accuracy.md effects $at/bench/page.md || exit 1
-        prices $at/bench/page.md > build/prices.md && splice ../README.md prices build/prices.md || exit 1
+        prices $at/bench/page.md > build/prices.md && splice ../README.md prices build/prices.md || exit 1 ;;
+    accuracy)
         build/accuracy_single && build/accuracy_one_domain && build/accuracy || exit 1
         if command -v rsvg-convert >/dev/null 2>&1; then         # the page names them by itself
             for s in $at/accuracy/*.svg; do rsvg-convert -w 760 "$s" -o "docs/images/accuracy_$(basename "$s" .svg).png"; done
@@ -100,6 +101,6 @@ for page in "$@"; do
         cat build/peers.out
         grep -q ' = ' build/peers.out || { echo "neither code was found: README.md stays as it was"; exit 1; }
         peers build/peers.out > build/peers.md && splice ../README.md peers build/peers.md || exit 1 ;;
-    *) echo "no page $page: accuracy, roofline, clusters, shapes, screener or peers"; exit 1 ;;
+    *) echo "no page $page: effects, accuracy, roofline, clusters, shapes, screener or peers"; exit 1 ;;
     esac
 done

@@ -649,7 +649,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
     TEST("a pile of spheres, needles and discs of 10 to 1 and clusters comes to rest on a floor "
-         "that bears its weight, and its kinetic energy falls on and on") {
+         "that bears its weight: its kinetic energy falls on and on, but for what spheres have by "
+         "spinning about the vertical, which no law resists") {
         static const dem_real three[9] = {DEM_R(-2e-3), 0, 0, DEM_R(2e-3), 0, 0, 0, DEM_R(3e-3), 0};
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world;
@@ -658,7 +659,8 @@ int main(int argc, char **argv) {
         dem_wall floor;
         dem_wall_loads load;
         dem_totals t;
-        double kinetic[3];
+        double kinetic[3], twirl[3];
+        const double at_rest = single ? 1e-12 : 1e-15;     /* J: some 1e-6 m/s of a grain */
         const int all = getenv("TEST_LONG") != 0, count = all ? 96 : 24;
         uint64_t seed = 4;
         int i, k;
@@ -681,13 +683,23 @@ int main(int argc, char **argv) {
         for (k = 0; k < 3; k++) {
             CHECK_EQ(dem_world_run(world, (all ? 5 : 1)*(k ? 0.08 : 0.16), 0, 0), DEM_OK);
             t = dem_totals_get(world);
-            kinetic[k] = t.kinetic + t.rotational;
+            twirl[k] = 0;
+            for (i = 0; i < count; i++) {
+                const dem_bodies b = dem_bodies_get(world);
+                const double r = (double)b.positions[4*i + 3], spin = (double)b.spins[4*i + 2];
+                if (!b.shapes[i] && fabs((double)b.positions[4*i + 2] - r) < r/100)
+                    twirl[k] += mass_of(r, r, r)*r*r/5*spin*spin;
+            }
+            kinetic[k] = t.kinetic + t.rotational - twirl[k];
         }
         dem_wall_loads_reset(world, floor);
         CHECK_EQ(dem_world_run(world, 0.1, 0, 0), DEM_OK);
         dem_wall_loads_get(world, floor, &load);
         CHECK_REL(-load.impulse[2]/load.time, t.mass*9.81, 0.03);
-        CHECK(kinetic[1] < kinetic[0] && kinetic[2] < kinetic[1]);
+        for (k = 1; k < 3; k++) {
+            CHECK(kinetic[k] < kinetic[k - 1] || kinetic[k] < at_rest);
+            CHECK(twirl[k] <= twirl[k - 1]*(1 + 1e-12) || kinetic[k - 1] > 1e-9);
+        }
         CHECK_EQ(dem_balance_get(world).present, count);
         dem_world_destroy(world);
     }
