@@ -41,7 +41,8 @@ static void pair_make(int i, double ratio) {
         a.x = 1; a.y = (dem_real)pow(ratio, demi_uniform(&seed)); a.z = (dem_real)ratio;
         demi_ellipsoid_matrix(q, a, k ? m->B : m->A);
         for (n = 0; n < 3; n++) { by[n] = 0; jog(&by[n]); }
-        p = demi_quat_again(demi_quat_spin(q, dem_vec3_make((dem_real)by[0], (dem_real)by[1], (dem_real)by[2])));
+        p = demi_quat_again(dem_quat_times(q, demi_quat_exp(dem_vec3_make((dem_real)by[0], (dem_real)by[1],
+                                                                      (dem_real)by[2]))));
         demi_ellipsoid_matrix(p, a, k ? was->B : was->A);
     }
     m->r[0] = (double)e.x; m->r[1] = (double)e.y; m->r[2] = (double)e.z;
