@@ -48,7 +48,8 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run test hard examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers tags parts recipes snippets clean
+LAW      ?=
+.PHONY: help all run test hard law examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers tags parts recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -64,6 +65,11 @@ test: build/tests $(ALONE) ## build and run all tests; FILTER=words runs the sen
 hard: build/tests ## the long form of the hard cases, over an hour: counts cases and impacts; FILTER=words as in test
 	@JOBS=$(JOBS) TEST_LONG=1 sh tests/run.sh "$(FILTER)" $(HARD:build/%=build/tests@%) build/tests@test_facets \
 	    build/tests@test_sieve > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
+
+law: $(if $(LAW),build/dem.o,build/exam) ## the exam of a contact law, LAW=path/to/my_law.h, with a page of its curves; without LAW of the built-in ones
+	@mkdir -p build/out/exam
+	@if [ -n "$(LAW)" ]; then $(COMPILE) -DLAW_FILE='"$(abspath $(LAW))"' examples/exam.c build/dem.o -o build/law $(LINK) && build/law; \
+	    else build/exam; fi
 
 examples: $(LESSONS) snippets ## build and run the numbered examples, compile the snippets of the manual
 	@failed=; for e in $(LESSONS); do n=$$(basename $$e); echo "== $$n"; mkdir -p build/out/$$n; \

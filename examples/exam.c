@@ -1,0 +1,221 @@
+/* exam.c - the exam of a contact law, and its portrait as one page. MIT licence.
+
+   make law LAW=path/to/my_law.h        examines yours; without LAW the built-in ones
+   build/exam [--out FOLDER]            results in build/out/exam: a page NAME.html each
+
+   A law of your own is a header with its function and one line that tells what it is,
+
+       #define LAW {"my law", my_law, 0, 3, 1, 1e5}     // name, function, c->user, reals, vectors, N/m
+
+   as law, law_user, law_memory, law_vectors and law_stiffness of the world desc. What the lines of the exam ask, and
+   how to read the curves: docs/laws.md. Exit code 1 when a line was not passed (built-in laws: when one is not passed
+   that is known to be). */
+#include "../dem.h"
+#include "study.h"
+#include "exam.h"
+
+#ifdef LAW_FILE
+#include LAW_FILE
+#endif
+
+/* name, function, user, reals, vectors, N/m; coefficients of the contact; the line that it is known not to pass, or -1 */
+typedef struct examinee {
+    const char *name;
+    dem_law_fn law;
+    void *user;
+    int memory, vectors;
+    double stiffness;
+    dem_normal_law coefficients;
+    int known;
+} examinee;
+
+#ifdef LAW
+static const examinee examinees[] = {LAW};
+enum { KNOWN = 0 };
+#else
+enum { KNOWN = 1 };
+static void hertz_spring(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    dem_law_hertz(c, memory, f);
+    dem_law_spring(c, memory, f);
+}
+static void hertz_mindlin(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    dem_law_hertz(c, memory, f);
+    dem_law_mindlin(c, memory, f);
+}
+static void hertz_mindlin_rescaled(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    dem_law_hertz(c, memory, f);
+    dem_law_mindlin_rescaled(c, memory, f);
+}
+static void hertz_rescaled_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    dem_law_hertz(c, memory, f);
+    dem_law_mindlin_rescaled(c, memory + 3, f);         /* vectors come first */
+    dem_law_roll_epsd(c, memory, f);
+}
+static void linear_spring(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    dem_law_linear(c, memory, f);
+    dem_law_spring(c, memory, f);
+}
+static void hertz_viscous(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    dem_law_hertz(c, memory, f);
+    dem_law_viscous(c, memory, f);
+}
+static const examinee examinees[] = {
+    {"hertz_spring", hertz_spring, 0, 3, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED},
+    {"hertz_mindlin", hertz_mindlin, 0, 4, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED},
+    {"hertz_mindlin_rescaled", hertz_mindlin_rescaled, 0, 4, 1, 0, DEM_NORMAL_HERTZ, -1},
+    {"hertz_rescaled_epsd", hertz_rescaled_epsd, 0, 7, 2, 0, DEM_NORMAL_HERTZ, -1},
+    {"linear_spring", linear_spring, 0, 3, 1, 0, DEM_NORMAL_LINEAR, -1},
+    {"hertz_viscous", hertz_viscous, 0, 0, 0, 0, DEM_NORMAL_HERTZ, -1}};
+#endif
+
+/* ---- curves ---- */
+
+enum { POINTS = 2400 };
+typedef struct curve { int count; double x[POINTS], y[POINTS]; } curve;
+static void curve_add(curve *c, double x, double y) {
+    if (c->count < POINTS) { c->x[c->count] = x; c->y[c->count++] = y; }
+}
+/* Loaded, partly unloaded, reloaded, unloaded: N against m. */
+static void press(const exam *e, double speed, curve *c) {
+    static const double turn[5] = {0.7, 0.3, 1, 0.5, 0};
+    const double deep = e->deep*e->radius;
+    exam_path p;
+    int part, k;
+    exam_begin(&p, e);
+    c->count = 0;
+    for (part = 0; part < 5; part++) {
+        const double from = part ? turn[part - 1] : 0;
+        for (k = 1; k <= 200; k++) {
+            exam_go_on(&p, deep*(from + (turn[part] - from)*k/200), 0, 0, 0, 0, 1, speed);
+            curve_add(c, (double)p.c.overlap, (double)p.f.normal);
+        }
+    }
+}
+/* Slid to and fro by `far` (m), or rolled by it (rad), three times at a steady overlap. */
+static void cycle(const exam *e, double far, int rolling, curve *c) {
+    exam_path p;
+    double at = 0;
+    int part, k;
+    exam_begin(&p, e);
+    exam_go_on(&p, e->deep*e->radius, 0, 0, 0, 0, 100, 1e-3*e->speed);
+    c->count = 0;
+    for (part = 0; part < 6; part++) {
+        const double to = part%2 ? -far : far, step = (to - at)/200;
+        for (k = 0; k < 200; k++) {
+            exam_go_on(&p, e->deep*e->radius, rolling ? 0 : step, 0, rolling ? step : 0, 0, 1, 1e-3*e->speed);
+            at += step;
+            curve_add(c, at, rolling ? (double)p.f.moment.x : (double)p.f.tangent.x);
+        }
+        at = to;
+    }
+}
+static void bounces(const exam *e, curve *c) {
+    int k;
+    c->count = 0;
+    for (k = 0; k <= 16; k++) {
+        exam_impact m;
+        memset(&m, 0, sizeof m);
+        m.speed = e->speed*pow(10, -2 + k/4.0); m.step = 0.25; m.early = 2.5;
+        exam_collide(e, &m);
+        if (m.energy >= 0) curve_add(c, m.speed, m.normal/m.speed);
+    }
+}
+/* What is left of the energy, and of the slip over the normal speed, against the angle. */
+static void slants(const exam *e, curve *energy, curve *slip) {
+    int k;
+    energy->count = slip->count = 0;
+    for (k = 0; k <= 34; k++) {
+        exam_impact m;
+        memset(&m, 0, sizeof m);
+        m.speed = e->speed; m.angle = 2.5*k/57.29578; m.step = 0.25; m.early = 2.5;
+        exam_collide(e, &m);
+        if (m.energy < 0) continue;
+        curve_add(energy, 2.5*k, m.energy);
+        curve_add(slip, 2.5*k, -m.slip/(m.speed*cos(m.angle)));
+    }
+}
+
+/* ---- the page ---- */
+
+/* Puts a picture that study.h has written into the page. */
+static void paste(FILE *page, const char *name) {
+    FILE *in = fopen(study_path(name), "r");
+    char text[4096];
+    size_t n;
+    fputs("<figure>", page);
+    while (in && (n = fread(text, 1, sizeof text, in)) > 0) fwrite(text, 1, n, page);
+    if (in) fclose(in);
+    if (in) study.files--;                      /* it is part of the page now */
+    remove(study_path(name));
+    fputs("</figure>\n", page);
+}
+static void draw(FILE *page, const char *title, const char *x, const char *y, int log_x, double top, int count,
+                 const curve *curves, const char *const *names) {
+    study_figure f;
+    int k;
+    memset(&f, 0, sizeof f);
+    f.title = title; f.x_label = x; f.y_label = y; f.log_x = log_x; f.size = 420; f.y1 = top;  /* 0: as the curves are */
+    for (k = 0; k < count; k++)
+        study_curve(&f, names ? names[k] : 0, STUDY_LINE, curves[k].count, curves[k].x, curves[k].y);
+    study_figure_write(&f, "part.svg");
+    paste(page, "part.svg");
+}
+static void portrait(const exam *e, const exam_sheet *sheet) {
+    static const char *const rates[2] = {"slowly", "as fast as it meets"}, *const sizes[3] = {"small", "medium", "large"};
+    static curve c[3];
+    char name[120];
+    FILE *page;
+    int k;
+    snprintf(name, sizeof name, "%.100s.html", e->name);
+    page = study_open(name);
+    if (!page) return;
+    fprintf(page, "<!DOCTYPE html><meta charset=\"utf-8\"><title>%s</title>\n<style>body{font-family:Helvetica,Arial,"
+            "sans-serif;max-width:1240px;margin:2em auto;color:#222}figure{display:inline-block;margin:0}td{padding:.2em "
+            "1em .2em 0;vertical-align:top}.found{color:#b3261e;font-weight:bold}</style>\n<h1>%s: %d of %d lines passed"
+            "</h1>\n<p>Two grains of radius %g m, %g kg/m3, Young's modulus %g Pa, restitution %g, friction %g, rolling "
+            "friction %g; paths down to an overlap of %g radii, impacts at %g m/s. What the lines ask: docs/laws.md.</p>\n"
+            "<table>\n", e->name, e->name, sheet->passed, (int)EXAM_LINES, e->radius, (double)e->material.density,
+            (double)e->material.young, (double)e->material.restitution, (double)e->material.friction,
+            (double)e->material.rolling_friction, e->deep, e->speed);
+    for (k = 0; k < EXAM_LINES; k++)
+        fprintf(page, "<tr><td%s<td>%s<td>%s\n", sheet->line[k].passed ? ">passed" : " class=\"found\">found",
+                sheet->line[k].asks, sheet->line[k].found);
+    fputs("</table>\n", page);
+    press(e, 1e-5*e->speed, &c[0]);
+    press(e, e->speed, &c[1]);
+    draw(page, "Loaded, unloaded, reloaded", "overlap (m)", "normal force (N)", 0, 0, 2, c, rates);
+    for (k = 0; k < 3; k++) cycle(e, e->deep*e->radius*(k == 0 ? 0.1 : k == 1 ? 0.4 : 2), 0, &c[k]);
+    draw(page, "Slid to and fro", "slip (m)", "tangential force (N)", 0, 0, 3, c, sizes);
+    for (k = 0; k < 3; k++) cycle(e, k == 0 ? 0.002 : k == 1 ? 0.01 : 0.05, 1, &c[k]);
+    draw(page, "Rolled to and fro", "angle (rad)", "moment (N m)", 0, 0, 3, c, sizes);
+    bounces(e, &c[0]);
+    draw(page, "Head-on impacts", "speed (m/s)", "restitution", 1, 1.1, 1, c, 0);
+    slants(e, &c[0], &c[1]);
+    draw(page, "Oblique impacts: energy left", "angle from the normal (degrees)", "energy after over before", 0, 1.1, 1, c, 0);
+    draw(page, "Oblique impacts: slip", "angle from the normal (degrees)", "slip after over normal speed before", 0, 0, 1,
+         c + 1, 0);
+    study_close(page, name);
+}
+
+int main(int argc, char **argv) {
+    const char *out = "build/out/exam";
+    const study_option table[] = {{"out", STUDY_TEXT, &out, 0, 0, "", "folder of the results"}};
+    int k, line;
+    study_options(argc, argv, "The exam of contact laws: a page each in build/out/exam. A law of your own: make law LAW=my_law.h",
+                  table, 1);
+    study_begin(out);
+    for (k = 0; k < (int)(sizeof examinees/sizeof *examinees); k++) {
+        const examinee *x = &examinees[k];
+        exam e = exam_of(x->name, x->law, x->user, x->memory, x->vectors, x->stiffness);
+        exam_sheet sheet;
+        e.coefficients = x->coefficients;
+        if (exam_take(&e, &sheet) != DEM_OK) { study_fail("%s", sheet.line[0].found); continue; }
+        exam_print(&sheet, stdout);
+        portrait(&e, &sheet);
+        for (line = 0; line < EXAM_LINES; line++)
+            if (!sheet.line[line].passed && !(KNOWN && line == x->known) && line != EXAM_COST)
+                study_fail("%s: %s: %s", x->name, sheet.line[line].asks, sheet.line[line].found);
+        study_result(x->name, sheet.passed, "lines passed");
+    }
+    return study_end();
+}
