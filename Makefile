@@ -12,6 +12,7 @@ FUZZ_SECONDS ?= 600
 MPICC        ?= mpicc
 MPIRUN       ?= mpirun --oversubscribe $(if $(filter 0,$(shell id -u)),--allow-run-as-root)
 FILTER       ?=
+LAW          ?=
 JOBS         ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 
 # ---- what there is ----
@@ -48,7 +49,6 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-LAW      ?=
 .PHONY: help all run test hard law examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers tags parts recipes snippets clean
 .DEFAULT_GOAL := help
 
