@@ -1348,8 +1348,8 @@ typedef struct dem_finding {
    weight (more than 5 % of a radius, with the modulus that would keep them below 1 %), units
    (metres, kg/m3, Pa), places too far from the origin for their digits, scenes in which nothing
    moves or all falls for ever, walls that nothing can reach, a time step that is too large or
-   needlessly small. Makes a list of neighbours. Returns how
-   many findings there are, most severe first; writes at most capacity of them. */
+   needlessly small. Makes a list of neighbours. Returns how many findings there are, most severe
+   first; writes at most capacity of them. */
 DEM_API int dem_world_check(dem_world *world, dem_finding *findings, int capacity);
 /* The same as lines of text, the first 16 of them; nothing where nothing is found. */
 DEM_API int dem_check_print(dem_world *world, FILE *out);
@@ -11222,19 +11222,16 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
     domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
     domain->check += (double)check;
 }
-/* The same for spheres, whose spins L has: exp(w dt/2) q, w of the world's frame. As long as 1 but
-   for the series' error, so that one step of Newton's method for 1/|q| does. */
+/* The same for spheres, whose spins L has: exp(w dt/2) q, w of the world's frame. */
 DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real dt) {
     int l, k;
     for (k = 0; k < count; k += DEMI_LANES) {
         DEMI_VECTOR
         for (l = k; l < k + DEMI_LANES; l++) {
-            const dem_quat q = dem_quat_times(
+            const dem_quat q = demi_quat_again(dem_quat_times(
                 demi_quat_exp(demi_v(t->L[0][l]*dt, t->L[1][l]*dt, t->L[2][l]*dt)),
-                dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]));
-            const dem_real by = DEM_R(1.5) -
-                                DEM_R(0.5)*(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z);
-            t->q[0][l] = q.w*by; t->q[1][l] = q.x*by; t->q[2][l] = q.y*by; t->q[3][l] = q.z*by;
+                dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l])));
+            t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
         }
     }
 }

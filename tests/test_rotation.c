@@ -366,6 +366,29 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("a sphere's orientation stays a rotation, whether it turns by 0.01 or by 100 rad in a step") {
+        static const double turns[5] = {0.01, 1, 2, 6.6, 100};
+        int k;
+        for (k = 0; k < 5; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_material_desc stuff = scene_stuff(1e6, 0.5, 0, 0);
+            dem_world *world;
+            dem_body body;
+            dem_quat q;
+            desc.threads = 1;
+            desc.dt = DEM_R(1e-3);
+            desc.orientations = 1;
+            desc.allow_large_dt = 1;
+            world = dem_world_create(&desc);
+            body = dem_sphere_add(world, dem_material_add(world, &stuff), DEM_R(0.1), at(0, 0, 0));
+            scene_move(world, body, at(0, 0, 0), at(0, 0.6*turns[k]/1e-3, 0.8*turns[k]/1e-3));
+            scene_step(world, 1000);
+            q = scene_state(world, body).orientation;
+            CHECK_NEAR(q.w*q.w + q.x*q.x + q.y*q.y + q.z*q.z, 1, SINGLE ? 1e-6 : 1e-14);
+            dem_world_destroy(world);
+        }
+    }
+
     TEST("a spheroid spinning on a smooth floor precesses steadily, as a heavy top does") {
         const double lean = 1, rate = 20, time = 0.2;  /* 4 rad of precession */
         int r;
