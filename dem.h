@@ -18439,7 +18439,6 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
     const size_t three = 3*sizeof(dem_real), down = demi_slab_down(w);
     dem_real *out = (dem_real *)b->out[0].bytes;
-    double deepest = 0;
     int k, d, finite = 1;
     if (!w->bodies.orienting) demi_slab_touch(s, b);
     demi_forces(w);
@@ -18448,11 +18447,9 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
         if (down == 6) memcpy(out + 3, w->bodies.torque + 4*b->ghost[k], three);
     }
     if (!w->stage.forces_valid) return;               /* only looking */
-    for (d = 0; d < w->domain_count; d++) {
-        deepest = DEMI_MAX(deepest, w->domains[d].overlap);
-        if (demi_own(w)) finite &= w->domains[d].check < 1e300;
-    }
-    if (!finite || !(deepest < 1)) b->result = demi_unstable(w);
+    for (d = 0; d < w->domain_count && demi_own(w); d++)
+        finite &= w->domains[d].check < 1e300;
+    if (!finite || !(demi_overlap(w) < 1)) b->result = demi_unstable(w);
 }
 /* Forces on own grains that are ghosts above come back, in the order in which they were lent. */
 static void demi_slab_add(dem_slabs *s, demi_slab *b) {
