@@ -2003,6 +2003,7 @@ typedef struct demi_kept {
                                       width along the normal, of a sphere its radius */
     dem_real share, lift, grip;    /* how often it counts: damping, elastic force, friction */
     dem_real weight;               /* share before contacts are shared: see demi_kept_share */
+    dem_real loaded;               /* part of its load that friction counts on: demi_kept_crossed */
     dem_real area, added, rate;    /* m2, A; what others add to it, over d^2; how A follows that */
     dem_real bend;                 /* 1/m: the normal turns by this times the way part_a goes */
     dem_vec3 axis;                 /* but for ways along the normal, and along this, if not 0: */
@@ -2076,7 +2077,8 @@ enum {
     DEMI_FACETS = 1,               /* a surface of facets, see >>facets */
     DEMI_DRAWN = 2,                /* drawn out along its own z without end: seen at z = 0 */
     DEMI_BALLS = 4,                /* elements are grains: balls of `radius` about their corner */
-    DEMI_FLAT = 8                  /* a half space beyond z = 0 */
+    DEMI_FLAT = 8,                 /* a half space beyond z = 0 */
+    DEMI_CROSSED = 16              /* what takes away has no friction: see demi_kept_crossed */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contacts of a grain with a sieve */
 #define DEMI_SHAPES(X) \
@@ -2097,7 +2099,7 @@ enum { DEMI_SIEVE_MOST = 25 };                  /* contacts of a grain with a si
       demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid), demi_mesh_bend) \
     X(GRAINS,   1, 7, DEMI_BALLS, "wall of grains", \
       demi_grain_near, (demi_elements_touch, demi_grain_ellipsoid), demi_grain_bend) \
-    X(SIEVE,    0, DEMI_SIEVE_MOST, 0, "sieve", \
+    X(SIEVE,    0, DEMI_SIEVE_MOST, DEMI_CROSSED, "sieve", \
       demi_sieve_near, (demi_sieve_spheres), demi_sieve_bend) \
     /* the last */
 #define DEMI_LIST(...) {__VA_ARGS__}            /* one field of a row that is a list: (a, b) */
@@ -9694,7 +9696,8 @@ static const char *demi_kernel_choose(dem_world *w) {
 /* ---------------------------------------------------------------------------------------------
    >>on-walls
    Where parts of bodies touch walls: geometry only; first spheres, clusters being many of them;
-   then ellipsoids, which share what is done on surfaces of facets; then who touches what.
+   then ellipsoids, which share what is done on surfaces of facets; then who touches what; and how
+   the normals turn there.
    What becomes of the places that are found stands in >>kept.
    --------------------------------------------------------------------------------------------- */
 
@@ -10052,6 +10055,139 @@ static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, 
 static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
 static int demi_touch_known(int kind, int part) { return demi_touches[kind][part] != 0; }
 
+/* --- how the normal of a ball's contact with a wall turns as the ball moves, all in the wall's
+       frame. It turns by `turn` times the way that the ball goes, but for ways along the normal and
+       along the axis, if there is one; there by `along`. among: the elements where the contact,
+       with this number, was found. --- */
+typedef struct demi_bend {
+    int number;
+    dem_real dist;                 /* m, > 0: from the ball's centre to the surface */
+    dem_vec3 normal, point;        /* unit, towards the wall; m, nearest point of the surface */
+    dem_real turn, along;          /* 1/m; zeros before */
+    dem_vec3 axis;                 /* unit, or 0: none; 0 before */
+} demi_bend;
+typedef void (*demi_bend_fn)(const demi_wall *wall, const int32_t *among, int count, demi_bend *b);
+static void demi_cylinder_bend(const demi_wall *wall, const int32_t *among, int count,
+                               demi_bend *b) {
+    const dem_real out = wall->inside ? b->dist - wall->radius : b->dist + wall->radius;
+    (void)among; (void)count;
+    b->axis.z = 1;
+    b->turn = out < 0 || out > 0 ? -1/out : 0;
+}
+static void demi_grain_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
+    (void)among; (void)count;
+    b->turn = -1/(b->dist + wall->radius);
+}
+/* Lines do not turn the normal, corners do, about the direction that a profile is drawn out in. */
+static void demi_profile_bend(const demi_wall *wall, const int32_t *among, int count,
+                              demi_bend *b) {
+    (void)among; (void)count;
+    b->axis.z = 1;
+    b->turn = b->number < wall->element_count ? 0 : -1/b->dist;
+}
+/* Faces do not turn the normal; an edge does, about itself; a corner, every way. */
+static void demi_mesh_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
+    const int edges = wall->element_count, corners = edges + wall->edge_count, number = b->number;
+    int k, q, found = 0;
+    if (number < edges) return;
+    b->turn = -1/b->dist;
+    for (k = 0; k < count && !found && (number < corners ||
+         number >= corners + wall->vertex_count); k++) {
+        const int e = among[k];
+        dem_vec3 y[3];
+        demi_wall_corners(wall, e, y);
+        for (q = 0; q < 3 && !found; q++)
+            if ((found = edges + wall->edges[3*e + q] == number) != 0)
+                b->axis = demi_unit(demi_sub(y[(q + 1)%3], y[q]));
+        for (q = wall->cut_start ? wall->cut_start[e] : 0;
+             wall->cut_start && q < wall->cut_start[e + 1] && !found; q++)
+            if ((found = wall->cuts[q].number == number) != 0)
+                b->axis = demi_unit(demi_sub(wall->cuts[q].b, wall->cuts[q].a));
+    }
+}
+/* On a curve the normal n turns by -1/dist across it; along it, with K the curve's second
+   derivative by its length, the nearest point goes 1/(1 + dist n.K) of the way, so that n turns by
+   -n.K/(1 + dist n.K); below 0 where that point is the farthest one. tangent: unit; nK: 1/m. */
+static void demi_curve_bend(demi_bend *b, dem_vec3 tangent, dem_real nK) {
+    const dem_real left = 1 + b->dist*nK;
+    b->turn = -1/b->dist;
+    b->axis = tangent;
+    b->along = -nK/(left < 0 ? DEMI_MIN(left, DEM_R(-0.1)) : DEMI_MAX(left, DEM_R(0.1)));
+}
+/* The rim of radius R about (0, 0) of what is `at` the nearest point; where that is the upright
+   side of a plate, there is nothing to turn about but the rim's own axis. */
+static void demi_rim_bend(demi_bend *b, dem_real R, dem_vec3 at, int upright) {
+    const dem_real nK = -(b->normal.x*at.x + b->normal.y*at.y)/(R*R);
+    demi_curve_bend(b, demi_v(-at.y/R, at.x/R, 0), nK);
+    if (upright) b->turn = 0;
+}
+/* The edge where the surfaces X^2 + (Z - h)^2 = q^2 and Y^2 + (Z + h)^2 = q^2 of two wires meet: of
+   their gradients g and f its tangent t is the cross product, and along it
+       K.g = t_y^2 - 1,   K.f = t_x^2 - 1 */
+static void demi_wires_bend(demi_bend *b, const dem_sieve_desc *s) {
+    const dem_real pitch = s->aperture + s->bar, h = s->lift/2, q2 = s->bar*s->bar/4;
+    const dem_vec3 p = b->point;
+    const dem_real X = p.x - ((dem_real)floor((double)(p.x/pitch)) + DEM_R(0.5))*pitch;
+    const dem_real Y = p.y - ((dem_real)floor((double)(p.y/pitch)) + DEM_R(0.5))*pitch;
+    const dem_vec3 g = demi_v(X, 0, p.z - h), f = demi_v(0, Y, p.z + h);
+    const dem_real gf = demi_dot(g, f), det = q2*q2 - gf*gf;
+    const dem_real ng = demi_dot(b->normal, g), nf = demi_dot(b->normal, f);
+    b->turn = -1/b->dist;
+    if (det > DEM_R(1e-6)*q2*q2) {         /* det n = (ng q2 - nf gf) g + (nf q2 - ng gf) f */
+        const dem_vec3 t = demi_unit(demi_cross(g, f));
+        const dem_real Kg = t.y*t.y - 1, Kf = t.x*t.x - 1;
+        demi_curve_bend(b, t, ((ng*q2 - nf*gf)*Kg + (nf*q2 - ng*gf)*Kf)/det);
+    }
+}
+/* Rows turn it about themselves and not at all where they are flat, ends of wires and corners of
+   plates every way, upright corners about themselves. */
+static void demi_sieve_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
+    const dem_sieve_desc *s = &wall->sieve;
+    const dem_vec3 n = b->normal, p = b->point;
+    const dem_real R = s->radius, hair = DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-10);
+    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
+    const int upright = !wires && s->thickness > 0 && DEMI_ABS(n.z) < hair;
+    const int corner = b->number == DEMI_SIEVE_RIM + 1;      /* of a strip, or on the rim between */
+    const int cross = b->number < DEMI_SIEVE_FACE && (b->number & DEMI_SIEVE_CROSS);
+    const int ring = b->number == DEMI_SIEVE_RIM ||
+        (corner && DEMI_ABS(n.x*p.y - n.y*p.x) < R*DEM_R(1e-5));
+    const dem_real edge = wires && !cross ? s->bar/2 : DEM_R(0);
+    const dem_vec3 foot = demi_add(p, demi_scale(n, edge));
+    const int end = R > 0 && !(foot.x*foot.x + foot.y*foot.y < R*R*DEM_R(0.999999));
+    (void)among; (void)count;
+    if (b->number == DEMI_SIEVE_FACE) return;
+    if (!ring && s->kind == DEM_SIEVE_ROUND) {         /* its hole's middle lies against n */
+        const dem_real l = DEMI_SQRT(n.x*n.x + n.y*n.y), a = s->aperture/2;
+        if (l > 0) demi_rim_bend(b, a, demi_v(n.x*a/l, n.y*a/l, 0), upright);
+    } else if (wires && cross) demi_wires_bend(b, s);
+    else if (ring || (end && !wires && !corner && !cross)) demi_rim_bend(b, R, foot, upright);
+    else {
+        const int row = !end && !corner && !cross;
+        if (row && (upright || (b->number & DEMI_SIEVE_ABOVE))) return;
+        b->turn = -1/(b->dist + edge);
+        if (row) b->axis = b->number & DEMI_SIEVE_SET ? demi_v(1, 0, 0) : demi_v(0, 1, 0);
+        else if (upright) b->axis = demi_v(0, 0, 1);
+    }
+}
+#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND) BEND,
+static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
+/* By the table of kinds. point: of the wall's surface, for the body's image that the wall meets. */
+static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
+                           dem_vec3 point, demi_kept *c) {
+    const dem_real *R = wall->pose.rotation;
+    demi_bend b;
+    if (!demi_bends[wall->kind]) return;
+    memset(&b, 0, sizeof b);
+    b.number = c->element;
+    b.dist = dist;
+    b.normal = demi_unrotate(R, c->normal);
+    b.point = demi_unrotate(R, demi_sub(point, wall->pose.position));
+    demi_bends[wall->kind](wall, among, count, &b);
+    c->bend = b.turn;
+    c->along = b.along;
+    c->axis = demi_rotate(R, b.axis);
+}
+
 /* ---------------------------------------------------------------------------------------------
    >>kept
    Contacts that are kept by themselves: all but those of sphere and sphere (>>respond). Two bodies
@@ -10074,7 +10210,7 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
     c = w->kept_next + w->kept_first[d] + domain->kept_next++;
     memset(c, 0, offsetof(demi_kept, coef));
     c->b = -1;
-    c->share = c->slope = c->inset = 1;
+    c->share = c->slope = c->inset = c->loaded = 1;
     return c;
 }
 
@@ -10166,6 +10302,7 @@ DEM_INLINE dem_real demi_match(dem_vec3 old, dem_vec3 now, int taken, int wall, 
 static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int olds,
                           const demi_kept *fresh, int freshs, const demi_kept *c) {
     const int first = (int)(old - demi_kept_of(w, d));
+    const int crossed = demi_wall_is(&w->walls[c->wall], DEMI_CROSSED);
     dem_real nearest = 0;
     int i, j, best = -1;
     for (i = 0; i < olds; i++) {
@@ -10173,7 +10310,8 @@ static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int o
         int taken = 0;
         if (!(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) || old[i].b >= 0 ||
             old[i].part_a != c->part_a ||
-            w->walls[old[i].wall].group != w->walls[c->wall].group) continue;
+            w->walls[old[i].wall].group != w->walls[c->wall].group ||
+            (crossed && (old[i].weight < 0) != (c->share < 0))) continue;
         for (j = 0; j < freshs && !taken; j++)
             taken = fresh[j].wall == old[i].wall && fresh[j].element == old[i].element;
         along = demi_match(old[i].normal, c->normal, taken, old[i].wall == c->wall,
@@ -10400,92 +10538,6 @@ static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, co
 }
 #define DEMI_SHAPE_ON_WALL(KIND, NAME, WORD, GAP, TOUCH) demi_##NAME##_on_wall,
 static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)};
-/* --- how the normal of a ball's contact with a wall turns as the ball moves. dist: m, from the
-       ball's centre to the surface. Answers that to what the normal turns about (0: it does not),
-       and the axis along which nothing turns, if there is one. among: the elements where the
-       contact, with this number, was found. normal: the contact's, in the wall's frame as all else.
-       *along: 1/m, where it turns along the axis after all. --- */
-typedef dem_real (*demi_bend_fn)(const demi_wall *wall, const int32_t *among, int count, int number,
-                                 dem_real dist, dem_vec3 normal, dem_vec3 *axis, dem_real *along);
-static dem_real demi_cylinder_bend(const demi_wall *wall, const int32_t *among, int count,
-                                   int number, dem_real dist, dem_vec3 normal, dem_vec3 *axis,
-                                   dem_real *along) {
-    (void)among; (void)count; (void)number; (void)normal; (void)along;
-    axis->z = 1;
-    return wall->inside ? dist - wall->radius : dist + wall->radius;
-}
-static dem_real demi_grain_bend(const demi_wall *wall, const int32_t *among, int count,
-                                int number, dem_real dist, dem_vec3 normal, dem_vec3 *axis,
-                                dem_real *along) {
-    (void)among; (void)count; (void)number; (void)normal; (void)axis; (void)along;
-    return dist + wall->radius;
-}
-/* Lines do not turn the normal, corners do, about the direction that a profile is drawn out in. */
-static dem_real demi_profile_bend(const demi_wall *wall, const int32_t *among, int count,
-                                  int number, dem_real dist, dem_vec3 normal, dem_vec3 *axis,
-                                  dem_real *along) {
-    (void)among; (void)count; (void)normal; (void)along;
-    axis->z = 1;
-    return number < wall->element_count ? 0 : dist;
-}
-/* Faces do not turn the normal; an edge does, about itself; a corner, every way. */
-static dem_real demi_mesh_bend(const demi_wall *wall, const int32_t *among, int count,
-                               int number, dem_real dist, dem_vec3 normal, dem_vec3 *axis,
-                               dem_real *along) {
-    const int edges = wall->element_count, corners = edges + wall->edge_count;
-    int k, q, found = 0;
-    (void)normal; (void)along;
-    if (number < edges) return 0;
-    for (k = 0; k < count && !found && (number < corners ||
-         number >= corners + wall->vertex_count); k++) {
-        const int e = among[k];
-        dem_vec3 y[3];
-        demi_wall_corners(wall, e, y);
-        for (q = 0; q < 3 && !found; q++)
-            if ((found = edges + wall->edges[3*e + q] == number) != 0)
-                *axis = demi_unit(demi_sub(y[(q + 1)%3], y[q]));
-        for (q = wall->cut_start ? wall->cut_start[e] : 0;
-             wall->cut_start && q < wall->cut_start[e + 1] && !found; q++)
-            if ((found = wall->cuts[q].number == number) != 0)
-                *axis = demi_unit(demi_sub(wall->cuts[q].b, wall->cuts[q].a));
-    }
-    return dist;
-}
-/* Rows turn it about themselves, crossings as points do, round rims about the hole, too: with n_h
-   the normal's part in the plate, rho the centre's distance from the hole's axis, by n_h/rho. */
-static dem_real demi_sieve_bend(const demi_wall *wall, const int32_t *among, int count, int number,
-                                dem_real dist, dem_vec3 normal, dem_vec3 *axis, dem_real *along) {
-    const dem_sieve_desc *s = &wall->sieve;
-    const int wires = s->kind == DEM_SIEVE_WIRES || s->kind == DEM_SIEVE_BARS;
-    const int ring = number == DEMI_SIEVE_RIM, across = number & 1;
-    const dem_real flat = DEMI_SQRT(normal.x*normal.x + normal.y*normal.y);
-    (void)among; (void)count;
-    if (number == DEMI_SIEVE_FACE) return 0;
-    if (ring || s->kind == DEM_SIEVE_ROUND) {
-        const dem_real R = ring ? s->radius : s->aperture/2;
-        const dem_real rho = ring ? R + flat*dist : across ? flat*dist - R : R - flat*dist;
-        if (!(flat > 0)) return 0;
-        *axis = demi_v(-normal.y/flat, normal.x/flat, 0);
-        *along = (ring || across ? -flat : flat)/DEMI_MAX(rho, R/10);
-    } else if (number != DEMI_SIEVE_RIM + 1 && !(number & DEMI_SIEVE_CROSS)) {
-        if (number & DEMI_SIEVE_ABOVE) return 0;
-        *axis = number & DEMI_SIEVE_SET ? demi_v(1, 0, 0) : demi_v(0, 1, 0);
-    }
-    return wires && !(number & DEMI_SIEVE_CROSS) ? dist + s->bar/2 : dist;
-}
-#define DEMI_WALL_BEND(KIND, C, M, T, N, NEAR, TOUCH, BEND) BEND,
-static const demi_bend_fn demi_bends[] = {0, DEMI_WALLS(DEMI_WALL_BEND)};
-/* By the table of kinds. */
-static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int count, dem_real dist,
-                           demi_kept *c) {
-    dem_vec3 axis = demi_v(0, 0, 0);
-    const dem_vec3 normal = demi_unrotate(wall->pose.rotation, c->normal);
-    if (!demi_bends[wall->kind]) return;
-    dist = demi_bends[wall->kind](wall, among, count, c->element, dist, normal, &axis, &c->along);
-    if (!(dist < 0 || dist > 0)) return;
-    c->bend = -1/dist;
-    c->axis = demi_rotate(wall->pose.rotation, axis);
-}
 /* R* of a part of radius r with a wall. On a round wire the two radii of the contact differ, r and
    r q/(r + q): their geometric mean gives a force 1.5 % below that of Hertz's ellipse for a wire as
    thick as the grain, 7 % for one of a fifth. */
@@ -10538,7 +10590,8 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
             demi_ball_on_wall(w, wall, p, &found[i], c);
             if (shaped && w->desc.cluster_contacts == DEM_SHARING_ONE && c->overlap > 0)
                 demi_wall_bend(wall, w->wall_element + base + first, last - first,
-                               DEMI_MAX(p->radius - c->overlap, p->radius/10), c);
+                               DEMI_MAX(p->radius - c->overlap, p->radius/10),
+                               demi_add(found[i].point, c->shift), c);
         } else demi_on_walls[p->kind](w, wall, p, &found[i], c);
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
@@ -10553,15 +10606,39 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
 }
+/* Of one body with one sieve: a crossing, which takes away, has no friction of its own, since what
+   gives way there would give energy. The others' friction counts on so much less instead, that mu
+   is still the ratio of both sums. */
+static void demi_kept_crossed(const dem_world *w, demi_kept *c, int n) {
+    const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
+    int i, k;
+    for (k = 0; k < n; k++) {
+        dem_real all = 0, without = 0, rate;
+        c[k].grip = c[k].weight < 0 ? 0 : c[k].grip;
+        for (i = 0; i < n && c[k].overlap > 0; i++) {
+            const dem_real t = i == k ? 1 : demi_kept_along(&c[i], &c[k], &rate);
+            dem_real press;                     /* U'(d_i) over U'(d_k), of one wall */
+            if (c[i].part_a != c[k].part_a || !(t > 0) || !(c[i].overlap > 0)) continue;
+            press = t*c[i].weight*demi_kept_steep(&c[i], &c[k], hertz, 0);
+            all += press;
+            without += press > 0 ? press : 0;
+        }
+        if (all < without) c[k].loaded = all > 0 ? all/without : 0;
+    }
+}
 /* Of one body with one wall. */
 static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
                                       const demi_kept *old, int olds) {
     const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
+    const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + first]];
     int k;
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
         demi_kept_on_wall(w, d, first, last, 0, 0, &sphere, old, olds);
+        if (demi_wall_is(wall, DEMI_CROSSED))
+            demi_kept_crossed(w, w->kept_next + w->kept_first[d] + from,
+                              w->domains[d].kept_next - from);
         return;
     }
     for (k = 0; k < parts; k++) {
@@ -10569,6 +10646,9 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
         demi_kept_on_wall(w, d, first, last, 1, k, &p, old, olds);
     }
     demi_kept_share(w, w->kept_next + w->kept_first[d] + from, w->domains[d].kept_next - from);
+    if (demi_wall_is(wall, DEMI_CROSSED))
+        demi_kept_crossed(w, w->kept_next + w->kept_first[d] + from,
+                          w->domains[d].kept_next - from);
 }
 
 /* All of one domain, in the order of body a: its pairs inside, its pairs that lead out, its walls.
@@ -10688,6 +10768,18 @@ DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept
     c->coef_m = c->m_eff;
     return old;
 }
+/* Springs of friction and rolling keep their force where the contact comes to count more among
+   those that are shared (demi_kept_share), and their length where it comes to count less: the other
+   way about they would make energy. old: a step ago. (A place of a surface that comes to weigh more
+   takes over from others, see >>facets: that is no spring's gain.) */
+static void demi_kept_hold(const dem_world *w, demi_kept *c, const demi_kept *old) {
+    const dem_real now = c->grip*old->weight, was = old->grip*c->weight;
+    const dem_real held = now > 0 || now < 0 ? was/now : 1;
+    int k;
+    if (!(held >= 0 && held < 1) || w->desc.law) return;
+    for (k = 0; k < w->laws.memory; k++)
+        if (w->laws.vectors >> k & 1) c->memory[k] *= held;
+}
 /* The contact as a law sees it; old: a step ago. surface: velocity of the wall there. */
 static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_kept *old,
                            dem_real dt, dem_contact *c, dem_vec3 *at, dem_vec3 *surface) {
@@ -10740,8 +10832,8 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
     c->kn = slope*coef[DEMI_KN]; c->cn = slope*coef[DEMI_CN];
     c->kun = slope*coef[DEMI_K_UN]; c->kad = slope*coef[DEMI_K_AD];
     c->kt = coef[DEMI_KT]; c->ct = coef[DEMI_CT];
-    c->friction = coef[DEMI_MU]; c->friction_static = coef[DEMI_MU_STATIC];
-    c->rolling_friction = coef[DEMI_MU_ROLL];
+    c->friction = k->loaded*coef[DEMI_MU]; c->friction_static = k->loaded*coef[DEMI_MU_STATIC];
+    c->rolling_friction = k->loaded*coef[DEMI_MU_ROLL];
     c->material_a = w->bodies.material[a];
     c->material_b = b >= 0 ? w->bodies.material[b] : w->walls[k->wall].material + 1;
     c->wall = b >= 0 ? 0 : k->wall + 1;
@@ -10824,6 +10916,7 @@ static void demi_kept_respond(dem_world *w, int d) {
         if (c->from < 0)
             domain->met[DEMI_MIN(contact.material_a, contact.material_b) - 1] |= UINT64_C(1) <<
                 (DEMI_MAX(contact.material_a, contact.material_b) - 1);
+        if (c->from >= 0) demi_kept_hold(w, c, old);
         still = demi_kept_lifted(c) ? demi_kept_still(w, c, &contact) : 0;
         demi_law(w, &contact, c->memory, &f);
         press = c->share*f.normal + (c->lift - c->share)*still;
@@ -10832,7 +10925,8 @@ static void demi_kept_respond(dem_world *w, int d) {
         if (demi_dot(c->aside, c->aside) > 0) { /* between the ball and what it goes round */
             const dem_vec3 aside = demi_scale(c->aside, still);
             const dem_vec3 arm = demi_sub(demi_part_now(w, a, c->part_a).centre, c->arm_a);
-            const dem_vec3 far = demi_sub(arm, demi_scale(contact.normal, 1/c->bend));
+            const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->along;
+            const dem_vec3 far = demi_sub(arm, demi_scale(contact.normal, 1/turn));
             force = demi_add(force, aside);
             moment = demi_add(moment, demi_cross(arm, aside));
             moment_b = demi_add(moment_b, demi_cross(far, aside));
