@@ -10074,9 +10074,10 @@ static void demi_cylinder_bend(const demi_wall *wall, const int32_t *among, int 
     b->axis.z = 1;
     b->turn = out < 0 || out > 0 ? -1/out : 0;
 }
+/* Grains, and what else goes round a point. */
 static void demi_grain_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
-    (void)among; (void)count;
-    b->turn = -1/(b->dist + wall->radius);
+    demi_cylinder_bend(wall, among, count, b);
+    b->axis.z = 0;
 }
 /* Lines do not turn the normal, corners do, about the direction that a profile is drawn out in. */
 static void demi_profile_bend(const demi_wall *wall, const int32_t *among, int count,
@@ -10303,6 +10304,7 @@ static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int o
                           const demi_kept *fresh, int freshs, const demi_kept *c) {
     const int first = (int)(old - demi_kept_of(w, d));
     const int crossed = demi_wall_is(&w->walls[c->wall], DEMI_CROSSED);
+    const int faceted = demi_faceted(&w->walls[c->wall]);
     dem_real nearest = 0;
     int i, j, best = -1;
     for (i = 0; i < olds; i++) {
@@ -10314,11 +10316,16 @@ static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int o
             (crossed && (old[i].weight < 0) != (c->share < 0))) continue;
         for (j = 0; j < freshs && !taken; j++)
             taken = fresh[j].wall == old[i].wall && fresh[j].element == old[i].element;
+        for (j = 0; j < freshs && !taken && !faceted; j++) {    /* one alone may: the nearest */
+            const dem_real nearer = demi_dot(old[i].normal, demi_sub(fresh[j].normal, c->normal));
+            taken = fresh + j != c && (!crossed || (fresh[j].share < 0) == (c->share < 0)) &&
+                (fresh[j].from == first + i || (fresh[j].from < 0 &&
+                 (nearer > 0 || (!(nearer < 0) && fresh + j < c))));
+        }
         along = demi_match(old[i].normal, c->normal, taken, old[i].wall == c->wall,
                            (old[i].weight < 0) == (c->share < 0));
         if (!(along > nearest)) continue;
-        if (taken && (!demi_faceted(&w->walls[c->wall]) || !(2*c->overlap > old[i].overlap)))
-            continue;
+        if (taken && (!faceted || !(2*c->overlap > old[i].overlap))) continue;
         nearest = along;
         best = first + i;
     }
@@ -10595,8 +10602,9 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         } else demi_on_walls[p->kind](w, wall, p, &found[i], c);
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
-    for (i = 0, c = fresh; i < count; i++, c++) {
+    for (i = 0, c = fresh; i < count; i++, c++)
         c->from = demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element);
+    for (i = 0, c = fresh; i < count; i++, c++) {
         if (c->from < 0 && olds) c->from = demi_kept_slid(w, d, old, olds, fresh, count, c);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;

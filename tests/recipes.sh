@@ -22,10 +22,10 @@ for recipe in "$dir"/*.diff; do
         fi
     done
     printf '#define DEM_IMPLEMENTATION\n#include "%s/dem.h"\n' "${recipe%.diff}" > "${recipe%.diff}/dem.c"
-    if $CC -std=c99 -I. -c "${recipe%.diff}/dem.c" -o "${recipe%.diff}/dem.o"; then passed=$((passed + 1))
+    if $CC -std=c99 -Werror -I. -c "${recipe%.diff}/dem.c" -o "${recipe%.diff}/dem.o"; then passed=$((passed + 1))
     else echo "FAILED $recipe: does not compile by itself"; failed=$((failed + 1)); fi
 done
-if $CC -std=c99 -I$dir/all -I. tests/recipes.c -o $dir/recipes -lm && $dir/recipes > $dir/log; then :; else failed=$((failed + 1)); fi
+if $CC -std=c99 -Werror -I$dir/all -I. tests/recipes.c -o $dir/recipes -lm && $dir/recipes > $dir/log; then :; else failed=$((failed + 1)); fi
 cat $dir/log
 totals=$(sed -n 's/^recipes: \([0-9]*\) passed, \([0-9]*\) failed$/\1 \2/p' $dir/log)
 if [ -z "$totals" ]; then failed=$((failed + 1)); totals="0 0"; fi
