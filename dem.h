@@ -120,7 +120,8 @@
        they rub by ...            tangent_law; friction_load and slider: what friction counts on.
                                   No friction in any pair: no spins, no memory, no price
        they roll by ...           rolling_law
-       a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness; force,
+       a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness,
+                                   law_range, law_range_radii, law_who; force,
                                   body_force, force_user
        bodies turn by ...         rotation, orientations; ellipsoid_overlap, cluster_contacts
        time goes by ...           integrator, dt, allow_large_dt
@@ -495,12 +496,22 @@ DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2]
 
 /* ---- a contact, and a law of one's own ---- */
 
+/* Who touches: for a law that asks for it by desc.law_who; else zeros. */
+typedef struct dem_contact_who {
+    dem_body a, b;                /* b: null with a wall, whose id is c->wall */
+    dem_real radius_a, radius_b;  /* m, of the spheres that touch, of a cluster too; of other shapes
+                                     bounding ones; 0 for a wall, but a wall of grains: theirs */
+    dem_real mass_a, mass_b;      /* kg, of the whole bodies; 0 for a wall */
+    dem_vec3 point;               /* m, in the world: between the surfaces; with a wall on a's */
+    double time;                  /* s, at the end of the step */
+} dem_contact_who;
 /* What a law sees: this contact and nothing else. Velocities are of body a relative to body b, or
    to the wall's surface, at the full step: what dashpots and friction take. Displacements kept in
    memory grow by slip_step dt, the very displacement of the step: so springs conserve energy as the
    integrator does. */
 typedef struct dem_contact {
-    dem_real overlap;        /* m, > 0 */
+    dem_real overlap;        /* m, > 0; < 0 where they are apart and your law has a range */
+    dem_real range;          /* m, gap up to which your law is asked here (desc.law_range); or 0 */
     dem_real closing_speed;  /* m/s, positive while approaching */
     dem_vec3 normal;         /* unit, from a to b */
     dem_vec3 slip;           /* m/s, tangential velocity at the contact point, rotation included */
@@ -519,6 +530,7 @@ typedef struct dem_contact {
     int32_t material_a, material_b; /* dem_material ids */
     int32_t wall;            /* 0: b is a grain; otherwise the dem_wall id */
     int tension, friction_load, slider;  /* dem_tension, dem_load, dem_slider: as in the desc */
+    dem_contact_who who;     /* zeros unless desc.law_who is 1 */
     void *user;              /* law_user of the world desc */
 } dem_contact;
 
@@ -548,10 +560,11 @@ typedef struct dem_contact_force {
 } dem_contact_force;
 
 /* A contact law. memory holds law_memory reals that start at zero when the contact begins and are
-   kept while it lasts. Must not look at anything but its arguments and c->user; is called from
-   several threads. When a contact turns round (a and b change places) the first 3*law_vectors reals
-   of the memory change sign: put there what is a vector, such as a tangential spring, and scalars
-   after them. */
+   kept while it lasts: while the two touch or, with a range, are nearer than that. Whether a bridge
+   has formed is then the law's to remember; what it sets back to 0 has ended. Must not look at
+   anything but its arguments and c->user; is called from several threads. When a contact turns
+   round (a and b change places) the first 3*law_vectors reals of the memory change sign: put there
+   what is a vector, such as a tangential spring, and scalars after them. */
 typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_force *force);
 
 /* A vector kept in contact memory, carried along with the contact plane over the last step: turned
@@ -598,10 +611,10 @@ DEM_INLINE void dem_law_load(const dem_contact *c, dem_contact_force *f, dem_rea
 /* Memory grows by what happened in the step. That is of second order in dt with the stiffness of
    the middle of the time in which the two touched: of the overlap half way between what it was a
    step ago, 0 at least, and now. Answers which part of the step that was, 1 unless they have just
-   met. Checked by "tangential and rolling memory is of second order". */
+   met (come within the range). Checked by "tangential and rolling memory is of second order". */
 DEM_INLINE dem_real demi_law_share(const dem_contact *c) {
-    const dem_real gone = c->closing_speed*c->dt;
-    return c->overlap > gone ? 1 : c->overlap/(gone + DEMI_TINY);
+    const dem_real gone = c->closing_speed*c->dt, in = c->overlap + c->range;
+    return in > gone ? 1 : in/(gone + DEMI_TINY);
 }
 DEM_INLINE dem_real demi_law_middle(const dem_contact *c) {
     const dem_real gone = c->closing_speed*c->dt;
@@ -856,6 +869,12 @@ typedef struct dem_world_desc {
     int law_memory;                /* reals of memory per contact for your law, 0..8 */
     int law_vectors;  /* how many leading triples of them are vectors, 0..law_memory/3 */
     dem_real law_stiffness;  /* N/m, the stiffest your law gets: for the time step; 0: built-in */
+    /* m, >= 0: your law is asked while the gap is below law_range + law_range_radii times the two
+       radii (with a wall: the one; of ellipsoids the bounding ones). There c->overlap is below 0:
+       laws of dem.h that it calls want overlap > 0. Lists of neighbours reach as far as the largest
+       two ask. 0: it is asked about what touches, and nothing is paid for it */
+    dem_real law_range, law_range_radii;
+    int law_who;                   /* 1: your law gets c->who: ids, radii, masses, place, time */
 
     dem_force_fn force;            /* force field of your own; 0: none */
     dem_body_force_fn body_force;  /* with torque; 0: none. Both may be given: they add up */
@@ -881,7 +900,7 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
     DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
     DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
-    0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0,
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
@@ -1398,7 +1417,9 @@ DEM_API void dem_overlap_reset(dem_world *world);
 /* Where the energy went since the ledger was opened (J). stored = kinetic + rotational + elastic.
    residual = (stored - stored at opening) - gravity - walls - force - inserted + removed
             + normal + slide + tangent + rolling.
-   Potential energy is in `gravity`, as work done. 0 everywhere when the ledger is off. */
+   Potential energy is in `gravity`, as work done. 0 everywhere when the ledger is off. A law of
+   your own that never fills in force->energy stores and dissipates all the same: then nobody can
+   tell that from the residual, and both together stand as `unknown`. */
 typedef struct dem_ledger {
     double kinetic, rotational, elastic;          /* stored */
     double gravity, walls, force, inserted;       /* work in */
@@ -1407,6 +1428,7 @@ typedef struct dem_ledger {
     double removed;                               /* energy taken out with bodies */
     double throughput;                            /* sum of magnitudes of what came in */
     double residual;
+    double unknown;  /* by a law that says nothing of it: > 0: it made energy; residual then is 0 */
 } dem_ledger;
 DEM_API dem_ledger dem_ledger_get(const dem_world *world);
 /* Totals that cost one pass: kinetic and rotational energy (J), momentum (kg m/s), angular momentum
@@ -1950,7 +1972,7 @@ typedef struct demi_species {
 /* Sums of one domain over one step; combined in the order of domains. */
 enum { DEMI_E_DASHPOT, DEMI_E_ELASTIC, DEMI_E_SHEAR_WORK, DEMI_E_SLIDE, DEMI_E_SHEAR_STORED,
       DEMI_E_ROLL,
-       DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_ENERGIES };
+       DEMI_E_GRAVITY, DEMI_E_FORCE, DEMI_E_WALLS, DEMI_E_TOLD, DEMI_ENERGIES };
 
 /* Where a body touches a wall, before it is known what the law will say (see >>touch). */
 typedef struct demi_touching {
@@ -1999,8 +2021,9 @@ typedef struct demi_kept {
     int32_t send;                  /* 1 + where the force on b goes; 0: b is of this domain */
     int32_t from;                  /* which of its domain's a step ago it continues; -1: none */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to where they push */
-    dem_real overlap, deep;        /* m, 0: under way through a reduced hole; over the smaller half
-                                      width along the normal, of a sphere its radius */
+    dem_real overlap, deep;        /* m, 0: under way through a reduced hole, < 0: apart, see
+                                      demi_kept_asked; over the smaller half width along the
+                                      normal, of a sphere its radius */
     dem_real share, lift, grip;    /* how often it counts: damping, elastic force, friction */
     dem_real weight;               /* share before contacts are shared: see demi_kept_share */
     dem_real loaded;               /* part of its load that friction counts on: demi_kept_crossed */
@@ -2247,6 +2270,7 @@ typedef struct demi_margin {       /* >>rebuild, >>near: how long lists hold */
     double slack;                  /* m: what velocities may bring by having changed since */
     double change, last_change;    /* m/s: most that a velocity may have changed since; last step */
     double creep;                  /* m: what that may have brought two bodies together */
+    double reach;                  /* m: gap up to which a law is asked, of any two; 0: at touch */
 } demi_margin;
 typedef struct demi_in_force {     /* >>rebuild: worked out when the list is made */
     int tangent, rolling;          /* laws in force */
@@ -2413,6 +2437,15 @@ struct dem_world {
     /* >>respond */
     void (*kernel)(dem_world *w, int domain);
 };
+/* m: how far beyond their radii pairs, and bodies and walls, are looked for. */
+DEM_INLINE dem_real demi_cover(const dem_world *w) {
+    return (dem_real)(w->margin.skin + w->margin.reach);
+}
+/* m: gap up to which the law is asked about two of these radii, together (with a wall: about one);
+   0 where it is asked at touch alone. */
+DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
+    return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
+}
 
 /* --- what each body has, told once. Making room, adding, removing, sorting, checking, saving and
        sending to another slab are loops over these rows (>>bodies). >>add-array: a field in
@@ -2756,6 +2789,13 @@ DEM_INLINE void demi_force_clear(dem_contact_force *f) {
     f->kt = f->kt_step = f->ct = 0;
     f->energy.dashpot = f->energy.sag = f->energy.elastic = f->energy.shear_work = 0;
     f->energy.slide = f->energy.shear_stored = f->energy.roll = 0;
+}
+/* Nobody is told of: number by number, likewise. */
+DEM_INLINE void demi_who_clear(dem_contact_who *who) {
+    who->a.slot = who->a.generation = who->b.slot = who->b.generation = 0;
+    who->radius_a = who->radius_b = who->mass_a = who->mass_b = 0;
+    who->point = demi_v(0, 0, 0);
+    who->time = 0;
 }
 /* What the desc says about how dashpots meet the end of a contact and friction's limit; what it
    says where nothing is asked for. */
@@ -5960,6 +6000,12 @@ DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_
                   "(0) to DEM_EDGE_FRACTION (%d); was it set?", (int)rule, (int)DEM_EDGE_FRACTION);
         return none;
     }
+    if (rule == DEM_EDGE_FRACTION && (w->desc.law_range > 0 || w->desc.law_range_radii > 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_profile_add: rule is DEM_EDGE_FRACTION, and the law "
+                  "of this world has a range; what counts there is the chord of a segment in a "
+                  "grain, and there is none before the two touch: use DEM_EDGE_RESOLVED");
+        return none;
+    }
     wall.rule = rule;
     if (!demi_wall_load(w, "dem_profile_add", &wall, profile->vertex_count, profile->vertices, 2,
                         profile->segment_count, profile->segments, 2)) return none;
@@ -6357,7 +6403,7 @@ static void demi_rows_all_pairs(dem_world *w, int d) {
     int a, b;
     for (a = w->domains[d].begin; a < w->domains[d].end; a++)
         for (b = a + 1; b < w->bodies.count; b++)
-            demi_pair_offer(w, d, &p, (dem_real)w->margin.skin, a, b);
+            demi_pair_offer(w, d, &p, demi_cover(w), a, b);
 }
 
 /* Cell indices c-1, c, c+1 along an axis, wrapped when periodic, without doubles, ascending. */
@@ -6409,7 +6455,7 @@ static void demi_rows_grid(dem_world *w, int d) {
         }
         for (k = 0; k < ranges; k++)
             for (b = DEMI_MAX(from[k], a + 1); b < to[k];
-                 b++) demi_pair_offer(w, d, &p, (dem_real)w->margin.skin, a, b);
+                 b++) demi_pair_offer(w, d, &p, demi_cover(w), a, b);
     }
 }
 
@@ -6429,7 +6475,7 @@ static void demi_rows_grid(dem_world *w, int d) {
    some 10 tests. */
 static double demi_level_work(const dem_world *w, double radius, double room, double count,
                               double finer) {
-    const double side = 2*radius + w->margin.skin, all = w->desc.planar ? 9 : 27;
+    const double side = 2*radius + (double)demi_cover(w), all = w->desc.planar ? 9 : 27;
     const double cell = w->desc.planar ? side*side : side*side*side;
     const double part = DEMI_MIN(cell/DEMI_MAX(room, 1e-300), 1/all);
     return count*part*(0.5*all*count + 0.25*all*finer) + 10*(count + finer);
@@ -6512,8 +6558,8 @@ static int demi_levels_lay(dem_world *w) {
     for (k = 0; k < 3; k++) hi[k] = w->cell_origin[k] + w->cell_size[k]*w->cells[k];
     for (l = 0; l < w->levels.count; l++) {
         demi_level *level = &w->levels.level[l];
-        demi_cells_lay(w->cell_origin, hi, 2*level->radius + w->margin.skin + 1e-300, level->count,
-                       level->cells, level->size);
+        demi_cells_lay(w->cell_origin, hi, 2*level->radius + (double)demi_cover(w) + 1e-300,
+                       level->count, level->cells, level->size);
         level->first = n;
         n += level->cells[0]*level->cells[1]*level->cells[2];
     }
@@ -6565,7 +6611,7 @@ static void demi_level_offer(dem_world *w, int d, const demi_periods *p, int a, 
     int i;
     for (i = start[row + first]; i < end; i++)
         if (w->bodies.order[i] > a)
-            demi_pair_offer(w, d, p, (dem_real)w->margin.skin, a, w->bodies.order[i]);
+            demi_pair_offer(w, d, p, demi_cover(w), a, w->bodies.order[i]);
 }
 /* Offers a what it can reach in one level. */
 static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
@@ -6577,7 +6623,7 @@ static void demi_row_level(dem_world *w, int d, const demi_periods *p, int a,
     const double slack = (DEMI_SINGLE ? 4e-7 : 1e-14)*(w->cell_size[0]*w->cells[0] +
         w->cell_size[1]*w->cells[1] + w->cell_size[2]*w->cells[2]);
     const double reach =
-        ((double)w->bodies.pos[4*a + 3] + level->radius + w->margin.skin)*(1 + 1e-5) +
+        ((double)w->bodies.pos[4*a + 3] + level->radius + (double)demi_cover(w))*(1 + 1e-5) +
         slack;
     const demi_stretch sx = demi_level_span(w, level, 0, x, reach);
     const demi_stretch sy = demi_level_span(w, level, 1, y, reach);
@@ -6731,7 +6777,7 @@ static void demi_pair_table_remove(dem_world *w, int32_t a, int32_t b) {
 }
 static dem_real demi_box_end(const dem_world *w, int slot, int axis, int upper) {
     const int i = w->bodies.slot_index[slot];
-    const dem_real grow = w->bodies.pos[4*i + 3] + (dem_real)w->margin.skin/2;
+    const dem_real grow = w->bodies.pos[4*i + 3] + demi_cover(w)/2;
     return upper ? w->bodies.pos[4*i + axis] + grow : w->bodies.pos[4*i + axis] - grow;
 }
 /* Do the boxes of two bodies, by slot, overlap on every axis that is not periodic? */
@@ -6869,7 +6915,7 @@ static void demi_rows_linked(dem_world *w, int d) {
     int a, k;
     for (a = w->domains[d].begin; a < w->domains[d].end; a++)
         for (k = start[a]; k < start[a + 1]; k++)
-            demi_pair_offer(w, d, &p, (dem_real)w->margin.skin, a, rows[k]);
+            demi_pair_offer(w, d, &p, demi_cover(w), a, rows[k]);
 }
 
 /* --- what is common --- */
@@ -6957,7 +7003,7 @@ static void demi_walls_order(dem_world *w, demi_domain *domain, int d, int first
 /* Elements of one wall near body i as it is seen `shift` farther on. */
 static void demi_wall_look(dem_world *w, demi_domain *domain, int d, int i, int j, dem_vec3 shift) {
     const demi_wall *wall = &w->walls[j];
-    const dem_real r = w->bodies.pos[4*i + 3], near_by = r + (dem_real)w->margin.skin;
+    const dem_real r = w->bodies.pos[4*i + 3], near_by = r + demi_cover(w);
     const int first = domain->walls;
     const dem_vec3 out = demi_v(near_by, near_by, near_by);
     dem_vec3 at = demi_unrotate(wall->pose.rotation,
@@ -7004,7 +7050,7 @@ static void demi_body_walls(dem_world *w, int d, int i) {
             continue;
         }
         demi_wall_images(w, wall, demi_at(w->bodies.pos + 4*i),
-                         w->bodies.pos[4*i + 3] + (dem_real)w->margin.skin, f, l);
+                         w->bodies.pos[4*i + 3] + demi_cover(w), f, l);
         for (c = f[2]; c <= l[2]; c++)
             for (b = f[1]; b <= l[1]; b++)
                 for (a = f[0]; a <= l[0]; a++)
@@ -7363,7 +7409,8 @@ static void demi_near_coefs_copy(const dem_world *w, demi_near *near, int d, int
 DEM_INLINE int demi_near_pick_as(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p, int mixed) {
     const dem_real *x = w->bodies.pos, *u = w->bodies.vel, *shift = w->image_shift;
-    const dem_real margin = (dem_real)w->margin.slack, span = (dem_real)w->margin.span;
+    const dem_real margin = (dem_real)(w->margin.reach + w->margin.slack);
+    const dem_real span = (dem_real)w->margin.span;
     const int room = w->near.stride - DEMI_LANES;
     const int32_t *shape = w->bodies.shape;
     int32_t *out = w->near.k + d*w->near.stride;
@@ -7389,7 +7436,8 @@ static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int en
    their spins may bring. */
 static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p) {
-    const dem_real margin = (dem_real)w->margin.slack, span = (dem_real)w->margin.span;
+    const dem_real margin = (dem_real)(w->margin.reach + w->margin.slack);
+    const dem_real span = (dem_real)w->margin.span;
     const int room = w->near.stride - DEMI_LANES;
     int32_t *out = w->near.k + d*w->near.stride;
     int k;
@@ -7668,6 +7716,10 @@ static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling) {
             *rolling |= p->rolling_friction > 0;
         }
 }
+/* m: the farthest that a law is asked about any two, the largest of this radius. */
+static double demi_reach_of(const dem_world *w, double radius) {
+    return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
+}
 /* The effects of the live scene: which laws act, whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
     int i, friction, rolling;
@@ -7694,6 +7746,7 @@ static void demi_effects(dem_world *w) {
     }
     w->effects.uniform = w->effects.uniform && w->effects.radius_max <= w->effects.radius_min &&
         !w->effects.fixed_count;
+    w->margin.reach = demi_reach_of(w, (double)w->effects.radius_max);
     demi_species_count(w);
 }
 
@@ -7726,7 +7779,7 @@ static void demi_skin_choose(dem_world *w) {
     }
     for (k = 0; k < 3; k++) {  /* a period must hold two grains and the skin, twice */
         const double room = (double)demi_periods_of(w).period[k]/2*(1 - 1e-6) -
-            2*(double)w->effects.radius_max;
+            2*(double)w->effects.radius_max - w->margin.reach;
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && room > 0)
             w->margin.skin_auto = DEMI_MIN(w->margin.skin_auto, room);
     }
@@ -7794,7 +7847,7 @@ static int demi_crowd_refuse(dem_world *w) {
    says so when one ends too near. */
 static int demi_walls_end(dem_world *w, const char *call) {
     const demi_periods p = demi_periods_of(w);
-    const dem_real need = w->effects.radius_max*DEM_R(0.999);
+    const dem_real need = w->effects.radius_max*DEM_R(0.999) + (dem_real)w->margin.reach;
     int j, k;
     for (j = 0; j < w->wall_count; j++)
         for (k = 0; k < 3; k++) {
@@ -7805,10 +7858,11 @@ static int demi_walls_end(dem_world *w, const char *call) {
                 (wall->span_lo[k] <= lo - need && wall->span_hi[k] >= hi + need)) continue;
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic axis "
                       "%d, which is longer than the period of %g m, so that it does not repeat; it "
-                      "must reach %g m, the largest radius, beyond the faces at %g and %g m, or be "
-                      "no longer than the period", call, j + 1,
+                      "must reach %g m, the largest radius%s, beyond the faces at %g and %g m, or "
+                      "be no longer than the period", call, j + 1,
                       (double)wall->span_lo[k], (double)wall->span_hi[k], k, (double)p.period[k],
-                      (double)w->effects.radius_max, (double)lo, (double)hi);
+                      (double)w->effects.radius_max + w->margin.reach, w->margin.reach > 0
+                      ? " and the law's range" : "", (double)lo, (double)hi);
             return 1;
         }
     return 0;
@@ -7841,7 +7895,7 @@ static int demi_join_near(const dem_world *w, const demi_periods *p, int a, int 
                                                 demi_at(w->bodies.pos + 4*a)));
     const dem_vec3 u = demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a));
     return demi_length(x) < w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3] +
-           (dem_real)w->margin.slack +
+           (dem_real)(w->margin.reach + w->margin.slack) +
                             (dem_real)w->margin.span*demi_length(u);
 }
 /* Body i, just appended, joins the list; `found`, ascending: all whose gap to it may be below the
@@ -7860,7 +7914,7 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
         demi_list *list = d == last ? &w->own : &w->cross;
         const int at = d == last ? domain->own : domain->cross;
         list->place[d*list->stride + at] = 0;
-        demi_pair_offer(w, d, &p, (dem_real)w->margin.skin, a, i);
+        demi_pair_offer(w, d, &p, demi_cover(w), a, i);
         leading |= d < last;
         w->stage.near_stale |= demi_join_near(w, &p, a, i);
     }
@@ -7930,13 +7984,14 @@ static int demi_effects_take(dem_world *w) {
 /* Answers 1 with a sentence when a period is too short for one image of each partner. */
 static int demi_periods_refuse(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
-    const double need = 2*(2*(double)w->effects.radius_max + w->margin.skin);
+    const double need = 2*(2*(double)w->effects.radius_max + (double)demi_cover(w));
     int k;
     for (k = 0; k < 3; k++)
         if (w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC && (double)p.period[k] < need) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: the domain is %g m long on periodic "
-                      "axis %d, must be at least %g m (two grains and the skin, twice); make it "
-                      "longer or the grains smaller", (double)p.period[k], k, need);
+                      "axis %d, must be at least %g m (two grains and the skin%s, twice); make it "
+                      "longer or the grains smaller", (double)p.period[k], k, need,
+                      w->margin.reach > 0 ? " and the law's range" : "");
             return 1;
         }
     return 0;
@@ -8021,7 +8076,8 @@ static dem_result demi_lists_make(dem_world *w, const char *call) {
     demi_wrap(w);                               /* after what may be refused: places stay then */
     if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, call);
     demi_levels_choose(w);
-    least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) + w->margin.skin;
+    least = 2*(w->levels.wide ? w->levels.fine : (double)w->effects.radius_max) +
+        (double)demi_cover(w);
     if (!demi_grid_lay(w, least + 1e-300)) return demi_no_memory(w, call);
     demi_bodies_sort(w);
     if (!w->levels.count && demi_crowd_refuse(w)) return DEM_ERROR_ARGUMENT;
@@ -8768,7 +8824,7 @@ static int demi_sieve_round(const dem_sieve_desc *s, dem_vec3 x, dem_real r, dem
        share_a = max(L_a/(L_a + L_b), min(1, L_a/overlap_a))
    Half way between the two each bears half, and where L is far more than the overlap, each bears
    all: no jump on the way. */
-static void demi_sieve_share(demi_touching *c, int count) {
+static void demi_sieve_share(demi_touching *c, int count, dem_real range) {
     int a, b;
     for (a = 0; a < count; a++)
         for (b = a + 1; b < count; b++) {
@@ -8778,8 +8834,8 @@ static void demi_sieve_share(demi_touching *c, int count) {
             lb = lb > 0 ? lb : 0;
             sa = la + lb > 0 ? la/(la + lb) : 1;
             sb = 1 - sa;
-            la /= c[a].overlap;
-            lb /= c[b].overlap;
+            la /= DEMI_MAX(c[a].overlap - range, DEMI_TINY);    /* those that do not touch: all */
+            lb /= DEMI_MAX(c[b].overlap - range, DEMI_TINY);
             c[a].share *= DEMI_MAX(sa, DEMI_MIN(la, DEM_R(1)));
             c[b].share *= DEMI_MAX(sb, DEMI_MIN(lb, DEM_R(1)));
         }
@@ -8795,10 +8851,11 @@ static int demi_sieve_passes(const dem_sieve_desc *s, dem_vec3 x, dem_real r) {
     const dem_real v = x.y - (dem_real)floor((double)(x.y/pitch) + 0.5)*pitch;
     return r < w && DEMI_ABS(u) < room && DEMI_ABS(v) < room;
 }
-/* All contacts of a sphere at x of radius r with a sieve: at most DEMI_SIEVE_MOST; body and wall
-   are the caller's to fill in. One of share 0 pushes nobody: a grain under way through a reduced
+/* All contacts of a sphere at x with a sieve: at most DEMI_SIEVE_MOST; body and wall are the
+   caller's to fill in. r: its radius and a law's range, of which it then touches what overlaps by
+   more. One of share 0 pushes nobody: a grain under way through a reduced
    hole. */
-static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
+static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r, dem_real range,
                             demi_touching *out) {
     const dem_real S = DEMI_SQRT(x.x*x.x + x.y*x.y);
     int count = 0;
@@ -8808,11 +8865,11 @@ static int demi_sieve_touch(const dem_sieve_desc *s, dem_vec3 x, dem_real r,
             return demi_sieve_put(out, 0, DEMI_SIEVE_RIM, x, r,
                                   demi_v(x.x*s->radius/S, x.y*s->radius/S, 0), 0);
         count = demi_sieve_face(s, x, r, out);
-        if (count && demi_sieve_passes(s, x, r)) out->share = 0;
+        if (count && demi_sieve_passes(s, x, r - range)) out->share = 0;
         return count;
     case DEM_SIEVE_ROUND:
         count = demi_sieve_round(s, x, r, out);
-        if (count > 1) demi_sieve_share(out, count);
+        if (count > 1) demi_sieve_share(out, count, range);
         break;
     default: count = demi_sieve_rows(s, x, r, out);
     }
@@ -8957,7 +9014,7 @@ typedef struct demi_tile {
     dem_real memory[DEMI_MEMORY][DEMI_ROW], coef[DEMI_PAIR_COLUMNS][DEMI_ROW];
     /* touch and motion */
     dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
-    dem_real touch[DEMI_ROW];      /* 1 where the two touch, else 0 */
+    dem_real touch[DEMI_ROW];      /* 1 where the law is asked: where the two touch; else 0 */
     dem_real normal[3][DEMI_ROW], turn[3][DEMI_ROW];      /* unit, 1/s */
     dem_real slip[3][DEMI_ROW], slip_step[3][DEMI_ROW];   /* m/s */
     dem_real lean[DEMI_ROW];       /* m, from the middle to the contact, towards b */
@@ -9050,6 +9107,7 @@ DEM_INLINE dem_vec3 demi_rows_at(const demi_rows *rows, int q) {
    changes it. */
 typedef struct demi_same {
     dem_real dt, radius, inv_radius;
+    dem_real range, range_radii;   /* m: of a law that is asked before touch; else 0 */
     int tension, friction_load, slider;
     int at_rolling, at_normal;     /* where their memory begins */
 } demi_same;
@@ -9063,6 +9121,7 @@ struct demi_run {
     int alike, ledger, keep;       /* are the two of a pair alike? keep: reals of memory */
     int turning, parting;          /* are spins, differences of spins wanted? */
     int following;                 /* is the motion over the last step wanted? */
+    int ranged;                    /* is the law asked before touch? */
     demi_same same;
     demi_stage stage[DEMI_STAGES]; /* in this order; null: the end */
 };
@@ -9129,11 +9188,16 @@ DEM_INLINE dem_vec3 demi_slip_step(dem_vec3 normal, dem_vec3 mid, dem_vec3 gone,
         for (l = 0; l < DEMI_LANES; l++) { const int q = g + l;
 #define DEMI_ROWS_END }}}
 
-/* touch: distance, normal, overlap */
-DEM_INLINE void demi_touch_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q, int uniform) {
+/* m: gap up to which a law is asked about pair q. */
+DEM_INLINE dem_real demi_tile_range(const demi_tile *t, const demi_same *s, int q, int uniform) {
+    return s->range + s->range_radii*(uniform ? 2*s->radius : t->radius[0][q] + t->radius[1][q]);
+}
+/* touch: distance, normal, overlap; ranged: is the law asked before the two touch? */
+DEM_INLINE void demi_touch_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q, int uniform,
+                               int ranged) {
     const dem_vec3 gap = demi_rows_at(&t->gap, q);
     const dem_real d = DEMI_SQRT(demi_dot(gap, gap)), over_d = 1/(d + DEMI_TINY);
-    dem_real overlap;
+    dem_real overlap, least = 0;
     t->length[q] = d;
     t->over_d[q] = over_d;
     demi_row_put(t->normal, q, demi_scale(gap, over_d));
@@ -9146,8 +9210,9 @@ DEM_INLINE void demi_touch_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, i
         t->deep[q] = overlap*(1/(ra < rb ? ra : rb));
         t->lean[q] = (ra - rb)/(ra + rb)*d/2;   /* the contact divides d as the radii do */
     }
-    t->touch[q] = overlap > 0 ? DEM_R(1) : DEM_R(0);
-    t->overlap[q] = overlap > 0 ? overlap : 0;
+    if (ranged) least = -demi_tile_range(t, s, q, uniform);
+    t->touch[q] = overlap > least ? DEM_R(1) : DEM_R(0);
+    t->overlap[q] = overlap > least ? overlap : 0;
 }
 /* motion: how the two move at the contact, now and over the step just taken */
 DEM_INLINE void demi_motion_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q, int uniform,
@@ -9173,25 +9238,27 @@ DEM_INLINE void demi_motion_one(demi_tile *DEMI_RESTRICT t, const demi_same *s, 
         t->twist[q] = demi_dot(turned, n)/2;
     }
 }
-#define DEMI_MOTION_STAGE(NAME, UNIFORM, TURNING, FOLLOWING) \
+#define DEMI_MOTION_STAGE(NAME, UNIFORM, TURNING, FOLLOWING, RANGED) \
     DEMI_CLONES static void demi_stage_##NAME(demi_tile *DEMI_RESTRICT t, const demi_run *r, \
                                               int full) { \
         const demi_same s = r->same; \
-        DEMI_ROWS(full) demi_touch_one(t, &s, q, UNIFORM); DEMI_ROWS_END \
+        DEMI_ROWS(full) demi_touch_one(t, &s, q, UNIFORM, RANGED); DEMI_ROWS_END \
         DEMI_ROWS(full) demi_motion_one(t, &s, q, UNIFORM, TURNING, FOLLOWING); DEMI_ROWS_END \
     }
-DEMI_MOTION_STAGE(alike_bare, 1, 0, 0)
-DEMI_MOTION_STAGE(mixed_bare, 0, 0, 0)
-DEMI_MOTION_STAGE(alike_turning, 1, 1, 0)
-DEMI_MOTION_STAGE(mixed_turning, 0, 1, 0)
-DEMI_MOTION_STAGE(alike_following, 1, 1, 1)
-DEMI_MOTION_STAGE(mixed_following, 0, 1, 1)
+DEMI_MOTION_STAGE(alike_bare, 1, 0, 0, 0)
+DEMI_MOTION_STAGE(mixed_bare, 0, 0, 0, 0)
+DEMI_MOTION_STAGE(alike_turning, 1, 1, 0, 0)
+DEMI_MOTION_STAGE(mixed_turning, 0, 1, 0, 0)
+DEMI_MOTION_STAGE(alike_following, 1, 1, 1, 0)
+DEMI_MOTION_STAGE(mixed_following, 0, 1, 1, 0)
+DEMI_MOTION_STAGE(mixed_ranged, 0, 1, 1, 1)
 
 /* Pair q as a law sees it; compilers leave out what the law does not look at. */
 DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
                                   dem_contact *c) {
     c->normal = demi_row(t->normal, q);
     c->overlap = t->overlap[q];
+    c->range = 0;
     c->closing_speed = t->closing[q];
     c->slip = demi_row(t->slip, q);
     c->spin = demi_rows_at(&t->apart, q);
@@ -9374,16 +9441,43 @@ DEMI_WHOLE_ROLLING(rolling_alike_ledger, 1, 1)
 DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
 #endif
 
-/* The user's law: only what touches, one by one; inlined into the loop where DEM_LAW names it. */
+/* Who the two of pair q are, for a law that wants to know. */
+static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
+                                     dem_contact *c) {
+    const dem_world *w = r->w;
+    const int a = r->span->a[q], b = r->span->b[q];
+    const demi_periods periods = demi_periods_of(w);
+    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    c->who.a = dem_bodies_id(w, a);
+    c->who.b = dem_bodies_id(w, b);
+    c->who.radius_a = x[3];
+    c->who.radius_b = y[3];
+    c->who.mass_a = w->bodies.mass[a];
+    c->who.mass_b = w->bodies.mass[b];
+    c->who.point = demi_place_of(&periods, demi_add(demi_at(x),
+        demi_scale(demi_rows_at(&t->gap, q), x[3]/(x[3] + y[3]))));
+    c->who.time = w->clock.time;
+}
+/* Pair q as the user's law sees it. */
+DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int q, int who,
+                              dem_contact *c) {
+    const dem_world *w = r->w;
+    demi_tile_contact(t, &r->same, q, c);
+    c->range = demi_tile_range(t, &r->same, q, 0);
+    c->material_a = w->bodies.material[r->span->a[q]];
+    c->material_b = w->bodies.material[r->span->b[q]];
+    c->user = w->desc.law_user;
+    demi_who_clear(&c->who);
+    if (who) demi_tile_who(t, r, q, c);
+}
+/* The user's law: only what touches, one by one; inlined into the loop where DEM_LAW names it, but
+   for one that asks who touches. */
 DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, int q,
-                             dem_law_fn law) {
+                             int who, dem_law_fn law) {
     dem_contact c;
     dem_contact_force f;
     dem_real m[DEMI_MEMORY];
-    demi_tile_contact(t, &r->same, q, &c);
-    c.material_a = r->w->bodies.material[r->span->a[q]];
-    c.material_b = r->w->bodies.material[r->span->b[q]];
-    c.user = r->w->desc.law_user;
+    demi_tile_own(t, r, q, who, &c);
     demi_force_clear(&f);
     demi_recall(t, q, 0, r->keep, m);
     law(&c, m, &f);
@@ -9399,7 +9493,10 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
     int q, e;
     (void)full;
     for (q = 0; q < r->span->count; q++) {
-        if (t->touch[q] > 0) { demi_own_one(t, r, q, r->w->desc.law); continue; }
+        if (t->touch[q] > 0) {
+            demi_own_one(t, r, q, r->w->desc.law_who, r->w->desc.law);
+            continue;
+        }
         demi_row_put(t->force, q, demi_v(0, 0, 0));
         demi_row_put(t->torque[0], q, demi_v(0, 0, 0));
         demi_row_put(t->torque[1], q, demi_v(0, 0, 0));
@@ -9410,7 +9507,7 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
 #ifdef DEM_LAW
 DEMI_CLONES static void demi_stage_own_inlined(demi_tile *DEMI_RESTRICT t, const demi_run *r,
                                                int full) {
-    DEMI_ROWS(full) demi_own_one(t, r, q, DEM_LAW); DEMI_ROWS_END
+    DEMI_ROWS(full) demi_own_one(t, r, q, 0, DEM_LAW); DEMI_ROWS_END
 }
 #endif
 
@@ -9434,7 +9531,7 @@ static const demi_stage_row demi_rolling_stages[] = {{0, 0, 0}, {0, 0, 0},
 static demi_stage demi_whole_stage(const dem_world *w, int alike) {
     (void)alike;
 #ifdef DEM_LAW
-    if (w->desc.law == DEM_LAW) return demi_stage_own_inlined;
+    if (w->desc.law == DEM_LAW && !w->desc.law_who) return demi_stage_own_inlined;
 #endif
     if (w->desc.law) return demi_stage_own;
 #ifndef DEM_NO_SPECIALIZE
@@ -9471,6 +9568,9 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     r.turning = own || turns || rolls;
     r.parting = own || rolls || (r.turning && !r.alike);
     r.following = own || laws->tangent->vectors || laws->rolling->vectors;
+    r.ranged = w->margin.reach > 0;
+    r.same.range = w->desc.law_range;
+    r.same.range_radii = w->desc.law_range_radii;
     r.same.at_rolling = laws->at_rolling;
     r.same.at_normal = laws->at_normal;
     r.same.tension = (int)w->desc.tension;
@@ -9479,7 +9579,8 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
     r.same.dt = dt;
     r.same.radius = w->effects.species[0].radius;
     r.same.inv_radius = 1/r.same.radius;
-    r.stage[k++] = r.following ? r.alike ? demi_stage_alike_following : demi_stage_mixed_following
+    r.stage[k++] = r.ranged ? demi_stage_mixed_ranged
+        : r.following ? r.alike ? demi_stage_alike_following : demi_stage_mixed_following
         : r.turning ? r.alike ? demi_stage_alike_turning : demi_stage_mixed_turning
         : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
@@ -9574,7 +9675,7 @@ static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_ta
     int q;
     for (q = 0; q < count; q++) {
         sum->deepest = t->deep[q] > sum->deepest ? t->deep[q] : sum->deepest;
-        sum->contacts += t->touch[q];
+        sum->contacts += t->deep[q] > 0 ? DEM_R(1) : DEM_R(0);
     }
 }
 DEM_INLINE void demi_sum_add(dem_real *sum, dem_real x, dem_real y, dem_real z) {
@@ -9683,7 +9784,7 @@ static void demi_cross_gather(dem_world *w, int d) {
 static const char *demi_kernel_choose(dem_world *w) {
     w->kernel = demi_pairs;
 #ifdef DEM_LAW
-    if (w->desc.law == DEM_LAW) return "your law, inlined";
+    if (w->desc.law == DEM_LAW && !w->desc.law_who) return "your law, inlined";
 #endif
     if (w->desc.law) return "your law, called";
     return demi_whole_stage(w, w->effects.uniform) ? "all laws at once" : "law by law";
@@ -9701,9 +9802,10 @@ static const char *demi_kernel_choose(dem_world *w) {
    What becomes of the places that are found stands in >>kept.
    --------------------------------------------------------------------------------------------- */
 
-/* m: as far as any grain and any wall have come towards each other since the list was made. */
+/* m: which gaps, of when the list was made, may have closed, or come within the law's range: any
+   grain and any wall may have come so far towards each other since. */
 DEM_INLINE dem_real demi_walls_gone(const dem_world *w) {
-    return (dem_real)(w->margin.gone + w->margin.walls_gone);
+    return (dem_real)(w->margin.gone + w->margin.walls_gone + w->margin.reach);
 }
 /* Room in which the places of one body and one wall are found. candidates: how many there are. */
 DEM_INLINE demi_places demi_places_begin(const dem_world *w, int d, int candidates) {
@@ -9739,13 +9841,16 @@ DEM_INLINE int demi_facet_near(const dem_world *w, const demi_wall *wall, int k,
 }
 /* Where an ellipsoid (part; null: a sphere of radius r) at `at` touches a surface of facets, from
    the candidates first .. last - 1 of its body: normals, points and shares, and what is left of its
-   measure, r less the distance or 1 - W0, as overlaps. In the world. */
+   measure, r less the distance or 1 - W0, as overlaps; range: what is nearer than that, too, with
+   overlaps below 0. In the world. */
 static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                             dem_vec3 at, dem_real r, const demi_part *part, demi_touching **out) {
+                             dem_vec3 at, dem_real r, const demi_part *part, dem_real range,
+                             demi_touching **out) {
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
-    const dem_real within = part ? DEM_R(1) : r;
+    const dem_real touch = part ? DEM_R(1) : r;
+    const dem_real within = touch + (part ? range/demi_part_thin(part) : range);
     demi_places p = demi_places_begin(w, d, last - first);
     const int numbers = wall->number_count;
     int k, q, from, end, one, reached;
@@ -9789,7 +9894,7 @@ static int demi_facets_touch(const dem_world *w, int d, int first, int last, dem
             n = dem_quat_rotate(part->q, demi_v(n.x/a.x, n.y/a.y, n.z/a.z));
         }
         n = t->overlap > 0 ? demi_scale(n, 1/demi_length(n)) : demi_v(0, 0, -1);
-        t->overlap = within - t->overlap;
+        t->overlap = touch - t->overlap;
         t->normal = demi_rotate(R, n);
         t->point = demi_add(at, demi_rotate(R, to));
     }
@@ -9803,17 +9908,19 @@ typedef int (*demi_touch_fn)(const dem_world *w, int d, int first, int last, dem
                              dem_vec3 at, const demi_part *part, demi_touching **places);
 static int demi_facets_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
                                dem_vec3 at, const demi_part *part, demi_touching **places) {
-    return demi_facets_touch(w, d, first, last, gone, at, part->radius, 0, places);
+    return demi_facets_touch(w, d, first, last, gone, at, part->radius, 0,
+                             demi_range(w, part->radius), places);
 }
-/* A sphere and a wall each of whose elements it may touch; how: 0: as it is near to them, 1: as
+/* A sphere and a wall each of whose elements it may touch, or be within the range of (as a sphere
+   of so much larger a radius finds them); how: 0: as it is near to them, 1: as
    segments that push with a fraction, 2: as a sieve, one candidate and as many contacts as there
    are. */
 DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last, dem_real gone,
-                                  dem_vec3 at, dem_real r, demi_touching **places, int how,
+                                  dem_vec3 at, dem_real radius, demi_touching **places, int how,
                                   demi_near_fn near) {
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
-    const dem_real *R = wall->pose.rotation;
+    const dem_real *R = wall->pose.rotation, range = demi_range(w, radius), r = radius + range;
     demi_touching *out;
     int k, q, end, count = 0;
     *places = out = w->touching + w->domains[d].touching_first;
@@ -9822,7 +9929,7 @@ DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last
         const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
         const int from = count;
         end = demi_image_end(w, base, k, last);
-        if (how == 2) count += demi_sieve_touch(&wall->sieve, x, r, out + count);
+        if (how == 2) count += demi_sieve_touch(&wall->sieve, x, r, range, out + count);
         else for (; k < end; k++) {
             demi_touching *c = &out[count];
             if (w->wall_gap[base + k] > gone) continue;
@@ -9839,6 +9946,7 @@ DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last
             count++;
         }
         for (q = from; q < count; q++) {
+            out[q].overlap -= range;
             out[q].normal = demi_rotate(R, out[q].normal);
             out[q].point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, out[q].point)),
                                     shift);
@@ -9939,15 +10047,20 @@ static double demi_ellipse_shrink(const double *Q, double x, double y, int out, 
     return 1 - W;
 }
 /* --- one ellipsoid, turned into the wall's frame, against one element, centre x: fills in normal
-       and point, answers 1 - W0, 0 or less when apart --- */
+       and point, answers 1 - W0, 0 or less when apart; farther than `range` (m) off, any number
+       that says so: below 1 - W0 of there --- */
 typedef dem_real (*demi_ellipsoid_fn)(const demi_wall *wall, int element, const demi_part *p,
-                                      dem_vec3 x, dem_vec3 *normal, dem_vec3 *point);
+                                      dem_vec3 x, dem_real range, dem_vec3 *normal,
+                                      dem_vec3 *point);
+/* 1 - W0 of what is farther off than any range. */
+#define DEMI_FAR_OFF DEM_R(-1e30)
 /* Its lowest point; W0 is the height of its centre over its own. */
 static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, const demi_part *p,
-                                        dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+                                        dem_vec3 x, dem_real range, dem_vec3 *normal,
+                                        dem_vec3 *point) {
     dem_vec3 arm;
     dem_real h;
-    (void)wall; (void)element;
+    (void)wall; (void)element; (void)range;
     *normal = demi_v(0, 0, -1);
     h = demi_ellipsoid_arm(p, *normal, &arm);
     *point = demi_v(x.x + arm.x*x.z/h, x.y + arm.y*x.z/h, 0);
@@ -9955,7 +10068,8 @@ static dem_real demi_ellipsoid_on_plane(const demi_wall *wall, int element, cons
 }
 /* Inside, either end of a long body may touch: element 0 and 1. */
 static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, const demi_part *p,
-                                           dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+                                           dem_vec3 x, dem_real range, dem_vec3 *normal,
+                                           dem_vec3 *point) {
     double Q[6], n[3], far, left;
     dem_vec3 arm;
     demi_ellipsoid_matrix(p->q, p->axes, Q);
@@ -9963,7 +10077,7 @@ static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, c
                              ? atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
                              : atan2((double)x.y, (double)x.x), n);
     left = far - (double)wall->radius;
-    if (!(wall->inside ? left > 0 : left < 0)) return 0;
+    if (!(wall->inside ? left > -(double)range : left < (double)range)) return DEMI_FAR_OFF;
     left = demi_ellipse_shrink(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1,
                                (double)wall->radius, far, n);
     *normal = demi_v((dem_real)n[0], (dem_real)n[1], 0);
@@ -9974,8 +10088,10 @@ static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, c
     return (dem_real)left;
 }
 static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, const demi_part *p,
-                                        dem_vec3 x, dem_vec3 *normal, dem_vec3 *point) {
+                                        dem_vec3 x, dem_real range, dem_vec3 *normal,
+                                        dem_vec3 *point) {
     const dem_vec3 gap = demi_sub(demi_at(wall->vertices + 3*element), x);
+    const double most = 1 + (double)range/(double)(demi_part_thin(p) + wall->radius);
     double Q[6], B[6], r[3], n[3], ha, hb;
     demi_meet m;
     demi_ellipsoid_matrix(p->q, p->axes, Q);
@@ -9983,8 +10099,8 @@ static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, cons
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
     if (!(demi_dot3(r, r) > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
     m.l = demi_meet_start(Q, B, r);
-    demi_meet_solve(Q, B, r, 1, DEMI_MEET_NEAR, &m);
-    if (!(m.f < 1)) return 0;
+    demi_meet_solve(Q, B, r, most*most, DEMI_MEET_NEAR, &m);
+    if (!(m.f < most*most)) return DEMI_FAR_OFF;
     demi_meet_heights(&m, n, &ha, &hb);
     *normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
     *point = demi_add(x, demi_v((dem_real)((1 - m.l)*m.a[0]), (dem_real)((1 - m.l)*m.a[1]),
@@ -10004,7 +10120,8 @@ static demi_part demi_part_local(const demi_wall *wall, const demi_part *p) {
 static int demi_facets_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
                                  dem_vec3 at, const demi_part *part, demi_touching **places) {
     const demi_part local = demi_part_local(&w->walls[w->wall_id[d*w->wall_stride + first]], part);
-    return demi_facets_touch(w, d, first, last, gone, at, 0, &local, places);
+    return demi_facets_touch(w, d, first, last, gone, at, 0, &local, demi_range(w, part->radius),
+                             places);
 }
 /* An ellipsoid and a wall, element by element. */
 static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, dem_real gone,
@@ -10014,6 +10131,7 @@ static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, 
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
     const demi_part local = demi_part_local(wall, part);
+    const dem_real range = demi_range(w, part->radius);
     const int two = wall->inside;
     demi_touching *out;
     dem_vec3 x, shift;
@@ -10025,8 +10143,8 @@ static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, 
         shift = demi_at(w->wall_shift + 3*(size_t)(base + DEMI_MIN(i, last - 1)));
         x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
         c->element = i < last ? w->wall_element[base + i] : 1;
-        c->overlap = on(wall, c->element, &local, x, &c->normal, &c->point);
-        if (!(c->overlap > 0)) continue;
+        c->overlap = on(wall, c->element, &local, x, range, &c->normal, &c->point);
+        if (!(c->overlap > 0) && !(c->overlap > -range/demi_part_thin(&local))) continue;
         c->normal = demi_rotate(R, c->normal);
         if (two && count && demi_dot(c->normal, out->normal) > DEM_R(0.99)) continue;
         c->point = demi_sub(demi_add(wall->pose.position, demi_rotate(R, c->point)), shift);
@@ -10200,6 +10318,11 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
    nothing lost.
    --------------------------------------------------------------------------------------------- */
 
+/* Is the law asked about a contact? Not where the two are apart, but for a law with a range, nor
+   under way through a reduced hole. */
+DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
+    return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
+}
 /* One contact as touch finds it. */
 static demi_kept *demi_kept_new(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -10224,8 +10347,8 @@ typedef int (*demi_meet_fn)(const dem_world *w, const demi_part *p, const demi_p
 static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                             dem_vec3 gap, double lambda, demi_kept *c) {
     const dem_real d = demi_length(gap), sum = p->radius + q->radius;
-    (void)w; (void)lambda;
-    if (!(d < sum)) return 0;
+    (void)lambda;
+    if (!(d < sum + demi_range(w, sum))) return 0;
     c->normal = d > 0 ? demi_scale(gap, 1/d) : demi_v(0, 0, 1);
     c->overlap = sum - d;
     c->deep = c->overlap/DEMI_MIN(p->radius, q->radius);
@@ -10235,10 +10358,13 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
     c->bend = -1/DEMI_MAX(d, sum/10);
     return 1;
 }
-/* Ellipsoids, or one and a sphere, as Perram and Wertheim's point does. */
+/* Ellipsoids, or one and a sphere, as Perram and Wertheim's point does. Apart, their gap is that
+   of the points of either that come to it when both are scaled by W0, d (1 - 1/W0): never less
+   than the distance, by which lists are made. */
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
                                  dem_vec3 gap, double lambda, demi_kept *c) {
-    const dem_real d = demi_length(gap);
+    const dem_real d = demi_length(gap), range = demi_range(w, p->radius + q->radius);
+    const double most = 1 + (double)range/(double)(demi_part_thin(p) + demi_part_thin(q));
     double A[6], B[6], r[3], n[3], ha, hb, w0, ra, rb;
     demi_meet m;
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
@@ -10246,8 +10372,8 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     demi_part_matrix(p, A);
     demi_part_matrix(q, B);
     m.l = lambda > 0 ? lambda : demi_meet_start(A, B, r);
-    demi_meet_solve(A, B, r, 1, DEMI_MEET_NEAR, &m);
-    if (!(m.f < 1)) return 0;
+    demi_meet_solve(A, B, r, most*most, DEMI_MEET_NEAR, &m);
+    if (!(m.f < 1) && !((double)d*(1 - 1/sqrt(m.f)) < (double)range)) return 0;
     w0 = sqrt(m.f);
     demi_meet_heights(&m, n, &ha, &hb);
     c->lambda = m.l;
@@ -10436,24 +10562,25 @@ static dem_real demi_kept_room_of(dem_real x, dem_real *rate) {
    (Left out: how an ellipsoid's normal turns at a cluster's ball. A ball that is
    nearly at what it goes round, within a tenth of its radius, turns no faster than there.)
    It may be a little below 0 where others are far deeper: no mean that does not depend on their
-   number can do without. Damping goes by s, and feels the mass at their common middle; friction by
-   s times (sum of lift U' over sum of s U'), so that mu is the ratio of both sums. Checked by "a
-   cluster that lands on one, two and three spheres" and tests/test_facets.c. */
+   number can do without. What a law is asked about before it touches counts by itself. Damping goes
+   by s, and feels the mass at their common middle; friction by s times (sum of lift U' over sum of
+   s U'), so that mu is the ratio of both sums. Checked by "a cluster that lands on one, two and
+   three spheres" and tests/test_facets.c. */
 static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
     const int one = w->desc.cluster_contacts == DEM_SHARING_ONE;
     int i, j;
     for (i = 0; i < n; i++) {
-        const dem_real d2 = c[i].overlap*c[i].overlap;
+        const dem_real d2 = c[i].overlap > 0 ? c[i].overlap*c[i].overlap : 1;
         dem_vec3 arm_a = demi_scale(c[i].arm_a, d2), arm_b = demi_scale(c[i].arm_b, d2);
         dem_real A = d2, rate;
         double give;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
         c[i].m_eff = w->bodies.mass[c[i].a];
-        if (!(c[i].overlap > 0)) continue;      /* pushes nobody */
-        for (j = 0; j < n && one; j++) {
+        if (!demi_kept_asked(w, &c[i])) continue;               /* pushes nobody */
+        for (j = 0; j < n && one && c[i].overlap > 0; j++) {
             const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
-            if (!(t > 0)) continue;
+            if (!(t > 0) || !(c[j].overlap > 0)) continue;
             A += add;
             arm_a = demi_add(arm_a, demi_scale(c[j].arm_a, add));
             arm_b = demi_add(arm_b, demi_scale(c[j].arm_b, add));
@@ -10488,18 +10615,18 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
     const demi_kept *now = demi_kept_of(w, d);
     demi_kept *from = w->kept_next + w->kept_first[d] + first;
     int i, j;
-    if (!(demi_length(r) < w->bodies.pos[4*a + 3] + rb)) return;
+    if (!(demi_length(r) < w->bodies.pos[4*a + 3] + rb + (dem_real)w->margin.reach)) return;
     for (i = 0; i < na; i++) {
         const demi_part p = demi_part_now(w, a, i);
         const dem_vec3 to = demi_sub(r, p.centre);
-        const dem_real all = p.radius + rb;
+        const dem_real all = p.radius + rb + (dem_real)w->margin.reach;
         if (na > 1 && !(demi_dot(to, to) < all*all)) continue;
         for (j = 0; j < nb; j++) {
             const demi_part q = demi_part_now(w, b, j);
             const dem_vec3 gap = demi_add(to, q.centre);
-            const dem_real sum = p.radius + q.radius;
+            const dem_real near_by = p.radius + q.radius + demi_range(w, p.radius + q.radius);
             demi_kept *c;
-            if (!(demi_dot(gap, gap) < sum*sum)) continue;
+            if (!(demi_dot(gap, gap) < near_by*near_by)) continue;
             c = demi_kept_new(w, d);
             if (!c) return;
             c->a = a; c->b = b; c->part_a = i; c->part_b = j;
@@ -10569,6 +10696,14 @@ static void demi_kept_through(const demi_kept *old, int olds, const demi_kept *f
         if (i == count) c->deep = 2 - c->deep;
     }
 }
+/* Is a place of a part's at `at` that does not touch within the range of a law? A ball's is, or it
+   was not found; an ellipsoid's by its gap to the point of its own that comes there. */
+static int demi_place_near(const dem_world *w, const demi_part *p, dem_vec3 at,
+                           const demi_touching *place) {
+    const dem_real scale = 1 - place->overlap;
+    return p->kind == DEMI_BALL || place->overlap > 0 ||
+        demi_length(demi_sub(place->point, at))*(1 - 1/scale) < demi_range(w, p->radius);
+}
 /* Contacts of part k with one wall, from candidates first .. last - 1 of its body: all of them,
    then what each continues. shaped: 0 for a sphere, which has a copy of the code: its places weigh
    by themselves, as they are found. */
@@ -10577,15 +10712,17 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
     const int base = d*w->wall_stride, body = w->wall_body[base + first];
     const int id = w->wall_id[base + first];
     const demi_wall *wall = &w->walls[id];
+    const dem_vec3 at = demi_add(demi_at(w->bodies.pos + 4*body), p->centre);
     demi_touching *found = 0;
-    const int count = demi_touches[wall->kind][p->kind](w, d, first, last, demi_walls_gone(w),
-        demi_add(demi_at(w->bodies.pos + 4*body), p->centre), p, &found);
+    const int places = demi_touches[wall->kind][p->kind](w, d, first, last, demi_walls_gone(w), at,
+                                                         p, &found);
     demi_kept *fresh = 0, *c;
-    int i, e;
-    for (i = 0; i < count; i++) {
+    int i, e, count = 0;
+    for (i = 0; i < places; i++) {
+        if (shaped && w->margin.reach > 0 && !demi_place_near(w, p, at, &found[i])) continue;
         c = demi_kept_new(w, d);
         if (!c) return;
-        if (!i) fresh = c;
+        if (!count++) fresh = c;
         c->a = body;
         c->part_a = k;
         c->wall = id;
@@ -10609,8 +10746,8 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
         if (wall->sieve.kind != DEM_SIEVE_REDUCED) continue;
         for (e = 0; e < olds; e++)              /* under way: to the end */
-            if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k && !(old[e].overlap > 0))
-                c->weight = c->lift = c->grip = c->share = 0;
+            if (old[e].b < 0 && old[e].wall == id && old[e].part_a == k && c->overlap > 0 &&
+                !demi_kept_asked(w, &old[e])) c->weight = c->lift = c->grip = c->share = 0;
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
 }
@@ -10788,6 +10925,27 @@ static void demi_kept_hold(const dem_world *w, demi_kept *c, const demi_kept *ol
     for (k = 0; k < w->laws.memory; k++)
         if (w->laws.vectors >> k & 1) c->memory[k] *= held;
 }
+/* m: radii of what touches, together: spheres, those of clusters, too; bounding ones of other
+   shapes. Of a wall none. */
+static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
+    return demi_part_now(w, k->a, k->part_a).radius +
+        (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
+}
+/* Who touches, for a law that wants to know. */
+static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_contact_who *who) {
+    const demi_periods periods = demi_periods_of(w);
+    who->a = dem_bodies_id(w, k->a);
+    who->radius_a = demi_part_now(w, k->a, k->part_a).radius;
+    who->mass_a = w->bodies.mass[k->a];
+    if (k->b >= 0) {
+        who->b = dem_bodies_id(w, k->b);
+        who->radius_b = demi_part_now(w, k->b, k->part_b).radius;
+        who->mass_b = w->bodies.mass[k->b];
+    } else if (demi_wall_is(&w->walls[k->wall], DEMI_BALLS))
+        who->radius_b = w->walls[k->wall].radius;
+    who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*k->a), k->arm_a));
+    who->time = w->clock.time;
+}
 /* The contact as a law sees it; old: a step ago. surface: velocity of the wall there. */
 static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_kept *old,
                            dem_real dt, dem_contact *c, dem_vec3 *at, dem_vec3 *surface) {
@@ -10822,6 +10980,8 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
     around = demi_add(demi_at(w->bodies.half_spin + 4*a), spin_step);
     memset(c, 0, sizeof *c);
     c->overlap = k->overlap;
+    if (w->margin.reach > 0) c->range = demi_range(w, demi_kept_radii(w, k));
+    if (w->desc.law_who) demi_kept_who(w, k, &c->who);
     c->normal = n;
     c->closing_speed = demi_dot(u, n);
     c->slip = demi_sub(u, demi_scale(n, c->closing_speed));
@@ -10875,7 +11035,6 @@ DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wa
     sum->torque[0] -= (double)torque.x; sum->torque[1] -= (double)torque.y;
     sum->torque[2] -= (double)torque.z;
     sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
-    sum->contacts++;
 }
 /* grip: how often friction and rolling count, which may differ from the rest: demi_kept_lift. */
 DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *part, dem_real share,
@@ -10909,19 +11068,21 @@ static void demi_kept_respond(dem_world *w, int d) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
         const int a = c->a, b = c->b;
         const demi_kept *old;
+        int touches;
         dem_real press, still;
         dem_contact contact;
         dem_contact_force f;
         dem_vec3 at, surface, force, moment, moment_b;
         if (i + 2 < domain->kept_next) demi_body_fetch(w, c[2].a);
         old = demi_kept_recall(w, now, c);
-        if (!(c->overlap > 0)) {                /* under way through a reduced hole */
+        touches = c->overlap > 0;
+        if (!demi_kept_asked(w, c)) {           /* under way through a reduced hole */
             c->force = demi_v(0, 0, 0);
             domain->kept_walls += b < 0;
             continue;
         }
         demi_kept_fill(w, c, old, dt, &contact, &at, &surface);
-        if (c->from < 0)
+        if (touches && (c->from < 0 || !(old->overlap > 0)))
             domain->met[DEMI_MIN(contact.material_a, contact.material_b) - 1] |= UINT64_C(1) <<
                 (DEMI_MAX(contact.material_a, contact.material_b) - 1);
         if (c->from >= 0) demi_kept_hold(w, c, old);
@@ -10942,7 +11103,7 @@ static void demi_kept_respond(dem_world *w, int d) {
         c->force = force;
         demi_force_add(w->bodies.force + 4*a, force);
         demi_force_add(w->bodies.torque + 4*a, demi_add(demi_cross(c->arm_a, force), moment));
-        if (c->inset < 1)
+        if (c->inset < 1 || c->inset > 1)
             demi_force_add(w->bodies.torque + 4*a, demi_scale(demi_cross(c->arm_a, contact.normal),
                                                              (1 - c->inset)*press));
         if (b >= 0) {
@@ -10954,10 +11115,11 @@ static void demi_kept_respond(dem_world *w, int d) {
                 demi_force_add(w->bodies.force + 4*b, demi_scale(force, -1));
                 demi_force_add(w->bodies.torque + 4*b, back);
             }
-            domain->contacts++;
+            domain->contacts += touches;
         } else {
             demi_wall_sum_add(w, &sums[c->wall], c->wall, at, force, moment_b, surface);
-            domain->kept_walls++;
+            sums[c->wall].contacts += touches;
+            domain->kept_walls += touches;
         }
         domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
         f.energy.elastic /= c->slope;           /* V = k overlap^2/2; the law was given k slope */
@@ -11453,6 +11615,8 @@ static void demi_ledger_book(dem_world *w) {
     }
     w->booked.energy[DEMI_E_ELASTIC] = demi_sum_energy(w, DEMI_E_ELASTIC);
     w->booked.energy[DEMI_E_SHEAR_STORED] = demi_sum_energy(w, DEMI_E_SHEAR_STORED);
+    for (i = DEMI_E_DASHPOT; i <= DEMI_E_ROLL && w->desc.law; i++)
+        w->booked.energy[DEMI_E_TOLD] += fabs(demi_sum_energy(w, (int)i));
     for (i = 0; i < (size_t)w->wall_count;
          i++) walls += (double)w->walls[i].loads.power*(w->stage.forces_valid
                                                            ? (double)w->clock.dt : 0);
@@ -11479,6 +11643,10 @@ DEM_API dem_ledger dem_ledger_get(const dem_world *w) {
     l.residual = l.kinetic + l.rotational + l.elastic - l.gravity - l.walls - l.force -
         l.inserted + l.removed +
                  l.normal + l.slide + l.tangent + l.rolling;
+    if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0)) {
+        l.unknown = l.residual;
+        l.residual = 0;
+    }
     return l;
 }
 DEM_API dem_totals dem_totals_get(const dem_world *w) {
@@ -12245,7 +12413,7 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     /* one that joins may stand at the half step, too */
     if (!joins || !w->stage.primed) demi_finish(w);
     if (joins)
-        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*(dem_real)w->margin.skin, found,
+        count = demi_crowd_look(w, c, x, r + DEM_R(1.001)*demi_cover(w), found,
                                 DEMI_FEED_NEAR);
     joins = joins && count <= DEMI_FEED_NEAR;
     if (!demi_crowd_put(w, c, x, r, w->bodies.count) || (!joins && !demi_list_drop(w)) ||
@@ -12260,7 +12428,8 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
         joins = demi_list_join(w, i, found, count);
         w->stage.pairs_changed |= !joins;             /* then the list is made anew */
     }
-    if (!joins || w->desc.force || w->desc.body_force) demi_scene_changed(w);
+    if (!joins || w->desc.force || w->desc.body_force || w->margin.reach > 0)
+        demi_scene_changed(w);                  /* something may push it */
     /* it touches nobody: no force on it is known yet */
     else if (w->stage.primed) demi_prime_body(w, i);
     demi_feed_count(f);
@@ -12302,7 +12471,7 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
                 dem_real r = 0;
                 for (k = 0; k < d->class_count; k++) r = DEMI_MAX(r, d->radius[k]);
                 demi_feed_region(w, d, &g);
-                result = feeder->look(feeder->who, &g, r + (dem_real)w->margin.skin);
+                result = feeder->look(feeder->who, &g, r + demi_cover(w));
                 if (result != DEM_OK) return result;
                 looked = 1;
             }
@@ -14109,17 +14278,14 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
     gap = demi_rows_at(&tile.gap, 0);
-    demi_touch_one(&tile, &r.same, 0, r.alike);
+    demi_touch_one(&tile, &r.same, 0, r.alike && !r.ranged, r.ranged);
     if (!(tile.touch[0] > 0)) return 0;
     if (!out) return 1;
     for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
     demi_span_coefs(w, &span, 0, coef);
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
     demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
-    demi_tile_contact(&tile, &r.same, 0, &c);
-    c.material_a = w->bodies.material[a];
-    c.material_b = w->bodies.material[b];
-    c.user = w->desc.law_user;
+    demi_tile_own(&tile, &r, 0, w->desc.law_who, &c);
     demi_law(w, &c, memory, &f);
     demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
     out->a = dem_bodies_id(w, a);
@@ -14144,7 +14310,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
             n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0);
         for (k = 0; k < w->domains[d].kept; k++) {
             const demi_kept *c = demi_kept_of(w, d) + k;
-            if (!(c->overlap > 0) || ++n > capacity || !out) continue;
+            if (!demi_kept_asked(w, c) || ++n > capacity || !out) continue;
             out[n - 1].a = dem_bodies_id(w, c->a);
             out[n - 1].b = dem_bodies_id(w, c->b);
             out[n - 1].wall = c->b < 0 ? c->wall + 1 : 0;
@@ -14245,7 +14411,7 @@ static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body
     *body = c->a;
     *normal = c->normal;
     *mu = demi_static_friction(w, w->bodies.material[c->a] - 1, w->walls[wall].material);
-    return c->b < 0 && c->wall == wall;
+    return c->b < 0 && c->wall == wall && c->overlap > 0;
 }
 /* Contacts of one grain follow each other. Stuck: two of them push against each other in the
    sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
@@ -15566,10 +15732,11 @@ static uint64_t demi_digest_desc(const dem_world *w, int index) {
                          (int)d->tension, (int)d->convention, d->law != 0, d->law_memory,
                          d->law_vectors, d->force != 0, (int)d->integrator, (int)d->search,
                          d->ledger, (int)d->rotation, (int)d->ellipsoid_overlap,
-                         (int)d->cluster_contacts, d->orientations};
+                         (int)d->cluster_contacts, d->orientations, d->law_who};
     const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x,
                                 d->domain.lo.y, d->domain.lo.z, d->domain.hi.x, d->domain.hi.y,
-                                d->domain.hi.z, d->thickness, d->dt, d->impact_speed, d->skin};
+                                d->domain.hi.z, d->thickness, d->dt, d->impact_speed, d->skin,
+                                d->law_range, d->law_range_radii};
     (void)index;
     return demi_hash(demi_hash(DEMI_HASH_START, flags, sizeof flags), numbers, sizeof numbers);
 }
@@ -16095,10 +16262,9 @@ static int demi_numbers_check(const demi_reader *r) {
     const int tangent = demi_tangent_meant(w), rolling = demi_rolling_meant(w);
     const double positive[] =
         {t->margin.skin, t->margin.gone, t->margin.walls_gone, t->margin.skin_auto,
-        t->clock.assumed_speed, t->margin.span, t->margin.age, t->margin.slack, t->margin.change,
-            t->margin.last_change,
-        t->margin.creep, t->booked.speed_max, t->clock.half_kick, (double)t->effects.radius_min,
-            (double)t->effects.radius_max,
+         t->margin.span, t->margin.age, t->margin.slack, t->margin.change, t->margin.last_change,
+         t->margin.creep, t->margin.reach, t->booked.speed_max, t->clock.assumed_speed,
+         t->clock.half_kick, (double)t->effects.radius_min, (double)t->effects.radius_max,
         (double)t->clock.dt};
     size_t i;
     int k;
@@ -17467,6 +17633,13 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         "impact_speed must be >= 0 m/s";
     if (!(d->law_stiffness >= 0) || !demi_finite(d->law_stiffness)) return "dem_world_create: "
         "law_stiffness must be finite and >= 0 N/m; 0 means that of the built-in law";
+    if (!(d->law_range >= 0) || !demi_finite(d->law_range) || !(d->law_range_radii >= 0) ||
+        !demi_finite(d->law_range_radii))
+        return "dem_world_create: law_range (m) and law_range_radii must be finite and >= 0; 0 "
+            "means that your law is asked about what touches alone";
+    if (!d->law && (d->law_range > 0 || d->law_range_radii > 0 || d->law_who))
+        return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
+            "they are for a law of your own: name it in law, or leave them 0";
     if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
         "choose, below 0 means none";
     if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64; 0 "
@@ -17663,10 +17836,15 @@ static void demi_ledger_report(const dem_world *w, FILE *out) {
     const dem_ledger l = dem_ledger_get(w);
     fprintf(out, "ledger [J] in: gravity %.6g, walls %.6g, field %.6g, inserted %.6g, removed "
             "%.6g\n           stored: kinetic %.6g, rotational %.6g, elastic %.6g\n"
-            "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n"
-            "           residual %.3g (%.2g of the throughput)\n", l.gravity, l.walls, l.force,
-            l.inserted, l.removed, l.kinetic, l.rotational, l.elastic, l.normal, l.slide, l.tangent,
-            l.rolling, l.residual, l.throughput > 0 ? l.residual/l.throughput : 0);
+            "           lost: normal %.6g, sliding %.6g, tangential %.6g, rolling %.6g\n",
+            l.gravity, l.walls, l.force, l.inserted, l.removed, l.kinetic, l.rotational, l.elastic,
+            l.normal, l.slide, l.tangent, l.rolling);
+    if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0))
+        fprintf(out, "           unknown to the ledger: %.3g J by your law, which fills in no "
+                "force->energy\n", l.unknown);
+    else
+        fprintf(out, "           residual %.3g (%.2g of the throughput)\n", l.residual,
+                l.throughput > 0 ? l.residual/l.throughput : 0);
 }
 /* What was asked for and has not happened. */
 static void demi_idle_report(dem_world *look, FILE *out) {
@@ -18197,18 +18375,20 @@ static dem_result demi_slabs_skin(dem_slabs *s) {
     h->effects.radius_max = (dem_real)radii[0];
     h->effects.radius_min = (dem_real)(h->bodies.count ? -radii[1] : 0);
     h->margin.span = radii[2];
+    h->margin.reach = demi_reach_of(h, radii[0]);
     demi_skin_choose(h);
     if (s->ring && h->desc.skin >= 0 && h->desc.skin <= 0) {
-        const double room = s->period/s->count/(1 + 2e-6) - 2*radii[0];
+        const double room = s->period/s->count/(1 + 2e-6) - 2*radii[0] - h->margin.reach;
         if (room > 0) h->margin.skin = h->margin.skin_auto = DEMI_MIN(h->margin.skin, room);
     }
     h->margin.skin = (double)(dem_real)h->margin.skin;        /* as the slabs get it */
-    s->cut = (2*radii[0] + h->margin.skin)*(1 + 1e-6); /* rounding must not cost a ghost */
+    s->cut = (2*radii[0] + (double)demi_cover(h))*(1 + 1e-6);  /* rounding costs no ghost */
     if (s->ring && s->cut*s->count > s->period)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: %d slabs in a period of %g m are "
-                         "%g m thick, must be at least %g m (two grains and the skin); use at most "
-                         "%d slabs or a smaller skin", s->count, s->period, s->period/s->count,
-                         s->cut, (int)(s->period/s->cut));
+                         "%g m thick, must be at least %g m (two grains and the skin%s); use at "
+                         "most %d slabs or a smaller skin", s->count, s->period,
+                         s->period/s->count, s->cut, h->margin.reach > 0
+                         ? " and the law's range" : "", (int)(s->period/s->cut));
     return DEM_OK;
 }
 

@@ -49,7 +49,7 @@ static double rain(const dem_sieve_desc *s, double r, int count, uint64_t seed) 
     int i, passed = 0;
     for (i = 0; i < count; i++) {
         const double a = x*scene_random(&seed), b = x*scene_random(&seed);
-        passed += demi_sieve_touch(s, at(a, b, 0), (dem_real)r, c) == 0;
+        passed += demi_sieve_touch(s, at(a, b, 0), (dem_real)r, 0, c) == 0;
     }
     return (double)passed/count;
 }
@@ -79,7 +79,7 @@ static int turned_otherwise(const dem_sieve_desc *s, int *seen) {
         int count[5];
         for (j = 0; j < 5; j++)
             count[j] = demi_sieve_touch(s, demi_add(x, demi_scale(u, (dem_real)(step*(j - 2)))),
-                                        (dem_real)r, c[j]);
+                                        (dem_real)r, 0, c[j]);
         for (k = 0; k < count[2]; k++) {
             const demi_touching *at[5];
             dem_vec3 seems, wide, across, said;
@@ -112,7 +112,7 @@ static double sigma(double p, int count) { return sqrt(p*(1 - p)/count); }
 static dem_vec3 spring_force(const dem_sieve_desc *s, dem_vec3 x, double r) {
     demi_touching c[DEMI_SIEVE_MOST];
     dem_vec3 f = at(0, 0, 0);
-    const int n = demi_sieve_touch(s, x, (dem_real)r, c);
+    const int n = demi_sieve_touch(s, x, (dem_real)r, 0, c);
     int i;
     for (i = 0; i < n; i++) f = demi_sub(f, demi_scale(c[i].normal, c[i].overlap*c[i].share));
     return f;
@@ -260,7 +260,7 @@ int main(int argc, char **argv) {
             for (i = 0; i < 400; i++) {
                 const double x = 0.05*(i%20) + 0.014*scene_random(&seed);
                 const double y = 0.05*(i/20) + 0.014*scene_random(&seed);
-                untouched[i] = demi_sieve_touch(&s, at(x, y, 0), DEM_R(0.003), c) == 0;
+                untouched[i] = demi_sieve_touch(&s, at(x, y, 0), DEM_R(0.003), 0, c) == 0;
             }
             for (i = 0; i < b.count; i++) {
                 const int slot = (int)b.slots[i];
