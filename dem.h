@@ -2018,7 +2018,8 @@ typedef struct demi_kept {
     int32_t a, b;                  /* bodies (slots while there is no list); b -1: a wall */
     int32_t part_a, part_b;        /* spheres of clusters, else 0 */
     int32_t wall, element;
-    int32_t send;                  /* 1 + where the force on b goes; 0: b is of this domain */
+    int32_t send;                  /* 1 + where the force on b goes; 0: b is of this domain; with a
+                                      wall: 1 + which of a step ago has ended in it; 0: none */
     int32_t from;                  /* which of its domain's a step ago it continues; -1: none */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to where they push */
     dem_real overlap, deep;        /* m, 0: under way through a reduced hole, < 0: apart, see
@@ -2026,7 +2027,7 @@ typedef struct demi_kept {
                                       normal, of a sphere its radius */
     dem_real share, lift, grip;    /* how often it counts: damping, elastic force, friction */
     dem_real weight;               /* share before contacts are shared: see demi_kept_share */
-    dem_real loaded;               /* part of its load that friction counts on: demi_kept_crossed */
+    dem_real held;                 /* grip that comes to it from a step ago: demi_kept_inherit */
     dem_real area, added, rate;    /* m2, A; what others add to it, over d^2; how A follows that */
     dem_real bend;                 /* 1/m: the normal turns by this times the way part_a goes */
     dem_vec3 axis;                 /* but for ways along the normal, and along this, if not 0: */
@@ -2101,7 +2102,7 @@ enum {
     DEMI_DRAWN = 2,                /* drawn out along its own z without end: seen at z = 0 */
     DEMI_BALLS = 4,                /* elements are grains: balls of `radius` about their corner */
     DEMI_FLAT = 8,                 /* a half space beyond z = 0 */
-    DEMI_CROSSED = 16              /* what takes away has no friction: see demi_kept_crossed */
+    DEMI_CROSSED = 16              /* rows take away where they cross: see demi_kept_crossed */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contacts of a grain with a sieve */
 #define DEMI_SHAPES(X) \
@@ -10334,7 +10335,7 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
     c = w->kept_next + w->kept_first[d] + domain->kept_next++;
     memset(c, 0, offsetof(demi_kept, coef));
     c->b = -1;
-    c->share = c->slope = c->inset = c->loaded = 1;
+    c->share = c->slope = c->inset = 1;
     return c;
 }
 
@@ -10439,7 +10440,7 @@ static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int o
         if (!(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) || old[i].b >= 0 ||
             old[i].part_a != c->part_a ||
             w->walls[old[i].wall].group != w->walls[c->wall].group ||
-            (crossed && (old[i].weight < 0) != (c->share < 0))) continue;
+            ((crossed || !(c->share < 0)) && (old[i].weight < 0) != (c->share < 0))) continue;
         for (j = 0; j < freshs && !taken; j++)
             taken = fresh[j].wall == old[i].wall && fresh[j].element == old[i].element;
         for (j = 0; j < freshs && !taken && !faceted; j++) {    /* one alone may: the nearest */
@@ -10601,6 +10602,18 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
     if (one && n > 1) demi_kept_lift(w, c, n);
 }
 
+/* What grip of a step ago comes to each of some contacts that are one body's with one other or with
+   one wall: of those that continue the same one each its part. now: all of a step ago. */
+static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
+    int i, k;
+    for (k = 0; k < n; k++) {
+        dem_real all = 0;
+        if (c[k].from < 0) continue;
+        for (i = 0; i < n; i++) if (c[i].from == c[k].from) all += c[i].grip;
+        c[k].held = now[c[k].from].grip;
+        if (all > c[k].grip) c[k].held *= c[k].grip/all;
+    }
+}
 /* All contacts of one near pair. old: those body a had in the step before. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
                                       const demi_kept *old, int olds) {
@@ -10639,6 +10652,7 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
         }
     }
     demi_kept_share(w, from, w->domains[d].kept_next - first);
+    demi_kept_inherit(now, from, w->domains[d].kept_next - first);
 }
 
 /* --- overlap, arm and radius of a part's contact with a wall at a place that was found --- */
@@ -10751,39 +10765,15 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
 }
-/* Of one body with one sieve: a crossing, which takes away, has no friction of its own, since what
-   gives way there would give energy. The others' friction counts on so much less instead, that mu
-   is still the ratio of both sums. */
-static void demi_kept_crossed(const dem_world *w, demi_kept *c, int n) {
-    const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
-    int i, k;
-    for (k = 0; k < n; k++) {
-        dem_real all = 0, without = 0, rate;
-        c[k].grip = c[k].weight < 0 ? 0 : c[k].grip;
-        for (i = 0; i < n && c[k].overlap > 0; i++) {
-            const dem_real t = i == k ? 1 : demi_kept_along(&c[i], &c[k], &rate);
-            dem_real press;                     /* U'(d_i) over U'(d_k), of one wall */
-            if (c[i].part_a != c[k].part_a || !(t > 0) || !(c[i].overlap > 0)) continue;
-            press = t*c[i].weight*demi_kept_steep(&c[i], &c[k], hertz, 0);
-            all += press;
-            without += press > 0 ? press : 0;
-        }
-        if (all < without) c[k].loaded = all > 0 ? all/without : 0;
-    }
-}
 /* Of one body with one wall. */
 static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
                                       const demi_kept *old, int olds) {
     const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
-    const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + first]];
     int k;
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
         demi_kept_on_wall(w, d, first, last, 0, 0, &sphere, old, olds);
-        if (demi_wall_is(wall, DEMI_CROSSED))
-            demi_kept_crossed(w, w->kept_next + w->kept_first[d] + from,
-                              w->domains[d].kept_next - from);
         return;
     }
     for (k = 0; k < parts; k++) {
@@ -10791,9 +10781,79 @@ static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
         demi_kept_on_wall(w, d, first, last, 1, k, &p, old, olds);
     }
     demi_kept_share(w, w->kept_next + w->kept_first[d] + from, w->domains[d].kept_next - from);
-    if (demi_wall_is(wall, DEMI_CROSSED))
-        demi_kept_crossed(w, w->kept_next + w->kept_first[d] + from,
-                          w->domains[d].kept_next - from);
+}
+/* Do two contacts of one body with walls belong to one surface: of one part, with walls that do not
+   move against each other? */
+DEM_INLINE int demi_kept_beside(const dem_world *w, const demi_kept *a, const demi_kept *b) {
+    return a->part_a == b->part_a && w->walls[a->wall].group == w->walls[b->wall].group;
+}
+/* How much of what contact e takes away comes off c's friction, by weight: nothing where they are
+   not of one surface or do not push the same way; all, where they are at one place. */
+static double demi_kept_nearness(const dem_world *w, const demi_kept *e, const demi_kept *c) {
+    const dem_vec3 d = demi_add(demi_sub(c->arm_a, e->arm_a),
+        demi_sub(demi_scale(e->normal, e->overlap), demi_scale(c->normal, c->overlap)));
+    const double hair = 1e-9*(double)e->r_eff;
+    dem_real rate;
+    if (!(c->weight > 0) || !(c->overlap > 0) || !demi_kept_beside(w, e, c)) return 0;
+    return (double)demi_kept_along(e, c, &rate)/((double)demi_dot(d, d) + hair*hair);
+}
+/* A place that takes away (where rows of a sieve cross, at the edge of a valley of facets) has no
+   friction of its own, since what gives way there would give energy. That of those beside it counts
+   so much less instead, springs and limits alike, the nearest most: one that it cancels has none,
+   two that begin as one hold together what the one did, and mu is still the ratio of both sums. */
+static void demi_kept_crossed(const dem_world *w, demi_kept *c, int n) {
+    const int hertz = demi_normal_is(w, DEMI_HERTZIAN);
+    int i, k;
+    for (k = 0; k < n; k++) {
+        double all = 0;
+        if (!(c[k].weight < 0)) continue;
+        c[k].grip = 0;
+        for (i = 0; i < n && c[k].overlap > 0; i++) all += demi_kept_nearness(w, &c[k], &c[i]);
+        for (i = 0; i < n && all > 0; i++) {
+            const dem_real part = (dem_real)(demi_kept_nearness(w, &c[k], &c[i])/all);
+            if (part > 0) c[i].held += part*c[k].weight*demi_kept_steep(&c[k], &c[i], hertz, 0);
+        }
+    }
+    for (k = 0; k < n; k++) {                   /* held: what is taken away, until it is used */
+        if (c[k].held < 0) c[k].grip *= DEMI_MAX(1 + c[k].held/c[k].weight, DEM_R(0));
+        c[k].held = 0;
+    }
+}
+/* A place of a surface that ends at depth, since another one has taken its part over, hands its
+   springs to that: the one that pushes most nearly the same way. */
+static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int olds,
+                            demi_kept *c, int n) {
+    const int first = (int)(old - demi_kept_of(w, d));
+    int e, i;
+    for (e = 0; e < olds; e++) {
+        const demi_wall *wall = old[e].b < 0 ? &w->walls[old[e].wall] : 0;
+        dem_real nearest = DEM_R(0.95);
+        demi_kept *heir = 0;
+        if (!wall || !(old[e].grip > 0) ||
+            !(demi_faceted(wall) || demi_wall_is(wall, DEMI_CROSSED))) continue;
+        for (i = 0; i < n && c[i].from != first + e; i++) {
+            const dem_real along = demi_dot(old[e].normal, c[i].normal);
+            if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 ||
+                !(2*old[e].overlap > c[i].overlap) || !demi_kept_beside(w, &old[e], &c[i]))
+                continue;
+            nearest = along;
+            heir = &c[i];
+        }
+        if (i == n && heir && !heir->send) heir->send = 1 + first + e;
+    }
+}
+/* All of one body with walls, when all are there: how often friction counts, and what of a step ago
+   it begins with. */
+static void demi_kept_settle(const dem_world *w, int d, const demi_kept *old, int olds,
+                             demi_kept *c, int n) {
+    const demi_kept *now = demi_kept_of(w, d);
+    if (n == 1 && olds <= 1) {
+        if (c->from >= 0) c->held = now[c->from].grip;
+        return;
+    }
+    demi_kept_crossed(w, c, n);
+    demi_kept_ended(w, d, old, olds, c, n);
+    demi_kept_inherit(now, c, n);
 }
 
 /* All of one domain, in the order of body a: its pairs inside, its pairs that lead out, its walls.
@@ -10807,7 +10867,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int base = d*w->near.stride, walls = domain->walls;
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     const int send = 1 + d*w->cross.stride + domain->near_end - domain->near_cross - own_end;
-    int p = domain->near_shaped, q = own_end, k = 0, a, last;
+    int p = domain->near_shaped, q = own_end, k = 0, a, last, walled;
     domain->kept_next = 0;
     domain->overflow &= ~16;
     for (; !(domain->overflow & 16); old = old_end) {
@@ -10824,12 +10884,16 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
             demi_kept_pair(w, d, base + p, 0, old, (int)(old_end - old));
         for (; q < cross_end && near_a[q] == a; q++)
             demi_kept_pair(w, d, base + q, send + q, old, (int)(old_end - old));
+        walled = domain->kept_next;
         for (; k < walls && body[k] == a; k = last) {
             last = k + 1;
             if (gap[k] > gone) continue;
             while (last < walls && body[last] == a && wall[last] == wall[k]) last++;
             demi_kept_wall(w, d, k, last, old, (int)(old_end - old));
         }
+        if (domain->kept_next > walled)
+            demi_kept_settle(w, d, old, (int)(old_end - old),
+                             w->kept_next + w->kept_first[d] + walled, domain->kept_next - walled);
     }
 }
 /* More room for the domains that ran out of it. 0 when memory ran out; nothing changed then. */
@@ -10913,17 +10977,21 @@ DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept
     c->coef_m = c->m_eff;
     return old;
 }
-/* Springs of friction and rolling keep their force where the contact comes to count more among
-   those that are shared (demi_kept_share), and their length where it comes to count less: the other
-   way about they would make energy. old: a step ago. (A place of a surface that comes to weigh more
-   takes over from others, see >>facets: that is no spring's gain.) */
-static void demi_kept_hold(const dem_world *w, demi_kept *c, const demi_kept *old) {
-    const dem_real now = c->grip*old->weight, was = old->grip*c->weight;
-    const dem_real held = now > 0 || now < 0 ? was/now : 1;
+/* Springs of friction and rolling that come to count more than they did (contacts that are shared,
+   places of a surface) keep their force, those that count less their length: the other way about
+   they would make energy. What ended in this one joins it first, as the mean of both springs, which
+   holds no more than they did. */
+static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *c) {
+    const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
+    const dem_real more = ended ? ended->grip : 0, all = c->held + more;
+    const dem_real left = c->grip > all ? all/c->grip : 1;
     int k;
-    if (!(held >= 0 && held < 1) || w->desc.law) return;
-    for (k = 0; k < w->laws.memory; k++)
-        if (w->laws.vectors >> k & 1) c->memory[k] *= held;
+    if ((!ended && !(left < 1)) || w->desc.law || !(all > 0 || left < 1)) return;
+    for (k = 0; k < w->laws.memory; k++) {
+        if (!(w->laws.vectors >> k & 1)) continue;
+        if (ended) c->memory[k] = (c->held*c->memory[k] + more*ended->memory[k])/all;
+        c->memory[k] *= left;
+    }
 }
 /* m: radii of what touches, together: spheres, those of clusters, too; bounding ones of other
    shapes. Of a wall none. */
@@ -11000,8 +11068,8 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
     c->kn = slope*coef[DEMI_KN]; c->cn = slope*coef[DEMI_CN];
     c->kun = slope*coef[DEMI_K_UN]; c->kad = slope*coef[DEMI_K_AD];
     c->kt = coef[DEMI_KT]; c->ct = coef[DEMI_CT];
-    c->friction = k->loaded*coef[DEMI_MU]; c->friction_static = k->loaded*coef[DEMI_MU_STATIC];
-    c->rolling_friction = k->loaded*coef[DEMI_MU_ROLL];
+    c->friction = coef[DEMI_MU]; c->friction_static = coef[DEMI_MU_STATIC];
+    c->rolling_friction = coef[DEMI_MU_ROLL];
     c->material_a = w->bodies.material[a];
     c->material_b = b >= 0 ? w->bodies.material[b] : w->walls[k->wall].material + 1;
     c->wall = b >= 0 ? 0 : k->wall + 1;
@@ -11085,7 +11153,7 @@ static void demi_kept_respond(dem_world *w, int d) {
         if (touches && (c->from < 0 || !(old->overlap > 0)))
             domain->met[DEMI_MIN(contact.material_a, contact.material_b) - 1] |= UINT64_C(1) <<
                 (DEMI_MAX(contact.material_a, contact.material_b) - 1);
-        if (c->from >= 0) demi_kept_hold(w, c, old);
+        if (c->from >= 0) demi_kept_hold(w, now, c);
         still = demi_kept_lifted(c) ? demi_kept_still(w, c, &contact) : 0;
         demi_law(w, &contact, c->memory, &f);
         press = c->share*f.normal + (c->lift - c->share)*still;
