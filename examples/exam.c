@@ -7,7 +7,8 @@
 
        #define LAW {"my law", my_law, 0, 3, 1, 1e5}     // name, function, c->user, reals, vectors, N/m
 
-   as law, law_user, law_memory, law_vectors and law_stiffness of the world desc. What the lines of the exam ask, and
+   as law, law_user, law_memory, law_vectors and law_stiffness of the world desc; a law with a range goes on with
+   DEM_NORMAL_HERTZ (whose coefficients it gets), -1 and law_range in m. What the lines of the exam ask, and
    how to read the curves: docs/laws.md. Exit code 1 when a line was not passed (built-in laws: when one is not passed
    that is known to be). */
 #include "../dem.h"
@@ -18,7 +19,8 @@
 #include LAW_FILE
 #endif
 
-/* name, function, user, reals, vectors, N/m; coefficients of the contact; the line that it is known not to pass, or -1 */
+/* name, function, user, reals, vectors, N/m; coefficients of the contact; the line that it is known not to pass, or -1;
+   m, range */
 typedef struct examinee {
     const char *name;
     dem_law_fn law;
@@ -27,6 +29,7 @@ typedef struct examinee {
     double stiffness;
     dem_normal_law coefficients;
     int known;
+    double range;
 } examinee;
 
 #ifdef LAW
@@ -60,12 +63,12 @@ static void hertz_viscous(const dem_contact *c, dem_real *memory, dem_contact_fo
     dem_law_viscous(c, memory, f);
 }
 static const examinee examinees[] = {
-    {"hertz_spring", hertz_spring, 0, 3, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED},
-    {"hertz_mindlin", hertz_mindlin, 0, 4, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED},
-    {"hertz_mindlin_rescaled", hertz_mindlin_rescaled, 0, 4, 1, 0, DEM_NORMAL_HERTZ, -1},
-    {"hertz_rescaled_epsd", hertz_rescaled_epsd, 0, 7, 2, 0, DEM_NORMAL_HERTZ, -1},
-    {"linear_spring", linear_spring, 0, 3, 1, 0, DEM_NORMAL_LINEAR, -1},
-    {"hertz_viscous", hertz_viscous, 0, 0, 0, 0, DEM_NORMAL_HERTZ, -1}};
+    {"hertz_spring", hertz_spring, 0, 3, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED, 0},
+    {"hertz_mindlin", hertz_mindlin, 0, 4, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED, 0},
+    {"hertz_mindlin_rescaled", hertz_mindlin_rescaled, 0, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0},
+    {"hertz_rescaled_epsd", hertz_rescaled_epsd, 0, 7, 2, 0, DEM_NORMAL_HERTZ, -1, 0},
+    {"linear_spring", linear_spring, 0, 3, 1, 0, DEM_NORMAL_LINEAR, -1, 0},
+    {"hertz_viscous", hertz_viscous, 0, 0, 0, 0, DEM_NORMAL_HERTZ, -1, 0}};
 #endif
 
 /* ---- curves ---- */
@@ -75,16 +78,15 @@ typedef struct curve { int count; double x[POINTS], y[POINTS]; } curve;
 static void curve_add(curve *c, double x, double y) {
     if (c->count < POINTS) { c->x[c->count] = x; c->y[c->count++] = y; }
 }
-/* Loaded, partly unloaded, reloaded, unloaded: N against m. */
+/* Loaded, partly unloaded, reloaded, unloaded: N against m; from the range and to it. */
 static void press(const exam *e, double speed, curve *c) {
-    static const double turn[5] = {0.7, 0.3, 1, 0.5, 0};
-    const double deep = e->deep*e->radius;
+    const double deep = e->deep*e->radius, apart = -e->range/deep, turn[5] = {0.7, 0.3, 1, 0.5, apart};
     exam_path p;
     int part, k;
     exam_begin(&p, e);
     c->count = 0;
     for (part = 0; part < 5; part++) {
-        const double from = part ? turn[part - 1] : 0;
+        const double from = part ? turn[part - 1] : apart;
         for (k = 1; k <= 200; k++) {
             exam_go_on(&p, deep*(from + (turn[part] - from)*k/200), 0, 0, 0, 0, 1, speed);
             curve_add(c, (double)p.c.overlap, (double)p.f.normal);
@@ -209,6 +211,7 @@ int main(int argc, char **argv) {
         exam e = exam_of(x->name, x->law, x->user, x->memory, x->vectors, x->stiffness);
         exam_sheet sheet;
         e.coefficients = x->coefficients;
+        e.range = x->range;
         if (exam_take(&e, &sheet) != DEM_OK) { study_fail("%s", sheet.line[0].found); continue; }
         exam_print(&sheet, stdout);
         portrait(&e, &sheet);

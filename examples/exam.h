@@ -23,6 +23,7 @@ typedef struct exam {
     void *user;                  /* handed to the law as c->user                              */
     int memory, vectors;         /* as law_memory and law_vectors of the world desc           */
     double stiffness;            /* N/m, as law_stiffness; 0: built-in                        */
+    double range;                /* m, as law_range: 0                                        */
     double radius;               /* m, of both grains: 1e-3                                   */
     double deep;                 /* largest overlap of the paths, of the radius: 0.02         */
     double speed;                /* m/s, of impacts: 0.1                                      */
@@ -83,11 +84,22 @@ static inline dem_world *exam_world(const exam *e, dem_law_fn law, void *user, d
     desc.law_memory = e->memory;
     desc.law_vectors = e->vectors;
     desc.law_stiffness = (dem_real)e->stiffness;
+    desc.law_range = (dem_real)e->range;
     desc.normal_law = e->coefficients;
     desc.impact_speed = (dem_real)speed;
     desc.dt = (dem_real)dt;
     desc.allow_large_dt = 1;
     return dem_world_create(&desc);
+}
+/* m, between the surfaces of two grains. */
+static inline double exam_gap(const dem_world *world, dem_body one, dem_body other, double radius) {
+    dem_body_state a, b;
+    double x, y, z;
+    if (dem_body_get(world, one, &a) != DEM_OK || dem_body_get(world, other, &b) != DEM_OK) return 0;
+    x = (double)(b.position.x - a.position.x);
+    y = (double)(b.position.y - a.position.y);
+    z = (double)(b.position.z - a.position.z);
+    return sqrt(x*x + y*y + z*z) - 2*radius;
 }
 /* One impact, run to its end. */
 static inline void exam_collide(const exam *e, exam_impact *m) {
@@ -103,15 +115,16 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     m->error[0] = 0;
     advice.contact_time = 0;
     for (pass = 0; pass < 2; pass++) {           /* the second with its step */
-        const double x = e->radius + 0.5*m->speed*m->early*dt*(pass ? 1 : 0)*cos(m->angle);
+        const double x = e->radius + 0.5*e->range + 0.5*m->speed*m->early*dt*(pass ? 1 : 0)*cos(m->angle);
+        const double y = 0.5*e->range*tan(m->angle);                /* over the range to the line of centres */
         dem_material stuff;
         dem_world_destroy(world);
         world = exam_world(e, e->law, e->user, m->speed, pass ? dt : 0);
         if (!world) { snprintf(m->error, sizeof m->error, "the world desc is refused: look at memory, vectors and "
                                "stiffness"); return; }
         stuff = dem_material_add(world, &e->material);
-        one = dem_sphere_add(world, stuff, (dem_real)e->radius, dem_vec3_make((dem_real)-x, 0, 0));
-        other = dem_sphere_add(world, stuff, (dem_real)e->radius, dem_vec3_make((dem_real)x, 0, 0));
+        one = dem_sphere_add(world, stuff, (dem_real)e->radius, dem_vec3_make((dem_real)-x, (dem_real)-y, 0));
+        other = dem_sphere_add(world, stuff, (dem_real)e->radius, dem_vec3_make((dem_real)x, (dem_real)y, 0));
         if (dem_body_get(world, one, &a) != DEM_OK || dem_body_get(world, other, &b) != DEM_OK ||
             dem_step_advice(world, &advice) != DEM_OK) break;
         dt = m->step < 0 ? -m->step*(double)advice.dt_max : m->step*(double)advice.dt;
@@ -121,12 +134,12 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     dem_body_set(world, one, &a);
     dem_body_set(world, other, &b);
     before = dem_totals_get(world);
-    most = (long)(40*(double)advice.contact_time/dt + 2*m->early + 100);
+    most = (long)((40*(double)advice.contact_time + 3*e->range/(m->speed*cos(m->angle)))/dt + 2*m->early + 100);
     for (k = 0; k < most; k++) {
         const dem_result result = dem_world_step(world, 1);
-        const int touch = dem_counters_get(world).contacts;
-        met |= touch > 0;
-        if (result != DEM_OK || (met && !touch)) break;
+        const int near_by = exam_gap(world, one, other, e->radius) < e->range;
+        met |= dem_counters_get(world).contacts > 0;
+        if (result != DEM_OK || (met && !near_by)) break;
     }
     after = dem_totals_get(world);
     energy = (after.kinetic + after.rotational)/(before.kinetic + before.rotational);
@@ -182,7 +195,7 @@ static inline void exam_begin(exam_path *p, const exam *e) {
     p->frame = dem_quat_make(1, 0, 0, 0);
     for (k = 0; k < EXAM_CANARY; k++) p->memory[e->memory + k] = DEM_R(1.25)*(dem_real)(k + 1);
     p->c = e->contact;
-    p->c.overlap = 0;
+    p->c.overlap = (dem_real)-e->range;
 }
 static inline double exam_dot(dem_vec3 a, dem_vec3 b) { return (double)(a.x*b.x + a.y*b.y + a.z*b.z); }
 static inline dem_vec3 exam_turned(const exam_path *p, double x, double y, double z) {
@@ -211,10 +224,10 @@ static inline void exam_move(exam_path *p, const exam_go *to, double dt) {
     const dem_vec3 slip = exam_turned(p, to->slip[0], to->slip[1], 0);
     const dem_vec3 spin = exam_turned(p, to->spin[0], to->spin[1], to->spin[2]);
     int k;
-    if (!(to->overlap > 0)) {
+    if (!(to->overlap > -p->e->range)) {
         memset(&p->f, 0, sizeof p->f);
         for (k = 0; k < p->e->memory; k++) p->memory[k] = 0;
-        p->c.overlap = 0;
+        p->c.overlap = (dem_real)-p->e->range;
     } else p->f = exam_ask(p, to, dt, closing);
     p->work += 0.5*((double)(p->f.normal + was.normal)*(to->overlap - from) -
                     (exam_dot(p->f.tangent, slip) + exam_dot(was.tangent, slip) + exam_dot(p->f.moment, spin) +
@@ -274,7 +287,7 @@ static inline int exam_is_finite(const exam *e, char *found) {
     for (i = -20; i <= 0; i++)
         for (j = -10; j <= 10; j += 2)
             for (k = -10; k <= 10; k += 2)
-                for (n = 0; n < 4; n++) {
+                for (n = 0; n < (e->range > 0 ? 8 : 4); n++) {
                     const double slip = n & 1 ? 0 : pow(10, k), closing = (n & 2 ? -1 : 1)*pow(10, j);
                     exam_path p;
                     exam_go to;
@@ -282,7 +295,7 @@ static inline int exam_is_finite(const exam *e, char *found) {
                     int again;
                     memset(&to, 0, sizeof to);
                     exam_begin(&p, e);
-                    to.overlap = e->radius*pow(10, i);
+                    to.overlap = n < 4 ? e->radius*pow(10, i) : -0.99*e->range*pow(10, i);
                     to.slip[0] = slip;
                     to.spin[1] = slip/e->radius;
                     for (again = 0; again < 2; again++, count++) {
@@ -413,7 +426,7 @@ static inline int exam_is_turned(const exam *e, char *found) {
              "only normal, slip, spin and their products may be", worst);
     return 0;
 }
-/* Slowly in and out: does the force begin and end at 0, without a jump between? */
+/* Slowly in and out, over the range, too: does the force begin and end at 0, without a jump between? */
 static inline int exam_is_smooth(const exam *e, char *found) {
     const double deep = e->deep*e->radius, slow = 1e-6*e->speed;
     const char *where = "";
@@ -423,13 +436,13 @@ static inline int exam_is_smooth(const exam *e, char *found) {
     exam_begin(&p, e);
     for (part = 0; part < 2; part++)
         for (k = 1; k <= 1000; k++) {
-            const double overlap = part ? deep*(1 - k/1000.0) : deep*k/1000;
+            const double way = deep + e->range, overlap = (part ? way*(1 - k/1000.0) : way*k/1000) - e->range;
             exam_go to;
             memset(&to, 0, sizeof to);
-            to.overlap = fmax(overlap, 1e-9*deep);
+            to.overlap = fmax(overlap, 1e-9*way - e->range);
             if (k == 1 && !part) {                /* the very first touch */
                 exam_go first = to;
-                first.overlap = 1e-9*deep;
+                first.overlap = 1e-9*way - e->range;
                 exam_move(&p, &first, 1e-9*deep/slow);
                 before = (double)p.f.normal;
                 jump = fabs(before);
@@ -467,7 +480,7 @@ static inline int exam_is_pressed(const exam *e, char *found) {
         exam_path p;
         double in, before;
         exam_begin(&p, e);
-        exam_go_on(&p, deep, 0, 0, 0, 0, 400, speed);
+        exam_go_on(&p, deep, 0, 0, 0, 0, 4000, speed);
         in = fabs(p.work);
         for (k = 0; k < 4; k++) {                /* partly out and in again */
             before = p.work;
@@ -475,7 +488,7 @@ static inline int exam_is_pressed(const exam *e, char *found) {
             exam_go_on(&p, deep, 0, 0, 0, 0, 400, speed);
             worst = fmax(worst, exam_gain(&p, before, in));
         }
-        exam_go_on(&p, 0, 0, 0, 0, 0, 400, speed);
+        exam_go_on(&p, -e->range, 0, 0, 0, 0, 4000, speed);
         worst = fmax(worst, exam_gain(&p, 0, in));
     }
     return exam_gains("loops of loading, unloading and reloading", worst, "the way out must not lie above the way in, and "

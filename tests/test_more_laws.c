@@ -7,6 +7,9 @@
 #include "../examples/laws/viscoelastic.h"
 #include "../examples/laws/walton_braun.h"
 #include "../examples/laws/luding.h"
+#include "../examples/laws/dmt.h"
+#include "../examples/laws/jkr.h"
+#include "../examples/laws/capillary.h"
 
 /* kg, reduced mass of two grains of the exam. */
 static double reduced_mass(const exam *e) {
@@ -37,6 +40,7 @@ static double unexplained(const exam *e) {
     desc.law_memory = e->memory;
     desc.law_vectors = e->vectors;
     desc.law_stiffness = (dem_real)e->stiffness;
+    desc.law_range = (dem_real)e->range;
     desc.normal_law = e->coefficients;
     desc.impact_speed = (dem_real)e->speed;
     desc.dt = DEM_R(2e-7);
@@ -53,6 +57,47 @@ static double unexplained(const exam *e) {
     CHECK(l.normal > 0.02*before.kinetic);
     dem_world_destroy(world);
     return fabs(l.residual)/before.kinetic;
+}
+/* Drawn apart by hand, slowly, from an overlap of 2e-6 m to the range: N, the largest pull; N and m, pull and overlap as
+   they part. */
+static void drawn(const exam *e, double *most, double *last, double *at) {
+    exam_path p;
+    exam_go to;
+    int k;
+    memset(&to, 0, sizeof to);
+    exam_begin(&p, e);
+    to.overlap = 2e-6;
+    exam_move(&p, &to, 1);
+    for (k = 1, *most = *last = *at = 0; k <= 20000; k++) {
+        to.overlap = 2e-6 - (2e-6 + 1.1*e->range)*k/20000;
+        exam_move(&p, &to, 1);
+        *most = fmax(*most, -(double)p.f.normal);
+        if (p.f.normal < 0) { *last = -(double)p.f.normal; *at = to.overlap; }
+    }
+}
+/* Speed with which two part that have met at `speed`, or 0 where they have not after 60 contact times. */
+static double parted(const exam *e, double speed) {
+    dem_world *world = exam_world(e, e->law, e->user, speed, 0);
+    const dem_material stuff = dem_material_add(world, &e->material);
+    const dem_body a = dem_sphere_add(world, stuff, (dem_real)e->radius, at(0, 0, 0));
+    const dem_body b = dem_sphere_add(world, stuff, (dem_real)e->radius, at(2*e->radius + 1.01*e->range, 0, 0));
+    dem_advice advice;
+    dem_world_desc desc;
+    double left;
+    dem_step_advice(world, &advice);
+    desc = dem_world_desc_get(world);
+    dem_world_destroy(world);
+    desc.dt = advice.dt/20;
+    world = dem_world_create(&desc);
+    dem_material_add(world, &e->material);
+    dem_sphere_add(world, stuff, (dem_real)e->radius, at(0, 0, 0));
+    dem_sphere_add(world, stuff, (dem_real)e->radius, at(2*e->radius + 1.01*e->range, 0, 0));
+    scene_move(world, a, at(speed, 0, 0), at(0, 0, 0));
+    dem_world_run(world, 2.5*e->range/speed + 60*(double)advice.contact_time, 0, 0);
+    left = (double)(scene_state(world, b).velocity.x - scene_state(world, a).velocity.x);
+    if (exam_gap(world, a, b, e->radius) < e->range) left = 0;
+    dem_world_destroy(world);
+    return left;
 }
 /* All lines of the exam but the last, which is a time. */
 static int passes(exam *e) {
@@ -71,9 +116,15 @@ int main(int argc, char **argv) {
     static viscoelastic flows;
     static walton_braun yields;
     static luding sticks;
+    static dmt hard = {DEM_R(0.05)};
+    static jkr soft_skin = {DEM_R(0.05)};
+    static capillary water = {DEM_R(0.073), DEM_R(0.3), DEM_R(4e-12)};
     exam soft = exam_of("viscoelastic", viscoelastic_law, &flows, 4, 1, 0);
     exam dent = exam_of("Walton-Braun", walton_braun_law, &yields, 6, 1, 1e5);
     exam powder = exam_of("Luding", luding_law, &sticks, 6, 1, 5e4);
+    exam dry = exam_of("DMT", dmt_law, &hard, 4, 1, 0);
+    exam skin = exam_of("JKR", jkr_law, &soft_skin, 6, 1, 0);
+    exam wet = exam_of("capillary", capillary_law, &water, 5, 1, 0);
     test_begin(argc, argv);
     dent.coefficients = powder.coefficients = DEM_NORMAL_LINEAR;
 
@@ -167,6 +218,88 @@ int main(int argc, char **argv) {
         CHECK(passes(&soft));
         CHECK(passes(&dent));
         CHECK(passes(&powder));
+    }
+    TEST("JKR: a pull-off of 3/2 pi w R*, separation by hand at 5/9 of it, where the closed form has it") {
+        double most, last, where, w = 0.05, R, E;
+        CHECK(exam_contact(&skin));
+        R = (double)skin.contact.r_eff;
+        E = 0.75*(double)skin.contact.kn/sqrt(R);
+        skin.range = jkr_range(w, E, R);
+        drawn(&skin, &most, &last, &where);
+        CHECK_REL(most, 1.5*3.141592653589793*w*R, DEMI_SINGLE ? 1e-4 : 1e-6);
+        CHECK_REL(last, 5.0/9*most, 2e-2);     /* a root's slope there: a step of 5e-4 of the way */
+        CHECK_REL(-where, skin.range, 1e-3);
+    }
+    TEST("JKR: elastic grains slower than Thornton and Ning's speed stick, faster ones lose its energy") {
+        static const double faster[] = {0.5, 0.95, 1.05, 1.5, 4};
+        const double m = reduced_mass(&skin), w = 0.05, R = (double)skin.contact.r_eff;
+        const double E = 0.75*(double)skin.contact.kn/sqrt(R);
+        const double sticking = sqrt(14.18*cbrt(pow(w, 5)*pow(R, 4)/(E*E))/m);
+        exam elastic = skin;
+        int k;
+        elastic.material.restitution = 1;
+        elastic.material.friction = elastic.material.rolling_friction = 0;
+        elastic.range = 1.5*skin.range;
+        for (k = 0; k < 5; k++)                /* 14.18 has four figures */
+            CHECK_NEAR(parted(&elastic, faster[k]*sticking)/sticking,
+                       faster[k] > 1 ? sqrt(faster[k]*faster[k] - 1) : 0, 5e-3);
+    }
+    TEST("DMT: a pull-off of 2 pi w R* at touch, nothing apart, and all of the energy back") {
+        exam elastic = dry;
+        double most, last, where;
+        CHECK(exam_contact(&dry));
+        drawn(&dry, &most, &last, &where);
+        CHECK_REL(last, 2*3.141592653589793*0.05*5e-4, DEMI_SINGLE ? 1e-3 : 1e-4);
+        CHECK_REL(most, last, 1e-3);
+        CHECK_NEAR(where, 0, 2e-10);
+        elastic.material.restitution = 1;
+        elastic.material.friction = 0;
+        /* the pull begins and ends within a step */
+        CHECK_NEAR(parted(&elastic, 0.05)/0.05, 1, 2e-3);
+    }
+    TEST("capillary bridge: 2 pi R g cos t at touch, Willett's force at a gap, breaks at (1 + t/2) V^(1/3)") {
+        const double R = 1e-3, rupture = (1 + 0.15)*cbrt(4e-12);
+        double most, last, where;
+        exam_path p;
+        exam_go to;
+        CHECK(exam_contact(&wet));
+        CHECK_REL(capillary_rupture(&water), rupture, 1e-6);
+        wet.range = 1.2*rupture;
+        drawn(&wet, &most, &last, &where);
+        CHECK_REL(most, 2*3.141592653589793*R*0.073*cos(0.3), 1e-4);
+        CHECK_REL(-where, rupture, 1e-4);
+        CHECK_REL(last, most/(1 + 1.05*rupture*sqrt(R/4e-12) + 2.5*rupture*rupture*R/4e-12), 1e-3);
+        memset(&to, 0, sizeof to);
+        exam_begin(&p, &wet);                  /* on the way in there is none */
+        to.overlap = -0.1*rupture;
+        exam_move(&p, &to, 1);
+        CHECK_NEAR(p.f.normal, 0, 0);
+    }
+    TEST("capillary bridge: an impact loses the bridge's work, and slower ones than that stick") {
+        static const double faster[] = {0.5, 0.95, 1.05, 1.5, 4};
+        const double m = reduced_mass(&wet), sticking = sqrt(2*capillary_work(&water, 1e-3, 0)/m);
+        exam elastic = wet;
+        int k;
+        elastic.material.restitution = 1;
+        elastic.material.friction = elastic.material.rolling_friction = 0;
+        for (k = 0; k < 5; k++)
+            CHECK_NEAR(parted(&elastic, faster[k]*sticking)/sticking,
+                       faster[k] > 1 ? sqrt(faster[k]*faster[k] - 1) : 0, 5e-3);
+    }
+    TEST("the ledger closes for laws that stick: met, sheared and parted") {
+        soft_skin.w = DEM_R(0.005);
+        hard.w = DEM_R(0.005);
+        water.tension = DEM_R(0.002);
+        CHECK_NEAR(unexplained(&skin), 0, 1e-3);
+        CHECK_NEAR(unexplained(&dry), 0, 1e-3);
+        CHECK_NEAR(unexplained(&wet), 0, 1e-3);
+        soft_skin.w = hard.w = DEM_R(0.05);
+        water.tension = DEM_R(0.073);
+    }
+    TEST("laws that stick pass the exam, over their range, too") {
+        CHECK(passes(&dry));
+        CHECK(passes(&skin));
+        CHECK(passes(&wet));
     }
     return test_end();
 }
