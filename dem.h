@@ -108,7 +108,8 @@
    Velocities that a law sees are those of the full step, v(t) and not v(t - dt/2), for every
    integrator: half-step velocities give unphysical static friction at size ratios above 3 [VYA25].
 
-   What dem.h does not do: fluids, breakage, bonds, heat; implicit integration; graphics.
+   What dem.h does not do: fluids, breakage, bonds, heat; implicit integration; graphics. Some of it
+   is a law of your own: examples/laws has liquid bridges and grains that stick.
 
    Options are fields of `dem_world_desc`; zero there means absent, or "chosen for you". What was
    chosen is told by dem_world_report. By what one wants to say:
@@ -120,9 +121,9 @@
        they rub by ...            tangent_law; friction_load and slider: what friction counts on.
                                   No friction in any pair: no spins, no memory, no price
        they roll by ...           rolling_law
-       a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness,
-                                   law_range, law_range_radii, law_who; force,
-                                  body_force, force_user
+       a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness; law_range,
+                                  law_range_radii: it reaches beyond touch; law_who: it is told
+                                  who touches; force, body_force, force_user
        bodies turn by ...         rotation, orientations; ellipsoid_overlap, cluster_contacts
        time goes by ...           integrator, dt, allow_large_dt
        it shall be fast           search, skin, threads
@@ -613,7 +614,8 @@ DEM_INLINE void dem_law_load(const dem_contact *c, dem_contact_force *f, dem_rea
    step ago, 0 at least, and now. Answers which part of the step that was, 1 unless they have just
    met (come within the range). Checked by "tangential and rolling memory is of second order". */
 DEM_INLINE dem_real demi_law_share(const dem_contact *c) {
-    const dem_real gone = c->closing_speed*c->dt, in = c->overlap + c->range;
+    const dem_real gone = c->closing_speed*c->dt;
+    const dem_real in = c->range > 0 ? c->overlap + c->range : c->overlap;
     return in > gone ? 1 : in/(gone + DEMI_TINY);
 }
 DEM_INLINE dem_real demi_law_middle(const dem_contact *c) {
@@ -2027,7 +2029,8 @@ typedef struct demi_kept {
                                       normal, of a sphere its radius */
     dem_real share, lift, grip;    /* how often it counts: damping, elastic force, friction */
     dem_real weight;               /* share before contacts are shared: see demi_kept_share */
-    dem_real held;                 /* grip that comes to it from a step ago: demi_kept_inherit */
+    dem_real held;                 /* grip that comes to it from a step ago, < 0: all of it: see
+                                      demi_kept_inherit */
     dem_real area, added, rate;    /* m2, A; what others add to it, over d^2; how A follows that */
     dem_real bend;                 /* 1/m: the normal turns by this times the way part_a goes */
     dem_vec3 axis;                 /* but for ways along the normal, and along this, if not 0: */
@@ -6430,6 +6433,7 @@ static int demi_neighbours(int c, int n, int periodic, int *out) {
    lower body. */
 static void demi_rows_grid(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
+    const dem_real cover = demi_cover(w);
     const int32_t *start = w->cell_start;
     int a, c, i, j, k, b, last = -1, ranges = 0;
     int32_t from[27], to[27];
@@ -6456,7 +6460,7 @@ static void demi_rows_grid(dem_world *w, int d) {
         }
         for (k = 0; k < ranges; k++)
             for (b = DEMI_MAX(from[k], a + 1); b < to[k];
-                 b++) demi_pair_offer(w, d, &p, demi_cover(w), a, b);
+                 b++) demi_pair_offer(w, d, &p, cover, a, b);
     }
 }
 
@@ -9676,8 +9680,14 @@ static void demi_tile_tally(const demi_tile *DEMI_RESTRICT t, int count, demi_ta
     int q;
     for (q = 0; q < count; q++) {
         sum->deepest = t->deep[q] > sum->deepest ? t->deep[q] : sum->deepest;
-        sum->contacts += t->deep[q] > 0 ? DEM_R(1) : DEM_R(0);
+        sum->contacts += t->touch[q];
     }
+}
+/* Pairs of a tile that a law was asked about and that do not touch. */
+static int demi_tile_apart(const demi_tile *t, int count) {
+    int q, apart = 0;
+    for (q = 0; q < count; q++) apart += t->touch[q] > 0 && !(t->overlap[q] > 0);
+    return apart;
 }
 DEM_INLINE void demi_sum_add(dem_real *sum, dem_real x, dem_real y, dem_real z) {
     x += sum[0]; y += sum[1]; z += sum[2];
@@ -9750,6 +9760,7 @@ static void demi_pairs(dem_world *w, int d) {
             const demi_span span = demi_span_of(w, d, p, count);
             const demi_run *r = demi_tile_respond(w, &span, run, &tile, domain->energy);
             demi_tile_tally(&tile, count, &tally);
+            if (r->ranged) tally.contacts -= (dem_real)demi_tile_apart(&tile, count);
             if (!l) demi_tile_scatter(&tile, &span, r, w->bodies.force, w->bodies.torque);
             else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque,
                                 w->cross_force + 6*((size_t)d*(size_t)w->cross.stride +
@@ -10847,10 +10858,7 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
 static void demi_kept_settle(const dem_world *w, int d, const demi_kept *old, int olds,
                              demi_kept *c, int n) {
     const demi_kept *now = demi_kept_of(w, d);
-    if (n == 1 && olds <= 1) {
-        if (c->from >= 0) c->held = now[c->from].grip;
-        return;
-    }
+    if (n == 1 && olds <= 1) { c->held = -1; return; }      /* do not fetch the old one yet */
     demi_kept_crossed(w, c, n);
     demi_kept_ended(w, d, old, olds, c, n);
     demi_kept_inherit(now, c, n);
@@ -10983,13 +10991,14 @@ DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept
    holds no more than they did. */
 static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *c) {
     const demi_kept *ended = c->b < 0 && c->send ? now + c->send - 1 : 0;
-    const dem_real more = ended ? ended->grip : 0, all = c->held + more;
+    const dem_real held = c->held < 0 ? now[c->from].grip : c->held, more = ended ? ended->grip : 0;
+    const dem_real all = held + more;
     const dem_real left = c->grip > all ? all/c->grip : 1;
     int k;
     if ((!ended && !(left < 1)) || w->desc.law || !(all > 0 || left < 1)) return;
     for (k = 0; k < w->laws.memory; k++) {
         if (!(w->laws.vectors >> k & 1)) continue;
-        if (ended) c->memory[k] = (c->held*c->memory[k] + more*ended->memory[k])/all;
+        if (ended) c->memory[k] = (held*c->memory[k] + more*ended->memory[k])/all;
         c->memory[k] *= left;
     }
 }
@@ -11046,7 +11055,7 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
         spin_step = wall->mid.spin;
     }
     around = demi_add(demi_at(w->bodies.half_spin + 4*a), spin_step);
-    memset(c, 0, sizeof *c);
+    memset(c, 0, w->desc.law ? sizeof *c : offsetof(dem_contact, who));
     c->overlap = k->overlap;
     if (w->margin.reach > 0) c->range = demi_range(w, demi_kept_radii(w, k));
     if (w->desc.law_who) demi_kept_who(w, k, &c->who);
@@ -17846,6 +17855,9 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     if (w->desc.law) {
         fprintf(out, "effects    normal, tangential, rolling: your own law; spins and torques are "
                 "followed; %d reals of memory per contact\n", w->desc.law_memory);
+        if (w->margin.reach > 0)
+            fprintf(out, "           asked about what is nearer than %.3g m, whether it touches or "
+                    "not\n", w->margin.reach);
         return;
     }
     fprintf(out, "effects    normal: %s%s%s%s\n", laws->normal->name,

@@ -23,7 +23,8 @@ user=tests/two_files.c
 companions=$dir/companions.c
 printf '#include "dem.h"\n' > $companions
 printf '#include "examples/%s.h"\n' drum moldyn sorting tumbler >> $companions
-try "companions use public names only" "! grep -n 'demi_\|DEMI_' examples/drum.h examples/moldyn.h examples/sorting.h examples/tumbler.h"
+printf '#include "%s"\n' examples/laws/*.h >> $companions
+try "companions use public names only" "! grep -n 'demi_\|DEMI_' examples/drum.h examples/moldyn.h examples/sorting.h examples/tumbler.h examples/laws/*.h"
 one_file="-DDEM_IMPLEMENTATION $user"
 strict="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Werror"
 float="-DDEM_REAL=float"
