@@ -10,6 +10,28 @@
    Wall time of loops of steps after 100 untimed ones; what is compared runs in turns, A B A B, and
    medians are told, with half the range beside them. Ratios need a quiet machine: `spread` says how
    quiet it was. --cpu counts processor time instead, for looking at one thread while others work. */
+#include "dem.h"
+#include <math.h>
+/* Hertz with a spring of Cundall and Strack as one would write it down, for what a law of one's own costs: called by
+   pointer, and named by DEM_LAW. */
+DEM_INLINE void bench_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const dem_real d = c->overlap > 0 ? c->overlap : 0;
+    const dem_real root = (dem_real)sqrt((double)d), fourth = (dem_real)sqrt((double)root);
+    const dem_real kt = c->kt*root, ct = c->ct*fourth, dt = c->dt;
+    const dem_vec3 v = c->slip, w = c->slip_step;
+    dem_vec3 s = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
+    dem_real x, y, z, limit, size, cut, give;
+    s = dem_vec3_make(s.x + w.x*dt, s.y + w.y*dt, s.z + w.z*dt);
+    f->normal = c->kn*root*d + c->cn*fourth*c->closing_speed;
+    limit = f->normal > 0 ? c->friction*f->normal : 0;
+    x = -kt*s.x - ct*v.x; y = -kt*s.y - ct*v.y; z = -kt*s.z - ct*v.z;
+    size = (dem_real)sqrt((double)(x*x + y*y + z*z));
+    cut = size > limit ? limit/(size + DEM_R(1e-30)) : 1;
+    give = (1 - cut)*dt/(kt*dt + ct + DEM_R(1e-30));                /* shared, as dem.h has it */
+    f->tangent = dem_vec3_make(x*cut, y*cut, z*cut);
+    memory[0] = s.x + give*x; memory[1] = s.y + give*y; memory[2] = s.z + give*z;
+}
+#define DEM_LAW bench_law
 #define DEM_IMPLEMENTATION
 #include "dem.h"
 #include "examples/study.h"
@@ -128,6 +150,7 @@ static void measure(const bench_scene *s) {
 
 typedef struct effect_row { const char *name, *scene, *buys; bench_choice with, without, absent; } effect_row;
 #define NO_FRICTION {.tangent = DEM_TANGENT_NONE}
+static void bench_law_called(const dem_contact *c, dem_real *memory, dem_contact_force *f) { bench_law(c, memory, f); }
 static const effect_row effect_rows[] = {
     {"friction", "bed", "a spring that holds what rests", {0}, NO_FRICTION, {.tangent = DEM_TANGENT_SPRING, .smooth = 1}},
     {"tangent.viscous", "bed", "friction without memory: heaps creep", {.tangent = DEM_TANGENT_VISCOUS}, {0}, {0}},
@@ -144,6 +167,11 @@ static const effect_row effect_rows[] = {
      {.rolling = DEM_ROLLING_CONSTANT, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_CONSTANT}},
     {"rolling.epsd", "bed", "rolling resistance that holds a grain on a slope",
      {.rolling = DEM_ROLLING_EPSD, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_EPSD}},
+    {"own_law.inlined", "bed", "nothing: Hertz and a spring written out, named by DEM_LAW", {.law = bench_law}, {0}, {0}},
+    {"own_law.called", "bed", "nothing: the same by pointer", {.law = bench_law_called}, {0}, {0}},
+    {"own_law.who", "bed", "ids, radii, masses, place and time for a law by pointer",
+     {.law = bench_law_called, .who = 1}, {.law = bench_law_called}, {0}},
+    {"own_law.range", "bed", "a law asked 0.05 radii before touch", {.law = bench_law, .range = 0.05}, {.law = bench_law}, {0}},
     {"ledger", "bed", "where the energy went, watched at every step", {.ledger = 1}, {0}, {0}},
     {"one_unlike", "bed", "one grain that differs from the others", {.mixed = 1}, {0}, {0}},
     {"two_species", "bed", "two sizes (or materials), half of the grains each", {.mixed = 2}, {0}, {0}},

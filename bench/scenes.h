@@ -75,9 +75,12 @@ typedef struct bench_choice {
     int field;                  /* 1: solidicity and velocity sampled every 100 steps; 2: never again */
     int open;                   /* 1: no boundary is periodic                                   */
     int shaped;                 /* beads given as 1: ellipsoids of three equal axes; 2: clusters of one sphere */
+    dem_law_fn law;             /* a law of one's own: 3 reals, 1 vector                        */
+    double range;               /* its range, in radii                                          */
+    int who;                    /* 1: it asks who touches                                       */
 } bench_choice;
 #define BENCH_CHOICE {0, 0, 0, DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, \
-    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
 STUDY_FN int bench_is(const bench_scene *s, const char *name) { return !strcmp(s->name, name); }
 
@@ -341,6 +344,11 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     desc.orientations = o->orientations;
     desc.tangent_law = o->tangent;
     desc.rolling_law = o->rolling;
+    desc.law = o->law;
+    desc.law_memory = o->law ? 3 : 0;
+    desc.law_vectors = o->law ? 1 : 0;
+    desc.law_range = (dem_real)(o->range*s->radius);
+    desc.law_who = o->who;
     desc.force = o->force;
     desc.force_user = o->force_user;
     desc.dt = (dem_real)(o->dt > 0 ? o->dt : s->dt);
