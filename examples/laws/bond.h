@@ -1,0 +1,83 @@
+/* bond.h - cement between grains: bonds that stretch, shear, bend, twist and break. MIT licence. Include it after dem.h.
+
+   Potyondy and Cundall, Int. J. Rock Mech. Min. Sci. 41 (2004) 1329, parallel bonds: a round beam of radius r from centre
+   to centre of two grains that are l apart when it is made, with A = pi r^2, I = pi r^4/4, J = 2 I,
+
+       pull E A/l per m of stretch    shear E/k A/l per m    bending E I/l per rad    twist E/k J/l per rad
+
+   E Pa, Young's modulus of the cement; k its ratio of normal to shear stiffness (2.5 of an isotropic one of nu 1/4). It
+   breaks, for good, where either stress is larger than the cement bears:
+
+       pull/A + |M| r/I > tension          |shear|/A + |twist| r/J > shear          Pa
+
+   Bonds are made while `make` (m) is above 0, in one step: between all two grains whose gap is smaller; not with walls. Then
+   set it to 0. A beam of n bonds bends under F at its end by F l^3/(E I) (n^3/3 - n/12) + F n l k/(E A): F L^3/(3 E I) of
+   L = n l for large n. Damping: beta of the critical one, of each bond by itself: low notes ring long.
+
+   Range: desc.law_range above `make`, and above the stretch at which bonds break, tension l/E. law_stiffness: 4 E A/l.
+   law_who = 1. Limits: small turns of a bond; what is not bonded, or no longer, has the linear law with a spring
+   (normal_law linear). Memory: 8 reals, 2 vectors: shear m and bending rad; twist rad; 0: none, > 0: l, < 0: broken. */
+#ifndef BOND_H
+#define BOND_H
+#include <math.h>
+
+/* What law_user points to. */
+typedef struct bond {
+    dem_real E, k, radius;                   /* Pa > 0; > 0; m > 0                                        */
+    dem_real tension, shear;                 /* Pa, strengths > 0                                         */
+    dem_real beta;                           /* >= 0                                                      */
+    dem_real make;                           /* m, >= 0                                                   */
+} bond;
+
+/* J, stored by a bond with these stiffnesses (N/m, N/m, N m, N m), stretch (m), shear, bending and twist. */
+static inline dem_real bond_stored(const dem_real *stiff, dem_real x, dem_vec3 s, dem_vec3 b, dem_real twist) {
+    return (stiff[0]*x*x + stiff[1]*(s.x*s.x + s.y*s.y + s.z*s.z) + stiff[2]*(b.x*b.x + b.y*b.y + b.z*b.z) +
+            stiff[3]*twist*twist)/2;
+}
+static inline double bond_length(dem_vec3 v) { return sqrt((double)(v.x*v.x + v.y*v.y + v.z*v.z)); }
+
+static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const bond *u = (const bond *)c->user;
+    const dem_real l = c->who.radius_a + c->who.radius_b - c->overlap, r = u->radius, dt = c->dt;
+    const dem_real rest = memory[7] > 0 ? memory[7] : l, A = DEM_R(3.141592653589793)*r*r, I = A*r*r/4;
+    const dem_real stiff[4] = {u->E*A/rest, u->E/u->k*A/rest, u->E*I/rest, u->E/u->k*2*I/rest};
+    const dem_vec3 n = c->normal, v = c->slip, w = c->spin_step, slip = c->slip_step;
+    dem_real x, twist, along, lost, damp[2];
+    dem_vec3 s, b;
+    double pull, side;
+    if (memory[7] <= 0 && memory[7] >= 0 && dt > 0 && !c->wall && c->overlap > -u->make) memory[7] = l;
+    if (!(memory[7] > 0)) {                  /* none, or broken */
+        if (c->overlap > 0) { dem_law_linear(c, memory, f); dem_law_spring(c, memory, f); }
+        else if (dt > 0) memory[0] = memory[1] = memory[2] = 0;
+        return;
+    }
+    s = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
+    b = dem_memory_rotate(c, dem_vec3_make(memory[3], memory[4], memory[5]));
+    along = w.x*n.x + w.y*n.y + w.z*n.z;
+    x = l - rest;                            /* stretch */
+    s = dem_vec3_make(s.x + dt*slip.x, s.y + dt*slip.y, s.z + dt*slip.z);
+    b = dem_vec3_make(b.x + dt*(w.x - along*n.x), b.y + dt*(w.y - along*n.y), b.z + dt*(w.z - along*n.z));
+    twist = memory[6] + dt*along;
+    pull = (double)(stiff[0]*x)/(double)A + (double)stiff[2]*bond_length(b)*(double)(r/I);
+    side = (double)stiff[1]*bond_length(s)/(double)A + fabs((double)(stiff[3]*twist))*(double)(r/(2*I));
+    if (dt > 0 && (pull > (double)u->tension || side > (double)u->shear)) {
+        f->energy.sag = bond_stored(stiff, x, s, b, twist);          /* what it held is lost */
+        memory[7] = -1;
+        memory[0] = memory[1] = memory[2] = memory[3] = memory[4] = memory[5] = memory[6] = 0;
+        return;
+    }
+    damp[0] = 2*u->beta*(dem_real)sqrt((double)(stiff[0]*c->m_eff));
+    damp[1] = 2*u->beta*(dem_real)sqrt((double)(stiff[1]*c->m_eff));
+    f->normal = -stiff[0]*x + damp[0]*c->closing_speed;
+    f->tangent = dem_vec3_make(-stiff[1]*s.x - damp[1]*v.x, -stiff[1]*s.y - damp[1]*v.y, -stiff[1]*s.z - damp[1]*v.z);
+    f->moment = dem_vec3_make(-stiff[2]*b.x - stiff[3]*twist*n.x, -stiff[2]*b.y - stiff[3]*twist*n.y,
+                              -stiff[2]*b.z - stiff[3]*twist*n.z);
+    lost = damp[0]*c->closing_speed*c->closing_speed + damp[1]*(v.x*v.x + v.y*v.y + v.z*v.z);
+    f->energy.dashpot = lost*dt;
+    f->energy.elastic = bond_stored(stiff, x, s, b, twist);
+    if (!(dt > 0)) return;
+    memory[0] = s.x; memory[1] = s.y; memory[2] = s.z;
+    memory[3] = b.x; memory[4] = b.y; memory[5] = b.z;
+    memory[6] = twist;
+}
+#endif
