@@ -9464,42 +9464,45 @@ static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int 
     c->who.time = w->clock.time;
 }
 /* Pair q as the user's law sees it. */
-DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int q, int who,
-                              dem_contact *c) {
+DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
+                              int q, int who, dem_contact *c) {
     const dem_world *w = r->w;
-    demi_tile_contact(t, &r->same, q, c);
-    c->range = demi_tile_range(t, &r->same, q, 0);
+    demi_tile_contact(t, same, q, c);
+    c->range = demi_tile_range(t, same, q, 0);
     c->material_a = w->bodies.material[r->span->a[q]];
     c->material_b = w->bodies.material[r->span->b[q]];
     c->user = w->desc.law_user;
-    demi_who_clear(&c->who);
     if (who) demi_tile_who(t, r, q, c);
 }
 /* The user's law: only what touches, one by one; inlined into the loop where DEM_LAW names it, but
    for one that asks who touches. */
-DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, int q,
-                             int who, dem_law_fn law) {
-    dem_contact c;
+DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
+                             int q, int who, int keep, int alike, int ledger, dem_law_fn law,
+                             dem_contact *c) {
     dem_contact_force f;
     dem_real m[DEMI_MEMORY];
-    demi_tile_own(t, r, q, who, &c);
+    demi_tile_own(t, r, same, q, who, c);
     demi_force_clear(&f);
-    demi_recall(t, q, 0, r->keep, m);
-    law(&c, m, &f);
-    demi_keep(t, q, 0, r->keep, m);
-    demi_answer_one(t, q, f.normal, f.tangent, f.moment, r->alike, 1, 1);
-    if (!r->ledger) return;                     /* what the law says of it */
+    demi_recall(t, q, 0, keep, m);
+    law(c, m, &f);
+    demi_keep(t, q, 0, keep, m);
+    demi_answer_one(t, q, f.normal, f.tangent, f.moment, alike, 1, 1);
+    if (!ledger) return;                        /* what the law says of it */
     demi_normal_energy(t, q, &f);
     demi_tangent_energy(t, q, &f);
     t->part[5][q] = f.energy.roll*t->touch[q];
 }
 /* A law of the user's own is asked pair by pair, and only about those that touch. */
 static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int full) {
+    const demi_same same = r->same;
+    dem_contact c;
     int q, e;
     (void)full;
+    demi_who_clear(&c.who);
     for (q = 0; q < r->span->count; q++) {
         if (t->touch[q] > 0) {
-            demi_own_one(t, r, q, r->w->desc.law_who, r->w->desc.law);
+            demi_own_one(t, r, &same, q, r->w->desc.law_who, r->keep, r->alike, r->ledger,
+                         r->w->desc.law, &c);
             continue;
         }
         demi_row_put(t->force, q, demi_v(0, 0, 0));
@@ -9509,10 +9512,22 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
         for (e = 0; e < 6; e++) t->part[e][q] = 0;
     }
 }
+/* The same for the law that DEM_LAW names, in loops that compilers may turn into vector code: one for
+   each number of reals that is common, and one for all others. */
 #ifdef DEM_LAW
+#define DEMI_OWN_ROWS(KEEP, ALIKE, LEDGER) \
+    DEMI_ROWS(full) \
+        dem_contact c; \
+        demi_who_clear(&c.who); \
+        demi_own_one(t, r, &same, q, 0, KEEP, ALIKE, LEDGER, DEM_LAW, &c); \
+    DEMI_ROWS_END
 DEMI_CLONES static void demi_stage_own_inlined(demi_tile *DEMI_RESTRICT t, const demi_run *r,
                                                int full) {
-    DEMI_ROWS(full) demi_own_one(t, r, q, 0, DEM_LAW); DEMI_ROWS_END
+    const demi_same same = r->same;
+    if (!r->ledger && r->alike && r->keep == 0) { DEMI_OWN_ROWS(0, 1, 0) }
+    else if (!r->ledger && r->alike && r->keep == 3) { DEMI_OWN_ROWS(3, 1, 0) }
+    else if (!r->ledger && r->alike && r->keep == 4) { DEMI_OWN_ROWS(4, 1, 0) }
+    else { DEMI_OWN_ROWS(r->keep, r->alike, r->ledger) }
 }
 #endif
 
@@ -14362,7 +14377,8 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     demi_span_coefs(w, &span, 0, coef);
     for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
     demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
-    demi_tile_own(&tile, &r, 0, w->desc.law_who, &c);
+    demi_who_clear(&c.who);
+    demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
     demi_law(w, &c, memory, &f);
     demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
     out->a = dem_bodies_id(w, a);
