@@ -9019,7 +9019,7 @@ typedef struct demi_tile {
     dem_real memory[DEMI_MEMORY][DEMI_ROW], coef[DEMI_PAIR_COLUMNS][DEMI_ROW];
     /* touch and motion */
     dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
-    dem_real touch[DEMI_ROW];      /* 1 where the law is asked: where the two touch; else 0 */
+    dem_real touch[DEMI_ROW];      /* 1 where the two touch, or are within a law's range; else 0 */
     dem_real normal[3][DEMI_ROW], turn[3][DEMI_ROW];      /* unit, 1/s */
     dem_real slip[3][DEMI_ROW], slip_step[3][DEMI_ROW];   /* m/s */
     dem_real lean[DEMI_ROW];       /* m, from the middle to the contact, towards b */
@@ -9468,7 +9468,7 @@ DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, con
                               int q, int who, dem_contact *c) {
     const dem_world *w = r->w;
     demi_tile_contact(t, same, q, c);
-    c->range = demi_tile_range(t, same, q, 0);
+    c->range = r->ranged ? demi_tile_range(t, same, q, 0) : 0;
     c->material_a = w->bodies.material[r->span->a[q]];
     c->material_b = w->bodies.material[r->span->b[q]];
     c->user = w->desc.law_user;
