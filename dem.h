@@ -571,18 +571,20 @@ typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_f
 /* A vector kept in contact memory, carried along with the contact plane over the last step: turned
    with the normal, spun with the mean twist of the two bodies; lies in the tangent plane, keeps its
    length. Laws with memory begin with this. (Rotation by n_old -> n is exact to sixth order of the
-   angle of one step.) */
+   angle of one step; the twist of one step counts as 1 rad at most, shortens by a share of
+   t^4/64 and never lengthens: (1 - u/2)^2 + u (1 - 9 u/64)^2 <= 1, u = t^2 <= 1.) */
 DEM_INLINE dem_vec3 dem_memory_rotate(const dem_contact *c, dem_vec3 v) {
     const dem_vec3 n = c->normal, r = c->normal_rate;
     const dem_real g = v.x*n.x + v.y*n.y + v.z*n.z;      /* what sticks out of the plane */
     const dem_real e = c->dt*c->dt*(r.x*r.x + r.y*r.y + r.z*r.z);  /* sin^2 of the angle */
     const dem_real h = g*c->dt*(DEM_R(0.5) + e/8);       /* 1/(1 + cos) */
-    const dem_real t = c->dt*c->twist, q = 1 - t*t/2;
+    const dem_real w = c->dt*c->twist, t = w > 1 ? 1 : w < -1 ? -1 : w;   /* rad, at most 1 */
+    const dem_real u = t*t, q = 1 - u/2, s = t - t*u*DEM_R(0.140625);  /* cos, sin */
     const dem_real x = v.x - g*n.x + h*r.x, y = v.y - g*n.y + h*r.y, z = v.z - g*n.z + h*r.z;
     dem_vec3 out;
-    out.x = q*x + t*(n.y*z - n.z*y);
-    out.y = q*y + t*(n.z*x - n.x*z);
-    out.z = q*z + t*(n.x*y - n.y*x);
+    out.x = q*x + s*(n.y*z - n.z*y);
+    out.y = q*y + s*(n.z*x - n.x*z);
+    out.z = q*z + s*(n.x*y - n.y*x);
     return out;
 }
 
