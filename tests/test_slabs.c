@@ -385,6 +385,24 @@ static dem_world *bits_world(int scene, int threads) {
     world->desc.threads = threads;
     return world;
 }
+/* How far 1e-12 m, by which all grains stand aside after 1500 steps, have grown after 3000, m: less is
+   the order of sums, and where the search for an overlap of ellipsoids ends. */
+static double chaos_of(int scene) {
+    dem_world *one = bits_world(scene, 1), *other = bits_world(scene, 1);
+    double far;
+    int i;
+    CHECK_EQ(scene_step(one, 1500), DEM_OK);
+    CHECK_EQ(scene_step(other, 1500), DEM_OK);
+    for (i = 0; i < 4*other->bodies.count; i++)
+        if (i%4 < 3) other->bodies.pos[i] += i/4%2 ? DEM_R(1e-12) : DEM_R(-1e-12);
+    CHECK_EQ(scene_step(one, 1500), DEM_OK);
+    CHECK_EQ(scene_step(other, 1500), DEM_OK);
+    far = apart(one, other);
+    if (getenv("SLABS_NUMBERS")) printf("scene %d: 1e-12 m are %.2g m\n", scene, far);
+    dem_world_destroy(one);
+    dem_world_destroy(other);
+    return far;
+}
 static uint64_t bits_of(int scene, int threads, int count, int steps) {
     dem_world *world = bits_world(scene, threads);
     dem_slabs_desc desc = DEM_SLABS_DESC;
@@ -752,10 +770,11 @@ int main(int argc, char **argv) {
             }
     }
     TEST("ellipsoids, clusters, orientations, a sieve that shakes and a field are in slabs what they "
-         "are in one world: the same bits in one slab, the same but for the order of sums in more") {
-        static const double bound[] = {1e-15, 1e-12, 1e-8};
+         "are in one world: the same bits in one slab; in more they stay nearer than 1e-12 m grow to") {
+        static const double bound[] = {1e-15, 1e-12};
         int scene, count, k;
-        for (scene = SHAPES; scene <= SIEVE; scene++)
+        for (scene = SHAPES; scene <= SIEVE; scene++) {
+            const double chaos = wide ? chaos_of(scene) : 2e-8;
             for (count = 1; count <= 4; count += 1 + (count == 2)) {
                 dem_world *one = bits_world(scene, 1), *other = bits_world(scene, 1);
                 dem_slabs *slabs = deal(other, 0, count);
@@ -771,7 +790,7 @@ int main(int argc, char **argv) {
                     CHECK_EQ(go(slabs, steps), DEM_OK);
                     CHECK_EQ(collect(slabs, other), DEM_OK);
                     CHECK(whole(slabs, one->bodies.count));
-                    CHECK_NEAR(apart(one, other), 0, wide ? bound[k] : 2e-8);
+                    CHECK_NEAR(apart(one, other), 0, wide && k < 2 ? bound[k] : chaos);
                     if (getenv("SLABS_NUMBERS"))
                         printf("scene %d, %d slabs, step %d: %.2g m apart; %d bodies, %d contacts\n",
                                scene, count, (int)dem_world_steps(one), apart(one, other),
@@ -799,6 +818,7 @@ int main(int argc, char **argv) {
                 dem_world_destroy(one);
                 dem_world_destroy(other);
             }
+        }
     }
     TEST("as many slabs give the same bits on one, two, three and four threads") {
         int scene, threads;
