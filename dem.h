@@ -9514,8 +9514,8 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
         for (e = 0; e < 6; e++) t->part[e][q] = 0;
     }
 }
-/* The same for the law that DEM_LAW names, in loops that compilers may turn into vector code: one for
-   each number of reals that is common, and one for all others. */
+/* The same for the law that DEM_LAW names, in loops that compilers may turn into vector code: one
+   for each number of reals that is common, and one for all others. */
 #ifdef DEM_LAW
 #define DEMI_OWN_ROWS(KEEP, ALIKE, LEDGER) \
     DEMI_ROWS(full) \
