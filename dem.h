@@ -33,7 +33,8 @@
        >>touch       candidate pairs -> contacts: geometry only
        >>respond     contact -> force and torque: the loops that bring touch and law together
        >>on-walls    where parts of bodies touch walls: geometry only
-       >>kept        contacts kept by themselves, all but sphere on sphere: touch and respond
+       >>kept        contacts kept by themselves, all but sphere on sphere: touch
+       >>kept-respond  the law's answers to them: forces on both ends
        >>integrators kick, drift, predict; rotation
        >>ledger      where the energy went
        >>placing     room for new grains: regions, fills, packings
@@ -124,6 +125,7 @@
        a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness; law_range,
                                   law_range_radii: it reaches beyond touch; law_who: it is told
                                   who touches; force, body_force, force_user
+       numbers of my own on grains    body_reals, body_reals_fn, body_reals_user
        bodies turn by ...         rotation, orientations; ellipsoid_overlap, cluster_contacts
        time goes by ...           integrator, dt, allow_large_dt
        it shall be fast           search, skin, threads
@@ -497,6 +499,8 @@ DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2]
 
 /* ---- a contact, and a law of one's own ---- */
 
+enum { DEM_BODY_REALS = 8 };      /* most numbers of your own that grains carry: desc.body_reals */
+
 /* Who touches: for a law that asks for it by desc.law_who; else zeros. */
 typedef struct dem_contact_who {
     dem_body a, b;                /* b: null with a wall, whose id is c->wall */
@@ -505,6 +509,10 @@ typedef struct dem_contact_who {
     dem_real mass_a, mass_b;      /* kg, of the whole bodies; 0 for a wall */
     dem_vec3 point;               /* m, in the world: between the surfaces; with a wall on a's */
     double time;                  /* s, at the end of the step */
+    /* numbers of your own that a and b (or the wall) carry, as many as desc.body_reals names, now;
+       null where it names none */
+    const dem_real *reals_a, *reals_b;
+    dem_real *rate_a, *rate_b;    /* 1/s: your law adds what each gains per second; begin at 0 */
 } dem_contact_who;
 /* What a law sees: this contact and nothing else. Velocities are of body a relative to body b, or
    to the wall's surface, at the full step: what dashpots and friction take. Displacements kept in
@@ -835,6 +843,14 @@ typedef struct dem_body_state dem_body_state;
 typedef void (*dem_body_force_fn)(const dem_body_state *body, dem_body id, double time,
                                   dem_vec3 *force, dem_vec3 *torque, void *user);
 
+/* What a grain's own numbers become in one step: reals (as many as desc.body_reals names) are to be
+   changed in place; rates: 1/s, what laws have answered for its contacts, summed; body: at the
+   step's beginning, time (s), of length dt (s). Null: reals += rates dt, Euler's step, which is
+   stable below 2 over the fastest rate of decay. Called once per body and step, from several
+   threads. */
+typedef void (*dem_reals_fn)(dem_real *reals, const dem_real *rates, const dem_body_state *body,
+                             dem_body id, double time, dem_real dt, void *user);
+
 /* Fills in a wall's pose at a time (s). Called twice a step (for its end and its middle) from one
    thread. Must be smooth, with velocity and spin the exact derivatives of position and rotation. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
@@ -879,6 +895,14 @@ typedef struct dem_world_desc {
        two ask. 0: it is asked about what touches, and nothing is paid for it */
     dem_real law_range, law_range_radii;
     int law_who;                   /* 1: your law gets c->who: ids, radii, masses, place, time */
+    /* Numbers of your own that every grain and wall carries (charge, temperature, moisture, age):
+       their names, at most 8 words of up to 23 letters, digits and _, such as "temperature charge",
+       by which files call them; null: none. New grains begin with zeros. A law of your own sees
+       them and answers rates (law_who). Grains gain rate dt in each step, or what body_reals_fn
+       makes of it; walls keep theirs, and count what they are given (dem_wall_loads) */
+    const char *body_reals;
+    dem_reals_fn body_reals_fn;
+    void *body_reals_user;         /* handed to it */
 
     dem_force_fn force;            /* force field of your own; 0: none */
     dem_body_force_fn body_force;  /* with torque; 0: none. Both may be given: they add up */
@@ -904,7 +928,7 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
     DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
     DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
-    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0,
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
@@ -1065,9 +1089,21 @@ typedef struct dem_bodies {
     /* count x 4: w, x, y, z, from principal axes to the world; null when no body has any */
     const dem_real *orientations;
     const int32_t *shapes;      /* count: dem_shape ids, 0: a sphere; null when all are */
+    int real_count;             /* numbers of your own per body: as many as desc.body_reals names */
+    const dem_real *reals;      /* count x real_count; null when there are none */
+    const dem_real *rates;      /* count x real_count: 1/s, of the last step; null as above */
 } dem_bodies;
 DEM_API dem_bodies dem_bodies_get(const dem_world *world);
 DEM_API dem_body dem_bodies_id(const dem_world *world, int index);
+
+/* Numbers of your own (desc.body_reals) of one grain, of all in the order of dem_bodies_get (count
+   x real_count), or of a wall: finite ones. Laws see them from the next step's forces on. An error
+   where desc.body_reals names none. */
+DEM_API dem_result dem_body_reals_get(const dem_world *world, dem_body body, dem_real *reals);
+DEM_API dem_result dem_body_reals_set(dem_world *world, dem_body body, const dem_real *reals);
+DEM_API dem_result dem_bodies_reals_set(dem_world *world, const dem_real *reals);
+DEM_API dem_result dem_wall_reals_get(const dem_world *world, dem_wall wall, dem_real *reals);
+DEM_API dem_result dem_wall_reals_set(dem_world *world, dem_wall wall, const dem_real *reals);
 
 /* ---- bodies that are not spheres ---- */
 
@@ -1266,6 +1302,8 @@ typedef struct dem_wall_loads {
     double torque_impulse;    /* N m s, of torque_axial */
     double work;              /* J, done on the grains */
     double time;              /* s, over which the last three were summed */
+    double rate[DEM_BODY_REALS];   /* 1/s, what your law says the wall gains, of the last step */
+    double gained[DEM_BODY_REALS]; /* the same, summed since dem_wall_loads_reset */
 } dem_wall_loads;
 DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall wall, dem_wall_loads *loads);
 DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
@@ -1394,6 +1432,11 @@ DEM_API dem_result dem_world_run(dem_world *world, double seconds, dem_progress_
 /* A progress function that rewrites one line on the FILE given as user. */
 DEM_API int dem_progress_print(const dem_world *world, double done, double seconds_left,
                                void *user);
+
+/* Gravity from now on, m/s2: a mill seen from its shell, a table that is tilted. As often as one
+   likes between two steps; dem_world_desc_get tells it, checkpoints hold it. Slabs take along that
+   of the world they are dealt from. An error where it is not finite: nothing changes. */
+DEM_API dem_result dem_world_gravity_set(dem_world *world, dem_vec3 gravity);
 
 DEM_API double dem_world_time(const dem_world *world);     /* s */
 DEM_API uint64_t dem_world_steps(const dem_world *world);
@@ -1700,7 +1743,7 @@ typedef struct dem_effect {
                                       has touched; 0: all that was asked for has happened */
     char text[200];                /* what acts; why nothing does; what has not happened */
 } dem_effect;
-enum { DEM_EFFECTS = 15 };
+enum { DEM_EFFECTS = 16 };
 /* What is active, what is off and why, what was asked for and never happened (a material with
    rolling friction that nothing has rolled on, a wall that nothing has touched), as far as lists of
    neighbours saw it. With a budget (s of wall time, 0: none) also the share of each in the time of
@@ -2185,6 +2228,7 @@ typedef struct demi_wall {
     int32_t *cell_start, *cell_items;
     int cell_item_count;
     dem_wall_loads loads;
+    dem_real reals[DEM_BODY_REALS];/* the user's own */
 } demi_wall;
 
 typedef struct demi_field {
@@ -2326,6 +2370,8 @@ typedef struct demi_bodies {
     int slot_count, slot_capacity; /* slots used so far, room */
     /* chains of free slots (-1: none); pending ones rest until a rebuild */
     int slot_free, slot_pending;
+    int real_count;                /* numbers of the user's per body; 0: the next two are null */
+    dem_real *reals, *rates;       /* x real_count; 1/s: what laws bring, of the present forces */
     uint8_t *ghost;              /* by slot; null outside >>slabs: 1: a copy, owned elsewhere */
     dem_real *scratch;             /* x 4, for permuting */
     int32_t *order, *cell_of;      /* permutation, cell of each body */
@@ -2355,6 +2401,7 @@ struct dem_world {
     /* >>world */
     dem_world_desc desc;           /* as given, with choices filled in */
     dem_world_desc asked;          /* as given */
+    char real_names[DEM_BODY_REALS*24];    /* what body_reals of both point to */
     /* >>memory: sentences (demi_fail), and all that was allocated */
     char error[512];
     char refusal[512];             /* of the first call that builds the scene and was refused */
@@ -2427,6 +2474,10 @@ struct dem_world {
                                       little less */
     dem_real *wall_shift;          /* x 3, m: from the grain to its image that is near */
     demi_wall_sum *wall_sums;      /* domain_count x wall_count */
+    /* where a law answers rates of the user's numbers: domain_count x wall_count x real_count, and
+       beside cross_force x real_count; else null */
+    double *wall_rates;
+    dem_real *cross_rate;
     int touching_valid;            /* the next three have room for the present candidates */
     demi_touching *touching;       /* of one body and wall, by domain */
     int32_t *touching_table;
@@ -2447,6 +2498,33 @@ struct dem_world {
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
 }
+/* Does a law answer rates of the user's numbers? */
+DEM_INLINE int demi_exchanges(const dem_world *w) {
+    return w->bodies.real_count > 0 && w->desc.law_who;
+}
+/* Word k of body_reals, its length; a null pointer: there are not so many. */
+static const char *demi_real_name(const char *names, int k, int *length) {
+    const char *at = names ? names : "";
+    for (;; k--) {
+        at += strspn(at, " ");
+        *length = (int)strcspn(at, " ");
+        if (!*length) return 0;
+        if (!k) return at;
+        at += *length;
+    }
+}
+/* How many body_reals names; -1: more than there may be, or a word that is none. */
+static int demi_real_names(const char *names) {
+    int count = 0, length, i;
+    const char *at;
+    while ((at = demi_real_name(names, count, &length)) != 0) {
+        for (i = 0; i < length; i++)
+            if (!strchr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_", at[i]))
+                return -1;
+        if (length > 23 || ++count > DEM_BODY_REALS) return -1;
+    }
+    return count;
+}
 /* m: gap up to which the law is asked about two of these radii, together (with a wall: about one);
    0 where it is asked at touch alone. */
 DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
@@ -2456,14 +2534,16 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
 /* --- what each body has, told once. Making room, adding, removing, sorting, checking, saving and
        sending to another slab are loops over these rows (>>bodies). >>add-array: a field in
        demi_bodies above and a row here. Who has it: DEMI_EVERY body; DEMI_BACK: those of a scheme
-       that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_SLOTS: every slot.
+       that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_COUNTED: those of a
+       world with numbers of the user's, as many times as there are numbers; DEMI_SLOTS: every slot.
        What is done with it: DEMI_KEPT: it is state, and 0 in a new body unless set; DEMI_REALS:
        kept, and finite; DEMI_PLACES: reals that begin with a place, which moves by a period; 0:
        room to work in. --- */
-enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_SLOTS };
+enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_COUNTED, DEMI_SLOTS };
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
-    size_t field, item;            /* where its pointer stands in demi_bodies; bytes of one body */
+    /* where its pointer stands in demi_bodies; bytes of one body (demi_item: of counted ones) */
+    size_t field, item;
     int who, what;
 } demi_body_array;
 #define DEMI_ARRAY(field, count, who, what) \
@@ -2486,6 +2566,8 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(angular,         4, DEMI_TURNED, DEMI_REALS),
     DEMI_ARRAY(moment,          4, DEMI_TURNED, DEMI_REALS),
     DEMI_ARRAY(shape,           1, DEMI_TURNED, DEMI_KEPT),
+    DEMI_ARRAY(reals,           1, DEMI_COUNTED, DEMI_REALS),
+    DEMI_ARRAY(rates,           1, DEMI_COUNTED, DEMI_REALS),
     DEMI_ARRAY(scratch,         4, DEMI_EVERY,  0),
     DEMI_ARRAY(order,           1, DEMI_EVERY,  0),
     DEMI_ARRAY(cell_of,         1, DEMI_EVERY,  0),
@@ -2802,6 +2884,21 @@ DEM_INLINE void demi_who_clear(dem_contact_who *who) {
     who->radius_a = who->radius_b = who->mass_a = who->mass_b = 0;
     who->point = demi_v(0, 0, 0);
     who->time = 0;
+    who->reals_a = who->reals_b = 0;
+    who->rate_a = who->rate_b = 0;
+}
+/* The numbers of body a and of body b, or wall, and where their rates go: two rows of
+   DEM_BODY_REALS, from here on 0. */
+static void demi_who_reals(const dem_world *w, int a, int b, int wall, dem_real *rates,
+                           dem_contact_who *who) {
+    const int n = w->bodies.real_count;
+    int k;
+    if (!n) return;
+    for (k = 0; k < 2*DEM_BODY_REALS; k++) rates[k] = 0;
+    who->reals_a = w->bodies.reals + n*a;
+    who->reals_b = b >= 0 ? w->bodies.reals + n*b : w->walls[wall].reals;
+    who->rate_a = rates;
+    who->rate_b = rates + DEM_BODY_REALS;
 }
 /* What the desc says about how dashpots meet the end of a contact and friction's limit; what it
    says where nothing is asked for. */
@@ -4243,7 +4340,11 @@ static int demi_list_drop(dem_world *w) {
 /* Does each body of this world (or slot) have one? */
 static int demi_has(const dem_world *w, const demi_body_array *a) {
     return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
-           : 1;
+           : a->who == DEMI_COUNTED ? w->bodies.real_count > 0 : 1;
+}
+/* Bytes of one body. */
+static size_t demi_item(const dem_world *w, const demi_body_array *a) {
+    return a->item*(a->who == DEMI_COUNTED ? (size_t)w->bodies.real_count : 1);
 }
 /* Is it state that each body of this world keeps? */
 static int demi_keeps(const dem_world *w, const demi_body_array *a) {
@@ -4254,7 +4355,7 @@ static size_t demi_body_size(const dem_world *w) {
     size_t size = 0;
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++)
-        if (demi_keeps(w, &demi_body_arrays[k])) size += demi_body_arrays[k].item;
+        if (demi_keeps(w, &demi_body_arrays[k])) size += demi_item(w, &demi_body_arrays[k]);
     return size;
 }
 static char *demi_data(const dem_world *w, const demi_body_array *a) {
@@ -4264,7 +4365,7 @@ static char *demi_data(const dem_world *w, const demi_body_array *a) {
 }
 /* What body i has of it. */
 static char *demi_datum(const dem_world *w, const demi_body_array *a, int i) {
-    return demi_data(w, a) + (size_t)i*a->item;
+    return demi_data(w, a) + (size_t)i*demi_item(w, a);
 }
 /* New room for those arrays that `chosen` names, a bit for each who, keeping the first `used`
    items. 0 when memory ran out: all are as they were. */
@@ -4275,7 +4376,7 @@ static int demi_bodies_room(dem_world *w, int chosen, size_t used, size_t room) 
         const demi_body_array *a = &demi_body_arrays[k];
         fresh[k] = 0;
         if (!(chosen >> a->who & 1) || !room) continue;
-        fresh[k] = demi_hold(w, DEMI_RUN, room, a->item);
+        fresh[k] = demi_hold(w, DEMI_RUN, room, demi_item(w, a));
         if (fresh[k]) continue;
         while (k--) demi_free(w, fresh[k]);
         return 0;
@@ -4283,7 +4384,7 @@ static int demi_bodies_room(dem_world *w, int chosen, size_t used, size_t room) 
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         if (!fresh[k]) continue;
-        if (used) memcpy(fresh[k], demi_data(w, a), used*a->item);
+        if (used) memcpy(fresh[k], demi_data(w, a), used*demi_item(w, a));
         demi_free(w, demi_data(w, a));
         memcpy((char *)&w->bodies + a->field, &fresh[k], sizeof fresh[k]);
     }
@@ -4297,7 +4398,8 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
     const size_t more = count > (size_t)w->bodies.count ? count - (size_t)w->bodies.count : 0;
     const size_t slots = (size_t)w->bodies.slot_count + more;
     const int sets =
-        1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED;
+        1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED |
+        (w->bodies.real_count > 0) << DEMI_COUNTED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->bodies.capacity) {
         if (!demi_bodies_room(w, sets, (size_t)w->bodies.count, room)) return 0;
@@ -4317,7 +4419,7 @@ static void demi_body_clear(dem_world *w, int i) {
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         if (demi_keeps(w, a))
-            memset(demi_datum(w, a, i), 0, a->item);
+            memset(demi_datum(w, a, i), 0, demi_item(w, a));
     }
 }
 /* All that body `from` keeps, into body `to`. */
@@ -4326,7 +4428,7 @@ static void demi_body_copy(dem_world *w, int from, int to) {
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         if (demi_keeps(w, a))
-            memcpy(demi_datum(w, a, to), demi_datum(w, a, from), a->item);
+            memcpy(demi_datum(w, a, to), demi_datum(w, a, from), demi_item(w, a));
     }
 }
 
@@ -4713,7 +4815,54 @@ DEM_API dem_bodies dem_bodies_get(const dem_world *w) {
     b.masses = w->bodies.mass; b.slots = w->bodies.slot; b.materials = w->bodies.material;
     b.orientations = w->bodies.orient;
     b.shapes = w->bodies.shape;
+    b.real_count = w->bodies.real_count;
+    b.reals = w->bodies.reals;
+    b.rates = w->bodies.rates;
     return b;
+}
+/* Refuses a call about numbers of the user's where there are none, or that are not finite. */
+static dem_result demi_reals_ask(const dem_world *world, const char *call, const dem_real *reals,
+                                 int count, int setting) {
+    dem_world *w = (dem_world *)world;
+    int k;
+    if (demi_null(w, call, reals, "reals")) return DEM_ERROR_ARGUMENT;
+    if (!w->bodies.real_count)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grains carry no numbers of your own; name "
+                         "them in desc.body_reals when the world is created", call);
+    for (k = 0; setting && k < count*w->bodies.real_count; k++)
+        if (!demi_finite(reals[k]))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: number %d is %g, must be finite; check "
+                             "what it was computed from", call, k, (double)reals[k]);
+    return DEM_OK;
+}
+DEM_API dem_result dem_body_reals_get(const dem_world *w, dem_body body, dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_body_reals_get", reals, 1, 0);
+    int i;
+    if (result != DEM_OK) return result;
+    i = demi_body_index((dem_world *)w, "dem_body_reals_get", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memcpy(reals, w->bodies.reals + w->bodies.real_count*i,
+           (size_t)w->bodies.real_count*sizeof *reals);
+    return DEM_OK;
+}
+DEM_API dem_result dem_body_reals_set(dem_world *w, dem_body body, const dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_body_reals_set", reals, 1, 1);
+    int i;
+    if (result != DEM_OK) return result;
+    i = demi_body_index(w, "dem_body_reals_set", body);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memcpy(w->bodies.reals + w->bodies.real_count*i, reals,
+           (size_t)w->bodies.real_count*sizeof *reals);
+    return DEM_OK;
+}
+DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_bodies_reals_set", reals,
+                                             w ? w->bodies.count : 0, 1);
+    if (result != DEM_OK) return result;
+    if (w->bodies.count)
+        memcpy(w->bodies.reals, reals,
+               (size_t)(w->bodies.count*w->bodies.real_count)*sizeof *reals);
+    return DEM_OK;
 }
 DEM_API dem_body dem_bodies_id(const dem_world *w, int index) {
     if (demi_null(w, "dem_bodies_id", w, "world")) return demi_no_body;
@@ -6209,6 +6358,24 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
     return DEM_OK;
 }
 
+DEM_API dem_result dem_wall_reals_get(const dem_world *w, dem_wall id, dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_wall_reals_get", reals, 1, 0);
+    int i;
+    if (result != DEM_OK) return result;
+    i = demi_wall_find((dem_world *)w, "dem_wall_reals_get", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memcpy(reals, w->walls[i].reals, (size_t)w->bodies.real_count*sizeof *reals);
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_reals_set(dem_world *w, dem_wall id, const dem_real *reals) {
+    const dem_result result = demi_reals_ask(w, "dem_wall_reals_set", reals, 1, 1);
+    int i;
+    if (result != DEM_OK) return result;
+    i = demi_wall_find(w, "dem_wall_reals_set", id);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memcpy(w->walls[i].reals, reals, (size_t)w->bodies.real_count*sizeof *reals);
+    return DEM_OK;
+}
 DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall id, dem_wall_loads *loads) {
     if (demi_null(world, "dem_wall_loads_get", loads, "loads")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find((dem_world *)world, "dem_wall_loads_get", id);
@@ -6223,6 +6390,7 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *w, dem_wall id) {
     if (i < 0) return DEM_ERROR_ARGUMENT;
     wall = &w->walls[i];
     memset(wall->loads.impulse, 0, sizeof wall->loads.impulse);
+    memset(wall->loads.gained, 0, sizeof wall->loads.gained);
     wall->loads.torque_impulse = wall->loads.work = wall->loads.time = 0;
     return DEM_OK;
 }
@@ -6291,16 +6459,25 @@ static int demi_grid_lay(dem_world *w, double least) {
 static void demi_permute(dem_world *w, const demi_body_array *a) {
     char *to = (char *)w->bodies.scratch;
     const char *from = demi_data(w, a);
-    const size_t n = (size_t)w->bodies.count;
-    size_t i;
+    const size_t n = (size_t)w->bodies.count, item = demi_item(w, a);
+    size_t i, k;
 #define DEMI_PERMUTE(size) \
     for (i = 0; i < n; i++) memcpy(to + i*(size), from + (size_t)w->bodies.order[i]*(size), size)
-    if (a->item == 4*sizeof(dem_real)) DEMI_PERMUTE(4*sizeof(dem_real));
-    else if (a->item == sizeof(dem_real)) DEMI_PERMUTE(sizeof(dem_real));
-    else if (a->item == sizeof(int32_t)) DEMI_PERMUTE(sizeof(int32_t));
-    else DEMI_PERMUTE(a->item);
+    if (item == 4*sizeof(dem_real)) DEMI_PERMUTE(4*sizeof(dem_real));
+    else if (item == sizeof(dem_real)) DEMI_PERMUTE(sizeof(dem_real));
+    else if (item == sizeof(int32_t)) DEMI_PERMUTE(sizeof(int32_t));
+    else {                                      /* piece by piece: there is room for four reals */
+        for (k = 0; k < item; k += 4*sizeof(dem_real)) {
+            const size_t piece = DEMI_MIN(item - k, 4*sizeof(dem_real));
+            char *back = demi_data(w, a) + k;
+            for (i = 0; i < n; i++)
+                memcpy(to + i*piece, from + (size_t)w->bodies.order[i]*item + k, piece);
+            for (i = 0; i < n; i++) memcpy(back + i*item, to + i*piece, piece);
+        }
+        return;
+    }
 #undef DEMI_PERMUTE
-    memcpy(demi_data(w, a), to, n*a->item);
+    memcpy(demi_data(w, a), to, n*item);
 }
 /* Puts the bodies of cell c, in their order, at order[start[c]] .. order[start[c + 1] - 1]. Answers
    whether they stood so already. */
@@ -7112,11 +7289,20 @@ static int demi_wall_lists_reserve(dem_world *w, int stride) {
     if (ok) w->wall_stride = stride;
     return ok;
 }
+/* Room for what domains do to walls. */
+static int demi_wall_sums_room(dem_world *w) {
+    const size_t n = (size_t)w->domain_count*(size_t)w->wall_count;
+    return DEMI_GROW(w, w->wall_sums, n) &&
+           (!demi_exchanges(w) || DEMI_GROW(w, w->wall_rates, (size_t)w->bodies.real_count*n));
+}
 /* Room for all entries that the cross lists can hold. */
 static int demi_cross_reserve(dem_world *w) {
     const size_t entries = (size_t)w->domain_count*(size_t)w->cross.stride;
     const int ok = DEMI_GROW(w, w->cross_incoming, entries) &&
-                   DEMI_GROW(w, w->cross_force, 6*(entries + DEMI_LANES + 1));
+                   DEMI_GROW(w, w->cross_force, 6*(entries + DEMI_LANES + 1)) &&
+                   (!demi_exchanges(w) ||
+                    DEMI_GROW(w, w->cross_rate,
+                              (size_t)w->bodies.real_count*(entries + DEMI_LANES + 1)));
     return ok;
 }
 /* The domain a body belongs to. */
@@ -7214,7 +7400,7 @@ static int demi_kept_room(dem_world *w, int *first) {
             if (a >= 0 && b >= 0) crowd[demi_domain_of(w, DEMI_MIN(a, b))]++;
         }
     demi_kept_lay(w, w->domain_count, crowd, first);
-    return DEMI_GROW(w, w->wall_sums, (size_t)w->domain_count*(size_t)w->wall_count) &&
+    return demi_wall_sums_room(w) &&
            DEMI_GROW(w, w->kept_next, (size_t)DEMI_MAX(first[DEMI_DOMAINS], total)) &&
            DEMI_GROW(w, w->kept_now, (size_t)first[DEMI_DOMAINS]);
 }
@@ -7795,7 +7981,7 @@ static void demi_skin_choose(dem_world *w) {
 
 /* Does a function of the user's answer forces? */
 static int demi_own(const dem_world *w) {
-    return w->desc.law || w->desc.force || w->desc.body_force;
+    return w->desc.law || w->desc.body_reals_fn || w->desc.force || w->desc.body_force;
 }
 /* Do laws ask for spins in this scene? Does any body have one that matters? */
 static int demi_spins(const dem_world *w) {
@@ -9034,6 +9220,7 @@ typedef struct demi_tile {
     dem_real force[3][DEMI_ROW], torque[2][3][DEMI_ROW];  /* torque on a, on b */
     /* the last, so that rows begin on cache lines (3 % of a step) */
     int row;                       /* of species_coef: all of coef holds it; -1: no row does */
+    dem_real gains[DEMI_ROW][2*DEM_BODY_REALS];   /* 1/s, of the user's numbers */
 } demi_tile;
 /* Where the pairs of a tile stand in the near list. */
 typedef struct demi_span {
@@ -9450,7 +9637,7 @@ DEMI_WHOLE_ROLLING(rolling_mixed_ledger, 0, 1)
 
 /* Who the two of pair q are, for a law that wants to know. */
 static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int q,
-                                     dem_contact *c) {
+                                     dem_real *rates, dem_contact *c) {
     const dem_world *w = r->w;
     const int a = r->span->a[q], b = r->span->b[q];
     const demi_periods periods = demi_periods_of(w);
@@ -9464,6 +9651,7 @@ static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int 
     c->who.point = demi_place_of(&periods, demi_add(demi_at(x),
         demi_scale(demi_rows_at(&t->gap, q), x[3]/(x[3] + y[3]))));
     c->who.time = w->clock.time;
+    demi_who_reals(w, a, b, 0, rates, &c->who);
 }
 /* Pair q as the user's law sees it. */
 DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, const demi_same *same,
@@ -9474,7 +9662,7 @@ DEM_INLINE void demi_tile_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, con
     c->material_a = w->bodies.material[r->span->a[q]];
     c->material_b = w->bodies.material[r->span->b[q]];
     c->user = w->desc.law_user;
-    if (who) demi_tile_who(t, r, q, c);
+    if (who) demi_tile_who(t, r, q, t->gains[q], c);
 }
 /* The user's law: only what touches, one by one; inlined into the loop where DEM_LAW names it, but
    for one that asks who touches. */
@@ -9758,6 +9946,23 @@ static void demi_tile_send(demi_tile *DEMI_RESTRICT t, const demi_span *span,
     }
 }
 
+/* What a law has answered for the users' numbers of a tile's pairs: to both bodies, or, where the
+   pairs lead out, the far ends' to slots, of which `out` is the first. */
+static DEMI_APART void demi_tile_rates(const demi_tile *t, const demi_span *span, dem_world *w,
+                                       dem_real *out) {
+    const int n = w->bodies.real_count;
+    int q, k;
+    for (q = 0; q < span->count; q++) {
+        dem_real *a = w->bodies.rates + n*span->a[q], *b = w->bodies.rates + n*span->b[q];
+        const int touch = t->touch[q] > 0;
+        for (k = 0; k < n; k++) {
+            if (touch) a[k] += t->gains[q][k];
+            if (out) out[n*q + k] = touch ? t->gains[q][DEM_BODY_REALS + k] : 0;
+            else if (touch) b[k] += t->gains[q][DEM_BODY_REALS + k];
+        }
+    }
+}
+
 /* All pairs of one domain: those inside it, then those that lead out. */
 static void demi_pairs(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -9782,6 +9987,10 @@ static void demi_pairs(dem_world *w, int d) {
             else demi_tile_send(&tile, &span, r, w->bodies.force, w->bodies.torque,
                                 w->cross_force + 6*((size_t)d*(size_t)w->cross.stride +
                                                    (size_t)(p - begin)));
+            if (demi_exchanges(w))
+                demi_tile_rates(&tile, &span, w, !l ? 0 : w->cross_rate +
+                                (size_t)w->bodies.real_count*((size_t)d*(size_t)w->cross.stride +
+                                                              (size_t)(p - begin)));
         }
     }
     domain->contacts = (int)tally.contacts;
@@ -9790,22 +9999,26 @@ static void demi_pairs(dem_world *w, int d) {
 
 /* The far ends of pairs that lead into domain d from domains before it. */
 static void demi_cross_gather(dem_world *w, int d) {
-    const int turning = demi_spins(w);
+    const int turning = demi_spins(w), rates = demi_exchanges(w) ? w->bodies.real_count : 0;
     const int stride = w->cross.stride;
     int k, e, p, shaped, from = 0;
     for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
         const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
         const dem_real *force;
+        size_t slot;
         while (entry >= (from + 1)*stride) from++;
         p = w->cross.place[entry] - 1;
         if (p < 0) continue;
         shaped = p >= w->domains[from].near_shaped;
         p -= shaped ? w->domains[from].near_shaped_cross - w->domains[from].near_end : 0;
-        force = w->cross_force + 6*(size_t)(from*stride + p - w->domains[from].near_cross);
+        slot = (size_t)(from*stride + p - w->domains[from].near_cross);
+        force = w->cross_force + 6*slot;
         for (e = 0; e < 3; e++) {
             w->bodies.force[j + e] += force[e];
             if (turning || shaped) w->bodies.torque[j + e] += force[3 + e];
         }
+        for (e = 0; e < rates; e++)
+            w->bodies.rates[rates*(j/4) + e] += w->cross_rate[(size_t)rates*slot + (size_t)e];
     }
 }
 
@@ -10342,9 +10555,9 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
    may touch in several places and each may push past the centre; a wall is touched in as many
    places as it has surfaces near: so these contacts are kept one by one. touch finds them (geometry
    only: parts against parts, parts against wall elements) and which of the step before each
-   continues; respond takes memory over from that one, asks the law and pushes. Within a domain they
-   stand in the order of their body a. Touch may run out of room; it then begins anew with more,
-   nothing lost.
+   continues; >>kept-respond takes memory over from that one, asks the law and pushes. Within a
+   domain they stand in the order of their body a. Touch may run out of room; it then begins anew
+   with more, nothing lost.
    --------------------------------------------------------------------------------------------- */
 
 /* Is the law asked about a contact? Not where the two are apart, but for a law with a range, nor
@@ -10952,7 +11165,12 @@ static int demi_touch(dem_world *w) {
     return 1;
 }
 
-/* --- respond --- */
+/* ---------------------------------------------------------------------------------------------
+   >>kept-respond
+   The law's answers to kept contacts: coefficients and memory of each, the contact as a law sees
+   it, forces on both ends, walls' sums, energies, rates of the user's numbers. Owns what goes from
+   step to step in a contact; pushes bodies.
+   --------------------------------------------------------------------------------------------- */
 
 /* What a body adds to 1/M, 1/kg, where a stiffness follows masses: as light as any contact may find
    it, which is what the time step is chosen for. */
@@ -11026,7 +11244,8 @@ static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
         (k->b < 0 ? 0 : demi_part_now(w, k->b, k->part_b).radius);
 }
 /* Who touches, for a law that wants to know. */
-static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_contact_who *who) {
+static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rates,
+                          dem_contact_who *who) {
     const demi_periods periods = demi_periods_of(w);
     who->a = dem_bodies_id(w, k->a);
     who->radius_a = demi_part_now(w, k->a, k->part_a).radius;
@@ -11039,10 +11258,13 @@ static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_contact_wh
         who->radius_b = w->walls[k->wall].radius;
     who->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*k->a), k->arm_a));
     who->time = w->clock.time;
+    demi_who_reals(w, k->a, k->b, k->wall, rates, who);
 }
-/* The contact as a law sees it; old: a step ago. surface: velocity of the wall there. */
+/* The contact as a law sees it; old: a step ago. surface: velocity of the wall there. rates: where
+   the law's answers go, as demi_who_reals has it. */
 static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_kept *old,
-                           dem_real dt, dem_contact *c, dem_vec3 *at, dem_vec3 *surface) {
+                           dem_real dt, dem_real *rates, dem_contact *c, dem_vec3 *at,
+                           dem_vec3 *surface) {
     const dem_real *coef = k->coef, slope = k->slope;    /* m of overlap per m of approach */
     const int a = k->a, b = k->b;
     const dem_vec3 n = k->normal, half = demi_v(DEM_R(0.5), DEM_R(0.5), DEM_R(0.5));
@@ -11075,7 +11297,7 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
     memset(c, 0, w->desc.law ? sizeof *c : offsetof(dem_contact, who));
     c->overlap = k->overlap;
     if (w->margin.reach > 0) c->range = demi_range(w, demi_kept_radii(w, k));
-    if (w->desc.law_who) demi_kept_who(w, k, &c->who);
+    if (w->desc.law_who) demi_kept_who(w, k, rates, &c->who);
     c->normal = n;
     c->closing_speed = demi_dot(u, n);
     c->slip = demi_sub(u, demi_scale(n, c->closing_speed));
@@ -11108,10 +11330,11 @@ DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
 }
 static DEMI_APART dem_real demi_kept_still(const dem_world *w, const demi_kept *k,
                                           const dem_contact *c) {
-    dem_real memory[DEMI_MEMORY];
+    dem_real memory[DEMI_MEMORY], rates[2*DEM_BODY_REALS];
     dem_contact still = *c;
     dem_contact_force f;
     memcpy(memory, k->memory, sizeof memory);
+    if (c->who.rate_a) demi_who_reals(w, k->a, k->b, k->wall, rates, &still.who);
     still.closing_speed = 0;
     demi_law(w, &still, memory, &f);
     return f.normal;
@@ -11141,6 +11364,22 @@ DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *p
     domain->energy[DEMI_E_ROLL] += (double)(grip*part->roll);
 }
 
+/* What a law has answered for the users' numbers of contact c: as often as it counts. */
+static DEMI_APART void demi_kept_rates(dem_world *w, int d, const demi_kept *c,
+                                       const dem_real *rates) {
+    const int n = w->bodies.real_count;
+    double *wall = c->b >= 0 ? 0 : w->wall_rates +
+        (size_t)n*((size_t)d*(size_t)w->wall_count + (size_t)c->wall);
+    dem_real *b = c->b < 0 ? 0 : c->send ? w->cross_rate + (size_t)n*(size_t)(c->send - 1)
+        : w->bodies.rates + n*c->b;
+    int k;
+    for (k = 0; k < n; k++) {
+        const dem_real gain = c->share*rates[DEM_BODY_REALS + k];
+        w->bodies.rates[n*c->a + k] += c->share*rates[k];
+        if (b) b[k] += gain;
+        else wall[k] += (double)gain;
+    }
+}
 /* A body that a contact will soon read and push. */
 DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.vel + 4*body);
@@ -11163,7 +11402,7 @@ static void demi_kept_respond(dem_world *w, int d) {
         const int a = c->a, b = c->b;
         const demi_kept *old;
         int touches;
-        dem_real press, still;
+        dem_real press, still, rates[2*DEM_BODY_REALS];
         dem_contact contact;
         dem_contact_force f;
         dem_vec3 at, surface, force, moment, moment_b;
@@ -11175,7 +11414,7 @@ static void demi_kept_respond(dem_world *w, int d) {
             domain->kept_walls += b < 0;
             continue;
         }
-        demi_kept_fill(w, c, old, dt, &contact, &at, &surface);
+        demi_kept_fill(w, c, old, dt, rates, &contact, &at, &surface);
         if (touches && (c->from < 0 || !(old->overlap > 0)))
             domain->met[DEMI_MIN(contact.material_a, contact.material_b) - 1] |= UINT64_C(1) <<
                 (DEMI_MAX(contact.material_a, contact.material_b) - 1);
@@ -11215,6 +11454,7 @@ static void demi_kept_respond(dem_world *w, int d) {
             sums[c->wall].contacts += touches;
             domain->kept_walls += touches;
         }
+        if (demi_exchanges(w)) demi_kept_rates(w, d, c, rates);
         domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
         f.energy.elastic /= c->slope;           /* V = k overlap^2/2; the law was given k slope */
         f.energy.sag /= c->slope;
@@ -11225,10 +11465,12 @@ static void demi_kept_respond(dem_world *w, int d) {
 static void demi_kept_clear(dem_world *w, int d) {
     const demi_domain *domain = &w->domains[d];
     const int pairs = domain->near_shaped_end - domain->near_shaped_cross;
-    if (pairs > 0)
-        memset(w->cross_force + 6*((size_t)d*(size_t)w->cross.stride +
-                                  (size_t)(domain->near_end - domain->near_cross)), 0,
-               6*(size_t)pairs*sizeof(dem_real));
+    const size_t first = (size_t)d*(size_t)w->cross.stride +
+                         (size_t)(domain->near_end - domain->near_cross);
+    const size_t rates = demi_exchanges(w) ? (size_t)w->bodies.real_count : 0;
+    if (pairs > 0) memset(w->cross_force + 6*first, 0, 6*(size_t)pairs*sizeof(dem_real));
+    if (pairs > 0 && rates)
+        memset(w->cross_rate + rates*first, 0, rates*(size_t)pairs*sizeof(dem_real));
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -13726,6 +13968,23 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
 }
+/* The user's numbers of a domain's bodies follow the rates of the step before. */
+static void demi_reals_move(dem_world *w, int d) {
+    const int n = w->bodies.real_count;
+    const dem_real dt = w->clock.dt;
+    int i, k;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
+        dem_real *reals = w->bodies.reals + n*i;
+        const dem_real *rates = w->bodies.rates + n*i;
+        const dem_body id = dem_bodies_id(w, i);
+        dem_body_state body;
+        if (demi_is_ghost(w, i)) continue;
+        if (!w->desc.body_reals_fn) for (k = 0; k < n; k++) reals[k] += rates[k]*dt;
+        else if (dem_body_get(w, id, &body) == DEM_OK)
+            w->desc.body_reals_fn(reals, rates, &body, id, w->clock.time, dt,
+                                  w->desc.body_reals_user);
+    }
+}
 /* All bodies of a domain, a few at a time; what is found on the way goes into the domain's sums. */
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -13736,6 +13995,7 @@ static void demi_domain_move(dem_world *w, int d) {
     domain->energy[DEMI_E_GRAVITY] = 0;
     domain->speed2 = domain->acceleration2 = domain->check = 0;
     domain->turn = domain->turn_speed = domain->turn_rate = 0;
+    if (w->bodies.real_count) demi_reals_move(w, d);
     if (demi_quiet_possible(w)) demi_quiet_move(w, d, turning, &pace);
     else for (i = domain->begin; i < domain->end; i += some)
         demi_some_move(w, domain, i, DEMI_MIN(i + some, domain->end), turning, &pace);
@@ -13784,6 +14044,9 @@ static void demi_domain_clear(dem_world *w, int d) {
         memset(w->bodies.force + 4*domain->begin, 0, n);
         memset(w->bodies.torque + 4*domain->begin, 0, n);
     }
+    if (w->bodies.real_count)
+        memset(w->bodies.rates + w->bodies.real_count*domain->begin, 0,
+               (size_t)w->bodies.real_count*n/4);
     for (i = domain->begin; i < domain->end && w->desc.force; i++) {
         if (demi_is_ghost(w, i)) continue;
         const dem_vec3 f = w->desc.force(demi_at(w->bodies.pos + 4*i), demi_at(w->bodies.vel + 4*i),
@@ -13802,6 +14065,10 @@ static void demi_domain_respond(dem_world *w, int d) {
     const size_t walls = (size_t)w->wall_count;
     demi_domain_clear(w, d);
     if (walls) memset(w->wall_sums + (size_t)d*walls, 0, walls*sizeof *w->wall_sums);
+    if (walls && demi_exchanges(w)) {
+        const size_t row = (size_t)w->bodies.real_count*walls;
+        memset(w->wall_rates + (size_t)d*row, 0, row*sizeof *w->wall_rates);
+    }
     w->kernel(w, d);
     demi_kept_clear(w, d);
     demi_kept_respond(w, d);
@@ -13814,12 +14081,28 @@ static void demi_domain_gather(dem_world *w, int d) {
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
             sum += fabs((double)w->bodies.force[i]) + fabs((double)w->bodies.torque[i]);
+        for (i = w->bodies.real_count*w->domains[d].begin;
+             i < w->bodies.real_count*w->domains[d].end; i++)
+            sum += fabs((double)w->bodies.rates[i]) + fabs((double)w->bodies.reals[i]);
         w->domains[d].check = sum;
     }
     if (!w->desc.planar) return;
     /* nothing pushes a disc out of its plane */
     for (i = w->domains[d].begin; i < w->domains[d].end; i++)
         w->bodies.force[4*i + 2] = w->bodies.torque[4*i] = w->bodies.torque[4*i + 1] = 0;
+}
+/* What walls gain of the user's numbers per second: domains in order, as above. */
+static void demi_walls_rates(dem_world *w) {
+    const size_t n = (size_t)w->bodies.real_count, walls = (size_t)w->wall_count;
+    size_t i, k;
+    int d;
+    for (i = 0; i < walls; i++)
+        for (k = 0; k < n; k++) {
+            dem_wall_loads *c = &w->walls[i].loads;
+            c->rate[k] = 0;
+            for (d = 0; d < w->domain_count; d++)
+                c->rate[k] += w->wall_rates[n*((size_t)d*walls + i) + k];
+        }
 }
 /* Forces at the present positions and velocities; wall loads. */
 static void demi_forces(dem_world *w) {
@@ -13857,6 +14140,7 @@ static void demi_forces(dem_world *w) {
         c->work += power*dt;
         c->time += dt;
     }
+    if (demi_exchanges(w)) demi_walls_rates(w);
     for (d = 0; d < w->domain_count; d++)
         w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, w->domains[d].overlap);
     if (w->material_count == 1 && w->booked.overlap_max > 0) w->booked.met[0] = 1;
@@ -13905,6 +14189,20 @@ static dem_result demi_unstable(dem_world *w) {
                              "law, force field or motion of your own divided by zero, or dt "
                              "= %g s is too large", (unsigned long long)w->clock.steps,
                              (unsigned)w->bodies.slot[i] + 1, (double)w->clock.dt);
+    for (i = 0; i < w->bodies.count*w->bodies.real_count; i++) {
+        const int k = i%w->bodies.real_count;
+        int n;
+        const char *name = demi_real_name(w->real_names, k, &n);
+        if (!(fabs((double)w->bodies.reals[i]) + fabs((double)w->bodies.rates[i]) < 1e300))
+            return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its %.*s "
+                             "is %g with a rate of %g, no longer a number; likely it swings from "
+                             "step to step: reals += rates dt wants dt = %g s below 2 over the "
+                             "fastest rate of decay (a larger capacity, a smaller dt), or your law "
+                             "or body_reals_fn divided by zero", (unsigned long long)w->clock.steps,
+                             (unsigned)w->bodies.slot[i/w->bodies.real_count] + 1, n, name,
+                             (double)w->bodies.reals[i], (double)w->bodies.rates[i],
+                             (double)w->clock.dt);
+    }
     for (d = 0; d < w->domain_count; d++)
         for (i = 0; i < w->domains[d].kept; i++) {
             const demi_kept *c = demi_kept_of(w, d) + i;
@@ -14032,11 +14330,19 @@ static void demi_time_pass(dem_world *w) {
     w->clock.steps++;
     w->clock.time = w->clock.since.time + (double)(w->clock.steps - w->clock.since.steps)*dt;
 }
+/* Walls gain what the last forces brought them, when grains do. */
+static void demi_walls_gain(dem_world *w) {
+    int i, k;
+    for (i = 0; i < w->wall_count; i++)
+        for (k = 0; k < w->bodies.real_count; k++)
+            w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
+}
 /* 1 move: first half kick, drift, predicted velocities; walls follow. */
 static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
     w->clock.half_kick = (double)w->clock.dt/2;
+    demi_walls_gain(w);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
     w->stage.synced = 0;
     demi_time_pass(w);
@@ -14161,6 +14467,18 @@ static dem_result demi_refresh(dem_world *w) {
     return DEM_OK;
 }
 
+DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
+    if (demi_null(w, "dem_world_gravity_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (!demi_finite3(gravity))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_gravity_set: gravity is (%g, %g, %g) "
+                         "m/s2, must be finite; check what it was computed from",
+                         (double)gravity.x, (double)gravity.y, (double)gravity.z);
+    demi_finish(w);                             /* the half kick that is due is of the old one */
+    w->desc.gravity = gravity;
+    if (w->desc.planar) w->desc.gravity.z = 0;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     if (demi_null(w, "dem_world_step", w, "world")) return DEM_ERROR_ARGUMENT;
     dem_result result = DEM_OK;
@@ -15406,7 +15724,7 @@ static void demi_column_write(demi_out *o, const demi_column *c, int turn) {
     }
 }
 
-enum { DEMI_GRAIN_COLUMNS = 10 };
+enum { DEMI_GRAIN_COLUMNS = 10 + DEM_BODY_REALS };
 
 /* What is drawn of the bodies: the arrays as they are or, where there are clusters and ellipsoids,
    one row for each part, in arrays of its own. */
@@ -15416,22 +15734,34 @@ typedef struct demi_drawing {
     const dem_real *orient, *axes;                 /* count x 4; null: no orientations */
     const uint32_t *slots;
     const int32_t *materials;
-    dem_real *own;                                 /* count x 20 */
+    const dem_real *reals;                         /* count x real_count */
+    int real_count;
+    char names[DEM_BODY_REALS][24];
+    dem_real *own;                                 /* count x 20, and reals */
     int32_t *own_ids;                              /* count x 2 */
 } demi_drawing;
 /* 0 when memory ran out. */
 static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     const dem_real *places = demi_wrapped(w);
     dem_real *row;
+    size_t reals;
     int i, k, e, n = 0;
     memset(g, 0, sizeof *g);
     g->count = w->bodies.count;
     g->pos = places; g->vel = w->bodies.vel; g->spin = w->bodies.spin;
     g->slots = w->bodies.slot; g->materials = w->bodies.material;
+    g->reals = w->bodies.reals; g->real_count = w->bodies.real_count;
+    for (k = 0; k < g->real_count; k++) {
+        const char *name = demi_real_name(w->desc.body_reals, k, &n);
+        sprintf(g->names[k], "%.*s", n, name);
+    }
+    n = 0;
     if (!w->bodies.orienting) return 1;
     g->count = 0;
     for (i = 0; i < w->bodies.count; i++) g->count += demi_parts_count(w, i);
-    g->own = (dem_real *)demi_alloc(w, 20*(size_t)g->count + 1, sizeof(dem_real));
+    reals = 20*(size_t)g->count;
+    g->own = (dem_real *)demi_alloc(w, reals + (size_t)(g->real_count*g->count) + 1,
+                                    sizeof(dem_real));
     g->own_ids = (int32_t *)demi_alloc(w, 2*(size_t)g->count + 1, sizeof(int32_t));
     if (!g->own || !g->own_ids) return 0;
     for (i = 0; i < w->bodies.count; i++)
@@ -15450,7 +15780,10 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
             demi_put(row, demi_shape_rows[p.kind].drawn(&p));
             g->own_ids[n] = (int32_t)w->bodies.slot[i];
             g->own_ids[n + g->count] = w->bodies.material[i];
+            for (e = 0; e < g->real_count; e++)
+                g->own[reals + (size_t)(g->real_count*n + e)] = g->reals[g->real_count*i + e];
         }
+    g->reals = g->own + reals;
     g->pos = g->own;
     g->vel = g->own + 4*(size_t)g->count;
     g->spin = g->own + 8*(size_t)g->count;
@@ -15474,7 +15807,7 @@ static dem_result demi_drawing_fails(dem_world *w, const char *call, demi_drawin
 /* What is told of grains; the last two make a cell of every point, so that it is drawn. */
 /* Answers how many columns there are; the last two hold no data. */
 static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
-    const demi_column all[DEMI_GRAIN_COLUMNS] = {
+    const demi_column all[] = {
         {"Points",    "position",     'r', 3, g->count, 4, 0, g->pos},
         {"PointData", "radius",       'r', 1, g->count, 4, 3, g->pos},
         {"PointData", "velocity",     'r', 3, g->count, 4, 0, g->vel},
@@ -15485,10 +15818,16 @@ static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
         {"PointData", "semi_axes",    'r', 3, g->count, 4, 0, g->axes},
         {"Verts",     "connectivity", 'i', 1, g->count, 1, 0, 0},
         {"Verts",     "offsets",      'i', 1, g->count, 1, 1, 0}};
-    const int skip = g->orient ? 0 : 2;
-    memcpy(columns, all, 6*sizeof *all);
-    memcpy(columns + 6, all + 6 + skip, (size_t)(4 - skip)*sizeof *all);
-    return DEMI_GRAIN_COLUMNS - skip;
+    const int known = g->orient ? 8 : 6;
+    int k;
+    memcpy(columns, all, (size_t)known*sizeof *all);
+    for (k = 0; k < g->real_count; k++) {
+        const demi_column own = {"PointData", g->names[k], 'r', 1, g->count, g->real_count, k,
+                                 g->reals};
+        columns[known + k] = own;
+    }
+    memcpy(columns + known + k, all + 8, 2*sizeof *all);
+    return known + k + 2;
 }
 
 /* VTK's XML format: the tree tells what there is; the numbers follow as they lie in memory, each
@@ -15619,9 +15958,10 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
             fprintf(o.file, desc.boundary[k] == DEM_BOUNDARY_PERIODIC ? "T%s" : "F%s",
                     k < 2 ? " " : "\" ");
     }
-    fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:%sid:I:1 Time=%s\n",
-            g.orient ? "orientation:R:4:aspherical_shape:R:3:" : "",
-            demi_format_real(text[0], dem_world_time(world), 12));
+    fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:%s",
+            g.orient ? "orientation:R:4:aspherical_shape:R:3:" : "");
+    for (k = 0; k < g.real_count; k++) fprintf(o.file, "%s:R:1:", g.names[k]);
+    fprintf(o.file, "id:I:1 Time=%s\n", demi_format_real(text[0], dem_world_time(world), 12));
     for (i = 0; i < g.count; i++) {
         const char *element = elements + 2*((g.materials[i] - 1) & 63);
         fprintf(o.file, "%.*s", element[1] == ' ' ? 1 : 2, element);
@@ -15634,6 +15974,9 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
             fprintf(o.file, " %s", demi_format_real(text[0],
                     (double)row[k < 4 ? (k + 1)%4 : k - 4], 9));
         }
+        for (k = 0; k < g.real_count; k++)
+            fprintf(o.file, " %s", demi_format_real(text[0],
+                    (double)g.reals[g.real_count*i + k], 9));
         fprintf(o.file, " %lu\n", (unsigned long)g.slots[i]);
     }
     demi_drawing_free(world, &g);
@@ -15832,8 +16175,10 @@ static uint64_t demi_digest_desc(const dem_world *w, int index) {
                                 d->domain.lo.y, d->domain.lo.z, d->domain.hi.x, d->domain.hi.y,
                                 d->domain.hi.z, d->thickness, d->dt, d->impact_speed, d->skin,
                                 d->law_range, d->law_range_radii};
+    const uint64_t h = demi_hash(demi_hash(DEMI_HASH_START, flags, sizeof flags), numbers,
+                                 sizeof numbers);
     (void)index;
-    return demi_hash(demi_hash(DEMI_HASH_START, flags, sizeof flags), numbers, sizeof numbers);
+    return demi_hash(h, w->real_names, w->bodies.real_count ? sizeof w->real_names : 0);
 }
 static uint64_t demi_digest_material(const dem_world *w, int i) {
     return demi_hash(DEMI_HASH_START, &w->materials[i], sizeof w->materials[i]);
@@ -15962,6 +16307,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->filed.stride);
     DEMI_VISIT(s, w->bodies.slot_free);      DEMI_VISIT(s, w->bodies.slot_pending);
     DEMI_VISIT(s, w->bodies.balance);        DEMI_VISIT(s, w->desc.search);
+    DEMI_VISIT(s, w->desc.gravity);
     DEMI_VISIT(s, w->clock);          DEMI_VISIT(s, w->stage);
     DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
     DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
@@ -15972,7 +16318,7 @@ static void demi_visit_bodies(dem_world *w, demi_stream *s) {
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         const size_t n = (size_t)(a->who == DEMI_SLOTS ? w->bodies.slot_count : w->bodies.count);
-        if (a->what && demi_has(w, a)) demi_visit(s, demi_data(w, a), n*a->item);
+        if (a->what && demi_has(w, a)) demi_visit(s, demi_data(w, a), n*demi_item(w, a));
     }
 }
 /* Near pairs of one domain; their candidates are counted from the domain's first. */
@@ -16054,6 +16400,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         demi_visit(s, &wall->pose, sizeof wall->pose);
         demi_visit(s, &wall->mid, sizeof wall->mid);
         demi_visit(s, &wall->loads, sizeof wall->loads);
+        demi_visit(s, wall->reals, sizeof wall->reals);
         DEMI_VISIT(s, m->kind);     DEMI_VISIT(s, m->velocity);   DEMI_VISIT(s, m->point);
         DEMI_VISIT(s, m->axis);     DEMI_VISIT(s, m->speed);      DEMI_VISIT(s, m->amplitude);
         DEMI_VISIT(s, m->frequency); DEMI_VISIT(s, m->phase);     DEMI_VISIT(s, m->start);
@@ -16134,7 +16481,7 @@ static int demi_body_lost(const dem_world *w) {
             const dem_real *x;
             if (a->what < DEMI_REALS || !demi_has(w, a)) continue;
             x = (const dem_real *)(const void *)demi_datum(w, a, i);
-            for (e = 0; e < a->item/sizeof *x; e++) if (!demi_finite(x[e])) return i;
+            for (e = 0; e < demi_item(w, a)/sizeof *x; e++) if (!demi_finite(x[e])) return i;
         }
         if (demi_size(demi_at(w->bodies.pos + 4*i)) > DEMI_FARTHEST) return i;
     }
@@ -16292,6 +16639,9 @@ static dem_world *demi_twin_make(dem_world *w) {
     if (!t) return 0;
     t->desc = w->desc;
     t->asked = w->asked;
+    memcpy(t->real_names, w->real_names, sizeof t->real_names);
+    t->desc.body_reals = t->asked.body_reals = w->bodies.real_count ? t->real_names : 0;
+    t->bodies.real_count = w->bodies.real_count;
     t->material_count = w->material_count;
     memcpy(t->materials, w->materials, sizeof t->materials);
     t->pairs = w->pairs;
@@ -16667,7 +17017,7 @@ static int demi_twin_lists_room(dem_world *t) {
     for (k = 0; k < 4; k++) if (k != 2) most[k] += t->join_room;
     most[2] = (most[2] + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES + DEMI_LANES;
     demi_kept_lay(t, t->stage.list_valid ? t->domain_count : 0, crowd, t->kept_first);
-    if (!DEMI_GROW(t, t->wall_sums, (size_t)t->domain_count*(size_t)t->wall_count) ||
+    if (!demi_wall_sums_room(t) ||
         !DEMI_GROW(t, t->kept_now, (size_t)t->kept_first[DEMI_DOMAINS]) ||
         !DEMI_GROW(t, t->kept_next, (size_t)t->kept_first[DEMI_DOMAINS]) ||
         !demi_carry_reserve(t, t->filed.rows, t->filed.count, t->filed.stride)) return 0;
@@ -17350,6 +17700,23 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
     demi_say(e, "pushes %d of %d bodies now", pushed, w->bodies.count);
     return pushed ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
+static dem_effect_state demi_look_reals(const dem_world *w, dem_effect *e) {
+    const int n = w->bodies.real_count;
+    int i, k, moving = 0;
+    if (!n) return demi_look_off(e, "desc.body_reals is null");
+    if (!demi_exchanges(w) && !w->desc.body_reals_fn) {
+        demi_say(e, "%s: carried; no law answers rates (law_who), body_reals_fn is null",
+                 w->real_names);
+        return DEM_EFFECT_IDLE;
+    }
+    for (i = 0; i < w->bodies.count; i++) {
+        for (k = 0; k < n && !(DEMI_ABS(w->bodies.rates[n*i + k]) > 0);) k++;
+        moving += k < n;
+    }
+    demi_say(e, "%s: contacts change those of %d of %d bodies now", w->real_names, moving,
+             w->bodies.count);
+    return moving || w->desc.body_reals_fn ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
+}
 static dem_effect_state demi_look_walls(const dem_world *w, dem_effect *e) {
     int i, count = 0, touched = 0, some = 0;
     for (i = 0; i < w->wall_count; i++) {
@@ -17492,10 +17859,16 @@ static void demi_law_again(const dem_contact *c, dem_real *memory, dem_contact_f
     int i;
     mine.user = own->desc.law_user;
     for (i = 1; i < own->times; i++) {
-        dem_real spare[DEMI_MEMORY];
+        dem_real spare[DEMI_MEMORY], rates[2*DEM_BODY_REALS];
         dem_contact_force other = *f;
+        dem_contact twin = mine;
         memcpy(spare, memory, (size_t)own->memory*sizeof *spare);
-        own->desc.law(&mine, spare, &other);
+        if (c->who.rate_a) {
+            memset(rates, 0, sizeof rates);
+            twin.who.rate_a = rates;
+            twin.who.rate_b = rates + DEM_BODY_REALS;
+        }
+        own->desc.law(&twin, spare, &other);
     }
     own->desc.law(&mine, memory, f);
 }
@@ -17542,6 +17915,7 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"adhesion",         demi_look_adhesion,     demi_leave_adhesion,     0},
     {"law of your own",  demi_look_law,          demi_again_law,          1},
     {"force field",      demi_look_field,        demi_again_field,        1},
+    {"body_reals",       demi_look_reals,        0,                       0},
     {"walls",            demi_look_walls,        demi_leave_walls,        0},
     {"moving walls",     demi_look_motions,      demi_leave_motions,      0},
     {"periodic faces",   demi_look_periodic,     0,                       0},
@@ -17735,6 +18109,12 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     if (!d->law && (d->law_range > 0 || d->law_range_radii > 0 || d->law_who))
         return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
             "they are for a law of your own: name it in law, or leave them 0";
+    if (demi_real_names(d->body_reals) < 0)
+        return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, digits "
+            "and _, with a space between two, such as \"temperature charge\"; null means none";
+    if (!demi_real_names(d->body_reals) && d->body_reals_fn)
+        return "dem_world_create: body_reals_fn is given, but body_reals names no numbers; name "
+            "them, or leave both 0";
     if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
         "choose, below 0 means none";
     if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64; 0 "
@@ -17775,12 +18155,18 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
 DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version,
                                             size_t real_size) {
     dem_world *w;
+    const char *name;
+    int k, n;
     if (version != DEM_VERSION || real_size != sizeof(dem_real) ||
         *dem_create_error(desc)) return 0;
     w = (dem_world *)demi_raw_alloc(&desc->allocator, sizeof *w);
     if (!w) return 0;
     memset(w, 0, sizeof *w);
     w->desc = w->asked = *desc;
+    for (k = 0; (name = demi_real_name(desc->body_reals, k, &n)) != 0; k++)
+        sprintf(w->real_names + strlen(w->real_names), "%s%.*s", k ? " " : "", n, name);
+    w->desc.body_reals = w->asked.body_reals = k ? w->real_names : 0;
+    w->bodies.real_count = k;
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
@@ -18103,7 +18489,7 @@ static int demi_grain_put(dem_world *host, demi_message *out, const dem_world *w
         dem_real place[4];
         if (!demi_keeps(w, a)) continue;
         if (a->what != DEMI_PLACES) {
-            if (!demi_message_put(host, out, demi_datum(w, a, i), a->item)) return 0;
+            if (!demi_message_put(host, out, demi_datum(w, a, i), demi_item(w, a))) return 0;
             continue;
         }
         memcpy(place, demi_datum(w, a, i), sizeof place);
@@ -18118,7 +18504,7 @@ static void demi_grain_unpack(dem_world *w, int i, const char **from) {
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         if (demi_keeps(w, a))
-            demi_unpack(from, demi_datum(w, a, i), a->item);
+            demi_unpack(from, demi_datum(w, a, i), demi_item(w, a));
     }
 }
 static uint32_t demi_grain_slot(const char *from) {
@@ -18600,11 +18986,17 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
     for (i = 0; i < n; i++) w->bodies.ghost[b->lent[i]] = 0;
     b->lent_count = n;
 }
-/* Reals sent up and down per ghost and step. */
-static size_t demi_slab_up(const dem_world *w) {
+/* Reals sent up and down per ghost and step: the user's numbers, or their rates, come last. */
+static size_t demi_slab_places(const dem_world *w) {
     return w->bodies.orienting ? 19 : demi_spins(w) ? 15 : 6;
 }
-static size_t demi_slab_down(const dem_world *w) { return demi_turns(w) ? 6 : 3; }
+static size_t demi_slab_pushes(const dem_world *w) { return demi_turns(w) ? 6 : 3; }
+static size_t demi_slab_up(const dem_world *w) {
+    return demi_slab_places(w) + (size_t)w->bodies.real_count;
+}
+static size_t demi_slab_down(const dem_world *w) {
+    return demi_slab_pushes(w) + (size_t)w->bodies.real_count;
+}
 
 /* Bytes of what goes up and down in a step. */
 static void demi_slab_sizes(dem_slabs *s, demi_slab *b) {
@@ -18761,12 +19153,14 @@ static void demi_slabs_poses(dem_slabs *s) {
 /* State of the grains that are ghosts above: as much of it as the laws in force look at. */
 static void demi_slab_send(dem_slabs *s, demi_slab *b) {
     const dem_world *w = b->world;
-    const size_t three = 3*sizeof(dem_real), reals = demi_slab_up(w);
+    const size_t three = 3*sizeof(dem_real), reals = demi_slab_places(w);
+    const size_t own = (size_t)w->bodies.real_count;
     const dem_real shift = demi_slab_shift(s, b, 1);
     dem_real *out = (dem_real *)b->out[1].bytes;
     int k;
-    for (k = 0; k < b->lent_count; k++, out += reals) {
+    for (k = 0; k < b->lent_count; k++, out += reals + own) {
         const int i = 4*b->lent[k];
+        if (own) memcpy(out + reals, w->bodies.reals + own*(size_t)b->lent[k], own*sizeof *out);
         memcpy(out, w->bodies.pos + i, three);
         out[s->axis] += shift;
         memcpy(out + 3, w->bodies.vel + i, three);
@@ -18780,12 +19174,14 @@ static void demi_slab_send(dem_slabs *s, demi_slab *b) {
 /* Ghosts are where their owners say. */
 static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
-    const size_t three = 3*sizeof(dem_real), up = demi_slab_up(w);
+    const size_t three = 3*sizeof(dem_real), up = demi_slab_places(w);
+    const size_t own = (size_t)w->bodies.real_count;
     const dem_real *in = b->ghost_count ? (const dem_real *)demi_slab_inbox(s, b, 0)->bytes
         : 0;
     int k;
-    for (k = 0; k < b->ghost_count; k++, in += up) {
+    for (k = 0; k < b->ghost_count; k++, in += up + own) {
         const int i = b->ghost[k];
+        if (own) memcpy(w->bodies.reals + own*(size_t)i, in + up, own*sizeof *in);
         memcpy(w->bodies.pos + 4*i, in, three);
         memcpy(w->bodies.vel + 4*i, in + 3, three);
         w->bodies.inv_mass[i] = b->ghost_inv[2*k];
@@ -18817,12 +19213,14 @@ static void demi_slab_touch(dem_slabs *s, demi_slab *b) {
 /* 4 respond, 5 gather, here; forces on ghosts go into the lower outbox. */
 static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
-    const size_t three = 3*sizeof(dem_real), down = demi_slab_down(w);
+    const size_t three = 3*sizeof(dem_real), down = demi_slab_pushes(w);
+    const size_t own = (size_t)w->bodies.real_count;
     dem_real *out = (dem_real *)b->out[0].bytes;
     int k, d, finite = 1;
     if (!w->bodies.orienting) demi_slab_touch(s, b);
     demi_forces(w);
-    for (k = 0; k < b->ghost_count; k++, out += down) {
+    for (k = 0; k < b->ghost_count; k++, out += down + own) {
+        if (own) memcpy(out + down, w->bodies.rates + own*(size_t)b->ghost[k], own*sizeof *out);
         memcpy(out, w->bodies.force + 4*b->ghost[k], three);
         if (down == 6) memcpy(out + 3, w->bodies.torque + 4*b->ghost[k], three);
     }
@@ -18834,15 +19232,18 @@ static void demi_slab_forces(dem_slabs *s, demi_slab *b) {
 /* Forces on own grains that are ghosts above come back, in the order in which they were lent. */
 static void demi_slab_add(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
-    const size_t down = demi_slab_down(w);
+    const size_t down = demi_slab_pushes(w), own = (size_t)w->bodies.real_count;
     const dem_real *in = b->lent_count ? (const dem_real *)demi_slab_inbox(s, b, 1)->bytes
         : 0;
+    size_t r;
     int k, e;
-    for (k = 0; k < b->lent_count; k++, in += down)
+    for (k = 0; k < b->lent_count; k++, in += down + own) {
         for (e = 0; e < 3; e++) {
             w->bodies.force[4*b->lent[k] + e] += in[e];
             if (down == 6) w->bodies.torque[4*b->lent[k] + e] += in[3 + e];
         }
+        for (r = 0; r < own; r++) w->bodies.rates[own*(size_t)b->lent[k] + r] += in[down + r];
+    }
 }
 /* near: some slab's near list may have to be made anew first. */
 static dem_result demi_slabs_forces(dem_slabs *s, int near) {
@@ -19482,6 +19883,7 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     }
     w = dem_world_create(&desc);
     if (!w) return 0;
+    w->desc.gravity = from->desc.gravity;       /* of now: dem_world_gravity_set */
     if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
@@ -19615,6 +20017,9 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     dem_world *h = &s->head;
     const size_t most = 3*DEMI_MATERIALS, n = (size_t)s->count;
     h->asked = w->asked;
+    memcpy(h->real_names, w->real_names, sizeof h->real_names);
+    h->bodies.real_count = w->bodies.real_count;
+    h->desc.body_reals = h->asked.body_reals = w->bodies.real_count ? h->real_names : 0;
     h->stage.synced = 1;
     h->bodies.slot_free = h->bodies.slot_pending = -1;
     h->domains = &s->total;
@@ -19843,6 +20248,8 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
         for (k = 0; k < 3; k++) c->impulse[k] += part.impulse[k];
         c->torque_impulse += part.torque_impulse;
         c->work += part.work;
+        for (k = 0; k < DEM_BODY_REALS; k++) c->rate[k] += part.rate[k];
+        for (k = 0; k < DEM_BODY_REALS; k++) c->gained[k] += part.gained[k];
         c->time = part.time;
     }
     for (i = 0; i < w->field_count; i++) {
@@ -20052,6 +20459,7 @@ DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
         for (i = 0; i < w->wall_count; i++) {
             dem_wall_loads *c = &w->walls[i].loads;
             memset(c->impulse, 0, sizeof c->impulse);
+            memset(c->gained, 0, sizeof c->gained);
             c->torque_impulse = c->work = c->time = 0;
         }
     }

@@ -8,7 +8,8 @@
        #define LAW {"my law", my_law, 0, 3, 1, 1e5}     // name, function, c->user, reals, vectors, N/m
 
    as law, law_user, law_memory, law_vectors and law_stiffness of the world desc; a law with a range goes on with
-   DEM_NORMAL_HERTZ (whose coefficients it gets), -1 and law_range in m. What the lines of the exam ask, and
+   DEM_NORMAL_HERTZ (whose coefficients it gets), -1 and law_range in m; one that is told who touches with law_who, 1:
+   its grains then carry eight numbers (body_reals), zeros. What the lines of the exam ask, and
    how to read the curves: docs/laws.md. Exit code 1 when a line was not passed (built-in laws: when one is not passed
    that is known to be). */
 #include "../dem.h"
@@ -20,7 +21,7 @@
 #endif
 
 /* name, function, user, reals, vectors, N/m; coefficients of the contact; the line that it is known not to pass, or -1;
-   m, range */
+   m, range; law_who */
 typedef struct examinee {
     const char *name;
     dem_law_fn law;
@@ -30,6 +31,7 @@ typedef struct examinee {
     dem_normal_law coefficients;
     int known;
     double range;
+    int who;
 } examinee;
 
 #ifdef LAW
@@ -63,12 +65,12 @@ static void hertz_viscous(const dem_contact *c, dem_real *memory, dem_contact_fo
     dem_law_viscous(c, memory, f);
 }
 static const examinee examinees[] = {
-    {"hertz_spring", hertz_spring, 0, 3, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED, 0},
-    {"hertz_mindlin", hertz_mindlin, 0, 4, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED, 0},
-    {"hertz_mindlin_rescaled", hertz_mindlin_rescaled, 0, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0},
-    {"hertz_rescaled_epsd", hertz_rescaled_epsd, 0, 7, 2, 0, DEM_NORMAL_HERTZ, -1, 0},
-    {"linear_spring", linear_spring, 0, 3, 1, 0, DEM_NORMAL_LINEAR, -1, 0},
-    {"hertz_viscous", hertz_viscous, 0, 0, 0, 0, DEM_NORMAL_HERTZ, -1, 0}};
+    {"hertz_spring", hertz_spring, 0, 3, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED, 0, 0},
+    {"hertz_mindlin", hertz_mindlin, 0, 4, 1, 0, DEM_NORMAL_HERTZ, EXAM_MIXED, 0, 0},
+    {"hertz_mindlin_rescaled", hertz_mindlin_rescaled, 0, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 0},
+    {"hertz_rescaled_epsd", hertz_rescaled_epsd, 0, 7, 2, 0, DEM_NORMAL_HERTZ, -1, 0, 0},
+    {"linear_spring", linear_spring, 0, 3, 1, 0, DEM_NORMAL_LINEAR, -1, 0, 0},
+    {"hertz_viscous", hertz_viscous, 0, 0, 0, 0, DEM_NORMAL_HERTZ, -1, 0, 0}};
 #endif
 
 /* ---- curves ---- */
@@ -212,6 +214,7 @@ int main(int argc, char **argv) {
         exam_sheet sheet;
         e.coefficients = x->coefficients;
         e.range = x->range;
+        e.who = x->who;
         if (exam_take(&e, &sheet) != DEM_OK) { study_fail("%s", sheet.line[0].found); continue; }
         exam_print(&sheet, stdout);
         portrait(&e, &sheet);

@@ -24,6 +24,7 @@ typedef struct exam {
     int memory, vectors;         /* as law_memory and law_vectors of the world desc           */
     double stiffness;            /* N/m, as law_stiffness; 0: built-in                        */
     double range;                /* m, as law_range: 0                                        */
+    int who;                     /* as law_who; the grains then carry eight numbers, zeros: 0 */
     double radius;               /* m, of both grains: 1e-3                                   */
     double deep;                 /* largest overlap of the paths, of the radius: 0.02         */
     double speed;                /* m/s, of impacts: 0.1                                      */
@@ -85,6 +86,8 @@ static inline dem_world *exam_world(const exam *e, dem_law_fn law, void *user, d
     desc.law_vectors = e->vectors;
     desc.law_stiffness = (dem_real)e->stiffness;
     desc.law_range = (dem_real)e->range;
+    desc.law_who = e->who;
+    desc.body_reals = e->who ? "n1 n2 n3 n4 n5 n6 n7 n8" : 0;
     desc.normal_law = e->coefficients;
     desc.impact_speed = (dem_real)speed;
     desc.dt = (dem_real)dt;
@@ -158,6 +161,11 @@ static inline void exam_look(const dem_contact *c, dem_real *memory, dem_contact
     (void)memory; (void)f;
     *(dem_contact *)c->user = *c;
 }
+/* What the grains of paths carry, zeros, and what a law says that they gain, which nobody asks for. */
+static inline dem_real *exam_reals(void) {
+    static dem_real reals[2*DEM_BODY_REALS];
+    return reals;
+}
 static inline int exam_contact(exam *e) {
     dem_world *world = exam_world(e, exam_look, &e->contact, e->speed, 1e-9);
     dem_material stuff;
@@ -169,6 +177,8 @@ static inline int exam_contact(exam *e) {
     dem_world_step(world, 1);
     dem_world_destroy(world);
     e->contact.user = e->user;
+    e->contact.who.reals_a = e->contact.who.reals_b = exam_reals();
+    e->contact.who.rate_a = e->contact.who.rate_b = exam_reals() + DEM_BODY_REALS;
     return e->contact.overlap > 0;
 }
 

@@ -496,6 +496,7 @@ static dem_world *kept_world(int count) {
     desc.integrator = DEM_POSITION_VERLET;
     desc.orientations = 1;
     desc.dt = DEM_R(1e-6);
+    desc.body_reals = "a b c d e f";
     world = dem_world_create(&desc);
     stuff = scene_material(world, 1e7, 0.5, 0.3, 0);
     egg = dem_shape_ellipsoid_add(world, at(1, 2, 3));
@@ -512,7 +513,7 @@ static void kept_fill(dem_world *w, uint64_t seed) {
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         for (i = 0; i < w->bodies.count && a->what >= DEMI_REALS; i++)
-            for (e = 0; e < a->item/sizeof(dem_real); e++) {
+            for (e = 0; e < demi_item(w, a)/sizeof(dem_real); e++) {
                 const dem_real x = (dem_real)(0.5 + scene_random(&seed));
                 memcpy(demi_datum(w, a, i) + e*sizeof x, &x, sizeof x);
             }
@@ -527,8 +528,8 @@ static size_t kept_row(const dem_world *w, int slot, char *out) {
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const demi_body_array *a = &demi_body_arrays[k];
         if (!a->what || a->who == DEMI_SLOTS) continue;
-        memcpy(out + size, demi_datum(w, a, w->bodies.slot_index[slot]), a->item);
-        size += a->item;
+        memcpy(out + size, demi_datum(w, a, w->bodies.slot_index[slot]), demi_item(w, a));
+        size += demi_item(w, a);
     }
     return size;
 }

@@ -54,6 +54,6 @@ static inline void capillary_law(const dem_contact *c, dem_real *memory, dem_con
 /* make law LAW=examples/laws/capillary.h: water, a thousandth of a grain of 1 mm. */
 #ifdef LAW_FILE
 static capillary capillary_mine = {DEM_R(0.073), DEM_R(0.3), DEM_R(4e-12)};
-#define LAW {"capillary", capillary_law, &capillary_mine, 5, 1, 0, DEM_NORMAL_HERTZ, -1, 2e-4}
+#define LAW {"capillary", capillary_law, &capillary_mine, 5, 1, 0, DEM_NORMAL_HERTZ, -1, 2e-4, 0}
 #endif
 #endif

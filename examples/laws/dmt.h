@@ -28,6 +28,6 @@ static inline void dmt_law(const dem_contact *c, dem_real *memory, dem_contact_f
 /* make law LAW=examples/laws/dmt.h */
 #ifdef LAW_FILE
 static dmt dmt_mine = {DEM_R(0.05)};
-#define LAW {"dmt", dmt_law, &dmt_mine, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0}
+#define LAW {"dmt", dmt_law, &dmt_mine, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 0}
 #endif
 #endif

@@ -43,6 +43,6 @@ static inline double viscoelastic_restitution(double A, double kn, double m, dou
 /* make law LAW=examples/laws/viscoelastic.h: glass-like grains of 1 mm that keep 0.8 of 0.1 m/s. */
 #ifdef LAW_FILE
 static viscoelastic viscoelastic_mine = {DEM_R(4e-6)};
-#define LAW {"viscoelastic", viscoelastic_law, &viscoelastic_mine, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0}
+#define LAW {"viscoelastic", viscoelastic_law, &viscoelastic_mine, 4, 1, 0, DEM_NORMAL_HERTZ, -1, 0, 0}
 #endif
 #endif
