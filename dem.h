@@ -500,6 +500,7 @@ DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2]
 /* ---- a contact, and a law of one's own ---- */
 
 enum { DEM_BODY_REALS = 8 };      /* most numbers of your own that grains carry: desc.body_reals */
+enum { DEM_LAW_MEMORY = 16 };     /* most reals that a contact remembers: desc.law_memory */
 
 /* Who touches: for a law that asks for it by desc.law_who; else zeros. */
 typedef struct dem_contact_who {
@@ -512,7 +513,9 @@ typedef struct dem_contact_who {
     /* numbers of your own that a and b (or the wall) carry, as many as desc.body_reals names, now;
        null where it names none */
     const dem_real *reals_a, *reals_b;
-    dem_real *rate_a, *rate_b;    /* 1/s: your law adds what each gains per second; begin at 0 */
+    /* 1/s: your law adds what each gains per second; begin at 0. Where several places share one
+       contact (spheres of clusters, facets) each counts by its share */
+    dem_real *rate_a, *rate_b;
 } dem_contact_who;
 /* What a law sees: this contact and nothing else. Velocities are of body a relative to body b, or
    to the wall's surface, at the full step: what dashpots and friction take. Displacements kept in
@@ -844,8 +847,8 @@ typedef void (*dem_body_force_fn)(const dem_body_state *body, dem_body id, doubl
                                   dem_vec3 *force, dem_vec3 *torque, void *user);
 
 /* What a grain's own numbers become in one step: reals (as many as desc.body_reals names) are to be
-   changed in place; rates: 1/s, what laws have answered for its contacts, summed; body: at the
-   step's beginning, time (s), of length dt (s). Null: reals += rates dt, Euler's step, which is
+   changed in place; rates: 1/s, what laws have answered for its contacts, summed; body: at the end
+   of the step, time (s), of length dt (s). Null: reals += rates dt, Euler's step, which is
    stable below 2 over the fastest rate of decay. Called once per body and step, from several
    threads. */
 typedef void (*dem_reals_fn)(dem_real *reals, const dem_real *rates, const dem_body_state *body,
@@ -886,7 +889,9 @@ typedef struct dem_world_desc {
     dem_convention convention;
     dem_law_fn law;                /* your law; replaces normal, tangential and rolling laws */
     void *law_user;                /* handed to your law as c->user */
-    int law_memory;                /* reals of memory per contact for your law, 0..8 */
+    int law_memory;                /* reals of memory per contact for your law, 0..16 */
+    const char *law_memory_names;  /* of them, for dem_contacts_vtp_write, a word each as in
+                                      body_reals; null: memory0, memory1 and so on */
     int law_vectors;  /* how many leading triples of them are vectors, 0..law_memory/3 */
     dem_real law_stiffness;  /* N/m, the stiffest your law gets: for the time step; 0: built-in */
     /* m, >= 0: your law is asked while the gap is below law_range + law_range_radii times the two
@@ -928,7 +933,7 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
     DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
     DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
-    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0,
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
@@ -1574,6 +1579,17 @@ typedef struct dem_contact_info {
     dem_vec3 force;                      /* N, on a */
 } dem_contact_info;
 DEM_API int dem_contacts_get(const dem_world *world, dem_contact_info *out, int capacity);
+/* Shows every contact to a function, and what it remembers: reals, as many as desc.law_memory has
+   (or the built-in laws, 0 to 7), vectors from a's point of view; what the function writes there
+   counts from the next step on. Contacts are those that the law is asked about: within its range,
+   at walls, too. Works out forces first where the scene has changed. Answers how many there are;
+   below 0, with a sentence, where a step would be refused. */
+typedef void (*dem_contact_fn)(const dem_contact_info *contact, dem_real *memory, void *user);
+DEM_API int dem_contacts_each(dem_world *world, dem_contact_fn fn, void *user);
+/* The same for all pairs of grains (no walls) with a gap below `gap` (m, >= 0; at most what the
+   law's range reaches for the smallest two grains): to put bonds between them, by writing what your
+   law takes for one into their memory. Answers for how many; below 0 as above. */
+DEM_API int dem_bonds_make(dem_world *world, dem_real gap, dem_contact_fn make, void *user);
 /* The candidate pairs of the present list, slots of a and b (capacity x 2). Returns how many there
    are; -1 as above. */
 DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capacity);
@@ -1642,6 +1658,10 @@ DEM_API void dem_profile_free(dem_world *world, dem_profile *profile);
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path);
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path);
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path);
+/* Contacts as lines from centre to centre (to a wall: to where it is touched), for ParaView: force
+   (N, on a), overlap (m), wall (id, 0: none) and what each remembers, under its name: bonds,
+   bridges, chains of force. Works out forces first where the scene has changed. */
+DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path);
 /* Triangles of all mesh and profile walls (profiles drawn out over z0..z1) in their present pose.
    */
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
@@ -1972,7 +1992,7 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    of four reals each, so that a gather touches one cache line and a drift is one long loop. Every
    array that grows is a field here; DEMI_GROW keeps what it holds, or leaves it alone and says so.
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_MATERIALS = 64, DEMI_MEMORY = 8, DEMI_SOME = 16, DEMI_DOMAINS = 256,
+enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY, DEMI_SOME = 16, DEMI_DOMAINS = 256,
       DEMI_LANES = 64/(int)sizeof(dem_real),    /* pairs computed together: widest vectors */
       DEMI_TILE = 4*DEMI_LANES };               /* pairs under work at a time */
 
@@ -2401,7 +2421,8 @@ struct dem_world {
     /* >>world */
     dem_world_desc desc;           /* as given, with choices filled in */
     dem_world_desc asked;          /* as given */
-    char real_names[DEM_BODY_REALS*24];    /* what body_reals of both point to */
+    char real_names[DEM_BODY_REALS*24];    /* what body_reals of both point to, */
+    char memory_names[DEMI_MEMORY*24];     /* and law_memory_names */
     /* >>memory: sentences (demi_fail), and all that was allocated */
     char error[512];
     char refusal[512];             /* of the first call that builds the scene and was refused */
@@ -2502,8 +2523,8 @@ DEM_INLINE dem_real demi_cover(const dem_world *w) {
 DEM_INLINE int demi_exchanges(const dem_world *w) {
     return w->bodies.real_count > 0 && w->desc.law_who;
 }
-/* Word k of body_reals, its length; a null pointer: there are not so many. */
-static const char *demi_real_name(const char *names, int k, int *length) {
+/* Word k of body_reals or law_memory_names, its length; a null pointer: there are not so many. */
+static const char *demi_name(const char *names, int k, int *length) {
     const char *at = names ? names : "";
     for (;; k--) {
         at += strspn(at, " ");
@@ -2513,17 +2534,36 @@ static const char *demi_real_name(const char *names, int k, int *length) {
         at += *length;
     }
 }
-/* How many body_reals names; -1: more than there may be, or a word that is none. */
-static int demi_real_names(const char *names) {
+/* How many these are; -1: more than there may be, or a word that is none. */
+static int demi_names(const char *names, int most) {
     int count = 0, length, i;
     const char *at;
-    while ((at = demi_real_name(names, count, &length)) != 0) {
+    while ((at = demi_name(names, count, &length)) != 0) {
         for (i = 0; i < length; i++)
             if (!strchr("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_", at[i]))
                 return -1;
-        if (length > 23 || ++count > DEM_BODY_REALS) return -1;
+        if (length > 23 || ++count > most) return -1;
     }
     return count;
+}
+/* These names, a space between two. Answers how many there are. */
+static int demi_names_copy(const char *names, char *out) {
+    const char *name;
+    int k, n;
+    *out = 0;
+    for (k = 0; (name = demi_name(names, k, &n)) != 0; k++)
+        sprintf(out + strlen(out), "%s%.*s", k ? " " : "", n, name);
+    return k;
+}
+/* The names that a world's descs point to are its own: also after it was copied. */
+static void demi_names_point(dem_world *w) {
+    w->desc.body_reals = w->asked.body_reals = w->real_names[0] ? w->real_names : 0;
+    w->desc.law_memory_names = w->asked.law_memory_names = w->memory_names[0] ? w->memory_names : 0;
+}
+static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
+    w->bodies.real_count = demi_names_copy(desc->body_reals, w->real_names);
+    demi_names_copy(desc->law_memory_names, w->memory_names);
+    demi_names_point(w);
 }
 /* m: gap up to which the law is asked about two of these radii, together (with a wall: about one);
    0 where it is asked at touch alone. */
@@ -9477,11 +9517,15 @@ DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s
 #define DEMI_RECALL(e) m[e] = e < count ? t->memory[at + e][q] : 0
 #define DEMI_KEEP(e) if (e < count) t->memory[at + e][q] = m[e]*t->touch[q]
 DEM_INLINE void demi_recall(demi_tile *DEMI_RESTRICT t, int q, int at, int count, dem_real *m) {
+    int e;
     DEMI_EIGHT(DEMI_RECALL);
+    for (e = 8; e < count; e++) m[e] = t->memory[at + e][q];
 }
 DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count,
                           const dem_real *m) {
+    int e;
     DEMI_EIGHT(DEMI_KEEP);
+    for (e = 8; e < count; e++) t->memory[at + e][q] = m[e]*t->touch[q];
 }
 #undef DEMI_RECALL
 #undef DEMI_KEEP
@@ -13968,23 +14012,6 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
 }
-/* The user's numbers of a domain's bodies follow the rates of the step before. */
-static void demi_reals_move(dem_world *w, int d) {
-    const int n = w->bodies.real_count;
-    const dem_real dt = w->clock.dt;
-    int i, k;
-    for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
-        dem_real *reals = w->bodies.reals + n*i;
-        const dem_real *rates = w->bodies.rates + n*i;
-        const dem_body id = dem_bodies_id(w, i);
-        dem_body_state body;
-        if (demi_is_ghost(w, i)) continue;
-        if (!w->desc.body_reals_fn) for (k = 0; k < n; k++) reals[k] += rates[k]*dt;
-        else if (dem_body_get(w, id, &body) == DEM_OK)
-            w->desc.body_reals_fn(reals, rates, &body, id, w->clock.time, dt,
-                                  w->desc.body_reals_user);
-    }
-}
 /* All bodies of a domain, a few at a time; what is found on the way goes into the domain's sums. */
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -13995,7 +14022,6 @@ static void demi_domain_move(dem_world *w, int d) {
     domain->energy[DEMI_E_GRAVITY] = 0;
     domain->speed2 = domain->acceleration2 = domain->check = 0;
     domain->turn = domain->turn_speed = domain->turn_rate = 0;
-    if (w->bodies.real_count) demi_reals_move(w, d);
     if (demi_quiet_possible(w)) demi_quiet_move(w, d, turning, &pace);
     else for (i = domain->begin; i < domain->end; i += some)
         demi_some_move(w, domain, i, DEMI_MIN(i + some, domain->end), turning, &pace);
@@ -14192,7 +14218,7 @@ static dem_result demi_unstable(dem_world *w) {
     for (i = 0; i < w->bodies.count*w->bodies.real_count; i++) {
         const int k = i%w->bodies.real_count;
         int n;
-        const char *name = demi_real_name(w->real_names, k, &n);
+        const char *name = demi_name(w->real_names, k, &n);
         if (!(fabs((double)w->bodies.reals[i]) + fabs((double)w->bodies.rates[i]) < 1e300))
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its %.*s "
                              "is %g with a rate of %g, no longer a number; likely it swings from "
@@ -14330,19 +14356,11 @@ static void demi_time_pass(dem_world *w) {
     w->clock.steps++;
     w->clock.time = w->clock.since.time + (double)(w->clock.steps - w->clock.since.steps)*dt;
 }
-/* Walls gain what the last forces brought them, when grains do. */
-static void demi_walls_gain(dem_world *w) {
-    int i, k;
-    for (i = 0; i < w->wall_count; i++)
-        for (k = 0; k < w->bodies.real_count; k++)
-            w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
-}
 /* 1 move: first half kick, drift, predicted velocities; walls follow. */
 static dem_result demi_step_move(dem_world *w) {
     double speed2 = 0, acceleration2 = 0, turn = 0, turn_speed = 0, turn_rate = 0;
     int d, i;
     w->clock.half_kick = (double)w->clock.dt/2;
-    demi_walls_gain(w);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
     w->stage.synced = 0;
     demi_time_pass(w);
@@ -14401,6 +14419,32 @@ static double demi_overlap(const dem_world *w) {
     return overlap;
 }
 
+/* The user's numbers of a domain's bodies follow the rates of the step. */
+static void demi_domain_gain(dem_world *w, int d) {
+    const int n = w->bodies.real_count;
+    const dem_real dt = w->clock.dt;
+    int i, k;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
+        dem_real *reals = w->bodies.reals + n*i;
+        const dem_real *rates = w->bodies.rates + n*i;
+        const dem_body id = dem_bodies_id(w, i);
+        dem_body_state body;
+        if (demi_is_ghost(w, i)) continue;
+        if (!w->desc.body_reals_fn) for (k = 0; k < n; k++) reals[k] += rates[k]*dt;
+        else if (dem_body_get(w, id, &body) == DEM_OK)
+            w->desc.body_reals_fn(reals, rates, &body, id, w->clock.time, dt,
+                                  w->desc.body_reals_user);
+    }
+}
+/* After the forces of a step, not where they are only looked at: what the user's numbers gain. */
+static void demi_reals_gain(dem_world *w) {
+    int i, k;
+    if (!w->bodies.real_count) return;
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gain);
+    for (i = 0; i < w->wall_count; i++)
+        for (k = 0; k < w->bodies.real_count; k++)
+            w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
+}
 /* One step. Numbers as in the manual. A step that ran out of memory after its move goes on from
    there. */
 static dem_result demi_step_once(dem_world *w) {
@@ -14436,6 +14480,7 @@ static dem_result demi_step_once(dem_world *w) {
     /* 3 touch, 4 respond, 5 gather */
     if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
+    demi_reals_gain(w);
     w->stage.moved = 0;
     for (d = 0; d < w->domain_count && demi_own(w); d++)
         if (!(w->domains[d].check < 1e300)) return demi_unstable(w);
@@ -14675,6 +14720,19 @@ DEM_API void dem_overlap_reset(dem_world *w) {
     w->booked.overlap_max = 0;
 }
 
+/* One kept contact, as users see it. */
+static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
+    const demi_periods p = demi_periods_of(w);
+    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
+    out->a = dem_bodies_id(w, c->a);
+    out->b = dem_bodies_id(w, c->b);
+    out->wall = c->b < 0 ? c->wall + 1 : 0;
+    out->normal = c->normal;
+    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
+    out->point = demi_place_of(&p, x);
+    out->overlap = c->overlap;
+    out->force = c->force;
+}
 /* One near pair, if it touches: its force by the law of the run on a copy of its memory. */
 static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out) {
     demi_run r = demi_run_of(w, 0, w->effects.uniform);
@@ -14713,8 +14771,6 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
 }
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
     if (demi_null(w, "dem_contacts_get", w, "world")) return -1;
-    const demi_periods p = demi_periods_of(w);
-    dem_vec3 x;
     int d, k, n = 0;
     if (!w->stage.list_valid) return demi_list_stale(w, "dem_contacts_get");
     for (d = 0; d < w->domain_count; d++) {
@@ -14723,19 +14779,82 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
             n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0);
         for (k = 0; k < w->domains[d].kept; k++) {
             const demi_kept *c = demi_kept_of(w, d) + k;
-            if (!demi_kept_asked(w, c) || ++n > capacity || !out) continue;
-            out[n - 1].a = dem_bodies_id(w, c->a);
-            out[n - 1].b = dem_bodies_id(w, c->b);
-            out[n - 1].wall = c->b < 0 ? c->wall + 1 : 0;
-            out[n - 1].normal = c->normal;
-            x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
-            if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
-            out[n - 1].point = demi_place_of(&p, x);
-            out[n - 1].overlap = c->overlap;
-            out[n - 1].force = c->force;
+            if (demi_kept_asked(w, c) && ++n <= capacity && out) demi_kept_info(w, c, &out[n - 1]);
         }
     }
     return n;
+}
+/* Contacts of now: of a list and of forces that fit the scene. */
+static dem_result demi_contacts_settle(dem_world *w) {
+    const demi_stages *s = &w->stage;
+    dem_result result;
+    if (s->list_valid && s->forces_valid && !s->pairs_changed) return DEM_OK;
+    result = demi_dt_settle(w);
+    return result == DEM_OK ? demi_refresh(w) : result;
+}
+DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
+    if (demi_null(w, "dem_contacts_each", fn ? w : 0, "fn")) return -1;
+    size_t stride;
+    dem_contact_info info;
+    dem_real memory[DEMI_MEMORY], was[DEMI_MEMORY], *row;
+    int d, k, e, n = 0, changed = 0;
+    if (demi_contacts_settle(w) != DEM_OK) return -1;
+    stride = (size_t)w->near.stride;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
+            if (!demi_contact_force(w, d, k, &info)) continue;
+            row = w->memory_stride ? w->near.memory + (size_t)d*(size_t)w->memory_stride*stride + k
+                : memory;
+            for (e = 0; e < w->memory_stride; e++) was[e] = memory[e] = row[(size_t)e*stride];
+            fn(&info, memory, user);
+            for (e = 0; e < w->memory_stride; e++) {
+                changed |= memory[e] < was[e] || memory[e] > was[e];
+                row[(size_t)e*stride] = memory[e];
+            }
+            n++;
+        }
+        for (k = 0; k < domain->kept; k++) {
+            demi_kept *c = demi_kept_of(w, d) + k;
+            if (!demi_kept_asked(w, c)) continue;
+            demi_kept_info(w, c, &info);
+            memcpy(was, c->memory, sizeof was);
+            fn(&info, c->memory, user);
+            for (e = 0; e < DEMI_MEMORY; e++)
+                changed |= c->memory[e] < was[e] || c->memory[e] > was[e];
+            n++;
+        }
+    }
+    if (changed) demi_scene_changed(w);
+    return n;
+}
+/* What dem_bonds_make hands on. */
+typedef struct demi_bonds { dem_contact_fn make; void *user; dem_real gap; int count; } demi_bonds;
+static void demi_bond_make(const dem_contact_info *c, dem_real *memory, void *user) {
+    demi_bonds *b = (demi_bonds *)user;
+    if (c->wall || !(c->overlap > -b->gap)) return;
+    b->make(c, memory, b->user);
+    b->count++;
+}
+DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void *user) {
+    if (demi_null(w, "dem_bonds_make", make ? w : 0, "make")) return -1;
+    demi_bonds b;
+    double least = -1, most;
+    int i;
+    for (i = 0; i < w->bodies.count; i++)
+        if (least < 0 || (double)w->bodies.pos[4*i + 3] < least)
+            least = (double)w->bodies.pos[4*i + 3];
+    most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
+    if (!(gap >= 0) || (double)gap > most)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_bonds_make: gap is %g m, must be >= 0 and at "
+                         "most %g m, up to which your law is asked about the smallest grains; set "
+                         "law_range or law_range_radii when the world is created", (double)gap,
+                         DEMI_MAX(most, 0)), -1;
+    b.make = make;
+    b.user = user;
+    b.gap = gap;
+    b.count = 0;
+    return dem_contacts_each(w, demi_bond_make, &b) < 0 ? -1 : b.count;
 }
 
 /* Digest of contact memory, reals a `stride` apart, turned round or not. Told is what is not 0 and
@@ -14753,8 +14872,8 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
         int number = i;
         if (!w->desc.law) {
             if (i < laws->at_rolling ? !friction : i < laws->at_normal && !rolling) continue;
-            if (i >= laws->at_normal) number = 2*DEMI_MEMORY + i - laws->at_normal;
-            else if (i >= laws->at_rolling) number = DEMI_MEMORY + i - laws->at_rolling;
+            if (i >= laws->at_normal) number = 16 + i - laws->at_normal;
+            else if (i >= laws->at_rolling) number = 8 + i - laws->at_rolling;
         }
         if (!(m < 0) && !(m > 0)) continue;
         if (flip && (w->vector_mask >> i & 1)) m = -m;
@@ -15752,7 +15871,7 @@ static int demi_drawing_make(dem_world *w, demi_drawing *g) {
     g->slots = w->bodies.slot; g->materials = w->bodies.material;
     g->reals = w->bodies.reals; g->real_count = w->bodies.real_count;
     for (k = 0; k < g->real_count; k++) {
-        const char *name = demi_real_name(w->desc.body_reals, k, &n);
+        const char *name = demi_name(w->desc.body_reals, k, &n);
         sprintf(g->names[k], "%.*s", n, name);
     }
     n = 0;
@@ -15833,7 +15952,8 @@ static int demi_grain_columns(const demi_drawing *g, demi_column *columns) {
 /* VTK's XML format: the tree tells what there is; the numbers follow as they lie in memory, each
    array after its size in bytes. The first column holds the points. */
 static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
-                           const demi_column *column, int columns, int verts, int polys) {
+                           const demi_column *column, int columns, int verts, int lines,
+                           int polys) {
     demi_out o;
     char time[32];
     const char *section = "";
@@ -15845,9 +15965,9 @@ static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
             "byte_order=\"%s\" header_type=\"UInt64\">\n<PolyData>\n<FieldData><DataArray "
             "type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">%s"
             "</DataArray></FieldData>\n<Piece NumberOfPoints=\"%d\" NumberOfVerts=\"%d\" "
-            "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"%d\">\n",
+            "NumberOfLines=\"%d\" NumberOfStrips=\"0\" NumberOfPolys=\"%d\">\n",
             demi_is_little_endian() ? "LittleEndian" : "BigEndian",
-            demi_format_real(time, dem_world_time(w), 17), column[0].count, verts, polys);
+            demi_format_real(time, dem_world_time(w), 17), column[0].count, verts, lines, polys);
     for (i = 0; i < columns; i++) {
         const demi_column *c = column + i;
         if (i > 0 && strcmp(c->section, section) != 0) fprintf(o.file, "</%s>\n", section);
@@ -15877,8 +15997,80 @@ DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
     int n;
     if (!demi_drawing_make(world, &g)) return demi_drawing_fails(world, "dem_vtp_write", &g);
     n = demi_grain_columns(&g, column);
-    result = demi_vtp(world, "dem_vtp_write", path, column, n, column[0].count, 0);
+    result = demi_vtp(world, "dem_vtp_write", path, column, n, column[0].count, 0, 0);
     demi_drawing_free(world, &g);
+    return result;
+}
+
+/* Contacts as lines: first counted, then laid down. */
+typedef struct demi_lines {
+    const dem_world *w;
+    int count, room, stride;
+    dem_real *ends, *force, *overlap, *memory;     /* x 6, x 3, x 1, x stride */
+    int32_t *wall;
+} demi_lines;
+static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *user) {
+    demi_lines *l = (demi_lines *)user;
+    const demi_periods p = demi_periods_of(l->w);
+    const int n = l->count++;
+    dem_body_state a, b;
+    dem_vec3 to = c->point;
+    dem_real *end;
+    int k;
+    if (n >= l->room || dem_body_get(l->w, c->a, &a) != DEM_OK) return;
+    end = l->ends + 6*(size_t)n;
+    if (!c->wall && dem_body_get(l->w, c->b, &b) == DEM_OK) to = b.position;
+    demi_put(end, a.position);
+    demi_put(end + 3, to);
+    for (k = 0; k < 3; k++)                     /* the image of b that is near */
+        end[3 + k] = end[k] + demi_image(end[3 + k] - end[k], p.half[k], p.period[k]);
+    demi_put(l->force + 3*(size_t)n, c->force);
+    l->overlap[n] = c->overlap;
+    l->wall[n] = c->wall;
+    for (k = 0; k < l->stride; k++) l->memory[(size_t)(n*l->stride + k)] = memory[k];
+}
+DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
+    if (demi_null(world, "dem_contacts_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    dem_result result = DEM_ERROR_ARGUMENT;
+    demi_column column[7 + DEMI_MEMORY];
+    char names[DEMI_MEMORY][24];
+    demi_lines l;
+    size_t room;
+    int k, length;
+    memset(&l, 0, sizeof l);
+    l.w = world;
+    if (dem_contacts_each(world, demi_line_put, &l) < 0) return DEM_ERROR_ARGUMENT;
+    l.room = l.count;
+    l.count = 0;
+    l.stride = world->memory_stride;
+    room = (size_t)l.room + 1;
+    l.ends = (dem_real *)demi_alloc(world, (10 + (size_t)l.stride)*room, sizeof(dem_real));
+    l.wall = (int32_t *)demi_alloc(world, room, sizeof(int32_t));
+    if (l.ends && l.wall) {
+        l.force = l.ends + 6*room;
+        l.overlap = l.force + 3*room;
+        l.memory = l.overlap + room;
+        dem_contacts_each(world, demi_line_put, &l);
+        const demi_column known[] = {
+            {"Points",   "position",     'r', 3, 2*l.room, 3,        0, l.ends},
+            {"CellData", "force",        'r', 3, l.room,   3,        0, l.force},
+            {"CellData", "overlap",      'r', 1, l.room,   1,        0, l.overlap},
+            {"CellData", "wall",         'i', 1, l.room,   1,        0, l.wall},
+            {"Lines",    "connectivity", 'i', 1, 2*l.room, 1,        0, 0},
+            {"Lines",    "offsets",      'i', 1, l.room,   2,        2, 0}};
+        memcpy(column, known, 4*sizeof *known);
+        for (k = 0; k < l.stride; k++) {
+            const char *name = demi_name(world->desc.law_memory_names, k, &length);
+            const demi_column own = {"CellData", names[k], 'r', 1, l.room, l.stride, k, l.memory};
+            if (name) sprintf(names[k], "%.*s", length, name);
+            else sprintf(names[k], "memory%d", k);
+            column[4 + k] = own;
+        }
+        memcpy(column + 4 + k, known + 4, 2*sizeof *known);
+        result = demi_vtp(world, "dem_contacts_vtp_write", path, column, 6 + k, 0, l.room, 0);
+    } else result = demi_no_memory(world, "dem_contacts_vtp_write");
+    demi_free(world, l.ends);
+    demi_free(world, l.wall);
     return result;
 }
 
@@ -16050,7 +16242,7 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
             {"CellData", "wall",         'i', 1, (int)triangles,   1, 0, id},
             {"Polys",    "connectivity", 'i', 1, (int)triangles*3, 1, 0, corners},
             {"Polys",    "offsets",      'i', 1, (int)triangles,   3, 3, 0}};
-        result = demi_vtp(world, "dem_walls_vtp_write", path, column, 4, 0, (int)triangles);
+        result = demi_vtp(world, "dem_walls_vtp_write", path, column, 4, 0, 0, (int)triangles);
     } else {
         result = demi_fail(world, DEM_ERROR_MEMORY, "dem_walls_vtp_write: no memory for %.0f "
                            "points and %.0f triangles; free some", (double)points,
@@ -16639,9 +16831,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     if (!t) return 0;
     t->desc = w->desc;
     t->asked = w->asked;
-    memcpy(t->real_names, w->real_names, sizeof t->real_names);
-    t->desc.body_reals = t->asked.body_reals = w->bodies.real_count ? t->real_names : 0;
-    t->bodies.real_count = w->bodies.real_count;
+    demi_names_own(t, &w->asked);
     t->material_count = w->material_count;
     memcpy(t->materials, w->materials, sizeof t->materials);
     t->pairs = w->pairs;
@@ -16672,6 +16862,7 @@ static void demi_twin_adopt(dem_world *w, dem_world *t) {
     memcpy(t->refused_calls, w->refused_calls, sizeof t->refused_calls);
     t->refused = w->refused;
     *w = *t;
+    demi_names_point(w);
     w->bytes = bytes;
     demi_free(w, t);
 }
@@ -18109,10 +18300,13 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     if (!d->law && (d->law_range > 0 || d->law_range_radii > 0 || d->law_who))
         return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
             "they are for a law of your own: name it in law, or leave them 0";
-    if (demi_real_names(d->body_reals) < 0)
+    if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
         return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, digits "
             "and _, with a space between two, such as \"temperature charge\"; null means none";
-    if (!demi_real_names(d->body_reals) && d->body_reals_fn)
+    if (demi_names(d->law_memory_names, d->law_memory) < 0)
+        return "dem_world_create: law_memory_names must be at most law_memory words of at most 23 "
+            "letters, digits and _, with a space between two; null means memory0, memory1, ...";
+    if (!demi_names(d->body_reals, DEM_BODY_REALS) && d->body_reals_fn)
         return "dem_world_create: body_reals_fn is given, but body_reals names no numbers; name "
             "them, or leave both 0";
     if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
@@ -18120,7 +18314,7 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64; 0 "
         "means as many as OpenMP offers";
     if (d->law_memory < 0 || d->law_memory > DEMI_MEMORY) return "dem_world_create: law_memory "
-        "must be 0 to 8 reals";
+        "must be 0 to 16 reals";
     if (d->law_vectors < 0 || 3*d->law_vectors > d->law_memory)
         return "dem_world_create: law_vectors is more than fits into law_memory, must be at most "
             "law_memory/3";
@@ -18155,18 +18349,13 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
 DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int version,
                                             size_t real_size) {
     dem_world *w;
-    const char *name;
-    int k, n;
     if (version != DEM_VERSION || real_size != sizeof(dem_real) ||
         *dem_create_error(desc)) return 0;
     w = (dem_world *)demi_raw_alloc(&desc->allocator, sizeof *w);
     if (!w) return 0;
     memset(w, 0, sizeof *w);
     w->desc = w->asked = *desc;
-    for (k = 0; (name = demi_real_name(desc->body_reals, k, &n)) != 0; k++)
-        sprintf(w->real_names + strlen(w->real_names), "%s%.*s", k ? " " : "", n, name);
-    w->desc.body_reals = w->asked.body_reals = k ? w->real_names : 0;
-    w->bodies.real_count = k;
+    demi_names_own(w, desc);
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
@@ -19245,6 +19434,7 @@ static void demi_slab_add(dem_slabs *s, demi_slab *b) {
         for (r = 0; r < own; r++) w->bodies.rates[own*(size_t)b->lent[k] + r] += in[down + r];
     }
 }
+static void demi_slab_gain(dem_slabs *s, demi_slab *b) { (void)s; demi_reals_gain(b->world); }
 /* near: some slab's near list may have to be made anew first. */
 static dem_result demi_slabs_forces(dem_slabs *s, int near) {
     dem_result result = DEM_OK;
@@ -19361,8 +19551,10 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
         near = 0;
     }
     result = demi_slabs_forces(s, near);
-    if (result == DEM_OK) h->stage.moved = 0;
-    return result;
+    if (result != DEM_OK) return result;
+    demi_slabs_phase(s, demi_slab_gain);
+    h->stage.moved = 0;
+    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -20017,9 +20209,7 @@ static int demi_slabs_head(dem_slabs *s, const dem_world *w) {
     dem_world *h = &s->head;
     const size_t most = 3*DEMI_MATERIALS, n = (size_t)s->count;
     h->asked = w->asked;
-    memcpy(h->real_names, w->real_names, sizeof h->real_names);
-    h->bodies.real_count = w->bodies.real_count;
-    h->desc.body_reals = h->asked.body_reals = w->bodies.real_count ? h->real_names : 0;
+    demi_names_own(h, &w->asked);
     h->stage.synced = 1;
     h->bodies.slot_free = h->bodies.slot_pending = -1;
     h->domains = &s->total;

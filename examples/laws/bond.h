@@ -10,11 +10,11 @@
 
        pull/A + |M| r/I > tension          |shear|/A + |twist| r/J > shear          Pa
 
-   Bonds are made while `make` (m) is above 0, in one step: between all two grains whose gap is smaller; not with walls. Then
-   set it to 0. A beam of n bonds bends under F at its end by F l^3/(E I) (n^3/3 - n/12) + F n l k/(E A): F L^3/(3 E I) of
+   Bonds are made by `dem_bonds_make(world, gap, bond_make, world)`: between all two spheres whose gap is smaller; not with
+   walls. A beam of n bonds bends under F at its end by F l^3/(E I) (n^3/3 - n/12) + F n l k/(E A): F L^3/(3 E I) of
    L = n l for large n. Damping: beta of the critical one, of each bond by itself: low notes ring long.
 
-   Range: desc.law_range above `make`, and above the stretch at which bonds break, tension l/E. law_stiffness: 4 E A/l.
+   Range: desc.law_range above `gap`, and above the stretch at which bonds break, tension l/E. law_stiffness: 4 E A/l.
    law_who = 1. Limits: small turns of a bond; what is not bonded, or no longer, has the linear law with a spring
    (normal_law linear). Memory: 8 reals, 2 vectors: shear m and bending rad; twist rad; 0: none, > 0: l, < 0: broken. */
 #ifndef BOND_H
@@ -26,8 +26,24 @@ typedef struct bond {
     dem_real E, k, radius;                   /* Pa > 0; > 0; m > 0                                        */
     dem_real tension, shear;                 /* Pa, strengths > 0                                         */
     dem_real beta;                           /* >= 0                                                      */
-    dem_real make;                           /* m, >= 0                                                   */
 } bond;
+enum { BOND_LENGTH = 7 };                    /* of its memory: 0: none, > 0: l, m; < 0: broken            */
+
+/* For dem_bonds_make: a bond as long as the two are apart now. user: their world. */
+static inline void bond_make(const dem_contact_info *c, dem_real *memory, void *user) {
+    dem_body_state a, b;
+    int k;
+    if (dem_body_get((const dem_world *)user, c->a, &a) != DEM_OK ||
+        dem_body_get((const dem_world *)user, c->b, &b) != DEM_OK) return;
+    for (k = 0; k < BOND_LENGTH; k++) memory[k] = 0;
+    memory[BOND_LENGTH] = a.radius + b.radius - c->overlap;
+}
+/* For dem_contacts_each: counts bonds that hold into user[0], broken ones (of grains still near) into user[1]. */
+static inline void bond_count(const dem_contact_info *c, dem_real *memory, void *user) {
+    (void)c;
+    ((int *)user)[0] += memory[BOND_LENGTH] > 0;
+    ((int *)user)[1] += memory[BOND_LENGTH] < 0;
+}
 
 /* J, stored by a bond with these stiffnesses (N/m, N/m, N m, N m), stretch (m), shear, bending and twist. */
 static inline dem_real bond_stored(const dem_real *stiff, dem_real x, dem_vec3 s, dem_vec3 b, dem_real twist) {
@@ -39,14 +55,13 @@ static inline double bond_length(dem_vec3 v) { return sqrt((double)(v.x*v.x + v.
 static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const bond *u = (const bond *)c->user;
     const dem_real l = c->who.radius_a + c->who.radius_b - c->overlap, r = u->radius, dt = c->dt;
-    const dem_real rest = memory[7] > 0 ? memory[7] : l, A = DEM_R(3.141592653589793)*r*r, I = A*r*r/4;
+    const dem_real rest = memory[BOND_LENGTH] > 0 ? memory[BOND_LENGTH] : l, A = DEM_R(3.141592653589793)*r*r, I = A*r*r/4;
     const dem_real stiff[4] = {u->E*A/rest, u->E/u->k*A/rest, u->E*I/rest, u->E/u->k*2*I/rest};
     const dem_vec3 n = c->normal, v = c->slip, w = c->spin_step, slip = c->slip_step;
     dem_real x, twist, along, lost, damp[2];
     dem_vec3 s, b;
     double pull, side;
-    if (memory[7] <= 0 && memory[7] >= 0 && dt > 0 && !c->wall && c->overlap > -u->make) memory[7] = l;
-    if (!(memory[7] > 0)) {                  /* none, or broken */
+    if (!(memory[BOND_LENGTH] > 0)) {                  /* none, or broken */
         if (c->overlap > 0) { dem_law_linear(c, memory, f); dem_law_spring(c, memory, f); }
         else if (dt > 0) memory[0] = memory[1] = memory[2] = 0;
         return;
@@ -62,7 +77,7 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     side = (double)stiff[1]*bond_length(s)/(double)A + fabs((double)(stiff[3]*twist))*(double)(r/(2*I));
     if (dt > 0 && (pull > (double)u->tension || side > (double)u->shear)) {
         f->energy.sag = bond_stored(stiff, x, s, b, twist);          /* what it held is lost */
-        memory[7] = -1;
+        memory[BOND_LENGTH] = -1;
         memory[0] = memory[1] = memory[2] = memory[3] = memory[4] = memory[5] = memory[6] = 0;
         return;
     }
