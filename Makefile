@@ -64,7 +64,7 @@ test: build/tests $(ALONE) ## build and run all tests; FILTER=words runs the sen
 
 hard: build/tests ## the long form of the hard cases, over an hour: counts cases and impacts; FILTER=words as in test
 	@JOBS=$(JOBS) TEST_LONG=1 sh tests/run.sh "$(FILTER)" $(HARD:build/%=build/tests@%) build/tests@test_facets \
-	    build/tests@test_sieve > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
+	    build/tests@test_sieve build/tests@test_bonds > build/hard.log; code=$$?; cat build/hard.log; awk -f tests/hard/totals.awk build/hard.log; exit $$code
 
 law: $(if $(LAW),build/dem.o,build/exam) ## the exam of a contact law, LAW=path/to/my_law.h, with a page of its curves; without LAW of the built-in ones
 	@mkdir -p build/out/exam
