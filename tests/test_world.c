@@ -188,7 +188,7 @@ int main(int argc, char **argv) {
             case 9: d.skin = (dem_real)nan_number; break;
             case 10: d.threads = 65; break;
             case 11: d.threads = -1; break;
-            case 12: d.law_memory = 9; break;
+            case 12: d.law_memory = 17; break;
             case 13: d.law_memory = 5; d.law_vectors = 2; break;
             case 14: d.normal_law = (dem_normal_law)3; break;
             case 15: d.tangent_law = (dem_tangent_law)99; break;
