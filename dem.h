@@ -1071,6 +1071,8 @@ struct dem_body_state {
                               Spheres: followed when the world desc asks for orientations */
     dem_shape shape;                     /* id 0: a sphere; ignored by dem_body_set */
     dem_vec3 moments;      /* kg m2, about the principal axes; ignored by dem_body_set */
+    const dem_real *reals; /* numbers of your own (desc.body_reals), until the next step; null: none;
+                              ignored by dem_body_set */
 };
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
 /* Sets position, velocity, spin, orientation and fixed. */
@@ -4785,6 +4787,7 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
     s->radius = w->bodies.pos[4*i + 3];
     s->mass = w->bodies.mass[i];
     s->moments = demi_moments_of(w, i);
+    s->reals = w->bodies.real_count ? w->bodies.reals + w->bodies.real_count*i : 0;
     s->inertia = DEMI_MIN(s->moments.x, DEMI_MIN(s->moments.y, s->moments.z));
     s->material.id = w->bodies.material[i];
     s->fixed = w->bodies.inv_mass[i] <= 0;

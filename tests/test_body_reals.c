@@ -157,6 +157,12 @@ static void bath(dem_real *reals, const dem_real *rates, const dem_body_state *b
     if (id.slot != ends[0].slot && id.slot != ends[1].slot) reals[0] += rates[0]*dt;
 }
 
+/* A field of 1 kV/m along x, on what charge a grain carries. */
+static void electric(const dem_body_state *body, dem_body id, double time, dem_vec3 *force, dem_vec3 *torque, void *user) {
+    (void)id; (void)time; (void)torque; (void)user;
+    force->x = 1000*body->reals[0];
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("numbers of one's own are named in the desc: at most eight words of letters, digits and _; what is wrong is "
@@ -415,6 +421,24 @@ int main(int argc, char **argv) {
         dem_body_reals_get(w, other, q + 1);
         CHECK_REL((double)(q[0] - q[1])/(4*pi*1e-6), s, 1e-3);
         CHECK_NEAR((double)(q[0] + q[1]), 2e-13, wide ? 1e-24 : 1e-16);
+        dem_world_destroy(w);
+    }
+    TEST("a force field sees the numbers of a grain: charge in a field, v = q E t/m; they are named without a law, and the "
+         "report says that none answers rates") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *w;
+        dem_body body;
+        dem_real q = DEM_R(2e-9);
+        const double mass = 2500*4/3.0*pi*1e-9;
+        desc.body_reals = "charge";
+        desc.body_force = electric;
+        desc.dt = DEM_R(1e-5);
+        w = dem_world_create(&desc);
+        body = dem_sphere_add(w, scene_material(w, 1e6, 1, 0, 0), DEM_R(1e-3), at(0, 0, 0));
+        CHECK_EQ(dem_body_reals_set(w, body, &q), DEM_OK);
+        CHECK_EQ(scene_step(w, 1000), DEM_OK);
+        CHECK_REL(scene_state(w, body).velocity.x, 2e-9*1000*0.01/mass, wide ? 1e-12 : 1e-4);
+        scene_report_has(w, "charge: carried; no law answers rates");
         dem_world_destroy(w);
     }
     return test_end();
