@@ -18454,6 +18454,14 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         if (w->margin.reach > 0)
             fprintf(out, "           asked about what is nearer than %.3g m, whether it touches or "
                     "not\n", w->margin.reach);
+#ifdef DEM_LAW
+        if (w->desc.law != DEM_LAW)
+            fprintf(out, "           DEM_LAW names another law than desc.law, which is called by "
+                    "pointer: slower\n");
+        else if (w->desc.law_who)
+            fprintf(out, "           named by DEM_LAW, but told who touches (law_who): called one "
+                    "by one, slower\n");
+#endif
         return;
     }
     fprintf(out, "effects    normal: %s%s%s%s\n", laws->normal->name,

@@ -28,7 +28,7 @@ static void by_pointer(const dem_contact *c, dem_real *memory, dem_contact_force
     own_law(c, memory, push);
 }
 
-static uint64_t run(dem_law_fn law, int mixed, int periodic, int *inlined) {
+static uint64_t run(dem_law_fn law, int mixed, int periodic, int reals, int ledger, int *inlined) {
     own_numbers numbers = {DEM_R(4e7), DEM_R(0.01), DEM_R(0.3)};
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_world *world;
@@ -39,7 +39,8 @@ static uint64_t run(dem_law_fn law, int mixed, int periodic, int *inlined) {
     desc.dt = DEM_R(2e-6);
     desc.law = law;
     desc.law_user = &numbers;
-    desc.law_memory = 3;
+    desc.law_memory = reals;
+    desc.ledger = ledger;
     desc.law_vectors = 1;
     desc.law_stiffness = DEM_R(5e3);
     desc.domain = box_of(0, 0, 0, 0.015, 0.015, 0.015);
@@ -60,14 +61,33 @@ int main(int argc, char **argv) {
     test_begin(argc, argv);
 
     TEST("a law named by DEM_LAW is inlined and gives the bits of the same law by pointer") {
-        int mixed, periodic, inlined, asked;
+        static const int reals[] = {3, 4, 5, 12};
+        int mixed, periodic, inlined, asked, k, ledger;
         for (mixed = 0; mixed < 2; mixed++)
-            for (periodic = 0; periodic < 2; periodic++) {
-                CHECK_EQ(run(own_law, mixed, periodic, &inlined),
-                         run(by_pointer, mixed, periodic, &asked));
-                CHECK_EQ(inlined, 1);
-                CHECK_EQ(asked, 0);
-            }
+            for (periodic = 0; periodic < 2; periodic++)
+                for (k = 0; k < 4; k++)
+                    for (ledger = 0; ledger < 2; ledger++) {
+                        CHECK_EQ(run(own_law, mixed, periodic, reals[k], ledger, &inlined),
+                                 run(by_pointer, mixed, periodic, reals[k], ledger, &asked));
+                        CHECK_EQ(inlined, 1);
+                        CHECK_EQ(asked, 0);
+                    }
+    }
+    TEST("a desc that names another law than DEM_LAW, none, or one that is told who touches, is told what that means") {
+        static const char *const says[] = {"DEM_LAW names another law", "desc.law is null, so it does not act",
+                                           "told who touches"};
+        int k;
+        for (k = 0; k < 3; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            desc.law = k == 0 ? by_pointer : k == 1 ? 0 : own_law;
+            desc.law_memory = k == 1 ? 0 : 3;
+            desc.law_who = k == 2;
+            world = dem_world_create(&desc);
+            dem_sphere_add(world, scene_material(world, 1e7, 1, 0, 0), 1, at(0, 0, 0));
+            scene_report_has(world, says[k]);
+            dem_world_destroy(world);
+        }
     }
     TEST("a world that names no law of its own keeps the built-in ones in a program with DEM_LAW") {
         dem_world *world = dem_world_create(&DEM_WORLD_DESC);
