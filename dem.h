@@ -1071,7 +1071,7 @@ struct dem_body_state {
                               Spheres: followed when the world desc asks for orientations */
     dem_shape shape;                     /* id 0: a sphere; ignored by dem_body_set */
     dem_vec3 moments;      /* kg m2, about the principal axes; ignored by dem_body_set */
-    const dem_real *reals; /* numbers of your own (desc.body_reals), until the next step; null: none;
+    const dem_real *reals; /* numbers of your own (desc.body_reals), till the next step; null: none;
                               ignored by dem_body_set */
 };
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
