@@ -20,12 +20,10 @@
 #ifndef BOND_H
 #define BOND_H
 #include <math.h>
-
 /* What law_user points to. */
 typedef struct bond {
     dem_real E, k, radius;                   /* Pa > 0; > 0; m > 0                                        */
-    dem_real tension, shear;                 /* Pa, strengths > 0                                         */
-    dem_real beta;                           /* >= 0                                                      */
+    dem_real tension, shear, beta;           /* Pa, strengths > 0; >= 0                                   */
 } bond;
 enum { BOND_LENGTH = 7 };                    /* of its memory: 0: none, > 0: l, m; < 0: broken            */
 
@@ -33,24 +31,21 @@ enum { BOND_LENGTH = 7 };                    /* of its memory: 0: none, > 0: l, 
 static inline void bond_make(const dem_contact_info *c, dem_real *memory, void *user) {
     dem_body_state a, b;
     int k;
-    if (dem_body_get((const dem_world *)user, c->a, &a) != DEM_OK ||
-        dem_body_get((const dem_world *)user, c->b, &b) != DEM_OK) return;
     for (k = 0; k < BOND_LENGTH; k++) memory[k] = 0;
-    memory[BOND_LENGTH] = a.radius + b.radius - c->overlap;
+    if (dem_body_get((const dem_world *)user, c->a, &a) == DEM_OK &&
+        dem_body_get((const dem_world *)user, c->b, &b) == DEM_OK)
+        memory[BOND_LENGTH] = a.radius + b.radius - c->overlap;
 }
 /* For dem_contacts_each: counts bonds that hold into user[0], broken ones (of grains still near) into user[1]. */
 static inline void bond_count(const dem_contact_info *c, dem_real *memory, void *user) {
     (void)c;
-    ((int *)user)[0] += memory[BOND_LENGTH] > 0;
-    ((int *)user)[1] += memory[BOND_LENGTH] < 0;
+    ((int *)user)[memory[BOND_LENGTH] < 0] += memory[BOND_LENGTH] < 0 || memory[BOND_LENGTH] > 0;
 }
-
+static inline dem_real bond_dot(dem_vec3 v, dem_vec3 w) { return v.x*w.x + v.y*w.y + v.z*w.z; }
 /* J, stored by a bond with these stiffnesses (N/m, N/m, N m, N m), stretch (m), shear, bending and twist. */
 static inline dem_real bond_stored(const dem_real *stiff, dem_real x, dem_vec3 s, dem_vec3 b, dem_real twist) {
-    return (stiff[0]*x*x + stiff[1]*(s.x*s.x + s.y*s.y + s.z*s.z) + stiff[2]*(b.x*b.x + b.y*b.y + b.z*b.z) +
-            stiff[3]*twist*twist)/2;
+    return (stiff[0]*x*x + stiff[1]*bond_dot(s, s) + stiff[2]*bond_dot(b, b) + stiff[3]*twist*twist)/2;
 }
-static inline double bond_length(dem_vec3 v) { return sqrt((double)(v.x*v.x + v.y*v.y + v.z*v.z)); }
 
 static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const bond *u = (const bond *)c->user;
@@ -58,7 +53,7 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     const dem_real rest = memory[BOND_LENGTH] > 0 ? memory[BOND_LENGTH] : l, A = DEM_R(3.141592653589793)*r*r, I = A*r*r/4;
     const dem_real stiff[4] = {u->E*A/rest, u->E/u->k*A/rest, u->E*I/rest, u->E/u->k*2*I/rest};
     const dem_vec3 n = c->normal, v = c->slip, w = c->spin_step, slip = c->slip_step;
-    dem_real x, twist, along, lost, damp[2];
+    dem_real x, twist, along, damp[2];
     dem_vec3 s, b;
     double pull, side;
     if (!(memory[BOND_LENGTH] > 0)) {                  /* none, or broken */
@@ -68,13 +63,12 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     }
     s = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
     b = dem_memory_rotate(c, dem_vec3_make(memory[3], memory[4], memory[5]));
-    along = w.x*n.x + w.y*n.y + w.z*n.z;
-    x = l - rest;                            /* stretch */
+    along = bond_dot(w, n); x = l - rest;    /* rad/s; m, stretch */
     s = dem_vec3_make(s.x + dt*slip.x, s.y + dt*slip.y, s.z + dt*slip.z);
     b = dem_vec3_make(b.x + dt*(w.x - along*n.x), b.y + dt*(w.y - along*n.y), b.z + dt*(w.z - along*n.z));
     twist = memory[6] + dt*along;
-    pull = (double)(stiff[0]*x)/(double)A + (double)stiff[2]*bond_length(b)*(double)(r/I);
-    side = (double)stiff[1]*bond_length(s)/(double)A + fabs((double)(stiff[3]*twist))*(double)(r/(2*I));
+    pull = (double)(stiff[0]*x)/(double)A + (double)stiff[2]*sqrt((double)bond_dot(b, b))*(double)(r/I);
+    side = (double)stiff[1]*sqrt((double)bond_dot(s, s))/(double)A + fabs((double)(stiff[3]*twist))*(double)(r/(2*I));
     if (dt > 0 && (pull > (double)u->tension || side > (double)u->shear)) {
         f->energy.sag = bond_stored(stiff, x, s, b, twist);          /* what it held is lost */
         memory[BOND_LENGTH] = -1;
@@ -87,12 +81,9 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     f->tangent = dem_vec3_make(-stiff[1]*s.x - damp[1]*v.x, -stiff[1]*s.y - damp[1]*v.y, -stiff[1]*s.z - damp[1]*v.z);
     f->moment = dem_vec3_make(-stiff[2]*b.x - stiff[3]*twist*n.x, -stiff[2]*b.y - stiff[3]*twist*n.y,
                               -stiff[2]*b.z - stiff[3]*twist*n.z);
-    lost = damp[0]*c->closing_speed*c->closing_speed + damp[1]*(v.x*v.x + v.y*v.y + v.z*v.z);
-    f->energy.dashpot = lost*dt;
+    f->energy.dashpot = (damp[0]*c->closing_speed*c->closing_speed + damp[1]*bond_dot(v, v))*dt;
     f->energy.elastic = bond_stored(stiff, x, s, b, twist);
     if (!(dt > 0)) return;
-    memory[0] = s.x; memory[1] = s.y; memory[2] = s.z;
-    memory[3] = b.x; memory[4] = b.y; memory[5] = b.z;
-    memory[6] = twist;
+    memory[0] = s.x; memory[1] = s.y; memory[2] = s.z; memory[3] = b.x; memory[4] = b.y; memory[5] = b.z; memory[6] = twist;
 }
 #endif
