@@ -151,6 +151,12 @@ static void measure(const bench_scene *s) {
 typedef struct effect_row { const char *name, *scene, *buys; bench_choice with, without, absent; } effect_row;
 #define NO_FRICTION {.tangent = DEM_TANGENT_NONE}
 static void bench_law_called(const dem_contact *c, dem_real *memory, dem_contact_force *f) { bench_law(c, memory, f); }
+static void bench_law_flows(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    const dem_real flow = c->who.reals_b[0] - c->who.reals_a[0];
+    bench_law(c, memory, f);
+    c->who.rate_a[0] += flow;
+    c->who.rate_b[0] -= flow;
+}
 static const effect_row effect_rows[] = {
     {"friction", "bed", "a spring that holds what rests", {0}, NO_FRICTION, {.tangent = DEM_TANGENT_SPRING, .smooth = 1}},
     {"tangent.viscous", "bed", "friction without memory: heaps creep", {.tangent = DEM_TANGENT_VISCOUS}, {0}, {0}},
@@ -171,6 +177,9 @@ static const effect_row effect_rows[] = {
     {"own_law.called", "bed", "nothing: the same by pointer", {.law = bench_law_called}, {0}, {0}},
     {"own_law.who", "bed", "ids, radii, masses, place and time for a law by pointer",
      {.law = bench_law_called, .who = 1}, {.law = bench_law_called}, {0}},
+    {"body_reals", "bed", "a number on every grain, which a law that is told who touches lets flow",
+     {.law = bench_law_flows, .who = 1, .reals = 1}, {.law = bench_law_called, .who = 1},
+     {.law = bench_law_called, .who = 1, .reals = 1}},
     {"own_law.range", "bed", "a law asked 0.05 radii before touch", {.law = bench_law, .range = 0.05}, {.law = bench_law}, {0}},
     {"ledger", "bed", "where the energy went, watched at every step", {.ledger = 1}, {0}, {0}},
     {"one_unlike", "bed", "one grain that differs from the others", {.mixed = 1}, {0}, {0}},

@@ -78,9 +78,10 @@ typedef struct bench_choice {
     dem_law_fn law;             /* a law of one's own: 3 reals, 1 vector                        */
     double range;               /* its range, in radii                                          */
     int who;                    /* 1: it asks who touches                                       */
+    int reals;                  /* 1: grains carry a number                                     */
 } bench_choice;
 #define BENCH_CHOICE {0, 0, 0, DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, \
-    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
 STUDY_FN int bench_is(const bench_scene *s, const char *name) { return !strcmp(s->name, name); }
 
@@ -349,6 +350,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     desc.law_vectors = o->law ? 1 : 0;
     desc.law_range = (dem_real)(o->range*s->radius);
     desc.law_who = o->who;
+    desc.body_reals = o->reals ? "temperature" : 0;
     desc.force = o->force;
     desc.force_user = o->force_user;
     desc.dt = (dem_real)(o->dt > 0 ? o->dt : s->dt);

@@ -25,12 +25,14 @@ typedef struct exam {
     double stiffness;            /* N/m, as law_stiffness; 0: built-in                        */
     double range;                /* m, as law_range: 0                                        */
     int who;                     /* as law_who; the grains then carry eight numbers, zeros: 0 */
+    dem_contact_fn made;         /* for laws of bonds: makes one, as for dem_bonds_make, whose user is its world: null */
     double radius;               /* m, of both grains: 1e-3                                   */
     double deep;                 /* largest overlap of the paths, of the radius: 0.02         */
     double speed;                /* m/s, of impacts: 0.1                                      */
     dem_normal_law coefficients; /* kn, cn, kt, ct of the contact are those of this built-in law: Hertz */
     dem_material_desc material;  /* glass, softened: 2500 kg/m3, 1e7 Pa, friction 0.4, rolling friction 0.1 */
     dem_contact contact;         /* two such grains as a law sees them: set by exam_take      */
+    dem_real bond[DEM_LAW_MEMORY];   /* what `made` writes into their memory: set by exam_take */
 } exam;
 
 enum { EXAM_FINITE, EXAM_PURE, EXAM_ASKED, EXAM_SWAP, EXAM_FRAME, EXAM_ENDS, EXAM_PRESS, EXAM_SHEAR, EXAM_ROLL,
@@ -104,13 +106,27 @@ static inline double exam_gap(const dem_world *world, dem_body one, dem_body oth
     z = (double)(b.position.z - a.position.z);
     return sqrt(x*x + y*y + z*z) - 2*radius;
 }
-/* One impact, run to its end. */
+/* Makes the bond of a world of two, and keeps a copy of what it remembers. */
+typedef struct exam_bond { const exam *e; dem_world *world; dem_real memory[DEM_LAW_MEMORY]; } exam_bond;
+static inline void exam_make(const dem_contact_info *c, dem_real *memory, void *user) {
+    exam_bond *b = (exam_bond *)user;
+    b->e->made(c, memory, b->world);
+    memcpy(b->memory, memory, (size_t)b->e->memory*sizeof *memory);
+}
+static inline int exam_join(const exam *e, dem_world *world, exam_bond *b) {
+    memset(b, 0, sizeof *b);
+    b->e = e;
+    b->world = world;
+    return dem_bonds_make(world, (dem_real)(0.5*e->range), exam_make, b) == 1;
+}
+/* One impact, run to its end; of two that are bonded: 20 contact times, of which nobody parts. */
 static inline void exam_collide(const exam *e, exam_impact *m) {
     dem_advice advice;
     dem_totals before, after;
     dem_body_state a, b;
     dem_body one, other;
     dem_world *world = 0;
+    exam_bond bond;
     double dt = 1, energy;
     int pass, met = 0;
     long k, most;
@@ -118,8 +134,9 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     m->error[0] = 0;
     advice.contact_time = 0;
     for (pass = 0; pass < 2; pass++) {           /* the second with its step */
-        const double x = e->radius + 0.5*e->range + 0.5*m->speed*m->early*dt*(pass ? 1 : 0)*cos(m->angle);
-        const double y = 0.5*e->range*tan(m->angle);                /* over the range to the line of centres */
+        const double apart = e->made ? 0 : 0.5*e->range;
+        const double early = pass && !e->made ? 0.5*m->speed*m->early*dt*cos(m->angle) : 0;
+        const double x = e->radius + apart + early, y = apart*tan(m->angle);    /* over the range to the line of centres */
         dem_material stuff;
         dem_world_destroy(world);
         world = exam_world(e, e->law, e->user, m->speed, pass ? dt : 0);
@@ -137,16 +154,18 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     dem_body_set(world, one, &a);
     dem_body_set(world, other, &b);
     before = dem_totals_get(world);
-    most = (long)((40*(double)advice.contact_time + 3*e->range/(m->speed*cos(m->angle)))/dt + 2*m->early + 100);
+    if (e->made && !exam_join(e, world, &bond))
+        snprintf(m->error, sizeof m->error, "dem_bonds_make makes no bond: %.100s", dem_world_error(world));
+    most = e->made ? (long)floor(20*(double)advice.contact_time/dt + 0.5) : (long)((40*(double)advice.contact_time + 3*e->range/(m->speed*cos(m->angle)))/dt + 2*m->early + 100);
     for (k = 0; k < most; k++) {
         const dem_result result = dem_world_step(world, 1);
         const int near_by = exam_gap(world, one, other, e->radius) < e->range;
         met |= dem_counters_get(world).contacts > 0;
-        if (result != DEM_OK || (met && !near_by)) break;
+        if (result != DEM_OK || (met && !near_by && !e->made)) break;
     }
     after = dem_totals_get(world);
     energy = (after.kinetic + after.rotational)/(before.kinetic + before.rotational);
-    snprintf(m->error, sizeof m->error, "%.150s", dem_world_error(world));
+    if (!m->error[0]) snprintf(m->error, sizeof m->error, "%.150s", dem_world_error(world));
     dem_body_get(world, one, &a);
     dem_body_get(world, other, &b);
     m->normal = (double)(b.velocity.x - a.velocity.x);
@@ -169,6 +188,7 @@ static inline dem_real *exam_reals(void) {
 static inline int exam_contact(exam *e) {
     dem_world *world = exam_world(e, exam_look, &e->contact, e->speed, 1e-9);
     dem_material stuff;
+    int joined = 1;
     if (!world) return 0;
     stuff = dem_material_add(world, &e->material);
     memset(&e->contact, 0, sizeof e->contact);
@@ -176,11 +196,25 @@ static inline int exam_contact(exam *e) {
     dem_sphere_add(world, stuff, (dem_real)e->radius, dem_vec3_make(0, 0, (dem_real)(1.99*e->radius)));
     dem_world_step(world, 1);
     dem_world_destroy(world);
+    if (e->made) {
+        exam_bond bond;
+        world = exam_world(e, e->law, e->user, e->speed, 1e-9);
+        stuff = dem_material_add(world, &e->material);
+        dem_sphere_add(world, stuff, (dem_real)e->radius, dem_vec3_make(0, 0, 0));
+        dem_sphere_add(world, stuff, (dem_real)e->radius, dem_vec3_make(0, 0, (dem_real)(2*e->radius)));
+        joined = exam_join(e, world, &bond);
+        memcpy(e->bond, bond.memory, sizeof e->bond);
+        dem_world_destroy(world);
+    }
     e->contact.user = e->user;
     e->contact.who.reals_a = e->contact.who.reals_b = exam_reals();
     e->contact.who.rate_a = e->contact.who.rate_b = exam_reals() + DEM_BODY_REALS;
-    return e->contact.overlap > 0;
+    return joined && e->contact.overlap > 0;
 }
+/* m, the overlap at which paths begin: of the range, and of touch for a bond; and the one to which they go out: a bond
+   is pulled, but not torn. */
+static inline double exam_first(const exam *e) { return e->made ? 0 : -e->range; }
+static inline double exam_last(const exam *e) { return e->made ? -0.25*e->range : -e->range; }
 
 /* ---- paths: the law is moved by hand ---- */
 
@@ -189,7 +223,7 @@ typedef struct exam_path {
     const exam *e;
     dem_contact c;
     dem_contact_force f;         /* the last answer; zeros while the two are apart            */
-    dem_real memory[8 + EXAM_CANARY];
+    dem_real memory[DEM_LAW_MEMORY + EXAM_CANARY];
     dem_quat frame;              /* the path's frame in the world's                           */
     int swapped;                 /* a and b have changed places                               */
     double work, largest;        /* J, done on the contact since exam_begin; N, largest |force| */
@@ -204,8 +238,9 @@ static inline void exam_begin(exam_path *p, const exam *e) {
     p->e = e;
     p->frame = dem_quat_make(1, 0, 0, 0);
     for (k = 0; k < EXAM_CANARY; k++) p->memory[e->memory + k] = DEM_R(1.25)*(dem_real)(k + 1);
+    if (e->made) memcpy(p->memory, e->bond, (size_t)e->memory*sizeof *p->memory);
     p->c = e->contact;
-    p->c.overlap = (dem_real)-e->range;
+    p->c.overlap = (dem_real)exam_first(e);
 }
 static inline double exam_dot(dem_vec3 a, dem_vec3 b) { return (double)(a.x*b.x + a.y*b.y + a.z*b.z); }
 static inline dem_vec3 exam_turned(const exam_path *p, double x, double y, double z) {
@@ -446,13 +481,14 @@ static inline int exam_is_smooth(const exam *e, char *found) {
     exam_begin(&p, e);
     for (part = 0; part < 2; part++)
         for (k = 1; k <= 1000; k++) {
-            const double way = deep + e->range, overlap = (part ? way*(1 - k/1000.0) : way*k/1000) - e->range;
+            const double from = part ? deep : exam_first(e), end = part ? exam_last(e) : deep;
+            const double overlap = from + (end - from)*k/1000, least = 1e-9*(deep + e->range) - e->range;
             exam_go to;
             memset(&to, 0, sizeof to);
-            to.overlap = fmax(overlap, 1e-9*way - e->range);
+            to.overlap = fmax(overlap, least);
             if (k == 1 && !part) {                /* the very first touch */
                 exam_go first = to;
-                first.overlap = 1e-9*way - e->range;
+                first.overlap = fmax(exam_first(e), least);
                 exam_move(&p, &first, 1e-9*deep/slow);
                 before = (double)p.f.normal;
                 jump = fabs(before);
@@ -466,7 +502,7 @@ static inline int exam_is_smooth(const exam *e, char *found) {
             }
             before = (double)p.f.normal;
         }
-    if (fabs(before) > jump) { jump = fabs(before); where = "as the two part"; at = 0; }
+    if (!e->made && fabs(before) > jump) { jump = fabs(before); where = "as the two part"; at = 0; }
     EXAM_SAY("largest step of 1000: %.1g of the largest force", jump/(p.largest + 1e-300));
     if (jump <= 0.05*p.largest) return 1;
     EXAM_SAY("moved slowly, the force jumps by %.2g of its largest %s, at an overlap of %.2g radii: steps of any length miss "
@@ -498,7 +534,7 @@ static inline int exam_is_pressed(const exam *e, char *found) {
             exam_go_on(&p, deep, 0, 0, 0, 0, 400, speed);
             worst = fmax(worst, exam_gain(&p, before, in));
         }
-        exam_go_on(&p, -e->range, 0, 0, 0, 0, 4000, speed);
+        exam_go_on(&p, exam_last(e), 0, 0, 0, 0, 4000, speed);
         worst = fmax(worst, exam_gain(&p, 0, in));
     }
     return exam_gains("loops of loading, unloading and reloading", worst, "the way out must not lie above the way in, and "
@@ -598,7 +634,8 @@ static inline int exam_is_bounced(const exam *e, char *found) {
             if (!j) { least = fmin(least, m.normal/m.speed); most = fmax(most, m.normal/m.speed); }
             if (m.energy - 1 > worst) { worst = m.energy - 1; most_speed = m.speed; most_angle = m.angle; }
         }
-    EXAM_SAY("restitution %.3f to %.3f head-on; none of 12 impacts gains", least, most);
+    if (e->made) EXAM_SAY("none of 12 pairs that are bonded and pushed gains");
+    else EXAM_SAY("restitution %.3f to %.3f head-on; none of 12 impacts gains", least, most);
     if (worst <= 1e-3) return 1;
     EXAM_SAY("an impact at %g m/s, %.0f degrees, ends with %.3g of the energy it began with: see the loops above",
              most_speed, most_angle*57.29578, 1 + worst);
@@ -697,10 +734,11 @@ static inline dem_result exam_take(exam *e, exam_sheet *sheet) {
     memset(sheet, 0, sizeof *sheet);
     sheet->name = e->name ? e->name : "a law";
     for (k = 0; k < EXAM_LINES; k++) sheet->line[k].asks = row[k].asks;
-    if (!e->law || e->memory < 0 || e->memory > 8 || e->vectors < 0 || 3*e->vectors > e->memory || !exam_contact(e)) {
+    if (!e->law || e->memory < 0 || e->memory > DEM_LAW_MEMORY || e->vectors < 0 || 3*e->vectors > e->memory || !exam_contact(e)) {
         snprintf(sheet->line[0].found, sizeof sheet->line[0].found, "exam_take: %s is examined with law %s, memory %d, "
-                 "vectors %d: give a function, 0 to 8 reals, no more vectors than they hold, and a radius, material and "
-                 "speed that a world takes", sheet->name, e->law ? "given" : "null", e->memory, e->vectors);
+                 "vectors %d: give a function, 0 to %d reals, no more vectors than they hold, a radius, material and speed "
+                 "that a world takes, and to a law of bonds a range", sheet->name, e->law ? "given" : "null", e->memory,
+                 e->vectors, (int)DEM_LAW_MEMORY);
         return DEM_ERROR_ARGUMENT;
     }
     for (k = 0; k < EXAM_LINES; k++) {

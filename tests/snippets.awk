@@ -1,6 +1,7 @@
 # awk -v out=DIR -f tests/snippets.awk dem.h page.md...: takes the C blocks out of the pages (between
 # ```c and ```) and the program out of dem.h's manual, and writes each to DIR/FILE_N_program.c when it
-# has a main, to DIR/FILE_N_part.c otherwise (with dem.h included before it).
+# has a main, to DIR/FILE_N_part.c otherwise (with dem.h included before it). A block whose first line is
+# /* NAME.h */ is written to DIR/NAME.h too, for programs that include it.
 FNR == 1 { name = FILENAME; sub(/.*\//, "", name); gsub(/[^A-Za-z0-9]/, "_", name); n = 0; inside = manual = 0 }
 FILENAME ~ /\.md$/ && /^```c$/ { inside = 1; text = ""; start = FNR; next }
 FILENAME ~ /\.md$/ && /^```/ && inside { finish(); next }
@@ -18,6 +19,11 @@ function finish(    program, file) {
     if (text !~ /#include "dem.h"/) print "#include \"dem.h\"" > file
     printf "#line %d \"%s\"\n%s", start + (FILENAME ~ /\.md$/), FILENAME, text > file
     close(file)
+    if (match(text, /^\/\* [a-z_]+\.h \*\//)) {
+        file = out "/" substr(text, 4, RLENGTH - 6)
+        printf "%s", text > file
+        close(file)
+    }
     inside = 0
 }
 END { if (inside) { print FILENAME ": a C block does not end"; exit 1 } }

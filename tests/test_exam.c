@@ -5,6 +5,7 @@
 #include "test.h"
 #include "scene.h"
 #include "../examples/exam.h"
+#include "../examples/laws/bond.h"
 
 /* ---- right laws ---- */
 
@@ -94,6 +95,14 @@ static void dawdles(const dem_contact *c, dem_real *memory, dem_contact_force *f
     if (sum > 0) linear_spring(c, memory, f);
 }
 
+static void bond_pushes(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    bond_law(c, memory, f);
+    f->tangent = demi_add(f->tangent, demi_scale(c->slip, DEM_R(300.0)*c->ct));
+}
+static void bond_hides(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+    bond_law(c, memory, f);                      /* with one vector told of two */
+}
+
 /* Takes the exam; 1 + the first line that is not passed, 0: all are. */
 static int take(dem_law_fn law, int memory, int vectors, double stiffness, dem_normal_law coefficients, double restitution,
                 exam_sheet *sheet) {
@@ -159,14 +168,39 @@ int main(int argc, char **argv) {
         wrong(depends_on_dt, EXAM_ORDER, "does a force contain dt", 0, 1);
         wrong(dawdles, EXAM_COST, "times Hertz with a spring", 0, 1);
     }
+    TEST("a law of bonds is examined bonded: all lines; one that pushes along the shear, or does not tell of its second vector, "
+         "is caught") {
+        static bond cement = {DEM_R(1e8), DEM_R(2.5), DEM_R(5e-4), DEM_R(1e9), DEM_R(1e9), DEM_R(0.1)};
+        static const dem_law_fn law[4] = {bond_law, bond_pushes, bond_hides, bond_law};
+        static const char *const says[4] = {"", "friction must act against slip", "a and b exchanged in mid-contact", ""};
+        static const int line[4] = {0, EXAM_SHEAR + 1, EXAM_SWAP + 1, 0};
+        int k, j, first;
+        for (k = 0; k < 4; k++) {
+            exam e = exam_of("bond", law[k], &cement, 8, k == 2 ? 1 : 2, 1.6e5);
+            exam_sheet sheet;
+            e.coefficients = DEM_NORMAL_LINEAR;
+            e.range = 2e-4;
+            e.who = 1;
+            e.made = bond_make;
+            if (k == 3) e.range = 0;             /* nothing to make a bond in */
+            CHECK_EQ(exam_take(&e, &sheet), k == 3 ? DEM_ERROR_ARGUMENT : DEM_OK);
+            if (k == 3) { CHECK_STR(sheet.line[0].found, "to a law of bonds a range"); continue; }
+            for (first = j = 0; j < EXAM_LINES && !first; j++)
+                if (!sheet.line[j].passed && j != EXAM_COST) first = j + 1;
+            CHECK_EQ(first, line[k]);
+            if (first) CHECK_STR(sheet.line[first - 1].found, says[k]);
+        }
+    }
     TEST("no law, too much memory or more vectors than it holds is refused by a sentence") {
         exam e = exam_of("law", 0, 0, 3, 1, 0);
         exam_sheet sheet;
         CHECK_EQ(exam_take(&e, &sheet), DEM_ERROR_ARGUMENT);
         CHECK_STR(sheet.line[0].found, "with law null");
-        e = exam_of("law", linear_spring, 0, 9, 1, 0);
+        e = exam_of("law", linear_spring, 0, 16, 1, 0);
+        CHECK_EQ(exam_take(&e, &sheet), DEM_OK);
+        e = exam_of("law", linear_spring, 0, 17, 1, 0);
         CHECK_EQ(exam_take(&e, &sheet), DEM_ERROR_ARGUMENT);
-        CHECK_STR(sheet.line[0].found, "memory 9");
+        CHECK_STR(sheet.line[0].found, "memory 17");
         e = exam_of("law", linear_spring, 0, 3, 2, 0);
         CHECK_EQ(exam_take(&e, &sheet), DEM_ERROR_ARGUMENT);
         CHECK_STR(sheet.line[0].found, "vectors 2");

@@ -15,13 +15,12 @@
    L = n l for large n. Damping: beta of the critical one, of each bond by itself: low notes ring long.
 
    Range: desc.law_range above `gap`, and above the stretch at which bonds break, tension l/E. law_stiffness: 4 E A/l.
-   law_who = 1. Limits: small turns of a bond; what is not bonded, or no longer, has the linear law with a spring
-   (normal_law linear). Memory: 8 reals, 2 vectors: shear m and bending rad; twist rad; 0: none, > 0: l, < 0: broken. */
+   law_who = 1. Limits: small turns of a bond; what is not bonded has the linear law with a spring (normal_law linear).
+   Memory: 8 reals, 2 vectors: shear m and bending rad; twist rad; 0: none, > 0: l, < 0: broken. */
 #ifndef BOND_H
 #define BOND_H
 #include <math.h>
-/* What law_user points to. */
-typedef struct bond {
+typedef struct bond {                        /* what law_user points to                               */
     dem_real E, k, radius;                   /* Pa > 0; > 0; m > 0                                        */
     dem_real tension, shear, beta;           /* Pa, strengths > 0; >= 0                                   */
 } bond;
@@ -29,8 +28,7 @@ enum { BOND_LENGTH = 7 };                    /* of its memory: 0: none, > 0: l, 
 
 /* For dem_bonds_make: a bond as long as the two are apart now. user: their world. */
 static inline void bond_make(const dem_contact_info *c, dem_real *memory, void *user) {
-    dem_body_state a, b;
-    int k;
+    dem_body_state a, b; int k;
     for (k = 0; k < BOND_LENGTH; k++) memory[k] = 0;
     if (dem_body_get((const dem_world *)user, c->a, &a) == DEM_OK &&
         dem_body_get((const dem_world *)user, c->b, &b) == DEM_OK)
@@ -38,8 +36,7 @@ static inline void bond_make(const dem_contact_info *c, dem_real *memory, void *
 }
 /* For dem_contacts_each: counts bonds that hold into user[0], broken ones (of grains still near) into user[1]. */
 static inline void bond_count(const dem_contact_info *c, dem_real *memory, void *user) {
-    (void)c;
-    ((int *)user)[memory[BOND_LENGTH] < 0] += memory[BOND_LENGTH] < 0 || memory[BOND_LENGTH] > 0;
+    (void)c; ((int *)user)[memory[BOND_LENGTH] < 0] += memory[BOND_LENGTH] < 0 || memory[BOND_LENGTH] > 0;
 }
 static inline dem_real bond_dot(dem_vec3 v, dem_vec3 w) { return v.x*w.x + v.y*w.y + v.z*w.z; }
 /* J, stored by a bond with these stiffnesses (N/m, N/m, N m, N m), stretch (m), shear, bending and twist. */
@@ -54,8 +51,7 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     const dem_real stiff[4] = {u->E*A/rest, u->E/u->k*A/rest, u->E*I/rest, u->E/u->k*2*I/rest};
     const dem_vec3 n = c->normal, v = c->slip, w = c->spin_step, slip = c->slip_step;
     dem_real x, twist, along, damp[2];
-    dem_vec3 s, b;
-    double pull, side;
+    dem_vec3 s, b; double pull, side;
     if (!(memory[BOND_LENGTH] > 0)) {                  /* none, or broken */
         if (c->overlap > 0) { dem_law_linear(c, memory, f); dem_law_spring(c, memory, f); }
         else if (dt > 0) memory[0] = memory[1] = memory[2] = 0;
@@ -86,4 +82,8 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     if (!(dt > 0)) return;
     memory[0] = s.x; memory[1] = s.y; memory[2] = s.z; memory[3] = b.x; memory[4] = b.y; memory[5] = b.z; memory[6] = twist;
 }
+#ifdef LAW_FILE
+static bond bond_mine = {DEM_R(1e8), DEM_R(2.5), DEM_R(5e-4), DEM_R(1e9), DEM_R(1e9), DEM_R(0.1)};
+#define LAW {"bond", bond_law, &bond_mine, 8, 2, 1.6e5, DEM_NORMAL_LINEAR, -1, 2e-4, 1, bond_make}
+#endif
 #endif
