@@ -31,7 +31,7 @@ ACCURACY_ALSO := $(if $(wildcard bench/accuracy.c),build/accuracy_single build/a
 hash := \#
 
 # ---- what the compiler can do; asked only when something is to be compiled ----
-ifneq ($(filter-out help clean tags parts recipes check fuzz docs,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help clean tags parts recipes viewer check fuzz docs,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -49,7 +49,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run test hard law examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers tags parts recipes snippets clean
+.PHONY: help all run test hard law examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags parts recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -133,6 +133,12 @@ readers: build/write_files ## write every file format and open it with VTK and A
 tags: ## every part named in dem.h's contents stands there once and in order; parts and functions keep their limits
 	@awk -f tests/tags.awk dem.h
 
+viewer: ## put examples/replay/viewer.html into dem.h
+	@mkdir -p build && awk -f tests/viewer.awk examples/replay/viewer.html dem.h > build/viewer.h && cp build/viewer.h dem.h
+
+browser: build/write_film ## play a film in a headless chromium: frames, pixels, no errors
+	@sh tests/browser.sh
+
 recipes: ## apply the patches of docs/extending.md to a copy of dem.h and use what they add
 	@CC="$(CC)" sh tests/recipes.sh
 
@@ -166,13 +172,14 @@ $(LESSONS) $(STUDIES): build/%: examples/%.c $(HEADERS)
 $(BENCHES): build/%: bench/%.c $(HEADERS) $(wildcard bench/*.h)
 build/parallel: examples/mill.c
 build/write_files: tests/write_files.c
+build/write_film: tests/write_film.c
 # -O3 takes three times as long to compile as -O2 and is for those that run long
 build/tests $(TESTS): LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
 build/tests $(TESTS) $(BENCHES): dem.h build/flags
 	$(COMPILE) $(LEVEL) -o $@ $(filter %/$(@F).c,$^) $(LINK)
 build/dem.o: dem.c dem.h build/flags
 	$(COMPILE) $(OMP) -c -o $@ dem.c
-$(LESSONS) $(STUDIES) build/write_files: build/dem.o
+$(LESSONS) $(STUDIES) build/write_files build/write_film: build/dem.o
 	$(COMPILE) -o $@ $(filter %/$(@F).c,$^) build/dem.o $(LINK)
 # benches say how they were built; bench.c also in single precision, and as plain as can be
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'

@@ -55,6 +55,8 @@
        >>slabs-time  one time step for all slabs
        >>slabs-run   what is fed into slabs; one step after the other
        >>deal        slabs made and collected
+       >>viewer      the page that plays a film: made from examples/replay/viewer.html
+       >>replay      a film of a run: what has changed, frame by frame
 */
 
 /* ---------------------------------------------------------------------------------------------
@@ -1671,6 +1673,49 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
 /* Appends the loads of a wall as one CSV line; writes the heading first when the file is new or
    empty. */
 DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const char *path);
+
+/* ---- replay: a film of a run in one HTML file ---- */
+
+/* A film that any browser plays, without network or other files: grains of every shape, coloured by
+   speed, size, material or a number of your own; walls as they move; drag to turn it; plots beside
+   it, and the report.
+
+       dem_replay *film = dem_replay_open(world, "pile.html", 0);
+       for (k = 1; k <= 100; k++) {
+           dem_world_run(world, 0.01, 0, 0);
+           dem_replay_value(film, "kinetic energy (J)", dem_totals_get(world).kinetic);
+           dem_replay_frame(film);
+       }
+       dem_replay_close(film);
+
+   A grain takes some 6 bytes a frame, at most 29 with orientation and a number; one at rest 1.3.
+   The film is written to path.tmp and renamed by dem_replay_close; what lies there after a run that
+   was killed plays up to its last whole frame when it is renamed to a name in .html. */
+typedef struct dem_replay dem_replay;
+enum { DEM_REPLAY_VALUES = 16 };
+typedef struct dem_replay_desc {
+    const char *title;          /* null: the file's name */
+    /* what grains may be coloured by: one of desc.body_reals (null: its first), or the name of what
+       number_fn answers; text that outlives the film */
+    const char *number;
+    double (*number_fn)(const dem_world *world, dem_body body, void *user);     /* or null */
+    void *user;
+    dem_real resolution;        /* m, to which places are told, >= 0; 0: 1/32 of the smallest radius
+                                   in the first frame */
+} dem_replay_desc;
+static const dem_replay_desc DEM_REPLAY_DESC_ZERO = {0, 0, 0, 0, 0};
+#define DEM_REPLAY_DESC DEM_REPLAY_DESC_ZERO
+/* desc: null for DEM_REPLAY_DESC. Null, with a sentence, on bad values or a path that cannot be
+   written to. Close it before its world is destroyed. */
+DEM_API dem_replay *dem_replay_open(dem_world *world, const char *path,
+                                    const dem_replay_desc *desc);
+/* The world as it is now: a frame. Ask for one every so often: 30 to 300 make a good film. */
+DEM_API dem_result dem_replay_frame(dem_replay *replay);
+/* A value of the next frame, drawn against time under this name (1 to 63 letters, unit included);
+   at most 16 names. What is no number leaves a gap. */
+DEM_API dem_result dem_replay_value(dem_replay *replay, const char *name, double value);
+/* Adds the report and ends the file; the replay is gone whatever the answer. */
+DEM_API dem_result dem_replay_close(dem_replay *replay);
 
 /* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters.
    Reading replaces the state of a world that was created with the same desc, materials and walls
@@ -15720,6 +15765,10 @@ static void demi_out_free(demi_out *o) {
     demi_free(o->world, o->place);
     demi_free(o->world, o->temporary);
 }
+static void demi_out_empty(const demi_out *o) {           /* what was empty is so again */
+    FILE *empty = fopen(o->place, "wb");
+    if (empty) fclose(empty);
+}
 /* Ends a file: renames it to its place if all was written, removes it if not. Where rename refuses
    to replace a file (Windows), the old one is removed first; a folder of that name never is. */
 static dem_result demi_out_close(demi_out *o) {
@@ -15735,10 +15784,7 @@ static dem_result demi_out_close(demi_out *o) {
     }
     if (!whole) {
         if (o->file && o->temporary) remove(o->temporary);
-        if (o->file && !o->temporary) {         /* it was empty: so it is again */
-            FILE *empty = fopen(o->place, "wb");
-            if (empty) fclose(empty);
-        }
+        if (o->file && !o->temporary) demi_out_empty(o);
         demi_fail(o->world, DEM_ERROR_FILE, "%s: cannot write %.200s: %s; check that its folder "
                   "exists, may be written to and has room", o->call, o->path,
                   cause ? strerror(cause) : "unknown cause");
@@ -15747,6 +15793,13 @@ static dem_result demi_out_close(demi_out *o) {
     return whole ? DEM_OK : DEM_ERROR_FILE;
 }
 
+/* Ends a file that is not to be: what was there stays. */
+static void demi_out_drop(demi_out *o) {
+    fclose(o->file);
+    if (o->temporary) remove(o->temporary);
+    else demi_out_empty(o);
+    demi_out_free(o);
+}
 /* Begins a file under a temporary name. If this fails there is nothing to close. */
 static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, const char *path) {
     size_t length;
@@ -20699,6 +20752,841 @@ DEM_API dem_slabs_counters dem_slabs_counters_get(const dem_slabs *s) {
     c.skin = (dem_real)s->head.margin.skin;
     c.dt = s->head.clock.dt;
     return c;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>viewer
+   The page that plays a film: examples/replay/viewer.html, where it is to be read and changed,
+   without its indentation and comments. `make viewer` puts it here.
+   --------------------------------------------------------------------------------------------- */
+/* viewer: begin */
+static const char *const demi_viewer[] = {
+    "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" conten",
+    "t=\"width=device-width,initial-scale=1\">\n<title>Replay</title>\n<style>\n:root { color-sche",
+    "me: light dark; --ink: #1b1f24; --paper: #fff; --soft: #d9dde2; --mark: #0b62c4 }\n@media (pr",
+    "efers-color-scheme: dark) {\n:root { --ink: #e4e7eb; --paper: #15181b; --soft: #343a41; --mar",
+    "k: #6cb2ff }\n}\n* { box-sizing: border-box }\nbody { margin: 0; font: 14px/1.4 system-ui, sa",
+    "ns-serif; color: var(--ink); background: var(--paper);\ndisplay: grid; grid-template: auto 1f",
+    "r auto / 1fr 320px; height: 100vh; height: 100dvh }\nh1 { grid-column: 1 / 3; font-size: 16px",
+    "; margin: 0; padding: 8px 12px;\nborder-bottom: 1px solid var(--soft) }\n#scene { position: r",
+    "elative; min-width: 0; min-height: 0 }\ncanvas { display: block; width: 100%; touch-action: n",
+    "one }\n#view { height: 100%; cursor: grab }\n#key { position: absolute; left: 12px; bottom: 8",
+    "px; width: 220px; pointer-events: none }\n#key canvas { height: 10px }\n#key div { display: f",
+    "lex; justify-content: space-between }\n#side { border-left: 1px solid var(--soft); padding: 8",
+    "px 12px; overflow: auto }\n#side label { display: flex; justify-content: space-between; gap: ",
+    "8px; margin: 4px 0 }\n#side select, #side input { width: 150px }\nfigure { margin: 10px 0 0 }",
+    " figure canvas { height: 110px }\npre { font-size: 11px; overflow: auto; white-space: pre-wra",
+    "p }\n#bar { grid-column: 1 / 3; display: flex; gap: 10px; align-items: center; padding: 8px 1",
+    "2px;\nborder-top: 1px solid var(--soft) }\n#at { flex: 1; min-width: 60px } #time { min-width",
+    ": 9em; text-align: right }\n#say { position: absolute; inset: 0; display: grid; place-items: ",
+    "center; padding: 2em;\npointer-events: none }\n@media (max-width: 700px) {\nbody { grid-templ",
+    "ate: auto 60vh auto auto / 1fr; height: auto }\nh1, #bar { grid-column: 1 } #side { border: 0",
+    "; grid-row: 4 } #time { min-width: 6em }\n}\n</style>\n<h1 id=\"title\">Replay</h1>\n<div id=",
+    "\"scene\">\n<canvas id=\"view\" tabindex=\"0\" aria-label=\"The grains: drag to turn, wheel t",
+    "o zoom\"></canvas>\n<div id=\"key\"><canvas id=\"scale\" width=\"256\" height=\"1\"></canvas>",
+    "<div><span id=\"least\"></span>\n<span id=\"what\"></span><span id=\"most\"></span></div></di",
+    "v>\n<div id=\"say\">reading ...</div>\n</div>\n<div id=\"side\">\n<label>colour <select id=\"",
+    "colour\"></select></label>\n<label>walls <input id=\"walls\" type=\"range\" min=\"0\" max=\"1",
+    "\" step=\"0.02\" value=\"0.25\"></label>\n<label>cut away <input id=\"cut\" type=\"range\" mi",
+    "n=\"0\" max=\"1\" step=\"0.01\" value=\"0\"></label>\n<div id=\"plots\"></div>\n<details id=",
+    "\"report\" hidden><summary>report</summary><pre></pre></details>\n<details><summary>keys</sum",
+    "mary>drag: turn; shift and drag, or two fingers: move; wheel: zoom;\nspace: play, pause; arro",
+    "ws: frame by frame; home, end; + -: pace; 0: the first view</details>\n</div>\n<div id=\"bar",
+    "\">\n<button id=\"play\" aria-label=\"play or pause\">play</button>\n<input id=\"at\" type=\"",
+    "range\" min=\"0\" max=\"1\" step=\"any\" value=\"0\" aria-label=\"time\">\n<span id=\"time\">",
+    "</span>\n<select id=\"pace\" aria-label=\"pace\"></select>\n</div>\n<script>\n'use strict';\n",
+    "const $ = id => document.getElementById(id);\nconst blocks = type => [...document.querySelect",
+    "orAll('script[type=\"dem/' + type + '\"]')];\nconst replay = window.demReplay = { frames: [],",
+    " ready: false, drawn: 0, error: '' };\nlet head = { gravity: [0, 0, -9.81], period: [0, 0, 0]",
+    ", resolution: 1e-3, values: [] };\nconst shapes = {}, walls = {}, frames = replay.frames;\nco",
+    "nst sixBits = new Uint8Array(128);\n[...'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz",
+    "0123456789+/'].forEach(\n(c, i) => { sixBits[c.charCodeAt(0)] = i; });\nfunction bytes(text) ",
+    "{\nconst s = text.trim(), pad = s.endsWith('==') ? 2 : s.endsWith('=') ? 1 : 0;\nconst out = ",
+    "new Uint8Array(s.length*3/4 - pad);\nfor (let i = 0, k = 0; i < s.length; i += 4) {\nconst v ",
+    "= sixBits[s.charCodeAt(i)] << 18 | sixBits[s.charCodeAt(i + 1)] << 12 |\nsixBits[s.charCodeAt",
+    "(i + 2)] << 6 | sixBits[s.charCodeAt(i + 3)];\nout[k++] = v >> 16; out[k++] = v >> 8; out[k++",
+    "] = v;\n}\nreturn out;\n}\nconst now = { room: 0, cast: { slots: new Int32Array(0) }, poses: ",
+    "{}, values: [] };\nfunction grow(count) {\nif (count <= now.room) return;\nconst room = Math.",
+    "max(count, 2*now.room, 1024);\nconst more = (a, per, type) => { const b = new type(per*room);",
+    " if (a) b.set(a); return b; };\nnow.x = more(now.x, 3, Int32Array); now.radius = more(now.rad",
+    "ius, 1, Float32Array);\nnow.speed = more(now.speed, 1, Uint8Array); now.turn = more(now.turn,",
+    " 1, Uint32Array);\nnow.own = more(now.own, 1, Float32Array); now.is = more(now.is, 1, Uint8Ar",
+    "ray);\nnow.material = more(now.material, 1, Uint16Array); now.shape = more(now.shape, 1, Uint",
+    "16Array);\nnow.room = room;\n}\nfunction decode(bin) {\nconst d = new DataView(bin.buffer, bi",
+    "n.byteOffset, bin.byteLength);\nlet at = 0, changed = !frames.length;\nconst varint = () => {",
+    "\nlet v = 0, s = 1, b;\ndo { b = bin[at++]; v += (b & 127)*s; s *= 128; } while (b & 128);\nr",
+    "eturn v;\n};\nconst real = () => { at += 4; return d.getFloat32(at - 4, true); };\nconst time",
+    " = d.getFloat64(0, true);\nat = 8;\nfor (let n = varint(); n > 0; n--) {\nconst wall = varint",
+    "(), there = bin[at++];\nnow.poses = { ...now.poses };\nif (there) now.poses[wall] = [real(), ",
+    "real(), real(), real(), real(), real(), real()];\nelse delete now.poses[wall];\n}\nfor (let n",
+    " = varint(); n > 0; n--) { now.is[varint()] = 0; changed = true; }\nfor (let n = varint(), sl",
+    "ot; n > 0; n--) {\nslot = varint();\ngrow(slot + 1);\nnow.is[slot] = 2; changed = true;      ",
+    "                 // new\nnow.material[slot] = varint(); now.shape[slot] = varint(); now.radiu",
+    "s[slot] = real();\nnow.x.fill(0, 3*slot, 3*slot + 3); now.speed[slot] = now.turn[slot] = now.",
+    "own[slot] = 0;\n}\nconst before = now.cast;\nlet from = null;\nif (changed) {\nconst slots = ",
+    "[];\nfor (let s = 0; s < now.room; s++) if (now.is[s]) slots.push(s);\nnow.cast = { slots: In",
+    "t32Array.from(slots),\nradius: Float32Array.from(slots, s => now.radius[s]),\nmaterial: Uint1",
+    "6Array.from(slots, s => now.material[s]),\nshape: Uint16Array.from(slots, s => now.shape[s]) ",
+    "};\nconst index = new Map();\nbefore.slots.forEach((s, i) => index.set(s, i));\nfrom = Int32A",
+    "rray.from(slots, s => now.is[s] === 2 || !index.has(s) ? -1 : index.get(s));\nfor (const s of",
+    " slots) now.is[s] = 1;\n}\nconst slots = now.cast.slots, count = slots.length, q = head.resol",
+    "ution;\nconst f = { time, cast: now.cast, from, poses: now.poses, x: new Float32Array(3*count",
+    "),\nspeed: new Uint8Array(count), turn: head.turns ? new Uint32Array(count) : null,\nown: hea",
+    "d.number ? new Float32Array(count) : null, values: [] };\nfor (let i = 0; i < count; i++) {\n",
+    "const s = slots[i], is = bin[at++];\nfor (let k = 0; k < 3; k++) {\nconst size = is >> 2*k & ",
+    "3;\nif (size === 1) now.x[3*s + k] += d.getInt8(at++);\nelse if (size === 2) { now.x[3*s + k]",
+    " += d.getInt16(at, true); at += 2; }\nelse if (size === 3) { now.x[3*s + k] += d.getInt32(at,",
+    " true); at += 4; }\nf.x[3*i + k] = now.x[3*s + k]*q;\n}\nif (is & 64) now.speed[s] = bin[at++",
+    "];\nif (is & 128) {\nconst more = bin[at++];\nif (more & 1) { now.turn[s] = d.getUint32(at, t",
+    "rue); at += 4; }\nif (more & 2) now.own[s] = real();\n}\nf.speed[i] = now.speed[s];\nif (f.tu",
+    "rn) f.turn[i] = now.turn[s];\nif (f.own) f.own[i] = now.own[s];\n}\nfor (let n = varint(); n ",
+    "> 0; n--) { const name = varint(); f.values[name] = real(); }\nif (at !== bin.length) throw E",
+    "rror('frame ' + frames.length + ' has ' + (bin.length - at) +\n' bytes too many');\nframes.pu",
+    "sh(f);\n}\nconst speedOf = code => code ? Math.pow(2, (code - 128)/8) : 0;          // m/s\nf",
+    "unction quat(turn) {                 // three smallest, 10 bits each, and which one is left o",
+    "ut\nconst q = [0, 0, 0, 0], left = turn >>> 30;\nlet sum = 0;\nfor (let k = 0, bit = 0; k < 4",
+    "; k++) {\nif (k === left) continue;\nq[k] = ((turn >>> bit & 1023) - 511)/511*Math.SQRT1_2; b",
+    "it += 10; sum += q[k]*q[k];\n}\nq[left] = Math.sqrt(Math.max(0, 1 - sum));\nreturn q;        ",
+    "                                                      // w x y z\n}\nconst cross = (a, b) => ",
+    "[a[1]*b[2] - a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]];\nconst dot = (a, b) =>",
+    " a[0]*b[0] + a[1]*b[1] + a[2]*b[2];\nconst sum = (a, b, s = 1) => [a[0] + s*b[0], a[1] + s*b[",
+    "1], a[2] + s*b[2]];\nconst unit = a => { const l = Math.hypot(...a) || 1; return [a[0]/l, a[1",
+    "]/l, a[2]/l]; };\nfunction rotate(q, v) {\nconst u = [q[1], q[2], q[3]], t = cross(u, v).map(",
+    "x => 2*x), c = cross(u, t);\nreturn [v[0] + q[0]*t[0] + c[0], v[1] + q[0]*t[1] + c[1], v[2] +",
+    " q[0]*t[2] + c[2]];\n}\nconst box = { lo: [Infinity, Infinity, Infinity], hi: [-Infinity, -In",
+    "finity, -Infinity] };\nfunction reach(p, r) {\nfor (let k = 0; k < 3; k++) {\nbox.lo[k] = Mat",
+    "h.min(box.lo[k], p[k] - r); box.hi[k] = Math.max(box.hi[k], p[k] + r);\n}\n}\nfunction measur",
+    "e() {\nconst some = [frames[0], frames[frames.length >> 1], frames[frames.length - 1]];\nfor ",
+    "(const f of some) {             // grains, but for the few that flew off\nfor (let k = 0; k <",
+    " 3; k++) {\nconst x = [];\nfor (let i = 0; i < f.cast.slots.length; i++) x.push(f.x[3*i + k])",
+    ";\nx.sort((a, b) => a - b);\nconst out = x.length >> 8, r = Math.max(0, ...f.cast.radius.slic",
+    "e(0, 1000));\nif (!x.length) continue;\nbox.lo[k] = Math.min(box.lo[k], x[out] - r);\nbox.hi[",
+    "k] = Math.max(box.hi[k], x[x.length - 1 - out] + r);\n}\nfor (const id in f.poses) {\nconst w",
+    " = walls[id], p = f.poses[id];\nif (!w || !w.vertices || w.kind === 'profile') continue;\nfor",
+    " (let i = 0; i < w.vertices.length; i += 3)\nreach(sum(rotate(p.slice(3), w.vertices.slice(i,",
+    " i + 3)), p), w.radius || 0);\n}\nfor (const id in f.poses)\nif (walls[id] && walls[id].kind ",
+    "=== 'profile')\nfor (let i = 0, w = walls[id], p = f.poses[id]; i < w.vertices.length; i += 3",
+    ") {\nconst v = sum(rotate(p.slice(3), w.vertices.slice(i, i + 3)), p);\nconst z = rotate(p.sl",
+    "ice(3), [0, 0, 1]).map(Math.abs);\nfor (let k = 0; k < 3; k++) if (z[k] < 0.5) {\nbox.lo[k] =",
+    " Math.min(box.lo[k], v[k]); box.hi[k] = Math.max(box.hi[k], v[k]);\n}\n}\n}\nfor (let k = 0; ",
+    "k < 3; k++) if (!(box.hi[k] > box.lo[k])) { box.lo[k] = -1; box.hi[k] = 1; }\nbox.middle = [0",
+    ", 1, 2].map(k => (box.lo[k] + box.hi[k])/2);\nbox.size = Math.hypot(...[0, 1, 2].map(k => box",
+    ".hi[k] - box.lo[k]));\n}\nlet gl, ball, egg, sheet, colours = new Uint8Array(1024);\nconst gr",
+    "ainShader = shape => [`#version 300 es\nuniform mat4 eye, lens; uniform vec3 cutAt, cutBy;\ni",
+    "n vec2 corner; in vec4 where; in vec4 colour;\nin vec4 turn; in vec3 axes;\nout vec3 ray; fla",
+    "t out vec3 middle; flat out vec4 paint; flat out float size;\nflat out mat3 body;\nvec3 about",
+    "(vec4 q, vec3 v) { return v + 2.0*cross(q.yzw, cross(q.yzw, v) + q.x*v); }\nvoid main() {\nmi",
+    "ddle = (eye*vec4(where.xyz, 1)).xyz; size = where.w; paint = colour;\n${shape === 'egg' ? `ma",
+    "t3 e = mat3(eye);\nbody = mat3(e*about(turn, vec3(1, 0, 0))/axes.x, e*about(turn, vec3(0, 1, ",
+    "0))/axes.y,\ne*about(turn, vec3(0, 0, 1))/axes.z);` : 'body = mat3(1);'}\nfloat d = length(mi",
+    "ddle), far = d > size ? size*d/sqrt(d*d - size*size) : size;\nvec3 n = middle/d, u = normaliz",
+    "e(abs(n.y) < 0.9 ? cross(n, vec3(0, 1, 0)) :\ncross(n, vec3(1, 0, 0)));\nray = middle + far*(",
+    "corner.x*u + corner.y*cross(u, n));\ngl_Position = lens*vec4(ray, 1);\nif (dot(where.xyz - cu",
+    "tAt, cutBy) > 0.0) gl_Position = vec4(2, 2, 2, 1);\n}`, `#version 300 es\nprecision highp flo",
+    "at;\nuniform mat4 lens;\nin vec3 ray; flat in vec3 middle; flat in vec4 paint; flat in float ",
+    "size; flat in mat3 body;\nout vec4 pixel;\nvoid main() {\nvec3 d = normalize(ray);\n${shape =",
+    "== 'egg' ? `vec3 o = -(middle*body), r = d*body;\nfloat a = dot(r, r), b = dot(o, r), c = dot",
+    "(o, o) - 1.0;` : `vec3 o = -middle, r = d;\nfloat a = 1.0, b = dot(o, r), c = dot(o, o) - siz",
+    "e*size;`}\nfloat h = b*b - a*c;\nif (h < 0.0) discard;\nfloat t = (-b - sqrt(h))/a;\nvec3 hit",
+    " = t*d, n = ${shape === 'egg' ? 'normalize(body*(o + t*r))' : '(hit - middle)/size'};\nvec4 a",
+    "t = lens*vec4(hit, 1);\ngl_FragDepth = 0.5*at.z/at.w + 0.5;\nfloat light = 0.35 + 0.65*max(0.",
+    "0, dot(n, normalize(vec3(-0.3, 0.5, 0.8))));\npixel = vec4(paint.rgb*light + 0.12*pow(max(0.0",
+    ", n.z), 30.0), 1);\n}`];\nconst wallShader = [`#version 300 es\nuniform mat4 eye, lens; unifo",
+    "rm vec3 place; uniform vec4 turn;\nin vec3 where; out vec3 seen, local;\nvoid main() {\nlocal",
+    " = where;\nvec3 v = where + 2.0*cross(turn.yzw, cross(turn.yzw, where) + turn.x*where);\nseen",
+    " = (eye*vec4(v + place, 1)).xyz;\ngl_Position = lens*vec4(seen, 1);\n}`, `#version 300 es\npr",
+    "ecision highp float;\nuniform vec4 paint; uniform vec4 hole; uniform vec2 rim;     // kind, a",
+    "perture, bar, length\nin vec3 seen, local; out vec4 pixel;\nvoid main() {\nfloat solid = 1.0,",
+    " pitch = hole.y + hole.z, open = 0.0;\nif (rim.x > 0.0 && length(local.xy) > rim.x) discard;",
+    "\nif (hole.x > 0.0) {\nvec2 p = local.xy, side = vec2(pitch);\nif (hole.x == 5.0) side.x = ho",
+    "le.w > 0.0 ? hole.w + hole.z : 1e9;\nif (hole.x == 2.0) side.y = 1e9;\nif (rim.y > 0.0) {\nsi",
+    "de.y = pitch*0.8660254;\nif (mod(floor(p.y/side.y + 0.5), 2.0) > 0.5) p.x += 0.5*pitch;\n}\np",
+    " = abs(p - side*floor(p/side + 0.5));\nvec2 clear = hole.x == 5.0 ? vec2(hole.w > 0.0 ? hole.",
+    "w : 1e9, hole.y) : vec2(hole.y);\nif (hole.x == 2.0) clear.y = 2e9;\nopen = hole.x == 4.0 ? s",
+    "tep(length(p), 0.5*hole.y) : step(p.x, 0.5*clear.x)*\nstep(p.y, 0.5*clear.y);\nfloat blur = s",
+    "moothstep(0.2, 1.0, length(fwidth(local.xy))/pitch);\nsolid = mix(1.0 - open, 1.0 - hole.y*ho",
+    "le.y/(pitch*pitch), blur);\nif (solid < 0.02) discard;\n}\nvec3 n = normalize(cross(dFdx(seen",
+    "), dFdy(seen)));\npixel = vec4(paint.rgb*(0.55 + 0.45*abs(n.z)), paint.a*solid);\n}`];\nfunct",
+    "ion program(sources, names) {\nconst p = gl.createProgram();\nsources.forEach((source, k) => ",
+    "{\nconst s = gl.createShader(k ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);\ngl.shaderSource(s, ",
+    "source); gl.compileShader(s);\nif (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw Error(",
+    "gl.getShaderInfoLog(s));\ngl.attachShader(p, s);\n});\nnames.forEach((name, k) => gl.bindAttr",
+    "ibLocation(p, k, name));\ngl.linkProgram(p);\nif (!gl.getProgramParameter(p, gl.LINK_STATUS))",
+    " throw Error(gl.getProgramInfoLog(p));\nconst at = { p };\nfor (let k = 0, n = gl.getProgramP",
+    "arameter(p, gl.ACTIVE_UNIFORMS); k < n; k++) {\nconst name = gl.getActiveUniform(p, k).name;",
+    "\nat[name] = gl.getUniformLocation(p, name);\n}\nreturn at;\n}\nconst kinds = {};            ",
+    "         // buffers of balls and eggs\nfunction prepare() {\ngl = $('view').getContext('webgl",
+    "2', { alpha: false, preserveDrawingBuffer: true });\nif (!gl) throw Error('this browser has n",
+    "o WebGL 2, by which grains are drawn: switch it on, ' +\n'or take another browser');\nball = ",
+    "program(grainShader('ball'), ['corner', 'where', 'colour']);\negg = program(grainShader('egg'",
+    "), ['corner', 'where', 'colour', 'turn', 'axes']);\nsheet = program(wallShader, ['where']);\n",
+    "const corners = gl.createBuffer();\ngl.bindBuffer(gl.ARRAY_BUFFER, corners);\ngl.bufferData(g",
+    "l.ARRAY_BUFFER, new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]), gl.STATIC_DRAW);\nfor (const ",
+    "kind of ['ball', 'egg']) {\nconst k = kinds[kind] = { array: gl.createVertexArray(), room: 0,",
+    " count: 0,\nwhere: gl.createBuffer(), colour: gl.createBuffer(), turn: gl.createBuffer(),\nax",
+    "es: gl.createBuffer() };\ngl.bindVertexArray(k.array);\nconst attribute = (buffer, n, size, t",
+    "ype, norm, each) => {\ngl.bindBuffer(gl.ARRAY_BUFFER, buffer); gl.enableVertexAttribArray(n);",
+    "\ngl.vertexAttribPointer(n, size, type, norm, 0, 0); gl.vertexAttribDivisor(n, each);\n};\nat",
+    "tribute(corners, 0, 2, gl.FLOAT, false, 0);\nattribute(k.where, 1, 4, gl.FLOAT, false, 1);\na",
+    "ttribute(k.colour, 2, 4, gl.UNSIGNED_BYTE, true, 1);\nif (kind === 'egg') {\nattribute(k.turn",
+    ", 3, 4, gl.FLOAT, false, 1); attribute(k.axes, 4, 3, gl.FLOAT, false, 1);\n}\n}\ngl.bindVerte",
+    "xArray(null);\n}\nfunction tessellate(w) {\nconst far = 0.75*box.size, v = w.vertices, out = ",
+    "[];\nconst quad = (a, b, c, d) => out.push(...a, ...b, ...c, ...a, ...c, ...d);\nconst from =",
+    " rotate([w.pose[3], -w.pose[4], -w.pose[5], -w.pose[6]],\nsum(box.middle, w.pose, -1));     /",
+    "/ the picture's middle, as the wall sees it\nconst along = rotate(w.pose.slice(3), [0, 0, 1])",
+    ".map(Math.abs);\nconst half = 0.5*[0, 1, 2].reduce((s, k) => s + (box.hi[k] - box.lo[k])*alon",
+    "g[k], 0);\nif (w.kind === 'mesh')\nfor (const k of w.corners) out.push(v[3*k], v[3*k + 1], v[",
+    "3*k + 2]);\nelse if (w.kind === 'profile') {\nconst z = [from[2] - half, from[2] + half];\nfo",
+    "r (let k = 0; k < w.corners.length; k += 2) {\nconst a = 3*w.corners[k], b = 3*w.corners[k + ",
+    "1];\nquad([v[a], v[a + 1], z[0]], [v[b], v[b + 1], z[0]], [v[b], v[b + 1], z[1]],\n[v[a], v[a",
+    " + 1], z[1]]);\n}\n} else if (w.kind === 'cylinder') {\nconst n = 72;\nfor (let k = 0; k < n;",
+    " k++) {\nconst p = [k, k + 1].map(i => [w.radius*Math.cos(2*Math.PI*i/n),\nw.radius*Math.sin(",
+    "2*Math.PI*i/n)]);\nquad([...p[0], from[2] - half], [...p[1], from[2] - half], [...p[1], from[",
+    "2] + half],\n[...p[0], from[2] + half]);\n}\n} else if (w.kind === 'plane' || w.kind === 'sie",
+    "ve') {\nconst r = w.rim > 0 ? w.rim : far, x = w.rim > 0 ? 0 : from[0], y = w.rim > 0 ? 0 : f",
+    "rom[1];\nquad([x - r, y - r, 0], [x + r, y - r, 0], [x + r, y + r, 0], [x - r, y + r, 0]);\n}",
+    "\nw.buffer = gl.createBuffer(); w.array = gl.createVertexArray(); w.count = out.length/3;\ngl",
+    ".bindVertexArray(w.array);\ngl.bindBuffer(gl.ARRAY_BUFFER, w.buffer);\ngl.bufferData(gl.ARRAY",
+    "_BUFFER, new Float32Array(out), gl.STATIC_DRAW);\ngl.enableVertexAttribArray(0); gl.vertexAtt",
+    "ribPointer(0, 3, gl.FLOAT, false, 0, 0);\ngl.bindVertexArray(null);\n}\nconst palette = [[78,",
+    " 121, 167], [242, 142, 43], [89, 161, 79], [225, 87, 89], [118, 183, 178],\n[237, 201, 72], [",
+    "176, 122, 161], [156, 117, 95]];\nfunction viridis(t) {\nconst c = [[0.2777, 0.1051, -0.3309,",
+    " -4.6342, 6.2283, 4.7764, -5.4355],\n[0.0054, 1.4046, 0.2148, -5.7991, 14.1799, -13.7451, 4.6",
+    "459],\n[0.3341, 1.3846, 0.0951, -19.3324, 56.6906, -65.3530, 26.3124]];\nreturn c.map(a => 25",
+    "5*Math.min(1, Math.max(0, a.reduceRight((s, x) => s*t + x, 0))));\n}\nfor (let k = 0; k < 256",
+    "; k++) colours.set([...viridis(k/255).map(Math.round), 255], 4*k);\nconst range = { speed: [0",
+    ", 1], size: [0, 1], own: [0, 1] };\nfunction ranges() {\nconst speeds = new Float64Array(256)",
+    ";\nlet all = 0, low = Infinity, high = -Infinity, small = Infinity, large = -Infinity;\nfor (",
+    "const f of frames) {\nfor (let i = 0; i < f.speed.length; i++) { speeds[f.speed[i]]++; all++;",
+    " }\nfor (const r of f.cast.radius) { small = Math.min(small, r); large = Math.max(large, r); ",
+    "}\nif (f.own) for (const x of f.own) { low = Math.min(low, x); high = Math.max(high, x); }\n}",
+    "\nlet k = 255;\nfor (let over = 0; k > 1 && (over += speeds[k]) < 0.005*all; k--);\nrange.spe",
+    "ed = [0, speedOf(k)];\nrange.size = [small, large > small ? large : small*1.01];\nrange.own =",
+    " [low, high > low ? high : low + 1];\n}\nfunction showKey() {\nconst what = $('colour').value",
+    ", key = $('scale').getContext('2d');\n$('key').hidden = what === 'material';\nif (what === 'm",
+    "aterial') return;\nkey.putImageData(new ImageData(new Uint8ClampedArray(colours), 256, 1), 0,",
+    " 0);\nconst [least, most] = range[what], digits = x => String(+x.toPrecision(3));\n$('least')",
+    ".textContent = digits(least); $('most').textContent = digits(most);\n$('what').textContent = ",
+    "{ speed: 'speed (m/s)', size: 'radius (m)', own: head.number }[what];\n}\nconst camera = { ya",
+    "w: -1, pitch: 0.35, distance: 1, target: [0, 0, 0] };\nlet up, side, ahead, first, at = 0, pl",
+    "aying = false, pace = 1, dirty = true;\nfunction turnedTo() {\nconst c = Math.cos(camera.pitc",
+    "h), s = Math.sin(camera.pitch);\nconst flat = sum(side.map(x => x*Math.cos(camera.yaw)), ahea",
+    "d, Math.sin(camera.yaw));\nreturn sum(flat.map(x => x*c), up, s);                    // from ",
+    "the target to the eye\n}\nfunction put(kind, n) {\nconst k = kinds[kind];\nif (n > k.room) {",
+    "\nk.room = Math.max(n, 2*k.room, 1024);\nk.w = new Float32Array(4*k.room); k.c = new Uint8Arr",
+    "ay(4*k.room);\nif (kind === 'egg') { k.t = new Float32Array(4*k.room); k.a = new Float32Array",
+    "(3*k.room); }\n}\nk.count = 0;\nreturn k;\n}\nfunction fill(f, g, part) {\nconst what = $('co",
+    "lour').value, [least, most] = range[what] || [0, 1], cast = f.cast;\nlet balls = 0, eggs = 0;",
+    "\nfor (let i = 0; i < cast.slots.length; i++) {\nconst s = shapes[cast.shape[i]];\nif (!s) ba",
+    "lls++; else if (s.axes) eggs++; else balls += s.parts.length/4;\n}\nfor (const id in f.poses)",
+    " if (walls[id] && walls[id].kind === 'grains')\nballs += walls[id].vertices.length/3;\nconst ",
+    "b = put('ball', balls), e = put('egg', eggs), half = head.period.map(p => p/2);\nconst p = [0",
+    ", 0, 0];\nlet n = null;\nif (g && g.from) {                  // who is who in the next frame",
+    "\nn = new Int32Array(cast.slots.length).fill(-1);\ng.from.forEach((old, i) => { if (old >= 0)",
+    " n[old] = i; });\n}\nfor (let i = 0; i < cast.slots.length; i++) {\nconst j = !g ? -1 : n ? n",
+    "[i] : i, shape = shapes[cast.shape[i]], r = cast.radius[i];\nlet jump = j < 0;\nfor (let k = ",
+    "0; k < 3 && !jump; k++)\njump = half[k] > 0 && Math.abs(g.x[3*j + k] - f.x[3*i + k]) > half[k",
+    "];\nfor (let k = 0; k < 3; k++)\np[k] = f.x[3*i + k] + (jump ? 0 : part*(g.x[3*j + k] - f.x[3",
+    "*i + k]));\nlet colour;\nif (what === 'material') colour = palette[(cast.material[i] - 1 + 8)",
+    "%8];\nelse {\nconst x = what === 'speed' ? speedOf(f.speed[i]) : what === 'size' ? r : f.own[",
+    "i];\nconst c = 4*Math.max(0, Math.min(255, Math.round(255*(x - least)/(most - least))));\ncol",
+    "our = [colours[c], colours[c + 1], colours[c + 2]];\n}\nconst lay = (k, x, y, z, size) => {\n",
+    "const m = 4*k.count++;\nk.w[m] = x; k.w[m + 1] = y; k.w[m + 2] = z; k.w[m + 3] = size;\nk.c[m",
+    "] = colour[0]; k.c[m + 1] = colour[1]; k.c[m + 2] = colour[2]; k.c[m + 3] = 255;\n};\nif (!sh",
+    "ape) { lay(b, p[0], p[1], p[2], r); continue; }\nlet q = quat(f.turn[i]);\nif (j >= 0 && part",
+    " > 0) {\nconst to = quat(g.turn[j]), same = q[0]*to[0] + q[1]*to[1] + q[2]*to[2] + q[3]*to[3]",
+    ";\nq = q.map((x, k) => x*(1 - part) + (same < 0 ? -part : part)*to[k]);\nconst l = Math.hypot",
+    "(...q) || 1;\nq = q.map(x => x/l);\n}\nconst scale = r/shape.radius;\nif (shape.axes) {\nfor ",
+    "(let k = 0; k < 4; k++) e.t[4*e.count + k] = q[k];\nfor (let k = 0; k < 3; k++) e.a[3*e.count",
+    " + k] = shape.axes[k]*scale;\nlay(e, p[0], p[1], p[2], r);\n} else for (let k = 0; k < shape.",
+    "parts.length; k += 4) {\nconst c = rotate(q, shape.parts.slice(k, k + 3));\nlay(b, p[0] + sca",
+    "le*c[0], p[1] + scale*c[1], p[2] + scale*c[2], scale*shape.parts[k + 3]);\n}\n}\nfor (const i",
+    "d in f.poses) if (walls[id] && walls[id].kind === 'grains') {\nconst w = walls[id], pose = f.",
+    "poses[id];\nfor (let k = 0; k < w.vertices.length; k += 3) {\nconst v = sum(rotate(pose.slice",
+    "(3), w.vertices.slice(k, k + 3)), pose), m = 4*b.count++;\nb.w.set([...v, w.radius], m); b.c.",
+    "set([150, 150, 150, 255], m);\n}\n}\nfor (const k of [b, e]) {\nif (!k.count) continue;\ncons",
+    "t load = (buffer, data) => { gl.bindBuffer(gl.ARRAY_BUFFER, buffer);\ngl.bufferData(gl.ARRAY_",
+    "BUFFER, data, gl.DYNAMIC_DRAW); };\nload(k.where, k.w.subarray(0, 4*k.count)); load(k.colour,",
+    " k.c.subarray(0, 4*k.count));\nif (k === e) { load(k.turn, k.t.subarray(0, 4*k.count));\nload",
+    "(k.axes, k.a.subarray(0, 3*k.count)); }\n}\n}\nfunction draw() {\nconst canvas = $('view'), r",
+    "atio = Math.min(2, window.devicePixelRatio || 1);\nconst width = Math.round(canvas.clientWidt",
+    "h*ratio);\nconst height = Math.round(canvas.clientHeight*ratio);\nif (canvas.width !== width ",
+    "|| canvas.height !== height) { canvas.width = width;\ncanvas.height = height; }\nconst k = Ma",
+    "th.min(Math.floor(at), frames.length - 1), f = frames[k], g = frames[k + 1];\nconst part = g ",
+    "? at - k : 0, time = f.time + (g ? part*(g.time - f.time) : 0);\nconst back = turnedTo(), z =",
+    " back, x = unit(cross(up, z)), y = cross(z, x);\nconst eyeAt = sum(camera.target, back, camer",
+    "a.distance);\nconst eye = new Float32Array([x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y",
+    "[2], z[2], 0,\n-dot(x, eyeAt), -dot(y, eyeAt), -dot(z, eyeAt), 1]);\nconst near = Math.max(0.",
+    "01*camera.distance, camera.distance - 1.5*box.size);\nconst last = camera.distance + 2*box.si",
+    "ze, open = Math.tan(0.3);\nconst lens = new Float32Array([height/width/open, 0, 0, 0, 0, 1/op",
+    "en, 0, 0,\n0, 0, (last + near)/(near - last), -1, 0, 0, 2*last*near/(near - last), 0]);\ncons",
+    "t dark = matchMedia('(prefers-color-scheme: dark)').matches;\ngl.viewport(0, 0, width, height",
+    ");\ngl.clearColor(...(dark ? [0.083, 0.094, 0.106] : [1, 1, 1]), 1);\ngl.depthMask(true);\ngl",
+    ".clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);\ngl.enable(gl.DEPTH_TEST); gl.disable(gl.B",
+    "LEND);\nfill(f, g, part);\nconst cut = +$('cut').value, cutAt = sum(box.middle, z, (0.5 - cut",
+    ")*box.size);\nfor (const [kind, p] of [['ball', ball], ['egg', egg]]) {\nif (!kinds[kind].cou",
+    "nt) continue;\ngl.useProgram(p.p);\ngl.uniformMatrix4fv(p.eye, false, eye); gl.uniformMatrix4",
+    "fv(p.lens, false, lens);\ngl.uniform3fv(p.cutAt, cutAt); gl.uniform3fv(p.cutBy, cut > 0 ? z :",
+    " [0, 0, 0]);\ngl.bindVertexArray(kinds[kind].array);\ngl.drawArraysInstanced(gl.TRIANGLE_STRI",
+    "P, 0, 4, kinds[kind].count);\n}\ngl.useProgram(sheet.p);\ngl.enable(gl.BLEND); gl.blendFunc(g",
+    "l.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false);\ngl.uniformMatrix4fv(sheet.eye, fa",
+    "lse, eye); gl.uniformMatrix4fv(sheet.lens, false, lens);\nconst solid = +$('walls').value, sh",
+    "ade = dark ? [0.75, 0.8, 0.86] : [0.35, 0.4, 0.46];\ngl.depthMask(solid > 0.98);\nfor (const ",
+    "id in f.poses) {\nconst w = walls[id];\nif (!w || w.kind === 'grains' || !solid) continue;\nl",
+    "et pose = f.poses[id];\nconst to = g && g.poses[id];\nif (to && part > 0) {             // ha",
+    "lf way: along the chord, turned on the shorter way\nlet same = 0, q = [];\nfor (let i = 3; i ",
+    "< 7; i++) same += pose[i]*to[i];\nq = pose.map((v, i) => v*(1 - part) + (i > 2 && same < 0 ? ",
+    "-part : part)*to[i]);\nconst l = Math.hypot(q[3], q[4], q[5], q[6]) || 1;\npose = q.map((v, i",
+    ") => i > 2 ? v/l : v);\n}\nif (!w.array) { w.pose = pose; tessellate(w); }\nconst weight = w.",
+    "kind === 'plane' ? 0.5 : w.kind === 'sieve' ? 2 : 1;\ngl.uniform4f(sheet.paint, ...shade, Mat",
+    "h.min(1, solid*weight));\ngl.uniform4f(sheet.hole, ...(w.hole || [0, 1, 1, 0]));\ngl.uniform2",
+    "f(sheet.rim, w.rim || 0, w.staggered || 0);\ngl.uniform3fv(sheet.place, pose.slice(0, 3)); gl",
+    ".uniform4fv(sheet.turn, pose.slice(3));\ngl.bindVertexArray(w.array);\ngl.drawArrays(gl.TRIAN",
+    "GLES, 0, w.count);\n}\ngl.bindVertexArray(null); gl.depthMask(true);\n$('time').textContent =",
+    " time.toPrecision(4) + ' s';\n$('at').value = at;\nplot(time);\nreplay.drawn++; replay.at = a",
+    "t;\nreplay.project = p => {             // where a place is in the picture, pixels from below",
+    "\nconst e = sum(p, eyeAt, -1), d = -dot(z, e);\nreturn [width/2*(1 + dot(x, e)/d*height/width",
+    "/open), height/2*(1 + dot(y, e)/d/open), d];\n};\n}\nconst plots = [];\nfunction plot(time) {",
+    "\nfor (const p of plots) {\nconst c = p.canvas, ratio = window.devicePixelRatio || 1, d = c.g",
+    "etContext('2d');\nconst w = c.clientWidth, h = c.clientHeight, ink = getComputedStyle(documen",
+    "t.body).color;\nif (c.width !== Math.round(w*ratio)) { c.width = Math.round(w*ratio);\nc.heig",
+    "ht = Math.round(h*ratio); }\nd.setTransform(ratio, 0, 0, ratio, 0, 0);\nd.clearRect(0, 0, w, ",
+    "h);\nconst X = t => 4 + (w - 8)*(t - p.t[0])/(p.t[p.t.length - 1] - p.t[0] || 1);\nconst Y = ",
+    "v => h - 18 - (h - 36)*(v - p.least)/(p.most - p.least || 1);\nd.strokeStyle = d.fillStyle = ",
+    "ink; d.font = '11px system-ui'; d.globalAlpha = 0.7;\nd.fillText(p.name, 4, 11);\nd.fillText(",
+    "+p.most.toPrecision(3), 4, 24); d.fillText(+p.least.toPrecision(3), 4, h - 6);\nd.globalAlpha",
+    " = 1; d.strokeStyle = getComputedStyle(document.documentElement)\n.getPropertyValue('--mark')",
+    ";\nd.beginPath();\np.t.forEach((t, i) => i ? d.lineTo(X(t), Y(p.v[i])) : d.moveTo(X(t), Y(p.v",
+    "[i])));\nd.stroke();\nd.strokeStyle = ink; d.globalAlpha = 0.5;\nd.beginPath(); d.moveTo(X(ti",
+    "me), 14); d.lineTo(X(time), h - 14); d.stroke();\nd.globalAlpha = 1;\n}\n}\nfunction makePlot",
+    "s() {\nhead.values.forEach((name, k) => {\nconst p = { name, t: [], v: [] };\nfor (const f of",
+    " frames) if (f.values[k] !== undefined && isFinite(f.values[k])) {\np.t.push(f.time); p.v.pus",
+    "h(f.values[k]);\n}\nif (!p.t.length) return;\np.least = Math.min(...p.v); p.most = Math.max(.",
+    "..p.v);\nconst figure = document.createElement('figure');\np.canvas = document.createElement(",
+    "'canvas');\np.canvas.setAttribute('role', 'img'); p.canvas.setAttribute('aria-label', name);",
+    "\nfigure.append(p.canvas); $('plots').append(figure); plots.push(p);\n});\n}\nfunction seek(t",
+    "o) {\nat = Math.max(0, Math.min(frames.length - 1, to)); dirty = true;\n}\nfunction play(on) ",
+    "{ playing = on; $('play').textContent = on ? 'pause' : 'play'; }\nfunction fit() { Object.ass",
+    "ign(camera, JSON.parse(first)); dirty = true; }\nfunction look() {\nconst g = head.gravity, s",
+    "ize = [0, 1, 2].map(k => box.hi[k] - box.lo[k]);\nup = Math.hypot(...g) > 0 ? unit(g.map(x =>",
+    " -x)) : head.planar ? [0, 1, 0] : [0, 0, 1];\nconst thin = [0, 1, 2].reduce((a, k) => size[k]",
+    " < size[a] ? k : a, 0);\nconst axis = [0, 0, 0], flat = head.planar || size[thin] < 0.4*Math.",
+    "max(...size) &&\nMath.abs(up[thin]) < 0.5;\naxis[head.planar ? 2 : flat ? thin : Math.abs(up[",
+    "0]) < 0.5 ? 0 : 1] = 1;\nside = unit(sum(axis, up, -dot(axis, up)));\nahead = cross(up, side)",
+    ";\nif (thin === 1 && flat) side = side.map(x => -x), ahead = ahead.map(x => -x);\ncamera.yaw ",
+    "= flat ? (head.planar ? 0 : 0.25) : -1; camera.pitch = flat ? (head.planar ? 0 : 0.15)\n: 0.3",
+    "5;\ncamera.target = box.middle.slice();\ncamera.distance = 0.5*box.size/Math.tan(0.3);\nfirst",
+    " = JSON.stringify(camera);\n}\nfunction hands() {\nconst view = $('view'), down = new Map();",
+    "\nlet apart = 0;\nconst move = (dx, dy) => {\nconst z = turnedTo(), x = unit(cross(up, z)), y",
+    " = cross(z, x);\nconst s = 2*Math.tan(0.3)*camera.distance/view.clientHeight;\ncamera.target ",
+    "= sum(sum(camera.target, x, -dx*s), y, dy*s);\n};\nconst zoom = by => { camera.distance = Mat",
+    "h.max(0.01*box.size, Math.min(20*box.size,\ncamera.distance*by)); dirty = true; };\nview.addE",
+    "ventListener('pointerdown', e => { down.set(e.pointerId, [e.clientX, e.clientY]);\nview.setPo",
+    "interCapture(e.pointerId); apart = 0; });\nfor (const end of ['pointerup', 'pointercancel'])",
+    "\nview.addEventListener(end, e => { down.delete(e.pointerId); apart = 0; });\nview.addEventLi",
+    "stener('pointermove', e => {\nconst from = down.get(e.pointerId);\nif (!from) return;\nconst ",
+    "dx = e.clientX - from[0], dy = e.clientY - from[1];\ndown.set(e.pointerId, [e.clientX, e.clie",
+    "ntY]);\nif (down.size > 1) {\nconst [a, b] = [...down.values()], d = Math.hypot(a[0] - b[0], ",
+    "a[1] - b[1]);\nif (apart) zoom(apart/d);\napart = d; move(dx/2, dy/2);\n} else if (e.shiftKey",
+    " || e.buttons & 6) move(dx, dy);\nelse {\ncamera.yaw -= dx*0.008;\ncamera.pitch = Math.max(-1",
+    ".55, Math.min(1.55, camera.pitch + dy*0.008));\n}\ndirty = true;\n});\nview.addEventListener(",
+    "'wheel', e => { e.preventDefault(); zoom(Math.exp(e.deltaY*0.001)); },\n{ passive: false });",
+    "\nview.addEventListener('contextmenu', e => e.preventDefault());\n$('play').onclick = () => p",
+    "lay(!playing);\n$('at').oninput = () => { play(false); seek(+$('at').value); };\n$('pace').on",
+    "change = () => { pace = +$('pace').value; };\n$('colour').onchange = () => { showKey(); dirty",
+    " = true; };\n$('walls').oninput = $('cut').oninput = () => { dirty = true; };\naddEventListen",
+    "er('resize', () => { dirty = true; });\naddEventListener('keydown', e => {\nif (/INPUT|SELECT",
+    "|BUTTON|SUMMARY/.test(e.target.tagName) && e.key !== ' ') return;\nif (/SELECT|BUTTON|SUMMARY",
+    "/.test(e.target.tagName)) return;\nconst list = $('pace'), key = { ' ': () => play(!playing),",
+    " Home: () => seek(0),\nArrowRight: () => { play(false); seek(Math.floor(at) + 1); },\nArrowLe",
+    "ft: () => { play(false); seek(Math.ceil(at) - 1); },\nEnd: () => seek(frames.length - 1), 0: ",
+    "fit,\n'+': () => { list.selectedIndex = Math.min(list.length - 1, list.selectedIndex + 1); },",
+    "\n'-': () => { list.selectedIndex = Math.max(0, list.selectedIndex - 1); } }[e.key];\nif (!ke",
+    "y) return;\nkey(); e.preventDefault(); list.onchange();\n});\n}\nlet then = 0;\nfunction tick",
+    "(ms) {\nif (playing) {\nconst past = Math.min(0.1, (ms - then)/1000)*pace;\nconst k = Math.mi",
+    "n(Math.floor(at), frames.length - 2), f = frames[k], g = frames[k + 1];\nif (!g) play(false);",
+    "\nelse {\nlet time = f.time + (at - k)*(g.time - f.time) + past, n = k;\nif (time > frames[fr",
+    "ames.length - 1].time) { time = frames[0].time; n = 0; }\nwhile (n < frames.length - 2 && fra",
+    "mes[n + 1].time <= time) n++;\nat = n + Math.min(1, (time - frames[n].time)/(frames[n + 1].ti",
+    "me - frames[n].time || 1));\ndirty = true;\n}\n}\nthen = ms;\nif (dirty) { dirty = false; dra",
+    "w(); }\nrequestAnimationFrame(tick);\n}\nfunction paces() {\nconst length = frames[frames.len",
+    "gth - 1].time - frames[0].time;\nconst own = length > 0 ? length/12 : 1;      // all of it in",
+    " 12 s\npace = length > 4 && length < 30 ? 1 : +own.toPrecision(1);\nfor (const k of [0.1, 0.2",
+    ", 0.5, 1, 2, 5, 10]) {\nconst o = document.createElement('option'), p = +(k*pace).toPrecision",
+    "(2);\no.value = p; o.textContent = p === 1 ? 'real time' : p < 1 ? '1/' + +(1/p).toPrecision(",
+    "2) +\n' of real time' : p + ' times real time';\no.selected = k === 1; $('pace').append(o);\n",
+    "}\n}\naddEventListener('DOMContentLoaded', async () => {\ntry {\nconst begun = performance.no",
+    "w();\nfor (const b of blocks('head')) head = JSON.parse(b.textContent);\ndocument.title = $('",
+    "title').textContent = head.title || 'Replay';\nfor (const b of blocks('shape')) { head.turns ",
+    "= 1; const s = JSON.parse(b.textContent); shapes[s.id] = s; }\nfor (const b of blocks('wall')",
+    ") { const w = JSON.parse(b.textContent); walls[w.id] = w; }\nfor (const b of blocks('value'))",
+    " head.values.push(JSON.parse(b.textContent).name);\nfor (const [k, b] of blocks('frame').entr",
+    "ies()) {\ntry { decode(bytes(b.textContent)); } catch (e) { if (!k) throw e; break; }  // cut",
+    " short\nb.remove();\nif (k%20 === 19) { $('say').textContent = 'reading ' + (k + 1);\nawait n",
+    "ew Promise(done => setTimeout(done)); }\n}\nif (!frames.length) throw Error('no frames in thi",
+    "s file: was dem_replay_frame called?');\nmeasure(); ranges(); look(); prepare(); makePlots();",
+    " paces();\nconst names = { speed: 'speed', size: 'size', material: 'material' };\nif (head.nu",
+    "mber) names.own = head.number;\nfor (const n in names) {\nconst o = document.createElement('o",
+    "ption');\no.value = n; o.textContent = names[n]; $('colour').append(o);\n}\n$('at').max = fra",
+    "mes.length - 1;\nconst report = blocks('report')[0];\nif (report) { $('report').hidden = fals",
+    "e;\n$('report').querySelector('pre').textContent = report.textContent; }\nshowKey(); hands();",
+    " $('say').hidden = true; $('say').style.display = 'none';\ndraw(); play(frames.length > 1); r",
+    "equestAnimationFrame(tick);\nreplay.ready = true; replay.opened = performance.now() - begun;",
+    "\nreplay.seek = seek; replay.play = play; replay.draw = draw;\n} catch (e) { replay.error = $",
+    "('say').textContent = String(e.message || e); }\n});\n</script>\n<!-- what follows is written",
+    " by dem_replay_open, _frame and _close -->\n"};
+/* viewer: end */
+
+/* ---------------------------------------------------------------------------------------------
+   >>replay
+   A film of a run in one HTML file: the viewer, then blocks <script type="dem/NAME">, one behind
+   the other, so that what has been written of a film that broke off can be looked at. NAME is head,
+   shape, wall, value (JSON, each before the first frame that needs it), frame (base64) and report.
+
+   A frame tells only what has changed since the one before; all numbers are little-endian, counts
+   and slots are varints (7 bits a byte, lowest first, the top bit: more follows):
+       time           float64, s
+       walls          count; each: number, 0 (gone) or 1 and position, rotation w x y z (float32)
+       gone           count; each: slot
+       new            count; each: slot, material, shape, radius (float32, m); its place, speed,
+                      orientation and number begin at 0
+       each grain there is, by slot: a byte of flags; 2 bits for x, y, z: the change, in units of
+                      the resolution, takes 0, 1, 2, 4 bytes; 64: a byte, its speed, 128 + 8 log2
+                      of m/s (0: at rest); 128: another byte of flags and, 1: orientation, 4 bytes
+                      (three smallest components, 10 bits each, which is left out in the top two),
+                      2: a number of the user's, float32
+       values         count; each: number, float32
+
+   Tested by tests/test_replay.c, which reads films back, and tests/replay.sh in a browser.
+   --------------------------------------------------------------------------------------------- */
+
+/* Of a slot: what the film has told of it so far. */
+typedef struct demi_seen {
+    int32_t place[3];                /* in units of the resolution */
+    uint32_t generation, turn;
+    float own;
+    unsigned char speed, there;
+} demi_seen;
+struct dem_replay {
+    dem_world *world;
+    demi_out out;
+    dem_replay_desc desc;
+    int real;                        /* which number of desc.body_reals is shown, or -1 */
+    double resolution;               /* m; 0: no frame yet */
+    demi_seen *seen;                 /* x seen_count: slots */
+    float (*pose)[7];                /* x wall_count: as told */
+    unsigned char *wall_told;        /* x wall_count: 0: not yet, 1: there, 2: gone */
+    unsigned char *bytes;            /* of the frame under way */
+    size_t size;
+    int seen_count, wall_count, shape_count, value_count, frames, failed;
+    char names[DEM_REPLAY_VALUES][64];
+    double values[DEM_REPLAY_VALUES];
+    int given[DEM_REPLAY_VALUES];    /* 1: since the last frame */
+};
+
+/* --- bytes --- */
+
+static void demi_film_put(dem_replay *r, const void *data, size_t size, int number) {
+    if (r->failed || !demi_grow(r->world, DEMI_LOOSE, &r->bytes, 1, r->size + size)) {
+        r->failed = 1;
+        return;
+    }
+    memcpy(r->bytes + r->size, data, size);
+    if (number && !demi_is_little_endian()) {
+        const unsigned char *from = (const unsigned char *)data;
+        size_t i;
+        for (i = 0; i < size; i++) r->bytes[r->size + i] = from[size - 1 - i];
+    }
+    r->size += size;
+}
+static void demi_film_byte(dem_replay *r, int value) {
+    const unsigned char byte = (unsigned char)value;
+    demi_film_put(r, &byte, 1, 0);
+}
+static void demi_film_count(dem_replay *r, uint32_t value) {
+    for (; value > 127; value >>= 7) demi_film_byte(r, (int)(value & 127) | 128);
+    demi_film_byte(r, (int)value);
+}
+static void demi_film_real(dem_replay *r, double value) {
+    const float number = (float)DEMI_MAX(-3e38, DEMI_MIN(3e38, value));
+    demi_film_put(r, &number, sizeof number, 1);
+}
+/* The frame as base64, in a block of its own. */
+static void demi_film_block(dem_replay *r) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    char text[4096];
+    size_t i, n = 0;
+    fputs("<script type=\"dem/frame\">", r->out.file);
+    for (i = 0; i < r->size; i += 3) {
+        const size_t left = r->size - i;
+        const uint32_t v = (uint32_t)r->bytes[i] << 16 |
+            (left > 1 ? (uint32_t)r->bytes[i + 1] << 8 : 0) | (left > 2 ? r->bytes[i + 2] : 0u);
+        text[n++] = digits[v >> 18];
+        text[n++] = digits[v >> 12 & 63];
+        text[n++] = left > 1 ? digits[v >> 6 & 63] : '=';
+        text[n++] = left > 2 ? digits[v & 63] : '=';
+        if (n == sizeof text || left <= 3) { fwrite(text, 1, n, r->out.file); n = 0; }
+    }
+    fputs("</script>\n", r->out.file);
+}
+/* Text as a JSON string that cannot end a script either. */
+static void demi_film_text(FILE *out, const char *text) {
+    fputc('"', out);
+    for (; *text; text++) {
+        const unsigned char c = (unsigned char)*text;
+        if (c < 32 || c == '"' || c == '\\' || c == '<') fprintf(out, "\\u%04x", (unsigned)c);
+        else fputc(c, out);
+    }
+    fputc('"', out);
+}
+static void demi_film_reals(FILE *out, const char *name, const dem_real *values, int count, int per,
+                            int stride) {
+    char number[32];
+    int i, k;
+    fprintf(out, ",\"%s\":[", name);
+    for (i = 0; i < count; i++)
+        for (k = 0; k < per; k++)
+            fprintf(out, "%s%s", i + k ? "," : "",
+                    demi_format_real(number, (double)values[i*stride + k], 7));
+    fputs("]", out);
+}
+
+/* --- what stands before the frames --- */
+
+static void demi_film_head(dem_replay *r) {
+    const dem_world_desc d = dem_world_desc_get(r->world);
+    const demi_periods p = demi_periods_of(r->world);
+    const dem_real gravity[3] = {d.gravity.x, d.gravity.y, d.gravity.z};
+    const char *number = r->desc.number, *slash = strrchr(r->out.path, '/');
+    FILE *out = r->out.file;
+    char text[32], own[32];
+    int n = 0;
+    if (r->real >= 0) {
+        number = demi_name(d.body_reals, r->real, &n);
+        sprintf(own, "%.*s", DEMI_MIN(n, 31), number);
+        number = own;
+    }
+    fprintf(out, "<script type=\"dem/head\">{\"version\":1,\"title\":");
+    demi_film_text(out, r->desc.title ? r->desc.title : slash ? slash + 1 : r->out.path);
+    fprintf(out, ",\"planar\":%d,\"resolution\":%s", d.planar,
+            demi_format_real(text, r->resolution, 9));
+    demi_film_reals(out, "gravity", gravity, 1, 3, 3);
+    demi_film_reals(out, "period", p.period, 1, 3, 3);
+    fputs(",\"number\":", out);
+    if (number && (r->real >= 0 || r->desc.number_fn)) demi_film_text(out, number);
+    else fputs("null", out);
+    fputs(",\"values\":[]}</script>\n", out);
+}
+static void demi_film_shape(dem_replay *r, int id) {
+    const demi_shape *s = &r->world->shapes[id - 1];
+    const dem_real axes[3] = {s->axes.x, s->axes.y, s->axes.z};
+    char text[32];
+    fprintf(r->out.file, "<script type=\"dem/shape\">{\"id\":%d,\"radius\":%s", id,
+            demi_format_real(text, (double)s->radius, 9));
+    if (s->count) demi_film_reals(r->out.file, "parts", s->parts, s->count, 4, 4);
+    else demi_film_reals(r->out.file, "axes", axes, 1, 3, 3);
+    fputs("}</script>\n", r->out.file);
+}
+static void demi_film_wall(dem_replay *r, int i) {
+    const demi_wall *wall = &r->world->walls[i];
+    const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
+    const dem_sieve_desc *s = &wall->sieve;
+    FILE *out = r->out.file;
+    char text[32];
+    int k, corners = wall->corners ? wall->element_count*kind->corners : 0;
+    fprintf(out, "<script type=\"dem/wall\">{\"id\":%d,\"kind\":\"%s\",\"radius\":%s", i + 1,
+            kind->traits & DEMI_BALLS ? "grains" : kind->traits & DEMI_DRAWN ? "profile" :
+            kind->name, demi_format_real(text, (double)wall->radius, 9));
+    if (wall->vertices)
+        demi_film_reals(out, "vertices", wall->vertices, wall->vertex_count, 3, 3);
+    for (k = 0; k < corners; k++)
+        fprintf(out, "%s%ld", k ? "," : ",\"corners\":[", (long)wall->corners[k]);
+    if (corners) fputs("]", out);
+    if (s->kind) {
+        const dem_real hole[4] = {(dem_real)(int)s->kind, s->aperture, s->bar, s->length};
+        demi_film_reals(out, "hole", hole, 1, 4, 4);
+        fprintf(out, ",\"staggered\":%d,\"rim\":%s", s->staggered,
+                demi_format_real(text, (double)s->radius, 9));
+    }
+    fputs("}</script>\n", out);
+}
+
+/* --- a frame --- */
+
+/* Walls: new ones are described first. */
+static void demi_film_walls(dem_replay *r) {
+    dem_world *w = r->world;
+    uint32_t changed = 0;
+    int i, k, pass;
+    if (!demi_grow(w, DEMI_LOOSE, &r->pose, sizeof *r->pose, (size_t)w->wall_count) ||
+        !demi_grow(w, DEMI_LOOSE, &r->wall_told, 1, (size_t)w->wall_count)) {
+        r->failed = 1;
+        return;
+    }
+    for (pass = 0; pass < 2; pass++) {
+        if (pass) demi_film_count(r, changed);
+        for (i = 0; i < w->wall_count; i++) {
+            const demi_wall *wall = &w->walls[i];
+            float now[7];
+            double R[3][3];
+            dem_quat q;
+            if (wall->kind == DEMI_WALL_NONE) {
+                if (r->wall_told[i] != 1) continue;
+                if (!pass) { changed++; continue; }
+                r->wall_told[i] = 2;
+                demi_film_count(r, (uint32_t)i + 1);
+                demi_film_byte(r, 0);
+                continue;
+            }
+            for (k = 0; k < 9; k++) R[k/3][k%3] = (double)wall->pose.rotation[k];
+            q = demi_quat_of(R);
+            now[0] = (float)wall->pose.position.x; now[1] = (float)wall->pose.position.y;
+            now[2] = (float)wall->pose.position.z;
+            now[3] = (float)q.w; now[4] = (float)q.x; now[5] = (float)q.y; now[6] = (float)q.z;
+            if (r->wall_told[i] == 1 && !memcmp(now, r->pose[i], sizeof now)) continue;
+            if (!pass) {
+                if (!r->wall_told[i]) demi_film_wall(r, i);
+                changed++;
+                continue;
+            }
+            r->wall_told[i] = 1;
+            memcpy(r->pose[i], now, sizeof now);
+            demi_film_count(r, (uint32_t)i + 1);
+            demi_film_byte(r, 1);
+            for (k = 0; k < 7; k++) demi_film_real(r, (double)now[k]);
+        }
+    }
+}
+/* Who went and who came, by slot. */
+static void demi_film_cast(dem_replay *r, const dem_bodies *b) {
+    const demi_bodies *bodies = &r->world->bodies;
+    uint32_t gone = 0, fresh = 0;
+    int s, pass;
+    for (pass = 0; pass < 2; pass++) {
+        if (pass) demi_film_count(r, gone);
+        for (s = 0; s < r->seen_count; s++) {
+            demi_seen *old = &r->seen[s];
+            if (!old->there || (s < bodies->slot_count && bodies->slot_index[s] >= 0 &&
+                                bodies->slot_generation[s] == old->generation)) continue;
+            if (!pass) { gone++; continue; }
+            old->there = 0;
+            demi_film_count(r, (uint32_t)s);
+        }
+    }
+    r->seen_count = bodies->slot_count;
+    for (pass = 0; pass < 2; pass++) {
+        if (pass) demi_film_count(r, fresh);
+        for (s = 0; s < r->seen_count; s++) {
+            const int i = bodies->slot_index[s];
+            demi_seen *one = &r->seen[s];
+            if (i < 0 || one->there) continue;
+            if (!pass) { fresh++; continue; }
+            memset(one, 0, sizeof *one);
+            one->there = 1;
+            one->generation = bodies->slot_generation[s];
+            demi_film_count(r, (uint32_t)s);
+            demi_film_count(r, (uint32_t)b->materials[i]);
+            demi_film_count(r, b->shapes ? (uint32_t)b->shapes[i] : 0);
+            demi_film_real(r, (double)b->positions[4*i + 3]);
+        }
+    }
+}
+/* Three smallest components, the largest one made positive and left out. */
+static uint32_t demi_film_turn(const dem_real *q) {
+    int k, most = 0, bit = 0;
+    uint32_t turn;
+    for (k = 1; k < 4; k++) if (DEMI_ABS(q[k]) > DEMI_ABS(q[most])) most = k;
+    turn = (uint32_t)most << 30;
+    for (k = 0; k < 4; k++) {
+        if (k == most) continue;
+        turn |= (uint32_t)floor(511.5 + (double)(q[most] < 0 ? -q[k] : q[k])*1.41421356*511) << bit;
+        bit += 10;
+    }
+    return turn;
+}
+/* A grain, as the frame before left it and as it is. */
+static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
+    demi_seen *one = &r->seen[s];
+    const dem_real *v = b->velocities + 4*i;
+    const double speed = sqrt((double)(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]));
+    const int code = speed > 0 ? (int)floor(128.5 + 8*log(speed)/0.69314718) : 0;
+    const unsigned char told = (unsigned char)(speed > 0 ? DEMI_MAX(1, DEMI_MIN(255, code)) : 0);
+    const uint32_t turn = b->shapes && b->shapes[i] ? demi_film_turn(b->orientations + 4*i) : 0;
+    dem_body id;
+    float own = 0;
+    int k, flags = 0, more = 0;
+    int32_t change[3];
+    for (k = 0; k < 3; k++) {
+        const double x = (double)b->positions[4*i + k]/r->resolution;
+        const int32_t place = (int32_t)floor(DEMI_MAX(-1e9, DEMI_MIN(1e9, x)) + 0.5);
+        change[k] = place - one->place[k];
+        one->place[k] = place;
+        flags |= (!change[k] ? 0 : change[k] >= -128 && change[k] < 128 ? 1 :
+                  change[k] >= -32768 && change[k] < 32768 ? 2 : 3) << 2*k;
+    }
+    if (r->desc.number_fn) {
+        id.slot = (uint32_t)s + 1;
+        id.generation = one->generation;
+        own = (float)r->desc.number_fn(r->world, id, r->desc.user);
+    } else if (r->real >= 0) own = (float)b->reals[b->real_count*i + r->real];
+    if (told != one->speed) flags |= 64;
+    if (turn != one->turn) more |= 1;
+    if (own < one->own || own > one->own) more |= 2;
+    demi_film_byte(r, more ? flags | 128 : flags);
+    for (k = 0; k < 3; k++) {
+        const int size = flags >> 2*k & 3;
+        const int16_t medium = (int16_t)change[k];
+        if (size == 1) demi_film_byte(r, change[k] & 255);
+        if (size == 2) demi_film_put(r, &medium, 2, 1);
+        if (size == 3) demi_film_put(r, &change[k], 4, 1);
+    }
+    if (flags & 64) demi_film_byte(r, told);
+    if (more) demi_film_byte(r, more);
+    if (more & 1) demi_film_put(r, &turn, 4, 1);
+    if (more & 2) demi_film_real(r, (double)own);
+    one->speed = told;
+    one->turn = turn;
+    one->own = own;
+}
+/* Before the first frame: how finely places are told. */
+static void demi_film_resolve(dem_replay *r, const dem_bodies *b) {
+    dem_real least = 0;
+    int i;
+    for (i = 0; i < b->count; i++)
+        if (!i || b->positions[4*i + 3] < least) least = b->positions[4*i + 3];
+    r->resolution = r->desc.resolution > 0 ? (double)r->desc.resolution : b->count ?
+        (double)least/32 : 1e-5;
+    demi_film_head(r);
+}
+static dem_result demi_film_check(dem_replay *r, const char *call) {
+    if (r->failed) return demi_no_memory(r->world, call);
+    if (!ferror(r->out.file)) return DEM_OK;
+    return demi_fail(r->world, DEM_ERROR_FILE, "%s: cannot write %.200s: %s; check that its folder "
+                     "has room", call, r->out.path, errno ? strerror(errno) : "unknown cause");
+}
+DEM_API dem_result dem_replay_frame(dem_replay *r) {
+    if (!r) return DEM_ERROR_ARGUMENT;
+    dem_world *w = r->world;
+    double time;
+    uint32_t values = 0;
+    int s, k;
+    errno = 0;
+    dem_result result = demi_film_check(r, "dem_replay_frame");
+    if (result != DEM_OK) return result;
+    if (!demi_grow(w, DEMI_LOOSE, &r->seen, sizeof *r->seen, (size_t)w->bodies.slot_count + 1)) {
+        r->failed = 1;
+        return demi_film_check(r, "dem_replay_frame");
+    }
+    demi_finish(w);
+    const dem_bodies b = dem_bodies_get(w);
+    if (!(r->resolution > 0)) demi_film_resolve(r, &b);
+    for (; r->shape_count < w->shape_count; r->shape_count++)
+        demi_film_shape(r, r->shape_count + 1);
+    r->size = 0;
+    time = dem_world_time(w);
+    demi_film_put(r, &time, sizeof time, 1);
+    demi_film_walls(r);
+    demi_film_cast(r, &b);
+    for (s = 0; s < r->seen_count; s++)
+        if (r->seen[s].there) demi_film_grain(r, &b, s, w->bodies.slot_index[s]);
+    for (k = 0; k < r->value_count; k++) values += (uint32_t)r->given[k];
+    demi_film_count(r, values);
+    for (k = 0; k < r->value_count; k++) {
+        if (!r->given[k]) continue;
+        demi_film_count(r, (uint32_t)k);
+        demi_film_real(r, r->values[k]);
+        r->given[k] = 0;
+    }
+    if (!r->failed) demi_film_block(r);
+    r->frames++;
+    return demi_film_check(r, "dem_replay_frame");
+}
+
+/* --- begin, plots, end --- */
+
+static void demi_film_free(dem_replay *r) {
+    dem_world *w = r->world;
+    demi_free(w, r->seen);
+    demi_free(w, r->pose);
+    demi_free(w, r->wall_told);
+    demi_free(w, r->bytes);
+    demi_free(w, r);
+}
+DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_replay_desc *desc) {
+    static const dem_replay_desc zero = {0, 0, 0, 0, 0};
+    const dem_replay_desc d = desc ? *desc : zero;
+    dem_replay *r;
+    size_t k;
+    int i, n, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
+    if (demi_null(w, "dem_replay_open", w, "world")) return 0;
+    if (!(d.resolution >= 0) || !demi_finite(d.resolution)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: resolution is %g m, must be >= 0; 0 is "
+                  "a 32nd of the smallest radius", (double)d.resolution);
+        return 0;
+    }
+    for (i = 0; d.number && !d.number_fn && i < w->bodies.real_count; i++) {
+        const char *name = demi_name(w->desc.body_reals, i, &n);
+        if (strlen(d.number) == (size_t)n && !strncmp(name, d.number, (size_t)n)) break;
+        real = i + 1;
+    }
+    if (d.number && !d.number_fn && (real < 0 || real >= w->bodies.real_count)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: number is \"%.60s\", which "
+                  "desc.body_reals does not name; name it there, or give number_fn", d.number);
+        return 0;
+    }
+    r = (dem_replay *)demi_alloc(w, 1, sizeof *r);
+    if (!r) { demi_no_memory(w, "dem_replay_open"); return 0; }
+    r->world = w;
+    r->desc = d;
+    r->real = real;
+    if (d.number_fn && !d.number) r->desc.number = "number";
+    if (demi_out_open(&r->out, w, "dem_replay_open", path) != DEM_OK) { demi_free(w, r); return 0; }
+    for (k = 0; k < sizeof demi_viewer/sizeof *demi_viewer; k++) fputs(demi_viewer[k], r->out.file);
+    return r;
+}
+DEM_API dem_result dem_replay_value(dem_replay *r, const char *name, double value) {
+    int k;
+    if (!r) return DEM_ERROR_ARGUMENT;
+    if (!name || !*name || strlen(name) >= sizeof r->names[0])
+        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value: name is %.80s, must have "
+                         "1 to %d letters", name ? *name ? name : "empty" : "null",
+                         (int)sizeof r->names[0] - 1);
+    for (k = 0; k < r->value_count && strcmp(r->names[k], name) != 0; k++) {}
+    if (k == DEM_REPLAY_VALUES)
+        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value: \"%.60s\" would be value "
+                         "%d, a replay draws at most %d; leave some out", name, k + 1,
+                         (int)DEM_REPLAY_VALUES);
+    if (k == r->value_count) {
+        r->value_count++;
+        strcpy(r->names[k], name);
+        fputs("<script type=\"dem/value\">{\"name\":", r->out.file);
+        demi_film_text(r->out.file, name);
+        fputs("}</script>\n", r->out.file);
+    }
+    r->values[k] = value;
+    r->given[k] = value > -1e300 && value < 1e300;         /* what is no number leaves a gap */
+    return DEM_OK;
+}
+DEM_API dem_result dem_replay_close(dem_replay *r) {
+    dem_result result;
+    if (!r) return DEM_ERROR_ARGUMENT;
+    if (r->failed) {                            /* a frame is missing, told when it was asked for */
+        demi_out_drop(&r->out);
+        result = demi_film_check(r, "dem_replay_close");
+        demi_film_free(r);
+        return result;
+    }
+    if (!r->frames) {                           /* a film of nothing tells so */
+        const dem_bodies b = dem_bodies_get(r->world);
+        demi_film_resolve(r, &b);
+    }
+    fputs("<script type=\"dem/report\">", r->out.file);
+    dem_world_report(r->world, r->out.file);
+    fputs("</script>\n", r->out.file);
+    r->out.call = "dem_replay_close";
+    result = demi_out_close(&r->out);
+    demi_film_free(r);
+    return result;
 }
 
 #if defined(__clang__)

@@ -1,0 +1,108 @@
+/* write_film FOLDER: two films for tests/browser.sh. shapes.html: beads, ellipsoids and clusters with a number of their
+   own, which come and go, on a mesh that turns in a drum. sieve.html: beads on a sieve that shakes, over a profile. */
+#include "dem.h"
+#include <stdio.h>
+
+static dem_world *world_of(const char *reals, dem_material *stuff) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc glass = DEM_MATERIAL_DESC;
+    dem_world *w;
+    desc.gravity.y = DEM_R(-9.81);
+    desc.body_reals = reals;
+    desc.ledger = 1;
+    desc.threads = 1;
+    w = dem_world_create(&desc);
+    glass.density = 2500; glass.young = DEM_R(1e6); glass.poisson = DEM_R(0.25);
+    glass.restitution = DEM_R(0.5); glass.friction = DEM_R(0.4);
+    stuff[0] = dem_material_add(w, &glass);
+    glass.density = 1500;
+    stuff[1] = dem_material_add(w, &glass);
+    return w;
+}
+/* Runs and films it; a body leaves and another comes on the way. */
+static int film(dem_world *w, const char *path, const char *title, dem_material stuff, int frames, dem_body gone) {
+    dem_replay_desc desc = DEM_REPLAY_DESC;
+    dem_replay *r;
+    int k;
+    desc.title = title;
+    r = dem_replay_open(w, path, &desc);
+    for (k = 0; r && k < frames; k++) {
+        if (k && dem_world_run(w, 0.01, 0, 0) != DEM_OK) break;
+        if (k == frames/2) {
+            dem_body_remove(w, gone);
+            dem_sphere_add(w, stuff, DEM_R(0.003), dem_vec3_make(0, DEM_R(0.03), 0));
+        }
+        dem_replay_value(r, "kinetic energy (J)", dem_totals_get(w).kinetic);
+        dem_replay_value(r, "contacts", dem_counters_get(w).contacts);
+        if (dem_replay_frame(r) != DEM_OK) break;
+    }
+    k = r && k == frames && dem_replay_close(r) == DEM_OK;
+    if (!k) fprintf(stderr, "%s\n", dem_world_error(w));
+    dem_world_destroy(w);
+    return k;
+}
+static int shapes(const char *path) {
+    static dem_real square[12] = {DEM_R(-0.02), 0, DEM_R(-0.02), DEM_R(0.02), 0, DEM_R(-0.02), DEM_R(0.02), DEM_R(0.004),
+                                  DEM_R(0.02), DEM_R(-0.02), DEM_R(0.004), DEM_R(0.02)};
+    static int32_t corners[6] = {0, 1, 2, 0, 2, 3};
+    static const dem_real centres[6] = {DEM_R(-0.001), 0, 0, DEM_R(0.001), 0, 0};
+    dem_cluster_desc twin_desc = DEM_CLUSTER_DESC;
+    dem_motion turning = DEM_MOTION;
+    dem_mesh mesh;
+    dem_material stuff[2];
+    dem_world *w = world_of("warmth", stuff);
+    const dem_box box = dem_box_make(DEM_R(-0.015), 0, DEM_R(-0.015), DEM_R(0.015), DEM_R(0.03), DEM_R(0.015));
+    dem_shape egg = dem_shape_ellipsoid_add(w, dem_vec3_make(DEM_R(0.003), DEM_R(0.001), DEM_R(0.0015))), twin;
+    dem_body gone;
+    dem_wall plate;
+    dem_real warmth;
+    int k;
+    mesh.vertex_count = 4; mesh.triangle_count = 2; mesh.vertices = square; mesh.triangles = corners;
+    twin_desc.count = 2; twin_desc.positions = centres; twin_desc.radius = DEM_R(0.0015);
+    twin = dem_shape_cluster_add(w, &twin_desc);
+    dem_cylinder_add(w, stuff[0], dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1), DEM_R(0.04), 1);
+    plate = dem_mesh_add(w, stuff[0], &mesh);
+    turning.kind = DEM_MOTION_ROTATING; turning.axis = dem_vec3_make(0, 1, 0); turning.speed = 6;
+    dem_wall_motion(w, plate, &turning);
+    dem_bodies_fill(w, stuff[0], egg, box, 40, 1);
+    dem_bodies_fill(w, stuff[1], twin, box, 40, 2);
+    dem_spheres_fill(w, stuff[1], DEM_R(0.001), box, 60, 3);
+    gone = dem_sphere_add(w, stuff[0], DEM_R(0.002), dem_vec3_make(0, DEM_R(0.035), 0));
+    for (k = 0; k < dem_bodies_get(w).count; k++) {
+        warmth = 300 + k;
+        dem_body_reals_set(w, dem_bodies_id(w, k), &warmth);
+    }
+    return film(w, path, "shapes </script> & \"quotes\"", stuff[0], 40, gone);
+}
+static int sieve(const char *path) {
+    static dem_real line[8] = {DEM_R(-0.03), DEM_R(-0.03), DEM_R(-0.01), DEM_R(-0.04), DEM_R(0.01), DEM_R(-0.04),
+                               DEM_R(0.03), DEM_R(-0.03)};
+    static int32_t segments[6] = {0, 1, 1, 2, 2, 3};
+    dem_sieve_desc deck = DEM_SIEVE_DESC;
+    dem_motion shaking = DEM_MOTION;
+    dem_profile trough;
+    dem_material stuff[2];
+    dem_world *w = world_of(0, stuff);
+    dem_wall wall;
+    dem_body gone;
+    trough.vertex_count = 4; trough.segment_count = 3; trough.vertices = line; trough.segments = segments;
+    dem_profile_add(w, stuff[0], &trough, DEM_EDGE_RESOLVED);
+    dem_plane_add(w, stuff[0], dem_vec3_make(0, DEM_R(-0.045), 0), dem_vec3_make(0, 1, 0));
+    deck.kind = DEM_SIEVE_SQUARE; deck.normal = dem_vec3_make(0, 1, 0); deck.aperture = DEM_R(0.004);
+    deck.bar = DEM_R(0.002); deck.radius = DEM_R(0.025);
+    wall = dem_sieve_add(w, stuff[0], &deck);
+    shaking.kind = DEM_MOTION_OSCILLATING; shaking.velocity = dem_vec3_make(1, 1, 0);
+    shaking.amplitude = DEM_R(0.002); shaking.frequency = 20;
+    dem_wall_motion(w, wall, &shaking);
+    dem_spheres_fill(w, stuff[0], DEM_R(0.0015), dem_box_make(DEM_R(-0.015), DEM_R(0.005), DEM_R(-0.015), DEM_R(0.015),
+                     DEM_R(0.03), DEM_R(0.015)), 150, 1);
+    gone = dem_sphere_add(w, stuff[1], DEM_R(0.003), dem_vec3_make(0, DEM_R(0.035), 0));
+    return film(w, path, "a sieve", stuff[0], 40, gone);
+}
+int main(int argc, char **argv) {
+    char path[2][400];
+    const char *folder = argc > 1 ? argv[1] : ".";
+    snprintf(path[0], sizeof path[0], "%.380s/shapes.html", folder);
+    snprintf(path[1], sizeof path[1], "%.380s/sieve.html", folder);
+    return shapes(path[0]) && sieve(path[1]) ? 0 : 1;
+}
