@@ -229,6 +229,17 @@ STUDY_FN void study_result(const char *name, double value, const char *unit) {
     if (value != value) study_fail("%s%s could not be measured", study.prefix, name);
 }
 
+/* A sentence on stderr that is no failure. */
+STUDY_FN void study_say(const char *sentence, ...) {
+    va_list arguments;
+    if (study.quiet) return;
+    fprintf(stderr, "%s%s: ", study.open ? "\n" : "", study.program ? study.program : "study");
+    study.open = 0;
+    va_start(arguments, sentence);
+    vfprintf(stderr, sentence, arguments);
+    va_end(arguments);
+    fputc('\n', stderr);
+}
 STUDY_FN int study_end(void) { /* exit code */
     if (!study.quiet)
         fprintf(stderr, "%s: %d files in %s\n", study.program, study.files, study.root);
