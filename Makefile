@@ -13,6 +13,9 @@ MPICC        ?= mpicc
 MPIRUN       ?= mpirun --oversubscribe $(if $(filter 0,$(shell id -u)),--allow-run-as-root)
 FILTER       ?=
 LAW          ?=
+NAME         ?=
+PREFIX       ?= /usr/local
+DESTDIR      ?=
 JOBS         ?= $(shell getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
 
 # ---- what there is ----
@@ -31,7 +34,7 @@ ACCURACY_ALSO := $(if $(wildcard bench/accuracy.c),build/accuracy_single build/a
 hash := \#
 
 # ---- what the compiler can do; asked only when something is to be compiled ----
-ifneq ($(filter-out help clean tags parts recipes viewer check fuzz docs,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help new clean tags parts recipes viewer check fuzz docs,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -49,15 +52,25 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run test hard law examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags parts recipes snippets clean
+.PHONY: help all run new install test hard law examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags parts recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
 
-run: build/mill ## the tumbling mill: progress on the terminal, pictures in build/out/mill
+# threads of gcc's OpenMP that wait give way soon: else another process on the cores costs tenfold
+run: build/mill ## the tumbling mill: a film for the browser, pictures and figures in build/out/mill
 	@mkdir -p build/out/mill
-	build/mill --threads 1 --out build/out/mill
+	GOMP_SPINCOUNT=1000 build/mill --replay --out build/out/mill
+
+new: ## NAME=my puts a small program with comments into my.c, and says how to build it
+	@test -n "$(NAME)" || { echo "make new NAME=my: give the program a name"; exit 1; }
+	@test ! -e "$(NAME).c" || { echo "make new: $(NAME).c is there already; give another NAME"; exit 1; }
+	@sed 's#NAME#$(notdir $(NAME))#g' examples/new/program.c > "$(NAME).c"
+	@echo "$(NAME).c: its first lines say how to build it"
+
+install: ## dem.h, a library of dem.c, and files for pkg-config and CMake into PREFIX (/usr/local)
+	@sh tests/install.sh "$(DESTDIR)$(PREFIX)" "$(PREFIX)" "$(CC)" "$(OMP)"
 
 test: build/tests $(ALONE) ## build and run all tests; FILTER=words runs the sentences that contain them
 	@JOBS=$(JOBS) sh tests/run.sh "$(FILTER)" $(TOGETHER:build/%=build/tests@%) $(ALONE)

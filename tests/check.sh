@@ -127,6 +127,7 @@ if [ "$1" != short ]; then
     found clang && try "clang -O3 -march=native: test_threads" "clang -O3 -march=native -I. tests/test_threads.c -o \$bin -lm && \$bin"
     found gcc && try "gcc -std=gnu99 -O3 -march=native: test_threads" "gcc -std=gnu99 -O3 -march=native -I. tests/test_threads.c -o \$bin -lm && \$bin"
     found g++ && tests "g++ -std=c++11" "g++ -std=c++11 -O2 -ffp-contract=off -x c++"
+    try "outside: make new, make install, pkg-config, CMake" "sh tests/outside.sh \$bin"
     if found chromium; then
         try "films play in a headless chromium" "cc -O1 -I. -DDEM_IMPLEMENTATION tests/write_film.c -o \$bin -lm && FILM=\$bin sh tests/browser.sh"
     else skip "chromium not found (Debian package chromium)"; fi
