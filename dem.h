@@ -1989,6 +1989,73 @@ static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y
                                      demi_finite(v.z); }
 static int demi_place(dem_vec3 v) { return demi_finite3(v) && demi_size(v) <= DEMI_FARTHEST; }
 
+/* Functions that every C library rounds in its own way. Here are ours, so that a run has the same
+   bits with all of them: of <math.h> dem.h uses only what IEEE 754 fixes to the last bit (sqrt,
+   fabs, floor, ceil, fmod, frexp, ldexp). Each is a series on a short range, to 4 units in the last
+   place; what is no number is answered so, what is out of range by 0 or infinity.
+
+   sin, cos: x = n pi/2 + r, |r| <= pi/4, pi/2 in four parts, of which the first three have 24 bits,
+   so that n times each is exact to n = 2^29. */
+static void demi_sin_cos(double x, double *sine, double *cosine) {
+    const double n = floor(x/1.5707963267948966 + 0.5);
+    const double r = (((x - n*1.570796251296997) - n*7.549789415861596e-08) -
+                      n*5.390302529957765e-15) - n*3.282003415807913e-22;
+    const double u = r*r, quarter = n - 4*floor(n/4);
+    const double s = r + r*u*(-1.0/6 + u*(1.0/120 + u*(-1.0/5040 + u*(1.0/362880 +
+        u*(-1.0/39916800 + u*(1.0/6227020800 + u*(-1.0/1307674368000 + u/355687428096000)))))));
+    const double c = 1 - u/2 + u*u*(1.0/24 + u*(-1.0/720 + u*(1.0/40320 + u*(-1.0/3628800 +
+        u*(1.0/479001600 + u*(-1.0/87178291200 + u*(1.0/20922789888000 -
+        u/6402373705728000)))))));
+    if (!demi_finite_double(x)) { *sine = *cosine = x - x; return; }
+    *sine = quarter < 1 ? s : quarter < 2 ? c : quarter < 3 ? -s : -c;
+    *cosine = quarter < 1 ? c : quarter < 2 ? -s : quarter < 3 ? -c : s;
+}
+static double demi_sin(double x) { double s, c; demi_sin_cos(x, &s, &c); return s; }
+static double demi_cos(double x) { double s, c; demi_sin_cos(x, &s, &c); return c; }
+/* log m 2^e = e log 2 + 2 artanh((m - 1)/(m + 1)), m from 0.7 to 1.4 */
+static double demi_log(double x) {
+    int e;
+    double m, s, u;
+    if (!(x > 0)) return x < 0 ? (x - x)/(x - x) : x > -1 ? -HUGE_VAL : x;
+    if (!demi_finite_double(x)) return x;
+    m = frexp(x, &e);
+    if (m < 0.7071067811865476) { m *= 2; e--; }
+    s = (m - 1)/(m + 1);
+    u = s*s;
+    u = 2*s*u*(1.0/3 + u*(1.0/5 + u*(1.0/7 + u*(1.0/9 + u*(1.0/11 + u*(1.0/13 + u*(1.0/15 +
+        u*(1.0/17 + u*(1.0/19 + u*(1.0/21 + u/23))))))))));
+    return e*0.6931471803691238 + (2*s + (u + e*1.9082149292705877e-10));
+}
+/* exp x = 2^n exp r, |r| <= log(2)/2 */
+static double demi_exp(double x) {
+    const double n = floor(x/0.6931471805599453 + 0.5);
+    const double r = (x - n*0.6931471803691238) - n*1.9082149292705877e-10;
+    double sum = 1;
+    int k;
+    if (!(x > -746 && x < 710)) return x > 0 ? HUGE_VAL : x < 0 ? 0 : x;
+    for (k = 14; k > 0; k--) sum = 1 + r*sum/k;
+    return ldexp(sum, (int)n);
+}
+/* x^y of x >= 0 */
+static double demi_pow(double x, double y) {
+    return x > 0 ? demi_exp(y*demi_log(x)) : y > 0 ? x : y < 0 ? HUGE_VAL : 1;
+}
+static double demi_atan(double x) { /* the angle halved twice, then the series */
+    double u;
+    int k;
+    if (x > 1 || x < -1) return (x > 0 ? 1.5707963267948966 : -1.5707963267948966) - demi_atan(1/x);
+    for (k = 0; k < 2; k++) x = x/(1 + sqrt(1 + x*x));
+    u = x*x;
+    return 4*(x - x*u*(1.0/3 - u*(1.0/5 - u*(1.0/7 - u*(1.0/9 - u*(1.0/11 - u*(1.0/13 -
+        u*(1.0/15 - u*(1.0/17 - u*(1.0/19 - u*(1.0/21 - u/23)))))))))));
+}
+static double demi_atan2(double y, double x) {
+    const double pi = 3.141592653589793;
+    if (fabs(y) > fabs(x)) return (y > 0 ? pi/2 : -pi/2) - demi_atan(x/y);
+    return x > 0 ? demi_atan(y/x) : x < 0 ? demi_atan(y/x) + (y < 0 ? -pi : pi) : 0;
+}
+static double demi_acos(double x) { return 2*demi_atan2(sqrt(1 - x), sqrt(1 + x)); }
+
 /* local -> world and back, for points and for directions */
 DEM_INLINE dem_vec3 demi_rotate(const dem_real *R, dem_vec3 a) {
     return demi_v(R[0]*a.x + R[1]*a.y + R[2]*a.z, R[3]*a.x + R[4]*a.y + R[5]*a.z, R[6]*a.x +
@@ -2000,7 +2067,7 @@ DEM_INLINE dem_vec3 demi_unrotate(const dem_real *R, dem_vec3 a) {
 }
 /* Rotation by angle about a unit axis (Rodrigues), row-major. */
 static void demi_rotation(double *R, double x, double y, double z, double angle) {
-    double c = cos(angle), s = sin(angle), v = 1 - c;
+    double c = demi_cos(angle), s = demi_sin(angle), v = 1 - c;
     R[0] = c + x*x*v;   R[1] = x*y*v - z*s; R[2] = x*z*v + y*s;
     R[3] = y*x*v + z*s; R[4] = c + y*y*v;   R[5] = y*z*v - x*s;
     R[6] = z*x*v - y*s; R[7] = z*y*v + x*s; R[8] = c + z*z*v;
@@ -2864,7 +2931,7 @@ static void demi_coefs_hertz(const demi_scales *s, demi_coefs *k) {
 static void demi_coefs_linear(const demi_scales *s, demi_coefs *k) {
     const double E = s->E, R = s->R, m = s->m, M = s->M, v = s->speed;
     const dem_pair *p = s->pair;
-    k->kn = p->stiffness > 0 ? (double)p->stiffness : pow(320.0/81*M*v*v*E*E*E*E*R*R, 0.2);
+    k->kn = p->stiffness > 0 ? (double)p->stiffness : demi_pow(320.0/81*M*v*v*E*E*E*E*R*R, 0.2);
     k->cn = p->normal_damping > 0 ? (double)p->normal_damping : 2*s->beta*sqrt(k->kn*m);
     k->kt = k->kn*(double)p->stiffness_ratio;
     k->ct = 2*s->beta*sqrt(k->kt*m);
@@ -3096,7 +3163,7 @@ static dem_pair demi_mix(const dem_material_desc *a, const dem_material_desc *b)
 
 /* beta = -ln e / sqrt(pi^2 + ln^2 e), the share of critical damping that gives restitution e */
 static double demi_damping_ratio(double e) {
-    const double l = log(e);
+    const double l = demi_log(e);
     return -l/sqrt(DEMI_PI*DEMI_PI + l*l);
 }
 /* Restitution of a dashpot of `beta` times the critical when the contact ends at zero force [SP07]:
@@ -3104,9 +3171,9 @@ static double demi_damping_ratio(double e) {
    functions. Holds for the linear law and, with [TSU92]'s dashpot, for Hertz. */
 static double demi_restitution_clipped(double beta) {
     const double w = sqrt(fabs(1 - beta*beta));
-    if (beta < 1 - 1e-9) return exp(-beta/w*acos(2*beta*beta - 1));
-    if (beta > 1 + 1e-9) return exp(-beta/w*log((beta + w)/(beta - w)));
-    return exp(-2.0);
+    if (beta < 1 - 1e-9) return demi_exp(-beta/w*demi_acos(2*beta*beta - 1));
+    if (beta > 1 + 1e-9) return demi_exp(-beta/w*demi_log((beta + w)/(beta - w)));
+    return demi_exp(-2.0);
 }
 /* The share of critical damping that gives restitution e, as tension is treated. */
 static double demi_damping_for(double e, dem_tension tension) {
@@ -3240,8 +3307,8 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
     }
     demi_normal_laws[w->desc.normal_law].coefs(&s, &k);
     if (mill && !wall && demi_normal_is(w, DEMI_HERTZIAN)) {   /* of half the overlap */
-        k.kn *= pow(0.5, 1.5); k.kt *= sqrt(0.5);
-        k.cn *= pow(0.5, 0.25); k.ct *= pow(0.5, 0.25);
+        k.kn *= demi_pow(0.5, 1.5); k.kt *= sqrt(0.5);
+        k.cn *= demi_pow(0.5, 0.25); k.ct *= demi_pow(0.5, 0.25);
     }
     k.ct *= (double)p->tangent_damping;
     out[DEMI_KN] = (dem_real)k.kn; out[DEMI_CN] = (dem_real)k.cn;
@@ -3266,7 +3333,7 @@ static double demi_contact_time(const dem_world *w, const dem_real *coef, double
         const double eta = c/(2*m_eff);
         return DEMI_PI/DEMI_MAX(sqrt(DEMI_MAX(k/m_eff - eta*eta, 0)), eta);
     }
-    return 2.94327518*pow(5*m_eff*speed*speed/(4*k), 0.4)/speed;
+    return 2.94327518*demi_pow(5*m_eff*speed*speed/(4*k), 0.4)/speed;
 }
 
 static double demi_sphere_mass(const dem_world *w, int material, double r) {
@@ -3356,8 +3423,8 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
    --------------------------------------------------------------------------------------------- */
 DEM_API dem_quat dem_quat_about(dem_vec3 axis, dem_real angle) {
     const dem_vec3 e = demi_unit(axis);
-    const dem_real s = (dem_real)sin((double)angle/2);
-    return dem_quat_make((dem_real)cos((double)angle/2), s*e.x, s*e.y, s*e.z);
+    const dem_real s = (dem_real)demi_sin((double)angle/2);
+    return dem_quat_make((dem_real)demi_cos((double)angle/2), s*e.x, s*e.y, s*e.z);
 }
 static dem_quat demi_quat_at(const dem_real *p) { return dem_quat_make(p[0], p[1], p[2], p[3]); }
 static void demi_quat_put(dem_real *p, dem_quat q) {
@@ -3580,7 +3647,7 @@ static void demi_ellipsoid_bounds(demi_shape *shape) {
     const double I[3] = {(double)shape->inertia.x, (double)shape->inertia.y,
                          (double)shape->inertia.z};
     const double a[3] = {(double)shape->axes.x, (double)shape->axes.y, (double)shape->axes.z};
-    const double l = pow(a[0]*a[1]*a[2], 1.0/3);
+    const double l = demi_pow(a[0]*a[1]*a[2], 1.0/3);
     int i, k, j;
     shape->radius = (dem_real)DEMI_MAX(a[0], DEMI_MAX(a[1], a[2]));
     shape->thin = (dem_real)DEMI_MIN(a[0], DEMI_MIN(a[1], a[2]));
@@ -3589,7 +3656,7 @@ static void demi_ellipsoid_bounds(demi_shape *shape) {
     shape->light = 1;
     for (k = 0; k < 3; k++)                     /* normals in the three principal planes */
         for (i = 0; i <= 64; i++) {
-            const double n0 = cos(DEMI_PI/2*i/64), n1 = sin(DEMI_PI/2*i/64);
+            const double n0 = demi_cos(DEMI_PI/2*i/64), n1 = demi_sin(DEMI_PI/2*i/64);
             const double u = a[k], v = a[(k + 1)%3], h = sqrt(n0*n0*u*u + n1*n1*v*v);
             const double arm = n0*n1*(u*u - v*v)/h;
             j = (k + 2)%3;
@@ -3627,7 +3694,7 @@ static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *sh
         demi_no_memory(w, call);
         return id;
     }
-    shape->equal = (dem_real)pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
+    shape->equal = (dem_real)demi_pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
     w->shapes[w->shape_count++] = *shape;
     demi_built(w, call);
     id.id = w->shape_count;
@@ -4047,8 +4114,8 @@ DEM_API dem_ellipsoid_contact dem_ellipsoids_contact(const dem_ellipsoid *a, con
     out.depth_normal = (dem_real)((1 - w0)*(ha + hb));
     out.depth_chord = (dem_real)demi_meet_chord(&m, A);
     out.depth_conservative = (dem_real)((1 - w0)*
-        (pow((double)a->semi_axes.x*(double)a->semi_axes.y*(double)a->semi_axes.z, 1.0/3) +
-         pow((double)b->semi_axes.x*(double)b->semi_axes.y*(double)b->semi_axes.z, 1.0/3)));
+        (demi_pow((double)a->semi_axes.x*(double)a->semi_axes.y*(double)a->semi_axes.z, 1.0/3) +
+         demi_pow((double)b->semi_axes.x*(double)b->semi_axes.y*(double)b->semi_axes.z, 1.0/3)));
     return out;
 }
 
@@ -4129,7 +4196,7 @@ static dem_real demi_ellipsoid_thin(const demi_part *p) {
     return DEMI_MIN(p->axes.x, DEMI_MIN(p->axes.y, p->axes.z));
 }
 static double demi_ellipsoid_equal(const demi_part *p) {
-    return pow((double)p->axes.x*(double)p->axes.y*(double)p->axes.z, 1.0/3);
+    return demi_pow((double)p->axes.x*(double)p->axes.y*(double)p->axes.z, 1.0/3);
 }
 /* Gauss's: a b c/h^2. */
 static double demi_ellipsoid_curve(const demi_part *p, double h) {
@@ -5900,9 +5967,9 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     case DEM_MOTION_OSCILLATING: {
         const dem_vec3 way = demi_unit(m->velocity);
         const double w = 2*DEMI_PI*(double)m->frequency, phase = w*t + (double)m->phase;
-        const dem_real way_out = (dem_real)((double)m->amplitude*sin(phase));
+        const dem_real way_out = (dem_real)((double)m->amplitude*demi_sin(phase));
         pose->position = demi_add(pose->position, demi_scale(way, way_out));
-        pose->velocity = demi_scale(way, (dem_real)((double)m->amplitude*w*cos(phase)));
+        pose->velocity = demi_scale(way, (dem_real)((double)m->amplitude*w*demi_cos(phase)));
         break;
     }
     case DEM_MOTION_USER: m->function(time, pose, m->user); break;
@@ -6034,7 +6101,7 @@ static void demi_wall_cells_choose(demi_wall *wall) {
         if (corners == 1) extent += 2*(double)wall->radius;
     }
     mean = extent/n;
-    fine = volume > 0 ? pow(volume/(16*n), 1.0/3) : mean;
+    fine = volume > 0 ? demi_pow(volume/(16*n), 1.0/3) : mean;
     wall->cell = (dem_real)DEMI_MAX(DEMI_MIN(mean, fine), 1e-6*(double)demi_length(size));
     for (;; wall->cell *= DEM_R(1.26)) {
         wall->cells[0] = (int)DEMI_MIN(size.x/wall->cell, DEM_R(1e6)) + 1;
@@ -10325,7 +10392,7 @@ static double demi_ellipse_far(const double *Q, double x, double y, int out, dou
                                  double *n) {
     int k;
     for (k = 0;; k++) {
-        const double c = cos(angle), s = sin(angle);
+        const double c = demi_cos(angle), s = demi_sin(angle);
         const double qn0 = Q[0]*c + Q[3]*s, qn1 = Q[3]*c + Q[1]*s;
         const double h = sqrt(c*qn0 + s*qn1), cross = -s*qn0 + c*qn1;
         const double best = c*x + s*y + out*h, size = fabs(x) + fabs(y) + h;
@@ -10375,7 +10442,7 @@ static double demi_ellipse_shrink(const double *Q, double x, double y, int out, 
             return 1 - out*(R - from_axis)/demi_ellipse_height(Q, n);
         }
         for (e = 0; e < 6; e++) S[e] = W*W*Q[e];
-        far = demi_ellipse_far(S, x, y, out, atan2(n[1], n[0]), n);
+        far = demi_ellipse_far(S, x, y, out, demi_atan2(n[1], n[0]), n);
         if (fabs(step) < 1e-15) break;
     }
     return 1 - W;
@@ -10408,8 +10475,8 @@ static dem_real demi_ellipsoid_on_cylinder(const demi_wall *wall, int element, c
     dem_vec3 arm;
     demi_ellipsoid_matrix(p->q, p->axes, Q);
     far = demi_ellipse_far(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1, wall->inside
-                             ? atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
-                             : atan2((double)x.y, (double)x.x), n);
+                             ? demi_atan2(2*Q[3], Q[0] - Q[1])/2 + (element ? DEMI_PI : 0)
+                             : demi_atan2((double)x.y, (double)x.x), n);
     left = far - (double)wall->radius;
     if (!(wall->inside ? left > -(double)range : left < (double)range)) return DEMI_FAR_OFF;
     left = demi_ellipse_shrink(Q, (double)x.x, (double)x.y, wall->inside ? 1 : -1,
@@ -10835,7 +10902,7 @@ static dem_real demi_kept_power(const dem_world *w, const demi_kept *c) {
 static dem_real demi_kept_steep(const demi_kept *i, const demi_kept *k, int hertz, dem_real q) {
     const dem_real more = i->overlap/k->overlap, R = i->r_eff/k->r_eff;
     if (hertz) return more*DEMI_SQRT(more*R);
-    return q > 0 && (R < 1 || R > 1) ? more*(dem_real)pow((double)R, (double)q) : more;
+    return q > 0 && (R < 1 || R > 1) ? more*(dem_real)demi_pow((double)R, (double)q) : more;
 }
 /* What the shared energy (below) asks of contacts whose shares are known: lift, aside, grip. */
 static void demi_kept_lift(const dem_world *w, demi_kept *c, int n) {
@@ -11825,7 +11892,7 @@ static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_r
         const double step = (double)(k == 2 ? h : h/2);
         const double rate = order[k] == 0 ? (double)(m.x/I.x) : order[k] == 1 ? (double)(m.y/I.y)
             : (double)(m.z/I.z);
-        const dem_real c = (dem_real)cos(rate*step/2), s = (dem_real)sin(rate*step/2);
+        const dem_real c = (dem_real)demi_cos(rate*step/2), s = (dem_real)demi_sin(rate*step/2);
         const dem_quat r = dem_quat_make(c, order[k] == 0 ? s : 0, order[k] == 1 ? s : 0,
                                          order[k] == 2 ? s : 0);
         *q = dem_quat_times(*q, r);
@@ -12431,8 +12498,8 @@ static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, d
 static dem_quat demi_quat_random(uint64_t *state) {
     const double u = demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
     const double b = 2*DEMI_PI*demi_uniform(state), r = sqrt(1 - u), s = sqrt(u);
-    return dem_quat_make((dem_real)(r*sin(a)), (dem_real)(r*cos(a)), (dem_real)(s*sin(b)),
-                         (dem_real)(s*cos(b)));
+    return dem_quat_make((dem_real)(r*demi_sin(a)), (dem_real)(r*demi_cos(a)),
+                         (dem_real)(s*demi_sin(b)), (dem_real)(s*demi_cos(b)));
 }
 /* Adds what was placed in the crowd from sphere `first` on, all or nothing. 0 when memory ran
    out. */
@@ -13136,9 +13203,9 @@ static double demi_advise_radius(const dem_world *w, int body) {
     double r = (double)w->bodies.pos[4*body + 3], scale, sharp;
     if (!shape) return r;
     scale = r/(double)shape->radius;
-    r = (double)shape->equal*scale*pow(shape->light, 1.0/3);
+    r = (double)shape->equal*scale*demi_pow(shape->light, 1.0/3);
     sharp = r/((double)shape->blunt*scale);
-    return demi_normal_is(w, DEMI_HERTZIAN) && sharp < 1 ? r*pow(sharp, 1.0/6) : r;
+    return demi_normal_is(w, DEMI_HERTZIAN) && sharp < 1 ? r*demi_pow(sharp, 1.0/6) : r;
 }
 /* The largest step at which x'' = -omega2 x - rate x' keeps still by velocity Verlet with predicted
    velocities: omega2 dt^2/4 + rate dt = 1, s. (For the other integrators about the same.) */
@@ -13177,7 +13244,7 @@ static demi_stiffness demi_stiffness_of(const dem_world *w, const dem_real *coef
 /* Of one contact to come, of spheres that meet at a speed: at its deepest. */
 static double demi_dt_of_contact(const dem_world *w, const dem_real *coef, double m_eff,
                                  double speed) {
-    const double deep = pow(5*m_eff*speed*speed/(4*(double)coef[DEMI_KN]), 0.4);
+    const double deep = demi_pow(5*m_eff*speed*speed/(4*(double)coef[DEMI_KN]), 0.4);
     const demi_stiffness s = demi_stiffness_of(w, coef, m_eff, deep);
     const double I = 0.4*m_eff*(double)coef[DEMI_R_EFF]*(double)coef[DEMI_R_EFF];
     const double slide = 3.5*s.kt/m_eff + s.kr/I;
@@ -13506,7 +13573,10 @@ static double demi_fastest_next(const dem_world *w) {
         const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
                              (double)w->desc.gravity.z};
         double a2 = 0;
-        for (k = 0; k < 3; k++) a2 += pow((double)w->bodies.force[4*i + k]*inv + g[k], 2);
+        for (k = 0; k < 3; k++) {
+            const double a = (double)w->bodies.force[4*i + k]*inv + g[k];
+            a2 += a*a;
+        }
         if (inv > 0)
             most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.vel + 4*i)) +
                             sqrt(a2)*(double)w->clock.dt);
@@ -13646,7 +13716,8 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a friction of %g: it is a "
                       "coefficient, not an angle; tan of %g degrees is %.3g", i + 1,
                       (double)m->friction, (double)m->friction,
-                      tan((double)m->friction*DEMI_PI/180));
+                      demi_sin((double)m->friction*DEMI_PI/180)/
+                      demi_cos((double)m->friction*DEMI_PI/180));
         if (m->rolling_friction > 1)
             demi_find(f, DEM_SEVERITY_WARNING,
                       "material %d has a rolling friction of %g: it counts "
@@ -13928,10 +13999,10 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
         demi_coefficients(w, i, i, r/2, m, m, 0, coef);
         kn = (double)coef[DEMI_KN];
         force = area > 0 && !w->desc.planar ? 4*r*r*mass*g/area : 0;
-        deep[0] = hertz ? pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
-        deep[1] = (hertz ? pow(force/kn, 2.0/3) : force/kn)/r;
+        deep[0] = hertz ? demi_pow(5*m*v*v/(4*kn), 0.4)/r : v*sqrt(m/kn)/r;
+        deep[1] = (hertz ? demi_pow(force/kn, 2.0/3) : force/kn)/r;
         for (k = 0; k < 2; k++) {
-            const double more = pow(deep[k]/0.01, k ? (hertz ? 1.5 : 1) : hertz ? 2.5 : 2);
+            const double more = demi_pow(deep[k]/0.01, k ? (hertz ? 1.5 : 1) : hertz ? 2.5 : 2);
             if (!(deep[k] > 0.05)) continue;
             demi_find(f, deep[k] > 0.3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "grains of "
                       "material %d (radius %g m) will overlap by %.2g of their radius %s%.3g %s: "
@@ -17725,7 +17796,7 @@ static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size,
     for (k = 0; k < DEM_TRIALS; k++)
         if (demi_try_fits(w, &demi_tries[k]))
             steps += out->seeds/(double)t->clock.dt/demi_tries[k].step*
-                pow(demi_tries[k].stiffness, 0.4);
+                demi_pow(demi_tries[k].stiffness, 0.4);
     if (each*steps*out->duration > budget) out->duration = budget/each/steps;
     if (result != DEM_OK) demi_fail(w, result, "dem_advise: the scene as it is: %.400s", t->error);
     else if (asked < 64*(double)t->clock.dt)
@@ -21409,7 +21480,7 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     demi_seen *one = &r->seen[s];
     const dem_real *v = b->velocities + 4*i;
     const double speed = sqrt((double)(v[0]*v[0] + v[1]*v[1] + v[2]*v[2]));
-    const int code = speed > 0 ? (int)floor(128.5 + 8*log(speed)/0.69314718) : 0;
+    const int code = speed > 0 ? (int)floor(128.5 + 8*demi_log(speed)/0.69314718) : 0;
     const unsigned char told = (unsigned char)(speed > 0 ? DEMI_MAX(1, DEMI_MIN(255, code)) : 0);
     const uint32_t turn = b->shapes && b->shapes[i] ? demi_film_turn(b->orientations + 4*i) : 0;
     dem_body id;

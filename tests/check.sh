@@ -16,6 +16,7 @@ try() {
 }
 
 try "parts of dem.h in order" "awk -f tests/tags.awk dem.h"
+try "dem.h calls no function of libm that libraries round in their own way" "awk -f tests/libm.awk dem.h"
 try "the viewer in dem.h is examples/replay/viewer.html" "awk -f tests/viewer.awk examples/replay/viewer.html dem.h | cmp - dem.h"
 
 # what is compiled: the header alone, the implementation, both in one file, two files linked; the headers
@@ -127,6 +128,7 @@ if [ "$1" != short ]; then
     found clang && try "clang -O3 -march=native: test_threads" "clang -O3 -march=native -I. tests/test_threads.c -o \$bin -lm && \$bin"
     found gcc && try "gcc -std=gnu99 -O3 -march=native: test_threads" "gcc -std=gnu99 -O3 -march=native -I. tests/test_threads.c -o \$bin -lm && \$bin"
     found g++ && tests "g++ -std=c++11" "g++ -std=c++11 -O2 -ffp-contract=off -x c++"
+    try "the same bits on Windows, aarch64, WebAssembly" "sh tests/cross.sh \$bin"
     try "outside: make new, make install, pkg-config, CMake" "sh tests/outside.sh \$bin"
     if found chromium; then
         try "films play in a headless chromium" "cc -O1 -I. -DDEM_IMPLEMENTATION tests/write_film.c -o \$bin -lm && FILM=\$bin sh tests/browser.sh"
