@@ -161,7 +161,7 @@ parts: ## cut dem.h into its parts, for reading: build/parts/01-manual.h ...
 # the program in dem.h's manual and the C blocks of the pages: taken out and compiled, programs linked too
 snippets: build/dem.o
 	@rm -rf build/snippets && mkdir -p build/snippets
-	@awk -v out=build/snippets -f tests/snippets.awk dem.h README.md CONTRIBUTING.md docs/extending.md docs/laws.md \
+	@awk -v out=build/snippets -f tests/snippets.awk dem.h README.md CONTRIBUTING.md docs/extending.md docs/laws.md docs/replay.md \
 	    docs/own_law.md docs/parallel.md
 	@for f in build/snippets/*_program.c; do test -f $$f || continue; echo "$$f"; \
 	    $(COMPILE) -O0 -o $${f%.c} $$f $$(grep -q DEM_IMPLEMENTATION $$f || echo build/dem.o) $(LINK) || exit 1; done

@@ -1438,7 +1438,8 @@ typedef int (*dem_progress_fn)(const dem_world *world, double done, double secon
                                void *user);
 DEM_API dem_result dem_world_run(dem_world *world, double seconds, dem_progress_fn progress,
                                  void *user);
-/* A progress function that rewrites one line on the FILE given as user. */
+/* A progress function that rewrites one line on the FILE given as user; where that is no terminal,
+   a line for every tenth of the run. */
 DEM_API int dem_progress_print(const dem_world *world, double done, double seconds_left,
                                void *user);
 
@@ -1646,6 +1647,11 @@ DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void
                                   size_t size, dem_mesh *mesh,
                                   dem_mesh_health *health);
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh);
+/* Scales a mesh about its origin (1e-3: from mm to m), turns it, and moves it by `to` (m): before
+   it is added. A scale that is not finite and > 0, or a rotation or place that is not finite, is an
+   error, and the mesh stays as it was. A rotation of zeros: none. */
+DEM_API dem_result dem_mesh_place(dem_world *world, dem_mesh *mesh, dem_real scale,
+                                  dem_quat rotation, dem_vec3 to);
 /* Reads segments from [MIL]'s text format in 2-D: counts; x y per vertex; two corners counted from
    1. */
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile);
@@ -2628,6 +2634,8 @@ struct dem_world {
     int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
     /* >>respond */
     void (*kernel)(dem_world *w, int domain);
+    /* >>step */
+    int tenths_told;               /* of this run, where progress is written into a file */
 };
 /* m: how far beyond their radii pairs, and bodies and walls, are looked for. */
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
@@ -14687,6 +14695,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
                          ">= 0", seconds);
     if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
+    w->tenths_told = 0;
     end = start + seconds;
     if (w->clock.run_steps == w->clock.steps &&
         fabs(w->clock.run_end - start) <= (double)w->clock.dt)
@@ -14719,12 +14728,28 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
     return DEM_OK;
 }
 
+/* Is this a terminal? C has no word for that: asked as readlink is (>>write). Elsewhere: yes. */
+#if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
+    !defined(__CYGWIN__)
+int demi_isatty(int file) __asm__("isatty");
+int demi_fileno(FILE *file) __asm__("fileno");
+#elif defined(__APPLE__) && defined(__GNUC__)
+int demi_isatty(int file) __asm__("_isatty");
+int demi_fileno(FILE *file) __asm__("_fileno");
+#else
+static int demi_isatty(int file) { (void)file; return 1; }
+static int demi_fileno(FILE *file) { (void)file; return 0; }
+#endif
 DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
     if (demi_null(w, "dem_progress_print", user, "user")) return 0;
-    fprintf((FILE *)user, "\r%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", 100*done,
-            w->clock.time, w->bodies.count,
-            seconds_left, done >= 1 ? "\n" : "");
-    fflush((FILE *)user);
+    FILE *out = (FILE *)user;
+    const int line = !demi_isatty(demi_fileno(out)), tenths = (int)(10*done + 1e-9);
+    if (line && tenths <= w->tenths_told) return 0;
+    ((dem_world *)w)->tenths_told = tenths;
+    fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", line ? "" : "\r",
+            100*done, w->clock.time, w->bodies.count, seconds_left,
+            line || done >= 1 ? "\n" : "");
+    fflush(out);
     return 0;
 }
 
@@ -15727,6 +15752,21 @@ DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *m
 
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
     if (world && mesh) demi_mesh_free(world, mesh);
+}
+
+DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, dem_quat rotation,
+                                  dem_vec3 to) {
+    if (demi_null(w, "dem_mesh_place", mesh, "mesh")) return DEM_ERROR_ARGUMENT;
+    const dem_quat q = demi_quat_most(rotation) > 0 ? demi_quat_unit(rotation)
+        : dem_quat_make(1, 0, 0, 0);
+    int i;
+    if (!(scale > 0) || !demi_finite(scale) || !demi_quat_finite(rotation) || !demi_place(to))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_mesh_place: scale is %g, must be finite and > "
+                         "0; rotation and place must be finite, within 1e15 m", (double)scale);
+    for (i = 0; i < mesh->vertex_count; i++)
+        demi_put(mesh->vertices + 3*i, demi_add(to,
+                 dem_quat_rotate(q, demi_scale(demi_at(mesh->vertices + 3*i), scale))));
+    return DEM_OK;
 }
 
 /* What was read as a mesh of width 2, as a profile. */

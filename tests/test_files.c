@@ -199,6 +199,38 @@ static void meshes(void) {
         CHECK_STR(health.hint, "multiply its vertices by 1000");
         dem_mesh_free(world, &mesh);
     }
+    TEST("a mesh in millimetres is scaled, turned and placed in one call; what is not finite or no scale is refused, and it stays") {
+        const dem_quat quarter = dem_quat_make((dem_real)sqrt(0.5), 0, 0, (dem_real)sqrt(0.5)), none = dem_quat_make(0, 0, 0, 0);
+        CHECK_EQ(parse(world, "3 1\n0 0 0\n300 0 0\n0 120 0\n1 2 3\n", &mesh, &health), DEM_OK);
+        CHECK_EQ(dem_mesh_place(world, &mesh, DEM_R(1e-3), quarter, at(1, 2, 3)), DEM_OK);       /* x to y, y to -x */
+        CHECK_NEAR(mesh.vertices[0], 1, 0);
+        CHECK_NEAR(mesh.vertices[3], 1, 1e-6);
+        CHECK_NEAR(mesh.vertices[4], 2.3, 1e-6);
+        CHECK_NEAR(mesh.vertices[6], 0.88, 1e-6);
+        CHECK_NEAR(mesh.vertices[8], 3, 1e-6);
+        CHECK_EQ(dem_mesh_place(world, &mesh, 1, none, at(0, 0, 0)), DEM_OK);
+        CHECK_NEAR(mesh.vertices[4], 2.3, 1e-6);
+        CHECK_EQ(dem_mesh_place(world, &mesh, 0, quarter, at(0, 0, 0)), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "dem_mesh_place: scale is 0, must be finite and > 0");
+        CHECK_EQ(dem_mesh_place(world, &mesh, 1, quarter, at(0, sqrt(-1.0), 0)), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_mesh_place(world, 0, 1, quarter, at(0, 0, 0)), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_mesh_place(0, &mesh, 1, quarter, at(0, 0, 0)), DEM_ERROR_ARGUMENT);
+        CHECK_NEAR(mesh.vertices[4], 2.3, 1e-6);
+        dem_mesh_free(world, &mesh);
+    }
+    TEST("progress written into a file is a line for every tenth of each run, without line feeds of a terminal") {
+        char line[200];
+        int lines = 0, returns = 0;
+        FILE *file = fopen("build/tmp/progress.txt", "w+");
+        const double done[12] = {0, 0.05, 0.1, 0.11, 0.19, 0.3, 0.55, 0.56, 0.999, 1, 1, 1};
+        int k;
+        for (k = 0; k < 12; k++) dem_progress_print(world, done[k], 1, file);
+        rewind(file);
+        while (fgets(line, sizeof line, file)) { lines++; returns += strchr(line, '\r') != 0; }
+        fclose(file);
+        CHECK_EQ(lines, 5);                      /* at 0.1, 0.3, 0.55, 0.999 and 1 */
+        CHECK_EQ(returns, 0);
+    }
     TEST("a decimal comma in the locale changes neither reading nor writing") {
         const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "German_Germany.1252"};
         for (int i = 0; i < 5 && !setlocale(LC_NUMERIC, names[i]); i++) {}
