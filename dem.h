@@ -1686,12 +1686,10 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
    speed, size, material or a number of your own; walls as they move; drag to turn it; plots beside
    it, and the report.
 
-       dem_replay *film = dem_replay_open(world, "pile.html", 0);
-       for (k = 1; k <= 100; k++) {
-           dem_world_run(world, 0.01, 0, 0);
-           dem_replay_value(film, "kinetic energy (J)", dem_totals_get(world).kinetic);
-           dem_replay_frame(film);
-       }
+       dem_replay_desc desc = DEM_REPLAY_DESC;
+       desc.interval = 0.01;                           // s, from frame to frame
+       dem_replay *film = dem_replay_open(world, "pile.html", &desc);
+       dem_world_run(world, 1, 0, 0);
        dem_replay_close(film);
 
    A grain takes some 6 bytes a frame, at most 29 with orientation and a number; one at rest 1.3.
@@ -1708,8 +1706,11 @@ typedef struct dem_replay_desc {
     void *user;
     dem_real resolution;        /* m, to which places are told, >= 0; 0: 1/32 of the smallest radius
                                    in the first frame */
+    /* s, >= 0: the film takes its frames by itself, at the steps of the run nearest to its begin, a
+       multiple of this later, and so on; 0: only when dem_replay_frame is called */
+    double interval;
 } dem_replay_desc;
-static const dem_replay_desc DEM_REPLAY_DESC_ZERO = {0, 0, 0, 0, 0};
+static const dem_replay_desc DEM_REPLAY_DESC_ZERO = {0, 0, 0, 0, 0, 0};
 #define DEM_REPLAY_DESC DEM_REPLAY_DESC_ZERO
 /* desc: null for DEM_REPLAY_DESC. Null, with a sentence, on bad values or a path that cannot be
    written to. Close it before its world is destroyed. */
@@ -2636,6 +2637,9 @@ struct dem_world {
     void (*kernel)(dem_world *w, int domain);
     /* >>step */
     int tenths_told;               /* of this run, where progress is written into a file */
+    /* >>replay */
+    dem_replay *films;             /* open ones, which take their frames by themselves */
+    void (*films_look)(dem_world *w);           /* null: there are none */
 };
 /* m: how far beyond their radii pairs, and bodies and walls, are looked for. */
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
@@ -14658,6 +14662,7 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     if (steps < 0)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
     if (steps && demi_unbuilt(w, "dem_world_step") != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (steps && w->films_look) w->films_look(w);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         int sampling = 0;
         if (!w->stage.moved) {
@@ -14678,6 +14683,7 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
         for (f = 0; f < w->field_count; f++)
             sampling |= w->fields[f].used && w->clock.time >= w->fields[f].next;
         if (sampling && whole) { demi_finish(w); demi_fields_sample(w); }
+        if (w->films_look && whole) w->films_look(w);
     }
     /* half a step: its velocities stay as predicted */
     if (!whole && w->stage.moved) return result;
@@ -21302,6 +21308,9 @@ struct dem_replay {
     char names[DEM_REPLAY_VALUES][64];
     double values[DEM_REPLAY_VALUES];
     int given[DEM_REPLAY_VALUES];    /* 1: since the last frame */
+    double begun;                    /* s, when the first frame was due that it takes by itself */
+    double due;                      /* intervals from there to the next one; below 0: none yet */
+    dem_replay *next;                /* of the world's films */
 };
 
 /* --- bytes --- */
@@ -21624,8 +21633,24 @@ DEM_API dem_result dem_replay_frame(dem_replay *r) {
 
 /* --- begin, plots, end --- */
 
+/* Frames that are due. One that fails ends its film, not the run: dem_replay_close says so. */
+static void demi_films_look(dem_world *w) {
+    dem_replay *r;
+    for (r = w->films; r; r = r->next) {
+        if (r->due < 0) { r->due = 0; r->begun = w->clock.time; }
+        if (r->failed || w->clock.time < r->begun + r->due*r->desc.interval -
+            (double)w->clock.dt/2) continue;
+        r->due = floor((w->clock.time + (double)w->clock.dt/2 - r->begun)/r->desc.interval) + 1;
+        dem_replay_frame(r);
+    }
+}
+
 static void demi_film_free(dem_replay *r) {
     dem_world *w = r->world;
+    dem_replay **at = &w->films;
+    while (*at && *at != r) at = &(*at)->next;
+    if (*at) *at = r->next;
+    if (!w->films) w->films_look = 0;
     demi_free(w, r->seen);
     demi_free(w, r->pose);
     demi_free(w, r->wall_told);
@@ -21633,7 +21658,7 @@ static void demi_film_free(dem_replay *r) {
     demi_free(w, r);
 }
 DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_replay_desc *desc) {
-    static const dem_replay_desc zero = {0, 0, 0, 0, 0};
+    static const dem_replay_desc zero = {0, 0, 0, 0, 0, 0};
     const dem_replay_desc d = desc ? *desc : zero;
     dem_replay *r;
     size_t k;
@@ -21642,6 +21667,11 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     if (!(d.resolution >= 0) || !demi_finite(d.resolution)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: resolution is %g m, must be >= 0; 0 is "
                   "a 32nd of the smallest radius", (double)d.resolution);
+        return 0;
+    }
+    if (!(d.interval >= 0) || !demi_finite_double(d.interval)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: interval is %g s, must be >= 0; 0: "
+                  "frames when dem_replay_frame is called", d.interval);
         return 0;
     }
     for (i = 0; d.number && !d.number_fn && i < w->bodies.real_count; i++) {
@@ -21662,6 +21692,12 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     if (d.number_fn && !d.number) r->desc.number = "number";
     if (demi_out_open(&r->out, w, "dem_replay_open", path) != DEM_OK) { demi_free(w, r); return 0; }
     for (k = 0; k < sizeof demi_viewer/sizeof *demi_viewer; k++) fputs(demi_viewer[k], r->out.file);
+    r->due = -1;
+    if (d.interval > 0) {
+        r->next = w->films;
+        w->films = r;
+        w->films_look = demi_films_look;
+    }
     return r;
 }
 DEM_API dem_result dem_replay_value(dem_replay *r, const char *name, double value) {

@@ -3,8 +3,9 @@
    Build:     cc -O2 01_bounce.c ../dem.c -lm
    Expected:  heights .32 .2048 .1311 .0839 .0537 m for e = .8, each within 2 % */
 #include "../dem.h"
+#include <string.h>
 
-int main(void) {
+int main(int argc, char **argv) {
     const double restitution = 0.8, height = 0.5, radius = 0.01;    /* -, m, m */
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.gravity.z = -9.81;                                         /* m/s2 */
@@ -18,6 +19,9 @@ int main(void) {
     dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
     dem_body ball = dem_sphere_add(world, glass, radius, dem_vec3_make(0, 0, radius + height));
 
+    dem_replay_desc film_desc = DEM_REPLAY_DESC;
+    film_desc.interval = 0.01;                                  /* s */
+    dem_replay *film = argc > 1 && !strcmp(argv[1], "--replay") ? dem_replay_open(world, "01_bounce.html", &film_desc) : 0;
     dem_body_state state;
     double expected = height, last_speed = 0;
     int bounces = 0, wrong = 0;
@@ -34,6 +38,7 @@ int main(void) {
         }
         last_speed = state.velocity.z;
     }
+    dem_replay_close(film);                                         /* without --replay there is none */
     dem_world_destroy(world);
     return wrong > 0 || bounces < 5;
 }

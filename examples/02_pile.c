@@ -12,8 +12,9 @@
    Expected:  while the tube is drawn up the floor carries about a third of the weight, floor and tube together
               all of it within 2 %; without the tube the floor alone, within 1 %; pile.vtp opens in ParaView */
 #include "../dem.h"
+#include <string.h>
 
-int main(void) {
+int main(int argc, char **argv) {
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.gravity.z = -9.81;                                         /* m/s2 */
     dem_world *world = dem_world_create(&desc);
@@ -38,6 +39,9 @@ int main(void) {
     double weight = 9.81*dem_totals_get(world).mass;                /* N */
     printf("%d beads, %.4f N\n", count, weight);
 
+    dem_replay_desc film_desc = DEM_REPLAY_DESC;
+    film_desc.interval = 0.01;                                  /* s */
+    dem_replay *film = argc > 1 && !strcmp(argv[1], "--replay") ? dem_replay_open(world, "02_pile.html", &film_desc) : 0;
     dem_check_print(world, stdout);
     printf("time [s]  kinetic energy [J]  centre of mass [mm]  floor/weight  tube/weight\n");
     double on_floor = 0, on_tube = 0;                               /* shares of the weight */
@@ -72,6 +76,7 @@ int main(void) {
 
     dem_balance balance = dem_balance_get(world);
     wrong += !(on_floor > 0.99 && on_floor < 1.01) || balance.present != (uint64_t)count;
+    dem_replay_close(film);                                         /* without --replay there is none */
     dem_world_destroy(world);
     return wrong;
 }

@@ -9,13 +9,14 @@
    Expected:  v, R w, the belt's work and the heat within 1 %; nothing missing from the ledger */
 #include "../dem.h"
 #include <math.h>
+#include <string.h>
 
 static int row(const char *name, double value, double expected) {   /* 1: off by more than 1 % */
     printf("%-22s %12.6g  %12.6g\n", name, value, expected);
     return !(fabs(value - expected) < 0.01*fabs(expected));
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     const double belt_speed = 1, mu = 0.3, g = 9.81, radius = 0.01; /* m/s, -, m/s2, m */
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.gravity.z = -g;
@@ -37,6 +38,9 @@ int main(void) {
     dem_wall_motion(world, belt, &motion);
     dem_body ball = dem_sphere_add(world, rubber, radius, dem_vec3_make(0, 0, radius));
 
+    dem_replay_desc film_desc = DEM_REPLAY_DESC;
+    film_desc.interval = 0.002;                                 /* s */
+    dem_replay *film = argc > 1 && !strcmp(argv[1], "--replay") ? dem_replay_open(world, "05_moving_wall.html", &film_desc) : 0;
     /* on the way: speed mu g t, up to 2/7 V */
     dem_body_state state;
     dem_check_print(world, stdout);
@@ -60,6 +64,7 @@ int main(void) {
     wrong += row("heat of sliding [J]", ledger.slide + ledger.tangent, mv2/7);
     printf("%-22s %12.6g\n", "unaccounted [J]", ledger.residual);
     wrong += !(fabs(ledger.residual) < 1e-3*ledger.throughput);
+    dem_replay_close(film);                                         /* without --replay there is none */
     dem_world_destroy(world);
     return wrong > 0;
 }

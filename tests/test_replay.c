@@ -373,6 +373,48 @@ int main(int argc, char **argv) {
         CHECK(!in);
         dem_world_destroy(w);
     }
+    TEST("a film with an interval takes its frames by itself: at its begin, each interval later to half a step, however the run is "
+         "divided; two films of one world, and no bit of the run is changed") {
+        dem_material stuff;
+        dem_world *w = scene(&stuff), *bare = scene(&stuff);
+        dem_replay_desc desc = DEM_REPLAY_DESC;
+        dem_replay *film[2];
+        double dt;
+        int k;
+        dem_sphere_add(w, stuff, DEM_R(0.001), at(0, 0, 0.01));
+        dem_sphere_add(bare, stuff, DEM_R(0.001), at(0, 0, 0.01));
+        CHECK_EQ(dem_world_step(w, 7), DEM_OK);
+        CHECK_EQ(dem_world_step(bare, 7), DEM_OK);
+        desc.interval = -1;
+        CHECK(!dem_replay_open(w, film_path, &desc));
+        CHECK_STR(dem_world_error(w), "dem_replay_open: interval is -1 s, must be >= 0");
+        desc.interval = 0.01;
+        film[0] = dem_replay_open(w, film_path, &desc);
+        desc.interval = 0.025;
+        film[1] = dem_replay_open(w, "build/tmp/film2.html", &desc);
+        dt = dem_world_time(w);
+        for (k = 0; k < 2; k++) CHECK_EQ(dem_world_run(w, 0.03, 0, 0), DEM_OK);
+        CHECK_EQ(dem_world_step(w, (int)(0.041/(double)dem_counters_get(w).dt)), DEM_OK);
+        CHECK_EQ(dem_world_step(bare, (int)(dem_world_steps(w) - 7)), DEM_OK);
+        CHECK_EQ(dem_replay_close(film[0]), DEM_OK);
+        CHECK_EQ(dem_world_step(w, 10), DEM_OK);
+        CHECK_EQ(dem_replay_close(film[1]), DEM_OK);
+        CHECK_EQ(dem_world_step(w, 10), DEM_OK);
+        CHECK_EQ(dem_world_step(bare, 20), DEM_OK);
+        CHECK(dem_world_hash(w) == dem_world_hash(bare));
+        film_read(&f, film_path);
+        CHECK_EQ(film_blocks(&f, "dem/frame"), 11);
+        for (k = 0; k < 11; k++) {
+            CHECK_EQ(film_next(&f), 1);
+            CHECK_NEAR(f.time, dt + 0.01*k, 0.5001*(double)dem_counters_get(w).dt);
+        }
+        free(f.text);
+        film_read(&f, "build/tmp/film2.html");
+        CHECK_EQ(film_blocks(&f, "dem/frame"), 5);
+        free(f.text);
+        dem_world_destroy(w);
+        dem_world_destroy(bare);
+    }
     TEST("memory that runs out is told, at whatever request, and loses nothing but the film") {
         dem_material stuff;
         dem_world *w = scene(&stuff);
