@@ -111,8 +111,9 @@
    Velocities that a law sees are those of the full step, v(t) and not v(t - dt/2), for every
    integrator: half-step velocities give unphysical static friction at size ratios above 3 [VYA25].
 
-   What dem.h does not do: fluids, breakage, bonds, heat; implicit integration; graphics. Some of it
-   is a law of your own: examples/laws has liquid bridges and grains that stick.
+   What dem.h does not do: fluids, grains that break, implicit integration. What is a law of your
+   own it does: examples/laws has liquid bridges, bonds that break, heat, charge. What it draws is a
+   film for a browser (dem_replay_open); all else is files for other programs.
 
    Options are fields of `dem_world_desc`; zero there means absent, or "chosen for you". What was
    chosen is told by dem_world_report. By what one wants to say:
@@ -191,12 +192,13 @@
 
    Threads. Different worlds may be used from different threads. Several threads may look at one
    world at once, by functions that take it as const, while none changes it. Of those only these
-   write: one that fails (its sentence), dem_world_error (that it was read), and dem_bodies_get in a
-   periodic world (the places, wrapped into the box). Within a world, `threads` of the desc sets the
-   OpenMP threads; the same input gives the same bits for any number of them: bodies
-   are dealt to domains that depend on the number of bodies only, and every sum runs in a fixed
-   order. To compare bits between builds, compile with -ffp-contract=off. Slabs (dem_slabs_create)
-   deal a scene to processes, over MPI or what you have: docs/parallel.md.
+   write: one that fails (its sentence), dem_world_error (that it was read), dem_progress_print
+   (how far it has told), and dem_bodies_get in a periodic world (the places, wrapped into the box).
+   Within a world, `threads` of the desc sets the OpenMP threads; the same input gives the same bits
+   for any number of them: bodies are dealt to domains that depend on the number of bodies only, and
+   every sum runs in a fixed order. To compare bits between builds, and with other systems and
+   processors, compile with -ffp-contract=off. Slabs (dem_slabs_create) deal a scene to processes,
+   over MPI or what you have: docs/parallel.md.
 
    Extending. A contact law is a function and a row (>>add-law), so are a wall (>>add-wall), a shape
    (>>add-shape), an integrator (>>add-integrator), a search (>>add-search) and a mesh format
