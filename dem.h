@@ -1700,9 +1700,9 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
 typedef struct dem_replay dem_replay;
 enum { DEM_REPLAY_VALUES = 16 };
 typedef struct dem_replay_desc {
-    const char *title;          /* null: the file's name */
+    const char *title;          /* copied; null: the file's name */
     /* what grains may be coloured by: one of desc.body_reals (null: its first), or the name of what
-       number_fn answers; text that outlives the film */
+       number_fn answers; copied, at most 63 letters of it */
     const char *number;
     double (*number_fn)(const dem_world *world, dem_body body, void *user);     /* or null */
     void *user;
@@ -21299,6 +21299,7 @@ struct dem_replay {
     dem_world *world;
     demi_out out;
     dem_replay_desc desc;
+    char title[200], number[64];     /* the desc's; number: empty where there is none */
     int real;                        /* which number of desc.body_reals is shown, or -1 */
     double resolution;               /* m; 0: no frame yet */
     demi_seen *seen;                 /* x seen_count: slots */
@@ -21388,23 +21389,16 @@ static void demi_film_head(dem_replay *r) {
     const dem_world_desc d = dem_world_desc_get(r->world);
     const demi_periods p = demi_periods_of(r->world);
     const dem_real gravity[3] = {d.gravity.x, d.gravity.y, d.gravity.z};
-    const char *number = r->desc.number, *slash = strrchr(r->out.path, '/');
     FILE *out = r->out.file;
-    char text[32], own[32];
-    int n = 0;
-    if (r->real >= 0) {
-        number = demi_name(d.body_reals, r->real, &n);
-        sprintf(own, "%.*s", DEMI_MIN(n, 31), number);
-        number = own;
-    }
+    char text[32];
     fprintf(out, "<script type=\"dem/head\">{\"version\":1,\"title\":");
-    demi_film_text(out, r->desc.title ? r->desc.title : slash ? slash + 1 : r->out.path);
+    demi_film_text(out, r->title);
     fprintf(out, ",\"planar\":%d,\"resolution\":%s", d.planar,
             demi_format_real(text, r->resolution, 9));
     demi_film_reals(out, "gravity", gravity, 1, 3, 3);
     demi_film_reals(out, "period", p.period, 1, 3, 3);
     fputs(",\"number\":", out);
-    if (number && (r->real >= 0 || r->desc.number_fn)) demi_film_text(out, number);
+    if (*r->number) demi_film_text(out, r->number);
     else fputs("null", out);
     fputs(",\"values\":[]}</script>\n", out);
 }
@@ -21662,6 +21656,7 @@ static void demi_film_free(dem_replay *r) {
 DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_replay_desc *desc) {
     static const dem_replay_desc zero = {0, 0, 0, 0, 0, 0};
     const dem_replay_desc d = desc ? *desc : zero;
+    const char *slash;
     dem_replay *r;
     size_t k;
     int i, n, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
@@ -21691,8 +21686,15 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     r->world = w;
     r->desc = d;
     r->real = real;
-    if (d.number_fn && !d.number) r->desc.number = "number";
     if (demi_out_open(&r->out, w, "dem_replay_open", path) != DEM_OK) { demi_free(w, r); return 0; }
+    r->out.path = r->out.place;                 /* a copy: the caller's may go */
+    slash = strrchr(path, '/');
+    snprintf(r->title, sizeof r->title, "%s", d.title ? d.title : slash ? slash + 1 : path);
+    if (real >= 0) {
+        const char *name = demi_name(w->desc.body_reals, real, &n);
+        snprintf(r->number, sizeof r->number, "%.*s", n, name);
+    } else if (d.number_fn)
+        snprintf(r->number, sizeof r->number, "%s", d.number ? d.number : "number");
     for (k = 0; k < sizeof demi_viewer/sizeof *demi_viewer; k++) fputs(demi_viewer[k], r->out.file);
     r->due = -1;
     if (d.interval > 0) {
