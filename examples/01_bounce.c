@@ -1,6 +1,6 @@
 /* 01_bounce.c - a glass ball falls half a metre and bounces; every rebound reaches e^2 of the last height.
 
-   Build:     cc -O2 01_bounce.c ../dem.c -lm
+   Build:     cc -O2 01_bounce.c ../dem.c -lm; run with --replay: a film, 01_bounce.html
    Expected:  heights .32 .2048 .1311 .0839 .0537 m for e = .8, each within 2 % */
 #include "../dem.h"
 #include <string.h>

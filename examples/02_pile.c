@@ -8,7 +8,7 @@
    points up, and Janssen's law holds: the floor carries (1 - exp(-s))/s of the weight, s = 4 mu K H/D for
    a column of height H in a tube of diameter D; K, about .4, is how hard beads push sideways.
 
-   Build:     cc -O2 02_pile.c ../dem.c -lm
+   Build:     cc -O2 02_pile.c ../dem.c -lm; run with --replay: a film, 02_pile.html
    Expected:  while the tube is drawn up the floor carries about a third of the weight, floor and tube together
               all of it within 2 %; without the tube the floor alone, within 1 %; pile.vtp opens in ParaView */
 #include "../dem.h"

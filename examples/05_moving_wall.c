@@ -5,7 +5,7 @@
        v = 2/7 V,  R w = 5/7 V  at  t = 2 V/(7 mu g)
    The belt has then done the work 2/7 m V^2: half of it is in the ball, the other half became heat.
 
-   Build:     cc -O2 05_moving_wall.c ../dem.c -lm
+   Build:     cc -O2 05_moving_wall.c ../dem.c -lm; run with --replay: a film, 05_moving_wall.html
    Expected:  v, R w, the belt's work and the heat within 1 %; nothing missing from the ledger */
 #include "../dem.h"
 #include <math.h>
