@@ -610,7 +610,7 @@ static inline int exam_is_mixed(const exam *e, char *found) {
             exam_go_on(&p, then, 0, 0, 0, 0, 200, speed);
             exam_go_on(&p, then, -u, 0, 0, 0, 200, speed);
             exam_go_on(&p, first, 0, 0, 0, 0, 200, speed);
-            in = fmax(in, fabs(stretched));
+            in = fmax(in, fabs(stretched) + 1e-6*p.largest*u);   /* a law that knows no shear: not round-off alone */
             worst = fmax(worst, exam_gain(&p, before, in));
         }
     }

@@ -1,4 +1,4 @@
-/* 12_rock.c - a rock that breaks.
+/* rock.c - a rock that breaks.
 
    Grains are packed into a block, one in seven places left empty, and glued where they are near each other: bonds that stretch,
    shear, bend and twist, and break for good when they bear more than their strength (examples/laws/bond.h, where the source
@@ -7,7 +7,7 @@
 
    Before you run it: bonds twice as strong make how strong a rock? And when every second bond is missing?
 
-   Build:     cc -O2 12_rock.c ../dem.c -lm
+   Build:     cc -O2 rock.c ../dem.c -lm
    Expected:  twice the bonds' strength gives 1.7 to 2.1 times the rock's; half of the bonds 0.5 to 0.7 of it. Most bonds hold
               when it breaks: cracks run aslant through what is missing. rock.vtp (grains) and bonds.vtp (lines: colour by
               `length`, below 0 are the broken ones) open in ParaView. Some 10 s on one core

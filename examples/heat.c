@@ -1,4 +1,4 @@
-/* 11_heat.c - heat through a bed of steel balls.
+/* heat.c - heat through a bed of steel balls.
 
    The floor is kept at 400 K, the uppermost balls at 300 K. Heat passes where balls touch, 2 k a dT through a disc of radius
    a = sqrt(R* d), d being how deep Hertz's contact is pressed: a law of its own, in examples/laws/heat.h, where its source
@@ -11,7 +11,7 @@
    Before you run it: eight times the weight presses every contact with eight times the force. How much more heat flows?
    (d goes with F^(2/3).) And with balls ten times as stiff?
 
-   Build:     cc -O2 11_heat.c ../dem.c -lm
+   Build:     cc -O2 heat.c ../dem.c -lm
    Expected:  8 g: 2.0 to 2.6 times the heat: twice for the discs, the rest for balls that touch now and did not before;
               10 E: 0.40 to 0.50, 10^(-1/3) = 0.46. The floor gives what the top takes, to 1 %. heat.vtp opens in ParaView:
               colour by temperature. Some 10 s on one core

@@ -1,4 +1,4 @@
-/* 10_wet_sand.c - how much water does a sand castle need?
+/* wet_sand.c - how much water does a sand castle need?
 
    Sand is filled into a mould, a little water into the sand, and the mould is taken off. Between any two grains that have
    touched hangs a bridge that pulls them together, 2 pi R g cos t at touch, until they are (1 + t/2) V^(1/3) apart: a law
@@ -7,7 +7,7 @@
    Before you run it: at touch a bridge pulls as strongly with little water as with much. Does a castle stand better with a
    hundred times as much in every bridge? Does one of gravel? (A bridge pulls with R, a grain weighs with R^3.)
 
-   Build:     cc -O2 10_wet_sand.c ../dem.c -lm
+   Build:     cc -O2 wet_sand.c ../dem.c -lm
    Expected:  dry sand, and gravel with the most water, keep below 0.3 of their height; the more water in sand, the more,
               with a hundredth of R^3 above 0.7: a bridge that reaches farther takes more work to tear. wet.vtp opens in
               ParaView. Some 17 s on one core
