@@ -25,7 +25,9 @@ TESTS    := $(patsubst tests/%.c,build/%,$(wildcard tests/test_*.c)) $(HARD)
 ALONE    := $(addprefix build/,test_api test_feed test_own_law)
 TOGETHER := $(filter-out $(ALONE),$(TESTS))
 LESSONS  := $(patsubst examples/%.c,build/%,$(wildcard examples/[0-9][0-9]_*.c))
-STUDIES  := $(filter-out $(LESSONS),$(patsubst examples/%.c,build/%,$(wildcard examples/*.c)))
+# what laws that come along and files can do: they run without options, and check themselves
+SHOWS    := $(addprefix build/,wet_sand heat rock hopper)
+STUDIES  := $(filter-out $(LESSONS) $(SHOWS),$(patsubst examples/%.c,build/%,$(wildcard examples/*.c)))
 FUZZERS  := $(patsubst tests/%.c,build/%,$(wildcard tests/fuzz_*.c))
 BENCHES  := $(patsubst bench/%.c,build/%,$(wildcard bench/*.c))
 BENCH_ALSO := $(if $(wildcard bench/bench.c),build/bench_single build/bench_O2)
@@ -52,7 +54,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install test hard law examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags parts recipes snippets clean
+.PHONY: help all run new install test hard law lessons examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags parts recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -83,9 +85,13 @@ law: $(if $(LAW),build/dem.o,build/exam) ## the exam of a contact law, LAW=path/
 	@if [ -n "$(LAW)" ]; then $(COMPILE) -DLAW_FILE='"$(abspath $(LAW))"' examples/exam.c build/dem.o -o build/law $(LINK) && build/law; \
 	    else build/exam; fi
 
-examples: $(LESSONS) snippets ## build and run the numbered examples, compile the snippets of the manual
-	@failed=; for e in $(LESSONS); do n=$$(basename $$e); echo "== $$n"; mkdir -p build/out/$$n; \
+lessons: $(LESSONS) ## the twelve lessons: build, run, film into build/out/NAME, mark right and wrong answers to their exercises
+	@JOBS=$(JOBS) sh tests/lessons.sh $(LESSONS)
+
+examples: lessons $(SHOWS) snippets ## the lessons, the other examples that check themselves, the snippets of the manual
+	@failed=; for e in $(SHOWS); do n=$$(basename $$e); echo "== $$n"; mkdir -p build/out/$$n; cp examples/data/hopper.stl build/out/$$n; \
 	    (cd build/out/$$n && ../../$$n) || failed="$$failed $$n"; done; \
+	(cd build/out/hopper && cp hopper.csv whole.csv && ../../hopper --resume > resumed.txt && cmp hopper.csv whole.csv) || failed="$$failed resumed"; \
 	if test -n "$$failed"; then echo "examples failed:$$failed"; exit 1; fi; echo "all examples as expected"
 
 studies: $(STUDIES) ## build the studies into build/: each takes --help
@@ -105,7 +111,7 @@ mpi: build/dem.o ## build examples/mpi and run them on 1, 2 and 3 processes, whe
 	        grep '^hash' build/mill_mpi.$$n; done; cmp build/out/mill_mpi_1/grains.svg build/out/mill_mpi_2/grains.svg; \
 	    test "$$(grep '^hash' build/mill_mpi.1)" = "$$(grep '^hash' build/mill_mpi.2)"; fi
 
-all: $(STUDIES) $(LESSONS) build/tests $(ALONE) $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) ## build everything, run nothing
+all: $(STUDIES) $(LESSONS) $(SHOWS) build/tests $(ALONE) $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) ## build everything, run nothing
 
 check: ## all compilers, standards, precisions, warnings, sanitizers; says what it had to skip
 	@JOBS=$(JOBS) sh tests/check.sh
@@ -180,7 +186,7 @@ SOURCES := $(patsubst build/%,tests/%.c,$(filter-out $(HARD),$(TOGETHER))) $(wil
 build/tests.c: tests/together.awk $(SOURCES)
 	awk -f tests/together.awk $(SOURCES) > $@
 build/tests: build/tests.c $(wildcard tests/*.h tests/hard/*.h) $(HEADERS)
-$(LESSONS) $(STUDIES): build/%: examples/%.c $(HEADERS)
+$(LESSONS) $(SHOWS) $(STUDIES): build/%: examples/%.c $(HEADERS)
 $(BENCHES): build/%: bench/%.c $(HEADERS) $(wildcard bench/*.h)
 build/parallel: examples/mill.c
 build/write_files: tests/write_files.c
@@ -191,7 +197,7 @@ build/tests $(TESTS) $(BENCHES): dem.h build/flags
 	$(COMPILE) $(LEVEL) -o $@ $(filter %/$(@F).c,$^) $(LINK)
 build/dem.o: dem.c dem.h build/flags
 	$(COMPILE) $(OMP) -c -o $@ dem.c
-$(LESSONS) $(STUDIES) build/write_files build/write_film: build/dem.o
+$(LESSONS) $(SHOWS) $(STUDIES) build/write_files build/write_film: build/dem.o
 	$(COMPILE) -o $@ $(filter %/$(@F).c,$^) build/dem.o $(LINK)
 # benches say how they were built; bench.c also in single precision, and as plain as can be
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'

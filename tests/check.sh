@@ -15,6 +15,7 @@ try() {
     printf '# %s\nbin=%s/%s.bin\n%s\n' "$name" $dir $number "$*" > $dir/$number.sh
 }
 
+try "a lesson has less than 120 lines, of at most 120 columns" "awk 'length > 120 || FNR > 119 { print FILENAME \": \" FNR; bad = 1 } END { exit bad }' examples/[0-9][0-9]_*.c"
 try "parts of dem.h in order" "awk -f tests/tags.awk dem.h"
 try "dem.h calls no function of libm that libraries round in their own way" "awk -f tests/libm.awk dem.h"
 try "the viewer in dem.h is examples/replay/viewer.html" "awk -f tests/viewer.awk examples/replay/viewer.html dem.h | cmp - dem.h"
@@ -24,7 +25,7 @@ try "the viewer in dem.h is examples/replay/viewer.html" "awk -f tests/viewer.aw
 user=tests/two_files.c
 companions=$dir/companions.c
 printf '#include "dem.h"\n' > $companions
-printf '#include "examples/%s.h"\n' drum moldyn sorting tumbler >> $companions
+printf '#include "examples/%s.h"\n' drum lesson moldyn sorting tumbler >> $companions
 printf '#include "%s"\n' examples/laws/*.h >> $companions
 try "companions use public names only" "! grep -n 'demi_\|DEMI_' examples/drum.h examples/moldyn.h examples/sorting.h examples/tumbler.h examples/laws/*.h"
 one_file="-DDEM_IMPLEMENTATION $user"
@@ -66,6 +67,9 @@ for cc in gcc clang tcc; do
     for source in bench/*.c; do
         try "$cc: strict, $source"                  "$cc -std=c99 -I. $strict $openmp -fsyntax-only $source"
     done
+    for source in examples/[0-9][0-9]_*.c; do
+        try "$cc: strict, $source"                  "$cc -std=c99 $strict -fsyntax-only $source"
+    done
     for level in -O0 -O1 -O2 -O3 "-O3 -ffast-math"; do
         try "$cc $level: run"                      "$cc -std=c99 -I. $level $one_file -o \$bin -lm && \$bin"
     done
@@ -79,6 +83,9 @@ for cxx in g++ clang++; do
         [ "$1" = short ] && continue
         for real in "" $float; do
             try "$cxx -std=$std${real:+ float}: strict"     "$cxx -std=$std -I. $real $strict -O1 -x c++ -c dem.c -o \$bin.o"
+        done
+        for source in examples/[0-9][0-9]_*.c; do
+            try "$cxx -std=$std: strict, $source"           "$cxx -std=$std $strict -fsyntax-only -x c++ $source"
         done
         try "$cxx -std=$std: strict, DEM_STATIC"   "$cxx -std=$std -I. $strict -DDEM_STATIC -x c++ -c dem.c -o \$bin.o"
         for real in "" $float; do

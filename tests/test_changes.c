@@ -666,5 +666,79 @@ int main(int argc, char **argv) {
         side = 13;
     }
     remove(saved);
+    TEST("a time step and a modulus that change in mid-run: grains held on a slope by friction stay held, their springs "
+         "remembered, and sink in less") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_material_desc d = scene_stuff(1e6, 0.3, 0.8, 0.8);
+        dem_world *world;
+        dem_material m, other;
+        dem_pair set, after;
+        dem_totals before, now;
+        dem_real dt;
+        int k;
+        world = dem_world_create(&desc);
+        dem_world_gravity_set(world, at(9.81*sin(0.3), 0, -9.81*cos(0.3)));
+        m = dem_material_add(world, &d);
+        other = dem_material_add(world, &d);
+        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        for (k = 0; k < 10; k++) dem_sphere_add(world, m, DEM_R(0.005), at(0.02*k, 0, 0.00499));
+        CHECK_EQ(dem_pair_get(world, m, other, &set), DEM_OK);
+        set.friction = set.friction_static = DEM_R(0.123);
+        CHECK_EQ(dem_pair_set(world, m, other, &set), DEM_OK);
+        CHECK_EQ(dem_world_run(world, 0.5, 0, 0), DEM_OK);
+        before = dem_totals_get(world);
+        dt = dem_counters_get(world).dt;
+        CHECK_EQ(dem_world_dt_set(world, -1), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "dt is -1 s");
+        CHECK_EQ(dem_world_dt_set(world, dt/3), DEM_OK);
+        CHECK_EQ(dem_world_run(world, 0.1, 0, 0), DEM_OK);
+        CHECK_NEAR(dem_counters_get(world).dt, dt/3, 1e-6*(double)dt);
+        CHECK_EQ(dem_world_dt_set(world, 100*dt), DEM_OK);
+        CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_TIME_STEP);
+        CHECK_EQ(dem_world_dt_set(world, 0), DEM_OK);
+        d.young *= 4;
+        CHECK_EQ(dem_material_set(world, m, &d), DEM_OK);
+        CHECK_EQ(dem_pair_get(world, m, other, &after), DEM_OK);
+        CHECK(!memcmp(&after, &set, sizeof set));            /* what was set stays */
+        CHECK_EQ(dem_pair_get(world, m, m, &after), DEM_OK);
+        CHECK_REL(after.young_eff, 4*(double)set.young_eff, 1e-6);
+        CHECK_EQ(dem_world_run(world, 0.5, 0, 0), DEM_OK);
+        CHECK((double)dem_counters_get(world).dt < 0.7*(double)dt);
+        now = dem_totals_get(world);
+        CHECK_NEAR(now.centre[0], before.centre[0], 2e-5);   /* a spring forgotten lets all of them roll or slide */
+        CHECK(now.centre[2] > before.centre[2]);             /* stiffer: they sink in less */
+        d.density *= 2;
+        CHECK_EQ(dem_material_set(world, m, &d), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "must stay 2500");
+        d.density /= 2;
+        d.restitution = 2;
+        CHECK_EQ(dem_material_set(world, m, &d), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "dem_material_set: restitution is 2");
+        CHECK_EQ(dem_material_get(world, m, &d), DEM_OK);
+        CHECK_REL(d.young, 4e6, 1e-6);
+        CHECK_REL(d.restitution, 0.3, 1e-6);
+        dem_world_destroy(world);
+    }
+    TEST("a time step that was set goes into a checkpoint, and a world of the same desc goes on with it, bit for bit") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world[2];
+        int k;
+        desc.gravity = at(0, 0, -9.81);
+        for (k = 0; k < 2; k++) {
+            dem_material m;
+            world[k] = dem_world_create(&desc);
+            m = scene_material(world[k], 1e6, 0.5, 0.3, 0);
+            dem_plane_add(world[k], m, at(0, 0, 0), at(0, 0, 1));
+            dem_spheres_fill(world[k], m, DEM_R(0.005), box_of(-0.02, -0.02, 0, 0.02, 0.02, 0.08), 30, 1);
+        }
+        CHECK_EQ(dem_world_run(world[0], 0.1, 0, 0), DEM_OK);
+        CHECK_EQ(dem_world_dt_set(world[0], dem_counters_get(world[0]).dt/2), DEM_OK);
+        CHECK_EQ(scene_step(world[0], 10), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(world[0], saved), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(world[1], saved), DEM_OK);
+        for (k = 0; k < 2; k++) CHECK_EQ(scene_step(world[k], 500), DEM_OK);
+        CHECK(dem_world_hash(world[0]) == dem_world_hash(world[1]));
+        for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
+    }
     return test_end();
 }

@@ -491,6 +491,7 @@ static dem_world *kept_world(int count) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_material stuff;
     dem_world *world;
+    dem_outlet_desc counting;
     dem_shape egg;
     int i;
     desc.integrator = DEM_POSITION_VERLET;
@@ -500,6 +501,9 @@ static dem_world *kept_world(int count) {
     world = dem_world_create(&desc);
     stuff = scene_material(world, 1e7, 0.5, 0.3, 0);
     egg = dem_shape_ellipsoid_add(world, at(1, 2, 3));
+    memset(&counting, 0, sizeof counting);
+    counting.keep = 1;
+    dem_outlet_add(world, &counting);
     for (i = 0; i < count; i++) {
         if (i%3) dem_body_add(world, stuff, egg, at(10*i, 0, 0), dem_quat_make(1, 0, 0, 0));
         else dem_sphere_add(world, stuff, 1, at(10*i, 0, 0));
@@ -518,8 +522,10 @@ static void kept_fill(dem_world *w, uint64_t seed) {
                 memcpy(demi_datum(w, a, i) + e*sizeof x, &x, sizeof x);
             }
     }
-    for (i = 0; i < w->bodies.count; i++)
+    for (i = 0; i < w->bodies.count; i++) {
+        w->bodies.zones[i] = (uint32_t)(65536*scene_random(&seed));
         demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(demi_quat_at(w->bodies.orient + 4*i)));
+    }
 }
 /* All that the body of a slot keeps, one array after the other; answers how many bytes. */
 static size_t kept_row(const dem_world *w, int slot, char *out) {
@@ -677,6 +683,9 @@ int main(int argc, char **argv) {
             motion.start = 0;
             motion.function = stand_still;
             motion.user = &user[i];
+            motion.ramp = 0;
+            motion.table = 0;
+            motion.table_count = motion.table_repeats = 0;
             wall.id = 1;
             CHECK_EQ(dem_wall_motion(world, wall, &motion), DEM_OK);
             scene_step(world, 30);

@@ -27,13 +27,15 @@ static void hertz_spring(const dem_contact *c, dem_real *memory, dem_contact_for
     dem_law_spring(c, memory, f);
 }
 /* Walton and Braun's, memory 0: the largest overlap. */
-static void dented(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
+static void dent(const dem_contact *c, dem_real *memory, dem_contact_force *f, dem_real k) {
     const dem_real deepest = memory[0] > c->overlap ? memory[0] : c->overlap;
-    const dem_real out = 4000*(c->overlap - DEM_R(0.75)*deepest);
-    f->normal = out < 1000*c->overlap ? out : 1000*c->overlap;
+    const dem_real out = 4*k*(c->overlap - DEM_R(0.75)*deepest);
+    f->normal = out < k*c->overlap ? out : k*c->overlap;
     if (f->normal < 0) f->normal = 0;
     if (c->dt > 0) memory[0] = deepest;
 }
+static void dented(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dent(c, memory, f, 1000); }
+static void dented_hard(const dem_contact *c, dem_real *memory, dem_contact_force *f) { dent(c, memory, f, 10000); }
 
 /* ---- wrong ones, each in one way ---- */
 
@@ -145,6 +147,7 @@ int main(int argc, char **argv) {
         right("linear, spring", linear_spring, 3, 1, 0, DEM_NORMAL_LINEAR);
         right("Hertz, viscous", hertz_viscous, 0, 0, 0, DEM_NORMAL_HERTZ);
         right("dent", dented, 1, 0, 4000, DEM_NORMAL_LINEAR);
+        right("dent, ten times as hard", dented_hard, 1, 0, 40000, DEM_NORMAL_LINEAR);     /* no shear: round-off is no gain */
     }
     TEST("a spring that keeps its length under Hertz makes energy where it is pressed while sheared, and that line says so") {
         exam_sheet sheet;

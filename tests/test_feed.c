@@ -576,5 +576,76 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("an outlet that keeps counts who comes through a plane and who goes back, by class and material; who is beyond it is "
+         "told at any time; who began there has not come; a restart counts on") {
+        dem_world *world[2];
+        dem_outlet_desc d;
+        dem_outlet below, only;
+        dem_outlet_state s;
+        dem_material a, b;
+        int i, k;
+        for (k = 0; k < 2; k++) {
+            world[k] = world_of(9.81, 2e-5);
+            a = soft(world[k], 5000);
+            b = soft(world[k], 5000);
+            dem_plane_add(world[k], a, at(0, 0, 0), at(0, 0, 1));
+            /* ten of each fall from above the plane z = .1 m, on to a floor from which the glass bounces back */
+            for (i = 0; i < 10; i++) {
+                dem_sphere_add(world[k], a, DEM_R(0.003), at(0.01*i, 0, 0.12));
+                dem_sphere_add(world[k], b, DEM_R(0.005), at(0.02*i, 0.05, 0.13));
+                dem_sphere_add(world[k], a, DEM_R(0.003), at(0.01*i, 0.1, 0.05));     /* these began below */
+            }
+            memset(&d, 0, sizeof d);
+            d.box = box_of(-1, -1, -1, 1, 1, 0.1);
+            d.keep = 1;
+            d.class_count = 2;
+            d.radius[0] = DEM_R(0.003);
+            d.radius[1] = DEM_R(0.005);
+            below = dem_outlet_add(world[k], &d);
+            d.material = b;
+            only = dem_outlet_add(world[k], &d);
+            CHECK_EQ(below.id, 1);
+            CHECK_EQ(only.id, 2);
+        }
+        dem_outlet_get(world[0], below, &s);
+        CHECK_EQ((int)s.held_total, 10);
+        CHECK_EQ((int)s.total, 0);
+        CHECK_EQ(dem_world_run_to(world[0], 0.13, 0, 0), DEM_OK);    /* all are below */
+        dem_outlet_get(world[0], below, &s);
+        CHECK_EQ((int)s.count[0], 10);
+        CHECK_EQ((int)s.count[1], 10);
+        CHECK_EQ((int)s.held[0], 20);
+        CHECK_EQ((int)s.back_total, 0);
+        CHECK_REL(s.mass[0], 10*2500*4.18879020478639*0.003*0.003*0.003, sizeof(dem_real) == 8 ? 1e-9 : 1e-5);
+        CHECK(s.last > 0.06 && s.last < 0.09);           /* sqrt(2 h/g), h = .02 and .03 m: .064 and .078 s */
+        dem_outlet_get(world[0], only, &s);
+        CHECK_EQ((int)s.count[0], 0);
+        CHECK_EQ((int)s.total, 10);
+        CHECK_EQ((int)dem_balance_get(world[0]).present, 30);
+        CHECK_EQ(dem_checkpoint_write(world[0], "build/tmp/counts.ckpt"), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(world[1], "build/tmp/counts.ckpt"), DEM_OK);
+        for (k = 0; k < 2; k++) {
+            for (i = 0; i < 30; i++) {                   /* thrown up again: back through the plane */
+                dem_body_state st = scene_state(world[k], dem_bodies_id(world[k], i));
+                if ((double)st.radius > 0.004) scene_move(world[k], dem_bodies_id(world[k], i), at(0, 0, 2), at(0, 0, 0));
+            }
+            CHECK_EQ(dem_world_run_to(world[k], 0.23, 0, 0), DEM_OK);
+            dem_outlet_get(world[k], below, &s);
+            CHECK_EQ((int)s.back[1], 10);
+            CHECK_EQ((int)s.back[0], 0);
+            CHECK_EQ((int)s.count[1], 10);
+            CHECK_EQ((int)s.held_total, 20);
+            CHECK_REL(s.back_total_mass, 10*2500*4.18879020478639*0.005*0.005*0.005, sizeof(dem_real) == 8 ? 1e-9 : 1e-5);
+        }
+        CHECK(dem_world_hash(world[0]) == dem_world_hash(world[1]));
+        CHECK_EQ(dem_outlet_reset(world[0], below), DEM_OK);
+        dem_outlet_get(world[0], below, &s);
+        CHECK_EQ((int)s.back_total + (int)s.total, 0);
+        CHECK_EQ((int)s.held_total, 20);
+        for (i = 2; i < 16; i++) CHECK_EQ(dem_outlet_add(world[0], &d).id, i + 1);
+        CHECK_EQ(dem_outlet_add(world[0], &d).id, 0);
+        CHECK_STR(dem_world_error(world[0]), "16 outlets that only count");
+        for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
+    }
     return test_end();
 }

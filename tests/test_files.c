@@ -721,5 +721,45 @@ int main(int argc, char **argv) {
     pictures();
     walls();
     whole_or_absent();
+    TEST("named parts of a mesh are read one by one, STL and OBJ, each with its own vertices alone; a name that is not there "
+         "is refused with those that are") {
+        static const char stl[] =
+            "solid shell of drum\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n"
+            "solid lid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 5\nvertex 2 0 5\nvertex 0 2 5\nendloop\nendfacet\n"
+            "facet normal 0 0 1\nouter loop\nvertex 2 0 5\nvertex 2 2 5\nvertex 0 2 5\nendloop\nendfacet\nendsolid lid\n";
+        static const char obj[] = "o shell\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng lid\nv 0 0 5\nv 2 0 5\nv 2 2 5\nv 0 2 5\nf 4 5 6 7\n";
+        static const char *const names[2] = {"build/tmp/parts.stl", "build/tmp/parts.obj"};
+        const dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world = dem_world_create(&desc);
+        dem_mesh mesh;
+        dem_mesh_health health;
+        int k;
+        for (k = 0; k < 2; k++) {
+            FILE *f = fopen(names[k], "wb");
+            CHECK(f != 0);
+            if (f) { fputs(k ? obj : stl, f); fclose(f); }
+            CHECK_EQ(dem_mesh_part_read(world, names[k], "lid", &mesh, &health), DEM_OK);
+            CHECK_EQ(mesh.triangle_count, 2);
+            CHECK_EQ(mesh.vertex_count, 4);
+            CHECK_NEAR(health.box.lo.z, 5, 0);
+            CHECK_EQ(health.open_edges, 4);
+            dem_mesh_free(world, &mesh);
+            CHECK_EQ(dem_mesh_part_read(world, names[k], k ? "shell" : "shell of drum", &mesh, 0), DEM_OK);
+            CHECK_EQ(mesh.triangle_count, 1);
+            CHECK_EQ(mesh.vertex_count, 3);
+            CHECK_NEAR(mesh.vertices[3], 1, 0);
+            dem_mesh_free(world, &mesh);
+            CHECK_EQ(dem_mesh_part_read(world, names[k], "door", &mesh, &health), DEM_ERROR_FORMAT);
+            CHECK_STR(dem_world_error(world), "no triangles of a part \"door\"");
+            CHECK_STR(dem_world_error(world), k ? "shell, lid" : "shell of drum, lid");
+            CHECK(!mesh.vertices);
+            CHECK_EQ(dem_mesh_read(world, names[k], &mesh, 0), DEM_OK);
+            CHECK_EQ(mesh.triangle_count, 3);
+            dem_mesh_free(world, &mesh);
+        }
+        CHECK_EQ(dem_mesh_part_read(world, names[0], 0, &mesh, 0), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_mesh_part_read(world, "build/tmp/none.stl", "lid", &mesh, 0), DEM_ERROR_FILE);
+        dem_world_destroy(world);
+    }
     return test_end();
 }

@@ -415,6 +415,30 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
         dem_world_destroy(bare);
     }
+    TEST("a film with an interval goes on after its world has read a checkpoint: no frame twice, none missing") {
+        dem_material stuff;
+        dem_world *w = scene(&stuff);
+        dem_replay_desc desc = DEM_REPLAY_DESC;
+        dem_replay *film;
+        int k;
+        dem_sphere_add(w, stuff, DEM_R(0.001), at(0, 0, 0.01));
+        desc.interval = 0.01;
+        film = dem_replay_open(w, film_path, &desc);
+        CHECK_EQ(dem_world_run_to(w, 0.03, 0, 0), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(w, "build/tmp/film.ckpt"), DEM_OK);
+        CHECK_EQ(dem_world_run_to(w, 0.05, 0, 0), DEM_OK);
+        CHECK_EQ(dem_checkpoint_read(w, "build/tmp/film.ckpt"), DEM_OK);
+        CHECK_EQ(dem_world_run_to(w, 0.1, 0, 0), DEM_OK);
+        CHECK_EQ(dem_replay_close(film), DEM_OK);
+        film_read(&f, film_path);
+        CHECK_EQ(film_blocks(&f, "dem/frame"), 11);
+        for (k = 0; k < 11; k++) {
+            CHECK_EQ(film_next(&f), 1);
+            CHECK_NEAR(f.time, 0.01*k, 0.5001*(double)dem_counters_get(w).dt);
+        }
+        free(f.text);
+        dem_world_destroy(w);
+    }
     TEST("memory that runs out is told, at whatever request, and loses nothing but the film") {
         dem_material stuff;
         dem_world *w = scene(&stuff);

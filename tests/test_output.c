@@ -1,0 +1,307 @@
+/* What is done by hand in other codes: files on a schedule that a restart does not break, runs to a time and until
+   at rest, velocities of a temperature. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "test.h"
+#include "scene.h"
+
+static void file_name(char *name, const char *run, const char *rest) { sprintf(name, "build/tmp/output_%s%s", run, rest); }
+/* All of a file; the caller frees it. Null: there is none. */
+static char *file_text(const char *run, const char *rest, size_t *size) {
+    char name[128], *text;
+    FILE *f;
+    file_name(name, run, rest);
+    f = fopen(name, "rb");
+    *size = 0;
+    if (!f) return 0;
+    fseek(f, 0, SEEK_END);
+    *size = (size_t)ftell(f);
+    rewind(f);
+    text = (char *)calloc(*size + 1, 1);
+    if (text && fread(text, 1, *size, f) != *size) *size = 0;
+    fclose(f);
+    return text;
+}
+static void files_equal(const char *a, const char *b, const char *rest) {
+    size_t m, n;
+    char *x = file_text(a, rest, &m), *y = file_text(b, rest, &n);
+    CHECK(x && y && m > 0);
+    CHECK(x && y && m == n && !memcmp(x, y, m));
+    free(x);
+    free(y);
+}
+static int file_lines(const char *run, const char *rest) {
+    size_t n, i;
+    char *text = file_text(run, rest, &n);
+    int lines = 0;
+    for (i = 0; i < n; i++) lines += text[i] == '\n';
+    free(text);
+    return lines;
+}
+static void fastest(const dem_world *world, double *values, void *user) {
+    values[0] = (double)dem_counters_get(world).speed_max;
+    values[1] = *(const double *)user;
+}
+static int count_call(dem_world *world, int64_t number, void *user) {
+    int *calls = (int *)user;
+    (void)world;
+    calls[number < 15 ? number : 15]++;
+    return 0;
+}
+static const double seven = 7;
+static dem_world *heap(void) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material m;
+    desc.gravity = at(0, 0, -9.81);
+    world = dem_world_create(&desc);
+    m = scene_material(world, 1e6, 0.5, 0.3, 0.1);
+    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_spheres_fill(world, m, DEM_R(0.005), box_of(-0.03, -0.03, 0, 0.03, 0.03, 0.1), 60, 1);
+    return world;
+}
+static dem_world *scheduled(const char *run, int *calls) {
+    dem_world *world = heap();
+    dem_output_desc own = DEM_OUTPUT_DESC, loads = DEM_OUTPUT_DESC, call = DEM_OUTPUT_DESC;
+    char name[128];
+    file_name(name, run, ".csv");
+    CHECK(dem_output_every(world, DEM_OUTPUT_CSV, name, 0.007).id == 1);
+    file_name(name, run, "_##.vtp");
+    CHECK(dem_output_every(world, DEM_OUTPUT_VTP, name, 0.05).id == 2);
+    file_name(name, run, "_own.csv");
+    own.kind = DEM_OUTPUT_CSV;
+    own.path = name;
+    own.interval = 0.01;
+    own.start = 0.02;
+    own.end = 0.15;
+    own.columns = "fastest seven";
+    own.values = fastest;
+    own.user = (void *)&seven;
+    CHECK(dem_output_add(world, &own).id == 3);
+    file_name(name, run, "_floor.csv");
+    loads.kind = DEM_OUTPUT_CSV;
+    loads.path = name;
+    loads.interval = 0.03;
+    loads.wall.id = 1;
+    CHECK(dem_output_add(world, &loads).id == 4);
+    file_name(name, run, ".ckpt");
+    CHECK(dem_output_every(world, DEM_OUTPUT_CHECKPOINT, name, 0.08).id == 5);
+    call.interval = 0.02;
+    call.function = count_call;
+    call.user = calls;
+    CHECK(dem_output_add(world, &call).id == 6);
+    return world;
+}
+static int stop_at_two(dem_world *world, int64_t number, void *user) { (void)world; (void)user; return number == 2; }
+static int steps_itself(dem_world *world, int64_t number, void *user) {
+    (void)number;
+    *(int *)user = dem_world_step(world, 1) == DEM_ERROR_ARGUMENT;
+    return 0;
+}
+static int heats(dem_world *world, int64_t number, void *user) {
+    (void)number; (void)user;
+    return dem_temperature_set(world, 1e-2, 3) != DEM_OK;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+
+    TEST("files on a schedule: a run that was killed and goes on from its checkpoint leaves the very files of one "
+         "that was not, no frame missing, no line double") {
+        int whole[16] = {0}, parts[16] = {0}, k;
+        char name[128];
+        dem_world *a = scheduled("whole", whole), *b = scheduled("parts", parts);
+        CHECK_EQ(dem_world_run_to(a, 0.2, 0, 0), DEM_OK);
+        CHECK_EQ(dem_world_run_to(b, 0.137, 0, 0), DEM_OK);   /* beyond the checkpoint of .08 s, then killed */
+        dem_world_destroy(b);
+        b = scheduled("parts", parts);
+        file_name(name, "parts", ".ckpt");
+        CHECK_EQ(dem_checkpoint_read(b, name), DEM_OK);
+        CHECK_NEAR(dem_world_time(b), 0.08, (double)dem_counters_get(b).dt);
+        CHECK_EQ(dem_world_run_to(b, 0.2, 0, 0), DEM_OK);
+        CHECK(dem_world_hash(a) == dem_world_hash(b));
+        files_equal("whole", "parts", ".csv");
+        files_equal("whole", "parts", "_own.csv");
+        files_equal("whole", "parts", "_floor.csv");
+        files_equal("whole", "parts", "_00.vtp");
+        files_equal("whole", "parts", "_04.vtp");
+        CHECK_EQ(file_lines("whole", ".csv"), 1 + 29);       /* 0, .007 .. .196 s, and the heading */
+        CHECK_EQ(file_lines("whole", "_own.csv"), 1 + 14);   /* .02 to .15 s */
+        CHECK_EQ(file_lines("whole", "_floor.csv"), 1 + 7);
+        for (k = 0; k <= 10; k++) CHECK_EQ(whole[k], 1);
+        /* of .1 and .12 s the call had come before the kill: the run that was killed told it */
+        for (k = 0; k <= 10; k++) CHECK_EQ(parts[k], k == 5 || k == 6 ? 2 : 1);
+        dem_world_destroy(a);
+        dem_world_destroy(b);
+        /* the program run again from its beginning writes its files anew */
+        a = scheduled("whole", whole);
+        CHECK_EQ(dem_world_run_to(a, 0.05, 0, 0), DEM_OK);
+        CHECK_EQ(file_lines("whole", ".csv"), 1 + 8);
+        dem_world_destroy(a);
+    }
+
+    TEST("outputs are refused by name, a file with other columns is not touched, and what cannot be written stops the "
+         "run, which goes on when it can be") {
+        dem_world *world = heap();
+        dem_output_desc d = DEM_OUTPUT_DESC;
+        dem_counters before;
+        size_t n;
+        char *text;
+        FILE *f = fopen("build/tmp/output_other.csv", "wb");
+        CHECK(f != 0);
+        if (f) { fputs("time,tea\n1,2\n", f); fclose(f); }
+        CHECK(dem_output_add(world, &d).id == 0);            /* no interval */
+        CHECK_STR(dem_world_error(world), "interval must be finite and > 0");
+        d.interval = 0.01;
+        CHECK(dem_output_add(world, &d).id == 0);
+        CHECK_STR(dem_world_error(world), "function is null");
+        d.kind = DEM_OUTPUT_VTP;
+        CHECK(dem_output_add(world, &d).id == 0);
+        CHECK_STR(dem_world_error(world), "path is null");
+        d.kind = DEM_OUTPUT_CSV;
+        d.path = "build/tmp/output_#.csv";
+        CHECK(dem_output_add(world, &d).id == 0);
+        CHECK_STR(dem_world_error(world), "leave it out");
+        d.path = "build/tmp/output_other.csv";
+        d.columns = "b c";
+        CHECK(dem_output_add(world, &d).id == 0);
+        CHECK_STR(dem_world_error(world), "columns and values");
+        d.columns = 0;
+        d.wall.id = 9;
+        CHECK(dem_output_add(world, &d).id == 0);
+        CHECK_STR(dem_world_error(world), "wall names none");
+        d.wall.id = 0;
+        CHECK(dem_output_every(0, DEM_OUTPUT_CSV, "x", 1).id == 0);
+        CHECK(dem_output_add(world, &d).id == 1);
+        before = dem_counters_get(world);
+        CHECK_EQ(dem_world_run(world, 0.02, 0, 0), DEM_ERROR_FORMAT);
+        CHECK_STR(dem_world_error(world), "other columns");
+        CHECK_EQ(dem_counters_get(world).steps, before.steps);
+        text = file_text("other", ".csv", &n);
+        CHECK(text && !strcmp(text, "time,tea\n1,2\n"));
+        free(text);
+        remove("build/tmp/output_other.csv");
+        CHECK_EQ(dem_world_run(world, 0.02, 0, 0), DEM_OK);
+        CHECK_EQ(file_lines("other", ".csv"), 1 + 3);
+        dem_world_destroy(world);
+    }
+
+    TEST("a function on a schedule stops a run where it wants to, may change the world, and cannot step it") {
+        dem_world *world = heap();
+        dem_output_desc d = DEM_OUTPUT_DESC;
+        int refused = 0;
+        d.interval = 0.01;
+        d.function = stop_at_two;
+        dem_output_add(world, &d);
+        CHECK_EQ(dem_world_run(world, 1, 0, 0), DEM_ERROR_STOPPED);
+        CHECK_NEAR(dem_world_time(world), 0.02, (double)dem_counters_get(world).dt);
+        dem_world_destroy(world);
+        world = heap();
+        d.function = steps_itself;
+        d.user = &refused;
+        dem_output_add(world, &d);
+        CHECK_EQ(dem_world_run(world, 0.005, 0, 0), DEM_OK);
+        CHECK(refused);
+        CHECK_STR(dem_world_error(world), "looks at the world between two steps");
+        dem_world_destroy(world);
+        world = heap();
+        d.function = heats;
+        dem_output_add(world, &d);
+        CHECK_EQ(dem_world_run_to(world, 0.03, 0, 0), DEM_OK);
+        CHECK_NEAR(dem_temperature_get(world), 1e-2, 1e-8);
+        dem_world_destroy(world);
+    }
+
+    TEST("a run to a time ends there after whatever came before, and does not run back") {
+        dem_world *world = heap();
+        dem_real dt;
+        CHECK_EQ(dem_world_step(world, 17), DEM_OK);
+        dt = dem_counters_get(world).dt;
+        CHECK_EQ(dem_world_run_to(world, 0.05, 0, 0), DEM_OK);
+        CHECK_NEAR(dem_world_time(world), 0.05, 0.51*(double)dt);
+        CHECK_EQ(dem_world_step(world, 3), DEM_OK);
+        CHECK_EQ(dem_world_run_to(world, 0.07, 0, 0), DEM_OK);
+        CHECK_NEAR(dem_world_time(world), 0.07, 0.51*(double)dt);
+        CHECK_EQ(dem_world_run_to(world, 0.07, 0, 0), DEM_OK);
+        CHECK_EQ(dem_world_run_to(world, 0.06, 0, 0), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "not before now");
+        CHECK_NEAR(dem_world_time(world), 0.07, 0.51*(double)dt);
+        dem_world_destroy(world);
+    }
+
+    TEST("a heap settles: nothing moves when dem_world_settle says so; a ball at the top of its flight is not at rest, "
+         "and one that loses nothing never is") {
+        dem_world *world = heap();
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_material m;
+        CHECK_EQ(dem_world_settle(world, 5, 0, 0, 0), DEM_OK);
+        CHECK(dem_world_time(world) > 0.1 && dem_world_time(world) < 5);
+        CHECK((double)dem_counters_get(world).speed_max < 0.1*sqrt(2*9.81*0.005));
+        dem_world_destroy(world);
+        desc.gravity = at(0, 0, -9.81);
+        world = dem_world_create(&desc);
+        m = scene_material(world, 1e7, 1, 0, 0);
+        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_sphere_add(world, m, DEM_R(0.005), at(0, 0, 0.05));
+        CHECK_EQ(dem_world_settle(world, 2, 0, 0, 0), DEM_ERROR_STOPPED);
+        CHECK_STR(dem_world_error(world), "not at rest after 2 s");
+        CHECK_NEAR(dem_world_time(world), 2, 1e-3);
+        CHECK_EQ(dem_world_settle(world, 0, 0, 0, 0), DEM_ERROR_ARGUMENT);
+        dem_world_destroy(world);
+        desc.gravity = at(0, 0, 0);
+        world = dem_world_create(&desc);
+        m = scene_material(world, 1e7, 0.5, 0, 0);
+        CHECK_EQ(dem_world_settle(world, 1, 0, 0, 0), DEM_OK);   /* nobody there: at rest */
+        dem_sphere_add(world, m, DEM_R(0.005), at(0, 0, 0.05));
+        CHECK_EQ(dem_world_settle(world, 1, 0, 0, 0), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "where there is no gravity");
+        CHECK_EQ(dem_world_settle(world, 1, DEM_R(1e-3), 0, 0), DEM_OK);
+        dem_world_destroy(world);
+    }
+
+    TEST("velocities drawn for a temperature have it, their mean is kept, light grains and heavy ones share the energy "
+         "evenly; scaled ones keep their directions; the ledger counts what came in") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_material m;
+        dem_body_state s, s2;
+        dem_totals t;
+        double share[2] = {0, 0};
+        int i;
+        uint64_t rest = 5;
+        desc.ledger = 1;
+        world = dem_world_create(&desc);
+        m = scene_material(world, 1e6, 0.9, 0, 0);
+        for (i = 0; i < 2000; i++) {
+            const dem_vec3 x = scene_at(&rest, 1, 0, 1, 0, 1, 0);
+            const dem_body b = dem_sphere_add(world, m, (dem_real)(i & 1 ? 1e-3 : 2e-3), x);
+            scene_move(world, b, at(0.3, 0, -0.1), at(0, 0, 0));
+        }
+        CHECK_NEAR(dem_temperature_get(world), 0, 1e-12);
+        CHECK_EQ(dem_temperature_set(world, 0.04, 0), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "give a seed");
+        CHECK_EQ(dem_temperature_set(world, -1, 3), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_temperature_set(world, 0.04, 3), DEM_OK);
+        CHECK_REL(dem_temperature_get(world), 0.04, 1e-5);
+        t = dem_totals_get(world);
+        CHECK_REL(t.momentum[0]/t.mass, 0.3, 1e-5);
+        CHECK_REL(t.momentum[2]/t.mass, -0.1, 1e-5);
+        for (i = 0; i < 2000; i++) {
+            s = scene_state(world, dem_bodies_id(world, i));
+            s.velocity = at((double)s.velocity.x - 0.3, (double)s.velocity.y, (double)s.velocity.z + 0.1);
+            share[(double)s.radius > 1.5e-3] += (double)(s.mass*demi_dot(s.velocity, s.velocity));
+        }
+        CHECK_REL(share[1], share[0], 5*sqrt(2.0/3000 + 2.0/3000));   /* 3 x 1000 draws each: 5 standard errors */
+        s = scene_state(world, dem_bodies_id(world, 7));
+        CHECK_EQ(dem_temperature_set(world, 0.01, 0), DEM_OK);
+        s2 = scene_state(world, dem_bodies_id(world, 7));
+        CHECK_REL(dem_temperature_get(world), 0.01, 1e-5);
+        CHECK_NEAR((double)s2.velocity.y, (double)s.velocity.y/2, 1e-6);
+        CHECK_EQ(dem_world_step(world, 10), DEM_OK);
+        CHECK_NEAR(dem_ledger_get(world).residual, 0, 1e-5*dem_ledger_get(world).throughput);
+        CHECK_EQ(dem_temperature_set(world, 0, 0), DEM_OK);
+        CHECK_NEAR(dem_temperature_get(world), 0, 1e-12);
+        dem_world_destroy(world);
+    }
+    return test_end();
+}

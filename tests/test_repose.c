@@ -1,0 +1,90 @@
+/* Angles of repose: of heaps and drums' charges that were built with a slope. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "test.h"
+#include "scene.h"
+
+static double steep, lean;                           /* tan of the slope; 1: a cone, 0: a plane that rises along x */
+static int below(dem_vec3 x, dem_real radius, void *user) {
+    const double far = sqrt((double)(x.x*x.x + x.y*x.y));
+    (void)user;
+    return (double)(x.z + radius) < (lean > 0 ? 0.03 + steep*(double)x.x : steep*(0.05 - far));
+}
+static int below_turned(dem_vec3 x, dem_real radius, void *user) {      /* the same with gravity along -y */
+    return below(dem_vec3_make(x.z, x.x, x.y), radius, user);
+}
+static int below_flat(dem_vec3 x, dem_real radius, void *user) {
+    (void)user;
+    return (double)(x.y + radius) < (lean > 0 ? 0.03 + steep*(double)x.x : steep*(0.05 - fabs((double)x.x)));
+}
+static dem_world *world_of(dem_vec3 g, int planar, dem_material *m) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    desc.gravity = g;
+    desc.planar = planar;
+    world = dem_world_create(&desc);
+    *m = scene_material(world, 1e6, 0.5, 0.5, 0);
+    return world;
+}
+
+int main(int argc, char **argv) {
+    const double degree = acos(-1.0)/180;
+    dem_box all;
+    test_begin(argc, argv);
+    memset(&all, 0, sizeof all);
+
+    TEST("heaps and charges that were built with a slope of 15 to 35 degrees are measured within 1.5 degrees, whichever way "
+         "is down, in a plane too, and grains outside the box do not count") {
+        int angle, way, drum;
+        for (angle = 15; angle <= 35; angle += 10)
+            for (way = 0; way < 3; way++)
+                for (drum = 0; drum < 2; drum++) {
+                    dem_material m;
+                    dem_world *world = world_of(way == 0 ? at(0, 0, -9.81) : way == 1 ? at(0, -9.81, 0) : at(0, -1, 0), way == 2, &m);
+                    dem_repose r;
+                    dem_box box = way == 1 ? box_of(-0.06, 0, -0.06, 0.06, 0.06, 0.06)
+                        : way == 2 ? box_of(-0.06, 0, -1, 0.06, 0.06, 1) : box_of(-0.06, -0.06, 0, 0.06, 0.06, 0.06);
+                    steep = tan(angle*degree);
+                    lean = drum;
+                    CHECK(dem_spheres_pack(world, m, DEM_R(0.0011), 0, box, way == 2 ? below_flat : way == 1 ? below_turned : below, 0, 0) >
+                          (way == 2 ? 100 : 1000));
+                    if (drum) {
+                        /* shell goes towards +x at the bottom: up x axis */
+                        const dem_vec3 axis = way == 0 ? at(0, -1, 0) : way == 1 ? at(-1, 0, 0) : at(0, 0, 1);
+                        CHECK_EQ(dem_repose_drum(world, all, axis, &r), DEM_OK);
+                        CHECK_NEAR(r.angle, angle*degree, 1.5*degree);
+                        CHECK_EQ(dem_repose_drum(world, all, dem_vec3_make(-axis.x, -axis.y, -axis.z), &r), DEM_OK);
+                        CHECK_NEAR(r.angle, -angle*degree, 1.5*degree);
+                    } else {
+                        CHECK_EQ(dem_repose_heap(world, all, &r), DEM_OK);
+                        CHECK_NEAR(r.angle, angle*degree, 1.5*degree);
+                        dem_sphere_add(world, m, DEM_R(0.0011), way == 0 ? at(0.2, 0, 0.5) : at(0.2, 0.5, 0));
+                        CHECK_EQ(dem_repose_heap(world, box, &r), DEM_OK);
+                        CHECK_NEAR(r.angle, angle*degree, 1.5*degree);
+                    }
+                    CHECK(r.places >= 4 && r.error < 3*degree);
+                    if (test_now.wrong) printf("        angle %d way %d drum %d\n", angle, way, drum);
+                    dem_world_destroy(world);
+                }
+    }
+
+    TEST("without gravity, grains, or a level axis there is no slope, and the sentence says which") {
+        dem_material m;
+        dem_world *world = world_of(at(0, 0, 0), 0, &m);
+        dem_repose r;
+        CHECK_EQ(dem_repose_heap(world, all, &r), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "gravity is 0 m/s2");
+        dem_world_gravity_set(world, at(0, 0, -9.81));
+        CHECK_EQ(dem_repose_heap(world, all, &r), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "0 places");
+        dem_sphere_add(world, m, DEM_R(0.001), at(0, 0, 0));
+        dem_sphere_add(world, m, DEM_R(0.001), at(1e9, 0, 0));
+        CHECK_EQ(dem_repose_heap(world, all, &r), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_repose_drum(world, all, at(0, 0, 1), &r), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "is upright");
+        CHECK_EQ(dem_repose_drum(world, all, at(0, 0, 0), &r), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_repose_drum(world, all, at(0, 1, 0), 0), DEM_ERROR_ARGUMENT);
+        dem_world_destroy(world);
+    }
+    return test_end();
+}
