@@ -37,16 +37,20 @@
        >>kept-respond  the law's answers to them: forces on both ends
        >>integrators kick, drift, predict; rotation
        >>ledger      where the energy went
+       >>sizes       distributions of size: shares, drawing, classes
        >>placing     room for new grains: regions, fills, packings
        >>feed        grains fed in, taken out and counted
        >>advice      which time step a scene bears
        >>check       what is likely to be wrong with a scene, before it runs
+       >>fields      means on a grid, and the contacts they are made of
        >>step        one step after the other
-       >>measure     fields on a grid, loads, balance
+       >>measure     counters, contacts, the digest
        >>read        meshes and profiles in
+       >>read-grains  grains in: text, CSV, XYZ, VTP
        >>write       VTP, VTK, XYZ and CSV out
        >>checkpoint  everything, to the last bit
        >>restore     a checkpoint checked and read
+       >>output      files and calls on a schedule
        >>trials      what a choice costs and changes, tried on copies of a scene
        >>effects     what a scene calls for, what of it has happened, what each costs
        >>world       create, destroy, report
@@ -62,33 +66,45 @@
 /* ---------------------------------------------------------------------------------------------
    >>manual
    ---------------------------------------------------------------------------------------------
-   A complete program: 5000 glass beads fall into a heap.
+   A complete program: glass beads poured into a heap.
 
        #define DEM_IMPLEMENTATION
        #include "dem.h"
        #include <stdio.h>
 
        int main(void) {
-           dem_world_desc desc = DEM_WORLD_DESC;   // zeros: nothing asked, nothing simulated
+           dem_world_desc desc = DEM_WORLD_DESC;           // zeros: nothing asked, nothing done
            desc.gravity.z = -9.81;                         // m/s2
            dem_world *world = dem_world_create(&desc);
 
            dem_material_desc glass_desc = DEM_MATERIAL_DESC;
            glass_desc.density = 2500;                      // kg/m3
-           glass_desc.young = 6.4e7;                       // Pa, softened
+           glass_desc.young = 1.5e7;                       // Pa, softened: the report says why
            glass_desc.poisson = 0.23;
-           glass_desc.restitution = 0.66;
-           glass_desc.friction = 0.15;
+           glass_desc.restitution = 0.5;
+           glass_desc.friction = 0.7;
+           glass_desc.rolling_friction = 0.2;
            dem_material glass = dem_material_add(world, &glass_desc);
 
            dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-           dem_box box = dem_box_make(-0.05, -0.05, 0.01, 0.05, 0.05, 0.15);
-           dem_spheres_fill(world, glass, 1.5e-3, box, 5000, 1);
+           dem_feed_desc feed = {glass, 1, {2e-3}, {600}}; // 600 beads of 2 mm radius, one class,
+           feed.limited = 1;
+           feed.rate = 600;                                // so many a second, from here (m):
+           feed.box = dem_box_make(-0.006, -0.006, 0.03, 0.006, 0.006, 0.04);
+           dem_feed_add(world, &feed);
 
-           if (dem_world_run(world, 0.2, dem_progress_print, stderr) != DEM_OK)
+           dem_replay_desc film_desc = DEM_REPLAY_DESC;
+           film_desc.interval = 0.02;                      // s
+           dem_replay *film = dem_replay_open(world, "heap.html", &film_desc);    // for a browser
+           if (dem_world_run(world, 1, dem_progress_print, stderr) != DEM_OK ||
+               dem_world_settle(world, 2, 0, dem_progress_print, stderr) != DEM_OK)
                puts(dem_world_error(world));
-           dem_world_report(world, stdout);
-           dem_vtp_write(world, "pile.vtp");
+           dem_replay_close(film);
+           dem_repose slope;
+           dem_box all = {{0, 0, 0}, {0, 0, 0}};
+           if (dem_repose_heap(world, all, &slope) == DEM_OK)
+               printf("slope %.2f +- %.2f rad\n", slope.angle, slope.error);
+           dem_world_report(world, stdout);                // what was done, its price, the step
            dem_world_destroy(world);
            return 0;
        }
@@ -235,6 +251,7 @@
      [DLM97]   Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840: splitting
      [ERI05]   Ericson, Real-Time Collision Detection (2005): closest point on a triangle
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
+     [GOL10]   Goldhirsch, Granul. Matter 12 (2010) 239: stress by coarse graining
      [HER82]   Hertz, J. reine angew. Math. 92 (1882) 156
      [HOA61]   Hoare, Comm. ACM 4 (1961) 321: the k-th of many by exchanges
      [MIL]     a thesis on tumbling mills on a GPU: laws by the step, meshes, segments
@@ -301,7 +318,7 @@ typedef enum dem_result {
     DEM_ERROR_FORMAT,    /* a file's contents are not what the format says; or of another version */
     DEM_ERROR_TIME_STEP, /* the time step is larger than the stiffest contact allows */
     DEM_ERROR_UNSTABLE,  /* the run blew up: a force not finite, an overlap beyond a radius */
-    DEM_ERROR_STOPPED    /* the progress callback asked to stop */
+    DEM_ERROR_STOPPED    /* the progress callback asked to stop; dem_world_settle's time is up */
 } dem_result;
 
 /* ---- vectors, boxes, poses ---- */
@@ -982,6 +999,17 @@ static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0,
 /* Adds a material. At most 64. Null id on bad values. */
 DEM_API dem_material dem_material_add(dem_world *world, const dem_material_desc *desc);
 
+/* Changes a material that is in use, in a world under way: moduli, restitution, friction. What it
+   has with others is mixed anew, but where dem_pair_set has replaced that; contacts keep what they
+   remember, the time step is chosen anew. density must be what it was: bodies have their masses. An
+   error on bad values: nothing changes. A checkpoint written after it is read by a world whose
+   material has been changed likewise. */
+DEM_API dem_result dem_material_set(dem_world *world, dem_material material,
+                                    const dem_material_desc *desc);
+/* The desc of a material, as it is in force. */
+DEM_API dem_result dem_material_get(const dem_world *world, dem_material material,
+                                    dem_material_desc *desc);
+
 /* What holds between two materials. Mixed from both when not set: restitution, friction, static
    friction, rolling friction and stiffness of adhesion by the geometric mean; moduli by Hertz (1/E*
    = sum (1-nu^2)/E, 1/G* = sum (2-nu)/G); given stiffnesses in series. Walls follow the same rule
@@ -1053,6 +1081,47 @@ typedef struct dem_region {
 DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius,
                              dem_box box, int count,
                              uint64_t seed);
+/* A distribution of size, by radius. Between min and max, and nowhere else. */
+typedef enum dem_sizes_kind {
+    DEM_SIZES_UNIFORM = 0,   /* equal shares for equal ranges of radius */
+    DEM_SIZES_LOGNORMAL,     /* median, spread */
+    DEM_SIZES_WEIBULL,       /* Rosin-Rammler: 1 - exp(-(r/scale)^modulus) is finer than r */
+    DEM_SIZES_SIEVES         /* a sieve curve: what passes each of `count` sieves */
+} dem_sizes_kind;
+enum { DEM_SIEVES = 32 };
+typedef struct dem_sizes {
+    dem_sizes_kind kind;
+    int by_count;            /* shares are 0: of mass, as sieves tell them; 1: of the number */
+    dem_real min, max;       /* m, 0 < min <= max; log-normal: 0: e^(-6 spread) and e^(6 spread)
+                                medians; Weibull: max 0: all but 1e-9 is finer; sieves: 0: their
+                                ends */
+    dem_real median;         /* m, log-normal, > 0 */
+    double spread;           /* log-normal, > 0: standard deviation of ln r */
+    dem_real scale;          /* m, Weibull, > 0 */
+    double modulus;          /* Weibull, > 0 */
+    int count;               /* sieves, 2..32 */
+    dem_real radius[DEM_SIEVES];   /* m, half the apertures, ascending, the first > 0 */
+    double passing[DEM_SIEVES];    /* share that passes, ascending, the last 1; straight between
+                                      two, what passes the first is of its radius */
+} dem_sizes;
+static const dem_sizes DEM_SIZES_ZERO = {DEM_SIZES_UNIFORM, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}};
+#define DEM_SIZES DEM_SIZES_ZERO
+/* Share that is finer than a radius (m), of mass or number as by_count says. -1 on bad values. */
+DEM_API double dem_sizes_finer(dem_world *world, const dem_sizes *sizes, dem_real radius);
+/* Draws radii (count). seed 0: not by chance but at equal steps of the distribution of numbers, so
+   that a few hundred have its shares within a per cent; ascending. Mass goes as r^3 (planar worlds:
+   r^2). Nothing is written where something is wrong. */
+DEM_API dem_result dem_sizes_draw(dem_world *world, const dem_sizes *sizes, int count,
+                                  uint64_t seed, dem_real *radii);
+/* The distribution in at most class_count (1..16) classes, for dem_feed_desc.radius and .amount,
+   with by_mass as by_count is not: ranges of equal ratio; the radius of each is that of its mean
+   grain. Answers how many have a share; 0 on bad values. */
+DEM_API int dem_sizes_classes(dem_world *world, const dem_sizes *sizes, int class_count,
+                              dem_real *radius, double *amount);
+/* Fills a region as dem_region_fill does with count spheres whose radii are drawn as above, the
+   largest first, for which there is most room at the beginning. */
+DEM_API int dem_sizes_fill(dem_world *world, const dem_region *region, dem_material material,
+                           const dem_sizes *sizes, int count, uint64_t seed);
 /* Hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, in layers
    along z: of its places those that are free, as above, and for which inside(centre, radius, user)
    is not 0 (null: all), at most count (0: all that fit). Centres keep a radius from the box, and
@@ -1081,6 +1150,15 @@ struct dem_body_state {
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
 /* Sets position, velocity, spin, orientation and fixed. */
 DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
+
+/* Granular temperature, m2/s2: the mean square of velocities about their mean, by mass and per axis
+   (two of them in a planar world), of the bodies that can move. 0 for fewer than two. */
+DEM_API double dem_temperature_get(const dem_world *world);
+/* Makes it so: seed 0 scales the velocities about their mean; any other draws them anew from
+   Maxwell's distribution, of equal energy for every mass, the mean kept. Spins stay. An error where
+   temperature is below 0 or not finite, fewer than two bodies can move, or there is nothing to
+   scale. */
+DEM_API dem_result dem_temperature_set(dem_world *world, double temperature, uint64_t seed);
 
 /* All bodies at once, in the library's own order, which changes when the candidate list is rebuilt;
    slots tell who is who. Pointers hold until the next step or change. Stride 4: x y z and one more.
@@ -1201,8 +1279,14 @@ typedef enum dem_motion_kind {
     DEM_MOTION_ROTATING,      /* speed [rad/s] about axis through point, right-handed */
     /* displacement velocity/|velocity| * amplitude * sin(2 pi f t + phase) */
     DEM_MOTION_OSCILLATING,
-    DEM_MOTION_USER           /* function */
+    DEM_MOTION_USER,          /* function */
+    DEM_MOTION_TABLE          /* table: poses at given times, smoothly from one to the next */
 } dem_motion_kind;
+typedef struct dem_motion_row {
+    double time;              /* s, after start; the first 0, ascending */
+    dem_vec3 position;        /* m, from where the wall stood when it was given its motion */
+    dem_quat rotation;        /* about `point`, which goes along: any length; 0: not turned */
+} dem_motion_row;
 typedef struct dem_motion {
     dem_motion_kind kind;
     dem_vec3 velocity;        /* m/s (translating); direction only (oscillating) */
@@ -1213,9 +1297,18 @@ typedef struct dem_motion {
     double start;
     dem_motion_fn function;
     void *user;
+    /* s, >= 0: translating, rotating, oscillating: speed, or amplitude, rises from 0 to full in the
+       first `ramp` after start, by 3 u^2 - 2 u^3 of the time u: no jerk; 0: at once */
+    double ramp;
+    /* table: rows (copied, >= 2). Between two of them cubic, so that velocity and spin have no
+       jumps (tangents: of the parabola through three rows); it begins and ends at rest, and stays.
+       repeats 1: begins anew after the last row, whose pose should be the first one's, without
+       stopping. Turns by less than half a turn from row to row */
+    const dem_motion_row *table;
+    int table_count, table_repeats;
 } dem_motion;
 static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, 0,
-                                           0, 0, 0, 0, 0, 0};
+                                           0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 #define DEM_MOTION DEM_MOTION_ZERO
 
 /* How a wall of segments shares the force where a grain straddles two of them. */
@@ -1241,6 +1334,20 @@ DEM_API dem_wall dem_plane_add(dem_world *world, dem_material material, dem_vec3
 DEM_API dem_wall dem_cylinder_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis,
                                   dem_real radius, int inside);
+/* A surface of revolution about `axis` through `point`: straight pieces from ring to ring, count
+   (2..12) of them, of these radii (m, >= 0) at these heights (m, along the axis from `point`): a
+   finite cylinder, a cone, a disc with a hole, a tube that ends in a funnel, a drum with its ends.
+   Both sides push. It is one surface: in an inner corner a grain touches both pieces, at an outer
+   one and at a rim the ring. A grain that is wider than the place it is in touches it on one side.
+   Spheres, discs and clusters know it, ellipsoids do not. Null id on bad values. */
+enum { DEM_RINGS = 12 };
+DEM_API dem_wall dem_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
+                                  dem_vec3 axis, int count, const dem_real *radii,
+                                  const dem_real *heights);
+/* One piece of it: a cone from here to there (m, not the same place), of these radii (m, >= 0, not
+   both 0) at its ends, which are open. Equal radii: a finite cylinder. */
+DEM_API dem_wall dem_cone_add(dem_world *world, dem_material material, dem_vec3 from, dem_vec3 to,
+                              dem_real radius_from, dem_real radius_to);
 /* Segments in the x-y plane drawn out along z without end; both sides push. The data is copied. */
 DEM_API dem_wall dem_profile_add(dem_world *world, dem_material material,
                                  const dem_profile *profile,
@@ -1361,7 +1468,9 @@ DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_
    they have left. It looks whenever a new list of neighbours is made, and every 64 steps: a grain
    is in by half a skin at most, or for 64 steps, before it goes; a region thinner than half a skin
    may be passed unseen. So many that leave one by one cost hardly more than none. The radius of a
-   body that is not a sphere: of the smallest sphere about its centre that holds it. */
+   body that is not a sphere: of the smallest sphere about its centre that holds it.
+   With `keep` it only counts: those that come in, those that go back, and those that are there;
+   discharge through a plane is what comes into the box beyond it. */
 typedef struct dem_outlet_desc {
     dem_wall frame;                  /* the region moves with this wall, which then cannot be
                                         removed; null: it stands still */
@@ -1370,18 +1479,27 @@ typedef struct dem_outlet_desc {
     dem_real wanted_min, wanted_max; /* m, radii that ought to leave here; max 0: no limit */
     int class_count;                 /* 0..16: classes to count by; a grain is of the nearest */
     dem_real radius[DEM_CLASSES];    /* m, ascending */
+    dem_material material;           /* only grains of it; id 0: of all */
+    int keep;                        /* 1: grains stay, and are counted; at most 16 such outlets */
 } dem_outlet_desc;
 typedef struct dem_outlet_state {
     uint64_t count[DEM_CLASSES], total;
     double mass[DEM_CLASSES], total_mass;   /* kg */
     uint64_t sorted, gangue;         /* grains of the wanted radii; the others: [ALK07] s_i, g_i */
     double sorted_mass, gangue_mass; /* kg */
-    double since, last;              /* s, when counting began; when the last grain left */
+    double since, last;              /* s, when counting began; when the last grain left (keep:
+                                        came in) */
+    /* keep: all above is what came in; what went back out; what is in it now. Grains that began in
+       the region have not come in */
+    uint64_t back[DEM_CLASSES], held[DEM_CLASSES], back_total, held_total;
+    double back_mass[DEM_CLASSES], held_mass[DEM_CLASSES];      /* kg */
+    double back_total_mass, held_total_mass;
 } dem_outlet_state;
 DEM_API dem_outlet dem_outlet_add(dem_world *world, const dem_outlet_desc *desc);
 DEM_API dem_result dem_outlet_get(const dem_world *world, dem_outlet outlet,
                                   dem_outlet_state *state);
-/* Begins counting anew (grains that left stay in the balance). */
+/* Begins counting anew (grains that left stay in the balance; those that are in a region have not
+   come in). */
 DEM_API dem_result dem_outlet_reset(dem_world *world, dem_outlet outlet);
 
 /* ---------------------------------------------------------------------------------------------
@@ -1440,6 +1558,16 @@ typedef int (*dem_progress_fn)(const dem_world *world, double done, double secon
                                void *user);
 DEM_API dem_result dem_world_run(dem_world *world, double seconds, dem_progress_fn progress,
                                  void *user);
+/* The same up to a time of the world's clock, s, not before now: also after a restart. */
+DEM_API dem_result dem_world_run_to(dem_world *world, double time, dem_progress_fn progress,
+                                    void *user);
+/* Runs until the bodies are at rest: the root of their mean square speed (by mass) below `speed`
+   and none faster than 10 times that, over the time that one takes to fall by a radius. speed: m/s,
+   0: a hundredth of what a fall by a mean radius gives (without gravity it must be given). Spins do
+   not count: nothing brakes a sphere that spins on a point. DEM_ERROR_STOPPED, with the speeds
+   told, where they are not at rest after so many seconds; the state is intact. */
+DEM_API dem_result dem_world_settle(dem_world *world, double seconds, dem_real speed,
+                                    dem_progress_fn progress, void *user);
 /* A progress function that rewrites one line on the FILE given as user; where that is no terminal,
    a line for every tenth of the run. */
 DEM_API int dem_progress_print(const dem_world *world, double done, double seconds_left,
@@ -1449,6 +1577,11 @@ DEM_API int dem_progress_print(const dem_world *world, double done, double secon
    likes between two steps; dem_world_desc_get tells it, checkpoints hold it. Slabs take along that
    of the world they are dealt from. An error where it is not finite: nothing changes. */
 DEM_API dem_result dem_world_gravity_set(dem_world *world, dem_vec3 gravity);
+
+/* The time step from now on, s; 0: chosen, as by desc.dt. Contacts keep what they remember;
+   checkpoints hold it. One that is too large is refused by the next step, as that of the desc is.
+   An error where it is below 0 or not finite: nothing changes. */
+DEM_API dem_result dem_world_dt_set(dem_world *world, dem_real dt);
 
 DEM_API double dem_world_time(const dem_world *world);     /* s */
 DEM_API uint64_t dem_world_steps(const dem_world *world);
@@ -1605,14 +1738,22 @@ DEM_API dem_result dem_search_now(dem_world *world);
 
 /* ---- measuring ---- */
 
-/* A grid of cells over box on which solid fraction and velocity are averaged over a window of time.
-   A grain counts where its centre is ([MIL] 5.2.9): cells smaller than grains need a long window.
-   */
+/* A grid of cells over box on which solid fraction, velocity and, if asked for, stress are averaged
+   over a window of time. A grain counts where its centre is ([MIL] 5.2.9): cells smaller than
+   grains need a long window; or it is spread about its centre, coarse-grained (width). */
 typedef struct dem_field_desc {
     dem_box box;              /* m */
     int cells[3];             /* >= 1 each, at most 2^28 in all */
     double start, end;        /* s; end = 0: no end */
     double interval;          /* s between samples; 0: every 100th step */
+    dem_material material;    /* only grains of it; id 0: of all */
+    dem_real radius_min, radius_max;  /* m, only grains of these (bounding) radii; max 0: any */
+    int stress;               /* 1: also flux, stress and contacts, which looks at every contact */
+    /* m, 0: none. Else each grain is spread by Lucy's function of reach 2 width,
+       105/(16 pi c^3) (1 + 3 r/c) (1 - r/c)^3 with c = 2 width (in a planar world
+       5/(pi c^2) in its place), taken at the centres of cells: these should be no longer than width
+       [GOL10] */
+    dem_real width;
 } dem_field_desc;
 DEM_API dem_field dem_field_add(dem_world *world, const dem_field_desc *desc);
 /* Cell (i, j, k) is at index i + cells[0]*(j + cells[1]*k). Values hold until the next step. */
@@ -1624,9 +1765,44 @@ typedef struct dem_field_data {
     const double *solid;
     const double *mass;       /* cells: sum of kg */
     const double *momentum;   /* cells x 3: sum of kg m/s; velocity = momentum/mass */
+    const double *grains;     /* cells: sum of how many are there */
+    /* null unless desc.stress is 1. cells x 6 (xx yy zz xy xz yz): sum of m v v over the cell's
+       volume, Pa; sum over contacts of force x branch over it, Pa, pressure positive: of two grains
+       along the line between their centres, each answering for its half, with a wall from the
+       centre to the contact; cells: sum of the grains' contacts */
+    const double *flux, *stress, *contacts;
 } dem_field_data;
+/* Means of one cell over the samples, in the usual terms; 0 where nothing was seen. */
+typedef struct dem_field_cell {
+    double grains;            /* in it at a time */
+    double solid, density;    /* volume of grains over that of the cell; kg/m3 */
+    double velocity[3];       /* m/s, by mass */
+    double temperature;       /* m2/s2, per axis, about that velocity: desc.stress */
+    double stress[6];         /* Pa, xx yy zz xy xz yz, pressure positive, of contacts and of motion
+                                 about that velocity: desc.stress */
+    double coordination;      /* contacts per grain, with walls: desc.stress */
+} dem_field_cell;
 DEM_API dem_result dem_field_get(const dem_world *world, dem_field field, dem_field_data *data);
+DEM_API dem_result dem_field_cell_get(const dem_world *world, dem_field field, int i, int j, int k,
+                                      dem_field_cell *cell);
 DEM_API dem_result dem_field_reset(dem_world *world, dem_field field);
+
+/* The slope of a free surface, against gravity. */
+typedef struct dem_repose {
+    double angle;             /* rad, of the straight line that fits the surface best */
+    double error;             /* rad, its standard error, of the places it goes through */
+    int places;               /* so many, each about a mean diameter wide */
+} dem_repose;
+/* Angle of repose of a heap: grains in box (m; both corners 0: all). The surface is the highest
+   grains by distance from the upright line through the centre of mass; the line goes through it
+   from 20 to 80 % of its height, so that neither the rounded top nor the toe counts. Planar worlds:
+   both flanks. An error without gravity, or where there are fewer than 4 places to go through. */
+DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repose *repose);
+/* Dynamic angle of repose in a drum that turns about `axis` (right-handed, level): positive where
+   the charge is carried up as it should be. The line goes through the middle half of the surface.
+   For charges that roll or cascade: grains in flight are of no surface. */
+DEM_API dem_result dem_repose_drum(const dem_world *world, dem_box box, dem_vec3 axis,
+                                   dem_repose *repose);
 
 /* ---- files ---- */
 
@@ -1648,6 +1824,11 @@ DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *m
 DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data,
                                   size_t size, dem_mesh *mesh,
                                   dem_mesh_health *health);
+/* One named part of a file, to be a wall of its own (a drum's shell, its ends, its lifters): the
+   solid of that name (STL as text), or what stands after `o NAME` or `g NAME` (OBJ). A name that
+   the file does not have is refused with those that it has. */
+DEM_API dem_result dem_mesh_part_read(dem_world *world, const char *path, const char *part,
+                                      dem_mesh *mesh, dem_mesh_health *health);
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh);
 /* Scales a mesh about its origin (1e-3: from mm to m), turns it, and moves it by `to` (m): before
    it is added. A scale that is not finite and > 0, or a rotation or place that is not finite, is an
@@ -1661,6 +1842,28 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
                                      size_t size,
                                      dem_profile *profile);
 DEM_API void dem_profile_free(dem_world *world, dem_profile *profile);
+
+/* Grains from a file: spheres. Arrays that the file has nothing for are null. */
+typedef struct dem_grains {
+    int count;
+    dem_real *positions, *radii;     /* count x 3, count: m */
+    dem_real *velocities, *spins;    /* count x 3: m/s, rad/s */
+    int32_t *materials;              /* count: numbers as in the file, 1: the first material */
+} dem_grains;
+/* Reads grains from what dem_vtp_write and dem_xyz_write write, from other extended XYZ files with
+   Properties (pos, radius, velo, ...), or from text or CSV, told apart by the contents. Text: a
+   line a grain, numbers with a point, between them spaces, tabs, commas or semicolons; # begins a
+   comment; a first line may name the columns: x y z, r or radius or d or diameter, vx vy vz, wx wy
+   wz (spin), material; others are passed over. Without names: x y z r, then vx vy vz if there are
+   seven. Lengths in m. Of a cluster's file each sphere becomes one grain. Free with
+   dem_grains_free. Errors name file, line and reason. */
+DEM_API dem_result dem_grains_read(dem_world *world, const char *path, dem_grains *grains);
+DEM_API dem_result dem_grains_parse(dem_world *world, const char *name, const void *data,
+                                    size_t size, dem_grains *grains);
+DEM_API void dem_grains_free(dem_world *world, dem_grains *grains);
+/* Adds them all, or none: of this material, or (id 0) each of that with the file's number. */
+DEM_API dem_result dem_grains_add(dem_world *world, dem_material material,
+                                  const dem_grains *grains);
 
 /* Pictures for ParaView (VTP, legacy VTK: points with radius, velocity, spin, id, material) and
    OVITO (extended XYZ). Where bodies have orientations, these too (VTK: w x y z; XYZ: x y z w) with
@@ -1733,6 +1936,50 @@ DEM_API dem_result dem_replay_close(dem_replay *replay);
    the world stays as it was. */
 DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
+
+/* ---- outputs on a schedule ---- */
+
+typedef struct dem_output { int32_t id; } dem_output;                        /* id counts from 1 */
+enum { DEM_OUTPUT_COLUMNS = 32 };
+typedef enum dem_output_kind {
+    DEM_OUTPUT_CALL = 0,     /* function */
+    DEM_OUTPUT_VTP,          /* as dem_vtp_write, */
+    DEM_OUTPUT_XYZ,          /* dem_xyz_write, */
+    DEM_OUTPUT_CONTACTS,     /* dem_contacts_vtp_write, */
+    DEM_OUTPUT_CHECKPOINT,   /* and dem_checkpoint_write do */
+    DEM_OUTPUT_CSV           /* a line of a CSV file: the time and some values */
+} dem_output_kind;
+typedef struct dem_output_desc {
+    dem_output_kind kind;
+    /* a run of # in it becomes the number of the output, 0 at `start`: "grains_####.vtp"; without
+       one the file is written anew each time (a CSV file: appended to). Copied */
+    const char *path;
+    double interval;         /* s, required, > 0 */
+    double start, end;       /* s, the first and (0: none) the last; in the world's time */
+    /* CSV: the loads of this wall (dem_wall_loads_csv); or values of your own: columns names them
+       (1 to 32 words as in body_reals, copied), values writes as many; or neither: steps, bodies,
+       contacts, kinetic and rotational energy (J), overlap_max */
+    dem_wall wall;
+    const char *columns;
+    void (*values)(const dem_world *world, double *values, void *user);
+    /* CALL: may look at the world and change it, but not step it. Anything but 0 stops the run
+       (DEM_ERROR_STOPPED) */
+    int (*function)(dem_world *world, int64_t number, void *user);
+    void *user;
+} dem_output_desc;
+static const dem_output_desc DEM_OUTPUT_DESC_ZERO = {DEM_OUTPUT_CALL, 0, 0, 0, 0, {0}, 0, 0, 0, 0};
+#define DEM_OUTPUT_DESC DEM_OUTPUT_DESC_ZERO
+/* Writes by itself, at the steps of the run nearest to start, start + interval and so on, in the
+   order in which outputs were added. The times count from 0, so that a run that goes on from a
+   checkpoint has the same ones: nothing is missing and nothing is double, of a CSV file the lines
+   from the checkpoint on are taken out first. (So a run that begins at 0 writes the file anew; one
+   with other columns is refused.) A file that cannot be written stops the run with its sentence,
+   state intact, and is tried again by the next. Null id on bad values. Outputs are not part of a
+   checkpoint or of slabs: add them before you read. */
+DEM_API dem_output dem_output_add(dem_world *world, const dem_output_desc *desc);
+/* The same in a line: dem_output_every(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01). */
+DEM_API dem_output dem_output_every(dem_world *world, dem_output_kind kind, const char *path,
+                                    double interval);
 
 /* ---- slabs: one scene on many processors ---- */
 
@@ -2100,6 +2347,12 @@ static double demi_uniform(uint64_t *state) {                    /* 0 <= u < 1 *
     return (double)(demi_random(state) >> 11)/9007199254740992.0;
 }
 
+/* Of mean 0 and variance 1 (Box and Muller 1958, one of the two). */
+static double demi_gauss(uint64_t *state) {
+    const double u = 1 - demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
+    return sqrt(-2*demi_log(u))*demi_cos(a);
+}
+
 /* FNV-1a, 64 bits: check sums and state hashes. */
 #define DEMI_HASH_START UINT64_C(14695981039346656037)
 static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
@@ -2296,6 +2549,7 @@ enum {
     DEMI_CROSSED = 16              /* rows take away where they cross: see demi_kept_crossed */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contacts of a grain with a sieve */
+enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface of revolution */
 #define DEMI_SHAPES(X) \
     X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
     X(ELLIPSOID, ellipsoid, "ellipsoid", demi_ellipsoids_gap, \
@@ -2316,6 +2570,8 @@ enum { DEMI_SIEVE_MOST = 25 };                  /* contacts of a grain with a si
       demi_grain_near, (demi_elements_touch, demi_grain_ellipsoid), demi_grain_bend) \
     X(SIEVE,    0, DEMI_SIEVE_MOST, DEMI_CROSSED, "sieve", \
       demi_sieve_near, (demi_sieve_spheres), demi_sieve_bend) \
+    X(REVOLVED, 0, DEMI_RING_MOST, 0, "surface of revolution", \
+      demi_revolved_near, (demi_revolved_spheres), demi_revolved_bend) \
     /* the last */
 #define DEMI_LIST(...) {__VA_ARGS__}            /* one field of a row that is a list: (a, b) */
 #define DEMI_SHAPE_CONSTANT(KIND, NAME, WORD, GAP, TOUCH) DEMI_##KIND,
@@ -2342,6 +2598,8 @@ typedef struct demi_wall {
     dem_edge_rule rule;
     dem_real radius, share;        /* cylinder; grains */
     dem_sieve_desc sieve;
+    int ring_count;                /* of a surface of revolution: radii and heights, m */
+    dem_real ring_radius[DEM_RINGS], ring_height[DEM_RINGS];
     int vertex_count, element_count;
     dem_real *vertices;            /* vertex_count x 3, in the wall's own frame */
     int32_t *corners;              /* element_count x 3 (mesh), x 2 (profile) */
@@ -2379,7 +2637,7 @@ typedef struct demi_field {
     dem_field_desc desc;
     uint64_t samples;
     double next;                   /* s, time of the next sample */
-    double *solid, *mass, *momentum;
+    double *sums;                  /* demi_field_reals, see >>fields */
 } demi_field;
 
 typedef struct demi_feed {
@@ -2391,7 +2649,11 @@ typedef struct demi_feed {
     int64_t next;                  /* class of the next grain, -1: not drawn yet */
     uint64_t again;                /* step at which one that found no room tries again */
 } demi_feed;
-typedef struct demi_outlet { dem_outlet_desc desc; dem_outlet_state state; } demi_outlet;
+typedef struct demi_outlet {
+    dem_outlet_desc desc;
+    dem_outlet_state state;
+    int zone;                      /* of its bits in bodies.zones; -1: it takes grains out */
+} demi_outlet;
 
 /* One level of the hierarchical grid: the bodies of a class of radii, and cells of their own. */
 typedef struct demi_level {
@@ -2515,6 +2777,8 @@ typedef struct demi_bodies {
     int slot_free, slot_pending;
     int real_count;                /* numbers of the user's per body; 0: the next two are null */
     dem_real *reals, *rates;       /* x real_count; 1/s: what laws bring, of the present forces */
+    int zoned;                     /* the next exists */
+    uint32_t *zones;               /* bit k: in the region of counting outlet k; 16 + k: known */
     uint8_t *ghost;              /* by slot; null outside >>slabs: 1: a copy, owned elsewhere */
     dem_real *scratch;             /* x 4, for permuting */
     int32_t *order, *cell_of;      /* permutation, cell of each body */
@@ -2538,6 +2802,18 @@ typedef struct demi_filed {
     int count, rows;               /* entries; slots there were when they were filed */
     int stride;                    /* reals per entry */
 } demi_filed;
+
+/* What looks at a world as it goes on. Not of its state: it stays when that is read from a file. */
+typedef struct demi_lookers {
+    int tenths_told;               /* of this run, where progress is written into a file */
+    int under_way;                 /* the user is looking: no step now */
+    dem_replay *films;             /* open ones, which take their frames by themselves */
+    void (*films_look)(dem_world *w);           /* null: there are none */
+    int output_count;
+    struct demi_output *outputs;
+    dem_result (*outputs_look)(dem_world *w);   /* null: there are none */
+    void (*outputs_again)(dem_world *w);        /* the state has been read from a file */
+} demi_lookers;
 
 /* A world, by owners: each part writes its own, all read. Where more write, they are named. */
 struct dem_world {
@@ -2637,11 +2913,7 @@ struct dem_world {
     int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
     /* >>respond */
     void (*kernel)(dem_world *w, int domain);
-    /* >>step */
-    int tenths_told;               /* of this run, where progress is written into a file */
-    /* >>replay */
-    dem_replay *films;             /* open ones, which take their frames by themselves */
-    void (*films_look)(dem_world *w);           /* null: there are none */
+    demi_lookers look;             /* >>step, >>output, >>replay */
 };
 /* m: how far beyond their radii pairs, and bodies and walls, are looked for. */
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
@@ -2703,11 +2975,12 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
        sending to another slab are loops over these rows (>>bodies). >>add-array: a field in
        demi_bodies above and a row here. Who has it: DEMI_EVERY body; DEMI_BACK: those of a scheme
        that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_COUNTED: those of a
-       world with numbers of the user's, as many times as there are numbers; DEMI_SLOTS: every slot.
+       world with numbers of the user's, as many times as there are numbers; DEMI_ZONED: those of a
+       world with outlets that only count; DEMI_SLOTS: every slot.
        What is done with it: DEMI_KEPT: it is state, and 0 in a new body unless set; DEMI_REALS:
        kept, and finite; DEMI_PLACES: reals that begin with a place, which moves by a period; 0:
        room to work in. --- */
-enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_COUNTED, DEMI_SLOTS };
+enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_SLOTS };
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
     /* where its pointer stands in demi_bodies; bytes of one body (demi_item: of counted ones) */
@@ -2736,6 +3009,7 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(shape,           1, DEMI_TURNED, DEMI_KEPT),
     DEMI_ARRAY(reals,           1, DEMI_COUNTED, DEMI_REALS),
     DEMI_ARRAY(rates,           1, DEMI_COUNTED, DEMI_REALS),
+    DEMI_ARRAY(zones,           1, DEMI_ZONED,  DEMI_KEPT),
     DEMI_ARRAY(scratch,         4, DEMI_EVERY,  0),
     DEMI_ARRAY(order,           1, DEMI_EVERY,  0),
     DEMI_ARRAY(cell_of,         1, DEMI_EVERY,  0),
@@ -2746,7 +3020,8 @@ enum { DEMI_BODY_ARRAYS = (int)(sizeof demi_body_arrays/sizeof *demi_body_arrays
 /* Does a call, its name n characters long, build a scene? Without what it would have added or
    chosen a run is another one. Those that take away, look, read or write do not. */
 static int demi_builds(const char *call, size_t n) {
-    static const char *const ends[] = {"_add", "_fill", "_pack", "dem_pair_set", "dem_wall_motion"};
+    static const char *const ends[] = {"_add", "_fill", "_pack", "dem_pair_set", "dem_material_set",
+                                       "dem_wall_motion"};
     size_t k, l;
     for (k = 0; k < sizeof ends/sizeof *ends; k++) {
         l = strlen(ends[k]);
@@ -2877,6 +3152,12 @@ static void demi_free(dem_world *w, void *data) {
     w->bytes -= block->bytes + 2*DEMI_LINE;
     demi_raw_free(&w->desc.allocator, (unsigned char *)data - block->in,
                   block->bytes + 2*DEMI_LINE);
+}
+/* Does it hang on this chain? A copy of a world looks at what hangs on another's. */
+static int demi_owns(const dem_world *w, int chain, const void *data) {
+    const demi_block *block = w->chains[chain];
+    while (block && (const void *)(block + 1) != data) block = block->after;
+    return block != 0;
 }
 /* All that hangs on a chain: nothing can be forgotten. */
 static void demi_free_chain(dem_world *w, int chain) {
@@ -3246,6 +3527,43 @@ static dem_result demi_material_index(dem_world *w, const char *call, dem_materi
                          "it with dem_material_add and check what that returned", call, (int)m.id,
                          w->material_count);
     *index = m.id - 1;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_material_get(const dem_world *world, dem_material material,
+                                    dem_material_desc *desc) {
+    if (demi_null(world, "dem_material_get", desc, "desc")) return DEM_ERROR_ARGUMENT;
+    int m = 0;
+    if (demi_material_index((dem_world *)world, "dem_material_get", material, &m))
+        return DEM_ERROR_ARGUMENT;
+    *desc = world->materials[m];
+    return DEM_OK;
+}
+DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
+                                    const dem_material_desc *desc) {
+    if (demi_null(w, "dem_material_set", desc, "desc")) return DEM_ERROR_ARGUMENT;
+    dem_material_desc before;
+    int m = 0, i;
+    if (demi_material_index(w, "dem_material_set", material, &m) ||
+        demi_material_check(w, "dem_material_set", desc) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    before = w->materials[m];
+    if (desc->density < before.density || desc->density > before.density)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_set: density of material %d is %g "
+                         "kg/m3, must stay %g: bodies have their masses; add another material",
+                         m + 1, (double)desc->density, (double)before.density);
+    w->materials[m] = *desc;
+    if (!(desc->restitution > 0))               /* hysteretic law: left to the stiffnesses */
+        w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
+    for (i = 0; i < w->material_count; i++) {
+        const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
+        const dem_pair now = demi_mix(&w->materials[i], &w->materials[m]);
+        /* what dem_pair_set has put there stays */
+        if (!memcmp(&was, &w->pairs[i*DEMI_MATERIALS + m].given, sizeof was))
+            demi_pair_put(w, i, m, &now);
+    }
+    w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
+    w->stage.dt_valid = 0;
+    demi_built(w, "dem_material_set");
     return DEM_OK;
 }
 
@@ -4508,7 +4826,8 @@ static int demi_list_drop(dem_world *w) {
 /* Does each body of this world (or slot) have one? */
 static int demi_has(const dem_world *w, const demi_body_array *a) {
     return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
-           : a->who == DEMI_COUNTED ? w->bodies.real_count > 0 : 1;
+           : a->who == DEMI_COUNTED ? w->bodies.real_count > 0
+           : a->who == DEMI_ZONED ? w->bodies.zoned : 1;
 }
 /* Bytes of one body. */
 static size_t demi_item(const dem_world *w, const demi_body_array *a) {
@@ -4567,7 +4886,7 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
     const size_t slots = (size_t)w->bodies.slot_count + more;
     const int sets =
         1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED |
-        (w->bodies.real_count > 0) << DEMI_COUNTED;
+        (w->bodies.real_count > 0) << DEMI_COUNTED | w->bodies.zoned << DEMI_ZONED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->bodies.capacity) {
         if (!demi_bodies_room(w, sets, (size_t)w->bodies.count, room)) return 0;
@@ -4610,6 +4929,14 @@ static int demi_orient_begin(dem_world *w) {
         w->bodies.orient[4*i] = 1;
         demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
     }
+    return 1;
+}
+
+/* From here on bodies know in which regions they are. 0 when memory ran out. */
+static int demi_zones_begin(dem_world *w) {
+    if (w->bodies.zoned) return 1;
+    if (!demi_bodies_room(w, 1 << DEMI_ZONED, 0, (size_t)w->bodies.capacity)) return 0;
+    w->bodies.zoned = 1;
     return 1;
 }
 
@@ -4967,6 +5294,74 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
         demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
     }
     w->booked.inserted += demi_body_energy(w, i) - before;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+/* Mass, number and mean velocity of the bodies that can move, and their temperature. */
+static double demi_temperature(const dem_world *w, double *mass, int *count, double *mean) {
+    const int axes = w->desc.planar ? 2 : 3;
+    double sum = 0, rest;
+    int pass, i, k;
+    *mass = 0;
+    *count = 0;
+    memset(mean, 0, 3*sizeof *mean);
+    for (pass = 0; pass < 2; pass++)
+        for (i = 0; i < w->bodies.slot_count; i++) {      /* by slot: whatever the order is */
+            const int b = w->bodies.slot_index[i];
+            const double m = b < 0 ? 0 : (double)w->bodies.mass[b];
+            if (b < 0 || !(w->bodies.inv_mass[b] > 0)) continue;
+            if (!pass) { *mass += m; ++*count; }
+            for (k = 0; k < axes; k++) {
+                const double v = (double)w->bodies.vel[4*b + k];
+                if (!pass) mean[k] += m*v;
+                else sum += m*(v - mean[k]/ *mass)*(v - mean[k]/ *mass);
+            }
+        }
+    for (k = 0; k < 3 && *mass > 0; k++) mean[k] /= *mass;
+    if (*count < 2) return 0;
+    sum /= axes* *mass;
+    rest = mean[0]*mean[0] + mean[1]*mean[1] + mean[2]*mean[2];
+    /* what rounding leaves of equal velocities is no temperature */
+    return sum > 1e-12*DEMI_SINGLE*rest + 1e-28*rest ? sum : 0;
+}
+DEM_API double dem_temperature_get(const dem_world *w) {
+    double mass, mean[3];
+    int count;
+    if (demi_null(w, "dem_temperature_get", w, "world")) return 0;
+    return demi_temperature(w, &mass, &count, mean);
+}
+DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_t seed) {
+    const int axes = w && w->desc.planar ? 2 : 3;
+    double mass, mean[3], drawn[3], was;
+    int count, i, k, pass;
+    if (demi_null(w, "dem_temperature_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    was = demi_temperature(w, &mass, &count, mean);
+    if (!(temperature >= 0) || !demi_finite_double(temperature) || count < 2 ||
+        (!seed && temperature > 0 && !(was > 0)))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_temperature_set: temperature is %g m2/s2, of "
+                         "%d bodies that can move, now at %g m2/s2; must be finite and >= 0, of at "
+                         "least two, and above 0 now where they are to be scaled: give a seed to "
+                         "draw velocities", temperature, count, was);
+    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_temperature_set");
+    /* first, with a seed, the velocities are drawn; then they are scaled */
+    for (pass = seed ? 0 : 1; pass < 2; pass++) {
+        double now = demi_temperature(w, &mass, &count, drawn), scale;
+        scale = now > 0 ? sqrt(temperature/now) : 0;
+        for (i = 0; i < w->bodies.slot_count; i++) {
+            const int b = w->bodies.slot_index[i];
+            double before;
+            if (b < 0 || !(w->bodies.inv_mass[b] > 0)) continue;
+            before = demi_body_energy(w, b);
+            for (k = 0; k < axes; k++) {
+                dem_real *v = w->bodies.vel + 4*b + k;
+                if (pass) *v = (dem_real)(mean[k] + scale*((double)*v - drawn[k]));
+                else *v = (dem_real)(demi_gauss(&seed)/sqrt((double)w->bodies.mass[b]));
+                w->bodies.half_vel[4*b + k] = *v;
+            }
+            w->booked.inserted += demi_body_energy(w, b) - before;
+        }
+    }
     demi_scene_changed(w);
     return DEM_OK;
 }
@@ -5390,9 +5785,10 @@ static int demi_facets_any(const demi_wall *wall) {
 static int demi_walls_together(const demi_wall *a, const demi_wall *b) {
     const dem_motion *m = &a->motion, *o = &b->motion;
     if (a == b) return 1;
-    if (m->kind != o->kind || m->kind == DEM_MOTION_USER) return 0;
+    if (m->kind != o->kind || m->kind == DEM_MOTION_USER || m->kind == DEM_MOTION_TABLE) return 0;
     if (m->kind == DEM_MOTION_FIXED) return 1;
     if (memcmp(&m->start, &o->start, sizeof m->start) ||
+        memcmp(&m->ramp, &o->ramp, sizeof m->ramp) ||
         memcmp(&m->velocity, &o->velocity, sizeof m->velocity)) return 0;
     return m->kind == DEM_MOTION_TRANSLATING ? 1 : m->kind == DEM_MOTION_ROTATING
         ? !memcmp(&m->point, &o->point, sizeof m->point) &&
@@ -5426,7 +5822,17 @@ static void demi_wall_span(demi_wall *wall) {
     for (i = 0; i < wall->vertex_count; i++)
         demi_extent_add(lo, hi, demi_add(p->position, demi_rotate(p->rotation,
                                         demi_at(wall->vertices + 3*i))), pad);
-    if (!wall->vertex_count) demi_extent_add(lo, hi, p->position, wall->extent);
+    for (i = 0; i < wall->ring_count; i++) {
+        const dem_vec3 n = demi_v(p->rotation[2], p->rotation[5], p->rotation[8]);
+        const dem_vec3 x = demi_add(p->position, demi_scale(n, wall->ring_height[i]));
+        const dem_vec3 out = demi_v(DEMI_SQRT(DEMI_MAX(1 - n.x*n.x, 0)),
+                                    DEMI_SQRT(DEMI_MAX(1 - n.y*n.y, 0)),
+                                    DEMI_SQRT(DEMI_MAX(1 - n.z*n.z, 0)));
+        demi_extent_add(lo, hi, demi_add(x, demi_scale(out, wall->ring_radius[i])), 0);
+        demi_extent_add(lo, hi, demi_sub(x, demi_scale(out, wall->ring_radius[i])), 0);
+    }
+    if (!wall->vertex_count && !wall->ring_count)
+        demi_extent_add(lo, hi, p->position, wall->extent);
     if (demi_wall_is(wall, DEMI_DRAWN)) {
         lo[2] = -far/4;
         hi[2] = far/4;
@@ -5945,19 +6351,147 @@ static void demi_pose_identity(dem_pose *p) {
     p->rotation[0] = p->rotation[4] = p->rotation[8] = 1;
 }
 
+/* How far a speed that rises for `ramp` s has brought one after t >= 0, as the time that it would
+   have taken at full speed, s, and which part of the full speed there is. */
+static double demi_ramp(double t, double ramp, double *part) {
+    const double u = ramp > 0 && t < ramp ? t/ramp : 1;
+    *part = u*u*(3 - 2*u);
+    return u < 1 ? ramp*u*u*u*(1 - u/2) : t - ramp/2;
+}
+/* Number c (0..2: position, 3..6: rotation) of row k of a table; rows of one that repeats go on. */
+static double demi_row_number(const dem_motion *m, int k, int c) {
+    const dem_motion_row *r = m->table + k;
+    switch (c) {
+    case 0: return (double)r->position.x;
+    case 1: return (double)r->position.y;
+    case 2: return (double)r->position.z;
+    case 3: return (double)r->rotation.w;
+    case 4: return (double)r->rotation.x;
+    case 5: return (double)r->rotation.y;
+    default: return (double)r->rotation.z;
+    }
+}
+/* Slope of number c at row k, 1/s: of the parabola through it and its neighbours; 0 at the ends of
+   a table that does not repeat. */
+static double demi_row_slope(const dem_motion *m, int k, int c) {
+    const int last = m->table_count - 1, ends = k == 0 || k == last;
+    const int before = k == 0 ? last - 1 : k - 1, after = k == last ? 1 : k + 1;
+    const int here_a = k == 0 ? last : k, here_b = k == last ? 0 : k;   /* the same place */
+    int i;
+    double a, b, ta, tb, side = 0;
+    if (ends && !m->table_repeats) return 0;
+    /* of the two quaternions of one turn the last row may have the other */
+    for (i = 3; ends && c > 2 && i < 7; i++)
+        side += demi_row_number(m, 0, i)*demi_row_number(m, last, i);
+    ta = m->table[here_a].time - m->table[before].time;
+    tb = m->table[after].time - m->table[here_b].time;
+    a = (demi_row_number(m, here_a, c) - demi_row_number(m, before, c))/ta;
+    b = (demi_row_number(m, after, c) - demi_row_number(m, here_b, c))/tb;
+    if (side < 0) *(k == 0 ? &a : &b) *= -1;
+    return (a*tb + b*ta)/(ta + tb);
+}
+/* Cubic by Hermite between two rows; quaternions likewise, then made unit: their derivative, and
+   with it the spin, is that of what is drawn. */
+static void demi_table_pose(const demi_wall *wall, double t, dem_pose *pose) {
+    const dem_motion *m = &wall->motion;
+    const int last = m->table_count - 1;
+    const double end = m->table[last].time;
+    double x[7], v[7], size = 0, along = 0, h, u, R[9], w[3];
+    dem_real T[9];
+    dem_vec3 arm, at;
+    int k = 0, c, i, j;
+    if (m->table_repeats && t > 0) t = fmod(t, end);
+    t = DEMI_MIN(DEMI_MAX(t, 0), end);
+    while (k + 1 < last && t >= m->table[k + 1].time) k++;
+    h = m->table[k + 1].time - m->table[k].time;
+    u = (t - m->table[k].time)/h;
+    for (c = 0; c < 7; c++) {
+        const double a = demi_row_number(m, k, c), b = demi_row_number(m, k + 1, c);
+        const double p = h*demi_row_slope(m, k, c), q = h*demi_row_slope(m, k + 1, c);
+        x[c] = a + u*(p + u*(3*(b - a) - 2*p - q + u*(2*(a - b) + p + q)));
+        v[c] = (p + u*(2*(3*(b - a) - 2*p - q) + u*3*(2*(a - b) + p + q)))/h;
+    }
+    for (c = 3; c < 7; c++) size += x[c]*x[c];
+    size = sqrt(size);
+    for (c = 3; c < 7; c++) { x[c] /= size; v[c] /= size; along += x[c]*v[c]; }
+    for (c = 3; c < 7; c++) v[c] -= along*x[c];
+    /* w = 2 dq/dt q* */
+    w[0] = 2*(-v[3]*x[4] + v[4]*x[3] - v[5]*x[6] + v[6]*x[5]);
+    w[1] = 2*(-v[3]*x[5] + v[4]*x[6] + v[5]*x[3] - v[6]*x[4]);
+    w[2] = 2*(-v[3]*x[6] - v[4]*x[5] + v[5]*x[4] + v[6]*x[3]);
+    R[0] = 1 - 2*(x[5]*x[5] + x[6]*x[6]); R[1] = 2*(x[4]*x[5] - x[3]*x[6]);
+    R[2] = 2*(x[4]*x[6] + x[3]*x[5]);     R[3] = 2*(x[4]*x[5] + x[3]*x[6]);
+    R[4] = 1 - 2*(x[4]*x[4] + x[6]*x[6]); R[5] = 2*(x[5]*x[6] - x[3]*x[4]);
+    R[6] = 2*(x[4]*x[6] - x[3]*x[5]);     R[7] = 2*(x[5]*x[6] + x[3]*x[4]);
+    R[8] = 1 - 2*(x[4]*x[4] + x[5]*x[5]);
+    for (i = 0; i < 9; i++) T[i] = (dem_real)R[i];
+    for (i = 0; i < 3; i++)
+        for (j = 0; j < 3; j++)
+            pose->rotation[3*i + j] = (dem_real)(R[3*i]*(double)wall->home.rotation[j] +
+                R[3*i + 1]*(double)wall->home.rotation[3 + j] +
+                R[3*i + 2]*(double)wall->home.rotation[6 + j]);
+    arm = demi_rotate(T, demi_sub(wall->home.position, m->point));
+    at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
+    pose->position = demi_add(demi_add(m->point, at), arm);
+    pose->spin = demi_v((dem_real)w[0], (dem_real)w[1], (dem_real)w[2]);
+    pose->velocity = demi_add(demi_v((dem_real)v[0], (dem_real)v[1], (dem_real)v[2]),
+                              demi_cross(pose->spin, arm));
+}
+/* A wall's own table of a motion's rows, quaternions unit and each on the side of the one before.
+   0: memory ran out. */
+static int demi_table_make(dem_world *w, const dem_motion *m, dem_motion_row **out) {
+    dem_motion_row *rows;
+    int k;
+    *out = 0;
+    if (m->kind != DEM_MOTION_TABLE) return 1;
+    rows = (dem_motion_row *)demi_hold(w, DEMI_SCENE, (size_t)m->table_count, sizeof *rows);
+    if (!rows) return 0;
+    for (k = 0; k < m->table_count; k++) {
+        dem_quat q = m->table[k].rotation;
+        rows[k] = m->table[k];
+        if (!(demi_quat_most(q) > 0)) q = dem_quat_make(1, 0, 0, 0);
+        q = demi_quat_unit(q);
+        if (k && q.w*rows[k - 1].rotation.w + q.x*rows[k - 1].rotation.x +
+            q.y*rows[k - 1].rotation.y + q.z*rows[k - 1].rotation.z < 0)
+            q = dem_quat_make(-q.w, -q.x, -q.y, -q.z);
+        rows[k].rotation = q;
+    }
+    *out = rows;
+    return 1;
+}
+/* Of a motion with a table: what is wrong with it, in the name of dem_wall_motion. */
+static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) {
+    int k, bad = -1;
+    if (!m->table || m->table_count < 2)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: the table of wall %d has %d "
+                         "rows, must have at least 2; set table and table_count", wall,
+                         m->table ? m->table_count : 0);
+    for (k = 0; k < m->table_count && bad < 0; k++) {
+        const dem_motion_row *r = m->table + k;
+        if (!demi_finite_double(r->time) || !demi_place(r->position) ||
+            !demi_quat_finite(r->rotation) ||
+            (k ? !(r->time > r[-1].time) : r->time < 0 || r->time > 0)) bad = k;
+    }
+    if (bad < 0) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: row %d of the table of wall %d, at "
+                     "%g s, is not finite or not later than the one before; the first is at 0 s",
+                     bad, wall, m->table[bad].time);
+}
 /* Where the wall is at a time. Rotating: exact rotation from the pose it started with, so that no
    error builds up. Velocities are exact derivatives. */
 static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose) {
     const dem_motion *m = &wall->motion;
     const double t = time - m->start;
+    double gone, part;
     *pose = wall->home;
     pose->velocity = pose->spin = demi_v(0, 0, 0);
     switch (m->kind) {
     case DEM_MOTION_FIXED: break;
     case DEM_MOTION_TRANSLATING:
         if (t <= 0) break;
-        pose->position = demi_add(pose->position, demi_scale(m->velocity, (dem_real)t));
-        pose->velocity = m->velocity;
+        gone = demi_ramp(t, m->ramp, &part);
+        pose->position = demi_add(pose->position, demi_scale(m->velocity, (dem_real)gone));
+        pose->velocity = demi_scale(m->velocity, (dem_real)part);
         break;
     case DEM_MOTION_ROTATING: {
         const dem_vec3 axis = demi_unit(m->axis), arm = demi_sub(wall->home.position, m->point);
@@ -5965,8 +6499,9 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
         dem_real T[9];
         int i, j;
         if (t <= 0) break;
+        gone = demi_ramp(t, m->ramp, &part);
         demi_rotation(turn, (double)axis.x, (double)axis.y, (double)axis.z,
-                      fmod((double)m->speed*t, 2*DEMI_PI));
+                      fmod((double)m->speed*gone, 2*DEMI_PI));
         for (i = 0; i < 9; i++) T[i] = (dem_real)turn[i];
         for (i = 0; i < 3; i++)
             for (j = 0; j < 3; j++)
@@ -5974,19 +6509,24 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
                     turn[3*i + 1]*(double)wall->home.rotation[3 + j] +
                     turn[3*i + 2]*(double)wall->home.rotation[6 + j]);
         pose->position = demi_add(m->point, demi_rotate(T, arm));
-        pose->spin = demi_scale(axis, m->speed);
+        pose->spin = demi_scale(axis, m->speed*(dem_real)part);
         pose->velocity = demi_cross(pose->spin, demi_sub(pose->position, m->point));
         break;
     }
     case DEM_MOTION_OSCILLATING: {
         const dem_vec3 way = demi_unit(m->velocity);
         const double w = 2*DEMI_PI*(double)m->frequency, phase = w*t + (double)m->phase;
-        const dem_real way_out = (dem_real)((double)m->amplitude*demi_sin(phase));
-        pose->position = demi_add(pose->position, demi_scale(way, way_out));
-        pose->velocity = demi_scale(way, (dem_real)((double)m->amplitude*w*demi_cos(phase)));
+        const double u = m->ramp > 0 && t < m->ramp ? DEMI_MAX(t, 0)/m->ramp : 1;
+        const double grows = u < 1 ? 6*u*(1 - u)/m->ramp : 0;
+        part = u*u*(3 - 2*u);
+        pose->position = demi_add(pose->position, demi_scale(way, (dem_real)(
+            part*(double)m->amplitude*demi_sin(phase))));
+        pose->velocity = demi_scale(way, (dem_real)((double)m->amplitude*
+            (part*w*demi_cos(phase) + grows*demi_sin(phase))));
         break;
     }
     case DEM_MOTION_USER: m->function(time, pose, m->user); break;
+    case DEM_MOTION_TABLE: demi_table_pose(wall, t, pose); break;
     }
 }
 
@@ -6010,14 +6550,14 @@ static double demi_wall_speed(const demi_wall *wall) {
 /* The arrays a wall owns: where their pointers stand. What is freed, and copied into slabs. */
 #define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
     &(wall)->weight, &(wall)->owns, &(wall)->planes, &(wall)->cut_start, &(wall)->cuts, \
-    &(wall)->cell_start, &(wall)->cell_items}
+    &(wall)->cell_start, &(wall)->cell_items, &(wall)->motion.table}
 /* Its arrays, by the one list of them; what is left is a wall that was removed. */
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
     void *places[] = DEMI_WALL_ARRAYS(wall), *data;
     size_t k;
     for (k = 0; k < sizeof places/sizeof *places; k++) {
         memcpy(&data, places[k], sizeof data);
-        demi_free(w, data);
+        if (demi_owns(w, DEMI_SCENE, data)) demi_free(w, data);    /* a copy for trials does not */
     }
     memset(wall, 0, sizeof *wall);
 }
@@ -6247,6 +6787,79 @@ DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 
     return demi_wall_adopt(w, "dem_cylinder_add", &wall);
 }
 
+/* dem_revolved_add, in the name of `call`. */
+static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material material,
+                                   dem_vec3 point, dem_vec3 axis, int count,
+                                   const dem_real *radii, const dem_real *heights) {
+    demi_wall wall;
+    int k, bad = -1;
+    if (!demi_wall_begin(w, call, material, DEMI_WALL_REVOLVED, &wall)) return demi_no_wall;
+    if (count < 2 || count > DEM_RINGS || !demi_place(point) || !demi_finite3(axis) ||
+        !(demi_dot(axis, axis) > 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and axis (%g, %g, %g), must be 2 to %d "
+                  "rings and not zero, point finite", call, count, (double)axis.x, (double)axis.y,
+                  (double)axis.z, (int)DEM_RINGS);
+        return demi_no_wall;
+    }
+    for (k = 0; k < count && bad < 0; k++) {
+        const dem_real r = radii[k], h = heights[k];
+        if (!(r >= 0) || !demi_finite(r) || !demi_finite(h) || !((double)r < DEMI_FARTHEST) ||
+            !(fabs((double)h) < DEMI_FARTHEST)) bad = k;
+        else if (k && !(demi_size(demi_v(r - radii[k - 1], h - heights[k - 1], 0)) > DEMI_LEAST))
+            bad = k;
+        else if (k && !(r > 0) && !(radii[k - 1] > 0)) bad = k;
+        wall.ring_radius[k] = r;
+        wall.ring_height[k] = h;
+        wall.radius = DEMI_MAX(wall.radius, r);
+        wall.extent = DEMI_MAX(wall.extent, DEMI_SQRT(r*r + h*h));
+    }
+    if (bad >= 0) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: ring %d has radius %g m at height %g m; must be "
+                  "finite, the radius >= 0 and not 0 twice running, no two neighbours in one place",
+                  call, bad, (double)radii[bad], (double)heights[bad]);
+        return demi_no_wall;
+    }
+    wall.ring_count = count;
+    wall.element_count = 1;
+    wall.home.position = wall.motion.point = point;
+    wall.motion.axis = demi_unit(axis);
+    demi_frame_of(wall.home.rotation, wall.motion.axis);
+    return demi_wall_adopt(w, call, &wall);
+}
+DEM_API dem_wall dem_revolved_add(dem_world *w, dem_material material, dem_vec3 point,
+                                  dem_vec3 axis, int count, const dem_real *radii,
+                                  const dem_real *heights) {
+    if (demi_null(w, "dem_revolved_add", radii, "radii") ||
+        demi_null(w, "dem_revolved_add", heights, "heights")) return demi_no_wall;
+    return demi_revolved_make(w, "dem_revolved_add", material, point, axis, count, radii, heights);
+}
+DEM_API dem_wall dem_cone_add(dem_world *w, dem_material material, dem_vec3 from, dem_vec3 to,
+                              dem_real radius_from, dem_real radius_to) {
+    const dem_vec3 way = demi_sub(to, from);
+    dem_real radii[2], heights[2];
+    if (demi_null(w, "dem_cone_add", w, "world")) return demi_no_wall;
+    radii[0] = radius_from;
+    radii[1] = radius_to;
+    heights[0] = 0;
+    heights[1] = demi_length(way);
+    return demi_revolved_make(w, "dem_cone_add", material, from, way, 2, radii, heights);
+}
+/* For pictures a surface of revolution is so many flat sides around. */
+enum { DEMI_RING_SIDES = 48 };
+static void demi_ring_corner(const demi_wall *wall, int ring, int side, dem_real *out) {
+    const double a = 2*DEMI_PI*side/(int)DEMI_RING_SIDES, r = (double)wall->ring_radius[ring];
+    out[0] = (dem_real)(r*demi_cos(a));
+    out[1] = (dem_real)(r*demi_sin(a));
+    out[2] = wall->ring_height[ring];
+}
+/* Corner c of triangle t (two for each side of each piece): a number of ring*SIDES + side. */
+static int demi_ring_triangle(int t, int c) {
+    const int side = t/2%DEMI_RING_SIDES, piece = t/2/DEMI_RING_SIDES, next = side + 1;
+    const int a = piece*DEMI_RING_SIDES + side, b = piece*DEMI_RING_SIDES + next%DEMI_RING_SIDES;
+    if (t & 1) return c == 0 ? b : c == 1 ? b + DEMI_RING_SIDES : a + DEMI_RING_SIDES;
+    return c == 0 ? a : c == 1 ? b : a + DEMI_RING_SIDES;
+}
+
 /* Copies vertices (dimension `per_vertex`) and corners into a wall. 0 with a sentence when they are
    bad. */
 static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int vertices,
@@ -6451,7 +7064,7 @@ static int demi_wall_symmetric(const demi_wall *wall) {
     const dem_motion *m = &wall->motion;
     dem_vec3 z, off;
     if (m->kind == DEM_MOTION_FIXED) return 1;
-    if (m->kind != DEM_MOTION_ROTATING || wall->extent >= 0) return 0;
+    if (m->kind != DEM_MOTION_ROTATING || (wall->extent >= 0 && !wall->ring_count)) return 0;
     z = demi_v(wall->home.rotation[2], wall->home.rotation[5], wall->home.rotation[8]);
     if (demi_length(demi_cross(z, demi_unit(m->axis))) > DEM_R(1e-6)) return 0;
     if (demi_wall_is(wall, DEMI_FLAT)) return 1;
@@ -6463,6 +7076,9 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
     if (demi_null(w, "dem_wall_motion", motion, "motion")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, "dem_wall_motion", id);
     demi_wall *wall;
+    dem_motion_row *rows = 0;
+    const void *before;
+    void *old;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: axis of rotating wall %d is "
@@ -6482,15 +7098,25 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
         !demi_finite(motion->speed) || !demi_finite(motion->amplitude) ||
         !demi_finite(motion->frequency) ||
         !demi_finite(motion->phase) || !demi_finite_double(motion->start) ||
-        (int)motion->kind < 0 || motion->kind > DEM_MOTION_USER)
+        !demi_finite_double(motion->ramp) || !(motion->ramp >= 0) ||
+        (int)motion->kind < 0 || motion->kind > DEM_MOTION_TABLE)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: a number in the motion of wall "
-                         "%d is not finite, or "
-                         "its kind %d unknown", (int)id.id, (int)motion->kind);
-    if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_motion");
+                         "%d is not finite, its ramp, %g s, below 0, or "
+                         "its kind %d unknown", (int)id.id, motion->ramp, (int)motion->kind);
+    if (motion->kind == DEM_MOTION_TABLE && demi_table_check(w, (int)id.id, motion) != DEM_OK)
+        return DEM_ERROR_ARGUMENT;
+    if (!demi_table_make(w, motion, &rows) || !demi_list_drop(w)) {
+        demi_free(w, rows);
+        return demi_no_memory(w, "dem_wall_motion");
+    }
     wall = &w->walls[i];
+    before = wall->motion.table;
+    memcpy(&old, &before, sizeof old);
+    if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
     wall->home = wall->pose;                    /* goes on from where it is */
     wall->home.velocity = wall->home.spin = demi_v(0, 0, 0);
     wall->motion = *motion;
+    wall->motion.table = rows;
     if (!(demi_dot(motion->axis, motion->axis) > 0)) wall->motion.axis = demi_v(0, 0, 1);
     wall->motion.start = DEMI_MAX(motion->start, w->clock.time);
     wall->symmetric = demi_wall_symmetric(wall);
@@ -9260,6 +9886,36 @@ DEM_INLINE dem_real demi_cylinder_near(const demi_wall *wall, int element, dem_v
     *normal = wall->inside ? d : demi_scale(d, -1);
     return wall->inside ? r + l - wall->radius : r + wall->radius - l;
 }
+/* How a place, `out` from the axis and at a height, lies to piece k of a surface of revolution: its
+   distance, m; the nearest point of the piece, and whether that is its first end (-1), its last (1)
+   or between (0). */
+static dem_real demi_ring_piece(const demi_wall *wall, int k, dem_real out, dem_real height,
+                                dem_real *r, dem_real *h, int *end) {
+    const dem_real *R = wall->ring_radius + k, *H = wall->ring_height + k;
+    const dem_real a = R[1] - R[0], b = H[1] - H[0];
+    const dem_real t = ((out - R[0])*a + (height - H[0])*b)/(a*a + b*b);
+    *end = t <= 0 ? -1 : t >= 1 ? 1 : 0;
+    *r = *end < 0 ? R[0] : *end ? R[1] : R[0] + t*a;
+    *h = *end < 0 ? H[0] : *end ? H[1] : H[0] + t*b;
+    return DEMI_SQRT((out - *r)*(out - *r) + (height - *h)*(height - *h));
+}
+static dem_real demi_revolved_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
+                                   dem_vec3 *normal, dem_vec3 *point) {
+    const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
+    dem_real least = 0, a, b;
+    int k, end;
+    (void)element;
+    for (k = 0; k + 1 < wall->ring_count; k++) {
+        const dem_real dist = demi_ring_piece(wall, k, l, x.z, &a, &b, &end);
+        if (k && !(dist < least)) continue;
+        least = dist;
+        *point = demi_v(d.x*a, d.y*a, b);
+    }
+    *normal = demi_sub(*point, x);
+    *normal = least > 0 ? demi_scale(*normal, 1/least) : d;
+    return r - least;
+}
 /* The sheet that a sieve lies in, holes or not. */
 static dem_real demi_sieve_near(const demi_wall *wall, int element, dem_vec3 x, dem_real r,
                                 dem_vec3 *normal, dem_vec3 *point) {
@@ -10326,6 +10982,38 @@ static int demi_facets_spheres(const dem_world *w, int d, int first, int last, d
     return demi_facets_touch(w, d, first, last, gone, at, part->radius, 0,
                              demi_range(w, part->radius), places);
 }
+/* Where a sphere touches a surface of revolution: pieces between their ends, rings where it lies
+   beyond the ends of all pieces that meet there. Elements: pieces, then rings. */
+static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, demi_touching *out) {
+    const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
+    const int pieces = wall->ring_count - 1;
+    int k, end, before = 1, count = 0;          /* before: did the last piece end in this ring? */
+    for (k = 0; k <= pieces; k++) {
+        dem_real a = wall->ring_radius[k], b = wall->ring_height[k], dist = 0;
+        int piece, ring = before > 0;
+        end = -1;
+        if (k < pieces) dist = demi_ring_piece(wall, k, l, x.z, &a, &b, &end);
+        before = end;
+        ring = ring && end < 0;
+        piece = k < pieces && !end;
+        if (!ring && !piece) continue;
+        if (ring) {
+            a = wall->ring_radius[k];
+            b = wall->ring_height[k];
+            dist = DEMI_SQRT((l - a)*(l - a) + (x.z - b)*(x.z - b));
+        }
+        if (!(r - dist > 0)) continue;
+        out[count].element = ring ? pieces + k : k;
+        out[count].share = wall->share;
+        out[count].overlap = r - dist;
+        out[count].point = demi_v(d.x*a, d.y*a, b);
+        out[count].normal = dist > 0
+            ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
+        count++;
+    }
+    return count;
+}
 /* A sphere and a wall each of whose elements it may touch, or be within the range of (as a sphere
    of so much larger a radius finds them); how: 0: as it is near to them, 1: as
    segments that push with a fraction, 2: as a sieve, one candidate and as many contacts as there
@@ -10345,6 +11033,7 @@ DEM_INLINE int demi_spheres_touch(const dem_world *w, int d, int first, int last
         const int from = count;
         end = demi_image_end(w, base, k, last);
         if (how == 2) count += demi_sieve_touch(&wall->sieve, x, r, range, out + count);
+        else if (how == 3) count += demi_revolved_touch(wall, x, r, out + count);
         else for (; k < end; k++) {
             demi_touching *c = &out[count];
             if (w->wall_gap[base + k] > gone) continue;
@@ -10390,6 +11079,10 @@ static int demi_elements_touch(const dem_world *w, int d, int first, int last, d
 static int demi_segments_touch(const dem_world *w, int d, int first, int last, dem_real gone,
                                dem_vec3 at, const demi_part *part, demi_touching **places) {
     return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 1, 0);
+}
+static int demi_revolved_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    return demi_spheres_touch(w, d, first, last, gone, at, part->radius, places, 3, 0);
 }
 static int demi_sieve_spheres(const dem_world *w, int d, int first, int last, dem_real gone,
                               dem_vec3 at, const demi_part *part, demi_touching **places) {
@@ -10606,6 +11299,19 @@ static void demi_cylinder_bend(const demi_wall *wall, const int32_t *among, int 
     (void)among; (void)count;
     b->axis.z = 1;
     b->turn = out < 0 || out > 0 ? -1/out : 0;
+}
+/* About the axis of revolution pieces and rings turn the normal as it points outward; up and down
+   the surface rings do, as corners. */
+static void demi_revolved_bend(const demi_wall *wall, const int32_t *among, int count,
+                               demi_bend *b) {
+    const dem_vec3 x = demi_sub(b->point, demi_scale(b->normal, b->dist));
+    const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
+    const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
+    const dem_real out = demi_dot(b->normal, d);
+    (void)among; (void)count;
+    b->axis = demi_unit(demi_v(-b->normal.z*d.x, -b->normal.z*d.y, out));
+    b->along = b->number < wall->ring_count - 1 ? 0 : -1/b->dist;
+    b->turn = l > 0 ? out/l : 0;
 }
 /* Grains, and what else goes round a point. */
 static void demi_grain_bend(const demi_wall *wall, const int32_t *among, int count, demi_bend *b) {
@@ -12188,6 +12894,194 @@ DEM_API dem_totals dem_totals_get(const dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>sizes
+   Distributions of size. Each kind is a function, the share that is finer than a radius, made to go
+   from 0 below min to 1 at max; a table of it at radii of equal ratio, with the numbers that belong
+   to the shares, is all that drawing and classes need. Shares of mass become numbers by the mass of
+   a grain, r^3 or r^2. Tests: tests/test_sizes.c.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_SIZE_STEPS = 2048 };
+typedef struct demi_size_table {
+    double at[DEMI_SIZE_STEPS + 1];      /* m, from the smallest to the largest */
+    double number[DEMI_SIZE_STEPS + 1];  /* share of the number that is up to there; the last: 1 */
+} demi_size_table;
+/* 2/sqrt(pi) x exp(-x^2) sum (2 x^2)^n/(1 3 5 ... (2n + 1)): all terms positive. */
+static double demi_erf(double x) {
+    double term = x, sum = x;
+    int n;
+    if (fabs(x) > 6) return x < 0 ? -1 : 1;
+    for (n = 1; n < 300 && fabs(term) > 1e-17*fabs(sum); n++) {
+        term *= 2*x*x/(2*n + 1);
+        sum += term;
+    }
+    return 2/sqrt(DEMI_PI)*demi_exp(-x*x)*sum;
+}
+/* Share finer than r (m), of the distribution without ends. */
+static double demi_size_share(const dem_sizes *d, double r) {
+    int k;
+    switch (d->kind) {
+    case DEM_SIZES_UNIFORM: break;
+    case DEM_SIZES_LOGNORMAL:
+        return r > 0 ? (1 + demi_erf(demi_log(r/(double)d->median)/(sqrt(2.0)*d->spread)))/2 : 0;
+    case DEM_SIZES_WEIBULL:
+        return r > 0 ? 1 - demi_exp(-demi_pow(r/(double)d->scale, d->modulus)) : 0;
+    case DEM_SIZES_SIEVES:
+        if (r < (double)d->radius[0]) return 0;
+        for (k = 1; k < d->count; k++) {
+            const double a = (double)d->radius[k - 1], b = (double)d->radius[k];
+            const double more = d->passing[k] - d->passing[k - 1];
+            if (r < b) return d->passing[k - 1] + more*(r - a)/(b - a);
+        }
+        return 1;
+    }
+    return r;                                   /* uniform: made to go from 0 to 1 below */
+}
+/* The ends of a distribution; 0 with a sentence in the name of `call` when it is none. */
+static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, double *lo,
+                          double *hi) {
+    const int sieves = d->kind == DEM_SIZES_SIEVES;
+    int k, good = (int)d->kind >= 0 && d->kind <= DEM_SIZES_SIEVES;
+    *lo = (double)d->min;
+    *hi = (double)d->max;
+    if (d->kind == DEM_SIZES_LOGNORMAL) {
+        good = good && d->median > 0 && d->spread > 0 && d->spread < 10;
+        if (good && !(*lo > 0)) *lo = (double)d->median*demi_exp(-6*d->spread);
+        if (good && !(*hi > 0)) *hi = (double)d->median*demi_exp(6*d->spread);
+    }
+    if (d->kind == DEM_SIZES_WEIBULL) {
+        good = good && d->scale > 0 && d->modulus > 0.05 && d->modulus < 1e3;
+        if (good && !(*hi > 0)) *hi = (double)d->scale*demi_pow(-demi_log(1e-9), 1/d->modulus);
+    }
+    if (sieves) {
+        good = good && d->count >= 2 && d->count <= DEM_SIEVES;
+        for (k = 0; good && k < d->count; k++)
+            good = demi_finite(d->radius[k]) && demi_finite_double(d->passing[k]) &&
+                d->radius[k] > (k ? d->radius[k - 1] : 0) &&
+                d->passing[k] >= (k ? d->passing[k - 1] : 0);
+        good = good && fabs(d->passing[d->count - 1] - 1) < 1e-9;
+        if (good && !(*lo > 0)) *lo = (double)d->radius[0];
+        if (good && !(*hi > 0)) *hi = (double)d->radius[d->count - 1];
+    }
+    if (good && *lo > 0 && *hi >= *lo && *hi < DEMI_FARTHEST && demi_finite(d->min) &&
+        demi_finite(d->max) && (!(*hi > *lo) || d->kind == DEM_SIZES_UNIFORM ||
+                                demi_size_share(d, *hi) > demi_size_share(d, *lo))) return 1;
+    if (sieves)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d sieves, radii %g to %g m; must be 2 to %d, radii "
+                  "and shares that pass ascending, the first radius > 0, the last share 1 (not 100 "
+                  "per cent), and some grains between min and max", call, d->count, *lo, *hi,
+                  (int)DEM_SIEVES);
+    else
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sizes of kind %d with radii %g to %g m; must be "
+                  "0 < min <= max in m and finite, log-normal: median and spread > 0, Weibull: "
+                  "scale and modulus > 0; start from DEM_SIZES", call, (int)d->kind, *lo, *hi);
+    return 0;
+}
+/* Share finer than r of the distribution between its ends. */
+static double demi_size_finer(const dem_sizes *d, double lo, double hi, double r) {
+    /* what passes the first sieve is of its size: a step there */
+    const int step = d->kind == DEM_SIZES_SIEVES && lo <= (double)d->radius[0];
+    const double below = step ? 0 : demi_size_share(d, lo);
+    if (r < lo) return 0;
+    if (r >= hi) return 1;
+    return (demi_size_share(d, r) - below)/(demi_size_share(d, hi) - below);
+}
+static double demi_size_mass(const dem_world *w, double r) { return w->desc.planar ? r*r : r*r*r; }
+static void demi_size_table_make(const dem_world *w, const dem_sizes *d, double lo, double hi,
+                                 demi_size_table *t) {
+    const int n = DEMI_SIZE_STEPS;
+    const double ratio = demi_log(hi/lo)/n;
+    double share = demi_size_finer(d, lo, hi, lo);    /* what is all of the smallest size */
+    int k;
+    t->at[0] = lo;
+    t->number[0] = d->by_count ? share : share/demi_size_mass(w, lo);
+    for (k = 1; k <= n; k++) {
+        const double b = t->at[k] = k < n ? lo*demi_exp(k*ratio) : hi, a = t->at[k - 1];
+        const double more = demi_size_finer(d, lo, hi, b) - share;
+        share += more;
+        t->number[k] = t->number[k - 1] +
+            (d->by_count ? more : more/demi_size_mass(w, (a + b)/2));
+    }
+    for (k = 0; k <= n; k++) t->number[k] /= t->number[n] > 0 ? t->number[n] : 1;
+    t->number[n] = 1;
+}
+/* The radius that a share of the number is finer than. */
+static double demi_size_draw(const demi_size_table *t, double share) {
+    int lo = 0, hi = DEMI_SIZE_STEPS;
+    if (share < t->number[0]) return t->at[0];
+    while (hi - lo > 1) {
+        const int mid = (lo + hi)/2;
+        if (t->number[mid] <= share) lo = mid;
+        else hi = mid;
+    }
+    return t->at[lo] + (t->at[hi] - t->at[lo])*(share - t->number[lo])/
+        DEMI_MAX(t->number[hi] - t->number[lo], 1e-300);
+}
+DEM_API double dem_sizes_finer(dem_world *w, const dem_sizes *d, dem_real radius) {
+    double lo, hi;
+    if (demi_null(w, "dem_sizes_finer", d, "sizes")) return -1;
+    if (!demi_size_ends(w, "dem_sizes_finer", d, &lo, &hi)) return -1;
+    return demi_size_finer(d, lo, hi, (double)radius);
+}
+/* dem_sizes_draw, in the name of `call`. */
+static dem_result demi_sizes_draw(dem_world *w, const char *call, const dem_sizes *d, int count,
+                                  uint64_t seed, dem_real *radii) {
+    demi_size_table *t;
+    double lo, hi;
+    int i;
+    if (count < 0)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be >= 0", call, count);
+    if (!demi_size_ends(w, call, d, &lo, &hi)) return DEM_ERROR_ARGUMENT;
+    t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
+    if (!t) return demi_no_memory(w, call);
+    demi_size_table_make(w, d, lo, hi, t);
+    for (i = 0; i < count; i++)
+        radii[i] = (dem_real)demi_size_draw(t, seed ? demi_uniform(&seed) : (i + 0.5)/count);
+    demi_free(w, t);
+    return DEM_OK;
+}
+DEM_API dem_result dem_sizes_draw(dem_world *w, const dem_sizes *d, int count, uint64_t seed,
+                                  dem_real *radii) {
+    if (demi_null(w, "dem_sizes_draw", d, "sizes")) return DEM_ERROR_ARGUMENT;
+    if (demi_null(w, "dem_sizes_draw", radii, "radii")) return DEM_ERROR_ARGUMENT;
+    return demi_sizes_draw(w, "dem_sizes_draw", d, count, seed, radii);
+}
+DEM_API int dem_sizes_classes(dem_world *w, const dem_sizes *d, int class_count, dem_real *radius,
+                              double *amount) {
+    const char *call = "dem_sizes_classes";
+    demi_size_table *t;
+    double lo, hi, all = 0;
+    int i, k = 0, n = 0;
+    if (demi_null(w, call, d, "sizes") || demi_null(w, call, radius, "radius") ||
+        demi_null(w, call, amount, "amount")) return 0;
+    if (class_count < 1 || class_count > DEM_CLASSES) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d", call,
+                  class_count, (int)DEM_CLASSES);
+        return 0;
+    }
+    if (!demi_size_ends(w, call, d, &lo, &hi)) return 0;
+    t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
+    if (!t) { demi_no_memory(w, call); return 0; }
+    demi_size_table_make(w, d, lo, hi, t);
+    for (i = 0; i < class_count; i++) {
+        const double end = i + 1 < class_count ? lo*demi_pow(hi/lo, (i + 1.0)/class_count) : 2*hi;
+        double number = 0, mass = 0, share;
+        for (; k <= DEMI_SIZE_STEPS && t->at[k] < end*(1 + 1e-9); k++) {
+            const double one = k ? t->number[k] - t->number[k - 1] : t->number[0];
+            number += one;
+            mass += one*demi_size_mass(w, k ? (t->at[k] + t->at[k - 1])/2 : lo);
+        }
+        all += share = d->by_count ? number : mass;
+        if (!(number > 0)) continue;
+        amount[n] = share;
+        radius[n++] = (dem_real)(w->desc.planar ? sqrt(mass/number)
+                                                : demi_pow(mass/number, 1.0/3));
+    }
+    for (i = 0; i < n; i++) amount[i] /= all;
+    demi_free(w, t);
+    return n;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>placing
    Where new grains find room: one engine for fills, packings and feeds. A region says which places
    there are: a box, of which an axis that holds a whole period has no faces, a cylinder in it, a
@@ -12534,18 +13428,21 @@ static int demi_crowd_settle(dem_world *w, const demi_crowd *c, int first, int m
     if (c->count > first) demi_scene_changed(w);
     return 1;
 }
-/* Finds places for up to `count` spheres, which join the crowd. Answers how many; -1: memory ran
-   out. */
-static int demi_fill_places(dem_world *w, demi_crowd *c, const demi_region *g, dem_real radius,
-                            int turned, int count, uint64_t state) {
+/* Finds places in a region for up to `count` spheres, of one radius or (radii) of their own, which
+   join the crowd. Answers how many; -1: memory ran out. */
+static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *region, dem_real radius,
+                            const dem_real *radii, int turned, int count, uint64_t state) {
+    demi_region g;
     int i, k;
     for (i = 0; i < count; i++) {
         int taken = 0, outside = 0;
         dem_vec3 x;
+        if (radii) radius = radii[i];
+        demi_region_make(w, region, (double)radius, &g);
         for (;;) {
             double u[3];
             for (k = 0; k < 3; k++) u[k] = k == 2 && w->desc.planar ? 0 : demi_uniform(&state);
-            if (!demi_region_at(g, u, radius, &x)) {
+            if (!demi_region_at(&g, u, radius, &x)) {
                 if (++outside == DEMI_FILL_OUTSIDE) return i;
                 continue;
             }
@@ -12560,19 +13457,21 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const demi_region *g, d
     return count;
 }
 /* Fills a region with spheres, or with bodies of a shape (>= 0), whose bounding sphere has this
-   radius. */
+   radius; or with spheres of these radii, the largest first. */
 static int demi_fill(dem_world *w, const char *call, dem_material material, int shape,
-                     dem_real radius, const dem_region *region, int count, uint64_t seed) {
+                     dem_real radius, const dem_real *radii, const dem_region *region, int count,
+                     uint64_t seed) {
     demi_region g;
     demi_crowd c;
     int m = 0, first, done;
     if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
+    if (radii) radius = count > 0 ? radii[0] : 1;
     if (!(radius > 0) || !demi_finite(radius) || count < 0) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m and count %d, must be > 0 and >= 0",
                   call, (double)radius, count);
         return 0;
     }
-    if (shape < 0 ? demi_mass_refuse(w, call, m, radius, 0)
+    if (shape < 0 ? demi_mass_refuse(w, call, m, radii && count ? radii[count - 1] : radius, 0)
                  : demi_shape_mass_refuse(w, call, m, shape, 1, 0) ||
                    demi_walls_strange(w, call, shape)) return 0;
     if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z')) {
@@ -12586,9 +13485,11 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                   "give lo below hi by at least a diameter", call, (double)radius);
         return 0;
     }
+    /* centres of the smallest are anywhere in there */
+    if (radii) demi_region_make(w, region, count ? (double)radii[count - 1] : 0, &g);
     done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
-    if (!done) done = demi_fill_places(w, &c, &g, radius, shape >= 0, count, seed);
+    if (!done) done = demi_fill_places(w, &c, region, radius, radii, shape >= 0, count, seed);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, shape)) done = -1;
     demi_crowd_end(w);
     if (done < 0) {
@@ -12599,7 +13500,8 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a place in %d "
                   "tries each, free of other bodies and of walls; enlarge the %s, or %s", call,
                   done, count, shape < 0 ? "spheres" : "bodies with bounding spheres",
-                  (double)radius, (int)DEMI_FILL_TRIES, region->inside ? "region" : "box", shape < 0
+                  (double)(radii ? radii[done] : radius), (int)DEMI_FILL_TRIES,
+                  region->inside ? "region" : "box", shape < 0
                   ? "pack them with dem_spheres_pack" : "place them yourself with dem_bodies_add");
     demi_built(w, call);                        /* fewer than asked: the answer says so */
     return done;
@@ -12615,13 +13517,13 @@ DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radiu
                              int count, uint64_t seed) {
     const dem_region region = demi_region_box(box);
     if (demi_null(w, "dem_spheres_fill", w, "world")) return 0;
-    return demi_fill(w, "dem_spheres_fill", material, -1, radius, &region, count, seed);
+    return demi_fill(w, "dem_spheres_fill", material, -1, radius, 0, &region, count, seed);
 }
 static int demi_shape_fill(dem_world *w, const char *call, dem_material material, dem_shape shape,
                           const dem_region *region, int count, uint64_t seed) {
     const int i = demi_shape_index(w, call, shape);
     if (i < 0) return 0;
-    return demi_fill(w, call, material, i, w->shapes[i].radius, region, count, seed);
+    return demi_fill(w, call, material, i, w->shapes[i].radius, 0, region, count, seed);
 }
 DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape, dem_box box,
                             int count, uint64_t seed) {
@@ -12634,7 +13536,27 @@ DEM_API int dem_region_fill(dem_world *w, const dem_region *region, dem_material
     const char *call = "dem_region_fill";
     if (demi_null(w, call, region, "region")) return 0;
     return shape.id ? demi_shape_fill(w, call, material, shape, region, count, seed)
-                    : demi_fill(w, call, material, -1, radius, region, count, seed);
+                    : demi_fill(w, call, material, -1, radius, 0, region, count, seed);
+}
+
+DEM_API int dem_sizes_fill(dem_world *w, const dem_region *region, dem_material material,
+                           const dem_sizes *sizes, int count, uint64_t seed) {
+    const char *call = "dem_sizes_fill";
+    dem_real *radii;
+    int i, done = 0;
+    if (demi_null(w, call, region, "region") || demi_null(w, call, sizes, "sizes")) return 0;
+    radii = (dem_real *)demi_alloc(w, (size_t)DEMI_MAX(count, 0) + 1, sizeof *radii);
+    if (!radii) { demi_no_memory(w, call); return 0; }
+    if (demi_sizes_draw(w, call, sizes, count, 0, radii) == DEM_OK) {
+        for (i = 0; i < count/2; i++) {         /* the largest first */
+            const dem_real r = radii[i];
+            radii[i] = radii[count - 1 - i];
+            radii[count - 1 - i] = r;
+        }
+        done = demi_fill(w, call, material, -1, 0, radii, region, count, seed);
+    }
+    demi_free(w, radii);
+    return done;
 }
 
 /* --- packings --- */
@@ -12763,7 +13685,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
 enum { DEMI_FEED_TRIES = 40, DEMI_FEED_REST = 16 };  /* places tried; steps until the next try */
 enum { DEMI_FEED_NEAR = 256 };                       /* bodies near one that joins the list */
 /* Outlets look when a list is made anew, and every so many steps: see demi_step_once. */
-enum { DEMI_OUTLET_REST = 64 };
+enum { DEMI_OUTLET_REST = 64, DEMI_ZONES = 16 };   /* at most so many that only count */
 
 static demi_feed *demi_feed_at(const dem_world *w, int i) { return w->feeds + i; }
 static demi_outlet *demi_outlet_at(const dem_world *w, int i) {
@@ -13026,7 +13948,8 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     const char *call = "dem_outlet_add";
     demi_outlet outlet;
     dem_outlet id;
-    int k, bad = d->class_count < 0 || d->class_count > DEM_CLASSES || !(d->beyond >= 0) ||
+    int kept = 0, k;
+    int bad = d->class_count < 0 || d->class_count > DEM_CLASSES || !(d->beyond >= 0) ||
         !demi_finite(d->beyond) || !demi_finite(d->wanted_min) || !demi_finite(d->wanted_max) ||
         !(d->wanted_min >= 0) || !(d->wanted_max >= 0) ||
         (d->wanted_max > 0 && !(d->wanted_max > d->wanted_min));
@@ -13046,26 +13969,40 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
         return id;
     }
     if (d->frame.id && demi_wall_find(w, call, d->frame) < 0) return id;
-    if (!DEMI_GROW(w, w->outlets, (size_t)w->outlet_count + 1)) {
+    if (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK) return id;
+    for (k = 0; k < w->outlet_count; k++) kept += demi_outlet_at(w, k)->desc.keep != 0;
+    if (d->keep && kept == DEMI_ZONES) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: keep is %d, and there are %d outlets that only "
+                  "count already, the limit; count by classes", call, d->keep, kept);
+        return id;
+    }
+    if ((d->keep && !demi_zones_begin(w)) ||
+        !DEMI_GROW(w, w->outlets, (size_t)w->outlet_count + 1)) {
         demi_no_memory(w, call);
         return id;
     }
     memset(&outlet, 0, sizeof outlet);
     outlet.desc = *d;
     outlet.state.since = w->clock.time;
+    outlet.zone = d->keep ? kept : -1;
     *demi_outlet_at(w, w->outlet_count++) = outlet;
     demi_built(w, call);
     id.id = w->outlet_count;
     return id;
 }
-/* Counts grain i: in the class whose radius is nearest, and as wanted or not. */
+/* The class of a grain: that whose radius is nearest. */
+static int demi_outlet_class(const dem_outlet_desc *d, dem_real r) {
+    int k = 0;
+    while (k + 1 < d->class_count && 2*r > d->radius[k] + d->radius[k + 1]) k++;
+    return k;
+}
+/* Counts grain i: in its class, and as wanted or not. */
 static void demi_outlet_book(dem_world *w, demi_outlet *o, int i) {
     const dem_outlet_desc *d = &o->desc;
     const dem_real r = w->bodies.pos[4*i + 3];
     const double m = (double)w->bodies.mass[i];
+    const int k = demi_outlet_class(d, r);
     const int wanted = r >= d->wanted_min && (!(d->wanted_max > 0) || r <= d->wanted_max);
-    int k = 0;
-    while (k + 1 < d->class_count && 2*r > d->radius[k] + d->radius[k + 1]) k++;
     o->state.count[k]++;
     o->state.mass[k] += m;
     o->state.total++;
@@ -13098,24 +14035,47 @@ static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
     }
     return pose ? demi_unrotate(pose->rotation, demi_sub(x, pose->position)) : x;
 }
-/* After a move: the first outlet that a grain is in takes it. */
+/* Is grain i in the region, and one of those that it is for? */
+static int demi_outlet_sees(const dem_world *w, const demi_periods *p, const demi_outlet *o,
+                            int i) {
+    const dem_outlet_desc *d = &o->desc;
+    if (d->frame.id && w->walls[d->frame.id - 1].kind == DEMI_WALL_NONE) return 0;
+    if (d->material.id && w->bodies.material[i] != d->material.id) return 0;
+    return demi_outlet_has(d, demi_outlet_place(w, p, d, demi_at(w->bodies.pos + 4*i)));
+}
+/* Grain i as a counting outlet sees it: has it come in, or gone back? */
+static void demi_outlet_count(dem_world *w, demi_outlet *o, int i, int in) {
+    const uint32_t bit = 1u << o->zone, known = bit << DEMI_ZONES, before = w->bodies.zones[i];
+    const int k = demi_outlet_class(&o->desc, w->bodies.pos[4*i + 3]);
+    if (before & known) {
+        if (in && !(before & bit)) demi_outlet_book(w, o, i);
+        if (!in && (before & bit)) {
+            o->state.back[k]++;
+            o->state.back_mass[k] += (double)w->bodies.mass[i];
+            o->state.back_total++;
+            o->state.back_total_mass += (double)w->bodies.mass[i];
+        }
+    }
+    w->bodies.zones[i] = (before & ~bit) | known | (in ? bit : 0);
+}
+/* After a move: those that only count look; then the first outlet that a grain is in takes it. */
 static dem_result demi_outlets_run(dem_world *w) {
     const demi_periods p = demi_periods_of(w);
     int i, k;
-    for (i = 0; i < w->bodies.count && w->outlet_count; i++)
+    for (i = 0; i < w->bodies.count && w->outlet_count; i++) {
+        demi_outlet *takes = 0;
         for (k = 0; k < w->outlet_count && !demi_is_ghost(w, i); k++) {
             demi_outlet *o = demi_outlet_at(w, k);
-            const int frame = o->desc.frame.id;
-            if (frame && w->walls[frame - 1].kind == DEMI_WALL_NONE) continue;
-            if (!demi_outlet_has(&o->desc, demi_outlet_place(w, &p, &o->desc,
-                                                             demi_at(w->bodies.pos +
-                                                                     4*i)))) continue;
-            if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
-            demi_outlet_book(w, o, i);
-            demi_body_take_out(w, i--);
-            w->bodies.balance.left++;
-            break;
+            if (takes && o->zone < 0) continue;
+            if (o->zone >= 0) demi_outlet_count(w, o, i, demi_outlet_sees(w, &p, o, i));
+            else if (demi_outlet_sees(w, &p, o, i)) takes = o;
         }
+        if (!takes) continue;
+        if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
+        demi_outlet_book(w, takes, i);
+        demi_body_take_out(w, i--);
+        w->bodies.balance.left++;
+    }
     return DEM_OK;
 }
 static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_outlet id) {
@@ -13127,8 +14087,19 @@ static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_o
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
     if (demi_null(w, "dem_outlet_get", state, "state")) return DEM_ERROR_ARGUMENT;
     const demi_outlet *o = demi_outlet_find(w, "dem_outlet_get", id);
+    const demi_periods p = demi_periods_of(w);
+    int i;
     if (!o) return DEM_ERROR_ARGUMENT;
     *state = o->state;
+    for (i = 0; i < w->bodies.count && o->zone >= 0; i++) {
+        const int k = demi_outlet_class(&o->desc, w->bodies.pos[4*i + 3]);
+        const double m = (double)w->bodies.mass[i];
+        if (!demi_outlet_sees(w, &p, o, i)) continue;
+        state->held[k]++;
+        state->held_mass[k] += m;
+        state->held_total++;
+        state->held_total_mass += m;
+    }
     return DEM_OK;
 }
 DEM_API dem_result dem_outlet_reset(dem_world *w, dem_outlet id) {
@@ -13160,7 +14131,22 @@ static double demi_motion_speed(const demi_wall *wall) {
         spin = demi_scale(demi_unit(m->axis), m->speed);
         return (double)demi_length(demi_cross(spin, demi_sub(wall->pose.position, m->point))) +
                (double)demi_length(spin)*far;
-    case DEM_MOTION_OSCILLATING: return 2*DEMI_PI*fabs((double)m->frequency*(double)m->amplitude);
+    case DEM_MOTION_OSCILLATING:
+        return (2*DEMI_PI*fabs((double)m->frequency) + (m->ramp > 0 ? 1.5/m->ramp : 0))*
+               fabs((double)m->amplitude);
+    case DEM_MOTION_TABLE: {
+        const double end = m->table[m->table_count - 1].time;
+        const int looks = 8*m->table_count;
+        double most = 0;
+        dem_pose p;
+        int k;
+        for (k = 0; k <= looks; k++) {
+            demi_wall_pose_at(wall, m->start + end*k/looks, &p);
+            most = DEMI_MAX(most, (double)demi_length(p.velocity) +
+                            (double)demi_length(p.spin)*far);
+        }
+        return most;
+    }
     default: break;
     }
     return (double)demi_length(wall->pose.velocity) + (double)demi_length(wall->pose.spin)*far;
@@ -14066,6 +15052,380 @@ DEM_API int dem_check_print(dem_world *w, FILE *out) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>fields
+   Means on a grid. What is there at a place (a grain at its centre, a piece of the line between two
+   centres) is put into the cell it is in, or spread over the cells about it; in a periodic world
+   wherever one of its images is. A field is one array of sums, block after block, so that whoever
+   saves, copies or adds up fields need not know which there are. First how a contact looks to a
+   user: stress is made of that.
+   --------------------------------------------------------------------------------------------- */
+/* One kept contact, as users see it. */
+static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
+    const demi_periods p = demi_periods_of(w);
+    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
+    out->a = dem_bodies_id(w, c->a);
+    out->b = dem_bodies_id(w, c->b);
+    out->wall = c->b < 0 ? c->wall + 1 : 0;
+    out->normal = c->normal;
+    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
+    out->point = demi_place_of(&p, x);
+    out->overlap = c->overlap;
+    out->force = c->force;
+}
+/* One near pair, if it touches: its force by the law of the run on a copy of its memory, and,
+   unless null, the way from a's centre to b's. */
+static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out,
+                              dem_vec3 *branch) {
+    demi_run r = demi_run_of(w, 0, w->effects.uniform);
+    const demi_span span = demi_span_of(w, d, p, 1);
+    const int a = span.a[0], b = span.b[0];
+    const demi_periods periods = demi_periods_of(w);
+    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
+    demi_tile tile;
+    dem_contact c;
+    dem_contact_force f;
+    dem_vec3 gap;
+    int e;
+    r.span = &span;
+    demi_tile_fetch(&r, 1, &tile);
+    gap = demi_rows_at(&tile.gap, 0);
+    demi_touch_one(&tile, &r.same, 0, r.alike && !r.ranged, r.ranged);
+    if (!(tile.touch[0] > 0)) return 0;
+    if (!out) return 1;
+    for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
+    demi_span_coefs(w, &span, 0, coef);
+    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
+    demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
+    demi_who_clear(&c.who);
+    demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
+    demi_law(w, &c, memory, &f);
+    demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
+    out->a = dem_bodies_id(w, a);
+    out->b = dem_bodies_id(w, b);
+    out->wall = 0;
+    out->normal = demi_row(tile.normal, 0);
+    out->overlap = tile.overlap[0];
+    if (branch) *branch = gap;
+    gap = demi_scale(gap, w->bodies.pos[4*a + 3]/(w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3]));
+    out->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), gap));
+    out->force = demi_row(tile.force, 0);
+    return 1;
+}
+/* Blocks of a field's sums: where each begins, and how many numbers of a cell stand together in
+   it. */
+enum { DEMI_SOLID = 0, DEMI_MASS = 1, DEMI_MOMENTUM = 2, DEMI_GRAINS = 5, DEMI_FLUX = 6,
+       DEMI_STRESS = 12, DEMI_CONTACTS = 18, DEMI_FIELD_REALS = 19 };
+static size_t demi_field_cells(const demi_field *f) {
+    return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
+}
+/* Numbers in all. */
+static size_t demi_field_reals(const demi_field *f) {
+    return demi_field_cells(f)*(f->desc.stress ? DEMI_FIELD_REALS : DEMI_FLUX);
+}
+/* The same numbers for all that a sample puts into a field. */
+typedef struct demi_grid {
+    demi_field *field;
+    double lo[3], size[3], period[3];   /* m */
+    double volume, reach, norm;         /* m3, of a cell; m; 1/m3 (planar: 1/m2 over the depth) */
+    int axes;                           /* 2: planar */
+} demi_grid;
+static demi_grid demi_grid_of(const dem_world *w, demi_field *f) {
+    const demi_periods p = demi_periods_of(w);
+    const dem_field_desc *d = &f->desc;
+    demi_grid g;
+    double c;
+    int k;
+    g.field = f;
+    g.lo[0] = (double)d->box.lo.x; g.lo[1] = (double)d->box.lo.y; g.lo[2] = (double)d->box.lo.z;
+    g.size[0] = ((double)d->box.hi.x - g.lo[0])/d->cells[0];
+    g.size[1] = ((double)d->box.hi.y - g.lo[1])/d->cells[1];
+    g.size[2] = ((double)d->box.hi.z - g.lo[2])/d->cells[2];
+    g.volume = g.size[0]*g.size[1]*g.size[2];
+    for (k = 0; k < 3; k++)                     /* in a ring of slabs no world is periodic there */
+        g.period[k] = (double)DEMI_MAX(p.period[k], w->ring_period[k]);
+    g.axes = w->desc.planar ? 2 : 3;
+    g.reach = c = 2*(double)d->width;
+    g.norm = !(c > 0) ? 0 : g.axes == 2 ? 5/(DEMI_PI*c*c*g.size[2]) : 105/(16*DEMI_PI*c*c*c);
+    return g;
+}
+/* n numbers into the cell of index `at`, of a block that begins there. */
+static void demi_cell_add(demi_grid *g, const int *at, int block, int n, const double *value,
+                          double weight) {
+    const int *cells = g->field->desc.cells;
+    const size_t cell = (size_t)at[0] + (size_t)cells[0]*((size_t)at[1] +
+                                                          (size_t)cells[1]*(size_t)at[2]);
+    double *sum = g->field->sums + (size_t)block*demi_field_cells(g->field) + (size_t)n*cell;
+    int k;
+    for (k = 0; k < n; k++) sum[k] += weight*value[k];
+}
+/* Puts n numbers to one image at x: into its cell, or spread over those within reach. */
+static void demi_image_put(demi_grid *g, const double *x, int block, int n, const double *value) {
+    const int *cells = g->field->desc.cells;
+    int from[3], to[3], at[3], k;
+    for (k = 0; k < 3; k++) {
+        const double reach = k < g->axes ? g->reach : 0;
+        const double a = floor((x[k] - reach - g->lo[k])/g->size[k]);
+        const double b = floor((x[k] + reach - g->lo[k])/g->size[k]);
+        if (!(b >= 0 && a < cells[k])) return;
+        from[k] = (int)DEMI_MAX(a, 0);
+        to[k] = (int)DEMI_MIN(b, cells[k] - 1);
+    }
+    if (!(g->reach > 0)) { demi_cell_add(g, from, block, n, value, 1); return; }
+    for (at[2] = from[2]; at[2] <= to[2]; at[2]++)
+        for (at[1] = from[1]; at[1] <= to[1]; at[1]++)
+            for (at[0] = from[0]; at[0] <= to[0]; at[0]++) {
+                double rr = 0, u;
+                for (k = 0; k < g->axes; k++) {
+                    const double d = g->lo[k] + (at[k] + 0.5)*g->size[k] - x[k];
+                    rr += d*d;
+                }
+                u = sqrt(rr)/g->reach;
+                if (u < 1)
+                    demi_cell_add(g, at, block, n, value,
+                                  g->norm*g->volume*(1 + 3*u)*(1 - u)*(1 - u)*(1 - u));
+            }
+}
+/* The same to all images of a place: of an axis without a period there is one. */
+static void demi_grid_put(demi_grid *g, dem_vec3 place, int block, int n, const double *value) {
+    const int *cells = g->field->desc.cells;
+    double x[3], first[3], last[3], at[3];
+    int k;
+    x[0] = (double)place.x; x[1] = (double)place.y; x[2] = (double)place.z;
+    for (k = 0; k < 3; k++) {
+        const double hi = g->lo[k] + g->size[k]*cells[k], P = g->period[k];
+        first[k] = last[k] = 0;
+        if (!(P > 0)) continue;
+        first[k] = ceil((g->lo[k] - g->reach - x[k])/P);
+        last[k] = DEMI_MIN(floor((hi + g->reach - x[k])/P), first[k] + 100);
+        /* a field as long as the period: its end is its begin */
+        if (!(g->reach > 0) && x[k] + last[k]*P >= hi) last[k]--;
+    }
+    for (at[0] = first[0]; at[0] <= last[0]; at[0]++)
+        for (at[1] = first[1]; at[1] <= last[1]; at[1]++)
+            for (at[2] = first[2]; at[2] <= last[2]; at[2]++) {
+                double image[3];
+                for (k = 0; k < 3; k++) image[k] = x[k] + at[k]*g->period[k];
+                demi_image_put(g, image, block, n, value);
+            }
+}
+/* Is body i one that the field counts? */
+static int demi_field_counts(const dem_world *w, const dem_field_desc *d, int i) {
+    const dem_real r = w->bodies.pos[4*i + 3];
+    return (!d->material.id || w->bodies.material[i] == d->material.id) && r >= d->radius_min &&
+           (!(d->radius_max > 0) || r <= d->radius_max);
+}
+static void demi_field_grain(const dem_world *w, demi_grid *g, int i) {
+    const double m = (double)w->bodies.mass[i], r = (double)w->bodies.pos[4*i + 3];
+    const double v[3] = {(double)w->bodies.vel[4*i], (double)w->bodies.vel[4*i + 1],
+                         (double)w->bodies.vel[4*i + 2]};
+    double sum[DEMI_FLUX], flux[6];
+    sum[DEMI_SOLID] = (w->desc.planar ? DEMI_PI*r*r*g->size[2]
+        : m/(double)w->materials[w->bodies.material[i] - 1].density)/g->volume;
+    sum[DEMI_MASS] = m;
+    sum[2] = m*v[0];
+    sum[3] = m*v[1];
+    sum[4] = m*v[2];
+    sum[DEMI_GRAINS] = 1;
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_SOLID, 1, sum + DEMI_SOLID);
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_MASS, 1, sum + DEMI_MASS);
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_MOMENTUM, 3, sum + DEMI_MOMENTUM);
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_GRAINS, 1, sum + DEMI_GRAINS);
+    if (!g->field->desc.stress) return;
+    flux[0] = m*v[0]*v[0]/g->volume; flux[1] = m*v[1]*v[1]/g->volume;
+    flux[2] = m*v[2]*v[2]/g->volume; flux[3] = m*v[0]*v[1]/g->volume;
+    flux[4] = m*v[0]*v[2]/g->volume; flux[5] = m*v[1]*v[2]/g->volume;
+    demi_grid_put(g, demi_at(w->bodies.pos + 4*i), DEMI_FLUX, 6, flux);
+}
+/* A contact of bodies a and b (-1: a wall), force on a, branch from a's centre to b's or to the
+   wall: force x -branch along that line, in pieces; and one contact more for each. */
+static void demi_field_branch(const dem_world *w, demi_grid *g, int a, int b, dem_vec3 force,
+                            dem_vec3 branch) {
+    const int pieces = 8;
+    const dem_field_desc *d = &g->field->desc;
+    const double f[3] = {(double)force.x, (double)force.y, (double)force.z};
+    const double l[3] = {-(double)branch.x, -(double)branch.y, -(double)branch.z};
+    const int is_a = demi_field_counts(w, d, a), is_b = b >= 0 && demi_field_counts(w, d, b);
+    const dem_vec3 from = demi_at(w->bodies.pos + 4*a);
+    const double one = 1;
+    double part[6];
+    int k;
+    part[0] = f[0]*l[0]; part[1] = f[1]*l[1]; part[2] = f[2]*l[2];
+    part[3] = (f[0]*l[1] + f[1]*l[0])/2;
+    part[4] = (f[0]*l[2] + f[2]*l[0])/2;
+    part[5] = (f[1]*l[2] + f[2]*l[1])/2;
+    for (k = 0; k < 6; k++) part[k] /= pieces*g->volume;
+    for (k = 0; k < pieces; k++) {
+        /* of two grains, each answers for the half that begins at its centre */
+        if (b >= 0 && k < pieces/2 ? !is_a : b >= 0 ? !is_b : !is_a) continue;
+        demi_grid_put(g, demi_add(from, demi_scale(branch, (dem_real)((k + 0.5)/pieces))),
+                      DEMI_STRESS, 6, part);
+    }
+    if (is_a) demi_grid_put(g, from, DEMI_CONTACTS, 1, &one);
+    if (is_b) demi_grid_put(g, demi_at(w->bodies.pos + 4*b), DEMI_CONTACTS, 1, &one);
+}
+static void demi_field_contacts(const dem_world *w, demi_grid *g) {
+    dem_contact_info info;
+    dem_vec3 branch;
+    int d, k;
+    for (d = 0; d < w->domain_count; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
+            const demi_span span = demi_span_of(w, d, k, 1);
+            if (demi_contact_force(w, d, k, &info, &branch))
+                demi_field_branch(w, g, span.a[0], span.b[0], info.force, branch);
+        }
+        for (k = 0; k < domain->kept; k++) {
+            const demi_kept *c = demi_kept_of(w, d) + k;
+            if (!demi_kept_asked(w, c)) continue;
+            demi_field_branch(w, g, c->a, c->b, c->force,
+                            c->b < 0 ? c->arm_a : demi_sub(c->arm_a, c->arm_b));
+        }
+    }
+}
+/* Does it want a sample now? */
+static int demi_field_due(const dem_world *w, const demi_field *f) {
+    return f->used && w->clock.time >= f->next && !(f->desc.end > 0 && w->clock.time > f->desc.end);
+}
+/* All fields that want a sample now: contacts by the velocities of the forces just worked out,
+   which are predicted, and which slabs have told each other; grains by those of the full step. */
+static void demi_fields_sample(dem_world *w) {
+    int f, i, any = 0;
+    for (f = 0; f < w->field_count; f++) {
+        demi_field *field = &w->fields[f];
+        demi_grid g = demi_grid_of(w, field);
+        if (demi_field_due(w, field)) any = 1;
+        if (demi_field_due(w, field) && field->desc.stress) demi_field_contacts(w, &g);
+    }
+    if (any) demi_finish(w);
+    for (f = 0; f < w->field_count; f++) {
+        demi_field *field = &w->fields[f];
+        const dem_field_desc *d = &field->desc;
+        demi_grid g = demi_grid_of(w, field);
+        if (!demi_field_due(w, field)) continue;
+        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->clock.time)
+            : w->clock.time + 100*(double)w->clock.dt;
+        if (field->next <= w->clock.time) field->next = w->clock.time + (double)w->clock.dt/2;
+        for (i = 0; i < w->bodies.count; i++)
+            if (!demi_is_ghost(w, i) && demi_field_counts(w, d, i)) demi_field_grain(w, &g, i);
+        field->samples++;
+    }
+}
+
+DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
+    if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
+    dem_field id;
+    demi_field field;
+    int k;
+    id.id = 0;
+    if (d->cells[0] < 1 || d->cells[1] < 1 || d->cells[2] < 1 ||
+        (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->box.hi.x > d->box.lo.x) ||
+        !(d->box.hi.y > d->box.lo.y) || !(d->box.hi.z > d->box.lo.z) ||
+        !demi_finite3(d->box.lo) || !demi_finite3(d->box.hi) || !(d->interval >= 0) ||
+        !(d->start >= 0) || !demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
+        !demi_finite_double(d->end)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval %g s; "
+                  "must be >= 1 each and at most "
+                  "2^28 in all, the box finite with lo below hi, times finite and >= 0",
+                  d->cells[0], d->cells[1], d->cells[2], d->interval);
+        return id;
+    }
+    if (!(d->width >= 0) || !demi_finite(d->width) || !(d->radius_min >= 0) ||
+        !demi_finite(d->radius_max) || !(d->radius_max >= 0) ||
+        (d->radius_max > 0 && d->radius_max < d->radius_min)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: width is %g m, radii %g to %g m; must be "
+                  "finite and >= 0, the smaller radius first, the larger 0 for no limit",
+                  (double)d->width, (double)d->radius_min, (double)d->radius_max);
+        return id;
+    }
+    if (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK)
+        return id;
+    memset(&field, 0, sizeof field);
+    field.used = 1;
+    field.desc = *d;
+    field.next = d->start;
+    field.sums = (double *)demi_hold(w, DEMI_RUN, demi_field_reals(&field), sizeof(double));
+    if (!field.sums || !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1)) {
+        demi_free(w, field.sums);
+        demi_no_memory(w, "dem_field_add");
+        return id;
+    }
+    w->fields[w->field_count++] = field;
+    demi_built(w, "dem_field_add");
+    id.id = w->field_count;
+    return id;
+}
+/* From an id to a field, or a sentence in the name of `call`. */
+static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
+    if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d", call,
+              (int)id.id, w->field_count);
+    return 0;
+}
+DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
+    if (demi_null(w, "dem_field_get", data, "data")) return DEM_ERROR_ARGUMENT;
+    size_t n;
+    const demi_field *f = demi_field_find((dem_world *)w, "dem_field_get", id);
+    if (!f) return DEM_ERROR_ARGUMENT;
+    memcpy(data->cells, f->desc.cells, sizeof data->cells);
+    data->box = f->desc.box;
+    data->samples = f->samples;
+    n = demi_field_cells(f);
+    data->solid = f->sums + DEMI_SOLID*n;
+    data->mass = f->sums + DEMI_MASS*n;
+    data->momentum = f->sums + DEMI_MOMENTUM*n;
+    data->grains = f->sums + DEMI_GRAINS*n;
+    data->flux = f->desc.stress ? f->sums + DEMI_FLUX*n : 0;
+    data->stress = f->desc.stress ? f->sums + DEMI_STRESS*n : 0;
+    data->contacts = f->desc.stress ? f->sums + DEMI_CONTACTS*n : 0;
+    return DEM_OK;
+}
+DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
+    if (demi_null(w, "dem_field_reset", w, "world")) return DEM_ERROR_ARGUMENT;
+    demi_field *f = demi_field_find(w, "dem_field_reset", id);
+    if (!f) return DEM_ERROR_ARGUMENT;
+    memset(f->sums, 0, demi_field_reals(f)*sizeof(double));
+    f->samples = 0;
+    return DEM_OK;
+}
+
+DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, int j, int k,
+                                      dem_field_cell *out) {
+    dem_field_data d;
+    size_t c;
+    double n, volume, v[3];
+    int e;
+    if (demi_null(w, "dem_field_cell_get", out, "cell")) return DEM_ERROR_ARGUMENT;
+    if (!demi_field_find((dem_world *)w, "dem_field_cell_get", id)) return DEM_ERROR_ARGUMENT;
+    dem_field_get(w, id, &d);
+    if (i < 0 || j < 0 || k < 0 || i >= d.cells[0] || j >= d.cells[1] || k >= d.cells[2])
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_field_cell_get: cell (%d, %d, "
+                         "%d) is none of %d x %d x %d; they count from 0", i, j, k, d.cells[0],
+                         d.cells[1], d.cells[2]);
+    memset(out, 0, sizeof *out);
+    if (!d.samples) return DEM_OK;
+    c = (size_t)i + (size_t)d.cells[0]*((size_t)j + (size_t)d.cells[1]*(size_t)k);
+    n = (double)d.samples;
+    volume = (double)(d.box.hi.x - d.box.lo.x)*(double)(d.box.hi.y - d.box.lo.y)*
+             (double)(d.box.hi.z - d.box.lo.z)/
+             ((double)d.cells[0]*(double)d.cells[1]*(double)d.cells[2]);
+    out->grains = d.grains[c]/n;
+    out->solid = d.solid[c]/n;
+    out->density = d.mass[c]/n/volume;
+    for (e = 0; e < 3; e++)
+        out->velocity[e] = v[e] = d.mass[c] > 0 ? d.momentum[3*c + (size_t)e]/d.mass[c] : 0;
+    if (!d.stress) return DEM_OK;
+    for (e = 0; e < 6; e++) {
+        const double vv = e < 3 ? v[e]*v[e] : e == 3 ? v[0]*v[1] : e == 4 ? v[0]*v[2] : v[1]*v[2];
+        const double moves = d.flux[6*c + (size_t)e]/n - out->density*vv;
+        out->stress[e] = d.stress[6*c + (size_t)e]/n + moves;
+        if (e < 3 && out->density > 0) out->temperature += moves/out->density/
+            (w->desc.planar ? 2 : 3);
+    }
+    out->coordination = d.grains[c] > 0 ? d.contacts[c]/d.grains[c] : 0;
+    return DEM_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>step
    One step in the order of the manual, and runs of many. The parts of a step run over domains,
    in parallel, and wait for each other where one needs what another domain has done: after the
@@ -14416,68 +15776,6 @@ static dem_result demi_outflow(dem_world *w) {
     return DEM_OK;
 }
 
-/* What is asked for now goes into the fields of >>measure. */
-static size_t demi_field_cells(const demi_field *f) {
-    return (size_t)f->desc.cells[0]*(size_t)f->desc.cells[1]*(size_t)f->desc.cells[2];
-}
-/* What one body at x adds to a field, if it is there. */
-static void demi_field_add(const dem_world *w, demi_field *field, int i, const double *x) {
-    const dem_field_desc *d = &field->desc;
-    const double m = (double)w->bodies.mass[i], r = (double)w->bodies.pos[4*i + 3];
-    double lo[3], size[3];
-    size_t cell = 0;
-    int k;
-    lo[0] = (double)d->box.lo.x; lo[1] = (double)d->box.lo.y; lo[2] = (double)d->box.lo.z;
-    size[0] = ((double)d->box.hi.x - lo[0])/d->cells[0];
-    size[1] = ((double)d->box.hi.y - lo[1])/d->cells[1];
-    size[2] = ((double)d->box.hi.z - lo[2])/d->cells[2];
-    for (k = 2; k >= 0; k--) {
-        const double t = floor((x[k] - lo[k])/size[k]);
-        if (!(t >= 0 && t < d->cells[k])) return;
-        cell = cell*(size_t)d->cells[k] + (size_t)t;
-    }
-    field->solid[cell] += (w->desc.planar ? DEMI_PI*r*r*size[2]
-        : m/(double)w->materials[w->bodies.material[i] - 1].density)/(size[0]*size[1]*size[2]);
-    field->mass[cell] += m;
-    for (k = 0; k < 3; k++) field->momentum[3*cell + (size_t)k] += m*(double)w->bodies.vel[4*i + k];
-}
-/* In a periodic world a body is in a field wherever one of its images is: once, unless the field is
-   longer than the period. */
-static void demi_fields_sample(dem_world *w) {
-    const demi_periods p = demi_periods_of(w);
-    int f, i, k;
-    for (f = 0; f < w->field_count; f++) {
-        demi_field *field = &w->fields[f];
-        const dem_field_desc *d = &field->desc;
-        dem_real lo[3], hi[3];
-        int images[3], n;
-        if (!field->used || w->clock.time < field->next ||
-            (d->end > 0 && w->clock.time > d->end)) continue;
-        field->next = d->interval > 0 ? DEMI_MAX(field->next + d->interval, w->clock.time)
-            : w->clock.time +
-            100*(double)w->clock.dt;
-        if (field->next <= w->clock.time) field->next = w->clock.time + (double)w->clock.dt/2;
-        demi_put(lo, d->box.lo);
-        demi_put(hi, d->box.hi);
-        for (k = 0; k < 3; k++) {
-            const double sides = p.period[k] > 0 ? (double)((hi[k] - lo[k])/p.period[k]) : 0;
-            images[k] = (int)DEMI_MIN(ceil(DEMI_MAX(sides - 1e-6, 1e-6)), 100);
-        }
-        for (i = 0; i < w->bodies.count; i++) {
-            if (demi_is_ghost(w, i)) continue;
-            for (n = 0; n < images[0]*images[1]*images[2]; n++) {
-                double x[3];
-                for (k = 0; k < 3; k++)
-                    x[k] = (double)demi_into(w->bodies.pos[4*i + k], lo[k], p.period[k]) +
-                        (double)p.period[k]*(k == 0 ? n%images[0] : k == 1 ? n/images[0]%images[1]
-                                             : n/images[0]/images[1]);
-                demi_field_add(w, field, i, x);
-            }
-        }
-        field->samples++;
-    }
-}
-
 /* Time after one more step. */
 static void demi_time_pass(dem_world *w) {
     const double dt = (double)w->clock.dt;
@@ -14657,16 +15955,34 @@ DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
     demi_scene_changed(w);
     return DEM_OK;
 }
+DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
+    if (demi_null(w, "dem_world_dt_set", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (!(dt >= 0) || !demi_finite(dt))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be finite and "
+                         ">= 0; 0 lets the library choose", (double)dt);
+    demi_finish(w);                             /* half steps were of the old one */
+    w->desc.dt = dt;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+/* Films and outputs that are due at this step. */
+static dem_result demi_look(dem_world *w) {
+    if (w->look.films_look) w->look.films_look(w);
+    return w->look.outputs_look ? w->look.outputs_look(w) : DEM_OK;
+}
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     if (demi_null(w, "dem_world_step", w, "world")) return DEM_ERROR_ARGUMENT;
     dem_result result = DEM_OK;
-    int i, f, whole = 1;
+    int i, whole = 1;
     if (steps < 0)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
     if (steps && demi_unbuilt(w, "dem_world_step") != DEM_OK) return DEM_ERROR_ARGUMENT;
-    if (steps && w->films_look) w->films_look(w);
+    if (w->look.under_way)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: called by a function that looks "
+                         "at the world between two steps (dem_output_add); let it look, and step "
+                         "when the run has ended");
+    if (steps) result = demi_look(w);
     for (i = 0; i < steps && result == DEM_OK; i++) {
-        int sampling = 0;
         if (!w->stage.moved) {
             result = demi_dt_settle(w);
             if (result == DEM_OK && w->feed_count) {
@@ -14682,10 +15998,8 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
         }
         result = demi_step_once(w);
         whole = result == DEM_OK;
-        for (f = 0; f < w->field_count; f++)
-            sampling |= w->fields[f].used && w->clock.time >= w->fields[f].next;
-        if (sampling && whole) { demi_finish(w); demi_fields_sample(w); }
-        if (w->films_look && whole) w->films_look(w);
+        if (whole) demi_fields_sample(w);
+        if (whole) result = demi_look(w);
     }
     /* half a step: its velocities stay as predicted */
     if (!whole && w->stage.moved) return result;
@@ -14703,7 +16017,7 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run: seconds is %g, must be finite and "
                          ">= 0", seconds);
     if (demi_unbuilt(w, "dem_world_run") != DEM_OK) return DEM_ERROR_ARGUMENT;
-    w->tenths_told = 0;
+    if (progress) w->look.tenths_told = 0;      /* dem_world_settle tells for several runs */
     end = start + seconds;
     if (w->clock.run_steps == w->clock.steps &&
         fabs(w->clock.run_end - start) <= (double)w->clock.dt)
@@ -14736,6 +16050,75 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
     return DEM_OK;
 }
 
+DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn progress,
+                                    void *user) {
+    if (demi_null(w, "dem_world_run_to", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (!demi_finite_double(time) || time < w->clock.time - (double)w->clock.dt/2)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run_to: time is %g s, must be finite "
+                         "and not before now, %g s; to go back read a checkpoint", time,
+                         w->clock.time);
+    w->clock.run_steps = w->clock.steps + 1;        /* it does not follow the run before */
+    return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
+}
+
+/* m/s: largest speed of the bodies that can move, and the root of the mean of its square. */
+static double demi_speeds(const dem_world *w, double *mean) {
+    double sum = 0, most = 0, mass = 0;
+    int i;
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
+        const double vv = (double)demi_dot(v, v), m = (double)w->bodies.mass[i];
+        if (!(w->bodies.inv_mass[i] > 0)) continue;
+        sum += m*vv;
+        mass += m;
+        most = DEMI_MAX(most, vv);
+    }
+    *mean = mass > 0 ? sqrt(sum/mass) : 0;
+    return sqrt(most);
+}
+DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed,
+                                    dem_progress_fn progress, void *user) {
+    if (demi_null(w, "dem_world_settle", w, "world")) return DEM_ERROR_ARGUMENT;
+    const double g = (double)demi_length(w->desc.gravity), begun = demi_clock();
+    const double start = w->clock.time;
+    double radius = 0, look, mean, most, below = (double)speed, last = begun;
+    int i, calm = 0;
+    for (i = 0; i < w->bodies.count; i++)
+        radius += (double)w->bodies.pos[4*i + 3]/w->bodies.count;
+    if (!(below > 0) && g > 0) below = 0.01*sqrt(2*g*radius);
+    if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
+        (!(below > 0) && w->bodies.count))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: seconds is %g and speed %g m/s, "
+                         "must be > 0 and >= 0, and speed > 0 where there is no gravity to compare "
+                         "it with; say how slow is at rest", seconds, (double)speed);
+    w->look.tenths_told = 0;
+    /* the time to fall by half a radius, or to go that far: what turns round is not at rest */
+    look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(below, 1e-300);
+    while (w->bodies.count) {
+        const double left = start + seconds - w->clock.time;
+        dem_result result;
+        most = demi_speeds(w, &mean);
+        calm = mean < below && most < 10*below ? calm + 1 : 0;
+        if (calm > 2) break;
+        if (!(left > 0))
+            return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: mean "
+                             "speed %.3g m/s, largest %.3g m/s, must be below %.3g and %.3g; give "
+                             "it more time, or look what drives it", seconds, mean, most, below,
+                             10*below);
+        result = dem_world_run(w, DEMI_MIN(look, left), 0, 0);
+        if (result != DEM_OK) return result;
+        if (progress && demi_clock() - last > 0.1) {
+            const double done = DEMI_MIN((w->clock.time - start)/seconds, 1);
+            last = demi_clock();
+            if (progress(w, done, (last - begun)*(1 - done)/DEMI_MAX(done, 1e-9), user))
+                return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: stopped by the progress "
+                                 "function at %g s", w->clock.time);
+        }
+    }
+    if (progress) progress(w, 1, 0, user);
+    return DEM_OK;
+}
+
 /* Is this a terminal? C has no word for that: asked as readlink is (>>write). Elsewhere: yes. */
 #if (defined(__unix__) || defined(__linux__)) && (defined(__GNUC__) || defined(__TINYC__)) && \
     !defined(__CYGWIN__)
@@ -14752,8 +16135,8 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     if (demi_null(w, "dem_progress_print", user, "user")) return 0;
     FILE *out = (FILE *)user;
     const int line = !demi_isatty(demi_fileno(out)), tenths = (int)(10*done + 1e-9);
-    if (line && tenths <= w->tenths_told) return 0;
-    ((dem_world *)w)->tenths_told = tenths;
+    if (line && tenths <= w->look.tenths_told) return 0;
+    ((dem_world *)w)->look.tenths_told = tenths;
     fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", line ? "" : "\r",
             100*done, w->clock.time, w->bodies.count, seconds_left,
             line || done >= 1 ? "\n" : "");
@@ -14772,79 +16155,8 @@ DEM_API uint64_t dem_world_steps(const dem_world *w) {
 
 /* ---------------------------------------------------------------------------------------------
    >>measure
-   Looking at a world without changing it: fields on a grid, counters, contacts, the digest.
+   Looking at a world without changing it: counters, contacts, the digest.
    --------------------------------------------------------------------------------------------- */
-DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
-    if (demi_null(w, "dem_field_add", d, "desc")) return demi_no_field;
-    dem_field id;
-    demi_field field;
-    size_t n;
-    id.id = 0;
-    if (d->cells[0] < 1 || d->cells[1] < 1 || d->cells[2] < 1 ||
-        (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->box.hi.x > d->box.lo.x) ||
-        !(d->box.hi.y > d->box.lo.y) || !(d->box.hi.z > d->box.lo.z) ||
-        !demi_finite3(d->box.lo) || !demi_finite3(d->box.hi) || !(d->interval >= 0) ||
-        !(d->start >= 0) || !demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
-        !demi_finite_double(d->end)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval %g s; "
-                  "must be >= 1 each and at most "
-                  "2^28 in all, the box finite with lo below hi, times finite and >= 0",
-                  d->cells[0], d->cells[1], d->cells[2], d->interval);
-        return id;
-    }
-    memset(&field, 0, sizeof field);
-    field.used = 1;
-    field.desc = *d;
-    field.next = d->start;
-    n = demi_field_cells(&field);
-    field.solid = (double *)demi_hold(w, DEMI_RUN, n, sizeof(double));
-    field.mass = (double *)demi_hold(w, DEMI_RUN, n, sizeof(double));
-    field.momentum = (double *)demi_hold(w, DEMI_RUN, n, 3*sizeof(double));
-    if (!field.solid || !field.mass || !field.momentum ||
-        !DEMI_GROW(w, w->fields, (size_t)w->field_count + 1)) {
-        demi_free(w, field.solid);
-        demi_free(w, field.mass);
-        demi_free(w, field.momentum);
-        demi_no_memory(w, "dem_field_add");
-        return id;
-    }
-    w->fields[w->field_count++] = field;
-    demi_built(w, "dem_field_add");
-    id.id = w->field_count;
-    return id;
-}
-/* From an id to a field, or a sentence in the name of `call`. */
-static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
-    if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d", call,
-              (int)id.id, w->field_count);
-    return 0;
-}
-DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
-    if (demi_null(w, "dem_field_get", data, "data")) return DEM_ERROR_ARGUMENT;
-    const demi_field *f = demi_field_find((dem_world *)w, "dem_field_get", id);
-    if (!f) return DEM_ERROR_ARGUMENT;
-    memcpy(data->cells, f->desc.cells, sizeof data->cells);
-    data->box = f->desc.box;
-    data->samples = f->samples;
-    data->solid = f->solid;
-    data->mass = f->mass;
-    data->momentum = f->momentum;
-    return DEM_OK;
-}
-DEM_API dem_result dem_field_reset(dem_world *w, dem_field id) {
-    if (demi_null(w, "dem_field_reset", w, "world")) return DEM_ERROR_ARGUMENT;
-    demi_field *f = demi_field_find(w, "dem_field_reset", id);
-    size_t n;
-    if (!f) return DEM_ERROR_ARGUMENT;
-    n = demi_field_cells(f);
-    memset(f->solid, 0, n*sizeof(double));
-    memset(f->mass, 0, n*sizeof(double));
-    memset(f->momentum, 0, 3*n*sizeof(double));
-    f->samples = 0;
-    return DEM_OK;
-}
-
 DEM_API dem_counters dem_counters_get(const dem_world *w) {
     dem_counters c;
     int d;
@@ -14872,55 +16184,6 @@ DEM_API void dem_overlap_reset(dem_world *w) {
     w->booked.overlap_max = 0;
 }
 
-/* One kept contact, as users see it. */
-static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
-    const demi_periods p = demi_periods_of(w);
-    dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
-    out->a = dem_bodies_id(w, c->a);
-    out->b = dem_bodies_id(w, c->b);
-    out->wall = c->b < 0 ? c->wall + 1 : 0;
-    out->normal = c->normal;
-    if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
-    out->point = demi_place_of(&p, x);
-    out->overlap = c->overlap;
-    out->force = c->force;
-}
-/* One near pair, if it touches: its force by the law of the run on a copy of its memory. */
-static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info *out) {
-    demi_run r = demi_run_of(w, 0, w->effects.uniform);
-    const demi_span span = demi_span_of(w, d, p, 1);
-    const int a = span.a[0], b = span.b[0];
-    const demi_periods periods = demi_periods_of(w);
-    dem_real memory[DEMI_MEMORY], coef[DEMI_PAIR_COLUMNS];
-    demi_tile tile;
-    dem_contact c;
-    dem_contact_force f;
-    dem_vec3 gap;
-    int e;
-    r.span = &span;
-    demi_tile_fetch(&r, 1, &tile);
-    gap = demi_rows_at(&tile.gap, 0);
-    demi_touch_one(&tile, &r.same, 0, r.alike && !r.ranged, r.ranged);
-    if (!(tile.touch[0] > 0)) return 0;
-    if (!out) return 1;
-    for (e = 0; e < r.keep; e++) memory[e] = span.memory[(size_t)e*span.stride];
-    demi_span_coefs(w, &span, 0, coef);
-    for (e = 0; e < DEMI_PAIR_COLUMNS; e++) tile.coef[e][0] = coef[e];
-    demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
-    demi_who_clear(&c.who);
-    demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
-    demi_law(w, &c, memory, &f);
-    demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
-    out->a = dem_bodies_id(w, a);
-    out->b = dem_bodies_id(w, b);
-    out->wall = 0;
-    out->normal = demi_row(tile.normal, 0);
-    out->overlap = tile.overlap[0];
-    gap = demi_scale(gap, w->bodies.pos[4*a + 3]/(w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3]));
-    out->point = demi_place_of(&periods, demi_add(demi_at(w->bodies.pos + 4*a), gap));
-    out->force = demi_row(tile.force, 0);
-    return 1;
-}
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
     if (demi_null(w, "dem_contacts_get", w, "world")) return -1;
     int d, k, n = 0;
@@ -14928,7 +16191,7 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k))
-            n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0);
+            n += demi_contact_force(w, d, k, n < capacity && out ? &out[n] : 0, 0);
         for (k = 0; k < w->domains[d].kept; k++) {
             const demi_kept *c = demi_kept_of(w, d) + k;
             if (demi_kept_asked(w, c) && ++n <= capacity && out) demi_kept_info(w, c, &out[n - 1]);
@@ -14955,7 +16218,7 @@ DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
         for (k = demi_near_first(domain); k < domain->near_end; k = demi_near_next(domain, k)) {
-            if (!demi_contact_force(w, d, k, &info)) continue;
+            if (!demi_contact_force(w, d, k, &info, 0)) continue;
             row = w->memory_stride ? w->near.memory + (size_t)d*(size_t)w->memory_stride*stride + k
                 : memory;
             for (e = 0; e < w->memory_stride; e++) was[e] = memory[e] = row[(size_t)e*stride];
@@ -15142,6 +16405,183 @@ DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed
     return count;
 }
 
+/* A surface seen along two level directions: cells about a mean diameter wide, in each the top of
+   the highest grain there. */
+typedef struct demi_surface {
+    dem_vec3 centre, out, along, up;   /* m; unit */
+    int around;                        /* a heap: rows by distance from the centre */
+    double width, from;                /* m: of a cell; where the first row begins */
+    int rows, columns;
+    double *top;                       /* rows x columns, m above the lowest grain; < 0: nobody */
+} demi_surface;
+/* The mean height of a row, over the columns where there is somebody; < 0: nobody. */
+static double demi_surface_row(const demi_surface *s, int row) {
+    double sum = 0;
+    int k, n = 0;
+    for (k = 0; k < s->columns; k++) {
+        const double top = s->top[row*s->columns + k];
+        if (top >= 0) { sum += top; n++; }
+    }
+    return n ? sum/n : -1;
+}
+/* The line through rows first .. last - 1. 0: too few. */
+static int demi_surface_line(const demi_surface *s, int first, int last, dem_repose *out) {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, slope, rest;
+    int k;
+    for (k = first; k < last; k++) {
+        const double h = demi_surface_row(s, k), at = s->from + (k + 0.5)*s->width;
+        if (h < 0) continue;
+        n++; x += at; y += h; xx += at*at; xy += at*h; yy += h*h;
+    }
+    if (n < 4) return 0;
+    xx -= x*x/n; xy -= x*y/n; yy -= y*y/n;
+    slope = xy/xx;
+    rest = DEMI_MAX(yy - slope*xy, 0)/(n - 2);
+    out->angle = demi_atan2(slope, 1);
+    out->error = sqrt(rest/xx)/(1 + slope*slope);
+    out->places = (int)n;
+    return 1;
+}
+/* Is grain i in the box, if there is one? */
+static int demi_repose_sees(const dem_world *w, dem_box b, int i) {
+    const dem_real *x = w->bodies.pos + 4*i;
+    const dem_vec3 size = demi_sub(b.hi, b.lo);
+    if (!(demi_dot(size, size) > 0)) return 1;
+    return x[0] >= b.lo.x && x[0] <= b.hi.x && x[1] >= b.lo.y && x[1] <= b.hi.y &&
+        x[2] >= b.lo.z && x[2] <= b.hi.z;
+}
+/* Row and column of a grain, and how high its top is. */
+static double demi_surface_place(const dem_world *w, const demi_surface *s, int i, int *row,
+                                 int *column) {
+    const dem_vec3 d = demi_sub(demi_at(w->bodies.pos + 4*i), s->centre);
+    const double x = (double)demi_dot(d, s->out), y = (double)demi_dot(d, s->along);
+    const double far = s->around ? sqrt(x*x + y*y) : x;
+    *row = (int)floor((far - s->from)/s->width);
+    *column = s->around ? (int)floor((demi_atan2(y, x)/(2*DEMI_PI) + 0.5)*s->columns)
+        : (int)floor(y/s->width);
+    if (!s->around) *column = ((*column % s->columns) + s->columns)%s->columns;
+    else *column = DEMI_MIN(*column, s->columns - 1);
+    return (double)demi_dot(d, s->up) + (double)w->bodies.pos[4*i + 3];
+}
+/* Looks at the grains in the box: a surface with the heights above its lowest grain. 0: no memory;
+   top is null where there are no grains. */
+static int demi_surface_look(dem_world *w, demi_surface *s, dem_box box) {
+    double diameter = 0, lowest = 1e300, least = 1e300, most = -1e300;
+    int i, row, column, count = 0;
+    s->top = 0;
+    s->width = 1;
+    s->from = 0;
+    s->columns = 1;
+    for (i = 0; i < w->bodies.count; i++) {
+        double h;
+        if (!demi_repose_sees(w, box, i)) continue;
+        h = demi_surface_place(w, s, i, &row, &column);
+        lowest = DEMI_MIN(lowest, h - 2*(double)w->bodies.pos[4*i + 3]);
+        diameter += 2*(double)w->bodies.pos[4*i + 3];
+        count++;
+    }
+    if (!count) return 1;
+    s->width = diameter/count;                  /* rows were metres till now */
+    for (i = 0; i < w->bodies.count; i++) {
+        if (!demi_repose_sees(w, box, i)) continue;
+        demi_surface_place(w, s, i, &row, &column);
+        least = DEMI_MIN(least, (double)row);
+        most = DEMI_MAX(most, (double)row);
+    }
+    s->from = least*s->width;
+    if (!(most - least < 1e5)) return 1;        /* a grain is far off: no surface */
+    s->rows = (int)(most - least) + 1;
+    s->columns = w->desc.planar ? (s->around ? 2 : 1) : s->around ? 12 : 16;
+    s->top = (double *)demi_alloc(w, (size_t)s->rows*(size_t)s->columns, sizeof(double));
+    if (!s->top) return 0;
+    for (i = 0; i < s->rows*s->columns; i++) s->top[i] = -1;
+    for (i = 0; i < w->bodies.count; i++) {
+        double h, *top;
+        if (!demi_repose_sees(w, box, i)) continue;
+        h = demi_surface_place(w, s, i, &row, &column) - lowest;
+        if (row < 0 || row >= s->rows) continue;
+        top = &s->top[row*s->columns + column];
+        *top = DEMI_MAX(*top, h);
+    }
+    return 1;
+}
+/* What both have in common: world, gravity, box; level directions by `axis`, or any. */
+static dem_result demi_repose_begin(dem_world *w, const char *call, dem_box box, dem_vec3 axis,
+                                    demi_surface *s) {
+    const double g = (double)demi_length(w->desc.gravity);
+    dem_real R[9];
+    memset(s, 0, sizeof *s);
+    if (!(g > 0) || demi_box_bad(box, 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: gravity is %g m/s2, must not be 0: the slope "
+                         "is told against it; and the box finite, lo below hi or both 0", call, g);
+    s->up = demi_scale(w->desc.gravity, (dem_real)(-1/g));
+    demi_frame_of(R, s->up);
+    s->along = demi_v(R[0], R[3], R[6]);
+    if (demi_dot(axis, axis) > 0) {             /* its level part */
+        s->along = demi_sub(axis, demi_scale(s->up, demi_dot(axis, s->up)));
+        if (!(demi_dot(s->along, s->along) > DEM_R(0.01)*demi_dot(axis, axis)))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis (%g, %g, %g) is upright, must be "
+                             "level: give the axis that the drum turns about", call,
+                             (double)axis.x, (double)axis.y, (double)axis.z);
+        s->along = demi_unit(s->along);
+    } else if (w->desc.planar) s->along = demi_v(0, 0, 1);
+    s->out = demi_cross(s->up, s->along);       /* where the shell goes at the bottom */
+    return DEM_OK;
+}
+static dem_result demi_repose_few(dem_world *w, const char *call, const demi_surface *s) {
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: its surface has %d places, each a mean diameter "
+                     "wide, too few for a line; must be a heap some 10 diameters wide: look at "
+                     "the box, or add grains", call, s->top ? s->rows : 0);
+}
+DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repose *out) {
+    const char *call = "dem_repose_heap";
+    dem_world *w = (dem_world *)world;          /* its sentence, and memory for a while */
+    demi_surface s;
+    dem_vec3 sum = demi_v(0, 0, 0);
+    double mass = 0, highest = 0;
+    int i, first, last, good = 0;
+    if (demi_null(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    if (demi_repose_begin(w, call, box, demi_v(0, 0, 0), &s) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    for (i = 0; i < w->bodies.count; i++) {
+        if (!demi_repose_sees(w, box, i)) continue;
+        sum = demi_add(sum, demi_scale(demi_at(w->bodies.pos + 4*i), w->bodies.mass[i]));
+        mass += (double)w->bodies.mass[i];
+    }
+    if (mass > 0) s.centre = demi_scale(sum, (dem_real)(1/mass));
+    s.around = 1;
+    if (!demi_surface_look(w, &s, box)) return demi_no_memory(w, call);
+    for (i = 0; s.top && i < s.rows; i++) highest = DEMI_MAX(highest, demi_surface_row(&s, i));
+    /* outward from the last row of 80 % to the first of 20 % */
+    for (first = 0, i = 0; s.top && i < s.rows; i++)
+        if (demi_surface_row(&s, i) > 0.8*highest) first = i;
+    for (last = first; s.top && last < s.rows; last++)
+        if (!(demi_surface_row(&s, last) >= 0.2*highest)) break;
+    if (s.top) good = demi_surface_line(&s, first, last, out);
+    out->angle = -out->angle;                   /* it falls outward */
+    if (!good) demi_repose_few(w, call, &s);
+    demi_free(w, s.top);
+    return good ? DEM_OK : DEM_ERROR_ARGUMENT;
+}
+DEM_API dem_result dem_repose_drum(const dem_world *world, dem_box box, dem_vec3 axis,
+                                   dem_repose *out) {
+    const char *call = "dem_repose_drum";
+    dem_world *w = (dem_world *)world;
+    demi_surface s;
+    int good = 0;
+    if (demi_null(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    memset(out, 0, sizeof *out);
+    if (!demi_finite3(axis) || !(demi_dot(axis, axis) > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not "
+                         "zero", call, (double)axis.x, (double)axis.y, (double)axis.z);
+    if (demi_repose_begin(w, call, box, axis, &s) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    if (!demi_surface_look(w, &s, box)) return demi_no_memory(w, call);
+    if (s.top) good = demi_surface_line(&s, s.rows/4, s.rows - s.rows/4, out);
+    if (!good) demi_repose_few(w, call, &s);
+    demi_free(w, s.top);
+    return good ? DEM_OK : DEM_ERROR_ARGUMENT;
+}
+
 /* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;
    contact memory as a sum over contacts of their own digests, for the same reason. */
 DEM_API uint64_t dem_world_hash(const dem_world *w) {
@@ -15214,7 +16654,11 @@ typedef struct demi_text {
     const char *data;           /* where all of it begins                                         */
     long line;                  /* counted from 1                                                 */
     char half[24];              /* 0.5 in this locale: strtod wants its decimal point             */
+    const char *part;           /* of a mesh: only what is of this name; null: all                */
+    char *parts;                /* names that there are, DEMI_PARTS_MOST bytes                    */
+    int apart;                  /* now in another part                                            */
 } demi_text;
+enum { DEMI_PARTS_MOST = 160 };
 
 /* A text at its beginning. Numbers in it have a point, whatever the locale says: `half` learns what
    that puts between digits. */
@@ -15294,7 +16738,7 @@ static int demi_text_is(const demi_text *t, const char *word) {
 
 /* The present word as a coordinate: a decimal number with a point, no nan, inf or hexadecimal.
    strtod rounds correctly, but needs a zero at the end and the locale's point: hence the copy. */
-static dem_result demi_text_real(demi_text *t, dem_real *value) {
+static dem_result demi_text_number(demi_text *t, double *value) {
     char copy[160], *end = copy;
     size_t i, n = 0, point = strlen(t->half) - 2;
     int points = 0, bad = t->length == 0 || t->length > 120;
@@ -15314,9 +16758,14 @@ static dem_result demi_text_real(demi_text *t, dem_real *value) {
     if (bad || end != copy + n || number > DEMI_FARTHEST || number < -DEMI_FARTHEST)
         return demi_text_fail(t, "a coordinate is expected, a decimal number within +-1e15 (m); "
                               "correct it or export the file again");
-    *value = (dem_real)number;
-    if (*value == 0) *value = 0; /* -0 and 0 are one place */
+    *value = number == 0 ? 0 : number; /* -0 and 0 are one place */
     return DEM_OK;
+}
+static dem_result demi_text_real(demi_text *t, dem_real *value) {
+    double number = 0;
+    const dem_result result = demi_text_number(t, &number);
+    if (result == DEM_OK) *value = (dem_real)number;
+    return result;
 }
 
 /* The first `length` bytes of the present word as a whole number of at most 9 digits. */
@@ -15407,19 +16856,34 @@ static dem_result demi_lists_read(demi_text *t, size_t width, dem_mesh *mesh) {
     return result;
 }
 
+/* The rest of the line names a part: is it the one that is wanted? */
+static void demi_text_part(demi_text *t) {
+    const char *from = t->at, *end = t->line_end;
+    size_t size, have;
+    if (!t->part) return;
+    while (from < end && (*from == ' ' || *from == '\t')) from++;
+    while (end > from && (end[-1] == ' ' || end[-1] == '\t' || end[-1] == '\r')) end--;
+    size = (size_t)(end - from);
+    t->apart = size != strlen(t->part) || memcmp(from, t->part, size);
+    have = strlen(t->parts);
+    if (!size || have + size + 3 > DEMI_PARTS_MOST) return;
+    sprintf(t->parts + have, "%s%.*s", have ? ", " : "", (int)size, from);
+}
 /* OBJ: v and f lines, polygons cut into a fan of triangles, the rest passed over. Without `fill` it
    counts and allocates. The text comes by value: each pass starts afresh. */
 static dem_result demi_obj_pass(demi_text t, dem_mesh *mesh, int fill) {
     size_t vertices = 0, triangles = 0, axis;
     dem_result result = DEM_OK;
+    t.apart = t.part != 0;
     while (result == DEM_OK && demi_text_line(&t)) {
+        if (demi_text_is(&t, "o") || demi_text_is(&t, "g")) demi_text_part(&t);
         if (demi_text_is(&t, "v")) {
             for (axis = 0; fill && axis < 3 && result == DEM_OK; axis++) {
                 demi_text_word(&t);
                 result = demi_text_real(&t, &mesh->vertices[3*vertices + axis]);
             }
             vertices++;
-        } else if (demi_text_is(&t, "f")) {
+        } else if (demi_text_is(&t, "f") && !t.apart) {
             int32_t corner[3] = {0, 0, 0}; /* first, previous, present */
             int count = 0;
             for (; result == DEM_OK && demi_text_word(&t); count++) {
@@ -15442,9 +16906,12 @@ static dem_result demi_obj_pass(demi_text t, dem_mesh *mesh, int fill) {
 static dem_result demi_stl_pass(demi_text t, dem_mesh *mesh, int fill) {
     size_t facets = 0, axis;
     int corners = 3, ended = 0; /* of this facet, so far; whether `endsolid` came */
+    t.apart = t.part != 0;
     while (demi_text_line(&t)) {
         int vertex = demi_text_is(&t, "vertex"), facet = demi_text_is(&t, "facet");
         int endfacet = demi_text_is(&t, "endfacet"), endsolid = demi_text_is(&t, "endsolid");
+        if (demi_text_is(&t, "solid")) demi_text_part(&t);
+        if (t.apart && !endsolid) continue;
         if (facet) facets++;
         if (!fill) continue;
         if (vertex ? corners == 3 : (facet || endfacet || endsolid) && corners < 3)
@@ -15669,14 +17136,34 @@ static const demi_mesh_format *demi_mesh_format_of(demi_text t) {  /* null: list
     return 0;
 }
 
+/* Without vertices that no triangle has: those of other parts. */
+static dem_result demi_mesh_compact(const demi_text *t, dem_mesh *mesh) {
+    int32_t *to = (int32_t *)demi_alloc(t->world, (size_t)mesh->vertex_count, sizeof *to);
+    int i, n = 0;
+    if (!to) return demi_text_memory(t);
+    for (i = 0; i < 3*mesh->triangle_count; i++) to[mesh->triangles[i]] = 1;
+    for (i = 0; i < mesh->vertex_count; i++) {
+        if (!to[i]) continue;
+        memmove(mesh->vertices + 3*n, mesh->vertices + 3*i, 3*sizeof *mesh->vertices);
+        to[i] = n++;
+    }
+    for (i = 0; i < 3*mesh->triangle_count; i++) mesh->triangles[i] = to[mesh->triangles[i]];
+    mesh->vertex_count = n;
+    demi_free(t->world, to);
+    return DEM_OK;
+}
 /* Any bytes -> a mesh (width 3) or the segments of a profile (2), or a sentence and an empty mesh.
    Contents tell formats apart. */
 static dem_result demi_parse(dem_world *w, const char *call, const char *name, const char *data,
-                             size_t size, size_t width, dem_mesh *mesh, dem_mesh_health *health) {
+                             size_t size, size_t width, const char *part, dem_mesh *mesh,
+                             dem_mesh_health *health) {
+    char parts[DEMI_PARTS_MOST] = "";
     demi_text t = demi_text_make(w, call, name, data, size);
     const demi_mesh_format *format = width == 3 ? demi_mesh_format_of(t) : 0;
     dem_result result;
     int merged = 0;
+    t.part = part;
+    t.parts = parts;
     if (!(format && format->binary) && memchr(data, 0, size)) {
         result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s: found %.0f bytes that are not text%s; the "
                            "file is cut short or of another format, so copy or export it again",
@@ -15684,8 +17171,16 @@ static dem_result demi_parse(dem_world *w, const char *call, const char *name, c
                            "84 and 50 for each triangle it counts");
     } else if (format) {
         result = format->pass(t, mesh, 0);
+        if (part && (!mesh->triangle_count || !parts[0]))
+            result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s has no triangles of a part \"%.60s\", "
+                               "must be one of: %s; ask for one of these, or read the whole mesh",
+                               call, t.name, part, parts[0] ? parts : "(it names none)");
         if (result == DEM_OK) result = format->pass(t, mesh, 1);
         if (result == DEM_OK && format->by_place) result = demi_mesh_merge(&t, mesh, &merged);
+        if (result == DEM_OK && part) result = demi_mesh_compact(&t, mesh);
+    } else if (part) {
+        result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s is of a format without named parts; give "
+                           "STL as text or OBJ, or read the whole mesh", call, t.name);
     } else {
         result = demi_lists_read(&t, width, mesh);
     }
@@ -15726,11 +17221,11 @@ static dem_result demi_load(dem_world *w, const char *call, const char *path, ch
 
 /* demi_parse for a file. */
 static dem_result demi_read(dem_world *w, const char *call, const char *path, size_t width,
-                            dem_mesh *mesh, dem_mesh_health *health) {
+                            const char *part, dem_mesh *mesh, dem_mesh_health *health) {
     char *bytes = 0;
     size_t size;
     dem_result result = demi_load(w, call, path, &bytes, &size);
-    if (result == DEM_OK) result = demi_parse(w, call, path, bytes, size, width,
+    if (result == DEM_OK) result = demi_parse(w, call, path, bytes, size, width, part,
                                               mesh, health);
     demi_free(w, bytes);
     return result;
@@ -15744,7 +17239,7 @@ DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void
     if (!mesh || !data)
         return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_parse: %s is null; give its address",
                          mesh ? "data" : "mesh");
-    return demi_parse(world, "dem_mesh_parse", name, (const char *)data, size, 3, mesh, health);
+    return demi_parse(world, "dem_mesh_parse", name, (const char *)data, size, 3, 0, mesh, health);
 }
 
 DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
@@ -15755,9 +17250,18 @@ DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *m
         return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_read: mesh is null; give its "
                          "address");
     memset(mesh, 0, sizeof *mesh);
-    return demi_read(world, "dem_mesh_read", path, 3, mesh, health);
+    return demi_read(world, "dem_mesh_read", path, 3, 0, mesh, health);
 }
 
+DEM_API dem_result dem_mesh_part_read(dem_world *world, const char *path, const char *part,
+                                      dem_mesh *mesh, dem_mesh_health *health) {
+    const char *call = "dem_mesh_part_read";
+    if (demi_null(world, call, mesh, "mesh")) return DEM_ERROR_ARGUMENT;
+    memset(mesh, 0, sizeof *mesh);
+    if (health) memset(health, 0, sizeof *health);
+    if (demi_null(world, call, part, "part")) return DEM_ERROR_ARGUMENT;
+    return demi_read(world, call, path, 3, part, mesh, health);
+}
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
     if (world && mesh) demi_mesh_free(world, mesh);
 }
@@ -15805,7 +17309,8 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
     if (!profile || !data)
         return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_profile_parse: %s is null; give its "
                          "address", profile ? "data" : "profile");
-    result = demi_parse(world, "dem_profile_parse", name, (const char *)data, size, 2, &lists, 0);
+    result = demi_parse(world, "dem_profile_parse", name, (const char *)data, size, 2, 0, &lists,
+                        0);
     if (result != DEM_OK) return result;
     return demi_profile_take(world, "dem_profile_parse", name, &lists, profile);
 }
@@ -15818,7 +17323,7 @@ DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_prof
         return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_profile_read: profile is null; give its "
                          "address");
     memset(profile, 0, sizeof *profile);
-    result = demi_read(world, "dem_profile_read", path, 2, &lists, 0);
+    result = demi_read(world, "dem_profile_read", path, 2, 0, &lists, 0);
     if (result != DEM_OK) return result;
     return demi_profile_take(world, "dem_profile_read", path, &lists, profile);
 }
@@ -15828,6 +17333,428 @@ DEM_API void dem_profile_free(dem_world *world, dem_profile *profile) {
     demi_free(world, profile->vertices);
     demi_free(world, profile->segments);
     memset(profile, 0, sizeof *profile);
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>read-grains
+   Grains in. Text is read line by line with a list of what each column is: from a first line of
+   names, from an XYZ file's Properties, or by position. Of VTP files those that dem.h writes
+   (appended raw arrays). As in >>read nothing is trusted: counts are held against the bytes there.
+   Tests: tests/test_grains.c, tests/fuzz_grains.c.
+   --------------------------------------------------------------------------------------------- */
+/* Of this machine: formats say which order they want. */
+static int demi_is_little_endian(void) {
+    const uint16_t one = 1;
+    unsigned char first;
+    memcpy(&first, &one, 1);
+    return first == 1;
+}
+
+enum { DEMI_COLUMN_X, DEMI_COLUMN_R = 3, DEMI_COLUMN_D, DEMI_COLUMN_V, DEMI_COLUMN_W = 8,
+       DEMI_COLUMN_MATERIAL = 11, DEMI_COLUMN_OTHER, DEMI_COLUMNS_MOST = 64 };
+/* What the columns of a file are. */
+typedef struct demi_layout {
+    int count, what[DEMI_COLUMNS_MOST];
+    int has[DEMI_COLUMN_OTHER + 1];
+} demi_layout;
+static void demi_grains_free(dem_world *w, dem_grains *g) {
+    demi_free(w, g->positions);
+    demi_free(w, g->radii);
+    demi_free(w, g->velocities);
+    demi_free(w, g->spins);
+    demi_free(w, g->materials);
+    memset(g, 0, sizeof *g);
+}
+/* Arrays for count grains; 0 when memory ran out. */
+static int demi_grains_room(dem_world *w, dem_grains *g, size_t count, const demi_layout *l) {
+    const int *has = l->has;
+    const int v = has[DEMI_COLUMN_V] || has[DEMI_COLUMN_V + 1] || has[DEMI_COLUMN_V + 2];
+    const int s = has[DEMI_COLUMN_W] || has[DEMI_COLUMN_W + 1] || has[DEMI_COLUMN_W + 2];
+    g->positions = (dem_real *)demi_alloc(w, 3*count, sizeof(dem_real));
+    g->radii = (dem_real *)demi_alloc(w, count, sizeof(dem_real));
+    if (v) g->velocities = (dem_real *)demi_alloc(w, 3*count, sizeof(dem_real));
+    if (s) g->spins = (dem_real *)demi_alloc(w, 3*count, sizeof(dem_real));
+    if (has[DEMI_COLUMN_MATERIAL])
+        g->materials = (int32_t *)demi_alloc(w, count, sizeof(int32_t));
+    return g->positions && g->radii && (!v || g->velocities) && (!s || g->spins) &&
+        (!has[DEMI_COLUMN_MATERIAL] || g->materials);
+}
+static void demi_layout_add(demi_layout *l, int what, int times) {
+    int k;
+    for (k = 0; k < times && l->count < DEMI_COLUMNS_MOST; k++) {
+        l->what[l->count++] = what < DEMI_COLUMN_OTHER ? what + k : what;
+        l->has[what < DEMI_COLUMN_OTHER ? what + k : what] = 1;
+    }
+}
+/* What a column of this name is. */
+static int demi_column_of(const demi_text *t) {
+    static const struct { const char *name; int what; } names[] = {
+        {"x", 0}, {"y", 1}, {"z", 2}, {"r", DEMI_COLUMN_R}, {"radius", DEMI_COLUMN_R},
+        {"d", DEMI_COLUMN_D}, {"diameter", DEMI_COLUMN_D}, {"vx", DEMI_COLUMN_V},
+        {"vy", DEMI_COLUMN_V + 1}, {"vz", DEMI_COLUMN_V + 2}, {"wx", DEMI_COLUMN_W},
+        {"wy", DEMI_COLUMN_W + 1}, {"wz", DEMI_COLUMN_W + 2}, {"material", DEMI_COLUMN_MATERIAL}};
+    size_t k;
+    for (k = 0; k < sizeof names/sizeof *names; k++)
+        if (demi_text_is(t, names[k].name)) return names[k].what;
+    return DEMI_COLUMN_OTHER;
+}
+/* From an XYZ file's second line: Properties=name:type:columns and so on. 0: there are none. */
+static int demi_layout_xyz(const char *line, const char *end, demi_layout *l) {
+    static const struct { const char *name; int what, times; } names[] = {
+        {"pos", DEMI_COLUMN_X, 3}, {"radius", DEMI_COLUMN_R, 1}, {"velo", DEMI_COLUMN_V, 3},
+        {"vel", DEMI_COLUMN_V, 3}, {"velocity", DEMI_COLUMN_V, 3},
+        {"angular_velocity", DEMI_COLUMN_W, 3}, {"material", DEMI_COLUMN_MATERIAL, 1}};
+    const char *word = "Properties=", *p = line;
+    const size_t n = strlen(word);
+    while (p + n <= end && memcmp(p, word, n)) p++;
+    if (p + n > end) return 0;
+    for (p += n; p < end && *p != ' ' && *p != '\t' && *p != '\r';) {
+        const char *name = p, *stop;
+        size_t k;
+        int times = 0, colons = 0;
+        while (p < end && *p != ':' && *p != ' ') p++;
+        stop = p;
+        for (; p < end && colons < 2 && *p != ' '; p++) colons += *p == ':';
+        while (p < end && *p >= '0' && *p <= '9' && times < 1000) times = 10*times + (*p++ - '0');
+        if (colons < 2 || times < 1) return 0;
+        for (k = 0; k < sizeof names/sizeof *names; k++)
+            if (strlen(names[k].name) == (size_t)(stop - name) &&
+                !memcmp(names[k].name, name, (size_t)(stop - name)) && names[k].times == times)
+                break;
+        if (k < sizeof names/sizeof *names) demi_layout_add(l, names[k].what, times);
+        else demi_layout_add(l, DEMI_COLUMN_OTHER, times);
+        if (p < end && *p == ':') p++;
+    }
+    return l->count > 0;
+}
+/* One line of numbers into row i of the grains. */
+static dem_result demi_grain_line(demi_text *t, const demi_layout *l, dem_grains *g, size_t i) {
+    double value;
+    int k;
+    for (k = 0; k < l->count; k++) {
+        const int what = l->what[k];
+        dem_result result;
+        if (!t->length) return demi_text_fail(t, "a number is expected for each column; add what "
+                                              "is missing or correct the names of the columns");
+        if (what != DEMI_COLUMN_OTHER) {
+            result = demi_text_number(t, &value);
+            if (result != DEM_OK) return result;
+            if (what < DEMI_COLUMN_R) g->positions[3*i + (size_t)what] = (dem_real)value;
+            else if (what < DEMI_COLUMN_V) {
+                g->radii[i] = (dem_real)(what == DEMI_COLUMN_D ? value/2 : value);
+                if (!(g->radii[i] > 0)) return demi_text_fail(t, "a radius or diameter is expected"
+                                                              ", > 0 m; correct it");
+            } else if (what < DEMI_COLUMN_W)
+                g->velocities[3*i + (size_t)(what - DEMI_COLUMN_V)] = (dem_real)value;
+            else if (what < DEMI_COLUMN_MATERIAL)
+                g->spins[3*i + (size_t)(what - DEMI_COLUMN_W)] = (dem_real)value;
+            else {
+                if (!(value >= 0 && value < 1e6 && value <= (int)value))
+                    return demi_text_fail(t, "a material is expected, a whole number; correct it");
+                g->materials[i] = (int32_t)value;
+            }
+        }
+        demi_text_word(t);
+    }
+    if (t->length) return demi_text_fail(t, "the line should end: it has more columns than the "
+                                         "first; numbers have a point, not a comma");
+    return DEM_OK;
+}
+/* Text: its layout, how many lines are grains, then the grains. t: at its beginning. */
+static dem_result demi_grains_text(demi_text t, dem_grains *g) {
+    demi_layout l;
+    demi_text first, at;
+    int32_t count = 0;
+    size_t n = 0, i, said = 0;
+    int words = 0, named = 0;
+    dem_real number;
+    memset(&l, 0, sizeof l);
+    if (!demi_text_line(&t)) return demi_text_fail(&t, "grains are expected; is it empty?");
+    first = at = t;
+    do {
+        words++;
+        named |= demi_column_of(&at) != DEMI_COLUMN_OTHER;
+    } while (demi_text_word(&at));
+    if (words == 1 && demi_text_integer(&t, t.length, &count) && count >= 0) {   /* XYZ */
+        const char *line = t.next, *end = line;
+        while (end < t.end && *end != '\n') end++;
+        if (!demi_layout_xyz(line, end, &l)) {
+            demi_text_line(&t);
+            return demi_text_fail(&t, "an XYZ file is expected to tell its columns "
+                                  "(Properties=species:S:1:pos:R:3:radius:R:1); write it with "
+                                  "radii, or give text with columns x y z r");
+        }
+        said = (size_t)count;
+        t.next = t.at = t.line_end = end;
+        t.word = 0;
+        t.length = 0;
+    } else if (named) {
+        do demi_layout_add(&l, demi_column_of(&t), 1); while (demi_text_word(&t));
+    } else {
+        if (demi_text_real(&t, &number) != DEM_OK)
+            return demi_text_fail(&t, "numbers are expected, or names of columns (x y z r ...)");
+        if (words != 4 && words != 7)
+            return demi_text_fail(&t, "4 columns are expected (x y z r), or 7 (and vx vy vz), or "
+                                  "a first line that names them");
+        demi_layout_add(&l, DEMI_COLUMN_X, 3);
+        demi_layout_add(&l, DEMI_COLUMN_R, 1);
+        if (words == 7) demi_layout_add(&l, DEMI_COLUMN_V, 3);
+        /* what was read is a grain already */
+        t.next = first.word;
+        t.line--;
+    }
+    if (!l.has[0] || !l.has[1] || !(l.has[DEMI_COLUMN_R] || l.has[DEMI_COLUMN_D]))
+        return demi_text_fail(&t, "columns x, y and r (radius) or d (diameter) are needed; name "
+                              "them in the first line");
+    for (at = t; demi_text_line(&at);) n++;
+    if (said && n < said) return demi_fail(t.world, DEM_ERROR_FORMAT, "%s: %s: has %.0f lines of "
+                                           "grains where it says %.0f; it was cut short", t.call,
+                                           t.name, (double)n, (double)said);
+    if (said) n = said;                         /* of an XYZ file with several frames the first */
+    if (n > (size_t)(INT_MAX/64) || !demi_grains_room(t.world, g, n + 1, &l))
+        return demi_text_memory(&t);
+    g->count = (int)n;
+    for (i = 0; i < n; i++) {
+        dem_result result;
+        demi_text_line(&t);
+        result = demi_grain_line(&t, &l, g, i);
+        if (result != DEM_OK) return result;
+    }
+    return DEM_OK;
+}
+
+/* What a tag's attribute says, from `tag` to `end`: where it begins; null when it has none. */
+static const char *demi_attribute(const char *tag, const char *end, const char *name,
+                                  size_t *size) {
+    const size_t n = strlen(name);
+    const char *p, *stop;
+    for (p = tag; p + n + 2 < end; p++) {
+        if (p[-1] != ' ' || memcmp(p, name, n) || p[n] != '=' || p[n + 1] != '"') continue;
+        stop = (const char *)memchr(p + n + 2, '"', (size_t)(end - p) - n - 2);
+        if (!stop) return 0;
+        *size = (size_t)(stop - (p + n + 2));
+        return p + n + 2;
+    }
+    return 0;
+}
+static int demi_attribute_is(const char *tag, const char *end, const char *name,
+                             const char *value) {
+    size_t size = 0;
+    const char *is = demi_attribute(tag, end, name, &size);
+    return is && size == strlen(value) && !memcmp(is, value, size);
+}
+/* A whole number of at most 15 digits; -1: it is none. */
+static double demi_attribute_number(const char *tag, const char *end, const char *name) {
+    size_t size = 0, i;
+    const char *is = demi_attribute(tag, end, name, &size);
+    double number = 0;
+    if (!is || !size || size > 15) return -1;
+    for (i = 0; i < size; i++) {
+        if (is[i] < '0' || is[i] > '9') return -1;
+        number = 10*number + (is[i] - '0');
+    }
+    return number;
+}
+/* A VTP file under way. */
+typedef struct demi_vtp_in {
+    const demi_text *t;
+    const char *head, *head_end;    /* of the XML before the appended data */
+    const char *data;               /* where that begins */
+    size_t size, points;
+} demi_vtp_in;
+static dem_result demi_vtp_fail(const demi_vtp_in *v, const char *what, const char *name) {
+    return demi_fail(v->t->world, DEM_ERROR_FORMAT, "%s: %s: %s%s; give a VTP file as "
+                     "dem_vtp_write writes it (appended raw data), or text with columns x y z r",
+                     v->t->call, v->t->name, what, name);
+}
+/* The array of this name: `width` numbers of each point. *there: is there one? */
+static dem_result demi_vtp_array(const demi_vtp_in *v, const char *name, size_t width,
+                                 dem_real *out, int32_t *whole, int *there) {
+    const char *tag = v->head, *end;
+    double offset;
+    uint64_t bytes;
+    size_t item, i;
+    int wide, real;
+    *there = 0;
+    for (;; tag = end) {
+        while (tag + 10 < v->head_end && memcmp(tag, "<DataArray", 10)) tag++;
+        if (tag + 10 >= v->head_end) return DEM_OK;
+        end = (const char *)memchr(tag, '>', (size_t)(v->head_end - tag));
+        if (!end) return DEM_OK;
+        if (demi_attribute_is(tag + 1, end, "Name", name)) break;
+    }
+    *there = 1;
+    if (!out && !whole) return DEM_OK;
+    wide = demi_attribute_is(tag + 1, end, "type", "Float64");
+    real = wide || demi_attribute_is(tag + 1, end, "type", "Float32");
+    item = wide ? 8 : 4;
+    offset = demi_attribute_number(tag + 1, end, "offset");
+    if ((out ? !real : !demi_attribute_is(tag + 1, end, "type", "Int32")) || offset < 0 ||
+        !demi_attribute_is(tag + 1, end, "format", "appended") ||
+        demi_attribute_number(tag + 1, end, "NumberOfComponents") < (double)width ||
+        demi_attribute_number(tag + 1, end, "NumberOfComponents") > (double)width)
+        return demi_vtp_fail(v, "its array is of another kind: ", name);
+    if (offset + 8 > (double)v->size ||
+        (double)v->points*(double)(width*item) > (double)v->size - offset - 8)
+        return demi_vtp_fail(v, "is cut short within its array ", name);
+    memcpy(&bytes, v->data + (size_t)offset, 8);
+    if (bytes != (uint64_t)(v->points*width*item))
+        return demi_vtp_fail(v, "says another size of its array ", name);
+    for (i = 0; i < v->points*width; i++) {
+        const char *from = v->data + (size_t)offset + 8 + i*item;
+        double number;
+        float narrow;
+        if (whole) { memcpy(&whole[i], from, 4); continue; }
+        memcpy(&number, from, wide ? 8 : 0);
+        memcpy(&narrow, from, wide ? 0 : 4);
+        if (!wide) number = (double)narrow;
+        if (!(fabs(number) <= DEMI_FARTHEST))
+            return demi_vtp_fail(v, "has a number that is not finite in its array ", name);
+        out[i] = (dem_real)number;
+    }
+    return DEM_OK;
+}
+static dem_result demi_grains_vtp(const demi_text *t, dem_grains *g) {
+    const size_t all = (size_t)(t->end - t->data);
+    const char *mark = "<AppendedData encoding=\"raw\">", *piece = "<Piece", *p, *end;
+    demi_vtp_in v;
+    demi_layout l;
+    double points;
+    size_t i;
+    int spins = 0, velocities = 0, materials = 0, there = 0;
+    dem_result result;
+    memset(&l, 0, sizeof l);
+    v.t = t;
+    v.head = t->data;
+    v.size = v.points = 0;
+    for (p = t->data; p + strlen(mark) < t->end && memcmp(p, mark, strlen(mark)); p++) {}
+    v.head_end = p;
+    p = (const char *)memchr(p, '_', (size_t)(t->end - p));
+    if (!p) return demi_vtp_fail(&v, "has no appended raw data", "");
+    v.data = p + 1;
+    v.size = all - (size_t)(v.data - t->data);
+    for (p = t->data; p + 6 < v.head_end && memcmp(p, piece, 6); p++) {}
+    end = (const char *)memchr(p, '>', (size_t)(v.head_end - p));
+    points = end ? demi_attribute_number(p + 1, end, "NumberOfPoints") : -1;
+    for (p = t->data; p + 8 < v.head_end && memcmp(p, "<VTKFile", 8); p++) {}
+    end = (const char *)memchr(p, '>', (size_t)(v.head_end - p));
+    if (points < 0 || !end || !demi_attribute_is(p + 1, end, "header_type", "UInt64") ||
+        !demi_attribute_is(p + 1, end, "byte_order",
+                           demi_is_little_endian() ? "LittleEndian" : "BigEndian"))
+        return demi_vtp_fail(&v, "has no number of points, or is of another byte order or header",
+                             "");
+    if (points*12 > (double)v.size) return demi_vtp_fail(&v, "is cut short", "");
+    v.points = (size_t)points;
+    demi_vtp_array(&v, "velocity", 3, 0, 0, &velocities);
+    demi_vtp_array(&v, "spin", 3, 0, 0, &spins);
+    demi_vtp_array(&v, "material", 1, 0, 0, &materials);
+    l.has[DEMI_COLUMN_V] = velocities;
+    l.has[DEMI_COLUMN_W] = spins;
+    l.has[DEMI_COLUMN_MATERIAL] = materials;
+    if (v.points > (size_t)(INT_MAX/64) || !demi_grains_room(t->world, g, v.points + 1, &l))
+        return demi_text_memory(t);
+    g->count = (int)v.points;
+    result = demi_vtp_array(&v, "position", 3, g->positions, 0, &there);
+    if (result == DEM_OK && !there) result = demi_vtp_fail(&v, "has no array ", "position");
+    if (result == DEM_OK) result = demi_vtp_array(&v, "radius", 1, g->radii, 0, &there);
+    if (result == DEM_OK && !there) result = demi_vtp_fail(&v, "has no array ", "radius");
+    if (result == DEM_OK && velocities)
+        result = demi_vtp_array(&v, "velocity", 3, g->velocities, 0, &there);
+    if (result == DEM_OK && spins)
+        result = demi_vtp_array(&v, "spin", 3, g->spins, 0, &there);
+    if (result == DEM_OK && materials)
+        result = demi_vtp_array(&v, "material", 1, 0, g->materials, &there);
+    for (i = 0; i < v.points && result == DEM_OK; i++)
+        if (!(g->radii[i] > 0)) result = demi_vtp_fail(&v, "has a radius that is not > 0", "");
+    return result;
+}
+/* dem_grains_parse, in the name of `call`; data may be written to. */
+static dem_result demi_grains_parse(dem_world *w, const char *call, const char *name, char *data,
+                                    size_t size, dem_grains *g) {
+    const int xml = size >= 5 && !memcmp(data, "<?xml", 5);
+    demi_text t;
+    dem_result result;
+    size_t i;
+    memset(g, 0, sizeof *g);
+    if (!xml)
+        for (i = 0; i < size; i++) if (data[i] == ',' || data[i] == ';') data[i] = ' ';
+    t = demi_text_make(w, call, name, data, size);
+    if (!xml && memchr(data, 0, size))
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %s: found bytes that are not text; give text, "
+                         "CSV, XYZ, or a VTP file that dem_vtp_write wrote", call, t.name);
+    result = xml ? demi_grains_vtp(&t, g) : demi_grains_text(t, g);
+    if (result != DEM_OK) demi_grains_free(w, g);
+    return result;
+}
+DEM_API dem_result dem_grains_parse(dem_world *w, const char *name, const void *data, size_t size,
+                                    dem_grains *g) {
+    char *copy;
+    dem_result result;
+    if (demi_null(w, "dem_grains_parse", g, "grains")) return DEM_ERROR_ARGUMENT;
+    memset(g, 0, sizeof *g);
+    if (demi_null(w, "dem_grains_parse", data, "data")) return DEM_ERROR_ARGUMENT;
+    copy = (char *)demi_alloc(w, size + 1, 1);
+    if (!copy) return demi_no_memory(w, "dem_grains_parse");
+    memcpy(copy, data, size);
+    result = demi_grains_parse(w, "dem_grains_parse", name, copy, size, g);
+    demi_free(w, copy);
+    return result;
+}
+DEM_API dem_result dem_grains_read(dem_world *w, const char *path, dem_grains *g) {
+    char *bytes = 0;
+    size_t size = 0;
+    dem_result result;
+    if (demi_null(w, "dem_grains_read", g, "grains")) return DEM_ERROR_ARGUMENT;
+    memset(g, 0, sizeof *g);
+    result = demi_load(w, "dem_grains_read", path, &bytes, &size);
+    if (result == DEM_OK)
+        result = demi_grains_parse(w, "dem_grains_read", path, bytes, size, g);
+    demi_free(w, bytes);
+    return result;
+}
+DEM_API void dem_grains_free(dem_world *w, dem_grains *g) {
+    if (demi_null(w, "dem_grains_free", g, "grains")) return;
+    demi_grains_free(w, g);
+}
+DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem_grains *g) {
+    const char *call = "dem_grains_add";
+    int i, first;
+    if (demi_null(w, call, g, "grains")) return DEM_ERROR_ARGUMENT;
+    for (i = 0; i < g->count; i++) {
+        dem_material m = material;
+        int index = 0;
+        if (!m.id && !g->materials)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material is null and the grains have none "
+                             "of their own; give what dem_material_add returned", call);
+        if (!m.id) m.id = g->materials[i];
+        if (demi_material_index(w, call, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
+        if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
+            !demi_place(demi_at(g->positions + 3*i)) ||
+            (g->velocities && !demi_finite3(demi_at(g->velocities + 3*i))) ||
+            (g->spins && !demi_finite3(demi_at(g->spins + 3*i))))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grain %d has a radius of %g m or a number "
+                             "that is not finite; none was added", call, i, (double)g->radii[i]);
+        if (demi_mass_refuse(w, call, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
+    }
+    first = w->bodies.count;
+    if (!demi_list_drop(w) ||
+        !demi_bodies_reserve(w, (size_t)first + (size_t)DEMI_MAX(g->count, 0)))
+        return demi_no_memory(w, call);
+    for (i = 0; i < g->count; i++) {
+        const int m = (material.id ? material.id : g->materials[i]) - 1;
+        const uint32_t slot = demi_body_append(w, m, g->radii[i], demi_at(g->positions + 3*i));
+        const int k = w->bodies.slot_index[slot];
+        if (g->velocities) demi_put(w->bodies.vel + 4*k, demi_at(g->velocities + 3*i));
+        if (g->spins) demi_put(w->bodies.spin + 4*k, demi_at(g->spins + 3*i));
+        if (w->desc.planar)
+            w->bodies.vel[4*k + 2] = w->bodies.spin[4*k] = w->bodies.spin[4*k + 1] = 0;
+        demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
+        demi_put(w->bodies.half_spin + 4*k, demi_at(w->bodies.spin + 4*k));
+        w->booked.inserted += demi_body_energy(w, k);
+    }
+    demi_scene_changed(w);
+    demi_built(w, call);
+    return DEM_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -15964,14 +17891,6 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
     errno = 0;
     o->file = fopen(o->temporary, "wb");
     return o->file ? DEM_OK : demi_out_close(o);
-}
-
-/* Of this machine: formats say which order they want. */
-static int demi_is_little_endian(void) {
-    const uint16_t one = 1;
-    unsigned char first;
-    memcpy(&first, &one, 1);
-    return first == 1;
 }
 
 /* One binary number of at most 8 bytes, turned round if asked. */
@@ -16352,6 +18271,27 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
 
 /* ---- walls and loads out ---- */
 
+/* A surface of revolution, as demi_wall_draw has it. */
+static void demi_rings_draw(const demi_wall *wall, int i, int64_t *points, int64_t *triangles,
+                            dem_real *place, int32_t *corners, int32_t *id) {
+    const int64_t base = *points, first = *triangles;
+    const int all = 2*(wall->ring_count - 1)*DEMI_RING_SIDES;
+    int k, c;
+    *points += wall->ring_count*DEMI_RING_SIDES;
+    *triangles += all;
+    if (!place) return;
+    for (k = 0; k < wall->ring_count*DEMI_RING_SIDES; k++) {
+        dem_real local[3];
+        demi_ring_corner(wall, k/DEMI_RING_SIDES, k%DEMI_RING_SIDES, local);
+        demi_put(place + 3*(base + k), demi_add(wall->pose.position,
+                                                demi_rotate(wall->pose.rotation, demi_at(local))));
+    }
+    for (k = 0; k < all; k++) {
+        for (c = 0; c < 3; c++)
+            corners[3*(first + k) + c] = (int32_t)(base + demi_ring_triangle(k, c));
+        id[first + k] = i + 1;
+    }
+}
 /* Adds wall i as it lies now: its points (those of a profile at z[0], then at z[1]) and triangles
    (a segment a b, with A B above it, becomes a b B and a B A). Without arrays it only counts. */
 static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t *points,
@@ -16362,6 +18302,10 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
     dem_pose pose;
     dem_wall handle;
     handle.id = i + 1;
+    if (wall->ring_count) {
+        demi_rings_draw(wall, i, points, triangles, place, corners, id);
+        return;
+    }
     if (demi_wall_per(wall) < 2) return;
     *points += sides*up;
     *triangles += sides*(int64_t)wall->element_count;
@@ -16429,31 +18373,16 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
     return result;
 }
 
-/* Appending cannot go by way of a temporary name. Instead the line goes out in one piece, and after
-   one that was cut short (a full disk, a killed run) a new line is begun. */
-DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const char *path) {
-    if (demi_null(world, "dem_wall_loads_csv", world, "world")) return DEM_ERROR_ARGUMENT;
-    static const char heading[] = "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts\n";
-    dem_wall_loads c;
-    dem_real value[8];
-    double time = dem_world_time(world);
-    char text[sizeof heading + 10*32], number[32];
-    int i, n = 0, last = '\n', whole, cause;
+/* Appends a line to a CSV file, its heading before when the file is new or empty. Appending cannot
+   go by way of a temporary name. Instead the line goes out in one piece, and after one that was cut
+   short (a full disk, a killed run) a new line is begun. */
+enum { DEMI_CSV_LINE = 1200 };
+static dem_result demi_csv_append(dem_world *w, const char *call, const char *path,
+                                  const char *heading, const char *line) {
+    char text[2*DEMI_CSV_LINE];
+    int n = 0, last = '\n', whole, cause;
     FILE *file;
-    if (!path)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_wall_loads_csv: path is null; give a file "
-                         "name");
-    if (dem_wall_loads_get(world, wall, &c) != DEM_OK)
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_wall_loads_csv: wall %ld names none; give "
-                         "one that was added and not removed", (long)wall.id);
-    value[0] = c.force.x;
-    value[1] = c.force.y;
-    value[2] = c.force.z;
-    value[3] = c.torque.x;
-    value[4] = c.torque.y;
-    value[5] = c.torque.z;
-    value[6] = c.torque_axial;
-    value[7] = c.power;
+    if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
     errno = 0;
     file = fopen(path, "a+b");
     whole = file && fseek(file, 0, SEEK_END) == 0;
@@ -16462,21 +18391,51 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
         last = whole ? fgetc(file) : last;
         whole = whole && fseek(file, 0, SEEK_END) == 0; /* C wants a seek between read and write */
         n = snprintf(text, sizeof text, "%s", last == '\n' ? "" : "\n");
-    } else n = snprintf(text, sizeof text, "%s", heading);
-    n += snprintf(text + n, sizeof text - (size_t)n, "%s", demi_format_real(number, time, 12));
-    for (i = 0; i < 8; i++) {
-        demi_format_real(number, (double)value[i], 9);
-        n += snprintf(text + n, sizeof text - (size_t)n, ",%s", number);
-    }
-    n += snprintf(text + n, sizeof text - (size_t)n, ",%d\n", c.contacts);
+    } else n = snprintf(text, sizeof text, "%s\n", heading);
+    n += snprintf(text + n, sizeof text - (size_t)n, "%s\n", line);
     whole = whole && fwrite(text, 1, (size_t)n, file) == (size_t)n && fflush(file) == 0;
     cause = errno;
     if (file) fclose(file);
     if (whole) return DEM_OK;
-    return demi_fail(world, DEM_ERROR_FILE,
-                     "dem_wall_loads_csv: cannot write %.200s: %s; check that "
-                     "its folder exists, may be written to and has room", path,
+    return demi_fail(w, DEM_ERROR_FILE, "%s: cannot write %.200s: %s; check that its folder "
+                     "exists, may be written to and has room", call, path,
                      cause ? strerror(cause) : "unknown cause");
+}
+/* The time and so many values, as a line. */
+static void demi_csv_line(char *line, double time, const double *value, int count) {
+    char number[32];
+    int i, n = snprintf(line, DEMI_CSV_LINE, "%s", demi_format_real(number, time, 12));
+    for (i = 0; i < count; i++)
+        n += snprintf(line + n, (size_t)(DEMI_CSV_LINE - n), ",%s",
+                      demi_format_real(number, value[i], 9));
+}
+static const char demi_loads_heading[] = "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts";
+enum { DEMI_LOADS = 9 };
+/* What that heading names, the time left out. */
+static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wall, double *value) {
+    dem_wall_loads c;
+    if (dem_wall_loads_get(w, wall, &c) != DEM_OK)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %ld names none; give one that was added "
+                         "and not removed", call, (long)wall.id);
+    value[0] = (double)c.force.x;
+    value[1] = (double)c.force.y;
+    value[2] = (double)c.force.z;
+    value[3] = (double)c.torque.x;
+    value[4] = (double)c.torque.y;
+    value[5] = (double)c.torque.z;
+    value[6] = (double)c.torque_axial;
+    value[7] = (double)c.power;
+    value[8] = c.contacts;
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const char *path) {
+    if (demi_null(world, "dem_wall_loads_csv", world, "world")) return DEM_ERROR_ARGUMENT;
+    const char *call = "dem_wall_loads_csv";
+    double value[DEMI_LOADS];
+    char line[DEMI_CSV_LINE];
+    if (demi_loads_values(world, call, wall, value) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    demi_csv_line(line, dem_world_time(world), value, DEMI_LOADS);
+    return demi_csv_append(world, call, path, demi_loads_heading, line);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -16492,7 +18451,7 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
    which the next one is chosen.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 10 };
+enum { DEMI_CHECKPOINT_VERSION = 11 };
 
 /* Writes to file or to memory, or reads the `left` bytes that are at `from`, or (with none of them)
    counts bytes. */
@@ -16585,6 +18544,11 @@ static uint64_t demi_digest_wall(const dem_world *w, int i) {
     h = demi_hash(h, &wall->share, sizeof(dem_real));
     h = demi_hash(h, &wall->first, sizeof wall->first);
     if (wall->sieve.kind) h = demi_digest_sieve(&wall->sieve, h);
+    if (wall->ring_count) {
+        h = demi_hash(h, &wall->ring_count, sizeof wall->ring_count);
+        h = demi_hash(h, wall->ring_radius, sizeof wall->ring_radius);
+        h = demi_hash(h, wall->ring_height, sizeof wall->ring_height);
+    }
     if (wall->corners)
         h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
                       (size_t)demi_wall_per(wall));
@@ -16598,6 +18562,11 @@ static uint64_t demi_digest_field(const dem_world *w, int i) {
     h = demi_hash(h, f->cells, sizeof f->cells);
     h = demi_hash(h, &f->start, sizeof f->start);
     h = demi_hash(h, &f->end, sizeof f->end);
+    h = demi_hash(h, &f->material.id, sizeof f->material.id);
+    h = demi_hash(h, &f->radius_min, sizeof f->radius_min);
+    h = demi_hash(h, &f->radius_max, sizeof f->radius_max);
+    h = demi_hash(h, &f->stress, sizeof f->stress);
+    h = demi_hash(h, &f->width, sizeof f->width);
     return demi_hash(h, &f->interval, sizeof f->interval);
 }
 static uint64_t demi_digest_feed(const dem_world *w, int i) {
@@ -16615,7 +18584,7 @@ static uint64_t demi_digest_feed(const dem_world *w, int i) {
 }
 static uint64_t demi_digest_outlet(const dem_world *w, int i) {
     const dem_outlet_desc *o = &demi_outlet_at(w, i)->desc;
-    const int what[] = {(int)o->frame.id, o->class_count};
+    const int what[] = {(int)o->frame.id, o->class_count, (int)o->material.id, o->keep};
     const dem_real sizes[] = {o->beyond, o->wanted_min, o->wanted_max};
     uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
     h = demi_hash(h, sizes, sizeof sizes);
@@ -16674,7 +18643,7 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->filed.stride);
     DEMI_VISIT(s, w->bodies.slot_free);      DEMI_VISIT(s, w->bodies.slot_pending);
     DEMI_VISIT(s, w->bodies.balance);        DEMI_VISIT(s, w->desc.search);
-    DEMI_VISIT(s, w->desc.gravity);
+    DEMI_VISIT(s, w->desc.gravity);          DEMI_VISIT(s, w->desc.dt);
     DEMI_VISIT(s, w->clock);          DEMI_VISIT(s, w->stage);
     DEMI_VISIT(s, w->margin);         DEMI_VISIT(s, w->effects);
     DEMI_VISIT(s, w->levels);         DEMI_VISIT(s, w->booked);
@@ -16771,6 +18740,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         DEMI_VISIT(s, m->kind);     DEMI_VISIT(s, m->velocity);   DEMI_VISIT(s, m->point);
         DEMI_VISIT(s, m->axis);     DEMI_VISIT(s, m->speed);      DEMI_VISIT(s, m->amplitude);
         DEMI_VISIT(s, m->frequency); DEMI_VISIT(s, m->phase);     DEMI_VISIT(s, m->start);
+        DEMI_VISIT(s, m->ramp);
     }
 }
 /* Fields, feeds, outlets. */
@@ -16778,12 +18748,9 @@ static void demi_visit_measured(dem_world *w, demi_stream *s) {
     int i;
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
-        const size_t cells = demi_field_cells(f);
         demi_visit(s, &f->samples, sizeof f->samples);
         demi_visit(s, &f->next, sizeof f->next);
-        demi_visit(s, f->solid, cells*sizeof(double));
-        demi_visit(s, f->mass, cells*sizeof(double));
-        demi_visit(s, f->momentum, 3*cells*sizeof(double));
+        demi_visit(s, f->sums, demi_field_reals(f)*sizeof(double));
     }
     for (i = 0; i < w->feed_count; i++) {
         demi_feed *f = demi_feed_at(w, i);
@@ -16984,18 +18951,16 @@ static int demi_twin_parts(dem_world *t, const dem_world *w) {
     t->wall_count = w->wall_count;
     t->feed_count = w->feed_count;
     t->outlet_count = w->outlet_count;
+    t->bodies.zoned = w->bodies.zoned;          /* room comes with the bodies' */
     if (w->wall_count) memcpy(t->walls, w->walls, (size_t)w->wall_count*sizeof(demi_wall));
     for (i = 0; i < w->feed_count; i++) *demi_feed_at(t, i) = *demi_feed_at(w, i);
     for (i = 0; i < w->outlet_count; i++) *demi_outlet_at(t, i) = *demi_outlet_at(w, i);
     for (i = 0; i < w->field_count; i++) {
-        const size_t cells = demi_field_cells(&w->fields[i]);
         demi_field *f = &t->fields[i];
         *f = w->fields[i];
-        f->solid = (double *)demi_hold(t, DEMI_RUN, cells, sizeof(double));
-        f->mass = (double *)demi_hold(t, DEMI_RUN, cells, sizeof(double));
-        f->momentum = (double *)demi_hold(t, DEMI_RUN, cells, 3*sizeof(double));
+        f->sums = (double *)demi_hold(t, DEMI_RUN, demi_field_reals(f), sizeof(double));
         t->field_count = i + 1;
-        if (!f->solid || !f->mass || !f->momentum) return 0;
+        if (!f->sums) return 0;
     }
     return 1;
 }
@@ -17021,6 +18986,7 @@ static dem_world *demi_twin_make(dem_world *w) {
 }
 static void demi_twin_free(dem_world *w, dem_world *t) {
     demi_free_chain(t, DEMI_RUN);
+    demi_free_chain(t, DEMI_SCENE);             /* walls that it has made its own */
     demi_free(w, t);
 }
 /* The twin's state takes the place of the world's. */
@@ -17036,10 +19002,12 @@ static void demi_twin_adopt(dem_world *w, dem_world *t) {
     memcpy(t->refusal, w->refusal, sizeof t->refusal);
     memcpy(t->refused_calls, w->refused_calls, sizeof t->refused_calls);
     t->refused = w->refused;
+    t->look = w->look;
     *w = *t;
     demi_names_point(w);
     w->bytes = bytes;
     demi_free(w, t);
+    if (w->look.outputs_again) w->look.outputs_again(w);
 }
 
 /* --- reading: does what it says make sense? Each of these checks one part of the twin, right after
@@ -17121,9 +19089,10 @@ static int demi_numbers_check(const demi_reader *r) {
         !demi_finite_double(t->clock.since.time) || fabs(t->clock.since.time) > DEMI_FARTHEST ||
         t->clock.since.steps > t->clock.steps || !demi_sane(t->clock.since.dt, 0) ||
         !demi_finite_double(t->clock.run_end) ||
+        !demi_sane((double)t->desc.dt, 0) ||
             (t->stage.dt_valid && t->bodies.count && !(t->clock.dt > 0)) ||
-        (t->stage.dt_valid && t->bodies.count && w->desc.dt > 0 &&
-         (t->clock.dt < w->desc.dt || t->clock.dt > w->desc.dt)))
+        (t->stage.dt_valid && t->bodies.count && t->desc.dt > 0 &&
+         (t->clock.dt < t->desc.dt || t->clock.dt > t->desc.dt)))
         return demi_lie(r, "its time or time step", -1);
     if (t->bodies.balance.present != (uint64_t)t->bodies.count ||
         t->bodies.balance.inserted != t->bodies.balance.present + t->bodies.balance.removed +
@@ -17324,7 +19293,8 @@ static int demi_walls_check(const demi_reader *r) {
             !demi_pose_sane(&wall->mid)) return demi_lie(r, "the pose of wall", i);
         if (m->kind != own->motion.kind || !demi_finite3(m->velocity) || !demi_finite3(m->point) ||
             !demi_finite3(m->axis) || !demi_finite(m->speed) || !demi_finite(m->amplitude) ||
-            !demi_finite(m->frequency) || !demi_finite(m->phase) || !demi_finite_double(m->start))
+            !demi_finite(m->frequency) || !demi_finite(m->phase) || !demi_finite_double(m->start) ||
+            !demi_sane(m->ramp, 0))
             return demi_lie(r, "the motion of wall", i);
     }
     return 1;
@@ -17546,6 +19516,250 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
         result = demi_checkpoint_parse(w, path, bytes, size);
     demi_free(w, bytes);
     return result;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>output
+   Files and calls on a schedule: dem_world_step looks here (demi_lookers) before the first of its
+   steps and after each. What is due follows from the time alone: nothing of it is state, and a run
+   that goes on from a checkpoint writes what the run without a stop would have written. Files of
+   the moment of the checkpoint are written again, as they were; of a CSV file the lines from then
+   on are taken out before the first is appended. Tests: tests/test_output.c.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_OUTPUT_UNKNOWN = -1, DEMI_OUTPUT_AFTER = -2 };
+typedef struct demi_output {
+    dem_output_desc desc;          /* its texts are the world's own */
+    int64_t next;                  /* number of the next; or what is to be found out, this moment
+                                      included or not */
+    int resumes;                   /* a CSV file whose later lines have not been taken out yet */
+} demi_output;
+static const char demi_output_columns[] = "steps bodies contacts kinetic rotational overlap_max";
+
+/* A copy of a text, for as long as the world. Null of none, or when memory ran out. */
+static char *demi_text_copy(dem_world *w, const char *text) {
+    const size_t size = text ? strlen(text) + 1 : 0;
+    char *copy = size ? (char *)demi_hold(w, DEMI_SCENE, size, 1) : 0;
+    if (copy) memcpy(copy, text, size);
+    return copy;
+}
+/* The run of # nearest to the end of a path: where it begins, how long it is (0: there is none). */
+static size_t demi_output_marks(const char *path, size_t *count) {
+    size_t end = strlen(path), begin;
+    while (end > 0 && path[end - 1] != '#') end--;
+    for (begin = end; begin > 0 && path[begin - 1] == '#'; begin--) {}
+    *count = end - begin;
+    return begin;
+}
+/* What names the columns of a CSV file after the time. */
+static const char *demi_output_names(const dem_output_desc *d) {
+    return d->columns ? d->columns : demi_output_columns;
+}
+static void demi_output_heading(const dem_output_desc *d, char *heading) {
+    char *c;
+    if (d->wall.id) { strcpy(heading, demi_loads_heading); return; }
+    strcpy(heading, "time ");
+    demi_names_copy(demi_output_names(d), heading + 5);
+    for (c = heading; *c; c++) if (*c == ' ') *c = ',';
+}
+/* Takes the lines of a CSV file out that tell of `from` (s) and later, and one that was cut short.
+   A file with other columns is refused; one that is not there has none. */
+static dem_result demi_csv_resume(dem_world *w, const char *path, const char *heading,
+                                  double from) {
+    const char *call = "dem_output_add";
+    const size_t head = strlen(heading);
+    char *data = 0, *line;
+    size_t size = 0, keep;
+    demi_out out;
+    dem_result result;
+    FILE *there = fopen(path, "rb");
+    if (!there) return DEM_OK;
+    fclose(there);
+    result = demi_load(w, call, path, &data, &size);
+    if (result != DEM_OK || !size) { demi_free(w, data); return result; }
+    if (size <= head || memcmp(data, heading, head) || data[head] != '\n') {
+        demi_free(w, data);
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s has other columns than %.100s; remove "
+                         "it, or give another path", call, path, heading);
+    }
+    for (keep = head + 1; keep < size; keep = (size_t)(line - data) + 1) {
+        demi_text text;
+        double time = 0;
+        line = (char *)memchr(data + keep, '\n', size - keep);
+        if (!line) break;
+        text = demi_text_make(w, call, path, data + keep, (size_t)(line - data) - keep);
+        text.word = data + keep;
+        text.length = strcspn(data + keep, ",\n");
+        if (demi_text_number(&text, &time) != DEM_OK || !(time < from)) break;
+    }
+    if (keep < size) {
+        result = demi_out_open(&out, w, call, path);
+        if (result == DEM_OK) {
+            fwrite(data, 1, keep, out.file);
+            result = demi_out_close(&out);
+        }
+    }
+    demi_free(w, data);
+    return result;
+}
+static dem_result demi_output_line(dem_world *w, demi_output *o, const char *path) {
+    const dem_output_desc *d = &o->desc;
+    double value[DEM_OUTPUT_COLUMNS];
+    char heading[DEMI_CSV_LINE], line[DEMI_CSV_LINE];
+    int count = DEMI_LOADS;
+    dem_result result = DEM_OK;
+    demi_output_heading(d, heading);
+    memset(value, 0, sizeof value);
+    if (d->wall.id) result = demi_loads_values(w, "dem_output_add", d->wall, value);
+    else {
+        count = demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS);
+        if (d->values) d->values(w, value, d->user);
+        else {
+            const dem_counters c = dem_counters_get(w);
+            const dem_totals t = dem_totals_get(w);
+            value[0] = (double)c.steps;
+            value[1] = w->bodies.count;
+            value[2] = c.contacts + c.wall_contacts;
+            value[3] = t.kinetic;
+            value[4] = t.rotational;
+            value[5] = (double)c.overlap_max;
+        }
+    }
+    if (result != DEM_OK) return result;
+    if (o->resumes) result = demi_csv_resume(w, path, heading, w->clock.time -
+                                             (double)w->clock.dt/2);
+    if (result != DEM_OK) return result;
+    o->resumes = 0;
+    demi_csv_line(line, w->clock.time, value, count);
+    return demi_csv_append(w, "dem_output_add", path, heading, line);
+}
+/* Output `number` of the world as it is. */
+static dem_result demi_output_write(dem_world *w, demi_output *o, int64_t number) {
+    const dem_output_desc *d = &o->desc;
+    size_t length = d->path ? strlen(d->path) : 0, marks = 0, at = 0;
+    char digits[24], *path;
+    dem_result result = DEM_OK;
+    if (d->kind == DEM_OUTPUT_CALL) {
+        w->look.under_way++;
+        if (d->function(w, number, d->user))
+            result = demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: stopped by the function of "
+                               "an output at %g s", w->clock.time);
+        w->look.under_way--;
+        return result;
+    }
+    path = (char *)demi_alloc(w, length + sizeof digits, 1);
+    if (!path) return demi_no_memory(w, "dem_world_step");
+    at = demi_output_marks(d->path, &marks);
+    sprintf(digits, "%0*lld", (int)DEMI_MIN(marks, 18), (long long)number);
+    sprintf(path, "%.*s%s%s", (int)at, d->path, marks ? digits : "", d->path + at + marks);
+    switch (d->kind) {
+    case DEM_OUTPUT_VTP: result = dem_vtp_write(w, path); break;
+    case DEM_OUTPUT_XYZ: result = dem_xyz_write(w, path); break;
+    case DEM_OUTPUT_CONTACTS: result = dem_contacts_vtp_write(w, path); break;
+    case DEM_OUTPUT_CHECKPOINT: result = dem_checkpoint_write(w, path); break;
+    case DEM_OUTPUT_CSV: result = demi_output_line(w, o, path); break;
+    case DEM_OUTPUT_CALL: break;
+    }
+    demi_free(w, path);
+    return result;
+}
+/* What is due at this step. What fails stops the run, and is tried again by the next one. */
+static dem_result demi_outputs_look(dem_world *w) {
+    const double now = w->clock.time, half = (double)w->clock.dt/2;
+    int i;
+    for (i = 0; i < w->look.output_count; i++) {
+        demi_output *o = &w->look.outputs[i];
+        const dem_output_desc *d = &o->desc;
+        dem_result result;
+        int64_t number;
+        if (o->next == DEMI_OUTPUT_UNKNOWN)
+            o->next = (int64_t)DEMI_MAX(ceil((now - half - d->start)/d->interval), 0);
+        else if (o->next == DEMI_OUTPUT_AFTER)
+            o->next = (int64_t)DEMI_MAX(floor((now + half - d->start)/d->interval) + 1, 0);
+        if (now + half < d->start + (double)o->next*d->interval ||
+            (d->end > 0 && now - half > d->end)) continue;
+        number = (int64_t)DEMI_MAX(floor((now + half - d->start)/d->interval), (double)o->next);
+        demi_finish(w);
+        result = demi_output_write(w, o, number);
+        if (result != DEM_OK) return result;
+        o->next = number + 1;
+    }
+    return DEM_OK;
+}
+/* The state has been read from a file: what is due now is to be found out. */
+static void demi_outputs_again(dem_world *w) {
+    int i;
+    for (i = 0; i < w->look.output_count; i++) {
+        demi_output *o = &w->look.outputs[i];
+        o->next = o->desc.kind == DEM_OUTPUT_CALL && w->clock.steps ? DEMI_OUTPUT_AFTER
+            : DEMI_OUTPUT_UNKNOWN;
+        o->resumes = 1;
+    }
+}
+/* One sentence on what is wrong with a desc; null: nothing. */
+static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d) {
+    if ((int)d->kind < 0 || d->kind > DEM_OUTPUT_CSV)
+        return "kind is unknown, must be a DEM_OUTPUT_ value; start from DEM_OUTPUT_DESC";
+    if (!(d->interval > 0) || !demi_finite_double(d->interval) ||
+        !demi_finite_double(d->start) || !demi_finite_double(d->end) || !(d->end >= 0))
+        return "interval must be finite and > 0 s, start finite, end finite and >= 0 s";
+    if (d->kind == DEM_OUTPUT_CALL)
+        return d->function ? 0 : "kind is DEM_OUTPUT_CALL and function is null; give one";
+    if (!d->path || !*d->path) return "path is null or empty; give a file name, with #### in it "
+        "where each output is a file of its own";
+    if (d->kind != DEM_OUTPUT_CSV) return 0;
+    if (strchr(d->path, '#')) return "path of a CSV file has a #, and it is one file; leave it out";
+    if (!d->columns != !d->values)
+        return "one of columns and values is given; give both, or neither for the world's own";
+    if (d->wall.id && d->values) return "wall and values are given; give one of the two";
+    if (d->wall.id && (d->wall.id < 1 || d->wall.id > w->wall_count)) return "wall names none; "
+        "give what a function that adds walls returned";
+    if (demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS) < 1) return "columns must be 1 to 32 "
+        "words of at most 23 letters, digits and _, a space between two";
+    return 0;
+}
+DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
+    dem_output id;
+    demi_output *o;
+    const char *bad, *call = "dem_output_add";
+    char *path = 0, *columns = 0;
+    id.id = 0;
+    if (demi_null(w, call, desc, "desc")) return id;
+    bad = demi_output_bad(w, desc);
+    if (bad) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s", call, bad);
+        return id;
+    }
+    if (desc->path) path = demi_text_copy(w, desc->path);
+    if (desc->columns) columns = demi_text_copy(w, desc->columns);
+    if ((desc->path && !path) || (desc->columns && !columns) ||
+        !demi_grow(w, DEMI_SCENE, &w->look.outputs, sizeof *w->look.outputs,
+                   (size_t)w->look.output_count + 1)) {
+        demi_free(w, path);
+        demi_free(w, columns);
+        demi_no_memory(w, call);
+        return id;
+    }
+    o = &w->look.outputs[w->look.output_count++];
+    memset(o, 0, sizeof *o);
+    o->desc = *desc;
+    o->desc.path = path;
+    o->desc.columns = columns;
+    o->next = DEMI_OUTPUT_UNKNOWN;
+    o->resumes = 1;
+    w->look.outputs_look = demi_outputs_look;
+    w->look.outputs_again = demi_outputs_again;
+    demi_built(w, call);
+    id.id = w->look.output_count;
+    return id;
+}
+DEM_API dem_output dem_output_every(dem_world *w, dem_output_kind kind, const char *path,
+                                    double interval) {
+    dem_output_desc desc;
+    memset(&desc, 0, sizeof desc);
+    desc.kind = kind;
+    desc.path = path;
+    desc.interval = interval;
+    return dem_output_add(w, &desc);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -18210,8 +20424,10 @@ static void demi_leave_adhesion(dem_world *t, demi_again *own) {
 static void demi_leave_motions(dem_world *t, demi_again *own) {
     dem_wall id;
     (void)own;
+    /* facets will be weighed anew: in arrays of its own. A wall that has no room for them goes */
     for (id.id = 1; id.id <= t->wall_count; id.id++)
-        if (t->walls[id.id - 1].kind != DEMI_WALL_NONE) dem_wall_motion(t, id, &DEM_MOTION);
+        if (demi_wall_own(t, &t->walls[id.id - 1]) &&
+            t->walls[id.id - 1].kind != DEMI_WALL_NONE) dem_wall_motion(t, id, &DEM_MOTION);
 }
 static void demi_leave_walls(dem_world *t, demi_again *own) {
     dem_wall id;
@@ -18682,9 +20898,10 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
     }
     for (i = 0; i < w->outlet_count; i++) {
         const dem_outlet_state *o = &demi_outlet_at(w, i)->state;
-        fprintf(out, "outlet %-3d %llu grains, %.6g kg, of them wanted %llu, %.6g kg\n", i + 1,
-                (unsigned long long)o->total, o->total_mass, (unsigned long long)o->sorted,
-                o->sorted_mass);
+        fprintf(out, "outlet %-3d %llu grains, %.6g kg%s, of them wanted %llu, %.6g kg\n", i + 1,
+                (unsigned long long)o->total, o->total_mass,
+                demi_outlet_at(w, i)->zone < 0 ? "" : " came in and stayed",
+                (unsigned long long)o->sorted, o->sorted_mass);
     }
 }
 /* The account of energy; a residual that is not small says that the step is too large. */
@@ -19656,7 +21873,6 @@ static void demi_slab_refresh(dem_slabs *s, demi_slab *b) {
 }
 static void demi_slab_sample(dem_slabs *s, demi_slab *b) {
     (void)s;
-    demi_finish(b->world);
     demi_fields_sample(b->world);
 }
 
@@ -20118,8 +22334,7 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
         }
         result = demi_slabs_step_once(s);
         whole = result == DEM_OK;
-        for (f = 0; f < w->field_count; f++)
-            sampling |= w->fields[f].used && w->clock.time >= w->fields[f].next;
+        for (f = 0; f < w->field_count; f++) sampling |= demi_field_due(w, &w->fields[f]);
         if (sampling && whole) demi_slabs_phase(s, demi_slab_sample);
     }
     if (!whole) return result;
@@ -20218,7 +22433,7 @@ static int demi_slab_outlets_copy(dem_world *to, const dem_world *from) {
     if (from->outlet_count)
         memcpy(to->outlets, from->outlets, (size_t)from->outlet_count*sizeof *to->outlets);
     to->outlet_count = from->outlet_count;
-    return 1;
+    return !from->bodies.zoned || demi_zones_begin(to);
 }
 /* The head has the feeds; slabs look at them. 0 when memory ran out. */
 static int demi_slabs_feeds_copy(dem_world *h, const dem_world *w) {
@@ -20232,14 +22447,10 @@ static int demi_slab_fields(dem_world *to, const dem_world *from, int inherit) {
     int i;
     for (i = 0; i < from->field_count; i++) {
         const demi_field *a = &from->fields[i];
-        const size_t n = demi_field_cells(a)*sizeof(double);
         if (dem_field_add(to, &a->desc).id != i + 1) return 0;
         to->fields[i].next = a->next;
         to->fields[i].samples = a->samples;
-        if (!inherit) continue;
-        memcpy(to->fields[i].solid, a->solid, n);
-        memcpy(to->fields[i].mass, a->mass, n);
-        memcpy(to->fields[i].momentum, a->momentum, 3*n);
+        if (inherit) memcpy(to->fields[i].sums, a->sums, demi_field_reals(a)*sizeof(double));
     }
     return 1;
 }
@@ -20527,9 +22738,7 @@ static int demi_slab_report(dem_slabs *s, demi_slab *b) {
         ok = demi_message_put(h, out, &w->walls[i].loads, sizeof(dem_wall_loads));
     for (i = 0; i < w->field_count && ok; i++) {
         const demi_field *f = &w->fields[i];
-        const size_t n = demi_field_cells(f)*sizeof(double);
-        ok = demi_message_put(h, out, f->solid, n) && demi_message_put(h, out, f->mass, n) &&
-             demi_message_put(h, out, f->momentum, 3*n);
+        ok = demi_message_put(h, out, f->sums, demi_field_reals(f)*sizeof(double));
     }
     for (i = 0; i < w->outlet_count && ok; i++)
         ok = demi_message_put(h, out, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
@@ -20588,7 +22797,11 @@ static const char *demi_outlet_add(demi_outlet *o, const char *from) {
     for (k = 0; k < DEM_CLASSES; k++) {
         to->count[k] += part.count[k];
         to->mass[k] += part.mass[k];
+        to->back[k] += part.back[k];
+        to->back_mass[k] += part.back_mass[k];
     }
+    to->back_total += part.back_total;
+    to->back_total_mass += part.back_total_mass;
     to->total += part.total;
     to->total_mass += part.total_mass;
     to->sorted += part.sorted;
@@ -20627,14 +22840,11 @@ static const char *demi_slabs_add(dem_world *w, const demi_slab_sums *sums, cons
     }
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
-        const size_t cells = demi_field_cells(f);
         size_t n;
-        for (n = 0; n < 5*cells; n++) {
+        for (n = 0; n < demi_field_reals(f); n++) {
             double part;
             demi_unpack(&from, &part, sizeof part);
-            if (n < cells) f->solid[n] += part;
-            else if (n < 2*cells) f->mass[n - cells] += part;
-            else f->momentum[n - 2*cells] += part;
+            f->sums[n] += part;
         }
     }
     for (i = 0; i < w->outlet_count; i++) from = demi_outlet_add(demi_outlet_at(w, i), from);
@@ -20645,7 +22855,7 @@ static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sum
                                    const char *from) {
     int i;
     from += (size_t)sums->walls*sizeof(dem_wall_loads);
-    for (i = 0; i < w->field_count; i++) from += 5*demi_field_cells(&w->fields[i])*sizeof(double);
+    for (i = 0; i < w->field_count; i++) from += demi_field_reals(&w->fields[i])*sizeof(double);
     return from + (size_t)w->outlet_count*sizeof(dem_outlet_state);
 }
 /* Time, step, and what else is the same in all slabs. */
@@ -20683,10 +22893,7 @@ static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     }
     for (i = 0; i < w->field_count; i++) {
         demi_field *f = &w->fields[i];
-        const size_t n = demi_field_cells(f)*sizeof(double);
-        memset(f->solid, 0, n);
-        memset(f->mass, 0, n);
-        memset(f->momentum, 0, 3*n);
+        memset(f->sums, 0, demi_field_reals(f)*sizeof(double));
         f->samples = from->fields[i].samples;
         f->next = from->fields[i].next;
     }
@@ -21421,12 +23628,24 @@ static void demi_film_wall(dem_replay *r, int i) {
     int k, corners = wall->corners ? wall->element_count*kind->corners : 0;
     fprintf(out, "<script type=\"dem/wall\">{\"id\":%d,\"kind\":\"%s\",\"radius\":%s", i + 1,
             kind->traits & DEMI_BALLS ? "grains" : kind->traits & DEMI_DRAWN ? "profile" :
-            kind->name, demi_format_real(text, (double)wall->radius, 9));
+            wall->ring_count ? "mesh" : kind->name,
+            demi_format_real(text, (double)wall->radius, 9));
     if (wall->vertices)
         demi_film_reals(out, "vertices", wall->vertices, wall->vertex_count, 3, 3);
     for (k = 0; k < corners; k++)
         fprintf(out, "%s%ld", k ? "," : ",\"corners\":[", (long)wall->corners[k]);
     if (corners) fputs("]", out);
+    for (k = 0; k < wall->ring_count*DEMI_RING_SIDES; k++) {
+        dem_real at[3];
+        int c;
+        demi_ring_corner(wall, k/DEMI_RING_SIDES, k%DEMI_RING_SIDES, at);
+        for (c = 0; c < 3; c++)
+            fprintf(out, "%s%s", k + c ? "," : ",\"vertices\":[",
+                    demi_format_real(text, (double)at[c], 7));
+    }
+    for (k = 0; k < 6*(wall->ring_count - 1)*DEMI_RING_SIDES; k++)
+        fprintf(out, "%s%d", k ? "," : "],\"corners\":[", demi_ring_triangle(k/3, k%3));
+    if (wall->ring_count) fputs("]", out);
     if (s->kind) {
         const dem_real hole[4] = {(dem_real)(int)s->kind, s->aperture, s->bar, s->length};
         demi_film_reals(out, "hole", hole, 1, 4, 4);
@@ -21632,7 +23851,7 @@ DEM_API dem_result dem_replay_frame(dem_replay *r) {
 /* Frames that are due. One that fails ends its film, not the run: dem_replay_close says so. */
 static void demi_films_look(dem_world *w) {
     dem_replay *r;
-    for (r = w->films; r; r = r->next) {
+    for (r = w->look.films; r; r = r->next) {
         if (r->due < 0) { r->due = 0; r->begun = w->clock.time; }
         if (r->failed || w->clock.time < r->begun + r->due*r->desc.interval -
             (double)w->clock.dt/2) continue;
@@ -21643,10 +23862,10 @@ static void demi_films_look(dem_world *w) {
 
 static void demi_film_free(dem_replay *r) {
     dem_world *w = r->world;
-    dem_replay **at = &w->films;
+    dem_replay **at = &w->look.films;
     while (*at && *at != r) at = &(*at)->next;
     if (*at) *at = r->next;
-    if (!w->films) w->films_look = 0;
+    if (!w->look.films) w->look.films_look = 0;
     demi_free(w, r->seen);
     demi_free(w, r->pose);
     demi_free(w, r->wall_told);
@@ -21698,9 +23917,9 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     for (k = 0; k < sizeof demi_viewer/sizeof *demi_viewer; k++) fputs(demi_viewer[k], r->out.file);
     r->due = -1;
     if (d.interval > 0) {
-        r->next = w->films;
-        w->films = r;
-        w->films_look = demi_films_look;
+        r->next = w->look.films;
+        w->look.films = r;
+        w->look.films_look = demi_films_look;
     }
     return r;
 }
