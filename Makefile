@@ -62,7 +62,7 @@ help: ## this list
 
 run: build/mill ## the tumbling mill: a film for the browser, pictures and figures in build/out/mill
 	@mkdir -p build/out/mill
-	build/mill --threads 1 --replay --out build/out/mill
+	GOMP_SPINCOUNT=1000 build/mill --replay --out build/out/mill
 
 new: ## NAME=my puts a small program with comments into my.c, and says how to build it
 	@test -n "$(NAME)" || { echo "make new NAME=my: give the program a name"; exit 1; }

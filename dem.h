@@ -179,7 +179,7 @@
        overlap     the largest so far, over the radius: beyond 0.05 the material is too soft
        pair        what holds between each two materials, after mixing
        wall, feed, outlet   what they bear, bring and take
-       ledger      the residual is what the time step gets wrong: it falls with its square
+       ledger      the residual is what the time step gets wrong: it falls with its third power
 
    Compile-time options:
        DEM_REAL           double (default) or float: the type of all state
@@ -2189,7 +2189,8 @@ static void demi_parallel(dem_world *w, int threads, int count, demi_task task) 
     int i;
 #if DEMI_OPENMP
     if (threads > 1 && count > 1) {
-        #pragma omp parallel for num_threads(threads) schedule(static)
+        /* dealt in turns: where a scene is dense, it is so in several domains side by side */
+        #pragma omp parallel for num_threads(threads) schedule(static, 1)
         for (i = 0; i < count; i++) task(w, i);
         return;
     }
@@ -2759,6 +2760,8 @@ typedef struct demi_bodies {
     dem_real *force, *torque;      /* x 4 */
     dem_real *inv_mass, *inv_inertia, *mass;     /* inv_inertia: 0 unless a sphere that moves */
     int backward;                  /* last_pos exists */
+    int booked;                    /* the next exists: a ledger, and a scheme that predicts */
+    dem_real *late;                /* x 4; m/s: by how much the last prediction fell short */
     int orienting;                 /* the next four exist */
     dem_real *orient;              /* x 4: w x y z, principal axes -> world */
     dem_real *angular;             /* x 4: angular momentum at the half step; shaped bodies only */
@@ -2875,7 +2878,7 @@ struct dem_world {
     /* >>search */
     dem_real image_shift[27*4];    /* m, from a body to another's image; 0: none */
     int32_t *cell_start;
-    int cells[3];
+    int cells[3], cell_axes[3];    /* along x, y, z; the axes, that of the fewest cells first */
     double cell_origin[3], cell_size[3];
     demi_end *lll_ends[3];
     struct demi_pair_key *lll_table;
@@ -2976,11 +2979,12 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
        demi_bodies above and a row here. Who has it: DEMI_EVERY body; DEMI_BACK: those of a scheme
        that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_COUNTED: those of a
        world with numbers of the user's, as many times as there are numbers; DEMI_ZONED: those of a
-       world with outlets that only count; DEMI_SLOTS: every slot.
+       world with outlets that only count; DEMI_BOOKED: those of a world with a ledger whose scheme
+       predicts velocities; DEMI_SLOTS: every slot.
        What is done with it: DEMI_KEPT: it is state, and 0 in a new body unless set; DEMI_REALS:
        kept, and finite; DEMI_PLACES: reals that begin with a place, which moves by a period; 0:
        room to work in. --- */
-enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_SLOTS };
+enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED, DEMI_SLOTS };
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
     /* where its pointer stands in demi_bodies; bytes of one body (demi_item: of counted ones) */
@@ -3003,6 +3007,7 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(inv_mass,        1, DEMI_EVERY,  DEMI_REALS),
     DEMI_ARRAY(inv_inertia,     1, DEMI_EVERY,  DEMI_REALS),
     DEMI_ARRAY(last_pos,        4, DEMI_BACK,   DEMI_PLACES),
+    DEMI_ARRAY(late,            4, DEMI_BOOKED, DEMI_REALS),
     DEMI_ARRAY(orient,          4, DEMI_TURNED, DEMI_REALS),
     DEMI_ARRAY(angular,         4, DEMI_TURNED, DEMI_REALS),
     DEMI_ARRAY(moment,          4, DEMI_TURNED, DEMI_REALS),
@@ -4827,7 +4832,8 @@ static int demi_list_drop(dem_world *w) {
 static int demi_has(const dem_world *w, const demi_body_array *a) {
     return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
            : a->who == DEMI_COUNTED ? w->bodies.real_count > 0
-           : a->who == DEMI_ZONED ? w->bodies.zoned : 1;
+           : a->who == DEMI_ZONED ? w->bodies.zoned
+           : a->who == DEMI_BOOKED ? w->bodies.booked : 1;
 }
 /* Bytes of one body. */
 static size_t demi_item(const dem_world *w, const demi_body_array *a) {
@@ -4886,7 +4892,8 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
     const size_t slots = (size_t)w->bodies.slot_count + more;
     const int sets =
         1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED |
-        (w->bodies.real_count > 0) << DEMI_COUNTED | w->bodies.zoned << DEMI_ZONED;
+        (w->bodies.real_count > 0) << DEMI_COUNTED | w->bodies.zoned << DEMI_ZONED |
+        w->bodies.booked << DEMI_BOOKED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
     if (count > (size_t)w->bodies.capacity) {
         if (!demi_bodies_room(w, sets, (size_t)w->bodies.count, room)) return 0;
@@ -5285,6 +5292,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (s->fixed) demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));
     demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
     demi_put(w->bodies.half_spin + 4*i, demi_at(w->bodies.spin + 4*i));
+    if (w->bodies.booked) demi_put(w->bodies.late + 4*i, demi_v(0, 0, 0));
     w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
         (double)w->bodies.pos[4*i + 3]));
@@ -7212,15 +7220,28 @@ static void demi_cells_lay(const double *lo, const double *hi, double least, int
     }
     for (k = 0; k < 3; k++) size[k] = DEMI_MAX((hi[k] - lo[k])/cells[k], least*1e-9);
 }
-/* Bodies outside count to the nearest cell, so that everybody is in one. */
+/* Bodies outside count to the nearest cell, so that everybody is in one. `axes`: numbers run
+   fastest along the first of them. */
 static int demi_cell_of(const double *origin, const double *size, const int *cells,
-                        const dem_real *x) {
+                        const int *axes, const dem_real *x) {
     int c[3], k;
     for (k = 0; k < 3; k++) {
         const double t = ((double)x[k] - origin[k])/size[k];
         c[k] = !(t > 0) ? 0 : t >= cells[k] ? cells[k] - 1 : (int)t;
     }
-    return c[0] + cells[0]*(c[1] + cells[1]*c[2]);
+    return c[axes[0]] + cells[axes[0]]*(c[axes[1]] + cells[axes[1]]*c[axes[2]]);
+}
+/* Numbers run slowest along the axis of most cells: domains, which are stretches of the order, are
+   then thick slabs with few pairs across, also where a scene is flat. */
+static void demi_axes_order(const int *cells, int *axes) {
+    int k;
+    for (k = 0; k < 3; k++) axes[k] = k;
+    for (k = 0; k < 3; k++) {                   /* exchanges of neighbours, (0 1) (1 2) (0 1) */
+        int *pair = axes + k%2, first = pair[0];
+        if (cells[first] <= cells[pair[1]]) continue;
+        pair[0] = pair[1];
+        pair[1] = first;
+    }
 }
 
 /* Lays the grid that bodies are sorted by; then the cell of each body. 0 when memory ran out. */
@@ -7240,12 +7261,14 @@ static int demi_grid_lay(dem_world *w, double least) {
         }
     }
     demi_cells_lay(lo, hi, least, w->bodies.count, w->cells, w->cell_size);
+    demi_axes_order(w->cells, w->cell_axes);
     for (k = 0; k < 3; k++) w->cell_origin[k] = lo[k];
     n = w->cells[0]*w->cells[1]*w->cells[2];
     if (!DEMI_GROW(w, w->cell_start, (size_t)n + 2)) return 0;
     for (i = 0; i < w->bodies.count; i++)
         w->bodies.cell_of[i] =
-            demi_cell_of(w->cell_origin, w->cell_size, w->cells, w->bodies.pos + 4*i);
+            demi_cell_of(w->cell_origin, w->cell_size, w->cells, w->cell_axes,
+                         w->bodies.pos + 4*i);
     return 1;
 }
 
@@ -7403,27 +7426,31 @@ static int demi_neighbours(int c, int n, int periodic, int *out) {
 }
 
 /* Bodies stand in the order of their cells, so that a cell is a range of indices, and neighbouring
-   cells along x are often one range together. Each pair is found once: in the lower cell, or the
-   lower body. */
+   cells along the first axis are often one range together. Each pair is found once: in the lower
+   cell, or the lower body. */
 static void demi_rows_grid(dem_world *w, int d) {
     const demi_periods p = demi_periods_of(w);
     const dem_real cover = demi_cover(w);
     const int32_t *start = w->cell_start;
+    int n[3], wraps[3];
     int a, c, i, j, k, b, last = -1, ranges = 0;
     int32_t from[27], to[27];
+    for (k = 0; k < 3; k++) {
+        n[k] = w->cells[w->cell_axes[k]];
+        wraps[k] = w->desc.boundary[w->cell_axes[k]] == DEM_BOUNDARY_PERIODIC;
+    }
     for (a = w->domains[d].begin; a < w->domains[d].end; a++) {
         c = w->bodies.cell_of[w->bodies.order[a]];
         if (c != last) {  /* bodies of a cell share the ranges of index to look at */
-            int nx[3], ny[3], nz[3], cx, cy, cz, x = c%w->cells[0], y = c/w->cells[0]%w->cells[1];
-            const int z = c/w->cells[0]/w->cells[1];
-            cx = demi_neighbours(x, w->cells[0], w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC, nx);
-            cy = demi_neighbours(y, w->cells[1], w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC, ny);
-            cz = demi_neighbours(z, w->cells[2], w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC, nz);
+            int at[3][3];
+            const int mx = demi_neighbours(c%n[0], n[0], wraps[0], at[0]);
+            const int my = demi_neighbours(c/n[0]%n[1], n[1], wraps[1], at[1]);
+            const int mz = demi_neighbours(c/n[0]/n[1], n[2], wraps[2], at[2]);
             ranges = 0;
-            for (k = 0; k < cz; k++)
-                for (j = 0; j < cy; j++)
-                    for (i = 0; i < cx; i++) {
-                        const int q = nx[i] + w->cells[0]*(ny[j] + w->cells[1]*nz[k]);
+            for (k = 0; k < mz; k++)
+                for (j = 0; j < my; j++)
+                    for (i = 0; i < mx; i++) {
+                        const int q = at[0][i] + n[0]*(at[1][j] + n[1]*at[2][k]);
                         if (q < c || start[q] == start[q + 1]) continue;
                         if (ranges && to[ranges - 1] == start[q]) { to[ranges - 1] = start[q + 1];
                             continue; }
@@ -7532,6 +7559,7 @@ static void demi_levels_choose(dem_world *w) {
 /* Lays the cells of all levels and deals the bodies, sorted by now, to them; the arrays that the
    sorting needed serve again. 0 when memory ran out. */
 static int demi_levels_lay(dem_world *w) {
+    static const int along[3] = {0, 1, 2};
     double hi[3];
     int i, k, l, n = 0;
     for (k = 0; k < 3; k++) hi[k] = w->cell_origin[k] + w->cell_size[k]*w->cells[k];
@@ -7549,7 +7577,7 @@ static int demi_levels_lay(dem_world *w) {
                (double)w->bodies.pos[4*i + 3] <= level[1].radius)
             level++;
         w->bodies.cell_of[i] = level->first +
-            demi_cell_of(w->cell_origin, level->size, level->cells, w->bodies.pos + 4*i);
+            demi_cell_of(w->cell_origin, level->size, level->cells, along, w->bodies.pos + 4*i);
     }
     demi_cells_fill(w, n);
     return 1;
@@ -10026,6 +10054,7 @@ typedef struct demi_tile {
     /* fetched */
     demi_rows gap;                 /* m, from a to b */
     demi_rows rate, gone;          /* m/s, difference of velocities: now, over the last step */
+    demi_rows late;                /* m/s, difference of what predictions fell short by: ledger */
     demi_rows around, turned;      /* rad/s, sum of spins: the same */
     demi_rows apart, parted;       /* rad/s, difference of spins: the same */
     dem_real radius[2][DEMI_ROW];
@@ -10040,7 +10069,7 @@ typedef struct demi_tile {
     /* laws: what each leaves for the next (see dem_contact_force), what does not touch included */
     dem_real repulsion[DEMI_ROW], load[DEMI_ROW], slope[2][DEMI_ROW], kt[2][DEMI_ROW];
     dem_real ct[DEMI_ROW], tangent[3][DEMI_ROW], moment[3][DEMI_ROW];
-    dem_real part[6][DEMI_ROW];                           /* energies */
+    dem_real part[7][DEMI_ROW];                           /* energies */
     /* answer */
     dem_real force[3][DEMI_ROW], torque[2][3][DEMI_ROW];  /* torque on a, on b */
     /* the last, so that rows begin on cache lines (3 % of a step) */
@@ -10120,6 +10149,13 @@ DEM_INLINE void demi_rows_shifted(demi_rows *DEMI_RESTRICT rows, size_t q, const
 }
 DEM_INLINE dem_vec3 demi_rows_at(const demi_rows *rows, int q) {
     return demi_v(DEMI_XY(rows, 0, q), DEMI_XY(rows, 1, q), rows->z[q]);
+}
+
+/* A law sees predicted velocities, and a ledger wants those of the path (demi_late_note). By how
+   much faster than predicted do two close, as a share of how fast? As the last prediction had it,
+   for the forces of this step are not known yet. */
+DEM_INLINE dem_real demi_late_share(dem_vec3 late, dem_vec3 normal, dem_real closing) {
+    return demi_dot(late, normal)/(closing > 0 || closing < 0 ? closing : 1);
 }
 
 /* What is the same for all pairs of a run: a stage takes a copy, so that compilers see that nothing
@@ -10316,7 +10352,8 @@ DEM_INLINE void demi_keep(demi_tile *DEMI_RESTRICT t, int q, int at, int count,
 #undef DEMI_KEEP
 /* What a law says of energy, for the ledger. */
 DEM_INLINE void demi_normal_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f) {
-    t->part[0][q] = (f->energy.dashpot + f->energy.sag)*t->touch[q];
+    t->part[0][q] = f->energy.dashpot*t->touch[q];
+    t->part[6][q] = f->energy.sag*t->touch[q];
     t->part[1][q] = f->energy.elastic*t->touch[q];
 }
 DEM_INLINE void demi_tangent_energy(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f) {
@@ -10528,7 +10565,7 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
         demi_row_put(t->torque[0], q, demi_v(0, 0, 0));
         demi_row_put(t->torque[1], q, demi_v(0, 0, 0));
         for (e = 0; e < r->keep; e++) t->memory[e][q] = 0;
-        for (e = 0; e < 6; e++) t->part[e][q] = 0;
+        for (e = 0; e < 7; e++) t->part[e][q] = 0;
     }
 }
 /* The same for the law that DEM_LAW names, in loops that compilers may turn into vector code: one
@@ -10682,7 +10719,31 @@ static demi_run *demi_tile_coefs(const dem_world *w, const demi_span *span, int 
     return run + 1;
 }
 
-/* The whole tile, by one of two runs, which is answered; energies are summed in order. */
+/* What dashpots took goes with the velocities of the path. */
+static void demi_tile_late(const dem_world *w, const demi_span *span, int full,
+                           demi_tile *DEMI_RESTRICT t) {
+    const dem_real *DEMI_RESTRICT late = w->bodies.late;
+    int n;
+    for (n = 0; n < span->count; n++)
+        demi_rows_minus(&t->late, (size_t)n, DEMI_AT(late, span->a[n]), DEMI_AT(late, span->b[n]));
+    DEMI_ROWS(full)
+        t->part[0][q] *= 1 + demi_late_share(demi_rows_at(&t->late, q), demi_row(t->normal, q),
+                                             t->closing[q]);
+    DEMI_ROWS_END
+}
+/* What the contacts of a tile did with energy, for the ledger, in order. */
+static void demi_tile_book(const demi_tile *DEMI_RESTRICT t, int count, double *energy) {
+    int q;
+    for (q = 0; q < count; q++) {
+        energy[DEMI_E_DASHPOT] += (double)(t->part[0][q] + t->part[6][q]);
+        energy[DEMI_E_ELASTIC] += (double)t->part[1][q];
+        energy[DEMI_E_SHEAR_WORK] += (double)t->part[2][q];
+        energy[DEMI_E_SLIDE] += (double)t->part[3][q];
+        energy[DEMI_E_SHEAR_STORED] += (double)t->part[4][q];
+        energy[DEMI_E_ROLL] += (double)t->part[5][q];
+    }
+}
+/* The whole tile, by one of two runs, which is answered. */
 static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, demi_run *run,
                                    demi_tile *DEMI_RESTRICT t, double *energy) {
     const int full = (span->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
@@ -10695,15 +10756,8 @@ static demi_run *demi_tile_respond(const dem_world *w, const demi_span *span, de
     for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](t, r, full);
     for (q = 0; q < r->keep; q++)
         demi_row_copy(span->memory + (size_t)q*span->stride, t->memory[q], full);
-    if (r->ledger)
-        for (q = 0; q < span->count; q++) {
-            energy[DEMI_E_DASHPOT] += (double)t->part[0][q];
-            energy[DEMI_E_ELASTIC] += (double)t->part[1][q];
-            energy[DEMI_E_SHEAR_WORK] += (double)t->part[2][q];
-            energy[DEMI_E_SLIDE] += (double)t->part[3][q];
-            energy[DEMI_E_SHEAR_STORED] += (double)t->part[4][q];
-            energy[DEMI_E_ROLL] += (double)t->part[5][q];
-        }
+    if (r->ledger && w->bodies.booked) demi_tile_late(w, span, full, t);
+    if (r->ledger) demi_tile_book(t, span->count, energy);
     return r;
 }
 
@@ -12232,10 +12286,16 @@ DEM_INLINE void demi_wall_sum_add(const dem_world *w, demi_wall_sum *sum, int wa
     sum->torque[2] -= (double)torque.z;
     sum->power += (double)(demi_dot(force, surface) + demi_dot(moment, w->walls[wall].pose.spin));
 }
-/* grip: how often friction and rolling count, which may differ from the rest: demi_kept_lift. */
+/* m/s, by how much a and b (or a wall: < 0) closed faster than predicted */
+DEM_INLINE dem_vec3 demi_late_of(const dem_world *w, int a, int b) {
+    const dem_vec3 late = demi_at(w->bodies.late + 4*a);
+    return b < 0 ? late : demi_sub(late, demi_at(w->bodies.late + 4*b));
+}
+/* grip: how often friction and rolling count, which may differ from the rest: demi_kept_lift;
+   late: demi_late_share. */
 DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *part, dem_real share,
-                                dem_real grip) {
-    domain->energy[DEMI_E_DASHPOT] += (double)(share*(part->dashpot + part->sag));
+                                dem_real grip, dem_real late) {
+    domain->energy[DEMI_E_DASHPOT] += (double)(share*(part->dashpot*(1 + late) + part->sag));
     domain->energy[DEMI_E_ELASTIC] += (double)(share*part->elastic);
     domain->energy[DEMI_E_SHEAR_WORK] += (double)(grip*part->shear_work);
     domain->energy[DEMI_E_SLIDE] += (double)(grip*part->slide);
@@ -12337,7 +12397,10 @@ static void demi_kept_respond(dem_world *w, int d) {
         domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
         f.energy.elastic /= c->slope;           /* V = k overlap^2/2; the law was given k slope */
         f.energy.sag /= c->slope;
-        demi_energy_add(domain, &f.energy, c->share, c->grip);
+        demi_energy_add(domain, &f.energy, c->share, c->grip,
+                        !w->bodies.booked ? 0
+                        : demi_late_share(demi_late_of(w, a, b), contact.normal,
+                                          contact.closing_speed));
     }
 }
 /* Slots of far ends are summed into: cleared before. */
@@ -12504,6 +12567,24 @@ static void demi_finish_halves(dem_world *w, int begin, int end) {
         const demi_lane b = demi_lane_move(w, i), s = demi_lane_turn(w, i);
         demi_finish_half(&b, h);
         demi_finish_half(&s, h);
+    }
+}
+/* For the ledger: by how much the velocities that laws have seen fell short of the derivative of
+   the path. With x''' = j the prediction falls short by j dt^2/2, and the step's end velocity,
+   which is the central difference of three places, is ahead by j dt^2/6: two thirds of the way from
+   one to the other the errors of second order are gone, of dashpots' losses and of the work of
+   springs alike. */
+static void demi_late_note(dem_world *w, int begin, int end) {
+    const dem_real h = (dem_real)w->clock.half_kick, part = DEM_R(2.0)/3;
+    const dem_real *DEMI_RESTRICT v = w->bodies.vel, *DEMI_RESTRICT u = w->bodies.half_vel;
+    const dem_real *DEMI_RESTRICT f = w->bodies.force, *DEMI_RESTRICT inv = w->bodies.inv_mass;
+    dem_real *DEMI_RESTRICT late = w->bodies.late, g[4];
+    int i, k;
+    g[0] = w->desc.gravity.x; g[1] = w->desc.gravity.y; g[2] = w->desc.gravity.z; g[3] = 0;
+    for (i = begin; i < end; i++) {
+        const dem_real m = inv[i], free_fall = m > 0 ? DEM_R(1) : DEM_R(0);
+        for (k = 4*i; k < 4*i + 4; k++)
+            late[k] = (u[k] - v[k] + (f[k]*m + g[k - 4*i]*free_fall)*h)*part;
     }
 }
 /* What half_vel and half_spin must be before the first step from a state at t. */
@@ -12767,17 +12848,19 @@ typedef struct demi_integrator_row {
     void (*finish)(dem_world *w, int begin, int end);
     int order;
     int backward;                  /* it needs last_pos, the places of one step ago */
+    int predicts;                  /* laws see velocities that the step's forces still change */
 } demi_integrator_row;
 static const demi_integrator_row demi_integrator_rows[] = {     /* in the order of dem_integrator */
-    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0},
-    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1, 0},
-    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0},
-    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1},
-    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0},
+    {"velocity Verlet", demi_move_velocity_verlet, demi_finish_halves, 2, 0, 1},
+    {"forward Euler", demi_move_forward_euler, demi_finish_nothing, 1, 0, 0},
+    {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0, 0},
+    {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1, 1},
+    {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
 };
 enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
 
 static void demi_domain_finish(dem_world *w, int d) {
+    if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
     demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
     if (w->bodies.shaped) demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
 }
@@ -15461,6 +15544,7 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
                            demi_pace *pace) {
     const size_t bytes = (size_t)(end - begin)*4*sizeof(dem_real);
     int i, l;
+    if (w->bodies.booked && !w->stage.synced) demi_late_note(w, begin, end);
     demi_integrator_rows[w->desc.integrator].move(w, begin, end, turning);
     if (w->desc.planar)
         for (i = begin; i < end; i++) {
@@ -15505,6 +15589,18 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
 }
+/* J, of gravity in this step on the bodies of a domain: by their momentum, which rows of four sum
+   together. (What does not move has no velocity.) */
+static double demi_gravity_work(const dem_world *w, const demi_domain *domain) {
+    const dem_real *DEMI_RESTRICT u = w->bodies.half_vel, *DEMI_RESTRICT mass = w->bodies.mass;
+    const dem_vec3 g = w->desc.gravity;
+    double momentum[4] = {0, 0, 0, 0};
+    int i, k;
+    for (i = domain->begin; i < domain->end; i++)
+        for (k = 0; k < 4; k++) momentum[k] += (double)mass[i]*(double)u[4*i + k];
+    return ((double)g.x*momentum[0] + (double)g.y*momentum[1] + (double)g.z*momentum[2])*
+        (double)w->clock.dt;
+}
 /* All bodies of a domain, a few at a time; what is found on the way goes into the domain's sums. */
 static void demi_domain_move(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -15512,7 +15608,6 @@ static void demi_domain_move(dem_world *w, int d) {
     demi_pace pace;
     int i;
     memset(&pace, 0, sizeof pace);
-    domain->energy[DEMI_E_GRAVITY] = 0;
     domain->speed2 = domain->acceleration2 = domain->check = 0;
     domain->turn = domain->turn_speed = domain->turn_rate = 0;
     if (demi_quiet_possible(w)) demi_quiet_move(w, d, turning, &pace);
@@ -15523,16 +15618,7 @@ static void demi_domain_move(dem_world *w, int d) {
         domain->acceleration2 = DEMI_MAX(domain->acceleration2, (double)pace.acceleration2[i]);
         domain->check += (double)pace.sum[i];
     }
-    if (w->desc.ledger) {
-        const dem_vec3 g = w->desc.gravity;
-        for (i = domain->begin; i < domain->end; i++) {
-            const dem_real *u = w->bodies.half_vel + 4*i;
-            if (w->bodies.inv_mass[i] <= 0) continue;
-            domain->energy[DEMI_E_GRAVITY] += (double)w->bodies.mass[i]*(double)(g.x*u[0] +
-                                                                                 g.y*u[1] +
-                g.z*u[2])*(double)w->clock.dt;
-        }
-    }
+    if (w->desc.ledger) domain->energy[DEMI_E_GRAVITY] = demi_gravity_work(w, domain);
 }
 
 /* Forces and torques of a field that sees whole bodies. */
@@ -18979,6 +19065,7 @@ static dem_world *demi_twin_make(dem_world *w) {
     t->shapes = w->shapes;
     t->normal = (int)w->desc.normal_law;
     t->bodies.backward = w->bodies.backward;
+    t->bodies.booked = w->bodies.booked;
     if (demi_twin_parts(t, w)) return t;
     demi_free_chain(t, DEMI_RUN);
     demi_free(w, t);
@@ -20757,6 +20844,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->stage.synced = 1;
     w->bodies.orienting = desc->orientations != 0;
     w->bodies.backward = demi_integrator_rows[desc->integrator].backward;
+    w->bodies.booked = desc->ledger && demi_integrator_rows[desc->integrator].predicts;
     w->pairs = (demi_pair *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
     w->domains = (demi_domain *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
@@ -21577,7 +21665,8 @@ static void demi_slab_invite(dem_slabs *s, demi_slab *b) {
 }
 /* Reals sent up and down per ghost and step: the user's numbers, or their rates, come last. */
 static size_t demi_slab_places(const dem_world *w) {
-    return w->bodies.orienting ? 19 : demi_spins(w) ? 15 : 6;
+    const size_t state = w->bodies.orienting ? 19 : demi_spins(w) ? 15 : 6;
+    return state + (w->bodies.booked ? 3 : 0);
 }
 static size_t demi_slab_pushes(const dem_world *w) { return demi_turns(w) ? 6 : 3; }
 static size_t demi_slab_up(const dem_world *w) {
@@ -21750,14 +21839,15 @@ static void demi_slab_send(dem_slabs *s, demi_slab *b) {
     for (k = 0; k < b->lent_count; k++, out += reals + own) {
         const int i = 4*b->lent[k];
         if (own) memcpy(out + reals, w->bodies.reals + own*(size_t)b->lent[k], own*sizeof *out);
+        if (w->bodies.booked) memcpy(out + reals - 3, w->bodies.late + i, three);
         memcpy(out, w->bodies.pos + i, three);
         out[s->axis] += shift;
         memcpy(out + 3, w->bodies.vel + i, three);
-        if (reals == 6) continue;
+        if (reals < 15) continue;
         memcpy(out + 6, w->bodies.spin + i, three);
         memcpy(out + 9, w->bodies.half_vel + i, three);
         memcpy(out + 12, w->bodies.half_spin + i, three);
-        if (reals == 19) memcpy(out + 15, w->bodies.orient + i, 4*sizeof(dem_real));
+        if (w->bodies.orienting) memcpy(out + 15, w->bodies.orient + i, 4*sizeof(dem_real));
     }
 }
 /* Ghosts are where their owners say. */
@@ -21771,15 +21861,16 @@ static void demi_slab_receive(const dem_slabs *s, demi_slab *b) {
     for (k = 0; k < b->ghost_count; k++, in += up + own) {
         const int i = b->ghost[k];
         if (own) memcpy(w->bodies.reals + own*(size_t)i, in + up, own*sizeof *in);
+        if (w->bodies.booked) memcpy(w->bodies.late + 4*i, in + up - 3, three);
         memcpy(w->bodies.pos + 4*i, in, three);
         memcpy(w->bodies.vel + 4*i, in + 3, three);
         w->bodies.inv_mass[i] = b->ghost_inv[2*k];
         w->bodies.inv_inertia[i] = b->ghost_inv[2*k + 1];
-        if (up == 6) continue;
+        if (up < 15) continue;
         memcpy(w->bodies.spin + 4*i, in + 6, three);
         memcpy(w->bodies.half_vel + 4*i, in + 9, three);
         memcpy(w->bodies.half_spin + 4*i, in + 12, three);
-        if (up == 15) continue;
+        if (!w->bodies.orienting) continue;
         memcpy(w->bodies.orient + 4*i, in + 15, 4*sizeof(dem_real));
         if (w->bodies.centres_valid && demi_shape_of(w, i) && demi_shape_of(w, i)->count)
             demi_centres_rotate(w, i);

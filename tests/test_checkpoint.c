@@ -496,6 +496,7 @@ static dem_world *kept_world(int count) {
     int i;
     desc.integrator = DEM_POSITION_VERLET;
     desc.orientations = 1;
+    desc.ledger = 1;                            /* what predictions fell short by */
     desc.dt = DEM_R(1e-6);
     desc.body_reals = "a b c d e f";
     world = dem_world_create(&desc);

@@ -256,6 +256,50 @@ static outcome land_on_giant(double young_factor, double omega) {
     return out;
 }
 
+/* What the ledger cannot account for, over what was lost: spheres that meet at many phases of a step, in pairs or (wall)
+   on a plane, with friction. */
+static double ledger_left(dem_integrator scheme, int wall, double steps) {
+    dem_advice advice;
+    dem_ledger l;
+    double dt = 0;
+    int pass, i;
+    memset(&l, 0, sizeof l);
+    for (pass = 0; pass < 2; pass++) {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_material_desc m = DEM_MATERIAL_DESC;
+        dem_material soft;
+        dem_world *world;
+        desc.ledger = 1;
+        desc.threads = 1;
+        desc.impact_speed = 1;
+        desc.integrator = scheme;
+        desc.dt = (dem_real)dt;
+        world = dem_world_create(&desc);
+        m.density = 2500;
+        m.young = DEM_R(1e8);
+        m.poisson = DEM_R(0.23);
+        m.restitution = DEM_R(0.6);
+        m.friction = DEM_R(0.3);
+        soft = dem_material_add(world, &m);
+        if (wall) dem_plane_add(world, soft, dem_vec3_make(0, 0, 0), dem_vec3_make(1, 0, 0));
+        for (i = 0; i < 300; i++) {             /* gaps of 0.1 to 0.2 mm, oblique */
+            const double gap = 1e-4*(1 + (i*0.618033988749895 - floor(i*0.618033988749895)));
+            const dem_real y = (dem_real)(wall ? 0 : 1.6e-3*(i*0.414213562373095 - floor(i*0.414213562373095)));
+            const dem_real z = (dem_real)(0.01*i), x = (dem_real)(1e-3 + gap), r = DEM_R(1e-3), half = DEM_R(0.5);
+            const dem_real at[6] = {x, y, z, -x, 0, z}, speed[6] = {-half, wall ? half/4 : 0, 0, half, 0, 0};
+            dem_spheres_add(world, soft, wall ? 1 : 2, at, speed, 0, r);
+        }
+        if (!pass && dem_step_advice(world, &advice) == DEM_OK) dt = (double)advice.contact_time/steps;
+        if (pass) {
+            CHECK(dem_world_run(world, DEM_R(5e-3), 0, 0) == DEM_OK);
+            l = dem_ledger_get(world);
+            CHECK(l.normal > 0.2*l.throughput);
+        }
+        dem_world_destroy(world);
+    }
+    return l.residual/(l.normal + l.slide + l.tangent);
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -436,6 +480,19 @@ int main(int argc, char **argv) {
             CHECK_NEAR(fire(s).e, rows[i][0], 1e-4);
             s.tension = DEM_TENSION_CLIPPED;
             CHECK_NEAR(fire(s).e, rows[i][1], 1e-4);
+        }
+    }
+
+    TEST("the ledger closes to 1 in 1000 of what was lost at 25 steps a contact, and at the third power of the step") {
+        /* dashpots and springs at predicted velocities: 6 in 1000, and the square. Phases differ, so that meetings in
+           mid-step average out; single precision: round-off of 100 steps of 2e-4 of a radius. */
+        static const dem_integrator schemes[] = {DEM_VELOCITY_VERLET, DEM_LEAPFROG, DEM_POSITION_VERLET};
+        int k, wall;
+        for (k = 0; k < 3; k++) for (wall = 0; wall < 2; wall++) {
+            const double coarse = ledger_left(schemes[k], wall, 25), fine = ledger_left(schemes[k], wall, 75);
+            CHECK_NEAR(coarse, 0, DEMI_SINGLE ? 5e-3 : 1e-3);
+            if (DEMI_SINGLE) continue;
+            CHECK(fabs(fine) < fabs(coarse)/9 || fabs(fine) < 2e-5);
         }
     }
     return test_end();
