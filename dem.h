@@ -14637,6 +14637,11 @@ static dem_result demi_dt_settle(dem_world *w) {
     w->clock.press_due = w->clock.press_since = w->clock.steps;
     return DEM_OK;
 }
+/* 1: grains are faster than the step was chosen for, which is chosen anew then. A speed that was
+   given stays. */
+static int demi_outgrown(const dem_world *w) {
+    return !(w->desc.impact_speed > 0) && w->booked.speed_max > 1.5*w->clock.assumed_speed;
+}
 /* The fastest body that moves, m/s. */
 static double demi_fastest(const dem_world *w) {
     double most = 0;
@@ -15985,8 +15990,7 @@ static dem_result demi_step_once(dem_world *w) {
         result = demi_rebuild(w, "dem_world_step");
         if (result != DEM_OK) return result;
         demi_kernel_choose(w);
-        /* grains are faster than the step was chosen for: choose it anew */
-        if (w->booked.speed_max > 1.5*w->clock.assumed_speed) w->stage.dt_valid = 0;
+        if (demi_outgrown(w)) w->stage.dt_valid = 0;
     } else if (w->stage.near_stale || demi_near_due(w)) {
         if (!w->stage.near_chosen && demi_near_due(w)) demi_near_choose(w);
         w->stage.near_chosen = 1;
@@ -22037,7 +22041,7 @@ static dem_result demi_slabs_step_once(dem_slabs *s) {
     if (search) {
         result = demi_slabs_rebuild(s);
         if (result != DEM_OK) return result;
-        if (h->booked.speed_max > 1.5*h->clock.assumed_speed) h->stage.dt_valid = 0;
+        if (demi_outgrown(h)) h->stage.dt_valid = 0;
         near = 0;
     }
     result = demi_slabs_forces(s, near);

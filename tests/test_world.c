@@ -530,6 +530,26 @@ int main(int argc, char **argv) {
             dem_world_destroy(world);
         }
     }
+    TEST("a step chosen for a given speed is not chosen again when grains get faster; without a given speed it is") {
+        int given, k;
+        for (given = 0; given < 2; given++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world;
+            dem_material glass;
+            desc.gravity.z = DEM_R(-9.81);
+            desc.impact_speed = given ? DEM_R(0.05) : 0;
+            world = dem_world_create(&desc);
+            glass = scene_material(world, 1e6, 0.5, 0.3, 0);
+            for (k = 0; k < 8; k++)
+                dem_sphere_add(world, glass, DEM_R(2e-3), at(0.01*k, 0, 0));
+            CHECK_EQ(scene_step(world, 10), DEM_OK);
+            while (dem_world_time(world) < 0.1) CHECK_EQ(scene_step(world, 10), DEM_OK);
+            CHECK(dem_counters_get(world).rebuilds > 5);
+            if (given) CHECK_EQ((int)world->clock.press_since, 0);
+            else CHECK((int)world->clock.press_since > 0);
+            dem_world_destroy(world);
+        }
+    }
     TEST("dt = 0 is chosen as t_c/50 of the shortest contact there is, walls and fixed grains "
          "included") {
         dem_world_desc desc = DEM_WORLD_DESC;
