@@ -47,8 +47,14 @@ OMP_FOUND := $(shell printf '%s\n' '$(hash)include <omp.h>' 'int main(void) { re
         $(CC) build/probe.c -o build/probe $$f >build/probe.log 2>&1 && echo "$$f" && break; done)
 $(if $(OMP_FOUND),,$(info OpenMP not found: running on one thread))
 endif
+# `make run` is waited for: all cores compile its one program together, at the link, to the same bits
+ifeq ($(MAKECMDGOALS),run)
+LTO := $(shell f=-flto=$(JOBS); echo 'int main(void) { return 0; }' > build/probe.c; \
+    $(CC) $(CFLAGS_FOUND) $$f build/probe.c -o build/probe >build/probe.log 2>&1 && test ! -s build/probe.log && echo $$f)
+endif
 COMPILE = $(CC) $(CFLAGS) $(CPPFLAGS) -I.
 LINK = $(OMP) $(LDFLAGS) $(LDLIBS)
+DEM_O := $(if $(LTO),build/dem_run.o,build/dem.o)
 # build/flags changes when the compiler or its flags do, and everything is built anew
 $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(LINK)' > build/flags)
 MAKEFLAGS += -j$(JOBS)
@@ -195,10 +201,10 @@ build/write_film: tests/write_film.c
 build/tests $(TESTS): LEVEL = $(if $(filter file,$(origin CFLAGS)),-O2)
 build/tests $(TESTS) $(BENCHES): dem.h build/flags
 	$(COMPILE) $(LEVEL) -o $@ $(filter %/$(@F).c,$^) $(LINK)
-build/dem.o: dem.c dem.h build/flags
-	$(COMPILE) $(OMP) -c -o $@ dem.c
-$(LESSONS) $(SHOWS) $(STUDIES) build/write_files build/write_film: build/dem.o
-	$(COMPILE) -o $@ $(filter %/$(@F).c,$^) build/dem.o $(LINK)
+build/dem.o build/dem_run.o: dem.c dem.h build/flags
+	$(COMPILE) $(LTO) $(OMP) -c -o $@ dem.c
+$(LESSONS) $(SHOWS) $(STUDIES) build/write_files build/write_film: $(DEM_O)
+	$(COMPILE) $(LTO) -o $@ $(filter %/$(@F).c,$^) $(DEM_O) $(LINK)
 # benches say how they were built; bench.c also in single precision, and as plain as can be
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'
 build/bench_single: bench/bench.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags
