@@ -1073,6 +1073,8 @@ typedef struct dem_region {
     dem_inside_fn inside;    /* of those, which; 0: all */
     void *user;
 } dem_region;
+static const dem_region DEM_REGION_ZERO = {{{0, 0, 0}, {0, 0, 0}}, 0, 0, 0};
+#define DEM_REGION DEM_REGION_ZERO
 /* Random filling: count spheres of one radius inside box, in random sequence; seed makes it
    repeatable. A place is free when nothing there overlaps another body, across periodic faces too,
    or touches a wall: behind a plane, on the wrong side of a cylinder and in a sieve there is none;
@@ -1454,6 +1456,9 @@ typedef struct dem_feed_desc {
     dem_inside_fn inside;            /* places of the box to use, as in dem_region; 0: all */
     void *inside_user;
 } dem_feed_desc;
+static const dem_feed_desc DEM_FEED_DESC_ZERO = {{0}, 0, {0}, {0}, 0, 0, 0, 0, 0,
+                                                 {{0, 0, 0}, {0, 0, 0}}, 0, {0, 0, 0}, 0, 0, 0, 0};
+#define DEM_FEED_DESC DEM_FEED_DESC_ZERO
 typedef struct dem_feed_state {
     uint64_t fed[DEM_CLASSES], total; /* grains */
     double mass;                      /* kg */
@@ -1482,6 +1487,9 @@ typedef struct dem_outlet_desc {
     dem_material material;           /* only grains of it; id 0: of all */
     int keep;                        /* 1: grains stay, and are counted; at most 16 such outlets */
 } dem_outlet_desc;
+static const dem_outlet_desc DEM_OUTLET_DESC_ZERO = {{0}, {{0, 0, 0}, {0, 0, 0}}, 0, 0, 0, 0, {0},
+                                                     {0}, 0};
+#define DEM_OUTLET_DESC DEM_OUTLET_DESC_ZERO
 typedef struct dem_outlet_state {
     uint64_t count[DEM_CLASSES], total;
     double mass[DEM_CLASSES], total_mass;   /* kg */
@@ -1755,6 +1763,9 @@ typedef struct dem_field_desc {
        [GOL10] */
     dem_real width;
 } dem_field_desc;
+static const dem_field_desc DEM_FIELD_DESC_ZERO = {{{0, 0, 0}, {0, 0, 0}}, {0, 0, 0}, 0, 0, 0, {0},
+                                                   0, 0, 0, 0};
+#define DEM_FIELD_DESC DEM_FIELD_DESC_ZERO
 DEM_API dem_field dem_field_add(dem_world *world, const dem_field_desc *desc);
 /* Cell (i, j, k) is at index i + cells[0]*(j + cells[1]*k). Values hold until the next step. */
 typedef struct dem_field_data {
@@ -2189,8 +2200,10 @@ static void demi_parallel(dem_world *w, int threads, int count, demi_task task) 
     int i;
 #if DEMI_OPENMP
     if (threads > 1 && count > 1) {
-        /* dealt in turns: where a scene is dense, it is so in several domains side by side */
-        #pragma omp parallel for num_threads(threads) schedule(static, 1)
+        /* a few runs of neighbours to each thread, dealt in turns: where a scene is dense, it is so
+           in several domains side by side */
+        const int run = DEMI_MAX(1, count/(4*threads));
+        #pragma omp parallel for num_threads(threads) schedule(static, run)
         for (i = 0; i < count; i++) task(w, i);
         return;
     }

@@ -23,6 +23,7 @@ try "the viewer in dem.h is examples/replay/viewer.html" "awk -f tests/viewer.aw
 # what is compiled: the header alone, the implementation, both in one file, two files linked; the headers
 # that stand beside dem.h and use its public part only
 user=tests/two_files.c
+try "the browser lesson as a program" "cc -std=c99 -Wall -Wextra -Werror -I. -DDEM_IMPLEMENTATION examples/web/lesson.c -o \$bin -lm && \$bin pile 300 && \$bin hopper 300 && \$bin drum 300"
 companions=$dir/companions.c
 printf '#include "dem.h"\n' > $companions
 printf '#include "examples/%s.h"\n' drum lesson moldyn sorting tumbler >> $companions
@@ -137,6 +138,9 @@ if [ "$1" != short ]; then
     found g++ && tests "g++ -std=c++11" "g++ -std=c++11 -O2 -ffp-contract=off -x c++"
     try "the same bits on Windows, aarch64, WebAssembly" "sh tests/cross.sh \$bin"
     try "outside: make new, make install, pkg-config, CMake" "sh tests/outside.sh \$bin"
+    if found node && { found wasm-ld || found wasm-ld-14; }; then
+        try "the browser lesson: the same digests in node, in a browser and native" "sh tests/web.sh \$bin.web; code=\$?; rm -rf \$bin.web; exit \$code"
+    else skip "no compiler for WebAssembly, or no node (Debian packages clang, lld, wasi-libc, libclang-rt-14-dev-wasm32, nodejs)"; fi
     if found chromium; then
         try "films play in a headless chromium" "cc -O1 -I. -DDEM_IMPLEMENTATION tests/write_film.c -o \$bin -lm && FILM=\$bin sh tests/browser.sh"
     else skip "chromium not found (Debian package chromium)"; fi
