@@ -16554,23 +16554,23 @@ static int demi_repose_sees(const dem_world *w, dem_box b, int i) {
         x[2] >= b.lo.z && x[2] <= b.hi.z;
 }
 /* Row and column of a grain, and how high its top is. */
-static double demi_surface_place(const dem_world *w, const demi_surface *s, int i, int *row,
+static double demi_surface_place(const dem_world *w, const demi_surface *s, int i, double *row,
                                  int *column) {
     const dem_vec3 d = demi_sub(demi_at(w->bodies.pos + 4*i), s->centre);
     const double x = (double)demi_dot(d, s->out), y = (double)demi_dot(d, s->along);
     const double far = s->around ? sqrt(x*x + y*y) : x;
-    *row = (int)floor((far - s->from)/s->width);
-    *column = s->around ? (int)floor((demi_atan2(y, x)/(2*DEMI_PI) + 0.5)*s->columns)
-        : (int)floor(y/s->width);
-    if (!s->around) *column = ((*column % s->columns) + s->columns)%s->columns;
-    else *column = DEMI_MIN(*column, s->columns - 1);
+    const double n = s->columns, across = floor(y/s->width);     /* rows more than ints hold */
+    const double at = s->around ? (demi_atan2(y, x)/(2*DEMI_PI) + 0.5)*n
+        : across - n*floor(across/n);
+    *row = floor((far - s->from)/s->width);
+    *column = DEMI_MIN(DEMI_MAX((int)at, 0), s->columns - 1);
     return (double)demi_dot(d, s->up) + (double)w->bodies.pos[4*i + 3];
 }
 /* Looks at the grains in the box: a surface with the heights above its lowest grain. 0: no memory;
    top is null where there are no grains. */
 static int demi_surface_look(dem_world *w, demi_surface *s, dem_box box) {
-    double diameter = 0, lowest = 1e300, least = 1e300, most = -1e300;
-    int i, row, column, count = 0;
+    double diameter = 0, lowest = 1e300, least = 1e300, most = -1e300, row;
+    int i, column, count = 0;
     s->top = 0;
     s->width = 1;
     s->from = 0;
@@ -16588,8 +16588,8 @@ static int demi_surface_look(dem_world *w, demi_surface *s, dem_box box) {
     for (i = 0; i < w->bodies.count; i++) {
         if (!demi_repose_sees(w, box, i)) continue;
         demi_surface_place(w, s, i, &row, &column);
-        least = DEMI_MIN(least, (double)row);
-        most = DEMI_MAX(most, (double)row);
+        least = DEMI_MIN(least, row);
+        most = DEMI_MAX(most, row);
     }
     s->from = least*s->width;
     if (!(most - least < 1e5)) return 1;        /* a grain is far off: no surface */
@@ -16602,8 +16602,8 @@ static int demi_surface_look(dem_world *w, demi_surface *s, dem_box box) {
         double h, *top;
         if (!demi_repose_sees(w, box, i)) continue;
         h = demi_surface_place(w, s, i, &row, &column) - lowest;
-        if (row < 0 || row >= s->rows) continue;
-        top = &s->top[row*s->columns + column];
+        if (!(row >= 0 && row < s->rows)) continue;
+        top = &s->top[(int)row*s->columns + column];
         *top = DEMI_MAX(*top, h);
     }
     return 1;
