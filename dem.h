@@ -36,6 +36,7 @@
        >>kept        contacts kept by themselves, all but sphere on sphere: touch
        >>kept-respond  the law's answers to them: forces on both ends
        >>integrators kick, drift, predict; rotation
+       >>impulses    in place of laws: impulses that keep bodies apart, solved together
        >>ledger      where the energy went
        >>sizes       distributions of size: shares, drawing, classes
        >>placing     room for new grains: regions, fills, packings
@@ -448,6 +449,20 @@ typedef enum dem_integrator {
     DEM_POSITION_VERLET,     /* original Verlet: x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 */
     DEM_LEAPFROG,            /* velocities kept at half steps; same path as velocity Verlet */
 } dem_integrator;
+
+/* How contacts answer. Springs push by their overlap, by the laws above; steps are a fiftieth of a
+   contact time. Impulses keep rigid bodies from going into each other (>>impulses): of the laws
+   above only restitution, friction and rolling friction hold, and steps are as long as the flow
+   asks, 1e-3 s for grains of millimetres. */
+typedef enum dem_response {
+    DEM_RESPONSE_SPRINGS = 0,
+    DEM_RESPONSE_IMPULSES
+} dem_response;
+/* What friction asks of impulses. */
+typedef enum dem_cone {
+    DEM_CONE_COULOMB = 0,    /* Coulomb's law: contacts that slide stay closed */
+    DEM_CONE_CONVEX          /* the convex law of [TAS10]: what slides at v opens by mu v dt */
+} dem_cone;
 
 /* How bodies that are not spheres turn. All keep angular momentum to round-off while nothing
    pushes, and are of second order in dt under torques; docs/shapes.md has their errors and
@@ -939,6 +954,15 @@ typedef struct dem_world_desc {
     int allow_large_dt;  /* 1: run even when dt exceeds t_c/20. For showing what happens */
     dem_real impact_speed;         /* m/s, typical: for linear stiffness and the time step; 0: from
                                       gravity, walls and grains (linear stiffness: 1 m/s) */
+    /* With DEM_RESPONSE_IMPULSES dt has to be given, integrator is DEM_SYMPLECTIC_EULER (or left
+       0), law null; law_range (m) is the gap from which on a contact is looked at; 0: what two
+       may approach by in a step, between a tenth of the largest radius and all of it */
+    dem_response response;
+    dem_cone cone;
+    int sweeps;                    /* over all contacts, at most, in a step; 0: 200 */
+    dem_real tolerance;            /* m/s: change of a contact's velocity below which sweeps end; 0:
+                                      a thousandth of what gravity brings in a step, and a millionth
+                                      of the largest speed */
     dem_search search;
     dem_real skin;                 /* m, margin of the candidate list; 0: chosen; < 0: none, the
                                       list is rebuilt every step */
@@ -954,7 +978,8 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
     DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
     DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
-    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0, DEM_SEARCH_AUTO, 0,
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0,
+    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, 0, 0, DEM_SEARCH_AUTO, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
@@ -1609,6 +1634,11 @@ typedef struct dem_counters {
     dem_real dt;                /* s, in force */
     dem_search search;          /* in force */
     int threads, domains;
+    /* impulses, of the last step: sweeps, what they left (m/s, as tolerance); of all steps: how
+       many did not reach the tolerance */
+    int sweeps;
+    dem_real residual;
+    uint64_t unsolved;
     size_t memory;              /* bytes held */
 } dem_counters;
 DEM_API dem_counters dem_counters_get(const dem_world *world);
@@ -2760,6 +2790,11 @@ typedef struct demi_booked {       /* >>ledger: sums since the beginning, and th
     double energy[DEMI_ENERGIES], inserted, removed, throughput;       /* J */
     double overlap_max, speed_max; /* of the radius; m/s */
     uint64_t met[DEMI_MATERIALS];  /* bit j of i, i <= j: materials i and j have touched */
+    double due[4];                 /* J: what the impulses of the next step will take, see
+                                      demi_impulses_energy; what walls will do */
+    double residual;               /* m/s, of the last solve */
+    uint64_t unsolved;             /* solves that did not reach their tolerance */
+    int sweeps, none;              /* of the last solve; 0, so that no byte of it is unknown */
 } demi_booked;
 
 /* Bodies: who they are (slots, which never move) and where they stand in the arrays (indices, which
@@ -2830,6 +2865,23 @@ typedef struct demi_lookers {
     dem_result (*outputs_look)(dem_world *w);   /* null: there are none */
     void (*outputs_again)(dem_world *w);        /* the state has been read from a file */
 } demi_lookers;
+
+/* Contacts and bodies as the solver of impulses sees them: made anew in every step (>>impulses). */
+struct demi_impulse;
+struct demi_mover;
+typedef struct demi_solver {
+    struct demi_impulse *contacts;
+    struct demi_mover *movers;     /* one per body */
+    dem_real *tensors;             /* x 6: inverse of its inertia, in the world's frame; null: all
+                                      are spheres */
+    dem_real *lifts;               /* x 4, m/s: what undoes overlaps, see demi_impulses_lift */
+    uint64_t *colours;             /* of each body: those taken */
+    int32_t *order;                /* contacts by colour */
+    double *worst;                 /* m/s: change in each run of contacts of the last sweep */
+    int count, first, last;        /* contacts; of the colour being swept */
+    int begins[65];                /* of each colour in `order` */
+    dem_real dt;
+} demi_solver;
 
 /* A world, by owners: each part writes its own, all read. Where more write, they are named. */
 struct dem_world {
@@ -2927,6 +2979,7 @@ struct dem_world {
     int species_vary;              /* columns that are not the same for all near pairs: 1 << each */
     struct demi_quiet *quiet;      /* what may push each few bodies, see demi_domain_quiet */
     int near_fresh, near_due;      /* being made after a search; slabs: some list is due */
+    struct demi_solver solver;     /* >>impulses */
     /* >>respond */
     void (*kernel)(dem_world *w, int domain);
     demi_lookers look;             /* >>step, >>output, >>replay */
@@ -2934,6 +2987,12 @@ struct dem_world {
 /* m: how far beyond their radii pairs, and bodies and walls, are looked for. */
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
+}
+/* Contacts answer by impulses; each remembers its friction and rolling (vectors), and its push, as
+   forces. */
+enum { DEMI_IMPULSE_REALS = 7 };
+DEM_INLINE int demi_impulsive(const dem_world *w) {
+    return w->desc.response == DEM_RESPONSE_IMPULSES;
 }
 /* Does a law answer rates of the user's numbers? */
 DEM_INLINE int demi_exchanges(const dem_world *w) {
@@ -2984,6 +3043,7 @@ static void demi_names_own(dem_world *w, const dem_world_desc *desc) {
 /* m: gap up to which the law is asked about two of these radii, together (with a wall: about one);
    0 where it is asked at touch alone. */
 DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
+    if (demi_impulsive(w)) return (dem_real)w->margin.reach;
     return w->margin.reach > 0 ? w->desc.law_range + w->desc.law_range_radii*radii : 0;
 }
 
@@ -3409,10 +3469,11 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
 #define DEMI_ROW(k, field, good, text) \
     rows[k].name = #field; rows[k].value = d->field; rows[k].ok = (good); rows[k].limit = text
     DEMI_ROW(0, density, d->density > 0, "> 0 kg/m3 (required)");
-    DEMI_ROW(1, young, d->young > 0 || (linear_k && DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
+    DEMI_ROW(1, young, d->young > 0 || ((linear_k || demi_impulsive(w)) && DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
     DEMI_ROW(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
-    DEMI_ROW(3, restitution, (d->restitution > 0 || (two_k && DEMI_ABS(d->restitution) <= 0)) &&
-             d->restitution <= 1, "> 0 and <= 1 (required)");
+    DEMI_ROW(3, restitution, (d->restitution > 0 || ((two_k || demi_impulsive(w)) &&
+                                        DEMI_ABS(d->restitution) <= 0)) &&
+             d->restitution <= 1, "> 0 and <= 1 (required; impulses: >= 0)");
     DEMI_ROW(4, friction, d->friction >= 0, ">= 0");
     DEMI_ROW(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
              d->friction_static >= d->friction,
@@ -3507,7 +3568,8 @@ static double demi_damping_for(double e, dem_tension tension) {
 static void demi_pair_put(dem_world *w, int i, int j, const dem_pair *p) {
     demi_pair *pair = &w->pairs[i*DEMI_MATERIALS + j];
     pair->given = *p;
-    pair->damping = demi_damping_for((double)p->restitution, w->desc.tension);
+    pair->damping = demi_impulsive(w) ? 0 : demi_damping_for((double)p->restitution,
+                                                             w->desc.tension);
     w->pairs[j*DEMI_MATERIALS + i] = *pair;
 }
 /* Unset, or below the sliding one, it follows that. */
@@ -3526,7 +3588,7 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
         return id;
     }
     w->materials[n] = *desc;
-    if (!(desc->restitution > 0))               /* hysteretic law: left to the stiffnesses */
+    if (!(desc->restitution > 0) && !demi_impulsive(w))     /* left to the stiffnesses */
         w->materials[n].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     w->material_count = n + 1;
     for (i = 0; i <= n; i++) {
@@ -3570,7 +3632,7 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
                          "kg/m3, must stay %g: bodies have their masses; add another material",
                          m + 1, (double)desc->density, (double)before.density);
     w->materials[m] = *desc;
-    if (!(desc->restitution > 0))               /* hysteretic law: left to the stiffnesses */
+    if (!(desc->restitution > 0) && !demi_impulsive(w))     /* left to the stiffnesses */
         w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
     for (i = 0; i < w->material_count; i++) {
         const dem_pair was = demi_mix(i == m ? &before : &w->materials[i], &before);
@@ -3612,7 +3674,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     DEMI_BAD(young_eff, p->young_eff > 0 || (p->young_eff >= 0 && p->stiffness > 0 &&
              !demi_normal_is(w, DEMI_HERTZIAN)), "> 0 Pa")
     DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
-    DEMI_BAD(restitution, p->restitution > 0 && p->restitution <= 1, "> 0 and <= 1")
+    DEMI_BAD(restitution, (p->restitution > 0 || (demi_impulsive(w) && p->restitution >= 0)) &&
+             p->restitution <= 1, "> 0 (impulses: >= 0) and <= 1")
     DEMI_BAD(friction, p->friction >= 0, ">= 0")
     DEMI_BAD(friction_static, DEMI_ABS(p->friction_static) <= 0 ||
              p->friction_static >= p->friction,
@@ -8730,6 +8793,7 @@ static void demi_effects_memory(dem_world *w) {
     demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling);
     w->memory_stride = w->laws.memory;
     w->vector_mask = w->laws.vectors;
+    if (demi_impulsive(w)) { w->memory_stride = DEMI_IMPULSE_REALS; w->vector_mask = 0x3f; }
     if (!w->desc.law) return;
     w->memory_stride = w->desc.law_memory;
     w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
@@ -8747,6 +8811,8 @@ static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling) {
 }
 /* m: the farthest that a law is asked about any two, the largest of this radius. */
 static double demi_reach_of(const dem_world *w, double radius) {
+    if (demi_impulsive(w) && !(w->desc.law_range > 0))
+        return DEMI_MAX(0.1*radius, DEMI_MIN(3*w->booked.speed_max*(double)w->desc.dt, radius));
     return (double)w->desc.law_range + 2*radius*(double)w->desc.law_range_radii;
 }
 /* The effects of the live scene: which laws act, whether all bodies are alike. */
@@ -12613,7 +12679,8 @@ static void demi_prime_body(dem_world *w, int i) {
     }
     if (w->bodies.shaped && w->bodies.shape[i])
         demi_put(w->bodies.angular + 4*i,
-                 demi_sub(demi_angular_of(w, i), demi_scale(demi_at(w->bodies.torque + 4*i), h)));
+                 demi_sub(demi_angular_of(w, i), demi_scale(demi_at(w->bodies.torque + 4*i),
+                                                            demi_impulsive(w) ? 0 : h)));
 }
 static void demi_prime(dem_world *w) {
     int i;
@@ -12875,7 +12942,8 @@ enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integra
 static void demi_domain_finish(dem_world *w, int d) {
     if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
     demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
-    if (w->bodies.shaped) demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
+    if (w->bodies.shaped && !demi_impulsive(w))         /* impulses have finished it by themselves */
+        demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
 }
 
 /* Completes the half kick that a step leaves open: velocities are then those of the present time.
@@ -12884,6 +12952,546 @@ static void demi_finish(dem_world *w) {
     if (w->stage.synced) return;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_finish);
     w->stage.synced = 1;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>impulses
+   In place of contact laws: rigid grains, and impulses that keep them out of each other ([TAS10],
+   [STE96]). At the end of a step positions and velocities belong to one time; every contact and gap
+   nearer than the law's range is laid down as demi_impulse, and impulses are looked for so that
+   after the next kick
+       un + bias >= 0, push >= 0, one of the two 0;   bias = gap/dt, or e un before an impact;
+       friction |T| <= mu push against the slip (DEM_CONE_COULOMB), or both together in the cone's
+       own convex sense (DEM_CONE_CONVEX); rolling |R| <= mu_r R* push against the relative spin.
+   They are found contact after contact (block Gauss-Seidel, each solved exactly in its own metric),
+   beginning with those of the step before, until no contact changes by more than the tolerance.
+   Contacts of one colour share no body: threads take them in runs, and bits do not depend on how
+   many there are. Impulses over dt are the forces that the move of the next step applies, that
+   walls count and that files tell. Restitution is Newton's for every contact by itself (Moreau's
+   convention for simultaneous ones): un after = -e un before, on closing contacts that would touch
+   in the step, faster than what gravity brings in one. What is left in overlap is undone by places
+   alone (demi_impulses_lift), which gives no energy.
+   --------------------------------------------------------------------------------------------- */
+
+/* A body: velocity and spin as the impulses found so far make them. */
+typedef struct demi_mover { dem_real v[3], inv, w[3], inv_inertia; } demi_mover;
+/* A contact, or a gap. Forces of impulses on b: push normal + slip; on a the opposite. */
+typedef struct demi_impulse {
+    int32_t a, b;                  /* bodies; b -1: nobody that moves */
+    int32_t fixed;                 /* then: the body that stands still; -1: a wall */
+    int32_t wall;
+    int32_t home, domain;          /* entry of the near list, ~ that of the list of kept contacts */
+    int32_t kept, colour;          /* 1: kept; */
+    dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres */
+    dem_vec3 surface, turning;     /* m/s, rad/s: of what does not move by impulses, there */
+    dem_vec3 before;               /* m/s: relative velocity of b, before forces of the step */
+    dem_vec3 slip, roll;           /* N s; N m s */
+    dem_real push;                 /* N s */
+    dem_real gn, gt, gr;           /* 1/kg; 1/kg; 1/(kg m2): what an impulse brings */
+    dem_real gap, bias;            /* m; m/s */
+    dem_real mu, rolling;          /* -; m */
+    dem_real lift;                 /* m/s kg: of demi_impulses_lift */
+} demi_impulse;
+enum { DEMI_COLOURS = 64, DEMI_SWEEP_RUN = 256 };
+
+/* Room for all contacts there may be. 0: memory ran out. */
+static int demi_impulses_room(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const size_t bodies = (size_t)w->bodies.count;
+    size_t n = 0;
+    int d;
+    if (!demi_impulsive(w)) return 1;
+    for (d = 0; d < w->domain_count; d++)
+        n += (size_t)(w->domains[d].near_end + w->domains[d].kept_next);
+    return DEMI_GROW(w, s->contacts, n) && DEMI_GROW(w, s->order, n) &&
+        DEMI_GROW(w, s->worst, n/DEMI_SWEEP_RUN + DEMI_COLOURS) &&
+        DEMI_GROW(w, s->movers, bodies) && DEMI_GROW(w, s->colours, bodies) &&
+        DEMI_GROW(w, s->lifts, 4*bodies) &&
+        (!w->bodies.shaped || DEMI_GROW(w, s->tensors, 6*bodies));
+}
+/* I^-1 x in the world's frame. */
+DEM_INLINE dem_vec3 demi_tensor_times(const dem_real *t, dem_vec3 x) {
+    return demi_v(t[0]*x.x + t[3]*x.y + t[4]*x.z, t[3]*x.x + t[1]*x.y + t[5]*x.z,
+                  t[4]*x.x + t[5]*x.y + t[2]*x.z);
+}
+DEM_INLINE dem_vec3 demi_mover_turn(const demi_solver *s, int body, dem_vec3 x, int shaped) {
+    return shaped ? demi_tensor_times(s->tensors + 6*body, x)
+        : demi_scale(x, s->movers[body].inv_inertia);
+}
+/* A domain's bodies as they would go on without contacts; spins of bodies that are not spheres are
+   those of their angular momentum. */
+static void demi_movers_lay(dem_world *w, int d) {
+    const demi_solver *s = &w->solver;
+    int i, k;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
+        demi_mover *m = s->movers + i;
+        const demi_lane b = demi_lane_move(w, i);
+        const dem_real *torque = w->bodies.torque + 4*i;
+        s->colours[i] = 0;
+        m->inv = b.inv;
+        m->inv_inertia = w->bodies.inv_inertia[i];
+        for (k = 0; k < 4; k++) s->lifts[4*i + k] = 0;
+        if (w->bodies.shaped && w->bodies.shape[i] && b.inv > 0) {
+            const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
+            const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+            const dem_vec3 L = demi_at(w->bodies.angular + 4*i);
+            const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z);
+            const dem_vec3 x = dem_quat_rotate(q, demi_v(1, 0, 0));
+            const dem_vec3 y = dem_quat_rotate(q, demi_v(0, 1, 0)), z = demi_cross(x, y);
+            dem_real *t = s->tensors + 6*i;
+            t[0] = inv.x*x.x*x.x + inv.y*y.x*y.x + inv.z*z.x*z.x;
+            t[1] = inv.x*x.y*x.y + inv.y*y.y*y.y + inv.z*z.y*z.y;
+            t[2] = inv.x*x.z*x.z + inv.y*y.z*y.z + inv.z*z.z*z.z;
+            t[3] = inv.x*x.x*x.y + inv.y*y.x*y.y + inv.z*z.x*z.y;
+            t[4] = inv.x*x.x*x.z + inv.y*y.x*y.z + inv.z*z.x*z.z;
+            t[5] = inv.x*x.y*x.z + inv.y*y.y*y.z + inv.z*z.y*z.z;
+            demi_put(w->bodies.spin + 4*i, demi_spin_of(q, L, inv));
+            demi_put(m->w, demi_spin_of(q, demi_add(L, demi_scale(demi_at(torque), s->dt)), inv));
+        } else {
+            if (w->bodies.shaped) {
+                memset(s->tensors + 6*i, 0, 6*sizeof *s->tensors);
+                for (k = 0; k < 3; k++) s->tensors[6*i + k] = m->inv_inertia;
+            }
+            for (k = 0; k < 3; k++)
+                m->w[k] = w->bodies.spin[4*i + k] + torque[k]*m->inv_inertia*s->dt;
+        }
+        for (k = 0; k < 3; k++) m->v[k] = b.v[k] + (b.f[k]*b.inv + b.g[k])*s->dt;
+    }
+}
+/* Velocity of b relative to a, by velocities of bodies. */
+DEM_INLINE dem_vec3 demi_impulse_before(const dem_world *w, const demi_impulse *c) {
+    const dem_vec3 a = demi_velocity_at(w->bodies.vel, w->bodies.spin, c->a, c->arm_a);
+    return demi_sub(c->b < 0 ? c->surface
+                    : demi_velocity_at(w->bodies.vel, w->bodies.spin, c->b, c->arm_b), a);
+}
+/* A unit vector across n (unit): [DUF17]. */
+DEM_INLINE dem_vec3 demi_across(dem_vec3 n) {
+    const dem_real s = n.z < 0 ? DEM_R(-1) : DEM_R(1), a = -1/(s + n.z);
+    return demi_v(1 + s*n.x*n.x*a, s*n.x*n.y*a, -s*n.x);
+}
+/* Adds what one body gives to gn, gt, gr. Sizes across the normal: the largest there is. */
+static void demi_impulse_give(const dem_world *w, demi_impulse *c, int body, dem_vec3 arm) {
+    const demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    const dem_vec3 n = c->normal, t = demi_across(n), u = demi_cross(n, t);
+    const dem_vec3 an = demi_cross(arm, n), at = demi_cross(arm, t), au = demi_cross(arm, u);
+    const dem_vec3 it = demi_mover_turn(s, body, at, shaped);
+    const dem_vec3 iu = demi_mover_turn(s, body, au, shaped);
+    const dem_real tt = demi_dot(at, it), uu = demi_dot(au, iu), tu = demi_dot(at, iu);
+    const dem_real mean = (tt + uu)/2, half = (tt - uu)/2;
+    const dem_vec3 rt = demi_mover_turn(s, body, t, shaped), ru = demi_mover_turn(s, body, u, shaped);
+    c->gn += s->movers[body].inv + demi_dot(an, demi_mover_turn(s, body, an, shaped));
+    c->gt += s->movers[body].inv + mean + DEMI_SQRT(half*half + tu*tu);
+    c->gr += DEMI_MAX(demi_dot(t, rt), demi_dot(u, ru));
+}
+/* What is the same for all kinds: materials, masses, what the normal velocity has to be. */
+static void demi_impulse_finish(dem_world *w, demi_impulse *c, int material, const dem_real *memory,
+                                size_t stride, dem_real r_eff) {
+    const dem_pair *pair = &w->pairs[(w->bodies.material[c->a] - 1)*DEMI_MATERIALS + material].given;
+    const dem_real dt = w->solver.dt, rest = (dem_real)demi_length(w->desc.gravity)*dt;
+    dem_real closing;
+    c->mu = pair->friction;
+    c->rolling = pair->rolling_friction*r_eff;
+    c->before = demi_impulse_before(w, c);
+    closing = demi_dot(c->before, c->normal);
+    c->bias = DEMI_MAX(c->gap, 0)/dt;
+    if (pair->restitution > 0 && closing < -rest && c->gap + closing*dt <= 0)
+        c->bias = pair->restitution*closing;
+    c->gn = c->gt = c->gr = c->lift = 0;
+    demi_impulse_give(w, c, c->a, c->arm_a);
+    if (c->b >= 0) demi_impulse_give(w, c, c->b, c->arm_b);
+    c->slip = demi_v(memory[0]*dt, memory[stride]*dt, memory[2*stride]*dt);
+    c->roll = demi_v(memory[3*stride]*dt, memory[4*stride]*dt, memory[5*stride]*dt);
+    c->push = memory[6*stride]*dt;
+    /* normals have turned since */
+    c->slip = demi_sub(c->slip, demi_scale(c->normal, demi_dot(c->slip, c->normal)));
+    c->roll = demi_sub(c->roll, demi_scale(c->normal, demi_dot(c->roll, c->normal)));
+}
+/* Bodies that stand still are as walls: a is one that moves. What a and b are changes places. */
+static void demi_impulse_stand(const dem_world *w, demi_impulse *c) {
+    c->fixed = -1;
+    if (c->b >= 0 && w->solver.movers[c->a].inv <= 0) {
+        const dem_vec3 arm = c->arm_a;
+        const int32_t a = c->a;
+        c->a = c->b; c->b = a;
+        c->arm_a = c->arm_b; c->arm_b = arm;
+        c->normal = demi_scale(c->normal, -1);
+        c->kept |= 2;                           /* remembered the other way about */
+    }
+    if (c->b < 0 || w->solver.movers[c->b].inv > 0) return;
+    c->surface = demi_velocity_at(w->bodies.vel, w->bodies.spin, c->b, c->arm_b);
+    c->turning = demi_at(w->bodies.spin + 4*c->b);
+    c->fixed = c->b;
+    c->b = -1;
+}
+/* Spheres of the near list that are within the range. */
+static void demi_impulses_near(dem_world *w, int d) {
+    const demi_domain *domain = &w->domains[d];
+    const size_t stride = (size_t)w->near.stride;
+    demi_solver *s = &w->solver;
+    int p;
+    for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+        const size_t at = (size_t)d*stride + (size_t)p;
+        const int a = w->near.a[at], b = w->near.b[at];
+        const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+        dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
+        const dem_vec3 way = demi_add(demi_sub(demi_at(y), demi_at(x)),
+                                      demi_at(w->image_shift + 4*w->near.image[at]));
+        const dem_real l = demi_length(way), gap = l - x[3] - y[3];
+        demi_impulse *c = s->contacts + s->count;
+        int e, other;
+        if (gap > demi_range(w, x[3] + y[3]) || (s->movers[a].inv <= 0 && s->movers[b].inv <= 0) ||
+            !(l > 0)) {
+            for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*stride] = 0;
+            continue;
+        }
+        memset(c, 0, sizeof *c);
+        c->a = a; c->b = b;
+        c->home = p; c->domain = d; c->wall = -1;
+        c->normal = demi_scale(way, 1/l);
+        c->gap = gap;
+        c->arm_a = demi_scale(c->normal, x[3] + gap/2);
+        c->arm_b = demi_scale(c->normal, -(y[3] + gap/2));
+        demi_impulse_stand(w, c);
+        other = w->bodies.material[c->b >= 0 ? c->b : c->fixed] - 1;
+        demi_impulse_finish(w, c, other, memory, stride, x[3]*y[3]/(x[3] + y[3]));
+        if (c->kept & 2) { c->slip = demi_scale(c->slip, -1); c->roll = demi_scale(c->roll, -1); }
+        w->domains[d].overlap = DEMI_MAX(w->domains[d].overlap, (double)(-gap/DEMI_MIN(x[3], y[3])));
+        s->count++;
+    }
+}
+/* Contacts that are kept: of bodies that are no spheres, and with walls. */
+static void demi_impulses_kept(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const demi_kept *now = demi_kept_of(w, d);
+    demi_solver *s = &w->solver;
+    int i;
+    domain->kept_walls = 0;
+    for (i = 0; i < domain->kept_next; i++) {
+        demi_kept *k = w->kept_next + w->kept_first[d] + i;
+        demi_impulse *c = s->contacts + s->count;
+        demi_kept_recall(w, now, k);
+        k->force = demi_v(0, 0, 0);
+        if (!demi_kept_asked(w, k) || (k->b >= 0 && s->movers[k->b].inv <= 0 &&
+                                       s->movers[k->a].inv <= 0) ||
+            (k->b < 0 && s->movers[k->a].inv <= 0)) {
+            memset(k->memory, 0, sizeof k->memory);
+            continue;
+        }
+        memset(c, 0, sizeof *c);
+        c->a = k->a; c->b = k->b;
+        c->home = i; c->domain = d; c->kept = 1;
+        c->wall = k->b < 0 ? k->wall : -1;
+        c->normal = k->normal;
+        c->gap = -k->overlap;
+        c->arm_a = k->arm_a;
+        c->arm_b = k->arm_b;
+        if (k->b < 0) {
+            const demi_wall *wall = &w->walls[k->wall];
+            const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
+            c->surface = demi_surface_at(&wall->pose, demi_add(x, k->arm_a));
+            c->turning = wall->pose.spin;
+        }
+        demi_impulse_stand(w, c);
+        demi_impulse_finish(w, c, c->wall >= 0 ? w->walls[c->wall].material
+                            : w->bodies.material[c->b >= 0 ? c->b : c->fixed] - 1, k->memory, 1,
+                            k->r_eff);
+        if (c->kept & 2) { c->slip = demi_scale(c->slip, -1); c->roll = demi_scale(c->roll, -1); }
+        domain->overlap = DEMI_MAX(domain->overlap, (double)k->deep);
+        s->count++;
+    }
+}
+/* Gives each contact the first colour that neither of its bodies has, and sorts by colour. The last
+   one takes what finds none: it is swept by one thread. */
+static void demi_impulses_colour(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int at[DEMI_COLOURS], i, k;
+    memset(s->begins, 0, sizeof s->begins);
+    for (i = 0; i < s->count; i++) {
+        demi_impulse *c = s->contacts + i;
+        const uint64_t taken = s->colours[c->a] | (c->b < 0 ? 0 : s->colours[c->b]);
+        for (k = 0; k < DEMI_COLOURS - 1 && taken >> k & 1; k++) continue;
+        c->colour = k;
+        s->colours[c->a] |= UINT64_C(1) << k;
+        if (c->b >= 0) s->colours[c->b] |= UINT64_C(1) << k;
+        s->begins[k + 1]++;
+    }
+    for (k = 0; k < DEMI_COLOURS; k++) {
+        s->begins[k + 1] += s->begins[k];
+        at[k] = s->begins[k];
+    }
+    for (i = 0; i < s->count; i++) s->order[at[s->contacts[i].colour]++] = i;
+}
+DEM_INLINE dem_vec3 demi_mover_at(const demi_mover *m, dem_vec3 arm) {
+    return demi_add(demi_at(m->v), demi_cross(demi_at(m->w), arm));
+}
+/* Body gets an impulse p at arm, and a moment. */
+DEM_INLINE void demi_mover_push(const demi_solver *s, int body, dem_vec3 arm, dem_vec3 p,
+                                dem_vec3 moment, int shaped) {
+    demi_mover *m = s->movers + body;
+    const dem_vec3 w = demi_mover_turn(s, body, demi_add(demi_cross(arm, p), moment), shaped);
+    m->v[0] += p.x*m->inv; m->v[1] += p.y*m->inv; m->v[2] += p.z*m->inv;
+    m->w[0] += w.x; m->w[1] += w.y; m->w[2] += w.z;
+}
+/* Both bodies of c get an impulse (on b; on a the opposite), and a moment. */
+DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, dem_vec3 p,
+                                   dem_vec3 moment, int shaped) {
+    demi_mover_push(s, c->a, c->arm_a, demi_scale(p, -1), demi_scale(moment, -1), shaped);
+    if (c->b >= 0) demi_mover_push(s, c->b, c->arm_b, p, moment, shaped);
+}
+/* What is left of a vector of this size when it may be `most` long. */
+DEM_INLINE dem_vec3 demi_impulse_cap(dem_vec3 t, dem_real most) {
+    const dem_real l2 = demi_dot(t, t);
+    return l2 > most*most ? demi_scale(t, most/DEMI_SQRT(l2)) : t;
+}
+/* Solves one contact for the velocities there are. Answers by how much it changed, m/s. Coulomb:
+   push first, then friction within what it allows. Convex: the nearest point of the cone, in the
+   metric of gn and gt, where it is round again with mu' = mu sqrt(gt/gn). */
+DEM_INLINE dem_real demi_impulse_solve(const demi_solver *s, demi_impulse *c, int convex,
+                                       int shaped) {
+    const dem_vec3 n = c->normal;
+    const dem_vec3 vb = c->b < 0 ? c->surface : demi_mover_at(s->movers + c->b, c->arm_b);
+    const dem_vec3 u = demi_sub(vb, demi_mover_at(s->movers + c->a, c->arm_a));
+    const dem_real un = demi_dot(u, n);
+    const dem_vec3 ut = demi_sub(u, demi_scale(n, un));
+    dem_vec3 t = demi_sub(c->slip, demi_scale(ut, 1/c->gt)), dt, dr = demi_v(0, 0, 0);
+    dem_real push = c->push - (un + c->bias)/c->gn, dp;
+    if (convex && c->mu > 0) {
+        const dem_real a = DEMI_SQRT(c->gt/c->gn), mu = c->mu*a, size = a*demi_length(t);
+        if (size > mu*push) {
+            const dem_real p = mu*size <= -push ? 0 : (push + mu*size)/(1 + mu*mu);
+            push = DEMI_MAX(p, 0);
+            t = demi_scale(t, mu*push/(size + DEMI_TINY));
+        }
+    } else {
+        push = DEMI_MAX(push, 0);
+        t = demi_impulse_cap(t, c->mu*push);
+    }
+    dp = push - c->push;
+    dt = demi_sub(t, c->slip);
+    if (c->rolling > 0 || demi_dot(c->roll, c->roll) > 0) {
+        const dem_vec3 wb = c->b < 0 ? c->turning : demi_at(s->movers[c->b].w);
+        const dem_vec3 w = demi_sub(wb, demi_at(s->movers[c->a].w));
+        const dem_vec3 wt = demi_sub(w, demi_scale(n, demi_dot(w, n)));
+        const dem_vec3 r = demi_impulse_cap(demi_sub(c->roll, demi_scale(wt, 1/c->gr)),
+                                            c->rolling*push);
+        dr = demi_sub(r, c->roll);
+        c->roll = r;
+    }
+    c->push = push;
+    c->slip = t;
+    demi_impulse_apply(s, c, demi_add(demi_scale(n, dp), dt), dr, shaped);
+    return DEMI_MAX(c->gn*(dp < 0 ? -dp : dp), c->gt*demi_length(dt));
+}
+/* One run of contacts of the colour being swept. */
+static void demi_impulses_sweep(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int begin = s->first + index*DEMI_SWEEP_RUN;
+    const int end = DEMI_MIN(begin + DEMI_SWEEP_RUN, s->last);
+    const int convex = w->desc.cone == DEM_CONE_CONVEX, shaped = w->bodies.shaped > 0;
+    dem_real worst = 0;
+    int i;
+    for (i = begin; i < end; i++) {
+        demi_impulse *c = s->contacts + s->order[i];
+        const dem_real changed = shaped ? demi_impulse_solve(s, c, convex, 1)
+            : demi_impulse_solve(s, c, convex, 0);
+        worst = DEMI_MAX(worst, changed);
+    }
+    s->worst[index] = DEMI_MAX(s->worst[index], (double)worst);
+}
+/* Begins with what is remembered. */
+static void demi_impulses_warm(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int begin = s->first + index*DEMI_SWEEP_RUN;
+    const int end = DEMI_MIN(begin + DEMI_SWEEP_RUN, s->last);
+    int i;
+    for (i = begin; i < end; i++) {
+        const demi_impulse *c = s->contacts + s->order[i];
+        demi_impulse_apply(s, c, demi_add(demi_scale(c->normal, c->push), c->slip), c->roll,
+                           w->bodies.shaped > 0);
+    }
+}
+/* Overlaps that are left are undone in part: lifts are velocities that move bodies in this step and
+   are forgotten, so that they bring no energy. They move bodies without turning them. */
+enum { DEMI_LIFTS = 5 };
+#define DEMI_LIFTED DEM_R(0.2)                  /* of an overlap, per step */
+static void demi_impulses_lift(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int begin = s->first + index*DEMI_SWEEP_RUN;
+    const int end = DEMI_MIN(begin + DEMI_SWEEP_RUN, s->last);
+    int i;
+    for (i = begin; i < end; i++) {
+        demi_impulse *c = s->contacts + s->order[i];
+        const dem_real ia = s->movers[c->a].inv, ib = c->b < 0 ? 0 : s->movers[c->b].inv;
+        const dem_vec3 a = demi_at(s->lifts + 4*c->a), n = c->normal;
+        const dem_vec3 b = c->b < 0 ? demi_v(0, 0, 0) : demi_at(s->lifts + 4*c->b);
+        const dem_real part = c->gap < 0 ? DEMI_LIFTED*c->gap : c->gap;
+        const dem_real want = c->lift - (demi_dot(demi_sub(b, a), n) + part/s->dt)/(ia + ib);
+        const dem_real lift = DEMI_MAX(want, 0), by = lift - c->lift;
+        c->lift = lift;
+        demi_put(s->lifts + 4*c->a, demi_sub(a, demi_scale(n, by*ia)));
+        if (c->b >= 0) demi_put(s->lifts + 4*c->b, demi_add(b, demi_scale(n, by*ib)));
+    }
+}
+/* Every colour once: the task over its runs. */
+static void demi_impulses_all(dem_world *w, demi_task task) {
+    demi_solver *s = &w->solver;
+    int k;
+    for (k = 0; k < DEMI_COLOURS; k++) {
+        s->first = s->begins[k];
+        s->last = s->begins[k + 1];
+        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->desc.threads,
+                      (s->last - s->first + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, task);
+    }
+}
+/* Forces of a domain's bodies: what brings them from what they would do to what they do. */
+static void demi_movers_force(dem_world *w, int d) {
+    const demi_solver *s = &w->solver;
+    const dem_real per = 1/s->dt;
+    int i, k;
+    for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
+        const demi_mover *m = s->movers + i;
+        const demi_lane b = demi_lane_move(w, i);
+        dem_real *torque = w->bodies.torque + 4*i;
+        if (!(m->inv > 0)) continue;
+        for (k = 0; k < 3; k++) b.f[k] = ((m->v[k] - b.v[k])*per - b.g[k])/m->inv;
+        if (w->bodies.shaped && w->bodies.shape[i]) {
+            const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
+            const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+            const dem_vec3 local = dem_quat_unrotate(q, demi_at(m->w));
+            const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*local.x, I.y*local.y, I.z*local.z));
+            demi_put(torque, demi_scale(demi_sub(L, demi_at(w->bodies.angular + 4*i)), per));
+        } else
+            for (k = 0; k < 3; k++) torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
+    }
+}
+/* What contacts have come to: memory, forces on walls and on bodies that stand still, losses: with
+   velocities half of before and half of after, what an impulse takes is exact. */
+static void demi_impulses_tell(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const dem_real per = 1/s->dt;
+    double *due = w->booked.due;
+    int i, e;
+    memset(due, 0, sizeof w->booked.due);
+    for (i = 0; i < w->domain_count; i++) w->domains[i].contacts = 0;
+    for (i = 0; i < s->count; i++) {
+        const demi_impulse *c = s->contacts + i;
+        demi_domain *domain = &w->domains[c->domain];
+        demi_kept *k = c->kept & 1 ? w->kept_next + w->kept_first[c->domain] + c->home : 0;
+        const size_t stride = k ? 1 : (size_t)w->near.stride;
+        dem_real *memory = k ? k->memory : w->near.memory +
+            (size_t)c->domain*DEMI_IMPULSE_REALS*stride + c->home;
+        const dem_real sign = c->kept & 2 ? -per : per;
+        const dem_vec3 p = demi_add(demi_scale(c->normal, c->push), c->slip);
+        const dem_vec3 slip = demi_scale(c->slip, sign), roll = demi_scale(c->roll, sign);
+        const dem_vec3 vb = c->b < 0 ? c->surface : demi_mover_at(s->movers + c->b, c->arm_b);
+        const dem_vec3 after = demi_sub(vb, demi_mover_at(s->movers + c->a, c->arm_a));
+        const dem_vec3 u = demi_scale(demi_add(c->before, after), DEM_R(0.5));
+        const dem_real un = demi_dot(u, c->normal);
+        const dem_real all[DEMI_IMPULSE_REALS] = {slip.x, slip.y, slip.z, roll.x, roll.y, roll.z,
+                                                  c->push*per};
+        for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*stride] = all[e];
+        due[0] -= (double)(c->push*un);
+        due[1] -= (double)demi_dot(c->slip, u);
+        if (demi_dot(c->roll, c->roll) > 0) {
+            const dem_vec3 wb = c->b < 0 ? demi_scale(c->turning, 2)
+                : demi_add(demi_at(s->movers[c->b].w), demi_at(w->bodies.spin + 4*c->b));
+            const dem_vec3 wa = demi_add(demi_at(s->movers[c->a].w), demi_at(w->bodies.spin + 4*c->a));
+            due[2] -= (double)demi_dot(c->roll, demi_sub(wb, wa))/2;
+        }
+        if (k) k->force = demi_scale(p, -sign);
+        if (c->wall >= 0) {
+            demi_wall_sum *sum = w->wall_sums + (size_t)c->domain*(size_t)w->wall_count + c->wall;
+            const dem_vec3 at = demi_add(demi_add(demi_at(w->bodies.pos + 4*c->a), k->shift), c->arm_a);
+            demi_wall_sum_add(w, sum, c->wall, at, demi_scale(p, -per), demi_scale(c->roll, -per),
+                              c->surface);
+            sum->contacts += c->push > 0;
+            domain->kept_walls += c->push > 0;
+        } else domain->contacts += c->push > 0;
+        if (c->fixed >= 0) {
+            demi_force_add(w->bodies.force + 4*c->fixed, demi_scale(p, per));
+            demi_force_add(w->bodies.torque + 4*c->fixed,
+                           demi_scale(demi_add(demi_cross(c->arm_b, p), c->roll), per));
+        }
+    }
+}
+/* Impulses of the step to come, as forces. Fields of force have been added by now. */
+static void demi_impulses(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const int most = w->desc.sweeps ? w->desc.sweeps : 200;
+    const double kick = (double)demi_length(w->desc.gravity)*(double)w->clock.dt;
+    const double enough = w->desc.tolerance > 0 ? (double)w->desc.tolerance
+        : 1e-3*kick + 1e-6*w->booked.speed_max + 1e-12;
+    double worst = 0, farthest = 0;
+    int d, i, k;
+    s->dt = w->clock.dt;
+    s->count = 0;
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_lay);
+    for (d = 0; d < w->domain_count; d++) {
+        demi_impulses_near(w, d);
+        demi_impulses_kept(w, d);
+    }
+    demi_impulses_colour(w);
+    demi_impulses_all(w, demi_impulses_warm);
+    for (i = 0; i < most && s->count; i++) {
+        const int runs = s->count/DEMI_SWEEP_RUN + 1;
+        for (k = 0; k < runs; k++) s->worst[k] = 0;
+        demi_impulses_all(w, demi_impulses_sweep);
+        for (worst = 0, k = 0; k < runs; k++) worst = DEMI_MAX(worst, s->worst[k]);
+        if (!(worst > enough)) { i++; break; }
+    }
+    w->booked.sweeps = i;
+    w->booked.residual = worst;
+    if (worst > enough) w->booked.unsolved++;
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_force);
+    demi_impulses_tell(w);
+    if (!w->stage.forces_valid) return;         /* only looked at */
+    for (i = 0; i < DEMI_LIFTS; i++) demi_impulses_all(w, demi_impulses_lift);
+    for (i = 0; i < w->bodies.count; i++) {
+        const dem_vec3 way = demi_scale(demi_at(s->lifts + 4*i), s->dt);
+        demi_force_add(w->bodies.pos + 4*i, way);
+        farthest = DEMI_MAX(farthest, (double)demi_length(way));
+    }
+    w->margin.gone += farthest;
+    w->margin.creep += 2*farthest;
+}
+/* Walls' work of the step to come. */
+static void demi_impulses_due(dem_world *w) {
+    int i;
+    for (i = 0; i < w->wall_count; i++)
+        w->booked.due[3] += (double)w->walls[i].loads.power*(double)w->clock.dt;
+}
+/* What was due is done, now that bodies have moved by it. */
+static void demi_impulses_book(dem_world *w) {
+    static const int flows[4] = {DEMI_E_DASHPOT, DEMI_E_SLIDE, DEMI_E_ROLL, DEMI_E_WALLS};
+    int i;
+    for (i = 0; i < 4; i++) w->booked.energy[flows[i]] += w->booked.due[i];
+    w->booked.energy[DEMI_E_SHEAR_WORK] += w->booked.due[1];    /* no springs: all of it slides */
+    w->booked.throughput += fabs(w->booked.due[3]);
+}
+/* One pair of spheres, if it pushes or overlaps, as demi_contact_force tells those of springs. */
+static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info *out,
+                             dem_vec3 *branch) {
+    const size_t stride = (size_t)w->near.stride, at = (size_t)d*stride + (size_t)p;
+    const dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
+    const int a = w->near.a[at], b = w->near.b[at];
+    const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
+    const demi_periods periods = demi_periods_of(w);
+    const dem_vec3 way = demi_add(demi_sub(demi_at(y), demi_at(x)),
+                                  demi_at(w->image_shift + 4*w->near.image[at]));
+    const dem_real l = demi_length(way), overlap = x[3] + y[3] - l;
+    if (!(memory[6*stride] > 0) && !(overlap > 0)) return 0;
+    if (!out) return 1;
+    out->a = dem_bodies_id(w, a);
+    out->b = dem_bodies_id(w, b);
+    out->wall = 0;
+    out->normal = demi_scale(way, 1/l);
+    out->overlap = overlap;
+    if (branch) *branch = way;
+    out->point = demi_place_of(&periods, demi_add(demi_at(x), demi_scale(way, x[3]/(x[3] + y[3]))));
+    out->force = demi_sub(demi_v(-memory[0], -memory[stride], -memory[2*stride]),
+                          demi_scale(out->normal, memory[6*stride]));
+    return 1;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -14621,6 +15229,12 @@ static dem_result demi_dt_settle(dem_world *w) {
     dem_advice a;
     double spin;
     if (w->stage.dt_valid) return DEM_OK;
+    if (demi_impulsive(w)) {                    /* as given: no contact is too short for it */
+        w->clock.dt = w->desc.dt;
+        w->clock.press_since = w->clock.steps;
+        w->stage.dt_valid = 1;
+        return DEM_OK;
+    }
     if (!w->bodies.count && !w->feed_count) {          /* nothing to limit it: walls still move */
         if (!(w->clock.dt > 0)) w->clock.dt = w->desc.dt > 0 ? w->desc.dt : DEM_R(1e-3);
         return DEM_OK;
@@ -14653,7 +15267,7 @@ static dem_result demi_dt_settle(dem_world *w) {
 /* 1: grains are faster than the step was chosen for, which is chosen anew then. A speed that was
    given stays. */
 static int demi_outgrown(const dem_world *w) {
-    return !(w->desc.impact_speed > 0) && w->booked.speed_max > 1.5*w->clock.assumed_speed;
+    return !demi_impulsive(w) && !(w->desc.impact_speed > 0) && w->booked.speed_max > 1.5*w->clock.assumed_speed;
 }
 /* The fastest body that moves, m/s. */
 static double demi_fastest(const dem_world *w) {
@@ -14673,12 +15287,15 @@ static double demi_fastest_next(const dem_world *w) {
         const double inv = (double)w->bodies.inv_mass[i];
         const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
                              (double)w->desc.gravity.z};
-        double a2 = 0;
+        double a2 = 0, v2 = 0;
         for (k = 0; k < 3; k++) {
             const double a = (double)w->bodies.force[4*i + k]*inv + g[k];
+            const double v = (double)w->bodies.vel[4*i + k] + a*(double)w->clock.dt;
             a2 += a*a;
+            v2 += v*v;
         }
-        if (inv > 0)
+        if (inv > 0 && demi_impulsive(w)) most = DEMI_MAX(most, sqrt(v2));     /* exactly */
+        else if (inv > 0)
             most = DEMI_MAX(most, (double)demi_length(demi_at(w->bodies.vel + 4*i)) +
                             sqrt(a2)*(double)w->clock.dt);
     }
@@ -14750,13 +15367,14 @@ static dem_result demi_dt_check(dem_world *w) {
     int worst = 0;
     if (w->desc.allow_large_dt || !w->bodies.count) return DEM_OK;
     /* after a change of the scene the last kick may be that of a body which is gone */
-    result = demi_speed_check(w, w->clock.steps == w->clock.press_since
+    result = demi_speed_check(w, demi_impulsive(w) ? demi_fastest_next(w)
+                              : w->clock.steps == w->clock.press_since
                               ? DEMI_MIN(demi_fastest(w) + w->margin.last_change,
                                          demi_fastest_next(w))
                               : w->margin.last_change + w->booked.speed_max, 1);
     if (result == DEM_OK)
         result = demi_wall_speed_check(w, (double)w->effects.radius_min, (double)w->clock.dt);
-    if (result != DEM_OK || w->clock.steps < w->clock.press_due) return result;
+    if (result != DEM_OK || w->clock.steps < w->clock.press_due || demi_impulsive(w)) return result;
     limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2/share : 1), &worst);
     if (limit < 0) return demi_no_memory(w, "dem_world_step");
     demi_press_looked(&w->clock);
@@ -15187,6 +15805,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     dem_contact_force f;
     dem_vec3 gap;
     int e;
+    if (demi_impulsive(w)) return demi_impulse_info(w, d, p, out, branch);
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
     gap = demi_rows_at(&tile.gap, 0);
@@ -15692,6 +16311,7 @@ static void demi_domain_respond(dem_world *w, int d) {
         const size_t row = (size_t)w->bodies.real_count*walls;
         memset(w->wall_rates + (size_t)d*row, 0, row*sizeof *w->wall_rates);
     }
+    if (demi_impulsive(w)) return;              /* all contacts are solved together */
     w->kernel(w, d);
     demi_kept_clear(w, d);
     demi_kept_respond(w, d);
@@ -15699,7 +16319,7 @@ static void demi_domain_respond(dem_world *w, int d) {
 /* What others did to this domain's bodies, in the order of their entries. */
 static void demi_domain_gather(dem_world *w, int d) {
     int i;
-    if (w->cross_entries) demi_cross_gather(w, d);
+    if (w->cross_entries && !demi_impulsive(w)) demi_cross_gather(w, d);
     if (demi_own(w)) {                          /* those of your own may answer anything */
         double sum = 0;
         for (i = 4*w->domains[d].begin; i < 4*w->domains[d].end; i++)
@@ -15737,6 +16357,7 @@ static void demi_forces(dem_world *w) {
         for (i = 0; i < DEMI_ENERGIES; i++) w->domains[d].energy[i] = 0;
     }
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_respond);
+    if (demi_impulsive(w)) demi_impulses(w);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_gather);
     w->kept_now = w->kept_next;
     w->kept_next = kept;
@@ -15767,7 +16388,8 @@ static void demi_forces(dem_world *w) {
     for (d = 0; d < w->domain_count; d++)
         w->booked.overlap_max = DEMI_MAX(w->booked.overlap_max, w->domains[d].overlap);
     if (w->material_count == 1 && w->booked.overlap_max > 0) w->booked.met[0] = 1;
-    if (w->desc.ledger) demi_ledger_book(w);
+    if (demi_impulsive(w)) demi_impulses_due(w);
+    else if (w->desc.ledger) demi_ledger_book(w);
 }
 
 /* Which two bodies overlap most, of the smaller radius. Answers by how much. */
@@ -15920,6 +16542,7 @@ static dem_result demi_step_move(dem_world *w) {
         const double work = demi_sum_energy(w, DEMI_E_GRAVITY);
         w->booked.energy[DEMI_E_GRAVITY] += work;
         w->booked.throughput += fabs(work);
+        if (demi_impulsive(w)) demi_impulses_book(w);
     }
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
@@ -16012,7 +16635,7 @@ static dem_result demi_step_once(dem_world *w) {
     }
 
     /* 3 touch, 4 respond, 5 gather */
-    if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
+    if (!demi_touch(w) || !demi_impulses_room(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
     demi_reals_gain(w);
     w->stage.moved = 0;
@@ -16039,7 +16662,7 @@ static dem_result demi_refresh(dem_world *w) {
     w->stage.pairs_changed = 0;
     demi_kernel_choose(w);
     w->stage.forces_valid = 0;
-    if (!demi_touch(w)) return demi_no_memory(w, "dem_world_step");
+    if (!demi_touch(w) || !demi_impulses_room(w)) return demi_no_memory(w, "dem_world_step");
     demi_forces(w);
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     w->stage.forces_valid = 1;
@@ -16279,6 +16902,9 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     c.search = w->desc.search;
     c.threads = w->desc.threads;
     c.domains = w->domain_count;
+    c.sweeps = w->booked.sweeps;
+    c.residual = (dem_real)w->booked.residual;
+    c.unsolved = w->booked.unsolved;
     c.memory = w->bytes;
     return c;
 }
@@ -20792,7 +21418,23 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         !demi_finite(d->law_range_radii))
         return "dem_world_create: law_range (m) and law_range_radii must be finite and >= 0; 0 "
             "means that your law is asked about what touches alone";
-    if (!d->law && (d->law_range > 0 || d->law_range_radii > 0 || d->law_who))
+    if ((int)d->response < 0 || d->response > DEM_RESPONSE_IMPULSES || (int)d->cone < 0 ||
+        d->cone > DEM_CONE_CONVEX)
+        return "dem_world_create: response or cone is unknown, must be one of the enum values; "
+            "start from DEM_WORLD_DESC";
+    if (d->sweeps < 0 || !(d->tolerance >= 0) || !demi_finite(d->tolerance))
+        return "dem_world_create: sweeps and tolerance (m/s) must be >= 0 and finite; 0 lets the "
+            "library choose";
+    if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES and dt is 0 s; impulses have "
+            "no contact time to choose it from: give one in which grains move by less than a tenth "
+            "of their radius, such as 1e-3 s";
+    if (d->response == DEM_RESPONSE_IMPULSES && (d->law || (d->integrator != DEM_VELOCITY_VERLET &&
+                                                 d->integrator != DEM_SYMPLECTIC_EULER)))
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, with a law or an integrator "
+            "of its own; impulses need neither: leave both 0";
+    if (!d->law && d->response != DEM_RESPONSE_IMPULSES &&
+        (d->law_range > 0 || d->law_range_radii > 0 || d->law_who))
         return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
             "they are for a law of your own: name it in law, or leave them 0";
     if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
@@ -20854,14 +21496,17 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
+    if (demi_impulsive(w)) {
+        w->desc.integrator = DEM_SYMPLECTIC_EULER;
+    }
     /* until bodies are there to decide */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
     w->bodies.slot_free = w->bodies.slot_pending = -1;
     w->stage.synced = 1;
     w->bodies.orienting = desc->orientations != 0;
-    w->bodies.backward = demi_integrator_rows[desc->integrator].backward;
-    w->bodies.booked = desc->ledger && demi_integrator_rows[desc->integrator].predicts;
+    w->bodies.backward = demi_integrator_rows[w->desc.integrator].backward;
+    w->bodies.booked = desc->ledger && demi_integrator_rows[w->desc.integrator].predicts;
     w->pairs = (demi_pair *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
     w->domains = (demi_domain *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
