@@ -3671,7 +3671,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     if (!bad && (!demi_finite(p->field) || !(good))) { \
         bad = #field; value = p->field; limit = text; \
     }
-    DEMI_BAD(young_eff, p->young_eff > 0 || (p->young_eff >= 0 && p->stiffness > 0 &&
+    DEMI_BAD(young_eff, p->young_eff > 0 || (demi_impulsive(w) && p->young_eff >= 0) ||
+             (p->young_eff >= 0 && p->stiffness > 0 &&
              !demi_normal_is(w, DEMI_HERTZIAN)), "> 0 Pa")
     DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
     DEMI_BAD(restitution, (p->restitution > 0 || (demi_impulsive(w) && p->restitution >= 0)) &&

@@ -1,0 +1,345 @@
+/* Rigid grains, kept apart by impulses (desc.response). Outside numbers:
+     Tasora & Anitescu, Int. J. Numer. Methods Eng. 81 (2010): the convex law opens by mu v dt
+     Chrono's unit tests: balls on a bin weigh what they weigh; stacks of spheres stand
+   Blocks are clusters of spheres at the corners of boxes. */
+#define DEM_IMPLEMENTATION
+#include "../dem.h"
+#include "test.h"
+#include "scene.h"
+
+static const double g = 9.81;                   /* m/s2 */
+
+static dem_world *rigid(double gravity, double dt, double restitution, double friction, dem_cone cone, int threads,
+                        dem_material *m) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material_desc stuff = scene_stuff(0, restitution, friction, 0);
+    desc.gravity.z = (dem_real)-gravity;
+    desc.response = DEM_RESPONSE_IMPULSES;
+    desc.dt = (dem_real)dt;
+    desc.cone = cone;
+    desc.tolerance = DEM_R(1e-11);
+    desc.sweeps = 20000;
+    desc.ledger = 1;
+    desc.threads = threads;
+    world = dem_world_create(&desc);
+    *m = dem_material_add(world, &stuff);
+    return world;
+}
+/* A box of edges a, b, c (m) that stands on four (of eight) spheres of radius r at its corners. */
+static dem_shape block(dem_world *world, double a, double b, double c, double r) {
+    dem_cluster_desc desc = DEM_CLUSTER_DESC;
+    dem_real places[24], radii[8];
+    int k;
+    for (k = 0; k < 8; k++) {
+        places[3*k] = (dem_real)((k & 1 ? 0.5 : -0.5)*(a - 2*r));
+        places[3*k + 1] = (dem_real)((k & 2 ? 0.5 : -0.5)*(b - 2*r));
+        places[3*k + 2] = (dem_real)((k & 4 ? 0.5 : -0.5)*(c - 2*r));
+        radii[k] = (dem_real)r;
+    }
+    desc.count = 8;
+    desc.positions = places;
+    desc.radii = radii;
+    return dem_shape_cluster_add(world, &desc);
+}
+/* A block at rest on a slope of this angle, given by the direction of gravity. Its speed downhill after a time. */
+static double slides(double angle, double friction, double width, double height, double seconds, double *spin) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material m;
+    dem_world *world = rigid(0, 1e-3, 0, friction, DEM_CONE_COULOMB, 1, &m);
+    dem_body body;
+    dem_body_state s;
+    (void)desc;
+    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    body = dem_body_add(world, m, block(world, width, width, height, 0.1*width), at(0, 0, height/2),
+                        dem_quat_make(1, 0, 0, 0));
+    dem_world_gravity_set(world, at(g*sin(angle), 0, -g*cos(angle)));
+    CHECK_EQ(dem_world_run(world, seconds, 0, 0), DEM_OK);
+    s = scene_state(world, body);
+    if (spin) *spin = (double)s.spin.y;
+    dem_world_destroy(world);
+    return (double)s.velocity.x;
+}
+/* Three discs, two on a floor that touch and one in the groove: by how much the lower ones have come apart, m. */
+static double pyramid(double between, double floor) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    dem_material_desc stuff = scene_stuff(0, 0, between, 0);
+    dem_material disc, ground;
+    dem_pair pair;
+    dem_body left, right;
+    double apart;
+    desc.planar = 1;
+    desc.gravity.y = (dem_real)-g;
+    desc.response = DEM_RESPONSE_IMPULSES;
+    desc.dt = DEM_R(1e-3);
+    desc.tolerance = DEM_R(1e-10);
+    desc.sweeps = 20000;
+    world = dem_world_create(&desc);
+    disc = dem_material_add(world, &stuff);
+    ground = dem_material_add(world, &stuff);
+    dem_pair_get(world, disc, ground, &pair);
+    pair.friction = (dem_real)floor;
+    dem_pair_set(world, disc, ground, &pair);
+    dem_plane_add(world, ground, at(0, 0, 0), at(0, 1, 0));
+    left = dem_sphere_add(world, disc, DEM_R(0.1), at(-0.1, 0.1, 0));
+    right = dem_sphere_add(world, disc, DEM_R(0.1), at(0.1, 0.1, 0));
+    dem_sphere_add(world, disc, DEM_R(0.1), at(0, 0.1 + 0.1*sqrt(3.0), 0));
+    CHECK_EQ(dem_world_run(world, 1, 0, 0), DEM_OK);
+    apart = (double)(scene_state(world, right).position.x - scene_state(world, left).position.x) - 0.2;
+    dem_world_destroy(world);
+    return apart;
+}
+/* Grains of all kinds that fall into a drum which turns. */
+static dem_world *drum(int threads, int grains) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc stuff = scene_stuff(0, 0.3, 0.4, 0.05);
+    dem_motion turning = DEM_MOTION;
+    dem_world *world;
+    dem_material m;
+    dem_wall shell;
+    dem_shape shapes[2];
+    int k;
+    desc.gravity.z = (dem_real)-g;
+    desc.response = DEM_RESPONSE_IMPULSES;
+    desc.dt = DEM_R(5e-4);
+    desc.ledger = 1;
+    desc.threads = threads;
+    world = dem_world_create(&desc);
+    m = dem_material_add(world, &stuff);
+    shell = dem_cylinder_add(world, m, at(0, 0, 0), at(0, 1, 0), DEM_R(0.05), 1);
+    turning.kind = DEM_MOTION_ROTATING;
+    turning.axis = at(0, 1, 0);
+    turning.speed = 5;
+    dem_wall_motion(world, shell, &turning);
+    dem_plane_add(world, m, at(0, -0.015, 0), at(0, 1, 0));
+    dem_plane_add(world, m, at(0, 0.015, 0), at(0, -1, 0));
+    shapes[0] = dem_shape_ellipsoid_add(world, at(0.003, 0.002, 0.0025));
+    shapes[1] = block(world, 0.006, 0.004, 0.004, 0.001);
+    for (k = 0; k < 2; k++)
+        dem_bodies_fill(world, m, shapes[k], box_of(-0.035, -0.015, -0.035, 0.035, 0.015, 0.035), grains/8, (uint64_t)k + 1);
+    dem_spheres_fill(world, m, DEM_R(0.002), box_of(-0.035, -0.015, -0.035, 0.035, 0.015, 0.035), grains, 3);
+    return world;
+}
+
+int main(int argc, char **argv) {
+    test_begin(argc, argv);
+    TEST("impulses: a sphere leaves a wall and another sphere with -e times the speed it came with, to round-off, for "
+         "restitutions from 0 to 1") {
+        int k, both;
+        for (k = 0; k <= 10; k++)
+            for (both = 0; both < 2; both++) {
+                dem_material m;
+                dem_world *world = rigid(0, 1e-3, 0.1*k, 0.5, DEM_CONE_COULOMB, 1, &m);
+                dem_body a, b = {0, 0};
+                dem_totals t;
+                if (both) b = dem_sphere_add(world, m, DEM_R(0.008), at(0, 0, 0));
+                else dem_plane_add(world, m, at(0, 0, 0.008), at(0, 0, 1));
+                a = dem_sphere_add(world, m, DEM_R(0.005), at(0, 0, 0.0301));
+                scene_move(world, a, at(0, 0, -2), at(0, 0, 0));
+                t = dem_totals_get(world);
+                CHECK_EQ(scene_step(world, 30), DEM_OK);
+                CHECK_NEAR(scene_state(world, a).velocity.z - (both ? scene_state(world, b).velocity.z : 0), 0.2*k, 1e-13);
+                CHECK_NEAR(dem_ledger_get(world).residual, 0, 1e-14);
+                if (both) CHECK_NEAR(dem_totals_get(world).momentum[2], t.momentum[2], 1e-15);
+                CHECK((double)dem_counters_get(world).overlap_max < 1e-12);
+                dem_world_destroy(world);
+            }
+    }
+    TEST("impulses: a sphere that slides comes to roll at 5/7 of its speed; meanwhile Coulomb's law keeps it on the floor "
+         "to 1e-9 m, the convex one lifts it by mu v dt") {
+        int cone;
+        for (cone = 0; cone < 2; cone++) {
+            dem_material m;
+            dem_world *world = rigid(g, 1e-3, 0, 0.3, (dem_cone)cone, 1, &m);
+            dem_body ball;
+            dem_body_state s;
+            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            ball = dem_sphere_add(world, m, DEM_R(0.005), at(0, 0, 0.005));
+            scene_move(world, ball, at(1, 0, 0), at(0, 0, 0));
+            CHECK_EQ(scene_step(world, 50), DEM_OK);
+            s = scene_state(world, ball);
+            /* places are those of the step, slip that of its beginning */
+            if (cone) CHECK_REL(s.position.z - 0.005, 0.3*1e-3*(double)(s.velocity.x - s.spin.y*DEM_R(0.005)), 0.05);
+            else CHECK_NEAR(s.position.z, 0.005, 1e-9);
+            CHECK_EQ(scene_step(world, 450), DEM_OK);
+            s = scene_state(world, ball);
+            CHECK_REL(s.velocity.x, 5.0/7, 1e-9);
+            CHECK_REL(s.spin.y*DEM_R(0.005), 5.0/7, 1e-9);
+            CHECK_NEAR(s.position.z, 0.005, 1e-9);
+            CHECK_REL(dem_ledger_get(world).slide, dem_totals_get(world).mass*(1 - 25.0/49 - 10.0/49)/2, 1e-6);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("impulses: a block stays on a slope up to atan mu, 26.565 degrees at 0.5, and slides with g (sin - mu cos) from "
+         "there on; one twice as high as wide tips over at b/h") {
+        const double pi = 3.14159265358979, limit = atan(0.5), part = 0.05*pi/180;
+        double spin;
+        CHECK_NEAR(slides(limit - part, 0.5, 0.1, 0.05, 0.2, 0), 0, 1e-7);
+        CHECK(slides(limit + part, 0.5, 0.1, 0.05, 0.2, 0) > 1e-4);
+        CHECK_REL(slides(0.7, 0.5, 0.1, 0.05, 0.2, 0), 0.2*g*(sin(0.7) - 0.5*cos(0.7)), 1e-3);
+        /* the feet stand 0.8 of the width apart, the centre is half of the height up */
+        slides(atan(0.4) - 0.2*pi/180, 2, 0.1, 0.2, 0.2, &spin);
+        CHECK_NEAR(spin, 0, 1e-6);
+        slides(atan(0.4) + 0.2*pi/180, 2, 0.1, 0.2, 0.2, &spin);
+        CHECK(spin > 1e-3);
+    }
+    TEST("impulses: a block that slides at 5 m/s with mu 0.5 stops after 2.54842 m and 1.01937 s") {
+        dem_material m;
+        dem_world *world = rigid(g, 1e-3, 0, 0.5, DEM_CONE_COULOMB, 1, &m);
+        dem_body body;
+        double stopped = 0;
+        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        body = dem_body_add(world, m, block(world, 0.4, 0.4, 0.05, 0.01), at(0, 0, 0.025), dem_quat_make(1, 0, 0, 0));
+        scene_move(world, body, at(5, 0, 0), at(0, 0, 0));
+        while (dem_world_time(world) < 1.2) {
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            if (scene_state(world, body).velocity.x > DEM_R(1e-6)) stopped = dem_world_time(world);
+        }
+        CHECK_NEAR(stopped, 1.01937, 2e-3);
+        CHECK_REL(scene_state(world, body).position.x, 2.54842, 1.5e-3);
+        CHECK_NEAR(scene_state(world, body).velocity.x, 0, 1e-9);
+        dem_world_destroy(world);
+    }
+    TEST("impulses: eight balls in a bin weigh what they weigh, and stand still") {
+        dem_material m;
+        dem_world *world = rigid(g, 5e-3, 0, 0.4, DEM_CONE_COULOMB, 1, &m);
+        dem_wall_loads loads;
+        dem_wall floor = dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        int k;
+        for (k = 0; k < 8; k++) dem_sphere_add(world, m, DEM_R(0.05), at(0.2*(k%4), 0.2*(k/4), 0.06));
+        CHECK_EQ(dem_world_run(world, 0.25, 0, 0), DEM_OK);
+        for (k = 0; k < 50; k++) {
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            CHECK_EQ(dem_wall_loads_get(world, floor, &loads), DEM_OK);
+            CHECK_REL(-loads.force.z, dem_totals_get(world).mass*g, 1e-9);
+        }
+        CHECK(dem_totals_get(world).kinetic < 1e-12);
+        dem_world_destroy(world);
+    }
+    TEST("impulses: stacks of 5, 10 and 50 spheres of 1 m stand for 10 s: no energy, no way aside, no spin; the contacts "
+         "carry the weight above them") {
+        static const int counts[3] = {5, 10, 50};
+        int l, k;
+        for (l = 0; l < 3; l++) {
+            dem_material m;
+            dem_world *world = rigid(g, 1e-2, 0, 0.5, DEM_CONE_COULOMB, 1, &m);
+            dem_contact_info info[64];
+            dem_body_state s;
+            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            for (k = 0; k < counts[l]; k++) dem_sphere_add(world, m, 1, at(0, 0, 1 + 2*k));
+            CHECK_EQ(dem_world_run(world, 10, 0, 0), DEM_OK);
+            CHECK(dem_totals_get(world).kinetic/dem_totals_get(world).mass < 1e-12);
+            for (k = 0; k < counts[l]; k++) {
+                s = scene_state(world, dem_bodies_id(world, k));
+                CHECK(fabs((double)s.position.x) < 1e-6 && fabs((double)s.position.y) < 1e-6);
+                CHECK((double)(s.spin.x*s.spin.x + s.spin.y*s.spin.y + s.spin.z*s.spin.z) < 1e-12);
+                CHECK_NEAR(fmod((double)s.position.z, 2), 1, 1e-5);
+            }
+            CHECK_EQ(dem_contacts_get(world, info, 64), counts[l]);
+            dem_world_destroy(world);
+        }
+    }
+    TEST("impulses: a pyramid of three discs stands where the friction between them is 2 - sqrt 3 and on the floor 0.0893, "
+         "and falls where either is 2 % less") {
+        const double between = 2 - sqrt(3.0), floor = 0.0893164;
+        CHECK_NEAR(pyramid(1.02*between, 1.02*floor), 0, 1e-4);
+        CHECK(pyramid(0.98*between, 1.02*floor) > 1e-2);
+        CHECK(pyramid(1.02*between, 0.98*floor) > 1e-2);
+    }
+    TEST("impulses: a ball a thousand times as heavy rests on a light one, and a light one on it") {
+        int up;
+        for (up = 0; up < 2; up++) {
+            dem_material m;
+            dem_world *world = rigid(g, 1e-3, 0, 0.5, DEM_CONE_COULOMB, 1, &m);
+            const double below = up ? 0.001 : 0.01, above = up ? 0.01 : 0.001;
+            dem_body top;
+            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            dem_sphere_add(world, m, (dem_real)below, at(0, 0, below));
+            top = dem_sphere_add(world, m, (dem_real)above, at(0, 0, 2*below + above));
+            CHECK_EQ(scene_step(world, 2000), DEM_OK);
+            CHECK_NEAR(scene_state(world, top).position.z, 2*below + above, 1e-8);
+            CHECK(dem_counters_get(world).unsolved <= 1);              /* the first step, which remembers nothing */
+            dem_world_destroy(world);
+        }
+    }
+    TEST("impulses: in 20,000 random impacts of two spheres energy never rises, momentum and angular momentum stay to "
+         "round-off, and the ledger closes") {
+        uint64_t random = 7;
+        double most = -1, off = 0, left = 0;
+        int k, i;
+        for (k = 0; k < 20000; k++) {
+            dem_material m;
+            dem_world *world = rigid(0, 2e-4, scene_random(&random), scene_random(&random), (dem_cone)(k%2), 1, &m);
+            dem_totals before, after;
+            for (i = 0; i < 2; i++) {
+                const dem_body ball = dem_sphere_add(world, m, (dem_real)(0.002 + 0.02*scene_random(&random)),
+                                                     at(i ? 0.05 : 0, 0.01*scene_random(&random), 0));
+                scene_move(world, ball, scene_at(&random, 1, i ? -2 : 1, 1, -0.5, 1, -0.5),
+                           scene_at(&random, 200, -100, 200, -100, 200, -100));
+            }
+            before = dem_totals_get(world);
+            if (scene_step(world, 150) != DEM_OK) { CHECK(0); dem_world_destroy(world); break; }
+            after = dem_totals_get(world);
+            most = fmax(most, (after.kinetic + after.rotational)/(before.kinetic + before.rotational) - 1);
+            left = fmax(left, fabs(dem_ledger_get(world).residual)/(before.kinetic + before.rotational));
+            for (i = 0; i < 3; i++) {
+                off = fmax(off, fabs(after.momentum[i] - before.momentum[i])/before.mass);
+                off = fmax(off, fabs(after.angular[i] - before.angular[i])/before.mass);
+            }
+            dem_world_destroy(world);
+        }
+        CHECK(most < 1e-13);
+        CHECK(left < 1e-12);
+        CHECK_NEAR(off, 0, 1e-13);
+    }
+    TEST("impulses: grains of all kinds in a drum give the same bits for 1, 2, 3, 4 and 8 threads, in a second world, and "
+         "after a restart; power in is heat") {
+        static const int threads[5] = {1, 2, 3, 4, 8};
+        dem_world *world = drum(1, 300), *other;
+        dem_ledger l;
+        uint64_t half, hash;
+        int k;
+        CHECK_EQ(scene_step(world, 200), DEM_OK);
+        half = dem_world_hash(world);
+        CHECK_EQ(dem_checkpoint_write(world, "build/tmp/impulses.ckpt"), DEM_OK);
+        CHECK_EQ(scene_step(world, 200), DEM_OK);
+        hash = dem_world_hash(world);
+        CHECK(hash != half);
+        CHECK(dem_counters_get(world).contacts > 100);
+        CHECK(dem_counters_get(world).sweeps > 0);
+        l = dem_ledger_get(world);
+        CHECK(l.walls > 0);
+        CHECK_NEAR(l.residual/l.throughput, 0, 0.02);
+        dem_world_destroy(world);
+        for (k = 0; k < 5; k++) {
+            other = drum(threads[k], 300);
+            CHECK_EQ(scene_step(other, 400), DEM_OK);
+            CHECK(dem_world_hash(other) == hash);
+            dem_world_destroy(other);
+        }
+        other = drum(2, 300);
+        CHECK_EQ(dem_checkpoint_read(other, "build/tmp/impulses.ckpt"), DEM_OK);
+        CHECK(dem_world_hash(other) == half);
+        CHECK_EQ(scene_step(other, 200), DEM_OK);
+        CHECK(dem_world_hash(other) == hash);
+        dem_world_destroy(other);
+        remove("build/tmp/impulses.ckpt");
+    }
+    TEST("impulses: a world without dt, with a law of its own, another integrator or an unknown choice is refused") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        desc.response = DEM_RESPONSE_IMPULSES;
+        CHECK_STR(dem_create_error(&desc), "dt is 0 s");
+        desc.dt = DEM_R(1e-3);
+        CHECK_STR(dem_create_error(&desc), "");
+        desc.integrator = DEM_LEAPFROG;
+        CHECK_STR(dem_create_error(&desc), "integrator");
+        desc.integrator = DEM_SYMPLECTIC_EULER;
+        desc.cone = (dem_cone)2;
+        CHECK_STR(dem_create_error(&desc), "cone is unknown");
+        desc.cone = DEM_CONE_CONVEX;
+        desc.sweeps = -1;
+        CHECK_STR(dem_create_error(&desc), "sweeps");
+    }
+    return test_end();
+}
