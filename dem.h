@@ -142,6 +142,8 @@
        they rub by ...            tangent_law; friction_load and slider: what friction counts on.
                                   No friction in any pair: no spins, no memory, no price
        they roll by ...           rolling_law
+       they do not give at all    response: rigid grains and impulses in place of laws; cone,
+                                  sweeps, tolerance (docs/impulses.md)
        a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness; law_range,
                                   law_range_radii: it reaches beyond touch; law_who: it is told
                                   who touches; force, body_force, force_user
@@ -250,6 +252,7 @@
      [DIM04]   Di Maio & Di Renzo, Chem. Eng. Sci. 59 (2004) 3461: linear stiffness for a speed
      [DIR05]   Di Renzo & Di Maio, Chem. Eng. Sci. 60 (2005) 1303: Mindlin by increments
      [DLM97]   Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840: splitting
+     [DUF17]   Duff et al., J. Comput. Graph. Tech. 6 (2017) 1: a frame from one vector
      [ERI05]   Ericson, Real-Time Collision Detection (2005): closest point on a triangle
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
      [GOL10]   Goldhirsch, Granul. Matter 12 (2010) 239: stress by coarse graining
@@ -261,6 +264,8 @@
      [RUB15]   Rubio-Largo, Lind, Maza & Hidalgo (2015): granular gas of ellipsoids on GPUs
      [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
      [SPI24]   del Valle et al., Comput. Phys. Commun. 297 (2024) 109077: SPIRAL
+     [STE96]   Stewart & Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673: rigid bodies by steps
+     [TAS10]   Tasora & Anitescu, Int. J. Numer. Methods Eng. 81 (2010): impulses in convex cones
      [THO13]   Thornton, Cummins & Cleary, Powder Technol. 233 (2013) 30: rescaling on unloading
      [TSU92]   Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239: delta^(1/4) damping
      [VYA25]   Vyas et al., Comput. Phys. Commun. 310 (2025): law velocities at the full step
@@ -3469,7 +3474,8 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
 #define DEMI_ROW(k, field, good, text) \
     rows[k].name = #field; rows[k].value = d->field; rows[k].ok = (good); rows[k].limit = text
     DEMI_ROW(0, density, d->density > 0, "> 0 kg/m3 (required)");
-    DEMI_ROW(1, young, d->young > 0 || ((linear_k || demi_impulsive(w)) && DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
+    DEMI_ROW(1, young, d->young > 0 || ((linear_k || demi_impulsive(w)) &&
+                                        DEMI_ABS(d->young) <= 0), "> 0 Pa (required)");
     DEMI_ROW(2, poisson, d->poisson >= 0 && d->poisson < DEM_R(0.5), ">= 0 and < 0.5");
     DEMI_ROW(3, restitution, (d->restitution > 0 || ((two_k || demi_impulsive(w)) &&
                                         DEMI_ABS(d->restitution) <= 0)) &&
@@ -12943,7 +12949,7 @@ enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integra
 static void demi_domain_finish(dem_world *w, int d) {
     if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
     demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
-    if (w->bodies.shaped && !demi_impulsive(w))         /* impulses have finished it by themselves */
+    if (w->bodies.shaped && !demi_impulsive(w))         /* impulses finish it by themselves */
         demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
 }
 
@@ -13080,7 +13086,8 @@ static void demi_impulse_give(const dem_world *w, demi_impulse *c, int body, dem
     const dem_vec3 iu = demi_mover_turn(s, body, au, shaped);
     const dem_real tt = demi_dot(at, it), uu = demi_dot(au, iu), tu = demi_dot(at, iu);
     const dem_real mean = (tt + uu)/2, half = (tt - uu)/2;
-    const dem_vec3 rt = demi_mover_turn(s, body, t, shaped), ru = demi_mover_turn(s, body, u, shaped);
+    const dem_vec3 rt = demi_mover_turn(s, body, t, shaped);
+    const dem_vec3 ru = demi_mover_turn(s, body, u, shaped);
     c->gn += s->movers[body].inv + demi_dot(an, demi_mover_turn(s, body, an, shaped));
     c->gt += s->movers[body].inv + mean + DEMI_SQRT(half*half + tu*tu);
     c->gr += DEMI_MAX(demi_dot(t, rt), demi_dot(u, ru));
@@ -13088,7 +13095,8 @@ static void demi_impulse_give(const dem_world *w, demi_impulse *c, int body, dem
 /* What is the same for all kinds: materials, masses, what the normal velocity has to be. */
 static void demi_impulse_finish(dem_world *w, demi_impulse *c, int material, const dem_real *memory,
                                 size_t stride, dem_real r_eff) {
-    const dem_pair *pair = &w->pairs[(w->bodies.material[c->a] - 1)*DEMI_MATERIALS + material].given;
+    const int own = w->bodies.material[c->a] - 1;
+    const dem_pair *pair = &w->pairs[own*DEMI_MATERIALS + material].given;
     const dem_real dt = w->solver.dt, rest = (dem_real)demi_length(w->desc.gravity)*dt;
     dem_real closing;
     c->mu = pair->friction;
@@ -13157,7 +13165,8 @@ static void demi_impulses_near(dem_world *w, int d) {
         other = w->bodies.material[c->b >= 0 ? c->b : c->fixed] - 1;
         demi_impulse_finish(w, c, other, memory, stride, x[3]*y[3]/(x[3] + y[3]));
         if (c->kept & 2) { c->slip = demi_scale(c->slip, -1); c->roll = demi_scale(c->roll, -1); }
-        w->domains[d].overlap = DEMI_MAX(w->domains[d].overlap, (double)(-gap/DEMI_MIN(x[3], y[3])));
+        w->domains[d].overlap = DEMI_MAX(w->domains[d].overlap,
+                                         (double)(-gap/DEMI_MIN(x[3], y[3])));
         s->count++;
     }
 }
@@ -13363,7 +13372,8 @@ static void demi_movers_force(dem_world *w, int d) {
             const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*local.x, I.y*local.y, I.z*local.z));
             demi_put(torque, demi_scale(demi_sub(L, demi_at(w->bodies.angular + 4*i)), per));
         } else
-            for (k = 0; k < 3; k++) torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
+            for (k = 0; k < 3; k++)
+                torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
     }
 }
 /* What contacts have come to: memory, forces on walls and on bodies that stand still, losses: with
@@ -13397,13 +13407,15 @@ static void demi_impulses_tell(dem_world *w) {
         if (demi_dot(c->roll, c->roll) > 0) {
             const dem_vec3 wb = c->b < 0 ? demi_scale(c->turning, 2)
                 : demi_add(demi_at(s->movers[c->b].w), demi_at(w->bodies.spin + 4*c->b));
-            const dem_vec3 wa = demi_add(demi_at(s->movers[c->a].w), demi_at(w->bodies.spin + 4*c->a));
+            const dem_vec3 wa = demi_add(demi_at(s->movers[c->a].w),
+                                         demi_at(w->bodies.spin + 4*c->a));
             due[2] -= (double)demi_dot(c->roll, demi_sub(wb, wa))/2;
         }
         if (k) k->force = demi_scale(p, -sign);
         if (c->wall >= 0) {
             demi_wall_sum *sum = w->wall_sums + (size_t)c->domain*(size_t)w->wall_count + c->wall;
-            const dem_vec3 at = demi_add(demi_add(demi_at(w->bodies.pos + 4*c->a), k->shift), c->arm_a);
+            const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), k->shift);
+            const dem_vec3 at = demi_add(x, c->arm_a);
             demi_wall_sum_add(w, sum, c->wall, at, demi_scale(p, -per), demi_scale(c->roll, -per),
                               c->surface);
             sum->contacts += c->push > 0;
@@ -15219,6 +15231,10 @@ static double demi_spin_fastest(const dem_world *w) {
 /* Settles dt before stepping: chosen or checked. */
 DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
     if (demi_null(w, "dem_step_advice", advice, "advice")) return DEM_ERROR_ARGUMENT;
+    if (demi_impulsive(w))
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: contacts answer by "
+                         "impulses, which have no contact time; take a step in which grains move "
+                         "by less than a tenth of their radius");
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
     return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: the world has no grain "
@@ -15268,7 +15284,8 @@ static dem_result demi_dt_settle(dem_world *w) {
 /* 1: grains are faster than the step was chosen for, which is chosen anew then. A speed that was
    given stays. */
 static int demi_outgrown(const dem_world *w) {
-    return !demi_impulsive(w) && !(w->desc.impact_speed > 0) && w->booked.speed_max > 1.5*w->clock.assumed_speed;
+    return !demi_impulsive(w) && !(w->desc.impact_speed > 0) &&
+        w->booked.speed_max > 1.5*w->clock.assumed_speed;
 }
 /* The fastest body that moves, m/s. */
 static double demi_fastest(const dem_world *w) {
@@ -15667,11 +15684,12 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
     const double dt = (double)w->desc.dt;
     double limit, fastest = demi_fastest(w);
     int i, worst = 0;
-    if (!(dt > 0) || !(a->contact_time > 0)) return;
+    if (!(dt > 0) || (!(a->contact_time > 0) && !demi_impulsive(w))) return;
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
             fastest = DEMI_MAX(fastest, demi_motion_speed(&w->walls[i]));
-    if (dt > (double)a->dt_max)
+    if (demi_impulsive(w)) limit = 0;           /* no contact is too short */
+    else if (dt > (double)a->dt_max)
         demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is %g "
                   "s, more than %g s, which %s bear: use dt = 0, or softer material", dt,
                   (double)a->dt_max, a->binds);
@@ -15699,7 +15717,7 @@ static void demi_check_overlaps(const dem_world *w, const dem_advice *a, demi_fi
                          (double)w->desc.gravity.z};
     demi_grades grades;
     int i, k;
-    if (w->desc.law) return;                    /* nothing is known of it */
+    if (w->desc.law || demi_impulsive(w)) return;       /* nothing is known of it; no overlaps */
     for (i = 0; i < w->bodies.count; i++) {
         if (w->bodies.inv_mass[i] > 0) mass += (double)w->bodies.mass[i];
         for (k = 0; k < 3; k++) {
@@ -20739,6 +20757,12 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
 static int demi_advise_refuse(dem_world *w, const dem_advise_desc *d) {
     const int lost = demi_body_lost(w);
     int e;
+    if (demi_impulsive(w)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: contacts answer by impulses, and what it "
+                  "tries are steps, stiffnesses and laws of springs; compare runs of other dt, "
+                  "sweeps and tolerance");
+        return 1;
+    }
     if (!(d->duration > 0) || !demi_finite_double(d->duration) || !(d->budget >= 0) ||
         !demi_finite_double(d->budget) || !(d->tolerance >= 0) ||
         !demi_finite_double(d->tolerance) || d->seeds < 0 || d->seeds == 1 ||
@@ -21387,6 +21411,33 @@ DEM_API const char *dem_result_name(dem_result r) {
     return (int)r >= 0 && (size_t)r < sizeof names/sizeof *names ? names[r] : "unknown";
 }
 
+/* Why a desc's choices for how contacts answer, and from which gap on, are refused, or "". */
+static const char *demi_answer_error(const dem_world_desc *d) {
+    if (!(d->law_range >= 0) || !demi_finite(d->law_range) || !(d->law_range_radii >= 0) ||
+        !demi_finite(d->law_range_radii))
+        return "dem_world_create: law_range (m) and law_range_radii must be finite and >= 0; 0 "
+            "means that your law is asked about what touches alone";
+    if (!d->law && ((d->law_range > 0 && d->response != DEM_RESPONSE_IMPULSES) ||
+                    d->law_range_radii > 0 || d->law_who))
+        return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
+            "they are for a law of your own: name it in law, or leave them 0";
+    if ((int)d->response < 0 || d->response > DEM_RESPONSE_IMPULSES || (int)d->cone < 0 ||
+        d->cone > DEM_CONE_CONVEX)
+        return "dem_world_create: response or cone is unknown, must be one of the enum values; "
+            "start from DEM_WORLD_DESC";
+    if (d->sweeps < 0 || !(d->tolerance >= 0) || !demi_finite(d->tolerance))
+        return "dem_world_create: sweeps and tolerance (m/s) must be >= 0 and finite; 0 lets the "
+            "library choose";
+    if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES and dt is 0 s; impulses have "
+            "no contact time to choose it from: give one in which grains move by less than a tenth "
+            "of their radius, such as 1e-3 s";
+    if (d->response == DEM_RESPONSE_IMPULSES && (d->law || (d->integrator != DEM_VELOCITY_VERLET &&
+                                                 d->integrator != DEM_SYMPLECTIC_EULER)))
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, with a law or an integrator "
+            "of its own; impulses need neither: leave both 0";
+    return "";
+}
 DEM_API const char *dem_create_error(const dem_world_desc *d) {
     if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
         "began as DEM_WORLD_DESC";
@@ -21415,29 +21466,7 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         "impact_speed must be >= 0 m/s";
     if (!(d->law_stiffness >= 0) || !demi_finite(d->law_stiffness)) return "dem_world_create: "
         "law_stiffness must be finite and >= 0 N/m; 0 means that of the built-in law";
-    if (!(d->law_range >= 0) || !demi_finite(d->law_range) || !(d->law_range_radii >= 0) ||
-        !demi_finite(d->law_range_radii))
-        return "dem_world_create: law_range (m) and law_range_radii must be finite and >= 0; 0 "
-            "means that your law is asked about what touches alone";
-    if ((int)d->response < 0 || d->response > DEM_RESPONSE_IMPULSES || (int)d->cone < 0 ||
-        d->cone > DEM_CONE_CONVEX)
-        return "dem_world_create: response or cone is unknown, must be one of the enum values; "
-            "start from DEM_WORLD_DESC";
-    if (d->sweeps < 0 || !(d->tolerance >= 0) || !demi_finite(d->tolerance))
-        return "dem_world_create: sweeps and tolerance (m/s) must be >= 0 and finite; 0 lets the "
-            "library choose";
-    if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
-        return "dem_world_create: response is DEM_RESPONSE_IMPULSES and dt is 0 s; impulses have "
-            "no contact time to choose it from: give one in which grains move by less than a tenth "
-            "of their radius, such as 1e-3 s";
-    if (d->response == DEM_RESPONSE_IMPULSES && (d->law || (d->integrator != DEM_VELOCITY_VERLET &&
-                                                 d->integrator != DEM_SYMPLECTIC_EULER)))
-        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, with a law or an integrator "
-            "of its own; impulses need neither: leave both 0";
-    if (!d->law && d->response != DEM_RESPONSE_IMPULSES &&
-        (d->law_range > 0 || d->law_range_radii > 0 || d->law_who))
-        return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
-            "they are for a law of your own: name it in law, or leave them 0";
+    if (*demi_answer_error(d)) return demi_answer_error(d);
     if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
         return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, digits "
             "and _, with a space between two, such as \"temperature charge\"; null means none";
@@ -21587,6 +21616,14 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
 #ifdef DEM_LAW
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
+    if (demi_impulsive(w)) {
+        fprintf(out, "effects    contacts answer by impulses, %s; gaps up to %.3g m are looked at\n"
+                "           last step: %d sweeps left %.3g m/s; %llu steps did not reach their "
+                "tolerance\n", w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
+                w->margin.reach, w->booked.sweeps, w->booked.residual,
+                (unsigned long long)w->booked.unsolved);
+        return;
+    }
     if (w->desc.law) {
         fprintf(out, "effects    normal, tangential, rolling: your own law; spins and torques are "
                 "followed; %d reals of memory per contact\n", w->desc.law_memory);
@@ -21703,10 +21740,11 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
             (unsigned long long)w->clock.steps, (double)w->clock.dt,
             demi_integrator_rows[w->desc.integrator].name,
             demi_integrator_rows[w->desc.integrator].order);
-    fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit t_c/20 = %.4g s; Rayleigh %.4g s; "
-            "bound by %s\n", (double)a.contact_time,
-            w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0, (double)a.dt_max,
-            (double)a.rayleigh, a.binds);
+    if (!demi_impulsive(w))
+        fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit t_c/20 = %.4g s; Rayleigh %.4g s; "
+                "bound by %s\n", (double)a.contact_time,
+                w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
+                (double)a.dt_max, (double)a.rayleigh, a.binds);
     fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
             "candidates, %.2f contacts\n",
             demi_searches[w->desc.search].name, w->margin.skin,
@@ -23299,6 +23337,9 @@ static int demi_slab_fill(dem_slabs *s, demi_slab *b, const dem_world *from, uin
 static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     const char *call = "dem_slabs_create";
     const int local = d->local ? d->local : d->count;
+    if (demi_impulsive(w))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts answer by impulses, which are solved "
+                         "in one world; use threads", call);
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
                          "one along which the scene is longest", call, d->axis,
