@@ -457,8 +457,8 @@ typedef enum dem_integrator {
 
 /* How contacts answer. Springs push by their overlap, by the laws above; steps are a fiftieth of a
    contact time. Impulses keep rigid bodies from going into each other (>>impulses): of the laws
-   above only restitution, friction and rolling friction hold, and steps are as long as the flow
-   asks, 1e-3 s for grains of millimetres. */
+   above only restitution, friction (static friction is not told from it) and rolling friction hold,
+   and steps are as long as the flow asks, 1e-3 s for grains of millimetres. */
 typedef enum dem_response {
     DEM_RESPONSE_SPRINGS = 0,
     DEM_RESPONSE_IMPULSES
@@ -1618,7 +1618,7 @@ DEM_API dem_result dem_world_gravity_set(dem_world *world, dem_vec3 gravity);
 
 /* The time step from now on, s; 0: chosen, as by desc.dt. Contacts keep what they remember;
    checkpoints hold it. One that is too large is refused by the next step, as that of the desc is.
-   An error where it is below 0 or not finite: nothing changes. */
+   An error where it is below 0 or not finite, or 0 where impulses act: nothing changes. */
 DEM_API dem_result dem_world_dt_set(dem_world *world, dem_real dt);
 
 DEM_API double dem_world_time(const dem_world *world);     /* s */
@@ -2436,7 +2436,7 @@ typedef struct demi_list {
     int stride;                    /* capacity per domain */
     int32_t *a, *b;                /* body indices, a < b */
     int32_t *place;                /* 1 + its entry in the near list, 0 when not near */
-    unsigned char *image;          /* which entry of image_shift leads from a to b */
+    unsigned char *image;          /* where in image_shift that stands which leads from a to b */
 } demi_list;
 
 /* Near pairs of all domains: those candidates that touch or might before long. Domain d owns
@@ -2796,7 +2796,7 @@ typedef struct demi_booked {       /* >>ledger: sums since the beginning, and th
     double overlap_max, speed_max; /* of the radius; m/s */
     uint64_t met[DEMI_MATERIALS];  /* bit j of i, i <= j: materials i and j have touched */
     double due[4];                 /* J: what the impulses of the next step will take, see
-                                      demi_impulses_energy; what walls will do */
+                                      demi_impulses_tell; what walls will do */
     double residual;               /* m/s, of the last solve */
     uint64_t unsolved;             /* solves that did not reach their tolerance */
     int sweeps, none;              /* of the last solve; 0, so that no byte of it is unknown */
@@ -2998,6 +2998,11 @@ DEM_INLINE dem_real demi_cover(const dem_world *w) {
 enum { DEMI_IMPULSE_REALS = 7 };
 DEM_INLINE int demi_impulsive(const dem_world *w) {
     return w->desc.response == DEM_RESPONSE_IMPULSES;
+}
+/* m: from the first body of entry `at` of the near list to the second, or to its image there. */
+DEM_INLINE dem_vec3 demi_near_way(const dem_world *w, size_t at) {
+    const dem_real *x = w->bodies.pos + 4*w->near.a[at], *y = w->bodies.pos + 4*w->near.b[at];
+    return demi_add(demi_sub(demi_at(y), demi_at(x)), demi_at(w->image_shift + w->near.image[at]));
 }
 /* Does a law answer rates of the user's numbers? */
 DEM_INLINE int demi_exchanges(const dem_world *w) {
@@ -4880,12 +4885,9 @@ static void demi_met_look(const dem_world *w, uint64_t *met) {
             const int at = d*w->near.stride + p, a = w->near.a[at], b = w->near.b[at];
             const int i = w->bodies.material[a] - 1, j = w->bodies.material[b] - 1;
             const uint64_t bit = UINT64_C(1) << DEMI_MAX(i, j);
-            const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
-            dem_vec3 gap;
-            if (met[DEMI_MIN(i, j)] & bit) continue;
-            gap = demi_add(demi_sub(demi_at(y), demi_at(x)),
-                           demi_at(w->image_shift + w->near.image[at]));
-            if (demi_dot(gap, gap) < (x[3] + y[3])*(x[3] + y[3])) met[DEMI_MIN(i, j)] |= bit;
+            const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
+            const dem_vec3 way = demi_near_way(w, (size_t)at);
+            if (demi_dot(way, way) < radii*radii) met[DEMI_MIN(i, j)] |= bit;
         }
     }
 }
@@ -11878,10 +11880,7 @@ static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
                                       const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at];
-    const dem_real *shift = w->image_shift + w->near.image[at];
-    const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
-                                         demi_at(w->bodies.pos + 4*a)),
-                                demi_at(shift));
+    const dem_vec3 r = demi_near_way(w, (size_t)at);
     const dem_real rb = w->bodies.pos[4*b + 3];
     const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
     const int first = w->domains[d].kept_next;
@@ -12988,7 +12987,8 @@ typedef struct demi_impulse {
     int32_t fixed;                 /* then: the body that stands still; -1: a wall */
     int32_t wall;
     int32_t home, domain;          /* entry of the near list, ~ that of the list of kept contacts */
-    int32_t kept, colour;          /* 1: kept; */
+    int32_t kept, colour;          /* bit 0: of the kept list; 1: a and b have changed places */
+    int32_t material, none;        /* index, of b or of what stands still */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres */
     dem_vec3 surface, turning;     /* m/s, rad/s: of what does not move by impulses, there */
     dem_vec3 before;               /* m/s: relative velocity of b, before forces of the step */
@@ -13099,6 +13099,7 @@ static void demi_impulse_finish(dem_world *w, demi_impulse *c, int material, con
     const dem_pair *pair = &w->pairs[own*DEMI_MATERIALS + material].given;
     const dem_real dt = w->solver.dt, rest = (dem_real)demi_length(w->desc.gravity)*dt;
     dem_real closing;
+    c->material = material;
     c->mu = pair->friction;
     c->rolling = pair->rolling_friction*r_eff;
     c->before = demi_impulse_before(w, c);
@@ -13144,8 +13145,7 @@ static void demi_impulses_near(dem_world *w, int d) {
         const int a = w->near.a[at], b = w->near.b[at];
         const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
         dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
-        const dem_vec3 way = demi_add(demi_sub(demi_at(y), demi_at(x)),
-                                      demi_at(w->image_shift + 4*w->near.image[at]));
+        const dem_vec3 way = demi_near_way(w, at);
         const dem_real l = demi_length(way), gap = l - x[3] - y[3];
         demi_impulse *c = s->contacts + s->count;
         int e, other;
@@ -13393,6 +13393,7 @@ static void demi_impulses_tell(dem_world *w) {
         dem_real *memory = k ? k->memory : w->near.memory +
             (size_t)c->domain*DEMI_IMPULSE_REALS*stride + c->home;
         const dem_real sign = c->kept & 2 ? -per : per;
+        const int own = w->bodies.material[c->a] - 1;
         const dem_vec3 p = demi_add(demi_scale(c->normal, c->push), c->slip);
         const dem_vec3 slip = demi_scale(c->slip, sign), roll = demi_scale(c->roll, sign);
         const dem_vec3 vb = c->b < 0 ? c->surface : demi_mover_at(s->movers + c->b, c->arm_b);
@@ -13411,6 +13412,8 @@ static void demi_impulses_tell(dem_world *w) {
                                          demi_at(w->bodies.spin + 4*c->a));
             due[2] -= (double)demi_dot(c->roll, demi_sub(wb, wa))/2;
         }
+        if (c->push > 0)
+            domain->met[DEMI_MIN(own, c->material)] |= UINT64_C(1) << DEMI_MAX(own, c->material);
         if (k) k->force = demi_scale(p, -sign);
         if (c->wall >= 0) {
             demi_wall_sum *sum = w->wall_sums + (size_t)c->domain*(size_t)w->wall_count + c->wall;
@@ -13490,8 +13493,7 @@ static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info 
     const int a = w->near.a[at], b = w->near.b[at];
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
     const demi_periods periods = demi_periods_of(w);
-    const dem_vec3 way = demi_add(demi_sub(demi_at(y), demi_at(x)),
-                                  demi_at(w->image_shift + 4*w->near.image[at]));
+    const dem_vec3 way = demi_near_way(w, at);
     const dem_real l = demi_length(way), overlap = x[3] + y[3] - l;
     if (!(memory[6*stride] > 0) && !(overlap > 0)) return 0;
     if (!out) return 1;
@@ -16420,10 +16422,9 @@ static double demi_deepest_pair(const dem_world *w, int *first, int *second) {
         const demi_kept *kept = demi_kept_of(w, d);
         for (k = 0; k < domain->near_end; k++) {
             const int at = d*w->near.stride + k, a = w->near.a[at], b = w->near.b[at];
-            const dem_real *p = w->bodies.pos + 4*a, *q = w->bodies.pos + 4*b;
-            const dem_vec3 r = demi_add(demi_sub(demi_at(q), demi_at(p)),
-                                        demi_at(w->image_shift + w->near.image[at]));
-            const double deep = (double)((p[3] + q[3] - demi_length(r))/DEMI_MIN(p[3], q[3]));
+            const dem_real p = w->bodies.pos[4*a + 3], q = w->bodies.pos[4*b + 3];
+            const dem_real way = demi_length(demi_near_way(w, (size_t)at));
+            const double deep = (double)((p + q - way)/DEMI_MIN(p, q));
             if (k >= domain->near_own && k < domain->near_cross) continue;
             if (deep > most) { most = deep; *first = a; *second = b; }
         }
@@ -16705,6 +16706,10 @@ DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
     if (!(dt >= 0) || !demi_finite(dt))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be finite and "
                          ">= 0; 0 lets the library choose", (double)dt);
+    if (demi_impulsive(w) && !(dt > 0))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have no "
+                         "contact time to choose it from; set it, 1e-3 s for grains of "
+                         "millimetres");
     demi_finish(w);                             /* half steps were of the old one */
     w->desc.dt = dt;
     demi_scene_changed(w);
@@ -20989,8 +20994,9 @@ static dem_real demi_rolls(const dem_pair *p) { return p->rolling_friction; }
 static dem_real demi_sticks(const dem_pair *p) { return p->stiffness_adhesion; }
 
 static dem_effect_state demi_look_contacts(const dem_world *w, dem_effect *e) {
+    const char *name = demi_normal_laws[w->desc.normal_law].name;
     if (w->desc.law) return demi_look_off(e, "left to your own law");
-    return demi_look_pairs(w, demi_any, demi_normal_laws[w->desc.normal_law].name, e);
+    return demi_look_pairs(w, demi_any, demi_impulsive(w) ? "impulses" : name, e);
 }
 static dem_effect_state demi_look_law(const dem_world *w, dem_effect *e) {
     if (!w->desc.law) return demi_look_off(e, "desc.law is null");
@@ -20998,17 +21004,20 @@ static dem_effect_state demi_look_law(const dem_world *w, dem_effect *e) {
 }
 static dem_effect_state demi_look_friction(const dem_world *w, dem_effect *e) {
     const int law = demi_tangent_meant(w);
+    if (demi_impulsive(w)) return demi_look_pairs(w, demi_rubs, "impulses", e);
     if (w->desc.law) return demi_look_off(e, "left to your own law");
     if (law == DEM_TANGENT_NONE) return demi_look_off(e, "tangent_law is DEM_TANGENT_NONE");
     return demi_look_pairs(w, demi_rubs, demi_tangent_laws[law].name, e);
 }
 static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
     const int law = demi_rolling_meant(w);
+    if (demi_impulsive(w)) return demi_look_pairs(w, demi_rolls, "impulses", e);
     if (w->desc.law) return demi_look_off(e, "left to your own law");
     if (law == DEM_ROLLING_NONE) return demi_look_off(e, "rolling_law is DEM_ROLLING_NONE");
     return demi_look_pairs(w, demi_rolls, demi_rolling_laws[law].name, e);
 }
 static dem_effect_state demi_look_adhesion(const dem_world *w, dem_effect *e) {
+    if (demi_impulsive(w)) return demi_look_off(e, "impulses only push");
     if (w->desc.law) return demi_look_off(e, "left to your own law");
     if (!demi_normal_is(w, DEMI_BRANCHED))
         return demi_look_off(e, "only the hysteretic normal law has it");
@@ -21526,9 +21535,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
-    if (demi_impulsive(w)) {
-        w->desc.integrator = DEM_SYMPLECTIC_EULER;
-    }
+    if (demi_impulsive(w)) w->desc.integrator = DEM_SYMPLECTIC_EULER;
     /* until bodies are there to decide */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);

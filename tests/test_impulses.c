@@ -44,12 +44,10 @@ static dem_shape block(dem_world *world, double a, double b, double c, double r)
 }
 /* A block at rest on a slope of this angle, given by the direction of gravity. Its speed downhill after a time. */
 static double slides(double angle, double friction, double width, double height, double seconds, double *spin) {
-    dem_world_desc desc = DEM_WORLD_DESC;
     dem_material m;
     dem_world *world = rigid(0, 1e-3, 0, friction, DEM_CONE_COULOMB, 1, &m);
     dem_body body;
     dem_body_state s;
-    (void)desc;
     dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     body = dem_body_add(world, m, block(world, width, width, height, 0.1*width), at(0, 0, height/2),
                         dem_quat_make(1, 0, 0, 0));
@@ -340,6 +338,69 @@ int main(int argc, char **argv) {
         desc.cone = DEM_CONE_CONVEX;
         desc.sweeps = -1;
         CHECK_STR(dem_create_error(&desc), "sweeps");
+    }
+    TEST("impulses: a living world's step may change, and not be left to the library; the world goes on as it was") {
+        dem_material m;
+        dem_world *world = rigid(g, 1e-3, 0, 0.5, DEM_CONE_COULOMB, 1, &m);
+        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.02));
+        CHECK_EQ(scene_step(world, 10), DEM_OK);
+        CHECK_EQ(dem_world_dt_set(world, 0), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "impulses");
+        CHECK_EQ(scene_step(world, 10), DEM_OK);
+        CHECK_NEAR(dem_world_time(world), 0.02, 1e-12);
+        CHECK_EQ(dem_world_dt_set(world, DEM_R(5e-4)), DEM_OK);
+        CHECK_EQ(scene_step(world, 10), DEM_OK);
+        CHECK_NEAR(dem_world_time(world), 0.025, 1e-12);
+        dem_world_destroy(world);
+    }
+    TEST("impulses: over a periodic face two grains meet, and a pile rests, as they do in the middle of the box") {
+        double speed[2], high[2];
+        int over, k;
+        for (over = 0; over < 2; over++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_material_desc stuff = scene_stuff(0, 0.5, 0.3, 0);
+            dem_world *world;
+            dem_material m;
+            dem_body a, b;
+            desc.response = DEM_RESPONSE_IMPULSES;
+            desc.dt = DEM_R(1e-3);
+            desc.domain = box_of(0, 0, 0, 1, 1, 1);
+            for (k = 0; k < 2; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+            world = dem_world_create(&desc);
+            m = dem_material_add(world, &stuff);
+            dem_plane_add(world, m, at(0, 0, 0.1), at(0, 0, 1));
+            a = dem_sphere_add(world, m, DEM_R(0.05), at(over ? 0.06 : 0.44, 0.5, 0.5));
+            b = dem_sphere_add(world, m, DEM_R(0.05), at(over ? 0.94 : 0.56, 0.5, 0.53));
+            scene_move(world, a, at(over ? -2 : 2, 0, 0), at(0, 0, 0));
+            CHECK_EQ(scene_step(world, 60), DEM_OK);
+            speed[over] = fabs((double)scene_state(world, b).velocity.x);
+            CHECK_EQ(dem_world_gravity_set(world, at(0, 0, -g)), DEM_OK);
+            CHECK_EQ(scene_step(world, 500), DEM_OK);
+            high[over] = (double)scene_state(world, b).position.z;
+            dem_world_destroy(world);
+        }
+        CHECK(speed[0] > 0.5);
+        CHECK_NEAR(speed[0], speed[1], 1e-12);
+        CHECK_NEAR(high[0], high[1], 1e-9);
+    }
+    TEST("impulses: the report tells that friction between two materials was used once they have touched") {
+        int touch, k;
+        for (touch = 0; touch < 2; touch++) {
+            dem_effect all[DEM_EFFECTS];
+            dem_material m, other;
+            dem_world *world = rigid(g, 1e-3, 0, 0.5, DEM_CONE_COULOMB, 1, &m);
+            dem_material_desc stuff = scene_stuff(0, 0, 0.3, 0);
+            other = dem_material_add(world, &stuff);
+            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            dem_sphere_add(world, other, DEM_R(0.01), at(0, 0, touch ? 0.0101 : 1));
+            CHECK_EQ(scene_step(world, 20), DEM_OK);
+            CHECK_EQ(dem_effects_get(world, 0, all), DEM_EFFECTS);
+            for (k = 0; strcmp(all[k].name, "friction"); k++) continue;
+            CHECK_EQ(all[k].state, touch ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE);
+            CHECK(strstr(all[k].text, "impulses") != 0);
+            dem_world_destroy(world);
+        }
     }
     return test_end();
 }
