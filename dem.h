@@ -36,7 +36,9 @@
        >>kept        contacts kept by themselves, all but sphere on sphere: touch
        >>kept-respond  the law's answers to them: forces on both ends
        >>integrators kick, drift, predict; rotation
-       >>impulses    in place of laws: impulses that keep bodies apart, solved together
+       >>impulses    in place of laws: impulses that keep bodies apart: who meets whom
+       >>solvers     how they are found
+       >>impulses-told  what they do: forces, memory, losses
        >>ledger      where the energy went
        >>sizes       distributions of size: shares, drawing, classes
        >>placing     room for new grains: regions, fills, packings
@@ -248,6 +250,7 @@
      [ALK07]   Alkhaldi, Contact Investigations of Granular Mechanical Media in a Tumbling Sorting
                Machine, thesis, Stuttgart 2007: screening, hysteresis, MOLDYN
      [BER23]   Berry, Zhang & Haeri (2023): what clusters of spheres count twice
+     [BIR00]   Birgin, Martinez & Raydan, SIAM J. Optim. 10 (2000) 1196: spectral gradients
      [CS79]    Cundall & Strack, Geotechnique 29 (1979) 47
      [DIM04]   Di Maio & Di Renzo, Chem. Eng. Sci. 59 (2004) 3461: linear stiffness for a speed
      [DIR05]   Di Renzo & Di Maio, Chem. Eng. Sci. 60 (2005) 1303: Mindlin by increments
@@ -257,7 +260,11 @@
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
      [GOL10]   Goldhirsch, Granul. Matter 12 (2010) 239: stress by coarse graining
      [HER82]   Hertz, J. reine angew. Math. 92 (1882) 156
+     [HEY13]   Heyn, Anitescu, Tasora & Negrut, Int. J. Numer. Methods Eng. 95 (2013) 541: spectral
+               gradients for cones
      [HOA61]   Hoare, Comm. ACM 4 (1961) 321: the k-th of many by exchanges
+     [JEA99]   Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235: Gauss-Seidel over contacts
+     [MAZ15]   Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32: accelerated gradients
      [MIL]     a thesis on tumbling mills on a GPU: laws by the step, meshes, segments
      [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
@@ -267,6 +274,7 @@
      [STE96]   Stewart & Trinkle, Int. J. Numer. Methods Eng. 39 (1996) 2673: rigid bodies by steps
      [TAS10]   Tasora & Anitescu, Int. J. Numer. Methods Eng. 81 (2010): impulses in convex cones
      [THO13]   Thornton, Cummins & Cleary, Powder Technol. 233 (2013) 30: rescaling on unloading
+     [TON12]   Tonge et al., ACM Trans. Graph. 31 (2012) 105: Jacobi with split masses
      [TSU92]   Tsuji, Tanaka & Ishida, Powder Technol. 71 (1992) 239: delta^(1/4) damping
      [VYA25]   Vyas et al., Comput. Phys. Commun. 310 (2025): law velocities at the full step
      [ZHO99]   Zhou et al., Physica A 269 (1999) 536: constant rolling torque
@@ -468,6 +476,13 @@ typedef enum dem_cone {
     DEM_CONE_COULOMB = 0,    /* Coulomb's law: contacts that slide stay closed */
     DEM_CONE_CONVEX          /* the convex law of [TAS10]: what slides at v opens by mu v dt */
 } dem_cone;
+/* How impulses are found (>>solvers); docs/impulses.md has what each reaches in how many sweeps. */
+typedef enum dem_solver {
+    DEM_SOLVER_SEIDEL = 0,   /* contact after contact: robust, the fewest sweeps; the default */
+    DEM_SOLVER_JACOBI,       /* all at once: for comparison */
+    DEM_SOLVER_APGD,         /* accelerated gradients [MAZ15]: for residuals far below the usual */
+    DEM_SOLVER_SPECTRAL      /* gradients with steps of Barzilai and Borwein [HEY13]: likewise */
+} dem_solver;
 
 /* How bodies that are not spheres turn. All keep angular momentum to round-off while nothing
    pushes, and are of second order in dt under torques; docs/shapes.md has their errors and
@@ -964,6 +979,7 @@ typedef struct dem_world_desc {
        may approach by in a step, between a tenth of the largest radius and all of it */
     dem_response response;
     dem_cone cone;
+    dem_solver solver;
     int sweeps;                    /* over all contacts, at most, in a step; 0: 200 */
     dem_real tolerance;            /* m/s: change of a contact's velocity below which sweeps end; 0:
                                       a thousandth of what gravity brings in a step, and a millionth
@@ -984,7 +1000,7 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
     DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
     0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0,
-    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, 0, 0, DEM_SEARCH_AUTO, 0,
+    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_SEIDEL, 0, 0, DEM_SEARCH_AUTO, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
@@ -1059,6 +1075,12 @@ typedef struct dem_pair {
     dem_real stiffness_adhesion; /* N/m, hysteretic law; its kun is stiffness/restitution^2 */
     dem_real normal_damping;   /* N s/m, linear and hysteretic law: the dashpot itself, whatever the
                                   masses; 0: linear: from restitution, hysteretic: none */
+    /* of impulses alone; 0 when mixed, 0 with springs */
+    dem_real spinning_friction; /* mu_s, >= 0, of the effective radius: moment about the normal */
+    dem_real cohesion;         /* N, >= 0: pulls what touches together, and up to a gap of a
+                                  thousandth of the smaller radius what it has held */
+    dem_real compliance;       /* m/N, >= 0: a spring of 1/compliance, taken at the step's end:
+                                  stable for any, damped where the step does not resolve it */
 } dem_pair;
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
                                 dem_pair *pair);
@@ -1642,7 +1664,7 @@ typedef struct dem_counters {
     /* impulses, of the last step: sweeps, what they left (m/s, as tolerance); of all steps: how
        many did not reach the tolerance */
     int sweeps;
-    dem_real residual;
+    dem_real residual, residual_rms;
     uint64_t unsolved;
     size_t memory;              /* bytes held */
 } dem_counters;
@@ -2797,7 +2819,7 @@ typedef struct demi_booked {       /* >>ledger: sums since the beginning, and th
     uint64_t met[DEMI_MATERIALS];  /* bit j of i, i <= j: materials i and j have touched */
     double due[4];                 /* J: what the impulses of the next step will take, see
                                       demi_impulses_tell; what walls will do */
-    double residual;               /* m/s, of the last solve */
+    double residual, residual_rms; /* m/s, of the last solve: largest, rms */
     uint64_t unsolved;             /* solves that did not reach their tolerance */
     int sweeps, none;              /* of the last solve; 0, so that no byte of it is unknown */
 } demi_booked;
@@ -2871,21 +2893,32 @@ typedef struct demi_lookers {
     void (*outputs_again)(dem_world *w);        /* the state has been read from a file */
 } demi_lookers;
 
-/* Contacts and bodies as the solver of impulses sees them: made anew in every step (>>impulses). */
+/* Contacts and bodies as solvers of impulses see them: made anew in every step (>>impulses). */
+struct demi_meeting;
 struct demi_impulse;
+struct demi_beside;
+struct demi_twist;
 struct demi_mover;
+struct demi_run_sums;
 typedef struct demi_solver {
-    struct demi_impulse *contacts;
-    struct demi_mover *movers;     /* one per body */
+    struct demi_meeting *meetings; /* domain d's begin at meeting_first[d] */
+    struct demi_impulse *contacts; /* by colour, and so are: */
+    struct demi_beside *beside;
+    struct demi_twist *twists;     /* null: nobody rolls or spins with friction */
+    dem_vec3 *arms;                /* x 2, m; null: all are spheres */
+    struct demi_mover *movers;     /* one per body and kept contact; some solvers: twice */
     dem_real *tensors;             /* x 6: inverse of its inertia, in the world's frame; null: all
                                       are spheres */
     dem_real *lifts;               /* x 4, m/s: what undoes overlaps, see demi_impulses_lift */
     uint64_t *colours;             /* of each body: those taken */
-    int32_t *order;                /* contacts by colour */
-    double *worst;                 /* m/s: change in each run of contacts of the last sweep */
-    int count, first, last;        /* contacts; of the colour being swept */
-    int begins[65];                /* of each colour in `order` */
-    dem_real dt;
+    int32_t *degrees;              /* of each body: how many contacts it has */
+    dem_vec3 *vectors;             /* columns of one per contact, for some solvers */
+    struct demi_run_sums *runs;    /* of each run of contacts in the last round */
+    int count, first, last, run;   /* contacts; of the colour being swept; its first run */
+    int twisted;                   /* is there rolling or spinning friction? */
+    int begins[65];                /* of each colour */
+    int meeting_first[DEMI_DOMAINS], meeting_count[DEMI_DOMAINS];
+    dem_real dt, step;             /* s; of some solvers, see there */
 } demi_solver;
 
 /* A world, by owners: each part writes its own, all read. Where more write, they are named. */
@@ -2993,9 +3026,9 @@ struct dem_world {
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
 }
-/* Contacts answer by impulses; each remembers its friction and rolling (vectors), and its push, as
-   forces. */
-enum { DEMI_IMPULSE_REALS = 7 };
+/* Contacts answer by impulses; each remembers its friction and moment (vectors), its push and what
+   of that cohesion takes, as forces. */
+enum { DEMI_IMPULSE_REALS = 8 };
 DEM_INLINE int demi_impulsive(const dem_world *w) {
     return w->desc.response == DEM_RESPONSE_IMPULSES;
 }
@@ -3698,6 +3731,13 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     DEMI_BAD(tangent_damping, p->tangent_damping >= 0, ">= 0")
     DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, ">= 0 N/m")
     DEMI_BAD(normal_damping, p->normal_damping >= 0, ">= 0 N s/m")
+#define DEMI_IMPULSES_ALONE(field, unit) \
+    DEMI_BAD(field, p->field >= 0 && (demi_impulsive(w) || !(p->field > 0)), \
+             ">= 0" unit ", and 0 where springs answer (desc.response)")
+    DEMI_IMPULSES_ALONE(spinning_friction, "")
+    DEMI_IMPULSES_ALONE(cohesion, " N")
+    DEMI_IMPULSES_ALONE(compliance, " m/N")
+#undef DEMI_IMPULSES_ALONE
 #undef DEMI_BAD
     if (bad)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
@@ -12964,66 +13004,70 @@ static void demi_finish(dem_world *w) {
    >>impulses
    In place of contact laws: rigid grains, and impulses that keep them out of each other ([TAS10],
    [STE96]). At the end of a step positions and velocities belong to one time; every contact and gap
-   nearer than the law's range is laid down as demi_impulse, and impulses are looked for so that
-   after the next kick
+   nearer than the law's range is laid down here, and >>solvers looks for impulses so that after the
+   next kick
        un + bias >= 0, push >= 0, one of the two 0;   bias = gap/dt, or e un before an impact;
        friction |T| <= mu push against the slip (DEM_CONE_COULOMB), or both together in the cone's
-       own convex sense (DEM_CONE_CONVEX); rolling |R| <= mu_r R* push against the relative spin.
-   They are found contact after contact (block Gauss-Seidel, each solved exactly in its own metric),
-   beginning with those of the step before, until no contact changes by more than the tolerance.
-   Contacts of one colour share no body: threads take them in runs, and bits do not depend on how
-   many there are. Impulses over dt are the forces that the move of the next step applies, that
-   walls count and that files tell. Restitution is Newton's for every contact by itself (Moreau's
-   convention for simultaneous ones): un after = -e un before, on closing contacts that would touch
-   in the step, faster than what gravity brings in one. What is left in overlap is undone by places
-   alone (demi_impulses_lift), which gives no energy.
+       own convex sense (DEM_CONE_CONVEX); rolling |R| <= mu_r R* push and twist |S| <= mu_s R* push
+       against the relative spin, across the normal and about it.
+   Cohesion pulls with its force from outside, so that push may be less than it; compliance C adds
+   push C/dt^2 to bias: a spring 1/C, taken at the end of the step. Restitution is Newton's for
+   every contact by itself (Moreau's convention for simultaneous ones): un after = -e un before, on
+   closing contacts that would touch in the step, faster than what gravity brings in one.
+   A meeting is laid down in two halves: who and where it is remembered, in the order of the lists;
+   and what sweeps go over, by colours. Contacts of one colour share no body that moves, so threads
+   take them in runs, and bits do not depend on how many threads there are.
    --------------------------------------------------------------------------------------------- */
 
-/* A body: velocity and spin as the impulses found so far make them. */
+/* A body: velocity and spin as the impulses found so far make them. inv 0: it goes as it is told.
+   Behind the bodies each contact with a wall has one: the wall's surface there. */
 typedef struct demi_mover { dem_real v[3], inv, w[3], inv_inertia; } demi_mover;
-/* A contact, or a gap. Forces of impulses on b: push normal + slip; on a the opposite. */
+/* Two movers that meet; where it is remembered; its place among the contacts. */
+typedef struct demi_meeting {
+    int32_t a, b;
+    int32_t home;                  /* entry of the near list; ~ that of its domain's kept */
+    int32_t at;                    /* until it has a place: its colour */
+} demi_meeting;
+/* What sweeps go over. Impulses act on b; on a the opposite. Two cache lines. */
 typedef struct demi_impulse {
-    int32_t a, b;                  /* bodies; b -1: nobody that moves */
-    int32_t fixed;                 /* then: the body that stands still; -1: a wall */
-    int32_t wall;
-    int32_t home, domain;          /* entry of the near list, ~ that of the list of kept contacts */
-    int32_t kept, colour;          /* bit 0: of the kept list; 1: a and b have changed places */
-    int32_t material, none;        /* index, of b or of what stands still */
-    dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres */
-    dem_vec3 surface, turning;     /* m/s, rad/s: of what does not move by impulses, there */
-    dem_vec3 before;               /* m/s: relative velocity of b, before forces of the step */
-    dem_vec3 slip, roll;           /* N s; N m s */
-    dem_real push;                 /* N s */
-    dem_real gn, gt, gr;           /* 1/kg; 1/kg; 1/(kg m2): what an impulse brings */
-    dem_real gap, bias;            /* m; m/s */
-    dem_real mu, rolling;          /* -; m */
-    dem_real lift;                 /* m/s kg: of demi_impulses_lift */
+    int32_t a, b;                  /* movers */
+    dem_vec3 normal;               /* unit, a -> b */
+    dem_real reach_a, reach_b;     /* m, of spheres: arms are reach_a n and -reach_b n */
+    dem_vec3 slip;                 /* N s: friction */
+    dem_real push, bias, mu;       /* N s; m/s */
+    dem_real gn, gt;               /* 1/kg, what an impulse brings along the normal, and across */
+    dem_real per_n, per_t;         /* kg: 1/(gn + compliance), 1/gt */
 } demi_impulse;
+/* Beside it. */
+typedef struct demi_beside {
+    dem_real gap, lift, pull, mass; /* m; kg m/s; N s; kg */
+} demi_beside;
+/* Where there is rolling or spinning friction. */
+typedef struct demi_twist {
+    dem_vec3 moment;               /* N m s */
+    dem_real per_roll, per_spin;   /* kg m2: 1/what a moment brings across the normal, about it */
+    dem_real roll, spin;           /* m: limits of the moment over push */
+} demi_twist;
 enum { DEMI_COLOURS = 64, DEMI_SWEEP_RUN = 256 };
 
-/* Room for all contacts there may be. 0: memory ran out. */
-static int demi_impulses_room(dem_world *w) {
-    demi_solver *s = &w->solver;
-    const size_t bodies = (size_t)w->bodies.count;
-    size_t n = 0;
-    int d;
-    if (!demi_impulsive(w)) return 1;
-    for (d = 0; d < w->domain_count; d++)
-        n += (size_t)(w->domains[d].near_end + w->domains[d].kept_next);
-    return DEMI_GROW(w, s->contacts, n) && DEMI_GROW(w, s->order, n) &&
-        DEMI_GROW(w, s->worst, n/DEMI_SWEEP_RUN + DEMI_COLOURS) &&
-        DEMI_GROW(w, s->movers, bodies) && DEMI_GROW(w, s->colours, bodies) &&
-        DEMI_GROW(w, s->lifts, 4*bodies) &&
-        (!w->bodies.shaped || DEMI_GROW(w, s->tensors, 6*bodies));
+/* Do impulses have a moment beside their force? */
+static int demi_impulses_twist(const dem_world *w) {
+    int i, j, twist = 0;
+    for (i = 0; i < w->material_count; i++)
+        for (j = i; j < w->material_count; j++) {
+            const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
+            twist |= p->rolling_friction > 0 || p->spinning_friction > 0;
+        }
+    return twist;
 }
 /* I^-1 x in the world's frame. */
 DEM_INLINE dem_vec3 demi_tensor_times(const dem_real *t, dem_vec3 x) {
     return demi_v(t[0]*x.x + t[3]*x.y + t[4]*x.z, t[3]*x.x + t[1]*x.y + t[5]*x.z,
                   t[4]*x.x + t[5]*x.y + t[2]*x.z);
 }
-DEM_INLINE dem_vec3 demi_mover_turn(const demi_solver *s, int body, dem_vec3 x, int shaped) {
-    return shaped ? demi_tensor_times(s->tensors + 6*body, x)
-        : demi_scale(x, s->movers[body].inv_inertia);
+DEM_INLINE dem_vec3 demi_mover_turn(const demi_solver *s, int mover, dem_vec3 x, int shaped) {
+    return shaped ? demi_tensor_times(s->tensors + 6*mover, x)
+        : demi_scale(x, s->movers[mover].inv_inertia);
 }
 /* A domain's bodies as they would go on without contacts; spins of bodies that are not spheres are
    those of their angular momentum. */
@@ -13036,7 +13080,7 @@ static void demi_movers_lay(dem_world *w, int d) {
         const dem_real *torque = w->bodies.torque + 4*i;
         s->colours[i] = 0;
         m->inv = b.inv;
-        m->inv_inertia = w->bodies.inv_inertia[i];
+        m->inv_inertia = b.inv > 0 ? w->bodies.inv_inertia[i] : 0;
         for (k = 0; k < 4; k++) s->lifts[4*i + k] = 0;
         if (w->bodies.shaped && w->bodies.shape[i] && b.inv > 0) {
             const dem_quat q = demi_quat_at(w->bodies.orient + 4*i);
@@ -13062,264 +13106,736 @@ static void demi_movers_lay(dem_world *w, int d) {
             for (k = 0; k < 3; k++)
                 m->w[k] = w->bodies.spin[4*i + k] + torque[k]*m->inv_inertia*s->dt;
         }
-        for (k = 0; k < 3; k++) m->v[k] = b.v[k] + (b.f[k]*b.inv + b.g[k])*s->dt;
+        for (k = 0; k < 3; k++)
+            m->v[k] = b.inv > 0 ? b.v[k] + (b.f[k]*b.inv + b.g[k])*s->dt : b.v[k];
     }
 }
-/* Velocity of b relative to a, by velocities of bodies. */
-DEM_INLINE dem_vec3 demi_impulse_before(const dem_world *w, const demi_impulse *c) {
-    const dem_vec3 a = demi_velocity_at(w->bodies.vel, w->bodies.spin, c->a, c->arm_a);
-    return demi_sub(c->b < 0 ? c->surface
-                    : demi_velocity_at(w->bodies.vel, w->bodies.spin, c->b, c->arm_b), a);
+/* Whom a domain's bodies meet: spheres of the near list within the range, then contacts that are
+   kept: of bodies that are no spheres, and with walls. */
+static void demi_impulses_meet(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    const demi_kept *now = demi_kept_of(w, d);
+    const size_t stride = (size_t)w->near.stride;
+    demi_solver *s = &w->solver;
+    demi_meeting *m = s->meetings + s->meeting_first[d];
+    int p, e, i;
+    for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+        const size_t at = (size_t)d*stride + (size_t)p;
+        const int a = w->near.a[at], b = w->near.b[at];
+        dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
+        const dem_vec3 way = demi_near_way(w, at);
+        const dem_real l2 = demi_dot(way, way), radii = w->bodies.pos[4*a + 3] +
+            w->bodies.pos[4*b + 3], most = radii + demi_range(w, radii);
+        if (l2 > 0 && l2 <= most*most && s->movers[a].inv + s->movers[b].inv > 0) {
+            m->a = a;
+            m->b = b;
+            m++->home = p;
+        } else for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*stride] = 0;
+    }
+    for (i = 0; i < domain->kept_next; i++) {
+        demi_kept *k = w->kept_next + w->kept_first[d] + i;
+        demi_kept_recall(w, now, k);
+        k->force = demi_v(0, 0, 0);
+        if (demi_kept_asked(w, k) &&
+            s->movers[k->a].inv + (k->b >= 0 ? s->movers[k->b].inv : 0) > 0) {
+            m->a = k->a;
+            m->b = k->b >= 0 ? k->b : w->bodies.count + w->kept_first[d] + i;
+            m++->home = ~i;
+        } else memset(k->memory, 0, sizeof k->memory);
+    }
+    s->meeting_count[d] = (int)(m - (s->meetings + s->meeting_first[d]));
+}
+/* Gives each meeting the first colour that neither of its bodies has, and its place in the order of
+   colours. The last colour takes what finds none: it is swept by one thread. */
+static void demi_impulses_colour(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const int bodies = w->bodies.count;
+    int at[DEMI_COLOURS], d, i, k;
+    memset(s->begins, 0, sizeof s->begins);
+    for (d = 0; d < w->domain_count; d++)
+        for (i = 0; i < s->meeting_count[d]; i++) {
+            demi_meeting *m = s->meetings + s->meeting_first[d] + i;
+            const int a = s->movers[m->a].inv > 0, b = m->b < bodies && s->movers[m->b].inv > 0;
+            const uint64_t taken = (a ? s->colours[m->a] : 0) | (b ? s->colours[m->b] : 0);
+            for (k = 0; k < DEMI_COLOURS - 1 && taken >> k & 1; k++) continue;
+            m->at = k;
+            if (a) s->colours[m->a] |= UINT64_C(1) << k;
+            if (b) s->colours[m->b] |= UINT64_C(1) << k;
+            s->begins[k + 1]++;
+        }
+    for (k = 0; k < DEMI_COLOURS; k++) {
+        s->begins[k + 1] += s->begins[k];
+        at[k] = s->begins[k];
+    }
+    s->count = s->begins[DEMI_COLOURS];
+    for (d = 0; d < w->domain_count; d++)
+        for (i = 0; i < s->meeting_count[d]; i++) {
+            demi_meeting *m = s->meetings + s->meeting_first[d] + i;
+            m->at = at[m->at]++;
+        }
 }
 /* A unit vector across n (unit): [DUF17]. */
 DEM_INLINE dem_vec3 demi_across(dem_vec3 n) {
     const dem_real s = n.z < 0 ? DEM_R(-1) : DEM_R(1), a = -1/(s + n.z);
     return demi_v(1 + s*n.x*n.x*a, s*n.x*n.y*a, -s*n.x);
 }
-/* Adds what one body gives to gn, gt, gr. Sizes across the normal: the largest there is. */
-static void demi_impulse_give(const dem_world *w, demi_impulse *c, int body, dem_vec3 arm) {
-    const demi_solver *s = &w->solver;
-    const int shaped = w->bodies.shaped > 0;
-    const dem_vec3 n = c->normal, t = demi_across(n), u = demi_cross(n, t);
+/* What impulses bring at a contact. */
+typedef struct demi_brings { dem_real n, t, roll, spin; } demi_brings;
+/* Adds what they do to one body of any shape. Sizes across the normal: the largest there is. */
+static void demi_brings_add(const demi_solver *s, demi_brings *g, int body, dem_vec3 n,
+                            dem_vec3 arm) {
+    const dem_vec3 t = demi_across(n), u = demi_cross(n, t);
     const dem_vec3 an = demi_cross(arm, n), at = demi_cross(arm, t), au = demi_cross(arm, u);
-    const dem_vec3 it = demi_mover_turn(s, body, at, shaped);
-    const dem_vec3 iu = demi_mover_turn(s, body, au, shaped);
+    const dem_vec3 it = demi_mover_turn(s, body, at, 1), iu = demi_mover_turn(s, body, au, 1);
+    const dem_vec3 rt = demi_mover_turn(s, body, t, 1), ru = demi_mover_turn(s, body, u, 1);
     const dem_real tt = demi_dot(at, it), uu = demi_dot(au, iu), tu = demi_dot(at, iu);
     const dem_real mean = (tt + uu)/2, half = (tt - uu)/2;
-    const dem_vec3 rt = demi_mover_turn(s, body, t, shaped);
-    const dem_vec3 ru = demi_mover_turn(s, body, u, shaped);
-    c->gn += s->movers[body].inv + demi_dot(an, demi_mover_turn(s, body, an, shaped));
-    c->gt += s->movers[body].inv + mean + DEMI_SQRT(half*half + tu*tu);
-    c->gr += DEMI_MAX(demi_dot(t, rt), demi_dot(u, ru));
+    if (!(s->movers[body].inv > 0)) return;
+    g->n += s->movers[body].inv + demi_dot(an, demi_mover_turn(s, body, an, 1));
+    g->t += s->movers[body].inv + mean + DEMI_SQRT(half*half + tu*tu);
+    g->roll += DEMI_MAX(demi_dot(t, rt), demi_dot(u, ru));
+    g->spin += demi_dot(n, demi_mover_turn(s, body, n, 1));
 }
-/* What is the same for all kinds: materials, masses, what the normal velocity has to be. */
-static void demi_impulse_finish(dem_world *w, demi_impulse *c, int material, const dem_real *memory,
-                                size_t stride, dem_real r_eff) {
-    const int own = w->bodies.material[c->a] - 1;
-    const dem_pair *pair = &w->pairs[own*DEMI_MATERIALS + material].given;
-    const dem_real dt = w->solver.dt, rest = (dem_real)demi_length(w->desc.gravity)*dt;
-    dem_real closing;
-    c->material = material;
-    c->mu = pair->friction;
-    c->rolling = pair->rolling_friction*r_eff;
-    c->before = demi_impulse_before(w, c);
-    closing = demi_dot(c->before, c->normal);
-    c->bias = DEMI_MAX(c->gap, 0)/dt;
-    if (pair->restitution > 0 && closing < -rest && c->gap + closing*dt <= 0)
-        c->bias = pair->restitution*closing;
-    c->gn = c->gt = c->gr = c->lift = 0;
-    demi_impulse_give(w, c, c->a, c->arm_a);
-    if (c->b >= 0) demi_impulse_give(w, c, c->b, c->arm_b);
-    c->slip = demi_v(memory[0]*dt, memory[stride]*dt, memory[2*stride]*dt);
-    c->roll = demi_v(memory[3*stride]*dt, memory[4*stride]*dt, memory[5*stride]*dt);
-    c->push = memory[6*stride]*dt;
-    /* normals have turned since */
-    c->slip = demi_sub(c->slip, demi_scale(c->normal, demi_dot(c->slip, c->normal)));
-    c->roll = demi_sub(c->roll, demi_scale(c->normal, demi_dot(c->roll, c->normal)));
+/* Velocity of b relative to a where they meet, as bodies have it before the step. */
+static dem_vec3 demi_impulse_before(const dem_world *w, const demi_meeting *m, dem_vec3 arm_a,
+                                    dem_vec3 arm_b) {
+    const dem_vec3 a = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, arm_a);
+    return demi_sub(m->b < w->bodies.count
+                    ? demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, arm_b)
+                    : demi_at(w->solver.movers[m->b].v), a);
 }
-/* Bodies that stand still are as walls: a is one that moves. What a and b are changes places. */
-static void demi_impulse_stand(const dem_world *w, demi_impulse *c) {
-    c->fixed = -1;
-    if (c->b >= 0 && w->solver.movers[c->a].inv <= 0) {
-        const dem_vec3 arm = c->arm_a;
-        const int32_t a = c->a;
-        c->a = c->b; c->b = a;
-        c->arm_a = c->arm_b; c->arm_b = arm;
-        c->normal = demi_scale(c->normal, -1);
-        c->kept |= 2;                           /* remembered the other way about */
+/* Geometry of a meeting, from either list. */
+typedef struct demi_spot {
+    dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m */
+    dem_real gap, r_eff, size;     /* m; size: what gaps are compared with */
+    int material;                  /* index, of b or the wall */
+    const dem_real *memory;
+    size_t stride;
+} demi_spot;
+static demi_spot demi_meeting_place(const dem_world *w, int d, const demi_meeting *m) {
+    demi_spot o;
+    if (m->home >= 0) {
+        const size_t stride = (size_t)w->near.stride;
+        const dem_vec3 way = demi_near_way(w, (size_t)d*stride + (size_t)m->home);
+        const dem_real ra = w->bodies.pos[4*m->a + 3], rb = w->bodies.pos[4*m->b + 3];
+        const dem_real l = demi_length(way);
+        o.normal = demi_scale(way, 1/l);
+        o.gap = l - ra - rb;
+        o.arm_a = demi_scale(o.normal, ra + o.gap/2);
+        o.arm_b = demi_scale(o.normal, -(rb + o.gap/2));
+        o.r_eff = ra*rb/(ra + rb);
+        o.size = DEMI_MIN(ra, rb);
+        o.material = w->bodies.material[m->b] - 1;
+        o.memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + m->home;
+        o.stride = stride;
+    } else {
+        const demi_kept *k = w->kept_next + w->kept_first[d] + ~m->home;
+        o.normal = k->normal;
+        o.gap = -k->overlap;
+        o.arm_a = k->arm_a;
+        o.arm_b = k->arm_b;
+        o.r_eff = k->r_eff;
+        o.size = w->bodies.pos[4*k->a + 3];
+        o.material = k->b < 0 ? w->walls[k->wall].material : w->bodies.material[k->b] - 1;
+        o.memory = k->memory;
+        o.stride = 1;
     }
-    if (c->b < 0 || w->solver.movers[c->b].inv > 0) return;
-    c->surface = demi_velocity_at(w->bodies.vel, w->bodies.spin, c->b, c->arm_b);
-    c->turning = demi_at(w->bodies.spin + 4*c->b);
-    c->fixed = c->b;
-    c->b = -1;
+    return o;
 }
-/* Spheres of the near list that are within the range. */
-static void demi_impulses_near(dem_world *w, int d) {
-    const demi_domain *domain = &w->domains[d];
-    const size_t stride = (size_t)w->near.stride;
-    demi_solver *s = &w->solver;
-    int p;
-    for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
-        const size_t at = (size_t)d*stride + (size_t)p;
-        const int a = w->near.a[at], b = w->near.b[at];
-        const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
-        dem_real *memory = w->near.memory + (size_t)d*DEMI_IMPULSE_REALS*stride + p;
-        const dem_vec3 way = demi_near_way(w, at);
-        const dem_real l = demi_length(way), gap = l - x[3] - y[3];
-        demi_impulse *c = s->contacts + s->count;
-        int e, other;
-        if (gap > demi_range(w, x[3] + y[3]) || (s->movers[a].inv <= 0 && s->movers[b].inv <= 0) ||
-            !(l > 0)) {
-            for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*stride] = 0;
-            continue;
-        }
-        memset(c, 0, sizeof *c);
-        c->a = a; c->b = b;
-        c->home = p; c->domain = d; c->wall = -1;
-        c->normal = demi_scale(way, 1/l);
-        c->gap = gap;
-        c->arm_a = demi_scale(c->normal, x[3] + gap/2);
-        c->arm_b = demi_scale(c->normal, -(y[3] + gap/2));
-        demi_impulse_stand(w, c);
-        other = w->bodies.material[c->b >= 0 ? c->b : c->fixed] - 1;
-        demi_impulse_finish(w, c, other, memory, stride, x[3]*y[3]/(x[3] + y[3]));
-        if (c->kept & 2) { c->slip = demi_scale(c->slip, -1); c->roll = demi_scale(c->roll, -1); }
-        w->domains[d].overlap = DEMI_MAX(w->domains[d].overlap,
-                                         (double)(-gap/DEMI_MIN(x[3], y[3])));
-        s->count++;
-    }
+/* The surface of a wall, as a mover. */
+static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover *m) {
+    const demi_wall *wall = &w->walls[k->wall];
+    const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
+    memset(m, 0, sizeof *m);
+    demi_put(m->v, demi_surface_at(&wall->pose, demi_add(x, k->arm_a)));
+    demi_put(m->w, wall->pose.spin);
 }
-/* Contacts that are kept: of bodies that are no spheres, and with walls. */
-static void demi_impulses_kept(dem_world *w, int d) {
+/* The second half of a domain's meetings: all that sweeps need. What is remembered is for turned
+   normals: friction stays across them. Cohesion holds what touches, and what it has held up to a
+   gap of a thousandth of the radius. */
+static void demi_impulses_lay(dem_world *w, int d) {
+    const demi_solver *s = &w->solver;
+    const dem_real dt = s->dt, rest = (dem_real)demi_length(w->desc.gravity)*dt;
+    const int shaped = w->bodies.shaped > 0;
     demi_domain *domain = &w->domains[d];
-    const demi_kept *now = demi_kept_of(w, d);
-    demi_solver *s = &w->solver;
     int i;
-    domain->kept_walls = 0;
-    for (i = 0; i < domain->kept_next; i++) {
-        demi_kept *k = w->kept_next + w->kept_first[d] + i;
-        demi_impulse *c = s->contacts + s->count;
-        demi_kept_recall(w, now, k);
-        k->force = demi_v(0, 0, 0);
-        if (!demi_kept_asked(w, k) || (k->b >= 0 && s->movers[k->b].inv <= 0 &&
-                                       s->movers[k->a].inv <= 0) ||
-            (k->b < 0 && s->movers[k->a].inv <= 0)) {
-            memset(k->memory, 0, sizeof k->memory);
-            continue;
+    for (i = 0; i < s->meeting_count[d]; i++) {
+        const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
+        const demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
+        const demi_spot o = demi_meeting_place(w, d, m);
+        const dem_pair *pair = &w->pairs[(w->bodies.material[m->a] - 1)*DEMI_MATERIALS +
+                                         o.material].given;
+        const dem_real *y = o.memory;
+        demi_impulse *c = s->contacts + m->at;
+        demi_beside *beside = s->beside + m->at;
+        demi_brings g = {0, 0, 0, 0};
+        dem_vec3 slip = demi_v(y[0], y[o.stride], y[2*o.stride]);
+        dem_real closing;
+        if (k && k->b < 0) demi_surface_lay(w, k, s->movers + m->b);
+        if (shaped) {
+            s->arms[2*m->at] = o.arm_a;
+            s->arms[2*m->at + 1] = o.arm_b;
+            demi_brings_add(s, &g, m->a, o.normal, o.arm_a);
+            if (m->b < w->bodies.count) demi_brings_add(s, &g, m->b, o.normal, o.arm_b);
+        } else {
+            const demi_mover *a = s->movers + m->a, *b = s->movers + m->b;
+            c->reach_a = demi_dot(o.arm_a, o.normal);
+            c->reach_b = m->b < w->bodies.count ? -demi_dot(o.arm_b, o.normal) : 0;
+            g.n = a->inv + b->inv;
+            g.roll = g.spin = a->inv_inertia + b->inv_inertia;
+            g.t = g.n + c->reach_a*c->reach_a*a->inv_inertia + c->reach_b*c->reach_b*b->inv_inertia;
         }
-        memset(c, 0, sizeof *c);
-        c->a = k->a; c->b = k->b;
-        c->home = i; c->domain = d; c->kept = 1;
-        c->wall = k->b < 0 ? k->wall : -1;
-        c->normal = k->normal;
-        c->gap = -k->overlap;
-        c->arm_a = k->arm_a;
-        c->arm_b = k->arm_b;
-        if (k->b < 0) {
-            const demi_wall *wall = &w->walls[k->wall];
-            const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
-            c->surface = demi_surface_at(&wall->pose, demi_add(x, k->arm_a));
-            c->turning = wall->pose.spin;
+        c->a = m->a;
+        c->b = m->b;
+        c->normal = o.normal;
+        c->mu = pair->friction;
+        c->gn = g.n;
+        c->gt = g.t;
+        c->per_n = 1/(g.n + pair->compliance/(dt*dt));
+        c->per_t = 1/g.t;
+        c->push = y[6*o.stride]*dt;
+        c->slip = demi_scale(demi_sub(slip, demi_scale(o.normal, demi_dot(slip, o.normal))), dt);
+        closing = demi_dot(demi_impulse_before(w, m, o.arm_a, o.arm_b), o.normal);
+        c->bias = (pair->compliance > 0 ? o.gap : DEMI_MAX(o.gap, 0))/dt;
+        if (pair->restitution > 0 && closing < -rest && o.gap + closing*dt <= 0)
+            c->bias = pair->restitution*closing;
+        beside->gap = pair->compliance > 0 ? DEMI_MAX(o.gap, 0) : o.gap;
+        beside->lift = 0;
+        beside->mass = 1/(s->movers[m->a].inv + s->movers[m->b].inv);
+        beside->pull = o.gap <= 0 || (c->push > 0 && o.gap < DEM_R(1e-3)*o.size)
+            ? pair->cohesion*dt : 0;
+        if (s->twisted) {
+            demi_twist *t = s->twists + m->at;
+            t->moment = demi_scale(demi_v(y[3*o.stride], y[4*o.stride], y[5*o.stride]), dt);
+            t->per_roll = 1/g.roll;
+            t->per_spin = 1/g.spin;
+            t->roll = pair->rolling_friction*o.r_eff;
+            t->spin = pair->spinning_friction*o.r_eff;
         }
-        demi_impulse_stand(w, c);
-        demi_impulse_finish(w, c, c->wall >= 0 ? w->walls[c->wall].material
-                            : w->bodies.material[c->b >= 0 ? c->b : c->fixed] - 1, k->memory, 1,
-                            k->r_eff);
-        if (c->kept & 2) { c->slip = demi_scale(c->slip, -1); c->roll = demi_scale(c->roll, -1); }
-        domain->overlap = DEMI_MAX(domain->overlap, (double)k->deep);
-        s->count++;
+        domain->overlap = DEMI_MAX(domain->overlap, k ? (double)k->deep : (double)(-o.gap/o.size));
     }
 }
-/* Gives each contact the first colour that neither of its bodies has, and sorts by colour. The last
-   one takes what finds none: it is swept by one thread. */
-static void demi_impulses_colour(dem_world *w) {
-    demi_solver *s = &w->solver;
-    int at[DEMI_COLOURS], i, k;
-    memset(s->begins, 0, sizeof s->begins);
-    for (i = 0; i < s->count; i++) {
-        demi_impulse *c = s->contacts + i;
-        const uint64_t taken = s->colours[c->a] | (c->b < 0 ? 0 : s->colours[c->b]);
-        for (k = 0; k < DEMI_COLOURS - 1 && taken >> k & 1; k++) continue;
-        c->colour = k;
-        s->colours[c->a] |= UINT64_C(1) << k;
-        if (c->b >= 0) s->colours[c->b] |= UINT64_C(1) << k;
-        s->begins[k + 1]++;
+
+/* ---------------------------------------------------------------------------------------------
+   >>solvers
+   Impulses for what >>impulses has laid down. Velocities stand in movers; what a solver changes in
+   an impulse it applies to both bodies. How far a contact is from being solved is told by the step
+   that would solve it alone, in m/s (the natural map in the metric of its inverse mass).
+     Gauss-Seidel   contact after contact, each solved exactly in its own metric: [JEA99], and for
+                    the convex cone [TAS10] with its projection in that metric (a cone again, with
+                    mu sqrt(gt/gn)).
+     Jacobi         all at once, each taking a part of its step as small as its bodies have
+                    contacts [TON12]. For comparison: six to twelve times the sweeps.
+     APGD           Nesterov's gradients with restarts [MAZ15]; one product of N = D' M^-1 D with
+                    impulses in each sweep, since products of sums are sums of products.
+     Spectral       gradients with steps of Barzilai and Borwein [BIR00] [HEY13], shortened to the
+                    exact minimum along each way.
+   The last two minimise over the convex cone. Coulomb's law is that cone with mu |ut| added to the
+   normal velocity (de Saxce): it is added anew every few sweeps, until it stays.
+   >>add-solver: a row in demi_solvers and a constant in dem_solver.
+   --------------------------------------------------------------------------------------------- */
+
+/* Velocity of b relative to a where they meet. */
+DEM_INLINE dem_vec3 demi_impulse_velocity(const demi_solver *s, const demi_impulse *c, int shaped) {
+    const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
+    const dem_vec3 wa = demi_at(a->w), wb = demi_at(b->w);
+    const dem_vec3 v = demi_sub(demi_at(b->v), demi_at(a->v));
+    if (shaped) {
+        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
+        const dem_vec3 vb = b->inv > 0 ? demi_add(v, demi_cross(wb, arms[1])) : v;
+        return demi_sub(vb, demi_cross(wa, arms[0]));
     }
-    for (k = 0; k < DEMI_COLOURS; k++) {
-        s->begins[k + 1] += s->begins[k];
-        at[k] = s->begins[k];
-    }
-    for (i = 0; i < s->count; i++) s->order[at[s->contacts[i].colour]++] = i;
+    return demi_sub(v, demi_cross(demi_add(demi_scale(wa, c->reach_a), demi_scale(wb, c->reach_b)),
+                                  c->normal));
 }
-DEM_INLINE dem_vec3 demi_mover_at(const demi_mover *m, dem_vec3 arm) {
-    return demi_add(demi_at(m->v), demi_cross(demi_at(m->w), arm));
-}
-/* Body gets an impulse p at arm, and a moment. */
-DEM_INLINE void demi_mover_push(const demi_solver *s, int body, dem_vec3 arm, dem_vec3 p,
-                                dem_vec3 moment, int shaped) {
-    demi_mover *m = s->movers + body;
-    const dem_vec3 w = demi_mover_turn(s, body, demi_add(demi_cross(arm, p), moment), shaped);
+/* A mover gets a change of momentum, and of angular momentum. */
+DEM_INLINE void demi_mover_push(const demi_solver *s, int mover, dem_vec3 p, dem_vec3 l,
+                                int shaped) {
+    demi_mover *m = s->movers + mover;
+    dem_vec3 w;
+    if (!(m->inv > 0)) return;
+    w = demi_mover_turn(s, mover, l, shaped);
     m->v[0] += p.x*m->inv; m->v[1] += p.y*m->inv; m->v[2] += p.z*m->inv;
     m->w[0] += w.x; m->w[1] += w.y; m->w[2] += w.z;
 }
-/* Both bodies of c get an impulse (on b; on a the opposite), and a moment. */
+/* Both bodies get an impulse p: b this, a the opposite. */
 DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, dem_vec3 p,
-                                   dem_vec3 moment, int shaped) {
-    demi_mover_push(s, c->a, c->arm_a, demi_scale(p, -1), demi_scale(moment, -1), shaped);
-    if (c->b >= 0) demi_mover_push(s, c->b, c->arm_b, p, moment, shaped);
+                                   int shaped) {
+    if (shaped) {
+        const dem_vec3 *arms = s->arms + 2*(c - s->contacts);
+        demi_mover_push(s, c->a, demi_scale(p, -1), demi_cross(p, arms[0]), 1);
+        demi_mover_push(s, c->b, p, demi_cross(arms[1], p), 1);
+    } else {
+        const dem_vec3 l = demi_cross(p, c->normal);
+        demi_mover_push(s, c->a, demi_scale(p, -1), demi_scale(l, c->reach_a), 0);
+        demi_mover_push(s, c->b, p, demi_scale(l, c->reach_b), 0);
+    }
 }
 /* What is left of a vector of this size when it may be `most` long. */
 DEM_INLINE dem_vec3 demi_impulse_cap(dem_vec3 t, dem_real most) {
     const dem_real l2 = demi_dot(t, t);
     return l2 > most*most ? demi_scale(t, most/DEMI_SQRT(l2)) : t;
 }
-/* Solves one contact for the velocities there are. Answers by how much it changed, m/s. Coulomb:
-   push first, then friction within what it allows. Convex: the nearest point of the cone, in the
-   metric of gn and gt, where it is round again with mu' = mu sqrt(gt/gn). */
-DEM_INLINE dem_real demi_impulse_solve(const demi_solver *s, demi_impulse *c, int convex,
-                                       int shaped) {
-    const dem_vec3 n = c->normal;
-    const dem_vec3 vb = c->b < 0 ? c->surface : demi_mover_at(s->movers + c->b, c->arm_b);
-    const dem_vec3 u = demi_sub(vb, demi_mover_at(s->movers + c->a, c->arm_a));
-    const dem_real un = demi_dot(u, n);
-    const dem_vec3 ut = demi_sub(u, demi_scale(n, un));
-    dem_vec3 t = demi_sub(c->slip, demi_scale(ut, 1/c->gt)), dt, dr = demi_v(0, 0, 0);
-    dem_real push = c->push - (un + c->bias)/c->gn, dp;
+/* The impulse allowed that is nearest to this one. Coulomb: push first, then friction within what
+   it allows. Convex: in the metric of gn and gt. */
+DEM_INLINE void demi_impulse_bound(const demi_impulse *c, dem_real *push, dem_vec3 *slip,
+                                   int convex) {
     if (convex && c->mu > 0) {
-        const dem_real a = DEMI_SQRT(c->gt/c->gn), mu = c->mu*a, size = a*demi_length(t);
-        if (size > mu*push) {
-            const dem_real p = mu*size <= -push ? 0 : (push + mu*size)/(1 + mu*mu);
-            push = DEMI_MAX(p, 0);
-            t = demi_scale(t, mu*push/(size + DEMI_TINY));
+        const dem_real a = DEMI_SQRT(c->gt/c->gn), mu = c->mu*a, size = a*demi_length(*slip);
+        if (size > mu**push) {
+            const dem_real p = mu*size <= -*push ? 0 : (*push + mu*size)/(1 + mu*mu);
+            *push = DEMI_MAX(p, 0);
+            *slip = demi_scale(*slip, mu**push/(size + DEMI_TINY));
         }
     } else {
-        push = DEMI_MAX(push, 0);
-        t = demi_impulse_cap(t, c->mu*push);
+        *push = DEMI_MAX(*push, 0);
+        *slip = demi_impulse_cap(*slip, c->mu**push);
     }
-    dp = push - c->push;
-    dt = demi_sub(t, c->slip);
-    if (c->rolling > 0 || demi_dot(c->roll, c->roll) > 0) {
-        const dem_vec3 wb = c->b < 0 ? c->turning : demi_at(s->movers[c->b].w);
-        const dem_vec3 w = demi_sub(wb, demi_at(s->movers[c->a].w));
-        const dem_vec3 wt = demi_sub(w, demi_scale(n, demi_dot(w, n)));
-        const dem_vec3 r = demi_impulse_cap(demi_sub(c->roll, demi_scale(wt, 1/c->gr)),
-                                            c->rolling*push);
-        dr = demi_sub(r, c->roll);
-        c->roll = r;
-    }
-    c->push = push;
-    c->slip = t;
-    demi_impulse_apply(s, c, demi_add(demi_scale(n, dp), dt), dr, shaped);
-    return DEMI_MAX(c->gn*(dp < 0 ? -dp : dp), c->gt*demi_length(dt));
 }
-/* One run of contacts of the colour being swept. */
-static void demi_impulses_sweep(dem_world *w, int index) {
+/* The impulse that solves a contact alone at this velocity; answers the change, squared, m/s. */
+DEM_INLINE dem_real demi_impulse_wanted(const demi_impulse *c, dem_vec3 u, dem_real *push,
+                                        dem_vec3 *slip, int convex) {
+    const dem_real un = demi_dot(u, c->normal);
+    const dem_vec3 ut = demi_sub(u, demi_scale(c->normal, un));
+    dem_real dn;
+    dem_vec3 dt;
+    *push = (c->push*c->gn - (un + c->bias))*c->per_n;
+    *slip = demi_sub(c->slip, demi_scale(ut, c->per_t));
+    demi_impulse_bound(c, push, slip, convex);
+    dn = (*push - c->push)*c->gn;
+    dt = demi_scale(demi_sub(*slip, c->slip), c->gt);
+    return dn*dn + demi_dot(dt, dt);
+}
+/* Rolling and spinning friction of one contact. */
+DEM_INLINE void demi_twist_solve(const demi_solver *s, const demi_impulse *c, int shaped) {
+    demi_twist *t = s->twists + (c - s->contacts);
+    const demi_mover *a = s->movers + c->a, *b = s->movers + c->b;
+    const dem_vec3 n = c->normal, w = demi_sub(demi_at(b->w), demi_at(a->w));
+    const dem_real wn = demi_dot(w, n), mn = demi_dot(t->moment, n), most = t->spin*c->push;
+    const dem_vec3 wt = demi_sub(w, demi_scale(n, wn)), mt = demi_sub(t->moment, demi_scale(n, mn));
+    const dem_real spin = DEMI_MAX(-most, DEMI_MIN(most, mn - wn*t->per_spin));
+    const dem_vec3 roll = demi_impulse_cap(demi_sub(mt, demi_scale(wt, t->per_roll)),
+                                           t->roll*c->push);
+    const dem_vec3 moment = demi_add(roll, demi_scale(n, spin)), by = demi_sub(moment, t->moment);
+    t->moment = moment;
+    demi_mover_push(s, c->a, demi_v(0, 0, 0), demi_scale(by, -1), shaped);
+    demi_mover_push(s, c->b, demi_v(0, 0, 0), by, shaped);
+}
+/* Sums of one run of contacts: the farthest from being solved (its square), the squares of all; two
+   more that solvers need. */
+typedef struct demi_run_sums { dem_real worst, squares, first, second; } demi_run_sums;
+DEM_INLINE void demi_sums_add(demi_run_sums *o, dem_real change2) {
+    o->worst = DEMI_MAX(o->worst, change2);
+    o->squares += change2;
+}
+/* Contacts of one run in the colour being swept (of all, when `first` and `last` are those). */
+static void demi_run_bounds(const demi_solver *s, int index, int *begin, int *end) {
+    *begin = s->first + index*DEMI_SWEEP_RUN;
+    *end = DEMI_MIN(*begin + DEMI_SWEEP_RUN, s->last);
+}
+/* Every colour once: the task over its runs. */
+static void demi_colours_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
-    const int begin = s->first + index*DEMI_SWEEP_RUN;
-    const int end = DEMI_MIN(begin + DEMI_SWEEP_RUN, s->last);
-    const int convex = w->desc.cone == DEM_CONE_CONVEX, shaped = w->bodies.shaped > 0;
-    dem_real worst = 0;
-    int i;
-    for (i = begin; i < end; i++) {
-        demi_impulse *c = s->contacts + s->order[i];
-        const dem_real changed = shaped ? demi_impulse_solve(s, c, convex, 1)
-            : demi_impulse_solve(s, c, convex, 0);
-        worst = DEMI_MAX(worst, changed);
+    int k;
+    s->run = 0;
+    for (k = 0; k < DEMI_COLOURS && s->begins[k] < s->count; k++) {
+        const int n = s->begins[k + 1] - s->begins[k];
+        const int runs = (n + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
+        s->first = s->begins[k];
+        s->last = s->begins[k + 1];
+        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->desc.threads, runs, task);
+        s->run += runs;
     }
-    s->worst[index] = DEMI_MAX(s->worst[index], (double)worst);
+}
+/* All contacts, whatever their colour: tasks that change no body. */
+static void demi_runs_all(dem_world *w, demi_task task) {
+    demi_solver *s = &w->solver;
+    s->first = s->run = 0;
+    s->last = s->count;
+    demi_parallel(w, w->desc.threads, (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, task);
+    s->run = (s->count + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
+}
+/* Sums over the runs of the last round, in their order. */
+static demi_run_sums demi_runs_sum(const demi_solver *s) {
+    demi_run_sums all = {0, 0, 0, 0};
+    int i;
+    for (i = 0; i < s->run; i++) {
+        all.worst = DEMI_MAX(all.worst, s->runs[i].worst);
+        all.squares += s->runs[i].squares;
+        all.first += s->runs[i].first;
+        all.second += s->runs[i].second;
+    }
+    return all;
 }
 /* Begins with what is remembered. */
 static void demi_impulses_warm(dem_world *w, int index) {
     demi_solver *s = &w->solver;
-    const int begin = s->first + index*DEMI_SWEEP_RUN;
-    const int end = DEMI_MIN(begin + DEMI_SWEEP_RUN, s->last);
-    int i;
-    for (i = begin; i < end; i++) {
-        const demi_impulse *c = s->contacts + s->order[i];
-        demi_impulse_apply(s, c, demi_add(demi_scale(c->normal, c->push), c->slip), c->roll,
-                           w->bodies.shaped > 0);
+    const int shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_real push = c->push - s->beside[i].pull;
+        demi_impulse_apply(s, c, demi_add(demi_scale(c->normal, push), c->slip), shaped);
+        if (!s->twisted) continue;
+        demi_mover_push(s, c->a, demi_v(0, 0, 0), demi_scale(s->twists[i].moment, -1), shaped);
+        demi_mover_push(s, c->b, demi_v(0, 0, 0), s->twists[i].moment, shaped);
     }
+}
+
+/* --- Gauss-Seidel --- */
+
+#define DEMI_SEIDEL(NAME, CONVEX, SHAPED) \
+    static void NAME(dem_world *w, int index) { \
+        demi_solver *s = &w->solver; \
+        demi_run_sums sums = {0, 0, 0, 0}; \
+        int i, end; \
+        for (demi_run_bounds(s, index, &i, &end); i < end; i++) { \
+            demi_impulse *c = s->contacts + i; \
+            dem_real push; \
+            dem_vec3 slip, by; \
+            demi_sums_add(&sums, demi_impulse_wanted(c, demi_impulse_velocity(s, c, SHAPED), \
+                                                     &push, &slip, CONVEX)); \
+            by = demi_add(demi_scale(c->normal, push - c->push), demi_sub(slip, c->slip)); \
+            c->push = push; \
+            c->slip = slip; \
+            demi_impulse_apply(s, c, by, SHAPED); \
+            if (s->twisted) demi_twist_solve(s, c, SHAPED); \
+        } \
+        s->runs[s->run + index] = sums; \
+    }
+DEMI_SEIDEL(demi_seidel_spheres, 0, 0)
+DEMI_SEIDEL(demi_seidel_spheres_convex, 1, 0)
+DEMI_SEIDEL(demi_seidel_shapes, 0, 1)
+DEMI_SEIDEL(demi_seidel_shapes_convex, 1, 1)
+#undef DEMI_SEIDEL
+/* How a solver went on: sweeps, and what the last left. */
+typedef struct demi_solved { int sweeps; double worst, squares; } demi_solved;
+static demi_solved demi_solve_seidel(dem_world *w, int most, double enough) {
+    const demi_task kinds[4] = {demi_seidel_spheres, demi_seidel_spheres_convex,
+                                demi_seidel_shapes, demi_seidel_shapes_convex};
+    const demi_task task = kinds[(w->desc.cone == DEM_CONE_CONVEX) + 2*(w->bodies.shaped > 0)];
+    demi_solved o = {0, 0, 0};
+    do {
+        demi_run_sums sums;
+        demi_colours_all(w, task);
+        sums = demi_runs_sum(&w->solver);
+        o.worst = sqrt((double)sums.worst);
+        o.squares = (double)sums.squares;
+    } while (++o.sweeps < most && o.worst > enough);
+    return o;
+}
+
+/* --- Jacobi --- */
+
+/* What each contact would change, at the same velocities, and the part of it that it may. */
+static void demi_jacobi_look(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int convex = w->desc.cone == DEM_CONE_CONVEX, shaped = w->bodies.shaped > 0;
+    demi_run_sums sums = {0, 0, 0, 0};
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        const dem_real ia = s->movers[c->a].inv, ib = s->movers[c->b].inv;
+        const dem_real ka = ia > 0 ? (dem_real)s->degrees[c->a] : 0;
+        const dem_real kb = ib > 0 ? (dem_real)s->degrees[c->b] : 0;
+        const dem_real part = DEMI_MIN(1, DEM_R(1.5)*(ia + ib)/(ka*ia + kb*ib));
+        dem_real push;
+        dem_vec3 slip;
+        demi_sums_add(&sums, demi_impulse_wanted(c, demi_impulse_velocity(s, c, shaped), &push,
+                                                 &slip, convex));
+        push = part*(push - c->push);
+        slip = demi_scale(demi_sub(slip, c->slip), part);
+        s->vectors[i] = demi_add(demi_scale(c->normal, push), slip);
+        c->push += push;
+        c->slip = demi_add(c->slip, slip);
+    }
+    s->runs[index] = sums;
+}
+/* Applies the vectors of a run. */
+static void demi_vectors_apply(dem_world *w, int index) {
+    const demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++)
+        demi_impulse_apply(s, s->contacts + i, s->vectors[i], shaped);
+}
+static demi_solved demi_solve_jacobi(dem_world *w, int most, double enough) {
+    demi_solver *s = &w->solver;
+    demi_solved o = {0, 0, 0};
+    int i;
+    memset(s->degrees, 0, (size_t)w->bodies.count*sizeof *s->degrees);
+    for (i = 0; i < s->count; i++) {
+        s->degrees[s->contacts[i].a]++;
+        if (s->contacts[i].b < w->bodies.count) s->degrees[s->contacts[i].b]++;
+    }
+    do {
+        demi_run_sums sums;
+        demi_runs_all(w, demi_jacobi_look);
+        sums = demi_runs_sum(s);
+        o.worst = sqrt((double)sums.worst);
+        o.squares = (double)sums.squares;
+        demi_colours_all(w, demi_vectors_apply);
+    } while (++o.sweeps < most && o.worst > enough);
+    return o;
+}
+
+/* --- gradients --- */
+
+/* Columns of vectors: a change to be applied; impulses and contacts' velocities at the point left
+   and at the one where the gradient is looked at; what the change brings; where it began. */
+enum { DEMI_BY, DEMI_X, DEMI_UX, DEMI_Y, DEMI_UY, DEMI_BROUGHT, DEMI_BEGAN, DEMI_GIVEN };
+DEM_INLINE dem_vec3 *demi_vector_at(const demi_solver *s, int column, int i) {
+    return s->vectors + (size_t)column*(size_t)s->count + i;
+}
+DEM_INLINE dem_vec3 demi_impulse_vector(const demi_impulse *c) {
+    return demi_add(demi_scale(c->normal, c->push), c->slip);
+}
+DEM_INLINE void demi_impulse_put(demi_impulse *c, dem_vec3 p) {
+    c->push = demi_dot(p, c->normal);
+    c->slip = demi_sub(p, demi_scale(c->normal, c->push));
+}
+/* Gradient at impulse p where velocity is u. */
+DEM_INLINE dem_vec3 demi_gradient(const demi_impulse *c, dem_vec3 u, dem_vec3 p) {
+    const dem_real soft = 1/c->per_n - c->gn;
+    return demi_add(u, demi_scale(c->normal, c->bias + soft*demi_dot(p, c->normal)));
+}
+/* |x|^2 of an impulse, in the metric of 1/per_n and 1/per_t. */
+DEM_INLINE dem_real demi_impulse_size2(const demi_impulse *c, dem_vec3 p) {
+    const dem_real n = demi_dot(p, c->normal);
+    return n*n/c->per_n + (demi_dot(p, p) - n*n)/c->per_t;
+}
+/* Where a step against the gradient leads, within the cone; p and u: a column, and its velocity. */
+static void demi_gradient_step(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    demi_run_sums sums = {0, 0, 0, 0};
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_vec3 p = *demi_vector_at(s, DEMI_Y, i);
+        const dem_vec3 g = demi_gradient(c, *demi_vector_at(s, DEMI_UY, i), p);
+        const dem_real gn = demi_dot(g, c->normal), pn = demi_dot(p, c->normal);
+        const dem_vec3 gt = demi_sub(g, demi_scale(c->normal, gn));
+        dem_vec3 slip = demi_sub(demi_sub(p, demi_scale(c->normal, pn)),
+                                 demi_scale(gt, s->step*c->per_t));
+        dem_real push = pn - s->step*gn*c->per_n;
+        demi_impulse_bound(c, &push, &slip, 1);
+        *demi_vector_at(s, DEMI_BY, i) = demi_sub(demi_add(demi_scale(c->normal, push), slip), p);
+        sums.first += demi_dot(g, *demi_vector_at(s, DEMI_BY, i));
+    }
+    s->runs[index] = sums;
+}
+/* What the change brings: first: with the change; second: its size; squares: the change's own. */
+static void demi_gradient_brought(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    demi_run_sums sums = {0, 0, 0, 0};
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_vec3 by = *demi_vector_at(s, DEMI_BY, i), u = demi_impulse_velocity(s, c, shaped);
+        const dem_real soft = 1/c->per_n - c->gn;
+        const dem_vec3 all = demi_add(u, demi_scale(c->normal, soft*demi_dot(by, c->normal)));
+        const dem_real n = demi_dot(all, c->normal);
+        *demi_vector_at(s, DEMI_BROUGHT, i) = u;
+        sums.first += demi_dot(by, all);
+        sums.second += n*n*c->per_n + (demi_dot(all, all) - n*n)*c->per_t;
+        sums.squares += demi_impulse_size2(c, by);
+    }
+    s->runs[index] = sums;
+}
+/* The product of the change with N, into DEMI_BROUGHT. */
+static demi_run_sums demi_gradient_product(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const int movers = w->bodies.count + w->kept_first[DEMI_DOMAINS];
+    int i, k;
+    for (i = 0; i < movers; i++)
+        for (k = 0; k < 3; k++) s->movers[i].v[k] = s->movers[i].w[k] = 0;
+    demi_colours_all(w, demi_vectors_apply);
+    demi_runs_all(w, demi_gradient_brought);
+    return demi_runs_sum(s);
+}
+/* Goes `step` of the change from Y; what is left there; first: the gradient left with the way from
+   X. Coulomb's law is asked with the bias as it was given. */
+static void demi_gradient_go(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int convex = w->desc.cone == DEM_CONE_CONVEX;
+    demi_run_sums sums = {0, 0, 0, 0};
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        dem_vec3 *y = demi_vector_at(s, DEMI_Y, i), *uy = demi_vector_at(s, DEMI_UY, i);
+        const dem_vec3 g = demi_gradient(c, *uy, *y);
+        const dem_real bias = c->bias;
+        dem_real push;
+        dem_vec3 slip;
+        *y = demi_add(*y, demi_scale(*demi_vector_at(s, DEMI_BY, i), s->step));
+        *uy = demi_add(*uy, demi_scale(*demi_vector_at(s, DEMI_BROUGHT, i), s->step));
+        demi_impulse_put(c, *y);
+        if (!convex) c->bias = demi_vector_at(s, DEMI_GIVEN, i)->x;
+        demi_sums_add(&sums, demi_impulse_wanted(c, *uy, &push, &slip, convex));
+        c->bias = bias;
+        sums.first += demi_dot(g, demi_sub(*y, *demi_vector_at(s, DEMI_X, i)));
+    }
+    s->runs[index] = sums;
+}
+/* Y becomes X's: on by `step` of the way there was from X. */
+static void demi_gradient_on(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const dem_vec3 y = *demi_vector_at(s, DEMI_Y, i), uy = *demi_vector_at(s, DEMI_UY, i);
+        const dem_vec3 way = demi_sub(y, *demi_vector_at(s, DEMI_X, i));
+        const dem_vec3 gone = demi_sub(uy, *demi_vector_at(s, DEMI_UX, i));
+        *demi_vector_at(s, DEMI_X, i) = y;
+        *demi_vector_at(s, DEMI_UX, i) = uy;
+        *demi_vector_at(s, DEMI_Y, i) = demi_add(y, demi_scale(way, s->step));
+        *demi_vector_at(s, DEMI_UY, i) = demi_add(uy, demi_scale(gone, s->step));
+    }
+}
+/* Coulomb's law: mu |ut| is added to the bias, by the velocities there are. */
+static void demi_gradient_saxce(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        demi_impulse *c = s->contacts + i;
+        const dem_vec3 u = *demi_vector_at(s, DEMI_UY, i);
+        const dem_vec3 ut = demi_sub(u, demi_scale(c->normal, demi_dot(u, c->normal)));
+        c->bias = demi_vector_at(s, DEMI_GIVEN, i)->x + c->mu*demi_length(ut);
+    }
+}
+/* Where gradients begin. */
+static void demi_gradient_begin(dem_world *w, int index) {
+    demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_vec3 p = demi_impulse_vector(c), u = demi_impulse_velocity(s, c, shaped);
+        *demi_vector_at(s, DEMI_X, i) = *demi_vector_at(s, DEMI_Y, i) = p;
+        *demi_vector_at(s, DEMI_UX, i) = *demi_vector_at(s, DEMI_UY, i) = u;
+        *demi_vector_at(s, DEMI_BEGAN, i) = p;
+        *demi_vector_at(s, DEMI_GIVEN, i) = demi_v(c->bias, 0, 0);
+    }
+}
+/* One step of Nesterov's method; theta and L go from step to step. */
+static demi_run_sums demi_step_apgd(dem_world *w, double *theta, double *L) {
+    demi_solver *s = &w->solver;
+    demi_run_sums sums, gone;
+    double next, beta;
+    int tries;
+    for (tries = 0; tries < 60; tries++) {      /* L doubles: in fewer it is past any there is */
+        s->step = (dem_real)(1/ *L);
+        demi_runs_all(w, demi_gradient_step);
+        gone = demi_gradient_product(w);
+        if (!((double)gone.first > *L*(double)gone.squares)) break;
+        *L *= 2;
+    }
+    s->step = 1;
+    demi_runs_all(w, demi_gradient_go);
+    sums = demi_runs_sum(s);
+    next = (-*theta**theta + *theta*sqrt(*theta**theta + 4))/2;
+    beta = *theta*(1 - *theta)/(*theta**theta + next);
+    *theta = sums.first > 0 ? 1 : next;         /* uphill: begin anew */
+    s->step = (dem_real)(sums.first > 0 ? 0 : beta);
+    demi_runs_all(w, demi_gradient_on);
+    *L *= 0.9;
+    return sums;
+}
+/* One step of Barzilai and Borwein's; its length goes from step to step. */
+static demi_run_sums demi_step_spectral(dem_world *w, double *length, double *odd) {
+    demi_solver *s = &w->solver;
+    demi_run_sums gone;
+    double down;
+    s->step = (dem_real)*length;
+    demi_runs_all(w, demi_gradient_step);
+    down = (double)demi_runs_sum(s).first;
+    gone = demi_gradient_product(w);
+    s->step = gone.first > 0 ? (dem_real)DEMI_MIN(1, -down/(double)gone.first) : 1;
+    if (!(s->step > 0)) s->step = 1;
+    demi_runs_all(w, demi_gradient_go);
+    *odd = 1 - *odd;
+    *length = !(gone.first > 0) ? 1 : *odd > 0 ? (double)gone.squares/(double)gone.first
+        : (double)gone.first/(double)gone.second;
+    *length = DEMI_MAX(1e-6, DEMI_MIN(*length, 1e6));
+    return demi_runs_sum(s);
+}
+enum { DEMI_SAXCE = 25 };                       /* steps between two looks at Coulomb's law */
+static demi_solved demi_solve_gradient(dem_world *w, int most, double enough,
+                                       demi_run_sums (*step)(dem_world *w, double *a, double *b)) {
+    demi_solver *s = &w->solver;
+    const size_t movers = (size_t)(w->bodies.count + w->kept_first[DEMI_DOMAINS]);
+    const int coulomb = w->desc.cone == DEM_CONE_COULOMB;
+    demi_solved o = {0, 0, 0};
+    double a = 1, b = 1;
+    int i;
+    memcpy(s->movers + movers, s->movers, movers*sizeof *s->movers);
+    demi_runs_all(w, demi_gradient_begin);
+    do {
+        demi_run_sums sums;
+        if (coulomb && o.sweeps % DEMI_SAXCE == 0) {
+            demi_runs_all(w, demi_gradient_saxce);
+            a = b = 1;
+        }
+        sums = step(w, &a, &b);
+        o.worst = sqrt((double)sums.worst);
+        o.squares = (double)sums.squares;
+    } while (++o.sweeps < most && o.worst > enough);
+    memcpy(s->movers, s->movers + movers, movers*sizeof *s->movers);
+    for (i = 0; i < s->count; i++)
+        *demi_vector_at(s, DEMI_BY, i) = demi_sub(demi_impulse_vector(s->contacts + i),
+                                               *demi_vector_at(s, DEMI_BEGAN, i));
+    demi_colours_all(w, demi_vectors_apply);
+    return o;
+}
+static demi_solved demi_solve_apgd(dem_world *w, int most, double enough) {
+    return demi_solve_gradient(w, most, enough, demi_step_apgd);
+}
+static demi_solved demi_solve_spectral(dem_world *w, int most, double enough) {
+    return demi_solve_gradient(w, most, enough, demi_step_spectral);
+}
+
+/* vectors: columns it needs; moments: does it know rolling and spinning friction? */
+typedef struct demi_solver_row {
+    const char *name;
+    int vectors, moments;
+    demi_solved (*solve)(dem_world *w, int most, double enough);
+} demi_solver_row;
+static const demi_solver_row demi_solvers[] = {
+    {"Gauss-Seidel", 0, 1, demi_solve_seidel},
+    {"Jacobi", 1, 0, demi_solve_jacobi},
+    {"APGD", DEMI_GIVEN + 1, 0, demi_solve_apgd},
+    {"spectral gradients", DEMI_GIVEN + 1, 0, demi_solve_spectral}
+};
+enum { DEMI_SOLVERS = sizeof demi_solvers/sizeof *demi_solvers };
+
+/* ---------------------------------------------------------------------------------------------
+   >>impulses-told
+   What the impulses found do: forces of the step to come, which move bodies, act on walls and stand
+   in files; memory of contacts; losses. And overlaps that are left are undone in part, by places
+   alone.
+   --------------------------------------------------------------------------------------------- */
+
+/* Room for all contacts there may be. 0: memory ran out. */
+static int demi_impulses_room(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const size_t vectors = (size_t)demi_solvers[w->desc.solver].vectors;
+    const size_t bodies = (size_t)w->bodies.count;
+    const size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS];
+    size_t n = 0;
+    int d;
+    if (!demi_impulsive(w)) return 1;
+    for (d = 0; d < w->domain_count; d++) {
+        s->meeting_first[d] = (int)n;
+        n += (size_t)(w->domains[d].near_end + w->domains[d].kept_next);
+    }
+    s->twisted = demi_impulses_twist(w);
+    return DEMI_GROW(w, s->meetings, n) && DEMI_GROW(w, s->contacts, n) &&
+        DEMI_GROW(w, s->beside, n) && DEMI_GROW(w, s->runs, n/DEMI_SWEEP_RUN + DEMI_COLOURS) &&
+        DEMI_GROW(w, s->movers, vectors ? 2*movers : movers) &&
+        DEMI_GROW(w, s->colours, bodies) && DEMI_GROW(w, s->lifts, 4*bodies) &&
+        (!s->twisted || DEMI_GROW(w, s->twists, n)) &&
+        (!vectors || (DEMI_GROW(w, s->vectors, vectors*n) && DEMI_GROW(w, s->degrees, bodies))) &&
+        (!w->bodies.shaped || (DEMI_GROW(w, s->arms, 2*n) && DEMI_GROW(w, s->tensors, 6*bodies)));
 }
 /* Overlaps that are left are undone in part: lifts are velocities that move bodies in this step and
    are forgotten, so that they bring no energy. They move bodies without turning them. */
@@ -13327,31 +13843,21 @@ enum { DEMI_LIFTS = 5 };
 #define DEMI_LIFTED DEM_R(0.2)                  /* of an overlap, per step */
 static void demi_impulses_lift(dem_world *w, int index) {
     demi_solver *s = &w->solver;
-    const int begin = s->first + index*DEMI_SWEEP_RUN;
-    const int end = DEMI_MIN(begin + DEMI_SWEEP_RUN, s->last);
-    int i;
-    for (i = begin; i < end; i++) {
-        demi_impulse *c = s->contacts + s->order[i];
-        const dem_real ia = s->movers[c->a].inv, ib = c->b < 0 ? 0 : s->movers[c->b].inv;
-        const dem_vec3 a = demi_at(s->lifts + 4*c->a), n = c->normal;
-        const dem_vec3 b = c->b < 0 ? demi_v(0, 0, 0) : demi_at(s->lifts + 4*c->b);
-        const dem_real part = c->gap < 0 ? DEMI_LIFTED*c->gap : c->gap;
-        const dem_real want = c->lift - (demi_dot(demi_sub(b, a), n) + part/s->dt)/(ia + ib);
-        const dem_real lift = DEMI_MAX(want, 0), by = lift - c->lift;
-        c->lift = lift;
-        demi_put(s->lifts + 4*c->a, demi_sub(a, demi_scale(n, by*ia)));
-        if (c->b >= 0) demi_put(s->lifts + 4*c->b, demi_add(b, demi_scale(n, by*ib)));
-    }
-}
-/* Every colour once: the task over its runs. */
-static void demi_impulses_all(dem_world *w, demi_task task) {
-    demi_solver *s = &w->solver;
-    int k;
-    for (k = 0; k < DEMI_COLOURS; k++) {
-        s->first = s->begins[k];
-        s->last = s->begins[k + 1];
-        demi_parallel(w, k == DEMI_COLOURS - 1 ? 1 : w->desc.threads,
-                      (s->last - s->first + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN, task);
+    int i, end;
+    for (demi_run_bounds(s, index, &i, &end); i < end; i++) {
+        const demi_impulse *c = s->contacts + i;
+        const dem_real ia = s->movers[c->a].inv, ib = s->movers[c->b].inv;
+        demi_beside *beside = s->beside + i;
+        dem_real *la = s->lifts + 4*c->a, *lb = ib > 0 ? s->lifts + 4*c->b : 0;
+        const dem_vec3 a = ia > 0 ? demi_at(la) : demi_v(0, 0, 0), n = c->normal;
+        const dem_vec3 b = lb ? demi_at(lb) : demi_v(0, 0, 0);
+        const dem_real part = beside->gap < 0 ? DEMI_LIFTED*beside->gap : beside->gap;
+        const dem_real want = beside->lift -
+            (demi_dot(demi_sub(b, a), n) + part/s->dt)*beside->mass;
+        const dem_real lift = DEMI_MAX(want, 0), by = lift - beside->lift;
+        beside->lift = lift;
+        if (ia > 0) demi_put(la, demi_sub(a, demi_scale(n, by*ia)));
+        if (lb) demi_put(lb, demi_add(b, demi_scale(n, by*ib)));
     }
 }
 /* Forces of a domain's bodies: what brings them from what they would do to what they do. */
@@ -13376,60 +13882,85 @@ static void demi_movers_force(dem_world *w, int d) {
                 torque[k] = (m->w[k] - w->bodies.spin[4*i + k])*per/m->inv_inertia;
     }
 }
-/* What contacts have come to: memory, forces on walls and on bodies that stand still, losses: with
-   velocities half of before and half of after, what an impulse takes is exact. */
-static void demi_impulses_tell(dem_world *w) {
+/* What a domain's meetings have come to: memory, forces on walls, losses: with velocities half of
+   before and half of after, what an impulse takes is exact. */
+static void demi_impulses_tell(dem_world *w, int d) {
     demi_solver *s = &w->solver;
+    demi_domain *domain = &w->domains[d];
     const dem_real per = 1/s->dt;
-    double *due = w->booked.due;
+    double *lost = domain->energy;              /* of the step to come */
     int i, e;
-    memset(due, 0, sizeof w->booked.due);
-    for (i = 0; i < w->domain_count; i++) w->domains[i].contacts = 0;
-    for (i = 0; i < s->count; i++) {
-        const demi_impulse *c = s->contacts + i;
-        demi_domain *domain = &w->domains[c->domain];
-        demi_kept *k = c->kept & 1 ? w->kept_next + w->kept_first[c->domain] + c->home : 0;
-        const size_t stride = k ? 1 : (size_t)w->near.stride;
+    domain->contacts = domain->kept_walls = 0;
+    for (i = 0; i < s->meeting_count[d]; i++) {
+        const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
+        const demi_impulse *c = s->contacts + m->at;
+        const demi_spot o = demi_meeting_place(w, d, m);
+        demi_kept *k = m->home < 0 ? w->kept_next + w->kept_first[d] + ~m->home : 0;
         dem_real *memory = k ? k->memory : w->near.memory +
-            (size_t)c->domain*DEMI_IMPULSE_REALS*stride + c->home;
-        const dem_real sign = c->kept & 2 ? -per : per;
-        const int own = w->bodies.material[c->a] - 1;
-        const dem_vec3 p = demi_add(demi_scale(c->normal, c->push), c->slip);
-        const dem_vec3 slip = demi_scale(c->slip, sign), roll = demi_scale(c->roll, sign);
-        const dem_vec3 vb = c->b < 0 ? c->surface : demi_mover_at(s->movers + c->b, c->arm_b);
-        const dem_vec3 after = demi_sub(vb, demi_mover_at(s->movers + c->a, c->arm_a));
-        const dem_vec3 u = demi_scale(demi_add(c->before, after), DEM_R(0.5));
-        const dem_real un = demi_dot(u, c->normal);
-        const dem_real all[DEMI_IMPULSE_REALS] = {slip.x, slip.y, slip.z, roll.x, roll.y, roll.z,
-                                                  c->push*per};
-        for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*stride] = all[e];
-        due[0] -= (double)(c->push*un);
-        due[1] -= (double)demi_dot(c->slip, u);
-        if (demi_dot(c->roll, c->roll) > 0) {
-            const dem_vec3 wb = c->b < 0 ? demi_scale(c->turning, 2)
-                : demi_add(demi_at(s->movers[c->b].w), demi_at(w->bodies.spin + 4*c->b));
-            const dem_vec3 wa = demi_add(demi_at(s->movers[c->a].w),
-                                         demi_at(w->bodies.spin + 4*c->a));
-            due[2] -= (double)demi_dot(c->roll, demi_sub(wb, wa))/2;
+            (size_t)d*DEMI_IMPULSE_REALS*o.stride + m->home;
+        const dem_real push = c->push - s->beside[m->at].pull;
+        const dem_vec3 p = demi_add(demi_scale(c->normal, push), c->slip);
+        const dem_vec3 moment = s->twisted ? s->twists[m->at].moment : demi_v(0, 0, 0);
+        const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
+        const dem_vec3 u = demi_scale(demi_add(demi_impulse_before(w, m, o.arm_a, o.arm_b), after),
+                                      DEM_R(0.5));
+        const dem_real all[DEMI_IMPULSE_REALS] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
+            moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per};
+        for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
+        lost[DEMI_E_DASHPOT] -= (double)demi_dot(demi_sub(p, c->slip), u);
+        lost[DEMI_E_SLIDE] -= (double)demi_dot(c->slip, u);
+        if (s->twisted) {
+            const dem_vec3 wb = demi_add(demi_at(s->movers[m->b].w), m->b < w->bodies.count
+                ? demi_at(w->bodies.spin + 4*m->b) : demi_at(s->movers[m->b].w));
+            const dem_vec3 wa = demi_add(demi_at(s->movers[m->a].w),
+                                         demi_at(w->bodies.spin + 4*m->a));
+            lost[DEMI_E_ROLL] -= (double)demi_dot(moment, demi_sub(wb, wa))/2;
         }
-        if (c->push > 0)
-            domain->met[DEMI_MIN(own, c->material)] |= UINT64_C(1) << DEMI_MAX(own, c->material);
-        if (k) k->force = demi_scale(p, -sign);
-        if (c->wall >= 0) {
-            demi_wall_sum *sum = w->wall_sums + (size_t)c->domain*(size_t)w->wall_count + c->wall;
-            const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), k->shift);
-            const dem_vec3 at = demi_add(x, c->arm_a);
-            demi_wall_sum_add(w, sum, c->wall, at, demi_scale(p, -per), demi_scale(c->roll, -per),
-                              c->surface);
+        if (c->push > 0) {
+            const int own = w->bodies.material[m->a] - 1;
+            domain->met[DEMI_MIN(own, o.material)] |= UINT64_C(1) << DEMI_MAX(own, o.material);
+        }
+        if (k) k->force = demi_scale(p, -per);
+        if (k && k->b < 0) {
+            demi_wall_sum *sum = w->wall_sums + (size_t)d*(size_t)w->wall_count + k->wall;
+            const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*m->a), k->shift);
+            const dem_vec3 at = demi_add(x, k->arm_a);
+            demi_wall_sum_add(w, sum, k->wall, at, demi_scale(p, -per), demi_scale(moment, -per),
+                              demi_at(s->movers[m->b].v));
             sum->contacts += c->push > 0;
             domain->kept_walls += c->push > 0;
         } else domain->contacts += c->push > 0;
-        if (c->fixed >= 0) {
-            demi_force_add(w->bodies.force + 4*c->fixed, demi_scale(p, per));
-            demi_force_add(w->bodies.torque + 4*c->fixed,
-                           demi_scale(demi_add(demi_cross(c->arm_b, p), c->roll), per));
-        }
     }
+}
+/* Bodies that stand still, or go as they are told, feel what acts on them, too. */
+static void demi_impulses_fixed(dem_world *w) {
+    const demi_solver *s = &w->solver;
+    const dem_real per = 1/s->dt;
+    int d, i, k;
+    for (d = 0; d < w->domain_count && w->effects.fixed_count; d++)
+        for (i = 0; i < s->meeting_count[d]; i++) {
+            const demi_meeting *m = s->meetings + s->meeting_first[d] + i;
+            const demi_impulse *c = s->contacts + m->at;
+            const demi_spot o = demi_meeting_place(w, d, m);
+            const dem_real push = c->push - s->beside[m->at].pull;
+            const dem_vec3 p = demi_add(demi_scale(c->normal, push), c->slip);
+            for (k = 0; k < 2; k++) {
+                const int body = k ? m->b : m->a;
+                const dem_real sign = k ? per : -per;
+                dem_vec3 torque = demi_cross(k ? o.arm_b : o.arm_a, p);
+                if (body >= w->bodies.count || s->movers[body].inv > 0) continue;
+                if (s->twisted) torque = demi_add(torque, s->twists[m->at].moment);
+                demi_force_add(w->bodies.force + 4*body, demi_scale(p, sign));
+                demi_force_add(w->bodies.torque + 4*body, demi_scale(torque, sign));
+            }
+        }
+}
+/* J, of all domains in this step. */
+static double demi_sum_energy(const dem_world *w, int what) {
+    double sum = 0;
+    int d;
+    for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
+    return sum;
 }
 /* Impulses of the step to come, as forces. Fields of force have been added by now. */
 static void demi_impulses(dem_world *w) {
@@ -13438,31 +13969,31 @@ static void demi_impulses(dem_world *w) {
     const double kick = (double)demi_length(w->desc.gravity)*(double)w->clock.dt;
     const double enough = w->desc.tolerance > 0 ? (double)w->desc.tolerance
         : 1e-3*kick + 1e-6*w->booked.speed_max + 1e-12;
-    double worst = 0, farthest = 0;
-    int d, i, k;
+    demi_solved solved = {0, 0, 0};
+    double farthest = 0;
+    int i;
     s->dt = w->clock.dt;
-    s->count = 0;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_lay);
-    for (d = 0; d < w->domain_count; d++) {
-        demi_impulses_near(w, d);
-        demi_impulses_kept(w, d);
-    }
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_meet);
     demi_impulses_colour(w);
-    demi_impulses_all(w, demi_impulses_warm);
-    for (i = 0; i < most && s->count; i++) {
-        const int runs = s->count/DEMI_SWEEP_RUN + 1;
-        for (k = 0; k < runs; k++) s->worst[k] = 0;
-        demi_impulses_all(w, demi_impulses_sweep);
-        for (worst = 0, k = 0; k < runs; k++) worst = DEMI_MAX(worst, s->worst[k]);
-        if (!(worst > enough)) { i++; break; }
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_lay);
+    if (s->count) {
+        demi_colours_all(w, demi_impulses_warm);
+        solved = demi_solvers[w->desc.solver].solve(w, most, enough);
     }
-    w->booked.sweeps = i;
-    w->booked.residual = worst;
-    if (worst > enough) w->booked.unsolved++;
+    w->booked.sweeps = solved.sweeps;
+    w->booked.residual = solved.worst;
+    w->booked.residual_rms = sqrt(solved.squares/DEMI_MAX(s->count, 1));
+    w->booked.unsolved += solved.worst > enough;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_force);
-    demi_impulses_tell(w);
+    demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_tell);
+    demi_impulses_fixed(w);
+    w->booked.due[0] = demi_sum_energy(w, DEMI_E_DASHPOT);
+    w->booked.due[1] = demi_sum_energy(w, DEMI_E_SLIDE);
+    w->booked.due[2] = demi_sum_energy(w, DEMI_E_ROLL);
+    w->booked.due[3] = 0;
     if (!w->stage.forces_valid) return;         /* only looked at */
-    for (i = 0; i < DEMI_LIFTS; i++) demi_impulses_all(w, demi_impulses_lift);
+    for (i = 0; i < DEMI_LIFTS; i++) demi_colours_all(w, demi_impulses_lift);
     for (i = 0; i < w->bodies.count; i++) {
         const dem_vec3 way = demi_scale(demi_at(s->lifts + 4*i), s->dt);
         demi_force_add(w->bodies.pos + 4*i, way);
@@ -13495,7 +14026,7 @@ static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info 
     const demi_periods periods = demi_periods_of(w);
     const dem_vec3 way = demi_near_way(w, at);
     const dem_real l = demi_length(way), overlap = x[3] + y[3] - l;
-    if (!(memory[6*stride] > 0) && !(overlap > 0)) return 0;
+    if (!(memory[6*stride] > 0) && !(memory[7*stride] > 0) && !(overlap > 0)) return 0;
     if (!out) return 1;
     out->a = dem_bodies_id(w, a);
     out->b = dem_bodies_id(w, b);
@@ -13505,7 +14036,7 @@ static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info 
     if (branch) *branch = way;
     out->point = demi_place_of(&periods, demi_add(demi_at(x), demi_scale(way, x[3]/(x[3] + y[3]))));
     out->force = demi_sub(demi_v(-memory[0], -memory[stride], -memory[2*stride]),
-                          demi_scale(out->normal, memory[6*stride]));
+                          demi_scale(out->normal, memory[6*stride] - memory[7*stride]));
     return 1;
 }
 
@@ -13516,12 +14047,6 @@ static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info 
    took in and neither hold nor lost to sliding was dissipated by the shear dashpot, or with the
    contact.
    --------------------------------------------------------------------------------------------- */
-static double demi_sum_energy(const dem_world *w, int what) {
-    double sum = 0;
-    int d;
-    for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
-    return sum;
-}
 /* J, of all that moves. */
 static void demi_kinetic(const dem_world *w, double *kinetic, double *rotational) {
     int i;
@@ -15249,6 +15774,10 @@ static dem_result demi_dt_settle(dem_world *w) {
     double spin;
     if (w->stage.dt_valid) return DEM_OK;
     if (demi_impulsive(w)) {                    /* as given: no contact is too short for it */
+        if (demi_impulses_twist(w) && !demi_solvers[w->desc.solver].moments)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there is rolling or spinning "
+                             "friction between materials, which %s does not know; leave "
+                             "desc.solver DEM_SOLVER_SEIDEL", demi_solvers[w->desc.solver].name);
         w->clock.dt = w->desc.dt;
         w->clock.press_since = w->clock.steps;
         w->stage.dt_valid = 1;
@@ -16928,6 +17457,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     c.domains = w->domain_count;
     c.sweeps = w->booked.sweeps;
     c.residual = (dem_real)w->booked.residual;
+    c.residual_rms = (dem_real)w->booked.residual_rms;
     c.unsolved = w->booked.unsolved;
     c.memory = w->bytes;
     return c;
@@ -21431,9 +21961,9 @@ static const char *demi_answer_error(const dem_world_desc *d) {
         return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
             "they are for a law of your own: name it in law, or leave them 0";
     if ((int)d->response < 0 || d->response > DEM_RESPONSE_IMPULSES || (int)d->cone < 0 ||
-        d->cone > DEM_CONE_CONVEX)
-        return "dem_world_create: response or cone is unknown, must be one of the enum values; "
-            "start from DEM_WORLD_DESC";
+        d->cone > DEM_CONE_CONVEX || (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
+        return "dem_world_create: response, cone or solver is unknown, must be one of the enum "
+            "values; start from DEM_WORLD_DESC";
     if (d->sweeps < 0 || !(d->tolerance >= 0) || !demi_finite(d->tolerance))
         return "dem_world_create: sweeps and tolerance (m/s) must be >= 0 and finite; 0 lets the "
             "library choose";

@@ -334,7 +334,7 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_create_error(&desc), "integrator");
         desc.integrator = DEM_SYMPLECTIC_EULER;
         desc.cone = (dem_cone)2;
-        CHECK_STR(dem_create_error(&desc), "cone is unknown");
+        CHECK_STR(dem_create_error(&desc), "cone or solver is unknown");
         desc.cone = DEM_CONE_CONVEX;
         desc.sweeps = -1;
         CHECK_STR(dem_create_error(&desc), "sweeps");
