@@ -267,6 +267,7 @@
      [MAZ15]   Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32: accelerated gradients
      [MIL]     a thesis on tumbling mills on a GPU: laws by the step, meshes, segments
      [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
+     [PAI95]   Painleve, C. R. Acad. Sci. Paris 121 (1895) 112: a rod that friction jams
      [PW85]    Perram & Wertheim, J. Comput. Phys. 58 (1985) 409: contact function of ellipsoids
      [RUB15]   Rubio-Largo, Lind, Maza & Hidalgo (2015): granular gas of ellipsoids on GPUs
      [SP07]    Schwager & Poeschel, Granul. Matter 9 (2007) 465: restitution of the linear dashpot
@@ -13041,6 +13042,7 @@ typedef struct demi_impulse {
 /* Beside it. */
 typedef struct demi_beside {
     dem_real gap, lift, pull, mass; /* m; kg m/s; N s; kg */
+    int bounces;                   /* bias is that of restitution */
 } demi_beside;
 /* Where there is rolling or spinning friction. */
 typedef struct demi_twist {
@@ -13049,6 +13051,9 @@ typedef struct demi_twist {
     dem_real roll, spin;           /* m: limits of the moment over push */
 } demi_twist;
 enum { DEMI_COLOURS = 64, DEMI_SWEEP_RUN = 256 };
+/* Overlap, of the radius, that is left as it is: what lies at rest is not stirred by undoing what
+   the last digit of a solve has left. */
+#define DEMI_LEFT DEM_R(5e-4)
 
 /* Do impulses have a moment beside their force? */
 static int demi_impulses_twist(const dem_world *w) {
@@ -13179,8 +13184,8 @@ DEM_INLINE dem_vec3 demi_across(dem_vec3 n) {
     const dem_real s = n.z < 0 ? DEM_R(-1) : DEM_R(1), a = -1/(s + n.z);
     return demi_v(1 + s*n.x*n.x*a, s*n.x*n.y*a, -s*n.x);
 }
-/* What impulses bring at a contact. */
-typedef struct demi_brings { dem_real n, t, roll, spin; } demi_brings;
+/* What impulses bring at a contact: along the normal, across it, and by one along the other. */
+typedef struct demi_brings { dem_real n, t, across, aside, roll, spin; } demi_brings;
 /* Adds what they do to one body of any shape. Sizes across the normal: the largest there is. */
 static void demi_brings_add(const demi_solver *s, demi_brings *g, int body, dem_vec3 n,
                             dem_vec3 arm) {
@@ -13192,17 +13197,30 @@ static void demi_brings_add(const demi_solver *s, demi_brings *g, int body, dem_
     const dem_real mean = (tt + uu)/2, half = (tt - uu)/2;
     if (!(s->movers[body].inv > 0)) return;
     g->n += s->movers[body].inv + demi_dot(an, demi_mover_turn(s, body, an, 1));
+    g->across += demi_dot(an, it);
+    g->aside += demi_dot(an, iu);
     g->t += s->movers[body].inv + mean + DEMI_SQRT(half*half + tu*tu);
     g->roll += DEMI_MAX(demi_dot(t, rt), demi_dot(u, ru));
     g->spin += demi_dot(n, demi_mover_turn(s, body, n, 1));
 }
+/* Friction that presses, or lifts: steps of push and slip are so short that they do not overshoot
+   by what the other one brings (a rod that is pushed along, [PAI95]). */
+static void demi_brings_bound(const dem_world *w, demi_brings *g, dem_real friction) {
+    const dem_real mixed = DEMI_SQRT(g->across*g->across + g->aside*g->aside);
+    const int convex = w->desc.cone == DEM_CONE_CONVEX;
+    g->n += convex ? mixed : friction*mixed;
+    g->t += convex ? mixed : 0;
+}
 /* Velocity of b relative to a where they meet, as bodies have it before the step. */
-static dem_vec3 demi_impulse_before(const dem_world *w, const demi_meeting *m, dem_vec3 arm_a,
-                                    dem_vec3 arm_b) {
-    const dem_vec3 a = demi_velocity_at(w->bodies.vel, w->bodies.spin, m->a, arm_a);
-    return demi_sub(m->b < w->bodies.count
-                    ? demi_velocity_at(w->bodies.vel, w->bodies.spin, m->b, arm_b)
-                    : demi_at(w->solver.movers[m->b].v), a);
+static dem_vec3 demi_impulse_before(const dem_world *w, const demi_impulse *c) {
+    const demi_solver *s = &w->solver;
+    const dem_vec3 *arms = w->bodies.shaped ? s->arms + 2*(c - s->contacts) : 0;
+    const dem_vec3 arm_a = arms ? arms[0] : demi_scale(c->normal, c->reach_a);
+    const dem_vec3 arm_b = arms ? arms[1] : demi_scale(c->normal, -c->reach_b);
+    const dem_vec3 a = demi_velocity_at(w->bodies.vel, w->bodies.spin, c->a, arm_a);
+    return demi_sub(c->b < w->bodies.count
+                    ? demi_velocity_at(w->bodies.vel, w->bodies.spin, c->b, arm_b)
+                    : demi_at(s->movers[c->b].v), a);
 }
 /* Geometry of a meeting, from either list. */
 typedef struct demi_spot {
@@ -13251,8 +13269,8 @@ static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover 
     demi_put(m->w, wall->pose.spin);
 }
 /* The second half of a domain's meetings: all that sweeps need. What is remembered is for turned
-   normals: friction stays across them. Cohesion holds what touches, and what it has held up to a
-   gap of a thousandth of the radius. */
+   normals: friction stays across them. Cohesion takes hold of what touches, to a millionth of the
+   radius, and holds it up to a thousandth. */
 static void demi_impulses_lay(dem_world *w, int d) {
     const demi_solver *s = &w->solver;
     const dem_real dt = s->dt, rest = (dem_real)demi_length(w->desc.gravity)*dt;
@@ -13268,7 +13286,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         const dem_real *y = o.memory;
         demi_impulse *c = s->contacts + m->at;
         demi_beside *beside = s->beside + m->at;
-        demi_brings g = {0, 0, 0, 0};
+        demi_brings g = {0, 0, 0, 0, 0, 0};
         dem_vec3 slip = demi_v(y[0], y[o.stride], y[2*o.stride]);
         dem_real closing;
         if (k && k->b < 0) demi_surface_lay(w, k, s->movers + m->b);
@@ -13277,6 +13295,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
             s->arms[2*m->at + 1] = o.arm_b;
             demi_brings_add(s, &g, m->a, o.normal, o.arm_a);
             if (m->b < w->bodies.count) demi_brings_add(s, &g, m->b, o.normal, o.arm_b);
+            demi_brings_bound(w, &g, pair->friction);
         } else {
             const demi_mover *a = s->movers + m->a, *b = s->movers + m->b;
             c->reach_a = demi_dot(o.arm_a, o.normal);
@@ -13295,14 +13314,16 @@ static void demi_impulses_lay(dem_world *w, int d) {
         c->per_t = 1/g.t;
         c->push = y[6*o.stride]*dt;
         c->slip = demi_scale(demi_sub(slip, demi_scale(o.normal, demi_dot(slip, o.normal))), dt);
-        closing = demi_dot(demi_impulse_before(w, m, o.arm_a, o.arm_b), o.normal);
+        closing = demi_dot(demi_impulse_before(w, c), o.normal);
         c->bias = (pair->compliance > 0 ? o.gap : DEMI_MAX(o.gap, 0))/dt;
-        if (pair->restitution > 0 && closing < -rest && o.gap + closing*dt <= 0)
-            c->bias = pair->restitution*closing;
-        beside->gap = pair->compliance > 0 ? DEMI_MAX(o.gap, 0) : o.gap;
+        beside->bounces = pair->restitution > 0 && closing < -rest && o.gap + closing*dt <= 0;
+        if (beside->bounces) c->bias = pair->restitution*closing;
+        beside->gap = o.gap;
+        if (o.gap < 0)
+            beside->gap = pair->compliance > 0 ? 0 : DEMI_MIN(o.gap + DEMI_LEFT*o.size, 0);
         beside->lift = 0;
         beside->mass = 1/(s->movers[m->a].inv + s->movers[m->b].inv);
-        beside->pull = o.gap <= 0 || (c->push > 0 && o.gap < DEM_R(1e-3)*o.size)
+        beside->pull = o.gap < (c->push > 0 ? DEM_R(1e-3) : DEM_R(1e-6))*o.size
             ? pair->cohesion*dt : 0;
         if (s->twisted) {
             demi_twist *t = s->twists + m->at;
@@ -13377,11 +13398,11 @@ DEM_INLINE dem_vec3 demi_impulse_cap(dem_vec3 t, dem_real most) {
     return l2 > most*most ? demi_scale(t, most/DEMI_SQRT(l2)) : t;
 }
 /* The impulse allowed that is nearest to this one. Coulomb: push first, then friction within what
-   it allows. Convex: in the metric of gn and gt. */
+   it allows. Convex: in the metric of steps, 1/per_n and 1/per_t. */
 DEM_INLINE void demi_impulse_bound(const demi_impulse *c, dem_real *push, dem_vec3 *slip,
                                    int convex) {
     if (convex && c->mu > 0) {
-        const dem_real a = DEMI_SQRT(c->gt/c->gn), mu = c->mu*a, size = a*demi_length(*slip);
+        const dem_real a = DEMI_SQRT(c->per_n/c->per_t), mu = c->mu*a, size = a*demi_length(*slip);
         if (size > mu**push) {
             const dem_real p = mu*size <= -*push ? 0 : (*push + mu*size)/(1 + mu*mu);
             *push = DEMI_MAX(p, 0);
@@ -13902,8 +13923,7 @@ static void demi_impulses_tell(dem_world *w, int d) {
         const dem_vec3 p = demi_add(demi_scale(c->normal, push), c->slip);
         const dem_vec3 moment = s->twisted ? s->twists[m->at].moment : demi_v(0, 0, 0);
         const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
-        const dem_vec3 u = demi_scale(demi_add(demi_impulse_before(w, m, o.arm_a, o.arm_b), after),
-                                      DEM_R(0.5));
+        const dem_vec3 u = demi_scale(demi_add(demi_impulse_before(w, c), after), DEM_R(0.5));
         const dem_real all[DEMI_IMPULSE_REALS] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
             moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per};
         for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
@@ -13962,6 +13982,28 @@ static double demi_sum_energy(const dem_world *w, int what) {
     for (d = 0; d < w->domain_count; d++) sum += w->domains[d].energy[what];
     return sum;
 }
+/* Newton's restitution and friction together may give energy where slip turns round. Where an
+   impact would, e is taken down, at last to 0, which takes energy whatever the shapes. Answers how
+   many there were. */
+enum { DEMI_TAMINGS = 4 };
+static int demi_impulses_tame(dem_world *w, int last) {
+    demi_solver *s = &w->solver;
+    int i, tamed = 0;
+    for (i = 0; i < s->count; i++) {
+        demi_impulse *c = s->contacts + i;
+        dem_vec3 before, after, p;
+        dem_real gain;
+        if (!s->beside[i].bounces || !(c->bias < 0) || !(c->push > 0)) continue;
+        before = demi_impulse_before(w, c);
+        after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
+        p = demi_add(demi_scale(c->normal, c->push), c->slip);
+        gain = demi_dot(p, demi_add(before, after));
+        if (!(gain > (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-14))*-c->bias*c->push)) continue;
+        c->bias = last ? 0 : c->bias/2;
+        tamed++;
+    }
+    return tamed;
+}
 /* Impulses of the step to come, as forces. Fields of force have been added by now. */
 static void demi_impulses(dem_world *w) {
     demi_solver *s = &w->solver;
@@ -13980,6 +14022,8 @@ static void demi_impulses(dem_world *w) {
     if (s->count) {
         demi_colours_all(w, demi_impulses_warm);
         solved = demi_solvers[w->desc.solver].solve(w, most, enough);
+        for (i = 0; i < DEMI_TAMINGS && demi_impulses_tame(w, i == DEMI_TAMINGS - 1); i++)
+            solved = demi_solvers[w->desc.solver].solve(w, most, enough);
     }
     w->booked.sweeps = solved.sweeps;
     w->booked.residual = solved.worst;

@@ -294,14 +294,14 @@ int main(int argc, char **argv) {
     TEST("impulses: grains of all kinds in a drum give the same bits for 1, 2, 3, 4 and 8 threads, in a second world, and "
          "after a restart; power in is heat") {
         static const int threads[5] = {1, 2, 3, 4, 8};
-        dem_world *world = drum(1, 300), *other;
+        dem_world *world = drum(1, 200), *other;
         dem_ledger l;
         uint64_t half, hash;
         int k;
-        CHECK_EQ(scene_step(world, 200), DEM_OK);
+        CHECK_EQ(scene_step(world, 120), DEM_OK);
         half = dem_world_hash(world);
         CHECK_EQ(dem_checkpoint_write(world, "build/tmp/impulses.ckpt"), DEM_OK);
-        CHECK_EQ(scene_step(world, 200), DEM_OK);
+        CHECK_EQ(scene_step(world, 80), DEM_OK);
         hash = dem_world_hash(world);
         CHECK(hash != half);
         CHECK(dem_counters_get(world).contacts > 100);
@@ -311,15 +311,15 @@ int main(int argc, char **argv) {
         CHECK_NEAR(l.residual/l.throughput, 0, 0.02);
         dem_world_destroy(world);
         for (k = 0; k < 5; k++) {
-            other = drum(threads[k], 300);
-            CHECK_EQ(scene_step(other, 400), DEM_OK);
+            other = drum(threads[k], 200);
+            CHECK_EQ(scene_step(other, 200), DEM_OK);
             CHECK(dem_world_hash(other) == hash);
             dem_world_destroy(other);
         }
-        other = drum(2, 300);
+        other = drum(2, 200);
         CHECK_EQ(dem_checkpoint_read(other, "build/tmp/impulses.ckpt"), DEM_OK);
         CHECK(dem_world_hash(other) == half);
-        CHECK_EQ(scene_step(other, 200), DEM_OK);
+        CHECK_EQ(scene_step(other, 80), DEM_OK);
         CHECK(dem_world_hash(other) == hash);
         dem_world_destroy(other);
         remove("build/tmp/impulses.ckpt");
