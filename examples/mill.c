@@ -57,11 +57,12 @@
 static struct mill_options {
     double diameter, length, radius, speed, fill, friction, wall_friction, soften, dt;
     double contact_steps, revolutions, settle;
-    const char *ends, *profile, *wall, *stiffness, *law, *integrator, *tangent, *study, *out;
+    const char *ends, *profile, *wall, *stiffness, *law, *response, *integrator, *tangent, *study;
+    const char *out;
     const char *checkpoint, *resume, *write_profile;
     int threads, slabs, frames, quick, replay;
 } options = {0.3, 0.0068, 0.0015, 0.7, 0.3, 0.154, 0.32, 500, 0, 20, 0.5, 0.5,
-             "periodic", "lifters", "mesh", "soft", "hertz", "verlet", "auto", "mill",
+             "periodic", "lifters", "mesh", "soft", "hertz", "springs", "verlet", "auto", "mill",
              "build/out/mill", 0, 0, 0, 0, 0, 4, 0, 0};
 
 /* in the order of dem_integrator and dem_tangent_law */
@@ -89,6 +90,8 @@ static const study_option table[] = {
     {"contact-steps", STUDY_REAL, &options.contact_steps, 20, 1e6, "",
         "steps in the shortest contact at shell speed"},
     {"law", STUDY_CHOICE, &options.law, 0, 0, "hertz|linear", "normal force"},
+    {"response", STUDY_CHOICE, &options.response, 0, 0, "springs|impulses",
+        "of contacts; impulses: rigid beads, steps of 2e-4 s unless --dt says otherwise"},
     {"integrator", STUDY_CHOICE, &options.integrator, 0, 0, INTEGRATORS, "scheme"},
     {"tangent", STUDY_CHOICE, &options.tangent, 0, 0, TANGENTS, "friction law"},
     {"revolutions", STUDY_REAL, &options.revolutions, 0.05, 1000, "", "measured"},
@@ -349,6 +352,7 @@ static int mill_create(mill *m, double dt) {
     desc.integrator = (dem_integrator)place_of(m->o.integrator, INTEGRATORS);
     desc.tangent_law = (dem_tangent_law)place_of(m->o.tangent, TANGENTS);
     desc.impact_speed = m->omega*R;
+    if (is(m->o.response, "impulses")) desc.response = DEM_RESPONSE_IMPULSES;
     desc.threads = m->o.threads;
     desc.ledger = 1;
     desc.dt = dt;
@@ -383,6 +387,7 @@ static int mill_begin(mill *m) {
     m->omega = m->o.speed*m->critical;
     m->period = 2*PI/m->omega;
     m->settled = (int)(m->o.settle*SAMPLES + 0.5);
+    if (!(wanted > 0) && is(m->o.response, "impulses")) wanted = 2e-4;
     if (!(wanted > 0)) {
         int bad = mill_create(m, 0) || refused(m->world, dem_step_advice(m->world, &advice));
         mill_destroy(m);

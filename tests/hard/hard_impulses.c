@@ -183,7 +183,7 @@ static dem_world *heap(int count) {
     desc.gravity.z = (dem_real)-g;
     desc.response = DEM_RESPONSE_IMPULSES;
     desc.dt = DEM_R(4e-4);
-    desc.tolerance = DEM_R(1e-6);
+    desc.tolerance = DEM_R(2e-7);
     desc.domain = box_of(0, 0, 0, side, side, 10*side);
     desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
     world = dem_world_create(&desc);

@@ -1,0 +1,318 @@
+/* responses.c - springs beside impulses on the same scenes: time against error, and what solvers reach. MIT licence.
+
+   build/responses          some minutes; results in build/out/responses: page.md for docs/impulses.md, two figures
+   build/responses --part hopper|drum|heap|sweeps --seeds N
+
+   hopper    discs run out of a slot (lesson 6): rate of discharge
+   drum      discs in a turning drum with lips (lesson 8), Froude number .05: torque
+   heap      10,000 spheres at rest at steps of 1 ms: sweeps, time of a step, of a contact and sweep
+   sweeps    2,000 spheres: what is left after 30 to 1000 sweeps, cold, by each solver of convex cones
+
+   An error is the difference to the springs of the largest modulus, over that; bars are those of both means, over
+   seeds. All on one thread. */
+#define DEM_IMPLEMENTATION
+#include "dem.h"
+#include "examples/study.h"
+#include "bench/measure.h"
+
+static FILE *page;
+static int seeds = 4;
+static const double g = 9.81, pi = 3.14159265358979;
+
+/* One way to answer contacts: springs of a modulus (Pa), at the step chosen; or impulses at a step (s). */
+typedef struct way { const char *name; double young, dt; } way;
+enum { WAYS = 9 };
+static const way ways[WAYS] = {
+    {"springs, 2.5 GPa", 2.5e9, 0}, {"springs, 250 MPa", 2.5e8, 0}, {"springs, 25 MPa", 2.5e7, 0},
+    {"springs, 2.5 MPa", 2.5e6, 0}, {"impulses, .1 ms", 0, 1e-4}, {"impulses, .2 ms", 0, 2e-4},
+    {"impulses, .5 ms", 0, 5e-4}, {"impulses, 1 ms", 0, 1e-3}, {"impulses, 2 ms", 0, 2e-3}};
+
+static dem_world_desc desc_of(const way *a) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    desc.threads = 1;
+    if (a->dt > 0) {
+        desc.response = DEM_RESPONSE_IMPULSES;
+        desc.dt = (dem_real)a->dt;
+    }
+    return desc;
+}
+static dem_material stuff_of(dem_world *world, const way *a, double rolling) {
+    dem_material_desc stuff = DEM_MATERIAL_DESC;
+    stuff.density = 2500;
+    stuff.young = (dem_real)a->young;
+    stuff.poisson = DEM_R(0.25);
+    stuff.restitution = DEM_R(0.5);
+    stuff.friction = DEM_R(0.4);
+    stuff.rolling_friction = (dem_real)rolling;
+    return dem_material_add(world, &stuff);
+}
+/* What a run has come to: the observable, and processor time of a simulated second; value < 0: it was refused. */
+typedef struct told { double value, time; } told;
+static told refused(dem_world *world) {
+    const told none = {-1, 0};
+    printf("  %s\n", dem_world_error(world));
+    dem_world_destroy(world);
+    return none;
+}
+
+/* ---- hopper ---- */
+
+static told hopper_run(const way *a, int seed) {
+    enum { COUNT = 480 };
+    const double R = 2.5e-3, x = 0.045, deep = 5e-3;
+    dem_world_desc desc = desc_of(a);
+    dem_real corners[] = {DEM_R(-0.045), DEM_R(0.25), DEM_R(-0.045), 0, DEM_R(-0.01875), 0, DEM_R(0.01875), 0,
+                                DEM_R(0.045), 0, DEM_R(0.045), DEM_R(0.25)};
+    int32_t sides[] = {0, 1, 1, 2, 3, 4, 4, 5}, across[] = {2, 3};
+    const dem_profile hopper = {6, 4, corners, sides}, lid = {6, 1, corners, across};
+    dem_outlet_desc below;
+    dem_outlet_state gone;
+    dem_outlet out;
+    dem_wall closed;
+    dem_world *world;
+    dem_material m;
+    double mark[2] = {0, 0}, mass[2] = {0, 0}, begun, clock;
+    told o;
+    int i, stage = 0;
+    desc.planar = 1;
+    desc.thickness = (dem_real)deep;
+    desc.gravity.y = (dem_real)-g;
+    world = dem_world_create(&desc);
+    m = stuff_of(world, a, 0);
+    dem_profile_add(world, m, &hopper, DEM_EDGE_RESOLVED);
+    closed = dem_profile_add(world, m, &lid, DEM_EDGE_RESOLVED);
+    for (i = 0; i < 2; i++)
+        dem_spheres_fill(world, m, (dem_real)((0.95 + 0.1*i)*R), dem_box_make((dem_real)-x, 0, 0, (dem_real)x,
+                         DEM_R(0.24), 0), COUNT/2, (uint64_t)(2*seed + i));
+    memset(&below, 0, sizeof below);
+    below.box = dem_box_make((dem_real)-x, DEM_R(-0.2), -1, (dem_real)x, DEM_R(-0.02), 1);
+    out = dem_outlet_add(world, &below);
+    clock = study_clock();
+    if (dem_world_run(world, 0.3, 0, 0) != DEM_OK) return refused(world);
+    dem_wall_remove(world, closed);
+    begun = dem_world_time(world);
+    while (stage < 2 && dem_world_time(world) < begun + 5) {
+        if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) return refused(world);
+        dem_outlet_get(world, out, &gone);
+        if ((int)gone.total >= COUNT*(stage ? 6 : 1)/10) {
+            mark[stage] = dem_world_time(world);
+            mass[stage++] = (double)gone.total_mass;
+        }
+    }
+    o.value = (mass[1] - mass[0])/(mark[1] - mark[0]);
+    o.time = (study_clock() - clock)/dem_world_time(world);
+    dem_world_destroy(world);
+    return o;
+}
+
+/* ---- drum ---- */
+
+static told drum_run(const way *a, int seed) {
+    enum { SIDES = 24 };
+    const double R = 0.04, r = 1.5e-3, speed = sqrt(0.05*g/R);
+    dem_real corners[4*SIDES];
+    int32_t segments[4*SIDES];
+    const dem_profile shell = {2*SIDES, 2*SIDES, corners, segments};
+    dem_motion turning = DEM_MOTION;
+    dem_world_desc desc = desc_of(a);
+    dem_world *world;
+    dem_material m;
+    dem_wall drum;
+    dem_wall_loads loads;
+    double clock;
+    told o;
+    int i;
+    for (i = 0; i < 2*SIDES; i++) {
+        const double angle = pi*(i - i%2)/SIDES;
+        corners[2*i] = (dem_real)((R - r*(i%2))*cos(angle));
+        corners[2*i + 1] = (dem_real)((R - r*(i%2))*sin(angle));
+        segments[2*i] = i - i%2;
+        segments[2*i + 1] = i%2 ? i : (i + 2)%(2*SIDES);
+    }
+    desc.planar = 1;
+    desc.thickness = DEM_R(3e-3);
+    desc.gravity.y = (dem_real)-g;
+    world = dem_world_create(&desc);
+    m = stuff_of(world, a, 0.05);
+    drum = dem_profile_add(world, m, &shell, DEM_EDGE_RESOLVED);
+    turning.kind = DEM_MOTION_ROTATING;
+    turning.axis = dem_vec3_make(0, 0, 1);
+    turning.speed = (dem_real)speed;
+    dem_wall_motion(world, drum, &turning);
+    dem_spheres_fill(world, m, (dem_real)r, dem_box_make(DEM_R(-0.03), DEM_R(-0.024), 0, DEM_R(0.03), DEM_R(0.024), 0),
+                     160, (uint64_t)seed + 1);
+    clock = study_clock();
+    if (dem_world_run(world, 0.6, 0, 0) != DEM_OK) return refused(world);
+    dem_wall_loads_reset(world, drum);
+    if (dem_world_run(world, 2, 0, 0) != DEM_OK) return refused(world);
+    dem_wall_loads_get(world, drum, &loads);
+    o.value = fabs(loads.torque_impulse/loads.time);
+    o.time = (study_clock() - clock)/dem_world_time(world);
+    dem_world_destroy(world);
+    return o;
+}
+
+/* Every way, every seed: error against time. */
+static void against(const char *name, const char *what, const char *unit, told (*run)(const way *a, int seed)) {
+    double mean[WAYS], bar[WAYS], time[WAYS], x[2][WAYS], y[2][WAYS];
+    int i, k, n[2] = {0, 0};
+    study_figure f;
+    char label[96];
+    if (page) fprintf(page, "\n| %s | %s, %s | off the first | bar | s per simulated s |\n|---|---|---|---|---|\n", name,
+                      what, unit);
+    for (i = 0; i < WAYS; i++) {
+        double sum = 0, squares = 0;
+        int got = 0;
+        time[i] = 0;
+        for (k = 0; k < seeds; k++) {
+            const told o = run(&ways[i], k);
+            if (o.value < 0) continue;
+            got++;
+            sum += o.value;
+            squares += o.value*o.value;
+            time[i] += o.time;
+        }
+        if (!got) {
+            if (page) fprintf(page, "| %s | refused | | | |\n", ways[i].name);
+            mean[i] = -1;
+            continue;
+        }
+        mean[i] = sum/got;
+        bar[i] = got > 1 ? sqrt(fmax(0, squares/got - mean[i]*mean[i])/(got - 1)) : 0;
+        time[i] /= got;
+        snprintf(label, sizeof label, "%s.%d", name, i);
+        printf("%s, %s: %s %.4g +- %.2g %s, %.3g s per simulated s\n", name, ways[i].name, what, mean[i], bar[i], unit,
+               time[i]);
+        if (page) fprintf(page, "| %s | %.4g | %+.1f %% | %.1f %% | %.3g |\n", ways[i].name, mean[i],
+                          100*(mean[i]/mean[0] - 1), 100*hypot(bar[i], i ? bar[0] : 0)/mean[0], time[i]);
+        if (!i) continue;
+        k = ways[i].dt > 0;
+        x[k][n[k]] = time[i];
+        y[k][n[k]++] = 100*fmax(fabs(mean[i]/mean[0] - 1), 1e-3);
+    }
+    memset(&f, 0, sizeof f);
+    snprintf(label, sizeof label, "%s: %s, off springs of 2.5 GPa", name, what);
+    f.title = label;
+    f.x_label = "processor time of a simulated second [s]";
+    f.y_label = "difference [%]";
+    f.log_x = f.log_y = 1;
+    study_curve(&f, "springs, softer and softer", STUDY_LINE, n[0], x[0], y[0]);
+    study_curve(&f, "impulses, longer and longer steps", STUDY_DASHED, n[1], x[1], y[1]);
+    study_figure_write(&f, name);
+}
+
+/* ---- heaps ---- */
+
+static dem_world *heap_make(dem_world_desc desc, int count) {
+    const way stiff = {"", 0, 1e-3};
+    const double side = 1.2e-3*cbrt((double)count);
+    dem_world *world;
+    dem_material m;
+    desc.gravity.z = (dem_real)-g;
+    desc.domain = dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)(10*side));
+    desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
+    desc.dt = DEM_R(4e-4);
+    world = dem_world_create(&desc);
+    m = stuff_of(world, &stiff, 0);
+    dem_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_spheres_fill(world, m, DEM_R(6e-4), dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)(2.2*side)),
+                     count, 1);
+    return world;
+}
+static void heap_part(void) {
+    const way rigid = {"", 0, 1e-3};
+    dem_world *world = heap_make(desc_of(&rigid), 10000);
+    double times[5], clock, swept = 0, all = 0;
+    int turn, k;
+    enum { STEPS = 100 };
+    if (dem_world_run(world, 0.6, 0, 0) != DEM_OK || dem_world_dt_set(world, DEM_R(1e-3)) != DEM_OK ||
+        dem_world_step(world, 300) != DEM_OK) { refused(world); return; }
+    for (turn = 0; turn < 5; turn++) {
+        clock = study_clock();
+        for (k = 0; k < STEPS; k++) {
+            if (dem_world_step(world, 1) != DEM_OK) { refused(world); return; }
+            swept += dem_counters_get(world).sweeps;
+        }
+        times[turn] = (study_clock() - clock)/STEPS;
+        all += times[turn]*STEPS;
+    }
+    study_result("heap.step", 1e3*bench_median(times, 5), "ms");
+    study_result("heap.sweeps", swept/(5*STEPS), "");
+    study_result("heap.meetings", world->solver.count, "");
+    study_result("heap.seconds", 1e3*bench_median(times, 5), "s per simulated second");
+    /* sweeps alone: as many as asked, of the same contacts */
+    for (turn = 0; turn < 5; turn++) {
+        demi_solved z;
+        clock = study_clock();
+        z = demi_solve_seidel(world, 100, 0);
+        times[turn] = 1e9*(study_clock() - clock)/z.sweeps/world->solver.count;
+    }
+    study_result("heap.contact_and_sweep", bench_median(times, 5), "ns");
+    if (page) fprintf(page, "\n10,000 spheres at rest, steps of 1 ms: %d meetings within the range, %.1f sweeps and "
+                      "%.1f ms a step, one contact and sweep %.1f ns.\n", world->solver.count, swept/(5*STEPS),
+                      1e3*all/(5*STEPS), bench_median(times, 5));
+    dem_world_destroy(world);
+}
+/* States of a heap that has begun to lie, then one step of each solver from them, cold. */
+static void sweeps_part(void) {
+    static const int sweeps[4] = {30, 100, 300, 1000};
+    const way rigid = {"", 0, 1e-3};
+    dem_world *world = heap_make(desc_of(&rigid), 2000);
+    int i, k, cone, count;
+    dem_body_state *all;
+    if (dem_world_run(world, 0.2, 0, 0) != DEM_OK) { refused(world); return; }
+    count = dem_bodies_get(world).count;
+    all = (dem_body_state *)malloc((size_t)count*sizeof *all);
+    for (i = 0; i < count; i++) dem_body_get(world, dem_bodies_id(world, i), &all[i]);
+    dem_world_destroy(world);
+    for (cone = 0; cone < 2; cone++) {
+        if (page) fprintf(page, "\n| left (rms, m/s) after | 30 | 100 | 300 | 1000 sweeps |\n|---|---|---|---|---|\n");
+        for (k = 0; k < DEMI_SOLVERS; k++) {
+            if (page) fprintf(page, "| %s, %s cone |", demi_solvers[k].name, cone ? "convex" : "Coulomb's");
+            for (i = 0; i < 4; i++) {
+                dem_world_desc desc = desc_of(&rigid);
+                dem_counters c;
+                char label[64];
+                int q;
+                desc.solver = (dem_solver)k;
+                desc.cone = (dem_cone)cone;
+                desc.sweeps = sweeps[i];
+                desc.tolerance = DEM_R(1e-12);
+                world = heap_make(desc, 2000);
+                dem_world_dt_set(world, DEM_R(1e-3));
+                for (q = 0; q < count; q++) dem_body_set(world, dem_bodies_id(world, q), &all[q]);
+                if (demi_dt_settle(world) != DEM_OK || demi_refresh(world) != DEM_OK) { refused(world); return; }
+                c = dem_counters_get(world);
+                snprintf(label, sizeof label, "sweeps.%s.%s.%d", cone ? "convex" : "coulomb", demi_solvers[k].name,
+                         sweeps[i]);
+                study_result(label, (double)c.residual_rms, "m/s");
+                if (page) fprintf(page, " %.2g |", (double)c.residual_rms);
+                dem_world_destroy(world);
+            }
+            if (page) fprintf(page, "\n");
+        }
+    }
+    free(all);
+}
+
+int main(int argc, char **argv) {
+    static const char *part = "all", *out = "build/out/responses";
+    static const study_option table[] = {
+        {"part", STUDY_TEXT, &part, 0, 0, "", "hopper, drum, heap, sweeps or all"},
+        {"seeds", STUDY_INT, &seeds, 1, 50, "", "runs of each"},
+        {"out", STUDY_TEXT, &out, 0, 0, "", "folder of results"},
+    };
+    const double load = bench_load();
+    const int all = 0 == (study_options(argc, argv, "Springs beside impulses.", table,
+                                        (int)(sizeof table/sizeof *table)), strcmp(part, "all"));
+    study_begin(out);
+    bench_machine();
+    page = bench_page_open();
+    if (page) bench_page_machine(page, load);
+    if (all || !strcmp(part, "sweeps")) sweeps_part();
+    if (all || !strcmp(part, "heap")) heap_part();
+    if (all || !strcmp(part, "hopper")) against("hopper", "discharge", "kg/s", hopper_run);
+    if (all || !strcmp(part, "drum")) against("drum", "torque", "N m", drum_run);
+    study_close(page, "page.md");
+    return study_end();
+}
