@@ -37,6 +37,7 @@
        >>kept-respond  the law's answers to them: forces on both ends
        >>integrators kick, drift, predict; rotation
        >>impulses    in place of laws: impulses that keep bodies apart: who meets whom
+       >>joints      what holds bodies together: hinges, motors
        >>solvers     how they are found
        >>impulses-told  what they do: forces, memory, losses
        >>ledger      where the energy went
@@ -982,9 +983,10 @@ typedef struct dem_world_desc {
     dem_cone cone;
     dem_solver solver;
     int sweeps;                    /* over all contacts, at most, in a step; 0: 200 */
-    dem_real tolerance;            /* m/s: change of a contact's velocity below which sweeps end; 0:
-                                      a thousandth of what gravity brings in a step, and a millionth
-                                      of the largest speed */
+    dem_real tolerance;            /* m/s: sweeps end when one changes no contact's velocity by
+                                      more; 0: when it changes them by less (rms) than a twentieth
+                                      of what gravity brings in a step and 1e-5 of the largest
+                                      speed, and none by thirty times that */
     dem_search search;
     dem_real skin;                 /* m, margin of the candidate list; 0: chosen; < 0: none, the
                                       list is rebuilt every step */
@@ -1480,6 +1482,57 @@ typedef struct dem_wall_loads {
 } dem_wall_loads;
 DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall wall, dem_wall_loads *loads);
 DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
+
+/* ---- joints ---- */
+/* What holds a body to another, to a wall or to the space they are in. Joints are found together
+   with the impulses of contacts: with DEM_RESPONSE_IMPULSES and DEM_SOLVER_SEIDEL alone. They are
+   impulses that keep points, and directions, together at the end of each step, so that they bring
+   no energy and do not drift; what they hold is told as force and torque. Bodies that are joined do
+   not touch each other, unless `collide`. */
+typedef enum dem_joint_kind {
+    DEM_JOINT_NONE = 0,
+    DEM_JOINT_POINT,          /* a ball joint: `point` of both stays one */
+    DEM_JOINT_REVOLUTE        /* a hinge, an axle: `axis` of both stays one, too */
+} dem_joint_kind;
+typedef enum dem_motor {
+    DEM_MOTOR_NONE = 0,
+    DEM_MOTOR_SPEED,          /* turns a against b with `speed`, by at most `torque` */
+    DEM_MOTOR_TORQUE          /* turns a against b with `torque` */
+} dem_motor;
+typedef struct dem_joint { int32_t id; } dem_joint;                          /* id counts from 1 */
+typedef struct dem_joint_desc {
+    dem_joint_kind kind;      /* required */
+    dem_motor motor;          /* of a revolute joint */
+    dem_body a, b;            /* a is required; b null: the wall, or the space */
+    dem_wall wall;            /* where b is null: moves with it; null: the space, at rest */
+    int collide;              /* 1: the two touch as others do */
+    dem_vec3 point;           /* m, where they are joined, as they stand now */
+    dem_vec3 axis;            /* revolute: of any length but 0, as they stand now */
+    dem_real speed;           /* rad/s, of a against b about axis, right-handed */
+    dem_real torque;          /* N m, on a about axis; of a motor with speed: >= 0, its most; 0: no
+                                 limit */
+} dem_joint_desc;
+static const dem_joint_desc DEM_JOINT_DESC_ZERO = {DEM_JOINT_NONE, DEM_MOTOR_NONE, {0, 0}, {0, 0},
+                                                   {0}, 0, {0, 0, 0}, {0, 0, 0}, 0, 0};
+#define DEM_JOINT_DESC DEM_JOINT_DESC_ZERO
+typedef struct dem_joint_state {
+    dem_vec3 force, torque;   /* N, N m about the point: on a, of the last step, the motor's with
+                                 them; on b the opposite */
+    dem_real motor_torque;    /* N m, on a about axis, of the last step */
+    dem_real power;           /* W, given to a and b: that of the motor */
+    dem_real gap, tilt;       /* m: distance of the two points; sine between the two axes */
+    double turned;            /* rad, of a against b about axis, since it was added */
+    double work;              /* J, sum of power */
+} dem_joint_state;
+/* Null id with a sentence on bad values, where contacts answer by springs, where neither of the two
+   can move, and of spheres in worlds without desc.orientations. A joint goes with either of its
+   bodies when that is removed or leaves, and is saved with them. */
+DEM_API dem_joint dem_joint_add(dem_world *world, const dem_joint_desc *desc);
+/* Another motor, from the next step on: as in dem_joint_desc. */
+DEM_API dem_result dem_joint_motor(dem_world *world, dem_joint joint, dem_motor motor,
+                                   dem_real speed, dem_real torque);
+DEM_API dem_result dem_joint_get(const dem_world *world, dem_joint joint, dem_joint_state *state);
+DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
 
 /* ---- feed and outlets ---- */
 enum { DEM_CLASSES = 16 };
@@ -2727,6 +2780,14 @@ typedef struct demi_outlet {
     int zone;                      /* of its bits in bodies.zones; -1: it takes grains out */
 } demi_outlet;
 
+/* Saved whole. */
+typedef struct demi_joint {
+    dem_joint_desc desc;           /* kind none: removed, or one of its bodies was */
+    dem_joint_state state;
+    dem_vec3 arm[2], axis[2];      /* m, from the centre of a and b to the point; unit: as seen from
+                                      body, wall or space */
+} demi_joint;
+
 /* One level of the hierarchical grid: the bodies of a class of radii, and cells of their own. */
 typedef struct demi_level {
     double radius;                 /* m, largest of the class */
@@ -2901,6 +2962,7 @@ struct demi_beside;
 struct demi_twist;
 struct demi_mover;
 struct demi_run_sums;
+struct demi_rods;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* domain d's begin at meeting_first[d] */
     struct demi_impulse *contacts; /* by colour, and so are: */
@@ -2915,6 +2977,8 @@ typedef struct demi_solver {
     int32_t *degrees;              /* of each body: how many contacts it has */
     dem_vec3 *vectors;             /* columns of one per contact, for some solvers */
     struct demi_run_sums *runs;    /* of each run of contacts in the last round */
+    struct demi_rods *rods;        /* one per joint */
+    int32_t *joined;               /* of each body: its first joint, see demi_joined */
     int count, first, last, run;   /* contacts; of the colour being swept; its first run */
     int twisted;                   /* is there rolling or spinning friction? */
     int begins[65];                /* of each colour */
@@ -2966,6 +3030,8 @@ struct dem_world {
     int feed_count, outlet_count;
     demi_feed *feeds;
     demi_outlet *outlets;
+    int joint_count;               /* >>joints */
+    demi_joint *joints;
     struct demi_sphere *crowd;
     struct demi_node *crowd_nodes;
     dem_real *crowd_turned;        /* x 4 */
@@ -3212,6 +3278,7 @@ static const dem_wall demi_no_wall = {0};
 static const dem_field demi_no_field = {0};
 static const dem_feed demi_no_feed = {0};
 static const dem_outlet demi_no_outlet = {0};
+static const dem_joint demi_no_joint = {0};
 
 static dem_result demi_no_memory(dem_world *w, const char *call) {
     return demi_fail(w, DEM_ERROR_MEMORY, "%s: out of memory with %.1f MB held; use fewer bodies "
@@ -8728,7 +8795,7 @@ static int demi_quiet_reserve(dem_world *w, int bodies) {
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
-           !w->bodies.backward;
+           !w->bodies.backward && !w->joint_count;
 }
 /* Says of every few bodies whether anything is near any of them: where nothing is, and no field
    acts, they fly by themselves, and a step need not gather, nor clear, forces for them. */
@@ -13074,6 +13141,16 @@ DEM_INLINE dem_vec3 demi_mover_turn(const demi_solver *s, int mover, dem_vec3 x,
     return shaped ? demi_tensor_times(s->tensors + 6*mover, x)
         : demi_scale(x, s->movers[mover].inv_inertia);
 }
+/* A mover gets a change of momentum, and of angular momentum. */
+DEM_INLINE void demi_mover_push(const demi_solver *s, int mover, dem_vec3 p, dem_vec3 l,
+                                int shaped) {
+    demi_mover *m = s->movers + mover;
+    dem_vec3 w;
+    if (!(m->inv > 0)) return;
+    w = demi_mover_turn(s, mover, l, shaped);
+    m->v[0] += p.x*m->inv; m->v[1] += p.y*m->inv; m->v[2] += p.z*m->inv;
+    m->w[0] += w.x; m->w[1] += w.y; m->w[2] += w.z;
+}
 /* A domain's bodies as they would go on without contacts; spins of bodies that are not spheres are
    those of their angular momentum. */
 static void demi_movers_lay(dem_world *w, int d) {
@@ -13115,6 +13192,29 @@ static void demi_movers_lay(dem_world *w, int d) {
             m->v[k] = b.inv > 0 ? b.v[k] + (b.f[k]*b.inv + b.g[k])*s->dt : b.v[k];
     }
 }
+/* Joints in force of one step. */
+typedef struct demi_rods {
+    int32_t a, b, rows;            /* movers; rows 0: not in force */
+    int32_t next[2];               /* joint of a, and of b, after this one; -1: none */
+    dem_vec3 arm[2];               /* m */
+    dem_vec3 along[3];             /* unit: about which a may not turn against b; axis of a motor */
+    dem_real wanted[6], given[6];  /* m/s, rad/s: of a against b; N s, N m s */
+    dem_real factor[6][6];         /* Cholesky's, of what impulses bring; last: the motor's */
+    dem_real most, torque;         /* N m s: of a motor; by one of torque */
+} demi_rods;
+/* Are these two joined, so that they do not touch? b < 0: wall. */
+static int demi_joined(const dem_world *w, int a, int b, int wall) {
+    int j, next;
+    if (!w->joint_count) return 0;
+    for (j = w->solver.joined[a]; j >= 0; j = next) {
+        const demi_rods *r = w->solver.rods + j;
+        next = r->next[r->a == a ? 0 : 1];
+        if (w->joints[j].desc.collide) continue;
+        if (b >= 0 ? (r->a == a ? r->b : r->a) == b
+                   : !w->joints[j].desc.b.slot && w->joints[j].desc.wall.id == wall + 1) return 1;
+    }
+    return 0;
+}
 /* Whom a domain's bodies meet: spheres of the near list within the range, then contacts that are
    kept: of bodies that are no spheres, and with walls. */
 static void demi_impulses_meet(dem_world *w, int d) {
@@ -13131,7 +13231,8 @@ static void demi_impulses_meet(dem_world *w, int d) {
         const dem_vec3 way = demi_near_way(w, at);
         const dem_real l2 = demi_dot(way, way), radii = w->bodies.pos[4*a + 3] +
             w->bodies.pos[4*b + 3], most = radii + demi_range(w, radii);
-        if (l2 > 0 && l2 <= most*most && s->movers[a].inv + s->movers[b].inv > 0) {
+        if (l2 > 0 && l2 <= most*most && s->movers[a].inv + s->movers[b].inv > 0 &&
+            !demi_joined(w, a, b, -1)) {
             m->a = a;
             m->b = b;
             m++->home = p;
@@ -13141,7 +13242,7 @@ static void demi_impulses_meet(dem_world *w, int d) {
         demi_kept *k = w->kept_next + w->kept_first[d] + i;
         demi_kept_recall(w, now, k);
         k->force = demi_v(0, 0, 0);
-        if (demi_kept_asked(w, k) &&
+        if (demi_kept_asked(w, k) && !demi_joined(w, k->a, k->b, k->wall) &&
             s->movers[k->a].inv + (k->b >= 0 ? s->movers[k->b].inv : 0) > 0) {
             m->a = k->a;
             m->b = k->b >= 0 ? k->b : w->bodies.count + w->kept_first[d] + i;
@@ -13338,6 +13439,399 @@ static void demi_impulses_lay(dem_world *w, int d) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>joints
+   What holds bodies together, to walls or to the space: rows of velocities of a against b that
+   shall be `wanted` after the step, three of the common point and for a hinge two of its axis, and
+   one of a motor. A joint is solved exactly as one block in every sweep, by Cholesky's factor of
+   what impulses bring; the motor stands last, so that its limit is kept within the substitution.
+   What the points are apart already is wanted back within the step: that is the constraint on
+   places at its end, to first order (SHAKE's first iteration), so that joints do not drift, and
+   what they do to energy stays bounded. Joints are solved in their order by one thread.
+   Owns w->joints, and rods and joined of the solver. Tests: tests/test_joints.c.
+   --------------------------------------------------------------------------------------------- */
+
+static int demi_joints_in_force(const dem_world *w) {
+    int i, n = 0;
+    for (i = 0; i < w->joint_count; i++) n += w->joints[i].desc.kind != DEM_JOINT_NONE;
+    return n;
+}
+/* Its index, or -1 with a sentence. */
+static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
+    if (joint.id >= 1 && joint.id <= w->joint_count &&
+        w->joints[joint.id - 1].desc.kind != DEM_JOINT_NONE) return joint.id - 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: joint %d does not exist, there are %d; it was removed, "
+              "or one of its bodies was, or adding it was refused", call, (int)joint.id,
+              w->joint_count);
+    return -1;
+}
+/* What is wrong with a motor; 0 with a sentence. */
+static int demi_motor_sane(dem_world *w, const char *call, dem_joint_kind kind, dem_motor motor,
+                           dem_real speed, dem_real torque) {
+    if ((int)motor >= 0 && motor <= DEM_MOTOR_TORQUE && demi_finite(speed) && demi_finite(torque) &&
+        !(motor == DEM_MOTOR_SPEED && torque < 0) &&
+        (motor == DEM_MOTOR_NONE || kind == DEM_JOINT_REVOLUTE)) return 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, speed %g rad/s, torque %g N m; motors turn "
+              "revolute joints, speed and torque are finite, and the most torque of a motor with "
+              "speed is >= 0 (0: no limit)", call, (int)motor, (double)speed, (double)torque);
+    return 0;
+}
+/* A place or direction, as seen from body `index` (with `place`: from its centre). */
+static dem_vec3 demi_joint_from_body(const dem_world *w, int index, dem_vec3 x, int place) {
+    const demi_periods p = demi_periods_of(w);
+    if (place) x = demi_nearest(&p, demi_sub(x, demi_at(w->bodies.pos + 4*index)));
+    return dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*index), x);
+}
+/* What is wrong with a desc, but its motor; 0 with a sentence. */
+static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc *d) {
+    const dem_real size = demi_length(d->axis);
+    int a, b = -1;
+    if (!demi_impulsive(w)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts answer by springs, and joints are "
+                  "found with impulses; create the world with desc.response = "
+                  "DEM_RESPONSE_IMPULSES", call);
+        return 0;
+    }
+    if ((d->kind != DEM_JOINT_POINT && d->kind != DEM_JOINT_REVOLUTE) || !demi_place(d->point) ||
+        (d->kind == DEM_JOINT_REVOLUTE && (!demi_finite3(d->axis) || !(size > 0) ||
+                                           !demi_finite(size)))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: kind is %d, point (%g, %g, %g) m, axis (%g, %g, %g); "
+                  "kind must be DEM_JOINT_POINT or DEM_JOINT_REVOLUTE, the point within 1e9 m, the "
+                  "axis of a revolute joint finite and not 0", call, (int)d->kind,
+                  (double)d->point.x, (double)d->point.y, (double)d->point.z, (double)d->axis.x,
+                  (double)d->axis.y, (double)d->axis.z);
+        return 0;
+    }
+    if (w->desc.planar && d->kind == DEM_JOINT_REVOLUTE &&
+        !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be along z: discs turn "
+                  "about nothing else", call, (double)d->axis.x, (double)d->axis.y,
+                  (double)d->axis.z);
+        return 0;
+    }
+    a = demi_body_index(w, call, d->a);
+    if (a < 0) return 0;
+    if (d->b.slot && (b = demi_body_index(w, call, d->b)) < 0) return 0;
+    if (!d->b.slot && d->wall.id && demi_wall_find(w, call, d->wall) < 0) return 0;
+    if (!w->desc.orientations && (!demi_shape_of(w, a) || (b >= 0 && !demi_shape_of(w, b)))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u is a sphere, and how spheres are turned is "
+                  "not followed in this world; create it with desc.orientations = 1", call,
+                  (unsigned)(demi_shape_of(w, a) ? d->b.slot : d->a.slot));
+        return 0;
+    }
+    if (a != b && w->bodies.inv_mass[a] + (b >= 0 ? w->bodies.inv_mass[b] : 0) > 0) return 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a is body %u, b body %u (0: none): %s; a joint holds two "
+              "that are not the same, one of which can move", call, (unsigned)d->a.slot,
+              (unsigned)d->b.slot, a == b ? "they are one" : "neither can move");
+    return 0;
+}
+DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
+    const char *call = "dem_joint_add";
+    demi_joint j;
+    dem_joint id;
+    if (demi_null(w, call, d, "desc")) return demi_no_joint;
+    if (!demi_joint_sane(w, call, d) ||
+        !demi_motor_sane(w, call, d->kind, d->motor, d->speed, d->torque)) return demi_no_joint;
+    if (!demi_orient_begin(w) || !DEMI_GROW(w, w->joints, (size_t)w->joint_count + 1)) {
+        demi_no_memory(w, call);
+        return demi_no_joint;
+    }
+    memset(&j, 0, sizeof j);
+    j.desc = *d;
+    j.desc.axis = d->kind == DEM_JOINT_REVOLUTE ? demi_unit(d->axis) : demi_v(0, 0, 0);
+    j.arm[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), d->point, 1);
+    j.axis[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), j.desc.axis, 0);
+    j.arm[1] = d->point;
+    j.axis[1] = j.desc.axis;
+    if (d->b.slot) {
+        const int b = demi_body_index(w, call, d->b);
+        j.arm[1] = demi_joint_from_body(w, b, d->point, 1);
+        j.axis[1] = demi_joint_from_body(w, b, j.desc.axis, 0);
+    } else if (d->wall.id) {
+        const dem_pose *pose = &w->walls[d->wall.id - 1].pose;
+        j.arm[1] = demi_unrotate(pose->rotation, demi_sub(d->point, pose->position));
+        j.axis[1] = demi_unrotate(pose->rotation, j.desc.axis);
+    }
+    w->joints[w->joint_count++] = j;
+    demi_scene_changed(w);
+    demi_built(w, call);
+    id.id = w->joint_count;
+    return id;
+}
+DEM_API dem_result dem_joint_motor(dem_world *w, dem_joint joint, dem_motor motor, dem_real speed,
+                                   dem_real torque) {
+    const char *call = "dem_joint_motor";
+    int i;
+    if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find(w, call, joint);
+    if (i < 0 || !demi_motor_sane(w, call, w->joints[i].desc.kind, motor, speed, torque))
+        return DEM_ERROR_ARGUMENT;
+    w->joints[i].desc.motor = motor;
+    w->joints[i].desc.speed = speed;
+    w->joints[i].desc.torque = torque;
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+DEM_API dem_result dem_joint_get(const dem_world *w, dem_joint joint, dem_joint_state *state) {
+    int i;
+    if (demi_null(w, "dem_joint_get", state, "state")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find((dem_world *)w, "dem_joint_get", joint);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    *state = w->joints[i].state;
+    return DEM_OK;
+}
+DEM_API dem_result dem_joint_remove(dem_world *w, dem_joint joint) {
+    int i;
+    if (demi_null(w, "dem_joint_remove", w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_joint_find(w, "dem_joint_remove", joint);
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    memset(&w->joints[i], 0, sizeof w->joints[i]);
+    demi_scene_changed(w);
+    return DEM_OK;
+}
+
+/* Index of a body by its id; -1: it is no more. */
+static int demi_joint_body(const dem_world *w, dem_body b) {
+    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
+        w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
+    return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
+}
+/* One end of a joint as it stands: its mover, the arm from that, the point in space, the axis. */
+typedef struct demi_rod_end { int mover; dem_vec3 arm, point, axis; } demi_rod_end;
+static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int body) {
+    const demi_joint *j = &w->joints[joint];
+    demi_rod_end o;
+    if (body >= 0) {
+        const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
+        o.mover = body;
+        o.arm = dem_quat_rotate(q, j->arm[end]);
+        o.axis = dem_quat_rotate(q, j->axis[end]);
+        o.point = demi_add(demi_at(w->bodies.pos + 4*body), o.arm);
+    } else {
+        demi_mover *m;
+        o.mover = w->bodies.count + w->kept_first[DEMI_DOMAINS] + joint;
+        o.arm = demi_v(0, 0, 0);
+        o.point = j->arm[end];
+        o.axis = j->axis[end];
+        m = w->solver.movers + o.mover;
+        memset(m, 0, sizeof *m);
+        if (j->desc.wall.id) {
+            const dem_pose *pose = &w->walls[j->desc.wall.id - 1].pose;
+            o.point = demi_add(pose->position, demi_rotate(pose->rotation, o.point));
+            o.axis = demi_rotate(pose->rotation, o.axis);
+            demi_put(m->v, demi_surface_at(pose, o.point));
+            demi_put(m->w, pose->spin);
+        }
+    }
+    return o;
+}
+/* What impulses of the rows bring, factored in place. */
+static void demi_rod_factor(const dem_world *w, demi_rods *r) {
+    const demi_solver *s = &w->solver;
+    static const dem_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    int end, i, j, k;
+    memset(r->factor, 0, sizeof r->factor);
+    for (end = 0; end < 2; end++) {
+        const int body = end ? r->b : r->a;
+        if (!(s->movers[body].inv > 0)) continue;
+        for (i = 0; i < r->rows; i++) {
+            const dem_vec3 l = i < 3 ? demi_cross(r->arm[end], unit[i]) : r->along[i - 3];
+            const dem_vec3 turn = demi_mover_turn(s, body, l, w->bodies.shaped > 0);
+            for (j = i; j < r->rows; j++)
+                r->factor[j][i] += demi_dot(j < 3 ? demi_cross(r->arm[end], unit[j])
+                                            : r->along[j - 3], turn);
+            if (i < 3) r->factor[i][i] += s->movers[body].inv;
+        }
+    }
+    for (i = 0; i < r->rows; i++)
+        for (j = i; j < r->rows; j++) {
+            dem_real sum = r->factor[j][i];
+            for (k = 0; k < i; k++) sum -= r->factor[i][k]*r->factor[j][k];
+            r->factor[j][i] = j > i ? sum/r->factor[i][i] : DEMI_SQRT(DEMI_MAX(sum, DEMI_TINY));
+        }
+}
+/* Velocity of a against b in row i. */
+DEM_INLINE void demi_rod_velocity(const demi_solver *s, const demi_rods *r, dem_real *u) {
+    const demi_mover *a = s->movers + r->a, *b = s->movers + r->b;
+    const dem_vec3 turn = demi_sub(demi_at(a->w), demi_at(b->w));
+    const dem_vec3 va = demi_add(demi_at(a->v), demi_cross(demi_at(a->w), r->arm[0]));
+    const dem_vec3 vb = demi_add(demi_at(b->v), demi_cross(demi_at(b->w), r->arm[1]));
+    int k;
+    demi_put(u, demi_sub(va, vb));
+    for (k = 3; k < r->rows; k++) u[k] = demi_dot(turn, r->along[k - 3]);
+}
+/* Force and torque of impulses in the rows, on a. */
+DEM_INLINE dem_vec3 demi_rod_twist(const demi_rods *r, const dem_real *p) {
+    dem_vec3 l = demi_v(0, 0, 0);
+    int k;
+    for (k = 3; k < r->rows; k++) l = demi_add(l, demi_scale(r->along[k - 3], p[k]));
+    return l;
+}
+static void demi_rod_apply(const dem_world *w, const demi_rods *r, const dem_real *p,
+                           dem_vec3 l) {
+    const demi_solver *s = &w->solver;
+    const int shaped = w->bodies.shaped > 0;
+    const dem_vec3 f = demi_at(p), back = demi_scale(f, -1);
+    demi_mover_push(s, r->a, f, demi_add(l, demi_cross(r->arm[0], f)), shaped);
+    demi_mover_push(s, r->b, back, demi_sub(demi_cross(r->arm[1], back), l), shaped);
+}
+/* Length of a body, to compare turning with moving by, and how far a joint is closed in a step: it
+   is off by more only where somebody has moved a body. */
+static dem_real demi_rod_size(const dem_world *w, const demi_rods *r) {
+    const dem_real a = w->bodies.pos[4*r->a + 3];
+    return r->b < w->bodies.count ? DEMI_MIN(a, w->bodies.pos[4*r->b + 3]) : a;
+}
+/* Rows of joint i between these two, with what is remembered. */
+static void demi_rod_lay(dem_world *w, int i, int a, int b) {
+    demi_solver *s = &w->solver;
+    demi_joint *j = &w->joints[i];
+    demi_rods *r = s->rods + i;
+    const demi_periods p = demi_periods_of(w);
+    const demi_rod_end x = demi_rod_end_of(w, i, 0, a), y = demi_rod_end_of(w, i, 1, b);
+    const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
+    const dem_vec3 tilt = demi_cross(y.axis, x.axis);       /* of a against b */
+    dem_real most;
+    int k;
+    r->a = x.mover;
+    r->b = y.mover;
+    r->arm[0] = demi_sub(x.arm, demi_scale(off, DEM_R(0.5)));   /* to one place: angular momentum */
+    r->arm[1] = b >= 0 ? demi_add(y.arm, demi_scale(off, DEM_R(0.5))) : y.arm;
+    most = demi_rod_size(w, r)/10;
+    j->state.gap = demi_length(off);
+    j->state.tilt = demi_length(tilt);
+    r->rows = 3;
+    demi_put(r->wanted, demi_scale(off, -DEMI_MIN(1, most/(j->state.gap + DEMI_TINY))/s->dt));
+    if (j->desc.kind == DEM_JOINT_REVOLUTE) {
+        const dem_real part = DEMI_MIN(1, DEM_R(0.1)/(j->state.tilt + DEMI_TINY));
+        r->along[0] = demi_across(x.axis);
+        r->along[1] = demi_cross(x.axis, r->along[0]);
+        r->along[2] = x.axis;
+        r->rows = j->desc.motor == DEM_MOTOR_SPEED ? 6 : 5;
+        for (k = 0; k < 2; k++) r->wanted[3 + k] = -demi_dot(tilt, r->along[k])*part/s->dt;
+        r->wanted[5] = j->desc.speed;
+        r->most = j->desc.motor == DEM_MOTOR_SPEED ? j->desc.torque*s->dt : 0;
+        r->torque = j->desc.motor == DEM_MOTOR_TORQUE ? j->desc.torque*s->dt : 0;
+        if (w->stage.forces_valid)
+            j->state.turned += (double)(s->dt*demi_dot(x.axis, demi_sub(
+                demi_at(w->bodies.spin + 4*a), b >= 0 ? demi_at(w->bodies.spin + 4*b)
+                : demi_at(s->movers[r->b].w))));
+    }
+    demi_put(r->given, demi_scale(j->state.force, s->dt));
+    for (k = 3; k < r->rows; k++)
+        r->given[k] = demi_dot(j->state.torque, r->along[k - 3])*s->dt;
+    if (r->rows == 6) r->given[5] = j->desc.motor == DEM_MOTOR_SPEED ? r->given[5] : 0;
+    if (r->most > 0) r->given[5] = DEMI_MAX(-r->most, DEMI_MIN(r->given[5], r->most));
+    demi_rod_factor(w, r);
+}
+/* Joints as they stand in this step; those that have lost a body go. */
+static void demi_joints_lay(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int i;
+    if (!w->joint_count) return;
+    for (i = 0; i < w->bodies.count; i++) s->joined[i] = -1;
+    for (i = 0; i < w->joint_count; i++) {
+        demi_joint *j = &w->joints[i];
+        demi_rods *r = s->rods + i;
+        const int a = demi_joint_body(w, j->desc.a), wall = j->desc.wall.id - 1;
+        const int b = j->desc.b.slot ? demi_joint_body(w, j->desc.b) : -1;
+        memset(r, 0, sizeof *r);
+        if (j->desc.kind == DEM_JOINT_NONE) continue;
+        if (a < 0 || (j->desc.b.slot && b < 0) ||
+            (!j->desc.b.slot && wall >= 0 && w->walls[wall].kind == DEMI_WALL_NONE)) {
+            memset(j, 0, sizeof *j);
+            continue;
+        }
+        if (!(s->movers[a].inv + (b >= 0 ? s->movers[b].inv : 0) > 0)) continue;
+        if (w->stage.forces_valid) j->state.work += (double)j->state.power*(double)s->dt;
+        demi_rod_lay(w, i, a, b);
+        r->next[0] = s->joined[a];
+        s->joined[a] = i;
+        if (b < 0) continue;
+        r->next[1] = s->joined[b];
+        s->joined[b] = i;
+    }
+}
+/* Begins with what is remembered, and what motors of a given torque do. */
+static void demi_joints_warm(dem_world *w) {
+    int i;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rods *r = w->solver.rods + i;
+        if (r->rows) demi_rod_apply(w, r, r->given, demi_add(demi_rod_twist(r, r->given),
+                                                             demi_scale(r->along[2], r->torque)));
+    }
+}
+/* Solves each joint once; answers the farthest that one was from it, squared, m/s. */
+static dem_real demi_joints_sweep(dem_world *w) {
+    const demi_solver *s = &w->solver;
+    dem_real worst = 0;
+    int i, j, k;
+    for (i = 0; i < w->joint_count; i++) {
+        demi_rods *r = s->rods + i;
+        dem_real u[6], x[6], left = 0, size;
+        if (!r->rows) continue;
+        size = demi_rod_size(w, r);
+        demi_rod_velocity(s, r, u);
+        for (j = 0; j < r->rows; j++) {
+            const dem_real lacks = r->wanted[j] - u[j];
+            x[j] = lacks;
+            for (k = 0; k < j; k++) x[j] -= r->factor[j][k]*x[k];
+            x[j] /= r->factor[j][j];
+            if (j < 5) left += lacks*lacks*(j < 3 ? 1 : size*size);
+        }
+        for (j = r->rows - 1; j >= 0; j--) {
+            for (k = j + 1; k < r->rows; k++) x[j] -= r->factor[k][j]*x[k];
+            x[j] /= r->factor[j][j];
+            if (j < 5) continue;
+            if (r->most > 0)
+                x[j] = DEMI_MAX(-r->most, DEMI_MIN(r->given[j] + x[j], r->most)) - r->given[j];
+            left += x[j]*x[j]*r->factor[j][j]*r->factor[j][j]*size*size;
+        }
+        for (j = 0; j < r->rows; j++) r->given[j] += x[j];
+        demi_rod_apply(w, r, x, demi_rod_twist(r, x));
+        worst = DEMI_MAX(worst, left);
+    }
+    return worst;
+}
+/* What joints have come to: forces, power; on walls, and on bodies that go as they are told. */
+static void demi_joints_tell(dem_world *w) {
+    const demi_solver *s = &w->solver;
+    const dem_real per = 1/s->dt;
+    int i, k;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rods *r = s->rods + i;
+        dem_joint_state *o = &w->joints[i].state;
+        const int wall = w->joints[i].desc.b.slot ? -1 : w->joints[i].desc.wall.id - 1;
+        dem_vec3 u, turn;
+        if (!r->rows) continue;
+        o->force = demi_scale(demi_at(r->given), per);
+        o->motor_torque = ((r->rows == 6 ? r->given[5] : 0) + r->torque)*per;
+        o->torque = demi_scale(demi_add(demi_rod_twist(r, r->given),
+                                        demi_scale(r->along[2], r->torque)), per);
+        u = turn = demi_v(0, 0, 0);
+        for (k = 0; k < 2; k++) {
+            const int body = k ? r->b : r->a;
+            const demi_mover *m = s->movers + body;
+            const int moves = body < w->bodies.count;
+            const dem_real sign = k ? -1 : 1;
+            const dem_vec3 was = moves ? demi_at(w->bodies.vel + 4*body) : demi_at(m->v);
+            const dem_vec3 spun = moves ? demi_at(w->bodies.spin + 4*body) : demi_at(m->w);
+            const dem_vec3 spin = demi_scale(demi_add(spun, demi_at(m->w)), sign/2);
+            turn = demi_add(turn, spin);
+            u = demi_add(u, demi_add(demi_scale(demi_add(was, demi_at(m->v)), sign/2),
+                                     demi_cross(spin, r->arm[k])));
+            if (!moves || m->inv > 0) continue;
+            demi_force_add(w->bodies.force + 4*body, demi_scale(o->force, sign));
+            demi_force_add(w->bodies.torque + 4*body,
+                           demi_scale(demi_add(o->torque, demi_cross(r->arm[k], o->force)), sign));
+        }
+        o->power = demi_dot(o->force, u) + demi_dot(o->torque, turn);
+        if (wall >= 0)
+            demi_wall_sum_add(w, w->wall_sums + wall, wall,
+                              demi_rod_end_of(w, i, 1, -1).point, o->force, o->torque,
+                              demi_at(s->movers[r->b].v));
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>solvers
    Impulses for what >>impulses has laid down. Velocities stand in movers; what a solver changes in
    an impulse it applies to both bodies. How far a contact is from being solved is told by the step
@@ -13368,16 +13862,6 @@ DEM_INLINE dem_vec3 demi_impulse_velocity(const demi_solver *s, const demi_impul
     }
     return demi_sub(v, demi_cross(demi_add(demi_scale(wa, c->reach_a), demi_scale(wb, c->reach_b)),
                                   c->normal));
-}
-/* A mover gets a change of momentum, and of angular momentum. */
-DEM_INLINE void demi_mover_push(const demi_solver *s, int mover, dem_vec3 p, dem_vec3 l,
-                                int shaped) {
-    demi_mover *m = s->movers + mover;
-    dem_vec3 w;
-    if (!(m->inv > 0)) return;
-    w = demi_mover_turn(s, mover, l, shaped);
-    m->v[0] += p.x*m->inv; m->v[1] += p.y*m->inv; m->v[2] += p.z*m->inv;
-    m->w[0] += w.x; m->w[1] += w.y; m->w[2] += w.z;
 }
 /* Both bodies get an impulse p: b this, a the opposite. */
 DEM_INLINE void demi_impulse_apply(const demi_solver *s, const demi_impulse *c, dem_vec3 p,
@@ -13529,9 +14013,20 @@ DEMI_SEIDEL(demi_seidel_spheres_convex, 1, 0)
 DEMI_SEIDEL(demi_seidel_shapes, 0, 1)
 DEMI_SEIDEL(demi_seidel_shapes_convex, 1, 1)
 #undef DEMI_SEIDEL
-/* How a solver went on: sweeps, and what the last left. */
-typedef struct demi_solved { int sweeps; double worst, squares; } demi_solved;
-static demi_solved demi_solve_seidel(dem_world *w, int most, double enough) {
+/* How a solver went on: sweeps, and what the last left (m/s): farthest, rms. */
+typedef struct demi_solved { int sweeps; double worst, rms; } demi_solved;
+static void demi_solved_tell(const demi_solver *s, demi_solved *o, demi_run_sums sums) {
+    o->worst = sqrt((double)sums.worst);
+    o->rms = sqrt((double)sums.squares/DEMI_MAX(s->count, 1));
+}
+/* Not there yet? By the tolerance given, for the farthest; else by one for the rms. */
+static int demi_solved_open(const dem_world *w, const demi_solved *o) {
+    const double kick = (double)demi_length(w->desc.gravity)*(double)w->clock.dt;
+    const double enough = 0.05*kick + 1e-5*w->booked.speed_max + 1e-12;
+    if (w->desc.tolerance > 0) return o->worst > (double)w->desc.tolerance;
+    return o->rms > enough || o->worst > 30*enough;
+}
+static demi_solved demi_solve_seidel(dem_world *w, int most) {
     const demi_task kinds[4] = {demi_seidel_spheres, demi_seidel_spheres_convex,
                                 demi_seidel_shapes, demi_seidel_shapes_convex};
     const demi_task task = kinds[(w->desc.cone == DEM_CONE_CONVEX) + 2*(w->bodies.shaped > 0)];
@@ -13540,9 +14035,9 @@ static demi_solved demi_solve_seidel(dem_world *w, int most, double enough) {
         demi_run_sums sums;
         demi_colours_all(w, task);
         sums = demi_runs_sum(&w->solver);
-        o.worst = sqrt((double)sums.worst);
-        o.squares = (double)sums.squares;
-    } while (++o.sweeps < most && o.worst > enough);
+        sums.worst = DEMI_MAX(sums.worst, demi_joints_sweep(w));
+        demi_solved_tell(&w->solver, &o, sums);
+    } while (++o.sweeps < most && demi_solved_open(w, &o));
     return o;
 }
 
@@ -13580,7 +14075,7 @@ static void demi_vectors_apply(dem_world *w, int index) {
     for (demi_run_bounds(s, index, &i, &end); i < end; i++)
         demi_impulse_apply(s, s->contacts + i, s->vectors[i], shaped);
 }
-static demi_solved demi_solve_jacobi(dem_world *w, int most, double enough) {
+static demi_solved demi_solve_jacobi(dem_world *w, int most) {
     demi_solver *s = &w->solver;
     demi_solved o = {0, 0, 0};
     int i;
@@ -13593,10 +14088,9 @@ static demi_solved demi_solve_jacobi(dem_world *w, int most, double enough) {
         demi_run_sums sums;
         demi_runs_all(w, demi_jacobi_look);
         sums = demi_runs_sum(s);
-        o.worst = sqrt((double)sums.worst);
-        o.squares = (double)sums.squares;
+        demi_solved_tell(s, &o, sums);
         demi_colours_all(w, demi_vectors_apply);
-    } while (++o.sweeps < most && o.worst > enough);
+    } while (++o.sweeps < most && demi_solved_open(w, &o));
     return o;
 }
 
@@ -13781,7 +14275,7 @@ static demi_run_sums demi_step_spectral(dem_world *w, double *length, double *od
     return demi_runs_sum(s);
 }
 enum { DEMI_SAXCE = 25 };                       /* steps between two looks at Coulomb's law */
-static demi_solved demi_solve_gradient(dem_world *w, int most, double enough,
+static demi_solved demi_solve_gradient(dem_world *w, int most,
                                        demi_run_sums (*step)(dem_world *w, double *a, double *b)) {
     demi_solver *s = &w->solver;
     const size_t movers = (size_t)(w->bodies.count + w->kept_first[DEMI_DOMAINS]);
@@ -13798,9 +14292,8 @@ static demi_solved demi_solve_gradient(dem_world *w, int most, double enough,
             a = b = 1;
         }
         sums = step(w, &a, &b);
-        o.worst = sqrt((double)sums.worst);
-        o.squares = (double)sums.squares;
-    } while (++o.sweeps < most && o.worst > enough);
+        demi_solved_tell(s, &o, sums);
+    } while (++o.sweeps < most && demi_solved_open(w, &o));
     memcpy(s->movers, s->movers + movers, movers*sizeof *s->movers);
     for (i = 0; i < s->count; i++)
         *demi_vector_at(s, DEMI_BY, i) = demi_sub(demi_impulse_vector(s->contacts + i),
@@ -13808,24 +14301,25 @@ static demi_solved demi_solve_gradient(dem_world *w, int most, double enough,
     demi_colours_all(w, demi_vectors_apply);
     return o;
 }
-static demi_solved demi_solve_apgd(dem_world *w, int most, double enough) {
-    return demi_solve_gradient(w, most, enough, demi_step_apgd);
+static demi_solved demi_solve_apgd(dem_world *w, int most) {
+    return demi_solve_gradient(w, most, demi_step_apgd);
 }
-static demi_solved demi_solve_spectral(dem_world *w, int most, double enough) {
-    return demi_solve_gradient(w, most, enough, demi_step_spectral);
+static demi_solved demi_solve_spectral(dem_world *w, int most) {
+    return demi_solve_gradient(w, most, demi_step_spectral);
 }
 
-/* vectors: columns it needs; moments: does it know rolling and spinning friction? */
+/* vectors: columns it needs; moments, joints: does it know friction of
+   rolling and spinning, and joints? */
 typedef struct demi_solver_row {
     const char *name;
-    int vectors, moments;
-    demi_solved (*solve)(dem_world *w, int most, double enough);
+    int vectors, moments, joints;
+    demi_solved (*solve)(dem_world *w, int most);
 } demi_solver_row;
 static const demi_solver_row demi_solvers[] = {
-    {"Gauss-Seidel", 0, 1, demi_solve_seidel},
-    {"Jacobi", 1, 0, demi_solve_jacobi},
-    {"APGD", DEMI_GIVEN + 1, 0, demi_solve_apgd},
-    {"spectral gradients", DEMI_GIVEN + 1, 0, demi_solve_spectral}
+    {"Gauss-Seidel", 0, 1, 1, demi_solve_seidel},
+    {"Jacobi", 1, 0, 0, demi_solve_jacobi},
+    {"APGD", DEMI_GIVEN + 1, 0, 0, demi_solve_apgd},
+    {"spectral gradients", DEMI_GIVEN + 1, 0, 0, demi_solve_spectral}
 };
 enum { DEMI_SOLVERS = sizeof demi_solvers/sizeof *demi_solvers };
 
@@ -13841,10 +14335,12 @@ static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
     const size_t vectors = (size_t)demi_solvers[w->desc.solver].vectors;
     const size_t bodies = (size_t)w->bodies.count;
-    const size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS];
+    const size_t joints = (size_t)w->joint_count;
+    const size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS] + joints;
     size_t n = 0;
     int d;
     if (!demi_impulsive(w)) return 1;
+    if (joints && (!DEMI_GROW(w, s->rods, joints) || !DEMI_GROW(w, s->joined, bodies))) return 0;
     for (d = 0; d < w->domain_count; d++) {
         s->meeting_first[d] = (int)n;
         n += (size_t)(w->domains[d].near_end + w->domains[d].kept_next);
@@ -14008,30 +14504,30 @@ static int demi_impulses_tame(dem_world *w, int last) {
 static void demi_impulses(dem_world *w) {
     demi_solver *s = &w->solver;
     const int most = w->desc.sweeps ? w->desc.sweeps : 200;
-    const double kick = (double)demi_length(w->desc.gravity)*(double)w->clock.dt;
-    const double enough = w->desc.tolerance > 0 ? (double)w->desc.tolerance
-        : 1e-3*kick + 1e-6*w->booked.speed_max + 1e-12;
     demi_solved solved = {0, 0, 0};
     double farthest = 0;
     int i;
     s->dt = w->clock.dt;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_lay);
+    demi_joints_lay(w);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_meet);
     demi_impulses_colour(w);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_lay);
-    if (s->count) {
+    if (s->count || w->joint_count) {
         demi_colours_all(w, demi_impulses_warm);
-        solved = demi_solvers[w->desc.solver].solve(w, most, enough);
+        demi_joints_warm(w);
+        solved = demi_solvers[w->desc.solver].solve(w, most);
         for (i = 0; i < DEMI_TAMINGS && demi_impulses_tame(w, i == DEMI_TAMINGS - 1); i++)
-            solved = demi_solvers[w->desc.solver].solve(w, most, enough);
+            solved = demi_solvers[w->desc.solver].solve(w, most);
     }
     w->booked.sweeps = solved.sweeps;
     w->booked.residual = solved.worst;
-    w->booked.residual_rms = sqrt(solved.squares/DEMI_MAX(s->count, 1));
-    w->booked.unsolved += solved.worst > enough;
+    w->booked.residual_rms = solved.rms;
+    if (demi_solved_open(w, &solved)) w->booked.unsolved++;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_force);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_tell);
     demi_impulses_fixed(w);
+    demi_joints_tell(w);
     w->booked.due[0] = demi_sum_energy(w, DEMI_E_DASHPOT);
     w->booked.due[1] = demi_sum_energy(w, DEMI_E_SLIDE);
     w->booked.due[2] = demi_sum_energy(w, DEMI_E_ROLL);
@@ -14046,9 +14542,11 @@ static void demi_impulses(dem_world *w) {
     w->margin.gone += farthest;
     w->margin.creep += 2*farthest;
 }
-/* Walls' work of the step to come. */
+/* Walls' and motors' work of the step to come. */
 static void demi_impulses_due(dem_world *w) {
     int i;
+    for (i = 0; i < w->joint_count; i++)
+        w->booked.due[3] += (double)w->joints[i].state.power*(double)w->clock.dt;
     for (i = 0; i < w->wall_count; i++)
         w->booked.due[3] += (double)w->walls[i].loads.power*(double)w->clock.dt;
 }
@@ -15822,6 +16320,10 @@ static dem_result demi_dt_settle(dem_world *w) {
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there is rolling or spinning "
                              "friction between materials, which %s does not know; leave "
                              "desc.solver DEM_SOLVER_SEIDEL", demi_solvers[w->desc.solver].name);
+        if (demi_joints_in_force(w) && !demi_solvers[w->desc.solver].joints)
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which %s "
+                             "does not know; leave desc.solver DEM_SOLVER_SEIDEL",
+                             demi_solvers[w->desc.solver].name);
         w->clock.dt = w->desc.dt;
         w->clock.press_since = w->clock.steps;
         w->stage.dt_valid = 1;
@@ -17937,6 +18439,8 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
             h = demi_hash(h, &w->walls[i].pose.position, sizeof(dem_vec3));
             h = demi_hash(h, w->walls[i].pose.rotation, sizeof w->walls[i].pose.rotation);
         }
+    for (i = 0; i < w->joint_count; i++)
+        h = demi_hash(h, &w->joints[i].state.force, 2*sizeof(dem_vec3));
     for (i = 0; i < w->feed_count; i++) {
         const demi_feed *f = demi_feed_at(w, i);
         const int64_t next = f->next;
@@ -19778,7 +20282,7 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
    which the next one is chosen.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 11 };
+enum { DEMI_CHECKPOINT_VERSION = 12 };
 
 /* Writes to file or to memory, or reads the `left` bytes that are at `from`, or (with none of them)
    counts bytes. */
@@ -19965,6 +20469,7 @@ static uint64_t demi_scene_digest(const dem_world *w) {
 static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->bodies.count);          DEMI_VISIT(s, w->bodies.slot_count);
     DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);
+    DEMI_VISIT(s, w->joint_count);
     DEMI_VISIT(s, w->bodies.orienting);      DEMI_VISIT(s, w->bodies.shaped);
     DEMI_VISIT(s, w->filed.count);    DEMI_VISIT(s, w->filed.rows);
     DEMI_VISIT(s, w->filed.stride);
@@ -20089,11 +20594,17 @@ static void demi_visit_measured(dem_world *w, demi_stream *s) {
     for (i = 0; i < w->outlet_count; i++)
         demi_visit(s, &demi_outlet_at(w, i)->state, sizeof(dem_outlet_state));
 }
+/* Joints: they come and go with bodies, and so are state. */
+static void demi_visit_joints(dem_world *w, demi_stream *s) {
+    if (w->joint_count)
+        demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
+}
 /* Everything, in the one order that writing and reading share. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit_numbers(w, s);
     demi_visit(s, w->domains, (size_t)w->domain_count*sizeof(demi_domain));
     demi_visit_bodies(w, s);
+    demi_visit_joints(w, s);
     demi_visit_lists(w, s);
     demi_visit_contacts(w, s);
     demi_visit_walls(w, s);
@@ -20113,7 +20624,7 @@ typedef struct demi_checkpoint_head {
 static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
-                            sizeof(demi_levels), sizeof(demi_booked)};
+                            sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint)};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     int k;
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
@@ -20387,6 +20898,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "its number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
         return demi_lie(r, "the room in its lists", -1);
+    if (!demi_left(r, t->joint_count, sizeof(demi_joint)) || (t->joint_count && !demi_impulsive(w)))
+        return demi_lie(r, "its number of joints", -1);
     if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
         t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
@@ -20644,6 +21157,26 @@ static int demi_measured_check(const demi_reader *r) {
     return 1;
 }
 
+/* Joints are of kinds there are, on walls there are; bodies that are no more, ids tell. */
+static int demi_joints_check(const demi_reader *r) {
+    int i;
+    for (i = 0; i < r->t->joint_count; i++) {
+        const demi_joint *j = &r->t->joints[i];
+        const dem_joint_state *o = &j->state;
+        if (j->desc.kind == DEM_JOINT_NONE) continue;
+        if ((int)j->desc.kind < 0 || j->desc.kind > DEM_JOINT_REVOLUTE ||
+            (int)j->desc.motor < 0 || j->desc.motor > DEM_MOTOR_TORQUE || !r->t->bodies.orienting ||
+            (j->desc.motor != DEM_MOTOR_NONE && j->desc.kind != DEM_JOINT_REVOLUTE) ||
+            j->desc.wall.id < 0 || j->desc.wall.id > r->t->wall_count ||
+            !demi_finite(j->desc.speed) || !demi_finite(j->desc.torque) ||
+            !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
+            !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||
+            !demi_finite_double(o->turned) || !demi_finite_double(o->work))
+            return demi_lie(r, "joint", i);
+    }
+    return 1;
+}
+
 /* --- reading: room, and what follows from the rest --- */
 
 /* Bodies get their room as if they were added. */
@@ -20743,8 +21276,10 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     demi_visit(s, t->domains, (size_t)t->domain_count*sizeof(demi_domain));
     if (!demi_domains_check(r)) return DEM_ERROR_FORMAT;
     *seen = (unsigned char *)demi_alloc(t, (size_t)t->bodies.slot_count + 1, 1);
-    if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t)) return DEM_ERROR_MEMORY;
+    if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t) ||
+        !DEMI_GROW(t, t->joints, (size_t)t->joint_count)) return DEM_ERROR_MEMORY;
     demi_visit_bodies(t, s);
+    demi_visit_joints(t, s);
     if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
     demi_visit_lists(t, s);
     demi_visit_contacts(t, s);
@@ -20752,8 +21287,8 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     demi_visit_walls(t, s);
     demi_visit_measured(t, s);
     if (s->cut || s->left) demi_lie(r, "its length", -1);
-    if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r))
-        return DEM_ERROR_FORMAT;
+    if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
+        !demi_joints_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
 }
 /* Reads a checkpoint from memory. */
@@ -22258,6 +22793,13 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
                 ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z,
                 (double)ch->torque_axial,
                 (double)ch->power);
+    }
+    for (i = 0; i < w->joint_count; i++) {
+        const dem_joint_state *j = &w->joints[i].state;
+        if (w->joints[i].desc.kind == DEM_JOINT_NONE) continue;
+        fprintf(out, "joint %-3d  force %.4g N, torque %.4g N m; motor %.4g N m, %.4g W; off by "
+                "%.3g m\n", i + 1, (double)demi_length(j->force), (double)demi_length(j->torque),
+                (double)j->motor_torque, (double)j->power, (double)j->gap);
     }
     for (i = 0; i < w->feed_count; i++) {
         const dem_feed_state *f = &demi_feed_at(w, i)->state;

@@ -28,6 +28,7 @@ static void null_world(void) {
     const dem_wall wall = {1};
     const dem_field field = {1};
     const dem_feed feed = {1};
+    const dem_joint joint = {1};
     const dem_outlet outlet = {1};
     const dem_body body = {1, 1};
     const dem_vec3 x = at(0, 0, 1);
@@ -71,6 +72,10 @@ static void null_world(void) {
     REFUSES(dem_wall_remove(world, wall));
     REFUSES(dem_wall_loads_get(world, wall, 0));
     REFUSES(dem_wall_loads_reset(world, wall));
+    CHECK_EQ(dem_joint_add(world, 0).id, 0);
+    REFUSES(dem_joint_get(world, joint, 0));
+    REFUSES(dem_joint_motor(world, joint, DEM_MOTOR_NONE, 0, 0));
+    REFUSES(dem_joint_remove(world, joint));
     CHECK_EQ(dem_feed_add(world, 0).id, 0);
     REFUSES(dem_feed_get(world, feed, 0));
     CHECK_EQ(dem_outlet_add(world, 0).id, 0);
@@ -116,6 +121,7 @@ static void null_pointers(dem_world *world) {
     const dem_wall wall = {1};
     const dem_field field = {1};
     const dem_feed feed = {1};
+    const dem_joint joint = {1};
     const dem_outlet outlet = {1};
     dem_body body = dem_bodies_id(world, 0);
     dem_coefficients c;
@@ -142,6 +148,8 @@ static void null_pointers(dem_world *world) {
     REFUSES(dem_wall_motion(world, wall, 0));
     REFUSES(dem_wall_pose(world, wall, 0));
     REFUSES(dem_wall_loads_get(world, wall, 0));
+    ANSWERS(dem_joint_add(world, 0).id, 0);
+    REFUSES(dem_joint_get(world, joint, 0));
     ANSWERS(dem_feed_add(world, 0).id, 0);
     REFUSES(dem_feed_get(world, feed, 0));
     ANSWERS(dem_outlet_add(world, 0).id, 0);
