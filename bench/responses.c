@@ -1,8 +1,10 @@
 /* responses.c - springs beside impulses on the same scenes: time against error, and what solvers reach. MIT licence.
 
-   build/responses          some minutes; results in build/out/responses: page.md for docs/impulses.md, two figures
-   build/responses --part hopper|drum|heap|sweeps --seeds N
+   build/responses          some minutes; results in build/out/responses: page.md for docs/impulses.md, figures
+   build/responses --part pile|silo|hopper|drum|heap|sweeps --seeds N
 
+   pile      a column of discs falls apart (lesson 2): angle of repose
+   silo      beads in a tube that is drawn up (lesson 5): what of their weight the floor bears
    hopper    discs run out of a slot (lesson 6): rate of discharge
    drum      discs in a turning drum with lips (lesson 8), Froude number .05: torque
    heap      10,000 spheres at rest at steps of 1 ms: sweeps, time of a step, of a contact and sweep
@@ -147,6 +149,79 @@ static told drum_run(const way *a, int seed) {
     if (dem_world_run(world, 2, 0, 0) != DEM_OK) return refused(world);
     dem_wall_loads_get(world, drum, &loads);
     o.value = fabs(loads.torque_impulse/loads.time);
+    o.time = (study_clock() - clock)/dem_world_time(world);
+    dem_world_destroy(world);
+    return o;
+}
+
+/* ---- pile, silo ---- */
+
+static told pile_run(const way *a, int seed) {
+    enum { COUNT = 220 };
+    const double R = 2.5e-3, half = 0.02;
+    const dem_real x = (dem_real)half, top = DEM_R(0.2);
+    dem_real corners[8] = {-x, 0, -x, top, x, 0, x, top};
+    int32_t sides[4] = {0, 1, 2, 3};
+    const dem_profile walls = {4, 2, corners, sides};
+    const dem_box all = {{0, 0, 0}, {0, 0, 0}};
+    dem_world_desc desc = desc_of(a);
+    dem_motion up = DEM_MOTION;
+    dem_repose slope;
+    dem_world *world;
+    dem_material m;
+    double clock;
+    told o;
+    int i;
+    desc.planar = 1;
+    desc.thickness = DEM_R(5e-3);
+    desc.gravity.y = (dem_real)-g;
+    world = dem_world_create(&desc);
+    m = stuff_of(world, a, 0.2);
+    dem_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
+    up.kind = DEM_MOTION_TRANSLATING;
+    up.velocity.y = DEM_R(0.2);
+    up.start = 0.3;
+    dem_wall_motion(world, dem_profile_add(world, m, &walls, DEM_EDGE_RESOLVED), &up);
+    for (i = 0; i < 2; i++)
+        dem_spheres_fill(world, m, (dem_real)((0.9 + 0.2*i)*R), dem_box_make((dem_real)-half, 0, 0, (dem_real)half,
+                         DEM_R(0.19), 0), COUNT/2, (uint64_t)(2*seed + i));
+    clock = study_clock();
+    if (dem_world_run(world, 1.6, 0, 0) != DEM_OK || dem_repose_heap(world, all, &slope) != DEM_OK)
+        return refused(world);
+    o.value = slope.angle*180/pi;
+    o.time = (study_clock() - clock)/dem_world_time(world);
+    dem_world_destroy(world);
+    return o;
+}
+/* What of the weight in a tube its floor bears, while the tube is drawn up slowly (lesson 5). */
+static told silo_run(const way *a, int seed) {
+    enum { COUNT = 300 };
+    const double D = 24e-3;
+    const dem_vec3 origin = {0, 0, 0}, up = {0, 0, 1};
+    dem_world_desc desc = desc_of(a);
+    dem_motion drawn = DEM_MOTION;
+    dem_wall_loads below;
+    dem_world *world;
+    dem_material m;
+    dem_wall floor, tube;
+    double clock;
+    told o;
+    desc.gravity.z = (dem_real)-g;
+    world = dem_world_create(&desc);
+    m = stuff_of(world, a, 0);
+    floor = dem_plane_add(world, m, origin, up);
+    tube = dem_cylinder_add(world, m, origin, up, (dem_real)(D/2), 1);
+    drawn.kind = DEM_MOTION_TRANSLATING;
+    drawn.velocity.z = DEM_R(0.01);
+    dem_wall_motion(world, tube, &drawn);
+    dem_spheres_fill(world, m, DEM_R(2e-3), dem_box_make((dem_real)(-D/2), (dem_real)(-D/2), 0, (dem_real)(D/2),
+                     (dem_real)(D/2), DEM_R(0.096)), COUNT, (uint64_t)seed + 1);
+    clock = study_clock();
+    if (dem_world_run(world, 0.4, 0, 0) != DEM_OK) return refused(world);
+    dem_wall_loads_reset(world, floor);
+    if (dem_world_run(world, 0.2, 0, 0) != DEM_OK) return refused(world);
+    dem_wall_loads_get(world, floor, &below);
+    o.value = -below.impulse[2]/below.time/(g*dem_totals_get(world).mass);
     o.time = (study_clock() - clock)/dem_world_time(world);
     dem_world_destroy(world);
     return o;
@@ -299,7 +374,7 @@ static void sweeps_part(void) {
 int main(int argc, char **argv) {
     static const char *part = "all", *out = "build/out/responses";
     static const study_option table[] = {
-        {"part", STUDY_TEXT, &part, 0, 0, "", "hopper, drum, heap, sweeps or all"},
+        {"part", STUDY_TEXT, &part, 0, 0, "", "pile, silo, hopper, drum, heap, sweeps or all"},
         {"seeds", STUDY_INT, &seeds, 1, 50, "", "runs of each"},
         {"out", STUDY_TEXT, &out, 0, 0, "", "folder of results"},
     };
@@ -312,6 +387,8 @@ int main(int argc, char **argv) {
     if (page) bench_page_machine(page, load);
     if (all || !strcmp(part, "sweeps")) sweeps_part();
     if (all || !strcmp(part, "heap")) heap_part();
+    if (all || !strcmp(part, "pile")) against("pile", "angle of repose", "degrees", pile_run);
+    if (all || !strcmp(part, "silo")) against("silo", "floor's share", "of the weight", silo_run);
     if (all || !strcmp(part, "hopper")) against("hopper", "discharge", "kg/s", hopper_run);
     if (all || !strcmp(part, "drum")) against("drum", "torque", "N m", drum_run);
     study_close(page, "page.md");
