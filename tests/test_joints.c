@@ -6,7 +6,8 @@
 #include "test.h"
 #include "scene.h"
 
-static const double g = 9.81, pi = 3.14159265358979;
+static const double g = 9.81;                   /* m/s2 */
+static const double round_angle = 2*3.14159265358979;
 
 static dem_world *jointed(double gravity, double dt, int threads, dem_material *m) {
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -57,7 +58,7 @@ static double ledger_off(const dem_world *world) {
 
 static void swings(void) {
     const double length = 0.1, radius = 0.02, dt = 5e-4, angle = 0.05;
-    const double period = 2*pi*sqrt((length*length + 0.4*radius*radius)/(g*length));
+    const double period = round_angle*sqrt((length*length + 0.4*radius*radius)/(g*length));
     dem_material m;
     dem_world *world = jointed(g, dt, 1, &m);
     const dem_body b = ball(world, m, radius, at(length*sin(angle), 0, -length*cos(angle)));
@@ -203,7 +204,8 @@ static void keeps(void) {
 
 enum { RING = 80, GRAINS = 60, DRUM_STEPS = 3000 };
 typedef struct drum { dem_world *world; dem_joint joint; dem_wall wall; } drum;
-static const double drum_radius = 0.05, drum_spin = 4;   /* m, rad/s */
+static const double drum_radius = 0.05;         /* m */
+static const double drum_spin = 4;              /* rad/s */
 
 static drum drum_make(int body, int threads) {
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -225,8 +227,8 @@ static drum drum_make(int body, int threads) {
     stuff.friction = 0;
     smooth = dem_material_add(d.world, &stuff);
     for (i = 0; i < RING; i++) {
-        ring[3*i] = (dem_real)(drum_radius*cos(2*pi*i/RING));
-        ring[3*i + 1] = (dem_real)(drum_radius*sin(2*pi*i/RING));
+        ring[3*i] = (dem_real)(drum_radius*cos(round_angle*i/RING));
+        ring[3*i + 1] = (dem_real)(drum_radius*sin(round_angle*i/RING));
         ring[3*i + 2] = 0;
         radii[i] = DEM_R(0.004);
     }
