@@ -146,7 +146,8 @@
                                   No friction in any pair: no spins, no memory, no price
        they roll by ...           rolling_law
        they do not give at all    response: rigid grains and impulses in place of laws; cone,
-                                  sweeps, tolerance (docs/impulses.md)
+                                  solver, sweeps, tolerance; joints and motors are theirs alone
+                                  (docs/impulses.md)
        a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness; law_range,
                                   law_range_radii: it reaches beyond touch; law_who: it is told
                                   who touches; force, body_force, force_user

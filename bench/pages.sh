@@ -1,4 +1,4 @@
-# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers]: measures anew what stands in those pages
+# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [responses]: measures anew what stands in those pages
 # of docs/ (effects: the prices in accuracy.md and README.md; screener: its times in studies.md; peers: the table in README.md),
 # effects to clusters when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
 [ "$1" ] || set -- effects accuracy roofline clusters
@@ -76,6 +76,10 @@ for page in "$@"; do
         splice accuracy.md integrators $at/accuracy/page.md
         build/bench --brief && build/bench_single --brief && build/bench_O2 --brief || exit 1
         rates > build/rates.md && splice accuracy.md precision build/rates.md ;;
+    responses)
+        build/responses || exit 1
+        for s in pile silo hopper drum; do picture $at/responses/$s.svg responses_$s.png $at/responses/page.md; done
+        splice impulses.md responses $at/responses/page.md ;;
     roofline)
         build/roofline || exit 1
         for s in bed drum gas; do picture $at/roofline/roofline_$s.svg roofline_$s.png $at/roofline/page.md; done

@@ -324,6 +324,44 @@ int main(int argc, char **argv) {
         dem_world_destroy(other);
         remove("build/tmp/impulses.ckpt");
     }
+    TEST("impulses: in a drum walls bear what changes momentum, to round-off, and angular momentum; their power is spin "
+         "times torque") {
+        dem_world *world = drum(1, 200);
+        const dem_vec3 down = at(0, 0, -g);
+        double force = 0, torque = 0, power = 0, weight, size = 0;
+        int step, k, i;
+        CHECK_EQ(scene_step(world, 150), DEM_OK);
+        weight = g*dem_totals_get(world).mass;
+        for (step = 0; step < 50; step++) {
+            const dem_totals before = dem_totals_get(world);
+            dem_wall_loads loads[3];
+            dem_totals after;
+            double p[3], turn;
+            for (k = 0; k < 3; k++) {
+                const dem_wall wall = {k + 1};
+                CHECK_EQ(dem_wall_loads_get(world, wall, &loads[k]), DEM_OK);
+            }
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            after = dem_totals_get(world);
+            memcpy(p, before.momentum, sizeof p);
+            p[2] += before.mass*(double)down.z*5e-4;
+            turn = before.angular[1] - before.mass*before.centre[0]*(double)down.z*5e-4;
+            for (k = 0; k < 3; k++) {
+                p[0] -= (double)loads[k].force.x*5e-4;
+                p[1] -= (double)loads[k].force.y*5e-4;
+                p[2] -= (double)loads[k].force.z*5e-4;
+                turn -= (double)loads[k].torque.y*5e-4;
+            }
+            for (i = 0; i < 3; i++) force = fmax(force, fabs(after.momentum[i] - p[i])/5e-4);
+            torque = fmax(torque, fabs(after.angular[1] - turn)/5e-4);
+            size = fmax(size, fabs((double)loads[0].torque.y));
+            power = fmax(power, fabs((double)loads[0].power + 5*(double)loads[0].torque.y));
+        }
+        CHECK_NEAR(force/weight, 0, 1e-9);
+        CHECK_NEAR(torque/size, 0, 1e-3);
+        CHECK_NEAR(power/(5*size), 0, 1e-9);
+        dem_world_destroy(world);
+    }
     TEST("impulses: a world without dt, with a law of its own, another integrator or an unknown choice is refused") {
         dem_world_desc desc = DEM_WORLD_DESC;
         desc.response = DEM_RESPONSE_IMPULSES;
