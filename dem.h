@@ -2963,7 +2963,7 @@ struct demi_beside;
 struct demi_twist;
 struct demi_mover;
 struct demi_run_sums;
-struct demi_rods;
+struct demi_rod;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* domain d's begin at meeting_first[d] */
     struct demi_impulse *contacts; /* by colour, and so are: */
@@ -2978,7 +2978,7 @@ typedef struct demi_solver {
     int32_t *degrees;              /* of each body: how many contacts it has */
     dem_vec3 *vectors;             /* columns of one per contact, for some solvers */
     struct demi_run_sums *runs;    /* of each run of contacts in the last round */
-    struct demi_rods *rods;        /* one per joint */
+    struct demi_rod *rods;        /* one per joint */
     int32_t *joined;               /* of each body: its first joint, see demi_joined */
     int count, first, last, run;   /* contacts; of the colour being swept; its first run */
     int twisted;                   /* is there rolling or spinning friction? */
@@ -13193,8 +13193,8 @@ static void demi_movers_lay(dem_world *w, int d) {
             m->v[k] = b.inv > 0 ? b.v[k] + (b.f[k]*b.inv + b.g[k])*s->dt : b.v[k];
     }
 }
-/* Joints in force of one step. */
-typedef struct demi_rods {
+/* A joint as it acts in one step. */
+typedef struct demi_rod {
     int32_t a, b, rows;            /* movers; rows 0: not in force */
     int32_t next[2];               /* joint of a, and of b, after this one; -1: none */
     dem_vec3 arm[2];               /* m */
@@ -13202,13 +13202,13 @@ typedef struct demi_rods {
     dem_real wanted[6], given[6];  /* m/s, rad/s: of a against b; N s, N m s */
     dem_real factor[6][6];         /* Cholesky's, of what impulses bring; last: the motor's */
     dem_real most, torque;         /* N m s: of a motor; by one of torque */
-} demi_rods;
+} demi_rod;
 /* Are these two joined, so that they do not touch? b < 0: wall. */
 static int demi_joined(const dem_world *w, int a, int b, int wall) {
     int j, next;
     if (!w->joint_count) return 0;
     for (j = w->solver.joined[a]; j >= 0; j = next) {
-        const demi_rods *r = w->solver.rods + j;
+        const demi_rod *r = w->solver.rods + j;
         next = r->next[r->a == a ? 0 : 1];
         if (w->joints[j].desc.collide) continue;
         if (b >= 0 ? (r->a == a ? r->b : r->a) == b
@@ -13626,7 +13626,7 @@ static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int 
     return o;
 }
 /* What impulses of the rows bring, factored in place. */
-static void demi_rod_factor(const dem_world *w, demi_rods *r) {
+static void demi_rod_factor(const dem_world *w, demi_rod *r) {
     const demi_solver *s = &w->solver;
     static const dem_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     int end, i, j, k;
@@ -13651,7 +13651,7 @@ static void demi_rod_factor(const dem_world *w, demi_rods *r) {
         }
 }
 /* Velocity of a against b in row i. */
-DEM_INLINE void demi_rod_velocity(const demi_solver *s, const demi_rods *r, dem_real *u) {
+DEM_INLINE void demi_rod_velocity(const demi_solver *s, const demi_rod *r, dem_real *u) {
     const demi_mover *a = s->movers + r->a, *b = s->movers + r->b;
     const dem_vec3 turn = demi_sub(demi_at(a->w), demi_at(b->w));
     const dem_vec3 va = demi_add(demi_at(a->v), demi_cross(demi_at(a->w), r->arm[0]));
@@ -13661,13 +13661,13 @@ DEM_INLINE void demi_rod_velocity(const demi_solver *s, const demi_rods *r, dem_
     for (k = 3; k < r->rows; k++) u[k] = demi_dot(turn, r->along[k - 3]);
 }
 /* Force and torque of impulses in the rows, on a. */
-DEM_INLINE dem_vec3 demi_rod_twist(const demi_rods *r, const dem_real *p) {
+DEM_INLINE dem_vec3 demi_rod_twist(const demi_rod *r, const dem_real *p) {
     dem_vec3 l = demi_v(0, 0, 0);
     int k;
     for (k = 3; k < r->rows; k++) l = demi_add(l, demi_scale(r->along[k - 3], p[k]));
     return l;
 }
-static void demi_rod_apply(const dem_world *w, const demi_rods *r, const dem_real *p,
+static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real *p,
                            dem_vec3 l) {
     const demi_solver *s = &w->solver;
     const int shaped = w->bodies.shaped > 0;
@@ -13677,7 +13677,7 @@ static void demi_rod_apply(const dem_world *w, const demi_rods *r, const dem_rea
 }
 /* Length of a body, to compare turning with moving by, and how far a joint is closed in a step: it
    is off by more only where somebody has moved a body. */
-static dem_real demi_rod_size(const dem_world *w, const demi_rods *r) {
+static dem_real demi_rod_size(const dem_world *w, const demi_rod *r) {
     const dem_real a = w->bodies.pos[4*r->a + 3];
     return r->b < w->bodies.count ? DEMI_MIN(a, w->bodies.pos[4*r->b + 3]) : a;
 }
@@ -13685,7 +13685,7 @@ static dem_real demi_rod_size(const dem_world *w, const demi_rods *r) {
 static void demi_rod_lay(dem_world *w, int i, int a, int b) {
     demi_solver *s = &w->solver;
     demi_joint *j = &w->joints[i];
-    demi_rods *r = s->rods + i;
+    demi_rod *r = s->rods + i;
     const demi_periods p = demi_periods_of(w);
     const demi_rod_end x = demi_rod_end_of(w, i, 0, a), y = demi_rod_end_of(w, i, 1, b);
     const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
@@ -13731,7 +13731,7 @@ static void demi_joints_lay(dem_world *w) {
     for (i = 0; i < w->bodies.count; i++) s->joined[i] = -1;
     for (i = 0; i < w->joint_count; i++) {
         demi_joint *j = &w->joints[i];
-        demi_rods *r = s->rods + i;
+        demi_rod *r = s->rods + i;
         const int a = demi_joint_body(w, j->desc.a), wall = j->desc.wall.id - 1;
         const int b = j->desc.b.slot ? demi_joint_body(w, j->desc.b) : -1;
         memset(r, 0, sizeof *r);
@@ -13755,7 +13755,7 @@ static void demi_joints_lay(dem_world *w) {
 static void demi_joints_warm(dem_world *w) {
     int i;
     for (i = 0; i < w->joint_count; i++) {
-        const demi_rods *r = w->solver.rods + i;
+        const demi_rod *r = w->solver.rods + i;
         if (r->rows) demi_rod_apply(w, r, r->given, demi_add(demi_rod_twist(r, r->given),
                                                              demi_scale(r->along[2], r->torque)));
     }
@@ -13766,19 +13766,19 @@ static dem_real demi_joints_sweep(dem_world *w) {
     dem_real worst = 0;
     int i, j, k;
     for (i = 0; i < w->joint_count; i++) {
-        demi_rods *r = s->rods + i;
+        demi_rod *r = s->rods + i;
         dem_real u[6], x[6], left = 0, size;
         if (!r->rows) continue;
         size = demi_rod_size(w, r);
         demi_rod_velocity(s, r, u);
-        for (j = 0; j < r->rows; j++) {
+        for (j = 0; j < r->rows; j++) {         /* down the factor */
             const dem_real lacks = r->wanted[j] - u[j];
             x[j] = lacks;
             for (k = 0; k < j; k++) x[j] -= r->factor[j][k]*x[k];
             x[j] /= r->factor[j][j];
             if (j < 5) left += lacks*lacks*(j < 3 ? 1 : size*size);
         }
-        for (j = r->rows - 1; j >= 0; j--) {
+        for (j = r->rows - 1; j >= 0; j--) {    /* and up: the motor first, within its limit */
             for (k = j + 1; k < r->rows; k++) x[j] -= r->factor[k][j]*x[k];
             x[j] /= r->factor[j][j];
             if (j < 5) continue;
@@ -13798,7 +13798,7 @@ static void demi_joints_tell(dem_world *w) {
     const dem_real per = 1/s->dt;
     int i, k;
     for (i = 0; i < w->joint_count; i++) {
-        const demi_rods *r = s->rods + i;
+        const demi_rod *r = s->rods + i;
         dem_joint_state *o = &w->joints[i].state;
         const int wall = w->joints[i].desc.b.slot ? -1 : w->joints[i].desc.wall.id - 1;
         dem_vec3 u, turn;

@@ -229,12 +229,12 @@ static told silo_run(const way *a, int seed) {
 
 /* Every way, every seed: error against time. */
 static void against(const char *name, const char *what, const char *unit, told (*run)(const way *a, int seed)) {
-    double mean[WAYS], bar[WAYS], time[WAYS], x[2][WAYS], y[2][WAYS];
+    double mean[WAYS], bar[WAYS], time[WAYS], x[2][WAYS], y[2][WAYS], ends[2] = {1e300, 0}, seeds_bar[2] = {0, 0};
     int i, k, n[2] = {0, 0};
     study_figure f;
-    char label[96];
-    if (page) fprintf(page, "\n| %s | %s, %s | off the first | bar | s per simulated s |\n|---|---|---|---|---|\n", name,
-                      what, unit);
+    char label[96], file[32];
+    if (page) fprintf(page, "\n| %s | %s, %s | off the first | bar | s per simulated s |\n|---|---|---|---|---|\n",
+                      name, what, unit);
     for (i = 0; i < WAYS; i++) {
         double sum = 0, squares = 0;
         int got = 0;
@@ -262,6 +262,9 @@ static void against(const char *name, const char *what, const char *unit, told (
                           100*(mean[i]/mean[0] - 1), 100*hypot(bar[i], i ? bar[0] : 0)/mean[0], time[i]);
         if (!i) continue;
         k = ways[i].dt > 0;
+        ends[0] = fmin(ends[0], time[i]);
+        ends[1] = fmax(ends[1], time[i]);
+        seeds_bar[0] += 1e4*(bar[i]*bar[i] + bar[0]*bar[0])/(mean[0]*mean[0]);
         x[k][n[k]] = time[i];
         y[k][n[k]++] = 100*fmax(fabs(mean[i]/mean[0] - 1), 1e-3);
     }
@@ -273,7 +276,10 @@ static void against(const char *name, const char *what, const char *unit, told (
     f.log_x = f.log_y = 1;
     study_curve(&f, "springs, softer and softer", STUDY_LINE, n[0], x[0], y[0]);
     study_curve(&f, "impulses, longer and longer steps", STUDY_DASHED, n[1], x[1], y[1]);
-    study_figure_write(&f, name);
+    snprintf(file, sizeof file, "%s.svg", name);
+    seeds_bar[0] = seeds_bar[1] = sqrt(seeds_bar[0]/(n[0] + n[1]));
+    study_curve(&f, "what so few seeds leave open (rms bar)", STUDY_LINE, 2, ends, seeds_bar);
+    study_figure_write(&f, file);
 }
 
 /* ---- heaps ---- */
