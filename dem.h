@@ -1527,7 +1527,7 @@ typedef struct dem_joint_state {
 } dem_joint_state;
 /* Null id with a sentence on bad values, where contacts answer by springs, where neither of the two
    can move, and of spheres in worlds without desc.orientations. A joint goes with either of its
-   bodies when that is removed or leaves, and is saved with them. */
+   bodies, or its wall, when that is removed or leaves; checkpoints hold it. */
 DEM_API dem_joint dem_joint_add(dem_world *world, const dem_joint_desc *desc);
 /* Another motor, from the next step on: as in dem_joint_desc. */
 DEM_API dem_result dem_joint_motor(dem_world *world, dem_joint joint, dem_motor motor,
@@ -2978,7 +2978,7 @@ typedef struct demi_solver {
     int32_t *degrees;              /* of each body: how many contacts it has */
     dem_vec3 *vectors;             /* columns of one per contact, for some solvers */
     struct demi_run_sums *runs;    /* of each run of contacts in the last round */
-    struct demi_rod *rods;        /* one per joint */
+    struct demi_rod *rods;         /* one per joint */
     int32_t *joined;               /* of each body: its first joint, see demi_joined */
     int count, first, last, run;   /* contacts; of the colour being swept; its first run */
     int twisted;                   /* is there rolling or spinning friction? */
@@ -14309,8 +14309,8 @@ static demi_solved demi_solve_spectral(dem_world *w, int most) {
     return demi_solve_gradient(w, most, demi_step_spectral);
 }
 
-/* vectors: columns it needs; moments, joints: does it know friction of
-   rolling and spinning, and joints? */
+/* vectors: columns it needs; moments: does it know rolling and spinning friction; joints: are they
+   known to it? */
 typedef struct demi_solver_row {
     const char *name;
     int vectors, moments, joints;
@@ -21172,6 +21172,7 @@ static int demi_joints_check(const demi_reader *r) {
             !demi_finite(j->desc.speed) || !demi_finite(j->desc.torque) ||
             !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
             !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||
+            !demi_finite(o->power) || !demi_finite(o->motor_torque) ||
             !demi_finite_double(o->turned) || !demi_finite_double(o->work))
             return demi_lie(r, "joint", i);
     }

@@ -101,8 +101,8 @@ static void precesses(void) {
     for (i = 0; i < 2000; i++) CHECK_EQ(scene_step(world, 1), DEM_OK);
     x = scene_state(world, b).position;
     turned = atan2((double)x.y, (double)x.x);
-    CHECK_NEAR(turned, rate*2000*dt, 0.03*rate*2000*dt);
-    CHECK(fabs((double)x.z) < 0.02*length);
+    CHECK_NEAR(turned, rate*2000*dt, 0.003*rate*2000*dt);
+    CHECK(fabs((double)x.z) < 0.002*length);
     dem_world_destroy(world);
 }
 
@@ -262,11 +262,11 @@ static drum drum_make(int body, int threads) {
 }
 
 static void drums(void) {
-    double torque[2], power[2], heights[2];
+    double torque[2], power[2];
     int body, i;
     for (body = 0; body < 2; body++) {
         const drum d = drum_make(body, 1);
-        double sum = 0, work = 0, x = 0;
+        double sum = 0, work = 0;
         CHECK(d.world && (d.joint.id || d.wall.id));
         for (i = 0; i < DRUM_STEPS; i++) {
             CHECK_EQ(scene_step(d.world, 1), DEM_OK);
@@ -280,24 +280,21 @@ static void drums(void) {
                 sum -= (double)loads.torque_axial;
                 work += (double)loads.power;
             }
-            x += dem_totals_get(d.world).centre[0];
         }
         torque[body] = sum/(DRUM_STEPS*2/3);
         power[body] = work/(DRUM_STEPS*2/3);
-        heights[body] = x;
         if (body) {
             const dem_joint_state state = told(d.world, d.joint);
-            CHECK_NEAR(state.turned, drum_spin*dem_world_time(d.world), 1e-3);
+            CHECK_NEAR(state.turned, drum_spin*dem_world_time(d.world), 1e-9);
             CHECK((double)state.gap < 1e-5 && (double)state.tilt < 1e-5);
         }
         CHECK(ledger_off(d.world) < 0.02);
         dem_world_destroy(d.world);
     }
-    printf("  torque %g and %g N m, power %g and %g W\n", torque[0], torque[1], power[0], power[1]);
-    CHECK(torque[0] > 0 && heights[0] != 0);
+    CHECK(torque[0] > 0);
     CHECK_NEAR(torque[1], torque[0], 0.05*torque[0]);
-    CHECK_NEAR(power[1], drum_spin*torque[1], 0.01*power[1]);
-    CHECK_NEAR(power[0], drum_spin*torque[0], 0.01*power[0]);
+    CHECK_NEAR(power[0], drum_spin*torque[0], 1e-9*power[0]);   /* the wall; the motor's has what drift gives, too */
+    CHECK_NEAR(power[1], drum_spin*torque[1], 1e-5*power[1]);
 }
 
 static void repeats(void) {
@@ -375,8 +372,8 @@ static void refuses(void) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("joints: a sphere on a ball joint swings with the period of a compound pendulum, within 2e-4, and in "
-         "20 swings "
-         "neither drifts nor gains") swings();
+         "20 swings neither drifts nor gains")
+        swings();
     TEST("joints: a fast top precesses by m g l over its angular momentum (Goldstein 5.7)")
         precesses();
     TEST("joints: each joint of a chain bears the weights below it, and a motor at rest holds a beam by its "
