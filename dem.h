@@ -13990,6 +13990,7 @@ static void demi_impulses_warm(dem_world *w, int index) {
 
 /* --- Gauss-Seidel --- */
 
+enum { DEMI_SOON = 8 }; /* bodies are fetched this many contacts ahead: a tenth of the time */
 #define DEMI_SEIDEL(NAME, CONVEX, SHAPED) \
     static void NAME(dem_world *w, int index) { \
         demi_solver *s = &w->solver; \
@@ -13999,6 +14000,10 @@ static void demi_impulses_warm(dem_world *w, int index) {
             demi_impulse *c = s->contacts + i; \
             dem_real push; \
             dem_vec3 slip, by; \
+            if (i + DEMI_SOON < end) { \
+                DEMI_FETCH(s->movers + c[DEMI_SOON].a); \
+                DEMI_FETCH(s->movers + c[DEMI_SOON].b); \
+            } \
             demi_sums_add(&sums, demi_impulse_wanted(c, demi_impulse_velocity(s, c, SHAPED), \
                                                      &push, &slip, CONVEX)); \
             by = demi_add(demi_scale(c->normal, push - c->push), demi_sub(slip, c->slip)); \
