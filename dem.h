@@ -3480,6 +3480,9 @@ static int demi_rolling_meant(const dem_world *w) {
 DEM_INLINE int demi_normal_is(const dem_world *w, int trait) {
     return (demi_normal_laws[w->desc.normal_law].traits & trait) != 0;
 }
+/* Do built-in laws keep the memory of contacts, where `laws` says? Else a law of one's own does, or
+   the impulses. */
+static int demi_laws_keep(const dem_world *w) { return !w->desc.law && !demi_impulsive(w); }
 /* Does a law in force ask for r_eff or m_eff of pairs? */
 static int demi_laws_sized(const dem_world *w) {
     return w->desc.law || ((w->laws.normal->traits | w->laws.tangent->traits |
@@ -9182,7 +9185,7 @@ static int demi_effects_take(dem_world *w) {
     const demi_laws was = w->laws;
     const int tangent = w->effects.tangent, rolling = w->effects.rolling;
     demi_effects(w);
-    if (demi_species_room(w) && (w->desc.law || !was.normal ||
+    if (demi_species_room(w) && (!demi_laws_keep(w) || !was.normal ||
         (was.tangent == w->laws.tangent && was.rolling == w->laws.rolling) ||
         demi_memory_move(w, &was))) {
         demi_species_lay(w);
@@ -12357,7 +12360,7 @@ static void demi_kept_hold(const dem_world *w, const demi_kept *now, demi_kept *
     const dem_real all = held + more;
     const dem_real left = c->grip > all ? all/c->grip : 1;
     int k;
-    if ((!ended && !(left < 1)) || w->desc.law || !(all > 0 || left < 1)) return;
+    if (!demi_laws_keep(w) || (!ended && !(left < 1)) || !(all > 0 || left < 1)) return;
     for (k = 0; k < w->laws.memory; k++) {
         if (!(w->laws.vectors >> k & 1)) continue;
         if (ended) c->memory[k] = (held*c->memory[k] + more*ended->memory[k])/all;
@@ -18116,11 +18119,11 @@ static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real 
     const demi_laws *laws = &w->laws;
     int i, friction = 1, rolling = 1;
     *any = 0;
-    if (!w->desc.law && w->memory_stride) demi_pairs_rub(w, &friction, &rolling);
+    if (demi_laws_keep(w) && w->memory_stride) demi_pairs_rub(w, &friction, &rolling);
     for (i = 0; i < w->memory_stride; i++) {
         dem_real m = memory[(size_t)i*stride];
         int number = i;
-        if (!w->desc.law) {
+        if (demi_laws_keep(w)) {
             if (i < laws->at_rolling ? !friction : i < laws->at_normal && !rolling) continue;
             if (i >= laws->at_normal) number = 16 + i - laws->at_normal;
             else if (i >= laws->at_rolling) number = 8 + i - laws->at_rolling;

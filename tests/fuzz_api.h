@@ -78,7 +78,8 @@ typedef struct fuzz_machine {
     fuzz_memory *memory;
     char name;                        /* 'A', 'B'; 'F': the fresh one */
     uint32_t desc_seed;
-    int materials, walls, shapes, feeds, outlets, fields;  /* ids run from 1 */
+    int materials, walls, shapes, feeds, outlets, fields, joints;  /* ids run from 1 */
+    int impulses;                     /* contacts answer by them */
     int scene, bodies_gone, pairs_new;   /* scene: its version; what changed since the last step */
     int saved, saved_scene;           /* a file is there; the version it was written from */
     uint64_t saved_hash;
@@ -277,6 +278,19 @@ static dem_world_desc fuzz_desc(fuzz_machine *m, int threads) {
     d.orientations = !fuzz_below(m, 4);
     d.ledger = fuzz_below(m, 2);
     d.threads = threads;
+    if (!fuzz_below(m, 3)) {
+        d.response = DEM_RESPONSE_IMPULSES;
+        d.solver = (dem_solver)(fuzz_below(m, 2) ? 0 : fuzz_below(m, 4));
+        d.cone = (dem_cone)fuzz_below(m, 2);
+        d.dt = fuzz_below(m, 2) ? DEM_R(1e-4) : DEM_R(5e-4);
+        if (fuzz_below(m, 2)) d.tolerance = DEM_R(1e-6);
+        if (!fuzz_below(m, 3)) d.sweeps = 1 + fuzz_below(m, 30);
+        if (fuzz_below(m, 2)) d.orientations = 1;
+        d.integrator = (dem_integrator)0;
+        d.law = 0;
+        d.law_memory = d.law_vectors = 0;
+        d.law_stiffness = 0;
+    }
     d.allocator.alloc_fn = fuzz_alloc;
     d.allocator.free_fn = fuzz_free;
     d.allocator.user = m->memory;
@@ -286,17 +300,20 @@ static void fuzz_open(fuzz_machine *m, uint32_t seed, int threads) {
     dem_world_desc d;
     m->random = m->desc_seed = seed;
     d = fuzz_desc(m, threads);
+    m->impulses = d.response == DEM_RESPONSE_IMPULSES;
     m->world = dem_world_create(&d);
     if (!m->world) { fuzz_fail("%c: no world: %s", m->name, dem_create_error(&d)); return; }
     fuzz_say(m, "world: threads %d, gravity (%g 0 %g), domain %g..%g, boundary %d %d %d, planar %d, laws %d %d %d, "
              "tension %d, convention %d, own law %d, own force %d, integrator %d, dt %g, large %d, impact %g, "
-             "search %d, skin %g, rotation %d, overlap %d, sharing %d, orientations %d, ledger %d\n", threads,
+             "search %d, skin %g, rotation %d, overlap %d, sharing %d, orientations %d, ledger %d, impulses %d, "
+             "solver %d, cone %d, sweeps %d, tolerance %g\n", threads,
              (double)d.gravity.x, (double)d.gravity.z, (double)d.domain.lo.x, (double)d.domain.hi.x,
              (int)d.boundary[0], (int)d.boundary[1], (int)d.boundary[2], d.planar, (int)d.normal_law,
              (int)d.tangent_law, (int)d.rolling_law, (int)d.tension, (int)d.convention, d.law != 0,
              d.force != 0, (int)d.integrator, (double)d.dt, d.allow_large_dt, (double)d.impact_speed,
              (int)d.search, (double)d.skin, (int)d.rotation, (int)d.ellipsoid_overlap,
-             (int)d.cluster_contacts, d.orientations, d.ledger);
+             (int)d.cluster_contacts, d.orientations, d.ledger, m->impulses, (int)d.solver, (int)d.cone, d.sweeps,
+             (double)d.tolerance);
 }
 
 /* ---- calls: materials and shapes ---- */
@@ -320,7 +337,7 @@ static void fuzz_material_add(fuzz_machine *m) {
 static void fuzz_pair_set(fuzz_machine *m) {
     const dem_material a = fuzz_material(m), b = fuzz_material(m);
     dem_pair p;
-    const int what = fuzz_below(m, 6);
+    const int what = fuzz_below(m, m->impulses ? 9 : 6);
     memset(&p, 0, sizeof p);
     if (!fuzz_result(m, dem_pair_get(m->world, a, b, &p))) return;
     if (what == 0) p.friction = p.friction_static = fuzz_real(m, 0, 1);
@@ -329,6 +346,9 @@ static void fuzz_pair_set(fuzz_machine *m) {
     if (what == 3) p.restitution = fuzz_real(m, 0.3, 1);
     if (what == 4) p.tangent_damping = fuzz_real(m, 0, 2);
     if (what == 5) p.young_eff *= fuzz_real(m, 0.7, 1.5);
+    if (what == 6) p.spinning_friction = fuzz_real(m, 0, 0.3);
+    if (what == 7) p.cohesion = fuzz_real(m, 0, 1e-3);
+    if (what == 8) p.compliance = fuzz_real(m, 0, 1e-3);
     fuzz_say(m, "dem_pair_set %d %d: friction %g, rolling %g, e %g, damping %g, E* %g", (int)a.id, (int)b.id,
              (double)p.friction, (double)p.rolling_friction, (double)p.restitution, (double)p.tangent_damping,
              (double)p.young_eff);
@@ -699,6 +719,48 @@ static void fuzz_bodies_remove(fuzz_machine *m) {
     m->bodies_gone |= gone > 0;
 }
 
+/* ---- calls: joints ---- */
+static dem_joint fuzz_joint(fuzz_machine *m) {
+    dem_joint id;
+    id.id = 1 + fuzz_below(m, m->joints + !fuzz_below(m, 9));
+    return id;
+}
+static void fuzz_joint_add(fuzz_machine *m) {
+    dem_joint_desc d = DEM_JOINT_DESC;
+    const dem_bodies all = dem_bodies_get(m->world);
+    d.kind = fuzz_below(m, 2) ? DEM_JOINT_REVOLUTE : DEM_JOINT_POINT;
+    d.a = fuzz_body(m);
+    if (fuzz_below(m, 2)) d.b = fuzz_body(m);
+    else if (m->walls && fuzz_below(m, 2)) d.wall = fuzz_wall(m);
+    d.collide = !fuzz_below(m, 3);
+    d.axis = fuzz_vector(m, -1, 1);
+    d.point = fuzz_vector(m, fuzz_lo, fuzz_hi);
+    if (all.count) {
+        const int i = fuzz_below(m, all.count);
+        d.point = dem_vec3_make(all.positions[4*i], all.positions[4*i + 1], all.positions[4*i + 2]);
+    }
+    if (d.kind == DEM_JOINT_REVOLUTE && fuzz_below(m, 2)) {
+        d.motor = fuzz_below(m, 2) ? DEM_MOTOR_SPEED : DEM_MOTOR_TORQUE;
+        d.speed = d.motor == DEM_MOTOR_SPEED ? fuzz_real(m, -50, 50) : 0;
+        d.torque = fuzz_real(m, 0, 1e-4);
+    }
+    fuzz_say(m, "dem_joint_add: kind %d, bodies %u %u, wall %d, collide %d, motor %d %g %g", (int)d.kind, d.a.slot,
+             d.b.slot, (int)d.wall.id, d.collide, (int)d.motor, (double)d.speed, (double)d.torque);
+    fuzz_say_vector(m, "point", d.point);
+    if (fuzz_id(m, dem_joint_add(m->world, &d).id)) m->joints++;
+}
+static void fuzz_joint_change(fuzz_machine *m) {
+    const dem_joint id = fuzz_joint(m);
+    if (fuzz_below(m, 3)) {
+        fuzz_say(m, "dem_joint_motor %d", (int)id.id);
+        fuzz_result(m, dem_joint_motor(m->world, id, (dem_motor)fuzz_below(m, 3), fuzz_real(m, -50, 50),
+                                       fuzz_real(m, 0, 1e-4)));
+    } else {
+        fuzz_say(m, "dem_joint_remove %d", (int)id.id);
+        fuzz_result(m, dem_joint_remove(m->world, id));
+    }
+}
+
 /* ---- calls: running ---- */
 static void fuzz_ran(fuzz_machine *m, dem_result r, uint64_t steps) {
     fuzz_result(m, r);
@@ -834,6 +896,14 @@ static void fuzz_look_counts(fuzz_machine *m) {
 }
 static void fuzz_look_walls(fuzz_machine *m) {
     int i, k;
+    for (i = 1; i <= m->joints; i++) {
+        dem_joint id;
+        dem_joint_state s;
+        id.id = i;
+        memset(&s, 0, sizeof s);
+        fuzz_note_int(m, (int)dem_joint_get(m->world, id, &s));
+        fuzz_note(m, &s, sizeof s);
+    }
     for (i = 1; i <= m->walls; i++) {
         dem_wall id;
         dem_wall_loads c;
@@ -875,7 +945,7 @@ static uint64_t fuzz_part(fuzz_machine *m, void (*look)(fuzz_machine *)) {
 }
 enum { FUZZ_PARTS = 5 };
 static const char *const fuzz_part_names[FUZZ_PARTS] = {"hash", "bodies in order", "contacts or candidates",
-    "counters, ledger, totals, advice, feeds or outlets", "walls or fields"};
+    "counters, ledger, totals, advice, feeds or outlets", "walls, fields or joints"};
 static void fuzz_look(fuzz_machine *m, uint64_t parts[FUZZ_PARTS]) {
     parts[0] = dem_world_hash(m->world);
     parts[1] = fuzz_part(m, fuzz_look_bodies);
@@ -1179,7 +1249,7 @@ static void fuzz_bad_wall(fuzz_machine *m) {
 }
 static void fuzz_bad_rest(fuzz_machine *m) {
     const dem_material stuff = fuzz_material(m), none = {0};
-    const dem_real bad = fuzz_bad(m);
+    dem_real bad = fuzz_bad(m);
     const int what = fuzz_below(m, 18);
     dem_material_desc material = DEM_MATERIAL_DESC;
     dem_feed_desc feed;
@@ -1191,6 +1261,7 @@ static void fuzz_bad_rest(fuzz_machine *m) {
     dem_field_data data;
     dem_mesh mesh;
     char path[200];
+    if (m->impulses && (what == 1 || what == 4) && bad <= 0) bad = DEM_R(-1);   /* 0 is plastic */
     fuzz_say(m, "bad rest %d (%g)", what, (double)bad);
     memset(&feed, 0, sizeof feed);
     memset(&outlet, 0, sizeof outlet);
@@ -1351,6 +1422,8 @@ static const struct fuzz_kind { const char *name; void (*play)(fuzz_machine *m);
     {"bodies fill", fuzz_bodies_fill, 3, FUZZ_BODY | FUZZ_SHAPES},
     {"body set", fuzz_body_set, 6, FUZZ_GRAINS},
     {"body remove", fuzz_body_remove, 4, FUZZ_GRAINS},
+    {"joint", fuzz_joint_add, 6, FUZZ_MEMORY | FUZZ_GRAINS},
+    {"joint change", fuzz_joint_change, 3, FUZZ_GRAINS},
     {"bodies remove", fuzz_bodies_remove, 2, FUZZ_GRAINS},
     {"step", fuzz_step, 30, FUZZ_EVERYTHING},
     {"run", fuzz_run, 6, FUZZ_EVERYTHING},
@@ -1449,6 +1522,7 @@ static int fuzz_fresh(fuzz_game *g, fuzz_machine *f, int threads, int with) {
                           fuzz_kinds[fuzz_kind_of(bytes[0])].name, dem_world_error(f->world));
         }
     f->domains_most = g->a.domains_most;
+    f->joints = g->a.joints;
     f->scene = g->a.scene; f->bodies_gone = g->a.bodies_gone; f->pairs_new = g->a.pairs_new;
     f->saved = g->a.saved; f->saved_scene = g->a.saved_scene; f->saved_hash = g->a.saved_hash;
     return 1;

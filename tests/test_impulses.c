@@ -422,6 +422,41 @@ int main(int argc, char **argv) {
         CHECK_NEAR(speed[0], speed[1], 1e-12);
         CHECK_NEAR(high[0], high[1], 1e-9);
     }
+    TEST("impulses: contacts keep what they remember when friction comes into the scene: it stands in the digest, and "
+         "the next step needs no more sweeps than one without") {
+        int later, sweeps[2];
+        for (later = 0; later < 2; later++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_material_desc stuff = scene_stuff(0, 0, 0, 0);
+            dem_world *world;
+            dem_material m;
+            uint64_t was;
+            int k;
+            desc.gravity.z = (dem_real)-g;
+            desc.response = DEM_RESPONSE_IMPULSES;
+            desc.dt = DEM_R(1e-3);
+            desc.tolerance = DEM_R(1e-9);
+            desc.sweeps = 20000;
+            world = dem_world_create(&desc);
+            m = dem_material_add(world, &stuff);
+            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            for (k = 0; k < 20; k++) dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.01 + 0.02*k));
+            CHECK_EQ(scene_step(world, 50), DEM_OK);
+            if (later) {
+                stuff.friction = DEM_R(0.5);
+                stuff.rolling_friction = DEM_R(0.1);
+                CHECK(dem_material_add(world, &stuff).id != 0);
+            }
+            was = dem_world_hash(world);
+            CHECK_EQ(dem_search_now(world), DEM_OK);
+            CHECK(dem_world_hash(world) == was);
+            CHECK_EQ(scene_step(world, 1), DEM_OK);
+            sweeps[later] = dem_counters_get(world).sweeps;
+            dem_world_destroy(world);
+        }
+        CHECK_EQ(sweeps[1], sweeps[0]);
+        CHECK(sweeps[0] <= 3);
+    }
     TEST("impulses: the report tells that friction between two materials was used once they have touched") {
         int touch, k;
         for (touch = 0; touch < 2; touch++) {
