@@ -23,6 +23,7 @@
        >>laws        the built-in contact laws, a line each
        >>materials   materials, the pair table, coefficients
        >>shapes      ellipsoids, clusters of spheres: mass properties, supports, meetings
+       >>hulls       convex polyhedra: the hull of points, its faces and mass properties
        >>bodies      grains: slots, arrays, insertion, removal
        >>facets      what each face, edge and corner of a surface counts
        >>walls       planes, cylinders, profiles, meshes, walls of grains, sieves, their motions
@@ -32,7 +33,9 @@
        >>rebuild     effects, skin, order of bodies, domains: all lists made anew
        >>touch       candidate pairs -> contacts: geometry only
        >>respond     contact -> force and torque: the loops that bring touch and law together
+       >>polyhedra   what polyhedra share with each other and with surfaces
        >>on-walls    where parts of bodies touch walls: geometry only
+       >>polyhedra-walls  where polyhedra touch walls; who touches what
        >>kept        contacts kept by themselves, all but sphere on sphere: touch
        >>kept-respond  the law's answers to them: forces on both ends
        >>integrators kick, drift, predict; rotation
@@ -259,6 +262,9 @@
      [DLM97]   Dullweber, Leimkuhler & McLachlan, J. Chem. Phys. 107 (1997) 5840: splitting
      [DUF17]   Duff et al., J. Comput. Graph. Tech. 6 (2017) 1: a frame from one vector
      [ERI05]   Ericson, Real-Time Collision Detection (2005): closest point on a triangle
+     [ELA19]   Elandt, Drumwright, Sherman & Ruina, IEEE/RSJ IROS (2019) 8238: pressure fields
+     [FEN12]   Feng, Han & Owen, Comput. Methods Appl. Mech. Eng. 205 (2012) 169: a potential of
+               the overlap's volume
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
      [GOL10]   Goldhirsch, Granul. Matter 12 (2010) 239: stress by coarse graining
      [HER82]   Hertz, J. reine angew. Math. 92 (1882) 156
@@ -1282,13 +1288,23 @@ static const dem_cluster_desc DEM_CLUSTER_DESC_ZERO = {0, 0, 0, 0, DEM_CLUSTER_U
    above. */
 DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc *desc);
 
+/* A convex polyhedron: the hull of points (count x 3, m, 4 to 10,000, in a frame of your choice).
+   Points inside it, or on its faces, are of no account: to 1e-10 of its size (single precision:
+   1e-6), and where that leaves more than DEM_POLYHEDRON_FACES faces, to as much as 1e-5. Null
+   id on bad values, points in a plane, too many faces, in a planar world or when memory runs out;
+   in worlds of impulses, or with a law that reaches beyond touch: both know no polyhedra. Two push
+   each other by what they share (>>polyhedra), spheres and ellipsoids where they are nearest. */
+enum { DEM_POLYHEDRON_FACES = 100 };
+DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
+
 typedef struct dem_shape_info {
-    int spheres;                 /* of a cluster; 0: an ellipsoid */
+    int spheres;                 /* of a cluster; 0: an ellipsoid or a polyhedron */
+    int corners, faces;          /* of a polyhedron; else 0 */
     dem_real volume;             /* m3 */
     dem_vec3 centre;             /* m, centre of mass in the frame the shape was given in */
     dem_quat frame;              /* turns principal axes into that frame */
     dem_vec3 inertia;            /* m5, principal moments per density */
-    dem_vec3 semi_axes;          /* m, of the ellipsoid; cluster: of the one of equal moments */
+    dem_vec3 semi_axes;          /* m, of the ellipsoid; others: of the one of equal moments */
     dem_real radius;             /* m, of the smallest sphere about the centre that holds it all */
 } dem_shape_info;
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info);
@@ -2549,6 +2565,9 @@ typedef struct demi_touching {
     dem_real overlap, share;       /* m; how often its force counts (facets: index, see >>facets) */
     dem_vec3 normal, point;        /* unit, body -> wall; m */
     dem_vec3 shift;                /* m, from the body to its image that the wall meets */
+    dem_vec3 spread;               /* of polyhedra, as in demi_kept */
+    dem_real slope, couple, deep;
+    int32_t corner;
 } demi_touching;
 /* A side or corner of a facet that a body reaches: what joins it to its neighbours (>>touch). */
 typedef struct demi_link {
@@ -2567,6 +2586,10 @@ typedef struct demi_shape {
     int count;                     /* spheres of a cluster; 0: it is one part */
     dem_real *parts;               /* count x 4: centre, radius, m */
     dem_vec3 axes;                 /* m, of one part: lengths as its kind has them */
+    int corners, faces;            /* of a polyhedron */
+    double *hull;                  /* faces x 4: unit normal over height, 1/m; height over the
+                                      centre, m; then corners x 3, m */
+    int32_t *rim;                  /* faces + 1 starts; then corners, turning left from outside */
     dem_vec3 inertia;              /* m2, principal moments per mass */
     double volume;                 /* m3 */
     dem_real radius;               /* m, of the bounding sphere */
@@ -2590,6 +2613,7 @@ typedef struct demi_kept {
     int32_t send;                  /* 1 + where the force on b goes; 0: b is of this domain; with a
                                       wall: 1 + which of a step ago has ended in it; 0: none */
     int32_t from;                  /* which of its domain's a step ago it continues; -1: none */
+    int32_t corner, corners;       /* which of how many that share a pressure; 0: it is alone */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to where they push */
     dem_real overlap, deep;        /* m, 0: under way through a reduced hole, < 0: apart, see
                                       demi_kept_asked; over the smaller half width along the
@@ -2605,6 +2629,8 @@ typedef struct demi_kept {
     dem_vec3 aside;                /* elastic force across the normal, over that along it */
     dem_real slope;                /* m of overlap per m of approach */
     dem_real inset;                /* the normal force passes at this part of arm_a */
+    dem_vec3 spread;               /* m, from the centre of pressure to this corner */
+    dem_real couple;               /* m: moment about the normal, over the normal force */
     dem_real r_eff, m_eff;         /* m, kg */
     double lambda;                 /* of Perram and Wertheim, where to begin next; 0: unknown */
     dem_vec3 force;                /* N, on a */
@@ -2680,24 +2706,30 @@ enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface
     X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
     X(ELLIPSOID, ellipsoid, "ellipsoid", demi_ellipsoids_gap, \
       (demi_ellipsoids_touch, demi_ellipsoids_touch)) \
+    X(POLYHEDRON, polyhedron, "polyhedron", demi_polyhedra_gap, \
+      (demi_solid_round_touch, demi_solid_round_touch, demi_polyhedra_touch)) \
     /* the last */
 #define DEMI_WALLS(X) \
     X(PLANE,    0, 7, DEMI_FLAT, "plane", \
-      demi_plane_near, (demi_plane_spheres, demi_plane_ellipsoid), 0) \
+      demi_plane_near, (demi_plane_spheres, demi_plane_ellipsoid, demi_flat_polyhedron), 0) \
     X(CYLINDER, 0, 7, 0, "cylinder", \
-      demi_cylinder_near, (demi_cylinder_spheres, demi_cylinder_ellipsoid), demi_cylinder_bend) \
+      demi_cylinder_near, (demi_cylinder_spheres, demi_cylinder_ellipsoid, demi_round_polyhedron), \
+      demi_cylinder_bend) \
     X(PROFILE,  2, 7, DEMI_FACETS | DEMI_DRAWN, "profile", \
-      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid), demi_profile_bend) \
+      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), \
+      demi_profile_bend) \
     X(SEGMENTS, 2, 7, DEMI_DRAWN, "profile of DEM_EDGE_FRACTION", \
       demi_facet_distance, (demi_segments_touch), 0) \
     X(MESH,     3, 7, DEMI_FACETS, "mesh", \
-      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid), demi_mesh_bend) \
+      demi_facet_distance, (demi_facets_spheres, demi_facets_ellipsoid, demi_flat_polyhedron), \
+      demi_mesh_bend) \
     X(GRAINS,   1, 7, DEMI_BALLS, "wall of grains", \
-      demi_grain_near, (demi_elements_touch, demi_grain_ellipsoid), demi_grain_bend) \
+      demi_grain_near, (demi_elements_touch, demi_grain_ellipsoid, demi_grain_polyhedron), \
+      demi_grain_bend) \
     X(SIEVE,    0, DEMI_SIEVE_MOST, DEMI_CROSSED, "sieve", \
       demi_sieve_near, (demi_sieve_spheres), demi_sieve_bend) \
     X(REVOLVED, 0, DEMI_RING_MOST, 0, "surface of revolution", \
-      demi_revolved_near, (demi_revolved_spheres), demi_revolved_bend) \
+      demi_revolved_near, (demi_revolved_spheres, 0, demi_round_polyhedron), demi_revolved_bend) \
     /* the last */
 #define DEMI_LIST(...) {__VA_ARGS__}            /* one field of a row that is a list: (a, b) */
 #define DEMI_SHAPE_CONSTANT(KIND, NAME, WORD, GAP, TOUCH) DEMI_##KIND,
@@ -4052,11 +4084,13 @@ typedef struct demi_part {
     dem_vec3 centre;               /* m, from the body's */
     dem_vec3 axes;                 /* m, of all but balls: lengths as its kind has them */
     dem_quat q;                    /* of all but balls */
+    const demi_shape *shape;       /* of all but balls; its lengths times scale */
+    dem_real scale;
 } demi_part;
 /* What a kind of part tells of itself, and how two keep apart; what touches stands in >>kept. */
 typedef struct demi_shape_row {
     const char *name;
-    dem_real (*support)(dem_vec3 axes, dem_vec3 n);     /* m, how far it reaches along n (unit) */
+    dem_real (*support)(const demi_shape *s, dem_vec3 n);     /* m, how far along n (unit) */
     dem_real (*thin)(const demi_part *p);               /* m, smallest radius */
     double (*equal)(const demi_part *p);                /* m, radius of the sphere of its volume */
     double (*curve)(const demi_part *p, double h);      /* m, of curvature where its height is h */
@@ -4064,7 +4098,7 @@ typedef struct demi_shape_row {
     dem_real (*gap)(const demi_part *p, const demi_part *q, dem_vec3 gap, dem_real enough);
 } demi_shape_row;
 #define DEMI_SHAPE_DECLARE(KIND, NAME, WORD, GAP, TOUCH) \
-    static dem_real demi_##NAME##_support(dem_vec3 axes, dem_vec3 n); \
+    static dem_real demi_##NAME##_support(const demi_shape *s, dem_vec3 n); \
     static dem_real demi_##NAME##_thin(const demi_part *p); \
     static double demi_##NAME##_equal(const demi_part *p); \
     static double demi_##NAME##_curve(const demi_part *p, double h); \
@@ -4204,6 +4238,8 @@ static void demi_ellipsoid_bounds(demi_shape *shape) {
 /* Takes over a prepared shape (its array included) or frees it. */
 static void demi_shape_free(dem_world *w, demi_shape *shape) {
     demi_free(w, shape->parts);
+    demi_free(w, shape->hull);
+    demi_free(w, shape->rim);
 }
 /* Do parts of these two kinds know each other? (>>kept) */
 static int demi_meet_known(int kind, int other);
@@ -4416,28 +4452,32 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
 static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
     if (shape.id >= 1 && shape.id <= w->shape_count) return shape.id - 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d does not exist, there are %d; add it with "
-              "dem_shape_ellipsoid_add or dem_shape_cluster_add and check what that returned",
+              "dem_shape_ellipsoid_add and the like and check what that returned",
               call, (int)shape.id, w->shape_count);
     return -1;
+}
+/* Semi-axes of the ellipsoid that has its moments, m. */
+static dem_vec3 demi_shape_alike(const demi_shape *s) {
+    const dem_vec3 I = s->inertia;
+    if (s->kind == DEMI_ELLIPSOID) return s->axes;
+    return demi_v(DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.y + I.z - I.x, 0)),
+                  DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.z - I.y, 0)),
+                  DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));
 }
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info) {
     if (demi_null(world, "dem_shape_get", info, "info")) return DEM_ERROR_ARGUMENT;
     const int i = demi_shape_index((dem_world *)world, "dem_shape_get", shape);
     const demi_shape *s;
-    dem_vec3 I;
     if (i < 0) return DEM_ERROR_ARGUMENT;
     s = &world->shapes[i];
-    I = s->inertia;
     info->spheres = s->count;
+    info->corners = s->corners;
+    info->faces = s->faces;
     info->volume = (dem_real)s->volume;
     info->centre = s->centre;
     info->frame = s->frame;
-    info->inertia = demi_scale(I, (dem_real)s->volume);
-    info->semi_axes = s->axes;
-    if (s->kind != DEMI_ELLIPSOID)
-        info->semi_axes = demi_v(DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.y + I.z - I.x, 0)),
-                                 DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.z - I.y, 0)),
-                                 DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));
+    info->inertia = demi_scale(s->inertia, (dem_real)s->volume);
+    info->semi_axes = demi_shape_alike(s);
     info->radius = s->radius;
     return DEM_OK;
 }
@@ -4481,7 +4521,7 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
     if (!shape) return w->bodies.pos[4*body + 3];
     scale = demi_scale_of(w, body, shape);
     e = dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*body), n);
-    if (!shape->count) return scale*demi_shape_rows[shape->kind].support(shape->axes, e);
+    if (!shape->count) return scale*demi_shape_rows[shape->kind].support(shape, e);
     for (i = 0; i < shape->count; i++) {
         const dem_real s = demi_dot(demi_at(shape->parts + 4*i), e) + shape->parts[4*i + 3];
         far = i && far > s ? far : s;
@@ -4672,6 +4712,8 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
     if (shape) {
         const dem_real scale = demi_scale_of(w, body, shape);
         p.q = demi_quat_at(w->bodies.orient + 4*body);
+        p.shape = shape;
+        p.scale = scale;
         if (shape->count) {
             p.centre = demi_scale(dem_quat_rotate(p.q, demi_at(shape->parts + 4*k)), scale);
             p.radius = shape->parts[4*k + 3]*scale;
@@ -4719,15 +4761,15 @@ static void demi_part_matrix(const demi_part *p, double *Q) {
 }
 /* --- what a kind of part tells of itself (DEMI_SHAPES) --- */
 
-static dem_real demi_ball_support(dem_vec3 axes, dem_vec3 n) { (void)n; return axes.x; }
+static dem_real demi_ball_support(const demi_shape *s, dem_vec3 n) { (void)n; return s->radius; }
 static dem_real demi_ball_thin(const demi_part *p) { return p->radius; }
 static double demi_ball_equal(const demi_part *p) { return (double)p->radius; }
 static double demi_ball_curve(const demi_part *p, double h) { (void)h; return (double)p->radius; }
 static dem_vec3 demi_ball_drawn(const demi_part *p) {
     return demi_v(p->radius, p->radius, p->radius);
 }
-static dem_real demi_ellipsoid_support(dem_vec3 axes, dem_vec3 n) {
-    return demi_length(demi_v(n.x*axes.x, n.y*axes.y, n.z*axes.z));
+static dem_real demi_ellipsoid_support(const demi_shape *s, dem_vec3 n) {
+    return demi_length(demi_v(n.x*s->axes.x, n.y*s->axes.y, n.z*s->axes.z));
 }
 static dem_real demi_ellipsoid_thin(const demi_part *p) {
     return DEMI_MIN(p->axes.x, DEMI_MIN(p->axes.y, p->axes.z));
@@ -4763,6 +4805,8 @@ DEM_INLINE demi_part demi_part_now(const dem_world *w, int body, int k) {
     p.radius = sphere[3];
     p.axes = demi_v(0, 0, 0);
     p.q = dem_quat_make(1, 0, 0, 0);
+    p.shape = shape;
+    p.scale = 1;
     return p;
 }
 static dem_real demi_balls_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
@@ -4814,6 +4858,504 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
         }
     }
     return least;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>hulls
+   Convex polyhedra as shapes: the convex hull of points, its faces, and what follows from them.
+   The hull grows point by point, the farthest first, in triangles; those that lie in one plane are
+   then one face. Knows no contact: >>polyhedra. And copies of shapes.
+   --------------------------------------------------------------------------------------------- */
+
+/* (4 pi/3)^(1/3): the edge of a cube over the radius of the sphere of its volume. */
+#define DEMI_POLYHEDRON_SCALE 1.6119919540164696
+/* A triangle of a hull under way. */
+typedef struct demi_hull_face {
+    int32_t corner[3], beside[3];  /* points, counterclockwise from outside; across k to k + 1 */
+    int32_t state, face;           /* 0: free, 1: of the hull, 2: seen by the point that comes */
+    double n[3], at;               /* unit, outward; m: n.x of its plane */
+} demi_hull_face;
+/* Corners of a polyhedron of as many faces are 2 faces - 4 at most, its triangles 2 corners - 4;
+   room for those that come before those that they replace go. */
+enum { DEMI_HULL_CORNERS = 2*DEM_POLYHEDRON_FACES - 4, DEMI_HULL_ROOM = 4*DEMI_HULL_CORNERS };
+typedef struct demi_hull {
+    int count, used, corners;      /* points; triangles; points that are corners */
+    const double *x;               /* count x 3 */
+    double near;                   /* m: what is nearer than that to a plane lies in it */
+    int32_t *first;                /* count: a new triangle by the first corner of its outer side */
+    demi_hull_face *faces;         /* DEMI_HULL_ROOM */
+} demi_hull;
+
+static void demi_cross3(const double *a, const double *b, double *out) {
+    const double x = a[1]*b[2] - a[2]*b[1], y = a[2]*b[0] - a[0]*b[2], z = a[0]*b[1] - a[1]*b[0];
+    out[0] = x; out[1] = y; out[2] = z;
+}
+static void demi_sub3(const double *a, const double *b, double *out) {
+    out[0] = a[0] - b[0]; out[1] = a[1] - b[1]; out[2] = a[2] - b[2];
+}
+/* Makes n a unit vector; answers its length. */
+static double demi_unit3(double *n) {
+    const double l = sqrt(demi_dot3(n, n));
+    int k;
+    for (k = 0; k < 3; k++) n[k] = l > 0 ? n[k]/l : 0;
+    return l;
+}
+static double demi_hull_above(const demi_hull *h, const demi_hull_face *f, int point) {
+    return demi_dot3(f->n, h->x + 3*point) - f->at;
+}
+/* A new triangle; null: no room. */
+static demi_hull_face *demi_hull_new(demi_hull *h, int a, int b, int c) {
+    const double *x = h->x + 3*a;
+    double u[3], v[3];
+    demi_hull_face *f;
+    int i;
+    for (i = 0; i < h->used && h->faces[i].state; i++) continue;
+    if (i == DEMI_HULL_ROOM) return 0;
+    h->used = DEMI_MAX(h->used, i + 1);
+    f = h->faces + i;
+    f->corner[0] = a; f->corner[1] = b; f->corner[2] = c;
+    demi_sub3(h->x + 3*b, x, u);
+    demi_sub3(h->x + 3*c, x, v);
+    demi_cross3(u, v, f->n);
+    demi_unit3(f->n);
+    f->at = demi_dot3(f->n, x);
+    f->state = 1;
+    f->face = -1;
+    return f;
+}
+/* The point farthest from the line through a and b (from a, where they are one), or from the plane
+   through a, b and c where that is not one of the two; m. */
+static double demi_hull_far(const demi_hull *h, int a, int b, int c, int *far) {
+    double u[3], v[3], n[3], most = 0;
+    int i;
+    demi_sub3(h->x + 3*b, h->x + 3*a, u);
+    demi_unit3(u);
+    if (c != a) {
+        demi_sub3(h->x + 3*c, h->x + 3*a, v);
+        demi_cross3(u, v, u);
+        demi_unit3(u);
+    }
+    for (i = 0; i < h->count; i++) {
+        double d;
+        demi_sub3(h->x + 3*i, h->x + 3*a, v);
+        demi_cross3(u, v, n);
+        d = c != a ? fabs(demi_dot3(u, v)) : a == b ? sqrt(demi_dot3(v, v))
+                                                    : sqrt(demi_dot3(n, n));
+        if (d > most) { most = d; *far = i; }
+    }
+    return most;
+}
+/* The first four triangles. 0: all points lie in a plane. */
+static int demi_hull_begin(demi_hull *h) {
+    static const int32_t beside[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    int p[4] = {0, 0, 0, 0}, i, k;
+    for (i = 0; i < DEMI_HULL_ROOM; i++) h->faces[i].state = 0;
+    h->used = 0;
+    if (!(demi_hull_far(h, 0, 0, 0, &p[0]) > h->near) ||
+        !(demi_hull_far(h, p[0], p[0], p[0], &p[1]) > h->near) ||
+        !(demi_hull_far(h, p[0], p[1], p[0], &p[2]) > h->near) ||
+        !(demi_hull_far(h, p[0], p[1], p[2], &p[3]) > h->near)) return 0;
+    demi_hull_new(h, p[0], p[1], p[2]);
+    if (demi_hull_above(h, h->faces, p[3]) > 0) {       /* the fourth lies below the first three */
+        h->faces[0].state = 0;
+        i = p[1]; p[1] = p[2]; p[2] = i;
+        demi_hull_new(h, p[0], p[1], p[2]);
+    }
+    demi_hull_new(h, p[1], p[0], p[3]);
+    demi_hull_new(h, p[2], p[1], p[3]);
+    demi_hull_new(h, p[0], p[2], p[3]);
+    for (i = 0; i < 4; i++) for (k = 0; k < 3; k++) h->faces[i].beside[k] = beside[i][k];
+    h->corners = 4;
+    return 1;
+}
+/* The point farthest outside, and the triangle it is farthest from; -1: none is outside. */
+static int demi_hull_next(const demi_hull *h, int *face) {
+    double most = h->near;
+    int i, k, next = -1;
+    for (k = 0; k < h->used; k++)
+        for (i = 0; h->faces[k].state && i < h->count; i++) {
+            const double d = demi_hull_above(h, h->faces + k, i);
+            if (d > most) { most = d; next = i; *face = k; }
+        }
+    return next;
+}
+/* Takes a point in: triangles that it sees, one beside the other, give way to those that join it to
+   their rim. 0: there is no room, or round-off has left a rim that is not one loop. */
+static int demi_hull_take(demi_hull *h, int point, int from) {
+    int32_t seen[DEMI_HULL_ROOM];
+    int i, k, count = 0, rim = 0;
+    h->faces[from].state = 2;
+    seen[count++] = from;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) {
+            const int32_t next = h->faces[seen[i]].beside[k];
+            if (h->faces[next].state != 1 ||
+                !(demi_hull_above(h, h->faces + next, point) > h->near)) continue;
+            h->faces[next].state = 2;
+            seen[count++] = next;
+        }
+    for (i = 0; i < h->count; i++) h->first[i] = -1;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < 3; k++) {
+            const demi_hull_face *f = h->faces + seen[i];
+            const int32_t out = f->beside[k], a = f->corner[k], b = f->corner[(k + 1)%3];
+            demi_hull_face *fresh;
+            int e;
+            if (h->faces[out].state != 1) continue;
+            fresh = demi_hull_new(h, a, b, point);
+            if (!fresh || h->first[a] >= 0) return 0;
+            h->first[a] = (int32_t)(fresh - h->faces);
+            fresh->beside[0] = out;
+            for (e = 0; e < 3 && h->faces[out].corner[e] != b; e++) continue;
+            if (e == 3) return 0;
+            h->faces[out].beside[e] = h->first[a];
+            rim++;
+        }
+    for (i = 0; i < h->count; i++) {
+        const int32_t here = h->first[i];
+        int32_t next;
+        if (here < 0) continue;
+        next = h->first[h->faces[here].corner[1]];
+        if (next < 0) return 0;
+        h->faces[here].beside[1] = next;
+        h->faces[next].beside[2] = here;
+    }
+    for (i = 0; i < count; i++) h->faces[seen[i]].state = 0;
+    h->corners++;
+    return rim > 2;
+}
+/* Is triangle k in the plane of f? */
+static int demi_hull_flush(const demi_hull *h, const demi_hull_face *f, int k) {
+    int e;
+    for (e = 0; e < 3; e++)
+        if (fabs(demi_hull_above(h, f, h->faces[k].corner[e])) > h->near) return 0;
+    return demi_dot3(f->n, h->faces[k].n) > 0.5;
+}
+/* Numbers the faces: triangles in one plane, one beside the other, the largest first. Answers how
+   many there are. */
+static int demi_hull_faces(demi_hull *h) {
+    int32_t row[DEMI_HULL_ROOM];
+    int faces = 0, i, k, count;
+    for (;; faces++) {
+        double most = -1;
+        int from = -1;
+        for (i = 0; i < h->used; i++) {
+            const demi_hull_face *f = h->faces + i;
+            double u[3], v[3], n[3], area;
+            if (f->state != 1 || f->face >= 0) continue;
+            demi_sub3(h->x + 3*f->corner[1], h->x + 3*f->corner[0], u);
+            demi_sub3(h->x + 3*f->corner[2], h->x + 3*f->corner[0], v);
+            demi_cross3(u, v, n);
+            area = demi_dot3(n, n);
+            if (area > most) { most = area; from = i; }
+        }
+        if (from < 0) return faces;
+        h->faces[from].face = faces;
+        row[0] = from;
+        for (i = 0, count = 1; i < count; i++)
+            for (k = 0; k < 3; k++) {
+                const int32_t next = h->faces[row[i]].beside[k];
+                if (h->faces[next].face >= 0 || !demi_hull_flush(h, h->faces + from, next))
+                    continue;
+                h->faces[next].face = faces;
+                row[count++] = next;
+            }
+    }
+}
+/* The corners of a face in their order, as point numbers. 0: its rim is not one loop. */
+static int demi_hull_loop(const demi_hull *h, int face, int32_t *loop) {
+    int i, k, sides = 0, begin = -1, count = 0;
+    for (i = 0; i < h->used; i++)
+        for (k = 0; k < 3 && h->faces[i].state == 1 && h->faces[i].face == face; k++)
+            if (h->faces[h->faces[i].beside[k]].face != face) {
+                h->first[h->faces[i].corner[k]] = h->faces[i].corner[(k + 1)%3];
+                begin = h->faces[i].corner[k];
+                sides++;
+            }
+    for (k = begin; count < sides; k = h->first[k]) loop[count++] = k;
+    for (i = 1; i < count; i++) if (loop[i] == begin) return 0;
+    return k == begin && sides > 2 ? sides : 0;
+}
+/* Normal and height of a loop of corners (Newell): twice its area. */
+static double demi_loop_plane(const double *x, const int32_t *loop, int n, double *plane) {
+    double twice;
+    int i, k;
+    for (k = 0; k < 4; k++) plane[k] = 0;
+    for (i = 1; i + 1 < n; i++) {
+        double u[3], v[3], c[3];
+        demi_sub3(x + 3*loop[i], x + 3*loop[0], u);
+        demi_sub3(x + 3*loop[i + 1], x + 3*loop[0], v);
+        demi_cross3(u, v, c);
+        for (k = 0; k < 3; k++) plane[k] += c[k];
+    }
+    twice = demi_unit3(plane);
+    for (i = 0; i < n; i++) plane[3] += demi_dot3(plane, x + 3*loop[i])/n;
+    return twice;
+}
+/* Is no point outside, and every corner of a face in its plane, but for some round-off? */
+static int demi_hull_holds(const demi_hull *h, const int32_t *rim, int faces) {
+    const int32_t *loops = rim + faces + 1;
+    int f, i;
+    for (f = 0; f < faces; f++) {
+        double plane[4];
+        if (!(demi_loop_plane(h->x, loops + rim[f], rim[f + 1] - rim[f], plane) > 0)) return 0;
+        for (i = 0; i < h->count; i++)
+            if (demi_dot3(plane, h->x + 3*i) - plane[3] > 20*h->near) return 0;
+        for (i = rim[f]; i < rim[f + 1]; i++)
+            if (demi_dot3(plane, h->x + 3*loops[i]) - plane[3] < -20*h->near) return 0;
+    }
+    return 1;
+}
+/* The faces of the hull into rim (faces + 1 starts, then corners, as point numbers): how many; 0:
+   round-off has spoilt it; -1: points lie in a plane; more than DEM_POLYHEDRON_FACES: that many or
+   more. */
+static int demi_hull_of(demi_hull *h, int32_t *rim) {
+    int faces, face = 0, next, f, n = 0;
+    if (!demi_hull_begin(h)) return -1;
+    while ((next = demi_hull_next(h, &face)) >= 0) {
+        if (h->corners == h->count) return 0;
+        if (h->corners == DEMI_HULL_CORNERS) return DEM_POLYHEDRON_FACES + 1;
+        if (!demi_hull_take(h, next, face)) return 0;
+    }
+    faces = demi_hull_faces(h);
+    if (faces > DEM_POLYHEDRON_FACES) return faces;
+    for (f = 0; f < faces; f++) {
+        const int sides = demi_hull_loop(h, f, rim + faces + 1 + n);
+        if (!sides) return 0;
+        rim[f] = n;
+        n += sides;
+    }
+    rim[faces] = n;
+    return demi_hull_holds(h, rim, faces) ? faces : 0;
+}
+/* Adds the tetrahedron of the origin and a triangle: exact moments. */
+static void demi_moments_tetrahedron(demi_moments *m, const double *a, const double *b,
+                                     const double *c) {
+    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
+    double n[3], v, s[3];
+    int k;
+    demi_cross3(b, c, n);
+    v = demi_dot3(a, n)/6;
+    m->one += v;
+    for (k = 0; k < 3; k++) {
+        s[k] = a[k] + b[k] + c[k];
+        m->x[k] += v*s[k]/4;
+    }
+    for (k = 0; k < 6; k++)
+        m->xx[k] += v*(s[one[k]]*s[two[k]] + a[one[k]]*a[two[k]] + b[one[k]]*b[two[k]] +
+                       c[one[k]]*c[two[k]])/20;
+}
+static void demi_polyhedron_moments(const double *x, const int32_t *rim, int faces,
+                                    demi_moments *m) {
+    const int32_t *loops = rim + faces + 1;
+    int f, i;
+    memset(m, 0, sizeof *m);
+    for (f = 0; f < faces; f++)
+        for (i = rim[f] + 1; i + 1 < rim[f + 1]; i++)
+            demi_moments_tetrahedron(m, x + 3*loops[rim[f]], x + 3*loops[i], x + 3*loops[i + 1]);
+}
+/* Corners that are in use, numbered anew, into the principal frame; then the planes. */
+static void demi_polyhedron_lay(demi_shape *s, const double *x, int32_t *number) {
+    int32_t *loops = s->rim + s->faces + 1;
+    int i, k, f;
+    for (i = 0; i < s->rim[s->faces]; i++) {
+        const double *at = x + 3*loops[i];
+        double *corner = s->hull + 4*s->faces + 3*s->corners;
+        dem_vec3 c;
+        if (number[loops[i]] < 0) {
+            number[loops[i]] = s->corners++;
+            c = dem_quat_unrotate(s->frame, demi_sub(demi_v((dem_real)at[0], (dem_real)at[1],
+                                                            (dem_real)at[2]), s->centre));
+            corner[0] = (double)c.x; corner[1] = (double)c.y; corner[2] = (double)c.z;
+        }
+        loops[i] = number[loops[i]];
+    }
+    for (f = 0; f < s->faces; f++) {
+        double *plane = s->hull + 4*f;
+        demi_loop_plane(s->hull + 4*s->faces, loops + s->rim[f], s->rim[f + 1] - s->rim[f], plane);
+        for (k = 0; k < 3; k++) plane[k] /= plane[3];
+    }
+}
+/* Radii, arms, and how light it may seem: where a face lies on a plane the overlap grows with
+   slope^2 = area/(2 (4 pi/3)^(1/3) r h) for every m (>>polyhedra), and by turning with its arms. */
+static void demi_polyhedron_bounds(demi_shape *s) {
+    const double *corners = s->hull + 4*s->faces;
+    const int32_t *loops = s->rim + s->faces + 1;
+    const dem_vec3 I = s->inertia;
+    const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
+    const double r = demi_pow(s->volume*3/(4*DEMI_PI), 1.0/3);
+    int f, i;
+    s->radius = s->moment_arm = 0;
+    s->thin = (dem_real)r;
+    s->blunt = (dem_real)r;
+    s->light = 1;
+    for (i = 0; i < s->corners; i++)
+        s->radius = DEMI_MAX(s->radius, (dem_real)sqrt(demi_dot3(corners + 3*i, corners + 3*i)));
+    for (f = 0; f < s->faces; f++) {
+        const double h = s->hull[4*f + 3];
+        double plane[4], arm = 0, slope;
+        const double area = demi_loop_plane(corners, loops + s->rim[f], s->rim[f + 1] - s->rim[f],
+                                            plane)/2;
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+            const double *x = corners + 3*loops[i];
+            arm = DEMI_MAX(arm, demi_dot3(x, x) - h*h);
+        }
+        slope = area/(2*DEMI_POLYHEDRON_SCALE*r*h);
+        s->thin = DEMI_MIN(s->thin, (dem_real)h);
+        s->moment_arm = DEMI_MAX(s->moment_arm, (dem_real)sqrt(arm));
+        s->light = DEMI_MIN(s->light, 1/(DEMI_MAX(slope, 1)*(1 + arm/least)));
+    }
+}
+/* The hull of points whose middle is the origin, m apart at most, as a shape: 0 with a sentence. */
+static int demi_polyhedron_make(dem_world *w, const char *call, demi_hull *h, double size,
+                                demi_shape *shape) {
+    int32_t rim[7*DEM_POLYHEDRON_FACES];
+    demi_moments m;
+    int faces = 0, i;
+    for (h->near = (DEMI_SINGLE ? 1e-6 : 1e-10)*size; h->near < 2e-5*size; h->near *= 10) {
+        const int now = demi_hull_of(h, rim);
+        if (now || !faces) faces = now;
+        if (faces && faces <= DEM_POLYHEDRON_FACES) break;
+    }
+    if (faces < 0)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d points lie in a plane, to %.1g m; a "
+                  "polyhedron needs four that do not", call, h->count, h->near);
+    else if (faces > DEM_POLYHEDRON_FACES)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points has more than %d faces; "
+                  "give fewer points, or an ellipsoid or a cluster of spheres for what is round",
+                  call, h->count, DEM_POLYHEDRON_FACES);
+    else if (!faces)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points does not close: many lie "
+                  "nearly in one plane, or on one line, without lying in it; give corners alone",
+                  call, h->count);
+    if (faces < 1 || faces > DEM_POLYHEDRON_FACES) return 0;
+    demi_polyhedron_moments(h->x, rim, faces, &m);
+    demi_shape_principal(shape, &m);
+    if (!(shape->inertia.x > 0 && shape->inertia.y > 0 && shape->inertia.z > 0)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points is so flat that its volume "
+                  "is %.2g m3; give it some thickness", call, h->count, shape->volume);
+        return 0;
+    }
+    shape->faces = faces;
+    shape->hull = (double *)demi_hold(w, DEMI_SCENE, (size_t)(4*faces + 3*h->corners),
+                                      sizeof(double));
+    shape->rim = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)(faces + 1 + rim[faces]),
+                                      sizeof(int32_t));
+    if (!shape->hull || !shape->rim) { demi_no_memory(w, call); return 0; }
+    memcpy(shape->rim, rim, (size_t)(faces + 1 + rim[faces])*sizeof(int32_t));
+    for (i = 0; i < h->count; i++) h->first[i] = -1;
+    demi_polyhedron_lay(shape, h->x, h->first);
+    return 1;
+}
+/* 1 with a sentence where contacts are such that polyhedra have none. */
+static int demi_polyhedra_strange(dem_world *w, const char *call) {
+    const char *what = w->desc.response == DEM_RESPONSE_IMPULSES ? "contacts are impulses"
+        : w->desc.law_range > 0 || w->desc.law_range_radii > 0 ? "a law reaches beyond touch" : 0;
+    if (!what) return 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: in this world %s, which polyhedra do not know yet; take "
+              "a cluster of spheres in their place; nothing was added", call, what);
+    return 1;
+}
+DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_real *points) {
+    const char *call = "dem_shape_polyhedron_add";
+    if (demi_null(w, call, w, "world")) return demi_no_shape;
+    dem_vec3 lo, hi, middle;
+    demi_hull h;
+    demi_shape shape;
+    double *x;
+    int i, k, made = 0;
+    if (demi_shape_planar(w, call) || demi_polyhedra_strange(w, call)) return demi_no_shape;
+    if (count < 4 || count > 10000 || !points) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 4 to 10000 with points (count x "
+                  "3)", call, count);
+        return demi_no_shape;
+    }
+    lo = hi = demi_at(points);
+    for (i = 0; i < count; i++) {
+        const dem_vec3 p = demi_at(points + 3*i);
+        if (!demi_finite3(p)) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g, %g) m, must be finite", call,
+                      i, (double)p.x, (double)p.y, (double)p.z);
+            return demi_no_shape;
+        }
+        lo = demi_v(DEMI_MIN(lo.x, p.x), DEMI_MIN(lo.y, p.y), DEMI_MIN(lo.z, p.z));
+        hi = demi_v(DEMI_MAX(hi.x, p.x), DEMI_MAX(hi.y, p.y), DEMI_MAX(hi.z, p.z));
+    }
+    memset(&h, 0, sizeof h);
+    memset(&shape, 0, sizeof shape);
+    shape.kind = DEMI_POLYHEDRON;
+    h.count = count;
+    middle = demi_scale(demi_add(lo, hi), DEM_R(0.5));
+    x = (double *)demi_alloc(w, 3*(size_t)count, sizeof(double));
+    h.x = x;
+    h.first = (int32_t *)demi_alloc(w, (size_t)count, sizeof(int32_t));
+    h.faces = (demi_hull_face *)demi_alloc(w, DEMI_HULL_ROOM, sizeof(demi_hull_face));
+    if (!x || !h.first || !h.faces) demi_no_memory(w, call);
+    else {
+        for (i = 0; i < count; i++)
+            for (k = 0; k < 3; k++)
+                x[3*i + k] = (double)points[3*i + k] -
+                    (double)(k == 0 ? middle.x : k == 1 ? middle.y : middle.z);
+        made = demi_polyhedron_make(w, call, &h, (double)demi_length(demi_sub(hi, lo)), &shape);
+    }
+    demi_free(w, x);
+    demi_free(w, h.first);
+    demi_free(w, h.faces);
+    if (!made) { demi_shape_free(w, &shape); return demi_no_shape; }
+    demi_polyhedron_bounds(&shape);
+    shape.centre = demi_add(shape.centre, middle);
+    return demi_shape_adopt(w, call, &shape);
+}
+
+static size_t demi_shape_hull_reals(const demi_shape *s) {
+    return 4*(size_t)s->faces + 3*(size_t)s->corners;
+}
+static size_t demi_shape_rim_ints(const demi_shape *s) {
+    return (size_t)s->faces + 1 + (size_t)s->rim[s->faces];
+}
+/* Copies of its arrays in another world; 0 when memory ran out. */
+static int demi_shape_copy(dem_world *to, demi_shape *shape) {
+    const demi_shape from = *shape;
+    const size_t parts = 4*(size_t)from.count;
+    shape->parts = 0;
+    shape->hull = 0;
+    shape->rim = 0;
+    if (parts) {
+        shape->parts = (dem_real *)demi_hold(to, DEMI_SCENE, parts, sizeof(dem_real));
+        if (shape->parts) memcpy(shape->parts, from.parts, parts*sizeof(dem_real));
+    }
+    if (from.faces) {
+        const size_t reals = demi_shape_hull_reals(&from), ints = demi_shape_rim_ints(&from);
+        shape->hull = (double *)demi_hold(to, DEMI_SCENE, reals, sizeof(double));
+        shape->rim = (int32_t *)demi_hold(to, DEMI_SCENE, ints, sizeof(int32_t));
+        if (shape->hull) memcpy(shape->hull, from.hull, reals*sizeof(double));
+        if (shape->rim) memcpy(shape->rim, from.rim, ints*sizeof(int32_t));
+    }
+    if ((!parts || shape->parts) && (!from.faces || (shape->hull && shape->rim))) return 1;
+    demi_shape_free(to, shape);
+    return 0;
+}
+
+/* --- what it tells of itself (DEMI_SHAPES) --- */
+
+static dem_real demi_polyhedron_support(const demi_shape *s, dem_vec3 n) {
+    const double e[3] = {(double)n.x, (double)n.y, (double)n.z}, *x = s->hull + 4*s->faces;
+    double far = -1e300;
+    int i;
+    for (i = 0; i < s->corners; i++) far = DEMI_MAX(far, demi_dot3(e, x + 3*i));
+    return (dem_real)far;
+}
+static dem_real demi_polyhedron_thin(const demi_part *p) { return p->shape->thin*p->scale; }
+static double demi_polyhedron_equal(const demi_part *p) {
+    return (double)(p->shape->equal*p->scale);
+}
+static double demi_polyhedron_curve(const demi_part *p, double h) {
+    (void)h;
+    return demi_polyhedron_equal(p);
+}
+/* The ellipsoid of its moments. */
+static dem_vec3 demi_polyhedron_drawn(const demi_part *p) {
+    return demi_scale(demi_shape_alike(p->shape), p->scale);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -8443,6 +8985,7 @@ static void demi_kept_move(dem_world *w, const int *first) {
                 c.arm_a = c.arm_b; c.arm_b = arm;
                 c.normal = demi_scale(c.normal, -1);
                 c.lambda = c.lambda > 0 ? 1 - c.lambda : 0;
+                if (c.corners) c.corner ^= 1;
                 for (i = 0; i < w->memory_stride; i++)
                     if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
             }
@@ -11120,10 +11663,435 @@ static const char *demi_kernel_choose(dem_world *w) {
 #endif
 
 /* ---------------------------------------------------------------------------------------------
+   >>polyhedra
+   What two convex polyhedra, or one and a rigid surface, share, and how that pushes them apart;
+   geometry only. A polyhedron about O is pyramids over its faces with their tips in O; in that of
+   face f, of height h_f and outward normal n_f,
+       u(x) = 1 - n_f.(x - O)/h_f,         1 at O, 0 on the surface:
+   how far in x lies, and the pressure there of an elastic body on a rigid core (a pressure field,
+   [ELA19]). Where two overlap, the deeper inside one, the less inside the other; they meet in the
+   surface S on which both u are the same. What they share is
+       I = integral over both of the smaller u,             overlap = sqrt(I/((4 pi/3)^(1/3) R*))
+   with R* of the spheres of their volumes. As A moves against B, only S counts, and that gives
+       dI = integral over S of u dA n . (way of A's points), n unit, from A to B:
+   forces and moments of the pressure u on S, equal and opposite, and the gradient of U(overlap):
+   faces, edges and corners pass into each other without a jump, and energy is conserved. A cube on
+   a plane or on its like has the overlap by which the two overlap. I itself follows from S: in each
+   pyramid g = 1 - u is linear, and the field (x - O)(1/3 - g/4 - 1/(12 g^3)) has the divergence u
+   and is 0 on the surface; over a triangle with g1, g2, g3 the mean of 1/g^3 is 1/(g1 g2 g3). (The
+   law of the overlap's volume, [FEN12], conserves energy, too; but there a face that lies on
+   another one is free to tilt.) A rigid wall has u without limit behind its surface, and S is that.
+   --------------------------------------------------------------------------------------------- */
+
+/* A polyhedron where it is now, about some origin, in some axes. */
+typedef struct demi_solid {
+    int faces, corners;
+    const int32_t *rim;            /* faces + 1 starts, then the corners of each face */
+    double centre[3];
+    double plane[DEM_POLYHEDRON_FACES][4];     /* n/h, 1/m; h, m */
+    double corner[DEMI_HULL_CORNERS][3];
+} demi_solid;
+static void demi_rotation_of(dem_quat q, double *R) {
+    const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
+    R[0] = 1 - 2*(y*y + z*z); R[1] = 2*(x*y - w*z);     R[2] = 2*(x*z + w*y);
+    R[3] = 2*(x*y + w*z);     R[4] = 1 - 2*(x*x + z*z); R[5] = 2*(y*z - w*x);
+    R[6] = 2*(x*z - w*y);     R[7] = 2*(y*z + w*x);     R[8] = 1 - 2*(x*x + y*y);
+}
+static void demi_solid_of(const demi_part *p, dem_vec3 centre, demi_solid *s) {
+    const demi_shape *shape = p->shape;
+    const double *plane = shape->hull, *corner = shape->hull + 4*shape->faces;
+    const double scale = (double)p->scale;
+    double R[9];
+    int i, k;
+    demi_rotation_of(p->q, R);
+    s->faces = shape->faces;
+    s->corners = shape->corners;
+    s->rim = shape->rim;
+    s->centre[0] = (double)centre.x; s->centre[1] = (double)centre.y;
+    s->centre[2] = (double)centre.z;
+    for (i = 0; i < s->faces; i++, plane += 4) {
+        for (k = 0; k < 3; k++) s->plane[i][k] = demi_dot3(R + 3*k, plane)/scale;
+        s->plane[i][3] = plane[3]*scale;
+    }
+    for (i = 0; i < s->corners; i++, corner += 3)
+        for (k = 0; k < 3; k++) s->corner[i][k] = s->centre[k] + scale*demi_dot3(R + 3*k, corner);
+}
+/* u of face f's pyramid at x. */
+static double demi_solid_in(const demi_solid *s, int f, const double *x) {
+    double d[3];
+    demi_sub3(x, s->centre, d);
+    return 1 - demi_dot3(s->plane[f], d);
+}
+
+/* --- pressure u, summed over pieces of S --- */
+
+typedef struct demi_pressure {
+    double shared;                 /* m3: I */
+    double sum, at[3], wide[6];    /* of u dA: 1, x, x x (xx yy zz xy xz yz) */
+    double force[3], torque[3];    /* of u dA: n; x cross n */
+    double deep;                   /* largest u */
+} demi_pressure;
+/* A polygon of n corners x with its u; unit: normal of S; height: m, of the polygon over the
+   centre, of a pair the sum of both. */
+static void demi_pressure_polygon(demi_pressure *s, double (*x)[3], const double *u, int count,
+                               const double *unit, double height) {
+    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
+    double force = 0, at[3] = {0, 0, 0}, t[3];
+    int i, k;
+    for (i = 0; i < count; i++) s->deep = DEMI_MAX(s->deep, u[i]);
+    for (i = 1; i + 1 < count; i++) {
+        const double *a = x[0], *b = x[i], *c = x[i + 1];
+        const double u0 = u[0], u1 = u[i], u2 = u[i + 1], all = u0 + u1 + u2;
+        const double pairs = u0*u1 + u0*u2 + u1*u2, q = all - pairs + u0*u1*u2;
+        double e[3], f[3], n[3], area;
+        demi_sub3(b, a, e);
+        demi_sub3(c, a, f);
+        demi_cross3(e, f, n);
+        area = fabs(demi_dot3(n, unit))/2;
+        s->shared += area*height/12*(u0*u1*u2 - pairs + q*q/(1 - q));
+        force += area*all/3;
+        for (k = 0; k < 3; k++)
+            at[k] += area/12*(all*(a[k] + b[k] + c[k]) + u0*a[k] + u1*b[k] + u2*c[k]);
+        for (k = 0; k < 6; k++) {
+            const int p = one[k], r = two[k];
+            const double P = a[p] + b[p] + c[p], Q = a[r] + b[r] + c[r];
+            s->wide[k] += area/60*(all*(P*Q + a[p]*a[r] + b[p]*b[r] + c[p]*c[r]) +
+                Q*(u0*a[p] + u1*b[p] + u2*c[p]) + P*(u0*a[r] + u1*b[r] + u2*c[r]) +
+                2*(u0*a[p]*a[r] + u1*b[p]*b[r] + u2*c[p]*c[r]));
+        }
+    }
+    demi_cross3(at, unit, t);
+    s->sum += force;
+    for (k = 0; k < 3; k++) {
+        s->at[k] += at[k];
+        s->force[k] += force*unit[k];
+        s->torque[k] += t[k];
+    }
+}
+/* A point that stands for so much of S. */
+static void demi_pressure_point(demi_pressure *s, const double *x, double u, double area,
+                             const double *unit, double height) {
+    static const int one[6] = {0, 1, 2, 0, 0, 1}, two[6] = {0, 1, 2, 1, 2, 2};
+    const double f = area*u, g = 1 - u;
+    double t[3];
+    int k;
+    s->deep = DEMI_MAX(s->deep, u);
+    s->shared += area*height/12*u*u*(6 - 8*u + 3*u*u)/(g*g*g);
+    s->sum += f;
+    demi_cross3(x, unit, t);
+    for (k = 0; k < 3; k++) {
+        s->at[k] += f*x[k];
+        s->force[k] += f*unit[k];
+        s->torque[k] += f*t[k];
+    }
+    for (k = 0; k < 6; k++) s->wide[k] += f*x[one[k]]*x[two[k]];
+}
+static void demi_pressure_add(demi_pressure *s, const demi_pressure *more) {
+    int k;
+    s->shared += more->shared;
+    s->sum += more->sum;
+    for (k = 0; k < 3; k++) {
+        s->at[k] += more->at[k];
+        s->force[k] += more->force[k];
+        s->torque[k] += more->torque[k];
+    }
+    for (k = 0; k < 6; k++) s->wide[k] += more->wide[k];
+    s->deep = DEMI_MAX(s->deep, more->deep);
+}
+
+/* --- sections: where a plane cuts a pyramid, or half spaces leave something of a polygon --- */
+
+enum { DEMI_SECTION = 2*DEM_POLYHEDRON_FACES + 8 };
+/* Where the plane level = 0 cuts the pyramid over face f: level at the centre, and at the corners
+   of the face in their order. Answers how many corners there are. */
+static int demi_pyramid_section(const demi_solid *s, int f, double centre, const double *level,
+                                double (*x)[3]) {
+    const int32_t *loop = s->rim + s->faces + 1 + s->rim[f];
+    const int n = s->rim[f + 1] - s->rim[f], inside = centre > 0;
+    int i, k, count = 0;
+    for (i = 0; i < n; i++) {
+        const int next = i + 1 < n ? i + 1 : 0;
+        const double *a = s->corner[loop[i]], *b = s->corner[loop[next]];
+        if ((level[i] > 0) != inside) {
+            const double t = centre/(centre - level[i]);
+            for (k = 0; k < 3; k++) x[count][k] = s->centre[k] + t*(a[k] - s->centre[k]);
+            count++;
+        }
+        if ((level[i] > 0) != (level[next] > 0)) {
+            const double t = level[i]/(level[i] - level[next]);
+            for (k = 0; k < 3; k++) x[count][k] = a[k] + t*(b[k] - a[k]);
+            count++;
+        }
+    }
+    return count;
+}
+/* What is left of a convex polygon where n.(x - o) >= 0. */
+static int demi_polygon_clip(double (*x)[3], int count, const double *n, const double *o) {
+    double out[DEMI_SECTION][3], d[DEMI_SECTION], v[3];
+    int i, k, less = 0, left = 0;
+    for (i = 0; i < count; i++) {
+        demi_sub3(x[i], o, v);
+        d[i] = demi_dot3(n, v);
+        less += d[i] < 0;
+    }
+    if (!less) return count;
+    if (less == count) return 0;
+    for (i = 0; i < count && left + 2 <= DEMI_SECTION; i++) {
+        const int next = i + 1 < count ? i + 1 : 0;
+        if (!(d[i] < 0)) memcpy(out[left++], x[i], sizeof *out);
+        if ((d[i] < 0) == (d[next] < 0)) continue;
+        for (k = 0; k < 3; k++)
+            out[left][k] = x[i][k] + d[i]/(d[i] - d[next])*(x[next][k] - x[i][k]);
+        left++;
+    }
+    memcpy(x, out, (size_t)left*sizeof *out);
+    return left;
+}
+/* What is left of it in the pyramid over face f. */
+static int demi_pyramid_clip(const demi_solid *s, int f, double (*x)[3], int count) {
+    const int32_t *loop = s->rim + s->faces + 1 + s->rim[f];
+    const int n = s->rim[f + 1] - s->rim[f];
+    int i;
+    for (i = 0; i < n && count > 2; i++) {
+        double a[3], b[3], side[3];
+        demi_sub3(s->corner[loop[i]], s->centre, a);
+        demi_sub3(s->corner[loop[i + 1 < n ? i + 1 : 0]], s->centre, b);
+        demi_cross3(a, b, side);
+        count = demi_polygon_clip(x, count, side, s->centre);
+    }
+    return count;
+}
+/* Which faces of a may have a piece of S: not those that lie wholly beyond a face of b, when a's
+   centre does. 0: a does; the two are apart. */
+static int demi_solid_alive(const demi_solid *a, const demi_solid *b, unsigned char *alive) {
+    const int32_t *loops = a->rim + a->faces + 1;
+    double in[DEMI_HULL_CORNERS];
+    int f, g, i, any;
+    for (f = 0; f < a->faces; f++) alive[f] = 1;
+    for (g = 0; g < b->faces; g++) {
+        if (demi_solid_in(b, g, a->centre) > 0) continue;
+        for (i = any = 0; i < a->corners; i++) {
+            in[i] = demi_solid_in(b, g, a->corner[i]);
+            any |= in[i] > 0;
+        }
+        if (!any) return 0;
+        for (f = 0; f < a->faces; f++) {
+            for (i = a->rim[f]; i < a->rim[f + 1] && !(in[loops[i]] > 0); i++) continue;
+            if (i == a->rim[f + 1]) alive[f] = 0;
+        }
+    }
+    return 1;
+}
+/* The piece of S between faces f and g. */
+static void demi_solids_piece(const demi_solid *a, const demi_solid *b, int f, int g,
+                              demi_pressure *s) {
+    const int32_t *loop = a->rim + a->faces + 1 + a->rim[f];
+    const int n = a->rim[f + 1] - a->rim[f];
+    const double centre = demi_solid_in(b, g, a->centre) - 1;
+    double x[DEMI_SECTION][3], u[DEMI_SECTION], level[DEM_POLYHEDRON_FACES], unit[3], to[3], size;
+    int i, above = 0, count;
+    for (i = 0; i < n; i++) above += (level[i] = demi_solid_in(b, g, a->corner[loop[i]])) > 0;
+    if (above == (centre > 0 ? n : 0)) return;
+    demi_sub3(a->plane[f], b->plane[g], unit);
+    size = demi_unit3(unit);
+    if (!(size*a->plane[f][3] > 1e-9)) return;  /* the same face */
+    count = demi_pyramid_section(a, f, centre, level, x);
+    count = demi_pyramid_clip(b, g, x, count);
+    if (count < 3) return;
+    for (i = 0; i < count; i++) u[i] = DEMI_MAX(demi_solid_in(a, f, x[i]), 0);
+    demi_sub3(b->centre, a->centre, to);
+    demi_pressure_polygon(s, x, u, count, unit, demi_dot3(to, unit));
+}
+/* All of S; 0: there is none. */
+static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pressure *s) {
+    unsigned char fs[DEM_POLYHEDRON_FACES], gs[DEM_POLYHEDRON_FACES];
+    int f, g;
+    memset(s, 0, sizeof *s);
+    if (!demi_solid_alive(a, b, fs) || !demi_solid_alive(b, a, gs)) return 0;
+    for (f = 0; f < a->faces; f++)
+        for (g = 0; g < b->faces && fs[f]; g++) if (gs[g]) demi_solids_piece(a, b, f, g, s);
+    return s->shared > 0 && s->sum > 0;
+}
+/* S on a flat piece of a rigid wall: beyond n.x = at, n unit, from the polyhedron into the wall; on
+   that side of all planes (normal, a point of it) that bound it. */
+static void demi_solid_on_flat(const demi_solid *a, const double *n, double at,
+                               double (*sides)[2][3], int side_count, demi_pressure *s) {
+    const int32_t *loops = a->rim + a->faces + 1;
+    const double centre = demi_dot3(n, a->centre) - at;
+    double all[DEMI_HULL_CORNERS], x[DEMI_SECTION][3], u[DEMI_SECTION];
+    double level[DEM_POLYHEDRON_FACES];
+    int f, i, k, above = 0, count;
+    for (i = 0; i < a->corners; i++) above += (all[i] = demi_dot3(n, a->corner[i]) - at) > 0;
+    for (f = 0; f < a->faces && above; f++) {
+        for (i = a->rim[f], k = 0; i < a->rim[f + 1]; i++) level[k++] = all[loops[i]];
+        count = demi_pyramid_section(a, f, centre, level, x);
+        for (i = 0; i < side_count && count > 2; i++)
+            count = demi_polygon_clip(x, count, sides[i][0], sides[i][1]);
+        if (count < 3) continue;
+        for (i = 0; i < count; i++) u[i] = DEMI_MAX(demi_solid_in(a, f, x[i]), 0);
+        demi_pressure_polygon(s, x, u, count, n, -centre);
+    }
+}
+
+/* --- the contact that a pressure is --- */
+
+/* Where friction and damping act: four points about the centre of pressure that spread as wide as
+   the pressure does, so that what lies on a face does not turn about one point. */
+typedef struct demi_patch {
+    dem_vec3 normal, point;        /* unit, a -> b; m: centre of pressure */
+    dem_vec3 spread[2];            /* m: corners are at point +- one +- the other */
+    dem_real couple;               /* m: moment about the normal over the force */
+    double force;                  /* m2: of u */
+} demi_patch;
+/* Not where it does not push. The two directions of the spread: any, but the same from step to
+   step. */
+static int demi_pressure_patch(const demi_pressure *s, demi_patch *out) {
+    static const double from[3] = {0.3301, 0.5563, 0.7626};
+    const double *m = s->wide, F = sqrt(demi_dot3(s->force, s->force));
+    double n[3], e[3], t[3], x[3], C[6], Ce[3], Ct[3], ee, tt, et, root, size, along;
+    int k;
+    if (!(F > 0)) return 0;
+    for (k = 0; k < 3; k++) n[k] = s->force[k]/F;
+    demi_cross3(n, s->torque, x);
+    along = demi_dot3(n, s->at)/s->sum;
+    for (k = 0; k < 3; k++) x[k] = x[k]/F + along*n[k];
+    for (k = 0; k < 3; k++) C[k] = m[k]/s->sum - s->at[k]*s->at[k]/(s->sum*s->sum);
+    C[3] = m[3]/s->sum - s->at[0]*s->at[1]/(s->sum*s->sum);
+    C[4] = m[4]/s->sum - s->at[0]*s->at[2]/(s->sum*s->sum);
+    C[5] = m[5]/s->sum - s->at[1]*s->at[2]/(s->sum*s->sum);
+    demi_cross3(n, from, t);
+    demi_unit3(t);
+    demi_cross3(t, n, e);
+    demi_sym_times(C, e, Ce);
+    demi_sym_times(C, t, Ct);
+    ee = DEMI_MAX(demi_dot3(e, Ce), 0);
+    tt = DEMI_MAX(demi_dot3(t, Ct), 0);
+    et = demi_dot3(e, Ct);
+    root = sqrt(DEMI_MAX(ee*tt - et*et, 0));    /* the root of a 2 x 2 tensor, Cayley-Hamilton */
+    size = sqrt(ee + tt + 2*root);
+    if (!(size > 0)) size = 1;
+    out->normal = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+    out->point = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
+    for (k = 0; k < 3; k++) {
+        Ce[k] = ((ee + root)*e[k] + et*t[k])/size;
+        Ct[k] = (et*e[k] + (tt + root)*t[k])/size;
+    }
+    out->spread[0] = demi_v((dem_real)Ce[0], (dem_real)Ce[1], (dem_real)Ce[2]);
+    out->spread[1] = demi_v((dem_real)Ct[0], (dem_real)Ct[1], (dem_real)Ct[2]);
+    out->couple = (dem_real)(demi_dot3(n, s->torque)/F);
+    out->force = F;
+    return 1;
+}
+/* From the centre of pressure to corner k. Seen from the other body, whose normal is the opposite
+   one, corner k is k ^ 1. */
+static dem_vec3 demi_patch_spread(const demi_patch *p, int k) {
+    const dem_vec3 one = demi_scale(p->spread[0], k & 2 ? DEM_R(-1) : DEM_R(1));
+    return demi_add(one, demi_scale(p->spread[1], k & 1 ? DEM_R(-1) : DEM_R(1)));
+}
+/* sqrt(I/((4 pi/3)^(1/3) R*)), m; and how it grows where a force F (of u) gives way, per m. */
+static double demi_shared_overlap(double shared, double r_eff) {
+    return sqrt(shared/(DEMI_POLYHEDRON_SCALE*r_eff));
+}
+static double demi_shared_slope(double force, double r_eff, double overlap) {
+    return force/(2*DEMI_POLYHEDRON_SCALE*r_eff*overlap);
+}
+
+/* --- points that are nearest --- */
+
+/* The point q of a polyhedron nearest to x, and how far off it is, m; below 0 inside, where it is
+   on the nearest face. */
+static double demi_solid_near(const demi_solid *s, const double *x, double *q) {
+    const int32_t *loops = s->rim + s->faces + 1;
+    double inside = -1e300, least = 1e300, d[3];
+    int f, i, k;
+    for (f = 0; f < s->faces; f++) {
+        const double *a = s->plane[f], size = sqrt(demi_dot3(a, a));
+        double n[3], foot[3], off;
+        int beyond = 0;
+        demi_sub3(x, s->centre, d);
+        off = (demi_dot3(a, d) - 1)/size;
+        for (k = 0; k < 3; k++) {
+            n[k] = a[k]/size;
+            foot[k] = x[k] - off*n[k];
+        }
+        if (!(off > 0)) {
+            if (off > inside && least > 1e299) {
+                inside = off;
+                memcpy(q, foot, sizeof foot);
+            }
+            continue;
+        }
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+            const double *b = s->corner[loops[i]];
+            const double *c = s->corner[loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]]];
+            double e[3], out[3], to[3], at[3], t, l;
+            demi_sub3(c, b, e);
+            demi_cross3(e, n, out);
+            demi_sub3(foot, b, to);
+            if (!(demi_dot3(out, to) > 0)) continue;
+            beyond = 1;
+            t = demi_dot3(e, to)/demi_dot3(e, e);
+            t = t < 0 ? 0 : t > 1 ? 1 : t;
+            for (k = 0; k < 3; k++) at[k] = b[k] + t*e[k];
+            demi_sub3(x, at, d);
+            l = sqrt(demi_dot3(d, d));
+            if (l < least) { least = l; memcpy(q, at, sizeof at); }
+        }
+        if (!beyond) { memcpy(q, foot, sizeof foot); return off; }
+    }
+    return least < 1e299 ? least : inside;
+}
+/* A polyhedron in the measure in which an ellipsoid at `at` is the unit sphere about the origin. */
+static void demi_solid_measure(const demi_part *p, const demi_part *egg, dem_vec3 at,
+                               demi_solid *s) {
+    const double axes[3] = {(double)egg->axes.x, (double)egg->axes.y, (double)egg->axes.z};
+    double R[9], v[3];
+    int i, k, e;
+    demi_solid_of(p, at, s);
+    demi_rotation_of(egg->q, R);
+    for (i = -1; i < s->corners; i++) {
+        double *x = i < 0 ? s->centre : s->corner[i];
+        memcpy(v, x, sizeof v);
+        for (k = 0; k < 3; k++) x[k] = (R[k]*v[0] + R[3 + k]*v[1] + R[6 + k]*v[2])/axes[k];
+    }
+    for (i = 0; i < s->faces; i++) {
+        memcpy(v, s->plane[i], sizeof v);
+        for (k = 0; k < 3; k++)
+            for (e = 0, s->plane[i][k] = 0; e < 3; e++) s->plane[i][k] += axes[k]*R[3*e + k]*v[e];
+    }
+}
+/* How far a part reaches from its centre along n (unit), m. */
+static dem_real demi_part_support(const demi_part *p, dem_vec3 n) {
+    if (p->kind == DEMI_BALL) return p->radius;
+    return p->scale*demi_shape_rows[p->kind].support(p->shape, dem_quat_unrotate(p->q, n));
+}
+/* The farthest that a face of p keeps q off: no more than their distance. */
+static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 gap) {
+    dem_real most = -DEM_R(1e30);
+    int f;
+    for (f = 0; p->kind == DEMI_POLYHEDRON && f < p->shape->faces; f++) {
+        const double *a = p->shape->hull + 4*f;
+        const dem_vec3 own = demi_scale(demi_v((dem_real)a[0], (dem_real)a[1], (dem_real)a[2]),
+                                        (dem_real)a[3]);
+        const dem_vec3 n = dem_quat_rotate(p->q, own);
+        const dem_real off = demi_dot(n, gap) - demi_part_support(q, demi_scale(n, -1)) -
+            (dem_real)a[3]*p->scale;
+        most = DEMI_MAX(most, off);
+    }
+    return most;
+}
+static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
+                                   dem_real enough) {
+    const dem_real d = demi_length(gap), one = demi_faces_gap(p, q, gap);
+    const dem_real two = demi_faces_gap(q, p, demi_scale(gap, -1)), most = DEMI_MAX(one, two);
+    if (!(d > 0)) return -enough;
+    return DEMI_MAX(most, d - p->radius - q->radius);
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>on-walls
    Where parts of bodies touch walls: geometry only; first spheres, clusters being many of them;
-   then ellipsoids, which share what is done on surfaces of facets; then who touches what; and how
-   the normals turn there.
+   then ellipsoids, which share what is done on surfaces of facets; and how the normals turn there.
    What becomes of the places that are found stands in >>kept.
    --------------------------------------------------------------------------------------------- */
 
@@ -11530,11 +12498,6 @@ static int demi_grain_ellipsoid(const dem_world *w, int d, int first, int last, 
     return demi_ellipsoid_touch(w, d, first, last, gone, at, part, places, demi_ellipsoid_on_grain);
 }
 
-/* Who touches what: walls by kind, and parts by theirs. */
-#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
-static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
-static int demi_touch_known(int kind, int part) { return demi_touches[kind][part] != 0; }
-
 /* --- how the normal of a ball's contact with a wall turns as the ball moves, all in the wall's
        frame. It turns by `turn` times the way that the ball goes, but for ways along the normal and
        along the axis, if there is one; there by `along`. among: the elements where the contact,
@@ -11683,6 +12646,389 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>polyhedra-walls
+   Where polyhedra touch walls: what >>polyhedra says of each flat piece, in the wall's frame, and
+   of each line of a surface of revolution. Surfaces whose normals differ by more than 18 degrees
+   are contacts of their own, with all the wall's overlap, and as much of its energy as they have of
+   its force; each is four places, the corners that its pressure is spread over. Then the table of
+   who touches what.
+   --------------------------------------------------------------------------------------------- */
+
+enum { DEMI_FLATS = 16 };
+/* Pressures on one wall, by the direction of their surfaces. */
+typedef struct demi_flats {
+    int count;
+    int32_t element[DEMI_FLATS];               /* the first of each */
+    demi_pressure press[DEMI_FLATS];
+} demi_flats;
+static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *s) {
+    const double size = sqrt(demi_dot3(s->force, s->force));
+    double most = -2;
+    int i, best = 0;
+    if (!(s->sum > 0) || !(size > 0)) return;
+    for (i = 0; i < f->count; i++) {
+        const double *F = f->press[i].force;
+        const double along = demi_dot3(F, s->force)/(size*sqrt(demi_dot3(F, F)));
+        if (along > most) { most = along; best = i; }
+    }
+    if (most < 0.95 && f->count < DEMI_FLATS) {
+        f->element[f->count] = element;
+        f->press[f->count++] = *s;
+    } else demi_pressure_add(&f->press[best], s);
+}
+/* Places of all of them. */
+static int demi_flats_places(const demi_flats *f, const demi_wall *wall, const demi_part *part,
+                             dem_vec3 at, dem_vec3 shift, demi_touching *out) {
+    const double r = demi_part_equal(part);
+    const dem_real *R = wall->pose.rotation;
+    double shared = 0, force = 0, overlap;
+    demi_patch p;
+    int i, k, count = 0;
+    for (i = 0; i < f->count; i++) {
+        shared += f->press[i].shared;
+        force += sqrt(demi_dot3(f->press[i].force, f->press[i].force));
+    }
+    overlap = shared > 0 ? demi_shared_overlap(shared, r) : 0;
+    for (i = 0; i < f->count && overlap > 0; i++) {
+        if (!demi_pressure_patch(&f->press[i], &p)) continue;
+        for (k = 0; k < 4; k++) {
+            demi_touching *t = &out[count++];
+            t->element = f->element[i];
+            t->corner = k;
+            t->overlap = (dem_real)overlap;
+            t->share = wall->share*(dem_real)(p.force/(4*force));
+            t->slope = (dem_real)demi_shared_slope(force, r, overlap);
+            t->deep = (dem_real)f->press[i].deep;
+            t->couple = p.couple;
+            t->normal = demi_rotate(R, p.normal);
+            t->spread = demi_rotate(R, demi_patch_spread(&p, k));
+            t->point = demi_add(demi_add(at, demi_rotate(R, p.point)), t->spread);
+            t->shift = shift;
+        }
+    }
+    return count;
+}
+/* The sides of an element of a surface, as half spaces: how many; its plane into n and at, n away
+   from the origin. 0: it is too thin. origin: of the axes, in the wall's frame. */
+static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin, double *n,
+                            double *at, double (*sides)[2][3]) {
+    const int corners = demi_wall_kinds[wall->kind].corners;
+    dem_vec3 y[3];
+    double x[3][3], e[3], f[3], up[3];
+    int i, k;
+    demi_wall_corners(wall, element, y);
+    for (i = 0; i < corners; i++) {
+        const dem_vec3 d = demi_sub(y[i], origin);
+        x[i][0] = (double)d.x; x[i][1] = (double)d.y; x[i][2] = (double)d.z;
+    }
+    demi_sub3(x[1], x[0], e);
+    if (corners == 2) {                         /* a line, drawn out along z */
+        up[0] = e[1]; up[1] = -e[0]; up[2] = 0;
+        for (i = 0; i < 2; i++)
+            for (k = 0; k < 3; k++) {
+                sides[i][0][k] = i ? -e[k] : e[k];
+                sides[i][1][k] = x[i][k];
+            }
+        sides[0][0][2] = sides[1][0][2] = 0;
+    } else {
+        demi_sub3(x[2], x[0], f);
+        demi_cross3(e, f, up);
+        for (i = 0; i < 3; i++) {
+            demi_sub3(x[(i + 1)%3], x[i], e);
+            demi_cross3(up, e, sides[i][0]);
+            memcpy(sides[i][1], x[i], sizeof x[i]);
+        }
+    }
+    if (!(demi_unit3(up) > 0)) return 0;
+    *at = demi_dot3(up, x[0]);
+    for (k = 0; k < 3; k++) n[k] = *at < 0 ? -up[k] : up[k];
+    *at = fabs(*at);
+    return corners;
+}
+/* One element, from a polyhedron about the origin of the axes. */
+static void demi_solid_on_element(const demi_wall *wall, int element, const demi_solid *s,
+                                  dem_vec3 x, demi_pressure *press) {
+    double sides[3][2][3], n[3], at;
+    int count;
+    memset(press, 0, sizeof *press);
+    if (wall->kind == DEMI_WALL_PLANE) {
+        n[0] = n[1] = 0;
+        n[2] = -1;
+        demi_solid_on_flat(s, n, (double)x.z, 0, 0, press);
+    } else if ((count = demi_facet_sides(wall, element, x, n, &at, sides)) != 0)
+        demi_solid_on_flat(s, n, at, sides, count, press);
+}
+/* Any wall whose elements are flat. */
+static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
+                                dem_vec3 at, const demi_part *part, demi_touching **places) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const demi_part local = demi_part_local(wall, part);
+    demi_flats flats;
+    demi_pressure press;
+    demi_solid s;
+    int k, end, count = 0;
+    *places = w->touching + w->domains[d].touching_first;
+    demi_solid_of(&local, demi_v(0, 0, 0), &s);
+    for (k = first; k < last; k = end) {
+        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
+        const dem_vec3 x = demi_unrotate(wall->pose.rotation,
+                                         demi_sub(demi_add(at, shift), wall->pose.position));
+        flats.count = 0;
+        end = demi_image_end(w, base, k, last);
+        for (; k < end; k++) {
+            if (w->wall_gap[base + k] > gone) continue;
+            demi_solid_on_element(wall, w->wall_element[base + k], &s, x, &press);
+            demi_flats_add(&flats, w->wall_element[base + k], &press);
+        }
+        count += demi_flats_places(&flats, wall, part, at, shift, *places + count);
+    }
+    return count;
+}
+/* Lines of a surface of revolution about z, from radius a to b, height g to h: each with all that
+   shares it at its angle. The pyramids' sections along it are pieces on which u is linear. */
+typedef struct demi_generator { double a, b, g, h, side; } demi_generator;
+static void demi_generator_press(const demi_solid *s, const demi_generator *l, double angle,
+                                 double width, const double *x0, demi_pressure *out) {
+    static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
+    static const double part[3] = {5.0/18, 8.0/18, 5.0/18};
+    const double c = demi_cos(angle), sn = demi_sin(angle), long_ = hypot(l->b - l->a, l->h - l->g);
+    const double e[3] = {(l->b - l->a)*c, (l->b - l->a)*sn, l->h - l->g};
+    const double o[3] = {l->a*c - x0[0], l->a*sn - x0[1], l->g - x0[2]};
+    const double n[3] = {l->side*e[2]/long_*c, l->side*e[2]/long_*sn,
+                         -l->side*(l->b - l->a)/long_};
+    double lo = 0, hi = 1, from;
+    int f, i, k, face = -1;
+    for (f = 0; f < s->faces; f++) {            /* where it is inside */
+        const double u = demi_solid_in(s, f, o), slope = -demi_dot3(s->plane[f], e);
+        if (slope > 0) lo = DEMI_MAX(lo, -u/slope);
+        else if (slope < 0) hi = DEMI_MIN(hi, -u/slope);
+        else if (u < 0) return;
+    }
+    for (from = lo; from < hi; ) {
+        double to = hi, least = 1e300, steep = 0;
+        int next = -1;
+        for (f = 0; f < s->faces && face < 0; f++) {    /* the one in force at its beginning */
+            const double slope = -demi_dot3(s->plane[f], e);
+            const double u = demi_solid_in(s, f, o) + slope*from;
+            if (u < least - 1e-12 || (u < least + 1e-12 && slope < steep)) {
+                least = u; steep = slope; next = f;
+            }
+        }
+        if (face < 0) face = next;
+        next = -1;
+        for (f = 0; f < s->faces; f++) {        /* until another one takes over */
+            const double slope = demi_dot3(s->plane[face], e) - demi_dot3(s->plane[f], e);
+            const double over = demi_solid_in(s, f, o) - demi_solid_in(s, face, o);
+            if (!(slope < 0)) continue;
+            if (-over/slope > from && -over/slope < to) { to = -over/slope; next = f; }
+        }
+        for (i = 0; i < 3; i++) {
+            const double t = from + at[i]*(to - from), r = l->a + t*(l->b - l->a);
+            double x[3];
+            for (k = 0; k < 3; k++) x[k] = o[k] + t*e[k];
+            demi_pressure_point(out, x, DEMI_MAX(demi_solid_in(s, face, x), 0),
+                             part[i]*(to - from)*long_*r*width, n, demi_dot3(x, n));
+        }
+        from = to;
+        face = next;
+        if (next < 0) break;
+    }
+}
+/* Angles at which the line from p to q crosses the surface, into angle: how many, 0 to 2. */
+static int demi_generator_cross(const demi_generator *l, const double *p, const double *q,
+                                double *angle) {
+    const double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
+    const double flat = l->h > l->g || l->h < l->g ? (l->b - l->a)/(l->h - l->g) : 0;
+    const double r0 = l->a + flat*(p[2] - l->g), dr = flat*d[2];
+    const double A = d[0]*d[0] + d[1]*d[1] - dr*dr, B = p[0]*d[0] + p[1]*d[1] - r0*dr;
+    const double C = p[0]*p[0] + p[1]*p[1] - r0*r0, D = B*B - A*C;
+    double t[2];
+    int i, count = 0;
+    if (!(D > 0)) return 0;
+    t[0] = B > 0 ? (-B - sqrt(D))/A : C/(-B + sqrt(D));
+    t[1] = B > 0 ? C/(-B - sqrt(D)) : (-B + sqrt(D))/A;
+    for (i = 0; i < 2; i++)
+        if (t[i] >= 0 && t[i] <= 1)
+            angle[count++] = demi_atan2(p[1] + t[i]*d[1], p[0] + t[i]*d[0]);
+    return count;
+}
+/* Piece i of a wall; on the side of it where x, in the wall's frame, is. A cylinder as far as a
+   body of this radius about x goes. */
+static demi_generator demi_generator_of(const demi_wall *wall, int i, dem_vec3 x, dem_real radius) {
+    demi_generator l;
+    if (wall->kind == DEMI_WALL_CYLINDER) {
+        l.a = l.b = (double)wall->radius;
+        l.g = (double)(x.z - radius);
+        l.h = (double)(x.z + radius);
+        l.side = wall->inside ? 1 : -1;
+    } else {
+        const double out = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y);
+        l.a = (double)wall->ring_radius[i];
+        l.b = (double)wall->ring_radius[i + 1];
+        l.g = (double)wall->ring_height[i];
+        l.h = (double)wall->ring_height[i + 1];
+        l.side = (l.a - out)*(l.h - l.g) - (l.g - (double)x.z)*(l.b - l.a) > 0 ? 1 : -1;
+    }
+    return l;
+}
+/* Does a body of this radius about x reach it? */
+static int demi_generator_near(const demi_generator *l, dem_vec3 x, double radius) {
+    const double out = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y);
+    const double e = l->b - l->a, f = l->h - l->g, u = out - l->a, v = (double)x.z - l->g;
+    double t = (u*e + v*f)/(e*e + f*f);
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    return (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f) < radius*radius;
+}
+/* Angles at which lines of the surface come into the plane of a face, at its lowest and highest
+   corners: how many, 0 to 4. */
+static int demi_generator_face(const demi_generator *l, const demi_solid *s, int f,
+                               const double *x0, double *angle) {
+    const int32_t *loops = s->rim + s->faces + 1;
+    const double *a = s->plane[f], size = hypot(a[0], a[1]);
+    double z[2] = {1e300, -1e300};
+    int i, count = 0;
+    for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+        z[0] = DEMI_MIN(z[0], s->corner[loops[i]][2] + x0[2]);
+        z[1] = DEMI_MAX(z[1], s->corner[loops[i]][2] + x0[2]);
+    }
+    for (i = 0; i < 2; i++) {
+        const double flat = l->h > l->g || l->h < l->g ? (l->b - l->a)/(l->h - l->g) : 0;
+        const double r = l->a + flat*(z[i] - l->g), to = size*r;
+        const double c = 1 + a[0]*x0[0] + a[1]*x0[1] - a[2]*(z[i] - x0[2]);
+        double half, mid;
+        if (!(fabs(c) < to)) continue;
+        mid = demi_atan2(a[1], a[0]);
+        half = demi_atan2(sqrt((to - c)*(to + c)), c);
+        angle[count++] = mid - half;
+        angle[count++] = mid + half;
+    }
+    return count;
+}
+enum { DEMI_CROSSINGS = 2*(3*DEM_POLYHEDRON_FACES + DEMI_HULL_CORNERS) +
+       4*DEM_POLYHEDRON_FACES + 4 };
+static int demi_angle_order(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+/* All of one piece of a surface of revolution: between the angles at which edges of the polyhedron,
+   or of its pyramids, cross it, what they share changes smoothly. x: of its centre. */
+static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l, dem_vec3 x,
+                                    int32_t element, demi_flats *flats) {
+    static const double at[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
+                                 0.9305681557970263};
+    static const double part[4] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
+                                   0.17392742256872692};
+    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
+    const int32_t *loops = s->rim + s->faces + 1;
+    double angle[DEMI_CROSSINGS], p[3], q[3];
+    demi_pressure press;
+    int f, i, k, count = 0;
+    for (f = 0; f < s->faces; f++)
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+            const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
+            if (a > b) continue;                /* once: the other face has it the other way */
+            for (k = 0; k < 3; k++) {
+                p[k] = x0[k] + s->corner[a][k];
+                q[k] = x0[k] + s->corner[b][k];
+            }
+            count += demi_generator_cross(l, p, q, angle + count);
+        }
+    for (i = 0; i < s->corners; i++) {
+        for (k = 0; k < 3; k++) p[k] = x0[k] + s->corner[i][k];
+        count += demi_generator_cross(l, x0, p, angle + count);
+    }
+    for (f = 0; f < s->faces; f++) count += demi_generator_face(l, s, f, x0, angle + count);
+    for (i = 0; i < count; i++)                 /* of one turn */
+        angle[i] -= 2*DEMI_PI*floor(angle[i]/(2*DEMI_PI));
+    if (!count) angle[count++] = 0;
+    qsort(angle, (size_t)count, sizeof *angle, demi_angle_order);
+    angle[count] = angle[0] + 2*DEMI_PI;
+    memset(&press, 0, sizeof press);
+    for (i = 0; i <= count; i++) {
+        const double width = i < count ? angle[i + 1] - angle[i] : 0, had = press.sum;
+        for (k = 0; k < 4 && width > 1e-15; k++)
+            demi_generator_press(s, l, angle[i] + at[k]*width, part[k]*width, x0, &press);
+        if (width > 1e-9 && press.sum > had) continue;
+        if (width > 1e-9 || i == count) {       /* a gap: what is beyond is another contact */
+            demi_flats_add(flats, element, &press);
+            memset(&press, 0, sizeof press);
+        }
+    }
+}
+/* A cylinder, or a surface of revolution, piece by piece. */
+static int demi_round_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const demi_part local = demi_part_local(wall, part);
+    const int pieces = wall->kind == DEMI_WALL_CYLINDER ? 1 : wall->ring_count - 1;
+    demi_flats flats;
+    demi_solid s;
+    int k, i, end, count = 0;
+    *places = w->touching + w->domains[d].touching_first;
+    demi_solid_of(&local, demi_v(0, 0, 0), &s);
+    for (k = first; k < last; k = end) {
+        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
+        const dem_vec3 x = demi_unrotate(wall->pose.rotation,
+                                         demi_sub(demi_add(at, shift), wall->pose.position));
+        flats.count = 0;
+        end = demi_image_end(w, base, k, last);
+        if (w->wall_gap[base + k] > gone) continue;
+        for (i = 0; i < pieces; i++) {
+            const demi_generator l = demi_generator_of(wall, i, x, part->radius);
+            if (demi_generator_near(&l, x, (double)part->radius))
+                demi_solid_on_generator(&s, &l, x, i, &flats);
+        }
+        count += demi_flats_places(&flats, wall, part, at, shift, *places + count);
+    }
+    return count;
+}
+/* A wall of grains, each a ball. */
+static int demi_grain_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const dem_real *R = wall->pose.rotation;
+    const demi_part local = demi_part_local(wall, part);
+    demi_touching *out = *places = w->touching + w->domains[d].touching_first;
+    demi_solid s;
+    int k, count = 0;
+    demi_solid_of(&local, demi_v(0, 0, 0), &s);
+    for (k = first; k < last; k++) {
+        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
+        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        const dem_vec3 ball = demi_sub(demi_at(wall->vertices + 3*w->wall_element[base + k]), x);
+        const double c[3] = {(double)ball.x, (double)ball.y, (double)ball.z};
+        double q[3], off;
+        demi_touching *t = &out[count];
+        if (w->wall_gap[base + k] > gone) continue;
+        off = demi_solid_near(&s, c, q);
+        if (!(off < (double)wall->radius)) continue;
+        memset(t, 0, sizeof *t);
+        t->element = w->wall_element[base + k];
+        t->overlap = wall->radius - (dem_real)off;
+        t->deep = t->overlap/wall->radius;
+        t->share = wall->share;
+        t->slope = 1;
+        t->point = demi_add(at, demi_rotate(R, demi_v((dem_real)q[0], (dem_real)q[1],
+                                                      (dem_real)q[2])));
+        t->normal = demi_v((dem_real)(c[0] - q[0]), (dem_real)(c[1] - q[1]),
+                           (dem_real)(c[2] - q[2]));
+        t->normal = off < 0 || off > 0 ? demi_scale(demi_rotate(R, t->normal), (dem_real)(1/off))
+                                       : demi_unit(demi_rotate(R, ball));
+        t->shift = shift;
+        count++;
+    }
+    return count;
+}
+
+/* Who touches what: walls by kind, and parts by theirs. */
+#define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
+static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
+static int demi_touch_known(int kind, int part) { return demi_touches[kind][part] != 0; }
+
+/* ---------------------------------------------------------------------------------------------
    >>kept
    Contacts that are kept by themselves: all but those of sphere and sphere (>>respond). Two bodies
    may touch in several places and each may push past the centre; a wall is touched in as many
@@ -11770,6 +13116,113 @@ static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const d
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
+/* An ellipsoid's overlap and arm at a normal, by what is `left` of it, 1 - W0, as it shrinks: as
+   with other ellipsoids, l (1 - W0), with the sphere of a wall's grain, of radius edge, in l, or
+   along the normal. The arm is to the point that lies deepest, as a sphere's is; what is
+   l (1 - W0)'s gradient passes through the point of the wall, at W0 of it. */
+static void demi_egg_overlap(const dem_world *w, const demi_part *p, dem_real left, dem_real edge,
+                             demi_kept *c) {
+    const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a);
+    c->overlap = left*(h + edge);
+    c->deep = c->overlap/h;
+    c->r_eff = (dem_real)demi_part_round(w, p, (double)h);
+    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
+        const dem_real l = (dem_real)demi_part_equal(p) + edge;
+        c->overlap = left*l;
+        c->slope = l/(h + edge);
+        c->inset = 1 - left;
+    }
+}
+/* A sphere and a polyhedron, whose nearest point it is pushed away from; the sphere's radius is R*,
+   as on a plane. */
+static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                 dem_vec3 gap, demi_kept *c) {
+    const int first = p->kind == DEMI_BALL;
+    const demi_part *ball = first ? p : q;
+    const double x[3] = {0, 0, 0};
+    double at[3], off;
+    demi_solid s;
+    (void)w;
+    demi_solid_of(first ? q : p, first ? gap : demi_scale(gap, -1), &s);
+    off = demi_solid_near(&s, x, at);
+    c->overlap = ball->radius - (dem_real)off;
+    if (!(c->overlap > 0)) return 0;
+    c->normal = demi_v((dem_real)at[0], (dem_real)at[1], (dem_real)at[2]);
+    c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off))
+                                   : demi_unit(gap);
+    c->deep = c->overlap/ball->radius;
+    c->r_eff = ball->radius;
+    c->arm_a = demi_v((dem_real)at[0], (dem_real)at[1], (dem_real)at[2]);
+    if (!first) {
+        c->normal = demi_scale(c->normal, -1);
+        c->arm_a = demi_add(c->arm_a, gap);
+    }
+    return 1;
+}
+/* An ellipsoid and a polyhedron: as it touches walls, at the point that comes to it first when it
+   is scaled, by W0. */
+static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                dem_vec3 gap, demi_kept *c) {
+    const int first = p->kind == DEMI_ELLIPSOID;
+    const demi_part *egg = first ? p : q;
+    const double x[3] = {0, 0, 0};
+    dem_vec3 at, n;
+    double near[3], W0;
+    demi_solid s;
+    demi_solid_measure(first ? q : p, egg, first ? gap : demi_scale(gap, -1), &s);
+    W0 = demi_solid_near(&s, x, near);
+    if (!(W0 < 1)) return 0;
+    at = demi_v((dem_real)near[0]*egg->axes.x, (dem_real)near[1]*egg->axes.y,
+                (dem_real)near[2]*egg->axes.z);
+    n = demi_v((dem_real)near[0]/egg->axes.x, (dem_real)near[1]/egg->axes.y,
+               (dem_real)near[2]/egg->axes.z);
+    c->normal = demi_unit(dem_quat_rotate(egg->q, demi_scale(n, W0 < 0 ? DEM_R(-1) : DEM_R(1))));
+    demi_egg_overlap(w, egg, (dem_real)(1 - W0), 0, c);
+    /* the gradient passes through the polyhedron's point */
+    c->arm_a = dem_quat_rotate(egg->q, at);
+    c->inset = 1;
+    if (!first) {
+        c->normal = demi_scale(c->normal, -1);
+        c->arm_a = demi_add(c->arm_a, gap);
+    }
+    return 1;
+}
+static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                  dem_vec3 gap, double lambda, demi_kept *c) {
+    const int ball = p->kind == DEMI_BALL || q->kind == DEMI_BALL;
+    (void)lambda;
+    if (!(ball ? demi_solid_ball_touch : demi_solid_egg_touch)(w, p, q, gap, c)) return 0;
+    c->arm_a = demi_add(c->arm_a, p->centre);
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+    return 1;
+}
+/* Two polyhedra, by what they share; the first of four points by which they touch. */
+static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                                dem_vec3 gap, double lambda, demi_kept *c) {
+    const double ra = demi_part_equal(p), rb = demi_part_equal(q), r_eff = ra*rb/(ra + rb);
+    demi_solid a, b;
+    demi_patch at;
+    demi_pressure s;
+    double overlap;
+    (void)w; (void)lambda;
+    demi_solid_of(p, demi_v(0, 0, 0), &a);
+    demi_solid_of(q, gap, &b);
+    if (!demi_solids_press(&a, &b, &s) || !demi_pressure_patch(&s, &at)) return 0;
+    overlap = demi_shared_overlap(s.shared, r_eff);
+    if (!(overlap > 0)) return 0;
+    c->normal = at.normal;
+    c->overlap = (dem_real)overlap;
+    c->slope = (dem_real)demi_shared_slope(at.force, r_eff, overlap);
+    c->deep = (dem_real)s.deep;
+    c->r_eff = (dem_real)r_eff;
+    c->couple = at.couple;
+    c->corners = 4;
+    c->spread = at.spread[0];
+    c->aside = at.spread[1];       /* until demi_kept_spread */
+    c->arm_a = demi_add(p->centre, at.point);
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+    return 1;
+}
 /* Who meets whom: kinds of parts, the later one first. */
 #define DEMI_SHAPE_MEET(KIND, NAME, WORD, GAP, TOUCH) DEMI_LIST TOUCH,
 static const demi_meet_fn demi_meets[][DEMI_SHAPE_KINDS] = {DEMI_SHAPES(DEMI_SHAPE_MEET)};
@@ -11781,11 +13234,11 @@ static int demi_meet_known(int kind, int other) { return demi_meet_of(kind, othe
 /* Number in its domain of the old contact with the same partner and parts, or with the same wall,
    part and element, among those that body a had; -1: none. */
 DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, int olds, int b,
-                              int part_a, int part_b, int wall, int element) {
+                              int part_a, int part_b, int wall, int element, int corner) {
     int i;
     for (i = 0; i < olds; i++)
         if (old[i].element == element && old[i].wall == wall && old[i].part_a == part_a &&
-            old[i].b == b && old[i].part_b == part_b)
+            old[i].b == b && old[i].part_b == part_b && old[i].corner == corner)
             return (int)(old - demi_kept_of(w, d)) + i;
     return -1;
 }
@@ -11812,7 +13265,7 @@ static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int o
         dem_real along;
         int taken = 0;
         if (!(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) || old[i].b >= 0 ||
-            old[i].part_a != c->part_a ||
+            old[i].part_a != c->part_a || old[i].corner != c->corner ||
             w->walls[old[i].wall].group != w->walls[c->wall].group ||
             ((crossed || !(c->share < 0)) && (old[i].weight < 0) != (c->share < 0))) continue;
         for (j = 0; j < freshs && !taken; j++)
@@ -11946,7 +13399,10 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
     int i, j;
     for (i = 0; i < n; i++) {
         const dem_real d2 = c[i].overlap > 0 ? c[i].overlap*c[i].overlap : 1;
-        dem_vec3 arm_a = demi_scale(c[i].arm_a, d2), arm_b = demi_scale(c[i].arm_b, d2);
+        /* polyhedra: where the pressure's middle is */
+        const dem_vec3 own_a = demi_sub(c[i].arm_a, c[i].spread);
+        const dem_vec3 own_b = demi_sub(c[i].arm_b, c[i].spread);
+        dem_vec3 arm_a = demi_scale(own_a, d2), arm_b = demi_scale(own_b, d2);
         dem_real A = d2, rate;
         double give;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
@@ -11957,16 +13413,16 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0) || !(c[j].overlap > 0)) continue;
             A += add;
-            arm_a = demi_add(arm_a, demi_scale(c[j].arm_a, add));
-            arm_b = demi_add(arm_b, demi_scale(c[j].arm_b, add));
+            arm_a = demi_add(arm_a, demi_scale(demi_sub(c[j].arm_a, c[j].spread), add));
+            arm_b = demi_add(arm_b, demi_scale(demi_sub(c[j].arm_b, c[j].spread), add));
         }
         c[i].added = A/d2 - 1;
         c[i].area = d2*demi_kept_room_of(c[i].added, &c[i].rate);
         c[i].share = c[i].weight*d2/c[i].area;
         if (!(A > d2/2)) {                      /* others take away: its own place will do */
             A = d2;
-            arm_a = demi_scale(c[i].arm_a, d2);
-            arm_b = demi_scale(c[i].arm_b, d2);
+            arm_a = demi_scale(own_a, d2);
+            arm_b = demi_scale(own_b, d2);
         }
         give = demi_inverse_mass_at(w, c[i].a, demi_scale(arm_a, 1/A), c[i].normal);
         if (c[i].b >= 0)
@@ -11987,6 +13443,30 @@ static void demi_kept_inherit(const demi_kept *now, demi_kept *c, int n) {
         c[k].held = now[c[k].from].grip;
         if (all > c[k].grip) c[k].held *= c[k].grip/all;
     }
+}
+/* A contact of polyhedra, as touch has found it, becomes the corners that its pressure is spread
+   over: spread and aside are the two directions. 0: no room. */
+static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *old, int olds) {
+    const dem_vec3 one = c->spread, two = c->aside;
+    int k;
+    c->aside = demi_v(0, 0, 0);
+    c->share /= (dem_real)c->corners;
+    for (k = c->corners - 1; k >= 0; k--) {
+        demi_kept *at = k ? demi_kept_new(w, d) : c;
+        if (!at) return 0;
+        if (k) memcpy(at, c, offsetof(demi_kept, coef));
+        at->corner = k;
+        if (k) at->from = demi_kept_same(w, d, old, olds, c->b, c->part_a, c->part_b, -1, -1, k);
+        at->spread = demi_add(demi_scale(one, k & 2 ? DEM_R(-1) : DEM_R(1)),
+                              demi_scale(two, k & 1 ? DEM_R(-1) : DEM_R(1)));
+        if (k) {
+            at->arm_a = demi_add(c->arm_a, at->spread);
+            at->arm_b = demi_add(c->arm_b, at->spread);
+        }
+    }
+    c->arm_a = demi_add(c->arm_a, c->spread);
+    c->arm_b = demi_add(c->arm_b, c->spread);
+    return 1;
 }
 /* All contacts of one near pair. old: those body a had in the step before. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
@@ -12016,10 +13496,11 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
             c->a = a; c->b = b; c->part_a = i; c->part_b = j;
             c->wall = c->element = -1;
             c->send = send;
-            c->from = demi_kept_same(w, d, old, olds, b, i, j, -1, -1);
+            c->from = demi_kept_same(w, d, old, olds, b, i, j, -1, -1, 0);
             if (!demi_meet_of(p.kind, q.kind)(w, &p, &q, gap,
                                               c->from < 0 ? 0 : now[c->from].lambda, c))
                 w->domains[d].kept_next--;
+            else if (c->corners && !demi_kept_spread(w, d, c, old, olds)) return;
         }
     }
     demi_kept_share(w, from, w->domains[d].kept_next - first);
@@ -12037,23 +13518,25 @@ DEM_INLINE void demi_ball_on_wall(const dem_world *w, const demi_wall *wall, con
     c->r_eff = p->radius;
     c->arm_a = demi_add(p->centre, demi_scale(c->normal, p->radius));
 }
-/* An ellipsoid's, whose place has 1 - W0 for an overlap: as with other ellipsoids, l (1 - W0), with
-   the sphere of a wall's grain in l, or along the normal. The arm is to the point that lies
-   deepest, as a sphere's is; what is l (1 - W0)'s gradient passes through the point of the wall, at
-   W0 of it. */
+/* An ellipsoid's, whose place has 1 - W0 for an overlap. */
 static void demi_ellipsoid_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
                                    const demi_touching *place, demi_kept *c) {
-    const dem_real h = demi_ellipsoid_arm(p, c->normal, &c->arm_a), left = place->overlap;
-    const dem_real edge = demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0);
-    c->overlap = left*(h + edge);
-    c->deep = c->overlap/h;
-    c->r_eff = (dem_real)demi_part_round(w, p, (double)h);
-    if (w->desc.ellipsoid_overlap == DEM_OVERLAP_CONSERVATIVE) {
-        const dem_real l = (dem_real)demi_part_equal(p) + edge;
-        c->overlap = left*l;
-        c->slope = l/(h + edge);
-        c->inset = 1 - left;
-    }
+    demi_egg_overlap(w, p, place->overlap, demi_wall_is(wall, DEMI_BALLS) ? wall->radius : DEM_R(0),
+                     c);
+}
+/* A polyhedron's, or of what it is nearest to in a wall of grains, whose radius is R* then. */
+static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, const demi_part *p,
+                                    const demi_touching *place, demi_kept *c) {
+    const int ball = demi_wall_is(wall, DEMI_BALLS);
+    c->overlap = place->overlap;
+    c->deep = place->deep;
+    c->slope = place->slope;
+    c->couple = place->couple;
+    c->spread = place->spread;
+    c->corner = place->corner;
+    c->corners = ball ? 0 : 4;
+    c->r_eff = ball ? DEM_R(1e30) : (dem_real)demi_part_equal(p);
+    c->arm_a = demi_sub(place->point, demi_at(w->bodies.pos + 4*c->a));
 }
 #define DEMI_SHAPE_ON_WALL(KIND, NAME, WORD, GAP, TOUCH) demi_##NAME##_on_wall,
 static const demi_on_wall_fn demi_on_walls[] = {DEMI_SHAPES(DEMI_SHAPE_ON_WALL)};
@@ -12125,7 +13608,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     for (i = 0, c = fresh; i < count; i++, c++)
-        c->from = demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element);
+        c->from = demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element, c->corner);
     for (i = 0, c = fresh; i < count; i++, c++) {
         if (c->from < 0 && olds) c->from = demi_kept_slid(w, d, old, olds, fresh, count, c);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
@@ -12205,6 +13688,7 @@ static void demi_kept_ended(const dem_world *w, int d, const demi_kept *old, int
         for (i = 0; i < n && c[i].from != first + e; i++) {
             const dem_real along = demi_dot(old[e].normal, c[i].normal);
             if (!(along > nearest) || c[i].from < 0 || c[i].share < 0 ||
+                c[i].corner != old[e].corner ||
                 !(2*old[e].overlap > c[i].overlap) || !demi_kept_beside(w, &old[e], &c[i]))
                 continue;
             nearest = along;
@@ -12431,6 +13915,8 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
     c->normal = n;
     c->closing_speed = demi_dot(u, n);
     c->slip = demi_sub(u, demi_scale(n, c->closing_speed));
+    if (k->couple < 0 || k->couple > 0)         /* the moment about the normal does work, too */
+        c->closing_speed += k->couple*demi_dot(demi_sub(demi_at(w->bodies.spin + 4*a), spin), n);
     gone = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
     c->slip_step = demi_sub(gone, demi_scale(n, demi_dot(gone, n)));
     c->spin = demi_sub(demi_at(w->bodies.spin + 4*a), spin);
@@ -12559,7 +14045,9 @@ static void demi_kept_respond(dem_world *w, int d) {
         demi_law(w, &contact, c->memory, &f);
         press = c->share*f.normal + (c->lift - c->share)*still;
         force = demi_sub(demi_scale(f.tangent, c->grip), demi_scale(contact.normal, press));
-        moment = moment_b = demi_scale(f.moment, c->grip);
+        moment = demi_sub(demi_scale(f.moment, c->grip),
+                          demi_scale(contact.normal, press*c->couple));
+        moment_b = moment;
         if (demi_dot(c->aside, c->aside) > 0) { /* between the ball and what it goes round */
             const dem_vec3 aside = demi_scale(c->aside, still);
             const dem_vec3 arm = demi_sub(demi_part_now(w, a, c->part_a).centre, c->arm_a);
@@ -12584,10 +14072,10 @@ static void demi_kept_respond(dem_world *w, int d) {
                 demi_force_add(w->bodies.force + 4*b, demi_scale(force, -1));
                 demi_force_add(w->bodies.torque + 4*b, back);
             }
-            domain->contacts += touches;
+            domain->contacts += touches && !c->corner;
         } else {
             demi_wall_sum_add(w, &sums[c->wall], c->wall, at, force, moment_b, surface);
-            sums[c->wall].contacts += touches;
+            sums[c->wall].contacts += touches && !c->corner;
             domain->kept_walls += touches;
         }
         if (demi_exchanges(w)) demi_kept_rates(w, d, c, rates);
@@ -20365,6 +21853,10 @@ static uint64_t demi_digest_shape(const dem_world *w, int i) {
     h = demi_hash(h, &shape->axes, sizeof shape->axes);
     h = demi_hash(h, &shape->inertia, sizeof shape->inertia);
     h = demi_hash(h, &shape->volume, sizeof shape->volume);
+    if (shape->faces) {
+        h = demi_hash(h, shape->hull, demi_shape_hull_reals(shape)*sizeof(double));
+        h = demi_hash(h, shape->rim, demi_shape_rim_ints(shape)*sizeof(int32_t));
+    }
     return shape->count ? demi_hash(h, shape->parts, 4*(size_t)shape->count*sizeof(dem_real)) : h;
 }
 static uint64_t demi_digest_sieve(const dem_sieve_desc *s, uint64_t h) {
@@ -24322,12 +25814,7 @@ static int demi_slab_shapes(dem_world *to, const dem_world *from, const dem_worl
     }
     for (i = 0; i < from->shape_count; i++) {
         demi_shape shape = from->shapes[i];
-        const size_t reals = 4*(size_t)shape.count;
-        if (reals) {
-            shape.parts = (dem_real *)demi_hold(to, DEMI_SCENE, reals, sizeof(dem_real));
-            if (!shape.parts) return 0;
-            memcpy(shape.parts, from->shapes[i].parts, reals*sizeof(dem_real));
-        }
+        if (!demi_shape_copy(to, &shape)) return 0;
         if (!demi_shape_adopt(to, "dem_slabs_create", &shape).id) return 0;
     }
     return 1;
@@ -25126,278 +26613,295 @@ static const char *const demi_viewer[] = {
     "x.lo[k], v[k]); box.hi[k] = Math.max(box.hi[k], v[k]);\n}\n}\n}\nfor (let k = 0; k < 3; k++) ",
     "if (!(box.hi[k] > box.lo[k])) { box.lo[k] = -1; box.hi[k] = 1; }\nbox.middle = [0, 1, 2].map(",
     "k => (box.lo[k] + box.hi[k])/2);\nbox.size = Math.hypot(...[0, 1, 2].map(k => box.hi[k] - box",
-    ".lo[k]));\n}\nlet gl, ball, egg, sheet, colours = new Uint8Array(1024);\nconst grainShader = ",
-    "shape => [`#version 300 es\nprecision highp sampler2D;\nuniform mat4 eye, lens; uniform vec3 ",
-    "cutAt, cutBy;\nuniform sampler2D wheres, colours, turns, axess;\nout vec3 ray; flat out vec3 ",
-    "middle; flat out vec4 paint; flat out float size;\nflat out mat3 body;\nvec3 about(vec4 q, ve",
-    "c3 v) { return v + 2.0*cross(q.yzw, cross(q.yzw, v) + q.x*v); }\nvoid main() {\nint grain = g",
-    "l_VertexID/6, k = gl_VertexID%6;           // two triangles each\nivec2 cell = ivec2(grain & ",
-    "1023, grain >> 10);\nvec2 corner = vec2(k == 1 || k == 3 || k == 4 ? 1 : -1, k == 2 || k > 3 ",
-    "? 1 : -1);\nvec4 where = texelFetch(wheres, cell, 0), colour = texelFetch(colours, cell, 0);",
-    "\n${shape === 'egg' ? `vec4 turn = texelFetch(turns, cell, 0);\nvec3 axes = texelFetch(axess,",
-    " cell, 0).xyz;` : ''}\nmiddle = (eye*vec4(where.xyz, 1)).xyz; size = where.w; paint = colour;",
-    "\n${shape === 'egg' ? `mat3 e = mat3(eye);\nbody = mat3(e*about(turn, vec3(1, 0, 0))/axes.x, ",
-    "e*about(turn, vec3(0, 1, 0))/axes.y,\ne*about(turn, vec3(0, 0, 1))/axes.z);` : 'body = mat3(1",
-    ");'}\nfloat d = length(middle), far = d > size ? size*d/sqrt(d*d - size*size) : size;\nvec3 n",
-    " = middle/d, u = normalize(abs(n.y) < 0.9 ? cross(n, vec3(0, 1, 0)) :\ncross(n, vec3(1, 0, 0)",
-    "));\nray = middle + far*(corner.x*u + corner.y*cross(u, n));\ngl_Position = lens*vec4(ray, 1)",
-    ";\nif (dot(where.xyz - cutAt, cutBy) > 0.0) gl_Position = vec4(2, 2, 2, 1);\n}`, `#version 30",
-    "0 es\nprecision highp float;\nuniform mat4 lens;\nin vec3 ray; flat in vec3 middle; flat in v",
-    "ec4 paint; flat in float size; flat in mat3 body;\nout vec4 pixel;\nvoid main() {\nvec3 d = n",
-    "ormalize(ray);\n${shape === 'egg' ? `vec3 o = -(middle*body), r = d*body;\nfloat a = dot(r, r",
-    "), b = dot(o, r), c = dot(o, o) - 1.0;` : `vec3 o = -middle, r = d;\nfloat a = 1.0, b = dot(o",
-    ", r), c = dot(o, o) - size*size;`}\nfloat h = b*b - a*c;\nif (h < 0.0) discard;\nfloat t = (-",
-    "b - sqrt(h))/a;\nvec3 hit = t*d, n = ${shape === 'egg' ? 'normalize(body*(o + t*r))' : '(hit ",
-    "- middle)/size'};\nvec4 at = lens*vec4(hit, 1);\ngl_FragDepth = 0.5*at.z/at.w + 0.5;\nfloat l",
-    "ight = 0.35 + 0.65*max(0.0, dot(n, normalize(vec3(-0.3, 0.5, 0.8))));\npixel = vec4(paint.rgb",
-    "*light + 0.12*pow(max(0.0, n.z), 30.0), 1);\n}`];\nconst wallShader = [`#version 300 es\nunif",
-    "orm mat4 eye, lens; uniform vec3 place; uniform vec4 turn;\nin vec3 where; out vec3 seen, loc",
-    "al;\nvoid main() {\nlocal = where;\nvec3 v = where + 2.0*cross(turn.yzw, cross(turn.yzw, wher",
-    "e) + turn.x*where);\nseen = (eye*vec4(v + place, 1)).xyz;\ngl_Position = lens*vec4(seen, 1);",
-    "\n}`, `#version 300 es\nprecision highp float;\nuniform vec4 paint; uniform vec4 hole; unifor",
-    "m vec2 rim;     // kind, aperture, bar, length\nin vec3 seen, local; out vec4 pixel;\nvoid ma",
-    "in() {\nfloat solid = 1.0, pitch = hole.y + hole.z, open = 0.0;\nif (rim.x > 0.0 && length(lo",
-    "cal.xy) > rim.x) discard;\nif (hole.x > 0.0) {\nvec2 p = local.xy, side = vec2(pitch);\nif (h",
-    "ole.x == 5.0) side.x = hole.w > 0.0 ? hole.w + hole.z : 1e9;\nif (hole.x == 2.0) side.y = 1e9",
-    ";\nif (rim.y > 0.0) {\nside.y = pitch*0.8660254;\nif (mod(floor(p.y/side.y + 0.5), 2.0) > 0.5",
-    ") p.x += 0.5*pitch;\n}\np = abs(p - side*floor(p/side + 0.5));\nvec2 clear = hole.x == 5.0 ? ",
-    "vec2(hole.w > 0.0 ? hole.w : 1e9, hole.y) : vec2(hole.y);\nif (hole.x == 2.0) clear.y = 2e9;",
-    "\nopen = hole.x == 4.0 ? step(length(p), 0.5*hole.y) : step(p.x, 0.5*clear.x)*\nstep(p.y, 0.5",
-    "*clear.y);\nfloat blur = smoothstep(0.2, 1.0, length(fwidth(local.xy))/pitch);\nsolid = mix(1",
-    ".0 - open, 1.0 - hole.y*hole.y/(pitch*pitch), blur);\nif (solid < 0.02) discard;\n}\nvec3 n =",
-    " normalize(cross(dFdx(seen), dFdy(seen)));\npixel = vec4(paint.rgb*(0.55 + 0.45*abs(n.z)), pa",
-    "int.a*solid);\n}`];\nfunction program(sources, names) {\nconst p = gl.createProgram();\nsourc",
-    "es.forEach((source, k) => {\nconst s = gl.createShader(k ? gl.FRAGMENT_SHADER : gl.VERTEX_SHA",
-    "DER);\ngl.shaderSource(s, source); gl.compileShader(s);\nif (!gl.getShaderParameter(s, gl.COM",
-    "PILE_STATUS)) throw Error(gl.getShaderInfoLog(s));\ngl.attachShader(p, s);\n});\nnames.forEac",
-    "h((name, k) => gl.bindAttribLocation(p, k, name));\ngl.linkProgram(p);\nif (!gl.getProgramPar",
-    "ameter(p, gl.LINK_STATUS)) throw Error(gl.getProgramInfoLog(p));\nconst at = { p };\nfor (let",
-    " k = 0, n = gl.getProgramParameter(p, gl.ACTIVE_UNIFORMS); k < n; k++) {\nconst name = gl.get",
-    "ActiveUniform(p, k).name;\nat[name] = gl.getUniformLocation(p, name);\n}\nreturn at;\n}\ncons",
-    "t kinds = {};                     // buffers of balls and eggs\nfunction prepare() {\ngl = $(",
-    "'view').getContext('webgl2', { alpha: false, preserveDrawingBuffer: true });\nif (!gl) throw ",
-    "Error('this browser has no WebGL 2, by which grains are drawn: switch it on, ' +\n'or take an",
-    "other browser');\nball = program(grainShader('ball'), []);\negg = program(grainShader('egg'),",
-    " []);\nsheet = program(wallShader, ['where']);\nkinds.array = gl.createVertexArray();        ",
-    " // empty: grains stand in textures, 1024 to a row\nfor (const kind of ['ball', 'egg']) {\nco",
-    "nst k = kinds[kind] = { room: 0, count: 0, texture: [] };\nfor (let i = 0; i < (kind === 'egg",
-    "' ? 4 : 2); i++) {\nk.texture[i] = gl.createTexture();\ngl.bindTexture(gl.TEXTURE_2D, k.textu",
-    "re[i]);\ngl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);\ngl.texParameter",
-    "i(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);\n}\n}\ngl.bindVertexArray(null);\n}\nfun",
-    "ction tessellate(w) {\nconst far = 0.75*box.size, v = w.vertices, out = [];\nconst quad = (a,",
-    " b, c, d) => out.push(...a, ...b, ...c, ...a, ...c, ...d);\nconst from = rotate([w.pose[3], -",
-    "w.pose[4], -w.pose[5], -w.pose[6]],\nsum(box.middle, w.pose, -1));     // the picture's middl",
-    "e, as the wall sees it\nconst along = rotate(w.pose.slice(3), [0, 0, 1]).map(Math.abs);\ncons",
-    "t half = 0.5*[0, 1, 2].reduce((s, k) => s + (box.hi[k] - box.lo[k])*along[k], 0);\nif (w.kind",
-    " === 'mesh')\nfor (const k of w.corners) out.push(v[3*k], v[3*k + 1], v[3*k + 2]);\nelse if (",
-    "w.kind === 'profile') {\nconst z = [from[2] - half, from[2] + half];\nfor (let k = 0; k < w.c",
-    "orners.length; k += 2) {\nconst a = 3*w.corners[k], b = 3*w.corners[k + 1];\nquad([v[a], v[a ",
-    "+ 1], z[0]], [v[b], v[b + 1], z[0]], [v[b], v[b + 1], z[1]],\n[v[a], v[a + 1], z[1]]);\n}\n} ",
-    "else if (w.kind === 'cylinder') {\nconst n = 72;\nfor (let k = 0; k < n; k++) {\nconst p = [k",
-    ", k + 1].map(i => [w.radius*Math.cos(2*Math.PI*i/n),\nw.radius*Math.sin(2*Math.PI*i/n)]);\nqu",
-    "ad([...p[0], from[2] - half], [...p[1], from[2] - half], [...p[1], from[2] + half],\n[...p[0]",
-    ", from[2] + half]);\n}\n} else if (w.kind === 'plane' || w.kind === 'sieve') {\nconst r = w.r",
-    "im > 0 ? w.rim : far, x = w.rim > 0 ? 0 : from[0], y = w.rim > 0 ? 0 : from[1];\nquad([x - r,",
-    " y - r, 0], [x + r, y - r, 0], [x + r, y + r, 0], [x - r, y + r, 0]);\n}\nw.buffer = gl.creat",
-    "eBuffer(); w.array = gl.createVertexArray(); w.count = out.length/3;\ngl.bindVertexArray(w.ar",
-    "ray);\ngl.bindBuffer(gl.ARRAY_BUFFER, w.buffer);\ngl.bufferData(gl.ARRAY_BUFFER, new Float32A",
-    "rray(out), gl.STATIC_DRAW);\ngl.enableVertexAttribArray(0); gl.vertexAttribPointer(0, 3, gl.F",
-    "LOAT, false, 0, 0);\ngl.bindVertexArray(null);\n}\nconst palette = [[78, 121, 167], [242, 142",
-    ", 43], [89, 161, 79], [225, 87, 89], [118, 183, 178],\n[237, 201, 72], [176, 122, 161], [156,",
-    " 117, 95]];\nconst materials = Uint8Array.from(palette.flatMap(c => [...c, 255]));\nfunction ",
-    "viridis(t) {\nconst c = [[0.2777, 0.1051, -0.3309, -4.6342, 6.2283, 4.7764, -5.4355],\n[0.005",
-    "4, 1.4046, 0.2148, -5.7991, 14.1799, -13.7451, 4.6459],\n[0.3341, 1.3846, 0.0951, -19.3324, 5",
-    "6.6906, -65.3530, 26.3124]];\nreturn c.map(a => 255*Math.min(1, Math.max(0, a.reduceRight((s,",
-    " x) => s*t + x, 0))));\n}\nfor (let k = 0; k < 256; k++) colours.set([...viridis(k/255).map(M",
-    "ath.round), 255], 4*k);\nconst range = { speed: [0, 1], size: [0, 1], own: [0, 1] };\nfunctio",
-    "n ranges() {\nconst count = new Float64Array(256);\nlet all = 0, low = Infinity, high = -Infi",
-    "nity, small = Infinity, large = -Infinity;\nfor (const f of frames) {\nfor (let i = 0; i < f.",
-    "speed.length; i++) { count[f.speed[i]]++; all++; }\nfor (const r of f.cast.radius) { small = ",
-    "Math.min(small, r); large = Math.max(large, r); }\nif (f.own) for (const x of f.own) { low = ",
-    "Math.min(low, x); high = Math.max(high, x); }\n}\nlet k = 255;\nfor (let over = 0; k > 1 && (",
-    "over += count[k]) < 0.005*all; k--);\nrange.speed = [0, speedOf(k)];\nrange.size = [small, la",
-    "rge > small ? large : small*1.01];\nrange.own = [low, high > low ? high : low + 1];\n}\nfunct",
-    "ion showKey() {\nconst what = $('colour').value, key = $('scale').getContext('2d');\n$('key')",
-    ".hidden = what === 'material';\nif (what === 'material') return;\nkey.putImageData(new ImageD",
-    "ata(new Uint8ClampedArray(colours), 256, 1), 0, 0);\nconst [least, most] = range[what], digit",
-    "s = x => String(+x.toPrecision(3));\n$('least').textContent = digits(least); $('most').textCo",
-    "ntent = digits(most);\n$('what').textContent = { speed: 'speed (m/s)', size: 'radius (m)', ow",
-    "n: head.number }[what];\n}\nconst camera = { yaw: -1, pitch: 0.35, distance: 1, target: [0, 0",
-    ", 0] };\nlet up, side, ahead, first, at = 0, playing = false, pace = 1, dirty = true;\nfuncti",
-    "on turnedTo() {\nconst c = Math.cos(camera.pitch), s = Math.sin(camera.pitch);\nconst flat = ",
-    "sum(side.map(x => x*Math.cos(camera.yaw)), ahead, Math.sin(camera.yaw));\nreturn sum(flat.map",
-    "(x => x*c), up, s);                    // from the target to the eye\n}\nfunction put(kind, n",
-    ") {\nconst k = kinds[kind];\nif (n > k.room) {\nk.room = 1024*Math.ceil(Math.max(n, 1.5*k.roo",
-    "m)/1024);\nk.w = new Float32Array(4*k.room); k.c = new Uint8Array(4*k.room);\nif (kind === 'e",
-    "gg') { k.t = new Float32Array(4*k.room); k.a = new Float32Array(4*k.room); }\n}\nk.count = 0;",
-    "\nreturn k;\n}\nfunction hues(f, what, least, most) {\nif (f.hue && f.hue.what === what) retu",
-    "rn f.hue;\nconst cast = f.cast, of = new Uint8Array(cast.slots.length), scale = 255/(most - l",
-    "east);\nfor (let i = 0; i < of.length; i++) {\nconst v = what === 'speed' ? speeds[f.speed[i]",
-    "] : what === 'size' ? cast.radius[i] :\nwhat === 'own' ? f.own[i] : 0;\nof[i] = what === 'mat",
-    "erial' ? (cast.material[i] - 1 + 8)%8 :\nMath.max(0, Math.min(255, Math.round((v - least)*sca",
-    "le)));\n}\nreturn f.hue = { what, of, table: what === 'material' ? materials : colours };\n}",
-    "\nfunction fill(f, g, part) {\nconst what = $('colour').value, [least, most] = range[what] ||",
-    " [0, 1], cast = f.cast;\nlet balls = 0, eggs = 0;\nfor (let i = 0; i < cast.slots.length; i++",
-    ") {\nconst s = shapes[cast.shape[i]];\nif (!s) balls++; else if (s.axes) eggs++; else balls +",
-    "= s.parts.length/4;\n}\nfor (const id in f.poses) if (walls[id] && walls[id].kind === 'grains",
-    "')\nballs += walls[id].vertices.length/3;\nconst b = put('ball', balls), e = put('egg', eggs)",
-    ", half = head.period.map(p => p/2);\nlet n = null;\nif (g && g.from) {                  // wh",
-    "o is who in the next frame\nn = new Int32Array(cast.slots.length).fill(-1);\ng.from.forEach((",
-    "old, i) => { if (old >= 0) n[old] = i; });\n}\nconst fx = f.x, gx = g ? g.x : fx, hue = hues(",
-    "f, what, least, most), wrap = half.some(h => h > 0);\nconst laid = (k, at, x, y, z, size, c) ",
-    "=> {\nconst m = 4*at;\nk.w[m] = x; k.w[m + 1] = y; k.w[m + 2] = z; k.w[m + 3] = size;\nk.c[m]",
-    " = hue.table[c]; k.c[m + 1] = hue.table[c + 1]; k.c[m + 2] = hue.table[c + 2];\nk.c[m + 3] = ",
-    "255;\n};\nfor (let i = 0; i < cast.slots.length; i++) {\nconst j = !g ? -1 : n ? n[i] : i, sh",
-    "ape = shapes[cast.shape[i]], r = cast.radius[i];\nconst a = 3*i, c = 4*hue.of[i];\nlet x = fx",
-    "[a], y = fx[a + 1], z = fx[a + 2];\nif (j >= 0 && part > 0) {\nconst dx = gx[3*j] - x, dy = g",
-    "x[3*j + 1] - y, dz = gx[3*j + 2] - z;\nif (!wrap || !(half[0] > 0 && Math.abs(dx) > half[0] |",
-    "| half[1] > 0 && Math.abs(dy) > half[1]\n|| half[2] > 0 && Math.abs(dz) > half[2])) { x += pa",
-    "rt*dx; y += part*dy; z += part*dz; }\n}\nif (!shape) { laid(b, b.count++, x, y, z, r, c); con",
-    "tinue; }\nlet q = quat(f.turn[i]);\nif (j >= 0 && part > 0) {\nconst to = quat(g.turn[j]), sa",
-    "me = q[0]*to[0] + q[1]*to[1] + q[2]*to[2] + q[3]*to[3];\nq = q.map((x, k) => x*(1 - part) + (",
-    "same < 0 ? -part : part)*to[k]);\nconst l = Math.hypot(...q) || 1;\nq = q.map(x => x/l);\n}\n",
-    "const scale = r/shape.radius;\nif (shape.axes) {\nfor (let k = 0; k < 4; k++) e.t[4*e.count +",
-    " k] = q[k];\nfor (let k = 0; k < 3; k++) e.a[4*e.count + k] = shape.axes[k]*scale;\nlaid(e, e",
-    ".count++, x, y, z, r, c);\n} else for (let k = 0; k < shape.parts.length; k += 4) {\nconst v ",
-    "= rotate(q, shape.parts.slice(k, k + 3));\nlaid(b, b.count++, x + scale*v[0], y + scale*v[1],",
-    " z + scale*v[2], scale*shape.parts[k + 3],\nc);\n}\n}\nfor (const id in f.poses) if (walls[id",
-    "] && walls[id].kind === 'grains') {\nconst w = walls[id], pose = f.poses[id];\nfor (let k = 0",
-    "; k < w.vertices.length; k += 3) {\nconst v = sum(rotate(pose.slice(3), w.vertices.slice(k, k",
-    " + 3)), pose), m = 4*b.count++;\nb.w.set([...v, w.radius], m); b.c.set([150, 150, 150, 255], ",
-    "m);\n}\n}\nfor (const k of [b, e]) {\nif (!k.count) continue;\nconst rows = Math.ceil(k.count",
-    "/1024);\n[k.w, k.c, k.t, k.a].forEach((data, i) => {\nif (!data) return;\ngl.bindTexture(gl.T",
-    "EXTURE_2D, k.texture[i]);\nif (i === 1) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 1024, rows,",
-    " 0, gl.RGBA,\ngl.UNSIGNED_BYTE, data.subarray(0, 4096*rows));\nelse gl.texImage2D(gl.TEXTURE_",
-    "2D, 0, gl.RGBA32F, 1024, rows, 0, gl.RGBA, gl.FLOAT,\ndata.subarray(0, 4096*rows));\n});\n}\n",
-    "}\nfunction draw() {\nconst canvas = $('view'), ratio = Math.min(2, window.devicePixelRatio |",
-    "| 1);\nconst width = Math.round(canvas.clientWidth*ratio);\nconst height = Math.round(canvas.",
-    "clientHeight*ratio);\nif (canvas.width !== width || canvas.height !== height) { canvas.width ",
-    "= width;\ncanvas.height = height; }\nconst k = Math.min(Math.floor(at), frames.length - 1), f",
-    " = frames[k], g = frames[k + 1];\nconst part = g ? at - k : 0, time = f.time + (g ? part*(g.t",
-    "ime - f.time) : 0);\nconst back = turnedTo(), z = back, x = unit(cross(up, z)), y = cross(z, ",
-    "x);\nconst eyeAt = sum(camera.target, back, camera.distance);\nconst eye = new Float32Array([",
-    "x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0,\n-dot(x, eyeAt), -dot(y, eyeAt",
-    "), -dot(z, eyeAt), 1]);\nconst near = Math.max(0.01*camera.distance, camera.distance - 1.5*bo",
-    "x.size);\nconst last = camera.distance + 2*box.size, open = Math.tan(0.3);\nconst lens = new ",
-    "Float32Array([height/width/open, 0, 0, 0, 0, 1/open, 0, 0,\n0, 0, (last + near)/(near - last)",
-    ", -1, 0, 0, 2*last*near/(near - last), 0]);\nconst dark = matchMedia('(prefers-color-scheme: ",
-    "dark)').matches;\ngl.viewport(0, 0, width, height);\ngl.clearColor(...(dark ? [0.083, 0.094, ",
-    "0.106] : [1, 1, 1]), 1);\ngl.depthMask(true);\ngl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER",
-    "_BIT);\ngl.enable(gl.DEPTH_TEST); gl.disable(gl.BLEND);\nfill(f, g, part);\nconst cut = +$('c",
-    "ut').value, cutAt = sum(box.middle, z, (0.5 - cut)*box.size);\nfor (const [kind, p] of [['bal",
-    "l', ball], ['egg', egg]]) {\nif (!kinds[kind].count) continue;\ngl.useProgram(p.p);\ngl.unifo",
-    "rmMatrix4fv(p.eye, false, eye); gl.uniformMatrix4fv(p.lens, false, lens);\ngl.uniform3fv(p.cu",
-    "tAt, cutAt); gl.uniform3fv(p.cutBy, cut > 0 ? z : [0, 0, 0]);\n['wheres', 'colours', 'turns',",
-    " 'axess'].forEach((name, i) => {\nif (!p[name]) return;\ngl.activeTexture(gl.TEXTURE0 + i);\n",
-    "gl.bindTexture(gl.TEXTURE_2D, kinds[kind].texture[i]);\ngl.uniform1i(p[name], i);\n});\ngl.ac",
-    "tiveTexture(gl.TEXTURE0);\ngl.bindVertexArray(kinds.array);\ngl.drawArrays(gl.TRIANGLES, 0, 6",
-    "*kinds[kind].count);\n}\ngl.useProgram(sheet.p);\ngl.enable(gl.BLEND); gl.blendFunc(gl.SRC_AL",
-    "PHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false);\ngl.uniformMatrix4fv(sheet.eye, false, eye",
-    "); gl.uniformMatrix4fv(sheet.lens, false, lens);\nconst solid = +$('walls').value, shade = da",
-    "rk ? [0.75, 0.8, 0.86] : [0.35, 0.4, 0.46];\ngl.depthMask(solid > 0.98);\nfor (const id in f.",
-    "poses) {\nconst w = walls[id];\nif (!w || w.kind === 'grains' || !solid) continue;\nlet pose ",
-    "= f.poses[id];\nconst to = g && g.poses[id];\nif (to && part > 0) {             // half way: ",
-    "along the chord, turned on the shorter way\nlet same = 0, q = [];\nfor (let i = 3; i < 7; i++",
-    ") same += pose[i]*to[i];\nq = pose.map((v, i) => v*(1 - part) + (i > 2 && same < 0 ? -part : ",
-    "part)*to[i]);\nconst l = Math.hypot(q[3], q[4], q[5], q[6]) || 1;\npose = q.map((v, i) => i >",
-    " 2 ? v/l : v);\n}\nif (!w.array) { w.pose = pose; tessellate(w); }\nconst weight = w.kind ===",
-    " 'plane' ? 0.5 : w.kind === 'sieve' ? 2 : 1;\ngl.uniform4f(sheet.paint, ...shade, Math.min(1,",
-    " solid*weight));\ngl.uniform4f(sheet.hole, ...(w.hole || [0, 1, 1, 0]));\ngl.uniform2f(sheet.",
-    "rim, w.rim || 0, w.staggered || 0);\ngl.uniform3fv(sheet.place, pose.slice(0, 3)); gl.uniform",
-    "4fv(sheet.turn, pose.slice(3));\ngl.bindVertexArray(w.array);\ngl.drawArrays(gl.TRIANGLES, 0,",
-    " w.count);\n}\ngl.bindVertexArray(null); gl.depthMask(true);\n$('time').textContent = time.to",
-    "Precision(4) + ' s';\n$('at').value = at;\nplot(time);\nreplay.drawn++; replay.at = at;\nrepl",
-    "ay.project = p => {             // where a place is in the picture, pixels from below\nconst ",
-    "e = sum(p, eyeAt, -1), d = -dot(z, e);\nreturn [width/2*(1 + dot(x, e)/d*height/width/open), ",
-    "height/2*(1 + dot(y, e)/d/open), d];\n};\n}\nconst plots = [];\nfunction plot(time) {\nfor (c",
-    "onst p of plots) {\nconst c = p.canvas, ratio = window.devicePixelRatio || 1, d = c.getContex",
-    "t('2d');\nconst w = c.clientWidth, h = c.clientHeight, ink = getComputedStyle(document.body).",
-    "color;\nif (c.width !== Math.round(w*ratio)) { c.width = Math.round(w*ratio);\nc.height = Mat",
-    "h.round(h*ratio); }\nd.setTransform(ratio, 0, 0, ratio, 0, 0);\nd.clearRect(0, 0, w, h);\ncon",
-    "st X = t => 4 + (w - 8)*(t - p.t[0])/(p.t[p.t.length - 1] - p.t[0] || 1);\nconst Y = v => h -",
-    " 18 - (h - 36)*(v - p.least)/(p.most - p.least || 1);\nd.strokeStyle = d.fillStyle = ink; d.f",
-    "ont = '11px system-ui'; d.globalAlpha = 0.7;\nd.fillText(p.name, 4, 11);\nd.fillText(+p.most.",
-    "toPrecision(3), 4, 24); d.fillText(+p.least.toPrecision(3), 4, h - 6);\nd.globalAlpha = 1; d.",
-    "strokeStyle = getComputedStyle(document.documentElement)\n.getPropertyValue('--mark');\nd.beg",
-    "inPath();\np.t.forEach((t, i) => i ? d.lineTo(X(t), Y(p.v[i])) : d.moveTo(X(t), Y(p.v[i])));",
-    "\nd.stroke();\nd.strokeStyle = ink; d.globalAlpha = 0.5;\nd.beginPath(); d.moveTo(X(time), 14",
-    "); d.lineTo(X(time), h - 14); d.stroke();\nd.globalAlpha = 1;\n}\n}\nfunction makePlots() {\n",
-    "head.values.forEach((name, k) => {\nconst p = { name, t: [], v: [] };\nfor (const f of frames",
-    ") if (f.values[k] !== undefined && isFinite(f.values[k])) {\np.t.push(f.time); p.v.push(f.val",
-    "ues[k]);\n}\nif (!p.t.length) return;\np.least = Math.min(...p.v); p.most = Math.max(...p.v);",
-    "\nconst figure = document.createElement('figure');\np.canvas = document.createElement('canvas",
-    "');\np.canvas.setAttribute('role', 'img'); p.canvas.setAttribute('aria-label', name);\nfigure",
-    ".append(p.canvas); $('plots').append(figure); plots.push(p);\n});\n}\nfunction seek(to) {\nat",
-    " = Math.max(0, Math.min(frames.length - 1, to)); dirty = true;\n}\nfunction play(on) { playin",
-    "g = on; $('play').textContent = on ? 'pause' : 'play'; }\nfunction fit() { Object.assign(came",
-    "ra, JSON.parse(first)); dirty = true; }\nfunction look() {\nconst g = head.gravity, size = [0",
-    ", 1, 2].map(k => box.hi[k] - box.lo[k]);\nup = Math.hypot(...g) > 0 ? unit(g.map(x => -x)) : ",
-    "head.planar ? [0, 1, 0] : [0, 0, 1];\nconst thin = [0, 1, 2].reduce((a, k) => size[k] < size[",
-    "a] ? k : a, 0);\nconst axis = [0, 0, 0], flat = head.planar || size[thin] < 0.4*Math.max(...s",
-    "ize) &&\nMath.abs(up[thin]) < 0.5;\naxis[head.planar ? 2 : flat ? thin : Math.abs(up[0]) < 0.",
-    "5 ? 0 : 1] = 1;\nside = unit(sum(axis, up, -dot(axis, up)));\nahead = cross(up, side);\nif (t",
-    "hin === 1 && flat) side = side.map(x => -x), ahead = ahead.map(x => -x);\ncamera.yaw = flat ?",
-    " (head.planar ? 0 : 0.25) : -1; camera.pitch = flat ? (head.planar ? 0 : 0.15)\n: 0.35;\ncame",
-    "ra.target = box.middle.slice();\ncamera.distance = 0.5*box.size/Math.tan(0.3);\nfirst = JSON.",
-    "stringify(camera);\n}\nfunction hands() {\nconst view = $('view'), down = new Map();\nlet apa",
-    "rt = 0;\nconst move = (dx, dy) => {\nconst z = turnedTo(), x = unit(cross(up, z)), y = cross(",
-    "z, x);\nconst s = 2*Math.tan(0.3)*camera.distance/view.clientHeight;\ncamera.target = sum(sum",
-    "(camera.target, x, -dx*s), y, dy*s);\n};\nconst zoom = by => { camera.distance = Math.max(0.0",
-    "1*box.size, Math.min(20*box.size,\ncamera.distance*by)); dirty = true; };\nview.addEventListe",
-    "ner('pointerdown', e => { down.set(e.pointerId, [e.clientX, e.clientY]);\nview.setPointerCapt",
-    "ure(e.pointerId); apart = 0; });\nfor (const end of ['pointerup', 'pointercancel'])\nview.add",
-    "EventListener(end, e => { down.delete(e.pointerId); apart = 0; });\nview.addEventListener('po",
-    "intermove', e => {\nconst from = down.get(e.pointerId);\nif (!from) return;\nconst dx = e.cli",
-    "entX - from[0], dy = e.clientY - from[1];\ndown.set(e.pointerId, [e.clientX, e.clientY]);\nif",
-    " (down.size > 1) {\nconst [a, b] = [...down.values()], d = Math.hypot(a[0] - b[0], a[1] - b[1",
-    "]);\nif (apart) zoom(apart/d);\napart = d; move(dx/2, dy/2);\n} else if (e.shiftKey || e.butt",
-    "ons & 6) move(dx, dy);\nelse {\ncamera.yaw -= dx*0.008;\ncamera.pitch = Math.max(-1.55, Math.",
-    "min(1.55, camera.pitch + dy*0.008));\n}\ndirty = true;\n});\nview.addEventListener('wheel', e",
-    " => { e.preventDefault(); zoom(Math.exp(e.deltaY*0.001)); },\n{ passive: false });\nview.addE",
-    "ventListener('contextmenu', e => e.preventDefault());\n$('play').onclick = () => play(!playin",
-    "g);\n$('at').oninput = () => { play(false); seek(+$('at').value); };\n$('pace').onchange = ()",
-    " => { pace = +$('pace').value; };\n$('colour').onchange = () => { showKey(); dirty = true; };",
-    "\n$('walls').oninput = $('cut').oninput = () => { dirty = true; };\naddEventListener('resize'",
-    ", () => { dirty = true; });\naddEventListener('keydown', e => {\nif (/INPUT|SELECT|BUTTON|SUM",
-    "MARY/.test(e.target.tagName) && e.key !== ' ') return;\nif (/SELECT|BUTTON|SUMMARY/.test(e.ta",
-    "rget.tagName)) return;\nconst list = $('pace'), key = { ' ': () => play(!playing), Home: () =",
-    "> seek(0),\nArrowRight: () => { play(false); seek(Math.floor(at) + 1); },\nArrowLeft: () => {",
-    " play(false); seek(Math.ceil(at) - 1); },\nEnd: () => seek(frames.length - 1), 0: fit,\n'+': ",
-    "() => { list.selectedIndex = Math.min(list.length - 1, list.selectedIndex + 1); },\n'-': () =",
-    "> { list.selectedIndex = Math.max(0, list.selectedIndex - 1); } }[e.key];\nif (!key) return;",
-    "\nkey(); e.preventDefault(); list.onchange();\n});\n}\nlet then = 0;\nfunction tick(ms) {\nif",
-    " (playing) {\nconst past = Math.min(0.1, (ms - then)/1000)*pace;\nconst k = Math.min(Math.flo",
-    "or(at), frames.length - 2), f = frames[k], g = frames[k + 1];\nif (!g) play(false);\nelse {\n",
-    "let time = f.time + (at - k)*(g.time - f.time) + past, n = k;\nif (time > frames[frames.lengt",
-    "h - 1].time) { time = frames[0].time; n = 0; }\nwhile (n < frames.length - 2 && frames[n + 1]",
-    ".time <= time) n++;\nat = n + Math.min(1, (time - frames[n].time)/(frames[n + 1].time - frame",
-    "s[n].time || 1));\ndirty = true;\n}\n}\nthen = ms;\nif (dirty) { dirty = false; draw(); }\nre",
-    "questAnimationFrame(tick);\n}\nfunction paces() {\nconst length = frames[frames.length - 1].t",
-    "ime - frames[0].time;\nconst own = length > 0 ? length/12 : 1;      // all of it in 12 s\npac",
-    "e = length > 4 && length < 30 ? 1 : +own.toPrecision(1);\nfor (const k of [0.1, 0.2, 0.5, 1, ",
-    "2, 5, 10]) {\nconst o = document.createElement('option'), p = +(k*pace).toPrecision(2);\no.va",
-    "lue = p; o.textContent = p === 1 ? 'real time' : p < 1 ? '1/' + +(1/p).toPrecision(2) +\n' of",
-    " real time' : p + ' times real time';\no.selected = k === 1; $('pace').append(o);\n}\n}\naddE",
-    "ventListener('DOMContentLoaded', async () => {\ntry {\nconst begun = performance.now();\nfor ",
-    "(const b of blocks('head')) head = JSON.parse(b.textContent);\ndocument.title = $('title').te",
-    "xtContent = head.title || 'Replay';\nfor (const b of blocks('shape')) { head.turns = 1;\ncons",
-    "t s = JSON.parse(b.textContent); shapes[s.id] = s; }\nfor (const b of blocks('wall')) { const",
-    " w = JSON.parse(b.textContent); walls[w.id] = w; }\nfor (const b of blocks('value')) head.val",
-    "ues.push(JSON.parse(b.textContent).name);\nfor (const [k, b] of blocks('frame').entries()) {",
-    "\ntry { decode(bytes(b.textContent)); } catch (e) { if (!k) throw e; break; }  // cut short\n",
-    "b.remove();\nif (k%20 === 19) { $('say').textContent = 'reading ' + (k + 1);\nawait new Promi",
-    "se(done => setTimeout(done)); }\n}\nif (!frames.length) throw Error('no frames in this file: ",
-    "was dem_replay_frame called?');\nmeasure(); ranges(); look(); prepare(); makePlots(); paces()",
-    ";\nconst names = { speed: 'speed', size: 'size', material: 'material' };\nif (head.number) na",
-    "mes.own = head.number;\nfor (const n in names) {\nconst o = document.createElement('option');",
-    "\no.value = n; o.textContent = names[n]; $('colour').append(o);\n}\n$('at').max = frames.leng",
-    "th - 1;\nconst report = blocks('report')[0];\nif (report) { $('report').hidden = false;\n$('r",
-    "eport').querySelector('pre').textContent = report.textContent; }\nshowKey(); hands(); $('say'",
-    ").hidden = true; $('say').style.display = 'none';\ndraw(); play(frames.length > 1); requestAn",
-    "imationFrame(tick);\nreplay.ready = true; replay.opened = performance.now() - begun;\nreplay.",
-    "seek = seek; replay.play = play; replay.draw = draw;\n} catch (e) { replay.error = $('say').t",
-    "extContent = String(e.message || e); }\n});\n</script>\n<!-- what follows is written by dem_r",
-    "eplay_open, _frame and _close -->\n"};
+    ".lo[k]));\n}\nlet gl, ball, egg, stone, sheet, colours = new Uint8Array(1024);\nconst grainSh",
+    "ader = shape => [`#version 300 es\nprecision highp sampler2D;\nuniform mat4 eye, lens; unifor",
+    "m vec3 cutAt, cutBy;\nuniform sampler2D wheres, colours, turns, axess;\nout vec3 ray; flat ou",
+    "t vec3 middle; flat out vec4 paint; flat out float size;\nflat out mat3 body; flat out ivec2 ",
+    "faces;\nvec3 about(vec4 q, vec3 v) { return v + 2.0*cross(q.yzw, cross(q.yzw, v) + q.x*v); }",
+    "\nvoid main() {\nint grain = gl_VertexID/6, k = gl_VertexID%6;           // two triangles eac",
+    "h\nivec2 cell = ivec2(grain & 1023, grain >> 10);\nvec2 corner = vec2(k == 1 || k == 3 || k =",
+    "= 4 ? 1 : -1, k == 2 || k > 3 ? 1 : -1);\nvec4 where = texelFetch(wheres, cell, 0), colour = ",
+    "texelFetch(colours, cell, 0);\n${shape !== 'ball' ? `vec4 turn = texelFetch(turns, cell, 0);",
+    "\nvec3 axes = texelFetch(axess, cell, 0).xyz;` : ''}\n${shape === 'stone' ? 'faces = ivec2(ax",
+    "es.yz); axes = axes.xxx;' : 'faces = ivec2(0);'}\nmiddle = (eye*vec4(where.xyz, 1)).xyz; size",
+    " = where.w; paint = colour;\n${shape !== 'ball' ? `mat3 e = mat3(eye);\nbody = mat3(e*about(t",
+    "urn, vec3(1, 0, 0))/axes.x, e*about(turn, vec3(0, 1, 0))/axes.y,\ne*about(turn, vec3(0, 0, 1)",
+    ")/axes.z);` : 'body = mat3(1);'}\nfloat d = length(middle), far = d > size ? size*d/sqrt(d*d ",
+    "- size*size) : size;\nvec3 n = middle/d, u = normalize(abs(n.y) < 0.9 ? cross(n, vec3(0, 1, 0",
+    ")) :\ncross(n, vec3(1, 0, 0)));\nray = middle + far*(corner.x*u + corner.y*cross(u, n));\ngl_",
+    "Position = lens*vec4(ray, 1);\nif (dot(where.xyz - cutAt, cutBy) > 0.0) gl_Position = vec4(2,",
+    " 2, 2, 1);\n}`, `#version 300 es\nprecision highp float;\nuniform mat4 lens;\nprecision highp",
+    " sampler2D;\nuniform sampler2D planes;\nin vec3 ray; flat in vec3 middle; flat in vec4 paint;",
+    " flat in float size; flat in mat3 body;\nflat in ivec2 faces;\nout vec4 pixel;\nvoid main() {",
+    "\nvec3 d = normalize(ray);\n${shape === 'stone' ? `vec3 o = -(middle*body), r = d*body, n = v",
+    "ec3(0);\nfloat t = -1e30, end = 1e30;                            // in by one face, out by an",
+    "other\nfor (int k = 0; k < faces.y; k++) {\nint cell = faces.x + k;\nvec3 face = texelFetch(p",
+    "lanes, ivec2(cell & 1023, cell >> 10), 0).xyz;\nfloat slope = dot(face, r), at = (1.0 - dot(f",
+    "ace, o))/slope;\nif (slope < 0.0 && at > t) { t = at; n = face; }\nif (slope > 0.0) end = min",
+    "(end, at);\n}\nif (t > end) discard;\nn = normalize(body*n);` : (shape === 'egg' ? `vec3 o = ",
+    "-(middle*body), r = d*body;\nfloat a = dot(r, r), b = dot(o, r), c = dot(o, o) - 1.0;` : `vec",
+    "3 o = -middle, r = d;\nfloat a = 1.0, b = dot(o, r), c = dot(o, o) - size*size;`) + `\nfloat ",
+    "h = b*b - a*c;\nif (h < 0.0) discard;\nfloat t = (-b - sqrt(h))/a;\nvec3 n = ${shape === 'egg",
+    "' ? 'normalize(body*(o + t*r))' : '(t*d - middle)/size'};`}\nvec3 hit = t*d;\nvec4 at = lens*",
+    "vec4(hit, 1);\ngl_FragDepth = 0.5*at.z/at.w + 0.5;\nfloat light = 0.35 + 0.65*max(0.0, dot(n,",
+    " normalize(vec3(-0.3, 0.5, 0.8))));\npixel = vec4(paint.rgb*light + 0.12*pow(max(0.0, n.z), 3",
+    "0.0), 1);\n}`];\nconst wallShader = [`#version 300 es\nuniform mat4 eye, lens; uniform vec3 p",
+    "lace; uniform vec4 turn;\nin vec3 where; out vec3 seen, local;\nvoid main() {\nlocal = where;",
+    "\nvec3 v = where + 2.0*cross(turn.yzw, cross(turn.yzw, where) + turn.x*where);\nseen = (eye*v",
+    "ec4(v + place, 1)).xyz;\ngl_Position = lens*vec4(seen, 1);\n}`, `#version 300 es\nprecision h",
+    "ighp float;\nuniform vec4 paint; uniform vec4 hole; uniform vec2 rim;     // kind, aperture, ",
+    "bar, length\nin vec3 seen, local; out vec4 pixel;\nvoid main() {\nfloat solid = 1.0, pitch = ",
+    "hole.y + hole.z, open = 0.0;\nif (rim.x > 0.0 && length(local.xy) > rim.x) discard;\nif (hole",
+    ".x > 0.0) {\nvec2 p = local.xy, side = vec2(pitch);\nif (hole.x == 5.0) side.x = hole.w > 0.0",
+    " ? hole.w + hole.z : 1e9;\nif (hole.x == 2.0) side.y = 1e9;\nif (rim.y > 0.0) {\nside.y = pit",
+    "ch*0.8660254;\nif (mod(floor(p.y/side.y + 0.5), 2.0) > 0.5) p.x += 0.5*pitch;\n}\np = abs(p -",
+    " side*floor(p/side + 0.5));\nvec2 clear = hole.x == 5.0 ? vec2(hole.w > 0.0 ? hole.w : 1e9, h",
+    "ole.y) : vec2(hole.y);\nif (hole.x == 2.0) clear.y = 2e9;\nopen = hole.x == 4.0 ? step(length",
+    "(p), 0.5*hole.y) : step(p.x, 0.5*clear.x)*\nstep(p.y, 0.5*clear.y);\nfloat blur = smoothstep(",
+    "0.2, 1.0, length(fwidth(local.xy))/pitch);\nsolid = mix(1.0 - open, 1.0 - hole.y*hole.y/(pitc",
+    "h*pitch), blur);\nif (solid < 0.02) discard;\n}\nvec3 n = normalize(cross(dFdx(seen), dFdy(se",
+    "en)));\npixel = vec4(paint.rgb*(0.55 + 0.45*abs(n.z)), paint.a*solid);\n}`];\nfunction progra",
+    "m(sources, names) {\nconst p = gl.createProgram();\nsources.forEach((source, k) => {\nconst s",
+    " = gl.createShader(k ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);\ngl.shaderSource(s, source); g",
+    "l.compileShader(s);\nif (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw Error(gl.getShad",
+    "erInfoLog(s));\ngl.attachShader(p, s);\n});\nnames.forEach((name, k) => gl.bindAttribLocation",
+    "(p, k, name));\ngl.linkProgram(p);\nif (!gl.getProgramParameter(p, gl.LINK_STATUS)) throw Err",
+    "or(gl.getProgramInfoLog(p));\nconst at = { p };\nfor (let k = 0, n = gl.getProgramParameter(p",
+    ", gl.ACTIVE_UNIFORMS); k < n; k++) {\nconst name = gl.getActiveUniform(p, k).name;\nat[name] ",
+    "= gl.getUniformLocation(p, name);\n}\nreturn at;\n}\nconst kinds = {};                     //",
+    " buffers of balls, eggs and stones\nfunction prepare() {\ngl = $('view').getContext('webgl2',",
+    " { alpha: false, preserveDrawingBuffer: true });\nif (!gl) throw Error('this browser has no W",
+    "ebGL 2, by which grains are drawn: switch it on, ' +\n'or take another browser');\nball = pro",
+    "gram(grainShader('ball'), []);\negg = program(grainShader('egg'), []);\nstone = program(grain",
+    "Shader('stone'), []);\nsheet = program(wallShader, ['where']);\nkinds.array = gl.createVertex",
+    "Array();         // empty: grains stand in textures, 1024 to a row\nfor (const kind of ['ball",
+    "', 'egg', 'stone']) {\nconst k = kinds[kind] = { room: 0, count: 0, texture: [] };\nfor (let ",
+    "i = 0; i < (kind === 'ball' ? 2 : kind === 'egg' ? 4 : 5); i++) {\nk.texture[i] = gl.createTe",
+    "xture();\ngl.bindTexture(gl.TEXTURE_2D, k.texture[i]);\ngl.texParameteri(gl.TEXTURE_2D, gl.TE",
+    "XTURE_MIN_FILTER, gl.NEAREST);\ngl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEA",
+    "REST);\n}\n}\ngl.bindVertexArray(null);\nconst faces = [];                             // of ",
+    "all polyhedra, in texels\nfor (const id in shapes) if (shapes[id].planes) {\nshapes[id].first",
+    " = faces.length/4;\nfor (let k = 0, p = shapes[id].planes; k < p.length; k += 3) faces.push(.",
+    "..p.slice(k, k + 3), 0);\n}\nconst rows = Math.ceil(faces.length/4096) || 1, texels = new Flo",
+    "at32Array(4096*rows);\ntexels.set(faces);\ngl.bindTexture(gl.TEXTURE_2D, kinds.stone.texture[",
+    "4]);\ngl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1024, rows, 0, gl.RGBA, gl.FLOAT, texels);",
+    "\n}\nfunction tessellate(w) {\nconst far = 0.75*box.size, v = w.vertices, out = [];\nconst qu",
+    "ad = (a, b, c, d) => out.push(...a, ...b, ...c, ...a, ...c, ...d);\nconst from = rotate([w.po",
+    "se[3], -w.pose[4], -w.pose[5], -w.pose[6]],\nsum(box.middle, w.pose, -1));     // the picture",
+    "'s middle, as the wall sees it\nconst along = rotate(w.pose.slice(3), [0, 0, 1]).map(Math.abs",
+    ");\nconst half = 0.5*[0, 1, 2].reduce((s, k) => s + (box.hi[k] - box.lo[k])*along[k], 0);\nif",
+    " (w.kind === 'mesh')\nfor (const k of w.corners) out.push(v[3*k], v[3*k + 1], v[3*k + 2]);\ne",
+    "lse if (w.kind === 'profile') {\nconst z = [from[2] - half, from[2] + half];\nfor (let k = 0;",
+    " k < w.corners.length; k += 2) {\nconst a = 3*w.corners[k], b = 3*w.corners[k + 1];\nquad([v[",
+    "a], v[a + 1], z[0]], [v[b], v[b + 1], z[0]], [v[b], v[b + 1], z[1]],\n[v[a], v[a + 1], z[1]])",
+    ";\n}\n} else if (w.kind === 'cylinder') {\nconst n = 72;\nfor (let k = 0; k < n; k++) {\ncons",
+    "t p = [k, k + 1].map(i => [w.radius*Math.cos(2*Math.PI*i/n),\nw.radius*Math.sin(2*Math.PI*i/n",
+    ")]);\nquad([...p[0], from[2] - half], [...p[1], from[2] - half], [...p[1], from[2] + half],\n",
+    "[...p[0], from[2] + half]);\n}\n} else if (w.kind === 'plane' || w.kind === 'sieve') {\nconst",
+    " r = w.rim > 0 ? w.rim : far, x = w.rim > 0 ? 0 : from[0], y = w.rim > 0 ? 0 : from[1];\nquad",
+    "([x - r, y - r, 0], [x + r, y - r, 0], [x + r, y + r, 0], [x - r, y + r, 0]);\n}\nw.buffer = ",
+    "gl.createBuffer(); w.array = gl.createVertexArray(); w.count = out.length/3;\ngl.bindVertexAr",
+    "ray(w.array);\ngl.bindBuffer(gl.ARRAY_BUFFER, w.buffer);\ngl.bufferData(gl.ARRAY_BUFFER, new ",
+    "Float32Array(out), gl.STATIC_DRAW);\ngl.enableVertexAttribArray(0); gl.vertexAttribPointer(0,",
+    " 3, gl.FLOAT, false, 0, 0);\ngl.bindVertexArray(null);\n}\nconst palette = [[78, 121, 167], [",
+    "242, 142, 43], [89, 161, 79], [225, 87, 89], [118, 183, 178],\n[237, 201, 72], [176, 122, 161",
+    "], [156, 117, 95]];\nconst materials = Uint8Array.from(palette.flatMap(c => [...c, 255]));\nf",
+    "unction viridis(t) {\nconst c = [[0.2777, 0.1051, -0.3309, -4.6342, 6.2283, 4.7764, -5.4355],",
+    "\n[0.0054, 1.4046, 0.2148, -5.7991, 14.1799, -13.7451, 4.6459],\n[0.3341, 1.3846, 0.0951, -19",
+    ".3324, 56.6906, -65.3530, 26.3124]];\nreturn c.map(a => 255*Math.min(1, Math.max(0, a.reduceR",
+    "ight((s, x) => s*t + x, 0))));\n}\nfor (let k = 0; k < 256; k++) colours.set([...viridis(k/25",
+    "5).map(Math.round), 255], 4*k);\nconst range = { speed: [0, 1], size: [0, 1], own: [0, 1] };",
+    "\nfunction ranges() {\nconst count = new Float64Array(256);\nlet all = 0, low = Infinity, hig",
+    "h = -Infinity, small = Infinity, large = -Infinity;\nfor (const f of frames) {\nfor (let i = ",
+    "0; i < f.speed.length; i++) { count[f.speed[i]]++; all++; }\nfor (const r of f.cast.radius) {",
+    " small = Math.min(small, r); large = Math.max(large, r); }\nif (f.own) for (const x of f.own)",
+    " { low = Math.min(low, x); high = Math.max(high, x); }\n}\nlet k = 255;\nfor (let over = 0; k",
+    " > 1 && (over += count[k]) < 0.005*all; k--);\nrange.speed = [0, speedOf(k)];\nrange.size = [",
+    "small, large > small ? large : small*1.01];\nrange.own = [low, high > low ? high : low + 1];",
+    "\n}\nfunction showKey() {\nconst what = $('colour').value, key = $('scale').getContext('2d');",
+    "\n$('key').hidden = what === 'material';\nif (what === 'material') return;\nkey.putImageData(",
+    "new ImageData(new Uint8ClampedArray(colours), 256, 1), 0, 0);\nconst [least, most] = range[wh",
+    "at], digits = x => String(+x.toPrecision(3));\n$('least').textContent = digits(least); $('mos",
+    "t').textContent = digits(most);\n$('what').textContent = { speed: 'speed (m/s)', size: 'radiu",
+    "s (m)', own: head.number }[what];\n}\nconst camera = { yaw: -1, pitch: 0.35, distance: 1, tar",
+    "get: [0, 0, 0] };\nlet up, side, ahead, first, at = 0, playing = false, pace = 1, dirty = tru",
+    "e;\nfunction turnedTo() {\nconst c = Math.cos(camera.pitch), s = Math.sin(camera.pitch);\ncon",
+    "st flat = sum(side.map(x => x*Math.cos(camera.yaw)), ahead, Math.sin(camera.yaw));\nreturn su",
+    "m(flat.map(x => x*c), up, s);                    // from the target to the eye\n}\nfunction p",
+    "ut(kind, n) {\nconst k = kinds[kind];\nif (n > k.room) {\nk.room = 1024*Math.ceil(Math.max(n,",
+    " 1.5*k.room)/1024);\nk.w = new Float32Array(4*k.room); k.c = new Uint8Array(4*k.room);\nif (k",
+    "ind !== 'ball') { k.t = new Float32Array(4*k.room); k.a = new Float32Array(4*k.room); }\n}\nk",
+    ".count = 0;\nreturn k;\n}\nfunction hues(f, what, least, most) {\nif (f.hue && f.hue.what ===",
+    " what) return f.hue;\nconst cast = f.cast, of = new Uint8Array(cast.slots.length), scale = 25",
+    "5/(most - least);\nfor (let i = 0; i < of.length; i++) {\nconst v = what === 'speed' ? speeds",
+    "[f.speed[i]] : what === 'size' ? cast.radius[i] :\nwhat === 'own' ? f.own[i] : 0;\nof[i] = wh",
+    "at === 'material' ? (cast.material[i] - 1 + 8)%8 :\nMath.max(0, Math.min(255, Math.round((v -",
+    " least)*scale)));\n}\nreturn f.hue = { what, of, table: what === 'material' ? materials : col",
+    "ours };\n}\nfunction fill(f, g, part) {\nconst what = $('colour').value, [least, most] = rang",
+    "e[what] || [0, 1], cast = f.cast;\nlet balls = 0, eggs = 0, stones = 0;\nfor (let i = 0; i < ",
+    "cast.slots.length; i++) {\nconst s = shapes[cast.shape[i]];\nif (!s) balls++; else if (s.axes",
+    ") eggs++; else if (s.planes) stones++;\nelse balls += s.parts.length/4;\n}\nfor (const id in ",
+    "f.poses) if (walls[id] && walls[id].kind === 'grains')\nballs += walls[id].vertices.length/3;",
+    "\nconst b = put('ball', balls), e = put('egg', eggs), o = put('stone', stones), half = head.p",
+    "eriod.map(p => p/2);\nlet n = null;\nif (g && g.from) {                  // who is who in the",
+    " next frame\nn = new Int32Array(cast.slots.length).fill(-1);\ng.from.forEach((old, i) => { if",
+    " (old >= 0) n[old] = i; });\n}\nconst fx = f.x, gx = g ? g.x : fx, hue = hues(f, what, least,",
+    " most), wrap = half.some(h => h > 0);\nconst laid = (k, at, x, y, z, size, c) => {\nconst m =",
+    " 4*at;\nk.w[m] = x; k.w[m + 1] = y; k.w[m + 2] = z; k.w[m + 3] = size;\nk.c[m] = hue.table[c]",
+    "; k.c[m + 1] = hue.table[c + 1]; k.c[m + 2] = hue.table[c + 2];\nk.c[m + 3] = 255;\n};\nfor (",
+    "let i = 0; i < cast.slots.length; i++) {\nconst j = !g ? -1 : n ? n[i] : i, shape = shapes[ca",
+    "st.shape[i]], r = cast.radius[i];\nconst a = 3*i, c = 4*hue.of[i];\nlet x = fx[a], y = fx[a +",
+    " 1], z = fx[a + 2];\nif (j >= 0 && part > 0) {\nconst dx = gx[3*j] - x, dy = gx[3*j + 1] - y,",
+    " dz = gx[3*j + 2] - z;\nif (!wrap || !(half[0] > 0 && Math.abs(dx) > half[0] || half[1] > 0 &",
+    "& Math.abs(dy) > half[1]\n|| half[2] > 0 && Math.abs(dz) > half[2])) { x += part*dx; y += par",
+    "t*dy; z += part*dz; }\n}\nif (!shape) { laid(b, b.count++, x, y, z, r, c); continue; }\nlet q",
+    " = quat(f.turn[i]);\nif (j >= 0 && part > 0) {\nconst to = quat(g.turn[j]), same = q[0]*to[0]",
+    " + q[1]*to[1] + q[2]*to[2] + q[3]*to[3];\nq = q.map((x, k) => x*(1 - part) + (same < 0 ? -par",
+    "t : part)*to[k]);\nconst l = Math.hypot(...q) || 1;\nq = q.map(x => x/l);\n}\nconst scale = r",
+    "/shape.radius;\nif (shape.axes) {\nfor (let k = 0; k < 4; k++) e.t[4*e.count + k] = q[k];\nfo",
+    "r (let k = 0; k < 3; k++) e.a[4*e.count + k] = shape.axes[k]*scale;\nlaid(e, e.count++, x, y,",
+    " z, r, c);\n} else if (shape.planes) {\no.t.set(q, 4*o.count);\no.a.set([scale, shape.first, ",
+    "shape.planes.length/3, 0], 4*o.count);\nlaid(o, o.count++, x, y, z, r, c);\n} else for (let k",
+    " = 0; k < shape.parts.length; k += 4) {\nconst v = rotate(q, shape.parts.slice(k, k + 3));\nl",
+    "aid(b, b.count++, x + scale*v[0], y + scale*v[1], z + scale*v[2], scale*shape.parts[k + 3],\n",
+    "c);\n}\n}\nfor (const id in f.poses) if (walls[id] && walls[id].kind === 'grains') {\nconst w",
+    " = walls[id], pose = f.poses[id];\nfor (let k = 0; k < w.vertices.length; k += 3) {\nconst v ",
+    "= sum(rotate(pose.slice(3), w.vertices.slice(k, k + 3)), pose), m = 4*b.count++;\nb.w.set([..",
+    ".v, w.radius], m); b.c.set([150, 150, 150, 255], m);\n}\n}\nfor (const k of [b, e, o]) {\nif ",
+    "(!k.count) continue;\nconst rows = Math.ceil(k.count/1024);\n[k.w, k.c, k.t, k.a].forEach((da",
+    "ta, i) => {\nif (!data) return;\ngl.bindTexture(gl.TEXTURE_2D, k.texture[i]);\nif (i === 1) g",
+    "l.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 1024, rows, 0, gl.RGBA,\ngl.UNSIGNED_BYTE, data.suba",
+    "rray(0, 4096*rows));\nelse gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1024, rows, 0, gl.RGBA",
+    ", gl.FLOAT,\ndata.subarray(0, 4096*rows));\n});\n}\n}\nfunction draw() {\nconst canvas = $('v",
+    "iew'), ratio = Math.min(2, window.devicePixelRatio || 1);\nconst width = Math.round(canvas.cl",
+    "ientWidth*ratio);\nconst height = Math.round(canvas.clientHeight*ratio);\nif (canvas.width !=",
+    "= width || canvas.height !== height) { canvas.width = width;\ncanvas.height = height; }\ncons",
+    "t k = Math.min(Math.floor(at), frames.length - 1), f = frames[k], g = frames[k + 1];\nconst p",
+    "art = g ? at - k : 0, time = f.time + (g ? part*(g.time - f.time) : 0);\nconst back = turnedT",
+    "o(), z = back, x = unit(cross(up, z)), y = cross(z, x);\nconst eyeAt = sum(camera.target, bac",
+    "k, camera.distance);\nconst eye = new Float32Array([x[0], y[0], z[0], 0, x[1], y[1], z[1], 0,",
+    " x[2], y[2], z[2], 0,\n-dot(x, eyeAt), -dot(y, eyeAt), -dot(z, eyeAt), 1]);\nconst near = Mat",
+    "h.max(0.01*camera.distance, camera.distance - 1.5*box.size);\nconst last = camera.distance + ",
+    "2*box.size, open = Math.tan(0.3);\nconst lens = new Float32Array([height/width/open, 0, 0, 0,",
+    " 0, 1/open, 0, 0,\n0, 0, (last + near)/(near - last), -1, 0, 0, 2*last*near/(near - last), 0]",
+    ");\nconst dark = matchMedia('(prefers-color-scheme: dark)').matches;\ngl.viewport(0, 0, width",
+    ", height);\ngl.clearColor(...(dark ? [0.083, 0.094, 0.106] : [1, 1, 1]), 1);\ngl.depthMask(tr",
+    "ue);\ngl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);\ngl.enable(gl.DEPTH_TEST); gl.disa",
+    "ble(gl.BLEND);\nfill(f, g, part);\nconst cut = +$('cut').value, cutAt = sum(box.middle, z, (0",
+    ".5 - cut)*box.size);\nfor (const [kind, p] of [['ball', ball], ['egg', egg], ['stone', stone]",
+    "]) {\nif (!kinds[kind].count) continue;\ngl.useProgram(p.p);\ngl.uniformMatrix4fv(p.eye, fals",
+    "e, eye); gl.uniformMatrix4fv(p.lens, false, lens);\ngl.uniform3fv(p.cutAt, cutAt); gl.uniform",
+    "3fv(p.cutBy, cut > 0 ? z : [0, 0, 0]);\n['wheres', 'colours', 'turns', 'axess', 'planes'].for",
+    "Each((name, i) => {\nif (!p[name]) return;\ngl.activeTexture(gl.TEXTURE0 + i);\ngl.bindTextur",
+    "e(gl.TEXTURE_2D, kinds[kind].texture[i]);\ngl.uniform1i(p[name], i);\n});\ngl.activeTexture(g",
+    "l.TEXTURE0);\ngl.bindVertexArray(kinds.array);\ngl.drawArrays(gl.TRIANGLES, 0, 6*kinds[kind].",
+    "count);\n}\ngl.useProgram(sheet.p);\ngl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_M",
+    "INUS_SRC_ALPHA); gl.depthMask(false);\ngl.uniformMatrix4fv(sheet.eye, false, eye); gl.uniform",
+    "Matrix4fv(sheet.lens, false, lens);\nconst solid = +$('walls').value, shade = dark ? [0.75, 0",
+    ".8, 0.86] : [0.35, 0.4, 0.46];\ngl.depthMask(solid > 0.98);\nfor (const id in f.poses) {\ncon",
+    "st w = walls[id];\nif (!w || w.kind === 'grains' || !solid) continue;\nlet pose = f.poses[id]",
+    ";\nconst to = g && g.poses[id];\nif (to && part > 0) {             // half way: along the cho",
+    "rd, turned on the shorter way\nlet same = 0, q = [];\nfor (let i = 3; i < 7; i++) same += pos",
+    "e[i]*to[i];\nq = pose.map((v, i) => v*(1 - part) + (i > 2 && same < 0 ? -part : part)*to[i]);",
+    "\nconst l = Math.hypot(q[3], q[4], q[5], q[6]) || 1;\npose = q.map((v, i) => i > 2 ? v/l : v)",
+    ";\n}\nif (!w.array) { w.pose = pose; tessellate(w); }\nconst weight = w.kind === 'plane' ? 0.",
+    "5 : w.kind === 'sieve' ? 2 : 1;\ngl.uniform4f(sheet.paint, ...shade, Math.min(1, solid*weight",
+    "));\ngl.uniform4f(sheet.hole, ...(w.hole || [0, 1, 1, 0]));\ngl.uniform2f(sheet.rim, w.rim ||",
+    " 0, w.staggered || 0);\ngl.uniform3fv(sheet.place, pose.slice(0, 3)); gl.uniform4fv(sheet.tur",
+    "n, pose.slice(3));\ngl.bindVertexArray(w.array);\ngl.drawArrays(gl.TRIANGLES, 0, w.count);\n}",
+    "\ngl.bindVertexArray(null); gl.depthMask(true);\n$('time').textContent = time.toPrecision(4) ",
+    "+ ' s';\n$('at').value = at;\nplot(time);\nreplay.drawn++; replay.at = at;\nreplay.project = ",
+    "p => {             // where a place is in the picture, pixels from below\nconst e = sum(p, ey",
+    "eAt, -1), d = -dot(z, e);\nreturn [width/2*(1 + dot(x, e)/d*height/width/open), height/2*(1 +",
+    " dot(y, e)/d/open), d];\n};\n}\nconst plots = [];\nfunction plot(time) {\nfor (const p of plo",
+    "ts) {\nconst c = p.canvas, ratio = window.devicePixelRatio || 1, d = c.getContext('2d');\ncon",
+    "st w = c.clientWidth, h = c.clientHeight, ink = getComputedStyle(document.body).color;\nif (c",
+    ".width !== Math.round(w*ratio)) { c.width = Math.round(w*ratio);\nc.height = Math.round(h*rat",
+    "io); }\nd.setTransform(ratio, 0, 0, ratio, 0, 0);\nd.clearRect(0, 0, w, h);\nconst X = t => 4",
+    " + (w - 8)*(t - p.t[0])/(p.t[p.t.length - 1] - p.t[0] || 1);\nconst Y = v => h - 18 - (h - 36",
+    ")*(v - p.least)/(p.most - p.least || 1);\nd.strokeStyle = d.fillStyle = ink; d.font = '11px s",
+    "ystem-ui'; d.globalAlpha = 0.7;\nd.fillText(p.name, 4, 11);\nd.fillText(+p.most.toPrecision(3",
+    "), 4, 24); d.fillText(+p.least.toPrecision(3), 4, h - 6);\nd.globalAlpha = 1; d.strokeStyle =",
+    " getComputedStyle(document.documentElement)\n.getPropertyValue('--mark');\nd.beginPath();\np.",
+    "t.forEach((t, i) => i ? d.lineTo(X(t), Y(p.v[i])) : d.moveTo(X(t), Y(p.v[i])));\nd.stroke();",
+    "\nd.strokeStyle = ink; d.globalAlpha = 0.5;\nd.beginPath(); d.moveTo(X(time), 14); d.lineTo(X",
+    "(time), h - 14); d.stroke();\nd.globalAlpha = 1;\n}\n}\nfunction makePlots() {\nhead.values.f",
+    "orEach((name, k) => {\nconst p = { name, t: [], v: [] };\nfor (const f of frames) if (f.value",
+    "s[k] !== undefined && isFinite(f.values[k])) {\np.t.push(f.time); p.v.push(f.values[k]);\n}\n",
+    "if (!p.t.length) return;\np.least = Math.min(...p.v); p.most = Math.max(...p.v);\nconst figur",
+    "e = document.createElement('figure');\np.canvas = document.createElement('canvas');\np.canvas",
+    ".setAttribute('role', 'img'); p.canvas.setAttribute('aria-label', name);\nfigure.append(p.can",
+    "vas); $('plots').append(figure); plots.push(p);\n});\n}\nfunction seek(to) {\nat = Math.max(0",
+    ", Math.min(frames.length - 1, to)); dirty = true;\n}\nfunction play(on) { playing = on; $('pl",
+    "ay').textContent = on ? 'pause' : 'play'; }\nfunction fit() { Object.assign(camera, JSON.pars",
+    "e(first)); dirty = true; }\nfunction look() {\nconst g = head.gravity, size = [0, 1, 2].map(k",
+    " => box.hi[k] - box.lo[k]);\nup = Math.hypot(...g) > 0 ? unit(g.map(x => -x)) : head.planar ?",
+    " [0, 1, 0] : [0, 0, 1];\nconst thin = [0, 1, 2].reduce((a, k) => size[k] < size[a] ? k : a, 0",
+    ");\nconst axis = [0, 0, 0], flat = head.planar || size[thin] < 0.4*Math.max(...size) &&\nMath",
+    ".abs(up[thin]) < 0.5;\naxis[head.planar ? 2 : flat ? thin : Math.abs(up[0]) < 0.5 ? 0 : 1] = ",
+    "1;\nside = unit(sum(axis, up, -dot(axis, up)));\nahead = cross(up, side);\nif (thin === 1 && ",
+    "flat) side = side.map(x => -x), ahead = ahead.map(x => -x);\ncamera.yaw = flat ? (head.planar",
+    " ? 0 : 0.25) : -1; camera.pitch = flat ? (head.planar ? 0 : 0.15)\n: 0.35;\ncamera.target = b",
+    "ox.middle.slice();\ncamera.distance = 0.5*box.size/Math.tan(0.3);\nfirst = JSON.stringify(cam",
+    "era);\n}\nfunction hands() {\nconst view = $('view'), down = new Map();\nlet apart = 0;\ncons",
+    "t move = (dx, dy) => {\nconst z = turnedTo(), x = unit(cross(up, z)), y = cross(z, x);\nconst",
+    " s = 2*Math.tan(0.3)*camera.distance/view.clientHeight;\ncamera.target = sum(sum(camera.targe",
+    "t, x, -dx*s), y, dy*s);\n};\nconst zoom = by => { camera.distance = Math.max(0.01*box.size, M",
+    "ath.min(20*box.size,\ncamera.distance*by)); dirty = true; };\nview.addEventListener('pointerd",
+    "own', e => { down.set(e.pointerId, [e.clientX, e.clientY]);\nview.setPointerCapture(e.pointer",
+    "Id); apart = 0; });\nfor (const end of ['pointerup', 'pointercancel'])\nview.addEventListener",
+    "(end, e => { down.delete(e.pointerId); apart = 0; });\nview.addEventListener('pointermove', e",
+    " => {\nconst from = down.get(e.pointerId);\nif (!from) return;\nconst dx = e.clientX - from[0",
+    "], dy = e.clientY - from[1];\ndown.set(e.pointerId, [e.clientX, e.clientY]);\nif (down.size >",
+    " 1) {\nconst [a, b] = [...down.values()], d = Math.hypot(a[0] - b[0], a[1] - b[1]);\nif (apar",
+    "t) zoom(apart/d);\napart = d; move(dx/2, dy/2);\n} else if (e.shiftKey || e.buttons & 6) move",
+    "(dx, dy);\nelse {\ncamera.yaw -= dx*0.008;\ncamera.pitch = Math.max(-1.55, Math.min(1.55, cam",
+    "era.pitch + dy*0.008));\n}\ndirty = true;\n});\nview.addEventListener('wheel', e => { e.preve",
+    "ntDefault(); zoom(Math.exp(e.deltaY*0.001)); },\n{ passive: false });\nview.addEventListener(",
+    "'contextmenu', e => e.preventDefault());\n$('play').onclick = () => play(!playing);\n$('at').",
+    "oninput = () => { play(false); seek(+$('at').value); };\n$('pace').onchange = () => { pace = ",
+    "+$('pace').value; };\n$('colour').onchange = () => { showKey(); dirty = true; };\n$('walls').",
+    "oninput = $('cut').oninput = () => { dirty = true; };\naddEventListener('resize', () => { dir",
+    "ty = true; });\naddEventListener('keydown', e => {\nif (/INPUT|SELECT|BUTTON|SUMMARY/.test(e.",
+    "target.tagName) && e.key !== ' ') return;\nif (/SELECT|BUTTON|SUMMARY/.test(e.target.tagName)",
+    ") return;\nconst list = $('pace'), key = { ' ': () => play(!playing), Home: () => seek(0),\nA",
+    "rrowRight: () => { play(false); seek(Math.floor(at) + 1); },\nArrowLeft: () => { play(false);",
+    " seek(Math.ceil(at) - 1); },\nEnd: () => seek(frames.length - 1), 0: fit,\n'+': () => { list.",
+    "selectedIndex = Math.min(list.length - 1, list.selectedIndex + 1); },\n'-': () => { list.sele",
+    "ctedIndex = Math.max(0, list.selectedIndex - 1); } }[e.key];\nif (!key) return;\nkey(); e.pre",
+    "ventDefault(); list.onchange();\n});\n}\nlet then = 0;\nfunction tick(ms) {\nif (playing) {\n",
+    "const past = Math.min(0.1, (ms - then)/1000)*pace;\nconst k = Math.min(Math.floor(at), frames",
+    ".length - 2), f = frames[k], g = frames[k + 1];\nif (!g) play(false);\nelse {\nlet time = f.t",
+    "ime + (at - k)*(g.time - f.time) + past, n = k;\nif (time > frames[frames.length - 1].time) {",
+    " time = frames[0].time; n = 0; }\nwhile (n < frames.length - 2 && frames[n + 1].time <= time)",
+    " n++;\nat = n + Math.min(1, (time - frames[n].time)/(frames[n + 1].time - frames[n].time || 1",
+    "));\ndirty = true;\n}\n}\nthen = ms;\nif (dirty) { dirty = false; draw(); }\nrequestAnimation",
+    "Frame(tick);\n}\nfunction paces() {\nconst length = frames[frames.length - 1].time - frames[0",
+    "].time;\nconst own = length > 0 ? length/12 : 1;      // all of it in 12 s\npace = length > 4",
+    " && length < 30 ? 1 : +own.toPrecision(1);\nfor (const k of [0.1, 0.2, 0.5, 1, 2, 5, 10]) {\n",
+    "const o = document.createElement('option'), p = +(k*pace).toPrecision(2);\no.value = p; o.tex",
+    "tContent = p === 1 ? 'real time' : p < 1 ? '1/' + +(1/p).toPrecision(2) +\n' of real time' : ",
+    "p + ' times real time';\no.selected = k === 1; $('pace').append(o);\n}\n}\naddEventListener('",
+    "DOMContentLoaded', async () => {\ntry {\nconst begun = performance.now();\nfor (const b of bl",
+    "ocks('head')) head = JSON.parse(b.textContent);\ndocument.title = $('title').textContent = he",
+    "ad.title || 'Replay';\nfor (const b of blocks('shape')) { head.turns = 1;\nconst s = JSON.par",
+    "se(b.textContent); shapes[s.id] = s; }\nfor (const b of blocks('wall')) { const w = JSON.pars",
+    "e(b.textContent); walls[w.id] = w; }\nfor (const b of blocks('value')) head.values.push(JSON.",
+    "parse(b.textContent).name);\nfor (const [k, b] of blocks('frame').entries()) {\ntry { decode(",
+    "bytes(b.textContent)); } catch (e) { if (!k) throw e; break; }  // cut short\nb.remove();\nif",
+    " (k%20 === 19) { $('say').textContent = 'reading ' + (k + 1);\nawait new Promise(done => setT",
+    "imeout(done)); }\n}\nif (!frames.length) throw Error('no frames in this file: was dem_replay_",
+    "frame called?');\nmeasure(); ranges(); look(); prepare(); makePlots(); paces();\nconst names ",
+    "= { speed: 'speed', size: 'size', material: 'material' };\nif (head.number) names.own = head.",
+    "number;\nfor (const n in names) {\nconst o = document.createElement('option');\no.value = n; ",
+    "o.textContent = names[n]; $('colour').append(o);\n}\n$('at').max = frames.length - 1;\nconst ",
+    "report = blocks('report')[0];\nif (report) { $('report').hidden = false;\n$('report').querySe",
+    "lector('pre').textContent = report.textContent; }\nshowKey(); hands(); $('say').hidden = true",
+    "; $('say').style.display = 'none';\ndraw(); play(frames.length > 1); requestAnimationFrame(ti",
+    "ck);\nreplay.ready = true; replay.opened = performance.now() - begun;\nreplay.seek = seek; re",
+    "play.play = play; replay.draw = draw;\n} catch (e) { replay.error = $('say').textContent = St",
+    "ring(e.message || e); }\n});\n</script>\n<!-- what follows is written by dem_replay_open, _fr",
+    "ame and _close -->\n"};
 /* viewer: end */
 
 /* ---------------------------------------------------------------------------------------------
@@ -25540,10 +27044,14 @@ static void demi_film_head(dem_replay *r) {
 static void demi_film_shape(dem_replay *r, int id) {
     const demi_shape *s = &r->world->shapes[id - 1];
     const dem_real axes[3] = {s->axes.x, s->axes.y, s->axes.z};
+    dem_real planes[3*DEM_POLYHEDRON_FACES];
     char text[32];
+    int k;
+    for (k = 0; k < 3*s->faces; k++) planes[k] = (dem_real)s->hull[k/3*4 + k%3];
     fprintf(r->out.file, "<script type=\"dem/shape\">{\"id\":%d,\"radius\":%s", id,
             demi_format_real(text, (double)s->radius, 9));
     if (s->count) demi_film_reals(r->out.file, "parts", s->parts, s->count, 4, 4);
+    else if (s->faces) demi_film_reals(r->out.file, "planes", planes, s->faces, 3, 3);
     else demi_film_reals(r->out.file, "axes", axes, 1, 3, 3);
     fputs("}</script>\n", r->out.file);
 }
