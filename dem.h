@@ -12792,11 +12792,13 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
                                  double width, const double *x0, demi_pressure *out) {
     static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
     static const double part[3] = {5.0/18, 8.0/18, 5.0/18};
-    const double c = demi_cos(angle), sn = demi_sin(angle), long_ = hypot(l->b - l->a, l->h - l->g);
-    const double e[3] = {(l->b - l->a)*c, (l->b - l->a)*sn, l->h - l->g};
+    const double c = demi_cos(angle), sn = demi_sin(angle);
+    const double out_by = l->b - l->a, up_by = l->h - l->g;
+    const double size = sqrt(out_by*out_by + up_by*up_by);
+    const double e[3] = {out_by*c, out_by*sn, up_by};
     const double o[3] = {l->a*c - x0[0], l->a*sn - x0[1], l->g - x0[2]};
-    const double n[3] = {l->side*e[2]/long_*c, l->side*e[2]/long_*sn,
-                         -l->side*(l->b - l->a)/long_};
+    const double n[3] = {l->side*e[2]/size*c, l->side*e[2]/size*sn,
+                         -l->side*out_by/size};
     double lo = 0, hi = 1, from;
     int f, i, k, face = -1;
     for (f = 0; f < s->faces; f++) {            /* where it is inside */
@@ -12824,11 +12826,11 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
             if (-over/slope > from && -over/slope < to) { to = -over/slope; next = f; }
         }
         for (i = 0; i < 3; i++) {
-            const double t = from + at[i]*(to - from), r = l->a + t*(l->b - l->a);
+            const double t = from + at[i]*(to - from), r = l->a + t*out_by;
             double x[3];
             for (k = 0; k < 3; k++) x[k] = o[k] + t*e[k];
             demi_pressure_point(out, x, DEMI_MAX(demi_solid_in(s, face, x), 0),
-                             part[i]*(to - from)*long_*r*width, n, demi_dot3(x, n));
+                             part[i]*(to - from)*size*r*width, n, demi_dot3(x, n));
         }
         from = to;
         face = next;
@@ -12880,12 +12882,16 @@ static int demi_generator_near(const demi_generator *l, dem_vec3 x, double radiu
     t = t < 0 ? 0 : t > 1 ? 1 : t;
     return (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f) < radius*radius;
 }
+/* How far out the surface is at a height. */
+static double demi_generator_radius(const demi_generator *l, double z) {
+    return l->h > l->g || l->h < l->g ? l->a + (l->b - l->a)/(l->h - l->g)*(z - l->g) : l->a;
+}
 /* Angles at which lines of the surface come into the plane of a face, at its lowest and highest
    corners: how many, 0 to 4. */
 static int demi_generator_face(const demi_generator *l, const demi_solid *s, int f,
                                const double *x0, double *angle) {
     const int32_t *loops = s->rim + s->faces + 1;
-    const double *a = s->plane[f], size = hypot(a[0], a[1]);
+    const double *a = s->plane[f], size = sqrt(a[0]*a[0] + a[1]*a[1]);
     double z[2] = {1e300, -1e300};
     int i, count = 0;
     for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
@@ -12893,8 +12899,7 @@ static int demi_generator_face(const demi_generator *l, const demi_solid *s, int
         z[1] = DEMI_MAX(z[1], s->corner[loops[i]][2] + x0[2]);
     }
     for (i = 0; i < 2; i++) {
-        const double flat = l->h > l->g || l->h < l->g ? (l->b - l->a)/(l->h - l->g) : 0;
-        const double r = l->a + flat*(z[i] - l->g), to = size*r;
+        const double to = size*demi_generator_radius(l, z[i]);
         const double c = 1 + a[0]*x0[0] + a[1]*x0[1] - a[2]*(z[i] - x0[2]);
         double half, mid;
         if (!(fabs(c) < to)) continue;
@@ -12912,7 +12917,8 @@ static int demi_angle_order(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 /* All of one piece of a surface of revolution: between the angles at which edges of the polyhedron,
-   or of its pyramids, cross it, what they share changes smoothly. x: of its centre. */
+   or of its pyramids, cross it, what they share changes smoothly. Seen from inside, where it is
+   convex, only corners reach it, and what leads to them. x: of its centre. */
 static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l, dem_vec3 x,
                                     int32_t element, demi_flats *flats) {
     static const double at[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
@@ -12921,13 +12927,24 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
                                    0.17392742256872692};
     const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
     const int32_t *loops = s->rim + s->faces + 1;
+    const int inside = (l->h > l->g || l->h < l->g) &&
+        x0[0]*x0[0] + x0[1]*x0[1] <
+        demi_generator_radius(l, x0[2])*demi_generator_radius(l, x0[2]);
+    unsigned char beyond[DEMI_HULL_CORNERS];
     double angle[DEMI_CROSSINGS], p[3], q[3];
     demi_pressure press;
-    int f, i, k, count = 0;
+    int f, i, k, count = 0, any = 0;
+    for (i = 0; i < s->corners; i++) {
+        const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
+        const double r = demi_generator_radius(l, x0[2] + s->corner[i][2]);
+        beyond[i] = !inside || !(r > 0) || u*u + v*v > r*r;
+        any |= beyond[i];
+    }
+    if (!any) return;
     for (f = 0; f < s->faces; f++)
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
             const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
-            if (a > b) continue;                /* once: the other face has it the other way */
+            if (a > b || (!beyond[a] && !beyond[b])) continue;  /* once: two faces have it */
             for (k = 0; k < 3; k++) {
                 p[k] = x0[k] + s->corner[a][k];
                 q[k] = x0[k] + s->corner[b][k];
@@ -12935,10 +12952,12 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
             count += demi_generator_cross(l, p, q, angle + count);
         }
     for (i = 0; i < s->corners; i++) {
+        if (!beyond[i]) continue;
         for (k = 0; k < 3; k++) p[k] = x0[k] + s->corner[i][k];
         count += demi_generator_cross(l, x0, p, angle + count);
     }
-    for (f = 0; f < s->faces; f++) count += demi_generator_face(l, s, f, x0, angle + count);
+    for (f = 0; f < s->faces && !inside; f++)
+        count += demi_generator_face(l, s, f, x0, angle + count);
     for (i = 0; i < count; i++)                 /* of one turn */
         angle[i] -= 2*DEMI_PI*floor(angle[i]/(2*DEMI_PI));
     if (!count) angle[count++] = 0;

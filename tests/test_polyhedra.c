@@ -72,6 +72,35 @@ static dem_vec3 momentum(const dem_world *w, int angular) {
     }
     return sum;
 }
+/* Seven equal wedges over half a turn, between these radii, that stand on the ground, weight 1 each: the least friction
+   by which they may stand, by the line of thrust. Right half, from the middle of the keystone down: the force at joint k,
+   pi k/7 from the ground, is a horizontal thrust H and the weight above it; it must pass the joint inside, and its slope
+   against the joint's normal is what friction has to hold. centre: radius of a wedge's centre of mass. */
+enum { WEDGES = 7 };
+static double least_friction(double inner, double outer, double centre) {
+    const double step = 3.14159265358979323846/WEDGES;
+    double least = 1e9;
+    int i, j, k;
+    for (i = 1; i < 2000; i++)
+        for (j = 0; j <= 200; j++) {
+            const double H = 0.002*i;
+            double r = inner + (outer - inner)*j/200, V = 0.5, need = 0;
+            for (k = WEDGES/2; k >= 0; k--) {
+                const double a = k*step, x = r*cos(a), z = r*sin(a);
+                /* along the joint's normal (to the right and down the arch), and across it */
+                const double n = H*sin(a) + V*cos(a), t = fabs(H*cos(a) - V*sin(a));
+                need = fmax(need, t/n);
+                if (k > 0) {                    /* moments of block k - 1 about the origin */
+                    const double b = a - step, c = a - step/2, into = z*H + x*V + centre*cos(c);
+                    V += 1;
+                    r = into/(H*sin(b) + V*cos(b));
+                    if (r < inner || r > outer) { need = 1e9; break; }
+                }
+            }
+            least = fmin(least, need);
+        }
+    return least;
+}
 /* A heap in a box: every kind of body, with friction. */
 static dem_world *heap(int threads) {
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -162,7 +191,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("points of a box that are off its faces by round-off of any size have its volume, but for that round-off, or are "
+    TEST("points of a box that are off its faces by round-off of any size have its volume, but for that round-off, "
+         "or are "
          "refused by name") {
         dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 0);
         uint64_t random = 3;
@@ -194,7 +224,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("points in a plane, points that are not finite, too few, and hulls of too many faces are refused, and nothing is "
+    TEST("points in a plane, points that are not finite, too few, and hulls of too many faces are refused, and "
+         "nothing is "
          "added") {
         dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 0);
         uint64_t random = 5;
@@ -276,7 +307,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("a cube that lies on a cube, on a plane, on a floor of triangles, or on the floor of a profile, has the overlap by "
+    TEST("a cube that lies on a cube, on a plane, on a floor of triangles, or on the floor of a profile, has the "
+         "overlap by "
          "which they overlap, and the force of it") {
         int floor_kind;
         for (floor_kind = 0; floor_kind < 4; floor_kind++) {
@@ -309,8 +341,8 @@ int main(int argc, char **argv) {
             } else if (floor_kind == 1) dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
             else if (floor_kind == 2) dem_mesh_add(w, m, &mesh);
             else dem_profile_add(w, m, &profile, DEM_EDGE_RESOLVED);
-            if (floor_kind < 3) body = dem_body_add(w, m, cube, at(floor_kind ? 0.001 : 0, floor_kind ? 0.002 : 0, 0.0099),
-                                                    straight);
+            if (floor_kind < 3)
+                body = dem_body_add(w, m, cube, at(floor_kind ? 0.001 : 0, floor_kind ? 0.002 : 0, 0.0099), straight);
             else body = dem_body_add(w, m, cube, at(0.001, 0.0099, 0.002), straight);
             scene_step(w, 1);
             n = dem_contacts_get(w, contacts, 8);
@@ -328,7 +360,8 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("two elastic rocks: energy returns, better with the square of the step; momentum stays to round-off, angular momentum "
+    TEST("two elastic rocks: energy returns, better with the square of the step; momentum stays to round-off, "
+         "angular momentum "
          "with the step that bodies rotate by") {
         double error[3];
         double turn[3];
@@ -368,7 +401,8 @@ int main(int argc, char **argv) {
         } else CHECK(1);
     }
 
-    TEST("elastic rocks, spheres, ellipsoids and clusters in a box of planes, in one of triangles, in a tube and in a funnel keep "
+    TEST("elastic rocks, spheres, ellipsoids and clusters in a box of planes, in one of triangles, in a tube and in "
+         "a funnel keep "
          "their energy") {
         static const char *const name[] = {"planes", "triangles", "tube", "funnel", "profile"};
         int kind;
@@ -400,8 +434,8 @@ int main(int argc, char **argv) {
             if (kind == 2) dem_cylinder_add(w, m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.04), 1);
             if (kind == 3) CHECK(dem_revolved_add(w, m, at(0, 0, 0), at(0, 0, 1), 3, radii, heights).id);
             if (kind == 4) {
-                dem_real ends[8] = {DEM_R(-0.04), DEM_R(-0.2), DEM_R(0.04), DEM_R(-0.2), DEM_R(0.04), DEM_R(0.2), DEM_R(-0.04),
-                                    DEM_R(0.2)};
+                dem_real ends[8] = {DEM_R(-0.04), DEM_R(-0.2), DEM_R(0.04), DEM_R(-0.2), DEM_R(0.04), DEM_R(0.2),
+                                    DEM_R(-0.04), DEM_R(0.2)};
                 int32_t sides[8] = {0, 1, 1, 2, 2, 3, 3, 0};
                 const dem_profile profile = {4, 4, ends, sides};
                 CHECK(dem_profile_add(w, m, &profile, DEM_EDGE_RESOLVED).id);
@@ -410,7 +444,8 @@ int main(int argc, char **argv) {
                 const dem_vec3 x = at(k%2 ? 0.012 : -0.012, k%4 < 2 ? -0.011 : 0.011, 0.05 + 0.03*k);
                 const dem_body b = k == 3 ? dem_sphere_add(w, m, DEM_R(0.006), x)
                     : dem_body_add(w, m, k == 4 && kind != 3 ? dem_shape_ellipsoid_add(w, at(0.004, 0.006, 0.008))
-                        : k == 5 ? dem_shape_cluster_add(w, &pair) : rock_add(w, &random, 12 + 4*k, 0.01), x, any_turn(&random));
+                        : k == 5 ? dem_shape_cluster_add(w, &pair) : rock_add(w, &random, 12 + 4*k, 0.01), x,
+                                   any_turn(&random));
                 CHECK(b.slot);
                 scene_move(w, b, at(0.5*cos(k), 0.5*sin(k), 0), at(30, 20, -20));
             }
@@ -503,7 +538,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("friction stops a cube that spins on its face as four points of its pressure would, and a stack of ten stands") {
+    TEST("friction stops a cube that spins on its face as four points of its pressure would, and a stack of ten "
+         "stands") {
         const double g = 9.81;
         dem_world *w = world_of(g, DEM_NORMAL_HERTZ, 2e-6);
         dem_material m = scene_material(w, 1e8, 0.3, 0.4, 0);
@@ -530,14 +566,55 @@ int main(int argc, char **argv) {
                                 dem_quat_about(at(0, 0, 1), (dem_real)(0.02*k)));
         CHECK_EQ(dem_world_run_to(w, 1, 0, 0), DEM_OK);
         for (k = 0; k < 10; k++) most = fmax(most, (double)demi_length(scene_state(w, b[k]).velocity));
-        CHECK_NEAR(most, 0, fine ? 5e-4 : 2e-3);              /* it sways a little: nothing damps a whole stack's sway */
+        CHECK_NEAR(most, 0, fine ? 5e-4 : 2e-3);        /* it sways: nothing damps a whole stack's sway */
         CHECK_NEAR((double)scene_state(w, b[9]).position.z, 0.19, 1e-4);
         CHECK_NEAR((double)scene_state(w, b[9]).position.x, 2e-4, 2e-5);
-        if (getenv("POLYHEDRA_NUMBERS")) printf("stack: fastest %.2g m/s, top %g\n", most, (double)scene_state(w, b[9]).position.z);
+        if (getenv("POLYHEDRA_NUMBERS"))
+            printf("stack: fastest %.2g m/s, top %g\n", most, (double)scene_state(w, b[9]).position.z);
         dem_world_destroy(w);
     }
 
-    TEST("a heap of rocks, cubes, balls, ellipsoids and clusters: threads 1, 2, 3, 4 and 8, a second world, a checkpoint and one "
+    TEST("an arch of seven wedges stands with a tenth more friction than its line of thrust asks, and falls with a tenth "
+         "less") {
+        const double inner = 0.08, outer = 0.105, step = 3.14159265358979323846/WEDGES;
+        int k;
+        for (k = 0; k < 2 && fine; k++) {
+            dem_world *w = world_of(9.81, DEM_NORMAL_HERTZ, 2e-6);
+            dem_shape_info info;
+            dem_real p[24];
+            double need;
+            double drop;
+            dem_material m;
+            dem_shape wedge;
+            dem_body b[WEDGES];
+            int i;
+            for (i = 0; i < 8; i++) {           /* about the z axis of its middle, upright */
+                const double r = i & 1 ? outer : inner, a = (i & 2 ? 0.5 : -0.5)*step;
+                p[3*i] = (dem_real)(r*sin(a));
+                p[3*i + 1] = (dem_real)(i & 4 ? 0.015 : -0.015);
+                p[3*i + 2] = (dem_real)(r*cos(a));
+            }
+            wedge = dem_shape_polyhedron_add(w, 8, p);
+            dem_shape_get(w, wedge, &info);
+            need = least_friction(inner, outer, (double)info.centre.z);
+            m = scene_material(w, 1e9, 0.1, need*(k ? 0.9 : 1.1), 0);
+            dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+            for (i = 0; i < WEDGES; i++) {
+                const double a = 3.14159265358979323846/2 - (i + 0.5)*step;
+                b[i] = dem_body_add(w, m, wedge, at((double)info.centre.z*sin(a), 0, (double)info.centre.z*cos(a)),
+                                    dem_quat_about(at(0, 1, 0), (dem_real)a));
+            }
+            CHECK_EQ(dem_world_run_to(w, 0.4, 0, 0), DEM_OK);
+            drop = (double)info.centre.z - (double)scene_state(w, b[WEDGES/2]).position.z;
+            if (getenv("POLYHEDRA_NUMBERS")) printf("arch: mu %.4f, the keystone sank %.3g m\n", need*(k ? 0.9 : 1.1), drop);
+            CHECK((drop > 0.01) == k);
+            dem_world_destroy(w);
+        }
+        CHECK(1);
+    }
+
+    TEST("a heap of rocks, cubes, balls, ellipsoids and clusters: threads 1, 2, 3, 4 and 8, a second world, a "
+         "checkpoint and one "
          "slab give the same bits") {
         const char *path = "build/tmp/polyhedra.dem";
         uint64_t hash[8];
