@@ -11861,25 +11861,47 @@ static int demi_pyramid_clip(const demi_solid *s, int f, double (*x)[3], int cou
     }
     return count;
 }
-/* Which faces of a may have a piece of S: not those that lie wholly beyond a face of b, when a's
-   centre does. 0: a does; the two are apart. */
-static int demi_solid_alive(const demi_solid *a, const demi_solid *b, unsigned char *alive) {
-    const int32_t *loops = a->rim + a->faces + 1;
-    double in[DEMI_HULL_CORNERS];
-    int f, g, i, any;
-    for (f = 0; f < a->faces; f++) alive[f] = 1;
-    for (g = 0; g < b->faces; g++) {
-        if (demi_solid_in(b, g, a->centre) > 0) continue;
-        for (i = any = 0; i < a->corners; i++) {
-            in[i] = demi_solid_in(b, g, a->corner[i]);
-            any |= in[i] > 0;
-        }
-        if (!any) return 0;
-        for (f = 0; f < a->faces; f++) {
-            for (i = a->rim[f]; i < a->rim[f + 1] && !(in[loops[i]] > 0); i++) continue;
-            if (i == a->rim[f + 1]) alive[f] = 0;
-        }
+/* How deep below a face each corner is, m. */
+static void demi_solid_depths(const demi_solid *s, const demi_solid *other, int face, double *in) {
+    int i;
+    for (i = 0; i < s->corners; i++)
+        in[i] = demi_solid_in(other, face, s->corner[i])*other->plane[face][3];
+}
+/* Leaves out faces all corners of which are deeper, or less deep, than at. */
+static void demi_solid_leave(const demi_solid *s, const double *in, double at, int deeper,
+                             unsigned char *alive) {
+    const int32_t *loops = s->rim + s->faces + 1;
+    int f, i;
+    for (f = 0; f < s->faces; f++) {
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++)
+            if ((in[loops[i]] > at) != deeper) break;
+        if (i == s->rim[f + 1]) alive[f] = 0;
     }
+}
+/* Which faces of a and b may have a piece of S, to begin with all. Of b's faces, a's centre being
+   beyond, that below which a comes least: none of a's that lie wholly beyond it, none of b's that
+   lie wholly deeper than a comes. 0: some face keeps the two apart. */
+static int demi_solid_alive(const demi_solid *a, const demi_solid *b, unsigned char *of_a,
+                            unsigned char *of_b) {
+    double in[DEMI_HULL_CORNERS], least = 1e300;
+    int g, i, best = -1;
+    for (g = 0; g < b->faces; g++) {
+        double most = 0;
+        if (demi_solid_in(b, g, a->centre) > 0) continue;
+        for (i = 0; i < a->corners; i++) {
+            const double u = demi_solid_in(b, g, a->corner[i]);
+            most = DEMI_MAX(most, u);
+        }
+        if (!(most > 0)) return 0;
+        if (!(most*b->plane[g][3] < least)) continue;
+        least = most*b->plane[g][3];
+        best = g;
+    }
+    if (best < 0) return 1;
+    demi_solid_depths(a, b, best, in);
+    demi_solid_leave(a, in, 0, 0, of_a);
+    demi_solid_depths(b, b, best, in);
+    demi_solid_leave(b, in, least*(1 + 1e-9), 1, of_b);
     return 1;
 }
 /* The piece of S between faces f and g. */
@@ -11907,7 +11929,9 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
     unsigned char fs[DEM_POLYHEDRON_FACES], gs[DEM_POLYHEDRON_FACES];
     int f, g;
     memset(s, 0, sizeof *s);
-    if (!demi_solid_alive(a, b, fs) || !demi_solid_alive(b, a, gs)) return 0;
+    memset(fs, 1, sizeof fs);
+    memset(gs, 1, sizeof gs);
+    if (!demi_solid_alive(a, b, fs, gs) || !demi_solid_alive(b, a, gs, fs)) return 0;
     for (f = 0; f < a->faces; f++)
         for (g = 0; g < b->faces && fs[f]; g++) if (gs[g]) demi_solids_piece(a, b, f, g, s);
     return s->shared > 0 && s->sum > 0;
