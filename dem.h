@@ -19,7 +19,8 @@
        >>implementation  stop there if you only want to use it
        >>platform    compiler, OpenMP, the one parallel loop
        >>maths       vectors, poses, random numbers
-       >>memory      allocation, arrays that grow, errors, the world's layout
+       >>layout      the world, and what it is made of
+       >>memory      what each body has; errors, allocation, arrays that grow
        >>laws        the built-in contact laws, a line each
        >>materials   materials, the pair table, coefficients
        >>shapes      ellipsoids, clusters of spheres: mass properties, supports, meetings
@@ -230,7 +231,7 @@
    (>>add-shape), an integrator (>>add-integrator), a search (>>add-search) and a mesh format
    (>>add-format); a number of each body is a field and a row (>>add-array).
    docs/extending.md walks through each, and `make recipes` performs it. Who owns what in a world
-   stands at struct dem_world (>>memory).
+   stands at struct dem_world (>>layout).
 
    Glossary, of words that are ours or used in one sense:
        candidate   a pair, or a body and an element of a wall, nearer than the skin
@@ -1150,25 +1151,30 @@ typedef enum dem_sizes_kind {
     DEM_SIZES_UNIFORM = 0,   /* equal shares for equal ranges of radius */
     DEM_SIZES_LOGNORMAL,     /* median, spread */
     DEM_SIZES_WEIBULL,       /* Rosin-Rammler: 1 - exp(-(r/scale)^modulus) is finer than r */
-    DEM_SIZES_SIEVES         /* a sieve curve: what passes each of `count` sieves */
+    DEM_SIZES_SIEVES,        /* a sieve curve: what passes each of `count` sieves */
+    DEM_SIZES_NORMAL,        /* median and, in m, deviation */
+    DEM_SIZES_EXPONENTIAL    /* Zhang's: min, and beyond it exponential with the mean `scale` - min:
+                                1 - exp(-(r - min)/(scale - min)) is finer than r */
 } dem_sizes_kind;
 enum { DEM_SIEVES = 32 };
 typedef struct dem_sizes {
     dem_sizes_kind kind;
     int by_count;            /* shares are 0: of mass, as sieves tell them; 1: of the number */
     dem_real min, max;       /* m, 0 < min <= max; log-normal: 0: e^(-6 spread) and e^(6 spread)
-                                medians; Weibull: max 0: all but 1e-9 is finer; sieves: 0: their
-                                ends */
-    dem_real median;         /* m, log-normal, > 0 */
+                                medians; normal: 0: 6 deviations off, but not below a thousandth of
+                                the median; Weibull, exponential: max 0: all but 1e-9 is finer;
+                                sieves: 0: their ends */
+    dem_real median;         /* m, log-normal and normal, > 0 */
     double spread;           /* log-normal, > 0: standard deviation of ln r */
-    dem_real scale;          /* m, Weibull, > 0 */
+    dem_real scale;          /* m, Weibull, > 0; exponential: the mean, > min */
     double modulus;          /* Weibull, > 0 */
     int count;               /* sieves, 2..32 */
     dem_real radius[DEM_SIEVES];   /* m, half the apertures, ascending, the first > 0 */
     double passing[DEM_SIEVES];    /* share that passes, ascending, the last 1; straight between
                                       two, what passes the first is of its radius */
+    dem_real deviation;      /* m, normal, > 0: standard deviation */
 } dem_sizes;
-static const dem_sizes DEM_SIZES_ZERO = {DEM_SIZES_UNIFORM, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}};
+static const dem_sizes DEM_SIZES_ZERO = {DEM_SIZES_UNIFORM, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0};
 #define DEM_SIZES DEM_SIZES_ZERO
 /* Share that is finer than a radius (m), of mass or number as by_count says. -1 on bad values. */
 DEM_API double dem_sizes_finer(dem_world *world, const dem_sizes *sizes, dem_real radius);
@@ -1578,9 +1584,16 @@ typedef struct dem_feed_desc {
     uint64_t seed;
     dem_inside_fn inside;            /* places of the box to use, as in dem_region; 0: all */
     void *inside_user;
+    /* A mixture: of each class, where it is not 0, its own material; its shape, in random
+       orientations, radius (m) that of the sphere of its volume; and sizes that are drawn (copied)
+       in place of that radius */
+    dem_material materials[DEM_CLASSES];
+    dem_shape shapes[DEM_CLASSES];
+    const dem_sizes *sizes[DEM_CLASSES];
 } dem_feed_desc;
 static const dem_feed_desc DEM_FEED_DESC_ZERO = {{0}, 0, {0}, {0}, 0, 0, 0, 0, 0,
-                                                 {{0, 0, 0}, {0, 0, 0}}, 0, {0, 0, 0}, 0, 0, 0, 0};
+                                                 {{0, 0, 0}, {0, 0, 0}}, 0, {0, 0, 0}, 0, 0, 0, 0,
+                                                 {{0}}, {{0}}, {0}};
 #define DEM_FEED_DESC DEM_FEED_DESC_ZERO
 typedef struct dem_feed_state {
     uint64_t fed[DEM_CLASSES], total; /* grains */
@@ -2505,7 +2518,7 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>memory
+   >>layout
    The layout of the world, and the only places where memory comes from. Bodies live in flat arrays
    of four reals each, so that a gather touches one cache line and a drift is one long loop. Every
    array that grows is a field here; DEMI_GROW keeps what it holds, or leaves it alone and says so.
@@ -2580,6 +2593,7 @@ typedef struct demi_link {
     dem_real more;                 /* how much more its place counts by pieces */
     dem_vec3 point;                /* from the body's centre */
 } demi_link;
+
 /* A shape, in its principal frame, per unit of mass and scale. */
 typedef struct demi_shape {
     int kind;                      /* of its parts: DEMI_BALL, ... */
@@ -2798,13 +2812,21 @@ typedef struct demi_field {
     double *sums;                  /* demi_field_reals, see >>fields */
 } demi_field;
 
+enum { DEMI_FEED_SIZES = 64 };
 typedef struct demi_feed {
     dem_feed_desc desc;
     dem_feed_state state;
     uint64_t random;
     uint64_t limit[DEM_CLASSES];   /* grains of each class, when limited */
-    double mass[DEM_CLASSES];      /* kg, of a grain */
+    double mass[DEM_CLASSES];      /* kg, mean of a grain */
+    double lo[DEM_CLASSES], hi[DEM_CLASSES];   /* m, ends of its sizes */
+    double finer[DEM_CLASSES][DEMI_FEED_SIZES + 1]; /* share of the number, by ln r */
     int64_t next;                  /* class of the next grain, -1: not drawn yet */
+    struct {                       /* and what it is */
+        dem_real radius, reach;    /* m: of the sphere of its volume; of the one around it */
+        dem_quat orientation;
+        double mass;               /* kg */
+    } drawn;
     uint64_t again;                /* step at which one that found no room tries again */
 } demi_feed;
 typedef struct demi_outlet {
@@ -3122,6 +3144,11 @@ struct dem_world {
     void (*kernel)(dem_world *w, int domain);
     demi_lookers look;             /* >>step, >>output, >>replay */
 };
+/* ---------------------------------------------------------------------------------------------
+   >>memory
+   What each body has, told once; names; sentences of what went wrong; allocation, and arrays that
+   grow.
+   --------------------------------------------------------------------------------------------- */
 /* m: how far beyond their radii pairs, and bodies and walls, are looked for. */
 DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
@@ -7091,7 +7118,7 @@ static int demi_facets_weigh(dem_world *w) {
    A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls
    of many elements keep a grid of them in their own frame, so that a grain finds its neighbours at
    a cost that does not depend on their number. Planes and cylinders are one element each, without
-   end. Kinds are rows: DEMI_WALLS in >>memory.
+   end. Kinds are rows: DEMI_WALLS in >>layout.
    --------------------------------------------------------------------------------------------- */
 static void demi_pose_identity(dem_pose *p) {
     memset(p, 0, sizeof *p);
@@ -7458,6 +7485,14 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
         const int part = demi_shape_kind(demi_shape_of(w, i));
         if (demi_touch_known(wall->kind, part)) continue;
         demi_strangers(w, call, w->wall_count, wall->kind, (int)w->bodies.slot[i], part);
+        demi_wall_free(w, wall);
+        return id;
+    }
+    for (i = 0; i < w->feed_count*DEM_CLASSES; i++) {       /* and of those that are to come */
+        const int shape = w->feeds[i/DEM_CLASSES].desc.shapes[i%DEM_CLASSES].id;
+        const int part = shape ? w->shapes[shape - 1].kind : DEMI_BALL;
+        if (demi_touch_known(wall->kind, part)) continue;
+        demi_strangers(w, call, w->wall_count, wall->kind, -1, part);
         demi_wall_free(w, wall);
         return id;
     }
@@ -10095,7 +10130,6 @@ DEM_INLINE void demi_facet_places(const demi_wall *wall, int e, dem_vec3 x, cons
         if (d2 < most) demi_places_add(p, at < 4 ? c->number : c->end[at - 4], c->weight, d, d2);
     }
 }
-
 /* --- rings. Where what a ball reaches of a surface closes to a ring, on the rim of a hole or in a
        funnel, Euler's number is 0 and nothing would push. A ring is one place, so there
            E = integral of pieces(s) dU = U(facets) - U(links of a forest)
@@ -16249,6 +16283,11 @@ static double demi_size_share(const dem_sizes *d, double r) {
     case DEM_SIZES_UNIFORM: break;
     case DEM_SIZES_LOGNORMAL:
         return r > 0 ? (1 + demi_erf(demi_log(r/(double)d->median)/(sqrt(2.0)*d->spread)))/2 : 0;
+    case DEM_SIZES_NORMAL:
+        return (1 + demi_erf((r - (double)d->median)/(sqrt(2.0)*(double)d->deviation)))/2;
+    case DEM_SIZES_EXPONENTIAL:
+        return r > (double)d->min
+            ? 1 - demi_exp(-(r - (double)d->min)/((double)d->scale - (double)d->min)) : 0;
     case DEM_SIZES_WEIBULL:
         return r > 0 ? 1 - demi_exp(-demi_pow(r/(double)d->scale, d->modulus)) : 0;
     case DEM_SIZES_SIEVES:
@@ -16266,13 +16305,23 @@ static double demi_size_share(const dem_sizes *d, double r) {
 static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, double *lo,
                           double *hi) {
     const int sieves = d->kind == DEM_SIZES_SIEVES;
-    int k, good = (int)d->kind >= 0 && d->kind <= DEM_SIZES_SIEVES;
+    int k, good = (int)d->kind >= 0 && d->kind <= DEM_SIZES_EXPONENTIAL;
     *lo = (double)d->min;
     *hi = (double)d->max;
     if (d->kind == DEM_SIZES_LOGNORMAL) {
         good = good && d->median > 0 && d->spread > 0 && d->spread < 10;
         if (good && !(*lo > 0)) *lo = (double)d->median*demi_exp(-6*d->spread);
         if (good && !(*hi > 0)) *hi = (double)d->median*demi_exp(6*d->spread);
+    }
+    if (d->kind == DEM_SIZES_NORMAL) {
+        const double m = (double)d->median, far = 6*(double)d->deviation;
+        good = good && m > 0 && far > 0 && demi_finite(d->median) && demi_finite(d->deviation);
+        if (good && !(*lo > 0)) *lo = DEMI_MAX(m - far, m/1000);
+        if (good && !(*hi > 0)) *hi = m + far;
+    }
+    if (d->kind == DEM_SIZES_EXPONENTIAL) {
+        good = good && d->scale > d->min && demi_finite(d->scale);
+        if (good && !(*hi > 0)) *hi = *lo + ((double)d->scale - *lo)*-demi_log(1e-9);
     }
     if (d->kind == DEM_SIZES_WEIBULL) {
         good = good && d->scale > 0 && d->modulus > 0.05 && d->modulus < 1e3;
@@ -16298,8 +16347,9 @@ static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, do
                   (int)DEM_SIEVES);
     else
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sizes of kind %d with radii %g to %g m; must be "
-                  "0 < min <= max in m and finite, log-normal: median and spread > 0, Weibull: "
-                  "scale and modulus > 0; start from DEM_SIZES", call, (int)d->kind, *lo, *hi);
+                  "0 < min <= max in m and finite, log-normal: median and spread > 0, normal: "
+                  "median and deviation > 0, Weibull: scale and modulus > 0, exponential: scale > "
+                  "min; start from DEM_SIZES", call, (int)d->kind, *lo, *hi);
     return 0;
 }
 /* Share finer than r of the distribution between its ends. */
@@ -17021,12 +17071,81 @@ static int demi_box_bad(dem_box b, int planar) {
     return !demi_finite3(b.lo) || !demi_finite3(b.hi) || !(b.hi.x >= b.lo.x) ||
            !(b.hi.y >= b.lo.y) || (!planar && !(b.hi.z >= b.lo.z));
 }
+/* Index of the material of class k. */
+static int demi_feed_material(const dem_feed_desc *d, int k) {
+    return (d->materials[k].id ? d->materials[k].id : d->material.id) - 1;
+}
+/* The scale at which a shape has the volume of a sphere of this radius; the sphere around it. */
+static dem_real demi_feed_scale(const dem_world *w, const dem_feed_desc *d, int k,
+                                dem_real radius) {
+    return d->shapes[k].id ? radius/w->shapes[d->shapes[k].id - 1].equal : 1;
+}
+static dem_real demi_feed_reach(const dem_world *w, const dem_feed_desc *d, int k,
+                                dem_real radius) {
+    if (!d->shapes[k].id) return radius;
+    return w->shapes[d->shapes[k].id - 1].radius*demi_feed_scale(w, d, k, radius);
+}
+/* Sizes of class k, its mean mass; 0 with a sentence. */
+static int demi_feed_sizes(dem_world *w, const char *call, demi_feed *f, int k) {
+    const dem_sizes *d = f->desc.sizes[k];
+    const int m = demi_feed_material(&f->desc, k);
+    const double one = demi_sphere_mass(w, m, 1);
+    demi_size_table *t;
+    double mean = 0;
+    int i;
+    f->lo[k] = f->hi[k] = (double)f->desc.radius[k];
+    if (d && !demi_size_ends(w, call, d, &f->lo[k], &f->hi[k])) return 0;
+    if (demi_mass_refuse(w, call, m, (dem_real)f->lo[k], k) ||
+        demi_mass_refuse(w, call, m, (dem_real)f->hi[k], k)) return 0;
+    f->mass[k] = demi_sphere_mass(w, m, f->lo[k]);
+    f->desc.radius[k] = (dem_real)f->lo[k];     /* the smallest: for the time step */
+    if (!d) return 1;
+    f->desc.sizes[k] = 0;
+    t = (demi_size_table *)demi_alloc(w, 1, sizeof *t);
+    if (!t) { demi_no_memory(w, call); return 0; }
+    demi_size_table_make(w, d, f->lo[k], f->hi[k], t);
+    for (i = 0; i <= DEMI_FEED_SIZES; i++) {
+        const double b = t->at[i*(DEMI_SIZE_STEPS/DEMI_FEED_SIZES)];
+        const double a = i ? t->at[(i - 1)*(DEMI_SIZE_STEPS/DEMI_FEED_SIZES)] : b;
+        f->finer[k][i] = t->number[i*(DEMI_SIZE_STEPS/DEMI_FEED_SIZES)];
+        mean += (f->finer[k][i] - (i ? f->finer[k][i - 1] : 0))*
+            (w->desc.planar ? (a*a + a*b + b*b)/3 : (a + b)*(a*a + b*b)/4);
+    }
+    f->mass[k] = one*mean;
+    demi_free(w, t);
+    return 1;
+}
+/* A share of the number of class k is finer than this, m. */
+static double demi_feed_size(const demi_feed *f, int k, double share) {
+    const double step = demi_log(f->hi[k]/f->lo[k])/DEMI_FEED_SIZES, *finer = f->finer[k];
+    int lo = 0, hi = DEMI_FEED_SIZES;
+    double a, b;
+    if (!(f->hi[k] > f->lo[k]) || share < finer[0]) return f->lo[k];
+    while (hi - lo > 1) {
+        const int mid = (lo + hi)/2;
+        if (finer[mid] <= share) lo = mid;
+        else hi = mid;
+    }
+    a = f->lo[k]*demi_exp(lo*step);
+    b = f->lo[k]*demi_exp(hi*step);
+    return a + (b - a)*(share - finer[lo])/DEMI_MAX(finer[hi] - finer[lo], 1e-300);
+}
+/* 1 with a sentence when class k has a material or a shape that does not exist or that a wall does
+   not know. */
+static int demi_feed_strange(dem_world *w, const char *call, const dem_feed_desc *d, int k) {
+    int m;
+    if (d->materials[k].id &&
+        demi_material_index(w, call, d->materials[k], &m) != DEM_OK) return 1;
+    if (!d->shapes[k].id) return 0;
+    m = demi_shape_index(w, call, d->shapes[k]);
+    return m < 0 || demi_walls_strange(w, call, m);
+}
 DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     if (demi_null(w, "dem_feed_add", d, "desc")) return demi_no_feed;
     const char *call = "dem_feed_add";
     demi_feed feed;
     dem_feed id;
-    int k, m = 0;
+    int k, m = 0, shaped = 0;
     id.id = 0;
     if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
     if (d->class_count < 1 || d->class_count > DEM_CLASSES) {
@@ -17037,21 +17156,22 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     memset(&feed, 0, sizeof feed);
     feed.desc = *d;
     for (k = 0; k < d->class_count; k++) {
-        if (!(d->radius[k] > 0) || !demi_finite(d->radius[k]) || !(d->amount[k] > 0) ||
-            !(d->amount[k] < 1e15) || !demi_finite_double(d->amount[k])) {
+        if (demi_feed_strange(w, call, d, k)) return id;
+        if ((!d->sizes[k] && !(d->radius[k] > 0)) || !demi_finite(d->radius[k]) ||
+            !(d->amount[k] > 0) || !(d->amount[k] < 1e15) || !demi_finite_double(d->amount[k])) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has radius %g m and amount %g, must be "
                       "> 0 and finite; leave out classes that do not occur", call, k,
                       (double)d->radius[k], d->amount[k]);
             return id;
         }
-        if (demi_mass_refuse(w, call, m, d->radius[k], k)) return id;
-        feed.mass[k] = demi_sphere_mass(w, m, (double)d->radius[k]);
+        if (!demi_feed_sizes(w, call, &feed, k)) return id;
+        shaped |= d->shapes[k].id > 0;
         if (d->limited) {
             const double count = d->amount[k]/(d->by_mass ? feed.mass[k] : 1) + 0.5;
             if (!(count >= 1 && count < 1e15)) {
                 demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class %d has amount %g, which is %.3g grains "
-                          "of radius %g m, must be 1 to 1e15; check amount and by_mass", call, k,
-                          d->amount[k], count - 0.5, (double)d->radius[k]);
+                          "of %g kg, must be 1 to 1e15; check amount and by_mass", call, k,
+                          d->amount[k], count - 0.5, feed.mass[k]);
                 return id;
             }
             feed.limit[k] = (uint64_t)count;
@@ -17073,7 +17193,8 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
                   "region where centres of new grains are", call);
         return id;
     }
-    if (!DEMI_GROW(w, w->feeds, (size_t)w->feed_count + 1)) {
+    if (!DEMI_GROW(w, w->feeds, (size_t)w->feed_count + 1) ||
+        (shaped && (!demi_list_drop(w) || !demi_orient_begin(w)))) {
         demi_no_memory(w, call);
         return id;
     }
@@ -17090,9 +17211,9 @@ static int demi_feed_left(const demi_feed *f) {              /* is there anythin
     for (k = 0; k < f->desc.class_count && !more; k++) more = f->limit[k] > f->state.fed[k];
     return more;
 }
-/* Draws the class of the next grain: by what is left of each, where that is limited, else by the
-   share of each in numbers. */
-static void demi_feed_draw(demi_feed *f) {
+/* Draws the next grain. Its class: by what is left of each, where that is limited, else by the
+   share of each in numbers; then its size and orientation, where they are not given. */
+static void demi_feed_draw(const dem_world *w, demi_feed *f) {
     double weight[DEM_CLASSES], sum = 0, at;
     const int n = f->desc.class_count;
     int k;
@@ -17105,6 +17226,12 @@ static void demi_feed_draw(demi_feed *f) {
     for (k = 0; k < n - 1 && at >= weight[k]; k++) at -= weight[k];
     while (k > 0 && !(weight[k] > 0)) k--;      /* round-off at the end */
     f->next = k;
+    f->drawn.radius = (dem_real)(f->hi[k] > f->lo[k]
+                                 ? demi_feed_size(f, k, demi_uniform(&f->random)) : f->lo[k]);
+    f->drawn.reach = demi_feed_reach(w, &f->desc, k, f->drawn.radius);
+    f->drawn.mass = demi_sphere_mass(w, demi_feed_material(&f->desc, k), (double)f->drawn.radius);
+    f->drawn.orientation = f->desc.shapes[k].id ? demi_quat_random(&f->random)
+                                                : dem_quat_make(1, 0, 0, 0);
 }
 /* Who feeds: looks at who is near a feed's region, then puts in grains of the class drawn, as long
    as it answers 1; 0: no room; less: minus the result, the sentence is told, nothing happened. */
@@ -17124,13 +17251,16 @@ static int demi_feed_try(const dem_world *w, demi_feed *f, const demi_region *g,
                 d->velocity.y + d->spread*(dem_real)(2*u[4] - 1),
                 d->velocity.z + d->spread*(dem_real)(2*u[5] - 1));
     if (w->desc.planar) v->z = 0;
-    return demi_region_at(g, u, d->radius[f->next], x);
+    return demi_region_at(g, u, f->drawn.reach, x);
 }
 /* The grain of the class drawn becomes a body; room has been seen to. Answers its index. */
 static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_vec3 v) {
-    const dem_feed_desc *d = &f->desc;
-    const uint32_t slot = demi_body_append(w, d->material.id - 1, d->radius[f->next], x);
+    const int k = (int)f->next, shape = f->desc.shapes[k].id;
+    const uint32_t slot = demi_body_append(w, demi_feed_material(&f->desc, k), f->drawn.radius, x);
     const int i = w->bodies.slot_index[slot];
+    if (shape)
+        demi_body_shape(w, i, shape - 1, demi_feed_scale(w, &f->desc, k, f->drawn.radius),
+                        f->drawn.orientation);
     demi_put(w->bodies.vel + 4*i, v);
     demi_put(w->bodies.half_vel + 4*i, v);
     w->booked.inserted += demi_body_energy(w, i);
@@ -17141,7 +17271,7 @@ static int demi_feed_append(dem_world *w, const demi_feed *f, dem_vec3 x, dem_ve
 static void demi_feed_count(demi_feed *f) {
     f->state.fed[f->next]++;
     f->state.total++;
-    f->state.mass += f->mass[f->next];
+    f->state.mass += f->drawn.mass;
     f->next = -1;
 }
 /* A world that feeds, and who is near the region. */
@@ -17156,8 +17286,7 @@ static dem_result demi_world_look(void *who, const demi_region *g, dem_real radi
 static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
     dem_world *w = ((demi_world_feeder *)who)->w;
     demi_crowd *c = &((demi_world_feeder *)who)->crowd;
-    const dem_feed_desc *d = &f->desc;
-    const dem_real r = d->radius[f->next];
+    const dem_real r = f->drawn.reach;
     const uint64_t random = f->random;
     dem_vec3 x, v;
     int32_t found[DEMI_FEED_NEAR];
@@ -17166,7 +17295,8 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
         free_place = demi_feed_try(w, f, g, &x, &v) && demi_room_free(w, c, x, r);
     if (!free_place) return 0;
     x = demi_place_of(&c->p, x);
-    joins = demi_join_possible(w, d->material.id - 1, r);
+    joins = !f->desc.shapes[f->next].id &&
+        demi_join_possible(w, demi_feed_material(&f->desc, (int)f->next), r);
     /* one that joins may stand at the half step, too */
     if (!joins || !w->stage.primed) demi_finish(w);
     if (joins)
@@ -17216,8 +17346,8 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
             int done;
             if (f->next < 0) {
                 const uint64_t random = f->random;
-                demi_feed_draw(f);
-                if (d->by_mass ? f->state.mass + f->mass[f->next] > due + rounded
+                demi_feed_draw(w, f);
+                if (d->by_mass ? f->state.mass + f->drawn.mass > due + rounded
                     : (double)f->state.total + 1 > due + rounded) {
                     f->random = random;         /* not yet: drawn again when it is */
                     f->next = -1;
@@ -17226,7 +17356,10 @@ static dem_result demi_feeds_run(dem_world *w, const demi_feeder *feeder) {
             }
             if (!looked) {
                 dem_real r = 0;
-                for (k = 0; k < d->class_count; k++) r = DEMI_MAX(r, d->radius[k]);
+                for (k = 0; k < d->class_count; k++) {
+                    const dem_real reach = demi_feed_reach(w, d, k, (dem_real)f->hi[k]);
+                    r = DEMI_MAX(r, reach);
+                }
                 demi_feed_region(w, d, &g);
                 result = feeder->look(feeder->who, &g, r + demi_cover(w));
                 if (result != DEM_OK) return result;
@@ -17524,14 +17657,15 @@ static double demi_speed_estimate(const dem_world *w) {
 /* The radius of the sphere that stands for a body when contact times are looked for. Not a sphere:
    one as light as a contact may find the body at worst; for Hertz, whose time goes with
    (m^2/R)^(1/5), lighter still by the root of how much blunter the body is somewhere. */
+static double demi_advise_shape(const dem_world *w, const demi_shape *shape, double equal) {
+    const double scale = equal/(double)shape->equal, r = equal*demi_pow(shape->light, 1.0/3);
+    const double sharp = r/((double)shape->blunt*scale);
+    return demi_normal_is(w, DEMI_HERTZIAN) && sharp < 1 ? r*demi_pow(sharp, 1.0/6) : r;
+}
 static double demi_advise_radius(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
-    double r = (double)w->bodies.pos[4*body + 3], scale, sharp;
-    if (!shape) return r;
-    scale = r/(double)shape->radius;
-    r = (double)shape->equal*scale*demi_pow(shape->light, 1.0/3);
-    sharp = r/((double)shape->blunt*scale);
-    return demi_normal_is(w, DEMI_HERTZIAN) && sharp < 1 ? r*demi_pow(sharp, 1.0/6) : r;
+    const double r = (double)w->bodies.pos[4*body + 3];
+    return shape ? demi_advise_shape(w, shape, (double)shape->equal*(r/(double)shape->radius)) : r;
 }
 /* The largest step at which x'' = -omega2 x - rate x' keeps still by velocity Verlet with predicted
    velocities: omega2 dt^2/4 + rate dt = 1, s. (For the other integrators about the same.) */
@@ -17593,9 +17727,11 @@ static void demi_grades_of(const dem_world *w, demi_grades *g) {
     }
     for (i = 0; i < w->feed_count; i++) {
         const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
-        const int m = d->material.id - 1;
         for (j = 0; j < d->class_count; j++) {
-            const double r = (double)d->radius[j];
+            const int m = demi_feed_material(d, j);
+            const double r = d->shapes[j].id
+                ? demi_advise_shape(w, &w->shapes[d->shapes[j].id - 1], (double)d->radius[j])
+                : (double)d->radius[j];
             if (!g->many[m] || r < g->smallest[m]) g->smallest[m] = r;
             g->many[m] += 2;
         }
@@ -18048,12 +18184,15 @@ static void demi_find(demi_findings *f, dem_severity severity, const char *forma
 
 /* Units and sizes of matter. */
 static void demi_check_materials(const dem_world *w, demi_findings *f) {
-    int used[DEMI_MATERIALS], i;
+    int used[DEMI_MATERIALS], i, k;
     memset(used, 0, sizeof used);
     for (i = 0; i < w->bodies.count; i++) used[w->bodies.material[i] - 1] = 1;
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE) used[w->walls[i].material] = 1;
-    for (i = 0; i < w->feed_count; i++) used[demi_feed_at(w, i)->desc.material.id - 1] = 1;
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < d->class_count; k++) used[demi_feed_material(d, k)] = 1;
+    }
     for (i = 0; i < w->material_count; i++) {
         const dem_material_desc *m = &w->materials[i];
         if (!used[i])
@@ -21952,6 +22091,10 @@ static uint64_t demi_digest_feed(const dem_world *w, int i) {
     h = demi_hash(h, when, sizeof when);
     h = demi_hash(h, f->radius, sizeof f->radius);
     h = demi_hash(h, f->amount, sizeof f->amount);
+    h = demi_hash(h, f->materials, sizeof f->materials);
+    h = demi_hash(h, f->shapes, sizeof f->shapes);
+    h = demi_hash(h, demi_feed_at(w, i)->hi, sizeof f->amount);
+    h = demi_hash(h, demi_feed_at(w, i)->finer, sizeof demi_feed_at(w, i)->finer);
     h = demi_hash(h, &f->box, sizeof f->box);
     h = demi_hash(h, &f->velocity, sizeof f->velocity);
     h = demi_hash(h, &f->spread, sizeof f->spread);
@@ -22133,6 +22276,7 @@ static void demi_visit_measured(dem_world *w, demi_stream *s) {
         demi_visit(s, &f->state, sizeof f->state);
         demi_visit(s, &f->random, sizeof f->random);
         demi_visit(s, &f->next, sizeof f->next);
+        demi_visit(s, &f->drawn, sizeof f->drawn);
         demi_visit(s, &f->again, sizeof f->again);
     }
     for (i = 0; i < w->outlet_count; i++)
@@ -23603,11 +23747,13 @@ DEM_INLINE int demi_met(const dem_world *w, int i, int j) {
 }
 /* Materials of which there are grains, or will be, and of which there are walls, bit by bit. */
 static void demi_made_of(const dem_world *w, uint64_t *grains, uint64_t *walls) {
-    int i;
+    int i, k;
     *grains = *walls = 0;
     for (i = 0; i < w->bodies.count; i++) *grains |= UINT64_C(1) << (w->bodies.material[i] - 1);
-    for (i = 0; i < w->feed_count; i++)
-        *grains |= UINT64_C(1) << (demi_feed_at(w, i)->desc.material.id - 1);
+    for (i = 0; i < w->feed_count; i++) {
+        const dem_feed_desc *d = &demi_feed_at(w, i)->desc;
+        for (k = 0; k < d->class_count; k++) *grains |= UINT64_C(1) << demi_feed_material(d, k);
+    }
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE) *walls |= UINT64_C(1) << w->walls[i].material;
 }
@@ -25700,7 +25846,7 @@ static dem_result demi_slabs_feed_room(dem_slabs *s, demi_slab *owner, dem_vec3 
 static int demi_slabs_put(void *who, demi_feed *f, const demi_region *g) {
     dem_slabs *s = (dem_slabs *)who;
     dem_world *h = &s->head;
-    const dem_real r = f->desc.radius[f->next];
+    const dem_real r = f->drawn.reach;
     const demi_periods p = demi_periods_of(h);
     const uint64_t random = f->random;
     uint64_t after[DEMI_FEED_TRIES];
@@ -25941,6 +26087,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
         !demi_slab_shapes(w, from, first) ||
         !demi_slab_walls(w, from, first) || !demi_slab_fields(w, from, index == 0) ||
         !demi_slab_outlets_copy(w, from)) return w;
+    s->head.shapes = w->shapes;                 /* for what feeds draw */
+    s->head.shape_count = w->shape_count;
     memset(w->bodies.slot_index, 0xff, slots*sizeof(int32_t));
     if (slots) memcpy(w->bodies.slot_generation, from->bodies.slot_generation,
                       slots*sizeof(uint32_t));

@@ -540,6 +540,126 @@ int main(int argc, char **argv) {
         remove(path);
     }
 
+    TEST("a mixture: classes of their own material and shape, sizes drawn from distributions, come by their shares, in all "
+         "orientations, with the mass of their volume") {
+        dem_world *world = world_of(0, 1e-4);
+        const dem_material plastic = soft(world, 1), metal = soft(world, 1);
+        dem_sizes fine_sizes = DEM_SIZES, wide = DEM_SIZES;
+        dem_feed_desc d = feed_of(plastic, 0);
+        dem_real points[24];
+        dem_feed_state s;
+        dem_feed feed;
+        double sum[3] = {0, 0, 0}, square[3] = {0, 0, 0}, mass = 0, up = 0;
+        int count[3] = {0, 0, 0}, i;
+        for (i = 0; i < 24; i++) points[i] = (dem_real)((i%3 == 0 ? i/3 & 1 : i%3 == 1 ? i/3 & 2 : i/3 & 4) ? 1 : -1);
+        fine_sizes.kind = DEM_SIZES_EXPONENTIAL;
+        fine_sizes.by_count = 1;
+        fine_sizes.min = DEM_R(0.001);
+        fine_sizes.scale = DEM_R(0.0015);
+        wide.kind = DEM_SIZES_NORMAL;
+        wide.by_count = 1;
+        wide.median = DEM_R(0.002);
+        wide.deviation = DEM_R(0.0002);
+        d.rate = 20000;
+        d.spread = 0;
+        d.velocity = at(0, 0, 0);
+        d.box = box_of(-0.2, -0.2, 0, 0.2, 0.2, 0.1);
+        d.materials[1] = d.materials[2] = metal;
+        d.shapes[1] = dem_shape_ellipsoid_add(world, at(1, 1, 2));
+        d.shapes[2] = dem_shape_polyhedron_add(world, 8, points);
+        d.sizes[0] = &fine_sizes;
+        d.sizes[2] = &wide;
+        feed = dem_feed_add(world, &d);
+        CHECK(feed.id);
+        memset(&fine_sizes, 0, sizeof fine_sizes);      /* copied */
+        for (i = 0; i < 2000; i++) {
+            if (scene_step(world, 1) != DEM_OK) { CHECK(0); break; }
+            while (dem_balance_get(world).present) {
+                const dem_bodies b = dem_bodies_get(world);
+                const dem_body id = dem_bodies_id(world, 0);
+                const int k = b.shapes[0];
+                const double r = cbrt((double)b.masses[0]/2500*3/4/3.14159265358979);
+                CHECK_EQ(b.materials[0], k ? metal.id : plastic.id);
+                sum[k] += r;
+                square[k] += r*r;
+                count[k]++;
+                mass += (double)b.masses[0];
+                if (k == 1) up += pow((double)dem_quat_rotate(scene_state(world, id).orientation, at(0, 0, 1)).z, 2);
+                dem_body_remove(world, id);
+            }
+        }
+        dem_feed_get(world, feed, &s);
+        CHECK_EQ(s.total, count[0] + count[1] + count[2]);
+        CHECK_NEAR(s.mass/mass, 1, 1e-6);
+        CHECK(s.total > 3500);
+        for (i = 0; i < 3; i++) {
+            const double share = (3 - i)/6.0, n = (double)s.total;
+            CHECK_EQ(s.fed[i], count[i]);
+            CHECK_NEAR(count[i]/n, share, 4*sqrt(share*(1 - share)/n));
+        }
+        /* Zhang's: mean 1.5 mm, deviation the mean over the least; normal: 2 mm and .2 mm */
+        CHECK_NEAR(sum[0]/count[0]*1e3, 1.5, 4*0.5/sqrt(count[0]));
+        CHECK_NEAR(sqrt(square[0]/count[0] - pow(sum[0]/count[0], 2))*1e3, 0.5, 0.06);
+        CHECK_NEAR(sum[1]/count[1]*1e3, 3, 1e-3);
+        CHECK_NEAR(sum[2]/count[2]*1e3, 2, 4*0.2/sqrt(count[2]));
+        CHECK_NEAR(sqrt(square[2]/count[2] - pow(sum[2]/count[2], 2))*1e3, 0.2, 0.02);
+        CHECK_NEAR(up/count[1], 1.0/3, 4*0.3/sqrt(count[1]));
+        dem_world_destroy(world);
+    }
+
+    TEST("a mixture goes on from a checkpoint, and in slabs, with the bits of the run that did not stop; walls that do not know "
+         "what it will bring are refused") {
+        const char *path = "build/tmp/mixture.dem";
+        uint64_t hash[3];
+        int k;
+        for (k = 0; k < 3; k++) {
+            dem_world *world[2];
+            int part;
+            for (part = 0; part < 2; part++) {
+                dem_material stuff;
+                dem_sizes sizes = DEM_SIZES;
+                dem_sieve_desc sieve = DEM_SIEVE_DESC;
+                dem_feed_desc d;
+                world[part] = world_of(9.81, 5e-6);
+                stuff = soft(world[part], 1e3);
+                d = feed_of(stuff, 20000);
+                sizes.kind = DEM_SIZES_LOGNORMAL;
+                sizes.median = DEM_R(0.003);
+                sizes.spread = 0.2;
+                d.sizes[0] = d.sizes[1] = &sizes;
+                d.shapes[1] = dem_shape_ellipsoid_add(world[part], at(1, 1, 1.5));
+                dem_plane_add(world[part], stuff, at(0, 0, 0.19), at(0, 0, 1));
+                CHECK(dem_feed_add(world[part], &d).id);
+                sieve.kind = DEM_SIEVE_SQUARE;
+                sieve.aperture = DEM_R(0.01);
+                sieve.bar = DEM_R(0.002);
+                CHECK(!dem_sieve_add(world[part], stuff, &sieve).id);
+                CHECK_STR(dem_world_error(world[part]), "ellipsoid");
+            }
+            CHECK_EQ(scene_step(world[0], 800), DEM_OK);
+            if (k == 1) {
+                CHECK_EQ(dem_checkpoint_write(world[0], path), DEM_OK);
+                CHECK_EQ(dem_checkpoint_read(world[1], path), DEM_OK);
+                CHECK_EQ(scene_step(world[1], 800), DEM_OK);
+                remove(path);
+            } else if (k == 2) {
+                dem_slabs_desc desc = DEM_SLABS_DESC;
+                dem_slabs *slabs;
+                desc.count = 1;
+                slabs = dem_slabs_create(world[0], &desc);
+                CHECK_EQ(dem_slabs_step(slabs, 800), DEM_OK);
+                CHECK_EQ(dem_slabs_collect(slabs, world[0]), DEM_OK);
+                dem_slabs_destroy(slabs);
+            } else CHECK_EQ(scene_step(world[0], 800), DEM_OK);
+            CHECK(dem_balance_get(world[k == 1]).present > 50);
+            CHECK_EQ(dem_search_now(world[k == 1]), DEM_OK);
+            hash[k] = dem_world_hash(world[k == 1]);
+            CHECK(hash[k] == hash[0]);
+            dem_world_destroy(world[0]);
+            dem_world_destroy(world[1]);
+        }
+    }
+
     TEST("feeds and outlets with bad values are refused by name") {
         dem_world *world = world_of(0, 1e-3);
         dem_material stuff = soft(world, 1);

@@ -91,6 +91,26 @@ int main(int argc, char **argv) {
         d.modulus = 2.5;
         d.min = DEM_R(1e-5);
         CHECK_NEAR(dem_sizes_finer(world, &d, d.scale), 1 - exp(-1.0), 1e-5);
+        memset(&d, 0, sizeof d);
+        d.kind = DEM_SIZES_NORMAL;
+        d.median = DEM_R(0.002);
+        d.deviation = DEM_R(0.0003);
+        CHECK_NEAR(dem_sizes_finer(world, &d, d.median), 0.5, 1e-6);
+        CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(0.0023)), 0.8413447460685429, 1e-6);
+        d.kind = DEM_SIZES_EXPONENTIAL;         /* min 1 mm, mean 3 mm */
+        d.by_count = 1;
+        d.min = DEM_R(0.001);
+        d.scale = DEM_R(0.003);
+        CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(0.003)), 1 - exp(-1.0), 1e-6);
+        CHECK_EQ(dem_sizes_draw(world, &d, many, 0, radii), DEM_OK);
+        {
+            double sum = 0;
+            for (i = 0; i < many; i++) sum += (double)radii[i]/many;
+            CHECK_REL(sum, 0.003, 1e-3);
+        }
+        d.scale = d.min;
+        CHECK_NEAR(dem_sizes_finer(world, &d, d.median), -1, 0);
+        CHECK_STR(dem_world_error(world), "exponential");
         d = sieves();
         CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(0.49e-3)), 0, 0);
         CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(0.5e-3)), 0.1, 1e-9);
