@@ -1302,6 +1302,11 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc
    each other by what they share (>>polyhedra), spheres and ellipsoids where they are nearest. */
 enum { DEM_POLYHEDRON_FACES = 100 };
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
+/* The hull of a mesh (dem_mesh_read: STL, OBJ), if the mesh lies nowhere deeper inside it than dent
+   (m, >= 0; 0: it must be convex, but for round-off). If it does: a null id, and the sentence says
+   where. Null id as above. */
+struct dem_mesh;
+DEM_API dem_shape dem_shape_mesh_add(dem_world *world, const struct dem_mesh *mesh, dem_real dent);
 
 typedef struct dem_shape_info {
     int spheres;                 /* of a cluster; 0: an ellipsoid or a polyhedron */
@@ -1987,6 +1992,17 @@ DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh);
    error, and the mesh stays as it was. A rotation of zeros: none. */
 DEM_API dem_result dem_mesh_place(dem_world *world, dem_mesh *mesh, dem_real scale,
                                   dem_quat rotation, dem_vec3 to);
+/* A machine from CAD: named parts of a file (STL as text, OBJ), each to be a wall of its own, of its
+   material, with its motion. The file's lengths times scale are m (0: 1). walls: count ids; null:
+   not asked. A part that the file does not have, and what a wall or motion is refused for, is an
+   error; then no wall is added. */
+typedef struct dem_part {
+    const char *name;
+    dem_material material;
+    dem_motion motion;        /* DEM_MOTION: it stands still */
+} dem_part;
+DEM_API dem_result dem_parts_add(dem_world *world, const char *path, dem_real scale, int count,
+                                 const dem_part *parts, dem_wall *walls);
 /* Reads segments from [MIL]'s text format in 2-D: counts; x y per vertex; two corners counted from
    1. */
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile);
@@ -5283,19 +5299,18 @@ static int demi_polyhedra_strange(dem_world *w, const char *call) {
               "a cluster of spheres in their place; nothing was added", call, what);
     return 1;
 }
-DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_real *points) {
-    const char *call = "dem_shape_polyhedron_add";
-    if (demi_null(w, call, w, "world")) return demi_no_shape;
+/* The hull of points, complete but for being one of the world's shapes; 0 with a sentence. */
+static int demi_polyhedron_of(dem_world *w, const char *call, int count, const dem_real *points,
+                              demi_shape *shape) {
     dem_vec3 lo, hi, middle;
     demi_hull h;
-    demi_shape shape;
     double *x;
     int i, k, made = 0;
-    if (demi_shape_planar(w, call) || demi_polyhedra_strange(w, call)) return demi_no_shape;
+    if (demi_shape_planar(w, call) || demi_polyhedra_strange(w, call)) return 0;
     if (count < 4 || count > 10000 || !points) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 4 to 10000 with points (count x "
                   "3)", call, count);
-        return demi_no_shape;
+        return 0;
     }
     lo = hi = demi_at(points);
     for (i = 0; i < count; i++) {
@@ -5303,14 +5318,14 @@ DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_re
         if (!demi_finite3(p)) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g, %g) m, must be finite", call,
                       i, (double)p.x, (double)p.y, (double)p.z);
-            return demi_no_shape;
+            return 0;
         }
         lo = demi_v(DEMI_MIN(lo.x, p.x), DEMI_MIN(lo.y, p.y), DEMI_MIN(lo.z, p.z));
         hi = demi_v(DEMI_MAX(hi.x, p.x), DEMI_MAX(hi.y, p.y), DEMI_MAX(hi.z, p.z));
     }
     memset(&h, 0, sizeof h);
-    memset(&shape, 0, sizeof shape);
-    shape.kind = DEMI_POLYHEDRON;
+    memset(shape, 0, sizeof *shape);
+    shape->kind = DEMI_POLYHEDRON;
     h.count = count;
     middle = demi_scale(demi_add(lo, hi), DEM_R(0.5));
     x = (double *)demi_alloc(w, 3*(size_t)count, sizeof(double));
@@ -5323,14 +5338,69 @@ DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_re
             for (k = 0; k < 3; k++)
                 x[3*i + k] = (double)points[3*i + k] -
                     (double)(k == 0 ? middle.x : k == 1 ? middle.y : middle.z);
-        made = demi_polyhedron_make(w, call, &h, (double)demi_length(demi_sub(hi, lo)), &shape);
+        made = demi_polyhedron_make(w, call, &h, (double)demi_length(demi_sub(hi, lo)), shape);
     }
     demi_free(w, x);
     demi_free(w, h.first);
     demi_free(w, h.faces);
-    if (!made) { demi_shape_free(w, &shape); return demi_no_shape; }
-    demi_polyhedron_bounds(&shape);
-    shape.centre = demi_add(shape.centre, middle);
+    if (!made) { demi_shape_free(w, shape); return 0; }
+    demi_polyhedron_bounds(shape);
+    shape->centre = demi_add(shape->centre, middle);
+    return 1;
+}
+DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_real *points) {
+    const char *call = "dem_shape_polyhedron_add";
+    demi_shape shape;
+    if (demi_null(w, call, w, "world")) return demi_no_shape;
+    if (!demi_polyhedron_of(w, call, count, points, &shape)) return demi_no_shape;
+    return demi_shape_adopt(w, call, &shape);
+}
+/* How far below the faces of a shape a place of its own frame is, m. */
+static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
+    const dem_vec3 x = dem_quat_unrotate(s->frame, demi_sub(at, s->centre));
+    double least = 1e300;
+    int f;
+    for (f = 0; f < s->faces; f++) {
+        const double *a = s->hull + 4*f;
+        const double u = 1 - (a[0]*(double)x.x + a[1]*(double)x.y + a[2]*(double)x.z);
+        least = DEMI_MIN(least, u*a[3]);
+    }
+    return (dem_real)least;
+}
+DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_real dent) {
+    const char *call = "dem_shape_mesh_add";
+    demi_shape shape;
+    dem_vec3 place = demi_v(0, 0, 0);
+    dem_real most = 0;
+    int i, k;
+    if (demi_null(w, call, mesh, "mesh")) return demi_no_shape;
+    if (!(dent >= 0) || !demi_finite(dent)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: dent is %g m, must be >= 0 and finite", call,
+                  (double)dent);
+        return demi_no_shape;
+    }
+    if (!demi_polyhedron_of(w, call, mesh->vertex_count, mesh->vertices, &shape))
+        return demi_no_shape;
+    for (i = 0; i < 3*mesh->triangle_count; i++) {      /* corners, sides' middles, triangles' */
+        const int32_t *t = mesh->triangles + i/3*3;
+        dem_vec3 x[3], at[3];
+        for (k = 0; k < 3; k++) x[k] = demi_at(mesh->vertices + 3*t[(i + k)%3]);
+        at[0] = x[0];
+        at[1] = demi_scale(demi_add(x[0], x[1]), DEM_R(0.5));
+        at[2] = demi_scale(demi_add(demi_add(x[0], x[1]), x[2]), DEM_R(1)/3);
+        for (k = 0; k < 3; k++) {
+            const dem_real deep = demi_polyhedron_depth(&shape, at[k]);
+            if (deep > most) { most = deep; place = at[k]; }
+        }
+    }
+    if (most > dent + shape.radius*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-8))) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is not convex: at (%g, %g, %g) m it lies "
+                  "%.3g m inside its hull, more than dent, %g m; cut it into convex pieces, take a "
+                  "cluster of spheres, or let dent be larger to have the hull", call,
+                  (double)place.x, (double)place.y, (double)place.z, (double)most, (double)dent);
+        demi_shape_free(w, &shape);
+        return demi_no_shape;
+    }
     return demi_shape_adopt(w, call, &shape);
 }
 
@@ -20789,6 +20859,44 @@ DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, 
         demi_put(mesh->vertices + 3*i, demi_add(to,
                  dem_quat_rotate(q, demi_scale(demi_at(mesh->vertices + 3*i), scale))));
     return DEM_OK;
+}
+/* One part of a machine as a wall; null id with a sentence. */
+static dem_wall demi_part_wall(dem_world *w, const char *path, dem_real scale,
+                               const dem_part *part) {
+    dem_wall wall = demi_no_wall;
+    dem_mesh mesh;
+    if (dem_mesh_part_read(w, path, part->name, &mesh, 0) != DEM_OK) return wall;
+    if (dem_mesh_place(w, &mesh, scale, dem_quat_make(0, 0, 0, 0), demi_v(0, 0, 0)) == DEM_OK)
+        wall = dem_mesh_add(w, part->material, &mesh);
+    dem_mesh_free(w, &mesh);
+    if (!wall.id || dem_wall_motion(w, wall, &part->motion) == DEM_OK) return wall;
+    dem_wall_remove(w, wall);
+    return demi_no_wall;
+}
+DEM_API dem_result dem_parts_add(dem_world *w, const char *path, dem_real scale, int count,
+                                 const dem_part *parts, dem_wall *walls) {
+    const char *call = "dem_parts_add";
+    char sentence[sizeof w->error];
+    int i, first;
+    if (demi_null(w, call, parts, "parts")) return DEM_ERROR_ARGUMENT;
+    if (count < 1)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be > 0", call, count);
+    first = w->wall_count;
+    for (i = 0; i < count; i++) {
+        const dem_wall wall = demi_part_wall(w, path, scale > 0 || scale < 0 ? scale : 1,
+                                             parts + i);
+        if (!wall.id) break;
+        if (walls) walls[i] = wall;
+    }
+    if (i == count) return DEM_OK;
+    memcpy(sentence, w->error, sizeof sentence);
+    while (w->wall_count > first) {             /* those before it go again */
+        const dem_wall last = {w->wall_count};
+        if (w->walls[last.id - 1].kind != DEMI_WALL_NONE) dem_wall_remove(w, last);
+        w->wall_count--;
+    }
+    for (i = 0; i < count && walls; i++) walls[i] = demi_no_wall;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %.440s", call, sentence);
 }
 
 /* What was read as a mesh of width 2, as a profile. */

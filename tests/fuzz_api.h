@@ -379,6 +379,19 @@ static void fuzz_cluster(fuzz_machine *m) {
     fuzz_say(m, "dem_shape_cluster_add: %d spheres, mass %d", d.count, (int)d.mass);
     if (fuzz_id(m, dem_shape_cluster_add(m->world, &d).id)) m->shapes++;
 }
+/* The hull of points in a box, some of them in one plane, or twice at one place. */
+static void fuzz_polyhedron(fuzz_machine *m) {
+    dem_real x[3*24];
+    const int n = 4 + fuzz_below(m, 21), how = fuzz_below(m, 4);
+    int i;
+    for (i = 0; i < n; i++) {
+        const dem_vec3 v = fuzz_vector(m, -1e-3, 1e-3);
+        x[3*i] = v.x; x[3*i + 1] = v.y; x[3*i + 2] = how == 1 && i%2 ? DEM_R(-1e-3) : v.z;
+        if (how == 2 && i > 3 && i%3 == 0) memcpy(x + 3*i, x + 3*(i - 2), 3*sizeof *x);
+    }
+    fuzz_say(m, "dem_shape_polyhedron_add: %d points, %d", n, how);
+    if (fuzz_id(m, dem_shape_polyhedron_add(m->world, n, x).id)) m->shapes++;
+}
 
 /* ---- calls: walls ---- */
 static void fuzz_wall_new(fuzz_machine *m, dem_wall id) {
@@ -528,6 +541,7 @@ static dem_box fuzz_box(fuzz_machine *m) {
     return b;
 }
 static void fuzz_feed(fuzz_machine *m) {
+    dem_sizes sizes = DEM_SIZES;
     dem_feed_desc d;
     int k;
     memset(&d, 0, sizeof d);
@@ -547,8 +561,16 @@ static void fuzz_feed(fuzz_machine *m) {
     d.velocity = fuzz_vector(m, -0.5, 0.5);
     d.spread = fuzz_below(m, 2) ? DEM_R(0.3) : 0;
     d.seed = (uint64_t)fuzz_below(m, 1000);
-    fuzz_say(m, "dem_feed_add: classes %d, limited %d, by_mass %d, rate %g, start %g, end %g", d.class_count,
-             d.limited, d.by_mass, d.rate, d.start, d.end);
+    sizes.kind = DEM_SIZES_NORMAL;
+    sizes.median = DEM_R(8e-4);
+    sizes.deviation = DEM_R(1e-4);
+    for (k = 0; k < d.class_count && !fuzz_below(m, 3); k++) {      /* a mixture */
+        if (fuzz_below(m, 2)) d.materials[k] = fuzz_material(m);
+        if (m->shapes && fuzz_below(m, 2)) d.shapes[k].id = 1 + fuzz_below(m, m->shapes);
+        if (fuzz_below(m, 2)) d.sizes[k] = &sizes;
+    }
+    fuzz_say(m, "dem_feed_add: classes %d, limited %d, by_mass %d, rate %g, start %g, end %g, shape %d", d.class_count,
+             d.limited, d.by_mass, d.rate, d.start, d.end, (int)d.shapes[0].id);
     if (fuzz_id(m, dem_feed_add(m->world, &d).id)) m->feeds++;
 }
 static void fuzz_outlet(fuzz_machine *m) {
@@ -1402,6 +1424,7 @@ static const struct fuzz_kind { const char *name; void (*play)(fuzz_machine *m);
     {"pair", fuzz_pair_set, 4, FUZZ_SCENE | FUZZ_GRAINS},
     {"ellipsoid", fuzz_ellipsoid, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_SHAPES},
     {"cluster", fuzz_cluster, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_SHAPES},
+    {"polyhedron", fuzz_polyhedron, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_SHAPES},
     {"plane", fuzz_plane, 4, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
     {"cylinder", fuzz_cylinder, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
     {"profile", fuzz_profile, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},

@@ -761,5 +761,54 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_mesh_part_read(world, "build/tmp/none.stl", "lid", &mesh, 0), DEM_ERROR_FILE);
         dem_world_destroy(world);
     }
+    TEST("a machine is named parts of one file, each a wall with its material and motion; where one is refused none is added, "
+         "and the sentence says why") {
+        static const char obj[] = "o shell\nv 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\ng lid\nv 0 0 5\nv 2 0 5\nv 2 2 5\nf 4 5 6\n";
+        static const char name[] = "build/tmp/machine.obj";
+        const dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world = dem_world_create(&desc);
+        dem_part part[2];
+        dem_wall wall[2];
+        dem_pose pose;
+        dem_material steel;
+        uint64_t before;
+        FILE *f = fopen(name, "wb");
+        CHECK(f != 0);
+        if (f) { fputs(obj, f); fclose(f); }
+        steel = scene_material(world, 1e7, 0.5, 0.3, 0);
+        memset(part, 0, sizeof part);
+        part[0].name = "shell";
+        part[1].name = "lid";
+        part[0].material = part[1].material = steel;
+        part[1].motion.kind = DEM_MOTION_TRANSLATING;
+        part[1].motion.velocity = at(0, 0, 2);
+        CHECK_EQ(dem_parts_add(world, name, DEM_R(1e-3), 2, part, wall), DEM_OK);
+        CHECK(wall[0].id == 1 && wall[1].id == 2);
+        CHECK_NEAR((double)world->walls[0].box.hi.x, 1, 1e-6);
+        dem_sphere_add(world, steel, DEM_R(0.01), at(0.5, 0.5, 0.5));
+        CHECK_EQ(dem_world_run_to(world, 0.01, 0, 0), DEM_OK);
+        dem_wall_pose(world, wall[1], &pose);
+        CHECK_NEAR((double)pose.position.z - (double)world->walls[1].home.position.z, 0.02, 1e-4);
+        before = dem_world_hash(world);
+        part[1].name = "door";
+        CHECK(dem_parts_add(world, name, 1, 2, part, wall) != DEM_OK);
+        CHECK_STR(dem_world_error(world), "dem_parts_add");
+        CHECK_STR(dem_world_error(world), "door");
+        CHECK_EQ(world->wall_count, 2);
+        CHECK(!wall[0].id && !wall[1].id);
+        part[1].name = "lid";
+        part[1].motion.velocity.x = (dem_real)NAN;
+        CHECK(dem_parts_add(world, name, 1, 2, part, 0) != DEM_OK);
+        part[1].motion.velocity.x = 0;
+        part[1].material.id = 7;
+        CHECK(dem_parts_add(world, name, 1, 2, part, 0) != DEM_OK);
+        CHECK_STR(dem_world_error(world), "material 7");
+        CHECK_EQ(world->wall_count, 2);
+        CHECK_EQ(dem_search_now(world), DEM_OK);
+        CHECK(dem_world_hash(world) == before);
+        CHECK_EQ(dem_world_run_to(world, 0.02, 0, 0), DEM_OK);
+        dem_world_destroy(world);
+        remove(name);
+    }
     return test_end();
 }

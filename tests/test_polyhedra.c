@@ -72,6 +72,42 @@ static dem_vec3 momentum(const dem_world *w, int angular) {
     }
     return sum;
 }
+/* How far apart two solids are kept by the best of all planes that can: normals of faces, and across an edge of each (the
+   separating axis theorem); < 0: the way by which one has to move to part them. By brute force. */
+static double keeps_apart(const demi_solid *a, const demi_solid *b) {
+    const demi_solid *two[2];
+    double edge[2][600][3];
+    double best = -1e300;
+    int count[2] = {0, 0}, k, f, i, j;
+    two[0] = a;
+    two[1] = b;
+    for (k = 0; k < 2; k++) {
+        const demi_solid *s = two[k];
+        const int32_t *loops = s->rim + s->faces + 1;
+        for (f = 0; f < s->faces; f++)
+            for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+                const int32_t p = loops[i], q = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
+                if (p < q) demi_sub3(s->corner[q], s->corner[p], edge[k][count[k]++]);
+            }
+    }
+    for (i = -a->faces - b->faces; i < count[0]; i++)
+        for (j = 0; j < (i < 0 ? 1 : count[1]); j++) {
+            double n[3], lo[2] = {1e300, 1e300}, hi[2] = {-1e300, -1e300};
+            const double *along = edge[0][i < 0 ? 0 : i], *other = edge[1][j];
+            if (i < 0) memcpy(n, -i <= a->faces ? a->plane[-i - 1] : b->plane[-i - 1 - a->faces], sizeof n);
+            else demi_cross3(along, other, n);
+            if (i >= 0 && !(demi_dot3(n, n) > 1e-12*demi_dot3(along, along)*demi_dot3(other, other))) continue;
+            demi_unit3(n);
+            for (k = 0; k < 2; k++)
+                for (f = 0; f < two[k]->corners; f++) {
+                    const double at_n = demi_dot3(n, two[k]->corner[f]);
+                    lo[k] = fmin(lo[k], at_n);
+                    hi[k] = fmax(hi[k], at_n);
+                }
+            best = fmax(best, fmax(lo[1] - hi[0], lo[0] - hi[1]));
+        }
+    return best;
+}
 /* Seven equal wedges over half a turn, between these radii, that stand on the ground, weight 1 each: the least friction
    by which they may stand, by the line of thrust. Right half, from the middle of the keystone down: the force at joint k,
    pi k/7 from the ground, is a horizontal thrust H and the weight above it; it must pass the joint inside, and its slope
@@ -252,6 +288,32 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
+    TEST("a convex mesh is its hull; one with a dent is refused with the place of the dent, or filled where that is allowed") {
+        static const char cube[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+            "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+        /* the top drawn in to its middle, .25 below */
+        static const char bowl[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nv .5 .5 .75\n"
+            "f 1 4 3 2\nf 5 6 9\nf 6 7 9\nf 7 8 9\nf 8 5 9\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+        dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 0);
+        dem_shape_info info;
+        dem_mesh mesh;
+        CHECK_EQ(dem_mesh_parse(w, "cube.obj", cube, sizeof cube - 1, &mesh, 0), DEM_OK);
+        dem_shape_get(w, dem_shape_mesh_add(w, &mesh, 0), &info);
+        CHECK_EQ(info.faces, 6);
+        CHECK_NEAR((double)info.volume, 1, 1e-6);
+        dem_mesh_free(w, &mesh);
+        CHECK_EQ(dem_mesh_parse(w, "bowl.obj", bowl, sizeof bowl - 1, &mesh, 0), DEM_OK);
+        CHECK(!dem_shape_mesh_add(w, &mesh, DEM_R(0.2)).id);
+        CHECK_STR(dem_world_error(w), "(0.5, 0.5, 0.75)");
+        CHECK_STR(dem_world_error(w), "0.25 m inside");
+        dem_shape_get(w, dem_shape_mesh_add(w, &mesh, DEM_R(0.3)), &info);
+        CHECK_NEAR((double)info.volume, 1, 1e-6);
+        CHECK(!dem_shape_mesh_add(w, 0, 0).id);
+        CHECK(!dem_shape_mesh_add(w, &mesh, -1).id);
+        dem_mesh_free(w, &mesh);
+        dem_world_destroy(w);
+    }
+
     TEST("worlds of impulses, planar worlds and laws that reach beyond touch refuse polyhedra by name") {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w;
@@ -305,6 +367,58 @@ int main(int argc, char **argv) {
         }
         CHECK(touched > 50 || !fine);
         dem_world_destroy(w);
+    }
+
+    TEST("pairs of all sizes from 1e-5 to 10 m, of aspect ratios to 50, touch where no plane keeps them apart, and nowhere "
+         "else; what they share goes with the square of small depths, or a higher power") {
+        const int pairs = getenv("POLYHEDRA_PAIRS") ? atoi(getenv("POLYHEDRA_PAIRS")) : 4000;
+        uint64_t random = 21;
+        int touching = 0;
+        int close = 0;
+        int wrong = 0;
+        int k;
+        for (k = 0; k < pairs && fine; k++) {
+            dem_world *w = world_of(0, DEM_NORMAL_HERTZ, 0);
+            const double size = pow(10, -5 + 6*scene_random(&random)), flat = pow(50, -scene_random(&random));
+            dem_real p[60];
+            dem_shape shape[2];
+            demi_part part[2];
+            demi_solid a, b;
+            demi_pressure s;
+            dem_vec3 way;
+            double lo = 0, hi = 4*size, depth;
+            int n, i, q;
+            for (q = 0; q < 2; q++) {
+                n = 4 + (int)(12*scene_random(&random));
+                for (i = 0; i < n; i++)
+                    demi_put(p + 3*i, scene_at(&random, size, -size/2, size*(q ? 1 : flat), 0, size*flat, 0));
+                shape[q] = k%3 == 0 ? box_add(w, size, size*(q ? 1 : flat), size*flat) : dem_shape_polyhedron_add(w, n, p);
+            }
+            if (!shape[0].id || !shape[1].id) { dem_world_destroy(w); continue; }
+            for (q = 0; q < 2; q++) part[q] = part_of(w, shape[q], k%5 == 0 ? straight : any_turn(&random));
+            way = demi_unit(scene_at(&random, 2, -1, 2, -1, 2, -1));
+            demi_solid_of(&part[0], at(0, 0, 0), &a);
+            for (i = 0; i < 20; i++) {          /* to where they just touch, then a little on or back */
+                demi_solid_of(&part[1], demi_scale(way, (dem_real)((lo + hi)/2)), &b);
+                if (keeps_apart(&a, &b) > 0) hi = (lo + hi)/2;
+                else lo = (lo + hi)/2;
+            }
+            depth = size*flat*pow(10, -7 + 6*scene_random(&random))*(k & 1 ? 1 : -1);
+            demi_solid_of(&part[1], demi_scale(way, (dem_real)(lo - depth)), &b);
+            depth = -keeps_apart(&a, &b);
+            i = demi_solids_press(&a, &b, &s);
+            touching += i;
+            if (fabs(depth) < 1e-9*size) { close++; dem_world_destroy(w); continue; }
+            wrong += i != (depth > 0);
+            if (i != (depth > 0) && getenv("POLYHEDRA_NUMBERS"))
+                printf("pair %d: size %g flat %g depth %g: shared %g\n", k, size, flat, depth, s.shared);
+            if (i) CHECK(isfinite(s.shared) && isfinite(s.sum) && isfinite(s.torque[0]) && s.deep <= 1 &&
+                         s.shared < 10*depth*depth*size*size/(size*flat)*50);
+            dem_world_destroy(w);
+        }
+        CHECK_EQ(wrong, 0);
+        CHECK(!fine || (touching > pairs/4 && close < pairs/10));
+        if (getenv("POLYHEDRA_NUMBERS")) printf("%d pairs, %d touching, %d too close to tell\n", pairs, touching, close);
     }
 
     TEST("a cube that lies on a cube, on a plane, on a floor of triangles, or on the floor of a profile, has the "
