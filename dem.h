@@ -1300,7 +1300,9 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc
    1e-6), and where that leaves more than DEM_POLYHEDRON_FACES faces, to as much as 1e-5. Null
    id on bad values, points in a plane, too many faces, in a planar world or when memory runs out;
    in worlds of impulses, or with a law that reaches beyond touch: both know no polyhedra. Two push
-   each other by what they share (>>polyhedra), spheres and ellipsoids where they are nearest. */
+   each other by what they share (>>polyhedra), spheres and ellipsoids where they are nearest. A
+   contact of two, or with a wall, is told as four (dem_contacts_get): points that its force is
+   spread over; counters count it once. */
 enum { DEM_POLYHEDRON_FACES = 100 };
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
 /* The hull of a mesh (dem_mesh_read: STL, OBJ), if the mesh lies nowhere deeper inside it than dent
@@ -12227,6 +12229,24 @@ static dem_real demi_faces_gap(const demi_part *p, const demi_part *q, dem_vec3 
     }
     return most;
 }
+/* Does the face of p that faces q's centre most keep all of q off? Most pairs that are apart are so
+   by one of the two. */
+static int demi_face_keeps(const demi_part *p, const demi_part *q, dem_vec3 gap) {
+    const dem_vec3 own = dem_quat_unrotate(p->q, gap);
+    const double e[3] = {(double)own.x, (double)own.y, (double)own.z}, scale = (double)p->scale;
+    const double *face = p->shape->hull, *a = face;
+    double most = -1e300;
+    dem_vec3 n;
+    int f;
+    for (f = 0; f < p->shape->faces; f++, a += 4) {
+        const double off = demi_dot3(a, e)*a[3] - scale*a[3];
+        if (off > most) { most = off; face = a; }
+    }
+    n = demi_scale(demi_v((dem_real)face[0], (dem_real)face[1], (dem_real)face[2]),
+                   (dem_real)face[3]);
+    return (dem_real)most > demi_part_support(q, demi_scale(dem_quat_rotate(p->q, n), -1))*
+        (1 + 16*(DEMI_SINGLE ? DEM_R(1e-7) : DEM_R(2e-16)));
+}
 static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_vec3 gap,
                                    dem_real enough) {
     const dem_real d = demi_length(gap), one = demi_faces_gap(p, q, gap);
@@ -13371,6 +13391,7 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
     demi_pressure s;
     double overlap;
     (void)w; (void)lambda;
+    if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1))) return 0;
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
     if (!demi_solids_press(&a, &b, &s) || !demi_pressure_patch(&s, &at)) return 0;

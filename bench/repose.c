@@ -4,7 +4,7 @@
 
    Build:    make build/repose
    Run:      repose [KIND] [--count N] [--film]      KIND: spheres, cubes, cubes4, cubes8, cubes27, cubes64, cubes100; all
-             of them one after the other takes half an hour on one core; --film writes repose_KIND.html */
+             of them one after the other take hours on one core; --film writes repose_KIND.html */
 #include "../dem.h"
 #include <math.h>
 #include <stdio.h>
@@ -37,7 +37,7 @@ static dem_shape cube(dem_world *world, int spheres, dem_spheres_fit *fit) {
     memcpy(desc.inertia, fit->inertia, sizeof desc.inertia);
     return dem_shape_cluster_add(world, &desc);
 }
-/* A tube of triangles about the z axis, drawn up from .3 s on. */
+/* A tube of triangles about the z axis, drawn up from .45 s on. */
 static void tube(dem_world *world, dem_material material, double radius, double height) {
     enum { SIDES = 24 };
     dem_real vertices[2*SIDES*3];
@@ -56,13 +56,13 @@ static void tube(dem_world *world, dem_material material, double radius, double 
     }
     motion.kind = DEM_MOTION_TRANSLATING;
     motion.velocity.z = DEM_R(0.15);
-    motion.start = 0.3;
+    motion.start = 0.45;
     dem_wall_motion(world, dem_mesh_add(world, material, &mesh), &motion);
 }
 static int heap(const char *kind, int count, int film) {
     const int round = !strcmp(kind, "spheres"), spheres = atoi(kind + 5);
     const dem_real same = (dem_real)(edge*0.6203504908994);         /* m, radius of the sphere of its volume */
-    const dem_box box = dem_box_make(DEM_R(-0.016), DEM_R(-0.016), DEM_R(0.004), DEM_R(0.016), DEM_R(0.016),
+    const dem_box box = dem_box_make(DEM_R(-0.0085), DEM_R(-0.0085), DEM_R(0.004), DEM_R(0.0085), DEM_R(0.0085),
                                      (dem_real)(0.9*count/500));
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_material_desc gravel = DEM_MATERIAL_DESC;
@@ -85,9 +85,10 @@ static int heap(const char *kind, int count, int film) {
     gravel.stiffness = 3000;
     gravel.restitution = DEM_R(0.3);
     gravel.friction = DEM_R(0.5);
+    if (round) gravel.rolling_friction = DEM_R(0.05);       /* or they would roll away */
     m = dem_material_add(world, &gravel);
     dem_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-    tube(world, m, 0.024, 1.0*count/500);
+    tube(world, m, 0.0125, 1.0*count/500);
     if (!round) shape = cube(world, spheres, &fit);
     placed = round ? dem_spheres_fill(world, m, same, box, count, 1) : dem_bodies_fill(world, m, shape, box, count, 1);
     snprintf(path, sizeof path, "repose_%s.html", kind);
