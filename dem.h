@@ -2291,6 +2291,11 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
    ============================================================================================== */
 #if defined(DEM_IMPLEMENTATION) && !defined(DEM_IMPLEMENTATION_DONE)
 #define DEM_IMPLEMENTATION_DONE
+/* windows.h makes macros of these two words. */
+#pragma push_macro("near")
+#pragma push_macro("far")
+#undef near
+#undef far
 
 /* ---------------------------------------------------------------------------------------------
    >>platform
@@ -28067,6 +28072,8 @@ DEM_API dem_result dem_replay_close(dem_replay *r) {
 #elif defined(__GNUC__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
+#pragma pop_macro("far")
+#pragma pop_macro("near")
 #endif /* DEM_IMPLEMENTATION */
 
 /* MIT License

@@ -42,6 +42,8 @@ for cc in gcc clang tcc; do
     for real in "" $float; do
         try "$cc${real:+ float}: one file"                 "$cc -I. $real $one_file -o \$bin -lm && \$bin"
         try "$cc${real:+ float}: two files linked"         "$cc -I. $real -c dem.c -o \$bin.o && $cc -I. $real $user \$bin.o -o \$bin -lm && \$bin"
+        try "$cc${real:+ float}: after windows.h's near and far" \
+            "$cc -I. $real '-Dnear=' '-Dfar=' $one_file -o \$bin -lm && \$bin"
         try "$cc${real:+ float}: DEM_STATIC"               "$cc -I. $real -DDEM_STATIC $one_file -o \$bin -lm && \$bin"
         try "$cc${real:+ float}: DEM_NO_SPECIALIZE"        "$cc -I. $real -DDEM_NO_SPECIALIZE $one_file -o \$bin -lm && \$bin"
         [ "$openmp" ] &&
