@@ -2757,6 +2757,7 @@ enum {
     DEMI_CROSSED = 16              /* rows take away where they cross: see demi_kept_crossed */
 };
 enum { DEMI_SIEVE_MOST = 25 };                  /* contacts of a grain with a sieve */
+enum { DEMI_FLATS = 6 };        /* ways in which a polyhedron touches one wall */
 enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface of revolution */
 #define DEMI_SHAPES(X) \
     X(BALL,      ball,      "sphere",    demi_balls_gap,      (demi_balls_touch)) \
@@ -5393,6 +5394,34 @@ static dem_real demi_polyhedron_depth(const demi_shape *s, dem_vec3 at) {
     }
     return (dem_real)least;
 }
+/* 0 with a sentence where vertices are none, far off, or not there. */
+static int demi_mesh_sound(dem_world *w, const char *call, int vertices, const dem_real *xyz,
+                           int per_vertex, int elements, const int32_t *corners,
+                           int per_element) {
+    int i;
+    if (vertices < 1 || elements < 1 || vertices > INT_MAX/8 || elements > INT_MAX/8 || !xyz ||
+        (per_element && !corners)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be at least one of "
+                  "each, at most %d, with pointers to them; was the file read?", call, vertices,
+                  elements, INT_MAX/8);
+        return 0;
+    }
+    for (i = 0; i < vertices*per_vertex; i++)
+        if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_FARTHEST) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
+                      "finite and between -%g and %g; was the file read whole, in metres?", call,
+                      i/per_vertex, (double)xyz[i], DEMI_FARTHEST, DEMI_FARTHEST);
+            return 0;
+        }
+    for (i = 0; i < elements*per_element; i++)
+        if (corners[i] < 0 || corners[i] >= vertices) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; are "
+                      "they counted from 1?",
+                      call, i/per_element, (int)corners[i], vertices - 1);
+            return 0;
+        }
+    return 1;
+}
 DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_real dent) {
     const char *call = "dem_shape_mesh_add";
     demi_shape shape;
@@ -5405,6 +5434,8 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_rea
                   (double)dent);
         return demi_no_shape;
     }
+    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
+                         mesh->triangles, 3)) return demi_no_shape;
     if (!demi_polyhedron_of(w, call, mesh->vertex_count, mesh->vertices, &shape))
         return demi_no_shape;
     for (i = 0; i < 3*mesh->triangle_count; i++) {      /* corners, sides' middles, triangles' */
@@ -7744,27 +7775,8 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
                           const dem_real *xyz,
                           int per_vertex, int elements, const int32_t *corners, int per_element) {
     int i, k;
-    if (vertices < 1 || elements < 1 || vertices > INT_MAX/8 || elements > INT_MAX/8 || !xyz ||
-        (per_element && !corners)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be at least one of "
-                  "each, at most %d, with pointers to them; was the file read?", call, vertices,
-                  elements, INT_MAX/8);
+    if (!demi_mesh_sound(w, call, vertices, xyz, per_vertex, elements, corners, per_element))
         return 0;
-    }
-    for (i = 0; i < vertices*per_vertex; i++)
-        if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_FARTHEST) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
-                      "finite and between -%g and %g; was the file read whole, in metres?", call,
-                      i/per_vertex, (double)xyz[i], DEMI_FARTHEST, DEMI_FARTHEST);
-            return 0;
-        }
-    for (i = 0; i < elements*per_element; i++)
-        if (corners[i] < 0 || corners[i] >= vertices) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; are "
-                      "they counted from 1?",
-                      call, i/per_element, (int)corners[i], vertices - 1);
-            return 0;
-        }
     wall->vertex_count = vertices;
     wall->element_count = elements;
     wall->vertices = (dem_real *)demi_hold(w, DEMI_SCENE, (size_t)vertices*3, sizeof(dem_real));
@@ -9034,7 +9046,10 @@ static int demi_places_of(const dem_world *w, int d, int k) {
     const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + k]];
     const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[d*w->wall_stride + k]
         : 0;
-    return demi_wall_kinds[wall->kind].most + (cut ? 2*(cut[1] - cut[0]) : 0);
+    const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
+    const int most = w->bodies.shaped && !kind->corners ? DEMI_MAX(kind->most, 4*DEMI_FLATS)
+        : kind->most;
+    return most + (cut ? 2*(cut[1] - cut[0]) : 0);
 }
 /* The most contacts with walls that domain d may ever have with these candidates. */
 static int demi_places_most(const dem_world *w, int d) {
@@ -12054,8 +12069,32 @@ static void demi_solids_piece(const demi_solid *a, const demi_solid *b, int f, i
     demi_sub3(b->centre, a->centre, to);
     demi_pressure_polygon(s, x, u, count, unit, demi_dot3(to, unit));
 }
+/* Is x inside? */
+static int demi_solid_holds(const demi_solid *s, const double *x) {
+    int f;
+    for (f = 0; f < s->faces; f++) if (!(demi_solid_in(s, f, x) > 0)) return 0;
+    return 1;
+}
+/* The centre has gone through a surface: there is no pressure any more, but something that pushes
+   back along n and, by its depth, stops the run. */
+static void demi_pressure_beyond(const demi_solid *a, const double *n, demi_pressure *s) {
+    const double h = a->plane[0][3];
+    int k;
+    s->deep = 2;
+    if (s->shared > 0 && s->sum > 0) return;
+    memset(s, 0, sizeof *s);
+    s->deep = 2;
+    s->shared = h*h*h;
+    s->sum = h*h;
+    for (k = 0; k < 3; k++) {
+        s->force[k] = h*h*n[k];
+        s->at[k] = s->sum*a->centre[k];
+    }
+    demi_cross3(a->centre, s->force, s->torque);
+}
 /* All of S; 0: there is none. */
 static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pressure *s) {
+    static const double up[3] = {0, 0, 1};
     unsigned char fs[DEM_POLYHEDRON_FACES], gs[DEM_POLYHEDRON_FACES];
     int f, g;
     memset(s, 0, sizeof *s);
@@ -12064,6 +12103,8 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
     if (!demi_solid_alive(a, b, fs, gs) || !demi_solid_alive(b, a, gs, fs)) return 0;
     for (f = 0; f < a->faces; f++)
         for (g = 0; g < b->faces && fs[f]; g++) if (gs[g]) demi_solids_piece(a, b, f, g, s);
+    if (demi_solid_holds(b, a->centre) || demi_solid_holds(a, b->centre))
+        demi_pressure_beyond(a, up, s);
     return s->shared > 0 && s->sum > 0;
 }
 /* S on a flat piece of a rigid wall: beyond n.x = at, n unit, from the polyhedron into the wall; on
@@ -12075,6 +12116,7 @@ static void demi_solid_on_flat(const demi_solid *a, const double *n, double at,
     double all[DEMI_HULL_CORNERS], x[DEMI_SECTION][3], u[DEMI_SECTION];
     double level[DEM_POLYHEDRON_FACES];
     int f, i, k, above = 0, count;
+    if (centre > 0) { demi_pressure_beyond(a, n, s); return; }
     for (i = 0; i < a->corners; i++) above += (all[i] = demi_dot3(n, a->corner[i]) - at) > 0;
     for (f = 0; f < a->faces && above; f++) {
         for (i = a->rim[f], k = 0; i < a->rim[f + 1]; i++) level[k++] = all[loops[i]];
@@ -12826,7 +12868,6 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
    who touches what.
    --------------------------------------------------------------------------------------------- */
 
-enum { DEMI_FLATS = 16 };
 /* Pressures on one wall, by the direction of their surfaces. */
 typedef struct demi_flats {
     int count;
@@ -13054,6 +13095,15 @@ static int demi_generator_near(const demi_generator *l, dem_vec3 x, double radiu
     t = t < 0 ? 0 : t > 1 ? 1 : t;
     return (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f) < radius*radius;
 }
+/* Is x on its far side? Then n is the way into the wall. */
+static int demi_generator_beyond(const demi_generator *l, const double *x, double *n) {
+    const double out = sqrt(x[0]*x[0] + x[1]*x[1]), e = l->b - l->a, f = l->h - l->g;
+    const double size = sqrt(e*e + f*f);
+    n[0] = l->side*f/size*(out > 0 ? x[0]/out : 1);
+    n[1] = l->side*f/size*(out > 0 ? x[1]/out : 0);
+    n[2] = -l->side*e/size;
+    return l->side*((l->a - out)*f - (l->g - x[2])*e) < 0;
+}
 /* How far out the surface is at a height. */
 static double demi_generator_radius(const demi_generator *l, double z) {
     return l->h > l->g || l->h < l->g ? l->a + (l->b - l->a)/(l->h - l->g)*(z - l->g) : l->a;
@@ -13106,6 +13156,12 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     double angle[DEMI_CROSSINGS], p[3], q[3];
     demi_pressure press;
     int f, i, k, count = 0, any = 0;
+    memset(&press, 0, sizeof press);
+    if (demi_generator_beyond(l, x0, p)) {
+        demi_pressure_beyond(s, p, &press);
+        demi_flats_add(flats, element, &press);
+        return;
+    }
     for (i = 0; i < s->corners; i++) {
         const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
         const double r = demi_generator_radius(l, x0[2] + s->corner[i][2]);
@@ -13135,7 +13191,6 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     if (!count) angle[count++] = 0;
     qsort(angle, (size_t)count, sizeof *angle, demi_angle_order);
     angle[count] = angle[0] + 2*DEMI_PI;
-    memset(&press, 0, sizeof press);
     for (i = 0; i <= count; i++) {
         const double width = i < count ? angle[i + 1] - angle[i] : 0, had = press.sum;
         for (k = 0; k < 4 && width > 1e-15; k++)
@@ -13168,7 +13223,8 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
         if (w->wall_gap[base + k] > gone) continue;
         for (i = 0; i < pieces; i++) {
             const demi_generator l = demi_generator_of(wall, i, x, part->radius);
-            if (demi_generator_near(&l, x, (double)part->radius))
+            if (wall->kind == DEMI_WALL_CYLINDER ||      /* deep in it, too */
+                demi_generator_near(&l, x, (double)part->radius))
                 demi_solid_on_generator(&s, &l, x, i, &flats);
         }
         count += demi_flats_places(&flats, wall, part, at, shift, *places + count);
@@ -19778,7 +19834,7 @@ DEM_API uint64_t dem_world_steps(const dem_world *w) {
    --------------------------------------------------------------------------------------------- */
 DEM_API dem_counters dem_counters_get(const dem_world *w) {
     dem_counters c;
-    int d;
+    int d, k;
     memset(&c, 0, sizeof c);
     if (!w) return c;
     c.steps = w->clock.steps;
@@ -19787,6 +19843,10 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
         c.contacts += w->domains[d].contacts;
         c.wall_contacts += w->domains[d].kept_walls;
+        for (k = 0; k < w->domains[d].kept && w->bodies.shaped; k++) {
+            const demi_kept *kept = demi_kept_of(w, d) + k;     /* corners: one contact of four */
+            c.wall_contacts -= kept->b < 0 && kept->overlap > 0 && kept->corner;
+        }
     }
     c.overlap_max = (dem_real)w->booked.overlap_max;
     c.speed_max = (dem_real)w->booked.speed_max;
@@ -20905,43 +20965,43 @@ DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, 
                  dem_quat_rotate(q, demi_scale(demi_at(mesh->vertices + 3*i), scale))));
     return DEM_OK;
 }
-/* One part of a machine as a wall; null id with a sentence. */
-static dem_wall demi_part_wall(dem_world *w, const char *path, dem_real scale,
-                               const dem_part *part) {
-    dem_wall wall = demi_no_wall;
+/* One part of a machine as a wall; the wall may be there although its motion is refused. */
+static dem_result demi_part_wall(dem_world *w, const char *path, dem_real scale,
+                                 const dem_part *part, dem_wall *wall) {
     dem_mesh mesh;
-    if (dem_mesh_part_read(w, path, part->name, &mesh, 0) != DEM_OK) return wall;
-    if (dem_mesh_place(w, &mesh, scale, dem_quat_make(0, 0, 0, 0), demi_v(0, 0, 0)) == DEM_OK)
-        wall = dem_mesh_add(w, part->material, &mesh);
+    dem_result result = dem_mesh_part_read(w, path, part->name, &mesh, 0);
+    if (result != DEM_OK) return result;
+    result = dem_mesh_place(w, &mesh, scale, dem_quat_make(0, 0, 0, 0), demi_v(0, 0, 0));
+    *wall = demi_no_wall;
+    if (result == DEM_OK) *wall = dem_mesh_add(w, part->material, &mesh);
     dem_mesh_free(w, &mesh);
-    if (!wall.id || dem_wall_motion(w, wall, &part->motion) == DEM_OK) return wall;
-    dem_wall_remove(w, wall);
-    return demi_no_wall;
+    if (result != DEM_OK) return result;
+    return wall->id ? dem_wall_motion(w, *wall, &part->motion) : DEM_ERROR_ARGUMENT;
 }
 DEM_API dem_result dem_parts_add(dem_world *w, const char *path, dem_real scale, int count,
                                  const dem_part *parts, dem_wall *walls) {
     const char *call = "dem_parts_add";
     char sentence[sizeof w->error];
+    dem_result result = DEM_OK;
+    dem_wall wall = demi_no_wall;
     int i, first;
     if (demi_null(w, call, parts, "parts")) return DEM_ERROR_ARGUMENT;
     if (count < 1)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be > 0", call, count);
     first = w->wall_count;
-    for (i = 0; i < count; i++) {
-        const dem_wall wall = demi_part_wall(w, path, scale > 0 || scale < 0 ? scale : 1,
-                                             parts + i);
-        if (!wall.id) break;
+    for (i = 0; i < count && result == DEM_OK; i++) {
+        result = demi_part_wall(w, path, scale > 0 || scale < 0 ? scale : 1, parts + i, &wall);
         if (walls) walls[i] = wall;
     }
-    if (i == count) return DEM_OK;
+    if (result == DEM_OK) { demi_built(w, call); return DEM_OK; }
     memcpy(sentence, w->error, sizeof sentence);
     while (w->wall_count > first) {             /* those before it go again */
         const dem_wall last = {w->wall_count};
-        if (w->walls[last.id - 1].kind != DEMI_WALL_NONE) dem_wall_remove(w, last);
+        dem_wall_remove(w, last);
         w->wall_count--;
     }
     for (i = 0; i < count && walls; i++) walls[i] = demi_no_wall;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %.440s", call, sentence);
+    return demi_fail(w, result, "%s: %.440s", call, sentence);
 }
 
 /* What was read as a mesh of width 2, as a profile. */
@@ -21255,6 +21315,8 @@ DEM_API dem_result dem_mesh_spheres(dem_world *w, const dem_mesh *mesh, int coun
         demi_null(w, call, radii, "radii")) return DEM_ERROR_ARGUMENT;
     if (count < 1 || count > 1000)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to 1000", call, count);
+    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
+                         mesh->triangles, 3)) return DEM_ERROR_ARGUMENT;
     memset(&moments, 0, sizeof moments);
     for (i = 0; i < mesh->triangle_count; i++) {
         demi_mesh_corner(mesh, i, 0, a);

@@ -124,6 +124,13 @@ int main(int argc, char **argv) {
         CHECK_NEAR((double)other.wrong, (double)fit.wrong, 1e-6);
         CHECK_EQ(dem_mesh_spheres(w, &mesh, 0, x, r, 0), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_mesh_spheres(w, &mesh, 1, 0, r, 0), DEM_ERROR_ARGUMENT);
+        swap = mesh.triangles[4];
+        mesh.triangles[4] = 99;
+        CHECK_EQ(dem_mesh_spheres(w, &mesh, 1, x, r, 0), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(w), "vertex 99");
+        CHECK(!dem_shape_mesh_add(w, &mesh, 0).id);
+        CHECK_STR(dem_world_error(w), "vertex 99");
+        mesh.triangles[4] = swap;
         mesh.triangle_count = 2;
         CHECK_EQ(dem_mesh_spheres(w, &mesh, 1, x, r, 0), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_world_error(w), "closed");

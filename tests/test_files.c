@@ -798,6 +798,7 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error(world), "dem_parts_add");
         CHECK_STR(dem_world_error(world), "door");
         CHECK(!wall[0].id && !wall[1].id);
+        CHECK_EQ(dem_parts_add(world, "build/tmp/none.obj", 1, 2, part, wall), DEM_ERROR_FILE);
         part[1].name = "lid";
         part[1].motion.velocity.x = (dem_real)NAN;
         CHECK(dem_parts_add(world, name, 1, 2, part, 0) != DEM_OK);
