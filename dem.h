@@ -1,7 +1,7 @@
 /* dem.h - version 0.1.0 - discrete-element (granular) simulation in one C99 header. MIT licence.
 
-   It simulates grains: spheres of any radius (or discs, in a plane), ellipsoids and rigid clusters
-   of spheres that touch, rub, roll and bounce on each other and on moving walls.
+   It simulates grains: spheres of any radius (or discs, in a plane), ellipsoids, convex polyhedra
+   and rigid clusters of spheres that touch, rub, roll and bounce on each other and on moving walls.
 
    Include it plainly wherever you use it, and define DEM_IMPLEMENTATION before the include in *one*
    C or C++ file to get the implementation. dem.c is such a file: compile it once (some 20 s with
@@ -35,6 +35,7 @@
        >>touch       candidate pairs -> contacts: geometry only
        >>respond     contact -> force and torque: the loops that bring touch and law together
        >>polyhedra   what polyhedra share with each other and with surfaces
+       >>gaps        how far polyhedra are apart, and the points that keep them off
        >>on-walls    where parts of bodies touch walls: geometry only
        >>polyhedra-walls  where polyhedra touch walls; who touches what
        >>kept        contacts kept by themselves, all but sphere on sphere: touch
@@ -256,6 +257,8 @@
      [AI11]    Ai, Chen, Rotter & Ooi, Powder Technol. 206 (2011) 269: rolling resistance
      [ALK07]   Alkhaldi, Contact Investigations of Granular Mechanical Media in a Tumbling Sorting
                Machine, thesis, Stuttgart 2007: screening, hysteresis, MOLDYN
+     [BER03]   van den Bergen, Collision Detection in Interactive 3D Environments (2003): expanding
+               polytopes
      [BER23]   Berry, Zhang & Haeri (2023): what clusters of spheres count twice
      [BIR00]   Birgin, Martinez & Raydan, SIAM J. Optim. 10 (2000) 1196: spectral gradients
      [CS79]    Cundall & Strack, Geotechnique 29 (1979) 47
@@ -268,6 +271,8 @@
      [FEN12]   Feng, Han & Owen, Comput. Methods Appl. Mech. Eng. 205 (2012) 169: a potential of
                the overlap's volume
      [FIN92]   Fincham, Mol. Simul. 8 (1992) 165: leapfrog for rotation
+     [GJK88]   Gilbert, Johnson & Keerthi, IEEE J. Robot. Autom. 4 (1988) 193: distance of convex
+               bodies
      [GOL10]   Goldhirsch, Granul. Matter 12 (2010) 239: stress by coarse graining
      [HER82]   Hertz, J. reine angew. Math. 92 (1882) 156
      [HEY13]   Heyn, Anitescu, Tasora & Negrut, Int. J. Numer. Methods Eng. 95 (2013) 541: spectral
@@ -1298,11 +1303,11 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc
 /* A convex polyhedron: the hull of points (count x 3, m, 4 to 10,000, in a frame of your choice).
    Points inside it, or on its faces, are of no account: to 1e-10 of its size (single precision:
    1e-6), and where that leaves more than DEM_POLYHEDRON_FACES faces, to as much as 1e-5. Null
-   id on bad values, points in a plane, too many faces, in a planar world or when memory runs out;
-   in worlds of impulses, or with a law that reaches beyond touch: both know no polyhedra. Two push
-   each other by what they share (>>polyhedra), spheres and ellipsoids where they are nearest. A
-   contact of two, or with a wall, is told as four (dem_contacts_get): points that its force is
-   spread over; counters count it once. */
+   id on bad values, points in a plane, too many faces, in a planar world or when memory runs out.
+   Two push each other by what they share (>>polyhedra), spheres and ellipsoids where they are
+   nearest. A contact of two, or with a wall, is told as four (dem_contacts_get): points that its
+   force is spread over; counters count it once. With impulses it is as many points as keep the two
+   apart, four at most, each with its own gap (>>gaps). */
 enum { DEM_POLYHEDRON_FACES = 100 };
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
 /* The hull of a mesh (dem_mesh_read: STL, OBJ), if the mesh lies nowhere deeper inside it than dent
@@ -2622,7 +2627,7 @@ typedef struct demi_touching {
     dem_vec3 shift;                /* m, from the body to its image that the wall meets */
     dem_vec3 spread;               /* of polyhedra, as in demi_kept */
     dem_real slope, couple, deep;
-    int32_t corner;
+    int32_t corner, corners;
 } demi_touching;
 /* A side or corner of a facet that a body reaches: what joins it to its neighbours (>>touch). */
 typedef struct demi_link {
@@ -2669,7 +2674,7 @@ typedef struct demi_kept {
     int32_t send;                  /* 1 + where the force on b goes; 0: b is of this domain; with a
                                       wall: 1 + which of a step ago has ended in it; 0: none */
     int32_t from;                  /* which of its domain's a step ago it continues; -1: none */
-    int32_t corner, corners;       /* which of how many that share a pressure; 0: it is alone */
+    int32_t corner, corners;       /* which of how many of a polyhedron's contact; 0: alone */
     dem_vec3 normal, arm_a, arm_b; /* unit, a -> b; m, from the centres to where they push */
     dem_real overlap, deep;        /* m, 0: under way through a reduced hole, < 0: apart, see
                                       demi_kept_asked; over the smaller half width along the
@@ -5317,15 +5322,6 @@ static int demi_polyhedron_make(dem_world *w, const char *call, demi_hull *h, do
     demi_polyhedron_lay(shape, h->x, h->first);
     return 1;
 }
-/* 1 with a sentence where contacts are such that polyhedra have none. */
-static int demi_polyhedra_strange(dem_world *w, const char *call) {
-    const char *what = w->desc.response == DEM_RESPONSE_IMPULSES ? "contacts are impulses"
-        : w->desc.law_range > 0 || w->desc.law_range_radii > 0 ? "a law reaches beyond touch" : 0;
-    if (!what) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: in this world %s, which polyhedra do not know yet; take "
-              "a cluster of spheres in their place; nothing was added", call, what);
-    return 1;
-}
 /* The hull of points, complete but for being one of the world's shapes; 0 with a sentence. */
 static int demi_polyhedron_of(dem_world *w, const char *call, int count, const dem_real *points,
                               demi_shape *shape) {
@@ -5333,7 +5329,7 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     demi_hull h;
     double *x;
     int i, k, made = 0;
-    if (demi_shape_planar(w, call) || demi_polyhedra_strange(w, call)) return 0;
+    if (demi_shape_planar(w, call)) return 0;
     if (count < 4 || count > 10000 || !points) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 4 to 10000 with points (count x "
                   "3)", call, count);
@@ -9047,7 +9043,7 @@ static int demi_places_of(const dem_world *w, int d, int k) {
     const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[d*w->wall_stride + k]
         : 0;
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
-    const int most = w->bodies.shaped && !kind->corners ? DEMI_MAX(kind->most, 4*DEMI_FLATS)
+    const int most = w->bodies.shaped && !kind->corners ? DEMI_MAX(kind->most, 8*DEMI_FLATS)
         : kind->most;
     return most + (cut ? 2*(cut[1] - cut[0]) : 0);
 }
@@ -12303,6 +12299,467 @@ static dem_real demi_polyhedra_gap(const demi_part *p, const demi_part *q, dem_v
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>gaps
+   How far two convex bodies are apart, or how deep in each other, and the points by which they keep
+   each other off: what impulses, and laws that reach beyond touch, ask of polyhedra. Geometry only,
+   told by corners: for x of body A and y of body B the differences y - x fill a polytope D; the two
+   touch where D has the origin in it, and the point of D's surface nearest to the origin tells gap
+   and normal. Apart, it is reached over simplexes of D's corners, each step adding the one farthest
+   towards the origin [GJK88]; overlapping, a polytope of such corners grows about the origin until
+   its face nearest to the origin is one of D's [BER03]: the least way that parts the two. Both end
+   at a corner that is there already, so that no tolerance decides but that of rounding; normals are
+   those of faces of D, not of the short vector to the origin, and hold where a gap is 0. Where a
+   face of one lies square to the normal, the other's is cut to its outline; no more than four of
+   those points are the contact. Checked against all separating planes, and against portals, by
+   tests/test_convex.c.
+   --------------------------------------------------------------------------------------------- */
+
+/* A corner of D: B's corner b less A's corner a. */
+typedef struct demi_lead { double x[3]; int a, b; } demi_lead;
+/* Corners of D; the point nearest to the origin is the sum of part x, parts are 1 in all. */
+typedef struct demi_simplex { int count; demi_lead at[4]; double part[4]; } demi_simplex;
+
+/* The corner of a body that is farthest along n. */
+static int demi_solid_far(const demi_solid *s, const double *n) {
+    double most = -1e300;
+    int i, far = 0;
+    for (i = 0; i < s->corners; i++) {
+        const double d = demi_dot3(n, s->corner[i]);
+        if (d > most) { most = d; far = i; }
+    }
+    return far;
+}
+/* The corner of D that is farthest along n. */
+static void demi_lead_along(const demi_solid *a, const demi_solid *b, const double *n,
+                            demi_lead *out) {
+    const double back[3] = {-n[0], -n[1], -n[2]};
+    out->a = demi_solid_far(a, back);
+    out->b = demi_solid_far(b, n);
+    demi_sub3(b->corner[out->b], a->corner[out->a], out->x);
+}
+/* Parts of the corners of a segment, or of a triangle, in its point nearest to the origin. */
+static void demi_near_segment(const double *p, const double *q, double *part) {
+    double e[3], t;
+    demi_sub3(q, p, e);
+    t = -demi_dot3(p, e)/demi_dot3(e, e);
+    t = t > 0 ? t < 1 ? t : 1 : 0;              /* 0 of a point */
+    part[0] = 1 - t;
+    part[1] = t;
+}
+static void demi_near_triangle(const double *p, const double *q, const double *r, double *part) {
+    const double *corner[3];
+    double e[3], f[3], n[3], ep, fp, eq, fq, er, fr, a, b, c;
+    int i, k;
+    corner[0] = p; corner[1] = q; corner[2] = r;
+    part[0] = part[1] = part[2] = 0;
+    demi_sub3(q, p, e);
+    demi_sub3(r, p, f);
+    demi_cross3(e, f, n);
+    ep = -demi_dot3(e, p); fp = -demi_dot3(f, p);
+    eq = -demi_dot3(e, q); fq = -demi_dot3(f, q);
+    er = -demi_dot3(e, r); fr = -demi_dot3(f, r);
+    a = eq*fr - er*fq;                          /* areas over the sides opposite to p, q and r */
+    b = er*fp - ep*fr;
+    c = ep*fq - eq*fp;
+    if (!(demi_dot3(n, n) > 1e-16*demi_dot3(e, e)*demi_dot3(f, f))) {   /* a line */
+        double least = 1e300;
+        for (i = 0; i < 3; i++) {
+            const double *from = corner[i], *to = corner[(i + 1)%3];
+            double t[2], x[3];
+            demi_near_segment(from, to, t);
+            for (k = 0; k < 3; k++) x[k] = t[0]*from[k] + t[1]*to[k];
+            if (!(demi_dot3(x, x) < least)) continue;
+            least = demi_dot3(x, x);
+            part[i] = t[0];
+            part[(i + 1)%3] = t[1];
+            part[(i + 2)%3] = 0;
+        }
+    } else if (ep <= 0 && fp <= 0) part[0] = 1;
+    else if (eq >= 0 && fq <= eq) part[1] = 1;
+    else if (fr >= 0 && er <= fr) part[2] = 1;
+    else if (c <= 0 && ep >= 0 && eq <= 0) demi_near_segment(p, q, part);
+    else if (b <= 0 && fp >= 0 && fr <= 0) {
+        demi_near_segment(p, r, part);
+        part[2] = part[1];
+        part[1] = 0;
+    } else if (a <= 0 && fq >= eq && er >= fr) demi_near_segment(q, r, part + 1);
+    else {
+        part[0] = a/(a + b + c);
+        part[1] = b/(a + b + c);
+        part[2] = c/(a + b + c);
+    }
+}
+/* The point of a simplex nearest to the origin, which corners without part in it leave; how far off
+   it is, squared. All four stay where the origin is inside. */
+static double demi_simplex_near(demi_simplex *s, double *v) {
+    static const int sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
+    double part[4] = {1, 0, 0, 0}, tried[3], x[3];
+    double least = 1e300;
+    int i, k, left = 0;
+    if (s->count == 2) demi_near_segment(s->at[0].x, s->at[1].x, part);
+    else if (s->count == 3)
+        demi_near_triangle(s->at[0].x, s->at[1].x, s->at[2].x, part);
+    for (i = 0; i < 4 && s->count == 4; i++) {
+        const double *p = s->at[sides[i][0]].x, *q = s->at[sides[i][1]].x;
+        const double *r = s->at[sides[i][2]].x;
+        double e[3], f[3], n[3], d[3], high;
+        demi_sub3(q, p, e);
+        demi_sub3(r, p, f);
+        demi_cross3(e, f, n);
+        demi_sub3(s->at[sides[i][3]].x, p, d);
+        high = demi_dot3(n, d);
+        if (high*high > 1e-20*demi_dot3(n, n)*demi_dot3(d, d) &&       /* not flat */
+            -demi_dot3(n, p)*high > 0) continue;        /* on the fourth one's side */
+        demi_near_triangle(p, q, r, tried);
+        for (k = 0; k < 3; k++) x[k] = tried[0]*p[k] + tried[1]*q[k] + tried[2]*r[k];
+        if (!(demi_dot3(x, x) < least)) continue;
+        least = demi_dot3(x, x);
+        part[sides[i][3]] = 0;
+        for (k = 0; k < 3; k++) part[sides[i][k]] = tried[k];
+    }
+    if (s->count == 4 && least > 1e299) return 0;
+    v[0] = v[1] = v[2] = 0;
+    for (i = 0; i < s->count; i++) {
+        if (!(part[i] > 0)) continue;
+        for (k = 0; k < 3; k++) v[k] += part[i]*s->at[i].x[k];
+        s->at[left] = s->at[i];
+        s->part[left++] = part[i];
+    }
+    s->count = left;
+    return demi_dot3(v, v);
+}
+/* The normal of a simplex's triangle where it has three corners, to the side of v; else v itself,
+   unit. */
+static void demi_simplex_normal(const demi_simplex *s, const double *v, double *n) {
+    double e[3], f[3], side;
+    int k;
+    memcpy(n, v, 3*sizeof *n);
+    if (s->count == 3) {
+        demi_sub3(s->at[1].x, s->at[0].x, e);
+        demi_sub3(s->at[2].x, s->at[0].x, f);
+        demi_cross3(e, f, n);
+        side = demi_dot3(n, v);
+        for (k = 0; k < 3; k++) n[k] = side < 0 ? -n[k] : n[k];
+    }
+    demi_unit3(n);
+}
+static int demi_lead_known(const demi_lead *at, int count, const demi_lead *w) {
+    int i;
+    for (i = 0; i < count; i++) if (at[i].a == w->a && at[i].b == w->b) return 1;
+    return 0;
+}
+/* Are the two apart, by more than tiny, m? n: where to begin, then from a to b, unit. */
+static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double tiny, double *n,
+                             demi_simplex *s) {
+    double v[3], had_v[3], far = 1e300;
+    demi_simplex had;
+    int turn, k;
+    memcpy(v, n, sizeof v);
+    if (!(demi_dot3(v, v) > 0)) demi_sub3(b->centre, a->centre, v);
+    if (!(demi_dot3(v, v) > 0)) v[2] = 1;
+    s->count = 0;
+    for (turn = 0; turn < 100; turn++) {
+        const double back[3] = {-v[0], -v[1], -v[2]};
+        double now;
+        demi_lead *w = &s->at[s->count];
+        demi_lead_along(a, b, back, w);
+        if (turn && (far - demi_dot3(v, w->x) <= 1e-14*far ||
+                     demi_lead_known(s->at, s->count, w))) break;
+        had = *s;
+        memcpy(had_v, v, sizeof v);
+        s->count++;
+        now = demi_simplex_near(s, v);
+        if (!(now > tiny*tiny)) return 0;
+        if (!(now < far)) {                     /* rounding: no nearer */
+            *s = had;
+            memcpy(v, had_v, sizeof v);
+            break;
+        }
+        far = now;
+    }
+    demi_simplex_normal(s, v, n);
+    for (k = 0; k < 3; k++) if (!(n[k] >= -1 && n[k] <= 1)) return 0;
+    return 1;
+}
+
+/* --- overlapping: a polytope that grows about the origin --- */
+
+enum { DEMI_POLYTOPE = 120 };
+typedef struct demi_polytope {
+    int corners, faces;
+    demi_lead at[DEMI_POLYTOPE];
+    struct { double n[3], at; int corner[3]; } face[2*DEMI_POLYTOPE];  /* n unit, outward; n.x */
+} demi_polytope;
+/* A face; one without an area is never the nearest, and seen from nowhere. */
+static void demi_polytope_face(demi_polytope *p, int i, int a, int b, int c) {
+    double e[3], f[3], *n = p->face[i].n;
+    demi_sub3(p->at[b].x, p->at[a].x, e);
+    demi_sub3(p->at[c].x, p->at[a].x, f);
+    demi_cross3(e, f, n);
+    p->face[i].corner[0] = a; p->face[i].corner[1] = b; p->face[i].corner[2] = c;
+    if (demi_unit3(n) > 1e-15*sqrt(demi_dot3(e, e)*demi_dot3(f, f)))
+        p->face[i].at = demi_dot3(n, p->at[a].x);
+    else {
+        n[0] = n[1] = n[2] = 0;
+        p->face[i].at = 1e300;
+    }
+}
+/* How far x is from the point, the line or the plane of the first corners. */
+static double demi_polytope_off(const demi_polytope *p, const double *x) {
+    double d[3], e[3], f[3], n[3];
+    demi_sub3(x, p->at[0].x, d);
+    if (p->corners == 1) return sqrt(demi_dot3(d, d));
+    demi_sub3(p->at[1].x, p->at[0].x, e);
+    demi_cross3(e, d, n);
+    if (p->corners == 2) return sqrt(demi_dot3(n, n)/demi_dot3(e, e));
+    demi_sub3(p->at[2].x, p->at[0].x, f);
+    demi_cross3(e, f, n);
+    demi_unit3(n);
+    return fabs(demi_dot3(n, d));
+}
+/* The first tetrahedron, from the simplex at which the walk has ended. 0: D is flat. */
+static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const demi_simplex *s,
+                               double size, demi_polytope *p) {
+    static const int sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
+    int i, k;
+    p->corners = s->count;
+    for (i = 0; i < s->count; i++) p->at[i] = s->at[i];
+    if (p->corners == 4) {                      /* it may be flat */
+        p->corners = 3;
+        if (demi_polytope_off(p, p->at[3].x) > 1e-9*size) p->corners = 4;
+    }
+    while (p->corners < 4) {
+        double e[3] = {0, 0, 0}, f[3] = {0, 0, 0}, most = 0;
+        demi_lead best, w;
+        memset(&best, 0, sizeof best);
+        if (p->corners > 1) demi_sub3(p->at[1].x, p->at[0].x, e);
+        if (p->corners > 2) demi_sub3(p->at[2].x, p->at[0].x, f);
+        for (i = 0; i < 6; i++) {
+            double way[3] = {0, 0, 0}, off;
+            way[i/2] = i & 1 ? -1 : 1;
+            if (p->corners == 2) demi_cross3(e, way, way);
+            if (p->corners == 3) {
+                demi_cross3(e, f, way);
+                for (k = 0; k < 3 && i & 1; k++) way[k] = -way[k];
+            }
+            demi_lead_along(a, b, way, &w);
+            off = demi_polytope_off(p, w.x);
+            if (off > most) { most = off; best = w; }
+        }
+        if (!(most > 1e-13*size)) return 0;
+        p->at[p->corners++] = best;
+    }
+    for (i = 0; i < 4; i++) {
+        const int *c = sides[i];
+        demi_polytope_face(p, i, c[0], c[1], c[2]);
+        if (demi_dot3(p->face[i].n, p->at[c[3]].x) > p->face[i].at)
+            demi_polytope_face(p, i, c[0], c[2], c[1]);
+    }
+    p->faces = 4;
+    return 1;
+}
+/* Takes a corner in: faces that see it give way to those that join it to their rim. 0: no room. */
+static int demi_polytope_take(demi_polytope *p, const demi_lead *w, double tol) {
+    int rim[2*DEMI_POLYTOPE][2], count = 0, left = 0, i, k, e;
+    if (p->corners == DEMI_POLYTOPE) return 0;
+    for (i = 0; i < p->faces; i++) {
+        if (!(demi_dot3(p->face[i].n, w->x) - p->face[i].at > tol)) {
+            p->face[left++] = p->face[i];
+            continue;
+        }
+        for (k = 0; k < 3; k++) {               /* sides that two of them have go */
+            const int from = p->face[i].corner[k], to = p->face[i].corner[(k + 1)%3];
+            for (e = 0; e < count && !(rim[e][0] == to && rim[e][1] == from); e++) continue;
+            if (e < count) { count--; rim[e][0] = rim[count][0]; rim[e][1] = rim[count][1]; }
+            else if (count < 2*DEMI_POLYTOPE) { rim[count][0] = from; rim[count++][1] = to; }
+        }
+    }
+    if (!count || left + count > 2*DEMI_POLYTOPE) return 0;
+    p->at[p->corners] = *w;
+    for (e = 0; e < count; e++) demi_polytope_face(p, left + e, rim[e][0], rim[e][1], p->corners);
+    p->corners++;
+    p->faces = left + count;
+    return 1;
+}
+/* The least way that parts two that overlap: n, from a to b. What ends it early (rounding, no room)
+   leaves a direction that parts them, too, but perhaps not by the least way. */
+static void demi_solids_part(const demi_solid *a, const demi_solid *b, double size, double *n,
+                             demi_simplex *s) {
+    demi_polytope p;
+    demi_lead w;
+    int i, k, best = 0;
+    if (!demi_polytope_begin(a, b, s, size, &p)) {
+        if (!(demi_dot3(n, n) > 0)) n[2] = 1;
+        demi_unit3(n);
+        return;
+    }
+    for (;;) {
+        for (i = 1, best = 0; i < p.faces; i++)
+            if (p.face[i].at < p.face[best].at) best = i;
+        demi_lead_along(a, b, p.face[best].n, &w);
+        if (!(demi_dot3(p.face[best].n, w.x) - p.face[best].at > 1e-13*size) ||
+            demi_lead_known(p.at, p.corners, &w) || !demi_polytope_take(&p, &w, 1e-14*size)) break;
+    }
+    s->count = 3;
+    for (k = 0; k < 3; k++) {
+        s->at[k] = p.at[p.face[best].corner[k]];
+        n[k] = -p.face[best].n[k];
+    }
+    demi_near_triangle(s->at[0].x, s->at[1].x, s->at[2].x, s->part);
+}
+/* Width of the slab across n that keeps them apart, m; < 0: by how much none does. */
+static double demi_solids_slab(const demi_solid *a, const demi_solid *b, const double *n) {
+    const double back[3] = {-n[0], -n[1], -n[2]};
+    double x[3];
+    demi_sub3(b->corner[demi_solid_far(b, back)], a->corner[demi_solid_far(a, n)], x);
+    return demi_dot3(n, x);
+}
+/* How far the two are apart, m, < 0: how deep in each other; n: in: where to begin, or 0; out:
+   unit, from a to b. s: corners that tell it. */
+static double demi_solids_gap(const demi_solid *a, const demi_solid *b, double *n,
+                              demi_simplex *s) {
+    double x[3], size = 0, least = 1e300, gap;
+    const demi_solid *bodies[2];
+    int i, k;
+    bodies[0] = a; bodies[1] = b;
+    for (i = 0; i < 2; i++) {
+        double most = 0;
+        for (k = 0; k < bodies[i]->corners; k++) {
+            demi_sub3(bodies[i]->corner[k], bodies[i]->centre, x);
+            most = DEMI_MAX(most, demi_dot3(x, x));
+        }
+        size += sqrt(most);
+        least = DEMI_MIN(least, sqrt(most));
+    }
+    if (demi_solids_apart(a, b, DEMI_MAX(1e-7*least, 1e-14*size), n, s)) {
+        gap = demi_solids_slab(a, b, n);
+        if (gap > 0) return gap;
+    }
+    demi_solids_part(a, b, size, n, s);
+    return demi_solids_slab(a, b, n);
+}
+
+/* --- the points by which two keep each other off --- */
+
+/* No more than four: x in the middle between both surfaces, gaps along the normal. */
+typedef struct demi_spots {
+    int count;
+    double normal[3];              /* unit, from a to b */
+    double x[4][3], gap[4];        /* m */
+} demi_spots;
+/* Of many points across n those that keep most: the deepest, the farthest from it, and on either
+   side of the line through both the farthest from that. */
+static int demi_spots_pick(double (*x)[3], const double *gap, int count, const double *n,
+                           int *out) {
+    double d[3], e[3], f[3], most = -1, side[2] = {0, 0};
+    int i, k, picked = 1, far[2] = {-1, -1};
+    if (count <= 4) {
+        for (i = 0; i < count; i++) out[i] = i;
+        return count;
+    }
+    out[0] = out[1] = 0;
+    for (i = 1; i < count; i++) if (gap[i] < gap[out[0]]) out[0] = i;
+    for (i = 0; i < count; i++) {
+        demi_sub3(x[i], x[out[0]], d);
+        if (demi_dot3(d, d) > most) { most = demi_dot3(d, d); out[1] = i; }
+    }
+    if (!(most > 0)) return 1;
+    picked = 2;
+    demi_sub3(x[out[1]], x[out[0]], e);
+    demi_cross3(n, e, f);
+    for (i = 0; i < count; i++) {
+        double off;
+        demi_sub3(x[i], x[out[0]], d);
+        off = demi_dot3(f, d);
+        k = off < 0;
+        if (fabs(off) > side[k] + 1e-9*most) { side[k] = fabs(off); far[k] = i; }
+    }
+    for (k = 0; k < 2; k++) if (far[k] >= 0) out[picked++] = far[k];
+    return picked;
+}
+/* The face whose normal is most along n; by how much. */
+static int demi_solid_facing(const demi_solid *s, const double *n, double *along) {
+    int f, best = -1;
+    *along = -2;
+    for (f = 0; f < s->faces; f++) {
+        const double c = demi_dot3(s->plane[f], n)*s->plane[f][3];
+        if (c > *along) { *along = c; best = f; }
+    }
+    return best;
+}
+/* Faces that are square to a normal up to 1.8 degrees. */
+#define DEMI_FLUSH 0.9995
+/* Of body b's face that faces face f of a most, what lies over f: points, and gaps over its plane.
+   */
+static int demi_faces_over(const demi_solid *a, int f, const demi_solid *b, double (*x)[3],
+                           double *gap, double *n) {
+    const int32_t *loop = a->rim + a->faces + 1 + a->rim[f];
+    const int sides = a->rim[f + 1] - a->rim[f];
+    const int32_t *other;
+    double along, back[3], d[3];
+    int g, i, k, count = 0;
+    for (k = 0; k < 3; k++) {
+        n[k] = a->plane[f][k]*a->plane[f][3];
+        back[k] = -n[k];
+    }
+    g = demi_solid_facing(b, back, &along);
+    if (g < 0) return 0;
+    other = b->rim + b->faces + 1;
+    for (i = b->rim[g]; i < b->rim[g + 1]; i++)
+        memcpy(x[count++], b->corner[other[i]], sizeof *x);
+    for (i = 0; i < sides && count; i++) {
+        double e[3], in[3];
+        demi_sub3(a->corner[loop[i + 1 < sides ? i + 1 : 0]], a->corner[loop[i]], e);
+        demi_cross3(n, e, in);
+        count = demi_polygon_clip(x, count, in, a->corner[loop[i]]);
+    }
+    for (i = 0; i < count; i++) {
+        demi_sub3(x[i], a->corner[loop[0]], d);
+        gap[i] = demi_dot3(n, d);
+        for (k = 0; k < 3; k++) x[i][k] -= gap[i]*n[k]/2;
+    }
+    return count;
+}
+/* The contact of two that are no farther apart than range: 0: they are. facet: b is flat, and its
+   plane comes first. guess: normal of a step ago, or 0. s: corners that told the gap. */
+static int demi_solids_spots(const demi_solid *a, const demi_solid *b, int facet, double range,
+                             const double *guess, demi_simplex *s, demi_spots *out) {
+    double x[DEMI_SECTION][3], gap[DEMI_SECTION], n[3], back[3], on_a, on_b, all, to_b[3];
+    int fa, fb, i, k, second, count = 0, left, picked[4];
+    memcpy(n, guess, sizeof n);
+    out->count = 0;
+    all = demi_solids_gap(a, b, n, s);
+    if (!(all < range)) return 0;
+    for (k = 0; k < 3; k++) back[k] = -n[k];
+    fa = demi_solid_facing(a, n, &on_a);
+    fb = demi_solid_facing(b, back, &on_b);
+    second = on_b >= DEMI_FLUSH && (facet || on_b > on_a + 1e-9);
+    if (second) {
+        count = demi_faces_over(b, fb, a, x, gap, back);
+        for (k = 0; k < 3; k++) to_b[k] = -back[k];
+    } else if (on_a >= DEMI_FLUSH) count = demi_faces_over(a, fa, b, x, gap, to_b);
+    for (i = 0, left = 0; i < count; i++) {
+        if (!(gap[i] < range)) continue;
+        memmove(x[left], x[i], sizeof *x);
+        gap[left++] = gap[i];
+    }
+    memcpy(out->normal, left ? to_b : n, sizeof n);
+    if (!left) {                                /* corners, edges */
+        for (k = 0; k < 3; k++)
+            for (i = 0, x[0][k] = 0; i < s->count; i++)
+                x[0][k] += s->part[i]*(a->corner[s->at[i].a][k] + b->corner[s->at[i].b][k])/2;
+        gap[0] = all;
+        left = 1;
+    }
+    out->count = demi_spots_pick(x, gap, left, out->normal, picked);
+    for (i = 0; i < out->count; i++) {
+        memcpy(out->x[i], x[picked[i]], sizeof *x);
+        out->gap[i] = gap[picked[i]];
+    }
+    return out->count;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>on-walls
    Where parts of bodies touch walls: geometry only; first spheres, clusters being many of them;
    then ellipsoids, which share what is done on surfaces of facets; and how the normals turn there.
@@ -12908,6 +13365,7 @@ static int demi_flats_places(const demi_flats *f, const demi_wall *wall, const d
             demi_touching *t = &out[count++];
             t->element = f->element[i];
             t->corner = k;
+            t->corners = 4;
             t->overlap = (dem_real)overlap;
             t->share = wall->share*(dem_real)(p.force/(4*force));
             t->slope = (dem_real)demi_shared_slope(force, r, overlap);
@@ -12958,6 +13416,185 @@ static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin,
     *at = fabs(*at);
     return corners;
 }
+/* --- by how much a polyhedron is apart from walls, and the points that keep it off: for impulses,
+       and for laws that reach beyond touch, where no pressure is --- */
+
+enum { DEMI_GAP_POINTS = 24 };
+/* Points near one wall, by the direction of its surface there. */
+typedef struct demi_gap_group {
+    int32_t element;                           /* the first */
+    int count;
+    double x[DEMI_GAP_POINTS][3], n[DEMI_GAP_POINTS][3], gap[DEMI_GAP_POINTS];
+} demi_gap_group;
+typedef struct demi_gaps { int count; double range; demi_gap_group group[DEMI_FLATS]; } demi_gaps;
+/* Leaves the four that count. */
+static void demi_gap_group_pick(demi_gap_group *g) {
+    const demi_gap_group all = *g;
+    int picked[4], i;
+    g->count = demi_spots_pick(g->x, g->gap, g->count, g->n[0], picked);
+    for (i = 0; i < g->count; i++) {
+        memcpy(g->x[i], all.x[picked[i]], sizeof *g->x);
+        memcpy(g->n[i], all.n[picked[i]], sizeof *g->n);
+        g->gap[i] = all.gap[picked[i]];
+    }
+}
+/* n: unit, from the polyhedron into the wall. */
+static void demi_gaps_add(demi_gaps *gaps, int32_t element, const double *n, const double *x,
+                          double gap) {
+    demi_gap_group *g;
+    double most = -2;
+    int i, best = 0;
+    if (!(gap < gaps->range)) return;
+    for (i = 0; i < gaps->count; i++) {
+        const double along = demi_dot3(gaps->group[i].n[0], n);
+        if (along > most) { most = along; best = i; }
+    }
+    if (most < 0.95 && gaps->count < DEMI_FLATS) {
+        best = gaps->count++;
+        gaps->group[best].element = element;
+        gaps->group[best].count = 0;
+    }
+    g = &gaps->group[best];
+    if (g->count == DEMI_GAP_POINTS) demi_gap_group_pick(g);
+    memcpy(g->x[g->count], x, sizeof *g->x);
+    memcpy(g->n[g->count], n, sizeof *g->n);
+    g->gap[g->count++] = gap;
+}
+/* A plane z = 0 of the wall's frame: corners. height: of the origin over it. */
+static void demi_plane_gaps(const demi_solid *s, double height, demi_gaps *gaps) {
+    static const double down[3] = {0, 0, -1};
+    int i;
+    for (i = 0; i < s->corners; i++) {
+        const double gap = s->corner[i][2] + height;
+        const double x[3] = {s->corner[i][0], s->corner[i][1], s->corner[i][2] - gap/2};
+        demi_gaps_add(gaps, 0, down, x, gap);
+    }
+}
+/* A facet as a body: a triangle, or what a profile's line sweeps from reach below to reach above
+   the origin of the axes. 0: it is too thin. */
+static int demi_facet_solid(const demi_wall *wall, int element, dem_vec3 origin, double reach,
+                            demi_solid *f) {
+    static const int32_t triangle[9] = {0, 3, 6, 0, 1, 2, 0, 2, 1};
+    static const int32_t strip[11] = {0, 4, 8, 0, 1, 2, 3, 0, 3, 2, 1};
+    dem_vec3 y[3];
+    double e[3], g[3];
+    int i, k;
+    demi_wall_corners(wall, element, y);
+    f->faces = 2;
+    f->corners = demi_wall_kinds[wall->kind].corners == 2 ? 4 : 3;
+    f->rim = f->corners == 4 ? strip : triangle;
+    f->centre[0] = f->centre[1] = f->centre[2] = 0;
+    for (i = 0; i < f->corners; i++) {
+        const dem_vec3 d = demi_sub(y[f->corners == 3 ? i : i == 1 || i == 2], origin);
+        double *c = f->corner[i];
+        c[0] = (double)d.x; c[1] = (double)d.y;
+        c[2] = f->corners == 3 ? (double)d.z : i < 2 ? -reach : reach;
+        for (k = 0; k < 3; k++) f->centre[k] += c[k]/f->corners;
+    }
+    demi_sub3(f->corner[1], f->corner[0], e);
+    demi_sub3(f->corner[2], f->corner[0], g);
+    demi_cross3(e, g, f->plane[0]);
+    if (!(demi_unit3(f->plane[0]) > 0)) return 0;
+    for (k = 0; k < 3; k++) f->plane[1][k] = -f->plane[0][k];
+    f->plane[0][3] = f->plane[1][3] = 1;        /* unit normals, for those who ask for no more */
+    return 1;
+}
+/* Is the facet's part that tells a gap, an edge or a corner (own: which of its corners), what the
+   surface has nearest there? Not where another facet that has the same edge, or corner, goes on
+   towards the body: that one tells its own. n: unit, from the body. */
+static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int count,
+                              const dem_vec3 *own, int owns, const double *n) {
+    int i, k, e;
+    for (i = 0; i < count; i++) {
+        dem_vec3 y[3];
+        const int corners = demi_wall_corners(wall, among[i], y);
+        int has[3] = {0, 0, 0}, all = 0;
+        for (k = 0; k < corners; k++)
+            for (e = 0; e < owns && !has[k]; e++)
+                all += has[k] = !(demi_length(demi_sub(y[k], own[e])) > 0);
+        if (all < owns) continue;
+        for (k = 0; k < corners; k++) {
+            dem_vec3 way = demi_sub(y[k], own[0]);
+            if (has[k]) continue;
+            if (owns == 2) {                    /* across the edge */
+                const dem_vec3 edge = demi_unit(demi_sub(own[1], own[0]));
+                way = demi_sub(way, demi_scale(edge, demi_dot(way, edge)));
+            }
+            if (-(n[0]*(double)way.x + n[1]*(double)way.y + n[2]*(double)way.z) >
+                1e-9*(double)demi_length(way)) return 0;
+        }
+    }
+    return 1;
+}
+/* One facet. among: all that are near. */
+static void demi_element_gaps(const demi_wall *wall, int element, const int32_t *among, int count,
+                              const demi_solid *s, dem_vec3 x, double reach, demi_gaps *gaps) {
+    static const double anywhere[3] = {0, 0, 0};
+    demi_simplex tells;
+    demi_solid f;
+    demi_spots spots;
+    dem_vec3 y[3], own[3];
+    int i, k, owns = 0, has[3] = {0, 0, 0};
+    if (!demi_facet_solid(wall, element, x, reach, &f) ||
+        !demi_solids_spots(s, &f, 1, gaps->range, anywhere, &tells, &spots)) return;
+    if (fabs(demi_dot3(spots.normal, f.plane[0])) < DEMI_FLUSH) {
+        const int strip = f.corners == 4;       /* two of its corners are one of the profile */
+        demi_wall_corners(wall, element, y);
+        for (i = 0; i < tells.count; i++) {
+            k = tells.at[i].b;
+            if (!(tells.part[i] > 0)) continue;
+            k = strip ? k == 1 || k == 2 : k;
+            if (!has[k]) own[owns++] = y[k];
+            has[k] = 1;
+        }
+        if (owns < (strip ? 2 : 3) &&
+            !demi_facet_nearest(wall, among, count, own, owns, spots.normal)) return;
+    }
+    for (i = 0; i < spots.count; i++)
+        demi_gaps_add(gaps, element, spots.normal, spots.x[i], spots.gap[i]);
+}
+/* Places of all of them: by impulses the four of each direction that count; by a law with a range
+   the nearest of all of a direction in which nothing presses, four times. pressed: how many places
+   are there already. */
+static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const demi_wall *wall,
+                            const demi_part *part, dem_vec3 at, dem_vec3 shift,
+                            const demi_touching *there, int pressed, demi_touching *out) {
+    const dem_real *R = wall->pose.rotation;
+    const int impulsive = demi_impulsive(w);
+    int i, k, e, count = 0;
+    for (i = 0; i < gaps->count; i++) {
+        demi_gap_group *g = &gaps->group[i];
+        int nearest = 0, places = 4;
+        if (impulsive) {
+            demi_gap_group_pick(g);
+            places = g->count;
+        }
+        for (k = 1; k < g->count; k++) if (g->gap[k] < g->gap[nearest]) nearest = k;
+        for (k = 0; k < places; k++) {
+            demi_touching *t = &out[count];
+            e = impulsive ? k : nearest;
+            memset(t, 0, sizeof *t);
+            t->element = g->element;
+            t->corner = k;
+            t->corners = places;
+            t->overlap = (dem_real)-g->gap[e];
+            t->share = wall->share/(dem_real)places;
+            t->slope = 1;
+            t->deep = t->overlap/demi_part_thin(part);
+            t->normal = demi_rotate(R, demi_v((dem_real)g->n[e][0], (dem_real)g->n[e][1],
+                                              (dem_real)g->n[e][2]));
+            t->point = demi_add(at, demi_rotate(R, demi_v((dem_real)g->x[e][0],
+                                                          (dem_real)g->x[e][1],
+                                                          (dem_real)g->x[e][2])));
+            t->shift = shift;
+            for (e = 0; e < pressed; e++)
+                if (demi_dot(there[e].normal, t->normal) > DEM_R(0.95)) break;
+            if (e < pressed || (!impulsive && !(t->overlap < 0))) break;
+            count++;
+        }
+    }
+    return count;
+}
 /* One element, from a polyhedron about the origin of the axes. */
 static void demi_solid_on_element(const demi_wall *wall, int element, const demi_solid *s,
                                   dem_vec3 x, demi_pressure *press) {
@@ -12977,24 +13614,36 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const demi_part local = demi_part_local(wall, part);
+    const int impulsive = demi_impulsive(w);
     demi_flats flats;
+    demi_gaps gaps;
     demi_pressure press;
     demi_solid s;
-    int k, end, count = 0;
+    int k, from, end, had, count = 0;
     *places = w->touching + w->domains[d].touching_first;
+    gaps.range = (double)demi_range(w, part->radius);
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     for (k = first; k < last; k = end) {
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
         const dem_vec3 x = demi_unrotate(wall->pose.rotation,
                                          demi_sub(demi_add(at, shift), wall->pose.position));
-        flats.count = 0;
+        flats.count = gaps.count = 0;
         end = demi_image_end(w, base, k, last);
-        for (; k < end; k++) {
+        for (from = k, had = count; k < end; k++) {
+            const int32_t element = w->wall_element[base + k];
             if (w->wall_gap[base + k] > gone) continue;
-            demi_solid_on_element(wall, w->wall_element[base + k], &s, x, &press);
-            demi_flats_add(&flats, w->wall_element[base + k], &press);
+            if (!impulsive) {
+                demi_solid_on_element(wall, element, &s, x, &press);
+                demi_flats_add(&flats, element, &press);
+            }
+            if (!(gaps.range > 0)) continue;
+            if (wall->kind == DEMI_WALL_PLANE) demi_plane_gaps(&s, (double)x.z, &gaps);
+            else demi_element_gaps(wall, element, w->wall_element + base + from, end - from, &s, x,
+                                   2*(double)part->radius + gaps.range, &gaps);
         }
         count += demi_flats_places(&flats, wall, part, at, shift, *places + count);
+        count += demi_gaps_places(w, &gaps, wall, part, at, shift, *places + had, count - had,
+                                  *places + count);
     }
     return count;
 }
@@ -13202,6 +13851,128 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
         }
     }
 }
+/* A point of a body near one piece of a surface of revolution, if it lies over it; its gap, m. n:
+   unit, into the wall, at the point's line; out, up, level: as below. */
+static double demi_generator_add(const demi_generator *l, const double *n, const double *x0,
+                                 const double *x, double out, double up, double level,
+                                 int32_t element, demi_gaps *gaps) {
+    const double e = l->b - l->a, f = l->h - l->g, z = x0[2] + x[2];
+    const double across = sqrt(n[0]*n[0] + n[1]*n[1]);
+    const double r = across > 0 ? fabs(n[0]*(x0[0] + x[0]) + n[1]*(x0[1] + x[1]))/across
+        : sqrt((x0[0] + x[0])*(x0[0] + x[0]) + (x0[1] + x[1])*(x0[1] + x[1]));
+    const double gap = out*r + up*z - level, along = (r - l->a)*e + (z - l->g)*f;
+    double o[3];
+    int k;
+    if (along < 0 || along > e*e + f*f) return 1e300;
+    for (k = 0; k < 3; k++) o[k] = x[k] + n[k]*gap/2;
+    demi_gaps_add(gaps, element, n, o, gap);
+    return gap;
+}
+/* One piece of a surface of revolution that bends away from the body: the plane through one of its
+   lines that keeps most of it off, sought by the side on which its nearest corner lies; then where
+   the body is cut by the plane through that line and the axis. x0: of the centre. m: of the
+   surface's normal, towards the body, out and up; level: m.x of its points. */
+static void demi_generator_line(const demi_solid *s, const double *x0, double out, double up,
+                                double level, const demi_generator *l, int32_t element,
+                                demi_gaps *gaps) {
+    const int32_t *loops = s->rim + s->faces + 1;
+    double lo = 0, hi = 0, c = 1, sn = 0, least = 0, lowest = 1e300;
+    double at[DEMI_HULL_CORNERS][3], off[DEMI_HULL_CORNERS], n[3], o[3];
+    const double middle = sqrt(x0[0]*x0[0] + x0[1]*x0[1]);
+    const double ax = middle > 0 ? x0[0]/middle : 1, ay = middle > 0 ? x0[1]/middle : 0;
+    int i, k, f, turn, nearest = 0;
+    for (i = 0; i < s->corners; i++) {          /* seen from the axis: out, aside, up */
+        const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
+        at[i][0] = ax*u + ay*v;
+        at[i][1] = ax*v - ay*u;
+        at[i][2] = x0[2] + s->corner[i][2];
+        off[i] = demi_atan2(at[i][1], at[i][0]);
+        lo = DEMI_MIN(lo, off[i]);
+        hi = DEMI_MAX(hi, off[i]);
+    }
+    for (turn = 0; turn < 52; turn++) {
+        const double angle = (lo + hi)/2;
+        c = demi_cos(angle);
+        sn = demi_sin(angle);
+        least = 1e300;
+        for (i = 0; i < s->corners; i++) {
+            const double d = out*(at[i][0]*c + at[i][1]*sn) + up*at[i][2] - level;
+            if (d < least) { least = d; nearest = i; }
+        }
+        if (!turn && !(lo < 0 || hi > 0)) break;
+        if (off[nearest] > angle) lo = angle;
+        else hi = angle;
+        if (!(hi - lo > 1e-15)) break;
+    }
+    if (!(least < gaps->range)) return;
+    n[0] = -out*(ax*c - ay*sn); n[1] = -out*(ay*c + ax*sn); n[2] = -up;
+    for (f = 0; f < s->faces; f++)
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+            const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
+            const double p = at[a][1]*c - at[a][0]*sn, q = at[b][1]*c - at[b][0]*sn, t = p/(p - q);
+            double gap;
+            if (a > b || (p > 0) == (q > 0)) continue;
+            for (k = 0; k < 3; k++)
+                o[k] = s->corner[a][k] + t*(s->corner[b][k] - s->corner[a][k]);
+            gap = demi_generator_add(l, n, x0, o, out, up, level, element, gaps);
+            lowest = DEMI_MIN(lowest, gap);
+        }
+    if (lowest > least + 1e-9*middle)           /* a corner that is cut nowhere */
+        demi_generator_add(l, n, x0, s->corner[nearest], out, up, level, element, gaps);
+}
+/* One piece of a surface of revolution: where it bends round the body, corners. */
+static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, dem_vec3 x,
+                                int32_t element, demi_gaps *gaps) {
+    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
+    const double e = l->b - l->a, f = l->h - l->g, size = sqrt(e*e + f*f);
+    const double out = -l->side*f/size, up = l->side*e/size, level = out*l->a + up*l->g;
+    int i;
+    if (out > 0) {
+        demi_generator_line(s, x0, out, up, level, l, element, gaps);
+        return;
+    }
+    for (i = 0; i < s->corners; i++) {
+        const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
+        const double r = sqrt(u*u + v*v);
+        const double n[3] = {r > 0 ? -out*u/r : -out, r > 0 ? -out*v/r : 0, -up};
+        demi_generator_add(l, n, x0, s->corner[i], out, up, level, element, gaps);
+    }
+}
+/* A ring of a surface of revolution, at the end of a piece: its point nearest to the body, by
+   turns, where neither piece goes on towards the body. */
+static void demi_ring_gaps(const demi_wall *wall, int ring, const demi_solid *s, dem_vec3 x,
+                           demi_gaps *gaps) {
+    const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
+    const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
+    double u = x0[0], v = x0[1], size, y[3], q[3], n[3], o[3], off = 0;
+    int turn, i, k;
+    for (turn = 0; turn < 40; turn++) {
+        const double had[2] = {u, v};
+        size = sqrt(u*u + v*v);
+        y[0] = (size > 0 ? r*u/size : r) - x0[0];
+        y[1] = (size > 0 ? r*v/size : 0) - x0[1];
+        y[2] = z - x0[2];
+        off = demi_solid_near(s, y, q);
+        if (!(off < gaps->range)) return;
+        u = x0[0] + q[0];
+        v = x0[1] + q[1];
+        if (fabs(u - had[0]) + fabs(v - had[1]) < 1e-12*r) break;
+    }
+    if (!(off > 0 || off < 0)) return;
+    for (k = 0; k < 3; k++) n[k] = (y[k] - q[k])/off;
+    for (i = -1; i < 2; i += 2) {               /* the pieces that end here */
+        const int other = ring + i;
+        double along;
+        if (other < 0 || other >= wall->ring_count) continue;
+        size = sqrt((x0[0] + y[0])*(x0[0] + y[0]) + (x0[1] + y[1])*(x0[1] + y[1]));
+        along = size > 0 ? (n[0]*(x0[0] + y[0]) + n[1]*(x0[1] + y[1]))/size : 0;
+        along = along*((double)wall->ring_radius[other] - r) +
+            n[2]*((double)wall->ring_height[other] - z);
+        if (-along > 1e-9*r) return;
+    }
+    for (k = 0; k < 3; k++) o[k] = (y[k] + q[k])/2;
+    demi_gaps_add(gaps, wall->ring_count - 1 + ring, n, o, off);
+}
 /* A cylinder, or a surface of revolution, piece by piece. */
 static int demi_round_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
                                  dem_vec3 at, const demi_part *part, demi_touching **places) {
@@ -13209,25 +13980,35 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const demi_part local = demi_part_local(wall, part);
     const int pieces = wall->kind == DEMI_WALL_CYLINDER ? 1 : wall->ring_count - 1;
+    const int impulsive = demi_impulsive(w);
+    const double range = (double)demi_range(w, part->radius);
     demi_flats flats;
+    demi_gaps gaps;
     demi_solid s;
-    int k, i, end, count = 0;
+    int k, i, end, had, count = 0;
     *places = w->touching + w->domains[d].touching_first;
+    gaps.range = range;
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     for (k = first; k < last; k = end) {
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
         const dem_vec3 x = demi_unrotate(wall->pose.rotation,
                                          demi_sub(demi_add(at, shift), wall->pose.position));
-        flats.count = 0;
+        flats.count = gaps.count = 0;
         end = demi_image_end(w, base, k, last);
         if (w->wall_gap[base + k] > gone) continue;
+        had = count;
         for (i = 0; i < pieces; i++) {
             const demi_generator l = demi_generator_of(wall, i, x, part->radius);
-            if (wall->kind == DEMI_WALL_CYLINDER ||      /* deep in it, too */
-                demi_generator_near(&l, x, (double)part->radius))
-                demi_solid_on_generator(&s, &l, x, i, &flats);
+            if (wall->kind != DEMI_WALL_CYLINDER &&      /* deep in it, too */
+                !demi_generator_near(&l, x, (double)part->radius + range)) continue;
+            if (!impulsive) demi_solid_on_generator(&s, &l, x, i, &flats);
+            if (range > 0) demi_generator_gaps(&s, &l, x, i, &gaps);
         }
+        for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
+            demi_ring_gaps(wall, i, &s, x, &gaps);
         count += demi_flats_places(&flats, wall, part, at, shift, *places + count);
+        count += demi_gaps_places(w, &gaps, wall, part, at, shift, *places + had, count - had,
+                                  *places + count);
     }
     return count;
 }
@@ -13251,7 +14032,7 @@ static int demi_grain_polyhedron(const dem_world *w, int d, int first, int last,
         demi_touching *t = &out[count];
         if (w->wall_gap[base + k] > gone) continue;
         off = demi_solid_near(&s, c, q);
-        if (!(off < (double)wall->radius)) continue;
+        if (!(off < (double)(wall->radius + demi_range(w, part->radius)))) continue;
         memset(t, 0, sizeof *t);
         t->element = w->wall_element[base + k];
         t->overlap = wall->radius - (dem_real)off;
@@ -13308,14 +14089,16 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
 
 /* --- touch: two bodies --- */
 
-/* --- two parts, if they touch: geometry into c. lambda: where to begin, 0: unknown --- */
+/* --- two parts, if they touch: geometry into c. lambda: where to begin, 0: unknown. spots: several
+       points, from p's centre, where the contact has a gap for each; else its count stays 0 --- */
 typedef int (*demi_meet_fn)(const dem_world *w, const demi_part *p, const demi_part *q,
-                            dem_vec3 gap, double lambda, demi_kept *c);
+                            dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots);
 /* Two spheres share the distance as their radii do. */
 static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                            dem_vec3 gap, double lambda, demi_kept *c) {
+                            dem_vec3 gap, double lambda, demi_kept *c,
+                            demi_spots *spots) {
     const dem_real d = demi_length(gap), sum = p->radius + q->radius;
-    (void)lambda;
+    (void)lambda; (void)spots;
     if (!(d < sum + demi_range(w, sum))) return 0;
     c->normal = d > 0 ? demi_scale(gap, 1/d) : demi_v(0, 0, 1);
     c->overlap = sum - d;
@@ -13330,11 +14113,13 @@ static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_p
    of the points of either that come to it when both are scaled by W0, d (1 - 1/W0): never less
    than the distance, by which lists are made. */
 static int demi_ellipsoids_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                 dem_vec3 gap, double lambda, demi_kept *c) {
+                                 dem_vec3 gap, double lambda, demi_kept *c,
+                                 demi_spots *spots) {
     const dem_real d = demi_length(gap), range = demi_range(w, p->radius + q->radius);
     const double most = 1 + (double)range/(double)(demi_part_thin(p) + demi_part_thin(q));
     double A[6], B[6], r[3], n[3], ha, hb, w0, ra, rb;
     demi_meet m;
+    (void)spots;
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
     if (!(d > 0)) r[2] = 1e-9*(double)demi_part_thin(p);
     demi_part_matrix(p, A);
@@ -13389,11 +14174,10 @@ static int demi_solid_ball_touch(const dem_world *w, const demi_part *p, const d
     const double x[3] = {0, 0, 0};
     double at[3], off;
     demi_solid s;
-    (void)w;
     demi_solid_of(first ? q : p, first ? gap : demi_scale(gap, -1), &s);
     off = demi_solid_near(&s, x, at);
     c->overlap = ball->radius - (dem_real)off;
-    if (!(c->overlap > 0)) return 0;
+    if (!(c->overlap > -demi_range(w, p->radius + q->radius))) return 0;
     c->normal = demi_v((dem_real)at[0], (dem_real)at[1], (dem_real)at[2]);
     c->normal = off > 0 || off < 0 ? demi_scale(c->normal, (dem_real)(1/off))
                                    : demi_unit(gap);
@@ -13418,7 +14202,8 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
     demi_solid s;
     demi_solid_measure(first ? q : p, egg, first ? gap : demi_scale(gap, -1), &s);
     W0 = demi_solid_near(&s, x, near);
-    if (!(W0 < 1)) return 0;
+    if (!(W0 < 1 + (double)demi_range(w, p->radius + q->radius)/(double)demi_part_thin(egg)))
+        return 0;
     at = demi_v((dem_real)near[0]*egg->axes.x, (dem_real)near[1]*egg->axes.y,
                 (dem_real)near[2]*egg->axes.z);
     n = demi_v((dem_real)near[0]/egg->axes.x, (dem_real)near[1]/egg->axes.y,
@@ -13435,29 +14220,59 @@ static int demi_solid_egg_touch(const dem_world *w, const demi_part *p, const de
     return 1;
 }
 static int demi_solid_round_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                  dem_vec3 gap, double lambda, demi_kept *c) {
+                                  dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
     const int ball = p->kind == DEMI_BALL || q->kind == DEMI_BALL;
-    (void)lambda;
+    (void)lambda; (void)spots;
     if (!(ball ? demi_solid_ball_touch : demi_solid_egg_touch)(w, p, q, gap, c)) return 0;
     c->arm_a = demi_add(c->arm_a, p->centre);
     c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
     return 1;
 }
+/* Two polyhedra by the points that keep them off: all that impulses ask; for a law with a range,
+   while nothing presses, the nearest one, four times, as many as a pressure will have. */
+static int demi_polyhedra_near(const dem_world *w, const demi_part *p, const demi_part *q,
+                               dem_vec3 gap, demi_kept *c, demi_spots *spots) {
+    const double ra = demi_part_equal(p), rb = demi_part_equal(q);
+    const double range = (double)demi_range(w, p->radius + q->radius);
+    const dem_vec3 from = demi_dot(c->normal, c->normal) > 0 ? c->normal : gap;
+    const double guess[3] = {(double)from.x, (double)from.y, (double)from.z};
+    demi_simplex tells;
+    demi_solid a, b;
+    int k, nearest = 0;
+    demi_solid_of(p, demi_v(0, 0, 0), &a);
+    demi_solid_of(q, gap, &b);
+    if (!demi_solids_spots(&a, &b, 0, range, guess, &tells, spots)) return 0;
+    c->normal = demi_v((dem_real)spots->normal[0], (dem_real)spots->normal[1],
+                       (dem_real)spots->normal[2]);
+    c->r_eff = (dem_real)(ra*rb/(ra + rb));
+    c->arm_a = p->centre;
+    c->arm_b = demi_sub(p->centre, demi_sub(demi_add(p->centre, gap), q->centre));
+    if (demi_impulsive(w)) return 1;
+    for (k = 1; k < spots->count; k++) if (spots->gap[k] < spots->gap[nearest]) nearest = k;
+    for (k = 0; k < 4; k++) {
+        if (k != nearest) memcpy(spots->x[k], spots->x[nearest], sizeof *spots->x);
+        spots->gap[k] = spots->gap[nearest];
+    }
+    spots->count = 4;
+    return spots->gap[0] > 0;
+}
 /* Two polyhedra, by what they share; the first of four points by which they touch. */
 static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                                dem_vec3 gap, double lambda, demi_kept *c) {
+                                dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots) {
     const double ra = demi_part_equal(p), rb = demi_part_equal(q), r_eff = ra*rb/(ra + rb);
     demi_solid a, b;
     demi_patch at;
     demi_pressure s;
     double overlap;
-    (void)w; (void)lambda;
-    if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1))) return 0;
+    (void)lambda;
+    if (demi_impulsive(w)) return demi_polyhedra_near(w, p, q, gap, c, spots);
+    if (demi_face_keeps(p, q, gap) || demi_face_keeps(q, p, demi_scale(gap, -1)))
+        return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
-    if (!demi_solids_press(&a, &b, &s) || !demi_pressure_patch(&s, &at)) return 0;
-    overlap = demi_shared_overlap(s.shared, r_eff);
-    if (!(overlap > 0)) return 0;
+    overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &at)
+        ? demi_shared_overlap(s.shared, r_eff) : 0;
+    if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     c->normal = at.normal;
     c->overlap = (dem_real)overlap;
     c->slope = (dem_real)demi_shared_slope(at.force, r_eff, overlap);
@@ -13716,6 +14531,53 @@ static int demi_kept_spread(dem_world *w, int d, demi_kept *c, const demi_kept *
     c->arm_b = demi_add(c->arm_b, c->spread);
     return 1;
 }
+/* Where impulses hold polyhedra: which of a step ago each point of one contact continues: the
+   nearest, of the same pair or wall and within about 18 degrees, that none before it does. first:
+   of all points so far; its last is asked about. */
+static int demi_kept_nearest(const dem_world *w, int d, const demi_kept *old, int olds,
+                             const demi_kept *first, const demi_kept *c) {
+    const int begin = (int)(old - demi_kept_of(w, d));
+    dem_real least = DEM_R(1e30);
+    int i, best = -1;
+    for (i = 0; i < olds; i++) {
+        const dem_vec3 way = demi_sub(old[i].arm_a, c->arm_a);
+        const demi_kept *f;
+        if (old[i].b != c->b || old[i].part_a != c->part_a || old[i].part_b != c->part_b ||
+            old[i].wall != c->wall || !(demi_dot(old[i].normal, c->normal) > DEM_R(0.95)) ||
+            !(demi_dot(way, way) < least)) continue;
+        for (f = first; f < c && f->from != begin + i; f++) continue;
+        if (f < c) continue;
+        least = demi_dot(way, way);
+        best = begin + i;
+    }
+    return best;
+}
+/* A contact of polyhedra by its points: arm_a and arm_b are to the first one's centre. 0: no room.
+   */
+static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *p,
+                            const demi_part *q, const demi_spots *spots, const demi_kept *old,
+                            int olds) {
+    const dem_vec3 base_a = c->arm_a, base_b = c->arm_b;
+    const dem_real thin = DEMI_MIN(demi_part_thin(p), demi_part_thin(q));
+    int k;
+    c->share /= (dem_real)spots->count;
+    c->corners = spots->count;
+    for (k = 0; k < spots->count; k++) {
+        const dem_vec3 x = demi_v((dem_real)spots->x[k][0], (dem_real)spots->x[k][1],
+                                  (dem_real)spots->x[k][2]);
+        demi_kept *at = k ? demi_kept_new(w, d) : c;
+        if (!at) return 0;
+        if (k) memcpy(at, c, offsetof(demi_kept, coef));
+        at->corner = k;
+        at->arm_a = demi_add(base_a, x);
+        at->arm_b = demi_add(base_b, x);
+        at->overlap = (dem_real)-spots->gap[k];
+        at->deep = at->overlap/thin;
+        at->from = demi_impulsive(w) ? demi_kept_nearest(w, d, old, olds, c, at)
+            : demi_kept_same(w, d, old, olds, c->b, c->part_a, c->part_b, -1, -1, k);
+    }
+    return 1;
+}
 /* All contacts of one near pair. old: those body a had in the step before. */
 static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
                                       const demi_kept *old, int olds) {
@@ -13737,18 +14599,23 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
             const demi_part q = demi_part_now(w, b, j);
             const dem_vec3 gap = demi_add(to, q.centre);
             const dem_real near_by = p.radius + q.radius + demi_range(w, p.radius + q.radius);
+            demi_spots spots;
             demi_kept *c;
             if (!(demi_dot(gap, gap) < near_by*near_by)) continue;
             c = demi_kept_new(w, d);
             if (!c) return;
+            spots.count = 0;
             c->a = a; c->b = b; c->part_a = i; c->part_b = j;
             c->wall = c->element = -1;
             c->send = send;
             c->from = demi_kept_same(w, d, old, olds, b, i, j, -1, -1, 0);
+            if (c->from >= 0) c->normal = now[c->from].normal;      /* where to begin */
             if (!demi_meet_of(p.kind, q.kind)(w, &p, &q, gap,
-                                              c->from < 0 ? 0 : now[c->from].lambda, c))
+                                              c->from < 0 ? 0 : now[c->from].lambda, c,
+                                              &spots))
                 w->domains[d].kept_next--;
-            else if (c->corners && !demi_kept_spread(w, d, c, old, olds)) return;
+            else if (spots.count ? !demi_kept_points(w, d, c, &p, &q, &spots, old, olds)
+                     : c->corners && !demi_kept_spread(w, d, c, old, olds)) return;
         }
     }
     demi_kept_share(w, from, w->domains[d].kept_next - first);
@@ -13782,7 +14649,7 @@ static void demi_polyhedron_on_wall(const dem_world *w, const demi_wall *wall, c
     c->couple = place->couple;
     c->spread = place->spread;
     c->corner = place->corner;
-    c->corners = ball ? 0 : 4;
+    c->corners = place->corners;
     c->r_eff = ball ? DEM_R(1e30) : (dem_real)demi_part_equal(p);
     c->arm_a = demi_sub(place->point, demi_at(w->bodies.pos + 4*c->a));
 }
@@ -13812,12 +14679,12 @@ static void demi_kept_through(const demi_kept *old, int olds, const demi_kept *f
         if (i == count) c->deep = 2 - c->deep;
     }
 }
-/* Is a place of a part's at `at` that does not touch within the range of a law? A ball's is, or it
-   was not found; an ellipsoid's by its gap to the point of its own that comes there. */
+/* Is a place of a part's at `at` that does not touch within the range of a law? Most are, or they
+   were not found; an ellipsoid's by its gap to the point of its own that comes there. */
 static int demi_place_near(const dem_world *w, const demi_part *p, dem_vec3 at,
                            const demi_touching *place) {
     const dem_real scale = 1 - place->overlap;
-    return p->kind == DEMI_BALL || place->overlap > 0 ||
+    return p->kind != DEMI_ELLIPSOID || place->overlap > 0 ||
         demi_length(demi_sub(place->point, at))*(1 - 1/scale) < demi_range(w, p->radius);
 }
 /* Contacts of part k with one wall, from candidates first .. last - 1 of its body: all of them,
@@ -13856,7 +14723,9 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     for (i = 0, c = fresh; i < count; i++, c++)
-        c->from = demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element, c->corner);
+        c->from = shaped && c->corners && demi_impulsive(w)
+            ? demi_kept_nearest(w, d, old, olds, fresh, c)
+            : demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element, c->corner);
     for (i = 0, c = fresh; i < count; i++, c++) {
         if (c->from < 0 && olds) c->from = demi_kept_slid(w, d, old, olds, fresh, count, c);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);
@@ -15127,6 +15996,9 @@ static void demi_impulses_lay(dem_world *w, int d) {
         const dem_real *y = o.memory;
         demi_impulse *c = s->contacts + m->at;
         demi_beside *beside = s->beside + m->at;
+        /* a contact of several points has what its pair has once */
+        const dem_real points = (dem_real)(k && k->corners ? k->corners : 1);
+        const dem_real give = pair->compliance*points;
         demi_brings g = {0, 0, 0, 0, 0, 0};
         dem_vec3 slip = demi_v(y[0], y[o.stride], y[2*o.stride]);
         dem_real closing;
@@ -15151,7 +16023,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         c->mu = pair->friction;
         c->gn = g.n;
         c->gt = g.t;
-        c->per_n = 1/(g.n + pair->compliance/(dt*dt));
+        c->per_n = 1/(g.n + give/(dt*dt));
         c->per_t = 1/g.t;
         c->push = y[6*o.stride]*dt;
         c->slip = demi_scale(demi_sub(slip, demi_scale(o.normal, demi_dot(slip, o.normal))), dt);
@@ -15165,7 +16037,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         beside->lift = 0;
         beside->mass = 1/(s->movers[m->a].inv + s->movers[m->b].inv);
         beside->pull = o.gap < (c->push > 0 ? DEM_R(1e-3) : DEM_R(1e-6))*o.size
-            ? pair->cohesion*dt : 0;
+            ? pair->cohesion/points*dt : 0;
         if (s->twisted) {
             demi_twist *t = s->twists + m->at;
             t->moment = demi_scale(demi_v(y[3*o.stride], y[4*o.stride], y[5*o.stride]), dt);
