@@ -2075,6 +2075,9 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path);
    */
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1);
+/* All bodies as they look, as polygons: polyhedra by their faces, what is round in facets; with
+   velocity (of each corner), id, material and the numbers of your own. */
+DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path);
 /* Appends the loads of a wall as one CSV line; writes the heading first when the file is new or
    empty. */
 DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const char *path);
@@ -2141,7 +2144,8 @@ typedef enum dem_output_kind {
     DEM_OUTPUT_XYZ,          /* dem_xyz_write, */
     DEM_OUTPUT_CONTACTS,     /* dem_contacts_vtp_write, */
     DEM_OUTPUT_CHECKPOINT,   /* and dem_checkpoint_write do */
-    DEM_OUTPUT_CSV           /* a line of a CSV file: the time and some values */
+    DEM_OUTPUT_CSV,          /* a line of a CSV file: the time and some values */
+    DEM_OUTPUT_SURFACES      /* as dem_surfaces_vtp_write */
 } dem_output_kind;
 typedef struct dem_output_desc {
     dem_output_kind kind;
@@ -19116,13 +19120,15 @@ static double demi_fastest_next(const dem_world *w) {
     return most;
 }
 /* Refuses a step in which the fastest moves farther than the smallest radius: it would pass others
-   and walls unseen. speed: a bound, m/s; named: 1 where w has bodies to look for it. */
+   and walls unseen; but for impulses that see both come from as far off as they may go together.
+   speed: a bound, m/s; named: 1 where w has bodies to look for it. */
 static dem_result demi_speed_check(dem_world *w, double speed, int named) {
+    const double seen = demi_impulsive(w) ? w->margin.reach/2 : 0;
     const double radius = (double)w->effects.radius_min, dt = (double)w->clock.dt;
     double most = 0;
     char who[80] = "a body";
     int i;
-    if (!(speed*dt > radius && radius > 0)) return DEM_OK;
+    if (!(speed*dt > DEMI_MAX(radius, seen) && radius > 0)) return DEM_OK;
     for (i = 0; i < w->bodies.count && named; i++) {
         const double v = (double)demi_length(demi_at(w->bodies.vel + 4*i));
         if (v <= most) continue;
@@ -19133,9 +19139,10 @@ static dem_result demi_speed_check(dem_world *w, double speed, int named) {
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: %s may reach %.3g m/s in "
                      "this step: it moves %.3g radii of the smallest grain (%g m) in a step of %g "
                      "s, must be at most 1: it would pass others and walls unseen; use at most "
-                     "%.2g s, or look for what made it so fast",
+                     "%.2g s%s, or look for what made it so fast",
                      (unsigned long long)w->clock.steps, who, speed, speed*dt/radius, radius, dt,
-                     0.1*radius/speed);
+                     0.1*radius/speed,
+                     demi_impulsive(w) ? ", or a law_range of twice its way" : "");
 }
 /* The same of walls that are thin: planes and cylinders cannot be passed. */
 static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) {
@@ -23185,6 +23192,158 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     return demi_out_close(&o);
 }
 
+/* ---- bodies as surfaces ---- */
+
+/* A round part has its poles and rings of points between them. */
+enum { DEMI_ROUND_RINGS = 7, DEMI_ROUND_SIDES = 16,
+       DEMI_ROUND_POINTS = 2 + DEMI_ROUND_RINGS*DEMI_ROUND_SIDES };
+/* Polygons under way; without arrays they are only counted. */
+typedef struct demi_surfaces {
+    int64_t points, polygons, links;
+    dem_real *place, *velocity;    /* points x 3: m, m/s */
+    int32_t *body;                 /* points: index */
+    int32_t *link, *end;           /* links: points; polygons: where each ends among them */
+} demi_surfaces;
+static void demi_surface_point(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
+                               dem_vec3 arm) {
+    if (s->place) {
+        demi_put(s->place + 3*s->points, demi_add(centre, arm));
+        demi_put(s->velocity + 3*s->points,
+                 demi_velocity_at(w->bodies.vel, w->bodies.spin, body, arm));
+        s->body[s->points] = body;
+    }
+    s->points++;
+}
+static void demi_surface_polygon(demi_surfaces *s, int64_t first, const int32_t *corners,
+                                 int count) {
+    int k;
+    if (s->link) {
+        for (k = 0; k < count; k++) s->link[s->links + k] = (int32_t)(first + corners[k]);
+        s->end[s->polygons] = (int32_t)(s->links + count);
+    }
+    s->links += count;
+    s->polygons++;
+}
+/* An ellipsoid, its first point a pole. */
+static void demi_surface_round(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
+                               const demi_part *p) {
+    const dem_vec3 a = demi_shape_rows[p->kind].drawn(p);
+    const int64_t first = s->points;
+    const int last = DEMI_ROUND_POINTS - 1;
+    int i, k;
+    for (i = 0; i < DEMI_ROUND_POINTS; i++) {
+        const int ring = (i + DEMI_ROUND_SIDES - 1)/DEMI_ROUND_SIDES;
+        const int side = (i - 1)%DEMI_ROUND_SIDES;
+        const double polar = DEMI_PI*ring/(DEMI_ROUND_RINGS + 1);
+        const double round = 2*DEMI_PI*side/DEMI_ROUND_SIDES, out = demi_sin(polar);
+        dem_vec3 x = demi_v(a.x*(dem_real)(out*demi_cos(round)),
+                            a.y*(dem_real)(out*demi_sin(round)), a.z*(dem_real)demi_cos(polar));
+        if (p->kind != DEMI_BALL) x = dem_quat_rotate(p->q, x);
+        demi_surface_point(s, w, body, centre, demi_add(p->centre, x));
+    }
+    for (i = 0; i <= DEMI_ROUND_RINGS; i++)
+        for (k = 0; k < DEMI_ROUND_SIDES; k++) {
+            const int up = 1 + (i - 1)*DEMI_ROUND_SIDES, down = 1 + i*DEMI_ROUND_SIDES;
+            const int next = (k + 1)%DEMI_ROUND_SIDES;
+            int32_t c[4];
+            c[0] = i ? up + k : 0;
+            c[1] = i < DEMI_ROUND_RINGS ? down + k : last;
+            c[2] = i && i < DEMI_ROUND_RINGS ? down + next : i ? up + next : down + next;
+            c[3] = up + next;
+            demi_surface_polygon(s, first, c, i && i < DEMI_ROUND_RINGS ? 4 : 3);
+        }
+}
+static void demi_surface_hull(demi_surfaces *s, const dem_world *w, int body, dem_vec3 centre,
+                              const demi_part *p) {
+    const demi_shape *shape = p->shape;
+    const int32_t *loops = shape->rim + shape->faces + 1;
+    const double *x = shape->hull + 4*shape->faces;
+    const int64_t first = s->points;
+    int i;
+    for (i = 0; i < shape->corners; i++, x += 3) {
+        const dem_vec3 at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
+        demi_surface_point(s, w, body, centre,
+                           demi_add(p->centre, dem_quat_rotate(p->q, demi_scale(at, p->scale))));
+    }
+    for (i = 0; i < shape->faces; i++)
+        demi_surface_polygon(s, first, loops + shape->rim[i], shape->rim[i + 1] - shape->rim[i]);
+}
+/* All of them. */
+static void demi_surfaces_draw(dem_world *w, demi_surfaces *s) {
+    const dem_real *places = demi_wrapped(w);
+    int i, k;
+    for (i = 0; i < w->bodies.count; i++)
+        for (k = 0; k < demi_parts_count(w, i); k++) {
+            const demi_part p = demi_part_of(w, i, k);
+            if (p.kind != DEMI_BALL && p.shape->faces)
+                demi_surface_hull(s, w, i, demi_at(places + 4*i), &p);
+            else demi_surface_round(s, w, i, demi_at(places + 4*i), &p);
+        }
+}
+/* With arrays for all of it: what is told of a body stands at each of its points. 0: no memory. */
+static int demi_surfaces_room(dem_world *w, demi_surfaces *s, dem_real **reals, int32_t **told) {
+    const size_t points = (size_t)s->points + 1, n = (size_t)w->bodies.real_count;
+    if (s->points >= DEMI_ELEMENTS_MAX || s->links >= DEMI_ELEMENTS_MAX) return 0;
+    s->place = (dem_real *)demi_alloc(w, 6*points, sizeof(dem_real));
+    s->body = (int32_t *)demi_alloc(w, points, sizeof(int32_t));
+    s->link = (int32_t *)demi_alloc(w, (size_t)s->links + 1, sizeof(int32_t));
+    s->end = (int32_t *)demi_alloc(w, (size_t)s->polygons + 1, sizeof(int32_t));
+    *reals = (dem_real *)demi_alloc(w, n*points + 1, sizeof(dem_real));
+    *told = (int32_t *)demi_alloc(w, 2*points, sizeof(int32_t));
+    if (s->place) s->velocity = s->place + 3*points;
+    s->points = s->polygons = s->links = 0;
+    return s->place && s->body && s->link && s->end && *reals && *told;
+}
+DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
+    const char *call = "dem_surfaces_vtp_write";
+    if (demi_null(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
+    const int n = world->bodies.real_count;
+    char names[DEM_BODY_REALS][24];
+    demi_column column[7 + DEM_BODY_REALS];
+    demi_surfaces s;
+    dem_real *reals = 0;
+    int32_t *told = 0;
+    dem_result result;
+    int i, k, length = 0, count = 0;
+    memset(&s, 0, sizeof s);
+    demi_surfaces_draw(world, &s);
+    if (demi_surfaces_room(world, &s, &reals, &told)) {
+        demi_surfaces_draw(world, &s);
+        for (i = 0; i < s.points; i++) {
+            told[i] = (int32_t)world->bodies.slot[s.body[i]];
+            told[s.points + i] = world->bodies.material[s.body[i]];
+            for (k = 0; k < n; k++) reals[n*i + k] = world->bodies.reals[n*s.body[i] + k];
+        }
+        {
+            const int points = (int)s.points;
+            const demi_column all[] = {
+                {"Points",    "position",     'r', 3, points, 3, 0, s.place},
+                {"PointData", "velocity",     'r', 3, points, 3, 0, s.velocity},
+                {"PointData", "id",           'u', 1, points, 1, 0, told},
+                {"PointData", "material",     'i', 1, points, 1, 0, told + s.points},
+                {"Polys",     "connectivity", 'i', 1, (int)s.links, 1, 0, s.link},
+                {"Polys",     "offsets",      'i', 1, (int)s.polygons, 1, 0, s.end}};
+            for (; count < 4; count++) column[count] = all[count];
+            for (k = 0; k < n; k++) {
+                const demi_column own = {"PointData", names[k], 'r', 1, points, n, k, reals};
+                const char *name = demi_name(world->desc.body_reals, k, &length);
+                sprintf(names[k], "%.*s", length, name);
+                column[count++] = own;
+            }
+            for (k = 4; k < 6; k++) column[count++] = all[k];
+        }
+        result = demi_vtp(world, call, path, column, count, 0, 0, (int)s.polygons);
+    } else result = demi_fail(world, DEM_ERROR_MEMORY, "%s: no memory for the surfaces of %d "
+                              "bodies; free some", call, world->bodies.count);
+    demi_free(world, s.place);
+    demi_free(world, s.body);
+    demi_free(world, s.link);
+    demi_free(world, s.end);
+    demi_free(world, reals);
+    demi_free(world, told);
+    return result;
+}
+
 /* ---- walls and loads out ---- */
 
 /* A surface of revolution, as demi_wall_draw has it. */
@@ -24615,6 +24774,7 @@ static dem_result demi_output_write(dem_world *w, demi_output *o, int64_t number
     case DEM_OUTPUT_CONTACTS: result = dem_contacts_vtp_write(w, path); break;
     case DEM_OUTPUT_CHECKPOINT: result = dem_checkpoint_write(w, path); break;
     case DEM_OUTPUT_CSV: result = demi_output_line(w, o, path); break;
+    case DEM_OUTPUT_SURFACES: result = dem_surfaces_vtp_write(w, path); break;
     case DEM_OUTPUT_CALL: break;
     }
     demi_free(w, path);
@@ -24655,7 +24815,7 @@ static void demi_outputs_again(dem_world *w) {
 }
 /* One sentence on what is wrong with a desc; null: nothing. */
 static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d) {
-    if ((int)d->kind < 0 || d->kind > DEM_OUTPUT_CSV)
+    if ((int)d->kind < 0 || d->kind > DEM_OUTPUT_SURFACES)
         return "kind is unknown, must be a DEM_OUTPUT_ value; start from DEM_OUTPUT_DESC";
     if (!(d->interval > 0) || !demi_finite_double(d->interval) ||
         !demi_finite_double(d->start) || !demi_finite_double(d->end) || !(d->end >= 0))

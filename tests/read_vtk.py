@@ -64,6 +64,11 @@ data = read("walls.vtp", vtk.vtkXMLPolyDataReader())
 check([data.GetNumberOfPoints(), data.GetNumberOfPolys()] == walls, "walls.vtp: corners and triangles")
 check(all(data.GetCell(i).ComputeArea() > 0 for i in range(data.GetNumberOfCells())), "walls.vtp: areas")
 
+data = read("surfaces.vtp", vtk.vtkXMLPolyDataReader())
+check(data.GetNumberOfPoints() == 114*len(grains) and data.GetNumberOfPolys() == 128*len(grains),
+      "surfaces.vtp: points and polygons")
+check(all(data.GetCell(i).ComputeArea() > 0 for i in range(data.GetNumberOfCells())), "surfaces.vtp: areas")
+
 print("VTK %s: %s" % (vtk.vtkVersion().GetVTKVersion(),
                       "%d failures" % failures if failures else "all files read as written"))
 sys.exit(failures > 0)

@@ -587,6 +587,49 @@ static void walls(void) {
         }
         free(text);
     }
+    TEST("bodies are drawn as surfaces: a cube by its six faces, a ball and each sphere of a cluster by facets on it, with "
+         "what they carry at every corner") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_real cube[24], pair[6] = {0, 0, 0, 1, 0, 0}, *numbers;
+        dem_cluster_desc cluster = DEM_CLUSTER_DESC;
+        dem_material m;
+        dem_world *w;
+        dem_body b;
+        char *data;
+        int k, off = 0;
+        desc.body_reals = "charge";
+        w = dem_world_create(&desc);
+        m = scene_material(w, 1e7, 0.5, 0, 0);
+        for (k = 0; k < 24; k++) cube[k] = k/3 >> k%3 & 1 ? DEM_R(0.5) : DEM_R(-0.5);
+        cluster.count = 2;
+        cluster.positions = pair;
+        cluster.radius = DEM_R(0.8);
+        b = dem_body_add(w, m, dem_shape_polyhedron_add(w, 8, cube), at(3, 0, 0), dem_quat_make(1, 0, 0, 0));
+        scene_move(w, b, at(0, 2, 0), at(0, 0, 0));
+        dem_body_add(w, m, dem_shape_cluster_add(w, &cluster), at(0, 4, 0), dem_quat_make(1, 0, 0, 0));
+        dem_sphere_add(w, m, 1, at(-3, 0, 0));
+        CHECK_EQ(dem_surfaces_vtp_write(w, "build/tmp/surfaces.vtp"), DEM_OK);
+        data = file_get("build/tmp/surfaces.vtp", &size);
+        CHECK(data != 0);
+        CHECK_STR(data, "NumberOfPoints=\"350\"");     /* 8 + 3 x 114 */
+        CHECK_STR(data, "NumberOfPolys=\"390\"");      /* 6 + 3 x 128 */
+        CHECK_STR(data, "Name=\"charge\"");
+        numbers = (dem_real *)malloc(350*6*sizeof(dem_real));
+        if (data && numbers && strstr(data, "_")) {
+            const char *from = strstr(data, "<AppendedData encoding=\"raw\">\n_") + strlen("<AppendedData encoding=\"raw\">\n_") + 8;
+            memcpy(numbers, from, 1050*sizeof(dem_real));
+            memcpy(numbers + 1050, from + 1050*sizeof(dem_real) + 8, 1050*sizeof(dem_real));
+            for (k = 0; k < 8; k++)             /* its corners, and how fast they are */
+                off += !(fabs((double)numbers[3*k] - 3) == 0.5 && fabs((double)numbers[3*k + 1]) == 0.5 &&
+                         numbers[1050 + 3*k + 1] == 2);
+            for (k = 236; k < 350; k++)
+                off += fabs((double)demi_length(at((double)numbers[3*k] + 3, (double)numbers[3*k + 1], (double)numbers[3*k + 2])) - 1) > 1e-6;
+            CHECK_EQ(off, 0);
+        }
+        free(numbers);
+        free(data);
+        dem_world_destroy(w);
+    }
     TEST("profiles cannot be drawn between z1 and z0") {
         dem_profile_add(world, steel, &profile, DEM_EDGE_RESOLVED);
         CHECK_EQ(dem_walls_vtp_write(world, "build/tmp/walls.vtp", 1, 1), DEM_ERROR_ARGUMENT);

@@ -182,6 +182,33 @@ int main(int argc, char **argv) {
         slides(atan(0.4) + 0.2*pi/180, 2, 0.1, 0.2, 0.2, &spin);
         CHECK(spin > 1e-3);
     }
+    TEST("impulses: a ball that goes farther than its radius in a step is refused, unless law_range is twice its way: then "
+         "it stops at the floor all the same") {
+        int k;
+        for (k = 0; k < 2; k++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_material_desc stuff = scene_stuff(0, 0, 0, 0);
+            dem_material m;
+            dem_world *world;
+            dem_body ball;
+            desc.response = DEM_RESPONSE_IMPULSES;
+            desc.dt = DEM_R(1e-3);
+            desc.law_range = k ? DEM_R(0.01) : DEM_R(0.001);
+            world = dem_world_create(&desc);
+            m = dem_material_add(world, &stuff);
+            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            ball = dem_sphere_add(world, m, DEM_R(0.0005), at(0, 0, 0.02));
+            scene_move(world, ball, at(0, 0, -4), at(0, 0, 0));
+            if (k) {
+                CHECK_EQ(scene_step(world, 10), DEM_OK);
+                CHECK_NEAR((double)scene_state(world, ball).position.z, 0.0005, 1e-8);
+            } else {
+                CHECK_EQ(dem_world_step(world, 10), DEM_ERROR_TIME_STEP);
+                CHECK_STR(dem_world_error(world), "law_range of twice its way");
+            }
+            dem_world_destroy(world);
+        }
+    }
     TEST("impulses: a block that slides at 5 m/s with mu 0.5 stops after 2.54842 m and 1.01937 s") {
         dem_material m;
         dem_world *world = rigid(g, 1e-3, 0, 0.5, DEM_CONE_COULOMB, 1, &m);

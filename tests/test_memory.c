@@ -129,6 +129,7 @@ static void scenario(scene_memory *c, dem_search search, long refuse, uint64_t *
     CALL("dem_mesh_parse", dem_mesh_parse(world, "text", stl, sizeof stl - 1, &mesh, &health));
     dem_mesh_free(world, &mesh);
     CALL("dem_vtp_write", dem_vtp_write(world, "build/tmp/memory.vtp"));
+    CALL("dem_surfaces_vtp_write", dem_surfaces_vtp_write(world, "build/tmp/memory.vtp"));
     CALL("dem_walls_vtp_write", dem_walls_vtp_write(world, "build/tmp/memory.vtp", 0, 1));
     c->refuse = 0;
     CHECK_EQ(dem_world_step(world, 100), DEM_OK);

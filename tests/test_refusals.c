@@ -108,6 +108,7 @@ static void null_world(void) {
     REFUSES(dem_vtk_write(world, 0));
     REFUSES(dem_xyz_write(world, 0));
     REFUSES(dem_walls_vtp_write(world, 0, 0, 1));
+    REFUSES(dem_surfaces_vtp_write(world, 0));
     REFUSES(dem_wall_loads_csv(world, wall, 0));
     REFUSES(dem_checkpoint_write(world, 0));
     REFUSES(dem_checkpoint_read(world, 0));
@@ -171,6 +172,7 @@ static void null_pointers(dem_world *world) {
     REFUSES(dem_vtk_write(world, 0));
     REFUSES(dem_xyz_write(world, 0));
     REFUSES(dem_walls_vtp_write(world, 0, 0, 1));
+    REFUSES(dem_surfaces_vtp_write(world, 0));
     REFUSES(dem_wall_loads_csv(world, wall, 0));
     REFUSES(dem_checkpoint_write(world, 0));
     REFUSES(dem_checkpoint_read(world, 0));

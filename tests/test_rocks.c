@@ -7,7 +7,7 @@
 #include "test.h"
 #include "scene.h"
 
-static const double g = 9.81;                   /* m/s2 */
+static const double earth = 9.81;                   /* m/s2 */
 static const int fine = sizeof(dem_real) == 8;
 static const dem_quat straight = {1, 0, 0, 0};
 
@@ -129,7 +129,7 @@ static double slides(double angle, double friction, double width, double height,
         dem_body_set(w, under, &s);
     }
     b = dem_body_add(w, m, box_add(w, width, width, height), at(0.013, 0.021, height/2), straight);
-    dem_world_gravity_set(w, at(g*sin(angle), 0, -g*cos(angle)));
+    dem_world_gravity_set(w, at(earth*sin(angle), 0, -earth*cos(angle)));
     CHECK_EQ(dem_world_run(w, 0.2, 0, 0), DEM_OK);
     s = scene_state(w, b);
     *spin = (double)s.spin.y;
@@ -149,7 +149,7 @@ static dem_world *drum(int threads) {
     dem_cluster_desc cluster = DEM_CLUSTER_DESC;
     uint64_t random = 5;
     int k;
-    desc.gravity.z = (dem_real)-g;
+    desc.gravity.z = (dem_real)-earth;
     desc.response = DEM_RESPONSE_IMPULSES;
     desc.dt = DEM_R(5e-4);
     desc.threads = threads;
@@ -268,7 +268,7 @@ int main(int argc, char **argv) {
             CHECK_NEAR(slides(limit - part, 0.5, 0.1, 0.05, floor, &spin), 0, fine ? 1e-7 : 1e-4);
             CHECK_NEAR(spin, 0, fine ? 1e-6 : 1e-2);
             CHECK(slides(limit + part, 0.5, 0.1, 0.05, floor, &spin) > 1e-4);
-            CHECK_REL(slides(0.7, 0.5, 0.1, 0.05, floor, &spin), 0.2*g*(sin(0.7) - 0.5*cos(0.7)), fine ? 1e-3 : 1e-2);
+            CHECK_REL(slides(0.7, 0.5, 0.1, 0.05, floor, &spin), 0.2*earth*(sin(0.7) - 0.5*cos(0.7)), fine ? 1e-3 : 1e-2);
             CHECK_NEAR(spin, 0, fine ? 1e-5 : 1e-2);
             slides(atan(0.5) - 0.2*pi/180, 2, 0.1, 0.2, floor, &spin);
             CHECK_NEAR(spin, 0, fine ? 1e-6 : 1e-3);
@@ -358,7 +358,7 @@ int main(int argc, char **argv) {
     TEST("rocks: a stack of ten cubes stands for 600 steps of 1 ms and creeps slower than 1e-6 m/s; its floor bears its "
          "weight") {
         dem_material m;
-        dem_world *w = rigid_to(1e-7, g, 0, 0.5, &m);
+        dem_world *w = rigid_to(1e-7, earth, 0, 0.5, &m);
         dem_shape cube = box_add(w, 0.02, 0.02, 0.02);
         dem_body b[10];
         dem_wall_loads loads;
@@ -375,7 +375,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR((double)scene_state(w, b[9]).position.z, 0.19, 1e-5);
         CHECK_NEAR((double)demi_length(scene_state(w, b[9]).spin), 0, fine ? 1e-4 : 1e-1);
         CHECK_EQ(dem_wall_loads_get(w, floor, &loads), DEM_OK);
-        CHECK_REL((double)loads.force.z, -10*2500*8e-6*g, fine ? 1e-4 : 1e-2);
+        CHECK_REL((double)loads.force.z, -10*2500*8e-6*earth, fine ? 1e-4 : 1e-2);
         dem_world_destroy(w);
     }
 

@@ -54,6 +54,7 @@ int main(void) {
     save(world, dem_vtk_write(world, "grains.vtk"));
     save(world, dem_xyz_write(world, "grains.xyz"));
     save(world, dem_walls_vtp_write(world, "walls.vtp", DEM_R(-0.5), DEM_R(0.5)));
+    save(world, dem_surfaces_vtp_write(world, "surfaces.vtp"));
 
     FILE *out = fopen("expected.txt", "w");
     if (!out) { printf("cannot write expected.txt\n"); return 1; }
