@@ -279,6 +279,7 @@
                gradients for cones
      [HOA61]   Hoare, Comm. ACM 4 (1961) 321: the k-th of many by exchanges
      [JEA99]   Jean, Comput. Methods Appl. Mech. Eng. 177 (1999) 235: Gauss-Seidel over contacts
+     [MAZ11]   Mazhar, Heyn & Negrut, Multibody Syst. Dyn. 26 (2011) 37: collisions by bins
      [MAZ15]   Mazhar, Heyn, Negrut & Tasora, ACM Trans. Graph. 34 (2015) 32: accelerated gradients
      [MIL]     a thesis on tumbling mills on a GPU: laws by the step, meshes, segments
      [OGA12]   Ogarko & Luding, Comput. Phys. Commun. 183 (2012) 931: hierarchical grids
@@ -533,7 +534,8 @@ typedef enum dem_search {
     DEM_SEARCH_ALL_PAIRS,    /* every pair; the oracle for the others */
     DEM_SEARCH_GRID,         /* uniform grid of cells */
     DEM_SEARCH_LINKED_LIST,  /* linked linear list [ALK07] 2.3.2: sorted box ends on three axes */
-    DEM_SEARCH_LEVELS        /* hierarchical grid [OGA12]: each class of radii has its own cells */
+    DEM_SEARCH_LEVELS,       /* hierarchical grid [OGA12]: each class of radii has its own cells */
+    DEM_SEARCH_BINS          /* bins of bounding boxes [MAZ11]: each body in every bin it touches */
 } dem_search;
 
 typedef enum dem_boundary {
@@ -3160,6 +3162,10 @@ struct dem_world {
     demi_end *lll_ends[3];
     struct demi_pair_key *lll_table;
     int32_t *lll_rows, *lll_row_start;
+    int bins[3];                   /* of boxes, along the axes: see demi_rows_bins */
+    double bin_size[3];            /* m */
+    int32_t *bin_of;               /* bodies x 6: the first bin, how many more, along each axis */
+    int32_t *bin_start, *bin_items;/* bodies of each bin, in their order */
     int lll_valid, lll_boxes, lll_size;
     /* >>lists: candidates of pairs and on walls; contacts that last */
     demi_list own, cross;
@@ -8807,6 +8813,99 @@ static void demi_rows_linked(dem_world *w, int d) {
             demi_pair_offer(w, d, &p, demi_cover(w), a, rows[k]);
 }
 
+/* --- bins of bounding boxes [MAZ11]: each body stands in every bin that its box, of radius +
+       skin/2, touches, so that bodies need not be smaller than a bin. Two meet in the first bin of
+       the one that the other has, too, along every axis, and nowhere else; a periodic axis goes
+       round. --- */
+
+/* Where a body's box is. */
+static void demi_bins_of(dem_world *w, int body) {
+    const double grow = ((double)w->bodies.pos[4*body + 3] + (double)demi_cover(w)/2)*(1 + 1e-5);
+    int32_t *at = w->bin_of + 6*body;
+    int k;
+    for (k = 0; k < 3; k++) {
+        const int n = w->bins[k], round = w->desc.boundary[k] == DEM_BOUNDARY_PERIODIC;
+        const double x = (double)w->bodies.pos[4*body + k] - w->cell_origin[k];
+        const double lo = floor((x - grow)/w->bin_size[k]), hi = floor((x + grow)/w->bin_size[k]);
+        if (round && hi - lo + 1 >= n) { at[2*k] = 0; at[2*k + 1] = n - 1; continue; }
+        at[2*k] = (int32_t)(round ? lo - n*floor(lo/n) : DEMI_MAX(DEMI_MIN(lo, n - 1), 0));
+        at[2*k + 1] = (int32_t)(round ? hi - lo : DEMI_MAX(DEMI_MIN(hi, n - 1), 0) - at[2*k]);
+    }
+}
+/* Deals a body to its bins: counts (items null), or enters it. */
+static void demi_bins_deal(const dem_world *w, int body, int32_t *count, int32_t *items) {
+    const int32_t *at = w->bin_of + 6*body;
+    const int *n = w->bins;
+    int i, j, k;
+    for (k = 0; k <= at[5]; k++)
+        for (j = 0; j <= at[3]; j++)
+            for (i = 0; i <= at[1]; i++) {
+                const int bin = (at[0] + i)%n[0] + n[0]*((at[2] + j)%n[1] +
+                                                         n[1]*((at[4] + k)%n[2]));
+                if (items) items[count[bin]] = body;
+                count[bin]++;
+            }
+}
+/* Bins about as wide as an average box, and wider where large ones would fill too many. 0 when
+   memory ran out. */
+static int demi_bins_lay(dem_world *w) {
+    double hi[3], least = 0, all;
+    int i, k, n;
+    for (k = 0; k < 3; k++) hi[k] = w->cell_origin[k] + w->cell_size[k]*w->cells[k];
+    for (i = 0; i < w->bodies.count; i++) least += (double)w->bodies.pos[4*i + 3];
+    least = 2*least/DEMI_MAX(w->bodies.count, 1) + (double)demi_cover(w) + 1e-300;
+    if (!DEMI_GROW(w, w->bin_of, 6*(size_t)w->bodies.count + 6)) return 0;
+    do {
+        demi_cells_lay(w->cell_origin, hi, least, w->bodies.count, w->bins, w->bin_size);
+        for (i = 0, all = 0; i < w->bodies.count; i++) {
+            const int32_t *at = w->bin_of + 6*i;
+            demi_bins_of(w, i);
+            all += (at[1] + 1.0)*(at[3] + 1.0)*(at[5] + 1.0);
+        }
+        least *= 1.5;
+    } while (all > 64.0*w->bodies.count + 1e6);
+    n = w->bins[0]*w->bins[1]*w->bins[2];
+    if (!DEMI_GROW(w, w->bin_start, (size_t)n + 2) ||
+        !DEMI_GROW(w, w->bin_items, (size_t)all + 1)) return 0;
+    memset(w->bin_start, 0, ((size_t)n + 2)*sizeof(int32_t));
+    for (i = 0; i < w->bodies.count; i++) demi_bins_deal(w, i, w->bin_start + 2, 0);
+    for (i = 2; i < n + 2; i++) w->bin_start[i] += w->bin_start[i - 1];
+    for (i = 0; i < w->bodies.count; i++) demi_bins_deal(w, i, w->bin_start + 1, w->bin_items);
+    return 1;
+}
+/* Is the i-th bin of a, along an axis of n, the first that b has, too? */
+DEM_INLINE int demi_bins_meet(const int32_t *a, const int32_t *b, int i, int n) {
+    const int behind = a[0] < b[0] ? a[0] - b[0] + n : a[0] - b[0];
+    return i == (behind <= b[1] ? 0 : n - behind);
+}
+static void demi_rows_bins(dem_world *w, int d) {
+    const demi_periods p = demi_periods_of(w);
+    const demi_domain *domain = &w->domains[d];
+    const int *n = w->bins;
+    int a, i, j, k, e;
+    for (a = domain->begin; a < domain->end; a++) {
+        const int own = domain->own, cross = domain->cross;
+        const int32_t *at = w->bin_of + 6*a;
+        for (k = 0; k <= at[5]; k++)
+            for (j = 0; j <= at[3]; j++)
+                for (i = 0; i <= at[1]; i++) {
+                    const int bin = (at[0] + i)%n[0] + n[0]*((at[2] + j)%n[1] +
+                                                             n[1]*((at[4] + k)%n[2]));
+                    for (e = w->bin_start[bin + 1] - 1; e >= w->bin_start[bin]; e--) {
+                        const int b = w->bin_items[e];
+                        const int32_t *other = w->bin_of + 6*b;
+                        if (b <= a) break;      /* they stand in their order */
+                        if (demi_bins_meet(at, other, i, n[0]) &&
+                            demi_bins_meet(at + 2, other + 2, j, n[1]) &&
+                            demi_bins_meet(at + 4, other + 4, k, n[2]))
+                            demi_pair_offer(w, d, &p, demi_cover(w), a, b);
+                    }
+                }
+        demi_row_sort(&w->own, d, own, domain->own);
+        demi_row_sort(&w->cross, d, cross, domain->cross);
+    }
+}
+
 /* --- what is common --- */
 
 /* By cells: of one size, or of several (levels). */
@@ -8829,6 +8928,7 @@ static const demi_search_row demi_searches[] = {
     {"uniform grid", demi_rows_cells, 0, 1},
     {"linked linear list", demi_rows_linked, demi_lll_rows, 0},
     {"levels (hierarchical grid)", demi_rows_cells, 0, 1},
+    {"bins of boxes", demi_rows_bins, demi_bins_lay, 0},
 };
 enum { DEMI_SEARCHES = (int)(sizeof demi_searches/sizeof *demi_searches) };
 

@@ -200,6 +200,7 @@ static const effect_row effect_rows[] = {
     {"integrator.forward_euler", "bed", "first order, gains energy", {.integrator = DEM_FORWARD_EULER}, {0}, {0}},
     {"skin0", "bed", "nothing: a new list at every step", {.skin = -1}, {0}, {0}},
     {"search.linked_list", "drum", "nothing here: pays at wide size ranges [ALK07]", {.search = DEM_SEARCH_LINKED_LIST}, {0}, {0}},
+    {"search.bins", "drum", "nothing here: bodies of very different extent [MAZ11]", {.search = DEM_SEARCH_BINS}, {0}, {0}},
     {"search.all_pairs", "drum", "nothing: the oracle of the tests",
      {.search = DEM_SEARCH_ALL_PAIRS, .every = 18}, {.every = 18}, {0}}, /* of 1000 */
 };

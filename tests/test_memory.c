@@ -348,6 +348,9 @@ int main(int argc, char **argv) {
          "list)") {
         refuse_each(DEM_SEARCH_LINKED_LIST);
     }
+    TEST("whichever request for memory fails, the call says so and the world goes on (bins)") {
+        refuse_each(DEM_SEARCH_BINS);
+    }
     TEST("whichever request for memory fails, the call says so and the world goes on (levels)") {
         refuse_each(DEM_SEARCH_LEVELS);
     }

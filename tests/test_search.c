@@ -1,4 +1,4 @@
-/* Neighbour search: all pairs, grid, linked linear list and levels against a brute-force oracle of
+/* Neighbour search: all pairs, grid, linked linear list, levels and bins against a brute-force oracle of
    their own. The oracle looks at every pair of bodies with the shortest image, in double precision,
    and knows nothing of cells, sorting or skins. */
 #define DEM_IMPLEMENTATION
@@ -6,9 +6,9 @@
 #include "test.h"
 #include "scene.h"
 
-enum { METHODS = 4, MOST = 900 };
+enum { METHODS = 5, MOST = 900 };
 static const dem_search methods[METHODS] = {DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_GRID,
-                                            DEM_SEARCH_LINKED_LIST, DEM_SEARCH_LEVELS};
+                                            DEM_SEARCH_LINKED_LIST, DEM_SEARCH_LEVELS, DEM_SEARCH_BINS};
 static uint32_t listed[MOST][MOST], mark;      /* pairs of slots seen under the present mark */
 static uint32_t pairs[2*MOST*(MOST - 1)/2];
 

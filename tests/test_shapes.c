@@ -1718,11 +1718,11 @@ static void more_tests(void) {
     }
 
     TEST("every search finds the same contacts of shapes: heaps fall alike") {
-        static const dem_search searches[4] = {DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_GRID,
-                                               DEM_SEARCH_LINKED_LIST, DEM_SEARCH_LEVELS};
-        double height[4];
+        static const dem_search searches[5] = {DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_GRID,
+                                               DEM_SEARCH_LINKED_LIST, DEM_SEARCH_LEVELS, DEM_SEARCH_BINS};
+        double height[5];
         int k;
-        for (k = 0; k < 4; k++) {
+        for (k = 0; k < 5; k++) {
             dem_world_desc desc = mixture_desc();
             dem_world *world;
             desc.search = searches[k];
@@ -1732,7 +1732,7 @@ static void more_tests(void) {
             height[k] = dem_totals_get(world).centre[2];
             dem_world_destroy(world);
         }
-        for (k = 1; k < 4; k++) CHECK_NEAR(height[k], height[0], SINGLE ? 1e-3 : 1e-7);
+        for (k = 1; k < 5; k++) CHECK_NEAR(height[k], height[0], SINGLE ? 1e-3 : 1e-7);
     }
 
     TEST("a linear law of one's own moves ellipsoids and clusters as the built-in one does") {
