@@ -25,6 +25,7 @@
        >>materials   materials, the pair table, coefficients
        >>shapes      ellipsoids, clusters of spheres: mass properties, supports, meetings
        >>hulls       convex polyhedra: the hull of points, its faces and mass properties
+       >>unions      several shapes as one; polygons of planar worlds
        >>bodies      grains: slots, arrays, insertion, removal
        >>facets      what each face, edge and corner of a surface counts
        >>walls       planes, cylinders, profiles, meshes, walls of grains, sieves, their motions
@@ -1318,8 +1319,22 @@ DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const de
 struct dem_mesh;
 DEM_API dem_shape dem_shape_mesh_add(dem_world *world, const struct dem_mesh *mesh, dem_real dent);
 
+/* Several polyhedra or ellipsoids as one rigid body: shapes that are there already (count: 1 to
+   1000), each with a place (count x 3, m) and an orientation (count x 4, null: none turned) in a
+   frame of your choice. Mass and moments are the sum of all, and so are forces: where two overlap
+   both count twice. Null id on bad values, clusters or unions among the shapes, or when memory runs
+   out. */
+DEM_API dem_shape dem_shape_union_add(dem_world *world, int count, const dem_shape *shapes,
+                                      const dem_real *positions, const dem_real *orientations);
+/* In a planar world: a polygon (points: count x 2, m, 3 to 98, in turn, either way round), which
+   turns in the plane. A concave one is cut into convex pieces and is their union; they are shapes
+   of their own. Its mass is density x area x desc.thickness; towards others it is a prism as thick
+   as makes its volume that of the sphere of its disc: 4/3 sqrt(area/pi). Null id on bad values,
+   where sides cross, in a world that is not planar, or when memory runs out. */
+DEM_API dem_shape dem_shape_polygon_add(dem_world *world, int count, const dem_real *points);
+
 typedef struct dem_shape_info {
-    int spheres;                 /* of a cluster; 0: an ellipsoid or a polyhedron */
+    int spheres;                 /* of a cluster; else 0 */
     int corners, faces;          /* of a polyhedron; else 0 */
     dem_real volume;             /* m3 */
     dem_vec3 centre;             /* m, centre of mass in the frame the shape was given in */
@@ -1327,6 +1342,7 @@ typedef struct dem_shape_info {
     dem_vec3 inertia;            /* m5, principal moments per density */
     dem_vec3 semi_axes;          /* m, of the ellipsoid; others: of the one of equal moments */
     dem_real radius;             /* m, of the smallest sphere about the centre that holds it all */
+    int pieces;                  /* of a union; else 0 */
 } dem_shape_info;
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info);
 
@@ -2648,11 +2664,16 @@ typedef struct demi_link {
 } demi_link;
 
 /* A shape, in its principal frame, per unit of mass and scale. */
+/* One of a union: which of the world's shapes; its centre, m, and its principal axes in the
+   union's. */
+typedef struct demi_piece { int32_t shape; dem_vec3 at; dem_quat q; } demi_piece;
 typedef struct demi_shape {
-    int kind;                      /* of its parts: DEMI_BALL, ... */
+    int kind;                      /* of its parts: DEMI_BALL, ...; of a union's first */
     int count;                     /* spheres of a cluster; 0: it is one part */
     dem_real *parts;               /* count x 4: centre, radius, m */
     dem_vec3 axes;                 /* m, of one part: lengths as its kind has them */
+    int pieces;                    /* of a union; 0: it is none */
+    demi_piece *piece;
     int corners, faces;            /* of a polyhedron */
     double *hull;                  /* faces x 4: unit normal over height, 1/m; height over the
                                       centre, m; then corners x 3, m */
@@ -4101,6 +4122,13 @@ static dem_quat demi_quat_unit(dem_quat q) {
     const double z = (double)q.z/most, l = sqrt(w*w + x*x + y*y + z*z);
     return dem_quat_make((dem_real)(w/l), (dem_real)(x/l), (dem_real)(y/l), (dem_real)(z/l));
 }
+/* A rotation as a matrix, in double precision. */
+static void demi_rotation_of(dem_quat q, double *R) {
+    const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
+    R[0] = 1 - 2*(y*y + z*z); R[1] = 2*(x*y - w*z);     R[2] = 2*(x*z + w*y);
+    R[3] = 2*(x*y + w*z);     R[4] = 1 - 2*(x*x + z*z); R[5] = 2*(y*z - w*x);
+    R[6] = 2*(x*z - w*y);     R[7] = 2*(y*z + w*x);     R[8] = 1 - 2*(x*x + y*y);
+}
 /* Of the rotation whose matrix has these columns (Shepperd): the largest component comes first, so
    that nothing small is divided by. */
 static dem_quat demi_quat_of(double R[3][3]) {
@@ -4323,6 +4351,7 @@ static void demi_ellipsoid_bounds(demi_shape *shape) {
 /* Takes over a prepared shape (its array included) or frees it. */
 static void demi_shape_free(dem_world *w, demi_shape *shape) {
     demi_free(w, shape->parts);
+    demi_free(w, shape->piece);
     demi_free(w, shape->hull);
     demi_free(w, shape->rim);
 }
@@ -4344,41 +4373,39 @@ static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
     return 0;
 }
 static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *shape) {
-    dem_shape id;
-    id.id = 0;
+    dem_shape id = demi_no_shape;
     if (demi_shapes_strange(w, call, shape->kind)) { demi_shape_free(w, shape); return id; }
     if (!demi_grow(w, DEMI_SCENE, &w->shapes, sizeof *w->shapes, (size_t)w->shape_count + 1)) {
         demi_shape_free(w, shape);
         demi_no_memory(w, call);
         return id;
     }
-    shape->equal = (dem_real)demi_pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
+    if (!(shape->equal > 0))                    /* a polygon's is not that of its volume */
+        shape->equal = (dem_real)demi_pow(shape->volume*3/(4*DEMI_PI), 1.0/3);
     w->shapes[w->shape_count++] = *shape;
     demi_built(w, call);
     id.id = w->shape_count;
     return id;
 }
-/* 1 with a sentence where bodies are discs: shapes are of three dimensions. */
+/* 1 with a sentence where bodies are flat: shapes are of three dimensions. */
 static int demi_shape_planar(dem_world *w, const char *call) {
     if (!w->desc.planar) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is planar, where bodies are discs; set planar "
-              "to 0, or use discs", call);
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is planar, where bodies are discs and "
+              "polygons; set planar to 0, or use discs and dem_shape_polygon_add", call);
     return 1;
 }
 
 DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *w, dem_vec3 a) {
     if (demi_null(w, "dem_shape_ellipsoid_add", w, "world")) return demi_no_shape;
     demi_shape shape;
-    dem_shape none;
     const double lo = (double)DEMI_MIN(a.x, DEMI_MIN(a.y, a.z));
     const double hi = (double)DEMI_MAX(a.x, DEMI_MAX(a.y, a.z));
-    none.id = 0;
-    if (demi_shape_planar(w, "dem_shape_ellipsoid_add")) return none;
+    if (demi_shape_planar(w, "dem_shape_ellipsoid_add")) return demi_no_shape;
     if (!demi_finite3(a) || !(lo > 0) || !(hi <= 1000.001*lo)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_ellipsoid_add: semi-axes are %g, %g and %g m, "
                   "must be > 0 and the longest at most 1000 times the shortest; give half "
                   "lengths, in metres", (double)a.x, (double)a.y, (double)a.z);
-        return none;
+        return demi_no_shape;
     }
     memset(&shape, 0, sizeof shape);
     shape.kind = DEMI_ELLIPSOID;
@@ -4564,6 +4591,7 @@ DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_sh
     info->inertia = demi_scale(s->inertia, (dem_real)s->volume);
     info->semi_axes = demi_shape_alike(s);
     info->radius = s->radius;
+    info->pieces = s->pieces;
     return DEM_OK;
 }
 
@@ -4606,7 +4634,14 @@ static dem_real demi_support(const dem_world *w, int body, dem_vec3 n) {
     if (!shape) return w->bodies.pos[4*body + 3];
     scale = demi_scale_of(w, body, shape);
     e = dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*body), n);
-    if (!shape->count) return scale*demi_shape_rows[shape->kind].support(shape, e);
+    for (i = 0; i < shape->pieces; i++) {
+        const demi_piece *piece = shape->piece + i;
+        const demi_shape *one = &w->shapes[piece->shape];
+        const dem_real s = demi_dot(piece->at, e) +
+            demi_shape_rows[one->kind].support(one, dem_quat_unrotate(piece->q, e));
+        far = i && far > s ? far : s;
+    }
+    if (!shape->count && !shape->pieces) far = demi_shape_rows[shape->kind].support(shape, e);
     for (i = 0; i < shape->count; i++) {
         const dem_real s = demi_dot(demi_at(shape->parts + 4*i), e) + shape->parts[4*i + 3];
         far = i && far > s ? far : s;
@@ -4785,7 +4820,7 @@ DEM_API dem_ellipsoid_contact dem_ellipsoids_contact(const dem_ellipsoid *a, con
 
 static int demi_parts_count(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
-    return shape && shape->count ? shape->count : 1;
+    return !shape ? 1 : shape->count ? shape->count : shape->pieces ? shape->pieces : 1;
 }
 /* Part k as the body is turned now, worked out from its quaternion. */
 static demi_part demi_part_of(const dem_world *w, int body, int k) {
@@ -4802,6 +4837,14 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
         if (shape->count) {
             p.centre = demi_scale(dem_quat_rotate(p.q, demi_at(shape->parts + 4*k)), scale);
             p.radius = shape->parts[4*k + 3]*scale;
+        } else if (shape->pieces) {
+            const demi_piece *piece = shape->piece + k;
+            p.shape = &w->shapes[piece->shape];
+            p.kind = p.shape->kind;
+            p.centre = demi_scale(dem_quat_rotate(p.q, piece->at), scale);
+            p.q = dem_quat_times(p.q, piece->q);
+            p.radius = p.shape->radius*scale;
+            p.axes = demi_scale(p.shape->axes, scale);
         } else p.axes = demi_scale(shape->axes, scale);
     }
     return p;
@@ -5339,7 +5382,6 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
     demi_hull h;
     double *x;
     int i, k, made = 0;
-    if (demi_shape_planar(w, call)) return 0;
     if (count < 4 || count > 10000 || !points) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 4 to 10000 with points (count x "
                   "3)", call, count);
@@ -5384,7 +5426,7 @@ static int demi_polyhedron_of(dem_world *w, const char *call, int count, const d
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *w, int count, const dem_real *points) {
     const char *call = "dem_shape_polyhedron_add";
     demi_shape shape;
-    if (demi_null(w, call, w, "world")) return demi_no_shape;
+    if (demi_null(w, call, w, "world") || demi_shape_planar(w, call)) return demi_no_shape;
     if (!demi_polyhedron_of(w, call, count, points, &shape)) return demi_no_shape;
     return demi_shape_adopt(w, call, &shape);
 }
@@ -5434,7 +5476,7 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_rea
     dem_vec3 place = demi_v(0, 0, 0);
     dem_real most = 0;
     int i, k;
-    if (demi_null(w, call, mesh, "mesh")) return demi_no_shape;
+    if (demi_null(w, call, mesh, "mesh") || demi_shape_planar(w, call)) return demi_no_shape;
     if (!(dent >= 0) || !demi_finite(dent)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: dent is %g m, must be >= 0 and finite", call,
                   (double)dent);
@@ -5476,13 +5518,18 @@ static size_t demi_shape_rim_ints(const demi_shape *s) {
 /* Copies of its arrays in another world; 0 when memory ran out. */
 static int demi_shape_copy(dem_world *to, demi_shape *shape) {
     const demi_shape from = *shape;
-    const size_t parts = 4*(size_t)from.count;
+    const size_t parts = 4*(size_t)from.count, pieces = (size_t)from.pieces;
     shape->parts = 0;
+    shape->piece = 0;
     shape->hull = 0;
     shape->rim = 0;
     if (parts) {
         shape->parts = (dem_real *)demi_hold(to, DEMI_SCENE, parts, sizeof(dem_real));
         if (shape->parts) memcpy(shape->parts, from.parts, parts*sizeof(dem_real));
+    }
+    if (pieces) {
+        shape->piece = (demi_piece *)demi_hold(to, DEMI_SCENE, pieces, sizeof(demi_piece));
+        if (shape->piece) memcpy(shape->piece, from.piece, pieces*sizeof(demi_piece));
     }
     if (from.faces) {
         const size_t reals = demi_shape_hull_reals(&from), ints = demi_shape_rim_ints(&from);
@@ -5491,7 +5538,8 @@ static int demi_shape_copy(dem_world *to, demi_shape *shape) {
         if (shape->hull) memcpy(shape->hull, from.hull, reals*sizeof(double));
         if (shape->rim) memcpy(shape->rim, from.rim, ints*sizeof(int32_t));
     }
-    if ((!parts || shape->parts) && (!from.faces || (shape->hull && shape->rim))) return 1;
+    if ((!parts || shape->parts) && (!pieces || shape->piece) &&
+        (!from.faces || (shape->hull && shape->rim))) return 1;
     demi_shape_free(to, shape);
     return 0;
 }
@@ -5516,6 +5564,283 @@ static double demi_polyhedron_curve(const demi_part *p, double h) {
 /* The ellipsoid of its moments. */
 static dem_vec3 demi_polyhedron_drawn(const demi_part *p) {
     return demi_scale(demi_shape_alike(p->shape), p->scale);
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>unions
+   Several shapes as one body, each of which touches by itself; and polygons of planar worlds:
+   prisms, of which a concave one is cut into convex pieces, ear by ear, that are joined again where
+   they stay convex. A piece is one of the world's shapes, placed.
+   --------------------------------------------------------------------------------------------- */
+
+/* Adds a piece's matter to moments; q: of its principal axes; c: its centre. */
+static void demi_moments_piece(demi_moments *m, const demi_shape *s, dem_quat q, dem_vec3 c) {
+    const double I[3] = {(double)s->inertia.x, (double)s->inertia.y, (double)s->inertia.z};
+    const double half = (I[0] + I[1] + I[2])/2, x[3] = {(double)c.x, (double)c.y, (double)c.z};
+    double R[9];
+    int i, k;
+    demi_rotation_of(q, R);
+    demi_moments_add(m, s->volume, x, 0);
+    for (k = 0; k < 3; k++)
+        for (i = 0; i < 3; i++) {
+            const double spread = s->volume*(half - I[k]), *r = R + k;     /* column k */
+            m->xx[i] += spread*r[3*i]*r[3*i];
+            m->xx[3 + i] += spread*r[i == 2 ? 3 : 0]*r[i == 0 ? 3 : 6];
+        }
+}
+/* As for clusters and polyhedra: a contact of a piece may pass as far off as the union reaches. */
+static void demi_union_bounds(const dem_world *w, demi_shape *s) {
+    const dem_vec3 I = s->inertia;
+    const double least = (double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
+    int i, k;
+    s->thin = DEM_R(1e30);
+    s->light = 1;
+    for (i = 0; i < s->pieces; i++) {
+        const demi_piece *piece = s->piece + i;
+        const demi_shape *one = &w->shapes[piece->shape];
+        const double *x = one->hull + 4*one->faces;
+        dem_real far = one->faces ? 0 : demi_length(piece->at) + one->radius;
+        for (k = 0; k < one->corners; k++, x += 3) {
+            const dem_vec3 at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
+            const dem_vec3 arm = demi_add(piece->at, dem_quat_rotate(piece->q, at));
+            far = DEMI_MAX(far, demi_length(arm));
+        }
+        s->radius = DEMI_MAX(s->radius, far);
+        s->thin = DEMI_MIN(s->thin, one->thin);
+        s->blunt = DEMI_MAX(s->blunt, one->blunt);
+        s->light = DEMI_MIN(s->light, one->light);
+    }
+    s->moment_arm = s->radius;
+    s->light /= 1 + (double)s->radius*(double)s->radius/least;
+}
+/* A union of shapes by their index, each with a place and an orientation; 0: no memory. */
+static int demi_union_make(dem_world *w, const char *call, int count, const int32_t *which,
+                           const dem_real *positions, const dem_real *orientations,
+                           demi_shape *out) {
+    demi_moments m;
+    int i;
+    memset(&m, 0, sizeof m);
+    memset(out, 0, sizeof *out);
+    out->piece = (demi_piece *)demi_hold(w, DEMI_SCENE, (size_t)count, sizeof(demi_piece));
+    if (!out->piece) { demi_no_memory(w, call); return 0; }
+    out->kind = w->shapes[which[0]].kind;
+    out->pieces = count;
+    for (i = 0; i < count; i++) {
+        const demi_shape *one = &w->shapes[which[i]];
+        const dem_quat q = orientations ? demi_quat_unit(demi_quat_at(orientations + 4*i))
+            : dem_quat_make(1, 0, 0, 0);
+        demi_piece *piece = out->piece + i;
+        piece->shape = which[i];
+        piece->q = dem_quat_times(q, one->frame);
+        piece->at = dem_quat_rotate(q, one->centre);
+        if (positions) piece->at = demi_add(demi_at(positions + 3*i), piece->at);
+        demi_moments_piece(&m, one, piece->q, piece->at);
+    }
+    demi_shape_principal(out, &m);
+    for (i = 0; i < count; i++) {
+        demi_piece *piece = out->piece + i;
+        const dem_quat back = dem_quat_make(out->frame.w, -out->frame.x, -out->frame.y,
+                                            -out->frame.z);
+        piece->at = dem_quat_unrotate(out->frame, demi_sub(piece->at, out->centre));
+        piece->q = demi_quat_unit(dem_quat_times(back, piece->q));
+    }
+    demi_union_bounds(w, out);
+    if (w->desc.planar)
+        out->equal = (dem_real)sqrt(out->volume/(DEMI_PI*(double)w->desc.thickness));
+    return 1;
+}
+DEM_API dem_shape dem_shape_union_add(dem_world *w, int count, const dem_shape *shapes,
+                                      const dem_real *positions, const dem_real *orientations) {
+    const char *call = "dem_shape_union_add";
+    int32_t which[1000];
+    demi_shape shape;
+    int i;
+    if (demi_null(w, call, w, "world") || demi_null(w, call, shapes, "shapes") ||
+        demi_null(w, call, positions, "positions")) return demi_no_shape;
+    if (count < 1 || count > 1000) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to 1000", call, count);
+        return demi_no_shape;
+    }
+    for (i = 0; i < count; i++) {
+        const dem_quat q = orientations ? demi_quat_at(orientations + 4*i)
+            : dem_quat_make(1, 0, 0, 0);
+        which[i] = demi_shape_index(w, call, shapes[i]);
+        if (which[i] < 0) return demi_no_shape;
+        if (w->shapes[which[i]].count || w->shapes[which[i]].pieces) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d is a cluster or a union, must be an "
+                      "ellipsoid, a polyhedron or a polygon; give its pieces", call, which[i] + 1);
+            return demi_no_shape;
+        }
+        if (!demi_place(demi_at(positions + 3*i)) || !demi_quat_finite(q) ||
+            !(demi_quat_most(q) > 0) || (w->desc.planar && (positions[3*i + 2] < 0 ||
+            positions[3*i + 2] > 0 || q.x < 0 || q.x > 0 || q.y < 0 || q.y > 0))) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: place or orientation of piece %d is not finite, "
+                      "is zero, or leads out of the plane of a planar world; (1, 0, 0, 0) does not "
+                      "turn it", call, i);
+            return demi_no_shape;
+        }
+    }
+    if (!demi_union_make(w, call, count, which, positions, orientations, &shape))
+        return demi_no_shape;
+    return demi_shape_adopt(w, call, &shape);
+}
+
+/* --- polygons, in planar worlds --- */
+
+enum { DEMI_POLYGON = DEM_POLYHEDRON_FACES - 2 };
+/* Convex pieces of a polygon: corners, by number. */
+typedef struct demi_cut_out { int count; int32_t corner[DEMI_POLYGON]; } demi_cut_out;
+/* Twice the area of a triangle, > 0 where it turns left. */
+static double demi_turn_of(const double *x, int a, int b, int c) {
+    return (x[2*b] - x[2*a])*(x[2*c + 1] - x[2*a + 1]) - (x[2*b + 1] - x[2*a + 1])*
+        (x[2*c] - x[2*a]);
+}
+/* Do the sides from a and from c cross, or touch? Not where they follow each other. */
+static int demi_sides_cross(const double *x, int count, int a, int c) {
+    const int b = (a + 1)%count, d = (c + 1)%count;
+    if (a == c || b == c || d == a) return 0;
+    return demi_turn_of(x, a, b, c)*demi_turn_of(x, a, b, d) <= 0 &&
+        demi_turn_of(x, c, d, a)*demi_turn_of(x, c, d, b) <= 0;
+}
+/* Cuts a polygon that turns left into triangles, ear by ear [ERI05]: how many; 0: no ear is left.
+   */
+static int demi_polygon_ears(const double *x, int count, demi_cut_out *out) {
+    int32_t left[DEMI_POLYGON];
+    int i, k, n = count, pieces = 0;
+    for (i = 0; i < count; i++) left[i] = i;
+    while (n > 2) {
+        for (i = 0; i < n; i++) {
+            const int a = left[(i + n - 1)%n], b = left[i], c = left[(i + 1)%n];
+            if (!(demi_turn_of(x, a, b, c) > 0)) continue;
+            for (k = 0; k < n; k++) {
+                const int p = left[k];
+                if (p == a || p == b || p == c) continue;
+                if (demi_turn_of(x, a, b, p) >= 0 && demi_turn_of(x, b, c, p) >= 0 &&
+                    demi_turn_of(x, c, a, p) >= 0) break;
+            }
+            if (k < n) continue;
+            out[pieces].count = 3;
+            out[pieces].corner[0] = a; out[pieces].corner[1] = b; out[pieces].corner[2] = c;
+            pieces++;
+            break;
+        }
+        if (i == n) return 0;
+        for (n--; i < n; i++) left[i] = left[i + 1];
+    }
+    return pieces;
+}
+/* Makes one convex piece of two that share a side, if it is one. */
+static int demi_pieces_join(const double *x, demi_cut_out *p, const demi_cut_out *q) {
+    demi_cut_out all;
+    int i, j, k;
+    for (i = 0; i < p->count; i++)
+        for (j = 0; j < q->count; j++) {
+            if (p->corner[i] != q->corner[(j + 1)%q->count] ||
+                p->corner[(i + 1)%p->count] != q->corner[j]) continue;
+            all.count = 0;                      /* p from behind the side, then q */
+            for (k = 1; k <= p->count; k++) all.corner[all.count++] = p->corner[(i + k)%p->count];
+            for (k = 2; k < q->count; k++) all.corner[all.count++] = q->corner[(j + k)%q->count];
+            for (k = 0; k < all.count; k++)
+                if (demi_turn_of(x, all.corner[k], all.corner[(k + 1)%all.count],
+                                 all.corner[(k + 2)%all.count]) < 0) break;
+            if (k < all.count) continue;
+            *p = all;
+            return 1;
+        }
+    return 0;
+}
+/* Convex pieces of a polygon that turns left: how many; 0: round-off has spoilt it. */
+static int demi_polygon_cut(const double *x, int count, demi_cut_out *out) {
+    int i, j, n = demi_polygon_ears(x, count, out);
+    for (i = 0; i < n; i++)
+        for (j = 0; j < n; j++) {
+            if (i == j || !demi_pieces_join(x, &out[i], &out[j])) continue;
+            out[j] = out[--n];
+            if (i == n) i = j;
+            j = -1;                             /* once more */
+        }
+    return n;
+}
+/* Corners into x, turning left, and the area, m2; 0 with a sentence. */
+static double demi_polygon_read(dem_world *w, const char *call, int count, const dem_real *points,
+                                double *x) {
+    double area = 0;
+    int i, k;
+    if (count < 3 || count > DEMI_POLYGON || !points) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 3 to %d with points (count x "
+                  "2)", call, count, DEMI_POLYGON);
+        return 0;
+    }
+    for (i = 0; i < 2*count; i++) {
+        x[i] = (double)points[i];
+        if (!demi_finite(points[i])) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g) m, must be finite", call,
+                      i/2, (double)points[i/2*2], (double)points[i/2*2 + 1]);
+            return 0;
+        }
+    }
+    for (i = 1; i + 1 < count; i++) area += demi_turn_of(x, 0, i, i + 1)/2;
+    for (i = 0; i < count; i++)
+        for (k = 0; k < count; k++)
+            if (demi_sides_cross(x, count, i, k)) {
+                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the sides from point %d and from point %d "
+                          "cross or touch; give the corners in turn, each once", call, i, k);
+                return 0;
+            }
+    if (!(area < 0 || area > 0))
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the area is %g m2; give corners that are not on one "
+                  "line", call, area);
+    for (i = 0; i < count && area < 0; i++) {
+        x[2*i] = (double)points[2*(count - 1 - i)];
+        x[2*i + 1] = (double)points[2*(count - 1 - i) + 1];
+    }
+    return fabs(area);
+}
+DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real *points) {
+    const char *call = "dem_shape_polygon_add";
+    demi_cut_out piece[DEMI_POLYGON];
+    double x[2*DEMI_POLYGON], area, high;
+    int32_t which[DEMI_POLYGON];
+    demi_shape shape;
+    dem_shape id = demi_no_shape;
+    int i, k, pieces, first;
+    if (demi_null(w, call, w, "world")) return id;
+    if (!w->desc.planar) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is not planar; set planar to 1, or use "
+                  "dem_shape_polyhedron_add", call);
+        return id;
+    }
+    area = demi_polygon_read(w, call, count, points, x);
+    if (!(area > 0)) return id;
+    pieces = demi_polygon_cut(x, count, piece);
+    if (!pieces)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d corners cannot be cut into convex pieces: "
+                  "some are too near to others or to sides; leave those out", call, count);
+    first = w->shape_count;
+    high = 2*sqrt(area/DEMI_PI)/3;              /* half of its thickness */
+    for (i = 0; i < pieces; i++) {
+        dem_real corner[6*DEMI_POLYGON];
+        double own = 0;
+        for (k = 0; k < 2*piece[i].count; k++) {
+            const int c = piece[i].corner[k/2];
+            corner[3*k] = (dem_real)x[2*c];
+            corner[3*k + 1] = (dem_real)x[2*c + 1];
+            corner[3*k + 2] = (dem_real)(k & 1 ? high : -high);
+        }
+        if (!demi_polyhedron_of(w, call, 2*piece[i].count, corner, &shape)) break;
+        own = shape.volume/(2*high);
+        shape.equal = (dem_real)sqrt(own/DEMI_PI);
+        shape.volume = own*(double)w->desc.thickness;
+        id = demi_shape_adopt(w, call, &shape);
+        if (!id.id) break;
+        which[i] = id.id - 1;
+    }
+    if (pieces > 1 && i == pieces)
+        id = demi_union_make(w, call, pieces, which, 0, 0, &shape)
+            ? demi_shape_adopt(w, call, &shape) : demi_no_shape;
+    if (pieces && i == pieces && id.id) return id;
+    while (w->shape_count > first) demi_shape_free(w, &w->shapes[--w->shape_count]);
+    return demi_no_shape;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -5912,12 +6237,20 @@ static int demi_walls_strange(dem_world *w, const char *call, int shape) {
     }
     return 0;
 }
+/* Mass of a body of a shape, scaled: flat ones keep their thickness. */
+static double demi_shape_mass(const dem_world *w, int material, int shape, double scale) {
+    return (double)w->materials[material].density*w->shapes[shape].volume*scale*scale*
+        (w->desc.planar ? 1 : scale);
+}
+/* What of an orientation is a rotation in the plane. */
+static dem_quat demi_quat_flat(dem_quat q) {
+    const dem_real l = DEMI_SQRT(q.w*q.w + q.z*q.z);
+    return l > 0 ? dem_quat_make(q.w/l, 0, 0, q.z/l) : dem_quat_make(1, 0, 0, 0);
+}
 /* Makes the body just appended one of a shape, scaled. */
 static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_quat orientation) {
     const demi_shape *as = &w->shapes[shape];
-    const double s = (double)scale;
-    const double density = (double)w->materials[w->bodies.material[i] - 1].density;
-    const double m = density*as->volume*s*s*s;
+    const double m = demi_shape_mass(w, w->bodies.material[i] - 1, shape, (double)scale);
     w->bodies.shape[i] = shape + 1;
     w->bodies.pos[4*i + 3] = as->radius*scale;
     w->bodies.mass[i] = (dem_real)m;
@@ -5925,7 +6258,8 @@ static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_
     w->bodies.inv_inertia[i] = 0;
     demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
     w->bodies.moment[4*i + 3] = as->moment_arm*scale;
-    demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(dem_quat_times(orientation, as->frame)));
+    demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(dem_quat_times(
+        w->desc.planar ? demi_quat_flat(orientation) : orientation, as->frame)));
     w->bodies.shaped++;
 }
 
@@ -6018,8 +6352,7 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
 /* 1 with a sentence when a body of a shape, scaled, would weigh nothing or too much. */
 static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, int shape,
                                   dem_real scale, int i) {
-    const double s = (double)scale, density = (double)w->materials[material].density;
-    const double m = density*w->shapes[shape].volume*s*s*s;
+    const double s = (double)scale, m = demi_shape_mass(w, material, shape, s);
     const dem_vec3 I = w->shapes[shape].inertia;
     const double least = m*s*s*(double)DEMI_MIN(I.x, DEMI_MIN(I.y, I.z));
     const double most = m*s*s*(double)DEMI_MAX(I.x, DEMI_MAX(I.y, I.z));
@@ -6059,6 +6392,8 @@ static dem_result demi_bodies_add(dem_world *w, const char *call, dem_material m
                         : dem_quat_make(1, 0, 0, 0));
         if (velocities) demi_put(w->bodies.vel + 4*k, demi_at(velocities + 3*i));
         if (spins) demi_put(w->bodies.spin + 4*k, demi_at(spins + 3*i));
+        if (w->desc.planar)
+            w->bodies.vel[4*k + 2] = w->bodies.spin[4*k] = w->bodies.spin[4*k + 1] = 0;
         demi_put(w->bodies.half_vel + 4*k, demi_at(w->bodies.vel + 4*k));
         demi_put(w->bodies.half_spin + 4*k, demi_at(w->bodies.spin + 4*k));
         demi_put(w->bodies.angular + 4*k, demi_angular_of(w, k));
@@ -6197,7 +6532,8 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
         (double)w->bodies.pos[4*i + 3]));
     if (w->bodies.orienting) {
         demi_quat_put(w->bodies.orient + 4*i,
-                      demi_quat_unit(shape ? dem_quat_times(q, shape->frame) : q));
+                      demi_quat_unit(shape ? dem_quat_times(w->desc.planar ? demi_quat_flat(q) : q,
+                                                            shape->frame) : q));
         demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
     }
     w->booked.inserted += demi_body_energy(w, i) - before;
@@ -11936,12 +12272,6 @@ typedef struct demi_solid {
     double plane[DEM_POLYHEDRON_FACES][4];     /* n/h, 1/m; h, m */
     double corner[DEMI_HULL_CORNERS][3];
 } demi_solid;
-static void demi_rotation_of(dem_quat q, double *R) {
-    const double w = (double)q.w, x = (double)q.x, y = (double)q.y, z = (double)q.z;
-    R[0] = 1 - 2*(y*y + z*z); R[1] = 2*(x*y - w*z);     R[2] = 2*(x*z + w*y);
-    R[3] = 2*(x*y + w*z);     R[4] = 1 - 2*(x*x + z*z); R[5] = 2*(y*z - w*x);
-    R[6] = 2*(x*z - w*y);     R[7] = 2*(y*z + w*x);     R[8] = 1 - 2*(x*x + y*y);
-}
 static void demi_solid_of(const demi_part *p, dem_vec3 centre, demi_solid *s) {
     const demi_shape *shape = p->shape;
     const double *plane = shape->hull, *corner = shape->hull + 4*shape->faces;
@@ -14543,6 +14873,10 @@ static dem_real demi_kept_room_of(dem_real x, dem_real *rate) {
     *rate = x < DEM_R(-0.5) ? 16*below*below : DEM_R(1);
     return x < DEM_R(-0.5) ? DEM_R(0.25) + below : 1 + x;
 }
+static int demi_is_cluster(const dem_world *w, int body) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    return shape && shape->count;
+}
 /* Contacts of one pair (or of a body and a wall), c[0] .. c[n - 1], that are one in all. With
    overlaps d, weights w (>>facets; else 1), what each stores U(d), and t: do i and j push the same
    way,
@@ -14555,14 +14889,16 @@ static dem_real demi_kept_room_of(dem_real x, dem_real *rate) {
        E_i = s_i U'(d_i) d_i/p,          dE_k/dd_k = s_k U'(d_k) (1 + 2/p (A_k - d_k^2)/A_k)
        dE_i/dd_k = -E_i 2 t_ik w_k d_k/A_i,    dE_i/dt_ik = -E_i w_k d_k^2/A_i
    (Left out: how an ellipsoid's normal turns at a cluster's ball. A ball that is
-   nearly at what it goes round, within a tenth of its radius, turns no faster than there.)
+   nearly at what it goes round, within a tenth of its radius, turns no faster than there.) Pieces of
+   unions do not overlap, nor do they share: their energies add.
    It may be a little below 0 where others are far deeper: no mean that does not depend on their
    number can do without. What a law is asked about before it touches counts by itself. Damping goes
    by s, and feels the mass at their common middle; friction by s times (sum of lift U' over sum of
    s U'), so that mu is the ratio of both sums. Checked by "a cluster that lands on one, two and
    three spheres" and tests/test_facets.c. */
 static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
-    const int one = w->desc.cluster_contacts == DEM_SHARING_ONE;
+    const int one = n > 0 && w->desc.cluster_contacts == DEM_SHARING_ONE &&
+        (demi_is_cluster(w, c->a) || (c->b >= 0 && demi_is_cluster(w, c->b)));
     int i, j;
     for (i = 0; i < n; i++) {
         const dem_real d2 = c[i].overlap > 0 ? c[i].overlap*c[i].overlap : 1;
@@ -15891,6 +16227,7 @@ static void demi_movers_lay(dem_world *w, int d) {
             t[3] = inv.x*x.x*x.y + inv.y*y.x*y.y + inv.z*z.x*z.y;
             t[4] = inv.x*x.x*x.z + inv.y*y.x*y.z + inv.z*z.x*z.z;
             t[5] = inv.x*x.y*x.z + inv.y*y.y*y.z + inv.z*z.y*z.z;
+            if (w->desc.planar) t[0] = t[1] = t[3] = t[4] = t[5] = 0;
             demi_put(w->bodies.spin + 4*i, demi_spin_of(q, L, inv));
             demi_put(m->w, demi_spin_of(q, demi_add(L, demi_scale(demi_at(torque), s->dt)), inv));
         } else {
@@ -17925,10 +18262,12 @@ static int demi_room_free(const dem_world *w, const demi_crowd *c, dem_vec3 x, d
 
 /* --- fills --- */
 
-/* All orientations are equally likely (Shoemake 1992). */
-static dem_quat demi_quat_random(uint64_t *state) {
+/* All orientations are equally likely (Shoemake 1992); in a planar world all about z. */
+static dem_quat demi_quat_random(const dem_world *w, uint64_t *state) {
     const double u = demi_uniform(state), a = 2*DEMI_PI*demi_uniform(state);
     const double b = 2*DEMI_PI*demi_uniform(state), r = sqrt(1 - u), s = sqrt(u);
+    if (w->desc.planar)
+        return dem_quat_make((dem_real)demi_cos(a/2), 0, 0, (dem_real)demi_sin(a/2));
     return dem_quat_make((dem_real)(r*demi_sin(a)), (dem_real)(r*demi_cos(a)),
                          (dem_real)(s*demi_sin(b)), (dem_real)(s*demi_cos(b)));
 }
@@ -17975,7 +18314,7 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *regio
         if (!demi_crowd_put(w, c, x, radius, -1)) return -1;
         if (!turned) continue;
         if (!DEMI_GROW(w, w->crowd_turned, 4*((size_t)i + 1))) return -1;
-        demi_quat_put(w->crowd_turned + 4*(size_t)i, demi_quat_random(&state));
+        demi_quat_put(w->crowd_turned + 4*(size_t)i, demi_quat_random(w, &state));
     }
     return count;
 }
@@ -18377,7 +18716,7 @@ static void demi_feed_draw(const dem_world *w, demi_feed *f) {
                                  ? demi_feed_size(f, k, demi_uniform(&f->random)) : f->lo[k]);
     f->drawn.reach = demi_feed_reach(w, &f->desc, k, f->drawn.radius);
     f->drawn.mass = demi_sphere_mass(w, demi_feed_material(&f->desc, k), (double)f->drawn.radius);
-    f->drawn.orientation = f->desc.shapes[k].id ? demi_quat_random(&f->random)
+    f->drawn.orientation = f->desc.shapes[k].id ? demi_quat_random(w, &f->random)
                                                 : dem_quat_make(1, 0, 0, 0);
 }
 /* Who feeds: looks at who is near a feed's region, then puts in grains of the class drawn, as long
@@ -23696,6 +24035,7 @@ static uint64_t demi_digest_pairs(const dem_world *w, int i) {
 static uint64_t demi_digest_shape(const dem_world *w, int i) {
     const demi_shape *shape = &w->shapes[i];
     uint64_t h = demi_hash(DEMI_HASH_START, &shape->count, sizeof shape->count);
+    int k;
     h = demi_hash(h, &shape->kind, sizeof shape->kind);
     h = demi_hash(h, &shape->axes, sizeof shape->axes);
     h = demi_hash(h, &shape->inertia, sizeof shape->inertia);
@@ -23703,6 +24043,12 @@ static uint64_t demi_digest_shape(const dem_world *w, int i) {
     if (shape->faces) {
         h = demi_hash(h, shape->hull, demi_shape_hull_reals(shape)*sizeof(double));
         h = demi_hash(h, shape->rim, demi_shape_rim_ints(shape)*sizeof(int32_t));
+    }
+    for (k = 0; k < shape->pieces; k++) {       /* field by field: no padding */
+        const demi_piece *piece = shape->piece + k;
+        h = demi_hash(h, &piece->shape, sizeof piece->shape);
+        h = demi_hash(h, &piece->at, sizeof piece->at);
+        h = demi_hash(h, &piece->q, sizeof piece->q);
     }
     return shape->count ? demi_hash(h, shape->parts, 4*(size_t)shape->count*sizeof(dem_real)) : h;
 }
@@ -28450,315 +28796,323 @@ static const char *const demi_viewer[] = {
     "a[2]*b[1], a[2]*b[0] - a[0]*b[2], a[0]*b[1] - a[1]*b[0]];\nconst dot = (a, b) => a[0]*b[0] + ",
     "a[1]*b[1] + a[2]*b[2];\nconst sum = (a, b, s = 1) => [a[0] + s*b[0], a[1] + s*b[1], a[2] + s*",
     "b[2]];\nconst unit = a => { const l = Math.hypot(...a) || 1; return [a[0]/l, a[1]/l, a[2]/l];",
-    " };\nfunction rotate(q, v) {\nconst u = [q[1], q[2], q[3]], t = cross(u, v).map(x => 2*x), c ",
-    "= cross(u, t);\nreturn [v[0] + q[0]*t[0] + c[0], v[1] + q[0]*t[1] + c[1], v[2] + q[0]*t[2] + ",
-    "c[2]];\n}\nconst box = { lo: [Infinity, Infinity, Infinity], hi: [-Infinity, -Infinity, -Infi",
-    "nity] };\nfunction reach(p, r) {\nfor (let k = 0; k < 3; k++) {\nbox.lo[k] = Math.min(box.lo[",
-    "k], p[k] - r); box.hi[k] = Math.max(box.hi[k], p[k] + r);\n}\n}\nfunction measure() {\nconst ",
-    "some = [frames[0], frames[frames.length >> 1], frames[frames.length - 1]];\nfor (const f of s",
-    "ome) {             // grains, but for the few that flew off\nfor (let k = 0; k < 3; k++) {\nc",
-    "onst x = [];\nfor (let i = 0; i < f.cast.slots.length; i++) x.push(f.x[3*i + k]);\nx.sort((a,",
-    " b) => a - b);\nconst out = x.length >> 8, r = Math.max(0, ...f.cast.radius.slice(0, 1000));",
-    "\nif (!x.length) continue;\nbox.lo[k] = Math.min(box.lo[k], x[out] - r);\nbox.hi[k] = Math.ma",
-    "x(box.hi[k], x[x.length - 1 - out] + r);\n}\nfor (const id in f.poses) {\nconst w = walls[id]",
-    ", p = f.poses[id];\nif (!w || !w.vertices || w.kind === 'profile') continue;\nfor (let i = 0;",
-    " i < w.vertices.length; i += 3)\nreach(sum(rotate(p.slice(3), w.vertices.slice(i, i + 3)), p)",
-    ", w.radius || 0);\n}\nfor (const id in f.poses)\nif (walls[id] && walls[id].kind === 'profile",
-    "')\nfor (let i = 0, w = walls[id], p = f.poses[id]; i < w.vertices.length; i += 3) {\nconst v",
-    " = sum(rotate(p.slice(3), w.vertices.slice(i, i + 3)), p);\nconst z = rotate(p.slice(3), [0, ",
-    "0, 1]).map(Math.abs);\nfor (let k = 0; k < 3; k++) if (z[k] < 0.5) {\nbox.lo[k] = Math.min(bo",
-    "x.lo[k], v[k]); box.hi[k] = Math.max(box.hi[k], v[k]);\n}\n}\n}\nfor (let k = 0; k < 3; k++) ",
-    "if (!(box.hi[k] > box.lo[k])) { box.lo[k] = -1; box.hi[k] = 1; }\nbox.middle = [0, 1, 2].map(",
-    "k => (box.lo[k] + box.hi[k])/2);\nbox.size = Math.hypot(...[0, 1, 2].map(k => box.hi[k] - box",
-    ".lo[k]));\n}\nlet gl, ball, egg, stone, sheet, colours = new Uint8Array(1024);\nconst grainSh",
-    "ader = shape => [`#version 300 es\nprecision highp sampler2D;\nuniform mat4 eye, lens; unifor",
-    "m vec3 cutAt, cutBy;\nuniform sampler2D wheres, colours, turns, axess;\nout vec3 ray; flat ou",
-    "t vec3 middle; flat out vec4 paint; flat out float size;\nflat out mat3 body; flat out ivec2 ",
-    "faces;\nvec3 about(vec4 q, vec3 v) { return v + 2.0*cross(q.yzw, cross(q.yzw, v) + q.x*v); }",
-    "\nvoid main() {\nint grain = gl_VertexID/6, k = gl_VertexID%6;           // two triangles eac",
-    "h\nivec2 cell = ivec2(grain & 1023, grain >> 10);\nvec2 corner = vec2(k == 1 || k == 3 || k =",
-    "= 4 ? 1 : -1, k == 2 || k > 3 ? 1 : -1);\nvec4 where = texelFetch(wheres, cell, 0), colour = ",
-    "texelFetch(colours, cell, 0);\n${shape !== 'ball' ? `vec4 turn = texelFetch(turns, cell, 0);",
-    "\nvec3 axes = texelFetch(axess, cell, 0).xyz;` : ''}\n${shape === 'stone' ? 'faces = ivec2(ax",
-    "es.yz); axes = axes.xxx;' : 'faces = ivec2(0);'}\nmiddle = (eye*vec4(where.xyz, 1)).xyz; size",
-    " = where.w; paint = colour;\n${shape !== 'ball' ? `mat3 e = mat3(eye);\nbody = mat3(e*about(t",
-    "urn, vec3(1, 0, 0))/axes.x, e*about(turn, vec3(0, 1, 0))/axes.y,\ne*about(turn, vec3(0, 0, 1)",
-    ")/axes.z);` : 'body = mat3(1);'}\nfloat d = length(middle), far = d > size ? size*d/sqrt(d*d ",
-    "- size*size) : size;\nvec3 n = middle/d, u = normalize(abs(n.y) < 0.9 ? cross(n, vec3(0, 1, 0",
-    ")) :\ncross(n, vec3(1, 0, 0)));\nray = middle + far*(corner.x*u + corner.y*cross(u, n));\ngl_",
-    "Position = lens*vec4(ray, 1);\nif (dot(where.xyz - cutAt, cutBy) > 0.0) gl_Position = vec4(2,",
-    " 2, 2, 1);\n}`, `#version 300 es\nprecision highp float;\nuniform mat4 lens;\nprecision highp",
-    " sampler2D;\nuniform sampler2D planes;\nin vec3 ray; flat in vec3 middle; flat in vec4 paint;",
-    " flat in float size; flat in mat3 body;\nflat in ivec2 faces;\nout vec4 pixel;\nvoid main() {",
-    "\nvec3 d = normalize(ray);\n${shape === 'stone' ? `vec3 o = -(middle*body), r = d*body, n = v",
-    "ec3(0);\nfloat t = -1e30, end = 1e30;                            // in by one face, out by an",
-    "other\nfor (int k = 0; k < faces.y; k++) {\nint cell = faces.x + k;\nvec3 face = texelFetch(p",
-    "lanes, ivec2(cell & 1023, cell >> 10), 0).xyz;\nfloat slope = dot(face, r), at = (1.0 - dot(f",
-    "ace, o))/slope;\nif (slope < 0.0 && at > t) { t = at; n = face; }\nif (slope > 0.0) end = min",
-    "(end, at);\n}\nif (t > end) discard;\nn = normalize(body*n);` : (shape === 'egg' ? `vec3 o = ",
-    "-(middle*body), r = d*body;\nfloat a = dot(r, r), b = dot(o, r), c = dot(o, o) - 1.0;` : `vec",
-    "3 o = -middle, r = d;\nfloat a = 1.0, b = dot(o, r), c = dot(o, o) - size*size;`) + `\nfloat ",
-    "h = b*b - a*c;\nif (h < 0.0) discard;\nfloat t = (-b - sqrt(h))/a;\nvec3 n = ${shape === 'egg",
-    "' ? 'normalize(body*(o + t*r))' : '(t*d - middle)/size'};`}\nvec3 hit = t*d;\nvec4 at = lens*",
-    "vec4(hit, 1);\ngl_FragDepth = 0.5*at.z/at.w + 0.5;\nfloat light = 0.35 + 0.65*max(0.0, dot(n,",
-    " normalize(vec3(-0.3, 0.5, 0.8))));\npixel = vec4(paint.rgb*light + 0.12*pow(max(0.0, n.z), 3",
-    "0.0), 1);\n}`];\nconst wallShader = [`#version 300 es\nuniform mat4 eye, lens; uniform vec3 p",
-    "lace; uniform vec4 turn;\nin vec3 where; out vec3 seen, local;\nvoid main() {\nlocal = where;",
-    "\nvec3 v = where + 2.0*cross(turn.yzw, cross(turn.yzw, where) + turn.x*where);\nseen = (eye*v",
-    "ec4(v + place, 1)).xyz;\ngl_Position = lens*vec4(seen, 1);\n}`, `#version 300 es\nprecision h",
-    "ighp float;\nuniform vec4 paint; uniform vec4 hole; uniform vec2 rim;     // kind, aperture, ",
-    "bar, length\nin vec3 seen, local; out vec4 pixel;\nvoid main() {\nfloat solid = 1.0, pitch = ",
-    "hole.y + hole.z, open = 0.0;\nif (rim.x > 0.0 && length(local.xy) > rim.x) discard;\nif (hole",
-    ".x > 0.0) {\nvec2 p = local.xy, side = vec2(pitch);\nif (hole.x == 5.0) side.x = hole.w > 0.0",
-    " ? hole.w + hole.z : 1e9;\nif (hole.x == 2.0) side.y = 1e9;\nif (rim.y > 0.0) {\nside.y = pit",
-    "ch*0.8660254;\nif (mod(floor(p.y/side.y + 0.5), 2.0) > 0.5) p.x += 0.5*pitch;\n}\np = abs(p -",
-    " side*floor(p/side + 0.5));\nvec2 clear = hole.x == 5.0 ? vec2(hole.w > 0.0 ? hole.w : 1e9, h",
-    "ole.y) : vec2(hole.y);\nif (hole.x == 2.0) clear.y = 2e9;\nopen = hole.x == 4.0 ? step(length",
-    "(p), 0.5*hole.y) : step(p.x, 0.5*clear.x)*\nstep(p.y, 0.5*clear.y);\nfloat blur = smoothstep(",
-    "0.2, 1.0, length(fwidth(local.xy))/pitch);\nsolid = mix(1.0 - open, 1.0 - hole.y*hole.y/(pitc",
-    "h*pitch), blur);\nif (solid < 0.02) discard;\n}\nvec3 n = normalize(cross(dFdx(seen), dFdy(se",
-    "en)));\npixel = vec4(paint.rgb*(0.55 + 0.45*abs(n.z)), paint.a*solid);\n}`];\nfunction progra",
-    "m(sources, names) {\nconst p = gl.createProgram();\nsources.forEach((source, k) => {\nconst s",
-    " = gl.createShader(k ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);\ngl.shaderSource(s, source); g",
-    "l.compileShader(s);\nif (!gl.getShaderParameter(s, gl.COMPILE_STATUS)) throw Error(gl.getShad",
-    "erInfoLog(s));\ngl.attachShader(p, s);\n});\nnames.forEach((name, k) => gl.bindAttribLocation",
-    "(p, k, name));\ngl.linkProgram(p);\nif (!gl.getProgramParameter(p, gl.LINK_STATUS)) throw Err",
-    "or(gl.getProgramInfoLog(p));\nconst at = { p };\nfor (let k = 0, n = gl.getProgramParameter(p",
-    ", gl.ACTIVE_UNIFORMS); k < n; k++) {\nconst name = gl.getActiveUniform(p, k).name;\nat[name] ",
-    "= gl.getUniformLocation(p, name);\n}\nreturn at;\n}\nconst kinds = {};                     //",
-    " buffers of balls, eggs and stones\nfunction prepare() {\ngl = $('view').getContext('webgl2',",
-    " { alpha: false, preserveDrawingBuffer: true });\nif (!gl) throw Error('this browser has no W",
-    "ebGL 2, by which grains are drawn: switch it on, ' +\n'or take another browser');\nball = pro",
-    "gram(grainShader('ball'), []);\negg = program(grainShader('egg'), []);\nstone = program(grain",
-    "Shader('stone'), []);\nsheet = program(wallShader, ['where']);\nkinds.array = gl.createVertex",
-    "Array();         // empty: grains stand in textures, 1024 to a row\nfor (const kind of ['ball",
-    "', 'egg', 'stone']) {\nconst k = kinds[kind] = { room: 0, count: 0, texture: [] };\nfor (let ",
-    "i = 0; i < (kind === 'ball' ? 2 : kind === 'egg' ? 4 : 5); i++) {\nk.texture[i] = gl.createTe",
-    "xture();\ngl.bindTexture(gl.TEXTURE_2D, k.texture[i]);\ngl.texParameteri(gl.TEXTURE_2D, gl.TE",
-    "XTURE_MIN_FILTER, gl.NEAREST);\ngl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEA",
-    "REST);\n}\n}\ngl.bindVertexArray(null);\nconst faces = [];                             // of ",
-    "all polyhedra, in texels\nfor (const id in shapes) if (shapes[id].planes) {\nshapes[id].first",
-    " = faces.length/4;\nfor (let k = 0, p = shapes[id].planes; k < p.length; k += 3) faces.push(.",
-    "..p.slice(k, k + 3), 0);\n}\nconst rows = Math.ceil(faces.length/4096) || 1, texels = new Flo",
-    "at32Array(4096*rows);\ntexels.set(faces);\ngl.bindTexture(gl.TEXTURE_2D, kinds.stone.texture[",
-    "4]);\ngl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1024, rows, 0, gl.RGBA, gl.FLOAT, texels);",
-    "\n}\nfunction tessellate(w) {\nconst far = 0.75*box.size, v = w.vertices, out = [];\nconst qu",
-    "ad = (a, b, c, d) => out.push(...a, ...b, ...c, ...a, ...c, ...d);\nconst from = rotate([w.po",
-    "se[3], -w.pose[4], -w.pose[5], -w.pose[6]],\nsum(box.middle, w.pose, -1));     // the picture",
-    "'s middle, as the wall sees it\nconst along = rotate(w.pose.slice(3), [0, 0, 1]).map(Math.abs",
-    ");\nconst half = 0.5*[0, 1, 2].reduce((s, k) => s + (box.hi[k] - box.lo[k])*along[k], 0);\nif",
-    " (w.kind === 'mesh')\nfor (const k of w.corners) out.push(v[3*k], v[3*k + 1], v[3*k + 2]);\ne",
-    "lse if (w.kind === 'profile') {\nconst z = [from[2] - half, from[2] + half];\nfor (let k = 0;",
-    " k < w.corners.length; k += 2) {\nconst a = 3*w.corners[k], b = 3*w.corners[k + 1];\nquad([v[",
-    "a], v[a + 1], z[0]], [v[b], v[b + 1], z[0]], [v[b], v[b + 1], z[1]],\n[v[a], v[a + 1], z[1]])",
-    ";\n}\n} else if (w.kind === 'cylinder') {\nconst n = 72;\nfor (let k = 0; k < n; k++) {\ncons",
-    "t p = [k, k + 1].map(i => [w.radius*Math.cos(2*Math.PI*i/n),\nw.radius*Math.sin(2*Math.PI*i/n",
-    ")]);\nquad([...p[0], from[2] - half], [...p[1], from[2] - half], [...p[1], from[2] + half],\n",
-    "[...p[0], from[2] + half]);\n}\n} else if (w.kind === 'plane' || w.kind === 'sieve') {\nconst",
-    " r = w.rim > 0 ? w.rim : far, x = w.rim > 0 ? 0 : from[0], y = w.rim > 0 ? 0 : from[1];\nquad",
-    "([x - r, y - r, 0], [x + r, y - r, 0], [x + r, y + r, 0], [x - r, y + r, 0]);\n}\nw.buffer = ",
-    "gl.createBuffer(); w.array = gl.createVertexArray(); w.count = out.length/3;\ngl.bindVertexAr",
-    "ray(w.array);\ngl.bindBuffer(gl.ARRAY_BUFFER, w.buffer);\ngl.bufferData(gl.ARRAY_BUFFER, new ",
-    "Float32Array(out), gl.STATIC_DRAW);\ngl.enableVertexAttribArray(0); gl.vertexAttribPointer(0,",
-    " 3, gl.FLOAT, false, 0, 0);\ngl.bindVertexArray(null);\n}\nconst palette = [[78, 121, 167], [",
-    "242, 142, 43], [89, 161, 79], [225, 87, 89], [118, 183, 178],\n[237, 201, 72], [176, 122, 161",
-    "], [156, 117, 95]];\nconst materials = Uint8Array.from(palette.flatMap(c => [...c, 255]));\nf",
-    "unction viridis(t) {\nconst c = [[0.2777, 0.1051, -0.3309, -4.6342, 6.2283, 4.7764, -5.4355],",
-    "\n[0.0054, 1.4046, 0.2148, -5.7991, 14.1799, -13.7451, 4.6459],\n[0.3341, 1.3846, 0.0951, -19",
-    ".3324, 56.6906, -65.3530, 26.3124]];\nreturn c.map(a => 255*Math.min(1, Math.max(0, a.reduceR",
-    "ight((s, x) => s*t + x, 0))));\n}\nfor (let k = 0; k < 256; k++) colours.set([...viridis(k/25",
-    "5).map(Math.round), 255], 4*k);\nconst range = { speed: [0, 1], size: [0, 1], own: [0, 1] };",
-    "\nfunction ranges() {\nconst count = new Float64Array(256);\nlet all = 0, low = Infinity, hig",
-    "h = -Infinity, small = Infinity, large = -Infinity;\nfor (const f of frames) {\nfor (let i = ",
-    "0; i < f.speed.length; i++) { count[f.speed[i]]++; all++; }\nfor (const r of f.cast.radius) {",
-    " small = Math.min(small, r); large = Math.max(large, r); }\nif (f.own) for (const x of f.own)",
-    " { low = Math.min(low, x); high = Math.max(high, x); }\n}\nlet k = 255;\nfor (let over = 0; k",
-    " > 1 && (over += count[k]) < 0.005*all; k--);\nrange.speed = [0, speedOf(k)];\nrange.size = [",
-    "small, large > small ? large : small*1.01];\nrange.own = [low, high > low ? high : low + 1];",
-    "\n}\nfunction showKey() {\nconst what = $('colour').value, key = $('scale').getContext('2d');",
-    "\n$('key').hidden = what === 'material';\nif (what === 'material') return;\nkey.putImageData(",
-    "new ImageData(new Uint8ClampedArray(colours), 256, 1), 0, 0);\nconst [least, most] = range[wh",
-    "at], digits = x => String(+x.toPrecision(3));\n$('least').textContent = digits(least); $('mos",
-    "t').textContent = digits(most);\n$('what').textContent = { speed: 'speed (m/s)', size: 'radiu",
-    "s (m)', own: head.number }[what];\n}\nconst camera = { yaw: -1, pitch: 0.35, distance: 1, tar",
-    "get: [0, 0, 0] };\nlet up, side, ahead, first, at = 0, playing = false, pace = 1, dirty = tru",
-    "e;\nfunction turnedTo() {\nconst c = Math.cos(camera.pitch), s = Math.sin(camera.pitch);\ncon",
-    "st flat = sum(side.map(x => x*Math.cos(camera.yaw)), ahead, Math.sin(camera.yaw));\nreturn su",
-    "m(flat.map(x => x*c), up, s);                    // from the target to the eye\n}\nfunction p",
-    "ut(kind, n) {\nconst k = kinds[kind];\nif (n > k.room) {\nk.room = 1024*Math.ceil(Math.max(n,",
-    " 1.5*k.room)/1024);\nk.w = new Float32Array(4*k.room); k.c = new Uint8Array(4*k.room);\nif (k",
-    "ind !== 'ball') { k.t = new Float32Array(4*k.room); k.a = new Float32Array(4*k.room); }\n}\nk",
-    ".count = 0;\nreturn k;\n}\nfunction hues(f, what, least, most) {\nif (f.hue && f.hue.what ===",
-    " what) return f.hue;\nconst cast = f.cast, of = new Uint8Array(cast.slots.length), scale = 25",
-    "5/(most - least);\nfor (let i = 0; i < of.length; i++) {\nconst v = what === 'speed' ? speeds",
-    "[f.speed[i]] : what === 'size' ? cast.radius[i] :\nwhat === 'own' ? f.own[i] : 0;\nof[i] = wh",
-    "at === 'material' ? (cast.material[i] - 1 + 8)%8 :\nMath.max(0, Math.min(255, Math.round((v -",
-    " least)*scale)));\n}\nreturn f.hue = { what, of, table: what === 'material' ? materials : col",
-    "ours };\n}\nfunction fill(f, g, part) {\nconst what = $('colour').value, [least, most] = rang",
-    "e[what] || [0, 1], cast = f.cast;\nlet balls = 0, eggs = 0, stones = 0;\nfor (let i = 0; i < ",
-    "cast.slots.length; i++) {\nconst s = shapes[cast.shape[i]];\nif (!s) balls++; else if (s.axes",
-    ") eggs++; else if (s.planes) stones++;\nelse balls += s.parts.length/4;\n}\nfor (const id in ",
-    "f.poses) if (walls[id] && walls[id].kind === 'grains')\nballs += walls[id].vertices.length/3;",
-    "\nconst b = put('ball', balls), e = put('egg', eggs), o = put('stone', stones), half = head.p",
-    "eriod.map(p => p/2);\nlet n = null;\nif (g && g.from) {                  // who is who in the",
-    " next frame\nn = new Int32Array(cast.slots.length).fill(-1);\ng.from.forEach((old, i) => { if",
-    " (old >= 0) n[old] = i; });\n}\nconst fx = f.x, gx = g ? g.x : fx, hue = hues(f, what, least,",
-    " most), wrap = half.some(h => h > 0);\nconst laid = (k, at, x, y, z, size, c) => {\nconst m =",
-    " 4*at;\nk.w[m] = x; k.w[m + 1] = y; k.w[m + 2] = z; k.w[m + 3] = size;\nk.c[m] = hue.table[c]",
-    "; k.c[m + 1] = hue.table[c + 1]; k.c[m + 2] = hue.table[c + 2];\nk.c[m + 3] = 255;\n};\nfor (",
-    "let i = 0; i < cast.slots.length; i++) {\nconst j = !g ? -1 : n ? n[i] : i, shape = shapes[ca",
-    "st.shape[i]], r = cast.radius[i];\nconst a = 3*i, c = 4*hue.of[i];\nlet x = fx[a], y = fx[a +",
-    " 1], z = fx[a + 2];\nif (j >= 0 && part > 0) {\nconst dx = gx[3*j] - x, dy = gx[3*j + 1] - y,",
-    " dz = gx[3*j + 2] - z;\nif (!wrap || !(half[0] > 0 && Math.abs(dx) > half[0] || half[1] > 0 &",
-    "& Math.abs(dy) > half[1]\n|| half[2] > 0 && Math.abs(dz) > half[2])) { x += part*dx; y += par",
-    "t*dy; z += part*dz; }\n}\nif (!shape) { laid(b, b.count++, x, y, z, r, c); continue; }\nlet q",
-    " = quat(f.turn[i]);\nif (j >= 0 && part > 0) {\nconst to = quat(g.turn[j]), same = q[0]*to[0]",
-    " + q[1]*to[1] + q[2]*to[2] + q[3]*to[3];\nq = q.map((x, k) => x*(1 - part) + (same < 0 ? -par",
-    "t : part)*to[k]);\nconst l = Math.hypot(...q) || 1;\nq = q.map(x => x/l);\n}\nconst scale = r",
-    "/shape.radius;\nif (shape.axes) {\nfor (let k = 0; k < 4; k++) e.t[4*e.count + k] = q[k];\nfo",
-    "r (let k = 0; k < 3; k++) e.a[4*e.count + k] = shape.axes[k]*scale;\nlaid(e, e.count++, x, y,",
-    " z, r, c);\n} else if (shape.planes) {\no.t.set(q, 4*o.count);\no.a.set([scale, shape.first, ",
-    "shape.planes.length/3, 0], 4*o.count);\nlaid(o, o.count++, x, y, z, r, c);\n} else for (let k",
-    " = 0; k < shape.parts.length; k += 4) {\nconst v = rotate(q, shape.parts.slice(k, k + 3));\nl",
-    "aid(b, b.count++, x + scale*v[0], y + scale*v[1], z + scale*v[2], scale*shape.parts[k + 3],\n",
-    "c);\n}\n}\nfor (const id in f.poses) if (walls[id] && walls[id].kind === 'grains') {\nconst w",
-    " = walls[id], pose = f.poses[id];\nfor (let k = 0; k < w.vertices.length; k += 3) {\nconst v ",
-    "= sum(rotate(pose.slice(3), w.vertices.slice(k, k + 3)), pose), m = 4*b.count++;\nb.w.set([..",
-    ".v, w.radius], m); b.c.set([150, 150, 150, 255], m);\n}\n}\nfor (const k of [b, e, o]) {\nif ",
-    "(!k.count) continue;\nconst rows = Math.ceil(k.count/1024);\n[k.w, k.c, k.t, k.a].forEach((da",
-    "ta, i) => {\nif (!data) return;\ngl.bindTexture(gl.TEXTURE_2D, k.texture[i]);\nif (i === 1) g",
-    "l.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 1024, rows, 0, gl.RGBA,\ngl.UNSIGNED_BYTE, data.suba",
-    "rray(0, 4096*rows));\nelse gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, 1024, rows, 0, gl.RGBA",
-    ", gl.FLOAT,\ndata.subarray(0, 4096*rows));\n});\n}\n}\nfunction draw() {\nconst canvas = $('v",
-    "iew'), ratio = Math.min(2, window.devicePixelRatio || 1);\nconst width = Math.round(canvas.cl",
-    "ientWidth*ratio);\nconst height = Math.round(canvas.clientHeight*ratio);\nif (canvas.width !=",
-    "= width || canvas.height !== height) { canvas.width = width;\ncanvas.height = height; }\ncons",
-    "t k = Math.min(Math.floor(at), frames.length - 1), f = frames[k], g = frames[k + 1];\nconst p",
-    "art = g ? at - k : 0, time = f.time + (g ? part*(g.time - f.time) : 0);\nconst back = turnedT",
-    "o(), z = back, x = unit(cross(up, z)), y = cross(z, x);\nconst eyeAt = sum(camera.target, bac",
-    "k, camera.distance);\nconst eye = new Float32Array([x[0], y[0], z[0], 0, x[1], y[1], z[1], 0,",
-    " x[2], y[2], z[2], 0,\n-dot(x, eyeAt), -dot(y, eyeAt), -dot(z, eyeAt), 1]);\nconst near = Mat",
-    "h.max(0.01*camera.distance, camera.distance - 1.5*box.size);\nconst last = camera.distance + ",
-    "2*box.size, open = Math.tan(0.3);\nconst lens = new Float32Array([height/width/open, 0, 0, 0,",
-    " 0, 1/open, 0, 0,\n0, 0, (last + near)/(near - last), -1, 0, 0, 2*last*near/(near - last), 0]",
-    ");\nconst dark = matchMedia('(prefers-color-scheme: dark)').matches;\ngl.viewport(0, 0, width",
-    ", height);\ngl.clearColor(...(dark ? [0.083, 0.094, 0.106] : [1, 1, 1]), 1);\ngl.depthMask(tr",
-    "ue);\ngl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);\ngl.enable(gl.DEPTH_TEST); gl.disa",
-    "ble(gl.BLEND);\nfill(f, g, part);\nconst cut = +$('cut').value, cutAt = sum(box.middle, z, (0",
-    ".5 - cut)*box.size);\nfor (const [kind, p] of [['ball', ball], ['egg', egg], ['stone', stone]",
-    "]) {\nif (!kinds[kind].count) continue;\ngl.useProgram(p.p);\ngl.uniformMatrix4fv(p.eye, fals",
-    "e, eye); gl.uniformMatrix4fv(p.lens, false, lens);\ngl.uniform3fv(p.cutAt, cutAt); gl.uniform",
-    "3fv(p.cutBy, cut > 0 ? z : [0, 0, 0]);\n['wheres', 'colours', 'turns', 'axess', 'planes'].for",
-    "Each((name, i) => {\nif (!p[name]) return;\ngl.activeTexture(gl.TEXTURE0 + i);\ngl.bindTextur",
-    "e(gl.TEXTURE_2D, kinds[kind].texture[i]);\ngl.uniform1i(p[name], i);\n});\ngl.activeTexture(g",
-    "l.TEXTURE0);\ngl.bindVertexArray(kinds.array);\ngl.drawArrays(gl.TRIANGLES, 0, 6*kinds[kind].",
-    "count);\n}\ngl.useProgram(sheet.p);\ngl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_M",
-    "INUS_SRC_ALPHA); gl.depthMask(false);\ngl.uniformMatrix4fv(sheet.eye, false, eye); gl.uniform",
-    "Matrix4fv(sheet.lens, false, lens);\nconst solid = +$('walls').value, shade = dark ? [0.75, 0",
-    ".8, 0.86] : [0.35, 0.4, 0.46];\ngl.depthMask(solid > 0.98);\nfor (const id in f.poses) {\ncon",
-    "st w = walls[id];\nif (!w || w.kind === 'grains' || !solid) continue;\nlet pose = f.poses[id]",
-    ";\nconst to = g && g.poses[id];\nif (to && part > 0) {             // half way: along the cho",
-    "rd, turned on the shorter way\nlet same = 0, q = [];\nfor (let i = 3; i < 7; i++) same += pos",
-    "e[i]*to[i];\nq = pose.map((v, i) => v*(1 - part) + (i > 2 && same < 0 ? -part : part)*to[i]);",
-    "\nconst l = Math.hypot(q[3], q[4], q[5], q[6]) || 1;\npose = q.map((v, i) => i > 2 ? v/l : v)",
-    ";\n}\nif (!w.array) { w.pose = pose; tessellate(w); }\nconst weight = w.kind === 'plane' ? 0.",
-    "5 : w.kind === 'sieve' ? 2 : 1;\ngl.uniform4f(sheet.paint, ...shade, Math.min(1, solid*weight",
-    "));\ngl.uniform4f(sheet.hole, ...(w.hole || [0, 1, 1, 0]));\ngl.uniform2f(sheet.rim, w.rim ||",
-    " 0, w.staggered || 0);\ngl.uniform3fv(sheet.place, pose.slice(0, 3)); gl.uniform4fv(sheet.tur",
-    "n, pose.slice(3));\ngl.bindVertexArray(w.array);\ngl.drawArrays(gl.TRIANGLES, 0, w.count);\n}",
-    "\ngl.bindVertexArray(null); gl.depthMask(true);\n$('time').textContent = time.toPrecision(4) ",
-    "+ ' s';\n$('at').value = at;\nplot(time);\nreplay.drawn++; replay.at = at;\nreplay.project = ",
-    "p => {             // where a place is in the picture, pixels from below\nconst e = sum(p, ey",
-    "eAt, -1), d = -dot(z, e);\nreturn [width/2*(1 + dot(x, e)/d*height/width/open), height/2*(1 +",
-    " dot(y, e)/d/open), d];\n};\n}\nconst plots = [];\nfunction plot(time) {\nfor (const p of plo",
-    "ts) {\nconst c = p.canvas, ratio = window.devicePixelRatio || 1, d = c.getContext('2d');\ncon",
-    "st w = c.clientWidth, h = c.clientHeight, ink = getComputedStyle(document.body).color;\nif (c",
-    ".width !== Math.round(w*ratio)) { c.width = Math.round(w*ratio);\nc.height = Math.round(h*rat",
-    "io); }\nd.setTransform(ratio, 0, 0, ratio, 0, 0);\nd.clearRect(0, 0, w, h);\nconst X = t => 4",
-    " + (w - 8)*(t - p.t[0])/(p.t[p.t.length - 1] - p.t[0] || 1);\nconst Y = v => h - 18 - (h - 36",
-    ")*(v - p.least)/(p.most - p.least || 1);\nd.strokeStyle = d.fillStyle = ink; d.font = '11px s",
-    "ystem-ui'; d.globalAlpha = 0.7;\nd.fillText(p.name, 4, 11);\nd.fillText(+p.most.toPrecision(3",
-    "), 4, 24); d.fillText(+p.least.toPrecision(3), 4, h - 6);\nd.globalAlpha = 1; d.strokeStyle =",
-    " getComputedStyle(document.documentElement)\n.getPropertyValue('--mark');\nd.beginPath();\np.",
-    "t.forEach((t, i) => i ? d.lineTo(X(t), Y(p.v[i])) : d.moveTo(X(t), Y(p.v[i])));\nd.stroke();",
-    "\nd.strokeStyle = ink; d.globalAlpha = 0.5;\nd.beginPath(); d.moveTo(X(time), 14); d.lineTo(X",
-    "(time), h - 14); d.stroke();\nd.globalAlpha = 1;\n}\n}\nfunction makePlots() {\nhead.values.f",
-    "orEach((name, k) => {\nconst p = { name, t: [], v: [] };\nfor (const f of frames) if (f.value",
-    "s[k] !== undefined && isFinite(f.values[k])) {\np.t.push(f.time); p.v.push(f.values[k]);\n}\n",
-    "if (!p.t.length) return;\np.least = Math.min(...p.v); p.most = Math.max(...p.v);\nconst figur",
-    "e = document.createElement('figure');\np.canvas = document.createElement('canvas');\np.canvas",
-    ".setAttribute('role', 'img'); p.canvas.setAttribute('aria-label', name);\nfigure.append(p.can",
-    "vas); $('plots').append(figure); plots.push(p);\n});\n}\nfunction seek(to) {\nat = Math.max(0",
-    ", Math.min(frames.length - 1, to)); dirty = true;\n}\nfunction play(on) { playing = on; $('pl",
-    "ay').textContent = on ? 'pause' : 'play'; }\nfunction fit() { Object.assign(camera, JSON.pars",
-    "e(first)); dirty = true; }\nfunction look() {\nconst g = head.gravity, size = [0, 1, 2].map(k",
-    " => box.hi[k] - box.lo[k]);\nup = Math.hypot(...g) > 0 ? unit(g.map(x => -x)) : head.planar ?",
-    " [0, 1, 0] : [0, 0, 1];\nconst thin = [0, 1, 2].reduce((a, k) => size[k] < size[a] ? k : a, 0",
-    ");\nconst axis = [0, 0, 0], flat = head.planar || size[thin] < 0.4*Math.max(...size) &&\nMath",
-    ".abs(up[thin]) < 0.5;\naxis[head.planar ? 2 : flat ? thin : Math.abs(up[0]) < 0.5 ? 0 : 1] = ",
-    "1;\nside = unit(sum(axis, up, -dot(axis, up)));\nahead = cross(up, side);\nif (thin === 1 && ",
-    "flat) side = side.map(x => -x), ahead = ahead.map(x => -x);\ncamera.yaw = flat ? (head.planar",
-    " ? 0 : 0.25) : -1; camera.pitch = flat ? (head.planar ? 0 : 0.15)\n: 0.35;\ncamera.target = b",
-    "ox.middle.slice();\ncamera.distance = 0.5*box.size/Math.tan(0.3);\nfirst = JSON.stringify(cam",
-    "era);\n}\nfunction hands() {\nconst view = $('view'), down = new Map();\nlet apart = 0;\ncons",
-    "t move = (dx, dy) => {\nconst z = turnedTo(), x = unit(cross(up, z)), y = cross(z, x);\nconst",
-    " s = 2*Math.tan(0.3)*camera.distance/view.clientHeight;\ncamera.target = sum(sum(camera.targe",
-    "t, x, -dx*s), y, dy*s);\n};\nconst zoom = by => { camera.distance = Math.max(0.01*box.size, M",
-    "ath.min(20*box.size,\ncamera.distance*by)); dirty = true; };\nview.addEventListener('pointerd",
-    "own', e => { down.set(e.pointerId, [e.clientX, e.clientY]);\nview.setPointerCapture(e.pointer",
-    "Id); apart = 0; });\nfor (const end of ['pointerup', 'pointercancel'])\nview.addEventListener",
-    "(end, e => { down.delete(e.pointerId); apart = 0; });\nview.addEventListener('pointermove', e",
-    " => {\nconst from = down.get(e.pointerId);\nif (!from) return;\nconst dx = e.clientX - from[0",
-    "], dy = e.clientY - from[1];\ndown.set(e.pointerId, [e.clientX, e.clientY]);\nif (down.size >",
-    " 1) {\nconst [a, b] = [...down.values()], d = Math.hypot(a[0] - b[0], a[1] - b[1]);\nif (apar",
-    "t) zoom(apart/d);\napart = d; move(dx/2, dy/2);\n} else if (e.shiftKey || e.buttons & 6) move",
-    "(dx, dy);\nelse {\ncamera.yaw -= dx*0.008;\ncamera.pitch = Math.max(-1.55, Math.min(1.55, cam",
-    "era.pitch + dy*0.008));\n}\ndirty = true;\n});\nview.addEventListener('wheel', e => { e.preve",
-    "ntDefault(); zoom(Math.exp(e.deltaY*0.001)); },\n{ passive: false });\nview.addEventListener(",
-    "'contextmenu', e => e.preventDefault());\n$('play').onclick = () => play(!playing);\n$('at').",
-    "oninput = () => { play(false); seek(+$('at').value); };\n$('pace').onchange = () => { pace = ",
-    "+$('pace').value; };\n$('colour').onchange = () => { showKey(); dirty = true; };\n$('walls').",
-    "oninput = $('cut').oninput = () => { dirty = true; };\naddEventListener('resize', () => { dir",
-    "ty = true; });\naddEventListener('keydown', e => {\nif (/INPUT|SELECT|BUTTON|SUMMARY/.test(e.",
-    "target.tagName) && e.key !== ' ') return;\nif (/SELECT|BUTTON|SUMMARY/.test(e.target.tagName)",
-    ") return;\nconst list = $('pace'), key = { ' ': () => play(!playing), Home: () => seek(0),\nA",
-    "rrowRight: () => { play(false); seek(Math.floor(at) + 1); },\nArrowLeft: () => { play(false);",
-    " seek(Math.ceil(at) - 1); },\nEnd: () => seek(frames.length - 1), 0: fit,\n'+': () => { list.",
-    "selectedIndex = Math.min(list.length - 1, list.selectedIndex + 1); },\n'-': () => { list.sele",
-    "ctedIndex = Math.max(0, list.selectedIndex - 1); } }[e.key];\nif (!key) return;\nkey(); e.pre",
-    "ventDefault(); list.onchange();\n});\n}\nlet then = 0;\nfunction tick(ms) {\nif (playing) {\n",
-    "const past = Math.min(0.1, (ms - then)/1000)*pace;\nconst k = Math.min(Math.floor(at), frames",
-    ".length - 2), f = frames[k], g = frames[k + 1];\nif (!g) play(false);\nelse {\nlet time = f.t",
-    "ime + (at - k)*(g.time - f.time) + past, n = k;\nif (time > frames[frames.length - 1].time) {",
-    " time = frames[0].time; n = 0; }\nwhile (n < frames.length - 2 && frames[n + 1].time <= time)",
-    " n++;\nat = n + Math.min(1, (time - frames[n].time)/(frames[n + 1].time - frames[n].time || 1",
-    "));\ndirty = true;\n}\n}\nthen = ms;\nif (dirty) { dirty = false; draw(); }\nrequestAnimation",
-    "Frame(tick);\n}\nfunction paces() {\nconst length = frames[frames.length - 1].time - frames[0",
-    "].time;\nconst own = length > 0 ? length/12 : 1;      // all of it in 12 s\npace = length > 4",
-    " && length < 30 ? 1 : +own.toPrecision(1);\nfor (const k of [0.1, 0.2, 0.5, 1, 2, 5, 10]) {\n",
-    "const o = document.createElement('option'), p = +(k*pace).toPrecision(2);\no.value = p; o.tex",
-    "tContent = p === 1 ? 'real time' : p < 1 ? '1/' + +(1/p).toPrecision(2) +\n' of real time' : ",
-    "p + ' times real time';\no.selected = k === 1; $('pace').append(o);\n}\n}\naddEventListener('",
-    "DOMContentLoaded', async () => {\ntry {\nconst begun = performance.now();\nfor (const b of bl",
-    "ocks('head')) head = JSON.parse(b.textContent);\ndocument.title = $('title').textContent = he",
-    "ad.title || 'Replay';\nfor (const b of blocks('shape')) { head.turns = 1;\nconst s = JSON.par",
-    "se(b.textContent); shapes[s.id] = s; }\nfor (const b of blocks('wall')) { const w = JSON.pars",
-    "e(b.textContent); walls[w.id] = w; }\nfor (const b of blocks('value')) head.values.push(JSON.",
-    "parse(b.textContent).name);\nfor (const [k, b] of blocks('frame').entries()) {\ntry { decode(",
-    "bytes(b.textContent)); } catch (e) { if (!k) throw e; break; }  // cut short\nb.remove();\nif",
-    " (k%20 === 19) { $('say').textContent = 'reading ' + (k + 1);\nawait new Promise(done => setT",
-    "imeout(done)); }\n}\nif (!frames.length) throw Error('no frames in this file: was dem_replay_",
-    "frame called?');\nmeasure(); ranges(); look(); prepare(); makePlots(); paces();\nconst names ",
-    "= { speed: 'speed', size: 'size', material: 'material' };\nif (head.number) names.own = head.",
-    "number;\nfor (const n in names) {\nconst o = document.createElement('option');\no.value = n; ",
-    "o.textContent = names[n]; $('colour').append(o);\n}\n$('at').max = frames.length - 1;\nconst ",
-    "report = blocks('report')[0];\nif (report) { $('report').hidden = false;\n$('report').querySe",
-    "lector('pre').textContent = report.textContent; }\nshowKey(); hands(); $('say').hidden = true",
-    "; $('say').style.display = 'none';\ndraw(); play(frames.length > 1); requestAnimationFrame(ti",
-    "ck);\nreplay.ready = true; replay.opened = performance.now() - begun;\nreplay.seek = seek; re",
-    "play.play = play; replay.draw = draw;\n} catch (e) { replay.error = $('say').textContent = St",
-    "ring(e.message || e); }\n});\n</script>\n<!-- what follows is written by dem_replay_open, _fr",
-    "ame and _close -->\n"};
+    " };\nfunction times(p, q) {\nreturn [p[0]*q[0] - p[1]*q[1] - p[2]*q[2] - p[3]*q[3], p[0]*q[1]",
+    " + p[1]*q[0] + p[2]*q[3] - p[3]*q[2],\np[0]*q[2] - p[1]*q[3] + p[2]*q[0] + p[3]*q[1], p[0]*q[",
+    "3] + p[1]*q[2] - p[2]*q[1] + p[3]*q[0]];\n}\nfunction rotate(q, v) {\nconst u = [q[1], q[2], ",
+    "q[3]], t = cross(u, v).map(x => 2*x), c = cross(u, t);\nreturn [v[0] + q[0]*t[0] + c[0], v[1]",
+    " + q[0]*t[1] + c[1], v[2] + q[0]*t[2] + c[2]];\n}\nconst box = { lo: [Infinity, Infinity, Inf",
+    "inity], hi: [-Infinity, -Infinity, -Infinity] };\nfunction reach(p, r) {\nfor (let k = 0; k <",
+    " 3; k++) {\nbox.lo[k] = Math.min(box.lo[k], p[k] - r); box.hi[k] = Math.max(box.hi[k], p[k] +",
+    " r);\n}\n}\nfunction measure() {\nconst some = [frames[0], frames[frames.length >> 1], frames",
+    "[frames.length - 1]];\nfor (const f of some) {             // grains, but for the few that fl",
+    "ew off\nfor (let k = 0; k < 3; k++) {\nconst x = [];\nfor (let i = 0; i < f.cast.slots.length",
+    "; i++) x.push(f.x[3*i + k]);\nx.sort((a, b) => a - b);\nconst out = x.length >> 8, r = Math.m",
+    "ax(0, ...f.cast.radius.slice(0, 1000));\nif (!x.length) continue;\nbox.lo[k] = Math.min(box.l",
+    "o[k], x[out] - r);\nbox.hi[k] = Math.max(box.hi[k], x[x.length - 1 - out] + r);\n}\nfor (cons",
+    "t id in f.poses) {\nconst w = walls[id], p = f.poses[id];\nif (!w || !w.vertices || w.kind ==",
+    "= 'profile') continue;\nfor (let i = 0; i < w.vertices.length; i += 3)\nreach(sum(rotate(p.sl",
+    "ice(3), w.vertices.slice(i, i + 3)), p), w.radius || 0);\n}\nfor (const id in f.poses)\nif (w",
+    "alls[id] && walls[id].kind === 'profile')\nfor (let i = 0, w = walls[id], p = f.poses[id]; i ",
+    "< w.vertices.length; i += 3) {\nconst v = sum(rotate(p.slice(3), w.vertices.slice(i, i + 3)),",
+    " p);\nconst z = rotate(p.slice(3), [0, 0, 1]).map(Math.abs);\nfor (let k = 0; k < 3; k++) if ",
+    "(z[k] < 0.5) {\nbox.lo[k] = Math.min(box.lo[k], v[k]); box.hi[k] = Math.max(box.hi[k], v[k]);",
+    "\n}\n}\n}\nfor (let k = 0; k < 3; k++) if (!(box.hi[k] > box.lo[k])) { box.lo[k] = -1; box.hi",
+    "[k] = 1; }\nbox.middle = [0, 1, 2].map(k => (box.lo[k] + box.hi[k])/2);\nbox.size = Math.hypo",
+    "t(...[0, 1, 2].map(k => box.hi[k] - box.lo[k]));\n}\nlet gl, ball, egg, stone, sheet, colours",
+    " = new Uint8Array(1024);\nconst grainShader = shape => [`#version 300 es\nprecision highp sam",
+    "pler2D;\nuniform mat4 eye, lens; uniform vec3 cutAt, cutBy;\nuniform sampler2D wheres, colour",
+    "s, turns, axess;\nout vec3 ray; flat out vec3 middle; flat out vec4 paint; flat out float siz",
+    "e;\nflat out mat3 body; flat out ivec2 faces;\nvec3 about(vec4 q, vec3 v) { return v + 2.0*cr",
+    "oss(q.yzw, cross(q.yzw, v) + q.x*v); }\nvoid main() {\nint grain = gl_VertexID/6, k = gl_Vert",
+    "exID%6;           // two triangles each\nivec2 cell = ivec2(grain & 1023, grain >> 10);\nvec2",
+    " corner = vec2(k == 1 || k == 3 || k == 4 ? 1 : -1, k == 2 || k > 3 ? 1 : -1);\nvec4 where = ",
+    "texelFetch(wheres, cell, 0), colour = texelFetch(colours, cell, 0);\n${shape !== 'ball' ? `ve",
+    "c4 turn = texelFetch(turns, cell, 0);\nvec3 axes = texelFetch(axess, cell, 0).xyz;` : ''}\n${",
+    "shape === 'stone' ? 'faces = ivec2(axes.yz); axes = axes.xxx;' : 'faces = ivec2(0);'}\nmiddle",
+    " = (eye*vec4(where.xyz, 1)).xyz; size = where.w; paint = colour;\n${shape !== 'ball' ? `mat3 ",
+    "e = mat3(eye);\nbody = mat3(e*about(turn, vec3(1, 0, 0))/axes.x, e*about(turn, vec3(0, 1, 0))",
+    "/axes.y,\ne*about(turn, vec3(0, 0, 1))/axes.z);` : 'body = mat3(1);'}\nfloat d = length(middl",
+    "e), far = d > size ? size*d/sqrt(d*d - size*size) : size;\nvec3 n = middle/d, u = normalize(a",
+    "bs(n.y) < 0.9 ? cross(n, vec3(0, 1, 0)) :\ncross(n, vec3(1, 0, 0)));\nray = middle + far*(cor",
+    "ner.x*u + corner.y*cross(u, n));\ngl_Position = lens*vec4(ray, 1);\nif (dot(where.xyz - cutAt",
+    ", cutBy) > 0.0) gl_Position = vec4(2, 2, 2, 1);\n}`, `#version 300 es\nprecision highp float;",
+    "\nuniform mat4 lens;\nprecision highp sampler2D;\nuniform sampler2D planes;\nin vec3 ray; fla",
+    "t in vec3 middle; flat in vec4 paint; flat in float size; flat in mat3 body;\nflat in ivec2 f",
+    "aces;\nout vec4 pixel;\nvoid main() {\nvec3 d = normalize(ray);\n${shape === 'stone' ? `vec3 ",
+    "o = -(middle*body), r = d*body, n = vec3(0);\nfloat t = -1e30, end = 1e30;                   ",
+    "         // in by one face, out by another\nfor (int k = 0; k < faces.y; k++) {\nint cell = f",
+    "aces.x + k;\nvec3 face = texelFetch(planes, ivec2(cell & 1023, cell >> 10), 0).xyz;\nfloat sl",
+    "ope = dot(face, r), at = (1.0 - dot(face, o))/slope;\nif (slope < 0.0 && at > t) { t = at; n ",
+    "= face; }\nif (slope > 0.0) end = min(end, at);\n}\nif (t > end) discard;\nn = normalize(body",
+    "*n);` : (shape === 'egg' ? `vec3 o = -(middle*body), r = d*body;\nfloat a = dot(r, r), b = do",
+    "t(o, r), c = dot(o, o) - 1.0;` : `vec3 o = -middle, r = d;\nfloat a = 1.0, b = dot(o, r), c =",
+    " dot(o, o) - size*size;`) + `\nfloat h = b*b - a*c;\nif (h < 0.0) discard;\nfloat t = (-b - s",
+    "qrt(h))/a;\nvec3 n = ${shape === 'egg' ? 'normalize(body*(o + t*r))' : '(t*d - middle)/size'}",
+    ";`}\nvec3 hit = t*d;\nvec4 at = lens*vec4(hit, 1);\ngl_FragDepth = 0.5*at.z/at.w + 0.5;\nfloa",
+    "t light = 0.35 + 0.65*max(0.0, dot(n, normalize(vec3(-0.3, 0.5, 0.8))));\npixel = vec4(paint.",
+    "rgb*light + 0.12*pow(max(0.0, n.z), 30.0), 1);\n}`];\nconst wallShader = [`#version 300 es\nu",
+    "niform mat4 eye, lens; uniform vec3 place; uniform vec4 turn;\nin vec3 where; out vec3 seen, ",
+    "local;\nvoid main() {\nlocal = where;\nvec3 v = where + 2.0*cross(turn.yzw, cross(turn.yzw, w",
+    "here) + turn.x*where);\nseen = (eye*vec4(v + place, 1)).xyz;\ngl_Position = lens*vec4(seen, 1",
+    ");\n}`, `#version 300 es\nprecision highp float;\nuniform vec4 paint; uniform vec4 hole; unif",
+    "orm vec2 rim;     // kind, aperture, bar, length\nin vec3 seen, local; out vec4 pixel;\nvoid ",
+    "main() {\nfloat solid = 1.0, pitch = hole.y + hole.z, open = 0.0;\nif (rim.x > 0.0 && length(",
+    "local.xy) > rim.x) discard;\nif (hole.x > 0.0) {\nvec2 p = local.xy, side = vec2(pitch);\nif ",
+    "(hole.x == 5.0) side.x = hole.w > 0.0 ? hole.w + hole.z : 1e9;\nif (hole.x == 2.0) side.y = 1",
+    "e9;\nif (rim.y > 0.0) {\nside.y = pitch*0.8660254;\nif (mod(floor(p.y/side.y + 0.5), 2.0) > 0",
+    ".5) p.x += 0.5*pitch;\n}\np = abs(p - side*floor(p/side + 0.5));\nvec2 clear = hole.x == 5.0 ",
+    "? vec2(hole.w > 0.0 ? hole.w : 1e9, hole.y) : vec2(hole.y);\nif (hole.x == 2.0) clear.y = 2e9",
+    ";\nopen = hole.x == 4.0 ? step(length(p), 0.5*hole.y) : step(p.x, 0.5*clear.x)*\nstep(p.y, 0.",
+    "5*clear.y);\nfloat blur = smoothstep(0.2, 1.0, length(fwidth(local.xy))/pitch);\nsolid = mix(",
+    "1.0 - open, 1.0 - hole.y*hole.y/(pitch*pitch), blur);\nif (solid < 0.02) discard;\n}\nvec3 n ",
+    "= normalize(cross(dFdx(seen), dFdy(seen)));\npixel = vec4(paint.rgb*(0.55 + 0.45*abs(n.z)), p",
+    "aint.a*solid);\n}`];\nfunction program(sources, names) {\nconst p = gl.createProgram();\nsour",
+    "ces.forEach((source, k) => {\nconst s = gl.createShader(k ? gl.FRAGMENT_SHADER : gl.VERTEX_SH",
+    "ADER);\ngl.shaderSource(s, source); gl.compileShader(s);\nif (!gl.getShaderParameter(s, gl.CO",
+    "MPILE_STATUS)) throw Error(gl.getShaderInfoLog(s));\ngl.attachShader(p, s);\n});\nnames.forEa",
+    "ch((name, k) => gl.bindAttribLocation(p, k, name));\ngl.linkProgram(p);\nif (!gl.getProgramPa",
+    "rameter(p, gl.LINK_STATUS)) throw Error(gl.getProgramInfoLog(p));\nconst at = { p };\nfor (le",
+    "t k = 0, n = gl.getProgramParameter(p, gl.ACTIVE_UNIFORMS); k < n; k++) {\nconst name = gl.ge",
+    "tActiveUniform(p, k).name;\nat[name] = gl.getUniformLocation(p, name);\n}\nreturn at;\n}\ncon",
+    "st kinds = {};                     // buffers of balls, eggs and stones\nfunction prepare() {",
+    "\ngl = $('view').getContext('webgl2', { alpha: false, preserveDrawingBuffer: true });\nif (!g",
+    "l) throw Error('this browser has no WebGL 2, by which grains are drawn: switch it on, ' +\n'o",
+    "r take another browser');\nball = program(grainShader('ball'), []);\negg = program(grainShade",
+    "r('egg'), []);\nstone = program(grainShader('stone'), []);\nsheet = program(wallShader, ['whe",
+    "re']);\nkinds.array = gl.createVertexArray();         // empty: grains stand in textures, 102",
+    "4 to a row\nfor (const kind of ['ball', 'egg', 'stone']) {\nconst k = kinds[kind] = { room: 0",
+    ", count: 0, texture: [] };\nfor (let i = 0; i < (kind === 'ball' ? 2 : kind === 'egg' ? 4 : 5",
+    "); i++) {\nk.texture[i] = gl.createTexture();\ngl.bindTexture(gl.TEXTURE_2D, k.texture[i]);\n",
+    "gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);\ngl.texParameteri(gl.TEXT",
+    "URE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);\n}\n}\ngl.bindVertexArray(null);\nconst faces = [",
+    "];                             // of all polyhedra, in texels\nfor (const id in shapes) if (s",
+    "hapes[id].planes) {\nshapes[id].first = faces.length/4;\nfor (let k = 0, p = shapes[id].plane",
+    "s; k < p.length; k += 3) faces.push(...p.slice(k, k + 3), 0);\n}\nfor (const id in shapes) if",
+    " (shapes[id].pieces) {   // each as its own shape, placed\nconst rows = [], p = shapes[id].pi",
+    "eces;\nfor (let k = 0; k < p.length; k += 8)\nrows.push({ ...shapes[p[k]], at: p.slice(k + 1,",
+    " k + 4), turn: p.slice(k + 4, k + 8) });\nshapes[id].pieces = rows;\n}\nconst rows = Math.cei",
+    "l(faces.length/4096) || 1, texels = new Float32Array(4096*rows);\ntexels.set(faces);\ngl.bind",
+    "Texture(gl.TEXTURE_2D, kinds.stone.texture[4]);\ngl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, ",
+    "1024, rows, 0, gl.RGBA, gl.FLOAT, texels);\n}\nfunction tessellate(w) {\nconst far = 0.75*box",
+    ".size, v = w.vertices, out = [];\nconst quad = (a, b, c, d) => out.push(...a, ...b, ...c, ...",
+    "a, ...c, ...d);\nconst from = rotate([w.pose[3], -w.pose[4], -w.pose[5], -w.pose[6]],\nsum(bo",
+    "x.middle, w.pose, -1));     // the picture's middle, as the wall sees it\nconst along = rotat",
+    "e(w.pose.slice(3), [0, 0, 1]).map(Math.abs);\nconst half = 0.5*[0, 1, 2].reduce((s, k) => s +",
+    " (box.hi[k] - box.lo[k])*along[k], 0);\nif (w.kind === 'mesh')\nfor (const k of w.corners) ou",
+    "t.push(v[3*k], v[3*k + 1], v[3*k + 2]);\nelse if (w.kind === 'profile') {\nconst z = [from[2]",
+    " - half, from[2] + half];\nfor (let k = 0; k < w.corners.length; k += 2) {\nconst a = 3*w.cor",
+    "ners[k], b = 3*w.corners[k + 1];\nquad([v[a], v[a + 1], z[0]], [v[b], v[b + 1], z[0]], [v[b],",
+    " v[b + 1], z[1]],\n[v[a], v[a + 1], z[1]]);\n}\n} else if (w.kind === 'cylinder') {\nconst n ",
+    "= 72;\nfor (let k = 0; k < n; k++) {\nconst p = [k, k + 1].map(i => [w.radius*Math.cos(2*Math",
+    ".PI*i/n),\nw.radius*Math.sin(2*Math.PI*i/n)]);\nquad([...p[0], from[2] - half], [...p[1], fro",
+    "m[2] - half], [...p[1], from[2] + half],\n[...p[0], from[2] + half]);\n}\n} else if (w.kind =",
+    "== 'plane' || w.kind === 'sieve') {\nconst r = w.rim > 0 ? w.rim : far, x = w.rim > 0 ? 0 : f",
+    "rom[0], y = w.rim > 0 ? 0 : from[1];\nquad([x - r, y - r, 0], [x + r, y - r, 0], [x + r, y + ",
+    "r, 0], [x - r, y + r, 0]);\n}\nw.buffer = gl.createBuffer(); w.array = gl.createVertexArray()",
+    "; w.count = out.length/3;\ngl.bindVertexArray(w.array);\ngl.bindBuffer(gl.ARRAY_BUFFER, w.buf",
+    "fer);\ngl.bufferData(gl.ARRAY_BUFFER, new Float32Array(out), gl.STATIC_DRAW);\ngl.enableVerte",
+    "xAttribArray(0); gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);\ngl.bindVertexArray(nul",
+    "l);\n}\nconst palette = [[78, 121, 167], [242, 142, 43], [89, 161, 79], [225, 87, 89], [118, ",
+    "183, 178],\n[237, 201, 72], [176, 122, 161], [156, 117, 95]];\nconst materials = Uint8Array.f",
+    "rom(palette.flatMap(c => [...c, 255]));\nfunction viridis(t) {\nconst c = [[0.2777, 0.1051, -",
+    "0.3309, -4.6342, 6.2283, 4.7764, -5.4355],\n[0.0054, 1.4046, 0.2148, -5.7991, 14.1799, -13.74",
+    "51, 4.6459],\n[0.3341, 1.3846, 0.0951, -19.3324, 56.6906, -65.3530, 26.3124]];\nreturn c.map(",
+    "a => 255*Math.min(1, Math.max(0, a.reduceRight((s, x) => s*t + x, 0))));\n}\nfor (let k = 0; ",
+    "k < 256; k++) colours.set([...viridis(k/255).map(Math.round), 255], 4*k);\nconst range = { sp",
+    "eed: [0, 1], size: [0, 1], own: [0, 1] };\nfunction ranges() {\nconst count = new Float64Arra",
+    "y(256);\nlet all = 0, low = Infinity, high = -Infinity, small = Infinity, large = -Infinity;",
+    "\nfor (const f of frames) {\nfor (let i = 0; i < f.speed.length; i++) { count[f.speed[i]]++; ",
+    "all++; }\nfor (const r of f.cast.radius) { small = Math.min(small, r); large = Math.max(large",
+    ", r); }\nif (f.own) for (const x of f.own) { low = Math.min(low, x); high = Math.max(high, x)",
+    "; }\n}\nlet k = 255;\nfor (let over = 0; k > 1 && (over += count[k]) < 0.005*all; k--);\nrang",
+    "e.speed = [0, speedOf(k)];\nrange.size = [small, large > small ? large : small*1.01];\nrange.",
+    "own = [low, high > low ? high : low + 1];\n}\nfunction showKey() {\nconst what = $('colour').",
+    "value, key = $('scale').getContext('2d');\n$('key').hidden = what === 'material';\nif (what =",
+    "== 'material') return;\nkey.putImageData(new ImageData(new Uint8ClampedArray(colours), 256, 1",
+    "), 0, 0);\nconst [least, most] = range[what], digits = x => String(+x.toPrecision(3));\n$('le",
+    "ast').textContent = digits(least); $('most').textContent = digits(most);\n$('what').textConte",
+    "nt = { speed: 'speed (m/s)', size: 'radius (m)', own: head.number }[what];\n}\nconst camera =",
+    " { yaw: -1, pitch: 0.35, distance: 1, target: [0, 0, 0] };\nlet up, side, ahead, first, at = ",
+    "0, playing = false, pace = 1, dirty = true;\nfunction turnedTo() {\nconst c = Math.cos(camera",
+    ".pitch), s = Math.sin(camera.pitch);\nconst flat = sum(side.map(x => x*Math.cos(camera.yaw)),",
+    " ahead, Math.sin(camera.yaw));\nreturn sum(flat.map(x => x*c), up, s);                    // ",
+    "from the target to the eye\n}\nfunction put(kind, n) {\nconst k = kinds[kind];\nif (n > k.roo",
+    "m) {\nk.room = 1024*Math.ceil(Math.max(n, 1.5*k.room)/1024);\nk.w = new Float32Array(4*k.room",
+    "); k.c = new Uint8Array(4*k.room);\nif (kind !== 'ball') { k.t = new Float32Array(4*k.room); ",
+    "k.a = new Float32Array(4*k.room); }\n}\nk.count = 0;\nreturn k;\n}\nfunction hues(f, what, le",
+    "ast, most) {\nif (f.hue && f.hue.what === what) return f.hue;\nconst cast = f.cast, of = new ",
+    "Uint8Array(cast.slots.length), scale = 255/(most - least);\nfor (let i = 0; i < of.length; i+",
+    "+) {\nconst v = what === 'speed' ? speeds[f.speed[i]] : what === 'size' ? cast.radius[i] :\nw",
+    "hat === 'own' ? f.own[i] : 0;\nof[i] = what === 'material' ? (cast.material[i] - 1 + 8)%8 :\n",
+    "Math.max(0, Math.min(255, Math.round((v - least)*scale)));\n}\nreturn f.hue = { what, of, tab",
+    "le: what === 'material' ? materials : colours };\n}\nfunction fill(f, g, part) {\nconst what ",
+    "= $('colour').value, [least, most] = range[what] || [0, 1], cast = f.cast;\nlet balls = 0, eg",
+    "gs = 0, stones = 0;\nfor (let i = 0; i < cast.slots.length; i++) {\nconst s = shapes[cast.sha",
+    "pe[i]];\nif (!s) balls++; else if (s.parts) balls += s.parts.length/4;\nelse for (const piece",
+    " of s.pieces || [s]) if (piece.axes) eggs++; else stones++;\n}\nfor (const id in f.poses) if ",
+    "(walls[id] && walls[id].kind === 'grains')\nballs += walls[id].vertices.length/3;\nconst b = ",
+    "put('ball', balls), e = put('egg', eggs), o = put('stone', stones), half = head.period.map(p ",
+    "=> p/2);\nlet n = null;\nif (g && g.from) {                  // who is who in the next frame",
+    "\nn = new Int32Array(cast.slots.length).fill(-1);\ng.from.forEach((old, i) => { if (old >= 0)",
+    " n[old] = i; });\n}\nconst fx = f.x, gx = g ? g.x : fx, hue = hues(f, what, least, most), wra",
+    "p = half.some(h => h > 0);\nconst laid = (k, at, x, y, z, size, c) => {\nconst m = 4*at;\nk.w",
+    "[m] = x; k.w[m + 1] = y; k.w[m + 2] = z; k.w[m + 3] = size;\nk.c[m] = hue.table[c]; k.c[m + 1",
+    "] = hue.table[c + 1]; k.c[m + 2] = hue.table[c + 2];\nk.c[m + 3] = 255;\n};\nfor (let i = 0; ",
+    "i < cast.slots.length; i++) {\nconst j = !g ? -1 : n ? n[i] : i, shape = shapes[cast.shape[i]",
+    "], r = cast.radius[i];\nconst a = 3*i, c = 4*hue.of[i];\nlet x = fx[a], y = fx[a + 1], z = fx",
+    "[a + 2];\nif (j >= 0 && part > 0) {\nconst dx = gx[3*j] - x, dy = gx[3*j + 1] - y, dz = gx[3*",
+    "j + 2] - z;\nif (!wrap || !(half[0] > 0 && Math.abs(dx) > half[0] || half[1] > 0 && Math.abs(",
+    "dy) > half[1]\n|| half[2] > 0 && Math.abs(dz) > half[2])) { x += part*dx; y += part*dy; z += ",
+    "part*dz; }\n}\nif (!shape) { laid(b, b.count++, x, y, z, r, c); continue; }\nlet q = quat(f.t",
+    "urn[i]);\nif (j >= 0 && part > 0) {\nconst to = quat(g.turn[j]), same = q[0]*to[0] + q[1]*to[",
+    "1] + q[2]*to[2] + q[3]*to[3];\nq = q.map((x, k) => x*(1 - part) + (same < 0 ? -part : part)*t",
+    "o[k]);\nconst l = Math.hypot(...q) || 1;\nq = q.map(x => x/l);\n}\nconst scale = r/shape.radi",
+    "us;\nif (!shape.parts) for (const piece of shape.pieces || [shape]) {\nconst v = piece.at ? r",
+    "otate(q, piece.at) : [0, 0, 0], turn = piece.turn ? times(q, piece.turn) : q;\nconst size = s",
+    "cale*piece.radius, place = [x + scale*v[0], y + scale*v[1], z + scale*v[2]];\nif (piece.axes)",
+    " {\ne.t.set(turn, 4*e.count);\nfor (let k = 0; k < 3; k++) e.a[4*e.count + k] = piece.axes[k]",
+    "*scale;\nlaid(e, e.count++, ...place, size, c);\n} else {\no.t.set(turn, 4*o.count);\no.a.set",
+    "([scale, piece.first, piece.planes.length/3, 0], 4*o.count);\nlaid(o, o.count++, ...place, si",
+    "ze, c);\n}\n} else for (let k = 0; k < shape.parts.length; k += 4) {\nconst v = rotate(q, sha",
+    "pe.parts.slice(k, k + 3));\nlaid(b, b.count++, x + scale*v[0], y + scale*v[1], z + scale*v[2]",
+    ", scale*shape.parts[k + 3],\nc);\n}\n}\nfor (const id in f.poses) if (walls[id] && walls[id].",
+    "kind === 'grains') {\nconst w = walls[id], pose = f.poses[id];\nfor (let k = 0; k < w.vertice",
+    "s.length; k += 3) {\nconst v = sum(rotate(pose.slice(3), w.vertices.slice(k, k + 3)), pose), ",
+    "m = 4*b.count++;\nb.w.set([...v, w.radius], m); b.c.set([150, 150, 150, 255], m);\n}\n}\nfor ",
+    "(const k of [b, e, o]) {\nif (!k.count) continue;\nconst rows = Math.ceil(k.count/1024);\n[k.",
+    "w, k.c, k.t, k.a].forEach((data, i) => {\nif (!data) return;\ngl.bindTexture(gl.TEXTURE_2D, k",
+    ".texture[i]);\nif (i === 1) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, 1024, rows, 0, gl.RGBA,",
+    "\ngl.UNSIGNED_BYTE, data.subarray(0, 4096*rows));\nelse gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG",
+    "BA32F, 1024, rows, 0, gl.RGBA, gl.FLOAT,\ndata.subarray(0, 4096*rows));\n});\n}\n}\nfunction ",
+    "draw() {\nconst canvas = $('view'), ratio = Math.min(2, window.devicePixelRatio || 1);\nconst",
+    " width = Math.round(canvas.clientWidth*ratio);\nconst height = Math.round(canvas.clientHeight",
+    "*ratio);\nif (canvas.width !== width || canvas.height !== height) { canvas.width = width;\nca",
+    "nvas.height = height; }\nconst k = Math.min(Math.floor(at), frames.length - 1), f = frames[k]",
+    ", g = frames[k + 1];\nconst part = g ? at - k : 0, time = f.time + (g ? part*(g.time - f.time",
+    ") : 0);\nconst back = turnedTo(), z = back, x = unit(cross(up, z)), y = cross(z, x);\nconst e",
+    "yeAt = sum(camera.target, back, camera.distance);\nconst eye = new Float32Array([x[0], y[0], ",
+    "z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0,\n-dot(x, eyeAt), -dot(y, eyeAt), -dot(z, e",
+    "yeAt), 1]);\nconst near = Math.max(0.01*camera.distance, camera.distance - 1.5*box.size);\nco",
+    "nst last = camera.distance + 2*box.size, open = Math.tan(0.3);\nconst lens = new Float32Array",
+    "([height/width/open, 0, 0, 0, 0, 1/open, 0, 0,\n0, 0, (last + near)/(near - last), -1, 0, 0, ",
+    "2*last*near/(near - last), 0]);\nconst dark = matchMedia('(prefers-color-scheme: dark)').matc",
+    "hes;\ngl.viewport(0, 0, width, height);\ngl.clearColor(...(dark ? [0.083, 0.094, 0.106] : [1,",
+    " 1, 1]), 1);\ngl.depthMask(true);\ngl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);\ngl.e",
+    "nable(gl.DEPTH_TEST); gl.disable(gl.BLEND);\nfill(f, g, part);\nconst cut = +$('cut').value, ",
+    "cutAt = sum(box.middle, z, (0.5 - cut)*box.size);\nfor (const [kind, p] of [['ball', ball], [",
+    "'egg', egg], ['stone', stone]]) {\nif (!kinds[kind].count) continue;\ngl.useProgram(p.p);\ngl",
+    ".uniformMatrix4fv(p.eye, false, eye); gl.uniformMatrix4fv(p.lens, false, lens);\ngl.uniform3f",
+    "v(p.cutAt, cutAt); gl.uniform3fv(p.cutBy, cut > 0 ? z : [0, 0, 0]);\n['wheres', 'colours', 't",
+    "urns', 'axess', 'planes'].forEach((name, i) => {\nif (!p[name]) return;\ngl.activeTexture(gl.",
+    "TEXTURE0 + i);\ngl.bindTexture(gl.TEXTURE_2D, kinds[kind].texture[i]);\ngl.uniform1i(p[name],",
+    " i);\n});\ngl.activeTexture(gl.TEXTURE0);\ngl.bindVertexArray(kinds.array);\ngl.drawArrays(gl",
+    ".TRIANGLES, 0, 6*kinds[kind].count);\n}\ngl.useProgram(sheet.p);\ngl.enable(gl.BLEND); gl.ble",
+    "ndFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); gl.depthMask(false);\ngl.uniformMatrix4fv(sheet",
+    ".eye, false, eye); gl.uniformMatrix4fv(sheet.lens, false, lens);\nconst solid = +$('walls').v",
+    "alue, shade = dark ? [0.75, 0.8, 0.86] : [0.35, 0.4, 0.46];\ngl.depthMask(solid > 0.98);\nfor",
+    " (const id in f.poses) {\nconst w = walls[id];\nif (!w || w.kind === 'grains' || !solid) cont",
+    "inue;\nlet pose = f.poses[id];\nconst to = g && g.poses[id];\nif (to && part > 0) {          ",
+    "   // half way: along the chord, turned on the shorter way\nlet same = 0, q = [];\nfor (let i",
+    " = 3; i < 7; i++) same += pose[i]*to[i];\nq = pose.map((v, i) => v*(1 - part) + (i > 2 && sam",
+    "e < 0 ? -part : part)*to[i]);\nconst l = Math.hypot(q[3], q[4], q[5], q[6]) || 1;\npose = q.m",
+    "ap((v, i) => i > 2 ? v/l : v);\n}\nif (!w.array) { w.pose = pose; tessellate(w); }\nconst wei",
+    "ght = w.kind === 'plane' ? 0.5 : w.kind === 'sieve' ? 2 : 1;\ngl.uniform4f(sheet.paint, ...sh",
+    "ade, Math.min(1, solid*weight));\ngl.uniform4f(sheet.hole, ...(w.hole || [0, 1, 1, 0]));\ngl.",
+    "uniform2f(sheet.rim, w.rim || 0, w.staggered || 0);\ngl.uniform3fv(sheet.place, pose.slice(0,",
+    " 3)); gl.uniform4fv(sheet.turn, pose.slice(3));\ngl.bindVertexArray(w.array);\ngl.drawArrays(",
+    "gl.TRIANGLES, 0, w.count);\n}\ngl.bindVertexArray(null); gl.depthMask(true);\n$('time').textC",
+    "ontent = time.toPrecision(4) + ' s';\n$('at').value = at;\nplot(time);\nreplay.drawn++; repla",
+    "y.at = at;\nreplay.project = p => {             // where a place is in the picture, pixels fr",
+    "om below\nconst e = sum(p, eyeAt, -1), d = -dot(z, e);\nreturn [width/2*(1 + dot(x, e)/d*heig",
+    "ht/width/open), height/2*(1 + dot(y, e)/d/open), d];\n};\n}\nconst plots = [];\nfunction plot",
+    "(time) {\nfor (const p of plots) {\nconst c = p.canvas, ratio = window.devicePixelRatio || 1,",
+    " d = c.getContext('2d');\nconst w = c.clientWidth, h = c.clientHeight, ink = getComputedStyle",
+    "(document.body).color;\nif (c.width !== Math.round(w*ratio)) { c.width = Math.round(w*ratio);",
+    "\nc.height = Math.round(h*ratio); }\nd.setTransform(ratio, 0, 0, ratio, 0, 0);\nd.clearRect(0",
+    ", 0, w, h);\nconst X = t => 4 + (w - 8)*(t - p.t[0])/(p.t[p.t.length - 1] - p.t[0] || 1);\nco",
+    "nst Y = v => h - 18 - (h - 36)*(v - p.least)/(p.most - p.least || 1);\nd.strokeStyle = d.fill",
+    "Style = ink; d.font = '11px system-ui'; d.globalAlpha = 0.7;\nd.fillText(p.name, 4, 11);\nd.f",
+    "illText(+p.most.toPrecision(3), 4, 24); d.fillText(+p.least.toPrecision(3), 4, h - 6);\nd.glo",
+    "balAlpha = 1; d.strokeStyle = getComputedStyle(document.documentElement)\n.getPropertyValue('",
+    "--mark');\nd.beginPath();\np.t.forEach((t, i) => i ? d.lineTo(X(t), Y(p.v[i])) : d.moveTo(X(t",
+    "), Y(p.v[i])));\nd.stroke();\nd.strokeStyle = ink; d.globalAlpha = 0.5;\nd.beginPath(); d.mov",
+    "eTo(X(time), 14); d.lineTo(X(time), h - 14); d.stroke();\nd.globalAlpha = 1;\n}\n}\nfunction ",
+    "makePlots() {\nhead.values.forEach((name, k) => {\nconst p = { name, t: [], v: [] };\nfor (co",
+    "nst f of frames) if (f.values[k] !== undefined && isFinite(f.values[k])) {\np.t.push(f.time);",
+    " p.v.push(f.values[k]);\n}\nif (!p.t.length) return;\np.least = Math.min(...p.v); p.most = Ma",
+    "th.max(...p.v);\nconst figure = document.createElement('figure');\np.canvas = document.create",
+    "Element('canvas');\np.canvas.setAttribute('role', 'img'); p.canvas.setAttribute('aria-label',",
+    " name);\nfigure.append(p.canvas); $('plots').append(figure); plots.push(p);\n});\n}\nfunction",
+    " seek(to) {\nat = Math.max(0, Math.min(frames.length - 1, to)); dirty = true;\n}\nfunction pl",
+    "ay(on) { playing = on; $('play').textContent = on ? 'pause' : 'play'; }\nfunction fit() { Obj",
+    "ect.assign(camera, JSON.parse(first)); dirty = true; }\nfunction look() {\nconst g = head.gra",
+    "vity, size = [0, 1, 2].map(k => box.hi[k] - box.lo[k]);\nup = Math.hypot(...g) > 0 ? unit(g.m",
+    "ap(x => -x)) : head.planar ? [0, 1, 0] : [0, 0, 1];\nconst thin = [0, 1, 2].reduce((a, k) => ",
+    "size[k] < size[a] ? k : a, 0);\nconst axis = [0, 0, 0], flat = head.planar || size[thin] < 0.",
+    "4*Math.max(...size) &&\nMath.abs(up[thin]) < 0.5;\naxis[head.planar ? 2 : flat ? thin : Math.",
+    "abs(up[0]) < 0.5 ? 0 : 1] = 1;\nside = unit(sum(axis, up, -dot(axis, up)));\nahead = cross(up",
+    ", side);\nif (thin === 1 && flat) side = side.map(x => -x), ahead = ahead.map(x => -x);\ncame",
+    "ra.yaw = flat ? (head.planar ? 0 : 0.25) : -1; camera.pitch = flat ? (head.planar ? 0 : 0.15)",
+    "\n: 0.35;\ncamera.target = box.middle.slice();\ncamera.distance = 0.5*box.size/Math.tan(0.3);",
+    "\nfirst = JSON.stringify(camera);\n}\nfunction hands() {\nconst view = $('view'), down = new ",
+    "Map();\nlet apart = 0;\nconst move = (dx, dy) => {\nconst z = turnedTo(), x = unit(cross(up, ",
+    "z)), y = cross(z, x);\nconst s = 2*Math.tan(0.3)*camera.distance/view.clientHeight;\ncamera.t",
+    "arget = sum(sum(camera.target, x, -dx*s), y, dy*s);\n};\nconst zoom = by => { camera.distance",
+    " = Math.max(0.01*box.size, Math.min(20*box.size,\ncamera.distance*by)); dirty = true; };\nvie",
+    "w.addEventListener('pointerdown', e => { down.set(e.pointerId, [e.clientX, e.clientY]);\nview",
+    ".setPointerCapture(e.pointerId); apart = 0; });\nfor (const end of ['pointerup', 'pointercanc",
+    "el'])\nview.addEventListener(end, e => { down.delete(e.pointerId); apart = 0; });\nview.addEv",
+    "entListener('pointermove', e => {\nconst from = down.get(e.pointerId);\nif (!from) return;\nc",
+    "onst dx = e.clientX - from[0], dy = e.clientY - from[1];\ndown.set(e.pointerId, [e.clientX, e",
+    ".clientY]);\nif (down.size > 1) {\nconst [a, b] = [...down.values()], d = Math.hypot(a[0] - b",
+    "[0], a[1] - b[1]);\nif (apart) zoom(apart/d);\napart = d; move(dx/2, dy/2);\n} else if (e.shi",
+    "ftKey || e.buttons & 6) move(dx, dy);\nelse {\ncamera.yaw -= dx*0.008;\ncamera.pitch = Math.m",
+    "ax(-1.55, Math.min(1.55, camera.pitch + dy*0.008));\n}\ndirty = true;\n});\nview.addEventList",
+    "ener('wheel', e => { e.preventDefault(); zoom(Math.exp(e.deltaY*0.001)); },\n{ passive: false",
+    " });\nview.addEventListener('contextmenu', e => e.preventDefault());\n$('play').onclick = () ",
+    "=> play(!playing);\n$('at').oninput = () => { play(false); seek(+$('at').value); };\n$('pace'",
+    ").onchange = () => { pace = +$('pace').value; };\n$('colour').onchange = () => { showKey(); d",
+    "irty = true; };\n$('walls').oninput = $('cut').oninput = () => { dirty = true; };\naddEventLi",
+    "stener('resize', () => { dirty = true; });\naddEventListener('keydown', e => {\nif (/INPUT|SE",
+    "LECT|BUTTON|SUMMARY/.test(e.target.tagName) && e.key !== ' ') return;\nif (/SELECT|BUTTON|SUM",
+    "MARY/.test(e.target.tagName)) return;\nconst list = $('pace'), key = { ' ': () => play(!playi",
+    "ng), Home: () => seek(0),\nArrowRight: () => { play(false); seek(Math.floor(at) + 1); },\nArr",
+    "owLeft: () => { play(false); seek(Math.ceil(at) - 1); },\nEnd: () => seek(frames.length - 1),",
+    " 0: fit,\n'+': () => { list.selectedIndex = Math.min(list.length - 1, list.selectedIndex + 1)",
+    "; },\n'-': () => { list.selectedIndex = Math.max(0, list.selectedIndex - 1); } }[e.key];\nif ",
+    "(!key) return;\nkey(); e.preventDefault(); list.onchange();\n});\n}\nlet then = 0;\nfunction ",
+    "tick(ms) {\nif (playing) {\nconst past = Math.min(0.1, (ms - then)/1000)*pace;\nconst k = Mat",
+    "h.min(Math.floor(at), frames.length - 2), f = frames[k], g = frames[k + 1];\nif (!g) play(fal",
+    "se);\nelse {\nlet time = f.time + (at - k)*(g.time - f.time) + past, n = k;\nif (time > frame",
+    "s[frames.length - 1].time) { time = frames[0].time; n = 0; }\nwhile (n < frames.length - 2 &&",
+    " frames[n + 1].time <= time) n++;\nat = n + Math.min(1, (time - frames[n].time)/(frames[n + 1",
+    "].time - frames[n].time || 1));\ndirty = true;\n}\n}\nthen = ms;\nif (dirty) { dirty = false;",
+    " draw(); }\nrequestAnimationFrame(tick);\n}\nfunction paces() {\nconst length = frames[frames",
+    ".length - 1].time - frames[0].time;\nconst own = length > 0 ? length/12 : 1;      // all of i",
+    "t in 12 s\npace = length > 4 && length < 30 ? 1 : +own.toPrecision(1);\nfor (const k of [0.1,",
+    " 0.2, 0.5, 1, 2, 5, 10]) {\nconst o = document.createElement('option'), p = +(k*pace).toPreci",
+    "sion(2);\no.value = p; o.textContent = p === 1 ? 'real time' : p < 1 ? '1/' + +(1/p).toPrecis",
+    "ion(2) +\n' of real time' : p + ' times real time';\no.selected = k === 1; $('pace').append(o",
+    ");\n}\n}\naddEventListener('DOMContentLoaded', async () => {\ntry {\nconst begun = performanc",
+    "e.now();\nfor (const b of blocks('head')) head = JSON.parse(b.textContent);\ndocument.title =",
+    " $('title').textContent = head.title || 'Replay';\nfor (const b of blocks('shape')) { head.tu",
+    "rns = 1;\nconst s = JSON.parse(b.textContent); shapes[s.id] = s; }\nfor (const b of blocks('w",
+    "all')) { const w = JSON.parse(b.textContent); walls[w.id] = w; }\nfor (const b of blocks('val",
+    "ue')) head.values.push(JSON.parse(b.textContent).name);\nfor (const [k, b] of blocks('frame')",
+    ".entries()) {\ntry { decode(bytes(b.textContent)); } catch (e) { if (!k) throw e; break; }  /",
+    "/ cut short\nb.remove();\nif (k%20 === 19) { $('say').textContent = 'reading ' + (k + 1);\naw",
+    "ait new Promise(done => setTimeout(done)); }\n}\nif (!frames.length) throw Error('no frames i",
+    "n this file: was dem_replay_frame called?');\nmeasure(); ranges(); look(); prepare(); makePlo",
+    "ts(); paces();\nconst names = { speed: 'speed', size: 'size', material: 'material' };\nif (he",
+    "ad.number) names.own = head.number;\nfor (const n in names) {\nconst o = document.createEleme",
+    "nt('option');\no.value = n; o.textContent = names[n]; $('colour').append(o);\n}\n$('at').max ",
+    "= frames.length - 1;\nconst report = blocks('report')[0];\nif (report) { $('report').hidden =",
+    " false;\n$('report').querySelector('pre').textContent = report.textContent; }\nshowKey(); han",
+    "ds(); $('say').hidden = true; $('say').style.display = 'none';\ndraw(); play(frames.length > ",
+    "1); requestAnimationFrame(tick);\nreplay.ready = true; replay.opened = performance.now() - be",
+    "gun;\nreplay.seek = seek; replay.play = play; replay.draw = draw;\n} catch (e) { replay.error",
+    " = $('say').textContent = String(e.message || e); }\n});\n</script>\n<!-- what follows is wri",
+    "tten by dem_replay_open, _frame and _close -->\n"};
 /* viewer: end */
 
 /* ---------------------------------------------------------------------------------------------
@@ -28908,6 +29262,19 @@ static void demi_film_shape(dem_replay *r, int id) {
     fprintf(r->out.file, "<script type=\"dem/shape\">{\"id\":%d,\"radius\":%s", id,
             demi_format_real(text, (double)s->radius, 9));
     if (s->count) demi_film_reals(r->out.file, "parts", s->parts, s->count, 4, 4);
+    else if (s->pieces) {
+        fputs(",\"pieces\":[", r->out.file);
+        for (k = 0; k < s->pieces; k++) {
+            const demi_piece *o = s->piece + k;
+            const double row[7] = {(double)o->at.x, (double)o->at.y, (double)o->at.z,
+                                   (double)o->q.w, (double)o->q.x, (double)o->q.y, (double)o->q.z};
+            int e;
+            fprintf(r->out.file, "%s%d", k ? "," : "", (int)o->shape + 1);
+            for (e = 0; e < 7; e++)
+                fprintf(r->out.file, ",%s", demi_format_real(text, row[e], 9));
+        }
+        fputs("]", r->out.file);
+    }
     else if (s->faces) demi_film_reals(r->out.file, "planes", planes, s->faces, 3, 3);
     else demi_film_reals(r->out.file, "axes", axes, 1, 3, 3);
     fputs("}</script>\n", r->out.file);
