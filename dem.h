@@ -1004,6 +1004,8 @@ typedef struct dem_world_desc {
                                       more; 0: when it changes them by less (rms) than a twentieth
                                       of what gravity brings in a step and 1e-5 of the largest
                                       speed, and none by thirty times that */
+    int cold_start;                /* 1: sweeps begin with no impulses, 0: with those of the step
+                                      before, turned with their contacts */
     dem_search search;
     dem_real skin;                 /* m, margin of the candidate list; 0: chosen; < 0: none, the
                                       list is rebuilt every step */
@@ -1020,7 +1022,7 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
     DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
     0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0,
-    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_SEIDEL, 0, 0, DEM_SEARCH_AUTO, 0,
+    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_SEIDEL, 0, 0, 0, DEM_SEARCH_AUTO, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
@@ -16439,7 +16441,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         demi_beside *beside = s->beside + m->at;
         /* a contact of several points has what its pair has once */
         const dem_real points = (dem_real)(k && k->corners ? k->corners : 1);
-        const dem_real give = pair->compliance*points;
+        const dem_real give = pair->compliance*points, had = w->desc.cold_start ? 0 : dt;
         demi_brings g = {0, 0, 0, 0, 0, 0};
         dem_vec3 slip = demi_v(y[0], y[o.stride], y[2*o.stride]);
         dem_real closing;
@@ -16466,8 +16468,8 @@ static void demi_impulses_lay(dem_world *w, int d) {
         c->gt = g.t;
         c->per_n = 1/(g.n + give/(dt*dt));
         c->per_t = 1/g.t;
-        c->push = y[6*o.stride]*dt;
-        c->slip = demi_scale(demi_sub(slip, demi_scale(o.normal, demi_dot(slip, o.normal))), dt);
+        c->push = y[6*o.stride]*had;
+        c->slip = demi_scale(demi_sub(slip, demi_scale(o.normal, demi_dot(slip, o.normal))), had);
         closing = demi_dot(demi_impulse_before(w, c), o.normal);
         c->bias = (pair->compliance > 0 ? o.gap : DEMI_MAX(o.gap, 0))/dt;
         beside->bounces = pair->restitution > 0 && closing < -rest && o.gap + closing*dt <= 0;
@@ -16481,7 +16483,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
             ? pair->cohesion/points*dt : 0;
         if (s->twisted) {
             demi_twist *t = s->twists + m->at;
-            t->moment = demi_scale(demi_v(y[3*o.stride], y[4*o.stride], y[5*o.stride]), dt);
+            t->moment = demi_scale(demi_v(y[3*o.stride], y[4*o.stride], y[5*o.stride]), had);
             t->per_roll = 1/g.roll;
             t->per_spin = 1/g.spin;
             t->roll = pair->rolling_friction*o.r_eff;
