@@ -14891,8 +14891,8 @@ static int demi_is_cluster(const dem_world *w, int body) {
        E_i = s_i U'(d_i) d_i/p,          dE_k/dd_k = s_k U'(d_k) (1 + 2/p (A_k - d_k^2)/A_k)
        dE_i/dd_k = -E_i 2 t_ik w_k d_k/A_i,    dE_i/dt_ik = -E_i w_k d_k^2/A_i
    (Left out: how an ellipsoid's normal turns at a cluster's ball. A ball that is
-   nearly at what it goes round, within a tenth of its radius, turns no faster than there.) Pieces of
-   unions do not overlap, nor do they share: their energies add.
+   nearly at what it goes round, within a tenth of its radius, turns no faster than there. Pieces
+   of unions share nothing: their energies add.)
    It may be a little below 0 where others are far deeper: no mean that does not depend on their
    number can do without. What a law is asked about before it touches counts by itself. Damping goes
    by s, and feels the mass at their common middle; friction by s times (sum of lift U' over sum of
