@@ -5,6 +5,7 @@
    Build:    make build/repose
    Run:      repose [KIND] [--count N] [--film]      KIND: spheres, cubes, cubes4, cubes8, cubes27, cubes64, cubes100; all
              of them one after the other take hours on one core; --film writes repose_KIND.html */
+#define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include <math.h>
 #include <stdio.h>
