@@ -126,7 +126,7 @@ check: ## all compilers, standards, precisions, warnings, sanitizers; says what 
 BIND := OMP_PROC_BIND=true OMP_PLACES=cores
 bench: $(BENCHES) $(BENCH_ALSO) ## the quick form of all benches, in under 3 minutes; each takes --help
 	@$(BIND) build/bench && build/bench_single --brief && build/bench_O2 --brief --scene bed && \
-	    $(BIND) build/parallel --short --threads 2 --settle 0 && STEPS=60 ROUNDS=3 CORES=1 sh bench/peers.sh
+	    $(BIND) build/parallel --short --threads 2 --settle 0 && STEPS=60 ROUNDS=3 CORES=1 SCENES="bed drum gas" sh bench/peers.sh
 
 bench-compile: build/flags ## processor time that compiling dem.h takes, by compiler and level
 	@sh bench/compile.sh
@@ -137,7 +137,7 @@ bench-effects: build/bench ## what each effect costs, present and absent
 bench-parallel: build/parallel ## threads, sizes, searches beside published figures, in minutes
 	@$(BIND) build/parallel
 
-bench-peers: $(BENCHES) $(BENCH_ALSO) ## the same scenes in LAMMPS and LIGGGHTS, where those are installed
+bench-peers: $(BENCHES) $(BENCH_ALSO) ## the same scenes in LAMMPS, LIGGGHTS and YADE, where those are installed
 	@sh bench/peers.sh
 
 bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener ## measure anew what docs/ tells of speed; PAGES=roofline: one page

@@ -1,5 +1,5 @@
-# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [responses]: measures anew what stands in those pages
-# of docs/ (effects: the prices in accuracy.md and README.md; screener: its times in studies.md; peers: the table in README.md),
+# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [blocks] [responses]: measures anew what stands in those pages
+# of docs/ (effects: the prices in accuracy.md and README.md; screener: its times in studies.md; peers: the table in README.md; blocks: that of shapes.md beside other codes),
 # effects to clusters when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
 [ "$1" ] || set -- effects accuracy roofline clusters
 export OMP_PROC_BIND=true OMP_PLACES=cores
@@ -38,6 +38,22 @@ peers() {
             for (i = 1; i <= n; i++) { split(row[i], p, ".")
                 printf "| %s | %s | %s | %s | %s |\n", about[p[1]], name[p[2]], ratio[p[1] ".double.vs_" p[2]],
                     ratio[p[1] ".double.vs_" p[2] ".threads2"], ratio[p[1] ".single.vs_" p[2]] } }' "$1"
+}
+# a row a scene and code, from the same: beds of blocks
+blocks() {
+    awk '/^# (clumps|cubes)\./ { split($2, p, "."); rate[p[1], p[2]] = $3; for (i = 4; i < NF; i++) if ($i == "contacts/bead") touch[p[1], p[2]] = $(i + 1) }
+        /^# load/ { print "**Preliminary: the machine was busy.**"; print "" }
+        /middle sank/ { sank[p[1], p[2]] = $6 }
+        / = / && $1 ~ /^(clumps|cubes)\./ { value = $0; sub(/.* = /, "", value); ratio[$1] = value }
+        END { print "| bed | | us a step and body | contacts per body | its middle sank, um | its time over that of dem.h |"; print "|---|---|---|---|---|---|"
+            about["clumps"] = "clumps of 8 spheres"; about["cubes"] = "cubes"
+            name["double"] = "dem.h"; name["unshared"] = "dem.h, `DEM_SHARING_NONE`"; name["liggghts"] = "LIGGGHTS, multispheres"
+            name["yadeclumps"] = "YADE, clumps"; name["yadecubes"] = "YADE, polyhedra"
+            n = split("clumps.double clumps.unshared clumps.liggghts clumps.yade cubes.double cubes.yade", row, " ")
+            for (i = 1; i <= n; i++) { split(row[i], p, "."); s = p[1]; c = p[2]
+                if (!((s, c) in rate)) continue
+                peer = ratio[s ".double.vs_" c]; if (ratio[s ".unshared.vs_" c]) peer = peer "; of dem.h unshared " ratio[s ".unshared.vs_" c]
+                printf "| %s | %s | %.3g | %.2f | %s | %s |\n", about[s], name[c == "yade" ? c s : c], 1/rate[s, c], touch[s, c], sank[s, c], peer } }' "$1"
 }
 # the price list of the README: some rows of the page of effects, in words
 prices() {
@@ -101,10 +117,15 @@ for page in "$@"; do
         screener_times $at/screener_size200/summary.txt $at/screener_size2000/summary.txt > build/page.times
         splice studies.md screener build/page.times ;;
     peers)
-        sh bench/peers.sh > build/peers.out || { cat build/peers.out; exit 1; }
+        SCENES="bed drum gas" sh bench/peers.sh > build/peers.out || { cat build/peers.out; exit 1; }
         cat build/peers.out
         grep -q ' = ' build/peers.out || { echo "neither code was found: README.md stays as it was"; exit 1; }
         peers build/peers.out > build/peers.md && splice ../README.md peers build/peers.md || exit 1 ;;
-    *) echo "no page $page: effects, accuracy, roofline, clusters, shapes, screener or peers"; exit 1 ;;
+    blocks)
+        SCENES="clumps cubes" CORES=1 sh bench/peers.sh > build/blocks.out || { cat build/blocks.out; exit 1; }
+        cat build/blocks.out
+        grep -q ' = ' build/blocks.out || { echo "neither code was found: shapes.md stays as it was"; exit 1; }
+        blocks build/blocks.out > build/blocks.md && splice shapes.md blocks build/blocks.md || exit 1 ;;
+    *) echo "no page $page: effects, accuracy, roofline, clusters, shapes, screener, peers or blocks"; exit 1 ;;
     esac
 done

@@ -2,8 +2,8 @@
 
    build/pairs             seconds; results in build/out/pairs
 
-   Each turn looks at 4000 pairs in random orientations once, so that none is known from before. Lengths are of the radius R
-   of the sphere of their volume.
+   Each turn looks at 4000 pairs in random orientations once, so that none is known from before. Times are of the
+   processor; lengths of the radius R of the sphere of the polyhedron's volume.
    touching  at corners, edges and faces as they come, pushed together by .001 R from where they begin to touch
    flat      a face on a face, off its middle, by .001 R
    apart     by 0 to .05 R, as a list of neighbours has them; told: those that a face keeps apart at the first look */
@@ -100,9 +100,9 @@ static void measure(int corners) {
         int found = 0, told = 0;
         for (i = 0; i < PAIRS; i++) pair_make(w, i, kind, size);
         for (k = 0; k < TURNS; k++) {
-            const double begun = study_clock();
+            const clock_t begun = clock();
             for (i = 0; i < PAIRS; i++) found += meet(w, i, pairs[i].gap);
-            times[k] = 1e9*(study_clock() - begun)/PAIRS;
+            times[k] = 1e9*(double)(clock() - begun)/CLOCKS_PER_SEC/PAIRS;
         }
         for (i = 0; i < PAIRS; i++)
             told += demi_face_keeps(&pairs[i].p, &pairs[i].q, pairs[i].gap) ||
