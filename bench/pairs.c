@@ -16,7 +16,13 @@ enum { PAIRS = 4000, TURNS = 9, KINDS = 3 };
 static struct { demi_part p, q; dem_vec3 gap; } pairs[PAIRS];
 static uint64_t seed = 11;
 
-static dem_vec3 direction(void) { return dem_quat_rotate(demi_quat_random(&seed), dem_vec3_make(0, 0, 1)); }
+/* All orientations are equally likely. */
+static dem_quat orientation(void) {
+    const double u = demi_uniform(&seed), a = 2*DEMI_PI*demi_uniform(&seed), b = 2*DEMI_PI*demi_uniform(&seed);
+    const double r = sqrt(1 - u), s = sqrt(u);
+    return dem_quat_make((dem_real)(r*sin(a)), (dem_real)(r*cos(a)), (dem_real)(s*sin(b)), (dem_real)(s*cos(b)));
+}
+static dem_vec3 direction(void) { return dem_quat_rotate(orientation(), dem_vec3_make(0, 0, 1)); }
 static double between(double a, double b) { return a + (b - a)*demi_uniform(&seed); }
 /* A cube, or the hull of points on a sphere, no two of them near each other. */
 static dem_shape hull(dem_world *w, int corners) {
@@ -39,7 +45,7 @@ static dem_shape hull(dem_world *w, int corners) {
 static int meet(const dem_world *w, int i, dem_vec3 gap) {
     demi_kept c;
     memset(&c, 0, sizeof c);
-    return demi_polyhedra_touch(w, &pairs[i].p, &pairs[i].q, gap, 0, &c);
+    return demi_polyhedra_touch(w, &pairs[i].p, &pairs[i].q, gap, 0, &c, 0);
 }
 static dem_vec3 normal_of(const demi_part *p, int face) { /* unit, in the world                         */
     const double *a = p->shape->hull + 4*face;
@@ -64,8 +70,8 @@ static void pair_make(const dem_world *w, int i, int kind, double size) {
     int k;
     pairs[i].p = demi_part_now(w, 0, 0);
     pairs[i].q = demi_part_now(w, 1, 0);
-    pairs[i].p.q = demi_quat_random(&seed);
-    pairs[i].q.q = demi_quat_random(&seed);
+    pairs[i].p.q = orientation();
+    pairs[i].q.q = orientation();
     if (kind == 1) { lay(i, size); return; }
     in = size*0.5;
     for (k = 0; k < 50; k++) {

@@ -28,14 +28,20 @@ static meeting now[PAIRS], then[PAIRS];          /* and a moment ago */
 static uint64_t seed = 7;
 
 static void jog(double *x) { *x += 2e-4*(demi_uniform(&seed) - 0.5); }
+/* All orientations are equally likely. */
+static dem_quat orientation(void) {
+    const double u = demi_uniform(&seed), a = 2*DEMI_PI*demi_uniform(&seed), b = 2*DEMI_PI*demi_uniform(&seed);
+    const double r = sqrt(1 - u), s = sqrt(u);
+    return dem_quat_make((dem_real)(r*sin(a)), (dem_real)(r*cos(a)), (dem_real)(s*sin(b)), (dem_real)(s*cos(b)));
+}
 static void pair_make(int i, double ratio) {
-    const dem_vec3 e = dem_quat_rotate(demi_quat_random(&seed), dem_vec3_make(0, 0, 1));
+    const dem_vec3 e = dem_quat_rotate(orientation(), dem_vec3_make(0, 0, 1));
     meeting *m = &now[i], *was = &then[i];
     demi_meet found;
     double s, by[3];
     int k, n;
     for (k = 0; k < 2; k++) {
-        const dem_quat q = demi_quat_random(&seed);
+        const dem_quat q = orientation();
         dem_vec3 a;
         dem_quat p;
         a.x = 1; a.y = (dem_real)pow(ratio, demi_uniform(&seed)); a.z = (dem_real)ratio;
