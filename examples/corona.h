@@ -1,0 +1,383 @@
+/* corona.h - grains in a corona electrostatic separator: field, charges, forces. MIT licence. Include it after dem.h.
+
+   A rotor at 0 V turns about z through the origin; an electrode at `voltage` lies parallel to it; ions from a corona rain
+   on part of the rotor. Grains carry two charges, numbers of their own (desc.body_reals = CORONA_REALS):
+
+       induced   C, of what conducts: comes and goes through the rotor, while they touch
+       corona    C, of what does not: ions that have stuck to it; leaks into rotor and brush
+       landing   m, x where the grain went down through the plane y = bins; 0: not yet
+
+   and are pulled and dragged by a body force. Both are functions of the grain alone, so that threads and restarts do not
+   matter; the third part, what near grains do to each other, is summed by corona_near_update between two steps.
+
+       corona c = corona_make();
+       c.field = corona_field_make(0.160, 0.019, 0.267, CORONA_PI/6, 30e3);
+       c.kinds[copper.id].metal = 1; c.kinds[copper.id].density = 8400;
+       desc.body_reals = CORONA_REALS; desc.body_reals_fn = corona_reals; desc.body_reals_user = &c;
+       desc.body_force = corona_force; desc.force_user = &c;
+
+   [LI08] Li, Lu, Xu & Zhou, J. Hazard. Mater. 151 (2008) 52; [CRI14] Critelli, Tasora, Degiorgi & Colledani, Particle
+   simulation of granular flows in electrostatic separation processes (2014), whose equations are cited; [FEL66] Felici,
+   Rev. Gen. Elec. 75 (1966) 1145; [PAU32] Pauthenier & Moreau-Hanot, J. Phys. Radium 3 (1932) 590; [PEE29] Peek,
+   Dielectric Phenomena in High Voltage Engineering (1929); [SN33] Schiller & Naumann, Z. VDI 77 (1933) 318.
+   Where we differ from [CRI14]: see each function. Limits: the field is that of two cylinders without end and without the
+   grains' own charge and that of the ions between them (`strength` and the window stand for the latter). */
+#ifndef CORONA_H
+#define CORONA_H
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CORONA_PI 3.14159265358979323846
+#define CORONA_EPS0 8.8541878128e-12         /* F/m; [CRI14] calls it permeability */
+#define CORONA_REALS "induced corona landing"
+enum { CORONA_INDUCED, CORONA_IONS, CORONA_LANDING, CORONA_REAL_COUNT };
+enum { CORONA_KINDS = 65, CORONA_SHAPES = 33 };
+
+/* ---- field ---- */
+
+/* Two parallel cylinders, in closed form: a pair of line charges at +-c from where the two have equal power. */
+typedef struct corona_field {
+    double rotor, electrode, distance;       /* m: radii, between the axes */
+    double angle, voltage;                   /* rad, of the electrode above +x; V */
+    double h1, h2, c, scale, offset;         /* m, m, m, V, of the potential: 1 */
+    double cosine, sine;
+} corona_field;
+
+/* [LI08]. The charges lie c from the radical plane, which is h1 from the rotor's axis and h2 from the electrode's. */
+static inline corona_field corona_field_make(double rotor, double electrode, double distance, double angle,
+                                             double voltage) {
+    corona_field f;
+    double d1, d2;
+    f.rotor = rotor; f.electrode = electrode; f.distance = distance; f.angle = angle; f.voltage = voltage;
+    f.h1 = (distance*distance + rotor*rotor - electrode*electrode)/(2*distance);
+    f.h2 = distance - f.h1;
+    f.c = sqrt(f.h1*f.h1 - rotor*rotor);
+    d1 = (f.c - f.h1 + rotor)/(f.c + f.h1 - rotor);
+    d2 = (f.c - f.h2 + electrode)/(f.c + f.h2 - electrode);
+    f.offset = log(d1);
+    f.scale = -voltage/log(d1*d2);
+    f.cosine = cos(angle);
+    f.sine = sin(angle);
+    return f;
+}
+/* V at a place, which is to be outside both cylinders. */
+static inline double corona_potential(const corona_field *f, double x, double y) {
+    const double X = x*f->cosine + y*f->sine - f->h1, Y = y*f->cosine - x*f->sine;
+    const double a2 = (X + f->c)*(X + f->c) + Y*Y, b2 = (X - f->c)*(X - f->c) + Y*Y;
+    return f->scale*(log(a2/b2)/2 - f->offset);
+}
+/* V/m: minus its gradient, turned back into x and y, which the program of [CRI14] forgets; 0 inside the rotor. */
+static inline void corona_field_at(const corona_field *f, double x, double y, double E[2]) {
+    const double X = x*f->cosine + y*f->sine - f->h1, Y = y*f->cosine - x*f->sine;
+    const double a2 = (X + f->c)*(X + f->c) + Y*Y, b2 = (X - f->c)*(X - f->c) + Y*Y;
+    const double along = -f->scale*((f->c + X)/a2 + (f->c - X)/b2), across = -f->scale*(Y/a2 - Y/b2);
+    const int inside = x*x + y*y < f->rotor*f->rotor*(1 - 1e-9);
+    E[0] = inside ? 0 : along*f->cosine - across*f->sine;
+    E[1] = inside ? 0 : along*f->sine + across*f->cosine;
+}
+/* V/m at which the surface of a wire of this radius (m) begins to glow [PEE29]; air: density over that of 1 atm and
+   25 C; roughness 0.6 to 0.9 (1: polished). */
+static inline double corona_peek(double radius, double air, double roughness) {
+    return 3.0e6*air*roughness*(1 + 0.030/sqrt(air*radius));
+}
+/* V between a rotor and a wire (radii, distance of axes: m) from which on the wire glows. */
+static inline double corona_onset(double rotor, double wire, double distance, double air, double roughness) {
+    const corona_field f = corona_field_make(rotor, wire, distance, 0, 1);
+    double E[2];
+    corona_field_at(&f, distance - wire, 0, E);
+    return corona_peek(wire, air, roughness)/fabs(E[0]);
+}
+
+/* ---- charges; radius: m, of the sphere of equal volume; E: V/m ---- */
+
+/* C on a conducting sphere that touches a plane electrode [FEL66], eq 11. Its epsilon_r is the air's, 1. */
+static inline double corona_induced(double radius, double E) {
+    return 2*CORONA_PI*CORONA_PI*CORONA_PI/3*CORONA_EPS0*radius*radius*E;
+}
+/* C that ions bring to an insulating sphere at most [PAU32], eq 13. */
+static inline double corona_saturation(double radius, double E, double permittivity) {
+    return 12*CORONA_PI*CORONA_EPS0*radius*radius*E*permittivity/(permittivity + 2);
+}
+/* s, half way there: of ions that bring `current` A/m2. */
+static inline double corona_time(double E, double current) { return 4*CORONA_EPS0*fabs(E)/current; }
+/* C after dt (s) of ions. [PAU32]'s Qs t/(t + tau) solves dQ/dt = Qs/tau (1 - Q/Qs)^2, the exact step of which this is,
+   from any charge; above saturation nothing more arrives. tau 0: at once, as [CRI14] has it. */
+static inline double corona_charged(double charge, double saturation, double tau, double dt) {
+    const double left = saturation > 0 || saturation < 0 ? 1 - charge/saturation : 0;
+    if (!(left > 0)) return charge;
+    return tau > 0 ? saturation*(1 - left/(1 + left*dt/tau)) : saturation;
+}
+
+/* ---- forces ---- */
+
+/* N, towards a conducting plane at this distance (m), eq 12 with d = r. */
+static inline double corona_image(double charge, double distance) {
+    return charge*charge/(16*CORONA_PI*CORONA_EPS0*distance*distance);
+}
+typedef enum corona_drag { CORONA_DRAG_NONE, CORONA_DRAG_STOKES, CORONA_DRAG_SCHILLER } corona_drag;
+/* N s/m: drag over the speed (m/s) at which the air passes. [CRI14] has Stokes's; at 0.5 mm and 1 m/s Re is 67, and
+   Schiller and Naumann's (to Re = 1000, 0.44 above) is 3.7 times that. */
+static inline double corona_drag_over_speed(corona_drag law, double radius, double speed, double density,
+                                            double viscosity) {
+    const double stokes = 6*CORONA_PI*viscosity*radius, re = 2*radius*speed*density/viscosity;
+    if (law == CORONA_DRAG_NONE) return 0;
+    if (law == CORONA_DRAG_STOKES || !(re > 0)) return stokes;
+    return stokes*(re < 1000 ? 1 + 0.15*pow(re, 0.687) : 0.44*re/24);
+}
+
+/* ---- grains ---- */
+
+typedef struct corona_kind {                 /* of each material */
+    double metal;                            /* 0 .. 1, share that conducts: what is between is [CRI14]'s weighted average */
+    double permittivity;                     /* of the rest, relative */
+    double density;                          /* kg/m3 */
+} corona_kind;
+/* Where a body that is no sphere can touch: spheres (of radius 0: corners) about the centre of mass, in the frame the
+   shape was given in; `radius` as in dem_shape_info. */
+typedef struct corona_shape { int count; const dem_real *points, *radii; dem_real radius; dem_vec3 centre; } corona_shape;
+/* Round the rotor, clockwise from its top: rad; as far as `depth` m above it. */
+typedef struct corona_window { double begin, end, depth; } corona_window;
+
+typedef struct corona {
+    corona_field field;
+    double speed;                            /* rad/s, the rotor, clockwise; carries air (swirl) */
+    corona_window ions, brush;
+    double strength;                         /* V/m at the grain, with the ions' own field; 0: that of `field` */
+    double current;                          /* A/m2 of ions; 0: they charge at once */
+    double onset;                            /* V, no ions below */
+    double contact_time, leak_time;          /* s: conductors, insulators that touch the rotor; 0: at once, never */
+    double brush_time;                       /* s: in the brush charges leak and grains are stopped; 0: no brush */
+    double scatter;                          /* charge of each grain: 1 - scatter times 0 .. 1, by its id */
+    double at_contact;                       /* share of Q E that lifts a conductor off the rotor, eq 10: 0.832 */
+    int image, pull;                         /* 1: image force; Q E on ions' charge, which [CRI14] leaves out */
+    corona_drag drag;
+    double air_density, air_viscosity;       /* kg/m3, Pa s */
+    double wind[2], swirl;                   /* m/s; share of the rotor's surface speed, falls with 1/r */
+    double bins;                             /* m, y of the plane */
+    corona_kind kinds[CORONA_KINDS];         /* by id of material */
+    corona_shape shapes[CORONA_SHAPES];      /* by id of shape; 0 is not used */
+    /* near grains: Coulomb's force and that of their images, within `range` m; period along z, 0: none */
+    double range, period;
+    double (*near)[3];                       /* N, by slot */
+    struct corona_place *order;
+    uint32_t near_count, order_count;
+} corona;
+
+/* A conductor and a plane, in air; nothing else is switched on. */
+static inline corona corona_make(void) {
+    corona c;
+    memset(&c, 0, sizeof c);
+    c.at_contact = 0.832;
+    c.image = c.pull = 1;
+    c.drag = CORONA_DRAG_SCHILLER;
+    c.air_density = 1.204;
+    c.air_viscosity = 1.81e-5;
+    c.bins = -1e30;
+    return c;
+}
+
+/* 0 <= number < 1, of a grain. */
+static inline double corona_chance(dem_body id) {
+    uint64_t z = ((uint64_t)id.slot << 32 | id.generation) + UINT64_C(0x9E3779B97F4A7C15);
+    z = (z ^ (z >> 30))*UINT64_C(0xBF58476D1CE4E5B9);
+    z = (z ^ (z >> 27))*UINT64_C(0x94D049BB133111EB);
+    return (double)((z ^ (z >> 31)) >> 11)/9007199254740992.0;
+}
+/* m, from the rotor to the nearest part of a grain; where even its bounding sphere is farther than its own radius away,
+   to that. Corners stand for faces: on a rotor of radius R a face of length l between them is l^2/(8 R) nearer. */
+static inline double corona_gap(const corona *c, const dem_body_state *body) {
+    const double x = (double)body->position.x, y = (double)body->position.y;
+    const double bound = sqrt(x*x + y*y) - c->field.rotor - (double)body->radius;
+    const corona_shape *s = body->shape.id > 0 && body->shape.id < CORONA_SHAPES ? &c->shapes[body->shape.id] : 0;
+    double least = 1e30, scale;
+    int i;
+    if (!s || !s->count || bound > (double)body->radius) return bound;
+    scale = (double)(body->radius/s->radius);
+    for (i = 0; i < s->count; i++) {
+        const dem_vec3 p = dem_vec3_make(s->points[3*i] - s->centre.x, s->points[3*i + 1] - s->centre.y,
+                                         s->points[3*i + 2] - s->centre.z);
+        const dem_vec3 q = dem_quat_rotate(body->orientation, p);
+        const double px = x + scale*(double)q.x, py = y + scale*(double)q.y;
+        const double gap = sqrt(px*px + py*py) - c->field.rotor - (s->radii ? scale*(double)s->radii[i] : 0);
+        if (gap < least) least = gap;
+    }
+    return least;
+}
+/* What forces and charges ask of a grain. */
+typedef struct corona_grain {
+    const corona_kind *kind;
+    double radius, height, angle;            /* m: of equal volume; of the centre above the rotor; rad from the top */
+    double out[2], E[2];                     /* unit, from the axis; V/m */
+    int touches;                             /* the rotor, to 0.02 radii */
+} corona_grain;
+static inline corona_grain corona_grain_of(const corona *c, const dem_body_state *body) {
+    const double x = (double)body->position.x, y = (double)body->position.y, away = sqrt(x*x + y*y);
+    corona_grain g;
+    g.kind = &c->kinds[body->material.id];
+    g.radius = cbrt(3*(double)body->mass/(4*CORONA_PI*g.kind->density));
+    g.height = away - c->field.rotor;
+    g.angle = atan2(x, y);
+    g.out[0] = x/away; g.out[1] = y/away;
+    corona_field_at(&c->field, x, y, g.E);
+    g.touches = g.height < 2*(double)body->radius && corona_gap(c, body) < 0.02*g.radius;
+    return g;
+}
+static inline int corona_inside(const corona_window *w, const corona_grain *g) {
+    double angle = g->angle;
+    while (angle < w->begin) angle += 2*CORONA_PI;
+    return angle < w->end && g->height < w->depth;
+}
+
+/* Force and charges of one grain: a dem_body_force_fn; user is the corona.
+   A conductor is lifted by 0.832 Q E while it touches and pulled by Q E in flight (eq 10 keeps the factor); ions' charge
+   is held by its image and by Q E, which [CRI14] leaves out though it is as large. */
+static inline void corona_force(const dem_body_state *body, dem_body id, double time, dem_vec3 *force, dem_vec3 *torque,
+                                void *user) {
+    const corona *c = (const corona *)user;
+    const corona_grain g = corona_grain_of(c, body);
+    const double induced = (double)body->reals[CORONA_INDUCED], ions = (double)body->reals[CORONA_IONS];
+    const double charge = (g.touches ? c->at_contact : 1)*induced + (c->pull ? ions : 0);
+    const double held = c->image ? corona_image(ions, g.height > g.radius ? g.height : g.radius) : 0;
+    const double away = g.height + c->field.rotor, air = c->swirl*c->speed*c->field.rotor*c->field.rotor/away;
+    const double wx = c->wind[0] + air*g.out[1] - (double)body->velocity.x;
+    const double wy = c->wind[1] - air*g.out[0] - (double)body->velocity.y, wz = -(double)body->velocity.z;
+    double drag = corona_drag_over_speed(c->drag, g.radius, sqrt(wx*wx + wy*wy + wz*wz), c->air_density,
+                                         c->air_viscosity);
+    double F[3];
+    int k;
+    (void)time; (void)torque;
+    F[0] = charge*g.E[0] - held*g.out[0] + drag*wx;
+    F[1] = charge*g.E[1] - held*g.out[1] + drag*wy;
+    F[2] = drag*wz;
+    if (c->brush_time > 0 && corona_inside(&c->brush, &g)) {    /* bristles stop what they reach */
+        const double stop = (double)body->mass/c->brush_time;
+        F[0] -= stop*(double)body->velocity.x;
+        F[1] -= stop*(double)body->velocity.y;
+        F[2] -= stop*(double)body->velocity.z;
+    }
+    for (k = 0; k < 3 && id.slot <= c->near_count; k++) F[k] += c->near[id.slot - 1][k];
+    *force = dem_vec3_make((dem_real)F[0], (dem_real)F[1], (dem_real)F[2]);
+}
+
+/* What a charge becomes that relaxes to `to` within `time` s. */
+static inline double corona_relaxed(double charge, double to, double time, double dt) {
+    return time > 0 ? to + (charge - to)*exp(-dt/time) : to;
+}
+/* Charges of one grain over one step: a dem_reals_fn; user is the corona. [CRI14] charges plastic when it comes before
+   the rotor and metal wherever it is in front of it; here metal is charged while it touches and keeps what it has in
+   flight, plastic is charged in the window and leaks while it touches. */
+static inline void corona_reals(dem_real *reals, const dem_real *rates, const dem_body_state *body, dem_body id,
+                                double time, dem_real dt, void *user) {
+    const corona *c = (const corona *)user;
+    const corona_grain g = corona_grain_of(c, body);
+    const double share = 1 - c->scatter*corona_chance(id), step = (double)dt;
+    const double below = c->bins - (double)body->position.y, down = -(double)body->velocity.y;
+    double induced = (double)reals[CORONA_INDUCED], ions = (double)reals[CORONA_IONS];
+    (void)rates; (void)time;
+    if (g.touches) {
+        const double normal = g.E[0]*g.out[0] + g.E[1]*g.out[1];
+        induced = corona_relaxed(induced, share*g.kind->metal*corona_induced(g.radius, normal), c->contact_time, step);
+        if (c->leak_time > 0) ions = corona_relaxed(ions, 0, c->leak_time, step);
+    }
+    if (g.kind->metal < 1 && fabs(c->field.voltage) >= c->onset && corona_inside(&c->ions, &g)) {
+        const double E = c->strength > 0 ? c->strength : sqrt(g.E[0]*g.E[0] + g.E[1]*g.E[1]);
+        const double sign = c->field.voltage < 0 ? -1 : 1;
+        const double most = sign*share*(1 - g.kind->metal)*corona_saturation(g.radius, E, g.kind->permittivity);
+        ions = corona_charged(ions, most, c->current > 0 ? corona_time(E, c->current) : 0, step);
+    }
+    if (c->brush_time > 0 && corona_inside(&c->brush, &g)) {
+        induced = corona_relaxed(induced, 0, c->brush_time, step);
+        ions = corona_relaxed(ions, 0, c->brush_time, step);
+    }
+    reals[CORONA_INDUCED] = (dem_real)induced;
+    reals[CORONA_IONS] = (dem_real)ions;
+    if (below >= 0 && down > 0 && !(reals[CORONA_LANDING] > 0 || reals[CORONA_LANDING] < 0)) {
+        const double x = (double)body->position.x - (double)body->velocity.x*(below/down < step ? below/down : step);
+        reals[CORONA_LANDING] = (dem_real)(x > 0 || x < 0 ? x : 1e-9);
+    }
+}
+
+/* ---- near grains ---- */
+
+typedef struct corona_place { double x[3], charge, away; uint32_t slot; } corona_place;
+static inline int corona_place_before(const void *a, const void *b) {
+    const corona_place *p = (const corona_place *)a, *q = (const corona_place *)b;
+    if (p->x[0] < q->x[0] || p->x[0] > q->x[0]) return p->x[0] < q->x[0] ? -1 : 1;
+    return p->slot < q->slot ? -1 : p->slot > q->slot;
+}
+/* Adds to `force` what a charge product (C2) at this distance vector (m) pushes with, N. */
+static inline void corona_coulomb(double product, const double *way, double *force) {
+    const double d2 = way[0]*way[0] + way[1]*way[1] + way[2]*way[2];
+    const double f = product/(4*CORONA_PI*CORONA_EPS0*d2*sqrt(d2));
+    int k;
+    for (k = 0; k < 3; k++) force[k] += f*way[k];
+}
+/* Two grains, and each with the other's image: beyond the rotor's surface as far as the other is before it, of opposite
+   charge. So near the rotor the force falls with 1/d^4. */
+static inline void corona_pair(const corona *c, const corona_place *p, const corona_place *q) {
+    const double R2 = c->field.rotor*c->field.rotor, zp = R2/(p->away*p->away), zq = R2/(q->away*q->away);
+    double way[3], image[3], *to_p = c->near[p->slot], *to_q = c->near[q->slot], force[3] = {0, 0, 0};
+    int k;
+    for (k = 0; k < 3; k++) way[k] = p->x[k] - q->x[k];
+    if (c->period > 0) way[2] -= c->period*floor(way[2]/c->period + 0.5);
+    corona_coulomb(p->charge*q->charge, way, force);
+    for (k = 0; k < 3; k++) { to_p[k] += force[k]; to_q[k] -= force[k]; }
+    image[2] = way[2];
+    for (k = 0; k < 2; k++) image[k] = p->x[k] - zq*q->x[k];
+    corona_coulomb(-p->charge*q->charge, image, to_p);
+    image[2] = -way[2];
+    for (k = 0; k < 2; k++) image[k] = q->x[k] - zp*p->x[k];
+    corona_coulomb(-p->charge*q->charge, image, to_q);
+}
+/* Sums Coulomb's forces between all grains nearer than `range`, as they stand: call it before each step (or so often as
+   grains move by a part of a radius), from one thread. Answers 0 when memory runs out. Free with corona_end. */
+static inline int corona_near_update(corona *c, const dem_world *world) {
+    const dem_bodies b = dem_bodies_get(world);
+    uint32_t slots = 0;
+    int i, j, n = 0;
+    if (!(c->range > 0)) return 1;
+    for (i = 0; i < b.count; i++) if (b.slots[i] + 1 > slots) slots = b.slots[i] + 1;
+    if (slots > c->near_count) {
+        double (*near_)[3] = (double (*)[3])realloc(c->near, 2*(size_t)slots*sizeof *c->near);
+        if (!near_) return 0;
+        c->near = near_;
+        c->near_count = 2*slots;
+    }
+    if ((uint32_t)b.count > c->order_count) {
+        corona_place *order = (corona_place *)realloc(c->order, 2*(size_t)b.count*sizeof *order);
+        if (!order) return 0;
+        c->order = order;
+        c->order_count = 2*(uint32_t)b.count;
+    }
+    if (c->near_count) memset(c->near, 0, c->near_count*sizeof *c->near);
+    for (i = 0; i < b.count; i++) {
+        const dem_real *x = b.positions + 4*i, *reals = b.reals + (size_t)b.real_count*(size_t)i;
+        const double charge = (double)reals[CORONA_INDUCED] + (double)reals[CORONA_IONS];
+        corona_place *p = c->order + n;
+        if (!(charge > 0 || charge < 0)) continue;
+        p->x[0] = (double)x[0]; p->x[1] = (double)x[1]; p->x[2] = (double)x[2];
+        p->charge = charge;
+        p->away = sqrt(p->x[0]*p->x[0] + p->x[1]*p->x[1]);
+        p->slot = b.slots[i];
+        n++;
+    }
+    if (n) qsort(c->order, (size_t)n, sizeof *c->order, corona_place_before);
+    for (i = 0; i < n; i++)
+        for (j = i + 1; j < n && c->order[j].x[0] - c->order[i].x[0] < c->range; j++) {
+            const corona_place *p = c->order + i, *q = c->order + j;
+            double z = p->x[2] - q->x[2];
+            const double x = p->x[0] - q->x[0], y = p->x[1] - q->x[1];
+            if (c->period > 0) z -= c->period*floor(z/c->period + 0.5);
+            if (x*x + y*y + z*z < c->range*c->range) corona_pair(c, p, q);
+        }
+    return 1;
+}
+static inline void corona_end(corona *c) {
+    free(c->near);
+    free(c->order);
+    c->near = 0;
+    c->order = 0;
+    c->near_count = c->order_count = 0;
+}
+#endif
