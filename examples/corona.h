@@ -149,6 +149,8 @@ typedef struct corona {
     double contact_time, leak_time;          /* s: conductors, insulators that touch the rotor; 0: at once, never */
     double brush_time;                       /* s: in the brush charges leak and grains are stopped; 0: no brush */
     double scatter;                          /* charge of each grain: 1 - scatter times 0 .. 1, by its id */
+    double touch;                            /* m, gap to the rotor up to which a grain touches it; impulses on a rotor of
+                                                radius R leave (v dt)^2/(2 R) */
     double at_contact;                       /* share of Q E that lifts a conductor off the rotor, eq 10: 0.832 */
     int image, pull;                         /* 1: image force; Q E on ions' charge, which [CRI14] leaves out */
     corona_drag drag;
@@ -168,6 +170,7 @@ typedef struct corona {
 static inline corona corona_make(void) {
     corona c;
     memset(&c, 0, sizeof c);
+    c.touch = 2e-6;
     c.at_contact = 0.832;
     c.image = c.pull = 1;
     c.drag = CORONA_DRAG_SCHILLER;
@@ -185,7 +188,8 @@ static inline double corona_chance(dem_body id) {
     return (double)((z ^ (z >> 31)) >> 11)/9007199254740992.0;
 }
 /* m, from the rotor to the nearest part of a grain; where even its bounding sphere is farther than its own radius away,
-   to that. Corners stand for faces: on a rotor of radius R a face of length l between them is l^2/(8 R) nearer. */
+   to that. Corners stand for faces, which between two at distance l come nearer to a rotor of radius R by l^2/(8 R):
+   that of the widest face counts as nearer. */
 static inline double corona_gap(const corona *c, const dem_body_state *body) {
     const double x = (double)body->position.x, y = (double)body->position.y;
     const double bound = sqrt(x*x + y*y) - c->field.rotor - (double)body->radius;
@@ -202,14 +206,14 @@ static inline double corona_gap(const corona *c, const dem_body_state *body) {
         const double gap = sqrt(px*px + py*py) - c->field.rotor - (s->radii ? scale*(double)s->radii[i] : 0);
         if (gap < least) least = gap;
     }
-    return least;
+    return s->radii ? least : least - (double)(body->radius*body->radius)/(2*c->field.rotor);
 }
 /* What forces and charges ask of a grain. */
 typedef struct corona_grain {
     const corona_kind *kind;
     double radius, height, angle;            /* m: of equal volume; of the centre above the rotor; rad from the top */
     double out[2], E[2];                     /* unit, from the axis; V/m */
-    int touches;                             /* the rotor, to 0.02 radii */
+    int touches;                             /* the rotor */
 } corona_grain;
 static inline corona_grain corona_grain_of(const corona *c, const dem_body_state *body) {
     const double x = (double)body->position.x, y = (double)body->position.y, away = sqrt(x*x + y*y);
@@ -220,7 +224,7 @@ static inline corona_grain corona_grain_of(const corona *c, const dem_body_state
     g.angle = atan2(x, y);
     g.out[0] = x/away; g.out[1] = y/away;
     corona_field_at(&c->field, x, y, g.E);
-    g.touches = g.height < 2*(double)body->radius && corona_gap(c, body) < 0.02*g.radius;
+    g.touches = g.height < 2*(double)body->radius && corona_gap(c, body) < c->touch;
     return g;
 }
 static inline int corona_inside(const corona_window *w, const corona_grain *g) {

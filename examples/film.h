@@ -25,7 +25,9 @@ STUDY_FN void film_fail(film *f) {
     if (f->replay) dem_replay_close(f->replay);
     f->replay = 0;
 }
-STUDY_FN film film_open(dem_world *world, int frames, double seconds, const char *title) {
+/* Grains may be coloured by `number`, too, which number_fn answers (null: none). */
+STUDY_FN film film_open_by(dem_world *world, int frames, double seconds, const char *title, const char *number,
+                           double (*number_fn)(const dem_world *world, dem_body body, void *user)) {
     dem_replay_desc desc = DEM_REPLAY_DESC;
     film f;
     memset(&f, 0, sizeof f);
@@ -34,9 +36,14 @@ STUDY_FN film film_open(dem_world *world, int frames, double seconds, const char
     f.start = dem_world_time(world);
     f.interval = seconds/frames;
     desc.title = title;
+    desc.number = number;
+    desc.number_fn = number_fn;
     f.replay = dem_replay_open(world, study_path("replay.html"), &desc);
     if (!f.replay) film_fail(&f);
     return f;
+}
+STUDY_FN film film_open(dem_world *world, int frames, double seconds, const char *title) {
+    return film_open_by(world, frames, seconds, title, 0, 0);
 }
 STUDY_FN int film_due(const film *f) {
     return f->replay && dem_world_time(f->world) >= f->start + (f->taken - 1e-6)*f->interval;

@@ -292,6 +292,10 @@ static inline void separator_corona_set(separator *s) {
     c->ions.depth = c->brush.depth = d->layer;
     c->bins = d->bins;
     c->period = d->width;
+    if (d->response == DEM_RESPONSE_IMPULSES) {      /* what they leave open at twice the rotor's speed */
+        const double along = 2*c->speed*d->rotor*d->dt, gap = along*along/(2*d->rotor);
+        if (gap > c->touch) c->touch = gap;
+    }
 }
 static inline dem_result separator_refused(separator *s, dem_result result) {
     if (result != DEM_OK) separator_say(s, dem_world_error(s->world));
@@ -429,6 +433,14 @@ static inline dem_result separator_step(separator *s) {
     s->steps++;
     s->unbalanced += !separator_balanced(s, present);
     return DEM_OK;
+}
+/* Grains that have not landed. */
+static inline uint64_t separator_present(const separator *s) {
+    dem_feed_state fed;
+    uint64_t binned = 0;
+    int k;
+    for (k = 0; k < s->class_count; k++) binned += s->binned[k];
+    return dem_feed_get(s->world, s->feed, &fed) == DEM_OK ? fed.total - binned : 0;
 }
 /* After dem_checkpoint_read: what had landed then was counted by another program. */
 static inline dem_result separator_restored(separator *s) {
