@@ -537,7 +537,7 @@ static void set_choice(struct separator_options *o, double v) {
     }
 }
 static const sweep sweeps[] = {
-    {"feed", "Feed rate", "feed [grains/s]", 6, {1000, 3000, 10000, 30000, 60000, 100000}, {0}, set_rate},
+    {"feed", "Feed rate", "feed [grains/s]", 5, {1000, 3000, 10000, 20000, 40000}, {0}, set_rate},
     {"speed", "Rotor speed", "rotor [1/min]", 6, {25, 35, 45, 55, 65, 80}, {0}, set_rpm},
     {"voltage", "Voltage", "electrode [kV]", 6, {0, 10, 20, 25, 30, 35}, {0}, set_voltage},
     {"shape", "Shape", "shape", 4, {0, 1, 2, 3}, {"sphere", "flake", "shaving", "fragment"}, set_form},
@@ -739,7 +739,7 @@ static uint64_t bits_run(separator *s, const struct separator_options *o, int th
         if (result == DEM_OK) result = separator_restored(s);
         if (result != DEM_OK) study_fail("%s", dem_world_error(s->world));
     }
-    for (i = from; i < steps && result == DEM_OK; i++) {
+    for (i = from; i < steps && result == DEM_OK; i++) {      /* of a millisecond */
         result = separator_step(s);
         if (result != DEM_OK) study_fail("%s", s->error);
         if (i + 1 == steps/2 && !from && dem_checkpoint_write(s->world, path) != DEM_OK)
@@ -755,7 +755,7 @@ static void check_run(const struct separator_options *base) {
     static separator s;
     struct separator_options o = *base;
     uint64_t first = 0, hash;
-    const int steps = 1600;
+    const int steps = 500;
     int i;
     char name[32], text[32];
     o.rate = 40000;

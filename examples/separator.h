@@ -46,10 +46,10 @@ typedef struct separator_desc {
     dem_cone cone;
     dem_solver solver;
     int sweeps, threads;
-    double tolerance, range, dt;             /* as in dem_world_desc */
+    double tolerance, range, skin, dt;       /* as in dem_world_desc */
     double young;                            /* Pa, springs alone */
     dem_normal_law normal_law;
-    double near_interval;                    /* s, springs: from one sum of Coulomb's forces to the next; impulses: a step */
+    double near_interval;                    /* s, from one sum of Coulomb's forces to the next */
     uint64_t seed;
     int ledger;
 } separator_desc;
@@ -201,7 +201,7 @@ static inline separator_desc separator_desc_make(void) {
     d.response = DEM_RESPONSE_IMPULSES;
     d.range = 1e-3; d.dt = 2.5e-4;
     d.young = 5e6;
-    d.near_interval = 5e-4;
+    d.near_interval = 1e-3;
     d.seed = 1;
     d.threads = 1;
     return d;
@@ -321,6 +321,7 @@ static inline dem_result separator_create(separator *s, const separator_desc *de
     d.threads = desc->threads;
     d.ledger = desc->ledger;
     d.dt = (dem_real)desc->dt;
+    d.skin = (dem_real)desc->skin;
     if (desc->response == DEM_RESPONSE_IMPULSES) {
         d.cone = desc->cone;
         d.solver = desc->solver;
@@ -408,20 +409,11 @@ static inline int separator_balanced(const separator *s, const uint64_t *present
     }
     return ok && sum == fed.total;
 }
-/* One step, with impulses; with springs so many that grains move by a part of a radius. Counts what has landed and looks
-   whether all that was fed is still there or in the bins. */
-static inline dem_result separator_step(separator *s) {
-    const int impulses = s->desc.response == DEM_RESPONSE_IMPULSES;
-    const double dt = (double)dem_counters_get(s->world).dt;
-    const int steps = impulses || !(dt > 0) ? 1 : (int)(s->desc.near_interval/dt) + 1;
+/* Some steps, at which all that was fed is looked for: it has landed, or is here. */
+static inline dem_result separator_advance(separator *s, int steps) {
     uint64_t present[SEPARATOR_CLASSES];
     dem_counters counters;
-    dem_result result;
-    if (!corona_near_update(&s->physics, s->world)) {
-        separator_say(s, "separator_step: no memory for the forces between near grains");
-        return DEM_ERROR_MEMORY;
-    }
-    result = separator_refused(s, dem_world_step(s->world, steps));
+    const dem_result result = separator_refused(s, dem_world_step(s->world, steps));
     if (result != DEM_OK) return result;
     if (separator_tally(s, present) != DEM_OK) {
         separator_say(s, "separator_step: no memory to count what has landed");
@@ -433,6 +425,22 @@ static inline dem_result separator_step(separator *s) {
     s->steps++;
     s->unbalanced += !separator_balanced(s, present);
     return DEM_OK;
+}
+/* As far as Coulomb's forces between near grains may stay as they are, about near_interval: with impulses each step by
+   itself, springs all at once. */
+static inline dem_result separator_step(separator *s) {
+    const double dt = (double)dem_counters_get(s->world).dt;
+    const int steps = dt > 0 ? (int)(s->desc.near_interval/dt + 0.5) : 1;
+    const int springs = s->desc.response == DEM_RESPONSE_SPRINGS && steps > 1;
+    dem_result result = DEM_OK;
+    int i;
+    if (!corona_near_update(&s->physics, s->world)) {
+        separator_say(s, "separator_step: no memory for the forces between near grains");
+        return DEM_ERROR_MEMORY;
+    }
+    if (springs) return separator_advance(s, steps);
+    for (i = 0; result == DEM_OK && (i < steps || !i); i++) result = separator_advance(s, 1);
+    return result;
 }
 /* Grains that have not landed. */
 static inline uint64_t separator_present(const separator *s) {

@@ -111,6 +111,7 @@ static separator_desc small_machine(int threads) {
     return d;
 }
 static separator small, second;
+/* So many milliseconds of it. */
 static uint64_t small_run(int threads, int steps) {
     const separator_desc d = small_machine(threads);
     uint64_t hash = 0;
@@ -375,7 +376,7 @@ int main(int argc, char **argv) {
     }
 
     TEST("a separator has every grain fed in its bins or in the machine at every step, by class and material") {
-        small_run(1, 1800);
+        small_run(1, 900);
         CHECK(small.landed_count > 100 && small.class_count == 5);
         CHECK_EQ(small.unbalanced, 0);
         separator_end(&small);
@@ -383,19 +384,19 @@ int main(int argc, char **argv) {
 
     TEST("a separator has the same bits for 1, 2, 3, 4 and 8 threads, and after a restart") {
         static const int threads[4] = {2, 3, 4, 8};
-        const uint64_t hash = small_run(1, 700);
+        const uint64_t hash = small_run(1, 350);
         const separator_desc d = small_machine(1);
         int i, ok;
         separator_end(&small);
         for (i = 0; i < 4; i++) {
-            CHECK(small_run(threads[i], 700) == hash);
+            CHECK(small_run(threads[i], 350) == hash);
             separator_end(&small);
         }
-        small_run(1, 400);
+        small_run(1, 200);
         CHECK_EQ(dem_checkpoint_write(small.world, "build/tmp/corona.dem"), DEM_OK);
         ok = separator_create(&second, &d) == DEM_OK && dem_checkpoint_read(second.world, "build/tmp/corona.dem") == DEM_OK &&
             separator_restored(&second) == DEM_OK;
-        for (i = 0; i < 300 && ok; i++) ok = separator_step(&second) == DEM_OK;
+        for (i = 0; i < 150 && ok; i++) ok = separator_step(&second) == DEM_OK;
         CHECK(ok && dem_world_hash(second.world) == hash);
         CHECK_EQ(second.unbalanced, 0);
         separator_end(&second);
