@@ -180,11 +180,6 @@ static int sizes_set(separator_desc *d, const struct separator_options *o) {
     d->sizes.scale = (dem_real)(o->size_mean/2000);
     d->sizes.max = (dem_real)(o->size_max/2000);
     d->sizes.modulus = weibull ? o->size_modulus : 0;
-    if (o->width < 5e-3*o->size_max) {
-        study_fail("--width is %g m, must be at least 5 times --size-max %g mm, or a flake would touch its own image; "
-                   "take %g m", o->width, o->size_max, 5e-3*o->size_max);
-        return 0;
-    }
     return 1;
 }
 static void charging_set(separator_desc *d, const struct separator_options *o) {
@@ -212,7 +207,7 @@ static void setting_set(separator_desc *d, const struct separator_options *o) {
     d->dt = o->dt > 0 ? o->dt : springs ? 0 : seeds ? 1e-3 : 2.5e-4;
     d->sweeps = o->sweeps ? o->sweeps : seeds ? 100 : 0;
     d->tolerance = o->tolerance > 0 ? o->tolerance : seeds ? 1e-30 : 0;      /* all of the 100 */
-    d->range = o->range > 0 ? o->range/1000 : d->dt > 5e-4 ? 2e-3 : 1e-3;
+    d->range = o->range > 0 ? o->range/1000 : 2e-3;
     d->young = o->young;
     d->normal_law = is(o->law, "linear") ? DEM_NORMAL_LINEAR : DEM_NORMAL_HERTZ;
 }
@@ -466,6 +461,17 @@ static void steps_draw(const double *bins, double mass, double *x, double *y) {
         y[2*i] = y[2*i + 1] = mass > 0 ? 100*bins[i]/mass : 0;
     }
 }
+/* The figure's range: where there is anything. */
+static void range_widen(study_figure *f, const outcome *r, int g) {
+    int i;
+    for (i = 0; i < BINS && r->mass[g] > 0; i++) {
+        const double x = bin_first + i*bin_wide;
+        if (r->bins[g][i] < 1e-3*r->mass[g]) continue;
+        if (f->x0 >= f->x1) { f->x0 = x - bin_wide; f->x1 = x + 2*bin_wide; }
+        if (x - bin_wide < f->x0) f->x0 = x - bin_wide;
+        if (x + 2*bin_wide > f->x1) f->x1 = x + 2*bin_wide;
+    }
+}
 static void distribution_draw(const outcome *r) {
     double x[GROUPS][2*BINS], y[GROUPS][2*BINS];
     study_figure f;
@@ -476,6 +482,7 @@ static void distribution_draw(const outcome *r) {
     for (g = 0; g < GROUPS; g++) {
         if (!*r->name[g] || !(r->mass[g] > 0)) continue;
         steps_draw(r->bins[g], r->mass[g], x[g], y[g]);
+        range_widen(&f, r, g);
         study_curve(&f, r->name[g], g < 3 ? STUDY_LINE : STUDY_DASHED, 2*BINS, x[g], y[g]);
     }
     study_figure_write(&f, "distribution.svg");
@@ -673,6 +680,7 @@ static void sweep_curves_draw(const sweep *w, const struct separator_options *o,
             const outcome *r = &kept[i].mean;
             if (g < 2) {
                 steps_draw(r->bins[g], r->mass[g], x[g][i], y[g][i]);
+                range_widen(&f[g], r, g);
                 study_curve(&f[g], kept[i].name, STUDY_LINE, 2*BINS, x[g][i], y[g][i]);
                 continue;
             }
