@@ -26,9 +26,9 @@ user=tests/two_files.c
 try "the browser lesson as a program" "cc -std=c99 -Wall -Wextra -Werror -I. -DDEM_IMPLEMENTATION examples/web/lesson.c -o \$bin -lm && \$bin pile 300 && \$bin hopper 300 && \$bin drum 300"
 companions=$dir/companions.c
 printf '#include "dem.h"\n' > $companions
-printf '#include "examples/%s.h"\n' drum lesson moldyn sorting tumbler >> $companions
+printf '#include "examples/%s.h"\n' corona drum lesson moldyn separator sorting tumbler >> $companions
 printf '#include "%s"\n' examples/laws/*.h >> $companions
-try "companions use public names only" "! grep -n 'demi_\|DEMI_' examples/drum.h examples/moldyn.h examples/sorting.h examples/tumbler.h examples/laws/*.h"
+try "companions use public names only" "! grep -n 'demi_\|DEMI_' examples/corona.h examples/drum.h examples/moldyn.h examples/separator.h examples/sorting.h examples/tumbler.h examples/laws/*.h"
 one_file="-DDEM_IMPLEMENTATION $user"
 strict="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Werror"
 float="-DDEM_REAL=float"
