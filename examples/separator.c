@@ -25,6 +25,7 @@
      fed, binned, present, missing    grains; missing = fed - binned - present is 0
      unbalanced_steps                 steps at which a class or material was not in balance: 0
      sweeps_mean, residual_max        per step; m/s (impulses)
+     unsolved_steps                   steps that did not reach their tolerance
      steps, compute, grain_steps      s of wall time; grains times steps per second of it */
 #include "../dem.h"
 #include "corona.h"
@@ -251,7 +252,7 @@ typedef struct outcome {
     char name[GROUPS][32];             /* of groups that there are: the stuffs, then parts of stuffs in two forms */
     double count[GROUPS], mass[GROUPS], mean[GROUPS], sd[GROUPS], brushed[GROUPS], bins[GROUPS][BINS];
     double purity[SPLITTERS], recovery[SPLITTERS], best, quality;    /* shares; m */
-    double sweeps, residual, steps, compute, grain_steps, fed, binned, present, unbalanced;
+    double sweeps, residual, unsolved, steps, compute, grain_steps, fed, binned, present, unbalanced;
 } outcome;
 
 static const char *const stuff_names[3] = {"metal", "plastic", "middling"};
@@ -328,6 +329,7 @@ static void outcome_take(const separator *s, const struct separator_options *o, 
     r->unbalanced = (double)s->unbalanced;
     r->sweeps = s->steps ? s->sweeps/(double)s->steps : 0;
     r->residual = s->residual_max;
+    r->unsolved = (double)c.unsolved;
     r->steps = (double)c.steps;
 }
 static void outcome_tell(const outcome *r, int splitters) {
@@ -352,6 +354,7 @@ static void outcome_tell(const outcome *r, int splitters) {
     study_result("best_quality", 100*r->quality, "%");
     study_result("sweeps_mean", r->sweeps, "");
     study_result("residual_max", r->residual, "m/s");
+    study_result("unsolved_steps", r->unsolved, "");
     study_result("fed", r->fed, "");
     study_result("binned", r->binned, "");
     study_result("present", r->present, "");
@@ -535,7 +538,7 @@ static void set_choice(struct separator_options *o, double v) {
     switch ((int)v) {
     case 1: o->rolling = 1; break;
     case 2: o->strength = 0; break;
-    case 3: o->strength = 1e6; break;
+    case 3: o->strength = 1e6; o->current = 0; break;
     case 4: o->pull = 0; break;
     case 5: o->coulomb = 0; break;
     case 6: o->drag = "stokes"; break;
@@ -547,11 +550,11 @@ static const sweep sweeps[] = {
     {"feed", "Feed rate", "feed [grains/s]", 4, {1000, 3000, 10000, 20000}, {0}, set_rate},
     {"speed", "Rotor speed", "rotor [1/min]", 6, {25, 35, 45, 55, 65, 80}, {0}, set_rpm},
     {"voltage", "Voltage", "electrode [kV]", 6, {0, 10, 20, 25, 30, 35}, {0}, set_voltage},
-    {"shape", "Shape", "shape", 4, {0, 1, 2, 3}, {"sphere", "flake", "shaving", "fragment"}, set_form},
-    {"settings", "Contacts", "setting", 3, {0, 1, 2}, {"ours", "seeds", "springs"}, set_setting},
+    {"shape", "Shape", "0 sphere, 1 flake, 2 shaving, 3 fragment", 4, {0, 1, 2, 3}, {"sphere", "flake", "shaving", "fragment"}, set_form},
+    {"settings", "Contacts", "0 ours, 1 seeds, 2 springs", 3, {0, 1, 2}, {"ours", "seeds", "springs"}, set_setting},
     {"steps", "Step", "step [ms]", 5, {0.05, 0.1, 0.25, 0.5, 1}, {0}, set_dt},
-    {"choices", "Choices", "choice", 8, {0, 1, 2, 3, 4, 5, 6, 7},
-        {"chosen", "rolling1", "strength0", "strength1e6", "no_pull", "no_coulomb", "stokes", "swirl1"}, set_choice},
+    {"choices", "Choices", "choice, as in the table", 8, {0, 1, 2, 3, 4, 5, 6, 7},
+        {"chosen", "rolling1", "strength0", "pinned", "no_pull", "no_coulomb", "stokes", "swirl1"}, set_choice},
 };
 typedef struct spread { double mean, error; } spread;
 static spread spread_of(const double *value, int count) {
