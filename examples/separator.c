@@ -33,8 +33,8 @@
 #include "study.h"
 #include "film.h"
 
-enum { BINS = 100, SPLITTERS = 60, GROUPS = 3 + SEPARATOR_PARTS, VALUES = 8, REPEATS = 32 };
-static const double bin_first = -0.4, bin_wide = 0.01;      /* m */
+enum { BINS = 200, SPLITTERS = 60, GROUPS = 3 + SEPARATOR_PARTS, VALUES = 8, REPEATS = 32 };
+static const double bin_first = -0.4, bin_wide = 0.005;      /* m */
 
 static struct separator_options {
     double voltage, rpm, rotor, electrode, distance, angle, width, feed_width, rate, seconds, drain;
@@ -481,7 +481,7 @@ static void distribution_draw(const outcome *r) {
     int g;
     memset(&f, 0, sizeof f);
     f.title = "Where grains land";
-    f.x_label = "x at the bins [m]"; f.y_label = "share of its mass [% per cm]";
+    f.x_label = "x at the bins [m]"; f.y_label = "share of its mass [% per 5 mm]";
     for (g = 0; g < GROUPS; g++) {
         if (!*r->name[g] || !(r->mass[g] > 0)) continue;
         steps_draw(r->bins[g], r->mass[g], x[g], y[g]);
@@ -678,7 +678,7 @@ static void sweep_curves_draw(const sweep *w, const struct separator_options *o,
     for (k = 0; k < SPLITTERS; k++) place[k] = splitter_place(o, k);
     for (g = 0; g < 4; g++) {
         f[g].x_label = g < 2 ? "x at the bins [m]" : "splitter [m]";
-        f[g].y_label = g < 2 ? "share of its mass [% per cm]" : "%";
+        f[g].y_label = g < 2 ? "share of its mass [% per 5 mm]" : "%";
         for (i = 0; i < count; i++) {
             const outcome *r = &kept[i].mean;
             if (g < 2) {
