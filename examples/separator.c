@@ -8,7 +8,7 @@
    both use dem.h's public functions only.
 
    --setting ours     Coulomb's cones, warm starts, a tolerance, steps of .25 ms (default)
-             seeds    the papers': convex cones, steps of 1 ms, 100 sweeps; they start them cold, dem.h does not
+             seeds    the papers': convex cones, steps of 1 ms, 100 sweeps that start cold
              springs  softened Hertz contacts, steps chosen from the contact time
    What the papers do not print is our choice and an option; docs/separator.md says what was tried.
 
@@ -44,7 +44,7 @@ static struct separator_options {
     double brush_middle, brush_half, scatter, coulomb, wind_x, wind_y, swirl, bins, splitter_from;
     double dt, tolerance, range, young, mixed;
     const char *sizes, *metal_form, *plastic_form, *drag, *setting, *cone, *law, *study, *out;
-    int sweeps, threads, seed, repeats, image, pull, quick, replay, check;
+    int sweeps, cold, threads, seed, repeats, image, pull, quick, replay, check;
 } options = {
     30, 44.8, 0.160, 0.019, 0.267, 30, 0.03, 0.182, 5000, 6, 2,
     0.72, 20, 1, 2, 4, 1.5, 0.5, 0, 0.5,
@@ -53,7 +53,7 @@ static struct separator_options {
     270, 19.3, 0.3, 10, 0, 0, 0, -0.5, 0.2,
     0, 0, 0, 5e6, 0,
     "zhang", "sphere", "sphere", "schiller", "ours", "", "hertz", "run", "build/out/separator",
-    0, 1, 1, 1, 1, 1, 0, 0, 0};
+    0, -1, 1, 1, 1, 1, 1, 0, 0, 0};
 
 static const study_option table[] = {
     {"voltage", STUDY_REAL, &options.voltage, -100, 100, "kV", "of the electrode; its sign is that of the ions"},
@@ -113,6 +113,7 @@ static const study_option table[] = {
     {"setting", STUDY_CHOICE, &options.setting, 0, 0, "ours|seeds|springs", "how contacts are solved"},
     {"dt", STUDY_REAL, &options.dt, 0, 1e-2, "s", "step; 0: of the setting"},
     {"sweeps", STUDY_INT, &options.sweeps, 0, 100000, "", "at most, in a step; 0: of the setting"},
+    {"cold", STUDY_INT, &options.cold, -1, 1, "", "1: sweeps begin with no impulses; -1: of the setting"},
     {"tolerance", STUDY_REAL, &options.tolerance, 0, 1, "m/s", "of impulses; 0: of the setting"},
     {"range", STUDY_REAL, &options.range, 0, 20, "mm", "gap from which impulses look; 0: of the setting"},
     {"cone", STUDY_CHOICE, &options.cone, 0, 0, "|coulomb|convex", "empty: of the setting"},
@@ -208,6 +209,7 @@ static void setting_set(separator_desc *d, const struct separator_options *o) {
     d->dt = o->dt > 0 ? o->dt : springs ? 0 : seeds ? 1e-3 : 2.5e-4;
     d->sweeps = o->sweeps ? o->sweeps : seeds ? 100 : 0;
     d->tolerance = o->tolerance > 0 ? o->tolerance : seeds ? 1e-30 : 0;      /* all of the 100 */
+    d->cold = o->cold < 0 ? seeds : o->cold;
     d->range = o->range > 0 ? o->range/1000 : 2e-3;
     d->young = o->young;
     d->normal_law = is(o->law, "linear") ? DEM_NORMAL_LINEAR : DEM_NORMAL_HERTZ;
