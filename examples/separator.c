@@ -25,7 +25,7 @@
      fed, binned, present, missing    grains; missing = fed - binned - present is 0
      unbalanced_steps                 steps at which a class or material was not in balance: 0
      sweeps_mean, residual_max        per step; m/s (impulses)
-     unsolved_steps                   steps that did not reach their tolerance
+     unsolved_steps, overlap_max      steps that did not reach their tolerance; over the radius
      steps, compute, grain_steps      s of wall time; grains times steps per second of it */
 #include "../dem.h"
 #include "corona.h"
@@ -254,7 +254,7 @@ typedef struct outcome {
     char name[GROUPS][32];             /* of groups that there are: the stuffs, then parts of stuffs in two forms */
     double count[GROUPS], mass[GROUPS], mean[GROUPS], sd[GROUPS], brushed[GROUPS], bins[GROUPS][BINS];
     double purity[SPLITTERS], recovery[SPLITTERS], best, quality;    /* shares; m */
-    double sweeps, residual, unsolved, steps, compute, grain_steps, fed, binned, present, unbalanced;
+    double sweeps, residual, unsolved, overlap, steps, compute, grain_steps, fed, binned, present, unbalanced;
 } outcome;
 
 static const char *const stuff_names[3] = {"metal", "plastic", "middling"};
@@ -332,6 +332,7 @@ static void outcome_take(const separator *s, const struct separator_options *o, 
     r->sweeps = s->steps ? s->sweeps/(double)s->steps : 0;
     r->residual = s->residual_max;
     r->unsolved = (double)c.unsolved;
+    r->overlap = (double)c.overlap_max;
     r->steps = (double)c.steps;
 }
 static void outcome_tell(const outcome *r, int splitters) {
@@ -357,6 +358,7 @@ static void outcome_tell(const outcome *r, int splitters) {
     study_result("sweeps_mean", r->sweeps, "");
     study_result("residual_max", r->residual, "m/s");
     study_result("unsolved_steps", r->unsolved, "");
+    study_result("overlap_max", r->overlap, "");
     study_result("fed", r->fed, "");
     study_result("binned", r->binned, "");
     study_result("present", r->present, "");
@@ -383,14 +385,16 @@ static void picture_draw(const separator *s, const char *file) {
     const dem_bodies b = dem_bodies_get(s->world);
     double *v[4], rim[2][2][RIM], plate[2][3];
     study_figure f;
-    int i, k;
+    int i, k, n = 0;
     memset(&f, 0, sizeof f);
     for (k = 0; k < 4; k++) v[k] = (double *)study_alloc((size_t)b.count + 1, sizeof(double));
     for (i = 0; i < b.count; i++) {
-        v[0][i] = (double)b.positions[4*i];
-        v[1][i] = (double)b.positions[4*i + 1];
-        v[2][i] = (double)b.positions[4*i + 3];
-        v[3][i] = 1e12*(double)(b.reals[b.real_count*i] + b.reals[b.real_count*i + 1]);
+        const dem_real *x = b.positions + 4*i, *reals = b.reals + b.real_count*i;
+        if ((double)x[1] < s->desc.bins) continue;
+        v[0][n] = (double)x[0];
+        v[1][n] = (double)x[1];
+        v[2][n] = 2.5*(double)x[3];                /* or nobody would see them */
+        v[3][n++] = 1e12*((double)reals[CORONA_INDUCED] + (double)reals[CORONA_IONS]);
     }
     for (i = 0; i < RIM; i++) {
         const double a = 2*CORONA_PI*i/(RIM - 1);
@@ -407,13 +411,13 @@ static void picture_draw(const separator *s, const char *file) {
     study_curve(&f, 0, STUDY_OUTLINE, RIM, rim[0][0], rim[0][1]);
     study_curve(&f, 0, STUDY_OUTLINE, RIM, rim[1][0], rim[1][1]);
     study_curve(&f, 0, STUDY_OUTLINE, 3, plate[0], plate[1]);
-    f.title = "Grains in the separator";
+    f.title = "Grains in the separator, drawn 2.5 times as large";
     f.x_label = "x [m]"; f.y_label = "y [m]"; f.bar_label = "charge [pC]";
     f.equal = 1;
     f.size = 620;
     f.x0 = -0.3; f.x1 = 0.45; f.y0 = s->desc.bins - 0.02; f.y1 = 0.26;
     f.lo = -40; f.hi = 40;
-    f.disc_count = b.count;
+    f.disc_count = n;
     f.disc_x = v[0]; f.disc_y = v[1]; f.disc_r = v[2]; f.disc_value = v[3];
     study_figure_write(&f, file);
     for (k = 0; k < 4; k++) free(v[k]);
