@@ -1,14 +1,14 @@
 /* corona.h - grains in a corona electrostatic separator: field, charges, forces. MIT licence. Include it after dem.h.
 
-   A rotor at 0 V turns about z through the origin; an electrode at `voltage` lies parallel to it; ions from a corona rain
-   on part of the rotor. Grains carry two charges, numbers of their own (desc.body_reals = CORONA_REALS):
+   A rotor at 0 V turns about z through the origin; an electrode at `voltage` lies parallel to it; ions from a corona
+   rain on part of the rotor. Grains carry two charges, numbers of their own (desc.body_reals = CORONA_REALS):
 
        induced   C, of what conducts: comes and goes through the rotor, while they touch
        corona    C, of what does not: ions that have stuck to it; leaks into rotor and brush
        landing   m, x where the grain went down through the plane y = bins; 0: not yet
 
-   and are pulled and dragged by a body force. Both are functions of the grain alone, so that threads and restarts do not
-   matter; the third part, what near grains do to each other, is summed by corona_near_update between two steps.
+   and are pulled and dragged by a body force. Both are functions of the grain alone, so that threads and restarts do
+   not matter; the third part, what near grains do to each other, is summed by corona_near_update between two steps.
 
        corona c = corona_make();
        c.field = corona_field_make(0.160, 0.019, 0.267, CORONA_PI/6, 30e3);
@@ -20,8 +20,8 @@
    simulation of granular flows in electrostatic separation processes (2014), whose equations are cited; [FEL66] Felici,
    Rev. Gen. Elec. 75 (1966) 1145; [PAU32] Pauthenier & Moreau-Hanot, J. Phys. Radium 3 (1932) 590; [PEE29] Peek,
    Dielectric Phenomena in High Voltage Engineering (1929); [SN33] Schiller & Naumann, Z. VDI 77 (1933) 318.
-   Where we differ from [CRI14]: see each function. Limits: the field is that of two cylinders without end and without the
-   grains' own charge and that of the ions between them (`strength` and the window stand for the latter). */
+   Where we differ from [CRI14]: see each function. Limits: the field is that of two cylinders without end and
+   without the grains' own charge and that of the ions between them (`strength` and the window stand for the latter). */
 #ifndef CORONA_H
 #define CORONA_H
 #include <math.h>
@@ -129,13 +129,19 @@ static inline double corona_drag_over_speed(corona_drag law, double radius, doub
 /* ---- grains ---- */
 
 typedef struct corona_kind {                 /* of each material */
-    double metal;                            /* 0 .. 1, share that conducts: what is between is [CRI14]'s weighted average */
+    double metal;                            /* 0 .. 1, share that conducts: what is between is [CRI14]'s weighted
+                                                average */
     double permittivity;                     /* of the rest, relative */
     double density;                          /* kg/m3 */
 } corona_kind;
 /* Where a body that is no sphere can touch: spheres (of radius 0: corners) about the centre of mass, in the frame the
    shape was given in; `radius` as in dem_shape_info. */
-typedef struct corona_shape { int count; const dem_real *points, *radii; dem_real radius; dem_vec3 centre; } corona_shape;
+typedef struct corona_shape {
+    int count;
+    const dem_real *points, *radii;
+    dem_real radius;
+    dem_vec3 centre;
+} corona_shape;
 /* Round the rotor, clockwise from its top: rad; as far as `depth` m above it. */
 typedef struct corona_window { double begin, end, depth; } corona_window;
 
@@ -149,8 +155,8 @@ typedef struct corona {
     double contact_time, leak_time;          /* s: conductors, insulators that touch the rotor; 0: at once, never */
     double brush_time;                       /* s: in the brush charges leak and grains are stopped; 0: no brush */
     double scatter;                          /* charge of each grain: 1 - scatter times 0 .. 1, by its id */
-    double touch;                            /* m, gap to the rotor up to which a grain touches it; impulses on a rotor of
-                                                radius R leave (v dt)^2/(2 R) */
+    double touch;                            /* m, gap to the rotor up to which a grain touches it; impulses leave
+                                                (v dt)^2/(2 R) on a rotor of radius R */
     double at_contact;                       /* share of Q E that lifts a conductor off the rotor, eq 10: 0.832 */
     int image, pull;                         /* 1: image force; Q E on ions' charge, which [CRI14] leaves out */
     corona_drag drag;
@@ -234,8 +240,8 @@ static inline int corona_inside(const corona_window *w, const corona_grain *g) {
 }
 
 /* Force and charges of one grain: a dem_body_force_fn; user is the corona.
-   A conductor is lifted by 0.832 Q E while it touches and pulled by Q E in flight (eq 10 keeps the factor); ions' charge
-   is held by its image and by Q E, which [CRI14] leaves out though it is as large. */
+   A conductor is lifted by 0.832 Q E while it touches and pulled by Q E in flight (eq 10 keeps the factor); ions'
+   charge is held by its image and by Q E, which [CRI14] leaves out though it is as large. */
 static inline void corona_force(const dem_body_state *body, dem_body id, double time, dem_vec3 *force, dem_vec3 *torque,
                                 void *user) {
     const corona *c = (const corona *)user;

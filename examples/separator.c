@@ -1,11 +1,11 @@
 /* separator.c - a corona electrostatic separator: metal and plastic fall into different bins.
 
-   After [CRI14] and its sibling on GPUs (Critelli, Tasora, Degiorgi, Colledani, Mazhar 2014): grains of a few millimetres,
-   shredded from circuit boards, go down a plate onto a rotor at 0 V that turns under an electrode at 30 kV. Ions from a
-   corona charge what does not conduct, which sticks to the rotor and leaves late or at a brush; what conducts takes charge
-   from the rotor by touching it and is thrown off early. Where who lands is the result: mass over the bins, purity and
-   recovery of metal against the place of a splitter. The physics is examples/corona.h, the machine examples/separator.h;
-   both use dem.h's public functions only.
+   After [CRI14] and its sibling on GPUs (Critelli, Tasora, Degiorgi, Colledani, Mazhar 2014): grains of a few
+   millimetres, shredded from circuit boards, go down a plate onto a rotor at 0 V that turns under an electrode at 30
+   kV. Ions from a corona charge what does not conduct, which sticks to the rotor and leaves late or at a brush; what
+   conducts takes charge from the rotor by touching it and is thrown off early. Where who lands is the result: mass
+   over the bins, purity and recovery of metal against the place of a splitter. The physics is examples/corona.h, the
+   machine examples/separator.h; both use dem.h's public functions only.
 
    --setting ours     Coulomb's cones, warm starts, a tolerance, steps of .25 ms (default)
              seeds    the papers': convex cones, steps of 1 ms, 100 sweeps that start cold
@@ -15,7 +15,7 @@
    build:  cc -O2 -std=c99 examples/separator.c dem.c -o build/separator -lm
    run:    build/separator, build/separator --study feed --repeats 4, build/separator --help
 
-   Results, of one run (a sweep prints one such block per value and seed, prefixed, and means with their standard errors):
+   Results, of one run (a sweep prints one such block per value and seed, prefixed, and means with standard errors):
      metal.x_mean, metal.x_sd         m from the rotor's axis in the plane of the bins, by mass; also plastic, middling,
                                       and where one stuff is fed in two forms each of them: metal.sphere.x_mean
      metal.landed, metal.brushed      grains; share of mass that the brush took (x < -R/2)
@@ -42,8 +42,10 @@ static struct separator_options {
     double density_metal, density_plastic, permittivity, friction, drum_friction, plate_friction, rolling, restitution;
     double strength, current, wire, wire_distance, ions_begin, ions_end, layer, contact_time, leak_time, brush_time;
     double brush_middle, brush_half, scatter, coulomb, wind_x, wind_y, swirl, bins, splitter_from;
-    double dt, tolerance, range, young, mixed;
-    const char *sizes, *metal_form, *plastic_form, *drag, *setting, *cone, *law, *study, *out;
+    double dt, tolerance, range, young, mixed, air_density, air_viscosity, feeder_length, feeder_edge, near_interval,
+        touch;
+    double roughness, at_contact;
+    const char *sizes, *metal_form, *plastic_form, *drag, *setting, *cone, *solver, *law, *study, *out;
     int sweeps, cold, threads, seed, repeats, image, pull, quick, replay, check;
 } options = {
     30, 44.8, 0.160, 0.019, 0.267, 30, 0.03, 0.182, 5000, 6, 2,
@@ -51,8 +53,9 @@ static struct separator_options {
     8400, 946, 2.5, 0.2, 0.5, 0.3, 0, 0.1,
     -1, 1e-4, 0.1, 0.21, -10, 50, 10, 1e-4, 10, 5e-3,
     270, 19.3, 0.3, 10, 0, 0, 0, -0.5, 0.2,
-    0, 0, 0, 5e6, 0,
-    "zhang", "sphere", "sphere", "schiller", "ours", "", "hertz", "run", "build/out/separator",
+    0, 0, 0, 5e6, 0, 1.204, 1.81e-5, 0.07, -0.015, 1, 2,
+    0.8, 0.832,
+    "zhang", "sphere", "sphere", "schiller", "ours", "", "seidel", "hertz", "run", "build/out/separator",
     0, -1, 1, 1, 1, 1, 1, 0, 0, 0};
 
 static const study_option table[] = {
@@ -69,6 +72,9 @@ static const study_option table[] = {
     {"drain", STUDY_REAL, &options.drain, 0, 100, "s", "after it, at most, until all have landed"},
     {"feeder-speed", STUDY_REAL, &options.feeder_speed, 0, 3, "m/s", "of grains that come onto the plate"},
     {"feeder-angle", STUDY_REAL, &options.feeder_angle, 0, 60, "deg", "of the plate below the horizontal"},
+    {"feeder-length", STUDY_REAL, &options.feeder_length, 0.045, 1, "m", "of the plate"},
+    {"feeder-edge", STUDY_REAL, &options.feeder_edge, -0.1, 0.05, "m",
+        "x where the plate ends, 4 mm above the rotor's top"},
     {"sizes", STUDY_CHOICE, &options.sizes, 0, 0, "zhang|weibull|uniform", "distribution of diameters, by number"},
     {"size-min", STUDY_REAL, &options.size_min, 0.05, 20, "mm", "smallest diameter (of equal volume)"},
     {"size-mean", STUDY_REAL, &options.size_mean, 0.05, 20, "mm", "Zhang: mean; Weibull: scale"},
@@ -78,7 +84,8 @@ static const study_option table[] = {
     {"middlings", STUDY_REAL, &options.middling, 0, 1, "", "share that are both; the rest is plastic"},
     {"middling-metal", STUDY_REAL, &options.middling_metal, 0, 1, "", "share of metal in them, by volume"},
     {"metal-form", STUDY_CHOICE, &options.metal_form, 0, 0, "sphere|flake|shaving|fragment", "shape"},
-    {"plastic-form", STUDY_CHOICE, &options.plastic_form, 0, 0, "sphere|flake|shaving|fragment", "shape, of middlings too"},
+    {"plastic-form", STUDY_CHOICE, &options.plastic_form, 0, 0, "sphere|flake|shaving|fragment",
+        "shape, of middlings too"},
     {"mixed", STUDY_REAL, &options.mixed, 0, 1, "", "share of metal and plastic that are spheres all the same"},
     {"density-metal", STUDY_REAL, &options.density_metal, 1, 3e4, "kg/m3", ""},
     {"density-plastic", STUDY_REAL, &options.density_plastic, 1, 3e4, "kg/m3", ""},
@@ -88,23 +95,32 @@ static const study_option table[] = {
     {"plate-friction", STUDY_REAL, &options.plate_friction, 0, 5, "", "with the feeder's plate and the electrode"},
     {"rolling", STUDY_REAL, &options.rolling, 0, 5, "", "rolling friction with the rotor"},
     {"restitution", STUDY_REAL, &options.restitution, 0.01, 1, "", "of all"},
-    {"strength", STUDY_REAL, &options.strength, -1, 1e7, "V/m", "field that ions charge in; 0: that of the electrode; -1: 11.818 U + 514.9"},
+    {"strength", STUDY_REAL, &options.strength, -1, 1e7, "V/m",
+        "field that ions charge in; 0: that of the electrode; -1: 11.818 U + 514.9"},
     {"current", STUDY_REAL, &options.current, 0, 1, "A/m2", "of ions; 0: they charge at once"},
     {"wire", STUDY_REAL, &options.wire, 1e-3, 10, "mm", "radius of the corona's wire, for its onset"},
     {"wire-distance", STUDY_REAL, &options.wire_distance, 0.03, 2, "m", "of the wire from the rotor's axis"},
+    {"roughness", STUDY_REAL, &options.roughness, 0.1, 1, "", "of the wire, Peek's m"},
     {"ions-begin", STUDY_REAL, &options.ions_begin, -170, 180, "deg", "of the corona's window, after the top"},
     {"ions-end", STUDY_REAL, &options.ions_end, -170, 180, "deg", "of it"},
     {"layer", STUDY_REAL, &options.layer, 0, 1000, "mm", "depth above the rotor of corona and brush"},
-    {"contact-time", STUDY_REAL, &options.contact_time, 0, 10, "s", "in which metal on the rotor takes its charge; 0: at once"},
-    {"leak-time", STUDY_REAL, &options.leak_time, 0, 1e6, "s", "in which plastic on the rotor loses its charge; 0: never"},
+    {"contact-time", STUDY_REAL, &options.contact_time, 0, 10, "s",
+        "in which metal on the rotor takes its charge; 0: at once"},
+    {"leak-time", STUDY_REAL, &options.leak_time, 0, 1e6, "s",
+        "in which plastic on the rotor loses its charge; 0: never"},
     {"brush-time", STUDY_REAL, &options.brush_time, 0, 1, "s", "in which the brush stops and discharges; 0: no brush"},
     {"brush", STUDY_REAL, &options.brush_middle, 90, 330, "deg", "its middle, after the top"},
     {"brush-half", STUDY_REAL, &options.brush_half, 1, 80, "deg", "half its angle"},
     {"scatter", STUDY_REAL, &options.scatter, 0, 1, "", "charges are 1 - scatter times 0 .. 1"},
     {"coulomb", STUDY_REAL, &options.coulomb, 0, 100, "mm", "range of forces between charged grains; 0: none"},
+    {"near-interval", STUDY_REAL, &options.near_interval, 1e-3, 10, "ms", "from one sum of these forces to the next"},
+    {"touch", STUDY_REAL, &options.touch, 1e-3, 1000, "um", "gap up to which a grain touches the rotor"},
+    {"at-contact", STUDY_REAL, &options.at_contact, 0, 1, "", "share of Q E that lifts metal off the rotor"},
     {"image", STUDY_INT, &options.image, 0, 1, "", "1: image force"},
     {"pull", STUDY_INT, &options.pull, 0, 1, "", "1: the field pulls ions' charge; 0: as [CRI14] has it"},
     {"drag", STUDY_CHOICE, &options.drag, 0, 0, "none|stokes|schiller", "of the air"},
+    {"air-density", STUDY_REAL, &options.air_density, 0, 100, "kg/m3", ""},
+    {"air-viscosity", STUDY_REAL, &options.air_viscosity, 1e-9, 1, "Pa s", ""},
     {"wind-x", STUDY_REAL, &options.wind_x, -30, 30, "m/s", "of the air"},
     {"wind-y", STUDY_REAL, &options.wind_y, -30, 30, "m/s", "of the air"},
     {"swirl", STUDY_REAL, &options.swirl, 0, 1, "", "air the rotor takes along, share of its speed"},
@@ -117,6 +133,7 @@ static const study_option table[] = {
     {"tolerance", STUDY_REAL, &options.tolerance, 0, 1, "m/s", "of impulses; 0: of the setting"},
     {"range", STUDY_REAL, &options.range, 0, 20, "mm", "gap from which impulses look; 0: of the setting"},
     {"cone", STUDY_CHOICE, &options.cone, 0, 0, "|coulomb|convex", "empty: of the setting"},
+    {"solver", STUDY_CHOICE, &options.solver, 0, 0, "seidel|jacobi|apgd|spectral", "of impulses"},
     {"law", STUDY_CHOICE, &options.law, 0, 0, "hertz|linear", "of springs"},
     {"young", STUDY_REAL, &options.young, 1e4, 1e12, "Pa", "of springs"},
     {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
@@ -126,7 +143,8 @@ static const study_option table[] = {
     {"check", STUDY_FLAG, &options.check, 0, 0, "", "equal bits for 1, 2, 3, 4, 8 threads and after a restart"},
     {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "a film that a browser plays, replay.html"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
-    {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|speed|voltage|shape|settings|steps|choices|check", "what to run"},
+    {"study", STUDY_CHOICE, &options.study, 0, 0, "run|feed|speed|voltage|shape|settings|steps|choices|check",
+        "what to run"},
 };
 enum { OPTIONS = sizeof table/sizeof *table };
 
@@ -153,7 +171,8 @@ static int mixture_set(separator_desc *d, const struct separator_options *o) {
     const separator_form metal_form = form_of(o->metal_form), plastic_form = form_of(o->plastic_form);
     d->part_count = 0;
     if (plastic < -1e-9) {
-        study_fail("--metal %g and --middlings %g are %g of all together, must be at most 1; give less of one", o->metal,
+        study_fail("--metal %g and --middlings %g are %g of all together, must be at most 1; give less of one",
+            o->metal,
                    o->middling, o->metal + o->middling);
         return 0;
     }
@@ -172,7 +191,7 @@ static int mixture_set(separator_desc *d, const struct separator_options *o) {
 static int sizes_set(separator_desc *d, const struct separator_options *o) {
     const int zhang = is(o->sizes, "zhang"), weibull = is(o->sizes, "weibull");
     if (o->size_max < o->size_min || (zhang && !(o->size_mean > o->size_min))) {
-        study_fail("--size-min %g, --size-mean %g and --size-max %g mm have to ascend (of zhang mean above min); raise %s",
+        study_fail("--size-min %g, --size-mean %g and --size-max %g mm have to ascend (zhang: mean above min); raise %s",
                    o->size_min, o->size_mean, o->size_max, o->size_max < o->size_min ? "--size-max" : "--size-mean");
         return 0;
     }
@@ -189,12 +208,16 @@ static void charging_set(separator_desc *d, const struct separator_options *o) {
     const double degree = CORONA_PI/180, volts = 1000*o->voltage;
     c->strength = o->strength < 0 ? 11.818*fabs(volts) + 514.9 : o->strength;
     c->current = o->current;
-    c->onset = corona_onset(o->rotor, o->wire/1000, o->wire_distance, 1, 0.8);
+    c->onset = corona_onset(o->rotor, o->wire/1000, o->wire_distance, 1, o->roughness);
     c->contact_time = o->contact_time; c->leak_time = o->leak_time; c->brush_time = o->brush_time;
     c->scatter = o->scatter;
     c->range = o->coulomb/1000;
     c->image = o->image; c->pull = o->pull;
-    c->drag = is(o->drag, "none") ? CORONA_DRAG_NONE : is(o->drag, "stokes") ? CORONA_DRAG_STOKES : CORONA_DRAG_SCHILLER;
+    c->touch = 1e-6*o->touch;
+    c->at_contact = o->at_contact;
+    c->air_density = o->air_density; c->air_viscosity = o->air_viscosity;
+    c->drag = is(o->drag, "none") ? CORONA_DRAG_NONE : is(o->drag, "stokes") ? CORONA_DRAG_STOKES
+        : CORONA_DRAG_SCHILLER;
     c->wind[0] = o->wind_x; c->wind[1] = o->wind_y; c->swirl = o->swirl;
     d->ions_begin = o->ions_begin*degree; d->ions_end = o->ions_end*degree;
     d->brush_middle = o->brush_middle*degree; d->brush_half = o->brush_half*degree;
@@ -206,6 +229,8 @@ static void setting_set(separator_desc *d, const struct separator_options *o) {
     const int convex = *o->cone ? is(o->cone, "convex") : seeds;
     d->response = springs ? DEM_RESPONSE_SPRINGS : DEM_RESPONSE_IMPULSES;
     d->cone = convex ? DEM_CONE_CONVEX : DEM_CONE_COULOMB;
+    d->solver = is(o->solver, "jacobi") ? DEM_SOLVER_JACOBI : is(o->solver, "apgd") ? DEM_SOLVER_APGD
+        : is(o->solver, "spectral") ? DEM_SOLVER_SPECTRAL : DEM_SOLVER_SEIDEL;
     d->dt = o->dt > 0 ? o->dt : springs ? 0 : seeds ? 1e-3 : 2.5e-4;
     d->sweeps = o->sweeps ? o->sweeps : seeds ? 100 : 0;
     d->tolerance = o->tolerance > 0 ? o->tolerance : seeds ? 1e-30 : 0;      /* all of the 100 */
@@ -220,6 +245,7 @@ static int desc_of(separator_desc *d, const struct separator_options *o) {
     d->angle = o->angle*CORONA_PI/180; d->voltage = 1000*o->voltage; d->rpm = o->rpm;
     d->width = o->width; d->feed_width = o->feed_width; d->rate = o->rate; d->feed_time = o->seconds;
     d->feeder_speed = o->feeder_speed; d->feeder_angle = o->feeder_angle*CORONA_PI/180;
+    d->feeder_length = o->feeder_length; d->feeder_edge = o->feeder_edge; d->near_interval = o->near_interval/1000;
     d->density[SEPARATOR_METAL] = o->density_metal; d->density[SEPARATOR_PLASTIC] = o->density_plastic;
     d->permittivity = o->permittivity; d->middling = o->middling_metal;
     d->restitution = o->restitution; d->friction = o->friction; d->drum_friction = o->drum_friction;
@@ -233,12 +259,13 @@ static int desc_of(separator_desc *d, const struct separator_options *o) {
         return 0;
     }
     if (!(o->wire_distance > o->rotor + o->wire/1000)) {
-        study_fail("--wire-distance is %g m, must be more than --rotor and --wire, %g m, or the wire lies in the rotor; raise "
+        study_fail("--wire-distance is %g m, must be more than --rotor and --wire, %g m, or it lies in the rotor; raise "
                    "it", o->wire_distance, o->rotor + o->wire/1000);
         return 0;
     }
     if (!(o->ions_end > o->ions_begin)) {
-        study_fail("--ions-end is %g deg, must be more than --ions-begin, %g deg; swap them", o->ions_end, o->ions_begin);
+        study_fail("--ions-end is %g deg, must be more than --ions-begin, %g deg; swap them", o->ions_end,
+            o->ions_begin);
         return 0;
     }
     if (o->bins > -o->rotor - 0.005) {
@@ -275,7 +302,8 @@ static void group_names(const separator_desc *d, outcome *r) {
     for (k = 0; k < 3; k++) if (forms[k]) snprintf(r->name[k], sizeof r->name[k], "%s", stuff_names[k]);
     for (i = 0; i < d->part_count; i++)
         if (forms[d->parts[i].stuff] > 1)
-            snprintf(r->name[3 + i], sizeof r->name[0], "%s.%s", stuff_names[d->parts[i].stuff], form_names[d->parts[i].form]);
+            snprintf(r->name[3 + i], sizeof r->name[0], "%s.%s", stuff_names[d->parts[i].stuff],
+                form_names[d->parts[i].form]);
 }
 static void landing_count(const separator *s, outcome *r, int g, const separator_landing *l) {
     const int bin = (int)floor((l->x - bin_first)/bin_wide);
@@ -423,7 +451,8 @@ static void picture_draw(const separator *s, const char *file) {
     for (k = 0; k < 4; k++) free(v[k]);
 }
 /* Feeds, drains, counts. picture: drawn half way through. Answers 0 when it went well; s is left open. */
-static int separator_run(separator *s, const struct separator_options *o, const char *name, outcome *r, const char *picture) {
+static int separator_run(separator *s, const struct separator_options *o, const char *name, outcome *r,
+    const char *picture) {
     separator_desc d;
     film f;
     double begun, work = 0, steps = 0;
@@ -433,7 +462,8 @@ static int separator_run(separator *s, const struct separator_options *o, const 
     memset(s, 0, sizeof *s);
     if (!desc_of(&d, o)) return 1;
     if (separator_create(s, &d) != DEM_OK) { study_fail("%s", s->error); return 1; }
-    f = film_open_by(s->world, o->replay ? 240 : 0, o->seconds, "A corona electrostatic separator", "charge_pC", grain_charge);
+    f = film_open_by(s->world, o->replay ? 240 : 0, o->seconds, "A corona electrostatic separator", "charge_pC",
+        grain_charge);
     begun = study_clock();
     for (;;) {
         const double now = dem_world_time(s->world), all = o->seconds + o->drain;
@@ -556,7 +586,8 @@ static const sweep sweeps[] = {
     {"feed", "Feed rate", "feed [grains/s]", 4, {1000, 3000, 10000, 20000}, {0}, set_rate},
     {"speed", "Rotor speed", "rotor [1/min]", 6, {25, 35, 45, 55, 65, 80}, {0}, set_rpm},
     {"voltage", "Voltage", "electrode [kV]", 6, {0, 10, 20, 25, 30, 35}, {0}, set_voltage},
-    {"shape", "Shape", "0 sphere, 1 flake, 2 shaving, 3 fragment", 4, {0, 1, 2, 3}, {"sphere", "flake", "shaving", "fragment"}, set_form},
+    {"shape", "Shape", "0 sphere, 1 flake, 2 shaving, 3 fragment", 4, {0, 1, 2, 3},
+        {"sphere", "flake", "shaving", "fragment"}, set_form},
     {"settings", "Contacts", "0 ours, 1 seeds, 2 springs", 3, {0, 1, 2}, {"ours", "seeds", "springs"}, set_setting},
     {"steps", "Step", "step [ms]", 5, {0.05, 0.1, 0.25, 0.5, 1}, {0}, set_dt},
     {"choices", "Choices", "choice, as in the table", 8, {0, 1, 2, 3, 4, 5, 6, 7},
@@ -637,7 +668,8 @@ static int value_run(const struct separator_options *base, const char *name, swe
 }
 /* A curve through means, and upright bars of one standard error: three points of each, the last a gap. */
 typedef struct barred { double x[VALUES], y[VALUES], bar_x[3*VALUES], bar_y[3*VALUES]; } barred;
-static void barred_draw(study_figure *f, barred *b, const char *name, const double *value, const spread *s, size_t stride,
+static void barred_draw(study_figure *f, barred *b, const char *name, const double *value, const spread *s,
+    size_t stride,
                         int count) {
     int i;
     for (i = 0; i < count; i++) {
@@ -810,7 +842,8 @@ static void one_run(const struct separator_options *o) {
 
 int main(int argc, char **argv) {
     size_t i;
-    study_options(argc, argv, "A corona electrostatic separator after Critelli, Tasora and others (2014).", table, OPTIONS);
+    study_options(argc, argv, "A corona electrostatic separator after Critelli, Tasora and others (2014).", table,
+        OPTIONS);
     if (options.quick) {                       /* what was asked for by name stays */
         options.seconds = 1.5;
         options.drain = 1;

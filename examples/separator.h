@@ -45,7 +45,8 @@ typedef struct separator_desc {
     dem_response response;
     dem_cone cone;
     dem_solver solver;
-    int sweeps, cold, threads;               /* cold: sweeps begin with no impulses, not with those of the step before */
+    int sweeps, cold, threads;               /* cold: sweeps begin with no impulses, not with those of the step
+                                                before */
     double tolerance, range, skin, dt;       /* as in dem_world_desc */
     double young;                            /* Pa, springs alone */
     dem_normal_law normal_law;
@@ -329,8 +330,8 @@ static inline dem_result separator_create(separator *s, const separator_desc *de
         d.tolerance = (dem_real)desc->tolerance;
         d.cold_start = desc->cold;
         d.law_range = (dem_real)desc->range;
-        /* What falls at 4 m/s goes farther than its radius in a step. dem.h wants twice that as range; where steps are so
-           long that this costs too much, it is enough that what meets comes nearer by less: 1 m/s on the rotor */
+        /* What falls at 4 m/s goes farther than its radius in a step. dem.h wants twice that as range; where steps
+           are so long that this costs too much, it is enough that what meets on the rotor, at 1 m/s, is seen */
         d.allow_large_dt = desc->range < 8*desc->dt;
     } else d.normal_law = desc->normal_law;
     s->world = dem_world_create(&d);

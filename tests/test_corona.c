@@ -1,5 +1,6 @@
-/* The corona electrostatic separator (examples/corona.h, examples/separator.h): field, charges and forces against closed
-   forms and published figures, single grains on the drum, and a small machine that loses nobody and repeats itself. */
+/* The corona electrostatic separator (examples/corona.h, examples/separator.h): field, charges and forces against
+   closed forms and published figures, single grains on the drum, and a small machine that loses nobody and
+   repeats itself. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "../examples/corona.h"
@@ -309,7 +310,7 @@ int main(int argc, char **argv) {
         }
     }
 
-    TEST("two charged grains far from the rotor push each other by Coulomb's law, above it less and at last as dipoles") {
+    TEST("two charged grains far from the rotor push each other by Coulomb's law, near it less, and last as dipoles") {
         static const double height[3] = {0.5, 4e-3, 0.5e-3};
         int i;
         for (i = 0; i < 3; i++) {
@@ -332,7 +333,7 @@ int main(int argc, char **argv) {
             dem_body_reals_set(world, b, reals);
             CHECK(corona_near_update(&c, world));
             push = k*q*q*(1/(d*d) - d/pow(d*d + 4*h*h, 1.5));
-            CHECK_REL(c.near[b.slot - 1][0], push, 2e-3);    /* places of 1e3 m have 1e-13 m left, the plane is curved */
+            CHECK_REL(c.near[b.slot - 1][0], push, 2e-3);    /* the plane is curved: d/R, twice */
             CHECK_NEAR(c.near[a.slot - 1][0], -c.near[b.slot - 1][0], 1e-3*push);
             if (i == 0) CHECK_REL(push, k*q*q/(d*d), 1e-5);
             if (i == 2) CHECK_REL(push, 6*k*q*q*h*h/(d*d*d*d), 0.05);    /* next term: 5 (h/d)^2 = 2 % */
@@ -348,13 +349,13 @@ int main(int argc, char **argv) {
             {0.15e-3, 30e3, 0, 1, 1, 1}, {0.30e-3, 30e3, 0, 1, 1, 1}, {0.30e-3, 1e-3, 0, 1, 1, 1},
             {1.0e-3, 30e3, 0, 1, 1, 1}, {1.0e-3, 1e-3, 0, 1, 1, 1}, {0.30e-3, 30e3, 0, 0, 0, 1},
             {0.30e-3, 30e3, 0, 0, 1, 1}, {1.0e-3, 30e3, 0, 0, 1, 1}};
-        static const double expected[8][3] = {{16.7, 41.8, 0.349}, {17.0, 43.7, 0.340}, {0, 0, 0.316}, {17.2, 45.3, 0.329},
-            {0, 0, 0.322}, {18.9, 62.7, 0.238}, {25.7, 97.1, 0.073}, {18.9, 62.9, 0.227}};
+        static const double expected[8][3] = {{16.7, 41.8, 0.349}, {17.0, 43.7, 0.340}, {0, 0, 0.316},
+            {17.2, 45.3, 0.329}, {0, 0, 0.322}, {18.9, 62.7, 0.238}, {25.7, 97.1, 0.073}, {18.9, 62.9, 0.227}};
         int i;
         for (i = 0; i < 8; i++) {
             const ridden found = ride_run(&rides[i], 1e-4);
-            /* a step is 0.03 degrees; slip is told when it has grown to 3e-4 of the speed, a degree later; x is given to
-               1 mm */
+            /* a step is 0.03 degrees; slip is told when it has grown to 3e-4 of the speed, a degree later; x is
+               given to 1 mm */
             if (expected[i][0] > 0) CHECK_NEAR(found.slip, expected[i][0], 1.5);
             if (expected[i][1] > 0) CHECK_NEAR(found.leave, expected[i][1], 0.5);
             CHECK_NEAR(found.x, expected[i][2], 1e-3);
@@ -394,7 +395,8 @@ int main(int argc, char **argv) {
         }
         small_run(1, 200);
         CHECK_EQ(dem_checkpoint_write(small.world, "build/tmp/corona.dem"), DEM_OK);
-        ok = separator_create(&second, &d) == DEM_OK && dem_checkpoint_read(second.world, "build/tmp/corona.dem") == DEM_OK &&
+        ok = separator_create(&second, &d) == DEM_OK && dem_checkpoint_read(second.world,
+            "build/tmp/corona.dem") == DEM_OK &&
             separator_restored(&second) == DEM_OK;
         for (i = 0; i < 150 && ok; i++) ok = separator_step(&second) == DEM_OK;
         CHECK(ok && dem_world_hash(second.world) == hash);
