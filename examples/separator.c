@@ -191,7 +191,7 @@ static int mixture_set(separator_desc *d, const struct separator_options *o) {
 static int sizes_set(separator_desc *d, const struct separator_options *o) {
     const int zhang = is(o->sizes, "zhang"), weibull = is(o->sizes, "weibull");
     if (o->size_max < o->size_min || (zhang && !(o->size_mean > o->size_min))) {
-        study_fail("--size-min %g, --size-mean %g and --size-max %g mm have to ascend (zhang: mean above min); raise %s",
+        study_fail("--size-min %g, --size-mean %g and --size-max %g mm have to ascend (zhang: mean over min); raise %s",
                    o->size_min, o->size_mean, o->size_max, o->size_max < o->size_min ? "--size-max" : "--size-mean");
         return 0;
     }
@@ -259,7 +259,7 @@ static int desc_of(separator_desc *d, const struct separator_options *o) {
         return 0;
     }
     if (!(o->wire_distance > o->rotor + o->wire/1000)) {
-        study_fail("--wire-distance is %g m, must be more than --rotor and --wire, %g m, or it lies in the rotor; raise "
+        study_fail("--wire-distance is %g m, must be more than --rotor and --wire, %g m: it lies in the rotor; raise "
                    "it", o->wire_distance, o->rotor + o->wire/1000);
         return 0;
     }
