@@ -167,7 +167,7 @@ typedef struct corona {
     corona_shape shapes[CORONA_SHAPES];      /* by id of shape; 0 is not used */
     /* near grains: Coulomb's force and that of their images, within `range` m; period along z, 0: none */
     double range, period;
-    double (*near)[3];                       /* N, by slot */
+    double (*nearby)[3];                     /* N, by slot */
     struct corona_place *order;
     uint32_t near_count, order_count;
 } corona;
@@ -266,7 +266,7 @@ static inline void corona_force(const dem_body_state *body, dem_body id, double 
         F[1] -= stop*(double)body->velocity.y;
         F[2] -= stop*(double)body->velocity.z;
     }
-    for (k = 0; k < 3 && id.slot <= c->near_count; k++) F[k] += c->near[id.slot - 1][k];
+    for (k = 0; k < 3 && id.slot <= c->near_count; k++) F[k] += c->nearby[id.slot - 1][k];
     *force = dem_vec3_make((dem_real)F[0], (dem_real)F[1], (dem_real)F[2]);
 }
 
@@ -327,7 +327,7 @@ static inline void corona_coulomb(double product, const double *way, double *for
    charge. So near the rotor the force falls with 1/d^4. */
 static inline void corona_pair(const corona *c, const corona_place *p, const corona_place *q) {
     const double R2 = c->field.rotor*c->field.rotor, zp = R2/(p->away*p->away), zq = R2/(q->away*q->away);
-    double way[3], image[3], *to_p = c->near[p->slot], *to_q = c->near[q->slot], force[3] = {0, 0, 0};
+    double way[3], image[3], *to_p = c->nearby[p->slot], *to_q = c->nearby[q->slot], force[3] = {0, 0, 0};
     int k;
     for (k = 0; k < 3; k++) way[k] = p->x[k] - q->x[k];
     if (c->period > 0) way[2] -= c->period*floor(way[2]/c->period + 0.5);
@@ -346,12 +346,12 @@ static inline int corona_near_update(corona *c, const dem_world *world) {
     const dem_bodies b = dem_bodies_get(world);
     uint32_t slots = 0;
     int i, j, n = 0;
-    if (!(c->range > 0)) return 1;
+    if (!(c->range > 0) || !b.reals) return 1;
     for (i = 0; i < b.count; i++) if (b.slots[i] + 1 > slots) slots = b.slots[i] + 1;
     if (slots > c->near_count) {
-        double (*near_)[3] = (double (*)[3])realloc(c->near, 2*(size_t)slots*sizeof *c->near);
-        if (!near_) return 0;
-        c->near = near_;
+        double (*more)[3] = (double (*)[3])realloc(c->nearby, 2*(size_t)slots*sizeof *c->nearby);
+        if (!more) return 0;
+        c->nearby = more;
         c->near_count = 2*slots;
     }
     if ((uint32_t)b.count > c->order_count) {
@@ -360,7 +360,7 @@ static inline int corona_near_update(corona *c, const dem_world *world) {
         c->order = order;
         c->order_count = 2*(uint32_t)b.count;
     }
-    if (c->near_count) memset(c->near, 0, c->near_count*sizeof *c->near);
+    if (c->near_count) memset(c->nearby, 0, c->near_count*sizeof *c->nearby);
     for (i = 0; i < b.count; i++) {
         const dem_real *x = b.positions + 4*i, *reals = b.reals + (size_t)b.real_count*(size_t)i;
         const double charge = (double)reals[CORONA_INDUCED] + (double)reals[CORONA_IONS];
@@ -384,9 +384,9 @@ static inline int corona_near_update(corona *c, const dem_world *world) {
     return 1;
 }
 static inline void corona_end(corona *c) {
-    free(c->near);
+    free(c->nearby);
     free(c->order);
-    c->near = 0;
+    c->nearby = 0;
     c->order = 0;
     c->near_count = c->order_count = 0;
 }

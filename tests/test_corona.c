@@ -333,8 +333,8 @@ int main(int argc, char **argv) {
             dem_body_reals_set(world, b, reals);
             CHECK(corona_near_update(&c, world));
             push = k*q*q*(1/(d*d) - d/pow(d*d + 4*h*h, 1.5));
-            CHECK_REL(c.near[b.slot - 1][0], push, 2e-3);    /* the plane is curved: d/R, twice */
-            CHECK_NEAR(c.near[a.slot - 1][0], -c.near[b.slot - 1][0], 1e-3*push);
+            CHECK_REL(c.nearby[b.slot - 1][0], push, 2e-3);    /* the plane is curved: d/R, twice */
+            CHECK_NEAR(c.nearby[a.slot - 1][0], -c.nearby[b.slot - 1][0], 1e-3*push);
             if (i == 0) CHECK_REL(push, k*q*q/(d*d), 1e-5);
             if (i == 2) CHECK_REL(push, 6*k*q*q*h*h/(d*d*d*d), 0.05);    /* next term: 5 (h/d)^2 = 2 % */
             corona_end(&c);
