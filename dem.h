@@ -2857,6 +2857,8 @@ typedef struct demi_wall {
     int32_t *edges;                /* element_count x 3 (mesh): the edge from corner k to k + 1 */
     dem_real *weight;              /* how often each face, edge and corner counts, in this order */
     unsigned char *owns;           /* element_count: bit k: looks after edge k, 3 + k: corner k */
+    int32_t *sheet;                /* element_count: which sheet it is of, from 1; < 0: it turns the
+                                      other way round than the sheet's first */
     dem_real *planes;              /* element_count x 4: unit normal and n.x of its plane, m; zeros:
                                       it is too thin to have one */
     dem_real plane_slack;          /* m, what rounding may do to a distance from a plane */
@@ -7794,8 +7796,8 @@ static double demi_wall_speed(const demi_wall *wall) {
 
 /* The arrays a wall owns: where their pointers stand. What is freed, and copied into slabs. */
 #define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
-    &(wall)->weight, &(wall)->owns, &(wall)->planes, &(wall)->cut_start, &(wall)->cuts, \
-    &(wall)->cell_start, &(wall)->cell_items, &(wall)->motion.table}
+    &(wall)->weight, &(wall)->owns, &(wall)->sheet, &(wall)->planes, &(wall)->cut_start, \
+    &(wall)->cuts, &(wall)->cell_start, &(wall)->cell_items, &(wall)->motion.table}
 /* Its arrays, by the one list of them; what is left is a wall that was removed. */
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
     void *places[] = DEMI_WALL_ARRAYS(wall), *data;
@@ -8113,6 +8115,53 @@ static int demi_ring_triangle(int t, int c) {
     return c == 0 ? a : c == 1 ? b : a + DEMI_RING_SIDES;
 }
 
+/* Sheets: facets that are joined by edges (segments: by ends) which two of them have, and which way
+   round each turns. 0 when memory ran out. */
+static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
+    const int n = demi_wall_per(wall), all = wall->element_count;
+    demi_side *sides = (demi_side *)demi_alloc(w, (size_t)all*3, sizeof *sides);
+    int32_t *beside = (int32_t *)demi_alloc(w, (size_t)all*4, sizeof *beside);
+    int32_t *row = beside ? beside + 3*all : 0;
+    int i, k, count = 0, rows, sheets = 0;
+    wall->sheet = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)all, sizeof(int32_t));
+    for (i = 0; i < all && sides && beside && wall->sheet; i++)
+        for (k = 0; k < n; k++) {
+            const int32_t *c = wall->corners + n*i;
+            sides[count++] = demi_side_of(c[k], n == 3 ? c[(k + 1)%3] : c[k], i, k);
+        }
+    for (i = 0; i < 3*all && beside; i++) beside[i] = -1;
+    if (count) qsort(sides, (size_t)count, sizeof *sides, demi_side_compare);
+    for (i = 0; i < count; i = k) {
+        for (k = i + 1; k < count && sides[k].lo == sides[i].lo && sides[k].hi == sides[i].hi; k++)
+            continue;
+        if (k != i + 2) continue;
+        beside[3*sides[i].facet + sides[i].side] = 3*sides[i + 1].facet + sides[i + 1].side;
+        beside[3*sides[i + 1].facet + sides[i + 1].side] = 3*sides[i].facet + sides[i].side;
+    }
+    for (i = 0; i < all && count; i++) {
+        if (wall->sheet[i]) continue;
+        wall->sheet[i] = ++sheets;
+        row[0] = i;
+        for (rows = 1; rows > 0;) {
+            const int from = row[--rows];
+            for (k = 0; k < n; k++) {
+                const int32_t other = beside[3*from + k];
+                int32_t *sheet;
+                int same;
+                if (other < 0 || wall->sheet[other/3]) continue;
+                sheet = &wall->sheet[other/3];
+                /* alike: they go along their edge in opposite ways, or one ends where one begins */
+                same = n == 2 ? other%3 != k
+                    : wall->corners[3*from + k] != wall->corners[3*(other/3) + other%3];
+                *sheet = same ? wall->sheet[from] : -wall->sheet[from];
+                row[rows++] = other/3;
+            }
+        }
+    }
+    demi_free(w, sides);
+    demi_free(w, beside);
+    return count > 0;
+}
 /* Copies vertices (dimension `per_vertex`) and corners into a wall. 0 with a sentence when they are
    bad. */
 static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int vertices,
@@ -8136,7 +8185,7 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
         for (k = 0; k < per_vertex; k++) wall->vertices[3*i + k] = xyz[per_vertex*i + k];
     if (per_element) memcpy(wall->corners, corners,
                             (size_t)elements*(size_t)per_element*sizeof(int32_t));
-    if (per_element && !demi_facets_begin(w, wall)) {
+    if (per_element && (!demi_facets_begin(w, wall) || !demi_wall_sheets(w, wall))) {
         demi_wall_free(w, wall);
         demi_no_memory(w, call);
         return 0;
@@ -12539,8 +12588,9 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
         demi_pressure_beyond(a, up, s);
     return s->shared > 0 && s->sum > 0;
 }
-/* S on a flat piece of a rigid wall: beyond n.x = at, n unit, from the polyhedron into the wall; on
-   that side of all planes (normal, a point of it) that bound it. */
+/* S on a flat piece of a rigid wall: beyond n.x = at, n unit, into the wall; on that side of all
+   planes (normal, a point of it) that bound it. Without bounds the polyhedron's centre must be on
+   this side; a piece may be seen from behind, where it takes from what others share. */
 static void demi_solid_on_flat(const demi_solid *a, const double *n, double at,
                                double (*sides)[2][3], int side_count, demi_pressure *s) {
     const int32_t *loops = a->rim + a->faces + 1;
@@ -12548,9 +12598,10 @@ static void demi_solid_on_flat(const demi_solid *a, const double *n, double at,
     double all[DEMI_HULL_CORNERS], x[DEMI_SECTION][3], u[DEMI_SECTION];
     double level[DEM_POLYHEDRON_FACES];
     int f, i, k, above = 0, count;
-    if (centre > 0) { demi_pressure_beyond(a, n, s); return; }
+    if (centre > 0 && !side_count) { demi_pressure_beyond(a, n, s); return; }
     for (i = 0; i < a->corners; i++) above += (all[i] = demi_dot3(n, a->corner[i]) - at) > 0;
-    for (f = 0; f < a->faces && above; f++) {
+    if (above == (centre > 0 ? a->corners : 0)) return;
+    for (f = 0; f < a->faces; f++) {
         for (i = a->rim[f], k = 0; i < a->rim[f + 1]; i++) level[k++] = all[loops[i]];
         count = demi_pyramid_section(a, f, centre, level, x);
         for (i = 0; i < side_count && count > 2; i++)
@@ -13815,9 +13866,10 @@ static int demi_flats_places(const demi_flats *f, const demi_wall *wall, const d
     }
     return count;
 }
-/* The sides of an element of a surface, as half spaces: how many; its plane into n and at, n away
-   from the origin. 0: it is too thin. origin: of the axes, in the wall's frame. */
-static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin, double *n,
+/* The sides of an element of a surface, as half spaces: how many; its plane into n and at, n along
+   or (way < 0) against the way its corners turn. 0: it is too thin. origin: of the axes, in the
+   wall's frame. */
+static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin, int way, double *n,
                             double *at, double (*sides)[2][3]) {
     const int corners = demi_wall_kinds[wall->kind].corners;
     dem_vec3 y[3];
@@ -13847,9 +13899,8 @@ static int demi_facet_sides(const demi_wall *wall, int element, dem_vec3 origin,
         }
     }
     if (!(demi_unit3(up) > 0)) return 0;
-    *at = demi_dot3(up, x[0]);
-    for (k = 0; k < 3; k++) n[k] = *at < 0 ? -up[k] : up[k];
-    *at = fabs(*at);
+    for (k = 0; k < 3; k++) n[k] = way < 0 ? -up[k] : up[k];
+    *at = demi_dot3(n, x[0]);
     return corners;
 }
 /* --- by how much a polyhedron is apart from walls, and the points that keep it off: for impulses,
@@ -14031,9 +14082,59 @@ static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const demi_wall
     }
     return count;
 }
-/* One element, from a polyhedron about the origin of the axes. */
+/* From which side a body sees the sheets of a surface that are near: from that on which its centre
+   is, by the facet that is nearest to it, of equally near ones (at an edge) by that which it stands
+   over most. So the slope behind a ridge is seen from outside, too, where a body lies over it. */
+enum { DEMI_SHEETS = 16 };
+typedef struct demi_sheets {
+    int count;
+    int32_t sheet[DEMI_SHEETS];
+    int way[DEMI_SHEETS];          /* of the normal into the surface, by the sheet's first facet */
+    double near2[DEMI_SHEETS], over[DEMI_SHEETS];      /* m2; m */
+} demi_sheets;
+static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, dem_vec3 origin) {
+    const int32_t sheet = wall->sheet[element] < 0 ? -wall->sheet[element] : wall->sheet[element];
+    const int corners = demi_wall_kinds[wall->kind].corners;
+    double x[3][3], part[3] = {0, 0, 0}, e[3], f[3] = {0, 0, 1}, up[3], v[3], d2, over;
+    dem_vec3 y[3];
+    int i, k;
+    demi_wall_corners(wall, element, y);
+    for (i = 0; i < corners; i++) {
+        const dem_vec3 d = demi_sub(y[i], origin);
+        x[i][0] = (double)d.x; x[i][1] = (double)d.y; x[i][2] = corners == 2 ? 0 : (double)d.z;
+    }
+    demi_sub3(x[1], x[0], e);
+    if (corners == 3) demi_sub3(x[2], x[0], f);
+    if (corners == 3) demi_near_triangle(x[0], x[1], x[2], part);
+    else demi_near_segment(x[0], x[1], part);
+    demi_cross3(e, f, up);
+    if (!(demi_unit3(up) > 0)) return;
+    for (k = 0; k < 3; k++)
+        for (i = 0, v[k] = 0; i < corners; i++) v[k] += part[i]*x[i][k];
+    d2 = demi_dot3(v, v);
+    over = demi_dot3(up, x[0])*(wall->sheet[element] < 0 ? -1 : 1);
+    for (i = 0; i < s->count && s->sheet[i] != sheet; i++) continue;
+    if (i == DEMI_SHEETS) return;
+    if (i == s->count) s->count++;
+    else if (d2 > s->near2[i]*(1 + 1e-9) ||
+             (d2 > s->near2[i]*(1 - 1e-9) && !(fabs(over) > fabs(s->over[i])))) return;
+    s->sheet[i] = sheet;
+    s->near2[i] = d2;
+    s->over[i] = over;
+    s->way[i] = over < 0 ? -1 : 1;
+}
+/* The way of one element's normal; x: of the body, for sheets of which there is no note. */
+static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int element, dem_vec3 x) {
+    const int32_t own = wall->sheet[element], sheet = own < 0 ? -own : own;
+    const dem_real *plane = wall->planes + 4*element;
+    int i;
+    for (i = 0; i < s->count; i++)
+        if (s->sheet[i] == sheet) return own < 0 ? -s->way[i] : s->way[i];
+    return plane[3] - demi_dot(demi_at(plane), x) < 0 ? -1 : 1;
+}
+/* One element, from a polyhedron about the origin of the axes. way: of its normal. */
 static void demi_solid_on_element(const demi_wall *wall, int element, const demi_solid *s,
-                                  dem_vec3 x, demi_pressure *press) {
+                                  dem_vec3 x, int way, demi_pressure *press) {
     double sides[3][2][3], n[3], at;
     int count;
     memset(press, 0, sizeof *press);
@@ -14041,7 +14142,7 @@ static void demi_solid_on_element(const demi_wall *wall, int element, const demi
         n[0] = n[1] = 0;
         n[2] = -1;
         demi_solid_on_flat(s, n, (double)x.z, 0, 0, press);
-    } else if ((count = demi_facet_sides(wall, element, x, n, &at, sides)) != 0)
+    } else if ((count = demi_facet_sides(wall, element, x, way, n, &at, sides)) != 0)
         demi_solid_on_flat(s, n, at, sides, count, press);
 }
 /* Any wall whose elements are flat. */
@@ -14054,8 +14155,9 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
     demi_flats flats;
     demi_gaps gaps;
     demi_pressure press;
+    demi_sheets sheets;
     demi_solid s;
-    int k, from, end, had, count = 0;
+    int k, from, end, had, way, count = 0;
     *places = w->touching + w->domains[d].touching_first;
     gaps.range = (double)demi_range(w, part->radius);
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
@@ -14063,13 +14165,17 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
         const dem_vec3 x = demi_unrotate(wall->pose.rotation,
                                          demi_sub(demi_add(at, shift), wall->pose.position));
-        flats.count = gaps.count = 0;
+        flats.count = gaps.count = sheets.count = 0;
         end = demi_image_end(w, base, k, last);
+        for (from = k; wall->sheet && !impulsive && from < end; from++)
+            if (!(w->wall_gap[base + from] > gone))
+                demi_sheets_add(&sheets, wall, w->wall_element[base + from], x);
         for (from = k, had = count; k < end; k++) {
             const int32_t element = w->wall_element[base + k];
             if (w->wall_gap[base + k] > gone) continue;
             if (!impulsive) {
-                demi_solid_on_element(wall, element, &s, x, &press);
+                way = wall->sheet ? demi_sheets_way(&sheets, wall, element, x) : 1;
+                demi_solid_on_element(wall, element, &s, x, way, &press);
                 demi_flats_add(&flats, element, &press);
             }
             if (!(gaps.range > 0)) continue;
@@ -20552,7 +20658,7 @@ static void demi_domain_clear(dem_world *w, int d) {
         memset(w->bodies.force + 4*domain->begin, 0, n);
         memset(w->bodies.torque + 4*domain->begin, 0, n);
     }
-    if (w->bodies.real_count)
+    if (n && w->bodies.real_count)
         memset(w->bodies.rates + w->bodies.real_count*domain->begin, 0,
                (size_t)w->bodies.real_count*n/4);
     for (i = domain->begin; i < domain->end && w->desc.force; i++) {

@@ -1,5 +1,6 @@
 /* Impacts of convex polyhedra by the hundred thousand, by springs: rocks, cubes, tetrahedra and flakes on their like, on a
-   plane, inside and outside a tube and on a union, at random angles, spins, restitutions and frictions. None may leave with more energy than it came with, beyond the step's own error, and elastic ones lose none.
+   plane, inside and outside a tube, on the ridge of a mesh and on a union, at random angles, spins, restitutions and
+   frictions. None may leave with more energy than it came with, beyond the step's own error, and elastic ones lose none.
    A world holds many lanes, far from each other, with one impact each. TEST_LONG makes 1e5 of them, TEST_TABLES prints
    the worst of each kind. */
 #define DEM_IMPLEMENTATION
@@ -7,9 +8,9 @@
 #include "../test.h"
 #include "../scene.h"
 
-typedef enum stone_target { on_stone, on_floor, in_tube, on_tube, on_pair, stone_targets } stone_target;
+typedef enum stone_target { on_stone, on_floor, in_tube, on_tube, on_roof, on_pair, stone_targets } stone_target;
 static const char *const stone_target_name[stone_targets] = {"its like", "a plane", "the inside of a tube", "a tube",
-                                                             "a union"};
+                                                             "a roof of triangles", "a union"};
 enum { stone_lanes = 120, stone_shapes = 12 };
 typedef struct stone_lane { dem_body a, b; double before; } stone_lane;
 typedef struct stone_sum { int hits, gaining; double worst, elastic; } stone_sum;
@@ -45,9 +46,25 @@ static dem_vec3 stone_place(stone_target target, int i) {
 }
 /* What stands still in all lanes. */
 static void stone_walls(dem_world *world, dem_material m, stone_target target) {
+    int i;
     if (target == on_floor) dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     if (target == in_tube) dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 4, 1);
     if (target == on_tube) dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, 0);
+    for (i = 0; i < stone_lanes && target == on_roof; i++) {       /* a ridge of two slopes, one turned the other way */
+        const dem_vec3 c = stone_place(target, i);
+        dem_real v[18];
+        const double x[6] = {-4, 4, -4, 4, -4, 4}, y[6] = {-4, -4, 4, 4, 0, 0}, z[6] = {-2, -2, -2, -2, 0, 0};
+        int32_t t[12] = {0, 1, 5, 0, 5, 4, 2, 4, 5, 2, 3, 5};
+        dem_mesh mesh;
+        int k;
+        for (k = 0; k < 6; k++) {
+            v[3*k] = c.x + (dem_real)x[k];
+            v[3*k + 1] = c.y + (dem_real)y[k];
+            v[3*k + 2] = c.z + (dem_real)z[k];
+        }
+        mesh.vertex_count = 6; mesh.triangle_count = 4; mesh.vertices = v; mesh.triangles = t;
+        dem_mesh_add(world, m, &mesh);
+    }
 }
 /* Impacts of one kind in all lanes. restitution 1 and no friction: elastic. */
 static void stones_throw(stone_target target, int elastic, uint64_t seed, stone_sum *sum) {
@@ -80,7 +97,7 @@ static void stones_throw(stone_target target, int elastic, uint64_t seed, stone_
         const double fast = 1 + 2*scene_random(&seed);
         dem_vec3 x = demi_add(middle, demi_scale(way, DEM_R(-3.2))), v = demi_scale(way, (dem_real)fast);
         lane[i].b.slot = 0;
-        if (target == on_floor) {
+        if (target == on_floor || target == on_roof) {
             x = demi_add(middle, at(0, (double)aside.y*3, 2.2));
             v = at(fast*(double)aside.x, fast*(double)aside.y, -fast);
         } else if (target == in_tube || target == on_tube) {
@@ -124,8 +141,8 @@ static void stones_throw(stone_target target, int elastic, uint64_t seed, stone_
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("polyhedra on their like, a plane, tubes and a union: of all impacts none gains 1 in 1000 of its energy, and elastic "
-         "ones lose no more") {
+    TEST("polyhedra on their like, a plane, tubes, a roof of triangles and a union: of all impacts none gains 1 in 1000 of its "
+         "energy, and elastic ones lose no more") {
         const int rounds = getenv("TEST_LONG") ? 160 : 1;
         stone_sum all = {0, 0, 0, 0};
         int target, round;
