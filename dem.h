@@ -1312,7 +1312,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc
    Two push each other by what they share (>>polyhedra), spheres and ellipsoids where they are
    nearest. A contact of two, or with a wall, is told as four (dem_contacts_get): points that its
    force is spread over; counters count it once. With impulses it is as many points as keep the two
-   apart, four at most, each with its own gap (>>gaps). */
+   apart, four at most, each with its own gap (>>gaps); counters count those that push. */
 enum { DEM_POLYHEDRON_FACES = 100 };
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
 /* The hull of a mesh (dem_mesh_read: STL, OBJ), if the mesh lies nowhere deeper inside it than dent
@@ -2665,10 +2665,10 @@ typedef struct demi_link {
     dem_vec3 point;                /* from the body's centre */
 } demi_link;
 
-/* A shape, in its principal frame, per unit of mass and scale. */
 /* One of a union: which of the world's shapes; its centre, m, and its principal axes in the
    union's. */
 typedef struct demi_piece { int32_t shape; dem_vec3 at; dem_quat q; } demi_piece;
+/* A shape, in its principal frame, per unit of mass and scale. */
 typedef struct demi_shape {
     int kind;                      /* of its parts: DEMI_BALL, ...; of a union's first */
     int count;                     /* spheres of a cluster; 0: it is one part */
@@ -5703,6 +5703,12 @@ static double demi_turn_of(const double *x, int a, int b, int c) {
 static int demi_sides_cross(const double *x, int count, int a, int c) {
     const int b = (a + 1)%count, d = (c + 1)%count;
     if (a == c || b == c || d == a) return 0;
+    /* on one line */
+    if (!(fabs(demi_turn_of(x, a, b, c)) > 0) && !(fabs(demi_turn_of(x, a, b, d)) > 0)) {
+        const int k = fabs(x[2*b] - x[2*a]) > fabs(x[2*b + 1] - x[2*a + 1]) ? 0 : 1;
+        return DEMI_MAX(x[2*a + k], x[2*b + k]) >= DEMI_MIN(x[2*c + k], x[2*d + k]) &&
+            DEMI_MAX(x[2*c + k], x[2*d + k]) >= DEMI_MIN(x[2*a + k], x[2*b + k]);
+    }
     return demi_turn_of(x, a, b, c)*demi_turn_of(x, a, b, d) <= 0 &&
         demi_turn_of(x, c, d, a)*demi_turn_of(x, c, d, b) <= 0;
 }
@@ -5777,9 +5783,10 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
     }
     for (i = 0; i < 2*count; i++) {
         x[i] = (double)points[i];
-        if (!demi_finite(points[i])) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g) m, must be finite", call,
-                      i/2, (double)points[i/2*2], (double)points[i/2*2 + 1]);
+        if (!demi_finite(points[i]) || fabs(x[i]) > DEMI_FARTHEST) {
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: point %d is (%g, %g) m, must be finite and "
+                      "between -%g and %g", call, i/2, (double)points[i/2*2],
+                      (double)points[i/2*2 + 1], DEMI_FARTHEST, DEMI_FARTHEST);
             return 0;
         }
     }
@@ -6247,7 +6254,8 @@ static double demi_shape_mass(const dem_world *w, int material, int shape, doubl
         (w->desc.planar ? 1 : scale);
 }
 /* What of an orientation is a rotation in the plane. */
-static dem_quat demi_quat_flat(dem_quat q) {
+static dem_quat demi_quat_flat(dem_quat given) {
+    const dem_quat q = demi_quat_unit(given);
     const dem_real l = DEMI_SQRT(q.w*q.w + q.z*q.z);
     return l > 0 ? dem_quat_make(q.w/l, 0, 0, q.z/l) : dem_quat_make(1, 0, 0, 0);
 }
@@ -12562,7 +12570,7 @@ static void demi_pressure_beyond(const demi_solid *a, const double *n, demi_pres
     const double h = a->plane[0][3];
     int k;
     s->deep = 2;
-    if (s->shared > 0 && s->sum > 0) return;
+    if (s->shared > 0 && demi_dot3(s->force, s->force) > 1e-6*s->sum*s->sum) return;
     memset(s, 0, sizeof *s);
     s->deep = 2;
     s->shared = h*h*h;
@@ -13050,10 +13058,7 @@ static int demi_polytope_take(demi_polytope *p, const demi_lead *w, double tol) 
     int rim[2*DEMI_POLYTOPE][2], count = 0, left = 0, i, k, e;
     if (p->corners == DEMI_POLYTOPE) return 0;
     for (i = 0; i < p->faces; i++) {
-        if (!(demi_dot3(p->face[i].n, w->x) - p->face[i].at > tol)) {
-            p->face[left++] = p->face[i];
-            continue;
-        }
+        if (!(demi_dot3(p->face[i].n, w->x) - p->face[i].at > tol)) { left++; continue; }
         for (k = 0; k < 3; k++) {               /* sides that two of them have go */
             const int from = p->face[i].corner[k], to = p->face[i].corner[(k + 1)%3];
             for (e = 0; e < count && !(rim[e][0] == to && rim[e][1] == from); e++) continue;
@@ -13062,6 +13067,8 @@ static int demi_polytope_take(demi_polytope *p, const demi_lead *w, double tol) 
         }
     }
     if (!count || left + count > 2*DEMI_POLYTOPE) return 0;
+    for (i = 0, left = 0; i < p->faces; i++)
+        if (!(demi_dot3(p->face[i].n, w->x) - p->face[i].at > tol)) p->face[left++] = p->face[i];
     p->at[p->corners] = *w;
     for (e = 0; e < count; e++) demi_polytope_face(p, left + e, rim[e][0], rim[e][1], p->corners);
     p->corners++;
@@ -14013,7 +14020,28 @@ static int demi_facet_nearest(const demi_wall *wall, const int32_t *among, int c
     }
     return 1;
 }
-/* One facet. among: all that are near. */
+/* The points of a body over a facet, on the side where its centre is, as if the facet went on
+   without end. 0: none. */
+static int demi_facet_under(const demi_solid *s, const demi_solid *f, double range,
+                            demi_spots *out) {
+    double x[DEMI_SECTION][3], gap[DEMI_SECTION], up[3];
+    int picked[4], i, k, left = 0, count;
+    count = demi_faces_over(f, demi_dot3(f->plane[0], f->corner[0]) > 0, s, x, gap, up);
+    for (i = 0; i < count; i++) {
+        if (!(gap[i] < range)) continue;
+        memmove(x[left], x[i], sizeof *x);
+        gap[left++] = gap[i];
+    }
+    for (k = 0; k < 3; k++) out->normal[k] = -up[k];
+    out->count = left ? demi_spots_pick(x, gap, left, up, picked) : 0;
+    for (i = 0; i < out->count; i++) {
+        memcpy(out->x[i], x[picked[i]], sizeof *x);
+        out->gap[i] = gap[picked[i]];
+    }
+    return out->count;
+}
+/* One facet. among: all that are near. Deep in it by little beside an edge that goes on, the least
+   way out leads over the edge, into the facet beyond; then it is told as if it had no end. */
 static void demi_element_gaps(const demi_wall *wall, int element, const int32_t *among, int count,
                               const demi_solid *s, dem_vec3 x, double reach, demi_gaps *gaps) {
     static const double anywhere[3] = {0, 0, 0};
@@ -14035,7 +14063,8 @@ static void demi_element_gaps(const demi_wall *wall, int element, const int32_t 
             has[k] = 1;
         }
         if (owns < (strip ? 2 : 3) &&
-            !demi_facet_nearest(wall, among, count, own, owns, spots.normal)) return;
+            !demi_facet_nearest(wall, among, count, own, owns, spots.normal) &&
+            (!(spots.gap[0] < 0) || !demi_facet_under(s, &f, gaps->range, &spots))) return;
     }
     for (i = 0; i < spots.count; i++)
         demi_gaps_add(gaps, element, spots.normal, spots.x[i], spots.gap[i]);
@@ -14191,7 +14220,10 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
 }
 /* Lines of a surface of revolution about z, from radius a to b, height g to h: each with all that
    shares it at its angle. The pyramids' sections along it are pieces on which u is linear. */
-typedef struct demi_generator { double a, b, g, h, side; } demi_generator;
+typedef struct demi_generator {
+    double a, b, g, h, side;
+    int open[2];                   /* 1: at that end the surface stops, or bends away */
+} demi_generator;
 static void demi_generator_press(const demi_solid *s, const demi_generator *l, double angle,
                                  double width, const double *x0, demi_pressure *out) {
     static const double at[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
@@ -14259,24 +14291,54 @@ static int demi_generator_cross(const demi_generator *l, const double *p, const 
             angle[count++] = demi_atan2(p[1] + t[i]*d[1], p[0] + t[i]*d[0]);
     return count;
 }
-/* Piece i of a wall; on the side of it where x, in the wall's frame, is. A cylinder as far as a
-   body of this radius about x goes. */
-static demi_generator demi_generator_of(const demi_wall *wall, int i, dem_vec3 x, dem_real radius) {
+/* Does the surface go on from a ring to another one into the wall, as a piece l's side has it? */
+static int demi_ring_away(const demi_wall *wall, int ring, int to, const demi_generator *l) {
+    const double out = (double)(wall->ring_radius[to] - wall->ring_radius[ring]);
+    const double up = (double)(wall->ring_height[to] - wall->ring_height[ring]);
+    return l->side*((l->h - l->g)*out - (l->b - l->a)*up) > 0;
+}
+/* Piece i of a wall, seen from this side. A cylinder as far as a body of this radius about x goes.
+   */
+static demi_generator demi_generator_of(const demi_wall *wall, int i, dem_vec3 x, dem_real radius,
+                                        double side) {
     demi_generator l;
+    l.open[0] = l.open[1] = 0;
     if (wall->kind == DEMI_WALL_CYLINDER) {
         l.a = l.b = (double)wall->radius;
         l.g = (double)(x.z - radius);
         l.h = (double)(x.z + radius);
         l.side = wall->inside ? 1 : -1;
     } else {
-        const double out = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y);
         l.a = (double)wall->ring_radius[i];
         l.b = (double)wall->ring_radius[i + 1];
         l.g = (double)wall->ring_height[i];
         l.h = (double)wall->ring_height[i + 1];
-        l.side = (l.a - out)*(l.h - l.g) - (l.g - (double)x.z)*(l.b - l.a) > 0 ? 1 : -1;
+        l.side = side;
+        l.open[0] = i == 0 || demi_ring_away(wall, i, i - 1, &l);
+        l.open[1] = i + 2 == wall->ring_count || demi_ring_away(wall, i + 1, i + 2, &l);
     }
     return l;
+}
+/* The side of a surface of revolution on which x is: by the piece nearest to it, of equally near
+   ones by that from whose line it is farthest. */
+static double demi_rings_side(const demi_wall *wall, dem_vec3 x) {
+    const double out = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y);
+    double least = 1e300, far = 0, side = 1;
+    int i;
+    for (i = 0; i + 1 < wall->ring_count; i++) {
+        const double a = (double)wall->ring_radius[i], g = (double)wall->ring_height[i];
+        const double e = (double)wall->ring_radius[i + 1] - a;
+        const double f = (double)wall->ring_height[i + 1] - g;
+        const double u = out - a, v = (double)x.z - g, over = (v*e - u*f)/sqrt(e*e + f*f);
+        double t = (u*e + v*f)/(e*e + f*f), d2;
+        t = t < 0 ? 0 : t > 1 ? 1 : t;
+        d2 = (u - t*e)*(u - t*e) + (v - t*f)*(v - t*f);
+        if (d2 > least*(1 + 1e-9) || (d2 > least*(1 - 1e-9) && !(fabs(over) > fabs(far)))) continue;
+        least = DEMI_MIN(least, d2);
+        far = over;
+        side = over > 0 ? 1 : -1;
+    }
+    return side;
 }
 /* Does a body of this radius about x reach it? */
 static int demi_generator_near(const demi_generator *l, dem_vec3 x, double radius) {
@@ -14331,9 +14393,10 @@ static int demi_angle_order(const void *a, const void *b) {
 }
 /* All of one piece of a surface of revolution: between the angles at which edges of the polyhedron,
    or of its pyramids, cross it, what they share changes smoothly. Seen from inside, where it is
-   convex, only corners reach it, and what leads to them. x: of its centre. */
+   convex, only corners reach it, and what leads to them. x: of its centre; whole: it must not be
+   beyond. */
 static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l, dem_vec3 x,
-                                    int32_t element, demi_flats *flats) {
+                                    int whole, int32_t element, demi_flats *flats) {
     static const double at[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
                                  0.9305681557970263};
     static const double part[4] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
@@ -14348,7 +14411,7 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     demi_pressure press;
     int f, i, k, count = 0, any = 0;
     memset(&press, 0, sizeof press);
-    if (demi_generator_beyond(l, x0, p)) {
+    if (whole && demi_generator_beyond(l, x0, p)) {
         demi_pressure_beyond(s, p, &press);
         demi_flats_add(flats, element, &press);
         return;
@@ -14399,13 +14462,16 @@ static double demi_generator_add(const demi_generator *l, const double *n, const
                                  const double *x, double out, double up, double level,
                                  int32_t element, demi_gaps *gaps) {
     const double e = l->b - l->a, f = l->h - l->g, z = x0[2] + x[2];
-    const double across = sqrt(n[0]*n[0] + n[1]*n[1]);
+    const double across = sqrt(n[0]*n[0] + n[1]*n[1]), size = sqrt(e*e + f*f);
     const double r = across > 0 ? fabs(n[0]*(x0[0] + x[0]) + n[1]*(x0[1] + x[1]))/across
         : sqrt((x0[0] + x[0])*(x0[0] + x[0]) + (x0[1] + x[1])*(x0[1] + x[1]));
     const double gap = out*r + up*z - level, along = (r - l->a)*e + (z - l->g)*f;
     double o[3];
     int k;
     if (along < 0 || along > e*e + f*f) return 1e300;
+    /* deeper than it is far from an end: that one's ring, or the next piece, tells of it */
+    if (gap < 0 && ((l->open[0] && along < -gap*size) ||
+                    (l->open[1] && e*e + f*f - along < -gap*size))) return 1e300;
     for (k = 0; k < 3; k++) o[k] = x[k] + n[k]*gap/2;
     demi_gaps_add(gaps, element, n, o, gap);
     return gap;
@@ -14480,40 +14546,52 @@ static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, de
         demi_generator_add(l, n, x0, s->corner[i], out, up, level, element, gaps);
     }
 }
-/* A ring of a surface of revolution, at the end of a piece: its point nearest to the body, by
-   turns, where neither piece goes on towards the body. */
-static void demi_ring_gaps(const demi_wall *wall, int ring, const demi_solid *s, dem_vec3 x,
-                           demi_gaps *gaps) {
+/* The point of a ring in direction (u, v) from the axis, and the body's point nearest to it: where
+   neither piece that ends in the ring goes on towards the body. How far apart, m; to: q. */
+static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid *s,
+                              const double *x0, double u, double v, int tell, double *to,
+                              demi_gaps *gaps) {
     const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
+    const double size = sqrt(u*u + v*v), c = size > 0 ? u/size : 1, sn = size > 0 ? v/size : 0;
+    const double y[3] = {r*c - x0[0], r*sn - x0[1], z - x0[2]};
+    const double off = demi_solid_near(s, y, to);
+    double n[3], o[3], along;
+    int i, k;
+    if (!tell || !(off < gaps->range) || !(off > 0 || off < 0)) return off;
+    for (k = 0; k < 3; k++) {
+        n[k] = (y[k] - to[k])/off;
+        o[k] = (y[k] + to[k])/2;
+    }
+    for (i = -1; i < 2; i += 2) {
+        const int other = ring + i;
+        if (other < 0 || other >= wall->ring_count) continue;
+        along = (n[0]*c + n[1]*sn)*((double)wall->ring_radius[other] - r) +
+            n[2]*((double)wall->ring_height[other] - z);
+        if (-along > 1e-9*r) return off;
+    }
+    demi_gaps_add(gaps, wall->ring_count - 1 + ring, n, o, off);
+    return off;
+}
+/* A ring of a surface of revolution, at the end of a piece: its point nearest to the body, by
+   turns, and others to both sides, since a face may lie on it. */
+static void demi_ring_gaps(const demi_wall *wall, int ring, const demi_solid *s, dem_vec3 x,
+                           double radius, demi_gaps *gaps) {
+    const double r = (double)wall->ring_radius[ring], reach = (radius + gaps->range)/r;
     const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
-    double u = x0[0], v = x0[1], size, y[3], q[3], n[3], o[3], off = 0;
-    int turn, i, k;
+    double u = x0[0], v = x0[1], q[3], angle, half;
+    int turn;
     for (turn = 0; turn < 40; turn++) {
         const double had[2] = {u, v};
-        size = sqrt(u*u + v*v);
-        y[0] = (size > 0 ? r*u/size : r) - x0[0];
-        y[1] = (size > 0 ? r*v/size : 0) - x0[1];
-        y[2] = z - x0[2];
-        off = demi_solid_near(s, y, q);
-        if (!(off < gaps->range)) return;
+        if (!(demi_ring_point(wall, ring, s, x0, u, v, 0, q, gaps) < gaps->range)) return;
         u = x0[0] + q[0];
         v = x0[1] + q[1];
         if (fabs(u - had[0]) + fabs(v - had[1]) < 1e-12*r) break;
     }
-    if (!(off > 0 || off < 0)) return;
-    for (k = 0; k < 3; k++) n[k] = (y[k] - q[k])/off;
-    for (i = -1; i < 2; i += 2) {               /* the pieces that end here */
-        const int other = ring + i;
-        double along;
-        if (other < 0 || other >= wall->ring_count) continue;
-        size = sqrt((x0[0] + y[0])*(x0[0] + y[0]) + (x0[1] + y[1])*(x0[1] + y[1]));
-        along = size > 0 ? (n[0]*(x0[0] + y[0]) + n[1]*(x0[1] + y[1]))/size : 0;
-        along = along*((double)wall->ring_radius[other] - r) +
-            n[2]*((double)wall->ring_height[other] - z);
-        if (-along > 1e-9*r) return;
-    }
-    for (k = 0; k < 3; k++) o[k] = (y[k] + q[k])/2;
-    demi_gaps_add(gaps, wall->ring_count - 1 + ring, n, o, off);
+    angle = demi_atan2(v, u);
+    half = reach < 1 ? demi_atan2(reach, sqrt(1 - reach*reach)) : DEMI_PI;
+    for (turn = -8; turn <= 8; turn++)
+        demi_ring_point(wall, ring, s, x0, demi_cos(angle + half*turn/8),
+                        demi_sin(angle + half*turn/8), 1, q, gaps);
 }
 /* A cylinder, or a surface of revolution, piece by piece. */
 static int demi_round_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
@@ -14524,6 +14602,7 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
     const int pieces = wall->kind == DEMI_WALL_CYLINDER ? 1 : wall->ring_count - 1;
     const int impulsive = demi_impulsive(w);
     const double range = (double)demi_range(w, part->radius);
+    double side;
     demi_flats flats;
     demi_gaps gaps;
     demi_solid s;
@@ -14538,16 +14617,18 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
         flats.count = gaps.count = 0;
         end = demi_image_end(w, base, k, last);
         if (w->wall_gap[base + k] > gone) continue;
+        side = demi_rings_side(wall, x);
         had = count;
         for (i = 0; i < pieces; i++) {
-            const demi_generator l = demi_generator_of(wall, i, x, part->radius);
+            const demi_generator l = demi_generator_of(wall, i, x, part->radius, side);
             if (wall->kind != DEMI_WALL_CYLINDER &&      /* deep in it, too */
                 !demi_generator_near(&l, x, (double)part->radius + range)) continue;
-            if (!impulsive) demi_solid_on_generator(&s, &l, x, i, &flats);
+            if (!impulsive)
+                demi_solid_on_generator(&s, &l, x, wall->kind == DEMI_WALL_CYLINDER, i, &flats);
             if (range > 0) demi_generator_gaps(&s, &l, x, i, &gaps);
         }
         for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            demi_ring_gaps(wall, i, &s, x, &gaps);
+            demi_ring_gaps(wall, i, &s, x, (double)part->radius, &gaps);
         count += demi_flats_places(&flats, wall, part, at, shift, *places + count);
         count += demi_gaps_places(w, &gaps, wall, part, at, shift, *places + had, count - had,
                                   *places + count);
@@ -16585,7 +16666,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
             beside->gap = pair->compliance > 0 ? 0 : DEMI_MIN(o.gap + DEMI_LEFT*o.size, 0);
         beside->lift = 0;
         beside->mass = 1/(s->movers[m->a].inv + s->movers[m->b].inv);
-        beside->pull = o.gap < (c->push > 0 ? DEM_R(1e-3) : DEM_R(1e-6))*o.size
+        beside->pull = o.gap < (y[6*o.stride] > 0 ? DEM_R(1e-3) : DEM_R(1e-6))*o.size
             ? pair->cohesion/points*dt : 0;
         if (s->twisted) {
             demi_twist *t = s->twists + m->at;
@@ -21269,7 +21350,7 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
         c.candidates += w->domains[d].own + w->domains[d].cross;
         c.contacts += w->domains[d].contacts;
         c.wall_contacts += w->domains[d].kept_walls;
-        for (k = 0; k < w->domains[d].kept && w->bodies.shaped; k++) {
+        for (k = 0; k < w->domains[d].kept && w->bodies.shaped && !demi_impulsive(w); k++) {
             const demi_kept *kept = demi_kept_of(w, d) + k;     /* corners: one contact of four */
             c.wall_contacts -= kept->b < 0 && kept->overlap > 0 && kept->corner;
         }
@@ -23859,7 +23940,8 @@ DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
         for (i = 0; i < s.points; i++) {
             told[i] = (int32_t)world->bodies.slot[s.body[i]];
             told[s.points + i] = world->bodies.material[s.body[i]];
-            for (k = 0; k < n; k++) reals[n*i + k] = world->bodies.reals[n*s.body[i] + k];
+            for (k = 0; k < n; k++)
+                reals[(size_t)n*(size_t)i + (size_t)k] = world->bodies.reals[n*s.body[i] + k];
         }
         {
             const int points = (int)s.points;

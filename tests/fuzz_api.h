@@ -270,7 +270,7 @@ static dem_world_desc fuzz_desc(fuzz_machine *m, int threads) {
     if (!fuzz_below(m, 4)) d.dt = DEM_R(4e-6);
     d.allow_large_dt = !fuzz_below(m, 6);
     if (fuzz_below(m, 2)) d.impact_speed = 1;
-    d.search = (dem_search)fuzz_below(m, 5);
+    d.search = (dem_search)fuzz_below(m, 6);
     if (!fuzz_below(m, 3)) d.skin = fuzz_below(m, 3) ? DEM_R(3e-4) : DEM_R(-1);
     d.rotation = (dem_rotation)fuzz_below(m, 3);
     d.ellipsoid_overlap = (dem_overlap)fuzz_below(m, 3);
@@ -285,12 +285,15 @@ static dem_world_desc fuzz_desc(fuzz_machine *m, int threads) {
         d.dt = fuzz_below(m, 2) ? DEM_R(1e-4) : DEM_R(5e-4);
         if (fuzz_below(m, 2)) d.tolerance = DEM_R(1e-6);
         if (!fuzz_below(m, 3)) d.sweeps = 1 + fuzz_below(m, 30);
+        d.cold_start = !fuzz_below(m, 3);
+        if (!fuzz_below(m, 4)) d.law_range = DEM_R(3e-4);
         if (fuzz_below(m, 2)) d.orientations = 1;
         d.integrator = (dem_integrator)0;
         d.law = 0;
         d.law_memory = d.law_vectors = 0;
         d.law_stiffness = 0;
     }
+    if (d.planar && fuzz_below(m, 2)) d.thickness = DEM_R(1e-3);
     d.allocator.alloc_fn = fuzz_alloc;
     d.allocator.free_fn = fuzz_free;
     d.allocator.user = m->memory;
@@ -306,14 +309,14 @@ static void fuzz_open(fuzz_machine *m, uint32_t seed, int threads) {
     fuzz_say(m, "world: threads %d, gravity (%g 0 %g), domain %g..%g, boundary %d %d %d, planar %d, laws %d %d %d, "
              "tension %d, convention %d, own law %d, own force %d, integrator %d, dt %g, large %d, impact %g, "
              "search %d, skin %g, rotation %d, overlap %d, sharing %d, orientations %d, ledger %d, impulses %d, "
-             "solver %d, cone %d, sweeps %d, tolerance %g\n", threads,
+             "solver %d, cone %d, sweeps %d, tolerance %g, cold %d, range %g\n", threads,
              (double)d.gravity.x, (double)d.gravity.z, (double)d.domain.lo.x, (double)d.domain.hi.x,
              (int)d.boundary[0], (int)d.boundary[1], (int)d.boundary[2], d.planar, (int)d.normal_law,
              (int)d.tangent_law, (int)d.rolling_law, (int)d.tension, (int)d.convention, d.law != 0,
              d.force != 0, (int)d.integrator, (double)d.dt, d.allow_large_dt, (double)d.impact_speed,
              (int)d.search, (double)d.skin, (int)d.rotation, (int)d.ellipsoid_overlap,
              (int)d.cluster_contacts, d.orientations, d.ledger, m->impulses, (int)d.solver, (int)d.cone, d.sweeps,
-             (double)d.tolerance);
+             (double)d.tolerance, d.cold_start, (double)d.law_range);
 }
 
 /* ---- calls: materials and shapes ---- */
@@ -391,6 +394,44 @@ static void fuzz_polyhedron(fuzz_machine *m) {
     }
     fuzz_say(m, "dem_shape_polyhedron_add: %d points, %d", n, how);
     if (fuzz_id(m, dem_shape_polyhedron_add(m->world, n, x).id)) m->shapes++;
+}
+static dem_shape fuzz_shape(fuzz_machine *m) {
+    dem_shape id;
+    id.id = m->shapes ? 1 + fuzz_below(m, m->shapes) : 1;
+    return id;
+}
+/* Several shapes as one; refused where one is a cluster or a union. */
+static void fuzz_union(fuzz_machine *m) {
+    dem_shape which[5];
+    dem_real x[3*5], q[4*5];
+    const int n = 1 + fuzz_below(m, 5), turned = fuzz_below(m, 2), flat = fuzz_below(m, 3);
+    int i;
+    for (i = 0; i < n; i++) {
+        const dem_vec3 v = fuzz_vector(m, -8e-4, 8e-4);
+        const dem_quat t = fuzz_turn(m);
+        which[i] = fuzz_shape(m);
+        x[3*i] = v.x; x[3*i + 1] = v.y; x[3*i + 2] = flat ? v.z : 0;
+        q[4*i] = t.w; q[4*i + 1] = flat ? t.x : 0; q[4*i + 2] = flat ? t.y : 0; q[4*i + 3] = t.z;
+    }
+    fuzz_say(m, "dem_shape_union_add: %d shapes, turned %d, flat %d", n, turned, !flat);
+    if (fuzz_id(m, dem_shape_union_add(m->world, n, which, x, turned ? q : 0).id)) m->shapes++;
+}
+/* A star, either way round, seldom one whose sides cross; its pieces are shapes, too. */
+static void fuzz_polygon(fuzz_machine *m) {
+    dem_real x[2*DEM_POLYHEDRON_FACES];
+    const int n = 3 + fuzz_below(m, fuzz_below(m, 3) ? 10 : 98), back = fuzz_below(m, 2), how = fuzz_below(m, 5);
+    dem_shape id;
+    int i;
+    for (i = 0; i < n; i++) {
+        const double r = how == 1 ? 1e-3 : (double)fuzz_real(m, 3e-4, 1.2e-3);
+        const double a = (back ? -1 : 1)*6.283185307179586*i/n;
+        x[2*i] = (dem_real)(r*cos(a)); x[2*i + 1] = (dem_real)(r*sin(a));
+        if (how == 2 && i && !fuzz_below(m, 8)) { x[2*i] = x[2*i - 2]; x[2*i + 1] = x[2*i - 1]; }
+        if (how == 3) x[2*i] = fuzz_real(m, -1e-3, 1e-3);
+    }
+    fuzz_say(m, "dem_shape_polygon_add: %d points, back %d, %d", n, back, how);
+    id = dem_shape_polygon_add(m->world, n, x);
+    if (fuzz_id(m, id.id)) m->shapes = id.id;
 }
 
 /* ---- calls: walls ---- */
@@ -657,11 +698,6 @@ static void fuzz_pack(fuzz_machine *m) {
     fuzz_say(m, "dem_spheres_pack %d radius %.9g padding %g inside %d count %d", (int)stuff.id, (double)r,
              (double)padding, inside, count);
     fuzz_count(m, dem_spheres_pack(m->world, stuff, r, padding, box, inside ? fuzz_inside : 0, 0, count));
-}
-static dem_shape fuzz_shape(fuzz_machine *m) {
-    dem_shape id;
-    id.id = m->shapes ? 1 + fuzz_below(m, m->shapes) : 1;
-    return id;
 }
 static void fuzz_body_add(fuzz_machine *m) {
     const dem_material stuff = fuzz_material(m);
@@ -1041,8 +1077,9 @@ static int fuzz_moldyn_result(fuzz_machine *m, const moldyn *d, dem_result r) {
     return r == DEM_OK;
 }
 static void fuzz_files(fuzz_machine *m) {
-    static const char *const names[] = {".vtp", ".vtk", ".xyz", ".walls.vtp", ".csv", ".xb", ".str"};
-    const int what = fuzz_below(m, 7);
+    static const char *const names[] = {".vtp", ".vtk", ".xyz", ".walls.vtp", ".csv", ".xb", ".str",
+                                        ".surfaces.vtp"};
+    const int what = fuzz_below(m, 8);
     dem_result r = DEM_OK;
     const dem_wall wall = fuzz_wall(m);
     moldyn d = MOLDYN;
@@ -1057,7 +1094,8 @@ static void fuzz_files(fuzz_machine *m) {
     if (what == 4) r = dem_wall_loads_csv(m->world, wall, path);
     if (what == 5) r = moldyn_xb_append(&d, m->world, path, dem_box_make(0, 0, 0, 1, 1, 1));
     if (what == 6) r = moldyn_str_append(&d, m->world, path, 1e-3, 10, &wall, 1);
-    if (what < 5 ? fuzz_result(m, r) : fuzz_moldyn_result(m, &d, r)) fuzz_note_file(m, path);
+    if (what == 7) r = dem_surfaces_vtp_write(m->world, path);
+    if (what != 5 && what != 6 ? fuzz_result(m, r) : fuzz_moldyn_result(m, &d, r)) fuzz_note_file(m, path);
     remove(path);
 }
 static void fuzz_moldyn(fuzz_machine *m) {
@@ -1425,6 +1463,8 @@ static const struct fuzz_kind { const char *name; void (*play)(fuzz_machine *m);
     {"ellipsoid", fuzz_ellipsoid, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_SHAPES},
     {"cluster", fuzz_cluster, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_SHAPES},
     {"polyhedron", fuzz_polyhedron, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_SHAPES},
+    {"union", fuzz_union, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_SHAPES},
+    {"polygon", fuzz_polygon, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_SHAPES},
     {"plane", fuzz_plane, 4, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
     {"cylinder", fuzz_cylinder, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
     {"profile", fuzz_profile, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},

@@ -156,6 +156,35 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
+    TEST("polygons with sides on one line, as a U, a plus, an E and a comb of 98 corners have them, are cut, too; those whose "
+         "sides lie on each other are refused") {
+        const dem_real u[16] = {0, 0, 3, 0, 3, 3, 2, 3, 2, 1, 1, 1, 1, 3, 0, 3};
+        const dem_real plus[24] = {1, 0, 2, 0, 2, 1, 3, 1, 3, 2, 2, 2, 2, 3, 1, 3, 1, 2, 0, 2, 0, 1, 1, 1};
+        const dem_real e[24] = {0, 0, 3, 0, 3, 1, 1, 1, 1, 2, 3, 2, 3, 3, 1, 3, 1, 4, 3, 4, 3, 5, 0, 5};
+        const dem_real back[10] = {0, 0, 2, 0, 2, 1, 2, 0, 0, 1};
+        dem_real comb[196];
+        dem_material m;
+        dem_world *w = flat(0, 0, &m, 1, 0);
+        dem_shape_info info;
+        int k;
+        CHECK_EQ(dem_shape_get(w, dem_shape_polygon_add(w, 8, u), &info), DEM_OK);
+        CHECK_REL((double)info.volume, 7*0.01, fine ? 1e-12 : 1e-5);
+        CHECK_EQ(dem_shape_get(w, dem_shape_polygon_add(w, 12, plus), &info), DEM_OK);
+        CHECK_REL((double)info.volume, 5*0.01, fine ? 1e-12 : 1e-5);
+        CHECK_EQ(dem_shape_get(w, dem_shape_polygon_add(w, 12, e), &info), DEM_OK);
+        CHECK_REL((double)info.volume, 11*0.01, fine ? 1e-12 : 1e-5);
+        comb[0] = 0; comb[1] = 0; comb[2] = 48; comb[3] = 0;
+        for (k = 0; k < 96; k++) {              /* 24 teeth, from the right */
+            comb[4 + 2*k] = (dem_real)(48 - (k + 1)/2);
+            comb[5 + 2*k] = k/2%2 ? 1 : 3;
+        }
+        CHECK_EQ(dem_shape_get(w, dem_shape_polygon_add(w, 98, comb), &info), DEM_OK);
+        CHECK_REL((double)info.volume, (48*1 + 24*2)*0.01, fine ? 1e-12 : 1e-5);
+        CHECK(!dem_shape_polygon_add(w, 5, back).id);
+        CHECK_STR(dem_world_error(w), "cross or touch");
+        dem_world_destroy(w);
+    }
+
     TEST("unions: two half bricks have the whole one's mass and moments; clusters, unions and bad places are refused by "
          "name") {
         dem_world_desc desc = DEM_WORLD_DESC;

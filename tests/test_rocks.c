@@ -238,7 +238,7 @@ int main(int argc, char **argv) {
             const double angle = 6.2831*scene_random(&random);
             const double out = kind == 1 ? 0.03 + 0.004*scene_random(&random) : 0.05 + 0.006*scene_random(&random);
             const dem_vec3 x = at(out*cos(angle), out*sin(angle), kind == 2 ? 0.13 : 0.01);
-            demi_generator l = {0.04, 0.04, -0.1, 0.1, -1};
+            demi_generator l = {0.04, 0.04, -0.1, 0.1, -1, {0, 0}};
             double gap, wanted;
             int points;
             if (kind == 1) l.side = 1;
@@ -310,6 +310,70 @@ int main(int argc, char **argv) {
                 else CHECK_NEAR(corner ? rise : (double)s.velocity.z, 0.25*k, fine ? 1e-9 : 1e-3);
                 if (!corner) CHECK_NEAR((double)demi_length(s.spin), 0, fine ? 1e-9 : 0.1);
                 else CHECK((double)demi_length(s.spin) > 1);
+                dem_world_destroy(w);
+            }
+    }
+
+    TEST("rocks: a cube on its edge, a needle and a tetrahedron on its corner, a little in a floor of two triangles and on or "
+         "near the edge between them, stay on it as on a plane") {
+        int pose, k, depth;
+        for (pose = 0; pose < 3; pose++)
+            for (depth = 0; depth < 3; depth++)
+                for (k = 0; k < 4; k++) {
+                    static const double off[4] = {0, 3e-7, 3e-5, 1e-2};
+                    const double deep = depth == 0 ? 1e-9 : depth == 1 ? 1e-6 : 1e-4, half = 0.01, pi = 3.14159265358979;
+                    const dem_real spike[12] = {0, 0, DEM_R(-0.01), DEM_R(0.01), DEM_R(0.01), DEM_R(0.01), DEM_R(-0.01), DEM_R(0.01),
+                                                DEM_R(0.011), 0, DEM_R(-0.01), DEM_R(0.01)};
+                    dem_real v[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+                    int32_t t[6] = {0, 1, 2, 0, 2, 3};
+                    dem_mesh mesh;
+                    dem_material m;
+                    dem_world *w = rigid_to(1e-9, earth, 0, 0.5, &m);
+                    const dem_quat along = dem_quat_about(at(0, 0, 1), (dem_real)(pi/4));
+                    const dem_quat q = pose == 2 ? straight : dem_quat_times(along, dem_quat_about(at(1, 0, 0), (dem_real)(pi/4)));
+                    const dem_shape shape = pose == 2 ? dem_shape_polyhedron_add(w, 4, spike)
+                        : box_add(w, pose ? 0.1 : 2*half, 2*half, 2*half);
+                    dem_shape_info info;
+                    dem_body b;
+                    double most;
+                    mesh.vertex_count = 4; mesh.triangle_count = 2; mesh.vertices = v; mesh.triangles = t;
+                    dem_mesh_add(w, m, &mesh);
+                    dem_shape_get(w, shape, &info);
+                    b = dem_body_add(w, m, shape, pose == 2
+                                     ? at(0.2 + off[k] + (double)info.centre.x, 0.2 + (double)info.centre.y,
+                                          half - deep + (double)info.centre.z)
+                                     : at(0.2 + off[k], 0.2, half*sqrt(2.0) - deep), q);
+                    most = (double)scene_state(w, b).position.z;
+                    CHECK_EQ(scene_step(w, 400), DEM_OK);
+                    CHECK((double)scene_state(w, b).position.z > (pose == 2 ? 0.3 : 0.99)*half);     /* it may tip over */
+                    CHECK((double)scene_state(w, b).position.z < most + (fine ? 1e-6 : 1e-4) + 2*deep);
+                    dem_world_destroy(w);
+                }
+    }
+
+    TEST("rocks: a plate that falls onto the rim of a tube, thin, thick or of a cone, comes to rest on it or falls off it, and "
+         "is nowhere deep in it") {
+        int kind, k;
+        for (kind = 0; kind < 3; kind++)
+            for (k = 0; k < 5; k++) {
+                static const double off[5] = {-1e-3, -1e-5, 1e-5, 5e-4, 1e-3};
+                const dem_real r[3][4] = {{DEM_R(0.04), DEM_R(0.04)}, {DEM_R(0.04), DEM_R(0.04), DEM_R(0.042), DEM_R(0.042)},
+                                          {DEM_R(0.01), DEM_R(0.05)}};
+                const dem_real z[3][4] = {{DEM_R(-0.05), 0}, {DEM_R(-0.05), 0, 0, DEM_R(-0.05)}, {DEM_R(-0.04), 0}};
+                dem_material m;
+                dem_world *w = rigid_to(1e-7, earth, 0.2, 0.5, &m);
+                dem_body b;
+                int i, deep = 0;
+                CHECK(dem_revolved_add(w, m, at(0, 0, 0), at(0, 0, 1), kind == 1 ? 4 : 2, r[kind], z[kind]).id);
+                b = dem_body_add(w, m, box_add(w, 0.006, 0.006, 0.004), at((kind == 2 ? 0.05 : 0.04) + off[k], 0, 2.3e-3), straight);
+                dem_world_dt_set(w, DEM_R(1e-4));
+                for (i = 0; i < 400; i++) {
+                    if (scene_step(w, 1) != DEM_OK) break;
+                    deep += (double)dem_counters_get(w).overlap_max > 0.3;
+                }
+                CHECK_EQ(i, 400);
+                CHECK_EQ(deep, 0);
+                CHECK((double)demi_length(scene_state(w, b).velocity) < 1);
                 dem_world_destroy(w);
             }
     }
