@@ -216,8 +216,8 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
-    TEST("unions: elastic Ls, stars and a disc in a box keep their energy, the better the smaller the step; so do unions of "
-         "bricks and an ellipsoid in space") {
+    TEST("unions: elastic crosses of bricks and an ellipsoid, and a ball, keep their energy, the better the smaller the step; "
+         "Ls, stars and a disc in the plane within 1 in 1000") {
         double error[2];
         int k, space;
         for (space = 0; space < 2 && fine; space++) {
@@ -267,8 +267,8 @@ int main(int argc, char **argv) {
                 if (getenv("POLYGONS_NUMBERS")) printf("%s, dt %g: %g\n", space ? "space" : "plane", (double)desc.dt, error[k]);
                 dem_world_destroy(w);
             }
-            CHECK(error[1] < 2e-3);
-            CHECK(error[1] < error[0]);
+            CHECK(error[0] < 1e-3 && error[1] < 1e-3);
+            if (space) CHECK(error[1] < error[0] && error[1] < 1e-6);
         }
         CHECK(1);
     }
