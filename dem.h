@@ -18792,7 +18792,7 @@ static int demi_feed_sizes(dem_world *w, const char *call, demi_feed *f, int k) 
 }
 /* A share of the number of class k is finer than this, m. */
 static double demi_feed_size(const demi_feed *f, int k, double share) {
-    const double step = demi_log(f->hi[k]/f->lo[k])/DEMI_FEED_SIZES, *finer = f->finer[k];
+    const double step = demi_log(f->hi[k]/f->lo[k])/(int)DEMI_FEED_SIZES, *finer = f->finer[k];
     int lo = 0, hi = DEMI_FEED_SIZES;
     double a, b;
     if (!(f->hi[k] > f->lo[k]) || share < finer[0]) return f->lo[k];
@@ -22715,7 +22715,7 @@ static int demi_mould_make(dem_world *w, demi_mould *m, const double *lo, const 
     double most = 0, x[3];
     int i, e, inside = 0, seen = 0;
     for (e = 0; e < 3; e++) most = DEMI_MAX(most, hi[e] - lo[e]);
-    m->step = most/DEMI_GRAIN_CELLS;
+    m->step = most/(int)DEMI_GRAIN_CELLS;
     for (e = 0, m->count = 1; e < 3; e++) {
         m->n[e] = (int)ceil((hi[e] - lo[e])/m->step) + 6;
         m->lo[e] = (lo[e] + hi[e])/2 - m->step*(m->n[e]/2.0 + 0.0123*(e + 1));     /* off corners */
@@ -23863,7 +23863,7 @@ static void demi_surface_round(demi_surfaces *s, const dem_world *w, int body, d
         const int ring = (i + DEMI_ROUND_SIDES - 1)/DEMI_ROUND_SIDES;
         const int side = (i - 1)%DEMI_ROUND_SIDES;
         const double polar = DEMI_PI*ring/(DEMI_ROUND_RINGS + 1);
-        const double round = 2*DEMI_PI*side/DEMI_ROUND_SIDES, out = demi_sin(polar);
+        const double round = 2*DEMI_PI*side/(int)DEMI_ROUND_SIDES, out = demi_sin(polar);
         dem_vec3 x = demi_v(a.x*(dem_real)(out*demi_cos(round)),
                             a.y*(dem_real)(out*demi_sin(round)), a.z*(dem_real)demi_cos(polar));
         if (p->kind != DEMI_BALL) x = dem_quat_rotate(p->q, x);
