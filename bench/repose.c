@@ -123,7 +123,7 @@ static int heap(const char *kind, int seed, struct told *told) {
     const int round = !strcmp(kind, "spheres"), spheres = atoi(kind + 5), count = asked.count;
     const double size = cbrt(count/2000.0), radius = 25e-3*size;            /* the tube's, m */
     const double length = 18*edge*sqrt(count/2000.0), width = 8*edge;       /* the shelf's, m */
-    const double from = asked.tube ? 0.45 : 0.4, end = from + (asked.tube ? 0.95 : 0.4 + 0.3*sqrt(count/2000.0));   /* s */
+    const double from = asked.tube ? 0.45 : 0.4, end = from + (asked.tube ? 0.95 : 0.6 + 0.6*sqrt(count/2000.0));   /* s */
     const dem_real same = (dem_real)(edge*0.6203504908994);         /* m, radius of the sphere of its volume */
     const double tall = count*pow(edge, 3)/(asked.tube ? 0.055*pow(1.36*radius, 2) : 0.09*length*width);
     const double side = asked.tube ? 0.68*radius : 0;
