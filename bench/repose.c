@@ -1,11 +1,12 @@
-/* repose.c - angles of repose of spheres, of cubes as polyhedra and of cubes made of spheres, by springs or by impulses,
-   and what each costs.
+/* repose.c - angles of repose of spheres, of cubes as polyhedra and of cubes made of spheres, by springs or by
+   impulses, and what each costs.
 
-   shelf: a shelf with a wall behind, a rod half let into it along its front edge, and the next shelf beside it on either
-          side (periodic) is filled behind a gate; the gate is drawn up, and what does not stay runs over the rod and is
-          taken out. What stays is one slope from the wall to the rod, as in Zhou's experiment, and neither the floor's
-          friction nor the run of a falling pile decides it. Told: the straight line through the highest grains from 20 to
-          80 % of its height.
+   shelf: a shelf with a wall behind, a rod half let into it along its front edge, and the next shelf beside it on
+          either side (periodic) is filled behind a gate; the gate is drawn up, and what does not stay runs over the rod
+          and is taken out. What stays is one slope from the wall to the rod, and neither the floor's friction nor the
+          run of a falling pile decides it. Told: the straight line through the highest grains from 20 to 80 % of its
+          height ("flank"), and the angle whose tangent is the height of the centre of mass above the lowest layer over
+          its distance from the wall ("by the centre of mass": low, since the layer behind the rod counts, but steady).
    tube:  a tube on a floor is filled and then drawn up; told: the slope of the cone with the heap's centre of mass and
           mean distance from its axis, as in examples/heap.c, and that of its flank.
 
@@ -35,7 +36,7 @@ static struct {
     double step, friction, rolling;
     int sweeps;
 } asked = {0, 0, 2000, 1, 1, 0, 0, 0.5, 0.05, 0};
-struct told { double slope, cone, error, time, sweeps, overlap, kinetic, left; };
+struct told { double slope, cone, error, time, overlap, unsolved, kinetic, left; };
 
 /* A cube as a polyhedron (spheres 0), or as so many spheres with the cube's own mass and moments. */
 static dem_shape cube(dem_world *world, int spheres, dem_spheres_fit *fit) {
@@ -123,7 +124,8 @@ static int heap(const char *kind, int seed, struct told *told) {
     const int round = !strcmp(kind, "spheres"), spheres = atoi(kind + 5), count = asked.count;
     const double size = cbrt(count/2000.0), radius = 25e-3*size;            /* the tube's, m */
     const double length = 18*edge*sqrt(count/2000.0), width = 8*edge;       /* the shelf's, m */
-    const double from = asked.tube ? 0.45 : 0.4, end = from + (asked.tube ? 0.95 : 0.6 + 0.6*sqrt(count/2000.0));   /* s */
+    const double from = asked.tube ? 0.45 : 0.4;                            /* s: when it opens, and when all rests */
+    const double end = from + (asked.tube ? 0.95 : 0.6 + 0.6*sqrt(count/2000.0));
     const dem_real same = (dem_real)(edge*0.6203504908994);         /* m, radius of the sphere of its volume */
     const double tall = count*pow(edge, 3)/(asked.tube ? 0.055*pow(1.36*radius, 2) : 0.09*length*width);
     const double side = asked.tube ? 0.68*radius : 0;
@@ -194,9 +196,8 @@ static int heap(const char *kind, int seed, struct told *told) {
         high += (double)x[2];
         inside++;
     }
-    /* a cone: its height is 4 times that of its centre of mass, its radius 3/2 of the mean distance; a wedge: both 3 times */
-    told->cone = atan(asked.tube ? 4*(high/inside - (double)same)/(2*out/inside) : (high/inside - (double)same)/(out/inside))
-                 /degree;
+    /* a cone: height 4 times that of its centre of mass, radius 3/2 of the mean distance; a wedge: both 3 times */
+    told->cone = atan((asked.tube ? 2 : 1)*(high/inside - (double)same)/(out/inside))/degree;
     if (!asked.tube) told->slope = line(world, length, width, &told->error);
     else if (dem_repose_heap(world, (dem_box){{0, 0, 0}, {0, 0, 0}}, &flank) == DEM_OK) {
         told->slope = flank.angle/degree;
@@ -205,11 +206,12 @@ static int heap(const char *kind, int seed, struct told *told) {
     told->left = inside;
     told->kinetic = (dem_totals_get(world).kinetic + dem_totals_get(world).rotational)/dem_totals_get(world).mass;
     told->overlap = (double)dem_counters_get(world).overlap_max;
-    printf("%-9s seed %d: flank %.1f +- %.1f, by the centre of mass %.1f degrees; %.0f grains; %.1f s/s; kinetic %.1e J/kg; "
-           "overlap %.3f, "
-           "%.2f of the steps unsolved%s", kind, seed, told->slope, told->error, told->cone, told->left, told->time, told->kinetic,
-           told->overlap, (double)dem_counters_get(world).unsolved/(double)dem_counters_get(world).steps, spheres && seed == asked.seed ? "" : "\n");
-    if (spheres && seed == asked.seed) printf("; wrong volume %.3f\n", (double)fit.wrong);
+    told->unsolved = (double)dem_counters_get(world).unsolved/(double)dem_counters_get(world).steps;
+    printf("%-9s seed %d: flank %.1f +- %.1f, by the centre of mass %.1f degrees; %.0f grains; %.1f s/s; kinetic %.1e "
+           "J/kg; overlap %.3f, %.2f of the steps unsolved", kind, seed, told->slope, told->error, told->cone, told->left,
+           told->time, told->kinetic, told->overlap, told->unsolved);
+    if (spheres && seed == asked.seed) printf("; wrong volume %.3f", (double)fit.wrong);
+    puts("");
     fflush(stdout);
     dem_world_destroy(world);
     return 0;
