@@ -13815,8 +13815,10 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
    Where polyhedra touch walls: what >>polyhedra says of each flat piece, in the wall's frame, and
    of each line of a surface of revolution. Surfaces whose normals differ by more than 18 degrees
    are contacts of their own, with all the wall's overlap, and as much of its energy as they have of
-   its force; each is four places, the corners that its pressure is spread over. Then the table of
-   who touches what.
+   its force; each is four places, the corners that its pressure is spread over. A surface is seen
+   from one side, that of the facet, or piece, nearest to the body's centre. For impulses, and for
+   laws with a range where nothing presses, it is told by gaps in their place (>>gaps), by up to four
+   points a direction. Then the table of who touches what.
    --------------------------------------------------------------------------------------------- */
 
 /* Pressures on one wall, by the direction of their surfaces. */
