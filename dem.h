@@ -13817,8 +13817,8 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
    are contacts of their own, with all the wall's overlap, and as much of its energy as they have of
    its force; each is four places, the corners that its pressure is spread over. A surface is seen
    from one side, that of the facet, or piece, nearest to the body's centre. For impulses, and for
-   laws with a range where nothing presses, it is told by gaps in their place (>>gaps), by up to four
-   points a direction. Then the table of who touches what.
+   laws with a range where nothing presses, it is told by gaps in their place (>>gaps), by up to
+   four points a direction. Then the table of who touches what.
    --------------------------------------------------------------------------------------------- */
 
 /* Pressures on one wall, by the direction of their surfaces. */
