@@ -25,11 +25,12 @@ static const char win[] =
     " 0.0000 -1.0000  0.0000  0.0855  0.1715  0.0855\n"
     " 0.0000  0.0000  1.0000  0.0855  0.0855 -0.0005\n"
     " 0.0000  0.0000 -1.0000  0.0855  0.0855  0.1715\n";
-/* a triangle and, clockwise, an L; two Ls (one of twice its size), a disc, a triangle that stands, one that moves */
+/* a triangle and, clockwise, an L; two Ls (one of twice its size), a disc, a triangle that stands, one that moves,
+   whose radius times .91 over its radius is not .91, in either precision */
 static const char polygon_pin[] =
     "polygons 2\n3\n0 0\n.02 0\n0 .01\n"
     "6\n0 0\n0 .02   # clockwise\n.006 .02\n.006 .006\n.02 .006\n.02 0\n"
-    "5\n.01 .02 .1 0 .3 1 .7 1 1\n-.02 .03 0 0 0 0 .005 1 0\n.05 .1 0 0 .5 0 2 1 2\n"
+    "5\n.01 .02 .1 0 .3 1 .91 1 1\n-.02 .03 0 0 0 0 .005 1 0\n.05 .1 0 0 .5 0 2 1 2\n"
     "-.06 .05 0 0 2.5 0 1.3 0 1\n.1 .02 0 0 9 3 1 1 2\n";
 /* a floor and a tooth, and an open chute */
 static const char polygon_win[] =
@@ -392,6 +393,9 @@ int main(int argc, char **argv) {
         memcpy(before, m.grains, 14*5*sizeof *before);
         CHECK_EQ(moldyn_take(&m, a), DEM_OK);    /* at once: as they were, to the last bit */
         CHECK(memcmp(before, m.grains, 14*5*sizeof *before) == 0);
+        CHECK_EQ(dem_world_step(a, 1), DEM_OK);  /* a turn of 5e-6 rad is one */
+        CHECK_EQ(moldyn_take(&m, a), DEM_OK);
+        CHECK_NEAR((double)m.grains[8] - (double)before[8], 5e-6, sizeof(dem_real) == 8 ? 1e-12 : 1e-6);
         CHECK_EQ(dem_world_run(a, 0.1, 0, 0), DEM_OK);
         CHECK_EQ(moldyn_take(&m, a), DEM_OK);
         for (i = 0; i < 5; i++) {
@@ -714,6 +718,9 @@ int main(int argc, char **argv) {
         CHECK_EQ(m.grain_count, 6);
         CHECK_EQ(m.kinds[5], 1);
         CHECK_REL((double)m.grains[14*5 + 12], 0.75, sizeof(dem_real) == 8 ? 1e-14 : 1e-6);
+        CHECK_EQ(parse(&m, MOLDYN_PARTICLES, polygon_pin), DEM_OK);
+        CHECK_EQ(moldyn_take(&m, w), DEM_ERROR_ARGUMENT);   /* these have not been added yet */
+        CHECK_STR(m.error, "6 bodies are not spheres");
         moldyn_free(&m);
         dem_world_destroy(w);
         dem_world_destroy(other);
