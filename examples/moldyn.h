@@ -26,9 +26,31 @@
    centre); the appendix shows no such file, so this is our reading. Numbers are decimal, with a
    point whatever the locale says, within +-1e15. # begins a comment.
 
+   Polygons, in a plane. MOLDYN has convex and concave ones, says [ALK07] 2.4.2, and walls given by
+   their end points, but the appendix shows no file with any: this, too, is our reading. A .pin or
+   .win may begin with outlines; what comes after them is as above. A number of outlines; then for
+   each the number of its corners, and a row x y (m) a corner, in turn, either way round, each once:
+     .pin  polygons 2                     .win  polygons 1      # closed: last corner to first
+           3                                    4
+           0 0                                  -1 0
+           .02 0                                ... three more corners
+           0 .01                                chains 1        # open
+           6                                    2
+           ... six corners, two kinds           0 0
+           1                                    .1 .02
+           0 .1 0 0 .5 0 1 1 2                  0 .003          # no straight walls
+   Rows of grains have a ninth number then: 0 for a disc, else which polygon, counted from 1. Its
+   seventh is the factor of all lengths of that polygon (1: as it is listed), its place that of the
+   centre of mass, its angle (rad, anticlockwise) from how it is listed. Polygons of grains have
+   3 to 98 corners (dem_shape_polygon_add), those of walls 3 to 1000, chains 2 to 1000; none may
+   cross or touch itself. The corners of walls are their surface (the thickness of walls is that of
+   straight ones), and both sides push (dem_profile_add). A chain is a sheet: a polygon can hang on
+   its sharp ends, and gain energy there; where grains meet ends, give a closed part a thickness.
+
    Not in the files, so chosen here: Poisson's ratio is 0.25, which sets the tangential stiffness to
    0.857 of the normal one. Angles are read and written, but a sphere has no use for them. The
-   viewers' figures in the appendix are those of a plane, although its text speaks of space.
+   viewers' figures in the appendix are those of a plane, although its text speaks of space. Neither
+   viewer's file has outlines: a polygon is the disc of its area in .xb, place and turn in .str.
 
    Errors. A function that can fail returns a dem_result and leaves one sentence in moldyn.error:
    the call, the file and line or the value, the limit, the likely cause, the remedy.
@@ -59,7 +81,15 @@
 #define MOLDYN_FORMAT(f, a)
 #endif
 
-/* A scene. Zero is the default of every field; required are only those said to be. */
+/* Outlines, one after another: outline i has the corners from ends[i - 1] (the first: 0) to before
+   ends[i]. */
+typedef struct moldyn_outlines {
+    int count;
+    int *ends;                       /* count, ascending */
+    dem_real *corners;               /* ends[count - 1] x 2, m */
+} moldyn_outlines;
+/* A scene. Zero is the default of every field; required are only those said to be. Arrays come from
+   malloc, and moldyn_free frees them. */
 typedef struct moldyn {
     double start, end, dt;           /* s; times.t0, tend (required), dt (required, > 0) */
     double gravity;                  /* m/s2, upwards; control.grav */
@@ -79,23 +109,34 @@ typedef struct moldyn {
     dem_real *grains;                /* grain_count x 14: place (m), velocity (m/s), angles, spin
                                         (rad/s), radius (m), 1 if it moves; axes of dem.h */
     dem_real *walls;                 /* wall_count x 6: normal (any length but 0), centre (m) */
+    moldyn_outlines polygons;        /* of grains; planar scenes only, as the next three are */
+    int *kinds;                      /* grain_count: 0: a disc; k: the k-th of polygons, counted
+                                        from 1, and what is its radius above is the factor of its
+                                        lengths. Null: all are discs */
+    moldyn_outlines parts, chains;   /* walls: closed ones, open ones */
 
     double origin;                   /* s, file's time when the clock of a world stands at 0: a
                                         world's clock cannot be set, so moldyn keeps the
                                         difference. Set by reading a .cin and by moldyn_add */
     dem_material grain_material, wall_material; /* added by moldyn_add */
-    dem_wall *planes;                /* wall_count, added by moldyn_add; null before */
-    char error[400];                 /* the sentence of the last call that failed */
+    dem_wall *planes;                /* those of walls, parts and chains, in this order, added by
+                                        moldyn_add; null before */
+    int shape_count, body_count;
+    dem_shape *shapes;               /* those of polygons, added by moldyn_add; null before */
+    dem_body *bodies;                /* those of grains, added by moldyn_add or taken */
+    char error[500];                 /* the sentence of the last call that failed */
 } moldyn;
-static const moldyn MOLDYN_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
-                                   {0}, {0}, 0, ""};
+static const moldyn MOLDYN_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+                                   {0, 0, 0}, 0, {0, 0, 0}, {0, 0, 0}, 0,
+                                   {0}, {0}, 0, 0, 0, 0, 0, ""};
 #define MOLDYN MOLDYN_ZERO
 typedef enum moldyn_file {
     MOLDYN_CONTROL = 0,              /* .cin */
     MOLDYN_PARTICLES,                /* .pin */
     MOLDYN_WALLS                     /* .win */
 } moldyn_file;
-enum { MOLDYN_GRAIN = 14, MOLDYN_WALL = 6, MOLDYN_GRAIN_FLAT = 8, MOLDYN_WALL_FLAT = 4 };
+enum { MOLDYN_GRAIN = 14, MOLDYN_WALL = 6, MOLDYN_GRAIN_FLAT = 8, MOLDYN_WALL_FLAT = 4,
+       MOLDYN_POLYGON_CORNERS = 98, MOLDYN_WALL_CORNERS = 1000 };
 
 /* ---- errors, memory, numbers ---- */
 
@@ -132,12 +173,23 @@ static dem_real *moldyn_rows_new(size_t count, size_t wide) {
 static dem_vec3 moldyn_vec3(const dem_real *p) { return dem_vec3_make(p[0], p[1], p[2]); }
 static void moldyn_vec3_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
 
+static void moldyn_outlines_free(moldyn_outlines *o) {
+    free(o->ends);
+    free(o->corners);
+    memset(o, 0, sizeof *o);
+}
 /* Frees the arrays; all is zero then but `error`. */
 MOLDYN_API void moldyn_free(moldyn *m) {
     if (!m) return;
     free(m->grains);
     free(m->walls);
     free(m->planes);
+    free(m->kinds);
+    free(m->shapes);
+    free(m->bodies);
+    moldyn_outlines_free(&m->polygons);
+    moldyn_outlines_free(&m->parts);
+    moldyn_outlines_free(&m->chains);
     memset(m, 0, offsetof(moldyn, error));
 }
 
@@ -257,6 +309,183 @@ static int moldyn_count(const moldyn_text *t, int *value) {
     return 1;
 }
 
+/* ---- outlines ---- */
+
+/* What an outline is in files and sentences, and how many corners it may have. */
+typedef struct moldyn_outline_kind {
+    const char *key, *name;
+    int least, most, closed;
+} moldyn_outline_kind;
+static const moldyn_outline_kind moldyn_polygon = {"polygons", "polygon", 3,
+                                                   MOLDYN_POLYGON_CORNERS, 1};
+static const moldyn_outline_kind moldyn_part = {"polygons", "polygon", 3, MOLDYN_WALL_CORNERS, 1};
+static const moldyn_outline_kind moldyn_chain = {"chains", "chain", 2, MOLDYN_WALL_CORNERS, 0};
+
+/* The corners of outline i, and how many there are. */
+static const dem_real *moldyn_corners(const moldyn_outlines *o, int i, int *count) {
+    const int first = i ? o->ends[i - 1] : 0;
+    *count = o->ends[i] - first;
+    return o->corners + 2*(size_t)first;
+}
+/* Area (m2), its middle (m), its second moment about that (m4), the farthest corner's distance from
+   it (m). From the first corner on, so that a far place costs no digits. */
+typedef struct moldyn_measure { double area, middle[2], second, radius; } moldyn_measure;
+static moldyn_measure moldyn_measure_of(const dem_real *corners, int count) {
+    const double x0 = (double)corners[0], y0 = (double)corners[1];
+    moldyn_measure s = {0, {0, 0}, 0, 0};
+    int i;
+    for (i = 1; i + 1 < count; i++) {
+        const double a = (double)corners[2*i] - x0, b = (double)corners[2*i + 1] - y0;
+        const double c = (double)corners[2*i + 2] - x0, d = (double)corners[2*i + 3] - y0;
+        const double area = (a*d - b*c)/2;
+        s.area += area;
+        s.middle[0] += area*(a + c)/3;
+        s.middle[1] += area*(b + d)/3;
+        s.second += area*(a*a + a*c + c*c + b*b + b*d + d*d)/6;
+    }
+    if (!(s.area < 0 || s.area > 0)) return s;
+    s.middle[0] /= s.area;
+    s.middle[1] /= s.area;
+    s.second = fabs(s.second - s.area*(s.middle[0]*s.middle[0] + s.middle[1]*s.middle[1]));
+    s.area = fabs(s.area);
+    s.middle[0] += x0;
+    s.middle[1] += y0;
+    for (i = 0; i < count; i++)
+        s.radius = fmax(s.radius, hypot((double)corners[2*i] - s.middle[0],
+                                        (double)corners[2*i + 1] - s.middle[1]));
+    return s;
+}
+/* Twice the area of a triangle of corners, > 0 where it turns left. */
+static double moldyn_turn(const dem_real *x, int a, int b, int c) {
+    const double ax = (double)x[2*a], ay = (double)x[2*a + 1];
+    return ((double)x[2*b] - ax)*((double)x[2*c + 1] - ay) -
+           ((double)x[2*b + 1] - ay)*((double)x[2*c] - ax);
+}
+/* Do the sides from a to b and from c to d, which have no corner in common, cross or touch? */
+static int moldyn_sides_meet(const dem_real *x, int a, int b, int c, int d) {
+    const double abc = moldyn_turn(x, a, b, c), abd = moldyn_turn(x, a, b, d);
+    const double cda = moldyn_turn(x, c, d, a), cdb = moldyn_turn(x, c, d, b);
+    int k;
+    for (k = 0; k < 2; k++)                     /* one wholly before the other */
+        if (fmax((double)x[2*a + k], (double)x[2*b + k]) <
+            fmin((double)x[2*c + k], (double)x[2*d + k]) ||
+            fmax((double)x[2*c + k], (double)x[2*d + k]) <
+            fmin((double)x[2*a + k], (double)x[2*b + k])) return 0;
+    return !((abc > 0 && abd > 0) || (abc < 0 && abd < 0) || (cda > 0 && cdb > 0) ||
+             (cda < 0 && cdb < 0));
+}
+/* Writes what is wrong with an outline, the index-th of its kind from 0, into `fault`; 0: nothing.
+   */
+static int moldyn_outline_fault(const moldyn_outline_kind *kind, int index, const dem_real *x,
+                                int count, char *fault, size_t room) {
+    const int sides = kind->closed ? count : count - 1;
+    int i, k;
+    for (i = 0; i < 2*count; i++)
+        if (!moldyn_within((double)x[i], -1e15, 1e15))
+            return snprintf(fault, room, "corner %d of %s %d is (%g, %g) m, must be finite and "
+                            "within +-1e15; correct it", i/2 + 1, kind->name, index + 1,
+                            (double)x[i/2*2], (double)x[i/2*2 + 1]);
+    for (i = 0; i < sides; i++) {
+        const int b = (i + 1)%count;
+        if (!(x[2*i] < x[2*b] || x[2*i] > x[2*b] || x[2*i + 1] < x[2*b + 1] ||
+              x[2*i + 1] > x[2*b + 1]))
+            return snprintf(fault, room, "corners %d and %d of %s %d are both (%g, %g) m, must be "
+                            "apart; give each corner once%s", i + 1, b + 1, kind->name, index + 1,
+                            (double)x[2*i], (double)x[2*i + 1],
+                            b ? "" : ", the first not again at the end");
+    }
+    for (i = 0; i < sides; i++) {
+        const int b = (i + 1)%count;
+        for (k = i + 2; k < sides; k++)
+            if ((k + 1)%count != i && moldyn_sides_meet(x, i, b, k, (k + 1)%count))
+                return snprintf(fault, room, "%s %d crosses or touches itself: its sides from "
+                                "corner %d, (%g, %g) m, and from corner %d, (%g, %g) m, must be "
+                                "apart; give the corners in turn, each once%s", kind->name,
+                                index + 1, i + 1, (double)x[2*i], (double)x[2*i + 1], k + 1,
+                                (double)x[2*k], (double)x[2*k + 1], kind->closed ? ""
+                                : ", or list it under polygons if it is closed");
+    }
+    if (kind->closed && !(moldyn_measure_of(x, count).area > 0))
+        return snprintf(fault, room, "the area of %s %d is 0 m2, must be > 0; give corners that "
+                        "are not on one line", kind->name, index + 1);
+    return 0;
+}
+
+/* The rows of an outline's corners, and what they say together. */
+static dem_result moldyn_outline_rows(moldyn_text *t, const moldyn_outline_kind *kind, int index,
+                                      dem_real *corners, int count) {
+    const long line = t->line;
+    char text[300];
+    int i;
+    for (i = 0; i < 2*count; i++) {
+        double value;
+        if (!(i & 1 ? moldyn_word(t) : moldyn_line(t)) || !moldyn_real(t, &value)) {
+            snprintf(text, sizeof text, "corner %d of the %d of %s %d is expected, two decimal "
+                     "numbers within +-1e15 (m)", i/2 + 1, count, kind->name, index + 1);
+            return moldyn_refuse(t, text);
+        }
+        corners[i] = (dem_real)value;
+        if ((i & 1) && moldyn_word(t)) return moldyn_refuse(t, "the end of the line is expected: "
+                                                            "a corner has two numbers");
+    }
+    if (moldyn_outline_fault(kind, index, corners, count, text, sizeof text))
+        return moldyn_fail(t->m, DEM_ERROR_FORMAT, "%s: %s line %ld: %s", t->call, t->name, line,
+                           text);
+    return DEM_OK;
+}
+static dem_result moldyn_too_short(const moldyn_text *t, int found, const char *what, double most) {
+    return moldyn_fail(t->m, DEM_ERROR_FORMAT, "%s: %s line %ld: found %d %s announced where the "
+                       "file has bytes for at most %.0f; was it cut short?", t->call, t->name,
+                       t->line, found, what, most);
+}
+/* One outline, after those that o holds; room: corners that there is memory for. */
+static dem_result moldyn_outline_read(moldyn_text *t, const moldyn_outline_kind *kind,
+                                      moldyn_outlines *o, int *room) {
+    const int had = o->count ? o->ends[o->count - 1] : 0;
+    char expected[160];
+    double bytes;
+    int count = 0;
+    dem_result result;
+    if (!moldyn_line(t) || !moldyn_count(t, &count) || count < kind->least || count > kind->most) {
+        snprintf(expected, sizeof expected, "the number of corners of %s %d is expected, %d to %d",
+                 kind->name, o->count + 1, kind->least, kind->most);
+        return moldyn_refuse(t, expected);
+    }
+    if (moldyn_word(t)) return moldyn_refuse(t, "the end of the line is expected");
+    bytes = (double)(t->end - t->next) + 1;     /* "0 0" and the line's end, but for the last */
+    if (bytes < 4.0*count) return moldyn_too_short(t, count, "corners", floor(bytes/4));
+    if (count > *room - had) {
+        const double more = 2.0*had + count;
+        dem_real *grown = more > 1e9 ? 0 : (dem_real *)realloc(o->corners, (size_t)more*2*
+                                                               sizeof *o->corners);
+        if (!grown) return moldyn_no_memory(t->m, t->call, more, "corners");
+        o->corners = grown;
+        *room = (int)more;
+    }
+    result = moldyn_outline_rows(t, kind, o->count, o->corners + 2*(size_t)had, count);
+    if (result == DEM_OK) o->ends[o->count++] = had + count;
+    return result;
+}
+/* All outlines of a kind; the present word is its key. o: empty; the caller frees it. */
+static dem_result moldyn_outlines_read(moldyn_text *t, const moldyn_outline_kind *kind,
+                                       moldyn_outlines *o) {
+    const double least = 2 + 4.0*kind->least;
+    double bytes;
+    dem_result result = DEM_OK;
+    int count = 0, room = 0, i;
+    if (!moldyn_word(t) || !moldyn_count(t, &count))
+        return moldyn_refuse(t, kind->closed ? "the number of polygons is expected"
+                             : "the number of chains is expected");
+    if (moldyn_word(t)) return moldyn_refuse(t, "the end of the line is expected");
+    bytes = (double)(t->end - t->next) + 1;
+    if (bytes < least*count) return moldyn_too_short(t, count, kind->key, floor(bytes/least));
+    if (!count) return DEM_OK;
+    o->ends = (int *)calloc((size_t)count, sizeof *o->ends);
+    if (!o->ends) return moldyn_no_memory(t->m, t->call, count, kind->key);
+    for (i = 0; i < count && result == DEM_OK; i++) result = moldyn_outline_read(t, kind, o, &room);
+    return result;
+}
+
 /* ---- scenes in ---- */
 
 /* Keys of .cin, where their values go, their ranges, and whether they are required. */
@@ -329,19 +558,38 @@ static dem_result moldyn_control(moldyn_text *t) {
     return DEM_OK;
 }
 
-/* Rows of numbers: `wide` of them in space, `flat` in a plane; the first row tells which. */
+/* Rows of numbers: `wide` of them in space, `flat` in a plane, of grains one more where there may
+   be polygons; the first row tells which. Before them may come outlines. */
 typedef struct moldyn_table {
     int of_walls, wide, flat, count;
-    int known;                  /* has the other file said whether the scene is in a plane? */
+    int known, planar;          /* has the other file said if the scene is in a plane? Is it? */
     int columns;                /* of the rows read so far; 0: none yet */
     double thickness;           /* of walls */
     dem_real *rows;             /* count x wide */
+    int *kinds;                 /* count, of grains: null if all are discs */
+    moldyn_outlines closed, open;
 } moldyn_table;
 
+/* The outlines before the first line, which is the present one then. */
+static dem_result moldyn_table_outlines(moldyn_text *t, moldyn_table *table) {
+    dem_result result = DEM_OK;
+    int seen[2] = {0, 0}, k;
+    while (result == DEM_OK && moldyn_line(t)) {
+        const moldyn_outline_kind *kind = table->of_walls ? &moldyn_part : &moldyn_polygon;
+        for (k = 0; k < 1 + table->of_walls && !moldyn_is(t, kind->key); k++) kind = &moldyn_chain;
+        if (k > table->of_walls || seen[k]++) break;
+        if (table->known && !table->planar)
+            return moldyn_refuse(t, "rows are expected: the scene is in space, as the other file "
+                                 "says, and polygons and chains are for scenes in a plane");
+        result = moldyn_outlines_read(t, kind, k ? &table->open : &table->closed);
+    }
+    if (table->closed.count || table->open.count) table->known = table->planar = 1;
+    return result;
+}
 /* The first line, and whether the file is long enough for what it announces. */
 static dem_result moldyn_table_head(moldyn_text *t, moldyn_table *table) {
     double bytes;
-    if (!moldyn_line(t) || !moldyn_count(t, &table->count))
+    if (!moldyn_count(t, &table->count))
         return moldyn_refuse(t, table->of_walls ? "the number of walls is expected"
                              : "the number of grains is expected");
     if (table->of_walls && (!moldyn_word(t) || !moldyn_real(t, &table->thickness) ||
@@ -350,26 +598,27 @@ static dem_result moldyn_table_head(moldyn_text *t, moldyn_table *table) {
     if (moldyn_word(t)) return moldyn_refuse(t, "the end of the line is expected");
     bytes = (double)(t->end - t->next);
     if (bytes < (double)table->count*(2*table->flat - 1))
-        return moldyn_fail(t->m, DEM_ERROR_FORMAT, "%s: %s line %ld: found %d rows announced where "
-                           "the file has bytes for at most %.0f; was it cut short?", t->call,
-                           t->name, t->line, table->count, bytes/(2*table->flat - 1));
+        return moldyn_too_short(t, table->count, "rows", bytes/(2*table->flat - 1));
     return DEM_OK;
 }
 /* The numbers of row i; how many there are is looked at, not what they say. */
 static dem_result moldyn_row_numbers(moldyn_text *t, moldyn_table *table, int i, double *value) {
-    const int planar = t->m->planar, columns = table->columns ? table->columns
-        : table->known && planar ? table->flat : table->wide;
-    int n = 0, more = moldyn_line(t);
+    const int outlined = table->closed.count > 0, flat = table->flat + (outlined &&
+                                                                        !table->of_walls);
+    const int columns = table->columns ? table->columns
+        : table->known && table->planar ? flat : table->wide;
+    int n = 0, more = moldyn_line(t), is_flat;
     char expected[200];
     for (; more && n < table->wide; n++, more = moldyn_word(t))
         if (!moldyn_real(t, &value[n]))
             return moldyn_refuse(t, "a decimal number within +-1e15 is expected");
-    if (more || (n != table->wide && n != table->flat) ||
-        (table->columns && n != table->columns) ||
-        (table->known && planar != (n == table->flat))) {
+    is_flat = n == table->flat || (n == table->flat + 1 && !table->of_walls);
+    if (more || (n != table->wide && !is_flat) || (table->columns && n != table->columns) ||
+        (table->known && table->planar != is_flat)) {
         snprintf(expected, sizeof expected, "row %d of %d is expected with %d numbers, %s", i + 1,
-                 table->count, columns, table->columns ? "as the first" : table->known
-                 ? "as the other file" : "or fewer in a plane");
+                 table->count, columns, table->columns ? "as the first"
+                 : outlined || table->open.count ? "in a plane, as polygons and chains are"
+                 : table->known ? "as the other file" : "or fewer in a plane");
         return moldyn_refuse(t, expected);
     }
     table->columns = n;
@@ -396,14 +645,37 @@ static const char *moldyn_wall_set(dem_real *row, const double *value, int flat)
     }
     return any ? 0 : "a normal that is not 0 is expected";
 }
+/* Row i of nine numbers, the last of which says which polygon the grain is. */
+static dem_result moldyn_kind_set(moldyn_text *t, moldyn_table *table, int i, const double *row) {
+    const int most = table->closed.count;
+    const double value = row[MOLDYN_GRAIN_FLAT];
+    int kind = 0;
+    if (moldyn_grain_set(table->rows + (size_t)i*MOLDYN_GRAIN, row, 1))
+        return moldyn_fail(t->m, DEM_ERROR_FORMAT, "%s: %s line %ld: found radius (or factor of a "
+                           "polygon) %g and flag %g in columns 7 and 8, must be > 0, and 1 (moves) "
+                           "or 0 (stands); correct the row", t->call, t->name, t->line, row[6],
+                           row[7]);
+    if (value >= 0 && value <= most) kind = (int)value;
+    if (value < kind || value > kind)
+        return moldyn_fail(t->m, DEM_ERROR_FORMAT, "%s: %s line %ld: found polygon %g in the last "
+                           "column, must be 0 (a disc) to %d, as many as the file lists before its "
+                           "grains; list it, or correct the row", t->call, t->name, t->line, value,
+                           most);
+    if (kind) table->kinds[i] = kind;
+    return DEM_OK;
+}
 static dem_result moldyn_table_rows(moldyn_text *t, moldyn_table *table) {
     int i;
     for (i = 0; i < table->count; i++) {
         dem_real *row = table->rows + (size_t)i*(size_t)table->wide;
         double value[MOLDYN_GRAIN];
         const char *expected;
-        const dem_result result = moldyn_row_numbers(t, table, i, value);
+        dem_result result = moldyn_row_numbers(t, table, i, value);
         if (result != DEM_OK) return result;
+        if (!table->of_walls && table->columns == MOLDYN_GRAIN_FLAT + 1) {
+            if ((result = moldyn_kind_set(t, table, i, value)) != DEM_OK) return result;
+            continue;
+        }
         expected = (table->of_walls ? moldyn_wall_set : moldyn_grain_set)
             (row, value, table->columns == table->flat);
         if (expected) return moldyn_refuse(t, expected);
@@ -413,32 +685,66 @@ static dem_result moldyn_table_rows(moldyn_text *t, moldyn_table *table) {
                              "first line says");
     return DEM_OK;
 }
+/* All that a table's file says, into `table`, which holds what is to be freed if this fails. */
+static dem_result moldyn_table_all(moldyn_text *t, moldyn_table *table) {
+    dem_result result = moldyn_table_outlines(t, table);
+    if (result == DEM_OK) result = moldyn_table_head(t, table);
+    if (result != DEM_OK || !table->count) return result != DEM_OK ? result
+        : moldyn_table_rows(t, table);
+    table->rows = moldyn_rows_new((size_t)table->count, (size_t)table->wide);
+    if (!table->of_walls && table->closed.count)
+        table->kinds = (int *)calloc((size_t)table->count, sizeof *table->kinds);
+    if (!table->rows || (!table->of_walls && table->closed.count && !table->kinds))
+        return moldyn_no_memory(t->m, t->call, table->count, table->of_walls ? "walls" : "grains");
+    return moldyn_table_rows(t, table);
+}
+static void moldyn_table_free(moldyn_table *table) {
+    free(table->rows);
+    free(table->kinds);
+    moldyn_outlines_free(&table->closed);
+    moldyn_outlines_free(&table->open);
+}
 static dem_result moldyn_table_read(moldyn_text *t, int of_walls) {
     moldyn *m = t->m;
-    moldyn_table table = {0, MOLDYN_GRAIN, MOLDYN_GRAIN_FLAT, 0, 0, 0, 0, 0};
+    moldyn_table table;
     dem_result result;
+    memset(&table, 0, sizeof table);
     table.of_walls = of_walls;
-    table.known = of_walls ? m->grain_count > 0 : m->wall_count > 0;
-    if (of_walls) { table.wide = MOLDYN_WALL; table.flat = MOLDYN_WALL_FLAT; }
-    if ((result = moldyn_table_head(t, &table)) != DEM_OK) return result;
-    if (table.count) table.rows = moldyn_rows_new((size_t)table.count, (size_t)table.wide);
-    if (table.count && !table.rows)
-        return moldyn_no_memory(m, t->call, table.count, of_walls ? "walls" : "grains");
-    if ((result = moldyn_table_rows(t, &table)) != DEM_OK) {
-        free(table.rows);
+    table.wide = of_walls ? MOLDYN_WALL : MOLDYN_GRAIN;
+    table.flat = of_walls ? MOLDYN_WALL_FLAT : MOLDYN_GRAIN_FLAT;
+    table.known = of_walls ? m->grain_count > 0 || m->polygons.count > 0
+                           : m->wall_count > 0 || m->parts.count > 0 || m->chains.count > 0;
+    table.planar = m->planar;
+    if ((result = moldyn_table_all(t, &table)) != DEM_OK) {
+        moldyn_table_free(&table);
         return result;
     }
-    if (table.count) m->planar = table.columns == table.flat;
-    free(of_walls ? m->walls : m->grains);
+    if (table.count) m->planar = table.columns != table.wide;
+    else if (table.closed.count || table.open.count) m->planar = 1;
     if (of_walls) {
         free(m->planes);                        /* they are those of other rows */
+        free(m->walls);
+        moldyn_outlines_free(&m->parts);
+        moldyn_outlines_free(&m->chains);
         m->planes = 0;
         m->walls = table.rows;
         m->wall_count = table.count;
         m->wall_thickness = table.thickness;
+        m->parts = table.closed;
+        m->chains = table.open;
     } else {
+        free(m->grains);
+        free(m->kinds);
+        free(m->shapes);
+        free(m->bodies);
+        moldyn_outlines_free(&m->polygons);
+        m->shapes = 0;
+        m->bodies = 0;
+        m->shape_count = m->body_count = 0;
         m->grains = table.rows;
+        m->kinds = table.kinds;
         m->grain_count = table.count;
+        m->polygons = table.closed;
     }
     return DEM_OK;
 }
@@ -541,27 +847,43 @@ static void moldyn_plane(const moldyn *m, int i, double *point, double *normal) 
         point[k] = (double)row[3 + k] + normal[k]*m->wall_thickness/2;
     }
 }
-/* Can dem_real hold the mass of a sphere (or disc 1 m thick), its moment of inertia and the
+/* Which polygon grain i is, counted from 1; 0: a disc, or a sphere. */
+static int moldyn_kind(const moldyn *m, int i) { return m->kinds ? m->kinds[i] : 0; }
+/* Can dem_real hold the mass of grain i (in a plane 1 m thick), its moment of inertia and the
    inverses of both? */
-static int moldyn_weighs(const moldyn *m, double r) {
+static int moldyn_weighs(const moldyn *m, int i) {
     const double least = sizeof(dem_real) == sizeof(float) ? 1e-37 : 1e-300;
-    const double mass = m->density*3.14159265358979323846*r*r*(m->planar ? 1 : 4*r/3);
-    const double inertia = mass*r*r*(m->planar ? 0.5 : 0.4);
+    const double r = (double)m->grains[(size_t)i*MOLDYN_GRAIN + 12];
+    double mass = m->density*3.14159265358979323846*r*r*(m->planar ? 1 : 4*r/3);
+    double inertia = mass*r*r*(m->planar ? 0.5 : 0.4);
+    if (moldyn_kind(m, i)) {
+        int count;
+        const dem_real *corners = moldyn_corners(&m->polygons, moldyn_kind(m, i) - 1, &count);
+        const moldyn_measure s = moldyn_measure_of(corners, count);
+        mass = m->density*s.area*r*r;
+        inertia = m->density*s.second*r*r*r*r;
+    }
     return moldyn_within(mass, least, 1/least) && moldyn_within(inertia, least, 1/least);
 }
 static dem_result moldyn_grain_check(moldyn *m, const char *call, int i) {
     const dem_real *row = m->grains + (size_t)i*MOLDYN_GRAIN;
     const double radius = (double)row[12], flag = (double)row[13];
+    const int kind = moldyn_kind(m, i);
     int k, ok = radius > 0 && (flag < 1 ? !(flag < 0 || flag > 0) : !(flag > 1));
     for (k = 0; k < MOLDYN_GRAIN; k++) ok = ok && moldyn_within((double)row[k], -1e15, 1e15);
     if (!ok)
         return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: grain %d has radius %g m and flag %g or a "
                            "number beyond 1e15; must be > 0, and 0 or 1; mend its row in moldyn",
                            call, i, radius, flag);
-    if (!moldyn_weighs(m, radius))
-        return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: grain %d has radius %g m, which at %g kg/m3 "
+    if (kind < 0 || kind > m->polygons.count)
+        return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: grain %d is of kind %d, must be 0 (a disc) "
+                           "to %d, as many as there are polygons; mend kinds in moldyn", call, i,
+                           kind, m->polygons.count);
+    if (!moldyn_weighs(m, i))
+        return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: grain %d has %s %g, which at %g kg/m3 "
                            "gives it a mass too small or too large to calculate with; lengths are "
-                           "in metres: check the unit", call, i, radius, m->density);
+                           "in metres: check the unit", call, i,
+                           kind ? "a polygon's factor of" : "a radius in m of", radius, m->density);
     return DEM_OK;
 }
 static dem_result moldyn_wall_check(moldyn *m, const char *call, int i) {
@@ -579,6 +901,29 @@ static dem_result moldyn_wall_check(moldyn *m, const char *call, int i) {
                            "(%g, %g, %g), must be within +-1e15, and the normal not 0; mend its "
                            "row in moldyn", call, i, (double)row[0], (double)row[1],
                            (double)row[2], (double)row[3], (double)row[4], (double)row[5]);
+    return DEM_OK;
+}
+static dem_result moldyn_outlines_check(moldyn *m, const char *call, const moldyn_outlines *o,
+                                        const moldyn_outline_kind *kind) {
+    char fault[300];
+    int i, count, ok = o->count >= 0 && (!o->count || (o->ends && o->corners));
+    for (i = 0; i < o->count && ok; i++) {
+        count = o->ends[i] - (i ? o->ends[i - 1] : 0);
+        ok = count >= kind->least && count <= kind->most;
+    }
+    if (!ok)
+        return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: of %d %s number %d has not %d to %d "
+                           "corners, or their arrays are null; mend them in moldyn", call, o->count,
+                           kind->key, i, kind->least, kind->most);
+    if (o->count && !m->planar)
+        return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: there are %d %s and planar is 0, must be 1: "
+                           "they are for scenes in a plane; in space use "
+                           "dem_shape_polyhedron_add and dem_mesh_add", call, o->count, kind->key);
+    for (i = 0; i < o->count; i++) {
+        const dem_real *corners = moldyn_corners(o, i, &count);
+        if (moldyn_outline_fault(kind, i, corners, count, fault, sizeof fault))
+            return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: %s", call, fault);
+    }
     return DEM_OK;
 }
 /* Finds what the files cannot hold, but a moldyn filled in by hand can. */
@@ -603,6 +948,9 @@ static dem_result moldyn_check(moldyn *m, const char *call) {
                            "end %g s, must be at least start, %g s; friction_static %g, must be 0 "
                            "or at least friction, %g; mend them in moldyn", call,
                            m->wall_thickness, m->end, m->start, m->friction_static, m->friction);
+    result = moldyn_outlines_check(m, call, &m->polygons, &moldyn_polygon);
+    if (result == DEM_OK) result = moldyn_outlines_check(m, call, &m->parts, &moldyn_part);
+    if (result == DEM_OK) result = moldyn_outlines_check(m, call, &m->chains, &moldyn_chain);
     for (i = 0; i < m->grain_count && result == DEM_OK; i++)
         result = moldyn_grain_check(m, call, i);
     for (i = 0; i < m->wall_count && result == DEM_OK; i++) result = moldyn_wall_check(m, call, i);
@@ -666,44 +1014,122 @@ static dem_result moldyn_planes_add(moldyn *m, const char *call, dem_world *worl
     }
     return DEM_OK;
 }
+/* Walls of outlines: segments from corner to corner. planes: where their ids go. */
+static dem_result moldyn_outlines_add(moldyn *m, const char *call, dem_world *world,
+                                      const moldyn_outlines *o, const moldyn_outline_kind *kind,
+                                      dem_wall *planes) {
+    dem_real corners[2*MOLDYN_WALL_CORNERS];
+    int32_t ends[2*MOLDYN_WALL_CORNERS];
+    int i, k;
+    for (i = 0; i < o->count; i++) {
+        const dem_real *from = moldyn_corners(o, i, &k);
+        dem_profile profile;
+        profile.vertex_count = k;
+        profile.segment_count = kind->closed ? k : k - 1;
+        profile.vertices = corners;
+        profile.segments = ends;
+        memcpy(corners, from, (size_t)k*2*sizeof *corners);
+        for (k = 0; k < profile.segment_count; k++) {
+            ends[2*k] = k;
+            ends[2*k + 1] = (k + 1)%profile.vertex_count;
+        }
+        planes[i] = dem_profile_add(world, m->wall_material, &profile, DEM_EDGE_RESOLVED);
+        if (!planes[i].id) return moldyn_refused(m, call, DEM_ERROR_ARGUMENT, kind->name, i + 1);
+    }
+    return DEM_OK;
+}
+static dem_result moldyn_shapes_add(moldyn *m, const char *call, dem_world *world) {
+    int i, count;
+    for (i = 0; i < m->polygons.count; i++) {
+        const dem_real *corners = moldyn_corners(&m->polygons, i, &count);
+        m->shapes[i] = dem_shape_polygon_add(world, count, corners);
+        if (!m->shapes[i].id) return moldyn_refused(m, call, DEM_ERROR_ARGUMENT, "polygon", i + 1);
+    }
+    return DEM_OK;
+}
+/* The grain of a row that is a polygon; slot 0: refused. */
+static dem_body moldyn_polygon_add(const moldyn *m, dem_world *world, int i) {
+    const dem_real *row = m->grains + (size_t)i*MOLDYN_GRAIN;
+    const dem_quat q = dem_quat_about(dem_vec3_make(0, 0, 1), row[8]);
+    dem_real turn[4];
+    dem_body none;
+    none.slot = none.generation = 0;
+    turn[0] = q.w; turn[1] = q.x; turn[2] = q.y; turn[3] = q.z;
+    if (dem_bodies_add(world, m->grain_material, m->shapes[m->kinds[i] - 1], 1, row, turn, row + 3,
+                       row + 9, row + 12) != DEM_OK) return none;
+    return dem_bodies_id(world, dem_bodies_get(world).count - 1);
+}
 static dem_result moldyn_grains_add(moldyn *m, const char *call, dem_world *world) {
     int i;
     for (i = 0; i < m->grain_count; i++) {
         const dem_real *row = m->grains + (size_t)i*MOLDYN_GRAIN;
-        const dem_body body = dem_sphere_add(world, m->grain_material, row[12], moldyn_vec3(row));
+        const int polygon = moldyn_kind(m, i) > 0;
+        const dem_body body = polygon ? moldyn_polygon_add(m, world, i)
+            : dem_sphere_add(world, m->grain_material, row[12], moldyn_vec3(row));
         dem_body_state s;
+        m->bodies[i] = body;
         if (!body.slot || dem_body_get(world, body, &s) != DEM_OK)
             return moldyn_refused(m, call, DEM_ERROR_MEMORY, "grain", i);
         s.velocity = moldyn_vec3(row + 3);
         s.spin = moldyn_vec3(row + 9);
         s.fixed = row[13] < DEM_R(0.5);
-        if (dem_body_set(world, body, &s) != DEM_OK)
+        if ((!polygon || s.fixed) && dem_body_set(world, body, &s) != DEM_OK)
             return moldyn_refused(m, call, DEM_ERROR_MEMORY, "the velocity of grain", i);
     }
     return DEM_OK;
 }
+/* Room for the ids of what is added, in place of what there was. */
+static dem_result moldyn_ids_new(moldyn *m, const char *call) {
+    const size_t walls = (size_t)m->wall_count + (size_t)m->parts.count + (size_t)m->chains.count;
+    dem_wall *planes = (dem_wall *)calloc(walls + 1, sizeof *planes);
+    dem_shape *shapes = (dem_shape *)calloc((size_t)m->polygons.count + 1, sizeof *shapes);
+    dem_body *bodies = (dem_body *)calloc((size_t)m->grain_count + 1, sizeof *bodies);
+    if (!planes || !shapes || !bodies) {
+        free(planes);
+        free(shapes);
+        free(bodies);
+        return moldyn_no_memory(m, call, (double)walls + m->grain_count, "walls and grains");
+    }
+    free(m->planes);
+    free(m->shapes);
+    free(m->bodies);
+    m->planes = planes;
+    m->shapes = shapes;
+    m->bodies = bodies;
+    m->shape_count = m->polygons.count;
+    m->body_count = m->grain_count;
+    return DEM_OK;
+}
 /* Adds materials, walls and grains, in the order of their rows, to a world made with moldyn_desc
    that has no bodies yet and has not run. All is checked before any is added; what can still fail
-   then is memory: destroy the world. The world's clock begins at 0, not at start. */
+   then is memory, or a polygon too thin for dem_shape_polygon_add: destroy the world. The world's
+   clock begins at 0, not at start. */
 MOLDYN_API dem_result moldyn_add(moldyn *m, dem_world *world) {
     static const char call[] = "moldyn_add";
-    dem_wall *planes = 0;
     dem_result result;
     if (!m) return DEM_ERROR_ARGUMENT;
     if ((result = moldyn_suits(m, call, world)) != DEM_OK) return result;
     if ((result = moldyn_check(m, call)) != DEM_OK) return result;
-    if (m->wall_count) planes = (dem_wall *)calloc((size_t)m->wall_count, sizeof *planes);
-    if (m->wall_count && !planes) return moldyn_no_memory(m, call, m->wall_count, "walls");
-    free(m->planes);
-    m->planes = planes;
+    if ((result = moldyn_ids_new(m, call)) != DEM_OK) return result;
     m->origin = m->start - dem_world_time(world);
     result = moldyn_materials_add(m, call, world);
     if (result == DEM_OK) result = moldyn_planes_add(m, call, world);
+    if (result == DEM_OK)
+        result = moldyn_outlines_add(m, call, world, &m->parts, &moldyn_part,
+                                     m->planes + m->wall_count);
+    if (result == DEM_OK)
+        result = moldyn_outlines_add(m, call, world, &m->chains, &moldyn_chain,
+                                     m->planes + m->wall_count + m->parts.count);
+    if (result == DEM_OK) result = moldyn_shapes_add(m, call, world);
     return result == DEM_OK ? moldyn_grains_add(m, call, world) : result;
 }
 
 /* All bodies of a world as they are now, in the order in which they came. */
-typedef struct moldyn_bodies { int count, *index; } moldyn_bodies;
+typedef struct moldyn_bodies {
+    int count, *index;
+    int *row;                   /* by slot of dem_body less 1: which row of m it may be, or -1; part
+                                   of index */
+} moldyn_bodies;
 static dem_result moldyn_bodies_get(moldyn *m, const char *call, const dem_world *world,
                                     moldyn_bodies *all) {
     const dem_bodies b = dem_bodies_get(world);
@@ -713,9 +1139,13 @@ static dem_result moldyn_bodies_get(moldyn *m, const char *call, const dem_world
     all->index = 0;
     if (!world) return moldyn_null(m, call, "world");
     for (i = 0; i < b.count; i++) top = b.slots[i] > top ? b.slots[i] : top;
-    all->index = (int *)malloc(((size_t)top + 1)*sizeof *all->index);
+    all->index = (int *)malloc(2*((size_t)top + 1)*sizeof *all->index);
     if (!all->index) return moldyn_no_memory(m, call, b.count, "numbers of bodies");
-    for (slot = 0; slot <= top; slot++) all->index[slot] = -1;
+    all->row = all->index + top + 1;
+    for (slot = 0; slot <= top; slot++) all->index[slot] = all->row[slot] = -1;
+    for (i = 0; i < m->body_count && i < m->grain_count; i++)
+        if (m->bodies[i].slot && m->bodies[i].slot - 1 <= top)
+            all->row[m->bodies[i].slot - 1] = i;
     for (i = 0; i < b.count; i++) all->index[b.slots[i]] = i;
     for (slot = 0; slot <= top; slot++)         /* closes the gaps of those that left */
         if (all->index[slot] >= 0) all->index[n++] = all->index[slot];
@@ -727,41 +1157,112 @@ static dem_body_state moldyn_body(const dem_world *world, const moldyn_bodies *a
     dem_body_get(world, dem_bodies_id(world, all->index[i]), &s);
     return s;
 }
-/* Takes the grains of a world as they are now in place of those of m, in the order in which they
-   came; angles are 0. Then start is what it was when they were added plus dem_world_time(world),
-   and end at least that. The bodies must be spheres (or discs). If it fails, m stays as it was. */
-MOLDYN_API dem_result moldyn_take(moldyn *m, const dem_world *world) {
-    static const char call[] = "moldyn_take";
-    const dem_bodies b = dem_bodies_get(world);
-    moldyn_bodies all;
-    dem_real *rows = 0;
-    dem_result result;
-    int i, shaped = 0;
-    if (!m) return DEM_ERROR_ARGUMENT;
-    for (i = 0; b.shapes && i < b.count; i++) shaped += b.shapes[i] != 0;
-    if (shaped)
-        return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: %d bodies are not spheres, which MOLDYN's "
-                           "files cannot tell; use dem_vtp_write or a checkpoint", call, shaped);
-    if (world && !dem_world_desc_get(world).planar != !m->planar)
-        return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: the world is %s and moldyn is not; take "
-                           "from a world made with moldyn_desc", call,
-                           m->planar ? "in space" : "planar");
-    if ((result = moldyn_bodies_get(m, call, world, &all)) != DEM_OK) return result;
-    if (all.count) rows = moldyn_rows_new((size_t)all.count, MOLDYN_GRAIN);
-    for (i = 0; rows && i < all.count; i++) {
-        const dem_body_state s = moldyn_body(world, &all, i);
-        dem_real *row = rows + (size_t)i*MOLDYN_GRAIN;
+/* Which of m's polygons a shape of the world is, counted from 1; 0: none. The world may be another
+   than they were added to: area and size (of a prism, see dem_shape_polygon_add) are looked at. */
+static int moldyn_kind_of(const moldyn *m, const dem_world *world, dem_shape shape,
+                          dem_shape_info *info) {
+    const double thickness = (double)dem_world_desc_get(world).thickness;
+    int i, count;
+    for (i = 0; i < m->shape_count && i < m->polygons.count; i++) {
+        const dem_real *corners = moldyn_corners(&m->polygons, i, &count);
+        moldyn_measure s;
+        if (m->shapes[i].id != shape.id || dem_shape_get(world, shape, info) != DEM_OK) continue;
+        s = moldyn_measure_of(corners, count);
+        s.radius = hypot(s.radius, 2*sqrt(s.area/3.14159265358979323846)/3);
+        if (fabs((double)info->volume/(s.area*thickness) - 1) < 1e-3 &&
+            fabs((double)info->radius/s.radius - 1) < 1e-3) return i + 1;
+    }
+    return 0;
+}
+/* The angle about z and the factor of a polygon's body, as a row has them. row: what was added as
+   this body, whose factor, and angle if it has not turned, are kept to the last bit; or null. */
+static void moldyn_polygon_put(dem_real *to, const dem_body_state *s, const dem_shape_info *info,
+                               const dem_real *row) {
+    const double least = sizeof(dem_real) == sizeof(float) ? 1e-6 : 2e-15;
+    const double w = (double)s->orientation.w, z = (double)s->orientation.z;
+    const double angle = 2*(w < 0 ? atan2(-z, -w) : atan2(z, w));
+    to[8] = (dem_real)angle;
+    to[12] = s->radius/info->radius;
+    if (!row) return;
+    if (fabs(remainder(angle - (double)row[8], 6.283185307179586477)) <
+        least*(1 + fabs((double)row[8]))) to[8] = row[8];
+    if (fabs((double)to[12] - (double)row[12]) < least*(double)row[12]) to[12] = row[12];
+}
+/* What moldyn_take fills in. */
+typedef struct moldyn_taken { dem_real *rows; int *kinds; dem_body *bodies; } moldyn_taken;
+static void moldyn_taken_free(moldyn_taken *to) {
+    free(to->rows);
+    free(to->kinds);
+    free(to->bodies);
+}
+/* All bodies; was: the rows of m by slot of the bodies that they were added as. How many are
+   neither spheres (discs) nor polygons of m. */
+static int moldyn_taken_fill(const moldyn *m, const dem_world *world, const moldyn_bodies *all,
+                             moldyn_taken *to) {
+    int i, strange = 0;
+    for (i = 0; i < all->count; i++) {
+        const dem_body_state s = moldyn_body(world, all, i);
+        dem_real *row = to->rows + (size_t)i*MOLDYN_GRAIN;
+        to->bodies[i] = dem_bodies_id(world, all->index[i]);
         moldyn_vec3_put(row, s.position);
         moldyn_vec3_put(row + 3, s.velocity);
         moldyn_vec3_put(row + 9, s.spin);
         row[12] = s.radius;
         row[13] = s.fixed ? DEM_R(0) : DEM_R(1);
+        if (s.shape.id) {
+            const dem_body body = to->bodies[i];
+            const int k = all->row[body.slot - 1];
+            dem_shape_info info;
+            to->kinds[i] = moldyn_kind_of(m, world, s.shape, &info);
+            if (!to->kinds[i]) strange++;
+            else moldyn_polygon_put(row, &s, &info, k >= 0 && moldyn_kind(m, k) == to->kinds[i]
+                                    && m->bodies[k].generation == body.generation
+                                    ? m->grains + (size_t)k*MOLDYN_GRAIN : 0);
+        }
     }
+    return strange;
+}
+/* Takes the grains of a world as they are now in place of those of m, in the order in which they
+   came. Angles of polygons are within -pi and pi, or as they were if they have not turned; those of
+   others are 0. Then start is what it was when they were added plus dem_world_time(world), and end
+   at least that. The bodies must be spheres, or discs and polygons of m that moldyn_add has added.
+   If it fails, m stays as it was. */
+MOLDYN_API dem_result moldyn_take(moldyn *m, const dem_world *world) {
+    static const char call[] = "moldyn_take";
+    moldyn_taken to = {0, 0, 0};
+    moldyn_bodies all;
+    dem_result result;
+    int strange = 0;
+    if (!m) return DEM_ERROR_ARGUMENT;
+    if (world && !dem_world_desc_get(world).planar != !m->planar)
+        return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: the world is %s and moldyn is not; take "
+                           "from a world made with moldyn_desc", call,
+                           m->planar ? "in space" : "planar");
+    if ((result = moldyn_bodies_get(m, call, world, &all)) != DEM_OK) return result;
+    if (all.count) {
+        to.rows = moldyn_rows_new((size_t)all.count, MOLDYN_GRAIN);
+        to.kinds = (int *)calloc((size_t)all.count, sizeof *to.kinds);
+        to.bodies = (dem_body *)calloc((size_t)all.count, sizeof *to.bodies);
+        if (!to.rows || !to.kinds || !to.bodies)
+            result = moldyn_no_memory(m, call, all.count, "grains");
+    }
+    if (result == DEM_OK) strange = moldyn_taken_fill(m, world, &all, &to);
     free(all.index);
-    if (all.count && !rows) return moldyn_no_memory(m, call, all.count, "grains");
+    if (strange)
+        result = moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: %d bodies are not spheres, nor polygons "
+                             "that moldyn_add has added, which MOLDYN's files cannot tell; use "
+                             "dem_vtp_write or a checkpoint", call, strange);
+    if (result != DEM_OK) {
+        moldyn_taken_free(&to);
+        return result;
+    }
     free(m->grains);
-    m->grains = rows;
-    m->grain_count = all.count;
+    free(m->kinds);
+    free(m->bodies);
+    m->grains = to.rows;
+    m->kinds = to.kinds;
+    m->bodies = to.bodies;
+    m->grain_count = m->body_count = all.count;
     m->start = m->origin + dem_world_time(world);
     if (m->end < m->start) m->end = m->start;
     return DEM_OK;
@@ -845,14 +1346,28 @@ static dem_result moldyn_out_open(moldyn_out *o, moldyn *m, const char *call, co
     o->file = fopen(o->temporary, "wb");
     return o->file ? DEM_OK : moldyn_out_close(o);
 }
-/* The columns of rows that a file has: all, or those named by `flat` in a plane. */
+/* The columns of rows that a file has: all, or those named by `flat` in a plane. of: null, or what
+   has kinds, the last column then. */
 static void moldyn_rows_put(FILE *file, const dem_real *rows, int count, int wide, int columns,
-                            const int *flat) {
+                            const int *flat, const moldyn *of) {
     int i, k;
-    for (i = 0; i < count; i++)
+    for (i = 0; i < count; i++) {
         for (k = 0; k < columns; k++)
             moldyn_put(file, (double)rows[(size_t)i*(size_t)wide + (size_t)(flat ? flat[k] : k)],
-                       17, k + 1 < columns ? ' ' : '\n');
+                       17, k + 1 < columns || of ? ' ' : '\n');
+        if (of) fprintf(file, "%d\n", moldyn_kind(of, i));
+    }
+}
+static void moldyn_outlines_put(FILE *file, const moldyn_outlines *o,
+                                const moldyn_outline_kind *kind) {
+    int i, k, count;
+    if (o->count) fprintf(file, "%s %d\n", kind->key, o->count);
+    for (i = 0; i < o->count; i++) {
+        const dem_real *corners = moldyn_corners(o, i, &count);
+        fprintf(file, "%d\n", count);
+        for (k = 0; k < 2*count; k++)
+            moldyn_put(file, (double)corners[k], 17, k & 1 ? '\n' : ' ');
+    }
 }
 static void moldyn_file_put(FILE *file, const moldyn *m, moldyn_file which) {
     static const int grain[MOLDYN_GRAIN_FLAT] = {0, 1, 3, 4, 8, 11, 12, 13};
@@ -865,15 +1380,19 @@ static void moldyn_file_put(FILE *file, const moldyn *m, moldyn_file which) {
             moldyn_put(file, moldyn_value(m, &moldyn_keys[i]), 17, '\n');
         }
     if (which == MOLDYN_PARTICLES) {
+        moldyn_outlines_put(file, &m->polygons, &moldyn_polygon);
         fprintf(file, "%d\n", m->grain_count);
         moldyn_rows_put(file, m->grains, m->grain_count, MOLDYN_GRAIN,
-                        planar ? MOLDYN_GRAIN_FLAT : MOLDYN_GRAIN, planar ? grain : 0);
+                        planar ? MOLDYN_GRAIN_FLAT : MOLDYN_GRAIN, planar ? grain : 0,
+                        m->polygons.count ? m : 0);
     }
     if (which == MOLDYN_WALLS) {
+        moldyn_outlines_put(file, &m->parts, &moldyn_part);
+        moldyn_outlines_put(file, &m->chains, &moldyn_chain);
         fprintf(file, "%d ", m->wall_count);
         moldyn_put(file, m->wall_thickness, 17, '\n');
         moldyn_rows_put(file, m->walls, m->wall_count, MOLDYN_WALL,
-                        planar ? MOLDYN_WALL_FLAT : MOLDYN_WALL, planar ? wall : 0);
+                        planar ? MOLDYN_WALL_FLAT : MOLDYN_WALL, planar ? wall : 0, 0);
     }
 }
 /* Writes the three files; null paths are left out. Each is written to a temporary name (path.tmp)
@@ -914,10 +1433,20 @@ static dem_result moldyn_append_close(moldyn *m, const char *call, const char *p
                            "full?", call, path);
     return DEM_OK;
 }
+/* The radius a viewer of discs draws: a polygon's is that of the disc of its area. */
+static dem_real moldyn_round_radius(const dem_world *world, const dem_body_state *s) {
+    const dem_world_desc desc = dem_world_desc_get(world);
+    dem_shape_info info;
+    if (!desc.planar || !s->shape.id || dem_shape_get(world, s->shape, &info) != DEM_OK)
+        return s->radius;
+    return (dem_real)(sqrt((double)info.volume/(3.14159265358979323846*(double)desc.thickness))*
+                      (double)(s->radius/info.radius));
+}
 /* Appends a frame for XBALLS: a line with count, time (s, of the file: origin + dem_world_time) and
-   the corners of box; then a line a grain: x, y (in space: z), their velocities, radius, spin. The
-   text of the appendix calls these six numbers place and velocity in space. m: MOLDYN will do, if
-   there is no other; it holds the origin of time and the sentence. */
+   the corners of box; then a line a grain: x, y (in space: z), their velocities, radius (of a
+   polygon: that of the disc of its area), spin. The text of the appendix calls these six numbers
+   place and velocity in space. m: MOLDYN will do, if there is no other; it holds the origin of time
+   and the sentence. */
 MOLDYN_API dem_result moldyn_xb_append(moldyn *m, const dem_world *world, const char *path,
                                        dem_box box) {
     static const char call[] = "moldyn_xb_append";
@@ -943,7 +1472,7 @@ MOLDYN_API dem_result moldyn_xb_append(moldyn *m, const dem_world *world, const 
         moldyn_put(file, (double)(planar ? s.position.y : s.position.z), 0, ' ');
         moldyn_put(file, (double)s.velocity.x, 0, ' ');
         moldyn_put(file, (double)(planar ? s.velocity.y : s.velocity.z), 0, ' ');
-        moldyn_put(file, (double)s.radius, 0, ' ');
+        moldyn_put(file, (double)moldyn_round_radius(world, &s), 0, ' ');
         moldyn_put(file, (double)(planar ? s.spin.z : -s.spin.y), 0, '\n');  /* anticlockwise */
     }
     free(all.index);
@@ -961,11 +1490,13 @@ static void moldyn_str_row(FILE *file, const dem_real *R, dem_vec3 x) {
     moldyn_put(file, (double)x.y, 0, ' ');
     moldyn_put(file, (double)x.z, 0, '\n');
 }
-static void moldyn_str_body(FILE *file, const dem_body_state *s) {
+static void moldyn_str_body(FILE *file, const dem_body_state *s, int planar) {
+    dem_quat q = s->orientation;
     dem_real R[9];
     int i;
+    if (planar) q.x = q.y = 0;                  /* but for round-off they are */
     for (i = 0; i < 3; i++) {
-        const dem_vec3 e = dem_quat_rotate(s->orientation, dem_vec3_make(i == 0, i == 1, i == 2));
+        const dem_vec3 e = dem_quat_rotate(q, dem_vec3_make(i == 0, i == 1, i == 2));
         R[i] = e.x; R[3 + i] = e.y; R[6 + i] = e.z;
     }
     moldyn_str_row(file, R, s->position);
@@ -1003,8 +1534,10 @@ static dem_result moldyn_str_check(moldyn *m, const char *call, const dem_world 
 }
 /* Appends a frame for ANIM. A new file begins with interval (s, >= 0, between frames), frames (how
    many there will be) and the number of bodies. Then a line a grain and a line a wall: rotation
-   matrix and place (m); the identity for spheres that nothing turns. walls: those to draw, such as
-   m.planes; null if wall_count is 0. The number of bodies must stay what it was. */
+   matrix and place (m); the identity for spheres that nothing turns; of a polygon its turn from how
+   it is listed, and its centre of mass; of polygons and chains of walls those of their frame, the
+   identity and 0 until they move. walls: those to draw, such as m.planes (straight ones, then
+   polygons, then chains); null if wall_count is 0. The number of bodies must stay what it was. */
 MOLDYN_API dem_result moldyn_str_append(moldyn *m, const dem_world *world, const char *path,
                                         double interval, int frames, const dem_wall *walls,
                                         int wall_count) {
@@ -1033,7 +1566,7 @@ MOLDYN_API dem_result moldyn_str_append(moldyn *m, const dem_world *world, const
     }
     for (i = 0; i < all.count; i++) {
         const dem_body_state s = moldyn_body(world, &all, i);
-        moldyn_str_body(file, &s);
+        moldyn_str_body(file, &s, dem_world_desc_get(world).planar);
     }
     for (i = 0; i < wall_count; i++) {
         dem_pose pose;

@@ -5,6 +5,12 @@
 #include "../examples/moldyn.h"
 
 static void fail_unless(int right) { if (!right) abort(); }
+static void same_outlines(const moldyn_outlines *a, const moldyn_outlines *b) {
+    int i, all = a->count ? a->ends[a->count - 1] : 0;
+    fail_unless(a->count == b->count);
+    for (i = 0; i < a->count; i++) fail_unless(a->ends[i] == b->ends[i]);
+    for (i = 0; i < 2*all; i++) fail_unless(a->corners[i] == b->corners[i]);
+}
 /* Written and read back, the rows are the same numbers. */
 static void write_and_read(moldyn *m) {
     static const char cin[] = "build/fuzz_moldyn.cin", pin[] = "build/fuzz_moldyn.pin";
@@ -16,6 +22,10 @@ static void write_and_read(moldyn *m) {
     fail_unless(n.grain_count == m->grain_count && n.wall_count == m->wall_count);
     for (i = 0; i < 14*n.grain_count; i++) fail_unless(n.grains[i] == m->grains[i]);
     for (i = 0; i < 6*n.wall_count; i++) fail_unless(n.walls[i] == m->walls[i]);
+    for (i = 0; i < n.grain_count; i++) fail_unless(moldyn_kind(&n, i) == moldyn_kind(m, i));
+    same_outlines(&n.polygons, &m->polygons);
+    same_outlines(&n.parts, &m->parts);
+    same_outlines(&n.chains, &m->chains);
     fail_unless(n.start == m->start && n.stiffness_adhesion == m->stiffness_adhesion);
     moldyn_free(&n);
 }
@@ -43,8 +53,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (!size) return 0;
     if (moldyn_parse(&m, "fuzz", (moldyn_file)(data[0]%3), data + 1, size - 1) == DEM_OK) {
         for (i = 0; i < m.grain_count; i++) fail_unless(m.grains[14*i + 12] > 0);
-        if (m.grain_count < 100 && m.wall_count < 100) add_and_take(&m);
-    } else fail_unless(m.error[0] != 0 && !m.grains && !m.walls);
+        if (m.grain_count < 100 && m.wall_count < 100 && m.polygons.count < 100 &&
+            m.parts.count + m.chains.count < 100) add_and_take(&m);
+    } else fail_unless(m.error[0] != 0 && !m.grains && !m.walls && !m.kinds && !m.polygons.ends &&
+                       !m.parts.ends && !m.chains.ends);
     moldyn_free(&m);
     return 0;
 }

@@ -1,4 +1,5 @@
-/* MOLDYN's files: the appendix's own lines, a scene of three files run and written, what is refused. */
+/* MOLDYN's files: the appendix's own lines, a scene of three files run and written, polygons as grains and
+   walls, what is refused. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
 #include "../examples/moldyn.h"
@@ -24,6 +25,17 @@ static const char win[] =
     " 0.0000 -1.0000  0.0000  0.0855  0.1715  0.0855\n"
     " 0.0000  0.0000  1.0000  0.0855  0.0855 -0.0005\n"
     " 0.0000  0.0000 -1.0000  0.0855  0.0855  0.1715\n";
+/* a triangle and, clockwise, an L; two Ls (one of twice its size), a disc, a triangle that stands, one that moves,
+   whose radius times .91 over its radius is not .91, in either precision */
+static const char polygon_pin[] =
+    "polygons 2\n3\n0 0\n.02 0\n0 .01\n"
+    "6\n0 0\n0 .02   # clockwise\n.006 .02\n.006 .006\n.02 .006\n.02 0\n"
+    "5\n.01 .02 .1 0 .3 1 .91 1 1\n-.02 .03 0 0 0 0 .005 1 0\n.05 .1 0 0 .5 0 2 1 2\n"
+    "-.06 .05 0 0 2.5 0 1.3 0 1\n.1 .02 0 0 9 3 1 1 2\n";
+/* a floor and a tooth, and an open chute */
+static const char polygon_win[] =
+    "polygons 2\n4\n-1 -.1\n1 -.1\n1 0\n-1 0\n3\n.02 0.0001\n.06 0.0001\n.04 .03\n"
+    "chains 1\n3\n-.1 .1\n-.08 .05\n-.08 .02\n1 .003\n1 0 -.5 0\n";
 
 static dem_world *any_world(void) {
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -353,6 +365,365 @@ int main(int argc, char **argv) {
         moldyn_free(&m);
         dem_world_destroy(w);
         remove(path);
+    }
+
+    TEST("polygons: grains, parts and chains are read, run, taken, written and read back to the same numbers; "
+         "factors and what has not turned stay to the last bit") {
+        static const char *path[] = {"build/tmp/p.cin", "build/tmp/p.pin", "build/tmp/p.win",
+                                     "build/tmp/q.cin", "build/tmp/q.pin", "build/tmp/q.win"};
+        char first[3000], again[3000];
+        dem_world *a, *b;
+        moldyn m = MOLDYN, n = MOLDYN;
+        dem_body_state s, r;
+        dem_real *before;
+        int i, turned = 0;
+        save(path[0], "times.tend .1\ntimes.dt 5e-6\ncontrol.grav -9.81\ncontrol.rho 2500\ncontrol.mue_d .4\n"
+             "sd.stiff_lo 1e6\nsd.damp_wall 300\nsd.damp_particle 200\n");
+        save(path[1], polygon_pin);
+        save(path[2], polygon_win);
+        CHECK_EQ(moldyn_read(&m, path[0], path[1], path[2]), DEM_OK);
+        CHECK_EQ(m.planar, 1);
+        CHECK_EQ(m.polygons.count, 2);
+        CHECK_EQ(m.polygons.ends[1], 9);         /* a triangle and an L */
+        CHECK_EQ(m.kinds[0] + 10*m.kinds[1] + 100*m.kinds[2] + 1000*m.kinds[3] + 10000*m.kinds[4], 21201);
+        CHECK_EQ(m.parts.count*10 + m.chains.count, 21);
+        a = world_of(&m);
+        CHECK_EQ(moldyn_add(&m, a), DEM_OK);
+        before = (dem_real *)malloc(14*5*sizeof *before);
+        memcpy(before, m.grains, 14*5*sizeof *before);
+        CHECK_EQ(moldyn_take(&m, a), DEM_OK);    /* at once: as they were, to the last bit */
+        CHECK(memcmp(before, m.grains, 14*5*sizeof *before) == 0);
+        CHECK_EQ(dem_world_step(a, 1), DEM_OK);  /* a turn of 5e-6 rad is one */
+        CHECK_EQ(moldyn_take(&m, a), DEM_OK);
+        CHECK_NEAR((double)m.grains[8] - (double)before[8], 5e-6, sizeof(dem_real) == 8 ? 1e-12 : 1e-6);
+        CHECK_EQ(dem_world_run(a, 0.1, 0, 0), DEM_OK);
+        CHECK_EQ(moldyn_take(&m, a), DEM_OK);
+        for (i = 0; i < 5; i++) {
+            CHECK(m.grains[14*i + 12] >= before[14*i + 12] && m.grains[14*i + 12] <= before[14*i + 12]);
+            turned += m.grains[14*i + 8] < before[14*i + 8] || m.grains[14*i + 8] > before[14*i + 8];
+            CHECK(m.grains[14*i + 1] > -DEM_R(0.001));
+        }
+        CHECK_EQ(turned, 2);                     /* not the disc, the one that stands, the one that falls */
+        CHECK_EQ(moldyn_write(&m, path[3], path[4], path[5]), DEM_OK);
+        CHECK_EQ(moldyn_read(&n, path[3], path[4], path[5]), DEM_OK);
+        CHECK_EQ(n.grain_count, 5);
+        CHECK(memcmp(n.grains, m.grains, 14*5*sizeof *before) == 0);
+        CHECK(memcmp(n.kinds, m.kinds, 5*sizeof *n.kinds) == 0);
+        CHECK(memcmp(n.polygons.corners, m.polygons.corners, 18*sizeof *before) == 0);
+        CHECK(memcmp(n.parts.corners, m.parts.corners, 14*sizeof *before) == 0);
+        CHECK(memcmp(n.chains.corners, m.chains.corners, 6*sizeof *before) == 0);
+        b = world_of(&n);
+        CHECK_EQ(moldyn_add(&n, b), DEM_OK);
+        for (i = 0; i < 5; i++) {
+            s = scene_state(a, m.bodies[i]);
+            r = scene_state(b, n.bodies[i]);
+            CHECK(memcmp(&s.position, &r.position, sizeof s.position) == 0);
+            CHECK(memcmp(&s.velocity, &r.velocity, sizeof s.velocity) == 0);
+            CHECK(memcmp(&s.mass, &r.mass, sizeof s.mass) == 0);
+            CHECK(memcmp(&s.spin, &r.spin, sizeof s.spin) == 0);
+            if (s.shape.id)                      /* from angle to quaternion and back: a few last bits */
+                CHECK_NEAR(s.orientation.w*r.orientation.w + s.orientation.z*r.orientation.z, 1,
+                           sizeof(dem_real) == 8 ? 1e-14 : 1e-6);
+        }
+        CHECK_EQ(moldyn_take(&n, b), DEM_OK);
+        CHECK(memcmp(n.grains, m.grains, 14*5*sizeof *before) == 0);
+        CHECK_EQ(moldyn_write(&n, path[0], path[1], path[2]), DEM_OK);
+        for (i = 0; i < 3; i++) {
+            load(path[i], first, sizeof first);
+            load(path[3 + i], again, sizeof again);
+            CHECK(first[0] && strcmp(first, again) == 0);
+        }
+        dem_body_remove(b, n.bodies[1]);         /* those behind it stay what they are */
+        CHECK_EQ(moldyn_take(&n, b), DEM_OK);
+        CHECK_EQ(n.grain_count, 4);
+        CHECK_EQ(n.kinds[1]*10 + n.kinds[2], 21);
+        CHECK(memcmp(n.grains + 14, m.grains + 28, 14*3*sizeof *before) == 0);
+        free(before);
+        moldyn_free(&m);
+        moldyn_free(&n);
+        dem_world_destroy(a);
+        dem_world_destroy(b);
+        for (i = 0; i < 6; i++) remove(path[i]);
+    }
+
+    TEST("polygons: mass, centre and moment are those of dem_shape_polygon_add, scaled; place is that of the "
+         "centre of mass, and the angle turns") {
+        const double area = 2.04e-4, X = (1.2e-4*.01 + .84e-4*.003)/area, Y = (1.2e-4*.003 + .84e-4*.013)/area;
+        const double fine = sizeof(dem_real) == 8 ? 1e-12 : 1e-5;
+        dem_world *w;
+        moldyn m = MOLDYN;
+        moldyn_measure s;
+        dem_shape_info info;
+        dem_body_state body;
+        dem_shape shape;
+        dem_vec3 e;
+        parse(&m, MOLDYN_CONTROL, cin);
+        CHECK_EQ(parse(&m, MOLDYN_PARTICLES, polygon_pin), DEM_OK);
+        s = moldyn_measure_of(m.polygons.corners + 6, 6);
+        w = world_of(&m);
+        CHECK_EQ(moldyn_add(&m, w), DEM_OK);
+        shape = dem_shape_polygon_add(w, 6, m.polygons.corners + 6);
+        CHECK_EQ(dem_shape_get(w, shape, &info), DEM_OK);
+        CHECK_REL(s.area, area, fine);
+        CHECK_REL(s.area, (double)info.volume, fine);
+        CHECK_NEAR(s.middle[0], X, fine);
+        CHECK_NEAR(s.middle[0], (double)info.centre.x, fine);
+        CHECK_NEAR(s.middle[1], Y, fine);
+        CHECK_NEAR(s.middle[1], (double)info.centre.y, fine);
+        CHECK_REL(s.second, (double)info.inertia.z, fine);
+        CHECK_REL(hypot(s.radius, 2*sqrt(area/3.14159265358979324)/3), (double)info.radius, fine);   /* of the prism */
+        body = scene_state(w, m.bodies[2]);      /* the L, twice as large, turned by .5 */
+        CHECK_REL((double)body.mass, 20*area*4, fine);
+        CHECK_REL((double)body.moments.z, 20*s.second*16, fine);
+        CHECK_NEAR((double)body.position.x, 0.05, fine);
+        CHECK_NEAR((double)body.position.y, 0.1, fine);
+        e = dem_quat_rotate(body.orientation, at(1, 0, 0));
+        CHECK_NEAR((double)e.x, cos(0.5), fine);
+        CHECK_NEAR((double)e.y, sin(0.5), fine);
+        {                                        /* far off: the corners' differences count */
+            dem_real far[6] = {1000000, 1000000, 1000001, 1000000, 1000000, 1000001};
+            s = moldyn_measure_of(far, 3);
+            CHECK_REL(s.area, 0.5, 1e-12);
+            CHECK_REL(s.second, 1.0/18, 1e-12);  /* of b h (b2 + h2)/36 */
+        }
+        moldyn_free(&m);
+        dem_world_destroy(w);
+    }
+
+    TEST("an L rests on the edge of a polygonal wall with its centre of mass 1 mm within, and topples from it "
+         "with 1 mm beyond") {
+        int beyond;
+        for (beyond = 0; beyond < 2; beyond++) {
+            moldyn m = MOLDYN;
+            dem_world *w;
+            char text[500];
+            double angle;
+            CHECK_EQ(parse(&m, MOLDYN_CONTROL, "times.tend 1\ntimes.dt 1e-6\ncontrol.grav -9.81\ncontrol.rho 2500\n"
+                           "control.mue_d .5\nsd.stiff_lo 1e7\nsd.e .3\n"), DEM_OK);
+            snprintf(text, sizeof text, "polygons 1\n6\n0 0\n.02 0\n.02 .006\n.006 .006\n.006 .02\n0 .02\n"
+                     "1\n%s .0071176 0 0 0 0 1 1 1\n", beyond ? ".001" : "-.001");
+            CHECK_EQ(parse(&m, MOLDYN_PARTICLES, text), DEM_OK);
+            CHECK_EQ(parse(&m, MOLDYN_WALLS, "polygons 1\n4\n-.1 -.1\n0 -.1\n0 0\n-.1 0\n0 0\n"), DEM_OK);
+            w = world_of(&m);
+            CHECK_EQ(moldyn_add(&m, w), DEM_OK);
+            CHECK_EQ(dem_world_run(w, 0.15, 0, 0), DEM_OK);
+            CHECK_EQ(moldyn_take(&m, w), DEM_OK);
+            angle = (double)m.grains[8];
+            if (beyond) CHECK(angle < -1);       /* clockwise, off the edge */
+            else {                               /* 1.5 mrad at most: the ground is elastic */
+                CHECK_NEAR(angle, 0, 3e-3);
+                CHECK_NEAR((double)m.grains[0], -0.001, 5e-5);
+                CHECK_NEAR((double)m.grains[1], 0.0071176, 1e-5);
+            }
+            moldyn_free(&m);
+            dem_world_destroy(w);
+        }
+    }
+
+    TEST("an L that hits a polygonal wall's face or tip elastically has the energy it had, the nearer the smaller "
+         "the step") {
+        static const char *const walls[] = {"1 0\n0 1 0 0\n", "polygons 1\n4\n-.1 -.1\n.1 -.1\n.1 0\n-.1 0\n0 0\n",
+                                            "polygons 1\n3\n-.1 -.1\n.1 -.1\n0.002 0\n0 0\n"};
+        double worst[2], up[3];
+        int tip, k, step;
+        for (tip = 0; tip < 3; tip++) {
+            for (k = 0; k < 2; k++) {
+                moldyn m = MOLDYN;
+                dem_world_desc desc;
+                dem_world *w;
+                double before = 0;
+                char text[500];
+                snprintf(text, sizeof text, "times.tend 1\ntimes.dt %s\ncontrol.rho 2500\nsd.stiff_lo 1e6\n",
+                         k ? "1e-6" : "4e-6");
+                CHECK_EQ(parse(&m, MOLDYN_CONTROL, text), DEM_OK);
+                CHECK_EQ(parse(&m, MOLDYN_PARTICLES, "polygons 1\n6\n0 0\n.02 0\n.02 .006\n.006 .006\n.006 .02\n"
+                               "0 .02\n1\n0 .03 0 -1 .7 20 1 1 1\n"), DEM_OK);
+                CHECK_EQ(parse(&m, MOLDYN_WALLS, walls[tip]), DEM_OK);
+                desc = moldyn_desc(&m);
+                desc.ledger = 1;
+                w = dem_world_create(&desc);
+                CHECK_EQ(moldyn_add(&m, w), DEM_OK);
+                for (worst[k] = step = 0; step < 200; step++) {
+                    dem_ledger l;
+                    CHECK_EQ(dem_world_run(w, 2e-4, 0, 0), DEM_OK);
+                    l = dem_ledger_get(w);
+                    if (step == 0) before = (double)(l.kinetic + l.rotational + l.elastic);
+                    worst[k] = fmax(worst[k], fabs((double)(l.kinetic + l.rotational + l.elastic)/before - 1));
+                }
+                up[tip] = (double)scene_state(w, m.bodies[0]).velocity.y;
+                CHECK(up[tip] > 0.1);
+                moldyn_free(&m);
+                dem_world_destroy(w);
+            }
+            CHECK_NEAR(worst[0], 0, sizeof(dem_real) == 8 ? 1e-5 : 1e-3);
+            if (sizeof(dem_real) == 8) CHECK(worst[1] < worst[0]/10);
+        }
+        /* the face of a part and a plane are one wall to it */
+        CHECK_NEAR(up[0], up[1], sizeof(dem_real) == 8 ? 1e-9 : 1e-3);
+    }
+
+    TEST("frames: a polygon is the disc of its area in .xb, its place and turn in .str; parts and chains are drawn") {
+        static const char xb[] = "build/tmp/p.xb", str[] = "build/tmp/p.str";
+        dem_world *w;
+        moldyn m = MOLDYN;
+        char text[2000];
+        remove(xb);
+        remove(str);
+        parse(&m, MOLDYN_CONTROL, cin);
+        /* a square of side sqrt(pi)/2: of a factor of 2 the disc has radius 1 */
+        CHECK_EQ(parse(&m, MOLDYN_PARTICLES, "polygons 1\n4\n0 0\n.886226925 0\n.886226925 .886226925\n0 .886226925\n"
+                       "1\n.5 7 0 0 1.5707963267948966 0 2 1 1\n"), DEM_OK);
+        CHECK_EQ(parse(&m, MOLDYN_WALLS, polygon_win), DEM_OK);
+        w = world_of(&m);
+        CHECK_EQ(moldyn_add(&m, w), DEM_OK);
+        CHECK_EQ(moldyn_xb_append(&m, w, xb, dem_box_make(0, 0, 0, 1, 1, 0)), DEM_OK);
+        CHECK_EQ(moldyn_str_append(&m, w, str, 0.01, 1, m.planes,
+                                   m.wall_count + m.parts.count + m.chains.count), DEM_OK);
+        load(xb, text, sizeof text);
+        CHECK_STR(text, "\n0.500000 7.000000 0.000000 0.000000 1.000000 0.000000\n");
+        load(str, text, sizeof text);
+        CHECK_STR(text, "0.01 1 5\n");
+        CHECK_NEAR(strtod(text + 9, 0), 0, 1e-6);          /* columns x and y of a quarter turn */
+        CHECK_NEAR(strtod(strchr(text + 9, ' '), 0), -1, 1e-6);
+        CHECK_STR(text, " 0 0 0 1 0.500000 7.000000 0.000000\n");
+        CHECK_STR(text, "\n1 0 0 0 1 0 0 0 1 0.000000 0.000000 0.000000\n1 0 0 0 1 0 0 0 1 0.000000 0.000000");
+        moldyn_free(&m);
+        dem_world_destroy(w);
+        remove(xb);
+        remove(str);
+    }
+
+    TEST("malformed polygons and chains are refused with line, value and limit, and what was read before stays; "
+         "clockwise ones are read") {
+        static const struct { moldyn_file file; const char *text, *says; } rows[] = {
+            {MOLDYN_PARTICLES, "polygons x\n", "line 1: found 'x' where the number of polygons"},
+            {MOLDYN_PARTICLES, "polygons 1 2\n3\n", "the end of the line is expected"},
+            {MOLDYN_PARTICLES, "polygons 9999999\n3\n0 0\n1 0\n0 1\n0\n",
+             "line 1: found 9999999 polygons announced where the file has bytes for at most 1;"},
+            {MOLDYN_PARTICLES, "polygons 1\n2\n0 0\n1 0\n0\n0\n", "found '2' where the number of corners of polygon 1 "
+             "is expected, 3 to 98"},
+            {MOLDYN_PARTICLES, "polygons 1\n99\n0 0\n1 0\n0 1\n", "line 2: found '99' where"},
+            {MOLDYN_PARTICLES, "polygons 1\n9\n0 0\n1 0\n0 1\n", "line 2: found 9 corners announced where the file "
+             "has bytes for at most 3; was it cut short?"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 nan\n0 1\n0\n", "line 4: found 'nan' where corner 2 of the 3 of "
+             "polygon 1 is expected"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 2e15\n0 1\n0\n", "found '2e15' where corner 2"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 0 0\n0 1\n0\n", "line 4: found '0' where the end of the line"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 \n0 1 \n0   \n0 \n", "the end of the line where corner 2"},
+            {MOLDYN_PARTICLES, "polygons 1\n4\n0 0\n1 1\n1 0\n0 1\n0\n", "line 2: polygon 1 crosses or touches itself: "
+             "its sides from corner 1, (0, 0) m, and from corner 3, (1, 0) m,"},
+            {MOLDYN_PARTICLES, "polygons 1\n4\n0 0\n1 0\n0 1\n0 0\n0\n", "corners 4 and 1 of polygon 1 are both "
+             "(0, 0) m, must be apart; give each corner once, the first not again"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 1\n2 2\n0\n", "the area of polygon 1 is 0 m2"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 0\n0 1\npolygons 1\n3\n0 0\n1 0\n0 1\n0\n",
+             "line 6: found 'polygons' where the number of grains"},
+            {MOLDYN_PARTICLES, "chains 1\n2\n0 0\n1 0\n0\n", "found 'chains' where the number of grains"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 0\n0 1\n1\n0 0 0 0 0 0 1 1 2\n", "line 7: found polygon 2 in the "
+             "last column, must be 0 (a disc) to 1"},
+            {MOLDYN_PARTICLES, "1\n0 0 0 0 0 0 1 1 1\n", "found polygon 1 in the last column, must be 0 (a disc) to 0"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 0\n0 1\n1\n0 0 0 0 0 0 1 1 .5\n", "found polygon 0.5"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 0\n0 1\n1\n0 0 0 0 0 0 1 1 -1\n", "found polygon -1"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 0\n0 1\n1\n0 0 0 0 0 0 -2 1 1\n", "found radius (or factor of a "
+             "polygon) -2 and flag 1"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 0\n0 1\n1\n0 0 0 0 0 0 2 3 1\n", "and flag 3 in columns 7 and 8"},
+            {MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n1 0\n0 1\n1\n0 0 0 0 0 0 0 0 0 0 0 0 .1 1\n", "row 1 of 1 is "
+             "expected with 9 numbers, in a plane, as polygons and chains are"},
+            {MOLDYN_WALLS, "chains 1\n1\n0 0\n0 0\n", "found '1' where the number of corners of chain 1 is expected, "
+             "2 to 1000"},
+            {MOLDYN_WALLS, "chains y\n", "the number of chains is expected"},
+            {MOLDYN_WALLS, "chains 1\n4\n0 0\n1 0\n1 1\n.5 -1\n0 0\n", "line 2: chain 1 crosses or touches itself"},
+            {MOLDYN_WALLS, "chains 1\n4\n0 0\n1 0\n0 1\n0 0\n0 0\n", "or list it under polygons if it is closed"},
+            {MOLDYN_WALLS, "chains 1\n2\n1 0\n1 0\n0 0\n", "corners 1 and 2 of chain 1 are both (1, 0) m"},
+            {MOLDYN_WALLS, "polygons 1\n3\n0 0\n1 0\n0 1\n1 0\n0 1 0 0 0 0\n", "with 4 numbers"}};
+        moldyn m = MOLDYN;
+        size_t i;
+        parse(&m, MOLDYN_CONTROL, cin);
+        CHECK_EQ(parse(&m, MOLDYN_PARTICLES, polygon_pin), DEM_OK);
+        for (i = 0; i < sizeof rows/sizeof *rows; i++) {
+            CHECK_EQ(parse(&m, rows[i].file, rows[i].text), DEM_ERROR_FORMAT);
+            CHECK_STR(m.error, rows[i].says);
+            CHECK_STR(m.error, "moldyn_parse: text line ");
+            CHECK_EQ(m.grain_count*10 + m.polygons.count, 52);
+        }
+        /* an open one may end where a closed one crosses; clockwise is as good */
+        CHECK_EQ(parse(&m, MOLDYN_WALLS, "chains 1\n3\n0 0\n1 0\n0 1\n0 0\n"), DEM_OK);
+        CHECK_EQ(parse(&m, MOLDYN_PARTICLES, "polygons 1\n3\n0 0\n0 1\n1 0\n1\n0 0 0 0 0 0 1 1 1\n"), DEM_OK);
+        moldyn_free(&m);
+        parse(&m, MOLDYN_WALLS, win);            /* in space */
+        CHECK_EQ(parse(&m, MOLDYN_PARTICLES, polygon_pin), DEM_ERROR_FORMAT);
+        CHECK_STR(m.error, "line 1: found 'polygons' where rows are expected: the scene is in space");
+        CHECK_EQ(m.planar, 0);
+        moldyn_free(&m);
+        CHECK_EQ(parse(&m, MOLDYN_WALLS, "chains 1\n2\n0 0\n1 0\n0 0\n"), DEM_OK);
+        CHECK_EQ(m.planar, 1);                   /* a chain alone says so */
+        CHECK_EQ(parse(&m, MOLDYN_PARTICLES, pin), DEM_ERROR_FORMAT);
+        CHECK_STR(m.error, "as the other file");
+        moldyn_free(&m);
+    }
+
+    TEST("polygons filled in by hand are looked at before anything is added, and bodies that are none of m's are "
+         "not taken for them") {
+        dem_world *w, *other;
+        moldyn m = MOLDYN;
+        dem_real x[4] = {0, 0, 0, 0}, kept[2];
+        const double nan = strtod("nan", 0);
+        int had;
+        parse(&m, MOLDYN_CONTROL, cin);
+        CHECK_EQ(parse(&m, MOLDYN_PARTICLES, polygon_pin), DEM_OK);
+        w = world_of(&m);
+#define REFUSES(says) do { m.error[0] = 0; CHECK_EQ(moldyn_add(&m, w), DEM_ERROR_ARGUMENT); \
+    CHECK_STR(m.error, "moldyn_add: "); CHECK_STR(m.error, says); } while (0)
+        m.kinds[1] = 3;
+        REFUSES("grain 1 is of kind 3, must be 0 (a disc) to 2");
+        m.kinds[1] = 2;
+        memcpy(kept, m.polygons.corners, sizeof kept);
+        m.polygons.corners[1] = (dem_real)nan;
+        REFUSES("corner 1 of polygon 1 is (0, nan) m, must be finite");
+        memcpy(m.polygons.corners, m.polygons.corners + 2, sizeof kept);
+        REFUSES("corners 1 and 2 of polygon 1 are both");
+        memcpy(m.polygons.corners, kept, sizeof kept);
+        had = m.polygons.ends[0];
+        m.polygons.ends[0] = 2;
+        REFUSES("of 2 polygons number 1 has not 3 to 98 corners");
+        m.polygons.ends[0] = had;
+        m.grains[14*2 + 12] = sizeof(dem_real) == 8 ? DEM_R(1e-75) : DEM_R(1e-10);
+        REFUSES("grain 2 has a polygon's factor of 1e-");
+        m.grains[14*2 + 12] = 2;
+        m.planar = 0;
+        dem_world_destroy(w);
+        w = world_of(&m);
+        REFUSES("there are 2 polygons and planar is 0");
+        m.planar = 1;
+        dem_world_destroy(w);
+        w = world_of(&m);
+        CHECK_EQ(dem_bodies_get(w).count, 0);
+        CHECK_EQ(moldyn_add(&m, w), DEM_OK);
+#undef REFUSES
+        other = world_of(&m);                    /* the same ids, other shapes */
+        {
+            const dem_real square[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+            const dem_material_desc stuff = scene_stuff(1e6, 1, 0, 0);
+            const dem_material steel = dem_material_add(other, &stuff);
+            const dem_shape shape = dem_shape_polygon_add(other, 4, square);
+            CHECK_EQ(shape.id, m.shapes[0].id);
+            CHECK(dem_body_add(other, steel, shape, at(0, 0, 0), dem_quat_make(1, 0, 0, 0)).slot);
+        }
+        CHECK_EQ(moldyn_take(&m, other), DEM_ERROR_ARGUMENT);
+        CHECK_STR(m.error, "moldyn_take: 1 bodies are not spheres, nor polygons that moldyn_add has added");
+        CHECK_EQ(m.grain_count, 5);
+        /* one more of a kind of m's, that m has not added: it is taken, with the factor it was given */
+        x[3] = DEM_R(0.75);
+        CHECK_EQ(dem_bodies_add(w, m.grain_material, m.shapes[0], 1, x, 0, 0, 0, x + 3), DEM_OK);
+        CHECK_EQ(moldyn_take(&m, w), DEM_OK);
+        CHECK_EQ(m.grain_count, 6);
+        CHECK_EQ(m.kinds[5], 1);
+        CHECK_REL((double)m.grains[14*5 + 12], 0.75, sizeof(dem_real) == 8 ? 1e-14 : 1e-6);
+        CHECK_EQ(parse(&m, MOLDYN_PARTICLES, polygon_pin), DEM_OK);
+        CHECK_EQ(moldyn_take(&m, w), DEM_ERROR_ARGUMENT);   /* these have not been added yet */
+        CHECK_STR(m.error, "6 bodies are not spheres");
+        moldyn_free(&m);
+        dem_world_destroy(w);
+        dem_world_destroy(other);
     }
 
     return test_end();
