@@ -38,7 +38,9 @@
        >>polyhedra   what polyhedra share with each other and with surfaces
        >>gaps        how far polyhedra are apart, and the points that keep them off
        >>on-walls    where parts of bodies touch walls: geometry only
-       >>polyhedra-walls  where polyhedra touch walls; who touches what
+       >>polyhedra-walls  where polyhedra touch walls whose elements are flat, or grains
+       >>polyhedra-round  where they touch cylinders and surfaces of revolution
+       >>polyhedra-sieves  where they touch sieves; who touches what
        >>kept        contacts kept by themselves, all but sphere on sphere: touch
        >>kept-respond  the law's answers to them: forces on both ends
        >>integrators kick, drift, predict; rotation
@@ -1475,7 +1477,8 @@ DEM_API dem_wall dem_grains_wall_add(dem_world *world, dem_material material, in
                                      dem_real radius, dem_real share);
 
 /* A sieve: a plane with holes, whose rows go on without end, or as far as a disc reaches. What a
-   grain costs does not depend on how many holes there are. */
+   grain costs does not depend on how many holes there are. Spheres and clusters know every sieve,
+   polyhedra those without end of wires and bars, and plates (to springs: of some thickness). */
 typedef enum dem_sieve_kind {
     DEM_SIEVE_NONE = 0,
     DEM_SIEVE_WIRES,          /* square weave of round wires */
@@ -2818,8 +2821,8 @@ enum { DEMI_RING_MOST = 2*DEM_RINGS - 1 };      /* pieces and rings of a surface
       demi_grain_near, (demi_elements_touch, demi_grain_ellipsoid, demi_grain_polyhedron), \
       demi_grain_bend) \
     X(SIEVE,    0, DEMI_SIEVE_MOST, DEMI_CROSSED, "sieve", \
-      demi_sieve_near, (demi_sieve_spheres), demi_sieve_bend) \
-    X(REVOLVED, 0, DEMI_RING_MOST, 0, "surface of revolution", \
+      demi_sieve_near, (demi_sieve_spheres, 0, demi_sieve_polyhedron), demi_sieve_bend) \
+    X(REVOLVED, 0, DEMI_RING_MOST, DEMI_CROSSED, "surface of revolution", \
       demi_revolved_near, (demi_revolved_spheres, 0, demi_round_polyhedron), demi_revolved_bend) \
     /* the last */
 #define DEMI_LIST(...) {__VA_ARGS__}            /* one field of a row that is a list: (a, b) */
@@ -5602,7 +5605,7 @@ static void demi_union_bounds(const dem_world *w, demi_shape *s) {
     for (i = 0; i < s->pieces; i++) {
         const demi_piece *piece = s->piece + i;
         const demi_shape *one = &w->shapes[piece->shape];
-        const double *x = one->hull + 4*one->faces;
+        const double *x = one->faces ? one->hull + 4*one->faces : 0;
         dem_real far = one->faces ? 0 : demi_length(piece->at) + one->radius;
         for (k = 0; k < one->corners; k++, x += 3) {
             const dem_vec3 at = demi_v((dem_real)x[0], (dem_real)x[1], (dem_real)x[2]);
@@ -6223,27 +6226,26 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     w->bodies.balance.present++;
     return (uint32_t)slot;
 }
-/* Do walls of this kind and parts of that one know each other? (>>kept) */
-static int demi_touch_known(int kind, int part);
-/* body: its slot, -1: it is yet to come. part: what it is. */
-static dem_result demi_strangers(dem_world *w, const char *call, int wall, int kind, int body,
-                                 int part) {
+/* Why a part of this kind does not know a wall; 0: it does. (>>polyhedra-sieves) */
+static const char *demi_wall_strange(const dem_world *w, const demi_wall *wall, int part);
+/* number: the wall's. body: its slot, -1: it is yet to come. part: what it is. */
+static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall *wall, int number,
+                                 int body, int part) {
     char who[32] = "the body";
     if (body >= 0) snprintf(who, sizeof who, "body %d", body + 1);
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s a%s %s: the two do not "
-                     "know each other; make bodies clusters of spheres, or the wall a mesh or a "
-                     "resolved profile; nothing was added", call, wall + 1,
-                     demi_wall_kinds[kind].name, who, demi_an(demi_shape_rows[part].name),
-                     demi_shape_rows[part].name);
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s a%s %s: %s; nothing was "
+                     "added", call, number + 1, demi_wall_kinds[wall->kind].name, who,
+                     demi_an(demi_shape_rows[part].name), demi_shape_rows[part].name,
+                     demi_wall_strange(w, wall, part));
 }
 /* 1 with a sentence when some wall does not know bodies of a shape that are to be added. */
 static int demi_walls_strange(dem_world *w, const char *call, int shape) {
     const int part = demi_shape_kind(&w->shapes[shape]);
     int j;
     for (j = 0; j < w->wall_count; j++) {
-        const int kind = w->walls[j].kind;
-        if (kind == DEMI_WALL_NONE || demi_touch_known(kind, part)) continue;
-        demi_strangers(w, call, j, kind, -1, part);
+        const demi_wall *wall = &w->walls[j];
+        if (wall->kind == DEMI_WALL_NONE || !demi_wall_strange(w, wall, part)) continue;
+        demi_strangers(w, call, wall, j, -1, part);
         return 1;
     }
     return 0;
@@ -7964,16 +7966,16 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     wall->pose = wall->mid = wall->first = wall->home;
     for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
         const int part = demi_shape_kind(demi_shape_of(w, i));
-        if (demi_touch_known(wall->kind, part)) continue;
-        demi_strangers(w, call, w->wall_count, wall->kind, (int)w->bodies.slot[i], part);
+        if (!demi_wall_strange(w, wall, part)) continue;
+        demi_strangers(w, call, wall, w->wall_count, (int)w->bodies.slot[i], part);
         demi_wall_free(w, wall);
         return id;
     }
     for (i = 0; i < w->feed_count*DEM_CLASSES; i++) {       /* and of those that are to come */
         const int shape = w->feeds[i/DEM_CLASSES].desc.shapes[i%DEM_CLASSES].id;
         const int part = shape ? w->shapes[shape - 1].kind : DEMI_BALL;
-        if (demi_touch_known(wall->kind, part)) continue;
-        demi_strangers(w, call, w->wall_count, wall->kind, -1, part);
+        if (!demi_wall_strange(w, wall, part)) continue;
+        demi_strangers(w, call, wall, w->wall_count, -1, part);
         demi_wall_free(w, wall);
         return id;
     }
@@ -9542,8 +9544,8 @@ static int demi_places_of(const dem_world *w, int d, int k) {
     const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[d*w->wall_stride + k]
         : 0;
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
-    const int most = w->bodies.shaped && !kind->corners ? DEMI_MAX(kind->most, 8*DEMI_FLATS)
-        : kind->most;
+    const int flats = (wall->kind == DEMI_WALL_SIEVE ? 16 : 8)*DEMI_FLATS;  /* wires: two sets */
+    const int most = w->bodies.shaped && !kind->corners ? DEMI_MAX(kind->most, flats) : kind->most;
     return most + (cut ? 2*(cut[1] - cut[0]) : 0);
 }
 /* The most contacts with walls that domain d may ever have with these candidates. */
@@ -13370,34 +13372,37 @@ static int demi_facets_spheres(const dem_world *w, int d, int first, int last, d
                              demi_range(w, part->radius), places);
 }
 /* Where a sphere touches a surface of revolution: pieces between their ends, rings where it lies
-   beyond the ends of all pieces that meet there. Elements: pieces, then rings. */
+   beyond the ends of all pieces that meet there; a ring between two pieces that it touches takes
+   away, as where rows of a sieve cross: so the second begins, in an inner corner, without a jump
+   however deep the sphere is in the first. Elements: pieces, then rings. */
 static int demi_revolved_touch(const demi_wall *wall, dem_vec3 x, dem_real r, demi_touching *out) {
     const dem_real l = DEMI_SQRT(x.x*x.x + x.y*x.y);
     const dem_vec3 d = l > 0 ? demi_v(x.x/l, x.y/l, 0) : demi_v(1, 0, 0);
     const int pieces = wall->ring_count - 1;
-    int k, end, before = 1, count = 0;          /* before: did the last piece end in this ring? */
+    int k, end, part, before = 1, count = 0;    /* before: did the last piece end in this ring? */
     for (k = 0; k <= pieces; k++) {
         dem_real a = wall->ring_radius[k], b = wall->ring_height[k], dist = 0;
-        int piece, ring = before > 0;
+        int how;                                /* 1: it counts, -1: it takes away, 0: neither */
         end = -1;
         if (k < pieces) dist = demi_ring_piece(wall, k, l, x.z, &a, &b, &end);
-        before = end;
-        ring = ring && end < 0;
-        piece = k < pieces && !end;
-        if (!ring && !piece) continue;
-        if (ring) {
-            a = wall->ring_radius[k];
-            b = wall->ring_height[k];
-            dist = DEMI_SQRT((l - a)*(l - a) + (x.z - b)*(x.z - b));
+        for (part = 0; part < 2; part++) {      /* the piece, then the ring where it begins */
+            how = part ? (before > 0 && end < 0) - (k && !before && !end) : k < pieces && !end;
+            if (!how) continue;
+            if (part) {
+                a = wall->ring_radius[k];
+                b = wall->ring_height[k];
+                dist = DEMI_SQRT((l - a)*(l - a) + (x.z - b)*(x.z - b));
+            }
+            if (!(r - dist > 0)) continue;
+            out[count].element = part ? pieces + k : k;
+            out[count].share = wall->share*(dem_real)how;
+            out[count].overlap = r - dist;
+            out[count].point = demi_v(d.x*a, d.y*a, b);
+            out[count].normal = dist > 0
+                ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
+            count++;
         }
-        if (!(r - dist > 0)) continue;
-        out[count].element = ring ? pieces + k : k;
-        out[count].share = wall->share;
-        out[count].overlap = r - dist;
-        out[count].point = demi_v(d.x*a, d.y*a, b);
-        out[count].normal = dist > 0
-            ? demi_scale(demi_sub(out[count].point, x), 1/dist) : d;
-        count++;
+        before = end;
     }
     return count;
 }
@@ -13602,9 +13607,8 @@ static dem_real demi_ellipsoid_on_grain(const demi_wall *wall, int element, cons
                                 (dem_real)((1 - m.l)*m.a[2])));
     return (dem_real)(1 - sqrt(m.f));
 }
-/* An ellipsoid as the wall's frame sees it. */
-static demi_part demi_part_local(const demi_wall *wall, const demi_part *p) {
-    const dem_real *R = wall->pose.rotation;
+/* A part as a frame of axes R, a wall's or a wire's, sees it. */
+static demi_part demi_part_local(const dem_real *R, const demi_part *p) {
     demi_part local = *p;
     double turn[3][3];
     int i, e;
@@ -13614,7 +13618,8 @@ static demi_part demi_part_local(const demi_wall *wall, const demi_part *p) {
 }
 static int demi_facets_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
                                  dem_vec3 at, const demi_part *part, demi_touching **places) {
-    const demi_part local = demi_part_local(&w->walls[w->wall_id[d*w->wall_stride + first]], part);
+    const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + first]];
+    const demi_part local = demi_part_local(wall->pose.rotation, part);
     return demi_facets_touch(w, d, first, last, gone, at, 0, &local, demi_range(w, part->radius),
                              places);
 }
@@ -13625,7 +13630,7 @@ static int demi_ellipsoid_touch(const dem_world *w, int d, int first, int last, 
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
     const dem_real *R = wall->pose.rotation;
-    const demi_part local = demi_part_local(wall, part);
+    const demi_part local = demi_part_local(wall->pose.rotation, part);
     const dem_real range = demi_range(w, part->radius);
     const int two = wall->inside;
     demi_touching *out;
@@ -13812,13 +13817,12 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
 
 /* ---------------------------------------------------------------------------------------------
    >>polyhedra-walls
-   Where polyhedra touch walls: what >>polyhedra says of each flat piece, in the wall's frame, and
-   of each line of a surface of revolution. Surfaces whose normals differ by more than 18 degrees
-   are contacts of their own, with all the wall's overlap, and as much of its energy as they have of
-   its force; each is four places, the corners that its pressure is spread over. A surface is seen
-   from one side, that of the facet, or piece, nearest to the body's centre. For impulses, and for
-   laws with a range where nothing presses, it is told by gaps in their place (>>gaps), by up to
-   four points a direction. Then the table of who touches what.
+   Where polyhedra touch walls: what >>polyhedra says of each flat piece, in the wall's frame.
+   Surfaces whose normals differ by more than 18 degrees are contacts of their own, with all the
+   wall's overlap, and as much of its energy as they have of its force; each is four places, the
+   corners that its pressure is spread over. A surface is seen from one side, that of the facet, or
+   piece, nearest to the body's centre. For impulses, and for laws with a range where nothing
+   presses, it is told by gaps in their place (>>gaps), by up to four points a direction.
    --------------------------------------------------------------------------------------------- */
 
 /* Pressures on one wall, by the direction of their surfaces. */
@@ -13842,11 +13846,11 @@ static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *
         f->press[f->count++] = *s;
     } else demi_pressure_add(&f->press[best], s);
 }
-/* Places of all of them. */
-static int demi_flats_places(const demi_flats *f, const demi_wall *wall, const demi_part *part,
-                             dem_vec3 at, dem_vec3 shift, demi_touching *out) {
+/* Places of all of them, found in a frame of axes R. share: the wall's. */
+static int demi_flats_places(const demi_flats *f, const dem_real *R, dem_real share,
+                             const demi_part *part, dem_vec3 at, dem_vec3 shift,
+                             demi_touching *out) {
     const double r = demi_part_equal(part);
-    const dem_real *R = wall->pose.rotation;
     double shared = 0, force = 0, overlap;
     demi_patch p;
     int i, k, count = 0;
@@ -13863,7 +13867,7 @@ static int demi_flats_places(const demi_flats *f, const demi_wall *wall, const d
             t->corner = k;
             t->corners = 4;
             t->overlap = (dem_real)overlap;
-            t->share = wall->share*(dem_real)(p.force/(4*force));
+            t->share = share*(dem_real)(p.force/(4*force));
             t->slope = (dem_real)demi_shared_slope(force, r, overlap);
             t->deep = (dem_real)f->press[i].deep;
             t->couple = p.couple;
@@ -13922,7 +13926,11 @@ typedef struct demi_gap_group {
     int count;
     double x[DEMI_GAP_POINTS][3], n[DEMI_GAP_POINTS][3], gap[DEMI_GAP_POINTS];
 } demi_gap_group;
-typedef struct demi_gaps { int count; double range; demi_gap_group group[DEMI_FLATS]; } demi_gaps;
+typedef struct demi_gaps {
+    int count, flat;               /* flat: only what pushes along the frame's z, to 60 degrees */
+    double range;
+    demi_gap_group group[DEMI_FLATS];
+} demi_gaps;
 /* Leaves the four that count. */
 static void demi_gap_group_pick(demi_gap_group *g) {
     const demi_gap_group all = *g;
@@ -13940,7 +13948,7 @@ static void demi_gaps_add(demi_gaps *gaps, int32_t element, const double *n, con
     demi_gap_group *g;
     double most = -2;
     int i, best = 0;
-    if (!(gap < gaps->range)) return;
+    if (!(gap < gaps->range) || (gaps->flat && fabs(n[2]) < 0.5)) return;
     for (i = 0; i < gaps->count; i++) {
         const double along = demi_dot3(gaps->group[i].n[0], n);
         if (along > most) { most = along; best = i; }
@@ -14074,10 +14082,9 @@ static void demi_element_gaps(const demi_wall *wall, int element, const int32_t 
 /* Places of all of them: by impulses the four of each direction that count; by a law with a range
    the nearest of all of a direction in which nothing presses, four times. pressed: how many places
    are there already. */
-static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const demi_wall *wall,
+static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const dem_real *R, dem_real share,
                             const demi_part *part, dem_vec3 at, dem_vec3 shift,
                             const demi_touching *there, int pressed, demi_touching *out) {
-    const dem_real *R = wall->pose.rotation;
     const int impulsive = demi_impulsive(w);
     int i, k, e, count = 0;
     for (i = 0; i < gaps->count; i++) {
@@ -14096,7 +14103,7 @@ static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const demi_wall
             t->corner = k;
             t->corners = places;
             t->overlap = (dem_real)-g->gap[e];
-            t->share = wall->share/(dem_real)places;
+            t->share = share/(dem_real)places;
             t->slope = 1;
             t->deep = t->overlap/demi_part_thin(part);
             t->normal = demi_rotate(R, demi_v((dem_real)g->n[e][0], (dem_real)g->n[e][1],
@@ -14112,6 +14119,14 @@ static int demi_gaps_places(const dem_world *w, demi_gaps *gaps, const demi_wall
         }
     }
     return count;
+}
+/* Places of both, of one image of the body. */
+static int demi_wall_places(const dem_world *w, const demi_flats *flats, demi_gaps *gaps,
+                            const dem_real *R, dem_real share, const demi_part *part, dem_vec3 at,
+                            dem_vec3 shift, demi_touching *out) {
+    const int pressed = demi_flats_places(flats, R, share, part, at, shift, out);
+    return pressed + demi_gaps_places(w, gaps, R, share, part, at, shift, out, pressed,
+                                      out + pressed);
 }
 /* From which side a body sees the sheets of a surface that are near: from that on which its centre
    is, by the facet that is nearest to it, of equally near ones (at an edge) by that which it stands
@@ -14181,16 +14196,17 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
-    const demi_part local = demi_part_local(wall, part);
+    const demi_part local = demi_part_local(wall->pose.rotation, part);
     const int impulsive = demi_impulsive(w);
     demi_flats flats;
     demi_gaps gaps;
     demi_pressure press;
     demi_sheets sheets;
     demi_solid s;
-    int k, from, end, had, way, count = 0;
+    int k, from, end, way, count = 0;
     *places = w->touching + w->domains[d].touching_first;
     gaps.range = (double)demi_range(w, part->radius);
+    gaps.flat = 0;
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     for (k = first; k < last; k = end) {
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
@@ -14201,7 +14217,7 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
         for (from = k; wall->sheet && !impulsive && from < end; from++)
             if (!(w->wall_gap[base + from] > gone))
                 demi_sheets_add(&sheets, wall, w->wall_element[base + from], x);
-        for (from = k, had = count; k < end; k++) {
+        for (from = k; k < end; k++) {
             const int32_t element = w->wall_element[base + k];
             if (w->wall_gap[base + k] > gone) continue;
             if (!impulsive) {
@@ -14214,12 +14230,59 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
             else demi_element_gaps(wall, element, w->wall_element + base + from, end - from, &s, x,
                                    2*(double)part->radius + gaps.range, &gaps);
         }
-        count += demi_flats_places(&flats, wall, part, at, shift, *places + count);
-        count += demi_gaps_places(w, &gaps, wall, part, at, shift, *places + had, count - had,
-                                  *places + count);
+        count += demi_wall_places(w, &flats, &gaps, wall->pose.rotation, wall->share, part, at,
+                                  shift, *places + count);
     }
     return count;
 }
+/* A wall of grains, each a ball. */
+static int demi_grain_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
+                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
+    const int base = d*w->wall_stride;
+    const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const dem_real *R = wall->pose.rotation;
+    const demi_part local = demi_part_local(wall->pose.rotation, part);
+    demi_touching *out = *places = w->touching + w->domains[d].touching_first;
+    demi_solid s;
+    int k, count = 0;
+    demi_solid_of(&local, demi_v(0, 0, 0), &s);
+    for (k = first; k < last; k++) {
+        const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
+        const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
+        const dem_vec3 ball = demi_sub(demi_at(wall->vertices + 3*w->wall_element[base + k]), x);
+        const double c[3] = {(double)ball.x, (double)ball.y, (double)ball.z};
+        double q[3], off;
+        demi_touching *t = &out[count];
+        if (w->wall_gap[base + k] > gone) continue;
+        off = demi_solid_near(&s, c, q);
+        if (!(off < (double)(wall->radius + demi_range(w, part->radius)))) continue;
+        memset(t, 0, sizeof *t);
+        t->element = w->wall_element[base + k];
+        t->overlap = wall->radius - (dem_real)off;
+        t->deep = t->overlap/wall->radius;
+        t->share = wall->share;
+        t->slope = 1;
+        t->point = demi_add(at, demi_rotate(R, demi_v((dem_real)q[0], (dem_real)q[1],
+                                                      (dem_real)q[2])));
+        t->normal = demi_v((dem_real)(c[0] - q[0]), (dem_real)(c[1] - q[1]),
+                           (dem_real)(c[2] - q[2]));
+        t->normal = off < 0 || off > 0 ? demi_scale(demi_rotate(R, t->normal), (dem_real)(1/off))
+                                       : demi_unit(demi_rotate(R, ball));
+        t->shift = shift;
+        count++;
+    }
+    return count;
+}
+
+/* ---------------------------------------------------------------------------------------------
+   >>polyhedra-round
+   Where polyhedra touch cylinders and surfaces of revolution, piece by piece: springs by what they
+   share with each line of a piece, summed over angles between those at which that is smooth (edges,
+   pyramids and faces that cross the piece or the rings at its ends); gaps by corners where the
+   piece bends round the body, by the plane along the nearest line where it bends away, and by
+   points of the rings at its ends.
+   --------------------------------------------------------------------------------------------- */
+
 /* Lines of a surface of revolution about z, from radius a to b, height g to h: each with all that
    shares it at its angle. The pyramids' sections along it are pieces on which u is linear. */
 typedef struct demi_generator {
@@ -14279,12 +14342,19 @@ static void demi_generator_press(const demi_solid *s, const demi_generator *l, d
 static int demi_generator_cross(const demi_generator *l, const double *p, const double *q,
                                 double *angle) {
     const double d[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-    const double flat = l->h > l->g || l->h < l->g ? (l->b - l->a)/(l->h - l->g) : 0;
+    const int level = !(l->h > l->g || l->h < l->g);
+    const double flat = level ? 0 : (l->b - l->a)/(l->h - l->g);
     const double r0 = l->a + flat*(p[2] - l->g), dr = flat*d[2];
     const double A = d[0]*d[0] + d[1]*d[1] - dr*dr, B = p[0]*d[0] + p[1]*d[1] - r0*dr;
     const double C = p[0]*p[0] + p[1]*p[1] - r0*r0, D = B*B - A*C;
     double t[2];
     int i, count = 0;
+    if (level) {
+        if ((p[2] > l->g) == (q[2] > l->g)) return 0;
+        t[0] = (l->g - p[2])/d[2];
+        *angle = demi_atan2(p[1] + t[0]*d[1], p[0] + t[0]*d[0]);
+        return 1;
+    }
     if (!(D > 0)) return 0;
     t[0] = B > 0 ? (-B - sqrt(D))/A : C/(-B + sqrt(D));
     t[1] = B > 0 ? C/(-B - sqrt(D)) : (-B + sqrt(D))/A;
@@ -14387,8 +14457,47 @@ static int demi_generator_face(const demi_generator *l, const demi_solid *s, int
     }
     return count;
 }
+/* Angles at which a ring, where a piece ends, comes through a plane n.y = c, y from the centre,
+   within the body: how many, 0 to 2. */
+static int demi_ring_cross(const demi_solid *s, double r, double z, const double *n, double c,
+                           const double *x0, double *angle) {
+    const double to = r*sqrt(n[0]*n[0] + n[1]*n[1]);
+    const double over = c + n[0]*x0[0] + n[1]*x0[1] - n[2]*(z - x0[2]);
+    double mid, half;
+    int i, f, count = 0;
+    if (!(fabs(over) < to)) return 0;
+    mid = demi_atan2(n[1], n[0]);
+    half = demi_atan2(sqrt((to - over)*(to + over)), over);
+    for (i = -1; i < 2; i += 2) {
+        const double at = mid + i*half;
+        const double y[3] = {r*demi_cos(at) - x0[0], r*demi_sin(at) - x0[1], z - x0[2]};
+        for (f = 0; f < s->faces && demi_solid_in(s, f, y) > -1e-9; f++) continue;
+        if (f == s->faces) angle[count++] = at;
+    }
+    return count;
+}
+/* Those of all its faces, and of the sides of its pyramids; radius: of the body. */
+static int demi_generator_end(const demi_solid *s, double r, double z, const double *x0,
+                              double radius, double *angle) {
+    const double off = sqrt(x0[0]*x0[0] + x0[1]*x0[1]) - r, up = x0[2] - z;
+    const int32_t *loops = s->rim + s->faces + 1;
+    int f, i, count = 0;
+    if (!(r > 0) || !(off*off + up*up < radius*radius)) return 0;
+    for (f = 0; f < s->faces; f++) {
+        count += demi_ring_cross(s, r, z, s->plane[f], 1, x0, angle + count);
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
+            const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
+            double n[3];
+            if (a > b) continue;
+            demi_cross3(s->corner[a], s->corner[b], n);
+            count += demi_ring_cross(s, r, z, n, 0, x0, angle + count);
+        }
+    }
+    return count;
+}
+/* Edges and lines to corners that cross, twice each; faces at two heights; two rings' planes. */
 enum { DEMI_CROSSINGS = 2*(3*DEM_POLYHEDRON_FACES + DEMI_HULL_CORNERS) +
-       4*DEM_POLYHEDRON_FACES + 4 };
+       4*DEM_POLYHEDRON_FACES + 4*4*DEM_POLYHEDRON_FACES + 4 };
 static int demi_angle_order(const void *a, const void *b) {
     const double x = *(const double *)a, y = *(const double *)b;
     return x < y ? -1 : x > y;
@@ -14409,7 +14518,7 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
         x0[0]*x0[0] + x0[1]*x0[1] <
         demi_generator_radius(l, x0[2])*demi_generator_radius(l, x0[2]);
     unsigned char beyond[DEMI_HULL_CORNERS];
-    double angle[DEMI_CROSSINGS], p[3], q[3];
+    double angle[DEMI_CROSSINGS], p[3], q[3], radius = 0;
     demi_pressure press;
     int f, i, k, count = 0, any = 0;
     memset(&press, 0, sizeof press);
@@ -14421,10 +14530,12 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     for (i = 0; i < s->corners; i++) {
         const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
         const double r = demi_generator_radius(l, x0[2] + s->corner[i][2]);
+        radius = DEMI_MAX(radius, demi_dot3(s->corner[i], s->corner[i]));
         beyond[i] = !inside || !(r > 0) || u*u + v*v > r*r;
         any |= beyond[i];
     }
     if (!any) return;
+    radius = sqrt(radius);
     for (f = 0; f < s->faces; f++)
         for (i = s->rim[f]; i < s->rim[f + 1]; i++) {
             const int32_t a = loops[i], b = loops[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]];
@@ -14440,8 +14551,10 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
         for (k = 0; k < 3; k++) p[k] = x0[k] + s->corner[i][k];
         count += demi_generator_cross(l, x0, p, angle + count);
     }
-    for (f = 0; f < s->faces && !inside; f++)
+    for (f = 0; f < s->faces && !inside && (l->h > l->g || l->h < l->g); f++)
         count += demi_generator_face(l, s, f, x0, angle + count);
+    count += demi_generator_end(s, l->a, l->g, x0, radius, angle + count);
+    count += demi_generator_end(s, l->b, l->h, x0, radius, angle + count);
     for (i = 0; i < count; i++)                 /* of one turn */
         angle[i] -= 2*DEMI_PI*floor(angle[i]/(2*DEMI_PI));
     if (!count) angle[count++] = 0;
@@ -14449,8 +14562,11 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     angle[count] = angle[0] + 2*DEMI_PI;
     for (i = 0; i <= count; i++) {
         const double width = i < count ? angle[i + 1] - angle[i] : 0, had = press.sum;
-        for (k = 0; k < 4 && width > 1e-15; k++)
-            demi_generator_press(s, l, angle[i] + at[k]*width, part[k]*width, x0, &press);
+        const int pieces = 1 + (int)(width/0.4);
+        for (f = 0; f < pieces && (!f || press.sum > had); f++)     /* none of its lines, or all */
+            for (k = 0; k < 4 && width > 1e-15; k++)
+                demi_generator_press(s, l, angle[i] + (f + at[k])*width/pieces,
+                                     part[k]*width/pieces, x0, &press);
         if (width > 1e-9 && press.sum > had) continue;
         if (width > 1e-9 || i == count) {       /* a gap: what is beyond is another contact */
             demi_flats_add(flats, element, &press);
@@ -14548,13 +14664,13 @@ static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, de
         demi_generator_add(l, n, x0, s->corner[i], out, up, level, element, gaps);
     }
 }
-/* The point of a ring in direction (u, v) from the axis, and the body's point nearest to it: where
-   neither piece that ends in the ring goes on towards the body. How far apart, m; to: q. */
+/* The point of a ring at an angle about the axis, and the body's point nearest to it, to; tell:
+   where neither piece that ends in the ring goes on towards the body. How far apart, m. */
 static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid *s,
-                              const double *x0, double u, double v, int tell, double *to,
+                              const double *x0, double angle, int tell, double *to,
                               demi_gaps *gaps) {
     const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
-    const double size = sqrt(u*u + v*v), c = size > 0 ? u/size : 1, sn = size > 0 ? v/size : 0;
+    const double c = demi_cos(angle), sn = demi_sin(angle);
     const double y[3] = {r*c - x0[0], r*sn - x0[1], z - x0[2]};
     const double off = demi_solid_near(s, y, to);
     double n[3], o[3], along;
@@ -14574,33 +14690,51 @@ static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid 
     demi_gaps_add(gaps, wall->ring_count - 1 + ring, n, o, off);
     return off;
 }
-/* A ring of a surface of revolution, at the end of a piece: its point nearest to the body, by
-   turns, and others to both sides, since a face may lie on it. */
+/* A ring of a surface of revolution, at the end of a piece: points all round as far as a body of
+   this radius reaches, since a face may lie on it, and between those about one that is nearer, or
+   deeper, than its neighbours the one that is most so (golden section). */
+enum { DEMI_RING_POINTS = 17 };
 static void demi_ring_gaps(const demi_wall *wall, int ring, const demi_solid *s, dem_vec3 x,
                            double radius, demi_gaps *gaps) {
+    static const double golden = 0.6180339887498949;
     const double r = (double)wall->ring_radius[ring], reach = (radius + gaps->range)/r;
     const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
-    double u = x0[0], v = x0[1], q[3], angle, half;
-    int turn;
-    for (turn = 0; turn < 40; turn++) {
-        const double had[2] = {u, v};
-        if (!(demi_ring_point(wall, ring, s, x0, u, v, 0, q, gaps) < gaps->range)) return;
-        u = x0[0] + q[0];
-        v = x0[1] + q[1];
-        if (fabs(u - had[0]) + fabs(v - had[1]) < 1e-12*r) break;
+    const double off = sqrt(x0[0]*x0[0] + x0[1]*x0[1]) - r;
+    const double up = x0[2] - (double)wall->ring_height[ring], angle = demi_atan2(x0[1], x0[0]);
+    const double half = reach < 1 ? demi_atan2(reach, sqrt(1 - reach*reach)) : DEMI_PI;
+    const double step = 2*half/(DEMI_RING_POINTS - 1);
+    double far[DEMI_RING_POINTS], q[3];
+    int i, turn;
+    if (!(off*off + up*up < (radius + gaps->range)*(radius + gaps->range))) return;
+    for (i = 0; i < DEMI_RING_POINTS; i++)
+        far[i] = demi_ring_point(wall, ring, s, x0, angle - half + i*step, 1, q, gaps);
+    for (i = 0; i < DEMI_RING_POINTS; i++) {
+        const int last = i + 1 == DEMI_RING_POINTS;
+        double lo = angle - half + (i - 1)*step, hi = lo + 2*step, at[2], found[2];
+        if ((i && far[i - 1] < far[i]) || (!last && far[i + 1] < far[i]) ||
+            !(far[i] < gaps->range + step*r)) continue;
+        for (turn = 0; turn < 2; turn++) {
+            at[turn] = turn ? lo + golden*(hi - lo) : hi - golden*(hi - lo);
+            found[turn] = demi_ring_point(wall, ring, s, x0, at[turn], 0, q, gaps);
+        }
+        for (turn = 0; turn < 30; turn++) {
+            const int less = found[1] < found[0];
+            if (less) lo = at[0];
+            else hi = at[1];
+            at[!less] = at[less];
+            found[!less] = found[less];
+            at[less] = less ? lo + golden*(hi - lo) : hi - golden*(hi - lo);
+            found[less] = demi_ring_point(wall, ring, s, x0, at[less], 0, q, gaps);
+        }
+        demi_ring_point(wall, ring, s, x0, (lo + hi)/2, 1, q, gaps);
     }
-    angle = demi_atan2(v, u);
-    half = reach < 1 ? demi_atan2(reach, sqrt(1 - reach*reach)) : DEMI_PI;
-    for (turn = -8; turn <= 8; turn++)
-        demi_ring_point(wall, ring, s, x0, demi_cos(angle + half*turn/8),
-                        demi_sin(angle + half*turn/8), 1, q, gaps);
 }
 /* A cylinder, or a surface of revolution, piece by piece. */
 static int demi_round_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
                                  dem_vec3 at, const demi_part *part, demi_touching **places) {
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
-    const demi_part local = demi_part_local(wall, part);
+    const demi_part local = demi_part_local(wall->pose.rotation, part);
     const int pieces = wall->kind == DEMI_WALL_CYLINDER ? 1 : wall->ring_count - 1;
     const int impulsive = demi_impulsive(w);
     const double range = (double)demi_range(w, part->radius);
@@ -14608,9 +14742,10 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
     demi_flats flats;
     demi_gaps gaps;
     demi_solid s;
-    int k, i, end, had, count = 0;
+    int k, i, end, count = 0;
     *places = w->touching + w->domains[d].touching_first;
     gaps.range = range;
+    gaps.flat = 0;
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     for (k = first; k < last; k = end) {
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
@@ -14620,7 +14755,6 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
         end = demi_image_end(w, base, k, last);
         if (w->wall_gap[base + k] > gone) continue;
         side = demi_rings_side(wall, x);
-        had = count;
         for (i = 0; i < pieces; i++) {
             const demi_generator l = demi_generator_of(wall, i, x, part->radius, side);
             if (wall->kind != DEMI_WALL_CYLINDER &&      /* deep in it, too */
@@ -14631,47 +14765,405 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
         }
         for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
             demi_ring_gaps(wall, i, &s, x, (double)part->radius, &gaps);
-        count += demi_flats_places(&flats, wall, part, at, shift, *places + count);
-        count += demi_gaps_places(w, &gaps, wall, part, at, shift, *places + had, count - had,
-                                  *places + count);
+        count += demi_wall_places(w, &flats, &gaps, wall->pose.rotation, wall->share, part, at,
+                                  shift, *places + count);
     }
     return count;
 }
-/* A wall of grains, each a ball. */
-static int demi_grain_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
+
+/* ---------------------------------------------------------------------------------------------
+   >>polyhedra-sieves
+   Where polyhedra touch sieves. To springs a wire is a cylinder without end, in a frame whose z
+   goes along it (>>polyhedra-round), and a plate is solid between its holes: they press on its
+   faces, strips and pieces between holes (round: the cell of a hole less the hole), and on the
+   walls of its holes; together these are a closed surface, so that energy is conserved. For gaps a
+   wire is a line with a radius; a corner of the body is told by the face, or wall of a hole, that
+   it is over or nearest to, and the rims of holes by the points of the body that lie on them. Where
+   wires cross, what they share counts twice. Reduced holes, sieves cut from a disc, and to springs
+   sheets without thickness, which have no inside, know no polyhedra: demi_wall_strange. Then the
+   table of who touches what.
+   --------------------------------------------------------------------------------------------- */
+
+/* Holes of a plate: half sizes across x and y, and from hole to hole; along x without end: 0. */
+typedef struct demi_plate {
+    int round, lattices;           /* 2: every other row is shifted by half a hole */
+    double a, b, px, py, half;     /* m; half: of the thickness */
+} demi_plate;
+static demi_plate demi_plate_of(const dem_sieve_desc *s) {
+    const double bar = (double)s->bar, hole = (double)s->aperture;
+    demi_plate p;
+    p.round = s->kind == DEM_SIEVE_ROUND;
+    p.lattices = s->staggered ? 2 : 1;
+    p.a = s->kind == DEM_SIEVE_SLOTS ? (double)s->length/2 : hole/2;
+    p.b = hole/2;
+    p.px = p.a > 0 ? 2*p.a + bar : 0;
+    p.py = (hole + bar)*(s->staggered ? 1.7320508075688772 : 1);
+    p.half = (double)s->thickness/2;
+    return p;
+}
+/* The middle of the hole in whose cell (u, v) lies; number: its own. */
+static int32_t demi_plate_hole(const demi_plate *p, double u, double v, double *c) {
+    double best = 1e300;
+    int32_t number = 0;
+    int k;
+    for (k = 0; k < p->lattices; k++) {
+        const double i = p->px > 0 ? floor(u/p->px - 0.5*k + 0.5) : 0;
+        const double j = floor(v/p->py - 0.5*k + 0.5);
+        const double x = p->px > 0 ? (i + 0.5*k)*p->px : u, y = (j + 0.5*k)*p->py;
+        if (!((u - x)*(u - x) + (v - y)*(v - y) < best)) continue;
+        best = (u - x)*(u - x) + (v - y)*(v - y);
+        c[0] = x;
+        c[1] = y;
+        number = demi_sieve_number(i, j, 4*k);
+    }
+    return number;
+}
+/* Is (u, v) over solid? n: unit, at the wall of the hole in whose cell it lies, into the solid;
+   off: m, how far it is beyond that wall. Of a corner of a hole two walls: two: the other one's. */
+static int demi_plate_solid(const demi_plate *p, double u, double v, double (*n)[3], double *off) {
+    double c[2], x, y, r;
+    demi_plate_hole(p, u, v, c);
+    x = u - c[0];
+    y = v - c[1];
+    memset(n, 0, 2*sizeof *n);
+    if (p->round) {
+        r = sqrt(x*x + y*y);
+        n[0][0] = r > 0 ? x/r : 1;
+        n[0][1] = r > 0 ? y/r : 0;
+        off[0] = r - p->a;
+        off[1] = -1e300;
+        return off[0] > 0;
+    }
+    n[0][1] = y < 0 ? -1 : 1;
+    n[1][0] = x < 0 ? -1 : 1;
+    off[0] = fabs(y) - p->b;
+    off[1] = p->px > 0 ? fabs(x) - p->a : -1e300;
+    return off[0] > 0 || off[1] > 0;
+}
+
+/* --- for springs --- */
+
+/* A rectangle of a surface: middle, half sizes along two axes of the frame, normal along the third
+   into the solid. half 0: without end. x: of the centre. */
+static void demi_plate_flat(const demi_solid *s, const double *x, const double *middle,
+                            const double *half, int across, double way, int32_t element,
+                            demi_flats *flats) {
+    double sides[4][2][3], n[3] = {0, 0, 0}, at;
+    demi_pressure press;
+    int i, k, e, count = 0;
+    n[across] = way;
+    at = way*(middle[across] - x[across]);
+    memset(sides, 0, sizeof sides);
+    memset(&press, 0, sizeof press);
+    for (i = 0; i < 3; i++)
+        for (k = -1; k < 2 && i != across && half[i] > 0; k += 2) {
+            sides[count][0][i] = -k;
+            for (e = 0; e < 3; e++) sides[count][1][e] = middle[e] - x[e];
+            sides[count++][1][i] += k*half[i];
+        }
+    demi_solid_on_flat(s, n, at, sides, count, &press);
+    demi_flats_add(flats, element, &press);
+}
+/* Solid of a plate with square holes or slots about the hole at c: half of the bars on both sides
+   of it, and the hole's walls. */
+static void demi_plate_press(const demi_plate *p, const demi_solid *s, const double *x,
+                             const double *c, int32_t number, demi_flats *flats) {
+    const double bar_x = (p->px - 2*p->a)/4, bar_y = (p->py - 2*p->b)/4;
+    int k, side;
+    for (side = -1; side < 2; side += 2) {
+        for (k = -1; k < 2; k += 2) {           /* k: which face */
+            const double row[3] = {c[0], c[1] + side*(p->b + bar_y), k*p->half};
+            const double link[3] = {c[0] + side*(p->a + bar_x), c[1], k*p->half};
+            const double row_half[3] = {p->px/2, bar_y, 0}, link_half[3] = {bar_x, p->b, 0};
+            demi_plate_flat(s, x, row, row_half, 2, -k, DEMI_SIEVE_FACE, flats);
+            if (p->px > 0) demi_plate_flat(s, x, link, link_half, 2, -k, DEMI_SIEVE_FACE, flats);
+        }
+        {
+            const double row[3] = {c[0], c[1] + side*p->b, 0};
+            const double link[3] = {c[0] + side*p->a, c[1], 0};
+            const double row_half[3] = {p->a, 0, p->half}, link_half[3] = {0, p->b, p->half};
+            demi_plate_flat(s, x, row, row_half, 1, side, number + (side > 0), flats);
+            if (p->px > 0) demi_plate_flat(s, x, link, link_half, 0, side,
+                                           number + 2 + (side > 0), flats);
+        }
+    }
+}
+/* Takes away what a hole takes from a face; height: of the body's centre over it. */
+static void demi_pressure_less(demi_pressure *s, const demi_pressure *hole, double height) {
+    const double all = s->sum;
+    int k;
+    s->shared -= hole->shared;
+    s->sum -= hole->sum;
+    for (k = 0; k < 3; k++) {
+        s->at[k] -= hole->at[k];
+        s->force[k] -= hole->force[k];
+        s->torque[k] -= hole->torque[k];
+    }
+    for (k = 0; k < 6; k++) s->wide[k] -= hole->wide[k];
+    if (!(s->sum > 1e-9*all)) memset(s, 0, sizeof *s);
+    else if (s->shared > 0 && height > 0)
+        s->deep = DEMI_MIN(s->deep, 2*s->shared/(s->sum*height));
+}
+/* The same about a round one: the faces of its cell less the hole's disc, and its wall. */
+static void demi_plate_press_round(const demi_plate *p, const demi_solid *s, const double *x,
+                                   const double *c, int32_t number, demi_flats *flats) {
+    const dem_vec3 from = demi_v((dem_real)(x[0] - c[0]), (dem_real)(x[1] - c[1]), (dem_real)x[2]);
+    const int six = p->lattices > 1, count = six ? 6 : 4;
+    demi_generator l;
+    int i, k, e;
+    memset(&l, 0, sizeof l);
+    for (k = -1; k < 2; k += 2) {               /* k: which face */
+        const double n[3] = {0, 0, -(double)k}, at = k*x[2] - p->half;
+        double sides[6][2][3];
+        demi_pressure press, hole;
+        demi_flats disc;
+        memset(sides, 0, sizeof sides);
+        memset(&press, 0, sizeof press);
+        memset(&hole, 0, sizeof hole);
+        for (i = 0; i < count; i++) {
+            const double turn = DEMI_PI*(six ? i/3.0 : i/2.0);
+            const double way[2] = {demi_cos(turn), demi_sin(turn)};
+            for (e = 0; e < 2; e++) {
+                sides[i][0][e] = -way[e];
+                sides[i][1][e] = c[e] - x[e] + way[e]*p->px/2;
+            }
+        }
+        demi_solid_on_flat(s, n, at, sides, count, &press);
+        if (!(press.sum > 0)) continue;
+        l.b = p->a;
+        l.g = l.h = k*p->half;
+        l.side = k;
+        disc.count = 0;
+        demi_solid_on_generator(s, &l, from, 0, 0, &disc);
+        for (i = 0; i < disc.count; i++) demi_pressure_add(&hole, &disc.press[i]);
+        demi_pressure_less(&press, &hole, fabs(at));
+        demi_flats_add(flats, DEMI_SIEVE_FACE, &press);
+    }
+    l.a = l.b = p->a;
+    l.g = -p->half;
+    l.h = p->half;
+    l.side = 1;
+    demi_solid_on_generator(s, &l, from, 0, number, flats);
+}
+
+/* --- for impulses, and laws with a range --- */
+
+/* The corners of a body, x the place of its centre. A sheet has no inside: a corner is beyond it
+   where the way to it from the centre passes through solid. */
+static void demi_plate_corners(const demi_plate *p, const demi_solid *s, const double *x,
+                               demi_gaps *gaps) {
+    const int sheet = !(p->half > 0);
+    int i, k, e;
+    for (i = 0; i < s->corners; i++) {
+        const double *c = s->corner[i];
+        const double at[3] = {x[0] + c[0], x[1] + c[1], x[2] + c[2]};
+        double n[3][3], off[2], gap[3], o[3], t = 1;
+        int solid, one, count = 1;
+        if (sheet && (at[2] > 0) != (x[2] > 0)) t = x[2]/(x[2] - at[2]);
+        solid = demi_plate_solid(p, x[0] + t*c[0], x[1] + t*c[1], n, off);
+        n[2][0] = n[2][1] = 0;
+        n[2][2] = (sheet ? x[2] : at[2]) < 0 ? 1 : -1;
+        gap[0] = -off[0];
+        gap[1] = -off[1];
+        gap[2] = -n[2][2]*at[2] - p->half;
+        one = 2;
+        if (!solid) {                           /* in a hole: beside its walls, if there at all */
+            if (sheet || gap[2] > 0) continue;
+            one = 0;
+            count = p->round || !(p->px > 0) ? 1 : 2;
+        } else if (!sheet && !(off[0] > 0 && off[1] > 0))
+            for (e = 0; e < 2; e++)             /* in solid: out by the shortest way */
+                if (off[e] > 0 && gap[e] > gap[one]) one = e;
+        for (e = one; e < one + count; e++) {
+            for (k = 0; k < 3; k++) o[k] = c[k] + n[e][k]*gap[e]/2;
+            demi_gaps_add(gaps, DEMI_SIEVE_FACE, n[e], o, gap[e]);
+        }
+    }
+}
+/* A line from a to b, in a body's frame, and what lies `thick` around it: a wire, or (0) the rim of
+   a hole, where neither the face, which goes on along out, nor the hole's wall, along down (a sheet
+   has none), goes on towards the body. A face of the body that lies along the line is held by both
+   ends of what it covers. */
+static void demi_line_gaps(const demi_solid *s, const double *a, const double *b, double thick,
+                           const double *out, const double *down, int32_t element,
+                           demi_gaps *gaps) {
+    const int32_t *loop = s->rim + s->faces + 1;
+    demi_solid line;
+    demi_simplex tells;
+    double n[3] = {0, 0, 0}, along[3], t[2] = {0, 1}, on, gap;
+    int i, k, f;
+    line.faces = 0;
+    line.rim = 0;
+    line.corners = 2;
+    for (k = 0; k < 3; k++) {
+        line.corner[0][k] = a[k];
+        line.corner[1][k] = b[k];
+        line.centre[k] = (a[k] + b[k])/2;
+    }
+    gap = demi_solids_gap(s, &line, n, &tells) - thick;
+    if (!(gap < gaps->range) || -demi_dot3(n, out) > 1e-9 || -demi_dot3(n, down) > 1e-9)
+        return;
+    f = demi_solid_facing(s, n, &on);
+    demi_sub3(b, a, along);
+    if (on >= DEMI_FLUSH && fabs(demi_dot3(s->plane[f], along)*s->plane[f][3]) <
+        sqrt((1 - DEMI_FLUSH*DEMI_FLUSH)*demi_dot3(along, along)))
+        for (i = s->rim[f]; i < s->rim[f + 1]; i++) {       /* between the sides of the face */
+            const double *p = s->corner[loop[i]];
+            const double *q = s->corner[loop[i + 1 < s->rim[f + 1] ? i + 1 : s->rim[f]]];
+            double e[3], in[3], from[3], at, way;
+            demi_sub3(q, p, e);
+            demi_cross3(s->plane[f], e, in);
+            demi_sub3(a, p, from);
+            at = demi_dot3(in, from);
+            way = demi_dot3(in, along);
+            if (way > 0) t[0] = DEMI_MAX(t[0], -at/way);
+            else if (way < 0) t[1] = DEMI_MIN(t[1], -at/way);
+            else if (at < 0) t[1] = -1;
+        }
+    else t[1] = -1;
+    for (i = 0; i < 2; i++) {
+        const int ends = t[0] < t[1];
+        double x[3] = {0, 0, 0}, m[3], d[3];
+        for (k = 0; k < 3; k++) m[k] = ends ? s->plane[f][k]*s->plane[f][3] : n[k];
+        for (k = 0; k < 3 && ends; k++) x[k] = a[k] + t[i]*along[k];
+        for (f = ends ? f : 0; f < tells.count && !ends; f++)
+            for (k = 0; k < 3; k++) x[k] += tells.part[f]*line.corner[tells.at[f].b][k];
+        if (ends) {
+            demi_sub3(x, s->corner[loop[s->rim[f]]], d);
+            gap = demi_dot3(m, d) - thick;
+        }
+        for (k = 0; k < 3; k++) x[k] -= m[k]*(thick + gap/2);
+        demi_gaps_add(gaps, element, m, x, gap);
+        if (!ends) break;
+    }
+}
+/* The rims of the hole at c, above and below; reach: how far a rim without end is followed, m. */
+static void demi_plate_rims(const demi_plate *p, const demi_solid *s, const double *x,
+                            const double *c, int32_t number, double reach, demi_gaps *gaps) {
+    const double far = 2*p->a + reach;
+    demi_wall washer;
+    int k, side, set;
+    if (p->round) {
+        const dem_vec3 from = demi_v((dem_real)(x[0] - c[0]), (dem_real)(x[1] - c[1]),
+                                     (dem_real)x[2]);
+        memset(&washer, 0, sizeof washer);
+        washer.ring_count = p->half > 0 ? 4 : 2;
+        for (k = 0; k < washer.ring_count; k++) {
+            washer.ring_radius[k] = (dem_real)(k == 1 || k == 2 ? p->a : far);
+            washer.ring_height[k] = (dem_real)(k < 2 ? p->half : -p->half);
+        }
+        demi_ring_gaps(&washer, 1, s, from, reach, gaps);
+        if (p->half > 0) demi_ring_gaps(&washer, 2, s, from, reach, gaps);
+        return;
+    }
+    for (k = 1; k > (p->half > 0 ? -2 : 0); k -= 2)
+        for (side = -1; side < 2; side += 2)
+            for (set = 0; set < 1 + (p->px > 0); set++) {   /* along x; along y */
+                const double off = side*(set ? p->a : p->b), half = set ? p->b : p->a;
+                const double size = half > 0 ? half : reach;
+                const double down[3] = {0, 0, p->half > 0 ? -(double)k : 0};
+                double a[3], b[3], out[3] = {0, 0, 0};
+                a[set] = c[set] - x[set] - size;
+                b[set] = c[set] - x[set] + size;
+                a[!set] = b[!set] = c[!set] - x[!set] + off;
+                a[2] = b[2] = k*p->half - x[2];
+                out[!set] = side;
+                demi_line_gaps(s, a, b, 0, out, down, number + 2*set + (side > 0), gaps);
+            }
+}
+
+/* --- both --- */
+
+/* A plate, about x, up to reach from there. A body that ends within `hair` of a face lies on
+   it: it does not catch at the rims of holes that it slides over. */
+static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, const double *x,
+                             double reach, double hair, int springs, demi_flats *flats,
+                             demi_gaps *gaps) {
+    const demi_plate p = demi_plate_of(sieve);
+    const double up[3] = {0, 0, 1}, below[3] = {0, 0, -1};
+    const double high_end = x[2] + s->corner[demi_solid_far(s, up)][2];
+    const double low_end = x[2] + s->corner[demi_solid_far(s, below)][2];
+    const double wide = p.px > 0 ? reach + 0.6*p.px : 0, high = reach + 0.6*p.py;
+    double u, v, c[2];
+    int k;
+    gaps->flat = fabs(low_end - p.half) < hair || fabs(high_end + p.half) < hair;
+    if (gaps->range > 0) demi_plate_corners(&p, s, x, gaps);
+    for (k = 0; k < p.lattices; k++) {
+        const double du = p.px > 0 ? p.px : 1, shift_x = k*p.px/2, shift_y = k*p.py/2;
+        const double u0 = p.px > 0 ? (floor((x[0] - wide - shift_x)/du) + 1)*du + shift_x : x[0];
+        const double v0 = (floor((x[1] - high - shift_y)/p.py) + 1)*p.py + shift_y;
+        for (v = v0; v < x[1] + high; v += p.py)
+            for (u = u0; u < x[0] + wide + (p.px > 0 ? 0 : 0.5); u += du) {
+                const int32_t number = demi_plate_hole(&p, u, v, c);
+                if (springs && p.round) demi_plate_press_round(&p, s, x, c, number, flats);
+                else if (springs) demi_plate_press(&p, s, x, c, number, flats);
+                if (gaps->range > 0) demi_plate_rims(&p, s, x, c, number, reach, gaps);
+            }
+    }
+}
+/* One set of parallel wires: each a cylinder about z of a frame of axes turn. x: of the centre, in
+   the sieve's. */
+static void demi_wires_touch(const dem_sieve_desc *sieve, int set, const demi_solid *s, dem_vec3 x,
+                             double reach, int springs, demi_flats *flats, demi_gaps *gaps) {
+    const double pitch = (double)(sieve->aperture + sieve->bar), q = (double)sieve->bar/2;
+    const double h = (double)(set ? -sieve->lift/2 : sieve->lift/2);
+    const double u = (double)(set ? x.y : x.x), v = (double)(set ? x.x : x.y);
+    const double last = floor((u + reach + q)/pitch - 0.5), none[3] = {0, 0, 0};
+    demi_generator l;
+    double k;
+    memset(&l, 0, sizeof l);
+    l.a = l.b = q;
+    l.g = v - reach;
+    l.h = v + reach;
+    l.side = -1;
+    for (k = floor((u - reach - q)/pitch - 0.5) + 1; k <= last; k++) {
+        const dem_real across = (dem_real)(u - (k + 0.5)*pitch), up = x.z - (dem_real)h;
+        const dem_vec3 from = set ? demi_v(across, up, x.x) : demi_v(up, across, x.y);
+        const int32_t number = demi_sieve_number(k, 0, set);
+        if (springs) demi_solid_on_generator(s, &l, from, 1, number, flats);
+        if (gaps->range > 0) {
+            const double a[3] = {-(double)from.x, -(double)from.y, -reach};
+            const double b[3] = {-(double)from.x, -(double)from.y, reach};
+            demi_line_gaps(s, a, b, q, none, none, number, gaps);
+        }
+    }
+}
+static int demi_sieve_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
                                  dem_vec3 at, const demi_part *part, demi_touching **places) {
     const int base = d*w->wall_stride;
     const demi_wall *wall = &w->walls[w->wall_id[base + first]];
+    const dem_sieve_desc *sieve = &wall->sieve;
     const dem_real *R = wall->pose.rotation;
-    const demi_part local = demi_part_local(wall, part);
-    demi_touching *out = *places = w->touching + w->domains[d].touching_first;
+    const int wires = sieve->kind == DEM_SIEVE_WIRES || sieve->kind == DEM_SIEVE_BARS;
+    const int sets = sieve->kind == DEM_SIEVE_WIRES ? 2 : 1, springs = !demi_impulsive(w);
+    const double range = (double)demi_range(w, part->radius);
+    const double reach = (double)part->radius + range;
+    demi_flats flats;
+    demi_gaps gaps;
     demi_solid s;
-    int k, count = 0;
-    demi_solid_of(&local, demi_v(0, 0, 0), &s);
+    int k, set, i, e, count = 0;
+    *places = w->touching + w->domains[d].touching_first;
+    gaps.range = range;
+    gaps.flat = 0;
     for (k = first; k < last; k++) {
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
         const dem_vec3 x = demi_unrotate(R, demi_sub(demi_add(at, shift), wall->pose.position));
-        const dem_vec3 ball = demi_sub(demi_at(wall->vertices + 3*w->wall_element[base + k]), x);
-        const double c[3] = {(double)ball.x, (double)ball.y, (double)ball.z};
-        double q[3], off;
-        demi_touching *t = &out[count];
+        const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
         if (w->wall_gap[base + k] > gone) continue;
-        off = demi_solid_near(&s, c, q);
-        if (!(off < (double)(wall->radius + demi_range(w, part->radius)))) continue;
-        memset(t, 0, sizeof *t);
-        t->element = w->wall_element[base + k];
-        t->overlap = wall->radius - (dem_real)off;
-        t->deep = t->overlap/wall->radius;
-        t->share = wall->share;
-        t->slope = 1;
-        t->point = demi_add(at, demi_rotate(R, demi_v((dem_real)q[0], (dem_real)q[1],
-                                                      (dem_real)q[2])));
-        t->normal = demi_v((dem_real)(c[0] - q[0]), (dem_real)(c[1] - q[1]),
-                           (dem_real)(c[2] - q[2]));
-        t->normal = off < 0 || off > 0 ? demi_scale(demi_rotate(R, t->normal), (dem_real)(1/off))
-                                       : demi_unit(demi_rotate(R, ball));
-        t->shift = shift;
-        count++;
+        for (set = 0; set < sets; set++) {
+            dem_real turn[9];
+            demi_part local;
+            for (i = 0; i < 3; i++)             /* wires: z along the wire, x and y follow */
+                for (e = 0; e < 3; e++) turn[3*e + i] = R[3*e + (wires ? (i + 2 - set)%3 : i)];
+            local = demi_part_local(turn, part);
+            demi_solid_of(&local, demi_v(0, 0, 0), &s);
+            flats.count = gaps.count = 0;
+            if (wires) demi_wires_touch(sieve, set, &s, x, reach, springs, &flats, &gaps);
+            else demi_plate_touch(sieve, &s, x0, reach, 1e-3*(double)demi_part_thin(part), springs,
+                                  &flats, &gaps);
+            count += demi_wall_places(w, &flats, &gaps, turn, wall->share, part, at, shift,
+                                      *places + count);
+        }
     }
     return count;
 }
@@ -14679,7 +15171,23 @@ static int demi_grain_polyhedron(const dem_world *w, int d, int first, int last,
 /* Who touches what: walls by kind, and parts by theirs. */
 #define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
 static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
-static int demi_touch_known(int kind, int part) { return demi_touches[kind][part] != 0; }
+/* Why a part does not know a wall, and what to do; 0: it does. */
+static const char *demi_wall_strange(const dem_world *w, const demi_wall *wall, int part) {
+    const dem_sieve_desc *s = &wall->sieve;
+    const int plate = s->kind != DEM_SIEVE_WIRES && s->kind != DEM_SIEVE_BARS;
+    if (!demi_touches[wall->kind][part])
+        return "the two do not know each other; make bodies clusters of spheres, or the wall a "
+               "mesh or a resolved profile";
+    if (part != DEMI_POLYHEDRON || wall->kind != DEMI_WALL_SIEVE) return 0;
+    if (s->kind == DEM_SIEVE_REDUCED)
+        return "reduced holes are for spheres; take DEM_SIEVE_SQUARE";
+    if (s->radius > 0)
+        return "a sieve cut from a disc is for spheres; leave its radius at 0, and stand a "
+               "cylinder round what is sieved";
+    if (plate && !(s->thickness > 0) && !demi_impulsive(w))
+        return "to springs a sheet has no inside; give the sieve a thickness, or take impulses";
+    return 0;
+}
 
 /* ---------------------------------------------------------------------------------------------
    >>kept
@@ -15079,9 +15587,9 @@ static int demi_is_cluster(const dem_world *w, int body) {
    normal turns with its place, that of the t. With U ~ sqrt(R) d^p (Hertz) or d^p
        E_i = s_i U'(d_i) d_i/p,          dE_k/dd_k = s_k U'(d_k) (1 + 2/p (A_k - d_k^2)/A_k)
        dE_i/dd_k = -E_i 2 t_ik w_k d_k/A_i,    dE_i/dt_ik = -E_i w_k d_k^2/A_i
-   (Left out: how an ellipsoid's normal turns at a cluster's ball. A ball that is
-   nearly at what it goes round, within a tenth of its radius, turns no faster than there. Pieces
-   of unions share nothing: their energies add.)
+   (Left out: how the normal of an ellipsoid, or at an edge of a polyhedron, turns at a cluster's
+   ball. A ball that is nearly at what it goes round, within a tenth of its radius, turns no faster
+   than there. Pieces of unions share nothing: their energies add.)
    It may be a little below 0 where others are far deeper: no mean that does not depend on their
    number can do without. What a law is asked about before it touches counts by itself. Damping goes
    by s, and feels the mass at their common middle; friction by s times (sum of lift U' over sum of

@@ -67,6 +67,50 @@ static inline void scene_report_has(const dem_world *world, const char *words) {
     fclose(f);
     CHECK_STR(text, words);
 }
+/* A box of these edges, m, its corner i with the bits of i as signs. */
+static inline void scene_box_points(double a, double b, double c, dem_real *p) {
+    int i;
+    for (i = 0; i < 8; i++) {
+        p[3*i] = (dem_real)(i & 1 ? a/2 : -a/2);
+        p[3*i + 1] = (dem_real)(i & 2 ? b/2 : -b/2);
+        p[3*i + 2] = (dem_real)(i & 4 ? c/2 : -c/2);
+    }
+}
+static inline dem_shape scene_box(dem_world *world, double a, double b, double c) {
+    dem_real p[24];
+    scene_box_points(a, b, c, p);
+    return dem_shape_polyhedron_add(world, 8, p);
+}
+/* The hull of points on an ellipsoid of semi-axes size, .8 size and .6 size, m. */
+static inline dem_shape scene_rock(dem_world *world, uint64_t *state, int count, double size) {
+    dem_real p[300];
+    int i;
+    for (i = 0; i < count; i++) {
+        const double z = 2*scene_random(state) - 1, f = 6.283185307179586*scene_random(state);
+        const double s = sqrt(1 - z*z);
+        p[3*i] = (dem_real)(size*s*cos(f));
+        p[3*i + 1] = (dem_real)(0.8*size*s*sin(f));
+        p[3*i + 2] = (dem_real)(0.6*size*z);
+    }
+    return dem_shape_polyhedron_add(world, count, p);
+}
+static inline dem_quat scene_turn(uint64_t *state) {
+    const dem_vec3 axis = scene_at(state, 2, -1, 2, -1, 2, -1);
+    return dem_quat_about(axis, (dem_real)(6*scene_random(state)));
+}
+#ifdef DEM_IMPLEMENTATION
+/* A polyhedron as contacts see it, of its own size and turned. */
+static inline demi_part scene_part(const dem_world *world, dem_shape shape, dem_quat q) {
+    demi_part p;
+    memset(&p, 0, sizeof p);
+    p.kind = DEMI_POLYHEDRON;
+    p.shape = &world->shapes[shape.id - 1];
+    p.scale = 1;
+    p.radius = p.shape->radius;
+    p.q = q;
+    return p;
+}
+#endif
 /* Steps and says why when that fails. */
 static inline dem_result scene_step(dem_world *world, int steps) {
     const dem_result result = dem_world_step(world, steps);

@@ -36,15 +36,9 @@ static void star(int points, double inner, double outer, dem_real *x) {
         x[2*k + 1] = (dem_real)(r*sin(a));
     }
 }
-static dem_shape box_add(dem_world *w, double a, double b, double c) {
-    dem_real p[24];
-    int i;
-    for (i = 0; i < 24; i++) p[i] = (dem_real)((i/3 >> i%3 & 1 ? 0.5 : -0.5)*(i%3 == 0 ? a : i%3 == 1 ? b : c));
-    return dem_shape_polyhedron_add(w, 8, p);
-}
 /* A brick of two halves side by side. */
 static dem_shape halves_add(dem_world *w, double a, double b, double c) {
-    const dem_shape half = box_add(w, a/2, b, c);
+    const dem_shape half = scene_box(w, a/2, b, c);
     dem_shape two[2];
     dem_real x[6];
     two[0] = two[1] = half;
@@ -190,7 +184,7 @@ int main(int argc, char **argv) {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *w = dem_world_create(&desc);
         dem_cluster_desc pair = DEM_CLUSTER_DESC;
-        dem_shape one = box_add(w, 0.03, 0.02, 0.01), two = halves_add(w, 0.03, 0.02, 0.01), ball;
+        dem_shape one = scene_box(w, 0.03, 0.02, 0.01), two = halves_add(w, 0.03, 0.02, 0.01), ball;
         dem_real x[6] = {0, 0, 0, DEM_R(0.003), 0, 0}, far[3] = {(dem_real)INFINITY, 0, 0}, none[4] = {0, 0, 0, 0};
         dem_shape_info a, b;
         pair.count = 2;
@@ -237,7 +231,7 @@ int main(int argc, char **argv) {
                 w = dem_world_create(&desc);
                 m = dem_material_add(w, &stuff);
                 if (space) {
-                    const dem_shape brick = box_add(w, 0.02, 0.006, 0.006);
+                    const dem_shape brick = scene_box(w, 0.02, 0.006, 0.006);
                     dem_shape cross[3];
                     const dem_real places[9] = {0, 0, 0, 0, DEM_R(0.003), 0, 0, 0, DEM_R(0.004)};
                     const dem_real turns[12] = {1, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0};
@@ -297,7 +291,7 @@ int main(int argc, char **argv) {
                 m = dem_material_add(w, &stuff);
                 dem_plane_add(w, m, at(0, 0, 0), at(0, 1, 0));
                 b = dem_body_add(w, m, k == 2 ? dem_shape_polygon_add(w, 4, brick)
-                                 : k ? halves_add(w, 0.03, 0.01, 0.02) : box_add(w, 0.03, 0.01, 0.02), at(0, 0.005, 0), straight);
+                                 : k ? halves_add(w, 0.03, 0.01, 0.02) : scene_box(w, 0.03, 0.01, 0.02), at(0, 0.005, 0), straight);
                 CHECK(b.slot);
                 CHECK_EQ(dem_world_run_to(w, 0.1, 0, 0), DEM_OK);
                 v0 = (double)scene_state(w, b).velocity.x;

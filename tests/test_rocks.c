@@ -28,43 +28,6 @@ static dem_world *rigid_to(double tolerance, double gravity, double restitution,
 static dem_world *rigid(double gravity, double restitution, double friction, dem_material *m) {
     return rigid_to(1e-10, gravity, restitution, friction, m);
 }
-/* A box of these edges, m, its corner i with the bits of i as signs. */
-static dem_shape box_add(dem_world *w, double a, double b, double c) {
-    dem_real p[24];
-    int i;
-    for (i = 0; i < 8; i++) {
-        p[3*i] = (dem_real)(i & 1 ? a/2 : -a/2);
-        p[3*i + 1] = (dem_real)(i & 2 ? b/2 : -b/2);
-        p[3*i + 2] = (dem_real)(i & 4 ? c/2 : -c/2);
-    }
-    return dem_shape_polyhedron_add(w, 8, p);
-}
-static dem_shape rock_add(dem_world *w, uint64_t *random, int count, double size) {
-    dem_real p[300];
-    int i;
-    for (i = 0; i < count; i++) {
-        const double z = 2*scene_random(random) - 1, f = 6.283185307179586*scene_random(random);
-        const double s = sqrt(1 - z*z);
-        p[3*i] = (dem_real)(size*s*cos(f));
-        p[3*i + 1] = (dem_real)(0.8*size*s*sin(f));
-        p[3*i + 2] = (dem_real)(0.6*size*z);
-    }
-    return dem_shape_polyhedron_add(w, count, p);
-}
-static dem_quat any_turn(uint64_t *random) {
-    const dem_vec3 axis = scene_at(random, 2, -1, 2, -1, 2, -1);
-    return dem_quat_about(axis, (dem_real)(6*scene_random(random)));
-}
-static demi_part part_of(const dem_world *w, dem_shape shape, dem_quat q) {
-    demi_part p;
-    memset(&p, 0, sizeof p);
-    p.kind = DEMI_POLYHEDRON;
-    p.shape = &w->shapes[shape.id - 1];
-    p.scale = 1;
-    p.radius = p.shape->radius;
-    p.q = q;
-    return p;
-}
 /* The distance of points all over a polyhedron's faces from what `off` measures, least of all, m. */
 static double sampled(const demi_solid *s, double (*off)(const double *x)) {
     const int32_t *loops = s->rim + s->faces + 1;
@@ -123,12 +86,12 @@ static double slides(double angle, double friction, double width, double height,
         }
         CHECK(dem_mesh_add(w, m, &mesh).id);
     } else {
-        const dem_body under = dem_body_add(w, m, box_add(w, 2, 2, 0.2), at(0, 0, -0.1), straight);
+        const dem_body under = dem_body_add(w, m, scene_box(w, 2, 2, 0.2), at(0, 0, -0.1), straight);
         s = scene_state(w, under);
         s.fixed = 1;
         dem_body_set(w, under, &s);
     }
-    b = dem_body_add(w, m, box_add(w, width, width, height), at(0.013, 0.021, height/2), straight);
+    b = dem_body_add(w, m, scene_box(w, width, width, height), at(0.013, 0.021, height/2), straight);
     dem_world_gravity_set(w, at(earth*sin(angle), 0, -earth*cos(angle)));
     CHECK_EQ(dem_world_run(w, 0.2, 0, 0), DEM_OK);
     s = scene_state(w, b);
@@ -166,8 +129,8 @@ static dem_world *drum(int threads) {
     dem_wall_motion(w, shell, &turning);
     dem_plane_add(w, m, at(0, -0.015, 0), at(0, 1, 0));
     dem_plane_add(w, m, at(0, 0.015, 0), at(0, -1, 0));
-    shapes[0] = rock_add(w, &random, 16, 0.003);
-    shapes[1] = box_add(w, 0.005, 0.004, 0.003);
+    shapes[0] = scene_rock(w, &random, 16, 0.003);
+    shapes[1] = scene_box(w, 0.005, 0.004, 0.003);
     shapes[2] = dem_shape_ellipsoid_add(w, at(0.003, 0.002, 0.0025));
     shapes[3] = dem_shape_cluster_add(w, &cluster);
     for (k = 0; k < 4; k++)
@@ -192,8 +155,8 @@ int main(int argc, char **argv) {
         int k, overlaps = 0;
         for (k = 0; k < 400; k++) {
             static demi_solid a, b;
-            const dem_shape one = rock_add(w, &random, 8 + k%9, 0.01), two = k%3 ? one : box_add(w, 0.012, 0.006, 0.015);
-            const demi_part p = part_of(w, one, any_turn(&random)), q = part_of(w, two, any_turn(&random));
+            const dem_shape one = scene_rock(w, &random, 8 + k%9, 0.01), two = k%3 ? one : scene_box(w, 0.012, 0.006, 0.015);
+            const demi_part p = scene_part(w, one, scene_turn(&random)), q = scene_part(w, two, scene_turn(&random));
             demi_simplex tells;
             double n[3] = {0, 0, 0}, turned[3] = {0, 0, 0}, gap, other, best = -1e300;
             int i, f, pass;
@@ -232,8 +195,8 @@ int main(int argc, char **argv) {
         for (k = 0; k < 120; k++) {
             static demi_solid s, placed;
             static demi_gaps gaps;
-            const dem_shape shape = k%2 ? rock_add(w, &random, 12, 0.01) : box_add(w, 0.02, 0.012, 0.008);
-            const demi_part p = part_of(w, shape, any_turn(&random));
+            const dem_shape shape = k%2 ? scene_rock(w, &random, 12, 0.01) : scene_box(w, 0.02, 0.012, 0.008);
+            const demi_part p = scene_part(w, shape, scene_turn(&random));
             const int kind = k%3;               /* tube outside, tube inside, cone */
             const double angle = 6.2831*scene_random(&random);
             const double out = kind == 1 ? 0.03 + 0.004*scene_random(&random) : 0.05 + 0.006*scene_random(&random);
@@ -293,7 +256,7 @@ int main(int argc, char **argv) {
                 double rise;
                 int i;
                 dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
-                b = dem_body_add(w, m, box_add(w, 0.02, 0.02, 0.02), x, q);
+                b = dem_body_add(w, m, scene_box(w, 0.02, 0.02, 0.02), x, q);
                 scene_move(w, b, at(0, 0, -1), at(0, 0, 0));
                 for (i = 0; i < 30 && !(scene_state(w, b).velocity.z > DEM_R(-0.999)); i++) scene_step(w, 1);
                 turned = k ? q : scene_state(w, b).orientation;     /* as the impulse found it */
@@ -332,7 +295,7 @@ int main(int argc, char **argv) {
                     const dem_quat along = dem_quat_about(at(0, 0, 1), (dem_real)(pi/4));
                     const dem_quat q = pose == 2 ? straight : dem_quat_times(along, dem_quat_about(at(1, 0, 0), (dem_real)(pi/4)));
                     const dem_shape shape = pose == 2 ? dem_shape_polyhedron_add(w, 4, spike)
-                        : box_add(w, pose ? 0.1 : 2*half, 2*half, 2*half);
+                        : scene_box(w, pose ? 0.1 : 2*half, 2*half, 2*half);
                     dem_shape_info info;
                     dem_body b;
                     double most;
@@ -365,7 +328,7 @@ int main(int argc, char **argv) {
                 dem_body b;
                 int i, deep = 0;
                 CHECK(dem_revolved_add(w, m, at(0, 0, 0), at(0, 0, 1), kind == 1 ? 4 : 2, r[kind], z[kind]).id);
-                b = dem_body_add(w, m, box_add(w, 0.006, 0.006, 0.004), at((kind == 2 ? 0.05 : 0.04) + off[k], 0, 2.3e-3), straight);
+                b = dem_body_add(w, m, scene_box(w, 0.006, 0.006, 0.004), at((kind == 2 ? 0.05 : 0.04) + off[k], 0, 2.3e-3), straight);
                 dem_world_dt_set(w, DEM_R(1e-4));
                 for (i = 0; i < 400; i++) {
                     if (scene_step(w, 1) != DEM_OK) break;
@@ -397,8 +360,8 @@ int main(int argc, char **argv) {
                 const dem_vec3 x = at(0.024*(k%3 - 1), 0.024*(k/3%3 - 1), 0.024*(k/9 - 1));
                 const dem_body b = k%5 == 4 ? dem_sphere_add(w, m, DEM_R(0.007), x)
                     : dem_body_add(w, m, k%5 == 3 ? dem_shape_ellipsoid_add(w, at(0.006, 0.008, 0.01))
-                                   : k%5 == 2 ? box_add(w, 0.012, 0.012, 0.012) : rock_add(w, &random, 12, 0.01), x,
-                                   any_turn(&random));
+                                   : k%5 == 2 ? scene_box(w, 0.012, 0.012, 0.012) : scene_rock(w, &random, 12, 0.01), x,
+                                   scene_turn(&random));
                 scene_move(w, b, at(-20*(double)x.x, -20*(double)x.y, -20*(double)x.z + 0.1*(k%3)), at(10, -20, 5));
             }
             had = dem_totals_get(w);
@@ -423,7 +386,7 @@ int main(int argc, char **argv) {
          "weight") {
         dem_material m;
         dem_world *w = rigid_to(1e-7, earth, 0, 0.5, &m);
-        dem_shape cube = box_add(w, 0.02, 0.02, 0.02);
+        dem_shape cube = scene_box(w, 0.02, 0.02, 0.02);
         dem_body b[10];
         dem_wall_loads loads;
         dem_vec3 from;
@@ -486,7 +449,7 @@ int main(int argc, char **argv) {
             desc.dt = DEM_R(1e-6);
             w = dem_world_create(&desc);
             m = dem_material_add(w, &stuff);
-            cube = box_add(w, 0.02, 0.02, 0.02);
+            cube = scene_box(w, 0.02, 0.02, 0.02);
             b = dem_body_add(w, m, cube, at(k == 3 ? 0.05 - 0.01 - gap : 0, 0, 0.01 + gap), straight);
             CHECK(b.slot);
             if (k == 0) dem_body_add(w, m, cube, at(0.001, 0.002, -0.01), straight);
