@@ -3703,13 +3703,23 @@ DEM_INLINE void demi_contact_choices(const dem_world *w, dem_contact *c) {
     c->friction_load = (int)w->desc.friction_load;
     c->slider = (int)w->desc.slider;
 }
+/* The normal force of one contact alone, N; the user's own law is not asked. */
+DEM_INLINE dem_real demi_law_normal(const dem_world *w, const dem_contact *c, dem_real *memory,
+                                    dem_contact_force *f) {
+    demi_force_clear(f);
+    w->laws.normal->law(c, memory + w->laws.at_normal, f);
+    return f->normal;
+}
 /* The force of one contact by the laws in force, or by the user's. */
 static void demi_law(const dem_world *w, const dem_contact *c, dem_real *memory,
                      dem_contact_force *f) {
     const demi_laws *laws = &w->laws;
-    demi_force_clear(f);
-    if (w->desc.law) { w->desc.law(c, memory, f); return; }
-    laws->normal->law(c, memory + laws->at_normal, f);
+    if (w->desc.law) {
+        demi_force_clear(f);
+        w->desc.law(c, memory, f);
+        return;
+    }
+    demi_law_normal(w, c, memory, f);
     if (laws->tangent->law) laws->tangent->law(c, memory, f);
     if (laws->rolling->law) laws->rolling->law(c, memory + laws->at_rolling, f);
 }
@@ -12583,6 +12593,22 @@ static void demi_pressure_beyond(const demi_solid *a, const double *n, demi_pres
     }
     demi_cross3(a->centre, s->force, s->torque);
 }
+/* Leaves out faces of a that lie in the plane of one of b's and under whose pyramids u is the same
+   (the ends of prisms in a plane, tops of blocks of one height side by side): where both are least
+   there is a volume in which both u are the same, and S may pass through it anywhere. Taken as a
+   little less, b's has all of S there. */
+static void demi_solid_ties(const demi_solid *a, const demi_solid *b, unsigned char *of_a,
+                            const unsigned char *of_b) {
+    int f, g, k;
+    for (f = 0; f < a->faces; f++) {
+        const double *p = a->plane[f], hair = 1e-9/p[3];
+        for (g = 0; g < b->faces && of_a[f]; g++) {
+            const double *q = b->plane[g];
+            for (k = 0; k < 3 && fabs(p[k] - q[k]) < hair; k++) continue;
+            if (k == 3 && of_b[g] && fabs(demi_solid_in(b, g, a->centre) - 1) < 1e-9) of_a[f] = 0;
+        }
+    }
+}
 /* All of S; 0: there is none. */
 static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pressure *s) {
     static const double up[3] = {0, 0, 1};
@@ -12592,6 +12618,7 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
     memset(fs, 1, sizeof fs);
     memset(gs, 1, sizeof gs);
     if (!demi_solid_alive(a, b, fs, gs) || !demi_solid_alive(b, a, gs, fs)) return 0;
+    demi_solid_ties(a, b, fs, gs);
     for (f = 0; f < a->faces; f++)
         for (g = 0; g < b->faces && fs[f]; g++) if (gs[g]) demi_solids_piece(a, b, f, g, s);
     if (demi_solid_holds(b, a->centre) || demi_solid_holds(a, b->centre))
@@ -15226,21 +15253,26 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
        points, from p's centre, where the contact has a gap for each; else its count stays 0 --- */
 typedef int (*demi_meet_fn)(const dem_world *w, const demi_part *p, const demi_part *q,
                             dem_vec3 gap, double lambda, demi_kept *c, demi_spots *spots);
-/* Two spheres share the distance as their radii do. */
-static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_part *q,
-                            dem_vec3 gap, double lambda, demi_kept *c,
-                            demi_spots *spots) {
-    const dem_real d = demi_length(gap), sum = p->radius + q->radius;
-    (void)lambda; (void)spots;
+/* Two spheres of radii r and s, about places x and y from the centres of their bodies, share the
+   distance as their radii do. */
+DEM_INLINE int demi_balls_meet(const dem_world *w, dem_vec3 x, dem_real r, dem_vec3 y, dem_real s,
+                               dem_vec3 gap, demi_kept *c) {
+    const dem_real d = demi_length(gap), sum = r + s;
     if (!(d < sum + demi_range(w, sum))) return 0;
     c->normal = d > 0 ? demi_scale(gap, 1/d) : demi_v(0, 0, 1);
     c->overlap = sum - d;
-    c->deep = c->overlap/DEMI_MIN(p->radius, q->radius);
-    c->r_eff = p->radius*q->radius/sum;
-    c->arm_a = demi_add(p->centre, demi_scale(c->normal, d*p->radius/sum));
-    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(p->centre, gap), q->centre));
+    c->deep = c->overlap/DEMI_MIN(r, s);
+    c->r_eff = r*s/sum;
+    c->arm_a = demi_add(x, demi_scale(c->normal, d*r/sum));
+    c->arm_b = demi_sub(c->arm_a, demi_sub(demi_add(x, gap), y));
     c->bend = -1/DEMI_MAX(d, sum/10);
     return 1;
+}
+static int demi_balls_touch(const dem_world *w, const demi_part *p, const demi_part *q,
+                            dem_vec3 gap, double lambda, demi_kept *c,
+                            demi_spots *spots) {
+    (void)lambda; (void)spots;
+    return demi_balls_meet(w, p->centre, p->radius, q->centre, q->radius, gap, c);
 }
 /* Ellipsoids, or one and a sphere, as Perram and Wertheim's point does. Apart, their gap is that
    of the points of either that come to it when both are scaled by W0, d (1 - 1/W0): never less
@@ -15717,48 +15749,120 @@ static int demi_kept_points(dem_world *w, int d, demi_kept *c, const demi_part *
     }
     return 1;
 }
-/* All contacts of one near pair. old: those body a had in the step before. */
-static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
+/* A contact of parts i of a and j of b as it begins; null: no room. */
+DEM_INLINE demi_kept *demi_kept_begin(dem_world *w, int d, int a, int b, int send, int i, int j,
                                       const demi_kept *old, int olds) {
-    const int a = w->near.a[at], b = w->near.b[at];
-    const dem_vec3 r = demi_near_way(w, (size_t)at);
-    const dem_real rb = w->bodies.pos[4*b + 3];
-    const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
-    const int first = w->domains[d].kept_next;
+    demi_kept *c = demi_kept_new(w, d);
+    if (!c) return 0;
+    c->a = a; c->b = b; c->part_a = i; c->part_b = j;
+    c->wall = c->element = -1;
+    c->send = send;
+    c->from = demi_kept_same(w, d, old, olds, b, i, j, -1, -1, 0);
+    return c;
+}
+/* The contact of two parts, if they touch: all that touch finds of it. 0: no room. */
+static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const demi_part *p,
+                           const demi_part *q, int i, int j, dem_vec3 gap, const demi_kept *old,
+                           int olds) {
     const demi_kept *now = demi_kept_of(w, d);
-    demi_kept *from = w->kept_next + w->kept_first[d] + first;
+    demi_kept *c = demi_kept_begin(w, d, a, b, send, i, j, old, olds);
+    demi_spots spots;
+    if (!c) return 0;
+    spots.count = 0;
+    if (c->from >= 0) c->normal = now[c->from].normal;      /* where to begin */
+    if (!demi_meet_of(p->kind, q->kind)(w, p, q, gap, c->from < 0 ? 0 : now[c->from].lambda, c,
+                                        &spots))
+        w->domains[d].kept_next--;
+    else if (spots.count ? !demi_kept_points(w, d, c, p, q, &spots, old, olds)
+             : c->corners && !demi_kept_spread(w, d, c, old, olds)) return 0;
+    return 1;
+}
+/* A body's spheres about its centre, rows of centre and radius, and how many; lone: for that of a
+   sphere. 0: it is of other parts. */
+DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, dem_real *lone, int *count) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    *count = shape ? shape->count : 1;
+    if (shape) return shape->count ? demi_centres_of(w, body) : 0;
+    lone[0] = lone[1] = lone[2] = 0;
+    lone[3] = w->bodies.pos[4*body + 3];
+    return lone;
+}
+/* All contacts of one near pair. r: from a's centre to b's; old: those body a had in the step
+   before. Spheres are compared by their rows, and no more: most do not touch. 0: no room. */
+static int demi_kept_balls(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
+                           const dem_real *x, int na, const dem_real *y, int nb,
+                           const demi_kept *old, int olds) {
+    enum { MOST = 64 };
+    const dem_real reach = (dem_real)w->margin.reach;
+    const dem_real far_a = w->bodies.pos[4*a + 3] + reach, far_b = w->bodies.pos[4*b + 3] + reach;
+    const int listed = nb > 1 && nb <= MOST;
+    unsigned char some[MOST];
+    int i, j, k, count = nb;
+    if (listed)                                 /* those of b that come near a */
+        for (j = 0, count = 0; j < nb; j++) {
+            const dem_vec3 to = demi_add(r, demi_at(y + 4*j));
+            const dem_real all = far_a + y[4*j + 3];
+            some[count] = (unsigned char)j;
+            count += demi_dot(to, to) < all*all;
+        }
+    for (i = 0; i < na; i++) {
+        const dem_vec3 to = demi_sub(r, demi_at(x + 4*i));
+        const dem_real all = x[4*i + 3] + far_b;
+        if (na > 1 && !(demi_dot(to, to) < all*all)) continue;
+        for (k = 0; k < count; k++) {
+            const dem_real *one = y + 4*(j = listed ? some[k] : k);
+            const dem_vec3 gap = demi_add(to, demi_at(one));
+            const dem_real radii = x[4*i + 3] + one[3];
+            const dem_real near_by = reach > 0 ? radii + demi_range(w, radii) : radii;
+            demi_kept *c;
+            if (!(demi_dot(gap, gap) < near_by*near_by)) continue;
+            c = demi_kept_begin(w, d, a, b, send, i, j, old, olds);
+            if (!c) return 0;
+            if (!demi_balls_meet(w, demi_at(x + 4*i), x[4*i + 3], demi_at(one), one[3], gap, c))
+                w->domains[d].kept_next--;
+        }
+    }
+    return 1;
+}
+/* The same of bodies of any parts. */
+static int demi_kept_any(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
+                         const demi_kept *old, int olds) {
+    const int na = demi_parts_count(w, a), nb = demi_parts_count(w, b);
+    const dem_real rb = w->bodies.pos[4*b + 3] + (dem_real)w->margin.reach;
     int i, j;
-    if (!(demi_length(r) < w->bodies.pos[4*a + 3] + rb + (dem_real)w->margin.reach)) return;
     for (i = 0; i < na; i++) {
         const demi_part p = demi_part_now(w, a, i);
         const dem_vec3 to = demi_sub(r, p.centre);
-        const dem_real all = p.radius + rb + (dem_real)w->margin.reach;
-        if (na > 1 && !(demi_dot(to, to) < all*all)) continue;
+        if (na > 1 && !(demi_dot(to, to) < (p.radius + rb)*(p.radius + rb))) continue;
         for (j = 0; j < nb; j++) {
             const demi_part q = demi_part_now(w, b, j);
             const dem_vec3 gap = demi_add(to, q.centre);
             const dem_real near_by = p.radius + q.radius + demi_range(w, p.radius + q.radius);
-            demi_spots spots;
-            demi_kept *c;
-            if (!(demi_dot(gap, gap) < near_by*near_by)) continue;
-            c = demi_kept_new(w, d);
-            if (!c) return;
-            spots.count = 0;
-            c->a = a; c->b = b; c->part_a = i; c->part_b = j;
-            c->wall = c->element = -1;
-            c->send = send;
-            c->from = demi_kept_same(w, d, old, olds, b, i, j, -1, -1, 0);
-            if (c->from >= 0) c->normal = now[c->from].normal;      /* where to begin */
-            if (!demi_meet_of(p.kind, q.kind)(w, &p, &q, gap,
-                                              c->from < 0 ? 0 : now[c->from].lambda, c,
-                                              &spots))
-                w->domains[d].kept_next--;
-            else if (spots.count ? !demi_kept_points(w, d, c, &p, &q, &spots, old, olds)
-                     : c->corners && !demi_kept_spread(w, d, c, old, olds)) return;
+            if (demi_dot(gap, gap) < near_by*near_by &&
+                !demi_kept_parts(w, d, a, b, send, &p, &q, i, j, gap, old, olds)) return 0;
         }
     }
-    demi_kept_share(w, from, w->domains[d].kept_next - first);
-    demi_kept_inherit(now, from, w->domains[d].kept_next - first);
+    return 1;
+}
+static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
+                                      const demi_kept *old, int olds) {
+    const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
+    const dem_vec3 r = demi_near_way(w, (size_t)at);
+    const dem_real far = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3] + (dem_real)w->margin.reach;
+    const demi_kept *now = demi_kept_of(w, d);
+    demi_kept *from = w->kept_next + w->kept_first[d] + first;
+    dem_real lone[2][4];
+    const dem_real *x, *y;
+    int na, nb, count;
+    if (!(demi_dot(r, r) < far*far)) return;
+    x = demi_balls_of(w, a, lone[0], &na);
+    y = demi_balls_of(w, b, lone[1], &nb);
+    if (!(x && y ? demi_kept_balls(w, d, a, b, send, r, x, na, y, nb, old, olds)
+          : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
+    count = w->domains[d].kept_next - first;
+    if (!count) return;
+    demi_kept_share(w, from, count);
+    demi_kept_inherit(now, from, count);
 }
 
 /* --- overlap, arm and radius of a part's contact with a wall at a place that was found --- */
@@ -16164,9 +16268,9 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
         spin_step = wall->mid.spin;
     }
     around = demi_add(demi_at(w->bodies.half_spin + 4*a), spin_step);
-    memset(c, 0, w->desc.law ? sizeof *c : offsetof(dem_contact, who));
+    if (w->desc.law) memset(&c->who, 0, sizeof c->who);
     c->overlap = k->overlap;
-    if (w->margin.reach > 0) c->range = demi_range(w, demi_kept_radii(w, k));
+    c->range = w->margin.reach > 0 ? demi_range(w, demi_kept_radii(w, k)) : 0;
     if (w->desc.law_who) demi_kept_who(w, k, rates, &c->who);
     c->normal = n;
     c->closing_speed = demi_dot(u, n);
@@ -16178,6 +16282,7 @@ static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_ke
     c->spin = demi_sub(demi_at(w->bodies.spin + 4*a), spin);
     c->spin_step = demi_sub(demi_at(w->bodies.half_spin + 4*a), spin_step);
     c->dt = dt;
+    c->normal_rate = demi_v(0, 0, 0);
     if (dt > 0) {
         const dem_vec3 turn = demi_scale(demi_sub(n, old->normal), 1/dt);
         c->normal_rate = demi_sub(turn, demi_scale(n, demi_dot(turn, n)));
@@ -16206,8 +16311,9 @@ static DEMI_APART dem_real demi_kept_still(const dem_world *w, const demi_kept *
     dem_contact still = *c;
     dem_contact_force f;
     memcpy(memory, k->memory, sizeof memory);
-    if (c->who.rate_a) demi_who_reals(w, k->a, k->b, k->wall, rates, &still.who);
     still.closing_speed = 0;
+    if (!w->desc.law) return demi_law_normal(w, &still, memory, &f);
+    if (c->who.rate_a) demi_who_reals(w, k->a, k->b, k->wall, rates, &still.who);
     demi_law(w, &still, memory, &f);
     return f.normal;
 }

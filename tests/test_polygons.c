@@ -211,7 +211,7 @@ int main(int argc, char **argv) {
     }
 
     TEST("unions: elastic crosses of bricks and an ellipsoid, and a ball, keep their energy, the better the smaller the step; "
-         "Ls, stars and a disc in the plane within 1 in 1000") {
+         "Ls, stars and a disc in the plane, too") {
         double error[2];
         int k, space;
         for (space = 0; space < 2 && fine; space++) {
@@ -261,8 +261,7 @@ int main(int argc, char **argv) {
                 if (getenv("POLYGONS_NUMBERS")) printf("%s, dt %g: %g\n", space ? "space" : "plane", (double)desc.dt, error[k]);
                 dem_world_destroy(w);
             }
-            CHECK(error[0] < 1e-3 && error[1] < 1e-3);
-            if (space) CHECK(error[1] < error[0] && error[1] < 1e-6);
+            CHECK(error[1] < error[0]/4 && error[1] < 1e-6);
         }
         CHECK(1);
     }
