@@ -41,6 +41,7 @@
        >>polyhedra-walls  where polyhedra touch walls whose elements are flat, or grains
        >>polyhedra-round  where they touch cylinders and surfaces of revolution
        >>polyhedra-sieves  where they touch sieves; who touches what
+       >>meets       where parts of two bodies touch; who meets whom
        >>kept        contacts kept by themselves, all but sphere on sphere: touch
        >>kept-respond  the law's answers to them: forces on both ends
        >>integrators kick, drift, predict; rotation
@@ -4217,7 +4218,7 @@ typedef struct demi_part {
     const demi_shape *shape;       /* of all but balls; its lengths times scale */
     dem_real scale;
 } demi_part;
-/* What a kind of part tells of itself, and how two keep apart; what touches stands in >>kept. */
+/* What a kind of part tells of itself, and how two keep apart; what touches stands in >>meets. */
 typedef struct demi_shape_row {
     const char *name;
     dem_real (*support)(const demi_shape *s, dem_vec3 n);     /* m, how far along n (unit) */
@@ -4372,7 +4373,7 @@ static void demi_shape_free(dem_world *w, demi_shape *shape) {
     demi_free(w, shape->hull);
     demi_free(w, shape->rim);
 }
-/* Do parts of these two kinds know each other? (>>kept) */
+/* Do parts of these two kinds know each other? (>>meets) */
 static int demi_meet_known(int kind, int other);
 /* 1 with a sentence when a shape that is to be added does not know another, its like or spheres. */
 static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
@@ -12593,20 +12594,15 @@ static void demi_pressure_beyond(const demi_solid *a, const double *n, demi_pres
     }
     demi_cross3(a->centre, s->force, s->torque);
 }
-/* Leaves out faces of a that lie in the plane of one of b's and under whose pyramids u is the same
-   (the ends of prisms in a plane, tops of blocks of one height side by side): where both are least
-   there is a volume in which both u are the same, and S may pass through it anywhere. Taken as a
-   little less, b's has all of S there. */
-static void demi_solid_ties(const demi_solid *a, const demi_solid *b, unsigned char *of_a,
-                            const unsigned char *of_b) {
-    int f, g, k;
-    for (f = 0; f < a->faces; f++) {
-        const double *p = a->plane[f], hair = 1e-9/p[3];
-        for (g = 0; g < b->faces && of_a[f]; g++) {
-            const double *q = b->plane[g];
-            for (k = 0; k < 3 && fabs(p[k] - q[k]) < hair; k++) continue;
-            if (k == 3 && of_b[g] && fabs(demi_solid_in(b, g, a->centre) - 1) < 1e-9) of_a[f] = 0;
-        }
+/* Polygons of a plane are prisms; where two end at one height there is a volume in which both u are
+   those of the ends, the same, and S may pass through it anywhere, so that neither force nor energy
+   is told. So one of the two is taken to be half as high again. */
+static void demi_solid_stretch(demi_solid *s) {
+    int i;
+    for (i = 0; i < s->corners; i++) s->corner[i][2] *= 1.5;
+    for (i = 0; i < s->faces; i++) {
+        s->plane[i][2] /= 1.5;
+        s->plane[i][3] = 1/sqrt(demi_dot3(s->plane[i], s->plane[i]));
     }
 }
 /* All of S; 0: there is none. */
@@ -12618,7 +12614,6 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
     memset(fs, 1, sizeof fs);
     memset(gs, 1, sizeof gs);
     if (!demi_solid_alive(a, b, fs, gs) || !demi_solid_alive(b, a, gs, fs)) return 0;
-    demi_solid_ties(a, b, fs, gs);
     for (f = 0; f < a->faces; f++)
         for (g = 0; g < b->faces && fs[f]; g++) if (gs[g]) demi_solids_piece(a, b, f, g, s);
     if (demi_solid_holds(b, a->centre) || demi_solid_holds(a, b->centre))
@@ -15217,37 +15212,12 @@ static const char *demi_wall_strange(const dem_world *w, const demi_wall *wall, 
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>kept
-   Contacts that are kept by themselves: all but those of sphere and sphere (>>respond). Two bodies
-   may touch in several places and each may push past the centre; a wall is touched in as many
-   places as it has surfaces near: so these contacts are kept one by one. touch finds them (geometry
-   only: parts against parts, parts against wall elements) and which of the step before each
-   continues; >>kept-respond takes memory over from that one, asks the law and pushes. Within a
-   domain they stand in the order of their body a. Touch may run out of room; it then begins anew
-   with more, nothing lost.
+   >>meets
+   Where parts of two bodies touch: geometry only, into a contact that >>kept has begun. Spheres by
+   their centres, ellipsoids by Perram and Wertheim's point, polyhedra by what they share
+   (>>polyhedra) or by gaps (>>gaps), and what is unlike by the nearest point. Then the table of who
+   meets whom.
    --------------------------------------------------------------------------------------------- */
-
-/* Is the law asked about a contact? Not where the two are apart, but for a law with a range, nor
-   under way through a reduced hole. */
-DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
-    return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
-}
-/* One contact as touch finds it. */
-static demi_kept *demi_kept_new(dem_world *w, int d) {
-    demi_domain *domain = &w->domains[d];
-    demi_kept *c;
-    if (domain->kept_next >= w->kept_first[d + 1] - w->kept_first[d]) {
-        domain->overflow |= 16;
-        return 0;
-    }
-    c = w->kept_next + w->kept_first[d] + domain->kept_next++;
-    memset(c, 0, offsetof(demi_kept, coef));
-    c->b = -1;
-    c->share = c->slope = c->inset = 1;
-    return c;
-}
-
-/* --- touch: two bodies --- */
 
 /* --- two parts, if they touch: geometry into c. lambda: where to begin, 0: unknown. spots: several
        points, from p's centre, where the contact has a gap for each; else its count stays 0 --- */
@@ -15435,6 +15405,8 @@ static int demi_polyhedra_touch(const dem_world *w, const demi_part *p, const de
         return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
     demi_solid_of(p, demi_v(0, 0, 0), &a);
     demi_solid_of(q, gap, &b);
+    if (w->desc.planar)                         /* whichever: the same as long as they touch */
+        demi_solid_stretch(w->bodies.slot[c->a] < w->bodies.slot[c->b] ? &a : &b);
     overlap = demi_solids_press(&a, &b, &s) && demi_pressure_patch(&s, &at)
         ? demi_shared_overlap(s.shared, r_eff) : 0;
     if (!(overlap > 0)) return w->margin.reach > 0 && demi_polyhedra_near(w, p, q, gap, c, spots);
@@ -15458,6 +15430,37 @@ DEM_INLINE demi_meet_fn demi_meet_of(int kind, int other) {
     return demi_meets[DEMI_MAX(kind, other)][DEMI_MIN(kind, other)];
 }
 static int demi_meet_known(int kind, int other) { return demi_meet_of(kind, other) != 0; }
+
+/* ---------------------------------------------------------------------------------------------
+   >>kept
+   Contacts that are kept by themselves: all but those of sphere and sphere (>>respond). Two bodies
+   may touch in several places and each may push past the centre; a wall is touched in as many
+   places as it has surfaces near: so these contacts are kept one by one. touch finds them (parts
+   against parts by >>meets, against wall elements) and which of the step before each continues;
+   >>kept-respond takes memory over from that one, asks the law and pushes. Within a domain they
+   stand in the order of their body a. Touch may run out of room; it then begins anew with more,
+   nothing lost.
+   --------------------------------------------------------------------------------------------- */
+
+/* Is the law asked about a contact? Not where the two are apart, but for a law with a range, nor
+   under way through a reduced hole. */
+DEM_INLINE int demi_kept_asked(const dem_world *w, const demi_kept *c) {
+    return c->overlap > 0 || (w->margin.reach > 0 && (c->weight < 0 || c->weight > 0));
+}
+/* One contact as touch finds it. */
+static demi_kept *demi_kept_new(dem_world *w, int d) {
+    demi_domain *domain = &w->domains[d];
+    demi_kept *c;
+    if (domain->kept_next >= w->kept_first[d + 1] - w->kept_first[d]) {
+        domain->overflow |= 16;
+        return 0;
+    }
+    c = w->kept_next + w->kept_first[d] + domain->kept_next++;
+    memset(c, 0, offsetof(demi_kept, coef));
+    c->b = -1;
+    c->share = c->slope = c->inset = 1;
+    return c;
+}
 
 /* Number in its domain of the old contact with the same partner and parts, or with the same wall,
    part and element, among those that body a had; -1: none. */
@@ -15848,7 +15851,8 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
                                       const demi_kept *old, int olds) {
     const int a = w->near.a[at], b = w->near.b[at], first = w->domains[d].kept_next;
     const dem_vec3 r = demi_near_way(w, (size_t)at);
-    const dem_real far = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3] + (dem_real)w->margin.reach;
+    const dem_real radii = w->bodies.pos[4*a + 3] + w->bodies.pos[4*b + 3];
+    const dem_real far = radii + (dem_real)w->margin.reach;
     const demi_kept *now = demi_kept_of(w, d);
     demi_kept *from = w->kept_next + w->kept_first[d] + first;
     dem_real lone[2][4];

@@ -99,7 +99,7 @@ for cxx in g++ clang++; do
     try "$cxx user, gcc implementation"            "gcc -I. -c dem.c -o \$bin.o && $cxx -I. -x c++ $user -x none \$bin.o -o \$bin -lm && \$bin"
 done
 
-echo 'int main(void) { return 0; }' > $dir/probe.c
+printf '#include <errno.h>\nint main(void) { return errno; }\n' > $dir/probe.c     # its headers are another package's
 if found gcc && gcc -m32 $dir/probe.c -o $dir/probe 2>/dev/null; then
     for real in "" $float; do
         try "gcc -m32${real:+ float}: run"                  "gcc -m32 -msse2 -mfpmath=sse -I. $real $one_file -o \$bin -lm && \$bin"

@@ -5,10 +5,13 @@ flags="-O2 -ffp-contract=off -DDEM_IMPLEMENTATION -I."
 cc -std=c99 $flags tests/cross.c -o "$dir/here" -lm || exit 1
 here=$("$dir/here"); passed=0; failed=0
 echo "this machine: $here"
+printf '#include <errno.h>\n#include <math.h>\n#include <stdio.h>\nint main(void) { return printf("%%g", sqrt(errno)) < 0; }\n' > "$dir/probe.c"
 try() {                                        # NAME PACKAGES TOOLS BUILD RUN
     for tool in $3; do
         command -v "$tool" > /dev/null || { echo "SKIP: $1: $tool not found (Debian packages $2)"; return; }
     done
+    eval "$(echo "$4" | sed "s|tests/cross.c|$dir/probe.c|")" > "$dir/log" 2>&1 ||  # headers and libraries, too?
+        { echo "SKIP: $1: cannot build a program (Debian packages $2)"; return; }
     eval "$4" > "$dir/log" 2>&1 || { echo "FAILED $1: does not build"; head -n 5 "$dir/log"; failed=$((failed + 1)); return; }
     there=$(eval "$5" 2> /dev/null | tr -d '\r')
     if [ "$there" = "$here" ]; then echo "ok    $1: the same"; passed=$((passed + 1))
