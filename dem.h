@@ -12620,11 +12620,83 @@ static int demi_solids_press(const demi_solid *a, const demi_solid *b, demi_pres
         demi_pressure_beyond(a, up, s);
     return s->shared > 0 && s->sum > 0;
 }
+static int demi_double_order(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+/* Part of the ray from o in direction (c, sn) that is inside a polygon across z which turns left
+   (side 1) or right (-1): lo to hi, which come as its ends. */
+static void demi_polygon_ray(double (*x)[3], int count, int side, const double *o, double c,
+                             double sn, double *lo, double *hi) {
+    int e;
+    for (e = 0; e < count; e++) {
+        const double *p = x[e], *q = x[e + 1 < count ? e + 1 : 0];
+        const double u = side*(p[1] - q[1]), v = side*(q[0] - p[0]);
+        const double over = u*(o[0] - p[0]) + v*(o[1] - p[1]), slope = u*c + v*sn;
+        if (slope > 0) *lo = DEMI_MAX(*lo, -over/slope);
+        else if (slope < 0) *hi = DEMI_MIN(*hi, -over/slope);
+        else if (over < 0) *hi = -1;
+    }
+}
+/* The polygon of face f's pyramid, across z, outside of a hole (x, y, radius): along rays from its
+   middle, between those to corners and to where sides cross its rim. 0: nothing of it is in it. */
+static int demi_pressure_round(demi_pressure *s, const demi_solid *a, int f, double (*x)[3],
+                               int count, const double *unit, double height, const double *hole) {
+    static const double at[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
+                                 0.9305681557970263};
+    static const double part[4] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
+                                   0.17392742256872692};
+    static const double on[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
+    static const double weight[3] = {5.0/18, 8.0/18, 5.0/18};
+    double angle[3*DEMI_SECTION + 1], area = 0;
+    int i, k, e, piece, angles = 0, left = 0, right = 0, near_by = 0;
+    for (i = 0; i < count; i++) {
+        const double *p = x[i], *q = x[i + 1 < count ? i + 1 : 0];
+        const double u = p[0] - hole[0], v = p[1] - hole[1], du = q[0] - p[0], dv = q[1] - p[1];
+        const double A = du*du + dv*dv, B = u*du + v*dv, C = u*u + v*v - hole[2]*hole[2];
+        const double D = B*B - A*C, turn = u*dv - v*du;
+        left += turn >= 0;
+        right += turn <= 0;
+        area += turn;
+        near_by |= C < 0;
+        angle[angles++] = demi_atan2(v, u);
+        for (k = -1; k < 2 && A > 0 && D > 0; k += 2) {
+            const double t = (-B + k*sqrt(D))/A;
+            if (!(t > 0 && t < 1)) continue;
+            near_by = 1;
+            angle[angles++] = demi_atan2(v + t*dv, u + t*du);
+        }
+    }
+    if (!near_by && left < count && right < count) return 0;    /* nor is its middle inside */
+    qsort(angle, (size_t)angles, sizeof *angle, demi_double_order);
+    angle[angles] = angle[0] + 2*DEMI_PI;
+    for (i = 0; i < angles; i++) {
+        const double width = angle[i + 1] - angle[i];
+        const int pieces = 1 + (int)(width/0.4);
+        for (piece = 0; piece < pieces && width > 1e-15; piece++)
+            for (k = 0; k < 4; k++) {
+                const double turn = angle[i] + (piece + at[k])*width/pieces;
+                const double c = demi_cos(turn), sn = demi_sin(turn);
+                double lo = hole[2], hi = 1e300;
+                demi_polygon_ray(x, count, area > 0 ? 1 : -1, hole, c, sn, &lo, &hi);
+                for (e = 0; e < 3 && hi > lo; e++) {
+                    const double r = lo + on[e]*(hi - lo);
+                    const double y[3] = {hole[0] + r*c, hole[1] + r*sn, x[0][2]};
+                    const double dA = part[k]*width/pieces*weight[e]*(hi - lo)*r;
+                    demi_pressure_point(s, y, DEMI_MAX(demi_solid_in(a, f, y), 0), dA, unit,
+                                        height);
+                }
+            }
+    }
+    return 1;
+}
 /* S on a flat piece of a rigid wall: beyond n.x = at, n unit, into the wall; on that side of all
-   planes (normal, a point of it) that bound it. Without bounds the polyhedron's centre must be on
-   this side; a piece may be seen from behind, where it takes from what others share. */
+   planes (normal, a point of it) that bound it; hole: null, or x, y and radius of one in it,
+   across z. Without bounds the polyhedron's centre must be on this side; a piece may be seen from
+   behind, where it takes from what others share. */
 static void demi_solid_on_flat(const demi_solid *a, const double *n, double at,
-                               double (*sides)[2][3], int side_count, demi_pressure *s) {
+                               double (*sides)[2][3], int side_count, const double *hole,
+                               demi_pressure *s) {
     const int32_t *loops = a->rim + a->faces + 1;
     const double centre = demi_dot3(n, a->centre) - at;
     double all[DEMI_HULL_CORNERS], x[DEMI_SECTION][3], u[DEMI_SECTION];
@@ -12638,7 +12710,8 @@ static void demi_solid_on_flat(const demi_solid *a, const double *n, double at,
         count = demi_pyramid_section(a, f, centre, level, x);
         for (i = 0; i < side_count && count > 2; i++)
             count = demi_polygon_clip(x, count, sides[i][0], sides[i][1]);
-        if (count < 3) continue;
+        if (count < 3 || (hole && demi_pressure_round(s, a, f, x, count, n, -centre, hole)))
+            continue;
         for (i = 0; i < count; i++) u[i] = DEMI_MAX(demi_solid_in(a, f, x[i]), 0);
         demi_pressure_polygon(s, x, u, count, n, -centre);
     }
@@ -14209,9 +14282,9 @@ static void demi_solid_on_element(const demi_wall *wall, int element, const demi
     if (wall->kind == DEMI_WALL_PLANE) {
         n[0] = n[1] = 0;
         n[2] = -1;
-        demi_solid_on_flat(s, n, (double)x.z, 0, 0, press);
+        demi_solid_on_flat(s, n, (double)x.z, 0, 0, 0, press);
     } else if ((count = demi_facet_sides(wall, element, x, way, n, &at, sides)) != 0)
-        demi_solid_on_flat(s, n, at, sides, count, press);
+        demi_solid_on_flat(s, n, at, sides, count, 0, press);
 }
 /* Any wall whose elements are flat. */
 static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
@@ -14520,9 +14593,18 @@ static int demi_generator_end(const demi_solid *s, double r, double z, const dou
 /* Edges and lines to corners that cross, twice each; faces at two heights; two rings' planes. */
 enum { DEMI_CROSSINGS = 2*(3*DEM_POLYHEDRON_FACES + DEMI_HULL_CORNERS) +
        4*DEM_POLYHEDRON_FACES + 4*4*DEM_POLYHEDRON_FACES + 4 };
-static int demi_angle_order(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
+/* Is the body wholly above or below a piece, or beyond the plane that touches its widest ring where
+   that is nearest to the body's centre? */
+static int demi_generator_apart(const demi_solid *s, const demi_generator *l, const double *x0) {
+    const double wide = DEMI_MAX(l->a, l->b)*sqrt(x0[0]*x0[0] + x0[1]*x0[1]);
+    int i, above = 0, below = 0, beyond = 0;
+    for (i = 0; i < s->corners; i++) {
+        const double *c = s->corner[i], z = x0[2] + c[2];
+        above += z > DEMI_MAX(l->g, l->h);
+        below += z < DEMI_MIN(l->g, l->h);
+        beyond += x0[0]*(x0[0] + c[0]) + x0[1]*(x0[1] + c[1]) > wide;
+    }
+    return above == s->corners || below == s->corners || beyond == s->corners;
 }
 /* All of one piece of a surface of revolution: between the angles at which edges of the polyhedron,
    or of its pyramids, cross it, what they share changes smoothly. Seen from inside, where it is
@@ -14549,6 +14631,7 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
         demi_flats_add(flats, element, &press);
         return;
     }
+    if (demi_generator_apart(s, l, x0)) return;
     for (i = 0; i < s->corners; i++) {
         const double u = x0[0] + s->corner[i][0], v = x0[1] + s->corner[i][1];
         const double r = demi_generator_radius(l, x0[2] + s->corner[i][2]);
@@ -14580,7 +14663,7 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     for (i = 0; i < count; i++)                 /* of one turn */
         angle[i] -= 2*DEMI_PI*floor(angle[i]/(2*DEMI_PI));
     if (!count) angle[count++] = 0;
-    qsort(angle, (size_t)count, sizeof *angle, demi_angle_order);
+    qsort(angle, (size_t)count, sizeof *angle, demi_double_order);
     angle[count] = angle[0] + 2*DEMI_PI;
     for (i = 0; i <= count; i++) {
         const double width = i < count ? angle[i + 1] - angle[i] : 0, had = press.sum;
@@ -14883,7 +14966,7 @@ static void demi_plate_flat(const demi_solid *s, const double *x, const double *
             for (e = 0; e < 3; e++) sides[count][1][e] = middle[e] - x[e];
             sides[count++][1][i] += k*half[i];
         }
-    demi_solid_on_flat(s, n, at, sides, count, &press);
+    demi_solid_on_flat(s, n, at, sides, count, 0, &press);
     demi_flats_add(flats, element, &press);
 }
 /* Solid of a plate with square holes or slots about the hole at c: half of the bars on both sides
@@ -14910,26 +14993,11 @@ static void demi_plate_press(const demi_plate *p, const demi_solid *s, const dou
         }
     }
 }
-/* Takes away what a hole takes from a face; height: of the body's centre over it. */
-static void demi_pressure_less(demi_pressure *s, const demi_pressure *hole, double height) {
-    const double all = s->sum;
-    int k;
-    s->shared -= hole->shared;
-    s->sum -= hole->sum;
-    for (k = 0; k < 3; k++) {
-        s->at[k] -= hole->at[k];
-        s->force[k] -= hole->force[k];
-        s->torque[k] -= hole->torque[k];
-    }
-    for (k = 0; k < 6; k++) s->wide[k] -= hole->wide[k];
-    if (!(s->sum > 1e-9*all)) memset(s, 0, sizeof *s);
-    else if (s->shared > 0 && height > 0)
-        s->deep = DEMI_MIN(s->deep, 2*s->shared/(s->sum*height));
-}
 /* The same about a round one: the faces of its cell less the hole's disc, and its wall. */
 static void demi_plate_press_round(const demi_plate *p, const demi_solid *s, const double *x,
                                    const double *c, int32_t number, demi_flats *flats) {
     const dem_vec3 from = demi_v((dem_real)(x[0] - c[0]), (dem_real)(x[1] - c[1]), (dem_real)x[2]);
+    const double hole[3] = {c[0] - x[0], c[1] - x[1], p->a};
     const int six = p->lattices > 1, count = six ? 6 : 4;
     demi_generator l;
     int i, k, e;
@@ -14937,11 +15005,9 @@ static void demi_plate_press_round(const demi_plate *p, const demi_solid *s, con
     for (k = -1; k < 2; k += 2) {               /* k: which face */
         const double n[3] = {0, 0, -(double)k}, at = k*x[2] - p->half;
         double sides[6][2][3];
-        demi_pressure press, hole;
-        demi_flats disc;
+        demi_pressure press;
         memset(sides, 0, sizeof sides);
         memset(&press, 0, sizeof press);
-        memset(&hole, 0, sizeof hole);
         for (i = 0; i < count; i++) {
             const double turn = DEMI_PI*(six ? i/3.0 : i/2.0);
             const double way[2] = {demi_cos(turn), demi_sin(turn)};
@@ -14950,15 +15016,7 @@ static void demi_plate_press_round(const demi_plate *p, const demi_solid *s, con
                 sides[i][1][e] = c[e] - x[e] + way[e]*p->px/2;
             }
         }
-        demi_solid_on_flat(s, n, at, sides, count, &press);
-        if (!(press.sum > 0)) continue;
-        l.b = p->a;
-        l.g = l.h = k*p->half;
-        l.side = k;
-        disc.count = 0;
-        demi_solid_on_generator(s, &l, from, 0, 0, &disc);
-        for (i = 0; i < disc.count; i++) demi_pressure_add(&hole, &disc.press[i]);
-        demi_pressure_less(&press, &hole, fabs(at));
+        demi_solid_on_flat(s, n, at, sides, count, hole, &press);
         demi_flats_add(flats, DEMI_SIEVE_FACE, &press);
     }
     l.a = l.b = p->a;

@@ -297,7 +297,7 @@ int main(int argc, char **argv) {
         int impulses, sort;
         for (impulses = 0; impulses < 2; impulses++)
             for (sort = WEAVE; sort < SORTS; sort += 3) {
-                const int steps = impulses ? 300 : 4000;
+                const int steps = impulses ? 200 : 3000;
                 dem_world *w = shaken(impulses, sort, 1), *v = shaken(impulses, sort, 3), *u;
                 CHECK_EQ(scene_step(w, steps), DEM_OK);
                 CHECK_EQ(scene_step(v, steps/2), DEM_OK);

@@ -1,5 +1,5 @@
 /* Impacts of convex polyhedra by the hundred thousand, by springs: rocks, cubes, tetrahedra and flakes on their like, on a
-   plane, inside and outside a tube, on the ridge of a mesh and on a union, at random angles, spins, restitutions and
+   plane, inside and outside a tube, on the ridge of a mesh, on a union and on sieves, at random angles, spins, restitutions and
    frictions. None may leave with more energy than it came with, beyond the step's own error, and elastic ones lose none.
    A world holds many lanes, far from each other, with one impact each. TEST_LONG makes 1e5 of them, TEST_TABLES prints
    the worst of each kind. */
@@ -8,9 +8,11 @@
 #include "../test.h"
 #include "../scene.h"
 
-typedef enum stone_target { on_stone, on_floor, in_tube, on_tube, on_roof, on_pair, stone_targets } stone_target;
+typedef enum stone_target { on_stone, on_floor, in_tube, on_tube, on_roof, on_pair, on_weave, on_holes, on_rounds,
+                            stone_targets } stone_target;
 static const char *const stone_target_name[stone_targets] = {"its like", "a plane", "the inside of a tube", "a tube",
-                                                             "a roof of triangles", "a union"};
+                                                             "a roof of triangles", "a union", "a weave of wires",
+                                                             "a plate with square holes", "a plate with round holes"};
 enum { stone_lanes = 120, stone_shapes = 12 };
 typedef struct stone_lane { dem_body a, b; double before; } stone_lane;
 typedef struct stone_sum { int hits, gaining; double worst, elastic; } stone_sum;
@@ -50,6 +52,15 @@ static void stone_walls(dem_world *world, dem_material m, stone_target target) {
     if (target == on_floor) dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     if (target == in_tube) dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 4, 1);
     if (target == on_tube) dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, 0);
+    if (target >= on_weave) {
+        dem_sieve_desc s = DEM_SIEVE_DESC;
+        s.kind = target == on_weave ? DEM_SIEVE_WIRES : target == on_holes ? DEM_SIEVE_SQUARE : DEM_SIEVE_ROUND;
+        s.aperture = DEM_R(1.2);
+        s.bar = DEM_R(0.6);
+        s.thickness = target == on_weave ? 0 : DEM_R(0.5);
+        s.lift = target == on_weave ? DEM_R(0.5) : 0;
+        CHECK(dem_sieve_add(world, m, &s).id);
+    }
     for (i = 0; i < stone_lanes && target == on_roof; i++) {       /* a ridge of two slopes, one turned the other way */
         const dem_vec3 c = stone_place(target, i);
         dem_real v[18];
@@ -66,8 +77,8 @@ static void stone_walls(dem_world *world, dem_material m, stone_target target) {
         dem_mesh_add(world, m, &mesh);
     }
 }
-/* Impacts of one kind in all lanes. restitution 1 and no friction: elastic. */
-static void stones_throw(stone_target target, int elastic, uint64_t seed, stone_sum *sum) {
+/* Impacts of one kind in so many lanes. restitution 1 and no friction: elastic. */
+static void stones_throw(stone_target target, int lanes, int elastic, uint64_t seed, stone_sum *sum) {
     dem_world_desc desc = DEM_WORLD_DESC;
     const double e = elastic ? 1 : 0.3 + 0.6*scene_random(&seed);
     dem_material_desc stuff = scene_stuff(1e8, e, elastic ? 0 : scene_random(&seed), 0);
@@ -90,14 +101,14 @@ static void stones_throw(stone_target target, int elastic, uint64_t seed, stone_
         pair = dem_shape_union_add(world, 2, two, x, 0);
     }
     stone_walls(world, m, target);
-    for (i = 0; i < stone_lanes; i++) {
+    for (i = 0; i < lanes; i++) {
         const dem_vec3 way = stone_direction(&seed), aside = scene_at(&seed, 1, -0.5, 1, -0.5, 1, -0.5);
         const dem_vec3 middle = stone_place(target, i);
         const dem_quat q = dem_quat_about(stone_direction(&seed), (dem_real)(6*scene_random(&seed)));
         const double fast = 1 + 2*scene_random(&seed);
         dem_vec3 x = demi_add(middle, demi_scale(way, DEM_R(-3.2))), v = demi_scale(way, (dem_real)fast);
         lane[i].b.slot = 0;
-        if (target == on_floor || target == on_roof) {
+        if (target == on_floor || target == on_roof || target >= on_weave) {
             x = demi_add(middle, at(0, (double)aside.y*3, 2.2));
             v = at(fast*(double)aside.x, fast*(double)aside.y, -fast);
         } else if (target == in_tube || target == on_tube) {
@@ -117,7 +128,7 @@ static void stones_throw(stone_target target, int elastic, uint64_t seed, stone_
     }
     CHECK_EQ(dem_world_run(world, 2.5, 0, 0), DEM_OK);
     if (*dem_world_error(world)) printf("%s: %s\n", stone_target_name[target], dem_world_error(world));
-    for (i = 0; i < stone_lanes; i++) {
+    for (i = 0; i < lanes; i++) {
         double after = stone_energy(world, lane[i].a), gain;
         int k, touching = 0;
         if (lane[i].b.slot) after += stone_energy(world, lane[i].b);
@@ -141,15 +152,16 @@ static void stones_throw(stone_target target, int elastic, uint64_t seed, stone_
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("polyhedra on their like, a plane, tubes, a roof of triangles and a union: of all impacts none gains 1 in 1000 of its "
-         "energy, and elastic ones lose no more") {
+    TEST("polyhedra on their like, a plane, tubes, a roof of triangles, a union and sieves: of all impacts none gains 1 in "
+         "1000 of its energy, and elastic ones lose no more") {
         const int rounds = getenv("TEST_LONG") ? 160 : 1;
         stone_sum all = {0, 0, 0, 0};
         int target, round;
         for (target = 0; target < stone_targets && sizeof(dem_real) == 8; target++) {
             stone_sum sum = {0, 0, 0, 0};
             for (round = 0; round < rounds; round++)
-                stones_throw((stone_target)target, round%4 == 0, (uint64_t)(1000*target + round + 1), &sum);
+                stones_throw((stone_target)target, rounds == 1 && target >= on_weave ? 24 : stone_lanes, round%4 == 0,
+                             (uint64_t)(1000*target + round + 1), &sum);
             if (getenv("TEST_TABLES"))
                 printf("on %s: %d impacts, worst gain %.2g, worst elastic loss %.2g\n", stone_target_name[target], sum.hits, sum.worst,
                        sum.elastic);
