@@ -1478,8 +1478,9 @@ DEM_API dem_wall dem_grains_wall_add(dem_world *world, dem_material material, in
                                      dem_real radius, dem_real share);
 
 /* A sieve: a plane with holes, whose rows go on without end, or as far as a disc reaches. What a
-   grain costs does not depend on how many holes there are. Spheres and clusters know every sieve,
-   polyhedra those without end of wires and bars, and plates (to springs: of some thickness). */
+   grain costs does not depend on how many holes there are; a polyhedron's cost on a plate goes with
+   the holes that it lies over. Spheres and clusters know every sieve, polyhedra those without end
+   of wires and bars, and plates (to springs: of some thickness). */
 typedef enum dem_sieve_kind {
     DEM_SIEVE_NONE = 0,
     DEM_SIEVE_WIRES,          /* square weave of round wires */
@@ -6238,7 +6239,18 @@ static uint32_t demi_body_append(dem_world *w, int material, dem_real radius, de
     return (uint32_t)slot;
 }
 /* Why a part of this kind does not know a wall; 0: it does. (>>polyhedra-sieves) */
-static const char *demi_wall_strange(const dem_world *w, const demi_wall *wall, int part);
+static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part);
+/* Of a body of this shape (null: a sphere), piece by piece, the kind of part that does not know a
+   wall; -1: all do. */
+static int demi_shape_strange(const dem_world *w, const demi_wall *wall, const demi_shape *shape) {
+    const int pieces = shape && shape->pieces ? shape->pieces : 1;
+    int i;
+    for (i = 0; i < pieces; i++) {
+        const demi_shape *one = shape && shape->pieces ? &w->shapes[shape->piece[i].shape] : shape;
+        if (demi_wall_why(w, wall, demi_shape_kind(one))) return demi_shape_kind(one);
+    }
+    return -1;
+}
 /* number: the wall's. body: its slot, -1: it is yet to come. part: what it is. */
 static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall *wall, int number,
                                  int body, int part) {
@@ -6247,15 +6259,16 @@ static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall
     return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s a%s %s: %s; nothing was "
                      "added", call, number + 1, demi_wall_kinds[wall->kind].name, who,
                      demi_an(demi_shape_rows[part].name), demi_shape_rows[part].name,
-                     demi_wall_strange(w, wall, part));
+                     demi_wall_why(w, wall, part));
 }
 /* 1 with a sentence when some wall does not know bodies of a shape that are to be added. */
 static int demi_walls_strange(dem_world *w, const char *call, int shape) {
-    const int part = demi_shape_kind(&w->shapes[shape]);
     int j;
     for (j = 0; j < w->wall_count; j++) {
         const demi_wall *wall = &w->walls[j];
-        if (wall->kind == DEMI_WALL_NONE || !demi_wall_strange(w, wall, part)) continue;
+        const int part = wall->kind == DEMI_WALL_NONE ? -1
+            : demi_shape_strange(w, wall, &w->shapes[shape]);
+        if (part < 0) continue;
         demi_strangers(w, call, wall, j, -1, part);
         return 1;
     }
@@ -7976,16 +7989,16 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     id.id = 0;
     wall->pose = wall->mid = wall->first = wall->home;
     for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
-        const int part = demi_shape_kind(demi_shape_of(w, i));
-        if (!demi_wall_strange(w, wall, part)) continue;
+        const int part = demi_shape_strange(w, wall, demi_shape_of(w, i));
+        if (part < 0) continue;
         demi_strangers(w, call, wall, w->wall_count, (int)w->bodies.slot[i], part);
         demi_wall_free(w, wall);
         return id;
     }
     for (i = 0; i < w->feed_count*DEM_CLASSES; i++) {       /* and of those that are to come */
         const int shape = w->feeds[i/DEM_CLASSES].desc.shapes[i%DEM_CLASSES].id;
-        const int part = shape ? w->shapes[shape - 1].kind : DEMI_BALL;
-        if (!demi_wall_strange(w, wall, part)) continue;
+        const int part = demi_shape_strange(w, wall, shape ? &w->shapes[shape - 1] : 0);
+        if (part < 0) continue;
         demi_strangers(w, call, wall, w->wall_count, -1, part);
         demi_wall_free(w, wall);
         return id;
@@ -12596,7 +12609,7 @@ static void demi_pressure_beyond(const demi_solid *a, const double *n, demi_pres
 }
 /* Polygons of a plane are prisms; where two end at one height there is a volume in which both u are
    those of the ends, the same, and S may pass through it anywhere, so that neither force nor energy
-   is told. So one of the two is taken to be half as high again. */
+   is told. So one of the two is taken to be half as high again. Their centres are at z = 0. */
 static void demi_solid_stretch(demi_solid *s) {
     int i;
     for (i = 0; i < s->corners; i++) s->corner[i][2] *= 1.5;
@@ -14022,7 +14035,7 @@ typedef struct demi_gap_group {
     double x[DEMI_GAP_POINTS][3], n[DEMI_GAP_POINTS][3], gap[DEMI_GAP_POINTS];
 } demi_gap_group;
 typedef struct demi_gaps {
-    int count, flat;               /* flat: only what pushes along the frame's z, to 60 degrees */
+    int count, flat;               /* flat: what pushes within 60 degrees of z alone (of plates) */
     double range;
     demi_gap_group group[DEMI_FLATS];
 } demi_gaps;
@@ -14769,10 +14782,11 @@ static void demi_generator_gaps(const demi_solid *s, const demi_generator *l, de
         demi_generator_add(l, n, x0, s->corner[i], out, up, level, element, gaps);
     }
 }
-/* The point of a ring at an angle about the axis, and the body's point nearest to it, to; tell:
-   where neither piece that ends in the ring goes on towards the body. How far apart, m. */
+/* The point of a ring at an angle about the axis, and the body's point nearest to it, to. Where
+   tell is not null, it is told as that element where neither piece that ends in the ring goes on
+   towards the body. How far apart, m. */
 static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid *s,
-                              const double *x0, double angle, int tell, double *to,
+                              const double *x0, double angle, const int32_t *tell, double *to,
                               demi_gaps *gaps) {
     const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
     const double c = demi_cos(angle), sn = demi_sin(angle);
@@ -14792,15 +14806,15 @@ static double demi_ring_point(const demi_wall *wall, int ring, const demi_solid 
             n[2]*((double)wall->ring_height[other] - z);
         if (-along > 1e-9*r) return off;
     }
-    demi_gaps_add(gaps, wall->ring_count - 1 + ring, n, o, off);
+    demi_gaps_add(gaps, *tell, n, o, off);
     return off;
 }
 /* A ring of a surface of revolution, at the end of a piece: points all round as far as a body of
    this radius reaches, since a face may lie on it, and between those about one that is nearer, or
    deeper, than its neighbours the one that is most so (golden section). */
 enum { DEMI_RING_POINTS = 17 };
-static void demi_ring_gaps(const demi_wall *wall, int ring, const demi_solid *s, dem_vec3 x,
-                           double radius, demi_gaps *gaps) {
+static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, const demi_solid *s,
+                           dem_vec3 x, double radius, demi_gaps *gaps) {
     static const double golden = 0.6180339887498949;
     const double r = (double)wall->ring_radius[ring], reach = (radius + gaps->range)/r;
     const double x0[3] = {(double)x.x, (double)x.y, (double)x.z};
@@ -14812,7 +14826,8 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, const demi_solid *s,
     int i, turn;
     if (!(off*off + up*up < (radius + gaps->range)*(radius + gaps->range))) return;
     for (i = 0; i < DEMI_RING_POINTS; i++)
-        far[i] = demi_ring_point(wall, ring, s, x0, angle - half + i*step, 1, q, gaps);
+        far[i] = demi_ring_point(wall, ring, s, x0, angle - half + i*step, &element, q,
+                                 gaps);
     for (i = 0; i < DEMI_RING_POINTS; i++) {
         const int last = i + 1 == DEMI_RING_POINTS;
         double lo = angle - half + (i - 1)*step, hi = lo + 2*step, at[2], found[2];
@@ -14831,7 +14846,7 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, const demi_solid *s,
             at[less] = less ? lo + golden*(hi - lo) : hi - golden*(hi - lo);
             found[less] = demi_ring_point(wall, ring, s, x0, at[less], 0, q, gaps);
         }
-        demi_ring_point(wall, ring, s, x0, (lo + hi)/2, 1, q, gaps);
+        demi_ring_point(wall, ring, s, x0, (lo + hi)/2, &element, q, gaps);
     }
 }
 /* A cylinder, or a surface of revolution, piece by piece. */
@@ -14869,7 +14884,7 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
             if (range > 0) demi_generator_gaps(&s, &l, x, i, &gaps);
         }
         for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
-            demi_ring_gaps(wall, i, &s, x, (double)part->radius, &gaps);
+            demi_ring_gaps(wall, i, pieces + i, &s, x, (double)part->radius, &gaps);
         count += demi_wall_places(w, &flats, &gaps, wall->pose.rotation, wall->share, part, at,
                                   shift, *places + count);
     }
@@ -14885,7 +14900,7 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
    wire is a line with a radius; a corner of the body is told by the face, or wall of a hole, that
    it is over or nearest to, and the rims of holes by the points of the body that lie on them. Where
    wires cross, what they share counts twice. Reduced holes, sieves cut from a disc, and to springs
-   sheets without thickness, which have no inside, know no polyhedra: demi_wall_strange. Then the
+   sheets without thickness, which have no inside, know no polyhedra: demi_wall_why. Then the
    table of who touches what.
    --------------------------------------------------------------------------------------------- */
 
@@ -14911,6 +14926,8 @@ static int32_t demi_plate_hole(const demi_plate *p, double u, double v, double *
     double best = 1e300;
     int32_t number = 0;
     int k;
+    c[0] = u;
+    c[1] = v;
     for (k = 0; k < p->lattices; k++) {
         const double i = p->px > 0 ? floor(u/p->px - 0.5*k + 0.5) : 0;
         const double j = floor(v/p->py - 0.5*k + 0.5);
@@ -15132,8 +15149,8 @@ static void demi_plate_rims(const demi_plate *p, const demi_solid *s, const doub
             washer.ring_radius[k] = (dem_real)(k == 1 || k == 2 ? p->a : far);
             washer.ring_height[k] = (dem_real)(k < 2 ? p->half : -p->half);
         }
-        demi_ring_gaps(&washer, 1, s, from, reach, gaps);
-        if (p->half > 0) demi_ring_gaps(&washer, 2, s, from, reach, gaps);
+        demi_ring_gaps(&washer, 1, number + 1, s, from, reach, gaps);
+        if (p->half > 0) demi_ring_gaps(&washer, 2, number + 2, s, from, reach, gaps);
         return;
     }
     for (k = 1; k > (p->half > 0 ? -2 : 0); k -= 2)
@@ -15154,26 +15171,36 @@ static void demi_plate_rims(const demi_plate *p, const demi_solid *s, const doub
 
 /* --- both --- */
 
-/* A plate, about x, up to reach from there. A body that ends within `hair` of a face lies on
-   it: it does not catch at the rims of holes that it slides over. */
+/* A plate, about x, up to reach from there: the cells of holes that the body lies over. A body that
+   ends within `hair` of a face lies on it: it does not catch at the rims of holes that it slides
+   over. */
 static void demi_plate_touch(const dem_sieve_desc *sieve, const demi_solid *s, const double *x,
                              double reach, double hair, int springs, demi_flats *flats,
                              demi_gaps *gaps) {
     const demi_plate p = demi_plate_of(sieve);
-    const double up[3] = {0, 0, 1}, below[3] = {0, 0, -1};
-    const double high_end = x[2] + s->corner[demi_solid_far(s, up)][2];
-    const double low_end = x[2] + s->corner[demi_solid_far(s, below)][2];
-    const double wide = p.px > 0 ? reach + 0.6*p.px : 0, high = reach + 0.6*p.py;
-    double u, v, c[2];
-    int k;
-    gaps->flat = fabs(low_end - p.half) < hair || fabs(high_end + p.half) < hair;
+    const double cell[2] = {0.6*p.px, 0.6*p.py};        /* of one with six sides, too */
+    double lo[3], hi[3], u, v, c[2];
+    int i, k;
+    for (k = 0; k < 3; k++) {
+        lo[k] = hi[k] = 0;
+        for (i = 0; i < s->corners; i++) {
+            lo[k] = DEMI_MIN(lo[k], s->corner[i][k]);
+            hi[k] = DEMI_MAX(hi[k], s->corner[i][k]);
+        }
+        lo[k] += x[k] - gaps->range - (k < 2 ? cell[k] : 0);
+        hi[k] += x[k] + gaps->range + (k < 2 ? cell[k] : 0);
+    }
+    if (lo[2] > p.half || hi[2] < -p.half) return;
+    gaps->flat = fabs(lo[2] + gaps->range - p.half) < hair ||
+        fabs(hi[2] - gaps->range + p.half) < hair;
     if (gaps->range > 0) demi_plate_corners(&p, s, x, gaps);
     for (k = 0; k < p.lattices; k++) {
         const double du = p.px > 0 ? p.px : 1, shift_x = k*p.px/2, shift_y = k*p.py/2;
-        const double u0 = p.px > 0 ? (floor((x[0] - wide - shift_x)/du) + 1)*du + shift_x : x[0];
-        const double v0 = (floor((x[1] - high - shift_y)/p.py) + 1)*p.py + shift_y;
-        for (v = v0; v < x[1] + high; v += p.py)
-            for (u = u0; u < x[0] + wide + (p.px > 0 ? 0 : 0.5); u += du) {
+        const double u0 = p.px > 0 ? (floor((lo[0] - shift_x)/du) + 1)*du + shift_x : x[0];
+        const double u1 = p.px > 0 ? hi[0] : x[0] + 0.5;
+        const double v0 = (floor((lo[1] - shift_y)/p.py) + 1)*p.py + shift_y;
+        for (v = v0; v < hi[1]; v += p.py)
+            for (u = u0; u < u1; u += du) {
                 const int32_t number = demi_plate_hole(&p, u, v, c);
                 if (springs && p.round) demi_plate_press_round(&p, s, x, c, number, flats);
                 else if (springs) demi_plate_press(&p, s, x, c, number, flats);
@@ -15252,7 +15279,7 @@ static int demi_sieve_polyhedron(const dem_world *w, int d, int first, int last,
 #define DEMI_WALL_TOUCH(KIND, C, M, T, N, NEAR, TOUCH, BEND) DEMI_LIST TOUCH,
 static const demi_touch_fn demi_touches[][DEMI_SHAPE_KINDS] = {{0}, DEMI_WALLS(DEMI_WALL_TOUCH)};
 /* Why a part does not know a wall, and what to do; 0: it does. */
-static const char *demi_wall_strange(const dem_world *w, const demi_wall *wall, int part) {
+static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int part) {
     const dem_sieve_desc *s = &wall->sieve;
     const int plate = s->kind != DEM_SIEVE_WIRES && s->kind != DEM_SIEVE_BARS;
     if (!demi_touches[wall->kind][part])
@@ -15530,6 +15557,23 @@ DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, i
             old[i].b == b && old[i].part_b == part_b && old[i].corner == corner)
             return (int)(old - demi_kept_of(w, d)) + i;
     return -1;
+}
+/* The same for a polyhedron's contact with a wall by springs: round walls, wires and holes are one
+   element on all sides of the body, so of several the one of the nearest normal, within 45
+   degrees. */
+static int demi_kept_turned(const dem_world *w, int d, const demi_kept *old, int olds,
+                            const demi_kept *c) {
+    dem_real nearest = DEM_R(0.7);
+    int i, best = -1;
+    for (i = 0; i < olds; i++) {
+        const dem_real along = demi_dot(old[i].normal, c->normal);
+        if (old[i].element != c->element || old[i].wall != c->wall || old[i].b >= 0 ||
+            old[i].part_a != c->part_a || old[i].corner != c->corner || !(along > nearest))
+            continue;
+        nearest = along;
+        best = (int)(old - demi_kept_of(w, d)) + i;
+    }
+    return best;
 }
 /* How well an old contact fits a new one: by their normals; where those are nearly the same (within
    some 3 degrees), rather one that nothing continues yet; then the same wall, and the same sign of
@@ -16028,9 +16072,10 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         c->r_eff = (dem_real)demi_wall_r_eff(wall, (double)c->r_eff);
     }
     for (i = 0, c = fresh; i < count; i++, c++)
-        c->from = shaped && c->corners && demi_impulsive(w)
-            ? demi_kept_nearest(w, d, old, olds, fresh, c)
-            : demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element, c->corner);
+        c->from = !shaped || !c->corners
+            ? demi_kept_same(w, d, old, olds, -1, k, 0, id, c->element, c->corner)
+            : demi_impulsive(w) ? demi_kept_nearest(w, d, old, olds, fresh, c)
+            : demi_kept_turned(w, d, old, olds, c);
     for (i = 0, c = fresh; i < count; i++, c++) {
         if (c->from < 0 && olds) c->from = demi_kept_slid(w, d, old, olds, fresh, count, c);
         if (c->deep > DEM_R(0.1) && olds) demi_kept_through(old, olds, fresh, count, c);

@@ -293,6 +293,34 @@ int main(int argc, char **argv) {
             }
     }
 
+    TEST("sieve rocks: a square prism that is jammed between the walls of a round hole, or of a tube, keeps the springs of "
+         "friction at each of its edges: a twist springs back") {
+        int tube;
+        for (tube = 0; tube < 2; tube++) {
+            const double half = 0.005*sqrt(0.5)*1.01;
+            dem_sieve_desc s = sieve_of(ROUND, 0.01, 0.004);
+            dem_material m;
+            dem_world *w = world_of(0, 0, 1e7, 0.3, 0.5, fine ? 5e-6 : 1e-5, 1, &m);
+            dem_body prism;
+            double most = 0, twist = 0;
+            int i;
+            s.thickness = DEM_R(0.01);
+            if (tube) dem_cylinder_add(w, m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.005), 1);
+            else dem_sieve_add(w, m, &s);
+            prism = dem_body_add(w, m, scene_box(w, 2*half, 2*half, 0.008), at(0, 0, 0), straight);
+            scene_move(w, prism, at(0, 0, 0), at(0, 0, 0.3));
+            for (i = 0; i < 400; i++) {
+                CHECK_EQ(scene_step(w, 10), DEM_OK);
+                twist = 2*(double)scene_state(w, prism).orientation.z;
+                most = fmax(most, fabs(twist));
+            }
+            CHECK(most > 1e-5);
+            CHECK(fabs(twist) < 0.9*most);
+            if (getenv("SIEVE_NUMBERS")) printf("twist: %g of %g rad\n", twist, most);
+            dem_world_destroy(w);
+        }
+    }
+
     TEST("sieve rocks: on a sieve that shakes the same bits come for any number of threads, and after a restart") {
         int impulses, sort;
         for (impulses = 0; impulses < 2; impulses++)
@@ -313,9 +341,28 @@ int main(int argc, char **argv) {
             }
     }
 
-    TEST("sieve rocks: reduced holes, a disc, and to springs a sheet, are refused by name; to impulses a sheet is a sieve") {
+    TEST("sieve rocks: reduced holes, a disc, unions with an ellipsoid, and to springs a sheet, are refused by name; to impulses "
+         "a sheet is a sieve") {
         static const char *const says[3] = {"reduced holes are for spheres", "cut from a disc", "give the sieve a thickness"};
         int k, order;
+        for (order = 0; order < 4; order++) {   /* a union is what its pieces are, whichever comes first */
+            dem_material m;
+            dem_world *w = world_of(0, 0, 1e7, 0.5, 0, 1e-5, 1, &m);
+            const dem_sieve_desc s = sieve_of(SQUARE, 0.01, 0.004);
+            const dem_shape box = scene_box(w, 0.02, 0.02, 0.02), egg = dem_shape_ellipsoid_add(w, at(0.01, 0.02, 0.01));
+            const dem_real x[6] = {0, 0, 0, DEM_R(0.01), 0, 0};
+            dem_shape two[2], both;
+            two[order & 1] = box;
+            two[!(order & 1)] = egg;
+            both = dem_shape_union_add(w, 2, two, x, 0);
+            CHECK(both.id);
+            if (order & 2) CHECK(dem_sieve_add(w, m, &s).id);
+            CHECK_EQ(dem_body_add(w, m, both, at(0, 0, 0.03), straight).slot > 0, !(order & 2));
+            if (!(order & 2)) CHECK_EQ(dem_sieve_add(w, m, &s).id, 0);
+            CHECK_STR(dem_world_error(w), "an ellipsoid: the two do not know each other");
+            CHECK_EQ(scene_step(w, 2), DEM_OK);
+            dem_world_destroy(w);
+        }
         for (k = 0; k < 4; k++)
             for (order = 0; order < 2; order++) {
                 dem_sieve_desc s = sieve_of(SQUARE, 0.01, 0.004);
