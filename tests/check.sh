@@ -5,14 +5,14 @@
 JOBS=${JOBS:-1}
 dir=build/check
 rm -rf $dir; mkdir -p $dir build/tmp
-number=1000; skipped=0
+number=1000; skipped=0; turn=2                 # turn 1: the long ones, which begin first
 
 found() { command -v "$1" >/dev/null 2>&1; }
 skip() { echo "SKIP: $1"; skipped=$((skipped + 1)); }
 # try NAME COMMAND...: one case. All run together below, JOBS at a time; $bin is the case's own program.
 try() {
     number=$((number + 1)); name=$1; shift
-    printf '# %s\nbin=%s/%s.bin\n%s\n' "$name" $dir $number "$*" > $dir/$number.sh
+    printf '# %s\nbin=%s/%s.bin\n%s\n' "$name" $dir $turn$number "$*" > $dir/$turn$number.sh
 }
 
 try "a lesson has less than 120 lines, of at most 120 columns" "awk 'length > 120 || FNR > 119 { print FILENAME \": \" FNR; bad = 1 } END { exit bad }' examples/[0-9][0-9]_*.c"
@@ -115,10 +115,11 @@ together=$(for source in tests/test_*.c tests/hard/hard_*.c; do
 # tests NAME COMPILER: one case for the program of many, one per test that is a program by itself. Each runs in a
 # folder of its own: cases run side by side, and tests write files.
 tests() {
-    group=$1; shift
+    group=$1; turn=1; shift
     try "$group: tests" "mkdir -p \$bin/build/tmp && awk -f tests/together.awk $(echo $together)" \
         "> \$bin/tests.c && $* -I. \$bin/tests.c -o \$bin/tests -lm && top=\$PWD && cd \$bin &&" \
         "sh \$top/tests/run.sh '' $(for t in $together; do printf './tests@%s ' "$(basename "$t" .c)"; done)"
+    turn=2
     for test in $alone; do
         try "$group: $test" "mkdir -p \$bin/build/tmp && $* -I. tests/$test.c -o \$bin/$test -lm &&" \
             "top=\$PWD && cd \$bin && sh \$top/tests/run.sh '' ./$test"
