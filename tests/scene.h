@@ -110,6 +110,23 @@ static inline demi_part scene_part(const dem_world *world, dem_shape shape, dem_
     p.q = q;
     return p;
 }
+/* The distance of points all over a polyhedron's faces from what `off` measures, least of all, m. */
+static inline double scene_sampled(const demi_solid *s, double (*off)(const double *x)) {
+    const int32_t *loops = s->rim + s->faces + 1;
+    double least = 1e300;
+    int f, i, j, k, e;
+    for (f = 0; f < s->faces; f++)
+        for (e = s->rim[f] + 1; e + 1 < s->rim[f + 1]; e++)
+            for (i = 0; i <= 60; i++)
+                for (j = 0; j <= 60 - i; j++) {
+                    double x[3];
+                    for (k = 0; k < 3; k++)
+                        x[k] = (s->corner[loops[s->rim[f]]][k]*i + s->corner[loops[e]][k]*j +
+                                s->corner[loops[e + 1]][k]*(60 - i - j))/60;
+                    least = fmin(least, off(x));
+                }
+    return least;
+}
 #endif
 /* Steps and says why when that fails. */
 static inline dem_result scene_step(dem_world *world, int steps) {

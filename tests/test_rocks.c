@@ -28,23 +28,6 @@ static dem_world *rigid_to(double tolerance, double gravity, double restitution,
 static dem_world *rigid(double gravity, double restitution, double friction, dem_material *m) {
     return rigid_to(1e-10, gravity, restitution, friction, m);
 }
-/* The distance of points all over a polyhedron's faces from what `off` measures, least of all, m. */
-static double sampled(const demi_solid *s, double (*off)(const double *x)) {
-    const int32_t *loops = s->rim + s->faces + 1;
-    double least = 1e300;
-    int f, i, j, k, e;
-    for (f = 0; f < s->faces; f++)
-        for (e = s->rim[f] + 1; e + 1 < s->rim[f + 1]; e++)
-            for (i = 0; i <= 60; i++)
-                for (j = 0; j <= 60 - i; j++) {
-                    double x[3];
-                    for (k = 0; k < 3; k++)
-                        x[k] = (s->corner[loops[s->rim[f]]][k]*i + s->corner[loops[e]][k]*j +
-                                s->corner[loops[e + 1]][k]*(60 - i - j))/60;
-                    least = fmin(least, off(x));
-                }
-    return least;
-}
 static double tube_radius;                      /* m, of the tube about z that `off` means; < 0: seen from inside */
 static double off_tube(const double *x) {
     const double r = sqrt(x[0]*x[0] + x[1]*x[1]);
@@ -213,7 +196,7 @@ int main(int argc, char **argv) {
             gaps.range = 1;
             demi_generator_gaps(&s, &l, x, 0, &gaps);
             gap = least_gap(&gaps, &points);
-            wanted = sampled(&placed, kind == 2 ? off_cone : off_tube);
+            wanted = scene_sampled(&placed, kind == 2 ? off_cone : off_tube);
             CHECK(points > 0);
             CHECK(gap < wanted + 1e-12);        /* samples lie on the faces, and may miss the nearest point */
             CHECK(gap > wanted - (kind == 1 ? 1e-12 : 3e-5));
