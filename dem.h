@@ -2601,7 +2601,8 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY, DEMI_SOME = 16, DEMI_DOMAINS = 256,
       DEMI_LANES = 64/(int)sizeof(dem_real),    /* pairs computed together: widest vectors */
-      DEMI_TILE = 4*DEMI_LANES };               /* pairs under work at a time */
+      DEMI_TILE = 4*DEMI_LANES,                 /* pairs under work at a time */
+      DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
 
 /* Coefficients of one contact, resolved: what the built-in laws need. */
 enum { DEMI_KN, DEMI_CN, DEMI_KT, DEMI_CT, DEMI_MU, DEMI_MU_STATIC, DEMI_MU_ROLL, DEMI_R_EFF,
@@ -2621,6 +2622,13 @@ typedef struct demi_list {
     unsigned char *image;          /* where in image_shift that stands which leads from a to b */
 } demi_list;
 
+/* Of two bodies that are near, which spheres of theirs are: part a[k] of one, b[k] of the other, in
+   the order of contacts. */
+typedef struct demi_near_balls {
+    uint8_t count;                 /* DEMI_BALLS_UNKNOWN: not looked at since the list was made;
+                                      DEMI_BALLS_ALL: no room for them */
+    uint8_t a[DEMI_NEAR_BALLS], b[DEMI_NEAR_BALLS];
+} demi_near_balls;
 /* Near pairs of all domains: those candidates that touch or might before long. Domain d owns
    entries d*stride .. as above: pairs inside it, then, from a multiple of DEMI_LANES on, those that
    lead out. Numbers of a pair stand in columns: value e of the domain's entry p at
@@ -2629,6 +2637,7 @@ typedef struct demi_near {
     int stride;                    /* capacity per domain, a multiple of DEMI_LANES */
     int32_t *a, *b, *k;            /* bodies, and their entry in the list of candidates */
     unsigned char *image;
+    demi_near_balls *balls;        /* null where no body has a shape */
     dem_real *memory;              /* w->memory_stride columns; zeros while a pair does not touch */
     int32_t *row;                  /* of species_coef; null where bodies are all alike, or of more
                                       species than have a table: */
@@ -9497,6 +9506,7 @@ static int demi_near_reserve(dem_world *w, demi_near *near, int domains, int str
                    DEMI_GROW(w, near->b, n) &&
                    DEMI_GROW(w, near->k, n) &&
                    DEMI_GROW(w, near->image, n) &&
+                   DEMI_GROW(w, near->balls, w->bodies.shaped ? n : 0) &&
                    DEMI_GROW(w, near->memory, m) &&
                    (w->effects.uniform || (demi_many_species(w)
                        ? DEMI_GROW(w, near->coef, n*DEMI_PAIR_COLUMNS)
@@ -9855,26 +9865,33 @@ static int demi_near_pick(dem_world *w, const demi_list *list, int begin, int en
     return w->bodies.shaped ? demi_near_pick_as(w, list, begin, end, d, p, 1)
         : demi_near_pick_as(w, list, begin, end, d, p, 0);
 }
-/* The same for pairs that are not of two spheres: by the distance of their surfaces, and with what
-   their spins may bring. */
+/* m/s, at most, with what their spins bring: how fast surfaces of two bodies approach. */
+static dem_real demi_approach(const dem_world *w, int a, int b) {
+    const demi_shape *fa = demi_shape_of(w, a), *fb = demi_shape_of(w, b);
+    dem_real speed = demi_length(demi_sub(demi_at(w->bodies.vel + 4*b),
+                                          demi_at(w->bodies.vel + 4*a)));
+    if (fa) speed += demi_length(demi_at(w->bodies.spin + 4*a))*fa->moment_arm*
+                     demi_scale_of(w, a, fa);
+    if (fb) speed += demi_length(demi_at(w->bodies.spin + 4*b))*fb->moment_arm*
+                     demi_scale_of(w, b, fb);
+    return speed;
+}
+/* How near two bodies' surfaces, or parts of them, are that may touch while the list lasts, m. */
+static dem_real demi_near_cut(const dem_world *w, int a, int b) {
+    return (dem_real)(w->margin.reach + w->margin.slack) +
+        (dem_real)w->margin.span*demi_approach(w, a, b);
+}
+/* The same for pairs that are not of two spheres: by the distance of their surfaces. */
 static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p) {
-    const dem_real margin = (dem_real)(w->margin.reach + w->margin.slack);
-    const dem_real span = (dem_real)w->margin.span;
     const int room = w->near.stride - DEMI_LANES;
     int32_t *out = w->near.k + d*w->near.stride;
     int k;
     for (k = begin; k < end && p < room; k++) {
         const int a = list->a[k], b = list->b[k];
-        const demi_shape *fa = demi_shape_of(w, a), *fb = demi_shape_of(w, b);
-        dem_real speed, cut;
-        if (!fa && !fb) continue;
-        speed = demi_length(demi_sub(demi_at(w->bodies.vel + 4*b), demi_at(w->bodies.vel + 4*a)));
-        if (fa) speed += demi_length(demi_at(w->bodies.spin + 4*a))*fa->moment_arm*
-                         demi_scale_of(w, a, fa);
-        if (fb) speed += demi_length(demi_at(w->bodies.spin + 4*b))*fb->moment_arm*
-                         demi_scale_of(w, b, fb);
-        cut = margin + span*speed;
+        dem_real cut;
+        if (!demi_shape_of(w, a) && !demi_shape_of(w, b)) continue;
+        cut = demi_near_cut(w, a, b);
         out[p] = k;
         p += demi_bodies_gap(w, a, b, w->image_shift + list->image[k], cut) < cut;
     }
@@ -9927,6 +9944,8 @@ static void demi_near_adopt(dem_world *w, int d) {
             demi_near_coefs_copy(w, near, d, p, near, end - 1);
         }
     }
+    for (p = domain->near_shaped; p < domain->near_shaped_end; p++)
+        near->balls[d*near->stride + p].count = DEMI_BALLS_UNKNOWN;
     for (l = 0; l < 2; l++) {
         demi_list *list = l ? &w->cross : &w->own;
         const int count = l ? domain->cross : domain->own;
@@ -13092,19 +13111,30 @@ static int demi_solids_apart(const demi_solid *a, const demi_solid *b, double ti
 enum { DEMI_POLYTOPE = 120 };
 typedef struct demi_polytope {
     int corners, faces;
+    double size;                   /* m, of both bodies: round-off of corners goes by it */
     demi_lead at[DEMI_POLYTOPE];
-    struct { double n[3], at; int corner[3]; } face[2*DEMI_POLYTOPE];  /* n unit, outward; n.x */
+    struct {
+        double n[3], at;           /* n unit, outward; n.x */
+        double blur;               /* error of n, rad: large where the face is thin or small */
+        int corner[3];
+    } face[2*DEMI_POLYTOPE];
 } demi_polytope;
 /* A face; one without an area is never the nearest, and seen from nowhere. */
 static void demi_polytope_face(demi_polytope *p, int i, int a, int b, int c) {
-    double e[3], f[3], *n = p->face[i].n;
+    double e[3], f[3], g[3], *n = p->face[i].n, sides, area;
     demi_sub3(p->at[b].x, p->at[a].x, e);
     demi_sub3(p->at[c].x, p->at[a].x, f);
     demi_cross3(e, f, n);
     p->face[i].corner[0] = a; p->face[i].corner[1] = b; p->face[i].corner[2] = c;
-    if (demi_unit3(n) > 1e-15*sqrt(demi_dot3(e, e)*demi_dot3(f, f)))
+    p->face[i].blur = 0;
+    sides = demi_dot3(e, e)*demi_dot3(f, f);
+    area = demi_unit3(n);
+    if (area > 1e-15*sqrt(sides)) {
+        demi_sub3(f, e, g);
+        sides = DEMI_MAX(demi_dot3(e, e), DEMI_MAX(demi_dot3(f, f), demi_dot3(g, g)));
         p->face[i].at = demi_dot3(n, p->at[a].x);
-    else {
+        p->face[i].blur = 1e-15*p->size*sqrt(sides)/area;       /* over the least height */
+    } else {
         n[0] = n[1] = n[2] = 0;
         p->face[i].at = 1e300;
     }
@@ -13128,6 +13158,7 @@ static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const d
     static const int sides[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}};
     int i, k;
     p->corners = s->count;
+    p->size = size;
     for (i = 0; i < s->count; i++) p->at[i] = s->at[i];
     if (p->corners == 4) {                      /* it may be flat */
         p->corners = 3;
@@ -13163,12 +13194,23 @@ static int demi_polytope_begin(const demi_solid *a, const demi_solid *b, const d
     p->faces = 4;
     return 1;
 }
-/* Takes a corner in: faces that see it give way to those that join it to their rim. 0: no room. */
-static int demi_polytope_take(demi_polytope *p, const demi_lead *w, double tol) {
+/* m: how far a corner is over the plane of face i beyond what round-off may put it there. Of faces
+   that are coplanar with it some would see it otherwise and some not, and what joins it to their
+   rim would be folded. most: of that, m. */
+static double demi_polytope_over(const demi_polytope *p, int i, const demi_lead *w, double most) {
+    double d[3];
+    demi_sub3(w->x, p->at[p->face[i].corner[0]].x, d);
+    return demi_dot3(p->face[i].n, d) - DEMI_MIN(p->face[i].blur*sqrt(demi_dot3(d, d)), most);
+}
+/* Takes a corner in: faces that see it, the nearest at least, give way to those that join it to
+   their rim. 0: no room. */
+static int demi_polytope_take(demi_polytope *p, int nearest, const demi_lead *w) {
     int rim[2*DEMI_POLYTOPE][2], count = 0, left = 0, i, k, e;
+    unsigned char seen[2*DEMI_POLYTOPE];
     if (p->corners == DEMI_POLYTOPE) return 0;
     for (i = 0; i < p->faces; i++) {
-        if (!(demi_dot3(p->face[i].n, w->x) - p->face[i].at > tol)) { left++; continue; }
+        seen[i] = i == nearest || demi_polytope_over(p, i, w, 1e300) > 1e-14*p->size;
+        if (!seen[i]) { left++; continue; }
         for (k = 0; k < 3; k++) {               /* sides that two of them have go */
             const int from = p->face[i].corner[k], to = p->face[i].corner[(k + 1)%3];
             for (e = 0; e < count && !(rim[e][0] == to && rim[e][1] == from); e++) continue;
@@ -13178,7 +13220,7 @@ static int demi_polytope_take(demi_polytope *p, const demi_lead *w, double tol) 
     }
     if (!count || left + count > 2*DEMI_POLYTOPE) return 0;
     for (i = 0, left = 0; i < p->faces; i++)
-        if (!(demi_dot3(p->face[i].n, w->x) - p->face[i].at > tol)) p->face[left++] = p->face[i];
+        if (!seen[i]) p->face[left++] = p->face[i];
     p->at[p->corners] = *w;
     for (e = 0; e < count; e++) demi_polytope_face(p, left + e, rim[e][0], rim[e][1], p->corners);
     p->corners++;
@@ -13186,29 +13228,32 @@ static int demi_polytope_take(demi_polytope *p, const demi_lead *w, double tol) 
     return 1;
 }
 /* The least way that parts two that overlap: n, from a to b. What ends it early (rounding, no room)
-   leaves a direction that parts them, too, but perhaps not by the least way. */
+   leaves the least one seen, which parts them, too. */
 static void demi_solids_part(const demi_solid *a, const demi_solid *b, double size, double *n,
                              demi_simplex *s) {
     demi_polytope p;
     demi_lead w;
-    int i, k, best = 0;
+    double least = 1e300;
+    int i, k, best;
     if (!demi_polytope_begin(a, b, s, size, &p)) {
         if (!(demi_dot3(n, n) > 0)) n[2] = 1;
         demi_unit3(n);
         return;
     }
-    for (;;) {
+    do {
+        double way;
         for (i = 1, best = 0; i < p.faces; i++)
             if (p.face[i].at < p.face[best].at) best = i;
         demi_lead_along(a, b, p.face[best].n, &w);
-        if (!(demi_dot3(p.face[best].n, w.x) - p.face[best].at > 1e-13*size) ||
-            demi_lead_known(p.at, p.corners, &w) || !demi_polytope_take(&p, &w, 1e-14*size)) break;
-    }
+        way = demi_dot3(p.face[best].n, w.x);
+        for (k = 0; k < 3 && way < least; k++) {
+            s->at[k] = p.at[p.face[best].corner[k]];
+            n[k] = -p.face[best].n[k];
+        }
+        least = DEMI_MIN(least, way);
+    } while (demi_polytope_over(&p, best, &w, 1e-9*size) > 1e-13*size &&
+             !demi_lead_known(p.at, p.corners, &w) && demi_polytope_take(&p, best, &w));
     s->count = 3;
-    for (k = 0; k < 3; k++) {
-        s->at[k] = p.at[p.face[best].corner[k]];
-        n[k] = -p.face[best].n[k];
-    }
     demi_near_triangle(s->at[0].x, s->at[1].x, s->at[2].x, s->part);
 }
 /* Width of the slab across n that keeps them apart, m; < 0: by how much none does. */
@@ -15892,40 +15937,66 @@ DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, dem_real 
     lone[3] = w->bodies.pos[4*body + 3];
     return lone;
 }
-/* All contacts of one near pair. r: from a's centre to b's; old: those body a had in the step
-   before. Spheres are compared by their rows, and no more: most do not touch. 0: no room. */
-static int demi_kept_balls(dem_world *w, int d, int a, int b, int send, dem_vec3 r,
-                           const dem_real *x, int na, const dem_real *y, int nb,
-                           const demi_kept *old, int olds) {
-    enum { MOST = 64 };
-    const dem_real reach = (dem_real)w->margin.reach;
-    const dem_real far_a = w->bodies.pos[4*a + 3] + reach, far_b = w->bodies.pos[4*b + 3] + reach;
-    const int listed = nb > 1 && nb <= MOST;
-    unsigned char some[MOST];
-    int i, j, k, count = nb;
-    if (listed)                                 /* those of b that come near a */
-        for (j = 0, count = 0; j < nb; j++) {
-            const dem_vec3 to = demi_add(r, demi_at(y + 4*j));
-            const dem_real all = far_a + y[4*j + 3];
-            some[count] = (unsigned char)j;
-            count += demi_dot(to, to) < all*all;
+/* Two spheres of near bodies, from their rows; to: from that of a to b's centre. Most do not touch.
+   0: no room. */
+DEM_INLINE int demi_kept_two(dem_world *w, int d, int a, int b, int send, int i, int j,
+                             const dem_real *one, const dem_real *other, dem_vec3 to,
+                             const demi_kept *old, int olds) {
+    const dem_vec3 gap = demi_add(to, demi_at(other));
+    const dem_real radii = one[3] + other[3];
+    const dem_real near_by = w->margin.reach > 0 ? radii + demi_range(w, radii) : radii;
+    demi_kept *c;
+    if (!(demi_dot(gap, gap) < near_by*near_by)) return 1;
+    c = demi_kept_begin(w, d, a, b, send, i, j, old, olds);
+    if (!c) return 0;
+    if (!demi_balls_meet(w, demi_at(one), one[3], demi_at(other), other[3], gap, c))
+        w->domains[d].kept_next--;
+    return 1;
+}
+/* Which spheres of two bodies may touch while the near list lasts; it may be asked in any step of
+   its life: bounds that hold from then on outlast it. */
+static void demi_balls_near(const dem_world *w, int a, int b, dem_vec3 r, const dem_real *x, int na,
+                            const dem_real *y, int nb, demi_near_balls *out) {
+    const dem_real cut = demi_near_cut(w, a, b), far_b = w->bodies.pos[4*b + 3] + cut;
+    int i, j;
+    out->count = na > 256 || nb > 256 ? DEMI_BALLS_ALL : 0;
+    for (i = 0; i < na && out->count != DEMI_BALLS_ALL; i++) {
+        const dem_vec3 to = demi_sub(r, demi_at(x + 4*i));
+        const dem_real all = x[4*i + 3] + far_b;
+        if (na > 1 && !(demi_dot(to, to) < all*all)) continue;
+        for (j = 0; j < nb; j++) {
+            const dem_vec3 gap = demi_add(to, demi_at(y + 4*j));
+            const dem_real near_by = x[4*i + 3] + y[4*j + 3] + cut;
+            if (!(demi_dot(gap, gap) < near_by*near_by)) continue;
+            if (out->count == DEMI_NEAR_BALLS) { out->count = DEMI_BALLS_ALL; break; }
+            out->a[out->count] = (uint8_t)i;
+            out->b[out->count++] = (uint8_t)j;
         }
+    }
+}
+/* All contacts of one near pair. r: from a's centre to b's; old: those body a had in the step
+   before. 0: no room. */
+static int demi_kept_balls(dem_world *w, int d, int at, int send, dem_vec3 r, const dem_real *x,
+                           int na, const dem_real *y, int nb, const demi_kept *old, int olds) {
+    const int a = w->near.a[at], b = w->near.b[at];
+    const dem_real far_b = w->bodies.pos[4*b + 3] + (dem_real)w->margin.reach;
+    demi_near_balls *some = w->near.balls + at;
+    int i, j, k;
+    if (some->count == DEMI_BALLS_UNKNOWN) demi_balls_near(w, a, b, r, x, na, y, nb, some);
+    if (some->count != DEMI_BALLS_ALL) {
+        for (k = 0; k < some->count; k++) {
+            const dem_real *one = x + 4*(i = some->a[k]), *other = y + 4*(j = some->b[k]);
+            if (!demi_kept_two(w, d, a, b, send, i, j, one, other, demi_sub(r, demi_at(one)), old,
+                               olds)) return 0;
+        }
+        return 1;
+    }
     for (i = 0; i < na; i++) {
         const dem_vec3 to = demi_sub(r, demi_at(x + 4*i));
         const dem_real all = x[4*i + 3] + far_b;
         if (na > 1 && !(demi_dot(to, to) < all*all)) continue;
-        for (k = 0; k < count; k++) {
-            const dem_real *one = y + 4*(j = listed ? some[k] : k);
-            const dem_vec3 gap = demi_add(to, demi_at(one));
-            const dem_real radii = x[4*i + 3] + one[3];
-            const dem_real near_by = reach > 0 ? radii + demi_range(w, radii) : radii;
-            demi_kept *c;
-            if (!(demi_dot(gap, gap) < near_by*near_by)) continue;
-            c = demi_kept_begin(w, d, a, b, send, i, j, old, olds);
-            if (!c) return 0;
-            if (!demi_balls_meet(w, demi_at(x + 4*i), x[4*i + 3], demi_at(one), one[3], gap, c))
-                w->domains[d].kept_next--;
-        }
+        for (j = 0; j < nb; j++)
+            if (!demi_kept_two(w, d, a, b, send, i, j, x + 4*i, y + 4*j, to, old, olds)) return 0;
     }
     return 1;
 }
@@ -15963,7 +16034,7 @@ static DEMI_APART void demi_kept_pair(dem_world *w, int d, int at, int send,
     if (!(demi_dot(r, r) < far*far)) return;
     x = demi_balls_of(w, a, lone[0], &na);
     y = demi_balls_of(w, b, lone[1], &nb);
-    if (!(x && y ? demi_kept_balls(w, d, a, b, send, r, x, na, y, nb, old, olds)
+    if (!(x && y ? demi_kept_balls(w, d, at, send, r, x, na, y, nb, old, olds)
           : demi_kept_any(w, d, a, b, send, r, old, olds))) return;
     count = w->domains[d].kept_next - first;
     if (!count) return;

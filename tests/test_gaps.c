@@ -77,5 +77,50 @@ int main(int argc, char **argv) {
         CHECK(worst < 1e-6);
     }
 
+    TEST("a gap does not hang on which of two comes first, nor on how both are turned: faces and edges parallel, corners just "
+         "in each other") {
+        const long pairs = getenv("PAIRS") ? atol(getenv("PAIRS")) : 400;
+        static convex_solid a, b;
+        static demi_solid p[2], q[2];
+        uint64_t state = 55;
+        double worst = 0;
+        long k, touching = 0;
+        for (k = 0; k < pairs; k++) {
+            const double small = 1/convex_power(&state, 1, 100);
+            convex_spot one, two;
+            convex_body body;
+            double way[3], size = 0, gap[4];
+            uint64_t same;
+            int i;
+            convex_shape(&a, &state, 1);
+            convex_shape(&b, &state, small);
+            for (i = 0; i < 3; i++) way[i] = 1e-5*(2*convex_random(&state) - 1);
+            one = convex_spot_of(&a, &state, CONVEX_CORNER);
+            two = convex_spot_of(&b, &state, CONVEX_CORNER);
+            convex_move(&b, one.at[0] - two.at[0] + way[0], one.at[1] - two.at[1] + way[1], one.at[2] - two.at[2] + way[2]);
+            for (i = 0; i < 2; i++) {
+                solid_from(&a, &p[i]);
+                solid_from(&b, &q[i]);
+                same = state;
+                convex_turn(&a, &same);
+                convex_turn(&b, &state);        /* by the same numbers */
+            }
+            body = convex_view(&a);
+            size += convex_radius(&body);
+            body = convex_view(&b);
+            size += convex_radius(&body);
+            for (i = 0; i < 4; i++) {
+                double n[3] = {0, 0, 0};
+                demi_simplex tells;
+                gap[i] = i & 1 ? demi_solids_gap(&q[i/2], &p[i/2], n, &tells) : demi_solids_gap(&p[i/2], &q[i/2], n, &tells);
+                worst = fmax(worst, fabs(gap[i] - gap[0])/size);
+            }
+            touching += gap[0] < 0;
+        }
+        if (getenv("GAPS_NUMBERS")) printf("%ld pairs, %ld touching: worst %.3g of the pair's size\n", pairs, touching, worst);
+        CHECK(touching > pairs/2);
+        CHECK(worst < 1e-9);
+    }
+
     return test_end();
 }
