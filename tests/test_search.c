@@ -453,6 +453,67 @@ int main(int argc, char **argv) {
             CHECK_EQ(hash[0], hash[1]);
         }
     }
+    TEST("clusters that tumble: which of their spheres are near is told in time, made in every step or when it is due; of "
+         "few spheres, of more than a pair has room for, and spheres alone") {
+        uint64_t hash[2], makes[2] = {0, 0};
+        int late, k, i, d, few_near = 0, many_near = 0, contacts = 0;
+        for (late = 0; late < 2; late++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_cluster_desc c = DEM_CLUSTER_DESC;
+            dem_real few[24], many[270];
+            dem_shape shapes[3] = {{0}, {0}, {0}};
+            dem_world *world;
+            dem_material stuff;
+            uint64_t seed = 11;
+            desc.dt = DEM_R(2e-6);
+            desc.skin = DEM_R(3e-4);
+            for (k = 0; k < 3; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
+            desc.domain = dem_box_make(0, 0, 0, DEM_R(0.016), DEM_R(0.016), DEM_R(0.016));
+            world = dem_world_create(&desc);
+            stuff = scene_material(world, 1e7, 0.9, 0.3, 0);
+            for (i = 0; i < 24; i++) few[i] = i/3 >> i%3 & 1 ? DEM_R(4.5e-4) : DEM_R(-4.5e-4);
+            for (i = 0; i < 270; i++) many[i] = (dem_real)(8e-4*scene_random(&seed) - 4e-4);
+            c.mass = DEM_CLUSTER_SUM;
+            c.radius = DEM_R(5e-4);
+            c.count = 8;
+            c.positions = few;
+            shapes[1] = dem_shape_cluster_add(world, &c);
+            c.count = 90;
+            c.positions = many;
+            shapes[2] = dem_shape_cluster_add(world, &c);
+            for (i = 0; i < 216; i++) {
+                const dem_vec3 place = demi_scale(at(i%6, i/6%6, i/36), DEM_R(2.6e-3));
+                const dem_body b = i%3 ? dem_body_add(world, stuff, shapes[i%3], place, scene_turn(&seed))
+                    : dem_sphere_add(world, stuff, DEM_R(1e-3), place);
+                const dem_vec3 v = scene_at(&seed, 2, -1, 2, -1, 2, -1), spin = scene_at(&seed, 2, -1, 2, -1, 2, -1);
+                scene_move(world, b, v, demi_scale(spin, 2000));
+            }
+            for (k = 0; k < 600; k++) {
+                if (!late) world->margin.span = 0;
+                if (dem_world_step(world, 1) != DEM_OK) break;
+                makes[late] += world->margin.age <= 0;
+                contacts += dem_counters_get(world).contacts;
+                for (d = 0; d < world->domain_count && late && k%50 == 0; d++)
+                    for (i = world->domains[d].near_shaped; i < world->domains[d].near_shaped_end; i++) {
+                        const int count = world->near.balls[d*world->near.stride + i].count;
+                        few_near += count > 0 && count <= DEMI_NEAR_BALLS;
+                        many_near += count == DEMI_BALLS_ALL;
+                    }
+            }
+            CHECK_STR(dem_world_error(world), "");
+            CHECK_EQ(k, 600);
+            hash[late] = dem_world_hash(world);
+            dem_world_destroy(world);
+        }
+        if (getenv("SEARCH_NUMBERS"))
+            printf("%d pairs with a list, %d without, %d contacts; made %d and %d times\n", few_near, many_near, contacts,
+                   (int)makes[0], (int)makes[1]);
+        CHECK(few_near > 500);
+        CHECK(many_near > 50);
+        CHECK(contacts > 50000);
+        CHECK(makes[0] > 3*makes[1]);
+        CHECK_EQ(hash[0], hash[1]);
+    }
     TEST("the list stays safe with every integrator when all grains brake within one step") {
         int i, m;
         for (i = DEM_VELOCITY_VERLET; i <= DEM_LEAPFROG; i++)
