@@ -2623,7 +2623,7 @@ typedef struct demi_list {
 } demi_list;
 
 /* Of two bodies that are near, which spheres of theirs are: part a[k] of one, b[k] of the other, in
-   the order of contacts. */
+   the order of contacts. >>kept notes them when it is first asked about the pair. */
 typedef struct demi_near_balls {
     uint8_t count;                 /* DEMI_BALLS_UNKNOWN: not looked at since the list was made;
                                       DEMI_BALLS_ALL: no room for them */
@@ -2637,7 +2637,7 @@ typedef struct demi_near {
     int stride;                    /* capacity per domain, a multiple of DEMI_LANES */
     int32_t *a, *b, *k;            /* bodies, and their entry in the list of candidates */
     unsigned char *image;
-    demi_near_balls *balls;        /* null where no body has a shape */
+    demi_near_balls *balls;        /* no room for them where all bodies are spheres */
     dem_real *memory;              /* w->memory_stride columns; zeros while a pair does not touch */
     int32_t *row;                  /* of species_coef; null where bodies are all alike, or of more
                                       species than have a table: */
