@@ -28,6 +28,7 @@
        >>unions      several shapes as one; polygons of planar worlds
        >>bodies      grains: slots, arrays, insertion, removal
        >>facets      what each face, edge and corner of a surface counts
+       >>sheets      which facets of a surface hang together, and where they end
        >>walls       planes, cylinders, profiles, meshes, walls of grains, sieves, their motions
        >>search      all pairs, grid, levels, linked linear list; the neighbour list
        >>lists       candidates on walls; contacts that last, carried to new lists
@@ -2854,6 +2855,9 @@ typedef struct demi_cut {
     int32_t number, end[2];        /* of the piece: the edge's where it is one; of its ends */
     int32_t side;                  /* of the element */
 } demi_cut;
+/* A side of a triangle that it shares with no other one of its wall: 3*element + side; and the mean
+   normals of its sheet at both ends, unit, as the sheet's first facet turns. */
+typedef struct demi_border { int32_t side; dem_vec3 normal[2]; } demi_border;
 
 typedef struct demi_wall {
     int kind, material;            /* DEMI_WALL_..., index */
@@ -2876,6 +2880,8 @@ typedef struct demi_wall {
     dem_real *planes;              /* element_count x 4: unit normal and n.x of its plane, m; zeros:
                                       it is too thin to have one */
     dem_real plane_slack;          /* m, what rounding may do to a distance from a plane */
+    demi_border *borders;          /* border_count: of sheets, by side (mesh) */
+    int border_count;
     int32_t *cut_start;            /* element_count + 1 (null: none): pieces of edges in `cuts` */
     demi_cut *cuts;
     int group;                     /* walls of one group do not move against each other */
@@ -7630,6 +7636,103 @@ static int demi_facets_weigh(dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>sheets
+   Which facets of one wall hang together, which way round each turns, and where they end. Made when
+   a wall is loaded; polyhedra need it, which see a surface from one of its two sides.
+   --------------------------------------------------------------------------------------------- */
+
+/* Where sheets end (beside: as demi_wall_sheets has it), and their mean normals there: of all
+   triangles of the sheet at a corner, by their angles, which does not change as they are cut. 0
+   when memory ran out. */
+static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *beside) {
+    const int all = wall->element_count, points = wall->vertex_count;
+    int32_t *first = (int32_t *)demi_alloc(w, (size_t)(points + 2 + 3*all), sizeof *first);
+    int32_t *at = first ? first + points + 2 : 0;      /* 3*element + corner, by vertex */
+    int i, k, c, count = 0;
+    for (i = 0; i < 3*all; i++) count += beside[i] < 0;
+    wall->border_count = count;
+    wall->borders = (demi_border *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MAX(count, 1),
+                                       sizeof *wall->borders);
+    if (!first || !wall->borders) { demi_free(w, first); return 0; }
+    memset(first, 0, (size_t)(points + 2)*sizeof *first);
+    for (i = 0; i < 3*all; i++) first[wall->corners[i] + 2]++;
+    for (i = 2; i < points + 2; i++) first[i] += first[i - 1];
+    for (i = 0; i < 3*all; i++) at[first[wall->corners[i] + 1]++] = i;
+    for (i = 0, count = 0; i < 3*all; i++) {
+        demi_border *e = &wall->borders[count];
+        if (beside[i] >= 0) continue;
+        count++;
+        e->side = i;
+        for (k = 0; k < 2; k++) {
+            const int32_t v = wall->corners[i/3*3 + (i + k)%3];
+            e->normal[k] = demi_v(0, 0, 0);
+            for (c = first[v]; c < first[v + 1]; c++) {
+                const int32_t *own = wall->corners + at[c]/3*3, sheet = wall->sheet[at[c]/3];
+                const dem_vec3 x = demi_at(wall->vertices + 3*v);
+                const dem_vec3 p = demi_sub(demi_at(wall->vertices + 3*own[(at[c] + 1)%3]), x);
+                const dem_vec3 q = demi_sub(demi_at(wall->vertices + 3*own[(at[c] + 2)%3]), x);
+                const double angle = demi_atan2((double)demi_length(demi_cross(p, q)),
+                                                (double)demi_dot(p, q));
+                if (sheet != wall->sheet[i/3] && sheet != -wall->sheet[i/3]) continue;
+                e->normal[k] = demi_add(e->normal[k], demi_scale(
+                    demi_at(wall->planes + 4*(at[c]/3)), (dem_real)(sheet < 0 ? -angle : angle)));
+            }
+            e->normal[k] = demi_unit(e->normal[k]);
+        }
+    }
+    demi_free(w, first);
+    return 1;
+}
+/* Sheets: facets that are joined by edges (segments: by ends) which two of them have, and which way
+   round each turns. 0 when memory ran out. */
+static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
+    const int n = demi_wall_per(wall), all = wall->element_count;
+    demi_side *sides = (demi_side *)demi_alloc(w, (size_t)all*3, sizeof *sides);
+    int32_t *beside = (int32_t *)demi_alloc(w, (size_t)all*4, sizeof *beside);
+    int32_t *row = beside ? beside + 3*all : 0;
+    int i, k, count = 0, rows, sheets = 0;
+    wall->sheet = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)all, sizeof(int32_t));
+    for (i = 0; i < all && sides && beside && wall->sheet; i++)
+        for (k = 0; k < n; k++) {
+            const int32_t *c = wall->corners + n*i;
+            sides[count++] = demi_side_of(c[k], n == 3 ? c[(k + 1)%3] : c[k], i, k);
+        }
+    for (i = 0; i < 3*all && beside; i++) beside[i] = -1;
+    if (count) qsort(sides, (size_t)count, sizeof *sides, demi_side_compare);
+    for (i = 0; i < count; i = k) {
+        for (k = i + 1; k < count && sides[k].lo == sides[i].lo && sides[k].hi == sides[i].hi; k++)
+            continue;
+        if (k != i + 2) continue;
+        beside[3*sides[i].facet + sides[i].side] = 3*sides[i + 1].facet + sides[i + 1].side;
+        beside[3*sides[i + 1].facet + sides[i + 1].side] = 3*sides[i].facet + sides[i].side;
+    }
+    for (i = 0; i < all && count; i++) {
+        if (wall->sheet[i]) continue;
+        wall->sheet[i] = ++sheets;
+        row[0] = i;
+        for (rows = 1; rows > 0;) {
+            const int from = row[--rows];
+            for (k = 0; k < n; k++) {
+                const int32_t other = beside[3*from + k];
+                int32_t *sheet;
+                int same;
+                if (other < 0 || wall->sheet[other/3]) continue;
+                sheet = &wall->sheet[other/3];
+                /* alike: they go along their edge in opposite ways, or one ends where one begins */
+                same = n == 2 ? other%3 != k
+                    : wall->corners[3*from + k] != wall->corners[3*(other/3) + other%3];
+                *sheet = same ? wall->sheet[from] : -wall->sheet[from];
+                row[rows++] = other/3;
+            }
+        }
+    }
+    demi_free(w, sides);
+    i = count && (n != 3 || demi_wall_borders(w, wall, beside));
+    demi_free(w, beside);
+    return i;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>walls
    A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls
    of many elements keep a grid of them in their own frame, so that a grain finds its neighbours at
@@ -7839,8 +7942,9 @@ static double demi_wall_speed(const demi_wall *wall) {
 
 /* The arrays a wall owns: where their pointers stand. What is freed, and copied into slabs. */
 #define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
-    &(wall)->weight, &(wall)->owns, &(wall)->sheet, &(wall)->planes, &(wall)->cut_start, \
-    &(wall)->cuts, &(wall)->cell_start, &(wall)->cell_items, &(wall)->motion.table}
+    &(wall)->weight, &(wall)->owns, &(wall)->sheet, &(wall)->borders, &(wall)->planes, \
+    &(wall)->cut_start, &(wall)->cuts, &(wall)->cell_start, &(wall)->cell_items, \
+    &(wall)->motion.table}
 /* Its arrays, by the one list of them; what is left is a wall that was removed. */
 static void demi_wall_free(dem_world *w, demi_wall *wall) {
     void *places[] = DEMI_WALL_ARRAYS(wall), *data;
@@ -8158,53 +8262,6 @@ static int demi_ring_triangle(int t, int c) {
     return c == 0 ? a : c == 1 ? b : a + DEMI_RING_SIDES;
 }
 
-/* Sheets: facets that are joined by edges (segments: by ends) which two of them have, and which way
-   round each turns. 0 when memory ran out. */
-static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
-    const int n = demi_wall_per(wall), all = wall->element_count;
-    demi_side *sides = (demi_side *)demi_alloc(w, (size_t)all*3, sizeof *sides);
-    int32_t *beside = (int32_t *)demi_alloc(w, (size_t)all*4, sizeof *beside);
-    int32_t *row = beside ? beside + 3*all : 0;
-    int i, k, count = 0, rows, sheets = 0;
-    wall->sheet = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)all, sizeof(int32_t));
-    for (i = 0; i < all && sides && beside && wall->sheet; i++)
-        for (k = 0; k < n; k++) {
-            const int32_t *c = wall->corners + n*i;
-            sides[count++] = demi_side_of(c[k], n == 3 ? c[(k + 1)%3] : c[k], i, k);
-        }
-    for (i = 0; i < 3*all && beside; i++) beside[i] = -1;
-    if (count) qsort(sides, (size_t)count, sizeof *sides, demi_side_compare);
-    for (i = 0; i < count; i = k) {
-        for (k = i + 1; k < count && sides[k].lo == sides[i].lo && sides[k].hi == sides[i].hi; k++)
-            continue;
-        if (k != i + 2) continue;
-        beside[3*sides[i].facet + sides[i].side] = 3*sides[i + 1].facet + sides[i + 1].side;
-        beside[3*sides[i + 1].facet + sides[i + 1].side] = 3*sides[i].facet + sides[i].side;
-    }
-    for (i = 0; i < all && count; i++) {
-        if (wall->sheet[i]) continue;
-        wall->sheet[i] = ++sheets;
-        row[0] = i;
-        for (rows = 1; rows > 0;) {
-            const int from = row[--rows];
-            for (k = 0; k < n; k++) {
-                const int32_t other = beside[3*from + k];
-                int32_t *sheet;
-                int same;
-                if (other < 0 || wall->sheet[other/3]) continue;
-                sheet = &wall->sheet[other/3];
-                /* alike: they go along their edge in opposite ways, or one ends where one begins */
-                same = n == 2 ? other%3 != k
-                    : wall->corners[3*from + k] != wall->corners[3*(other/3) + other%3];
-                *sheet = same ? wall->sheet[from] : -wall->sheet[from];
-                row[rows++] = other/3;
-            }
-        }
-    }
-    demi_free(w, sides);
-    demi_free(w, beside);
-    return count > 0;
-}
 /* Copies vertices (dimension `per_vertex`) and corners into a wall. 0 with a sentence when they are
    bad. */
 static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int vertices,
@@ -9572,20 +9629,29 @@ static void demi_cross_index(dem_world *w) {
     w->cross_incoming_start[w->domain_count] = w->cross_entries;
 }
 
-/* Places that candidate k of domain d may give at most. */
-static int demi_places_of(const dem_world *w, int d, int k) {
-    const demi_wall *wall = &w->walls[w->wall_id[d*w->wall_stride + k]];
-    const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[d*w->wall_stride + k]
-        : 0;
+/* Places that one body may have with one wall at most: its candidates of domain d from k on, *end:
+   the first that is not theirs. A polyhedron has four of each way in which it touches, and four of
+   gaps; on a facet that ends on all sides there are four such ways. */
+static int demi_places_of(const dem_world *w, int d, int k, int *end) {
+    const int base = d*w->wall_stride, body = w->wall_body[base + k], id = w->wall_id[base + k];
+    const demi_wall *wall = &w->walls[id];
     const demi_wall_kind *kind = &demi_wall_kinds[wall->kind];
-    const int flats = (wall->kind == DEMI_WALL_SIEVE ? 16 : 8)*DEMI_FLATS;  /* wires: two sets */
-    const int most = w->bodies.shaped && !kind->corners ? DEMI_MAX(kind->most, flats) : kind->most;
-    return most + (cut ? 2*(cut[1] - cut[0]) : 0);
+    const int sets = wall->kind == DEMI_WALL_SIEVE ? 2 : 1, ways = sets*DEMI_FLATS;    /* wires */
+    int n = 0, flats = 0;
+    for (; k < w->domains[d].walls && w->wall_body[base + k] == body &&
+           w->wall_id[base + k] == id; k++) {
+        const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[base + k] : 0;
+        n += kind->most + (cut ? 2*(cut[1] - cut[0]) : 0);
+        flats += kind->corners ? 20 : 8*ways;
+    }
+    if (kind->corners && !w->repeating) flats = DEMI_MIN(flats, 8*ways);
+    *end = k;
+    return w->bodies.shaped ? DEMI_MAX(n, flats) : n;
 }
 /* The most contacts with walls that domain d may ever have with these candidates. */
 static int demi_places_most(const dem_world *w, int d) {
-    int k, n = 0;
-    for (k = 0; k < w->domains[d].walls; k++) n += demi_places_of(w, d, k);
+    int k = 0, n = 0;
+    while (k < w->domains[d].walls) n += demi_places_of(w, d, k, &k);
     return n;
 }
 /* Room for the places of one body and wall, for each domain its own. 0 when memory ran out. */
@@ -9593,15 +9659,13 @@ static int demi_touching_reserve(dem_world *w) {
     size_t n = 0;
     int d, k;
     for (d = 0; d < w->domain_count; d++) {
-        const int32_t *body = w->wall_body + d*w->wall_stride, *id = w->wall_id + d*w->wall_stride;
-        size_t most = DEMI_SIEVE_MOST, places = 0;
+        int most = DEMI_SIEVE_MOST;
         w->domains[d].touching_first = (int)n;
-        for (k = 0; k < w->domains[d].walls; k++) {
-            if (k && (body[k] != body[k - 1] || id[k] != id[k - 1])) places = 0;
-            places += (size_t)demi_places_of(w, d, k);
+        for (k = 0; k < w->domains[d].walls;) {
+            const int places = demi_places_of(w, d, k, &k);
             most = DEMI_MAX(most, places);
         }
-        n += most;
+        n += (size_t)most;
         if (n > (size_t)INT_MAX/8) return 0;
     }
     w->touching_valid = DEMI_GROW(w, w->touching, n) &&
@@ -12477,6 +12541,17 @@ static void demi_pressure_add(demi_pressure *s, const demi_pressure *more) {
     for (k = 0; k < 6; k++) s->wide[k] += more->wide[k];
     s->deep = DEMI_MAX(s->deep, more->deep);
 }
+static void demi_pressure_scale(demi_pressure *s, double by) {
+    int k;
+    s->shared *= by;
+    s->sum *= by;
+    for (k = 0; k < 3; k++) {
+        s->at[k] *= by;
+        s->force[k] *= by;
+        s->torque[k] *= by;
+    }
+    for (k = 0; k < 6; k++) s->wide[k] *= by;
+}
 
 /* --- sections: where a plane cuts a pyramid, or half spaces leave something of a polygon --- */
 
@@ -13974,8 +14049,10 @@ static void demi_wall_bend(const demi_wall *wall, const int32_t *among, int coun
    Surfaces whose normals differ by more than 18 degrees are contacts of their own, with all the
    wall's overlap, and as much of its energy as they have of its force; each is four places, the
    corners that its pressure is spread over. A surface is seen from one side, that of the facet, or
-   piece, nearest to the body's centre. For impulses, and for laws with a range where nothing
-   presses, it is told by gaps in their place (>>gaps), by up to four points a direction.
+   piece, nearest to the body's centre; where it ends near the body, from that from which less of
+   the body is beyond, and curtains hang from its ends, so that what is beyond is closed. For
+   impulses, and for laws with a range where nothing presses, it is told by gaps in their place
+   (>>gaps), by up to four points a direction.
    --------------------------------------------------------------------------------------------- */
 
 /* Pressures on one wall, by the direction of their surfaces. */
@@ -13998,6 +14075,36 @@ static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *
         f->element[f->count] = element;
         f->press[f->count++] = *s;
     } else demi_pressure_add(&f->press[best], s);
+}
+/* m3; < 0: the body's centre is beyond. */
+static double demi_flats_energy(const demi_flats *f) {
+    double energy = 0;
+    int i;
+    for (i = 0; i < f->count; i++) energy += f->press[i].shared;
+    return energy;
+}
+/* A surface that ends, from that side from which less of the body is beyond; seen: from its two.
+   With energies a and b of these, q = a/(a + b) and t = 4 q - 2: E = (a + b) g(q), where
+       g = q for t < -1,    g = (3 - t^2)/8 for -1 < t < 1,    g = 1 - q for t > 1
+   so that E and its gradient go from the one to the other without a jump, and a plate that has
+   fallen onto an edge has its energy back when it leaves. */
+static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
+    const double a = demi_flats_energy(seen), b = demi_flats_energy(seen + 1), all = a + b;
+    double share[2];
+    int i, k;
+    share[1] = a < 0 || b < 0 ? a < 0 : 3*b < a;
+    share[0] = 1 - share[1];
+    if (a > 0 && b > 0 && 3*a > b && 3*b > a) {
+        const double t = 4*a/all - 2, g = (3 - t*t)/8;      /* dg/dq = -t */
+        share[0] = g - t*b/all;
+        share[1] = g + t*a/all;
+    }
+    for (k = 0; k < 2; k++)
+        for (i = 0; i < seen[k].count && share[k] > 0; i++) {
+            demi_pressure press = seen[k].press[i];
+            demi_pressure_scale(&press, share[k]);
+            demi_flats_add(out, seen[k].element[i], &press);
+        }
 }
 /* Places of all of them, found in a frame of axes R. share: the wall's. */
 static int demi_flats_places(const demi_flats *f, const dem_real *R, dem_real share,
@@ -14281,19 +14388,49 @@ static int demi_wall_places(const dem_world *w, const demi_flats *flats, demi_ga
     return pressed + demi_gaps_places(w, gaps, R, share, part, at, shift, out, pressed,
                                       out + pressed);
 }
-/* From which side a body sees the sheets of a surface that are near: from that on which its centre
-   is, by the facet that is nearest to it, of equally near ones (at an edge) by that which it stands
-   over most. So the slope behind a ridge is seen from outside, too, where a body lies over it. */
+/* Sides of an element where its surface ends: bits. Not where another lies along part of it. */
+static int demi_facet_ends(const demi_wall *wall, int e) {
+    const int n = demi_wall_per(wall), edges = wall->element_count;
+    int k, open = 0;
+    for (k = 0; k < n; k++) {
+        const dem_real count = wall->weight[n == 3 ? edges + wall->edges[3*e + k]
+                                            : edges + wall->edge_count + wall->corners[2*e + k]];
+        open |= !(count < 0 || count > 0) << k;
+    }
+    for (k = wall->cut_start ? wall->cut_start[e] : 0;
+         wall->cut_start && k < wall->cut_start[e + 1]; k++) open &= ~(1 << wall->cuts[k].side);
+    return open;
+}
+
+/* The sheets of a surface that are near a body, and from which side it sees each: from that on
+   which its centre is, by the facet that is nearest to it, of equally near ones (at an edge) by
+   that which it stands over most. So the slope behind a ridge is seen from outside, too, where a
+   body lies over it. Near an end of the sheet: see demi_sheets_press. */
 enum { DEMI_SHEETS = 16 };
 typedef struct demi_sheets {
     int count;
     int32_t sheet[DEMI_SHEETS];
     int way[DEMI_SHEETS];          /* of the normal into the surface, by the sheet's first facet */
+    int ends[DEMI_SHEETS];         /* does it end near the body? */
     double near2[DEMI_SHEETS], over[DEMI_SHEETS];      /* m2; m */
 } demi_sheets;
-static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, dem_vec3 origin) {
-    const int32_t sheet = wall->sheet[element] < 0 ? -wall->sheet[element] : wall->sheet[element];
-    const int corners = demi_wall_kinds[wall->kind].corners;
+DEM_INLINE int32_t demi_sheet_of(const demi_wall *wall, int element) {
+    const int32_t own = wall->sheet[element];
+    return own < 0 ? -own : own;
+}
+/* m2: how far a segment is from the origin. */
+static double demi_segment_near2(const double *p, const double *q) {
+    double part[2], d2 = 0;
+    int k;
+    demi_near_segment(p, q, part);
+    for (k = 0; k < 3; k++) d2 += (part[0]*p[k] + part[1]*q[k])*(part[0]*p[k] + part[1]*q[k]);
+    return d2;
+}
+/* within: m, how far the body reaches. */
+static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, dem_vec3 origin,
+                            double within) {
+    const int32_t sheet = demi_sheet_of(wall, element);
+    const int corners = demi_wall_kinds[wall->kind].corners, open = demi_facet_ends(wall, element);
     double x[3][3], part[3] = {0, 0, 0}, e[3], f[3] = {0, 0, 1}, up[3], v[3], d2, over;
     dem_vec3 y[3];
     int i, k;
@@ -14314,21 +14451,30 @@ static void demi_sheets_add(demi_sheets *s, const demi_wall *wall, int element, 
     over = demi_dot3(up, x[0])*(wall->sheet[element] < 0 ? -1 : 1);
     for (i = 0; i < s->count && s->sheet[i] != sheet; i++) continue;
     if (i == DEMI_SHEETS) return;
-    if (i == s->count) s->count++;
+    if (i == s->count) s->ends[s->count++] = 0;
     else if (d2 > s->near2[i]*(1 + 1e-9) ||
-             (d2 > s->near2[i]*(1 - 1e-9) && !(fabs(over) > fabs(s->over[i])))) return;
+             (d2 > s->near2[i]*(1 - 1e-9) && !(fabs(over) > fabs(s->over[i])))) d2 = -1;
+    for (k = 0; k < corners && !s->ends[i]; k++)
+        s->ends[i] = open >> k & 1 &&
+            demi_segment_near2(x[k], x[corners == 3 ? (k + 1)%3 : k]) < within*within;
+    if (d2 < 0) return;
     s->sheet[i] = sheet;
     s->near2[i] = d2;
     s->over[i] = over;
     s->way[i] = over < 0 ? -1 : 1;
 }
+/* Which of the sheets an element is of; -1: there was no room for a note of it. */
+static int demi_sheets_which(const demi_sheets *s, const demi_wall *wall, int element) {
+    const int32_t sheet = demi_sheet_of(wall, element);
+    int i;
+    for (i = 0; i < s->count; i++) if (s->sheet[i] == sheet) return i;
+    return -1;
+}
 /* The way of one element's normal; x: of the body, for sheets of which there is no note. */
 static int demi_sheets_way(const demi_sheets *s, const demi_wall *wall, int element, dem_vec3 x) {
-    const int32_t own = wall->sheet[element], sheet = own < 0 ? -own : own;
     const dem_real *plane = wall->planes + 4*element;
-    int i;
-    for (i = 0; i < s->count; i++)
-        if (s->sheet[i] == sheet) return own < 0 ? -s->way[i] : s->way[i];
+    const int i = demi_sheets_which(s, wall, element);
+    if (i >= 0) return wall->sheet[element] < 0 ? -s->way[i] : s->way[i];
     return plane[3] - demi_dot(demi_at(plane), x) < 0 ? -1 : 1;
 }
 /* One element, from a polyhedron about the origin of the axes. way: of its normal. */
@@ -14344,6 +14490,146 @@ static void demi_solid_on_element(const demi_wall *wall, int element, const demi
     } else if ((count = demi_facet_sides(wall, element, x, way, n, &at, sides)) != 0)
         demi_solid_on_flat(s, n, at, sides, count, 0, press);
 }
+/* The elements of one sheet that are near a body, seen from one side: of the sheet's first facet
+   way. x: of the body, in the wall's frame; within: how far it reaches, m. */
+typedef struct demi_sheet {
+    const demi_wall *wall;
+    const int32_t *element;
+    const dem_real *gap;
+    dem_real gone, within;
+    int count, way;
+    int32_t sheet;
+    dem_vec3 x;
+} demi_sheet;
+/* Is element i of the list one of the sheet's? Then, which way its normal goes; 0: it is not. */
+DEM_INLINE int demi_sheet_way(const demi_sheet *t, int i) {
+    const int element = t->element[i];
+    if (t->gap[i] > t->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
+    return t->wall->sheet[element] < 0 ? -t->way : t->way;
+}
+/* The sheet's mean normals at both corners of a side where it ends; 0: it does not. */
+static const demi_border *demi_facet_border(const demi_wall *wall, int32_t side) {
+    int lo = 0, hi = wall->border_count;
+    while (lo < hi) {
+        const int mid = (lo + hi)/2;
+        if (wall->borders[mid].side < side) lo = mid + 1;
+        else hi = mid;
+    }
+    return lo < wall->border_count && wall->borders[lo].side == side ? &wall->borders[lo] : 0;
+}
+/* Half of the curtain of a side, from its corner at o to its middle c, down along m; in: roughly
+   its normal. */
+static void demi_curtain_half(const demi_solid *s, const double *o, const double *c,
+                              const double *m, const double *in, demi_pressure *press) {
+    double by[3][2][3], e[3], n[3], along, size, way;
+    int k;
+    demi_sub3(c, o, e);
+    demi_cross3(e, m, n);
+    if (!(demi_unit3(n) > 0)) return;
+    way = demi_dot3(n, in) < 0 ? -1 : 1;
+    for (k = 0; k < 3; k++) n[k] *= way;
+    along = demi_dot3(e, m);
+    size = demi_dot3(e, e);
+    for (k = 0; k < 3; k++) {
+        by[0][0][k] = m[k] - along/size*e[k];
+        by[1][0][k] = e[k] - along*m[k];
+        by[2][0][k] = -by[1][0][k];
+        by[0][1][k] = by[1][1][k] = o[k];
+        by[2][1][k] = c[k];
+    }
+    demi_solid_on_flat(s, n, demi_dot3(n, o), by, 3, 0, press);
+}
+/* What is missing between both halves at the middle of a side, where the sheet's normal is a at the
+   corner before and b at that behind: the sector between lines along both. */
+static void demi_curtain_fold(const demi_solid *s, const double *c, const double *a,
+                              const double *b, demi_pressure *press) {
+    const double along = demi_dot3(a, b);
+    double by[2][2][3], n[3];
+    int k;
+    demi_cross3(a, b, n);
+    if (!(demi_unit3(n) > 1e-9)) return;
+    for (k = 0; k < 3; k++) {
+        by[0][0][k] = b[k] - along*a[k];
+        by[1][0][k] = a[k] - along*b[k];
+        by[0][1][k] = by[1][1][k] = c[k];
+    }
+    demi_solid_on_flat(s, n, demi_dot3(n, c), by, 2, 0, press);
+}
+/* The curtain at side k of element i, which ends there: from the side down along the sheet's
+   normal, without end. What is beyond the sheet and within its curtains is closed and does not
+   change as the body moves, so that energy is conserved. n: the element's normal. */
+static void demi_sheet_curtain(const demi_sheet *t, int i, int k, double (*sides)[2][3],
+                               const double *n, const demi_solid *s, demi_pressure *press) {
+    const demi_border *mean;
+    const double *end[2];
+    double m[2][3], in[3], way[3], edge[3], c[3];
+    int q;
+    memset(press, 0, sizeof *press);
+    memcpy(in, sides[k][0], sizeof in);
+    demi_unit3(in);
+    if (demi_wall_per(t->wall) == 2) {
+        double by[1][2][3];
+        memcpy(by[0][0], n, sizeof by[0][0]);
+        memcpy(by[0][1], sides[k][1], sizeof by[0][1]);
+        demi_solid_on_flat(s, in, demi_dot3(in, by[0][1]), by, 1, 0, press);
+        return;
+    }
+    mean = demi_facet_border(t->wall, 3*t->element[i] + k);
+    if (!mean) return;
+    for (q = 0; q < 2; q++) {
+        const dem_vec3 d = demi_scale(mean->normal[q], (dem_real)t->way);
+        end[q] = sides[(k + q)%3][1];
+        m[q][0] = (double)d.x; m[q][1] = (double)d.y; m[q][2] = (double)d.z;
+    }
+    demi_sub3(end[1], end[0], edge);
+    for (q = 0; q < 3; q++) c[q] = (end[0][q] + end[1][q])/2;
+    for (q = 0; q < 2; q++) demi_curtain_half(s, end[q], c, m[q], in, press);
+    demi_cross3(in, n, way);                    /* n x way = in: from which corner to which */
+    q = demi_dot3(way, edge) < 0;
+    demi_curtain_fold(s, c, m[q], m[!q], press);
+}
+/* All of a sheet with its curtains. */
+static void demi_sheet_press(const demi_sheet *t, const demi_solid *s, demi_flats *flats) {
+    demi_pressure press;
+    double sides[3][2][3], n[3], at;
+    int i, k, count, ends;
+    for (i = 0; i < t->count; i++) {
+        const int element = t->element[i], way = demi_sheet_way(t, i);
+        const dem_real *plane = t->wall->planes + 4*element;
+        const dem_real off = demi_dot(demi_at(plane), t->x) - plane[3];
+        if (!way || DEMI_ABS(off) > t->within + t->wall->plane_slack) continue;
+        count = demi_facet_sides(t->wall, element, t->x, way, n, &at, sides);
+        if (!count || !(demi_dot3(n, s->corner[demi_solid_far(s, n)]) > at)) continue;
+        ends = demi_facet_ends(t->wall, element);
+        memset(&press, 0, sizeof press);
+        demi_solid_on_flat(s, n, at, sides, count, 0, &press);
+        demi_flats_add(flats, element, &press);
+        for (k = 0; k < count; k++) {
+            if (!(ends >> k & 1)) continue;
+            demi_sheet_curtain(t, i, k, sides, n, s, &press);
+            demi_flats_add(flats, element, &press);
+        }
+    }
+}
+/* Sheets that end near the body: what each shares with it is the body's part beyond the sheet and
+   its curtains, a solid that stands still, so that this is an energy; of two such solids, one on
+   either side, the one of which there is less. A body that does not touch the sheet has nothing of
+   one of them. */
+static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const demi_solid *s,
+                              demi_flats *flats) {
+    demi_flats seen[2];
+    int i, k;
+    for (i = 0; i < sheets->count; i++) {
+        if (!sheets->ends[i]) continue;
+        t->sheet = sheets->sheet[i];
+        for (k = 0; k < 2; k++) {
+            t->way = k ? -sheets->way[i] : sheets->way[i];
+            seen[k].count = 0;
+            if (!k || seen[0].count) demi_sheet_press(t, s, &seen[k]);
+        }
+        demi_flats_sides(seen, flats);
+    }
+}
 /* Any wall whose elements are flat. */
 static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
                                 dem_vec3 at, const demi_part *part, demi_touching **places) {
@@ -14355,11 +14641,15 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
     demi_gaps gaps;
     demi_pressure press;
     demi_sheets sheets;
+    demi_sheet sheet;
     demi_solid s;
     int k, from, end, way, count = 0;
     *places = w->touching + w->domains[d].touching_first;
     gaps.range = (double)demi_range(w, part->radius);
     gaps.flat = 0;
+    sheet.wall = wall;
+    sheet.gone = gone;
+    sheet.within = part->radius*DEM_R(1.001);
     demi_solid_of(&local, demi_v(0, 0, 0), &s);
     for (k = first; k < last; k = end) {
         const dem_vec3 shift = demi_at(w->wall_shift + 3*(size_t)(base + k));
@@ -14367,13 +14657,21 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
                                          demi_sub(demi_add(at, shift), wall->pose.position));
         flats.count = gaps.count = sheets.count = 0;
         end = demi_image_end(w, base, k, last);
+        sheet.element = w->wall_element + base + k;
+        sheet.gap = w->wall_gap + base + k;
+        sheet.count = end - k;
+        sheet.x = x;
         for (from = k; wall->sheet && !impulsive && from < end; from++)
             if (!(w->wall_gap[base + from] > gone))
-                demi_sheets_add(&sheets, wall, w->wall_element[base + from], x);
+                demi_sheets_add(&sheets, wall, w->wall_element[base + from], x,
+                                (double)sheet.within);
+        demi_sheets_press(&sheets, &sheet, &s, &flats);
         for (from = k; k < end; k++) {
             const int32_t element = w->wall_element[base + k];
+            const int which = impulsive || !wall->sheet ? -1
+                : demi_sheets_which(&sheets, wall, element);
             if (w->wall_gap[base + k] > gone) continue;
-            if (!impulsive) {
+            if (!impulsive && (which < 0 || !sheets.ends[which])) {
                 way = wall->sheet ? demi_sheets_way(&sheets, wall, element, x) : 1;
                 demi_solid_on_element(wall, element, &s, x, way, &press);
                 demi_flats_add(&flats, element, &press);
@@ -14564,6 +14862,36 @@ static double demi_rings_side(const demi_wall *wall, dem_vec3 x) {
         side = over > 0 ? 1 : -1;
     }
     return side;
+}
+/* Does a surface of revolution end at its first ring (end 0) or last (1), near a body of this
+   radius about x? Not on its axis, nor where it closes. */
+static int demi_rings_end(const demi_wall *wall, int end, dem_vec3 x, double radius) {
+    const int ring = end ? wall->ring_count - 1 : 0, other = end ? 0 : wall->ring_count - 1;
+    const double r = (double)wall->ring_radius[ring], z = (double)wall->ring_height[ring];
+    const double off = sqrt((double)x.x*(double)x.x + (double)x.y*(double)x.y) - r;
+    const double up = (double)x.z - z;
+    return r > 0 && off*off + up*up < radius*radius &&
+        !(fabs((double)wall->ring_radius[other] - r) + fabs((double)wall->ring_height[other] - z) <
+          1e-9*r);
+}
+/* The curtain there, as at the end of a sheet: from the ring along the normal of its piece, seen
+   from this side, beyond what a body of this radius reaches, but not beyond the axis. */
+static demi_generator demi_rings_curtain(const demi_wall *wall, int end, double radius,
+                                         double side) {
+    const int i = end ? wall->ring_count - 2 : 0, ring = end ? i + 1 : 0;
+    const double e = (double)(wall->ring_radius[i + 1] - wall->ring_radius[i]);
+    const double f = (double)(wall->ring_height[i + 1] - wall->ring_height[i]);
+    const double size = sqrt(e*e + f*f), out = side*f/size, up = -side*e/size;
+    double far = 2.1*radius;
+    demi_generator l;
+    l.a = (double)wall->ring_radius[ring];
+    l.g = (double)wall->ring_height[ring];
+    if (l.a + far*out < 0) far = -l.a/out;
+    l.b = DEMI_MAX(l.a + far*out, 0);
+    l.h = l.g + far*up;
+    l.side = end ? side : -side;
+    l.open[0] = l.open[1] = 0;
+    return l;
 }
 /* Does a body of this radius about x reach it? */
 static int demi_generator_near(const demi_generator *l, dem_vec3 x, double radius) {
@@ -14894,6 +15222,24 @@ static void demi_ring_gaps(const demi_wall *wall, int ring, int32_t element, con
         demi_ring_point(wall, ring, s, x0, (lo + hi)/2, &element, q, gaps);
     }
 }
+/* All of a cylinder, or of a surface of revolution seen from one side, with the curtains at its
+   ends (bits: which). */
+static void demi_rings_press(const demi_wall *wall, const demi_solid *s, dem_vec3 x,
+                             dem_real radius, double side, int ends, demi_flats *flats) {
+    const int round = wall->kind == DEMI_WALL_CYLINDER, pieces = round ? 1 : wall->ring_count - 1;
+    int i;
+    for (i = 0; i < pieces; i++) {
+        const demi_generator l = demi_generator_of(wall, i, x, radius, side);
+        if (round || demi_generator_near(&l, x, (double)radius))
+            demi_solid_on_generator(s, &l, x, round, i, flats);
+    }
+    for (i = 0; i < 2; i++) {
+        demi_generator l;
+        if (!(ends >> i & 1)) continue;
+        l = demi_rings_curtain(wall, i, (double)radius, side);
+        demi_solid_on_generator(s, &l, x, 0, i ? 2*pieces : pieces, flats);
+    }
+}
 /* A cylinder, or a surface of revolution, piece by piece. */
 static int demi_round_polyhedron(const dem_world *w, int d, int first, int last, dem_real gone,
                                  dem_vec3 at, const demi_part *part, demi_touching **places) {
@@ -14904,10 +15250,10 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
     const int impulsive = demi_impulsive(w);
     const double range = (double)demi_range(w, part->radius);
     double side;
-    demi_flats flats;
+    demi_flats flats, seen[2];
     demi_gaps gaps;
     demi_solid s;
-    int k, i, end, count = 0;
+    int k, i, end, ends, count = 0;
     *places = w->touching + w->domains[d].touching_first;
     gaps.range = range;
     gaps.flat = 0;
@@ -14920,13 +15266,20 @@ static int demi_round_polyhedron(const dem_world *w, int d, int first, int last,
         end = demi_image_end(w, base, k, last);
         if (w->wall_gap[base + k] > gone) continue;
         side = demi_rings_side(wall, x);
-        for (i = 0; i < pieces; i++) {
+        for (i = 0, ends = 0; i < 2 && wall->kind != DEMI_WALL_CYLINDER; i++)
+            ends |= demi_rings_end(wall, i, x, (double)part->radius) << i;
+        if (!impulsive && !ends) demi_rings_press(wall, &s, x, part->radius, side, 0, &flats);
+        for (i = 0; i < 2 && !impulsive && ends; i++) {
+            seen[i].count = 0;
+            if (!i || seen[0].count)
+                demi_rings_press(wall, &s, x, part->radius, i ? -side : side, ends, &seen[i]);
+        }
+        if (!impulsive && ends) demi_flats_sides(seen, &flats);
+        for (i = 0; i < pieces && range > 0; i++) {
             const demi_generator l = demi_generator_of(wall, i, x, part->radius, side);
-            if (wall->kind != DEMI_WALL_CYLINDER &&      /* deep in it, too */
-                !demi_generator_near(&l, x, (double)part->radius + range)) continue;
-            if (!impulsive)
-                demi_solid_on_generator(&s, &l, x, wall->kind == DEMI_WALL_CYLINDER, i, &flats);
-            if (range > 0) demi_generator_gaps(&s, &l, x, i, &gaps);
+            if (wall->kind == DEMI_WALL_CYLINDER ||      /* deep in it, too */
+                demi_generator_near(&l, x, (double)part->radius + range))
+                demi_generator_gaps(&s, &l, x, i, &gaps);
         }
         for (i = 0; i <= pieces && range > 0 && wall->kind != DEMI_WALL_CYLINDER; i++)
             demi_ring_gaps(wall, i, pieces + i, &s, x, (double)part->radius, &gaps);

@@ -1,6 +1,7 @@
 /* Impacts of convex polyhedra by the hundred thousand, by springs: rocks, cubes, tetrahedra and flakes on their like, on a
-   plane, inside and outside a tube, on the ridge of a mesh, on a union and on sieves, at random angles, spins, restitutions and
-   frictions. None may leave with more energy than it came with, beyond the step's own error, and elastic ones lose none.
+   plane, inside and outside a tube, on the ridge of a mesh, on a union, on sieves and on edges of sheets and pipes, at random
+   angles, spins, restitutions and frictions. None may leave with more energy than it came with, beyond the step's own error,
+   and elastic ones lose none.
    A world holds many lanes, far from each other, with one impact each. TEST_LONG makes 1e5 of them, TEST_TABLES prints
    the worst of each kind. */
 #define DEM_IMPLEMENTATION
@@ -8,11 +9,13 @@
 #include "../test.h"
 #include "../scene.h"
 
-typedef enum stone_target { on_stone, on_floor, in_tube, on_tube, on_roof, on_pair, on_weave, on_holes, on_rounds,
-                            stone_targets } stone_target;
+typedef enum stone_target { on_stone, on_floor, in_tube, on_tube, on_roof, on_pair, on_weave, on_holes, on_rounds, on_edge,
+                            on_rim, on_hood, stone_targets } stone_target;
 static const char *const stone_target_name[stone_targets] = {"its like", "a plane", "the inside of a tube", "a tube",
                                                              "a roof of triangles", "a union", "a weave of wires",
-                                                             "a plate with square holes", "a plate with round holes"};
+                                                             "a plate with square holes", "a plate with round holes",
+                                                             "the edge of an upright sheet", "the end of a pipe without "
+                                                             "thickness", "a hood of triangles"};
 enum { stone_lanes = 120, stone_shapes = 12 };
 typedef struct stone_lane { dem_body a, b; double before; } stone_lane;
 typedef struct stone_sum { int hits, gaining; double worst, elastic; } stone_sum;
@@ -42,9 +45,33 @@ static dem_shape stone_add(dem_world *world, uint64_t *seed, int kind) {
     }
     return dem_shape_polyhedron_add(world, n, p);
 }
-/* Where the middle of lane i is. */
+/* Where the middle of lane i is: so far from the next that what flies off meets nobody else's. */
 static dem_vec3 stone_place(stone_target target, int i) {
-    return target == in_tube || target == on_tube ? at(0, 0, 12.0*i) : at(12.0*(i%12), 12.0*(i/12), 0);
+    return target == in_tube || target == on_tube ? at(0, 0, 24.0*i) : at(24.0*(i%12), 24.0*(i/12), 0);
+}
+/* Those that take long. */
+static int stone_slow(stone_target target) {
+    return target == on_weave || target == on_holes || target == on_rounds || target == on_rim;
+}
+/* A surface of triangles without thickness about c: a ridge of two slopes, one turned the other way; an upright sheet; a
+   tent of four slopes, open at one of them and cut off below. */
+static void stone_sheet(dem_world *world, dem_material m, stone_target target, dem_vec3 c) {
+    static const double roof[18] = {-4, -4, -2, 4, -4, -2, -4, 4, -2, 4, 4, -2, -4, 0, 0, 4, 0, 0};
+    static const double edge[12] = {-3, 0, -3, 3, 0, -3, 3, 0, 0, -3, 0, 0};
+    static const double hood[15] = {-2, -2, -1.5, 2, -2, -1, 2, 2, -1.5, -2, 2, -1, 0.3, 0.1, 0};
+    static int32_t on_slopes[12] = {0, 1, 5, 0, 5, 4, 2, 4, 5, 2, 3, 5}, upright[6] = {0, 1, 2, 0, 2, 3};
+    static int32_t tent[9] = {0, 1, 4, 4, 2, 1, 2, 3, 4};
+    const double *x = target == on_roof ? roof : target == on_edge ? edge : hood;
+    dem_real v[18];
+    dem_mesh mesh;
+    int k;
+    mesh.vertex_count = target == on_roof ? 6 : target == on_edge ? 4 : 5;
+    mesh.triangle_count = target == on_roof ? 4 : target == on_edge ? 2 : 3;
+    mesh.triangles = target == on_roof ? on_slopes : target == on_edge ? upright : tent;
+    mesh.vertices = v;
+    for (k = 0; k < 3*mesh.vertex_count; k++)
+        v[k] = (k%3 == 0 ? c.x : k%3 == 1 ? c.y : c.z) + (dem_real)x[k];
+    CHECK(dem_mesh_add(world, m, &mesh).id);
 }
 /* What stands still in all lanes. */
 static void stone_walls(dem_world *world, dem_material m, stone_target target) {
@@ -52,7 +79,7 @@ static void stone_walls(dem_world *world, dem_material m, stone_target target) {
     if (target == on_floor) dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     if (target == in_tube) dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 4, 1);
     if (target == on_tube) dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, 0);
-    if (target >= on_weave) {
+    if (target == on_weave || target == on_holes || target == on_rounds) {
         dem_sieve_desc s = DEM_SIEVE_DESC;
         s.kind = target == on_weave ? DEM_SIEVE_WIRES : target == on_holes ? DEM_SIEVE_SQUARE : DEM_SIEVE_ROUND;
         s.aperture = DEM_R(1.2);
@@ -61,20 +88,11 @@ static void stone_walls(dem_world *world, dem_material m, stone_target target) {
         s.lift = target == on_weave ? DEM_R(0.5) : 0;
         CHECK(dem_sieve_add(world, m, &s).id);
     }
-    for (i = 0; i < stone_lanes && target == on_roof; i++) {       /* a ridge of two slopes, one turned the other way */
+    for (i = 0; i < stone_lanes; i++) {
+        static const dem_real radii[2] = {2, DEM_R(1.6)}, heights[2] = {-3, 0};
         const dem_vec3 c = stone_place(target, i);
-        dem_real v[18];
-        const double x[6] = {-4, 4, -4, 4, -4, 4}, y[6] = {-4, -4, 4, 4, 0, 0}, z[6] = {-2, -2, -2, -2, 0, 0};
-        int32_t t[12] = {0, 1, 5, 0, 5, 4, 2, 4, 5, 2, 3, 5};
-        dem_mesh mesh;
-        int k;
-        for (k = 0; k < 6; k++) {
-            v[3*k] = c.x + (dem_real)x[k];
-            v[3*k + 1] = c.y + (dem_real)y[k];
-            v[3*k + 2] = c.z + (dem_real)z[k];
-        }
-        mesh.vertex_count = 6; mesh.triangle_count = 4; mesh.vertices = v; mesh.triangles = t;
-        dem_mesh_add(world, m, &mesh);
+        if (target == on_roof || target == on_edge || target == on_hood) stone_sheet(world, m, target, c);
+        if (target == on_rim) CHECK(dem_revolved_add(world, m, c, at(0, 0, 1), 2, radii, heights).id);
     }
 }
 /* Impacts of one kind in so many lanes. restitution 1 and no friction: elastic. */
@@ -109,7 +127,10 @@ static void stones_throw(stone_target target, int lanes, int elastic, uint64_t s
         dem_vec3 x = demi_add(middle, demi_scale(way, DEM_R(-3.2))), v = demi_scale(way, (dem_real)fast);
         lane[i].b.slot = 0;
         if (target == on_floor || target == on_roof || target >= on_weave) {
+            const double turn = 6.28*(double)aside.x;
             x = demi_add(middle, at(0, (double)aside.y*3, 2.2));
+            if (target == on_edge || target == on_hood) x = demi_add(middle, at((double)aside.x*6, (double)aside.y*2, 1.8));
+            if (target == on_rim) x = demi_add(middle, at((1.6 + aside.y)*cos(turn), (1.6 + aside.y)*sin(turn), 1.8));
             v = at(fast*(double)aside.x, fast*(double)aside.y, -fast);
         } else if (target == in_tube || target == on_tube) {
             const double angle = 6.28*scene_random(&seed), out = target == in_tube ? 2.6 : 3.3;
@@ -152,15 +173,15 @@ static void stones_throw(stone_target target, int lanes, int elastic, uint64_t s
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
-    TEST("polyhedra on their like, a plane, tubes, a roof of triangles, a union and sieves: of all impacts none gains 1 in "
-         "1000 of its energy, and elastic ones lose no more") {
+    TEST("polyhedra on their like, a plane, tubes, a roof of triangles, a union, sieves, and the edges of sheets and pipes "
+         "without thickness: of all impacts none gains 1 in 1000 of its energy, and elastic ones lose no more") {
         const int rounds = getenv("TEST_LONG") ? 160 : 1;
         stone_sum all = {0, 0, 0, 0};
         int target, round;
         for (target = 0; target < stone_targets && sizeof(dem_real) == 8; target++) {
             stone_sum sum = {0, 0, 0, 0};
-            for (round = 0; round < rounds/(rounds > 8 && target >= on_weave ? 8 : 1); round++)    /* these take long */
-                stones_throw((stone_target)target, rounds == 1 && target >= on_weave ? 24 : stone_lanes, round%4 == 0,
+            for (round = 0; round < rounds/(rounds > 8 && stone_slow(target) ? 8 : 1); round++)    /* these take long */
+                stones_throw((stone_target)target, rounds == 1 && stone_slow(target) ? 24 : stone_lanes, round%4 == 0,
                              (uint64_t)(1000*target + round + 1), &sum);
             if (getenv("TEST_TABLES"))
                 printf("on %s: %d impacts, worst gain %.2g, worst elastic loss %.2g\n", stone_target_name[target], sum.hits, sum.worst,
