@@ -2855,8 +2855,8 @@ typedef struct demi_cut {
     int32_t number, end[2];        /* of the piece: the edge's where it is one; of its ends */
     int32_t side;                  /* of the element */
 } demi_cut;
-/* A side of a triangle that it shares with no other one of its wall: 3*element + side; and the mean
-   normals of its sheet at both ends, unit, as the sheet's first facet turns. */
+/* A side of a triangle where its sheet may end, since no one triangle goes on there: 3*element +
+   side; and the mean normals of the sheet at both its corners, unit, as its first facet turns. */
 typedef struct demi_border { int32_t side; dem_vec3 normal[2]; } demi_border;
 
 typedef struct demi_wall {
@@ -2876,7 +2876,7 @@ typedef struct demi_wall {
     dem_real *weight;              /* how often each face, edge and corner counts, in this order */
     unsigned char *owns;           /* element_count: bit k: looks after edge k, 3 + k: corner k */
     int32_t *sheet;                /* element_count: which sheet it is of, from 1; < 0: it turns the
-                                      other way round than the sheet's first */
+                                      other way round than the sheet's first; 0: it is a copy */
     dem_real *planes;              /* element_count x 4: unit normal and n.x of its plane, m; zeros:
                                       it is too thin to have one */
     dem_real plane_slack;          /* m, what rounding may do to a distance from a plane */
@@ -7641,6 +7641,12 @@ static int demi_facets_weigh(dem_world *w) {
    a wall is loaded; polyhedra need it, which see a surface from one of its two sides.
    --------------------------------------------------------------------------------------------- */
 
+/* Has a side of a triangle (3*element + side) nothing beside it, or a triangle that is too thin to
+   count? beside: as demi_wall_sheets has it. */
+static int demi_side_ends(const demi_wall *wall, const int32_t *beside, int side) {
+    const dem_vec3 n = demi_at(wall->planes + 4*(DEMI_MAX(beside[side], 0)/3));
+    return beside[side] < 0 || !(demi_dot(n, n) > 0);
+}
 /* Where sheets end (beside: as demi_wall_sheets has it), and their mean normals there: of all
    triangles of the sheet at a corner, by their angles, which does not change as they are cut. 0
    when memory ran out. */
@@ -7649,7 +7655,7 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
     int32_t *first = (int32_t *)demi_alloc(w, (size_t)(points + 2 + 3*all), sizeof *first);
     int32_t *at = first ? first + points + 2 : 0;      /* 3*element + corner, by vertex */
     int i, k, c, count = 0;
-    for (i = 0; i < 3*all; i++) count += beside[i] < 0;
+    for (i = 0; i < 3*all; i++) count += demi_side_ends(wall, beside, i);
     wall->border_count = count;
     wall->borders = (demi_border *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MAX(count, 1),
                                        sizeof *wall->borders);
@@ -7660,7 +7666,7 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
     for (i = 0; i < 3*all; i++) at[first[wall->corners[i] + 1]++] = i;
     for (i = 0, count = 0; i < 3*all; i++) {
         demi_border *e = &wall->borders[count];
-        if (beside[i] >= 0) continue;
+        if (!demi_side_ends(wall, beside, i)) continue;
         count++;
         e->side = i;
         for (k = 0; k < 2; k++) {
@@ -7683,8 +7689,24 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
     demi_free(w, first);
     return 1;
 }
+/* Marks triangles with the corners of an earlier one: their sheet is INT_MAX. s: room for all. */
+static void demi_facets_copies(demi_wall *wall, demi_side *s) {
+    const int all = wall->element_count;
+    int i;
+    for (i = 0; i < all; i++) {
+        const int32_t *c = wall->corners + 3*i;
+        const int32_t lo = DEMI_MIN(c[0], DEMI_MIN(c[1], c[2]));
+        const int32_t hi = DEMI_MAX(c[0], DEMI_MAX(c[1], c[2]));
+        s[i] = demi_side_of(lo, hi, c[0] + c[1] + c[2] - lo - hi, i);
+    }
+    qsort(s, (size_t)all, sizeof *s, demi_side_compare);
+    for (i = 1; i < all; i++)
+        if (s[i].lo == s[i - 1].lo && s[i].hi == s[i - 1].hi && s[i].facet == s[i - 1].facet)
+            wall->sheet[s[i].side] = INT_MAX;
+}
 /* Sheets: facets that are joined by edges (segments: by ends) which two of them have, and which way
-   round each turns. 0 when memory ran out. */
+   round each turns. A triangle with the corners of an earlier one is of none: that stands for both.
+   0 when memory ran out. */
 static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
     const int n = demi_wall_per(wall), all = wall->element_count;
     demi_side *sides = (demi_side *)demi_alloc(w, (size_t)all*3, sizeof *sides);
@@ -7692,13 +7714,14 @@ static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
     int32_t *row = beside ? beside + 3*all : 0;
     int i, k, count = 0, rows, sheets = 0;
     wall->sheet = (int32_t *)demi_hold(w, DEMI_SCENE, (size_t)all, sizeof(int32_t));
+    if (n == 3 && sides && wall->sheet) demi_facets_copies(wall, sides);
     for (i = 0; i < all && sides && beside && wall->sheet; i++)
-        for (k = 0; k < n; k++) {
+        for (k = 0; k < n && !wall->sheet[i]; k++) {
             const int32_t *c = wall->corners + n*i;
             sides[count++] = demi_side_of(c[k], n == 3 ? c[(k + 1)%3] : c[k], i, k);
         }
-    for (i = 0; i < 3*all && beside; i++) beside[i] = -1;
     if (count) qsort(sides, (size_t)count, sizeof *sides, demi_side_compare);
+    for (i = 0; i < 3*all && beside; i++) beside[i] = -1;
     for (i = 0; i < count; i = k) {
         for (k = i + 1; k < count && sides[k].lo == sides[i].lo && sides[k].hi == sides[i].hi; k++)
             continue;
@@ -7726,6 +7749,7 @@ static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
             }
         }
     }
+    for (i = 0; i < all && count; i++) if (wall->sheet[i] == INT_MAX) wall->sheet[i] = 0;
     demi_free(w, sides);
     i = count && (n != 3 || demi_wall_borders(w, wall, beside));
     demi_free(w, beside);
@@ -9630,8 +9654,8 @@ static void demi_cross_index(dem_world *w) {
 }
 
 /* Places that one body may have with one wall at most: its candidates of domain d from k on, *end:
-   the first that is not theirs. A polyhedron has four of each way in which it touches, and four of
-   gaps; on a facet that ends on all sides there are four such ways. */
+   the first that is not theirs. A polyhedron has four of each way in which it touches (a facet's
+   two sides, its curtains), and four of each of gaps. */
 static int demi_places_of(const dem_world *w, int d, int k, int *end) {
     const int base = d*w->wall_stride, body = w->wall_body[base + k], id = w->wall_id[base + k];
     const demi_wall *wall = &w->walls[id];
@@ -9642,7 +9666,7 @@ static int demi_places_of(const dem_world *w, int d, int k, int *end) {
            w->wall_id[base + k] == id; k++) {
         const int32_t *cut = wall->cut_start ? wall->cut_start + w->wall_element[base + k] : 0;
         n += kind->most + (cut ? 2*(cut[1] - cut[0]) : 0);
-        flats += kind->corners ? 20 : 8*ways;
+        flats += kind->corners ? 4*ways + 4 : 8*ways;
     }
     if (kind->corners && !w->repeating) flats = DEMI_MIN(flats, 8*ways);
     *end = k;
@@ -14076,7 +14100,7 @@ static void demi_flats_add(demi_flats *f, int32_t element, const demi_pressure *
         f->press[f->count++] = *s;
     } else demi_pressure_add(&f->press[best], s);
 }
-/* m3; < 0: the body's centre is beyond. */
+/* Energy of all that is pressed, m3; < 0: the body's centre is beyond. */
 static double demi_flats_energy(const demi_flats *f) {
     double energy = 0;
     int i;
@@ -14103,6 +14127,7 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
         for (i = 0; i < seen[k].count && share[k] > 0; i++) {
             demi_pressure press = seen[k].press[i];
             demi_pressure_scale(&press, share[k]);
+            if (share[!k] > 0 && press.deep > 0.99) press.deep = 1;     /* cut in two: the end */
             demi_flats_add(out, seen[k].element[i], &press);
         }
 }
@@ -14502,7 +14527,7 @@ typedef struct demi_sheet {
     dem_vec3 x;
 } demi_sheet;
 /* Is element i of the list one of the sheet's? Then, which way its normal goes; 0: it is not. */
-DEM_INLINE int demi_sheet_way(const demi_sheet *t, int i) {
+DEM_INLINE int demi_sheet_turn(const demi_sheet *t, int i) {
     const int element = t->element[i];
     if (t->gap[i] > t->gone || demi_sheet_of(t->wall, element) != t->sheet) return 0;
     return t->wall->sheet[element] < 0 ? -t->way : t->way;
@@ -14517,17 +14542,15 @@ static const demi_border *demi_facet_border(const demi_wall *wall, int32_t side)
     }
     return lo < wall->border_count && wall->borders[lo].side == side ? &wall->borders[lo] : 0;
 }
-/* Half of the curtain of a side, from its corner at o to its middle c, down along m; in: roughly
-   its normal. */
+/* Half of the curtain of a side, from its corner at o to its middle c, down along m; way: along the
+   side, so that m x way is the curtain's normal. */
 static void demi_curtain_half(const demi_solid *s, const double *o, const double *c,
-                              const double *m, const double *in, demi_pressure *press) {
-    double by[3][2][3], e[3], n[3], along, size, way;
+                              const double *m, const double *way, demi_pressure *press) {
+    double by[3][2][3], e[3], n[3], along, size;
     int k;
     demi_sub3(c, o, e);
-    demi_cross3(e, m, n);
+    demi_cross3(m, way, n);
     if (!(demi_unit3(n) > 0)) return;
-    way = demi_dot3(n, in) < 0 ? -1 : 1;
-    for (k = 0; k < 3; k++) n[k] *= way;
     along = demi_dot3(e, m);
     size = demi_dot3(e, e);
     for (k = 0; k < 3; k++) {
@@ -14555,11 +14578,20 @@ static void demi_curtain_fold(const demi_solid *s, const double *c, const double
     }
     demi_solid_on_flat(s, n, demi_dot3(n, c), by, 2, 0, press);
 }
-/* The curtain at side k of element i, which ends there: from the side down along the sheet's
+/* Does the curtain at a side (3*element + side) reach over the plane of its element, n the normal,
+   where the sheet is folded sharply? */
+static int demi_curtain_bends(const demi_sheet *t, int32_t side, const double *n) {
+    const demi_border *mean = demi_facet_border(t->wall, side);
+    const dem_vec3 up = demi_v((dem_real)n[0], (dem_real)n[1], (dem_real)n[2]);
+    return mean && (demi_dot(mean->normal[0], up)*(dem_real)t->way < 0 ||
+                    demi_dot(mean->normal[1], up)*(dem_real)t->way < 0);
+}
+/* The curtain at a side (3*element + side) where its sheet ends: from there down along the sheet's
    normal, without end. What is beyond the sheet and within its curtains is closed and does not
    change as the body moves, so that energy is conserved. n: the element's normal. */
-static void demi_sheet_curtain(const demi_sheet *t, int i, int k, double (*sides)[2][3],
+static void demi_sheet_curtain(const demi_sheet *t, int32_t side, double (*sides)[2][3],
                                const double *n, const demi_solid *s, demi_pressure *press) {
+    const int k = side%3;
     const demi_border *mean;
     const double *end[2];
     double m[2][3], in[3], way[3], edge[3], c[3];
@@ -14574,7 +14606,7 @@ static void demi_sheet_curtain(const demi_sheet *t, int i, int k, double (*sides
         demi_solid_on_flat(s, in, demi_dot3(in, by[0][1]), by, 1, 0, press);
         return;
     }
-    mean = demi_facet_border(t->wall, 3*t->element[i] + k);
+    mean = demi_facet_border(t->wall, side);
     if (!mean) return;
     for (q = 0; q < 2; q++) {
         const dem_vec3 d = demi_scale(mean->normal[q], (dem_real)t->way);
@@ -14583,30 +14615,31 @@ static void demi_sheet_curtain(const demi_sheet *t, int i, int k, double (*sides
     }
     demi_sub3(end[1], end[0], edge);
     for (q = 0; q < 3; q++) c[q] = (end[0][q] + end[1][q])/2;
-    for (q = 0; q < 2; q++) demi_curtain_half(s, end[q], c, m[q], in, press);
-    demi_cross3(in, n, way);                    /* n x way = in: from which corner to which */
-    q = demi_dot3(way, edge) < 0;
+    demi_cross3(in, n, way);                    /* n x way = in */
+    for (q = 0; q < 2; q++) demi_curtain_half(s, end[q], c, m[q], way, press);
+    q = demi_dot3(way, edge) < 0;               /* from which corner to which */
     demi_curtain_fold(s, c, m[q], m[!q], press);
 }
 /* All of a sheet with its curtains. */
-static void demi_sheet_press(const demi_sheet *t, const demi_solid *s, demi_flats *flats) {
+static void demi_sheet_seen(const demi_sheet *t, const demi_solid *s, demi_flats *flats) {
     demi_pressure press;
     double sides[3][2][3], n[3], at;
-    int i, k, count, ends;
+    int i, k, count, ends, beyond;
     for (i = 0; i < t->count; i++) {
-        const int element = t->element[i], way = demi_sheet_way(t, i);
+        const int element = t->element[i], way = demi_sheet_turn(t, i);
         const dem_real *plane = t->wall->planes + 4*element;
         const dem_real off = demi_dot(demi_at(plane), t->x) - plane[3];
         if (!way || DEMI_ABS(off) > t->within + t->wall->plane_slack) continue;
         count = demi_facet_sides(t->wall, element, t->x, way, n, &at, sides);
-        if (!count || !(demi_dot3(n, s->corner[demi_solid_far(s, n)]) > at)) continue;
+        if (!count) continue;
         ends = demi_facet_ends(t->wall, element);
+        beyond = demi_dot3(n, s->corner[demi_solid_far(s, n)]) > at;
         memset(&press, 0, sizeof press);
-        demi_solid_on_flat(s, n, at, sides, count, 0, &press);
-        demi_flats_add(flats, element, &press);
+        if (beyond) demi_solid_on_flat(s, n, at, sides, count, 0, &press);
+        if (beyond) demi_flats_add(flats, element, &press);
         for (k = 0; k < count; k++) {
-            if (!(ends >> k & 1)) continue;
-            demi_sheet_curtain(t, i, k, sides, n, s, &press);
+            if (!(ends >> k & 1) || !(beyond || demi_curtain_bends(t, 3*element + k, n))) continue;
+            demi_sheet_curtain(t, 3*element + k, sides, n, s, &press);
             demi_flats_add(flats, element, &press);
         }
     }
@@ -14625,7 +14658,7 @@ static void demi_sheets_press(const demi_sheets *sheets, demi_sheet *t, const de
         for (k = 0; k < 2; k++) {
             t->way = k ? -sheets->way[i] : sheets->way[i];
             seen[k].count = 0;
-            if (!k || seen[0].count) demi_sheet_press(t, s, &seen[k]);
+            if (!k || seen[0].count) demi_sheet_seen(t, s, &seen[k]);
         }
         demi_flats_sides(seen, flats);
     }
@@ -14662,7 +14695,7 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
         sheet.count = end - k;
         sheet.x = x;
         for (from = k; wall->sheet && !impulsive && from < end; from++)
-            if (!(w->wall_gap[base + from] > gone))
+            if (!(w->wall_gap[base + from] > gone) && wall->sheet[w->wall_element[base + from]])
                 demi_sheets_add(&sheets, wall, w->wall_element[base + from], x,
                                 (double)sheet.within);
         demi_sheets_press(&sheets, &sheet, &s, &flats);
@@ -14670,7 +14703,7 @@ static int demi_flat_polyhedron(const dem_world *w, int d, int first, int last, 
             const int32_t element = w->wall_element[base + k];
             const int which = impulsive || !wall->sheet ? -1
                 : demi_sheets_which(&sheets, wall, element);
-            if (w->wall_gap[base + k] > gone) continue;
+            if (w->wall_gap[base + k] > gone || (wall->sheet && !wall->sheet[element])) continue;
             if (!impulsive && (which < 0 || !sheets.ends[which])) {
                 way = wall->sheet ? demi_sheets_way(&sheets, wall, element, x) : 1;
                 demi_solid_on_element(wall, element, &s, x, way, &press);
@@ -16438,12 +16471,16 @@ static double demi_wall_r_eff(const demi_wall *wall, double r) {
         return r*sqrt(q/(r + q));
     return r;
 }
-/* A sheet, which pushes to both sides, pushes a ball on once its centre is through. Then contact c
+/* A sheet, which pushes to both sides, pushes a body on once its centre is through. Then contact c
    has turned round within a step, and nothing is left of the one before: its overlap is what is
-   seen from there. old: those the body had; fresh: all it has with this wall now. */
+   seen from there. Not at the end of a sheet, where a polyhedron is pushed to both sides for a
+   while. old: those the body had; fresh: all it has with this wall now. */
 static void demi_kept_through(const demi_kept *old, int olds, const demi_kept *fresh, int count,
                               demi_kept *c) {
     int e, i;
+    for (e = 0; e < olds && c->corners; e++)
+        if (old[e].b < 0 && old[e].wall == c->wall && old[e].part_a == c->part_a &&
+            demi_dot(old[e].normal, c->normal) > DEM_R(0.5)) return;
     for (e = 0; e < olds && c->deep < 1; e++) {
         if (old[e].b >= 0 || old[e].wall != c->wall || old[e].part_a != c->part_a ||
             old[e].deep + c->deep < 1 || demi_dot(old[e].normal, c->normal) > DEM_R(-0.5))
