@@ -14118,6 +14118,8 @@ static void demi_flats_sides(const demi_flats *seen, demi_flats *out) {
     int i, k;
     share[1] = a < 0 || b < 0 ? a < 0 : 3*b < a;
     share[0] = 1 - share[1];
+    /* the centre is beyond: what is seen from the one side is at least what is left on the other */
+    if ((a < 0 && -2*a < b) || (b < 0 && -2*b < a)) share[0] = share[1] = 0;
     if (a > 0 && b > 0 && 3*a > b && 3*b > a) {
         const double t = 4*a/all - 2, g = (3 - t*t)/8;      /* dg/dq = -t */
         share[0] = g - t*b/all;
@@ -14413,14 +14415,15 @@ static int demi_wall_places(const dem_world *w, const demi_flats *flats, demi_ga
     return pressed + demi_gaps_places(w, gaps, R, share, part, at, shift, out, pressed,
                                       out + pressed);
 }
-/* Sides of an element where its surface ends: bits. Not where another lies along part of it. */
+/* Sides of an element where its sheet ends: bits. There it is alone, or one of three or more; not
+   where another lies along part of it. */
 static int demi_facet_ends(const demi_wall *wall, int e) {
     const int n = demi_wall_per(wall), edges = wall->element_count;
     int k, open = 0;
     for (k = 0; k < n; k++) {
         const dem_real count = wall->weight[n == 3 ? edges + wall->edges[3*e + k]
                                             : edges + wall->edge_count + wall->corners[2*e + k]];
-        open |= !(count < 0 || count > 0) << k;
+        open |= (!(count < 0 || count > 0) || count < DEM_R(-1.5)) << k;
     }
     for (k = wall->cut_start ? wall->cut_start[e] : 0;
          wall->cut_start && k < wall->cut_start[e + 1]; k++) open &= ~(1 << wall->cuts[k].side);
