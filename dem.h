@@ -7658,7 +7658,7 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
     for (i = 0; i < 3*all; i++) count += demi_side_ends(wall, beside, i);
     wall->border_count = count;
     wall->borders = (demi_border *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MAX(count, 1),
-                                       sizeof *wall->borders);
+                                             sizeof *wall->borders);
     if (!first || !wall->borders) { demi_free(w, first); return 0; }
     memset(first, 0, (size_t)(points + 2)*sizeof *first);
     for (i = 0; i < 3*all; i++) first[wall->corners[i] + 2]++;
@@ -7683,7 +7683,7 @@ static int demi_wall_borders(dem_world *w, demi_wall *wall, const int32_t *besid
                 e->normal[k] = demi_add(e->normal[k], demi_scale(
                     demi_at(wall->planes + 4*(at[c]/3)), (dem_real)(sheet < 0 ? -angle : angle)));
             }
-            e->normal[k] = demi_unit(e->normal[k]);
+            if (demi_dot(e->normal[k], e->normal[k]) > 0) e->normal[k] = demi_unit(e->normal[k]);
         }
     }
     demi_free(w, first);
