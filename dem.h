@@ -15089,7 +15089,7 @@ static void demi_solid_on_generator(const demi_solid *s, const demi_generator *l
     angle[count] = angle[0] + 2*DEMI_PI;
     for (i = 0; i <= count; i++) {
         const double width = i < count ? angle[i + 1] - angle[i] : 0, had = press.sum;
-        const int pieces = 1 + (int)(width/0.4);
+        const int pieces = 1 + (int)(width/0.2);
         for (f = 0; f < pieces && (!f || press.sum > had); f++)     /* none of its lines, or all */
             for (k = 0; k < 4 && width > 1e-15; k++)
                 demi_generator_press(s, l, angle[i] + (f + at[k])*width/pieces,
