@@ -50,7 +50,7 @@ static dem_vec3 stone_place(stone_target target, int i) {
     return target == in_tube || target == on_tube ? at(0, 0, 24.0*i) : at(24.0*(i%12), 24.0*(i/12), 0);
 }
 /* Those that take long. */
-static int stone_slow(stone_target target) {
+static int stone_slow(int target) {
     return target == on_weave || target == on_holes || target == on_rounds || target == on_rim;
 }
 /* A surface of triangles without thickness about c: a ridge of two slopes, one turned the other way; an upright sheet; a
