@@ -14,8 +14,8 @@ typedef enum stone_target { on_stone, on_floor, in_tube, on_tube, on_roof, on_pa
 static const char *const stone_target_name[stone_targets] = {"its like", "a plane", "the inside of a tube", "a tube",
                                                              "a roof of triangles", "a union", "a weave of wires",
                                                              "a plate with square holes", "a plate with round holes",
-                                                             "the edge of an upright sheet", "the end of a pipe without "
-                                                             "thickness", "a hood of triangles"};
+                                                             "the edge of an upright sheet", "the end of a thin pipe",
+                                                             "a hood of triangles"};
 enum { stone_lanes = 120, stone_shapes = 12 };
 typedef struct stone_lane { dem_body a, b; double before; } stone_lane;
 typedef struct stone_sum { int hits, gaining; double worst, elastic; } stone_sum;
