@@ -2736,13 +2736,14 @@ typedef struct demi_kept {
     dem_real inset;                /* the normal force passes at this part of arm_a */
     dem_vec3 spread;               /* m, from the centre of pressure to this corner */
     dem_real couple;               /* m: moment about the normal, over the normal force */
-    dem_real r_eff, m_eff;         /* m, kg */
+    dem_real r_eff, m_eff;         /* m; kg, of a sphere on a wall; else 0, see: */
+    dem_vec3 felt_a, felt_b;       /* m, arms by which the mass goes that dashpots feel */
     double lambda;                 /* of Perram and Wertheim, where to begin next; 0: unknown */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as above */
     /* what goes from step to step: respond writes it, touch does not */
-    dem_real coef[DEMI_COEFS];     /* for the next two: worked out anew when they change */
-    dem_real coef_r, coef_m;       /* m, kg; 0: none yet */
+    dem_real coef[DEMI_COEFS];     /* for coef_r, m: worked out anew when it changes; 0: none yet */
+    dem_real coef_r, root[2];      /* what goes by sqrt(m_eff), see demi_coefficients_rooted */
     dem_real memory[DEMI_MEMORY];
 } demi_kept;
 
@@ -2768,6 +2769,7 @@ typedef struct demi_domain {
     int contacts;                  /* of bodies with bodies */
     int kept, kept_next;           /* contacts kept by themselves: now; being found */
     int kept_walls;                /* those of them with walls */
+    int kept_same;                 /* where touch looks first for one of a step ago */
     int touching_first;            /* where its places in touching_ begin */
     int overflow;                  /* a list ran out of room while being built: 1: pairs inside, 2:
                                       pairs leading out, 4: walls, 8: near pairs, 16: kept */
@@ -3554,40 +3556,43 @@ enum {
     DEMI_SPRUNG = 8,               /* rolling that the time step must resolve */
     DEMI_SIZED = 16                /* asks for r_eff or m_eff, which others find to be NaN */
 };
-/* What a normal law's coefficients are made of: moduli (Pa), radius (m), mass (kg), damping ratio
-   of one contact, and the speed (m/s) of a likely impact. M: kg, the mass that a stiffness may
-   follow: it stays as it is while two bodies touch, where m turns with a body that is no sphere;
-   a stiffness that did so would make energy (up to 0.1 of an impact's). */
+/* What a normal law's coefficients are made of: moduli (Pa), radius (m), damping ratio of one
+   contact, and the speed (m/s) of a likely impact. M: kg, the mass that a stiffness may follow: it
+   stays as it is while two bodies touch, where the mass m that a contact feels turns with a body
+   that is no sphere; a stiffness that did so would make energy (up to 0.1 of an impact's). Dashpots
+   follow m, all as its root: cn + cn_root sqrt(m), and ct likewise. */
 typedef struct demi_scales {
-    double E, G, R, m, M, beta, speed;
+    double E, G, R, M, beta, speed;
     const dem_pair *pair;
 } demi_scales;
-typedef struct demi_coefs { double kn, cn, kt, ct, kun, kad; } demi_coefs;
+typedef struct demi_coefs { double kn, cn, kt, ct, kun, kad, cn_root, ct_root; } demi_coefs;
 /* F = kn d^(3/2) + cn d^(1/4) v,  kn = 4/3 E* sqrt(R*),  cn = 2 sqrt(5/6) beta sqrt(2 E* sqrt(R*)
    m*),  kt = 8 G* sqrt(R*) (times d^(1/2)),  ct = 2 sqrt(5/6) beta sqrt(8 G* sqrt(R*) m*)
    [TSU92, MIL] */
 static void demi_coefs_hertz(const demi_scales *s, demi_coefs *k) {
     const double root = sqrt(s->R);
     k->kn = 4*s->E*root/3;
-    k->cn = 2*sqrt(5.0/6)*s->beta*sqrt(2*s->E*root*s->m);
+    k->cn_root = 2*sqrt(5.0/6)*s->beta*sqrt(2*s->E*root);
     k->kt = 8*s->G*root;
-    k->ct = 2*sqrt(5.0/6)*s->beta*sqrt(8*s->G*root*s->m);
+    k->ct_root = 2*sqrt(5.0/6)*s->beta*sqrt(8*s->G*root);
 }
 /* F = kn d + cn v,  kn = (320/81 M v^2 E*^4 R*^2)^(1/5) [DIM04] unless given,
    cn = 2 beta sqrt(kn m*) unless given,  kt = ratio kn,  ct = 2 beta sqrt(kt m*) */
 static void demi_coefs_linear(const demi_scales *s, demi_coefs *k) {
-    const double E = s->E, R = s->R, m = s->m, M = s->M, v = s->speed;
+    const double E = s->E, R = s->R, M = s->M, v = s->speed;
     const dem_pair *p = s->pair;
     k->kn = p->stiffness > 0 ? (double)p->stiffness : demi_pow(320.0/81*M*v*v*E*E*E*E*R*R, 0.2);
-    k->cn = p->normal_damping > 0 ? (double)p->normal_damping : 2*s->beta*sqrt(k->kn*m);
+    if (p->normal_damping > 0) k->cn = (double)p->normal_damping;
+    else k->cn_root = 2*s->beta*sqrt(k->kn);
     k->kt = k->kn*(double)p->stiffness_ratio;
-    k->ct = 2*s->beta*sqrt(k->kt*m);
+    k->ct_root = 2*s->beta*sqrt(k->kt);
 }
 /* kn, kt, ct as linear,  kun = kn/e^2 ([ALK07] eq 2.43),  kad as given,  cn = 0 unless given */
 static void demi_coefs_hysteretic(const demi_scales *s, demi_coefs *k) {
     const double e = (double)s->pair->restitution;
     demi_coefs_linear(s, k);
     k->cn = (double)s->pair->normal_damping;
+    k->cn_root = 0;
     k->kun = k->kn/(e*e);
     k->kad = (double)s->pair->stiffness_adhesion;
 }
@@ -3714,11 +3719,6 @@ DEM_INLINE void demi_contact_usual(dem_contact *c) {
 static int demi_laws_usual(const dem_world *w) {
     return w->desc.tension == DEM_TENSION_KEPT && w->desc.friction_load == DEM_LOAD_PUSH &&
            w->desc.slider == DEM_SLIDER_SHARED;
-}
-DEM_INLINE void demi_contact_choices(const dem_world *w, dem_contact *c) {
-    c->tension = (int)w->desc.tension;
-    c->friction_load = (int)w->desc.friction_load;
-    c->slider = (int)w->desc.slider;
 }
 /* The normal force of one contact alone, N; the user's own law is not asked. */
 DEM_INLINE dem_real demi_law_normal(const dem_world *w, const dem_contact *c, dem_real *memory,
@@ -3995,31 +3995,35 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     return DEM_OK;
 }
 
-/* The coefficients of one contact: its law's (>>laws), and what holds for all.
+/* The coefficients of one contact: its law's (>>laws), and what holds for all; cn and ct without
+   what goes by the root of the mass m*: `root`, for normal and tangent, per sqrt(kg).
    DEM_CONVENTION_MILL keeps the thesis's habits: E* = E of one body, 8 G of one body, half overlaps
-   between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff, m_eff: the
-   standard ones; stiff: kg, what a stiffness follows. Checked by "the thesis's eight coefficients".
+   between grains (folded into the coefficients here), R/2 and m/2 against walls. r_eff: the
+   standard one; stiff: kg, what a stiffness follows. Checked by "the thesis's eight coefficients".
    */
-static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff,
-                              double stiff, int wall, dem_real *out) {
+static void demi_coefficients_rooted(const dem_world *w, int a, int b, double r_eff, double stiff,
+                                     int wall, dem_real *out, dem_real *root) {
     const dem_pair *p = &w->pairs[a*DEMI_MATERIALS + b].given;
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
-    demi_scales s = {(double)p->young_eff, (double)p->shear_eff, r_eff, m_eff, stiff, 0, 1, p};
-    demi_coefs k = {0, 0, 0, 0, 0, 0};
+    demi_scales s = {(double)p->young_eff, (double)p->shear_eff, r_eff, stiff, 0, 1, p};
+    demi_coefs k = {0, 0, 0, 0, 0, 0, 0, 0};
+    double half = 1;
     s.beta = w->pairs[a*DEMI_MATERIALS + b].damping;
     if (w->desc.impact_speed > 0) s.speed = (double)w->desc.impact_speed;
     if (mill) {  /* material b's own moduli: the wall's, or the grain's */
         const dem_material_desc *d = &w->materials[b];
         s.E = (double)d->young;
         s.G = s.E/(2*(1 + (double)d->poisson));
-        if (wall) { s.R /= 2; s.m /= 2; s.M /= 2; }
+        if (wall) { s.R /= 2; s.M /= 2; half = sqrt(0.5); }
     }
     demi_normal_laws[w->desc.normal_law].coefs(&s, &k);
     if (mill && !wall && demi_normal_is(w, DEMI_HERTZIAN)) {   /* of half the overlap */
+        const double fourth = demi_pow(0.5, 0.25);
         k.kn *= demi_pow(0.5, 1.5); k.kt *= sqrt(0.5);
-        k.cn *= demi_pow(0.5, 0.25); k.ct *= demi_pow(0.5, 0.25);
+        k.cn *= fourth; k.ct *= fourth; k.cn_root *= fourth; k.ct_root *= fourth;
     }
     k.ct *= (double)p->tangent_damping;
+    k.ct_root *= (double)p->tangent_damping;
     out[DEMI_KN] = (dem_real)k.kn; out[DEMI_CN] = (dem_real)k.cn;
     out[DEMI_KT] = (dem_real)k.kt; out[DEMI_CT] = (dem_real)k.ct;
     out[DEMI_K_UN] = (dem_real)k.kun; out[DEMI_K_AD] = (dem_real)k.kad;
@@ -4027,6 +4031,17 @@ static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, do
     out[DEMI_MU_STATIC] = demi_static_friction(w, a, b);
     out[DEMI_MU_ROLL] = p->rolling_friction;
     out[DEMI_R_EFF] = (dem_real)r_eff;
+    root[0] = (dem_real)(half*k.cn_root);
+    root[1] = (dem_real)(half*k.ct_root);
+}
+/* All of them; m_eff: the standard mass. */
+static void demi_coefficients(const dem_world *w, int a, int b, double r_eff, double m_eff,
+                              double stiff, int wall, dem_real *out) {
+    const dem_real m = (dem_real)sqrt(m_eff);
+    dem_real root[2];
+    demi_coefficients_rooted(w, a, b, r_eff, stiff, wall, out, root);
+    out[DEMI_CN] += root[0]*m;
+    out[DEMI_CT] += root[1]*m;
 }
 
 /* Duration of an undamped contact at an impact speed: Hertz 2.94327518 delta_max/v, linear pi
@@ -9754,7 +9769,7 @@ static void demi_kept_move(dem_world *w, const int *first) {
                 for (i = 0; i < w->memory_stride; i++)
                     if (w->vector_mask >> i & 1) c.memory[i] = -c.memory[i];
             }
-            c.coef_m = 0;                       /* materials may have changed */
+            c.coef_r = 0;                       /* materials may have changed */
             if (!pair && !demi_shape_of(w, c.a)) c.m_eff = w->bodies.mass[c.a];
             w->kept_next[e++] = c;
         }
@@ -9969,6 +9984,39 @@ static dem_real demi_near_cut(const dem_world *w, int a, int b) {
     return (dem_real)(w->margin.reach + w->margin.slack) +
         (dem_real)w->margin.span*demi_approach(w, a, b);
 }
+/* A body's spheres about its centre, rows of centre and radius, and how many; lone: for that of a
+   sphere. 0: it is of other parts. */
+DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, dem_real *lone, int *count) {
+    const demi_shape *shape = demi_shape_of(w, body);
+    *count = shape ? shape->count : 1;
+    if (shape) return shape->count ? demi_centres_of(w, body) : 0;
+    lone[0] = lone[1] = lone[2] = 0;
+    lone[3] = w->bodies.pos[4*body + 3];
+    return lone;
+}
+/* Are two bodies, or parts of them, nearer than `cut`, m? */
+static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *shift, dem_real cut) {
+    const dem_vec3 r = demi_add(demi_sub(demi_at(w->bodies.pos + 4*b),
+                                         demi_at(w->bodies.pos + 4*a)), demi_at(shift));
+    const dem_real far_b = w->bodies.pos[4*b + 3] + cut;
+    dem_real lone[2][4];
+    const dem_real *x, *y;
+    int na, nb, i, j;
+    x = demi_balls_of(w, a, lone[0], &na);
+    y = demi_balls_of(w, b, lone[1], &nb);
+    if (!x || !y) return demi_bodies_gap(w, a, b, shift, cut) < cut;
+    for (i = 0; i < na; i++, x += 4) {
+        const dem_vec3 to = demi_sub(r, demi_at(x));
+        const dem_real all = x[3] + far_b;
+        if (!(demi_dot(to, to) < all*all)) continue;
+        for (j = 0; j < nb; j++) {
+            const dem_vec3 gap = demi_add(to, demi_at(y + 4*j));
+            const dem_real near_by = x[3] + y[4*j + 3] + cut;
+            if (demi_dot(gap, gap) < near_by*near_by) return 1;
+        }
+    }
+    return 0;
+}
 /* The same for pairs that are not of two spheres: by the distance of their surfaces. */
 static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p) {
@@ -9981,7 +10029,7 @@ static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin,
         if (!demi_shape_of(w, a) && !demi_shape_of(w, b)) continue;
         cut = demi_near_cut(w, a, b);
         out[p] = k;
-        p += demi_bodies_gap(w, a, b, w->image_shift + list->image[k], cut) < cut;
+        p += demi_bodies_near(w, a, b, w->image_shift + list->image[k], cut);
     }
     return k < end ? -1 : p;
 }
@@ -11877,8 +11925,7 @@ DEM_INLINE void demi_tangent_energy(demi_tile *DEMI_RESTRICT t, int q, const dem
     t->part[3][q] = f->energy.slide*t->touch[q];
     t->part[4][q] = f->energy.shear_stored*t->touch[q];
 }
-/* What a law has put into its answer, for the next; `all`: 1: also what only some of them ask for,
-   2: and energies. */
+/* What a law has answered, for the next; `all`: 1: also what only some ask for, 2: and energies. */
 DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
                                 int all) {
     t->repulsion[q] = f->normal;
@@ -12142,33 +12189,45 @@ static demi_stage demi_whole_stage(const dem_world *w, int alike) {
 #endif
     return 0;
 }
-/* What the laws in force ask of a run: what is fetched, and which stages. dt 0: looking only.
-   Bits of pairs of alike bodies are the same either way. */
-static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
-    const demi_laws *laws = &w->laws;
-    const demi_stage whole = demi_whole_stage(w, alike);
-    const int own = w->desc.law != 0;
-    const int turns = laws->tangent->law != 0, rolls = laws->rolling->law != 0;
+/* The stages of the laws in force, from stage k on; answers where they end. */
+static int demi_run_laws(const dem_world *w, demi_run *r, int k) {
+    const demi_stage_row *normal = &demi_normal_stages[w->normal];
+    const demi_stage_row *tangent = &demi_tangent_stages[w->effects.tangent];
     const int all = w->desc.ledger || !demi_laws_usual(w);
+    r->stage[k++] = all ? normal->all : demi_laws_precise(w) ? normal->precise : normal->common;
+    if (w->laws.tangent->law) r->stage[k++] = all ? tangent->all : tangent->common;
+    if (w->laws.rolling->law) r->stage[k++] = demi_rolling_stages[w->effects.rolling].common;
+    return k;
+}
+/* What the laws in force ask of a run, but for its stages. dt 0: looking only. */
+static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
+    const demi_laws *laws = &w->laws;
+    const int own = w->desc.law != 0, rolls = laws->rolling->law != 0;
     demi_run r;
-    int k = 0;
     memset(&r, 0, sizeof r);
     r.w = w;
-    r.alike = alike;
-    r.ledger = w->desc.ledger;
-    r.keep = w->memory_stride;
-    r.turning = own || turns || rolls;
-    r.parting = own || rolls || (r.turning && !r.alike);
+    r.ledger = w->desc.ledger; r.keep = w->memory_stride;
+    r.turning = own || rolls || laws->tangent->law;
+    r.parting = own || rolls;
     r.following = own || laws->tangent->vectors || laws->rolling->vectors;
     r.ranged = w->margin.reach > 0;
     r.same.range = w->desc.law_range;
     r.same.range_radii = w->desc.law_range_radii;
-    r.same.at_rolling = laws->at_rolling;
-    r.same.at_normal = laws->at_normal;
+    r.same.at_rolling = laws->at_rolling; r.same.at_normal = laws->at_normal;
     r.same.tension = (int)w->desc.tension;
     r.same.friction_load = (int)w->desc.friction_load;
     r.same.slider = (int)w->desc.slider;
     r.same.dt = dt;
+    return r;
+}
+/* The run of two spheres' contacts. Bits of pairs of alike bodies are the same either way. */
+static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
+    const demi_stage whole = demi_whole_stage(w, alike);
+    const int rolls = w->laws.rolling->law != 0;
+    demi_run r = demi_run_begin(w, dt);
+    int k = 0;
+    r.alike = alike;
+    r.parting |= r.turning && !alike;
     r.same.radius = w->effects.species[0].radius;
     r.same.inv_radius = 1/r.same.radius;
     r.stage[k++] = r.ranged ? demi_stage_mixed_ranged
@@ -12176,19 +12235,13 @@ static demi_run demi_run_of(const dem_world *w, dem_real dt, int alike) {
         : r.turning ? r.alike ? demi_stage_alike_turning : demi_stage_mixed_turning
         : r.alike ? demi_stage_alike_bare : demi_stage_mixed_bare;
     if (whole) { r.stage[k] = whole; return r; }
-    r.stage[k++] = all ? demi_normal_stages[w->normal].all
-        : demi_laws_precise(w) ? demi_normal_stages[w->normal].precise
-        : demi_normal_stages[w->normal].common;
-    if (turns) r.stage[k++] = all ? demi_tangent_stages[w->effects.tangent].all
-                                  : demi_tangent_stages[w->effects.tangent].common;
-    if (rolls) r.stage[k++] = demi_rolling_stages[w->effects.rolling].common;
+    k = demi_run_laws(w, &r, k);
     r.stage[k] = !r.turning ? demi_stage_answer_bare
         : rolls ? r.alike ? demi_stage_answer_alike_rolling : demi_stage_answer_mixed_rolling
         : r.alike ? demi_stage_answer_alike : demi_stage_answer_mixed;
     return r;
 }
-/* Rows that no stage of the run fills: coefficients that are the same for all pairs, friction of
-   none. */
+/* Rows that no stage fills: coefficients that are the same for all pairs, friction of none. */
 static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
     const demi_domain *domain = &w->domains[d];
     const int first = demi_near_first(domain);
@@ -12317,8 +12370,7 @@ DEM_INLINE void demi_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                      t->torque[second][2][q]);
     }
 }
-/* Forces of a tile go to both bodies, pair after pair in the order of the list: sums of several
-   reals depend on their order, which therefore never changes. */
+/* Forces of a tile to both bodies, in the order of the list: it decides the bits of their sums. */
 static void demi_tile_scatter(demi_tile *DEMI_RESTRICT t, const demi_span *span,
                               const demi_run *r, dem_real *DEMI_RESTRICT force,
                               dem_real *DEMI_RESTRICT torque) {
@@ -12370,6 +12422,8 @@ static void demi_pairs(dem_world *w, int d) {
     DEMI_ALIGNED demi_tile tile;
     demi_tally tally = {0, 0};
     int l, p;
+    domain->contacts = 0;
+    if (domain->near_own <= 0 && domain->near_end <= domain->near_cross) return;
     run[0] = demi_run_of(w, dt, 0);
     run[1] = demi_run_of(w, dt, 1);
     demi_tile_begin(w, d, &tile);
@@ -15985,11 +16039,17 @@ static demi_kept *demi_kept_new(dem_world *w, int d) {
    part and element, among those that body a had; -1: none. */
 DEM_INLINE int demi_kept_same(const dem_world *w, int d, const demi_kept *old, int olds, int b,
                               int part_a, int part_b, int wall, int element, int corner) {
-    int i;
-    for (i = 0; i < olds; i++)
+    const int first = (int)(old - demi_kept_of(w, d));
+    int *next = &w->domains[d].kept_same, n, i = *next - first;
+    if (i < 0 || i >= olds) i = 0;              /* mostly it is the one after the last */
+    for (n = 0; n < olds; n++) {
         if (old[i].element == element && old[i].wall == wall && old[i].part_a == part_a &&
-            old[i].b == b && old[i].part_b == part_b && old[i].corner == corner)
-            return (int)(old - demi_kept_of(w, d)) + i;
+            old[i].b == b && old[i].part_b == part_b && old[i].corner == corner) {
+            *next = first + i + 1;
+            return first + i;
+        }
+        if (++i == olds) i = 0;
+    }
     return -1;
 }
 /* The same for a polyhedron's contact with a wall by springs: round walls, wires and holes are one
@@ -16052,16 +16112,6 @@ static int demi_kept_slid(const dem_world *w, int d, const demi_kept *old, int o
     }
     return best;
 }
-/* 1/mass that a force along n through arm feels at a body: 1/m + (arm x n).I^-1 (arm x n). */
-static double demi_inverse_mass_at(const dem_world *w, int body, dem_vec3 arm, dem_vec3 n) {
-    const double inv = (double)w->bodies.inv_mass[body];
-    const dem_real *I = w->bodies.orienting ? w->bodies.moment + 4*body : 0;
-    dem_vec3 t;
-    if (!(inv > 0) || !demi_shape_of(w, body)) return inv;
-    t = dem_quat_unrotate(demi_quat_at(w->bodies.orient + 4*body), demi_cross(arm, n));
-    return inv + (double)(t.x*t.x/I[0] + t.y*t.y/I[1] + t.z*t.z/I[2]);
-}
-
 /* How far two contacts of one pair push the same way, t: 1 within 25 degrees, 0 beyond 45. *rate:
    how t changes with the cosine between their normals. Those of one part are not shared: they are
    counted already, by what they weigh. */
@@ -16167,21 +16217,21 @@ static int demi_is_cluster(const dem_world *w, int body) {
    s U'), so that mu is the ratio of both sums. Checked by "a cluster that lands on one, two and
    three spheres" and tests/test_facets.c. */
 static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
-    const int one = n > 0 && w->desc.cluster_contacts == DEM_SHARING_ONE &&
+    const int one = n > 1 && w->desc.cluster_contacts == DEM_SHARING_ONE &&
         (demi_is_cluster(w, c->a) || (c->b >= 0 && demi_is_cluster(w, c->b)));
     int i, j;
     for (i = 0; i < n; i++) {
-        const dem_real d2 = c[i].overlap > 0 ? c[i].overlap*c[i].overlap : 1;
-        /* polyhedra: where the pressure's middle is */
-        const dem_vec3 own_a = demi_sub(c[i].arm_a, c[i].spread);
-        const dem_vec3 own_b = demi_sub(c[i].arm_b, c[i].spread);
-        dem_vec3 arm_a = demi_scale(own_a, d2), arm_b = demi_scale(own_b, d2);
+        const dem_real d2 = c[i].overlap*c[i].overlap;
+        dem_vec3 arm_a, arm_b;
         dem_real A = d2, rate;
-        double give;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
-        c[i].m_eff = w->bodies.mass[c[i].a];
-        if (!demi_kept_asked(w, &c[i])) continue;               /* pushes nobody */
-        for (j = 0; j < n && one && c[i].overlap > 0; j++) {
+        /* polyhedra: where the pressure's middle is */
+        c[i].felt_a = demi_sub(c[i].arm_a, c[i].spread);
+        c[i].felt_b = demi_sub(c[i].arm_b, c[i].spread);
+        if (!one || !(c[i].overlap > 0)) continue;
+        arm_a = demi_scale(c[i].felt_a, d2);
+        arm_b = demi_scale(c[i].felt_b, d2);
+        for (j = 0; j < n; j++) {
             const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0) || !(c[j].overlap > 0)) continue;
@@ -16192,17 +16242,11 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
         c[i].added = A/d2 - 1;
         c[i].area = d2*demi_kept_room_of(c[i].added, &c[i].rate);
         c[i].share = c[i].weight*d2/c[i].area;
-        if (!(A > d2/2)) {                      /* others take away: its own place will do */
-            A = d2;
-            arm_a = demi_scale(own_a, d2);
-            arm_b = demi_scale(own_b, d2);
-        }
-        give = demi_inverse_mass_at(w, c[i].a, demi_scale(arm_a, 1/A), c[i].normal);
-        if (c[i].b >= 0)
-            give += demi_inverse_mass_at(w, c[i].b, demi_scale(arm_b, 1/A), c[i].normal);
-        c[i].m_eff = (dem_real)(1/give);
+        if (!(A > d2/2)) continue;              /* others take away: its own place will do */
+        c[i].felt_a = demi_scale(arm_a, 1/A);
+        c[i].felt_b = demi_scale(arm_b, 1/A);
     }
-    if (one && n > 1) demi_kept_lift(w, c, n);
+    if (one) demi_kept_lift(w, c, n);
 }
 
 /* What grip of a step ago comes to each of some contacts that are one body's with one other or with
@@ -16315,16 +16359,6 @@ static int demi_kept_parts(dem_world *w, int d, int a, int b, int send, const de
     else if (spots.count ? !demi_kept_points(w, d, c, p, q, &spots, old, olds)
              : c->corners && !demi_kept_spread(w, d, c, old, olds)) return 0;
     return 1;
-}
-/* A body's spheres about its centre, rows of centre and radius, and how many; lone: for that of a
-   sphere. 0: it is of other parts. */
-DEM_INLINE const dem_real *demi_balls_of(const dem_world *w, int body, dem_real *lone, int *count) {
-    const demi_shape *shape = demi_shape_of(w, body);
-    *count = shape ? shape->count : 1;
-    if (shape) return shape->count ? demi_centres_of(w, body) : 0;
-    lone[0] = lone[1] = lone[2] = 0;
-    lone[3] = w->bodies.pos[4*body + 3];
-    return lone;
 }
 /* Two spheres of near bodies, from their rows; to: from that of a to b's centre. Most do not touch.
    0: no room. */
@@ -16550,19 +16584,37 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         if (!(c->share > 0)) c->overlap = c->deep = 0;
     }
 }
+/* Is a ball clear of what its body may touch of a wall? Told at once for a plane, which most balls
+   of a cluster beside it are clear of; 0: to be looked at. */
+DEM_INLINE int demi_ball_clear(const dem_world *w, int candidate, int count, dem_vec3 at,
+                               dem_real r) {
+    const demi_wall *wall = &w->walls[w->wall_id[candidate]];
+    const dem_real *R = wall->pose.rotation;
+    dem_vec3 x;
+    if (wall->kind != DEMI_WALL_PLANE || count > 1) return 0;
+    x = demi_sub(demi_add(at, demi_at(w->wall_shift + 3*(size_t)candidate)), wall->pose.position);
+    return R[2]*x.x + R[5]*x.y + R[8]*x.z > (r + demi_range(w, r))*DEM_R(1.001);
+}
 /* Of one body with one wall. */
 static DEMI_APART void demi_kept_wall(dem_world *w, int d, int first, int last,
                                       const demi_kept *old, int olds) {
     const int from = w->domains[d].kept_next, body = w->wall_body[d*w->wall_stride + first];
     const int parts = demi_parts_count(w, body);
-    int k;
+    const dem_real *balls;
+    dem_real lone[4];
+    int k, count;
     if (!demi_shape_of(w, body)) {
         const demi_part sphere = demi_part_now(w, body, 0);
         demi_kept_on_wall(w, d, first, last, 0, 0, &sphere, old, olds);
         return;
     }
+    balls = demi_balls_of(w, body, lone, &count);
     for (k = 0; k < parts; k++) {
-        const demi_part p = demi_part_now(w, body, k);
+        demi_part p;
+        if (balls && demi_ball_clear(w, d*w->wall_stride + first, last - first,
+                                     demi_add(demi_at(w->bodies.pos + 4*body),
+                                              demi_at(balls + 4*k)), balls[4*k + 3])) continue;
+        p = demi_part_now(w, body, k);
         demi_kept_on_wall(w, d, first, last, 1, k, &p, old, olds);
     }
     demi_kept_share(w, w->kept_next + w->kept_first[d] + from, w->domains[d].kept_next - from);
@@ -16651,7 +16703,7 @@ static void demi_domain_kept_touch(dem_world *w, int d) {
     const int own_end = domain->near_shaped_cross, cross_end = domain->near_shaped_end;
     const int send = 1 + d*w->cross.stride + domain->near_end - domain->near_cross - own_end;
     int p = domain->near_shaped, q = own_end, k = 0, a, last, walled;
-    domain->kept_next = 0;
+    domain->kept_next = domain->kept_same = 0;
     domain->overflow &= ~16;
     for (; !(domain->overflow & 16); old = old_end) {
         while (k < walls && gap[k] > gone) k++; /* not near yet */
@@ -16723,19 +16775,23 @@ static double demi_give_at_most(const dem_world *w, int body) {
     const demi_shape *shape = demi_shape_of(w, body);
     return (double)w->bodies.inv_mass[body]/(shape ? shape->light : 1);
 }
-/* Coefficients of a contact, as yet without its slope. */
-static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out) {
+/* Coefficients of a contact, as yet without its slope, and what goes by the root of m_eff. */
+static void demi_kept_coefs(const dem_world *w, const demi_kept *k, dem_real *out,
+                            dem_real *root) {
     const demi_wall *wall = k->b < 0 ? &w->walls[k->wall] : 0;
     const int grains = wall && demi_wall_is(wall, DEMI_BALLS);
     /* there a grain of a wall has mass */
     const int mill = w->desc.convention == DEM_CONVENTION_MILL;
-    const double half = mill && grains ? 0.5 : 1, m = half*(double)k->m_eff;
+    const double half = mill && grains ? 0.5 : 1;
     const int shaped = demi_shape_of(w, k->a) || (k->b >= 0 && demi_shape_of(w, k->b));
     const double give = shaped ? demi_give_at_most(w, k->a) +
         (k->b >= 0 ? demi_give_at_most(w, k->b) : 0) : 0;
-    demi_coefficients(w, w->bodies.material[k->a] - 1,
-                      wall ? wall->material : w->bodies.material[k->b] - 1, (double)k->r_eff, m,
-                      shaped ? half/give : m, wall && !grains, out);
+    demi_coefficients_rooted(w, w->bodies.material[k->a] - 1,
+                             wall ? wall->material : w->bodies.material[k->b] - 1,
+                             (double)k->r_eff, half*(shaped ? 1/give : (double)k->m_eff),
+                             wall && !grains, out, root);
+    root[0] *= (dem_real)sqrt(half);
+    root[1] *= (dem_real)sqrt(half);
 }
 /* Velocity of a body at an arm: now, or its mean over the step. */
 static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int body, dem_vec3 arm) {
@@ -16744,25 +16800,23 @@ static dem_vec3 demi_velocity_at(const dem_real *v, const dem_real *spin, int bo
 static dem_vec3 demi_surface_at(const dem_pose *pose, dem_vec3 at) {
     return demi_add(pose->velocity, demi_cross(pose->spin, demi_sub(at, pose->position)));
 }
-/* What contact c takes over from the one it continues: memory, and coefficients where what they
-   follow from is as it was (a sphere's on a wall always, a cluster's hardly ever: the mass that it
-   feels there changes as it turns). Answers that one; c itself when it is new: then nothing has
-   turned. */
+/* What contact c takes over from the one it continues: memory, and coefficients, where its radius
+   is as it was. Answers that one; c itself when it is new: then nothing has turned. */
 DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept *now,
                                              demi_kept *c) {
     const demi_kept *old = c->from < 0 ? c : now + c->from;
-    /* a sphere's, which touch does not fetch */
-    const dem_real m = c->m_eff > 0 ? c->m_eff : old != c ? old->m_eff : w->bodies.mass[c->a];
     const int fits = old != c && old->wall == c->wall &&
-        !(old->coef_r < c->r_eff || old->coef_r > c->r_eff) &&
-        !(old->coef_m < m || old->coef_m > m);
-    c->m_eff = m;
+        !(old->coef_r < c->r_eff || old->coef_r > c->r_eff);
+    if (c->b < 0 && !demi_shape_of(w, c->a))    /* which touch does not fetch */
+        c->m_eff = old != c ? old->m_eff : w->bodies.mass[c->a];
+    if (fits) {
+        memcpy(c->coef, old->coef, sizeof *c - offsetof(demi_kept, coef));
+        return old;
+    }
     if (old != c) memcpy(c->memory, old->memory, sizeof c->memory);
     else memset(c->memory, 0, sizeof c->memory);
-    if (fits) memcpy(c->coef, old->coef, sizeof c->coef);
-    else demi_kept_coefs(w, c, c->coef);
+    demi_kept_coefs(w, c, c->coef, c->root);
     c->coef_r = c->r_eff;
-    c->coef_m = c->m_eff;
     return old;
 }
 /* Springs of friction and rolling that come to count more than they did (contacts that are shared,
@@ -16805,88 +16859,271 @@ static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rate
     who->time = w->clock.time;
     demi_who_reals(w, k->a, k->b, k->wall, rates, who);
 }
-/* The contact as a law sees it; old: a step ago. surface: velocity of the wall there. rates: where
-   the law's answers go, as demi_who_reals has it. */
-static void demi_kept_fill(const dem_world *w, const demi_kept *k, const demi_kept *old,
-                           dem_real dt, dem_real *rates, dem_contact *c, dem_vec3 *at,
-                           dem_vec3 *surface) {
-    const dem_real *coef = k->coef, slope = k->slope;    /* m of overlap per m of approach */
-    const int a = k->a, b = k->b;
-    const dem_vec3 n = k->normal, half = demi_v(DEM_R(0.5), DEM_R(0.5), DEM_R(0.5));
-    const dem_vec3 mid = demi_scale(demi_add(n, old->normal), half.x);
-    const dem_vec3 mid_a = demi_scale(demi_add(k->arm_a, old->arm_a), half.x);
-    dem_vec3 u = demi_velocity_at(w->bodies.vel, w->bodies.spin, a, k->arm_a);
-    dem_vec3 gone, around, spin, spin_step;
-    gone = demi_velocity_at(w->bodies.half_vel, w->bodies.half_spin, a, mid_a);
-    if (b >= 0) {
-        const dem_vec3 mid_b = demi_scale(demi_add(k->arm_b, old->arm_b), half.x);
-        u = demi_sub(u, demi_velocity_at(w->bodies.vel, w->bodies.spin, b, k->arm_b));
-        gone = demi_sub(gone, demi_velocity_at(w->bodies.half_vel, w->bodies.half_spin, b, mid_b));
-        spin = demi_at(w->bodies.spin + 4*b);
-        spin_step = demi_at(w->bodies.half_spin + 4*b);
-        *at = *surface = demi_v(0, 0, 0);
-    } else {
-        const demi_wall *wall = &w->walls[k->wall];
-        const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*a), k->shift);
-        /* where the contact was in the middle of the step */
-        const dem_vec3 was =
-            demi_add(mid_a, demi_sub(x, demi_scale(demi_at(w->bodies.half_vel + 4*a), dt/2)));
-        *at = demi_add(x, k->arm_a);
-        *surface = demi_surface_at(&wall->pose, *at);
-        u = demi_sub(u, *surface);
-        gone = demi_sub(gone, demi_surface_at(&wall->mid, was));
-        spin = wall->pose.spin;
-        spin_step = wall->mid.spin;
-    }
-    around = demi_add(demi_at(w->bodies.half_spin + 4*a), spin_step);
-    if (w->desc.law) memset(&c->who, 0, sizeof c->who);
-    c->overlap = k->overlap;
-    c->range = w->margin.reach > 0 ? demi_range(w, demi_kept_radii(w, k)) : 0;
-    if (w->desc.law_who) demi_kept_who(w, k, rates, &c->who);
-    c->normal = n;
-    c->closing_speed = demi_dot(u, n);
-    c->slip = demi_sub(u, demi_scale(n, c->closing_speed));
-    if (k->couple < 0 || k->couple > 0)         /* the moment about the normal does work, too */
-        c->closing_speed += k->couple*demi_dot(demi_sub(demi_at(w->bodies.spin + 4*a), spin), n);
-    gone = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
-    c->slip_step = demi_sub(gone, demi_scale(n, demi_dot(gone, n)));
-    c->spin = demi_sub(demi_at(w->bodies.spin + 4*a), spin);
-    c->spin_step = demi_sub(demi_at(w->bodies.half_spin + 4*a), spin_step);
-    c->dt = dt;
-    c->normal_rate = demi_v(0, 0, 0);
-    if (dt > 0) {
-        const dem_vec3 turn = demi_scale(demi_sub(n, old->normal), 1/dt);
-        c->normal_rate = demi_sub(turn, demi_scale(n, demi_dot(turn, n)));
-    }
-    c->twist = demi_dot(around, n)/2;
-    c->r_eff = k->r_eff;
-    c->m_eff = k->m_eff;
-    c->kn = slope*coef[DEMI_KN]; c->cn = slope*coef[DEMI_CN];
-    c->kun = slope*coef[DEMI_K_UN]; c->kad = slope*coef[DEMI_K_AD];
-    c->kt = coef[DEMI_KT]; c->ct = coef[DEMI_CT];
-    c->friction = coef[DEMI_MU]; c->friction_static = coef[DEMI_MU_STATIC];
-    c->rolling_friction = coef[DEMI_MU_ROLL];
-    c->material_a = w->bodies.material[a];
-    c->material_b = b >= 0 ? w->bodies.material[b] : w->walls[k->wall].material + 1;
-    c->wall = b >= 0 ? 0 : k->wall + 1;
-    demi_contact_choices(w, c);
-    c->user = w->desc.law_user;
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC push_options
+#pragma GCC optimize("no-trapping-math")
+#endif
+/* Contacts under work, a tile of them: rows for the stages of >>respond, and what only these have.
+   A wall is a body b without an arm: the others are against its surface there. */
+typedef struct demi_kept_tile {
+    demi_tile rows;
+    demi_rows arm[2], mid[2];      /* m, of a and b: now, in the middle of the step */
+    demi_rows spin[2], spun[2];    /* rad/s, of a and b: the same */
+    dem_real share[DEMI_ROW], grip[DEMI_ROW], lift[DEMI_ROW];      /* lift: less share */
+    dem_real still[DEMI_ROW];      /* N, the elastic force, where any is lifted */
+    dem_real couple[DEMI_ROW], outset[DEMI_ROW];                   /* outset: 1 less inset */
+    dem_real root[2][DEMI_ROW];
+    /* where bodies are no spheres: of a and b, what follows from them for 1/m_eff */
+    demi_rows felt[2];             /* m; 0: nothing turns */
+    dem_real q[2][4][DEMI_ROW], I[2][3][DEMI_ROW], inv[2][DEMI_ROW];
+    demi_kept *contact[DEMI_TILE];
+    const demi_kept *old[DEMI_TILE];               /* what each continues; itself, if new */
+    dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* where a wall is touched, m; its speed, m/s */
+    int count, lifted, shaped;     /* is still wanted? are there bodies that are no spheres? */
+} demi_kept_tile;
+DEM_INLINE void demi_rows_put(demi_rows *DEMI_RESTRICT rows, int q, dem_vec3 v) {
+    DEMI_XY(rows, 0, q) = v.x;
+    DEMI_XY(rows, 1, q) = v.y;
+    rows->z[q] = v.z;
 }
-/* Whether the elastic force counts more, or less, than what dissipates; and that force, N. */
+DEM_INLINE dem_vec3 demi_middle(dem_vec3 a, dem_vec3 b) {
+    return demi_scale(demi_add(a, b), DEM_R(0.5));
+}
+/* Row q of what is against a wall. */
+DEM_INLINE void demi_kept_fetch_wall(const demi_run *r, const demi_kept *k, dem_vec3 mid,
+                                     demi_kept_tile *t, int q) {
+    const dem_world *w = r->w;
+    const demi_wall *wall = &w->walls[k->wall];
+    const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
+    const dem_vec3 uh = demi_at(w->bodies.half_vel + 4*k->a);
+    t->at[q] = demi_add(x, k->arm_a);
+    t->surface[q] = demi_surface_at(&wall->pose, t->at[q]);
+    demi_rows_put(&t->rows.rate, q, demi_sub(demi_at(w->bodies.vel + 4*k->a), t->surface[q]));
+    demi_rows_put(&t->arm[1], q, demi_v(0, 0, 0));
+    demi_rows_put(&t->spin[1], q, wall->pose.spin);
+    if (!r->following) return;
+    /* where the contact was in the middle of the step */
+    demi_rows_put(&t->rows.gone, q,
+                  demi_sub(uh, demi_surface_at(&wall->mid,
+                      demi_add(mid, demi_sub(x, demi_scale(uh, r->same.dt/2))))));
+    demi_rows_put(&t->mid[1], q, demi_v(0, 0, 0));
+    demi_rows_put(&t->spun[1], q, wall->mid.spin);
+}
+/* Row q of two bodies. */
+DEM_INLINE void demi_kept_fetch_pair(const demi_run *r, const demi_kept *k, const demi_kept *old,
+                                     demi_kept_tile *t, int q) {
+    const dem_world *w = r->w;
+    const dem_real *u = w->bodies.vel, *uh = w->bodies.half_vel;
+    demi_rows_minus(&t->rows.rate, (size_t)q, u + 4*k->a, u + 4*k->b);
+    demi_rows_put(&t->arm[1], q, k->arm_b);
+    demi_rows_put(&t->spin[1], q, demi_at(w->bodies.spin + 4*k->b));
+    if (!r->following) return;
+    demi_rows_minus(&t->rows.gone, (size_t)q, uh + 4*k->a, uh + 4*k->b);
+    demi_rows_put(&t->mid[1], q, demi_middle(k->arm_b, old->arm_b));
+    demi_rows_put(&t->spun[1], q, demi_at(w->bodies.half_spin + 4*k->b));
+}
+/* Row q: what body `who`, of side 0 or 1, gives way by where it is pushed. */
+DEM_INLINE void demi_kept_fetch_felt(const dem_world *w, int who, dem_vec3 arm, int side,
+                                     demi_kept_tile *t, int q) {
+    const dem_real inv = who < 0 ? 0 : w->bodies.inv_mass[who];
+    const int turns = inv > 0 && demi_shape_of(w, who);
+    int e;
+    t->inv[side][q] = inv;
+    demi_rows_put(&t->felt[side], q, turns ? arm : demi_v(0, 0, 0));
+    for (e = 0; e < 4; e++) t->q[side][e][q] = turns ? w->bodies.orient[4*who + e] : 0;
+    for (e = 0; e < 3; e++) t->I[side][e][q] = turns ? w->bodies.moment[4*who + e] : 1;
+}
+/* Row q: a contact, and the one of a step ago that it continues. */
+static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_kept *old,
+                            demi_kept_tile *t, int q) {
+    const dem_world *w = r->w;
+    const dem_vec3 mid = demi_middle(k->arm_a, old->arm_a);
+    const dem_real *coef = k->coef, slope = k->slope;    /* m of overlap per m of approach */
+    int e;
+    for (e = 0; e < r->keep; e++) t->rows.memory[e][q] = k->memory[e];
+    demi_row_put(t->rows.normal, q, k->normal);
+    t->rows.overlap[q] = k->overlap;
+    demi_rows_put(&t->arm[0], q, k->arm_a);
+    demi_rows_put(&t->spin[0], q, demi_at(w->bodies.spin + 4*k->a));
+    if (r->following) {
+        demi_row_put(t->rows.turn, q, demi_sub(k->normal, old->normal));
+        demi_rows_put(&t->mid[0], q, mid);
+        demi_rows_put(&t->spun[0], q, demi_at(w->bodies.half_spin + 4*k->a));
+    }
+    if (k->b < 0) demi_kept_fetch_wall(r, k, mid, t, q);
+    else demi_kept_fetch_pair(r, k, old, t, q);
+    for (e = 0; e < DEMI_COEFS; e++) t->rows.coef[e][q] = coef[e];
+    t->rows.coef[DEMI_KN][q] *= slope;
+    t->rows.coef[DEMI_CN][q] *= slope;
+    t->rows.coef[DEMI_K_UN][q] *= slope;
+    t->rows.coef[DEMI_K_AD][q] *= slope;
+    t->rows.coef[DEMI_M_EFF][q] = k->m_eff;
+    t->root[0][q] = slope*k->root[0];
+    t->root[1][q] = k->root[1];
+    t->share[q] = k->share;
+    t->grip[q] = k->grip;
+    t->lift[q] = k->lift - k->share;
+    t->couple[q] = k->couple;
+    t->outset[q] = 1 - k->inset;
+    if (!t->shaped) return;
+    demi_kept_fetch_felt(w, k->a, k->felt_a, 0, t, q);
+    demi_kept_fetch_felt(w, k->b, k->felt_b, 1, t, q);
+}
+/* The last group of a tile is filled up with copies of its last contact, in every row that is
+   fetched: nobody reads what comes of it, but it is arithmetic like any other. */
+static void demi_kept_fill_up(demi_kept_tile *t, int keep, int full) {
+    dem_real *const rows[] = {t->rows.normal[0], t->rows.overlap, t->rows.turn[0],
+        t->rows.memory[0], t->rows.coef[0], t->share, t->grip, t->lift, t->couple, t->outset,
+        t->root[0], t->q[0][0], t->I[0][0], t->inv[0]};
+    const int counts[] = {3, 1, 3, keep, DEMI_PAIR_COLUMNS, 1, 1, 1, 1, 1,
+        2, t->shaped ? 8 : 0, t->shaped ? 6 : 0, t->shaped ? 2 : 0};
+    demi_rows *const triples[] = {&t->rows.rate, &t->rows.gone, t->arm, t->arm + 1, t->mid,
+        t->mid + 1, t->spin, t->spin + 1, t->spun, t->spun + 1, t->felt, t->felt + 1};
+    const int last = t->count - 1;
+    int k, e, q;
+    for (k = 0; k < (int)(sizeof rows/sizeof *rows); k++)
+        for (e = 0; e < counts[k]; e++)
+            for (q = last + 1; q < full; q++)
+                rows[k][e*DEMI_ROW + q] = rows[k][e*DEMI_ROW + last];
+    for (k = 0; k < (int)(sizeof triples/sizeof *triples) - (t->shaped ? 0 : 2); k++)
+        for (q = last + 1; q < full; q++)
+            demi_rows_put(triples[k], q, demi_rows_at(triples[k], last));
+}
+/* 1/mass that a force along n, at its arm, feels at a body: 1/m + (arm x n).I^-1 (arm x n). */
+DEM_INLINE dem_real demi_kept_give(demi_kept_tile *DEMI_RESTRICT t, int side, int q) {
+    const dem_vec3 c = demi_cross(demi_rows_at(&t->felt[side], q), demi_row(t->rows.normal, q));
+    const dem_vec3 v = dem_quat_unrotate(dem_quat_make(t->q[side][0][q], t->q[side][1][q],
+                                                       t->q[side][2][q], t->q[side][3][q]), c);
+    return t->inv[side][q] + (v.x*v.x/t->I[side][0][q] + v.y*v.y/t->I[side][1][q] +
+                              v.z*v.z/t->I[side][2][q]);
+}
+/* m*, of two bodies and where they touch, but where it is known. */
+DEM_INLINE void demi_kept_mass_one(demi_kept_tile *DEMI_RESTRICT t, int q) {
+    const dem_real known = t->rows.coef[DEMI_M_EFF][q];
+    const dem_real m = 1/(demi_kept_give(t, 0, q) + demi_kept_give(t, 1, q));
+    t->rows.coef[DEMI_M_EFF][q] = known > 0 ? known : m;
+}
+/* How the two move against each other where they touch: now, and over the step just taken. */
+DEM_INLINE void demi_kept_motion_one(demi_kept_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                     int following) {
+    const dem_vec3 n = demi_row(t->rows.normal, q);
+    const dem_vec3 wa = demi_rows_at(&t->spin[0], q), wb = demi_rows_at(&t->spin[1], q);
+    const dem_vec3 apart = demi_sub(wa, wb);
+    const dem_vec3 u = demi_sub(demi_add(demi_rows_at(&t->rows.rate, q),
+                                         demi_cross(wa, demi_rows_at(&t->arm[0], q))),
+                                demi_cross(wb, demi_rows_at(&t->arm[1], q)));
+    const dem_real closing = demi_dot(u, n);
+    demi_row_put(t->rows.slip, q, demi_sub(u, demi_scale(n, closing)));
+    demi_rows_put(&t->rows.apart, q, apart);
+    t->rows.coef[DEMI_CN][q] += t->root[0][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
+    t->rows.coef[DEMI_CT][q] += t->root[1][q]*DEMI_SQRT(t->rows.coef[DEMI_M_EFF][q]);
+    /* a moment about the normal does work, too */
+    t->rows.closing[q] = closing + t->couple[q]*demi_dot(apart, n);
+    if (following) {
+        const dem_real per = s->dt > 0 ? 1/s->dt : 0;
+        const dem_vec3 way = demi_row(t->rows.turn, q);
+        const dem_vec3 mid = demi_sub(n, demi_scale(way, DEM_R(0.5)));
+        const dem_vec3 sa = demi_rows_at(&t->spun[0], q), sb = demi_rows_at(&t->spun[1], q);
+        const dem_vec3 turn = demi_scale(way, per);
+        dem_vec3 gone = demi_sub(demi_add(demi_rows_at(&t->rows.gone, q),
+                                          demi_cross(sa, demi_rows_at(&t->mid[0], q))),
+                                 demi_cross(sb, demi_rows_at(&t->mid[1], q)));
+        gone = demi_sub(gone, demi_scale(mid, demi_dot(gone, mid)));
+        demi_row_put(t->rows.slip_step, q, demi_sub(gone, demi_scale(n, demi_dot(gone, n))));
+        demi_row_put(t->rows.turn, q, demi_sub(turn, demi_scale(n, demi_dot(turn, n))));
+        demi_rows_put(&t->rows.parted, q, demi_sub(sa, sb));
+        t->rows.twist[q] = demi_dot(demi_add(sa, sb), n)/2;
+    }
+}
+/* Forces and moments, each part as often as it counts. */
+DEM_INLINE void demi_kept_answer_one(demi_kept_tile *DEMI_RESTRICT t, int q, int rolls) {
+    const dem_vec3 n = demi_row(t->rows.normal, q);
+    const dem_real press = t->share[q]*t->rows.repulsion[q] + t->lift[q]*t->still[q];
+    const dem_vec3 push = demi_scale(n, press);
+    const dem_vec3 force = demi_sub(demi_scale(demi_row(t->rows.tangent, q), t->grip[q]), push);
+    dem_vec3 moment = demi_scale(push, -t->couple[q]);
+    if (rolls) moment = demi_add(moment, demi_scale(demi_row(t->rows.moment, q), t->grip[q]));
+    demi_row_put(t->rows.force, q, force);
+    demi_row_put(t->rows.moment, q, moment);
+    demi_row_put(t->rows.torque[0], q,
+                 demi_add(demi_cross(demi_rows_at(&t->arm[0], q),
+                                     demi_add(force, demi_scale(push, t->outset[q]))), moment));
+    demi_row_put(t->rows.torque[1], q,
+                 demi_scale(demi_add(demi_cross(demi_rows_at(&t->arm[1], q), force), moment), -1));
+}
+#define DEMI_KEPT_STAGE(NAME, ONE) \
+    DEMI_CLONES static void NAME(demi_kept_tile *DEMI_RESTRICT t, const demi_run *r, int full) { \
+        const demi_same s = r->same; \
+        (void)s; \
+        DEMI_ROWS(full) ONE; DEMI_ROWS_END \
+    }
+DEMI_KEPT_STAGE(demi_kept_mass, demi_kept_mass_one(t, q))
+DEMI_KEPT_STAGE(demi_kept_motion, demi_kept_motion_one(t, &s, q, 0))
+DEMI_KEPT_STAGE(demi_kept_motion_following, demi_kept_motion_one(t, &s, q, 1))
+DEMI_KEPT_STAGE(demi_kept_answer, demi_kept_answer_one(t, q, 0))
+DEMI_KEPT_STAGE(demi_kept_answer_rolling, demi_kept_answer_one(t, q, 1))
+#undef DEMI_KEPT_STAGE
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__TINYC__)
+#pragma GCC pop_options
+#endif
+
+/* Row q as a law sees it that is called by itself. */
+static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run *r, int q,
+                          dem_contact *c) {
+    const demi_kept *k = t->contact[q];
+    demi_tile_contact(&t->rows, &r->same, q, c);
+    if (!w->desc.law) return;
+    demi_who_clear(&c->who);
+    c->range = r->ranged ? demi_range(w, demi_kept_radii(w, k)) : 0;
+    c->material_a = w->bodies.material[k->a];
+    c->material_b = k->b >= 0 ? w->bodies.material[k->b] : w->walls[k->wall].material + 1;
+    c->wall = k->b >= 0 ? 0 : k->wall + 1;
+    c->user = w->desc.law_user;
+    if (w->desc.law_who) demi_kept_who(w, k, t->rows.gains[q], &c->who);
+}
+/* Laws contact by contact: the user's, or where they are few. */
+static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run *r) {
+    dem_real m[DEMI_MEMORY];
+    dem_contact_force f;
+    dem_contact c;
+    int q;
+    for (q = 0; q < t->count; q++) {
+        if (t->lifted) {                        /* as if they stood still, with a copy of memory */
+            demi_kept_see(w, t, r, q, &c);
+            demi_recall(&t->rows, q, 0, r->keep, m);
+            c.closing_speed = 0;
+            demi_law(w, &c, m, &f);
+            t->still[q] = f.normal;
+        }
+        demi_kept_see(w, t, r, q, &c);
+        demi_recall(&t->rows, q, 0, r->keep, m);
+        demi_law(w, &c, m, &f);
+        demi_keep(&t->rows, q, 0, r->keep, m);
+        demi_normal_put(&t->rows, q, &f, 2);
+        demi_tangent_put(&t->rows, q, &f, 2);
+        demi_rolling_put(&t->rows, q, &f, 2);
+    }
+}
+/* Whether the elastic force counts more, or less, than what dissipates. */
 DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
     return k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0;
 }
-static DEMI_APART dem_real demi_kept_still(const dem_world *w, const demi_kept *k,
-                                          const dem_contact *c) {
-    dem_real memory[DEMI_MEMORY], rates[2*DEM_BODY_REALS];
-    dem_contact still = *c;
-    dem_contact_force f;
-    memcpy(memory, k->memory, sizeof memory);
-    still.closing_speed = 0;
-    if (!w->desc.law) return demi_law_normal(w, &still, memory, &f);
-    if (c->who.rate_a) demi_who_reals(w, k->a, k->b, k->wall, rates, &still.who);
-    demi_law(w, &still, memory, &f);
-    return f.normal;
+/* The elastic force alone, N: what the normal law answers where nothing moves. */
+static void demi_kept_still(demi_kept_tile *t, const demi_run *r, int full) {
+    const int at = r->same.at_normal;
+    dem_real closing[DEMI_TILE], memory[DEMI_MEMORY][DEMI_TILE];
+    int e, q;
+    for (q = 0; q < full; q++) {
+        closing[q] = t->rows.closing[q];
+        t->rows.closing[q] = 0;
+        for (e = at; e < r->keep; e++) memory[e][q] = t->rows.memory[e][q];
+    }
+    r->stage[0](&t->rows, r, full);
+    for (q = 0; q < full; q++) {
+        t->still[q] = t->rows.repulsion[q];
+        t->rows.closing[q] = closing[q];
+        for (e = at; e < r->keep; e++) t->rows.memory[e][q] = memory[e][q];
+    }
 }
 DEM_INLINE void demi_force_add(dem_real *sum, dem_vec3 f) {
     sum[0] += f.x; sum[1] += f.y; sum[2] += f.z;
@@ -16907,16 +17144,22 @@ DEM_INLINE dem_vec3 demi_late_of(const dem_world *w, int a, int b) {
     const dem_vec3 late = demi_at(w->bodies.late + 4*a);
     return b < 0 ? late : demi_sub(late, demi_at(w->bodies.late + 4*b));
 }
-/* grip: how often friction and rolling count, which may differ from the rest: demi_kept_lift;
-   late: demi_late_share. */
-DEM_INLINE void demi_energy_add(demi_domain *domain, const dem_contact_energy *part, dem_real share,
-                                dem_real grip, dem_real late) {
-    domain->energy[DEMI_E_DASHPOT] += (double)(share*(part->dashpot*(1 + late) + part->sag));
-    domain->energy[DEMI_E_ELASTIC] += (double)(share*part->elastic);
-    domain->energy[DEMI_E_SHEAR_WORK] += (double)(grip*part->shear_work);
-    domain->energy[DEMI_E_SLIDE] += (double)(grip*part->slide);
-    domain->energy[DEMI_E_SHEAR_STORED] += (double)(grip*part->shear_stored);
-    domain->energy[DEMI_E_ROLL] += (double)(grip*part->roll);
+/* What the contact of row q did with energy. Friction and rolling may count differently from the
+   rest: demi_kept_lift. */
+static void demi_kept_book(const dem_world *w, const demi_kept_tile *t, int q, double *energy) {
+    const demi_tile *rows = &t->rows;
+    const demi_kept *c = t->contact[q];
+    const dem_real share = c->share, grip = c->grip, slope = c->slope;
+    const dem_real late = !w->bodies.booked ? 0
+        : demi_late_share(demi_late_of(w, c->a, c->b), c->normal, rows->closing[q]);
+    /* V = k overlap^2/2; the law was given k slope */
+    energy[DEMI_E_DASHPOT] += (double)(share*(rows->part[0][q]*(1 + late) +
+                                              rows->part[6][q]/slope));
+    energy[DEMI_E_ELASTIC] += (double)(share*(rows->part[1][q]/slope));
+    energy[DEMI_E_SHEAR_WORK] += (double)(grip*rows->part[2][q]);
+    energy[DEMI_E_SLIDE] += (double)(grip*rows->part[3][q]);
+    energy[DEMI_E_SHEAR_STORED] += (double)(grip*rows->part[4][q]);
+    energy[DEMI_E_ROLL] += (double)(grip*rows->part[5][q]);
 }
 
 /* What a law has answered for the users' numbers of contact c: as often as it counts. */
@@ -16944,82 +17187,144 @@ DEM_INLINE void demi_body_fetch(const dem_world *w, int body) {
     DEMI_FETCH(w->bodies.force + 4*body);
     DEMI_FETCH(w->bodies.torque + 4*body);
 }
-/* All contacts of one domain: law, forces on both ends, walls' sums, energies. */
+/* The force across the normal on the contact's ball, which goes round something: to both. */
+static void demi_kept_aside_add(const dem_world *w, demi_kept_tile *t, int q) {
+    const demi_kept *c = t->contact[q];
+    const dem_vec3 aside = demi_scale(c->aside, t->still[q]);
+    const dem_vec3 arm = demi_sub(demi_part_now(w, c->a, c->part_a).centre, c->arm_a);
+    const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->along;
+    const dem_vec3 far = demi_sub(arm, demi_scale(c->normal, 1/turn));
+    const dem_vec3 moment = demi_cross(far, aside);
+    demi_row_put(t->rows.force, q, demi_add(demi_row(t->rows.force, q), aside));
+    demi_row_put(t->rows.moment, q, demi_add(demi_row(t->rows.moment, q), moment));
+    demi_row_put(t->rows.torque[0], q,
+                 demi_add(demi_row(t->rows.torque[0], q),
+                          demi_cross(demi_add(c->arm_a, arm), aside)));
+    demi_row_put(t->rows.torque[1], q,
+                 demi_sub(demi_row(t->rows.torque[1], q),
+                          demi_add(demi_cross(c->arm_b, aside), moment)));
+}
+/* The force of row q to both ends. */
+static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
+    const demi_kept *c = t->contact[q];
+    const dem_vec3 force = demi_row(t->rows.force, q);
+    demi_force_add(w->bodies.force + 4*c->a, force);
+    demi_force_add(w->bodies.torque + 4*c->a, demi_row(t->rows.torque[0], q));
+    if (c->b >= 0) {                            /* several may go by one near pair */
+        dem_real *out = c->send ? w->cross_force + 6*(size_t)(c->send - 1) : 0;
+        demi_force_add(out ? out : w->bodies.force + 4*c->b, demi_scale(force, -1));
+        demi_force_add(out ? out + 3 : w->bodies.torque + 4*c->b, demi_row(t->rows.torque[1], q));
+    } else
+        demi_wall_sum_add(w, &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall],
+                          c->wall, t->at[q], force, demi_row(t->rows.moment, q), t->surface[q]);
+}
+/* Fills in what the tile's contacts answer. Where they are few, one by one: a whole group of them
+   costs as much as four. Bits are the same. */
+static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_kept_tile *t) {
+    const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
+    const int few = t->count < 4, rolls = w->desc.law || w->laws.rolling->law;
+    int q, k;
+    for (q = 0; q < t->count; q++)
+        demi_kept_fetch(r, t->contact[q], t->old[q], t, q);
+    if (few) {
+        for (q = 0; q < t->count && t->shaped; q++) demi_kept_mass_one(t, q);
+        for (q = 0; q < t->count; q++) demi_kept_motion_one(t, &r->same, q, r->following);
+        demi_kept_laws(w, t, r);
+        for (q = 0; q < t->count; q++) demi_kept_answer_one(t, q, rolls);
+        return;
+    }
+    demi_kept_fill_up(t, r->keep, full);
+    if (t->shaped) demi_kept_mass(t, r, full);
+    (r->following ? demi_kept_motion_following : demi_kept_motion)(t, r, full);
+    if (w->desc.law) demi_kept_laws(w, t, r);
+    else {
+        if (t->lifted) demi_kept_still(t, r, full);
+        for (k = 0; k < DEMI_STAGES && r->stage[k]; k++) r->stage[k](&t->rows, r, full);
+    }
+    (rolls ? demi_kept_answer_rolling : demi_kept_answer)(t, r, full);
+}
+/* The whole tile: law, forces on both ends, walls' sums, energies, memory. */
+static void demi_kept_tile_respond(dem_world *w, int d, const demi_run *r, demi_kept_tile *t) {
+    demi_domain *domain = &w->domains[d];
+    demi_tile *rows = &t->rows;
+    int q, e;
+    demi_kept_tile_answer(w, r, t);
+    for (q = 0; q < t->count; q++) {
+        demi_kept *c = t->contact[q];
+        for (e = 0; e < r->keep; e++) c->memory[e] = rows->memory[e][q];
+        if (t->lifted && demi_dot(c->aside, c->aside) > 0) demi_kept_aside_add(w, t, q);
+        c->force = demi_row(rows->force, q);
+        demi_kept_push(w, d, t, q);
+        if (demi_exchanges(w)) demi_kept_rates(w, d, c, rows->gains[q]);
+        if (r->ledger) demi_kept_book(w, t, q, domain->energy);
+    }
+    t->count = t->lifted = t->shaped = 0;
+}
+/* What a contact that is asked about counts for its domain; fresh: it begins to touch. */
+static void demi_kept_count(dem_world *w, int d, const demi_kept *c, int fresh) {
+    demi_domain *domain = &w->domains[d];
+    const int touches = c->overlap > 0;
+    if (touches && fresh) {
+        const int a = w->bodies.material[c->a] - 1;
+        const int b = c->b >= 0 ? w->bodies.material[c->b] - 1 : w->walls[c->wall].material;
+        domain->met[DEMI_MIN(a, b)] |= UINT64_C(1) << DEMI_MAX(a, b);
+    }
+    domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
+    if (c->b >= 0) {
+        domain->contacts += touches && !c->corner;
+        return;
+    }
+    w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall].contacts +=
+        touches && !c->corner;
+    domain->kept_walls += touches;
+}
+/* What a contact will soon take over. */
+DEM_INLINE void demi_kept_fetch_old(const demi_kept *k) {
+    DEMI_FETCH(&k->normal);
+    DEMI_FETCH(k->coef);
+    DEMI_FETCH(k->coef + 8);
+    DEMI_FETCH(k->memory);
+}
+/* All contacts of one domain, in the order of their list. */
 static void demi_kept_respond(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     const dem_real dt = w->stage.forces_valid ? w->clock.dt : 0;
     const demi_kept *now = demi_kept_of(w, d);
-    demi_wall_sum *sums = w->wall_sums + (size_t)d*(size_t)w->wall_count;
-    int i;
+    DEMI_ALIGNED demi_kept_tile tile;
+    demi_run run = demi_run_begin(w, dt);
+    int i, q;
     domain->kept_walls = 0;
+    if (!domain->kept_next) return;
+    if (!w->desc.law) demi_run_laws(w, &run, 0);
+    tile.count = tile.lifted = tile.shaped = 0;
+    for (q = 0; q < DEMI_TILE && q < domain->kept_next + DEMI_LANES; q++) {
+        tile.rows.touch[q] = 1;
+        tile.still[q] = 0;                      /* where none is lifted */
+        demi_row_put(tile.rows.tangent, q, demi_v(0, 0, 0));    /* where no law answers it */
+    }
+    if (run.ledger) memset(tile.rows.part, 0, sizeof tile.rows.part);
     for (i = 0; i < domain->kept_next; i++) {
         demi_kept *c = w->kept_next + w->kept_first[d] + i;
-        const int a = c->a, b = c->b;
         const demi_kept *old;
-        int touches;
-        dem_real press, still, rates[2*DEM_BODY_REALS];
-        dem_contact contact;
-        dem_contact_force f;
-        dem_vec3 at, surface, force, moment, moment_b;
-        if (i + 2 < domain->kept_next) demi_body_fetch(w, c[2].a);
+        if (i + 2 < domain->kept_next) {
+            demi_body_fetch(w, c[2].a);
+            if (c[2].from >= 0) demi_kept_fetch_old(now + c[2].from);
+        }
         old = demi_kept_recall(w, now, c);
-        touches = c->overlap > 0;
         if (!demi_kept_asked(w, c)) {           /* under way through a reduced hole */
             c->force = demi_v(0, 0, 0);
-            domain->kept_walls += b < 0;
+            domain->kept_walls += c->b < 0;
             continue;
         }
-        demi_kept_fill(w, c, old, dt, rates, &contact, &at, &surface);
-        if (touches && (c->from < 0 || !(old->overlap > 0)))
-            domain->met[DEMI_MIN(contact.material_a, contact.material_b) - 1] |= UINT64_C(1) <<
-                (DEMI_MAX(contact.material_a, contact.material_b) - 1);
+        tile.contact[tile.count] = c;
+        tile.old[tile.count++] = old;
+        tile.lifted |= demi_kept_lifted(c);
+        tile.shaped |= !(c->m_eff > 0);
+        demi_kept_count(w, d, c, c->from < 0 || !(old->overlap > 0));
         if (c->from >= 0) demi_kept_hold(w, now, c);
-        still = demi_kept_lifted(c) ? demi_kept_still(w, c, &contact) : 0;
-        demi_law(w, &contact, c->memory, &f);
-        press = c->share*f.normal + (c->lift - c->share)*still;
-        force = demi_sub(demi_scale(f.tangent, c->grip), demi_scale(contact.normal, press));
-        moment = demi_sub(demi_scale(f.moment, c->grip),
-                          demi_scale(contact.normal, press*c->couple));
-        moment_b = moment;
-        if (demi_dot(c->aside, c->aside) > 0) { /* between the ball and what it goes round */
-            const dem_vec3 aside = demi_scale(c->aside, still);
-            const dem_vec3 arm = demi_sub(demi_part_now(w, a, c->part_a).centre, c->arm_a);
-            const dem_real turn = c->bend < 0 || c->bend > 0 ? c->bend : c->along;
-            const dem_vec3 far = demi_sub(arm, demi_scale(contact.normal, 1/turn));
-            force = demi_add(force, aside);
-            moment = demi_add(moment, demi_cross(arm, aside));
-            moment_b = demi_add(moment_b, demi_cross(far, aside));
-        }
-        c->force = force;
-        demi_force_add(w->bodies.force + 4*a, force);
-        demi_force_add(w->bodies.torque + 4*a, demi_add(demi_cross(c->arm_a, force), moment));
-        if (c->inset < 1 || c->inset > 1)
-            demi_force_add(w->bodies.torque + 4*a, demi_scale(demi_cross(c->arm_a, contact.normal),
-                                                             (1 - c->inset)*press));
-        if (b >= 0) {
-            const dem_vec3 back = demi_scale(demi_add(demi_cross(c->arm_b, force), moment_b), -1);
-            if (c->send) {                      /* several may go by one near pair */
-                demi_force_add(w->cross_force + 6*(size_t)(c->send - 1), demi_scale(force, -1));
-                demi_force_add(w->cross_force + 6*(size_t)(c->send - 1) + 3, back);
-            } else {
-                demi_force_add(w->bodies.force + 4*b, demi_scale(force, -1));
-                demi_force_add(w->bodies.torque + 4*b, back);
-            }
-            domain->contacts += touches && !c->corner;
-        } else {
-            demi_wall_sum_add(w, &sums[c->wall], c->wall, at, force, moment_b, surface);
-            sums[c->wall].contacts += touches && !c->corner;
-            domain->kept_walls += touches;
-        }
-        if (demi_exchanges(w)) demi_kept_rates(w, d, c, rates);
-        domain->overlap = DEMI_MAX(domain->overlap, (double)c->deep);
-        f.energy.elastic /= c->slope;           /* V = k overlap^2/2; the law was given k slope */
-        f.energy.sag /= c->slope;
-        demi_energy_add(domain, &f.energy, c->share, c->grip,
-                        !w->bodies.booked ? 0
-                        : demi_late_share(demi_late_of(w, a, b), contact.normal,
-                                          contact.closing_speed));
+        if (tile.count == DEMI_TILE) demi_kept_tile_respond(w, d, &run, &tile);
     }
+    if (tile.count) demi_kept_tile_respond(w, d, &run, &tile);
 }
 /* Slots of far ends are summed into: cleared before. */
 static void demi_kept_clear(dem_world *w, int d) {
@@ -20776,11 +21081,13 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             const demi_kept *k = demi_kept_of(w, d) + p;
             const int i = k->a;
             const double arm = (double)w->bodies.pos[4*i + 3];
-            dem_real coef[DEMI_COEFS];
+            dem_real coef[DEMI_COEFS], root[2];
             demi_pressed c;
             if (!(k->overlap > 0) || k->b >= 0 || demi_shape_of(w, i) ||
                 (whole && !press[i].whole)) continue;
-            demi_kept_coefs(w, k, coef);
+            demi_kept_coefs(w, k, coef, root);
+            coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[i]);
+            coef[DEMI_CT] += root[1]*DEMI_SQRT(w->bodies.mass[i]);
             c.s = demi_stiffness_of(w, coef, (double)w->bodies.mass[i], (double)k->overlap);
             c.n = k->normal;
             c.overlap = k->overlap;
