@@ -2737,7 +2737,8 @@ typedef struct demi_kept {
     dem_vec3 spread;               /* m, from the centre of pressure to this corner */
     dem_real couple;               /* m: moment about the normal, over the normal force */
     dem_real r_eff, m_eff;         /* m; kg, of a sphere on a wall; else 0, see: */
-    dem_vec3 felt_a, felt_b;       /* m, arms by which the mass goes that dashpots feel */
+    dem_vec3 felt;                 /* m, to here from where bodies are felt: their mass there is
+                                      what dashpots go by */
     double lambda;                 /* of Perram and Wertheim, where to begin next; 0: unknown */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as above */
@@ -16222,29 +16223,24 @@ static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
     int i, j;
     for (i = 0; i < n; i++) {
         const dem_real d2 = c[i].overlap*c[i].overlap;
-        dem_vec3 arm_a, arm_b;
+        dem_vec3 mean;                          /* arm of a to the common middle, times A */
         dem_real A = d2, rate;
         c[i].weight = c[i].lift = c[i].grip = c[i].share;
-        /* polyhedra: where the pressure's middle is */
-        c[i].felt_a = demi_sub(c[i].arm_a, c[i].spread);
-        c[i].felt_b = demi_sub(c[i].arm_b, c[i].spread);
+        c[i].felt = c[i].spread;                /* polyhedra: at the pressure's middle */
         if (!one || !(c[i].overlap > 0)) continue;
-        arm_a = demi_scale(c[i].felt_a, d2);
-        arm_b = demi_scale(c[i].felt_b, d2);
+        mean = demi_scale(demi_sub(c[i].arm_a, c[i].spread), d2);
         for (j = 0; j < n; j++) {
             const dem_real t = j == i ? 0 : demi_kept_alike(&c[i], &c[j], &rate);
             const dem_real add = t*c[j].overlap*c[j].overlap*(j < i ? c[j].weight : c[j].share);
             if (!(t > 0) || !(c[j].overlap > 0)) continue;
             A += add;
-            arm_a = demi_add(arm_a, demi_scale(demi_sub(c[j].arm_a, c[j].spread), add));
-            arm_b = demi_add(arm_b, demi_scale(demi_sub(c[j].arm_b, c[j].spread), add));
+            mean = demi_add(mean, demi_scale(demi_sub(c[j].arm_a, c[j].spread), add));
         }
         c[i].added = A/d2 - 1;
         c[i].area = d2*demi_kept_room_of(c[i].added, &c[i].rate);
         c[i].share = c[i].weight*d2/c[i].area;
-        if (!(A > d2/2)) continue;              /* others take away: its own place will do */
-        c[i].felt_a = demi_scale(arm_a, 1/A);
-        c[i].felt_b = demi_scale(arm_b, 1/A);
+        if (A > d2/2)                           /* else others take away: its own place will do */
+            c[i].felt = demi_sub(c[i].arm_a, demi_scale(mean, 1/A));
     }
     if (one) demi_kept_lift(w, c, n);
 }
@@ -16966,8 +16962,8 @@ static void demi_kept_fetch(const demi_run *r, const demi_kept *k, const demi_ke
     t->couple[q] = k->couple;
     t->outset[q] = 1 - k->inset;
     if (!t->shaped) return;
-    demi_kept_fetch_felt(w, k->a, k->felt_a, 0, t, q);
-    demi_kept_fetch_felt(w, k->b, k->felt_b, 1, t, q);
+    demi_kept_fetch_felt(w, k->a, demi_sub(k->arm_a, k->felt), 0, t, q);
+    demi_kept_fetch_felt(w, k->b, demi_sub(k->arm_b, k->felt), 1, t, q);
 }
 /* The last group of a tile is filled up with copies of its last contact, in every row that is
    fetched: nobody reads what comes of it, but it is arithmetic like any other. */

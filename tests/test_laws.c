@@ -348,6 +348,53 @@ static uint64_t slope_of(dem_law_fn law, dem_normal_law normal, dem_tangent_law 
     return sum;
 }
 
+/* How a cluster of three spheres moves that has fallen, spinning, onto a plane, beside as many more as asked for. */
+static uint64_t lonely_fall(dem_normal_law normal, dem_tangent_law tangent, dem_rolling_law rolling, int ledger,
+                            int more) {
+    const dem_real x[9] = {0, 0, 0, DEM_R(1.2e-3), 0, 0, 0, DEM_R(1.2e-3), 0};
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc m = scene_stuff(1e7, 0.6, 0.4, 0.05);
+    dem_cluster_desc c = DEM_CLUSTER_DESC;
+    dem_world *world;
+    dem_material stuff;
+    dem_body_state s;
+    dem_body first;
+    dem_shape shape;
+    uint64_t sum = 0;
+    int i;
+    desc.gravity = at(3, 0, -9.81);
+    desc.threads = 1;
+    desc.dt = DEM_R(1e-6);
+    desc.normal_law = normal;
+    desc.tangent_law = tangent;
+    desc.rolling_law = rolling;
+    desc.ledger = ledger;
+    world = dem_world_create(&desc);
+    m.stiffness = normal == DEM_NORMAL_HERTZ ? 0 : 1000;
+    m.stiffness_unloading = normal == DEM_NORMAL_HYSTERETIC ? 2000 : 0;
+    if (normal == DEM_NORMAL_HYSTERETIC) m.restitution = 0;
+    stuff = dem_material_add(world, &m);
+    dem_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+    c.count = 3;
+    c.positions = x;
+    c.radius = DEM_R(1e-3);
+    shape = dem_shape_cluster_add(world, &c);
+    for (i = 0; i <= more; i++) {
+        const dem_body body = dem_body_add(world, stuff, shape, at(0.02*i, 0, 1e-3), dem_quat_make(1, 0, 0, 0));
+        if (!i) first = body;
+        scene_move(world, body, at(0.3, 0.1, -0.2 - 0.01*i), at(5, 11 + i, 30));
+    }
+    CHECK_EQ(scene_step(world, 300), DEM_OK);
+    s = scene_state(world, first);
+    sum = demi_hash(sum, &s.position, sizeof s.position);
+    sum = demi_hash(sum, &s.orientation, sizeof s.orientation);
+    sum = demi_hash(sum, &s.velocity, sizeof s.velocity);
+    sum = demi_hash(sum, &s.spin, sizeof s.spin);
+    CHECK(s.velocity.z > DEM_R(-0.19));         /* it has touched */
+    dem_world_destroy(world);
+    return sum;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -363,6 +410,21 @@ int main(int argc, char **argv) {
                               mixed),
                      slope_of(0, DEM_NORMAL_LINEAR, DEM_TANGENT_MINDLIN_RESCALED, 0, mixed));
         }
+    }
+    TEST("a contact has the bits that it has alone, however many others are answered with it: by every law, with a "
+         "ledger and without, of a cluster that falls onto a plane") {
+        int normal, tangent, rolling, ledger;
+        for (normal = DEM_NORMAL_HERTZ; normal <= DEM_NORMAL_HYSTERETIC; normal++)
+            for (tangent = DEM_TANGENT_NONE; tangent <= DEM_TANGENT_MINDLIN_RESCALED; tangent++)
+                for (rolling = DEM_ROLLING_NONE; rolling <= DEM_ROLLING_EPSD; rolling++)
+                    for (ledger = 0; ledger < 2; ledger++) {
+                        const dem_normal_law n = (dem_normal_law)normal;
+                        const dem_tangent_law t = (dem_tangent_law)tangent;
+                        const dem_rolling_law r = (dem_rolling_law)rolling;
+                        const uint64_t alone = lonely_fall(n, t, r, ledger, 0);
+                        CHECK_EQ(lonely_fall(n, t, r, ledger, 6), alone);
+                        CHECK_EQ(lonely_fall(n, t, r, ledger, 40), alone);
+                    }
     }
     TEST("every law's line stands at the place that its constant names, and its memory fits") {
         static const demi_law_row *const tables[] = {demi_normal_laws, demi_tangent_laws,
