@@ -3721,23 +3721,16 @@ static int demi_laws_usual(const dem_world *w) {
     return w->desc.tension == DEM_TENSION_KEPT && w->desc.friction_load == DEM_LOAD_PUSH &&
            w->desc.slider == DEM_SLIDER_SHARED;
 }
-/* The normal force of one contact alone, N; the user's own law is not asked. */
-DEM_INLINE dem_real demi_law_normal(const dem_world *w, const dem_contact *c, dem_real *memory,
-                                    dem_contact_force *f) {
-    demi_force_clear(f);
-    w->laws.normal->law(c, memory + w->laws.at_normal, f);
-    return f->normal;
-}
 /* The force of one contact by the laws in force, or by the user's. */
 static void demi_law(const dem_world *w, const dem_contact *c, dem_real *memory,
                      dem_contact_force *f) {
     const demi_laws *laws = &w->laws;
+    demi_force_clear(f);
     if (w->desc.law) {
-        demi_force_clear(f);
         w->desc.law(c, memory, f);
         return;
     }
-    demi_law_normal(w, c, memory, f);
+    laws->normal->law(c, memory + laws->at_normal, f);
     if (laws->tangent->law) laws->tangent->law(c, memory, f);
     if (laws->rolling->law) laws->rolling->law(c, memory + laws->at_rolling, f);
 }
