@@ -2736,15 +2736,16 @@ typedef struct demi_kept {
     dem_real inset;                /* the normal force passes at this part of arm_a */
     dem_vec3 spread;               /* m, from the centre of pressure to this corner */
     dem_real couple;               /* m: moment about the normal, over the normal force */
-    dem_real r_eff, m_eff;         /* m; kg, of a sphere on a wall; else 0, see: */
+    dem_real r_eff, m_eff;         /* m; kg, of a sphere on a wall, by respond; else 0, see: */
     dem_vec3 felt;                 /* m, to here from where bodies are felt: their mass there is
                                       what dashpots go by */
     double lambda;                 /* of Perram and Wertheim, where to begin next; 0: unknown */
     dem_vec3 force;                /* N, on a */
     dem_vec3 shift;                /* with a wall: as above */
     /* what goes from step to step: respond writes it, touch does not */
-    dem_real coef[DEMI_COEFS];     /* for coef_r, m: worked out anew when it changes; 0: none yet */
-    dem_real coef_r, root[2];      /* what goes by sqrt(m_eff), see demi_coefficients_rooted */
+    dem_real coef[DEMI_COEFS], root[2];        /* see demi_coefficients_rooted */
+    dem_real coef_r;               /* m, what they are for: worked out anew when r_eff changes; 0:
+                                      there are none yet */
     dem_real memory[DEMI_MEMORY];
 } demi_kept;
 
@@ -10011,7 +10012,7 @@ static int demi_bodies_near(const dem_world *w, int a, int b, const dem_real *sh
     }
     return 0;
 }
-/* The same for pairs that are not of two spheres: by the distance of their surfaces. */
+/* As demi_near_pick, pairs that are not of two spheres: by the distance of their surfaces. */
 static int demi_near_pick_shaped(dem_world *w, const demi_list *list, int begin, int end, int d,
                                  int p) {
     const int room = w->near.stride - DEMI_LANES;
@@ -11730,7 +11731,7 @@ typedef void (*demi_stage)(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
 enum { DEMI_STAGES = 6 };
 struct demi_run {
     const dem_world *w;
-    const demi_span *span;         /* the pairs under work */
+    const demi_span *span;         /* the pairs under work; null: kept contacts are */
     int alike, ledger, keep;       /* are the two of a pair alike? keep: reals of memory */
     int turning, parting;          /* are spins, differences of spins wanted? */
     int following;                 /* is the motion over the last step wanted? */
@@ -16753,9 +16754,10 @@ static int demi_touch(dem_world *w) {
 
 /* ---------------------------------------------------------------------------------------------
    >>kept-respond
-   The law's answers to kept contacts: coefficients and memory of each, the contact as a law sees
-   it, forces on both ends, walls' sums, energies, rates of the user's numbers. Owns what goes from
-   step to step in a contact; pushes bodies.
+   The law's answers to kept contacts, a tile of them at a time: coefficients and memory of each,
+   rows in which the stages of >>respond work out what laws answer, forces on both ends, walls'
+   sums, energies, rates of the user's numbers. Owns what goes from step to step in a contact;
+   pushes bodies.
    --------------------------------------------------------------------------------------------- */
 
 /* What a body adds to 1/M, 1/kg, where a stiffness follows masses: as light as any contact may find
@@ -16802,8 +16804,8 @@ DEM_INLINE const demi_kept *demi_kept_recall(const dem_world *w, const demi_kept
         memcpy(c->coef, old->coef, sizeof *c - offsetof(demi_kept, coef));
         return old;
     }
+    memset(c->coef, 0, sizeof *c - offsetof(demi_kept, coef));
     if (old != c) memcpy(c->memory, old->memory, sizeof c->memory);
-    else memset(c->memory, 0, sizeof c->memory);
     demi_kept_coefs(w, c, c->coef, c->root);
     c->coef_r = c->r_eff;
     return old;
@@ -16852,10 +16854,9 @@ static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rate
 #pragma GCC push_options
 #pragma GCC optimize("no-trapping-math")
 #endif
-/* Contacts under work, a tile of them: rows for the stages of >>respond, and what only these have.
+/* Contacts under work, a tile of them: what only these have, and rows for the stages of >>respond.
    A wall is a body b without an arm: the others are against its surface there. */
 typedef struct demi_kept_tile {
-    demi_tile rows;
     demi_rows arm[2], mid[2];      /* m, of a and b: now, in the middle of the step */
     demi_rows spin[2], spun[2];    /* rad/s, of a and b: the same */
     dem_real share[DEMI_ROW], grip[DEMI_ROW], lift[DEMI_ROW];      /* lift: less share */
@@ -16865,6 +16866,8 @@ typedef struct demi_kept_tile {
     /* where bodies are no spheres: of a and b, what follows from them for 1/m_eff */
     demi_rows felt[2];             /* m; 0: nothing turns */
     dem_real q[2][4][DEMI_ROW], I[2][3][DEMI_ROW], inv[2][DEMI_ROW];
+    /* the others: here, so that all rows begin on cache lines */
+    demi_tile rows;
     demi_kept *contact[DEMI_TILE];
     const demi_kept *old[DEMI_TILE];               /* what each continues; itself, if new */
     dem_vec3 at[DEMI_TILE], surface[DEMI_TILE];    /* where a wall is touched, m; its speed, m/s */
@@ -17056,6 +17059,10 @@ DEMI_KEPT_STAGE(demi_kept_answer_rolling, demi_kept_answer_one(t, q, 1))
 #pragma GCC pop_options
 #endif
 
+/* Whether the elastic force counts more, or less, than what dissipates. */
+DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
+    return k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0;
+}
 /* Row q as a law sees it that is called by itself. */
 static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run *r, int q,
                           dem_contact *c) {
@@ -17077,7 +17084,8 @@ static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run
     dem_contact c;
     int q;
     for (q = 0; q < t->count; q++) {
-        if (t->lifted) {                        /* as if they stood still, with a copy of memory */
+        t->still[q] = 0;
+        if (demi_kept_lifted(t->contact[q])) {  /* as if it stood still, with a copy of memory */
             demi_kept_see(w, t, r, q, &c);
             demi_recall(&t->rows, q, 0, r->keep, m);
             c.closing_speed = 0;
@@ -17092,10 +17100,6 @@ static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run
         demi_tangent_put(&t->rows, q, &f, 2);
         demi_rolling_put(&t->rows, q, &f, 2);
     }
-}
-/* Whether the elastic force counts more, or less, than what dissipates. */
-DEM_INLINE int demi_kept_lifted(const demi_kept *k) {
-    return k->lift < k->share || k->lift > k->share || demi_dot(k->aside, k->aside) > 0;
 }
 /* The elastic force alone, N: what the normal law answers where nothing moves. */
 static void demi_kept_still(demi_kept_tile *t, const demi_run *r, int full) {
@@ -17207,8 +17211,8 @@ static void demi_kept_push(dem_world *w, int d, demi_kept_tile *t, int q) {
         demi_wall_sum_add(w, &w->wall_sums[(size_t)d*(size_t)w->wall_count + (size_t)c->wall],
                           c->wall, t->at[q], force, demi_row(t->rows.moment, q), t->surface[q]);
 }
-/* Fills in what the tile's contacts answer. Where they are few, one by one: a whole group of them
-   costs as much as four. Bits are the same. */
+/* Fills in what the tile's contacts answer. Where they are few, one by one, since a group costs as
+   much for one as for all that fit in. Bits are the same. */
 static void demi_kept_tile_answer(const dem_world *w, const demi_run *r, demi_kept_tile *t) {
     const int full = (t->count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     const int few = t->count < 4, rolls = w->desc.law || w->laws.rolling->law;
@@ -17290,6 +17294,7 @@ static void demi_kept_respond(dem_world *w, int d) {
         tile.rows.touch[q] = 1;
         tile.still[q] = 0;                      /* where none is lifted */
         demi_row_put(tile.rows.tangent, q, demi_v(0, 0, 0));    /* where no law answers it */
+        tile.rows.slope[0][q] = tile.rows.slope[1][q] = tile.rows.kt[1][q] = (dem_real)NAN;
     }
     if (run.ledger) memset(tile.rows.part, 0, sizeof tile.rows.part);
     for (i = 0; i < domain->kept_next; i++) {
