@@ -487,8 +487,8 @@ typedef enum dem_integrator {
 
 /* How contacts answer. Springs push by their overlap, by the laws above; steps are a fiftieth of a
    contact time. Impulses keep rigid bodies from going into each other (>>impulses): of the laws
-   above only restitution, friction (static friction is not told from it) and rolling friction hold,
-   and steps are as long as the flow asks, 1e-3 s for grains of millimetres. */
+   above only restitution, friction, static friction and rolling friction hold, and steps are as
+   long as the flow asks, 1e-3 s for grains of millimetres. */
 typedef enum dem_response {
     DEM_RESPONSE_SPRINGS = 0,
     DEM_RESPONSE_IMPULSES
@@ -618,6 +618,7 @@ typedef struct dem_contact {
     dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear) */
     dem_real kun, kad;       /* N/m, hysteretic law: unloading, adhesion; otherwise 0 */
     dem_real friction, friction_static, rolling_friction;
+    dem_real sliding;        /* what your law answered in force->sliding a step ago; 0 at first */
     int32_t material_a, material_b; /* dem_material ids */
     int32_t wall;            /* 0: b is a grain; otherwise the dem_wall id */
     int tension, friction_load, slider;  /* dem_tension, dem_load, dem_slider: as in the desc */
@@ -647,6 +648,9 @@ typedef struct dem_contact_force {
     dem_real slope, slope_step;  /* N/m, d(elastic)/d(overlap): now, in the middle of the step */
     dem_real kt, kt_step;    /* N/m, tangential stiffness: the same */
     dem_real ct;             /* N s/m, tangential dashpot */
+    /* 1 while the contact slides, else 0; the laws of friction set it. Kept in contact history, and
+       handed back in c->sliding, where a pair's friction_static is above its friction */
+    dem_real sliding;
     dem_contact_energy energy;   /* for the ledger: what your law leaves at 0 it cannot know */
 } dem_contact_force;
 
@@ -773,12 +777,21 @@ DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_c
                                   kad*soft/(kun + kad)*(loaded*loaded - depth*depth));
 }
 
-/* Friction caps a trial force t by Coulomb: by friction_static while it holds, by friction when it
-   slides. Answers which part of t is left; what is cut off is sliding. */
-DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_contact_force *f, dem_vec3 t) {
+/* Coulomb's limit of a trial force t, N. A contact that holds begins to slide where |t| exceeds
+   friction_static times the load. It slides on at `friction` times the load, and holds again when
+   its slip stops or turns back: when it no longer stretches the spring, whose force `spring` (N,
+   zero without one) then points along the slip, and |t| is within that lower limit. Returns the
+   fraction of t that is left; the rest is lost to sliding. Without the state of sliding the mean
+   force of a slow slide would depend on dt: (friction + friction_static)/2 as dt tends to 0.
+   Tests: "the mean force of a steady slide is mu N for any time step". */
+DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_contact_force *f, dem_vec3 t,
+                                 dem_vec3 spring) {
     const dem_real size = DEMI_SQRT(demi_dot(t, t)), cap = f->load*c->friction;
-    dem_real cut = size > f->load*c->friction_static ? size : cap;
+    const dem_real most = c->sliding > 0 ? cap : f->load*c->friction_static;
+    const dem_real onward = demi_dot(spring, c->slip) < 0 ? c->sliding : 0;
+    dem_real cut = size > most ? size : cap;
     cut = (cap + DEMI_TINY)/(cut + DEMI_TINY);
+    f->sliding = c->dt > 0 ? size > most ? DEM_R(1) : onward : c->sliding;
     f->tangent = demi_scale(t, cut);
     f->energy.shear_work = -demi_dot(f->tangent, c->slip)*c->dt;
     return cut;
@@ -786,7 +799,7 @@ DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_contact_force *f, dem
 /* No memory, a dashpot of so many N s/m. */
 DEM_INLINE void demi_law_dashpot(const dem_contact *c, dem_contact_force *f, dem_real ct) {
     const dem_vec3 v = c->slip;
-    const dem_real cut = demi_law_cap(c, f, demi_v(-ct*v.x, -ct*v.y, -ct*v.z));
+    const dem_real cut = demi_law_cap(c, f, demi_v(-ct*v.x, -ct*v.y, -ct*v.z), demi_v(0, 0, 0));
     f->energy.slide = cut < 1 ? f->energy.shear_work : 0;
 }
 /* -ct v, capped; [MIL] 4.3. No memory. */
@@ -825,7 +838,7 @@ DEM_INLINE void dem_law_spring(const dem_contact *c, dem_real *memory, dem_conta
     dem_real cut;
     s = demi_add(s, demi_scale(c->slip_step, demi_law_share(c)*c->dt));
     t = demi_v(-kt*s.x - ct*v.x, -kt*s.y - ct*v.y, -kt*s.z - ct*v.z);
-    cut = demi_law_cap(c, f, t);
+    cut = demi_law_cap(c, f, t, demi_scale(s, -kt));
     s = demi_add(s, demi_law_give(c, f, t, cut));
     demi_put(memory, s);
     f->energy.shear_stored = kt*demi_dot(s, s)/2;
@@ -840,7 +853,7 @@ DEM_INLINE void demi_law_increment(const dem_contact *c, dem_real *memory, dem_c
     dem_real cut;
     s = demi_sub(s, demi_scale(c->slip_step, kt_step*demi_law_share(c)*c->dt));
     t = demi_v(s.x - ct*v.x, s.y - ct*v.y, s.z - ct*v.z);
-    cut = demi_law_cap(c, f, t);
+    cut = demi_law_cap(c, f, t, s);
     s = demi_sub(s, demi_scale(demi_law_give(c, f, t, cut), kt));
     demi_put(memory, s);
     memory[3] = kt;
@@ -1056,7 +1069,9 @@ typedef struct dem_material_desc {
        this or stiffness_unloading; e = sqrt(kn/kun), of a contact that does not stick */
     dem_real restitution;
     dem_real friction;         /* sliding friction mu, >= 0; 0: none */
-    dem_real friction_static;  /* >= friction; 0: the same as friction */
+    /* static friction mu_s, >= friction; 0: the same as friction. Friction may reach mu_s N until
+       the contact slides; then it is mu N until the slip stops or turns back */
+    dem_real friction_static;
     dem_real rolling_friction; /* mu_r, >= 0, of the effective radius; 0: none */
     /* N/m, linear and hysteretic law (there of loading); 0: from young and impact_speed [DIM04] */
     dem_real stiffness;
@@ -2600,7 +2615,7 @@ static uint64_t demi_hash(uint64_t h, const void *data, size_t size) {
    of four reals each, so that a gather touches one cache line and a drift is one long loop. Every
    array that grows is a field here; DEMI_GROW keeps what it holds, or leaves it alone and says so.
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY, DEMI_SOME = 16, DEMI_DOMAINS = 256,
+enum { DEMI_MATERIALS = 64, DEMI_MEMORY = DEM_LAW_MEMORY + 1, DEMI_SOME = 16, DEMI_DOMAINS = 256,
       DEMI_LANES = 64/(int)sizeof(dem_real),    /* pairs computed together: widest vectors */
       DEMI_TILE = 4*DEMI_LANES,                 /* pairs under work at a time */
       DEMI_NEAR_BALLS = 31, DEMI_BALLS_UNKNOWN = 255, DEMI_BALLS_ALL = 254 };
@@ -2973,6 +2988,8 @@ struct demi_law_row;
 typedef struct demi_laws {
     const struct demi_law_row *normal, *tangent, *rolling;
     int at_rolling, at_normal, memory, vectors;     /* reals; bits of those that are vectors */
+    int at_sliding;                /* the real that says whether friction slides, the last of
+                                      `memory`; DEMI_MEMORY: no pair has static friction */
 } demi_laws;
 
 /* --- what a world knows in numbers alone, by whose they are. Saved and copied whole: a field more
@@ -3023,6 +3040,7 @@ typedef struct demi_in_force {     /* >>rebuild: worked out when the list is mad
     int uniform;                   /* one radius, one mass, one material, nothing fixed */
     int fixed_count;
     int tight;                     /* some body is so long that its bounding sphere is no guide */
+    int sticks, none;              /* has a pair static friction above that of sliding? 0 */
     int species_count;             /* DEMI_SPECIES + 1: more than that */
     demi_species species[DEMI_SPECIES];
     dem_real radius_min, radius_max;           /* m */
@@ -3261,8 +3279,8 @@ DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
 }
 /* Contacts answer by impulses; each remembers its friction and moment (vectors), its push and what
-   of that cohesion takes, as forces. */
-enum { DEMI_IMPULSE_REALS = 8 };
+   of that cohesion takes, as forces; and whether it slides, 1 or 0. */
+enum { DEMI_IMPULSE_REALS = 9 };
 DEM_INLINE int demi_impulsive(const dem_world *w) {
     return w->desc.response == DEM_RESPONSE_IMPULSES;
 }
@@ -3668,8 +3686,12 @@ static int demi_law_known(const demi_law_row *rows, int kind) {
     return 0;
 }
 
-/* The laws in force, and where the memory of each begins. */
-static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling) {
+/* Room for the state of sliding behind a law's own `memory` reals, where it is kept. */
+static int demi_laws_sliding(int *memory, int sticks) {
+    return sticks ? (*memory)++ : (int)DEMI_MEMORY;
+}
+/* The laws in force, and where the memory of each begins. sticks: has a pair static friction? */
+static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling, int sticks) {
     laws->normal = &demi_normal_laws[normal];
     laws->tangent = &demi_tangent_laws[tangent];
     laws->rolling = &demi_rolling_laws[rolling];
@@ -3679,13 +3701,14 @@ static void demi_laws_set(demi_laws *laws, int normal, int tangent, int rolling)
     laws->vectors = ((1 << 3*laws->tangent->vectors) - 1) |
                     ((1 << 3*laws->rolling->vectors) - 1) << laws->at_rolling |
                     ((1 << 3*laws->normal->vectors) - 1) << laws->at_normal;
+    laws->at_sliding = demi_laws_sliding(&laws->memory, sticks && laws->tangent->law);
 }
 /* An answer before its law is called. Number by number: a memset would keep the struct in memory,
    and loops from becoming vector code. */
 DEM_INLINE void demi_force_clear(dem_contact_force *f) {
     f->tangent = f->moment = demi_v(0, 0, 0);
     f->normal = f->elastic = f->load = f->slope = f->slope_step = 0;
-    f->kt = f->kt_step = f->ct = 0;
+    f->kt = f->kt_step = f->ct = f->sliding = 0;
     f->energy.dashpot = f->energy.sag = f->energy.elastic = f->energy.shear_work = 0;
     f->energy.slide = f->energy.shear_stored = f->energy.roll = 0;
 }
@@ -3717,23 +3740,26 @@ DEM_INLINE void demi_contact_usual(dem_contact *c) {
     c->tension = DEM_TENSION_KEPT;
     c->friction_load = DEM_LOAD_PUSH;
     c->slider = DEM_SLIDER_SHARED;
+    c->friction_static = c->friction;
 }
 static int demi_laws_usual(const dem_world *w) {
     return w->desc.tension == DEM_TENSION_KEPT && w->desc.friction_load == DEM_LOAD_PUSH &&
-           w->desc.slider == DEM_SLIDER_SHARED;
+           w->desc.slider == DEM_SLIDER_SHARED && w->laws.at_sliding == DEMI_MEMORY;
 }
-/* The force of one contact by the laws in force, or by the user's. */
-static void demi_law(const dem_world *w, const dem_contact *c, dem_real *memory,
-                     dem_contact_force *f) {
+/* The force of one contact by the laws in force, or by the user's. memory: all that the contact
+   keeps, c->sliding included. */
+static void demi_law(const dem_world *w, dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const demi_laws *laws = &w->laws;
+    const int slides = laws->at_sliding < DEMI_MEMORY;
     demi_force_clear(f);
-    if (w->desc.law) {
-        w->desc.law(c, memory, f);
-        return;
+    c->sliding = slides ? memory[laws->at_sliding] : 0;
+    if (w->desc.law) w->desc.law(c, memory, f);
+    else {
+        laws->normal->law(c, memory + laws->at_normal, f);
+        if (laws->tangent->law) laws->tangent->law(c, memory, f);
+        if (laws->rolling->law) laws->rolling->law(c, memory + laws->at_rolling, f);
     }
-    laws->normal->law(c, memory + laws->at_normal, f);
-    if (laws->tangent->law) laws->tangent->law(c, memory, f);
-    if (laws->rolling->law) laws->rolling->law(c, memory + laws->at_rolling, f);
+    if (slides) memory[laws->at_sliding] = f->sliding;
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -10271,23 +10297,26 @@ static int demi_near_make(dem_world *w, int fresh) {
 /* What the laws in force keep per contact: the user's own what desc says, built-in ones what their
    rows say, one after the other (demi_laws_set). */
 static void demi_effects_memory(dem_world *w) {
-    demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling);
-    w->memory_stride = w->laws.memory;
-    w->vector_mask = w->laws.vectors;
-    if (demi_impulsive(w)) { w->memory_stride = DEMI_IMPULSE_REALS; w->vector_mask = 0x3f; }
-    if (!w->desc.law) return;
-    w->memory_stride = w->desc.law_memory;
-    w->vector_mask = (1 << 3*w->desc.law_vectors) - 1;
+    demi_laws_set(&w->laws, w->normal, w->effects.tangent, w->effects.rolling, w->effects.sticks);
+    if (w->desc.law) {
+        w->laws.memory = w->desc.law_memory;
+        w->laws.at_sliding = demi_laws_sliding(&w->laws.memory, w->effects.sticks);
+        w->laws.vectors = (1 << 3*w->desc.law_vectors) - 1;
+    }
+    w->memory_stride = demi_impulsive(w) ? (int)DEMI_IMPULSE_REALS : w->laws.memory;
+    w->vector_mask = demi_impulsive(w) ? 0x3f : w->laws.vectors;
 }
-/* Does any pair of the scene have friction, or rolling friction? */
-static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling) {
+/* Does any pair of the scene have friction, rolling friction, or static friction above that of
+   sliding? */
+static void demi_pairs_rub(const dem_world *w, int *friction, int *rolling, int *sticks) {
     int i, j;
-    *friction = *rolling = 0;
+    *friction = *rolling = *sticks = 0;
     for (i = 0; i < w->material_count; i++)
         for (j = 0; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
             *friction |= p->friction > 0 || p->friction_static > 0;
             *rolling |= p->rolling_friction > 0;
+            *sticks |= p->friction_static > p->friction;
         }
 }
 /* m: the farthest that a law is asked about any two, the largest of this radius. */
@@ -10298,8 +10327,9 @@ static double demi_reach_of(const dem_world *w, double radius) {
 }
 /* The effects of the live scene: which laws act, whether all bodies are alike. */
 static void demi_effects(dem_world *w) {
-    int i, friction, rolling;
-    demi_pairs_rub(w, &friction, &rolling);
+    int i, friction, rolling, sticks;
+    demi_pairs_rub(w, &friction, &rolling, &sticks);
+    w->effects.sticks = sticks;
     w->normal = (int)w->desc.normal_law;
     w->effects.tangent = friction ? demi_tangent_meant(w) : DEM_TANGENT_NONE;
     w->effects.rolling = rolling ? demi_rolling_meant(w) : DEM_ROLLING_NONE;
@@ -10505,11 +10535,15 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     return 1;
 }
 
-/* What the laws of before kept, for those in force now: each law's reals go where it has them. */
-static void demi_memory_map(const demi_laws *was, const demi_laws *now, const dem_real *old,
-                            dem_real *m) {
+/* What the laws of before kept, for those in force now: each law's reals go where it has them. own:
+   how many the user's law has, which are the first; -1: the laws are built in. */
+static void demi_memory_map(const demi_laws *was, const demi_laws *now, int own,
+                            const dem_real *old, dem_real *m) {
     int k;
-    for (k = 0; k < now->memory; k++) m[k] = 0;
+    for (k = 0; k < now->memory; k++) m[k] = k < own ? old[k] : 0;
+    if (was->at_sliding < DEMI_MEMORY && now->at_sliding < DEMI_MEMORY)
+        m[now->at_sliding] = old[was->at_sliding];
+    if (own >= 0) return;
     for (k = 0; k < now->tangent->memory && was->tangent == now->tangent; k++) m[k] = old[k];
     for (k = 0; k < now->rolling->memory && was->rolling == now->rolling; k++)
         m[now->at_rolling + k] = old[was->at_rolling + k];
@@ -10519,12 +10553,13 @@ static void demi_memory_map(const demi_laws *was, const demi_laws *now, const de
    changed then. */
 static int demi_memory_move(dem_world *w, const demi_laws *was) {
     const size_t from = (size_t)w->filed.stride, to = (size_t)w->laws.memory;
+    const int own = w->desc.law ? w->desc.law_memory : -1;
     dem_real old[DEMI_MEMORY], *fresh = 0;
     int d, k;
     if (w->filed.stride != was->memory) w->filed.count = 0;    /* of no use: not these laws' */
     if (!DEMI_GROW(w, fresh, (size_t)w->filed.count*to)) return 0;
     for (k = 0; k < w->filed.count; k++)
-        demi_memory_map(was, &w->laws, w->filed.memory + (size_t)k*from,
+        demi_memory_map(was, &w->laws, own, w->filed.memory + (size_t)k*from,
                         fresh + (size_t)k*to);
     demi_free(w, w->filed.memory);
     w->filed.memory = fresh;
@@ -10534,7 +10569,7 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
             demi_kept *c = demi_kept_of(w, d) + k;
             memcpy(old, c->memory, sizeof old);
             memset(c->memory, 0, sizeof c->memory);
-            demi_memory_map(was, &w->laws, old, c->memory);
+            demi_memory_map(was, &w->laws, own, old, c->memory);
         }
     }
     return 1;
@@ -10542,11 +10577,13 @@ static int demi_memory_move(dem_world *w, const demi_laws *was) {
 /* The effects of the scene as it is now; when friction has come into it, or has gone, memory moves
    with the laws. 0 when memory ran out: the laws of before stay in force. */
 static int demi_effects_take(dem_world *w) {
-    const demi_laws was = w->laws;
+    const demi_laws was = w->laws, *now = &w->laws;
     const int tangent = w->effects.tangent, rolling = w->effects.rolling;
+    const int sticks = w->effects.sticks;
     demi_effects(w);
-    if (demi_species_room(w) && (!demi_laws_keep(w) || !was.normal ||
-        (was.tangent == w->laws.tangent && was.rolling == w->laws.rolling) ||
+    if (demi_species_room(w) && (demi_impulsive(w) || !was.normal ||
+        (was.memory == now->memory && (w->desc.law || (was.tangent == now->tangent &&
+                                                       was.rolling == now->rolling))) ||
         demi_memory_move(w, &was))) {
         demi_species_lay(w);
         demi_species_vary(w);
@@ -10554,6 +10591,7 @@ static int demi_effects_take(dem_world *w) {
     }
     w->effects.tangent = tangent;
     w->effects.rolling = rolling;
+    w->effects.sticks = sticks;
     demi_effects_memory(w);
     return 0;
 }
@@ -11617,7 +11655,8 @@ typedef struct demi_tile {
     demi_rows around, turned;      /* rad/s, sum of spins: the same */
     demi_rows apart, parted;       /* rad/s, difference of spins: the same */
     dem_real radius[2][DEMI_ROW];
-    dem_real memory[DEMI_MEMORY][DEMI_ROW], coef[DEMI_PAIR_COLUMNS][DEMI_ROW];
+    dem_real memory[DEMI_MEMORY + 1][DEMI_ROW];           /* the last: where sliding is not kept */
+    dem_real coef[DEMI_PAIR_COLUMNS][DEMI_ROW];
     /* touch and motion */
     dem_real length[DEMI_ROW], over_d[DEMI_ROW], overlap[DEMI_ROW], deep[DEMI_ROW];
     dem_real touch[DEMI_ROW];      /* 1 where the two touch, or are within a law's range; else 0 */
@@ -11724,6 +11763,7 @@ typedef struct demi_same {
     dem_real range, range_radii;   /* m: of a law that is asked before touch; else 0 */
     int tension, friction_load, slider;
     int at_rolling, at_normal;     /* where their memory begins */
+    int at_sliding;                /* the row of memory that says whether friction slides */
 } demi_same;
 /* What a scene calls for. */
 typedef struct demi_run demi_run;
@@ -11886,6 +11926,7 @@ DEM_INLINE void demi_tile_contact(demi_tile *DEMI_RESTRICT t, const demi_same *s
     c->kun = t->coef[DEMI_K_UN][q]; c->kad = t->coef[DEMI_K_AD][q];
     c->friction = t->coef[DEMI_MU][q]; c->friction_static = t->coef[DEMI_MU_STATIC][q];
     c->rolling_friction = t->coef[DEMI_MU_ROLL][q];
+    c->sliding = t->memory[s->at_sliding][q];
     c->r_eff = t->coef[DEMI_R_EFF][q];
     c->m_eff = t->coef[DEMI_M_EFF][q];
     c->tension = s->tension;
@@ -11921,8 +11962,9 @@ DEM_INLINE void demi_tangent_energy(demi_tile *DEMI_RESTRICT t, int q, const dem
     t->part[4][q] = f->energy.shear_stored*t->touch[q];
 }
 /* What a law has answered, for the next; `all`: 1: also what only some ask for, 2: and energies. */
-DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
-                                int all) {
+DEM_INLINE void demi_normal_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                const dem_contact_force *f, int all) {
+    (void)s;
     t->repulsion[q] = f->normal;
     t->load[q] = f->load;
     t->kt[0][q] = f->kt;
@@ -11941,14 +11983,16 @@ DEM_INLINE void demi_normal_get(demi_tile *DEMI_RESTRICT t, int q, dem_contact_f
     f->slope = t->slope[0][q]; f->slope_step = t->slope[1][q];
     f->ct = t->ct[q];
 }
-DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
-                                 int all) {
+DEM_INLINE void demi_tangent_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                 const dem_contact_force *f, int all) {
     demi_row_put(t->tangent, q, f->tangent);
-    if (all > 1) demi_tangent_energy(t, q, f);
+    if (all < 2) return;
+    t->memory[s->at_sliding][q] = f->sliding*t->touch[q];
+    demi_tangent_energy(t, q, f);
 }
-DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_contact_force *f,
-                                 int all) {
-    (void)all;
+DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, const demi_same *s, int q,
+                                 const dem_contact_force *f, int all) {
+    (void)all; (void)s;
     demi_row_put(t->moment, q, f->moment);
     t->part[5][q] = f->energy.roll*t->touch[q];
 }
@@ -11966,7 +12010,7 @@ DEM_INLINE void demi_rolling_put(demi_tile *DEMI_RESTRICT t, int q, const dem_co
             demi_recall(t, q, AT, MEMORY, m); \
             dem_law_##LAW(&c, m, &f); \
             demi_keep(t, q, AT, MEMORY, m); \
-            PUT(t, q, &f, ALL); \
+            PUT(t, &s, q, &f, ALL); \
         DEMI_ROWS_END \
     }
 #define DEMI_NORMAL_STAGES(KIND, LAW, MEMORY, VECTORS, TRAITS, TEXT) \
@@ -12100,6 +12144,7 @@ DEM_INLINE void demi_own_one(demi_tile *DEMI_RESTRICT t, const demi_run *r, cons
     demi_recall(t, q, 0, keep, m);
     law(c, m, &f);
     demi_keep(t, q, 0, keep, m);
+    t->memory[same->at_sliding][q] = f.sliding*t->touch[q];
     demi_answer_one(t, q, f.normal, f.tangent, f.moment, alike, 1, 1);
     if (!ledger) return;                        /* what the law says of it */
     demi_normal_energy(t, q, &f);
@@ -12115,8 +12160,8 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
     demi_who_clear(&c.who);
     for (q = 0; q < r->span->count; q++) {
         if (t->touch[q] > 0) {
-            demi_own_one(t, r, &same, q, r->w->desc.law_who, r->keep, r->alike, r->ledger,
-                         r->w->desc.law, &c);
+            demi_own_one(t, r, &same, q, r->w->desc.law_who, r->w->desc.law_memory, r->alike,
+                         r->ledger, r->w->desc.law, &c);
             continue;
         }
         demi_row_put(t->force, q, demi_v(0, 0, 0));
@@ -12138,10 +12183,11 @@ static void demi_stage_own(demi_tile *DEMI_RESTRICT t, const demi_run *r, int fu
 DEMI_CLONES static void demi_stage_own_inlined(demi_tile *DEMI_RESTRICT t, const demi_run *r,
                                                int full) {
     const demi_same same = r->same;
-    if (!r->ledger && r->alike && r->keep == 0) { DEMI_OWN_ROWS(0, 1, 0) }
-    else if (!r->ledger && r->alike && r->keep == 3) { DEMI_OWN_ROWS(3, 1, 0) }
-    else if (!r->ledger && r->alike && r->keep == 4) { DEMI_OWN_ROWS(4, 1, 0) }
-    else { DEMI_OWN_ROWS(r->keep, r->alike, r->ledger) }
+    const int own = r->w->desc.law_memory;
+    if (!r->ledger && r->alike && own == 0) { DEMI_OWN_ROWS(0, 1, 0) }
+    else if (!r->ledger && r->alike && own == 3) { DEMI_OWN_ROWS(3, 1, 0) }
+    else if (!r->ledger && r->alike && own == 4) { DEMI_OWN_ROWS(4, 1, 0) }
+    else { DEMI_OWN_ROWS(own, r->alike, r->ledger) }
 }
 #endif
 
@@ -12209,6 +12255,7 @@ static demi_run demi_run_begin(const dem_world *w, dem_real dt) {
     r.same.range = w->desc.law_range;
     r.same.range_radii = w->desc.law_range_radii;
     r.same.at_rolling = laws->at_rolling; r.same.at_normal = laws->at_normal;
+    r.same.at_sliding = laws->at_sliding;
     r.same.tension = (int)w->desc.tension;
     r.same.friction_load = (int)w->desc.friction_load;
     r.same.slider = (int)w->desc.slider;
@@ -12254,6 +12301,7 @@ static void demi_tile_begin(const dem_world *w, int d, demi_tile *t) {
     }
     memset(t->part, 0, sizeof t->part);
     memset(t->tangent, 0, sizeof t->tangent);
+    memset(t->memory[DEMI_MEMORY], 0, sizeof t->memory[0]);
 }
 /* Coefficients of a tile's pairs, but those that never vary (demi_species_vary, laid once by
    demi_tile_begin). Answers the run they are for: of the two, that for pairs that differ, or that
@@ -12443,31 +12491,6 @@ static void demi_pairs(dem_world *w, int d) {
     }
     domain->contacts = (int)tally.contacts;
     domain->overlap = DEMI_MAX(domain->overlap, (double)tally.deepest);
-}
-
-/* The far ends of pairs that lead into domain d from domains before it. */
-static void demi_cross_gather(dem_world *w, int d) {
-    const int turning = demi_spins(w), rates = demi_exchanges(w) ? w->bodies.real_count : 0;
-    const int stride = w->cross.stride;
-    int k, e, p, shaped, from = 0;
-    for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
-        const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
-        const dem_real *force;
-        size_t slot;
-        while (entry >= (from + 1)*stride) from++;
-        p = w->cross.place[entry] - 1;
-        if (p < 0) continue;
-        shaped = p >= w->domains[from].near_shaped;
-        p -= shaped ? w->domains[from].near_shaped_cross - w->domains[from].near_end : 0;
-        slot = (size_t)(from*stride + p - w->domains[from].near_cross);
-        force = w->cross_force + 6*slot;
-        for (e = 0; e < 3; e++) {
-            w->bodies.force[j + e] += force[e];
-            if (turning || shaped) w->bodies.torque[j + e] += force[3 + e];
-        }
-        for (e = 0; e < rates; e++)
-            w->bodies.rates[rates*(j/4) + e] += w->cross_rate[(size_t)rates*slot + (size_t)e];
-    }
 }
 
 /* Sets the loop over pairs for the laws in force; answers what reports call it. */
@@ -16756,8 +16779,8 @@ static int demi_touch(dem_world *w) {
    >>kept-respond
    The law's answers to kept contacts, a tile of them at a time: coefficients and memory of each,
    rows in which the stages of >>respond work out what laws answer, forces on both ends, walls'
-   sums, energies, rates of the user's numbers. Owns what goes from step to step in a contact;
-   pushes bodies.
+   sums, energies, rates of the user's numbers; and the forces on far ends, which wait in slots, of
+   all contacts. Owns what goes from step to step in a contact; pushes bodies.
    --------------------------------------------------------------------------------------------- */
 
 /* What a body adds to 1/M, 1/kg, where a stiffness follows masses: as light as any contact may find
@@ -17096,9 +17119,9 @@ static void demi_kept_laws(const dem_world *w, demi_kept_tile *t, const demi_run
         demi_recall(&t->rows, q, 0, r->keep, m);
         demi_law(w, &c, m, &f);
         demi_keep(&t->rows, q, 0, r->keep, m);
-        demi_normal_put(&t->rows, q, &f, 2);
-        demi_tangent_put(&t->rows, q, &f, 2);
-        demi_rolling_put(&t->rows, q, &f, 2);
+        demi_normal_put(&t->rows, &r->same, q, &f, 2);
+        demi_tangent_put(&t->rows, &r->same, q, &f, 2);
+        demi_rolling_put(&t->rows, &r->same, q, &f, 2);
     }
 }
 /* The elastic force alone, N: what the normal law answers where nothing moves. */
@@ -17292,6 +17315,7 @@ static void demi_kept_respond(dem_world *w, int d) {
     tile.count = tile.lifted = tile.shaped = 0;
     for (q = 0; q < DEMI_TILE && q < domain->kept_next + DEMI_LANES; q++) {
         tile.rows.touch[q] = 1;
+        tile.rows.memory[DEMI_MEMORY][q] = 0;
         tile.still[q] = 0;                      /* where none is lifted */
         demi_row_put(tile.rows.tangent, q, demi_v(0, 0, 0));    /* where no law answers it */
         tile.rows.slope[0][q] = tile.rows.slope[1][q] = tile.rows.kt[1][q] = (dem_real)NAN;
@@ -17330,6 +17354,31 @@ static void demi_kept_clear(dem_world *w, int d) {
     if (pairs > 0) memset(w->cross_force + 6*first, 0, 6*(size_t)pairs*sizeof(dem_real));
     if (pairs > 0 && rates)
         memset(w->cross_rate + rates*first, 0, rates*(size_t)pairs*sizeof(dem_real));
+}
+
+/* The far ends of pairs that lead into domain d from domains before it. */
+static void demi_cross_gather(dem_world *w, int d) {
+    const int turning = demi_spins(w), rates = demi_exchanges(w) ? w->bodies.real_count : 0;
+    const int stride = w->cross.stride;
+    int k, e, p, shaped, from = 0;
+    for (k = w->cross_incoming_start[d]; k < w->cross_incoming_start[d + 1]; k++) {
+        const int entry = w->cross_incoming[k], j = 4*w->cross.b[entry];
+        const dem_real *force;
+        size_t slot;
+        while (entry >= (from + 1)*stride) from++;
+        p = w->cross.place[entry] - 1;
+        if (p < 0) continue;
+        shaped = p >= w->domains[from].near_shaped;
+        p -= shaped ? w->domains[from].near_shaped_cross - w->domains[from].near_end : 0;
+        slot = (size_t)(from*stride + p - w->domains[from].near_cross);
+        force = w->cross_force + 6*slot;
+        for (e = 0; e < 3; e++) {
+            w->bodies.force[j + e] += force[e];
+            if (turning || shaped) w->bodies.torque[j + e] += force[3 + e];
+        }
+        for (e = 0; e < rates; e++)
+            w->bodies.rates[rates*(j/4) + e] += w->cross_rate[(size_t)rates*slot + (size_t)e];
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -18115,6 +18164,9 @@ static void demi_impulses_lay(dem_world *w, int d) {
         /* a contact of several points has what its pair has once */
         const dem_real points = (dem_real)(k && k->corners ? k->corners : 1);
         const dem_real give = pair->compliance*points, had = w->desc.cold_start ? 0 : dt;
+        /* what slid in the last step slides on */
+        const dem_real mu = y[8*o.stride] > 0 ? pair->friction
+            : DEMI_MAX(pair->friction, pair->friction_static);
         demi_brings g = {0, 0, 0, 0, 0, 0};
         dem_vec3 slip = demi_v(y[0], y[o.stride], y[2*o.stride]);
         dem_real closing;
@@ -18124,7 +18176,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
             s->arms[2*m->at + 1] = o.arm_b;
             demi_brings_add(s, &g, m->a, o.normal, o.arm_a);
             if (m->b < w->bodies.count) demi_brings_add(s, &g, m->b, o.normal, o.arm_b);
-            demi_brings_bound(w, &g, pair->friction);
+            demi_brings_bound(w, &g, mu);
         } else {
             const demi_mover *a = s->movers + m->a, *b = s->movers + m->b;
             c->reach_a = demi_dot(o.arm_a, o.normal);
@@ -18136,7 +18188,7 @@ static void demi_impulses_lay(dem_world *w, int d) {
         c->a = m->a;
         c->b = m->b;
         c->normal = o.normal;
-        c->mu = pair->friction;
+        c->mu = mu;
         c->gn = g.n;
         c->gt = g.t;
         c->per_n = 1/(g.n + give/(dt*dt));
@@ -18639,6 +18691,16 @@ DEM_INLINE dem_real demi_impulse_wanted(const demi_impulse *c, dem_vec3 u, dem_r
     dt = demi_scale(demi_sub(*slip, c->slip), c->gt);
     return dn*dn + demi_dot(dt, dt);
 }
+/* 1 where friction has reached its limit, to round-off, and the slip u (m/s) is faster than `slow`:
+   of several points that hold a body, one may reach its limit at rest. Without a push as it was. */
+DEM_INLINE dem_real demi_impulse_slides(const demi_impulse *c, dem_vec3 u, dem_real slow,
+                                        dem_real was) {
+    const dem_real most = c->mu*c->push*(1 - (DEMI_SINGLE ? DEM_R(1e-5) : DEM_R(1e-12)));
+    const dem_vec3 slip = demi_sub(u, demi_scale(c->normal, demi_dot(u, c->normal)));
+    if (!(c->push > 0)) return was;
+    return demi_dot(c->slip, c->slip) >= most*most && demi_dot(slip, slip) > slow*slow ? DEM_R(1)
+                                                                                        : DEM_R(0);
+}
 /* Rolling and spinning friction of one contact. */
 DEM_INLINE void demi_twist_solve(const demi_solver *s, const demi_impulse *c, int shaped) {
     demi_twist *t = s->twists + (c - s->contacts);
@@ -19138,6 +19200,9 @@ static void demi_impulses_tell(dem_world *w, int d) {
     demi_solver *s = &w->solver;
     demi_domain *domain = &w->domains[d];
     const dem_real per = 1/s->dt;
+    /* m/s: a slip that the solve may have left, or round-off */
+    const dem_real slow = (dem_real)(10*w->booked.residual + (DEMI_SINGLE ? 1e-5 : 1e-10)*
+                                     w->booked.speed_max);
     double *lost = domain->energy;              /* of the step to come */
     int i, e;
     domain->contacts = domain->kept_walls = 0;
@@ -19154,7 +19219,8 @@ static void demi_impulses_tell(dem_world *w, int d) {
         const dem_vec3 after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
         const dem_vec3 u = demi_scale(demi_add(demi_impulse_before(w, c), after), DEM_R(0.5));
         const dem_real all[DEMI_IMPULSE_REALS] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
-            moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per};
+            moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per,
+            demi_impulse_slides(c, after, slow, o.memory[8*o.stride])};
         for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
         lost[DEMI_E_DASHPOT] -= (double)demi_dot(demi_sub(p, c->slip), u);
         lost[DEMI_E_SLIDE] -= (double)demi_dot(c->slip, u);
@@ -21746,6 +21812,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     dem_contact_force f;
     dem_vec3 gap;
     int e;
+    tile.memory[r.same.at_sliding][0] = 0;      /* demi_law takes it from `memory` */
     if (demi_impulsive(w)) return demi_impulse_info(w, d, p, out, branch);
     r.span = &span;
     demi_tile_fetch(&r, 1, &tile);
@@ -22957,13 +23024,16 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
 static uint64_t demi_memory_hash(const dem_world *w, uint64_t h, const dem_real *memory,
                                  size_t stride, int flip, int *any) {
     const demi_laws *laws = &w->laws;
-    int i, friction = 1, rolling = 1;
+    int i, friction = 1, rolling = 1, sticks = 1;
     *any = 0;
-    if (demi_laws_keep(w) && w->memory_stride) demi_pairs_rub(w, &friction, &rolling);
+    if (w->memory_stride) demi_pairs_rub(w, &friction, &rolling, &sticks);
     for (i = 0; i < w->memory_stride; i++) {
         dem_real m = memory[(size_t)i*stride];
         int number = i;
-        if (demi_laws_keep(w)) {
+        if (!demi_impulsive(w) && i == laws->at_sliding) {
+            if (!sticks) continue;
+            number = 24;
+        } else if (demi_laws_keep(w)) {
             if (i < laws->at_rolling ? !friction : i < laws->at_normal && !rolling) continue;
             if (i >= laws->at_normal) number = 16 + i - laws->at_normal;
             else if (i >= laws->at_rolling) number = 8 + i - laws->at_rolling;
@@ -25195,7 +25265,8 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
         for (k = 0; k < l.stride; k++) {
             const char *name = demi_name(world->desc.law_memory_names, k, &length);
             const demi_column own = {"CellData", names[k], 'r', 1, l.room, l.stride, k, l.memory};
-            if (name) sprintf(names[k], "%.*s", length, name);
+            if (k == world->laws.at_sliding && !demi_impulsive(world)) sprintf(names[k], "sliding");
+            else if (name) sprintf(names[k], "%.*s", length, name);
             else sprintf(names[k], "memory%d", k);
             column[4 + k] = own;
         }
@@ -26292,7 +26363,8 @@ static int demi_numbers_check(const demi_reader *r) {
     if (((t->effects.tangent || t->stage.list_valid) && t->effects.tangent != tangent &&
          t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
          t->effects.rolling != rolling && t->effects.rolling != DEM_ROLLING_NONE) ||
-             (t->effects.uniform & ~1) || t->effects.species_count < 0 ||
+             (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
+             t->effects.species_count < 0 ||
              t->effects.species_count > (t->effects.uniform ? 1 : DEMI_SPECIES + 1))
         return demi_lie(r, "the laws in force", -1);
     for (k = 0; k < t->effects.species_count && k < DEMI_SPECIES; k++)
@@ -27065,8 +27137,8 @@ static int demi_try_normal(const dem_world *w) {
     return demi_normal_is(w, DEMI_HERTZIAN) ? DEM_NORMAL_LINEAR : DEM_NORMAL_HERTZ;
 }
 static int demi_try_tangent(const dem_world *w) {
-    int friction, rolling;
-    demi_pairs_rub(w, &friction, &rolling);
+    int friction, rolling, sticks;
+    demi_pairs_rub(w, &friction, &rolling, &sticks);
     if (w->desc.law || !friction || demi_tangent_meant(w) == DEM_TANGENT_NONE) return -1;
     if (demi_tangent_meant(w) != DEM_TANGENT_SPRING) return DEM_TANGENT_SPRING;
     return demi_normal_is(w, DEMI_HERTZIAN) ? DEM_TANGENT_MINDLIN_RESCALED : -1;
