@@ -59,6 +59,7 @@
        >>fields      means on a grid, and the contacts they are made of
        >>step        one step after the other
        >>measure     counters, contacts, the digest
+       >>outlines    faces of many corners, cut into triangles
        >>read        meshes and profiles in
        >>decompose   spheres that stand for a mesh
        >>read-grains  grains in: text, CSV, XYZ, VTP
@@ -2019,6 +2020,9 @@ typedef struct dem_mesh_health {
     int duplicates;           /* triangles with the same three corners as an earlier one */
     int slivers;              /* height below 1e-3 of the longest side, or no area at all */
     int merged_vertices;      /* vertices at the same place, merged on reading (STL) */
+    int split_faces;          /* faces of more than three corners, cut into triangles (OBJ) */
+    int bent_faces;           /* of these: a corner is off their plane by > 1e-3 of their size */
+    int crossed_faces;        /* of these: an edge crosses another, or they have no area */
     dem_box box;              /* m */
     char hint[200];           /* likely unit mistake, or "" */
 } dem_mesh_health;
@@ -23376,6 +23380,172 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>outlines
+   Faces of many corners, cut into triangles that keep the face's winding. The face is seen along
+   its normal (Newell's: the sum over its edges). A convex one becomes a fan from its first corner;
+   any other is cut ear by ear: an ear is a corner whose triangle lies in the face. Holes bridged by
+   an edge there and back, corners on a line and doubled corners are allowed.
+   n corners give n - 2 triangles, always: what is doubled becomes a triangle of no area.
+   ---------------------------------------------------------------------------------------------- */
+/* Corners of a face that is not convex, at most: the work grows with the square of their number. */
+enum { DEMI_OUTLINE_MOST = 4096 };
+typedef struct demi_outline {
+    int count;
+    int32_t *corner;               /* vertices of the mesh, in order */
+    int32_t *next, *prev;          /* the ring of corners that are not cut off yet */
+    double *xy;                    /* count x 2, counterclockwise, m, from the first corner */
+    double near;                   /* m2: twice an area that is not larger counts as none */
+    double tests;                  /* of a corner against a triangle: so many are left */
+    int bent, crossed;             /* not flat; an edge crosses another, or it has no area */
+} demi_outline;
+static void demi_outline_free(dem_world *w, demi_outline *o) {
+    demi_free(w, o->corner);
+    demi_free(w, o->next);
+    demi_free(w, o->prev);
+    demi_free(w, o->xy);
+}
+/* Room for one more corner; 0: no memory. */
+static int demi_outline_grow(dem_world *w, demi_outline *o) {
+    const size_t n = (size_t)o->count + 1;
+    return demi_grow(w, DEMI_LOOSE, &o->corner, sizeof *o->corner, n) &&
+        demi_grow(w, DEMI_LOOSE, &o->next, sizeof *o->next, n) &&
+        demi_grow(w, DEMI_LOOSE, &o->prev, sizeof *o->prev, n) &&
+        demi_grow(w, DEMI_LOOSE, &o->xy, sizeof *o->xy, 2*n);
+}
+/* Twice the area of a triangle of three corners, positive if it turns left. */
+static double demi_outline_turn(const demi_outline *o, int a, int b, int c) {
+    const double *p = o->xy + 2*a, *q = o->xy + 2*b, *r = o->xy + 2*c;
+    return (q[0] - p[0])*(r[1] - p[1]) - (q[1] - p[1])*(r[0] - p[0]);
+}
+static int demi_outline_same(const demi_outline *o, int a, int b) {
+    return !(o->xy[2*a] < o->xy[2*b] || o->xy[2*a] > o->xy[2*b] ||
+             o->xy[2*a + 1] < o->xy[2*b + 1] || o->xy[2*a + 1] > o->xy[2*b + 1]);
+}
+/* The corners as seen along the normal, and whether they lie in a plane. */
+static void demi_outline_lay(demi_outline *o, const dem_real *vertices) {
+    double n[3] = {0, 0, 0}, mean[3] = {0, 0, 0}, lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, size = 0;
+    double far = 0, length;
+    int i, k, axis = 0;
+    for (i = 0; i < o->count; i++) {
+        const dem_real *zero = vertices + 3*o->corner[0], *a = vertices + 3*o->corner[i];
+        const dem_real *b = vertices + 3*o->corner[(i + 1)%o->count];
+        double p[3], q[3];
+        for (k = 0; k < 3; k++) {
+            p[k] = (double)a[k] - (double)zero[k];
+            q[k] = (double)b[k] - (double)zero[k];
+            mean[k] += p[k]/o->count;
+            lo[k] = DEMI_MIN(lo[k], p[k]);
+            hi[k] = DEMI_MAX(hi[k], p[k]);
+        }
+        for (k = 0; k < 3; k++) n[k] += p[(k + 1)%3]*q[(k + 2)%3] - p[(k + 2)%3]*q[(k + 1)%3];
+    }
+    for (k = 0; k < 3; k++) {
+        size = DEMI_MAX(size, hi[k] - lo[k]);
+        if (fabs(n[k]) > fabs(n[axis])) axis = k;
+    }
+    length = sqrt(n[0]*n[0] + n[1]*n[1] + n[2]*n[2]);
+    o->near = 1e-10*size*size;
+    o->bent = 0;
+    o->crossed = !(length > o->near);
+    for (i = 0; i < o->count; i++) {
+        const dem_real *zero = vertices + 3*o->corner[0], *a = vertices + 3*o->corner[i];
+        double p[3], off = 0;
+        for (k = 0; k < 3; k++) {
+            p[k] = (double)a[k] - (double)zero[k];
+            off += n[k]*(p[k] - mean[k]);
+        }
+        far = DEMI_MAX(far, fabs(off));
+        o->xy[2*i] = p[n[axis] < 0 ? (axis + 2)%3 : (axis + 1)%3];
+        o->xy[2*i + 1] = p[n[axis] < 0 ? (axis + 1)%3 : (axis + 2)%3];
+        o->next[i] = (i + 1)%o->count;
+        o->prev[i] = (i + o->count - 1)%o->count;
+    }
+    if (!o->crossed) o->bent = far > 1e-3*size*length;
+}
+/* 1 if it turns left at each corner, and round once: a pentagram turns left too. */
+static int demi_outline_convex(const demi_outline *o) {
+    int i, turns = 0;
+    double last = 0;
+    for (i = 0; i < o->count; i++) {
+        const double along = o->xy[2*o->next[i]] - o->xy[2*i];
+        if (!(demi_outline_turn(o, o->prev[i], i, o->next[i]) > o->near)) return 0;
+        turns += along*last < 0;
+        if (along < 0 || along > 0) last = along < 0 ? -1 : 1;
+    }
+    return turns <= 2;
+}
+/* 1 if two edges cross at a point that is a corner of neither. */
+static int demi_outline_crosses(const demi_outline *o) {
+    int i, j;
+    for (i = 0; i < o->count; i++)
+        for (j = i + 2; j < o->count; j++) {
+            const int k = (i + 1)%o->count, l = (j + 1)%o->count;
+            const double a = demi_outline_turn(o, i, k, j), b = demi_outline_turn(o, i, k, l);
+            if (!((a > o->near && b < -o->near) || (a < -o->near && b > o->near))) continue;
+            const double c = demi_outline_turn(o, j, l, i), d = demi_outline_turn(o, j, l, k);
+            if ((c > o->near && d < -o->near) || (c < -o->near && d > o->near)) return 1;
+        }
+    return 0;
+}
+/* 1 if corner i can be cut off. Patience 0: its triangle has an area, and no other corner lies in
+   it or on its sides; 1: none lies inside, and it may have no area; 2: always. */
+static int demi_outline_ear(demi_outline *o, int i, int patience) {
+    const int a = o->prev[i], b = o->next[i];
+    const double area = demi_outline_turn(o, a, i, b);
+    const double margin = patience ? o->near : -o->near;
+    int q;
+    if (patience > 1 || demi_outline_same(o, a, i) || demi_outline_same(o, i, b)) return 1;
+    if (!(area > -margin)) return 0;
+    for (q = o->next[b]; q != a; q = o->next[q]) {
+        o->tests--;
+        if (demi_outline_same(o, q, i)) {       /* does the outline lead from there through it? */
+            const int out[2] = {o->prev[q], o->next[q]};
+            int k;
+            for (k = 0; k < 2; k++)
+                if (demi_outline_turn(o, a, i, out[k]) > o->near &&
+                    demi_outline_turn(o, i, b, out[k]) > o->near) return 0;
+        } else if (!demi_outline_same(o, q, a) && !demi_outline_same(o, q, b) &&
+                   demi_outline_turn(o, a, i, q) > margin &&
+                   demi_outline_turn(o, i, b, q) > margin &&
+                   demi_outline_turn(o, b, a, q) > margin) return 0;
+    }
+    return 1;
+}
+/* The face's count - 2 triangles, to `out`. 0: it is not convex and has too many corners. */
+static int demi_outline_cut(demi_outline *o, const dem_real *vertices, int32_t *out) {
+    int i, left = o->count, idle = 0, patience = 0;
+    demi_outline_lay(o, vertices);
+    if (o->count == 3 || o->crossed || demi_outline_convex(o)) {
+        for (i = 1; i + 1 < o->count; i++, out += 3) {
+            out[0] = o->corner[0]; out[1] = o->corner[i]; out[2] = o->corner[i + 1];
+        }
+        o->crossed &= o->count > 3;
+        return 1;
+    }
+    if (o->count > DEMI_OUTLINE_MOST) return 0;
+    o->crossed = demi_outline_crosses(o);
+    o->tests = 8.0*o->count*o->count + 1000;
+    for (i = 0; left > 2;) {
+        if (left == 3 || demi_outline_ear(o, i, patience)) {
+            const int a = o->prev[i], b = o->next[i];
+            o->crossed |= demi_outline_turn(o, a, i, b) < -o->near;
+            out[0] = o->corner[a]; out[1] = o->corner[i]; out[2] = o->corner[b];
+            out += 3;
+            o->next[a] = b;
+            o->prev[b] = a;
+            left--;
+            i = o->next[b];
+            idle = patience = 0;
+        } else {
+            i = o->next[i];
+            if (++idle >= left) { idle = 0; patience++; }
+        }
+        if (o->tests < 0) patience = 2;
+    }
+    return 1;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>read
    Files in. A file is loaded whole and goes to the parser that also serves data in memory. Its
    bytes are not to be trusted: nothing is read past the end, a count is held against the bytes
@@ -23407,6 +23577,7 @@ typedef struct demi_text {
     const char *part;           /* of a mesh: only what is of this name; null: all                */
     char *parts;                /* names that there are, DEMI_PARTS_MOST bytes                    */
     int apart;                  /* now in another part                                            */
+    dem_mesh_health *health;    /* of a mesh: what reading finds, never null there                */
 } demi_text;
 enum { DEMI_PARTS_MOST = 160 };
 
@@ -23606,50 +23777,93 @@ static dem_result demi_lists_read(demi_text *t, size_t width, dem_mesh *mesh) {
     return result;
 }
 
-/* The rest of the line names a part: is it the one that is wanted? */
-static void demi_text_part(demi_text *t) {
-    const char *from = t->at, *end = t->line_end;
-    size_t size, have;
-    if (!t->part) return;
+/* Is what stands from here to there, without blanks at its ends, the name of the wanted part? Adds
+   it to the names that there are. */
+static int demi_text_named(demi_text *t, const char *from, const char *end) {
+    size_t size, have = strlen(t->parts);
     while (from < end && (*from == ' ' || *from == '\t')) from++;
-    while (end > from && (end[-1] == ' ' || end[-1] == '\t' || end[-1] == '\r')) end--;
+    while (end > from && strchr(" \t\r\n", end[-1])) end--;
     size = (size_t)(end - from);
-    t->apart = size != strlen(t->part) || memcmp(from, t->part, size);
-    have = strlen(t->parts);
-    if (!size || have + size + 3 > DEMI_PARTS_MOST) return;
-    sprintf(t->parts + have, "%s%.*s", have ? ", " : "", (int)size, from);
+    if (size && have + size + 3 <= DEMI_PARTS_MOST)
+        sprintf(t->parts + have, "%s%.*s", have ? ", " : "", (int)size, from);
+    return size == strlen(t->part) && !memcmp(from, t->part, size);
 }
-/* OBJ: v and f lines, polygons cut into a fan of triangles, the rest passed over. Without `fill` it
-   counts and allocates. The text comes by value: each pass starts afresh. */
-static dem_result demi_obj_pass(demi_text t, dem_mesh *mesh, int fill) {
+/* OBJ, a line that begins with o or g: does it name the wanted part? A name may have blanks and a
+   # in it, or end where a comment begins; each word after g is a group. */
+static int demi_obj_part(demi_text *t, int group) {
+    const char *from = t->at;
+    int is = 0, words = 0;
+    while (demi_text_word(t)) {
+        words++;
+        if (group) is |= demi_text_named(t, t->word, t->word + t->length);
+    }
+    if (!group || words > 1) is |= demi_text_named(t, from, t->line_end);
+    return t->line_end < t->next && *t->line_end == '#' ? is | demi_text_named(t, from, t->next)
+                                                         : is;
+}
+/* Moves to the next word of an OBJ statement, which a \ at the end of a line carries on. */
+static int demi_obj_word(demi_text *t) {
+    int more = demi_text_word(t);
+    while (more && demi_text_is(t, "\\")) more = demi_text_line(t);
+    return more;
+}
+/* A face: its corners, and its triangles to `out`. */
+static dem_result demi_obj_face(demi_text *t, const dem_mesh *mesh, int vertices, demi_outline *o,
+                                int32_t *out) {
+    dem_mesh_health *h = t->health;
+    for (o->count = 0; demi_obj_word(t); o->count++) {
+        dem_result result;
+        if (!demi_outline_grow(t->world, o)) return demi_text_memory(t);
+        result = demi_text_corner(t, mesh->vertex_count, vertices, o->corner + o->count);
+        if (result != DEM_OK) return result;
+    }
+    if (o->count < 3)
+        return demi_text_fail(t, "a face needs three corners or more; complete it or take it out");
+    if (!demi_outline_cut(o, mesh->vertices, out))
+        return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: a face that is not convex "
+                         "has %d corners, must be at most %d; let the program that wrote it export "
+                         "triangles", t->call, t->name, t->line, o->count,
+                         (int)DEMI_OUTLINE_MOST);
+    h->split_faces += o->count > 3;
+    h->bent_faces += o->count > 3 && o->bent;
+    h->crossed_faces += o->crossed;
+    return DEM_OK;
+}
+/* OBJ: v and f lines, o and g where a part is wanted, the rest passed over. Faces belong to the
+   object named last and to each group of the last g. Without `fill` it counts and allocates; else
+   it goes through twice, for a face may stand before its vertices. The text comes by value: each
+   pass starts afresh. */
+static dem_result demi_obj_pass(demi_text text, dem_mesh *mesh, int fill) {
     size_t vertices = 0, triangles = 0, axis;
+    demi_outline outline;
     dem_result result = DEM_OK;
-    t.apart = t.part != 0;
-    while (result == DEM_OK && demi_text_line(&t)) {
-        if (demi_text_is(&t, "o") || demi_text_is(&t, "g")) demi_text_part(&t);
-        if (demi_text_is(&t, "v")) {
-            for (axis = 0; fill && axis < 3 && result == DEM_OK; axis++) {
-                demi_text_word(&t);
-                result = demi_text_real(&t, &mesh->vertices[3*vertices + axis]);
+    int faces;
+    memset(&outline, 0, sizeof outline);
+    for (faces = !fill; faces < 2 && result == DEM_OK; faces++) {
+        demi_text t = text;
+        int object = 0, group = 0;
+        for (vertices = 0; result == DEM_OK && demi_text_line(&t);) {
+            if (t.part && demi_text_is(&t, "o")) object = demi_obj_part(&t, 0);
+            else if (t.part && demi_text_is(&t, "g")) group = demi_obj_part(&t, 1);
+            else if (demi_text_is(&t, "v")) {
+                for (axis = 0; !faces && axis < 3 && result == DEM_OK; axis++) {
+                    demi_obj_word(&t);
+                    result = demi_text_real(&t, &mesh->vertices[3*vertices + axis]);
+                }
+                vertices++;
+            } else if (faces && demi_text_is(&t, "f") && (!t.part || object || group)) {
+                int corners = 0;
+                if (fill) {
+                    result = demi_obj_face(&t, mesh, (int)vertices, &outline,
+                                           mesh->triangles + 3*triangles);
+                    corners = outline.count;
+                } else while (demi_obj_word(&t)) corners++;
+                if (corners > 2) triangles += (size_t)corners - 2;
             }
-            vertices++;
-        } else if (demi_text_is(&t, "f") && !t.apart) {
-            int32_t corner[3] = {0, 0, 0}; /* first, previous, present */
-            int count = 0;
-            for (; result == DEM_OK && demi_text_word(&t); count++) {
-                if (fill)
-                    result = demi_text_corner(&t, mesh->vertex_count, (int)vertices, &corner[2]);
-                if (fill && count >= 2)
-                    memcpy(mesh->triangles + 3*triangles, corner, sizeof corner);
-                if (count >= 2) triangles++;
-                corner[count == 0 ? 0 : 1] = corner[2];
-            }
-            if (fill && result == DEM_OK && count < 3)
-                result = demi_text_fail(&t, "a face needs three corners or more; complete it or "
-                                        "take it out");
         }
     }
-    return fill ? result : demi_mesh_allocate(&t, mesh, 3, vertices, triangles);
+    demi_outline_free(text.world, &outline);
+    return fill ? result : demi_mesh_allocate(&text, mesh, 3, vertices, triangles);
 }
 
 /* STL as text: facet, three vertex lines, endfacet. Without `fill` it counts and allocates. */
@@ -23660,7 +23874,7 @@ static dem_result demi_stl_pass(demi_text t, dem_mesh *mesh, int fill) {
     while (demi_text_line(&t)) {
         int vertex = demi_text_is(&t, "vertex"), facet = demi_text_is(&t, "facet");
         int endfacet = demi_text_is(&t, "endfacet"), endsolid = demi_text_is(&t, "endsolid");
-        if (demi_text_is(&t, "solid")) demi_text_part(&t);
+        if (t.part && demi_text_is(&t, "solid")) t.apart = !demi_text_named(&t, t.at, t.next);
         if (t.apart && !endsolid) continue;
         if (facet) facets++;
         if (!fill) continue;
@@ -23741,7 +23955,7 @@ static int32_t *demi_first_equal(dem_world *w, const void *keys, size_t count, s
 }
 
 /* STL has places where others have corners: merges those that are exactly equal. */
-static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh, int *merged) {
+static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh) {
     size_t i, count = (size_t)mesh->vertex_count, unique = 0;
     int32_t *first = demi_first_equal(t->world, mesh->vertices, count, 3*sizeof(dem_real));
     dem_real *vertices = 0;
@@ -23757,7 +23971,7 @@ static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh, int *merge
     demi_free(t->world, mesh->vertices);
     mesh->vertices = vertices;
     mesh->vertex_count = (int)unique;
-    *merged = (int)(count - unique);
+    t->health->merged_vertices = (int)(count - unique);
     return DEM_OK;
 }
 
@@ -23908,12 +24122,14 @@ static dem_result demi_parse(dem_world *w, const char *call, const char *name, c
                              size_t size, size_t width, const char *part, dem_mesh *mesh,
                              dem_mesh_health *health) {
     char parts[DEMI_PARTS_MOST] = "";
+    dem_mesh_health found;
     demi_text t = demi_text_make(w, call, name, data, size);
     const demi_mesh_format *format = width == 3 ? demi_mesh_format_of(t) : 0;
     dem_result result;
-    int merged = 0;
+    memset(&found, 0, sizeof found);
     t.part = part;
     t.parts = parts;
+    t.health = &found;
     if (!(format && format->binary) && memchr(data, 0, size)) {
         result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s: found %.0f bytes that are not text%s; the "
                            "file is cut short or of another format, so copy or export it again",
@@ -23926,7 +24142,7 @@ static dem_result demi_parse(dem_world *w, const char *call, const char *name, c
                                "must be one of: %s; ask for one of these, or read the whole mesh",
                                call, t.name, part, parts[0] ? parts : "(it names none)");
         if (result == DEM_OK) result = format->pass(t, mesh, 1);
-        if (result == DEM_OK && format->by_place) result = demi_mesh_merge(&t, mesh, &merged);
+        if (result == DEM_OK && format->by_place) result = demi_mesh_merge(&t, mesh);
         if (result == DEM_OK && part) result = demi_mesh_compact(&t, mesh);
     } else if (part) {
         result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s is of a format without named parts; give "
@@ -23935,7 +24151,7 @@ static dem_result demi_parse(dem_world *w, const char *call, const char *name, c
         result = demi_lists_read(&t, width, mesh);
     }
     if (result == DEM_OK && health) {
-        health->merged_vertices = merged;
+        *health = found;
         demi_health_shapes(mesh, health);
         result = demi_health_edges(&t, mesh, health);
     }

@@ -165,7 +165,7 @@ static void meshes(void) {
         }
         dem_mesh_free(world, &box);
     }
-    TEST("OBJ faces are cut into fans, may carry textures and may count backwards") {
+    TEST("convex OBJ faces are cut into fans, may carry textures and may count backwards") {
         CHECK_EQ(parse(world, box_obj, &mesh, &health), DEM_OK);
         CHECK_EQ(mesh.vertex_count, 8);
         CHECK_EQ(mesh.triangle_count, 12);
@@ -173,6 +173,66 @@ static void meshes(void) {
         const int32_t expected[6] = {4, 5, 6, 4, 6, 7}; /* f -4 -3 -2 -1 */
         for (int i = 0; i < 6 && mesh.triangles; i++) CHECK_EQ(mesh.triangles[6 + i], expected[i]);
         dem_mesh_free(world, &mesh);
+    }
+    TEST("faces that are not convex are cut into triangles that cover them once and face the same way") {
+        static const struct { const char *face; double area; int split, bent, crossed; } faces[] = {
+            {"v 0 0 0\nv 4 0 0\nv 4 2 0\nv 2 .5 0\nv 0 2 0\nf 2 3 4 5 1\n", 5, 1, 0, 0},            /* a notch */
+            {"v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nf 3 4 5 6 1 2\n", 5, 1, 0, 0},   /* an L */
+            {"v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 3 0\nv 0 3 0\nf -1 -2 -3 -4 -5 -6\n", -5, 1, 0, 0},
+            {"v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 2 0\nv 1 2 0\nv 0 2 0\nv 0 1 0\nf 1 2 3 4 5 6 7\n", 4, 1, 0, 0},   /* on lines */
+            {"v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nf 1 2 2 3 4 4\n", 4, 1, 0, 0},                    /* corners twice */
+            {"v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n"
+             "f 1 2 3 4 1 5 6 7 8 5\n", 12, 1, 0, 0},                                               /* a hole, bridged */
+            {"v 0 0 0\nv 4e-9 0 0\nv 4e-9 2e-9 0\nv 2e-9 .5e-9 0\nv 0 2e-9 0\nf 2 3 4 5 1\n", 5e-18, 1, 0, 0},
+            {"v 9000 0 0\nv 9004 0 0\nv 9004 2 0\nv 9002 .5 0\nv 9000 2 0\nf 2 3 4 5 1\n", 5, 1, 0, 0},
+            {"v 0 0 0\nv 2 0 0\nv 2 2 .1\nv 0 2 0\nf 1 2 3 4\n", 4, 1, 1, 0},                       /* not flat */
+            {"v 0 0 0\nv 4 3 0\nv 4 0 0\nv 0 1 0\nf 1 2 3 4\n", 0, 1, 0, 1},                        /* a bow tie */
+            {"v 0 1 0\nv -.6 -.8 0\nv .95 .3 0\nv -.95 .3 0\nv .6 -.8 0\nf 1 2 3 4 5\n", 0, 1, 0, 1}};   /* a pentagram */
+        size_t f;
+        for (f = 0; f < sizeof faces/sizeof *faces; f++) {
+            double area = 0, all = 0;
+            int i;
+            CHECK_EQ(parse(world, faces[f].face, &mesh, &health), DEM_OK);
+            for (i = 0; i < mesh.triangle_count; i++) {
+                const dem_real *a = mesh.vertices + 3*mesh.triangles[3*i], *b = mesh.vertices + 3*mesh.triangles[3*i + 1];
+                const dem_real *c = mesh.vertices + 3*mesh.triangles[3*i + 2];
+                const double one = (double)(b[0] - a[0])*(double)(c[1] - a[1]) - (double)(b[1] - a[1])*(double)(c[0] - a[0]);
+                area += one/2;
+                all += fabs(one)/2;
+            }
+            /* sums of a few products; at 9000 m single precision resolves 1e-3 m */
+            if (!faces[f].crossed) {
+                CHECK_REL(area, faces[f].area, sizeof(dem_real) == 8 ? 1e-11 : 1e-3);
+                CHECK_REL(all, fabs(area), 1e-12);
+            }
+            CHECK_EQ(health.split_faces, faces[f].split);
+            CHECK_EQ(health.bent_faces, faces[f].bent);
+            CHECK_EQ(health.crossed_faces, faces[f].crossed);
+            dem_mesh_free(world, &mesh);
+        }
+    }
+    TEST("a comb of 2000 teeth in one face keeps its area, a larger one is refused with the limit") {
+        enum { TEETH = 2000, MORE = 2100 };
+        static char text[40*2*MORE + 8*2*MORE + 200];
+        int teeth, i;
+        for (teeth = TEETH; teeth <= MORE; teeth += MORE - TEETH) {
+            size_t n = 0;
+            double area = 0;
+            for (i = 0; i < teeth; i++)             /* tips at y = 2 over gaps at y = 1, in a plane that leans */
+                n += (size_t)sprintf(text + n, "v %d 2 %d\nv %g 1 %g\n", i, i, i + 0.5, i + 0.5);
+            n += (size_t)sprintf(text + n, "v %d 0 %d\nv 0 0 0\nf", teeth, teeth);
+            for (i = 2*teeth + 2; i > 0; i--) n += (size_t)sprintf(text + n, " %d", i);
+            CHECK_EQ(parse(world, text, &mesh, &health), teeth == TEETH ? DEM_OK : DEM_ERROR_FORMAT);
+            for (i = 0; i < mesh.triangle_count; i++) {
+                const dem_real *a = mesh.vertices + 3*mesh.triangles[3*i], *b = mesh.vertices + 3*mesh.triangles[3*i + 1];
+                const dem_real *c = mesh.vertices + 3*mesh.triangles[3*i + 2];
+                area += fabs((double)(b[0] - a[0])*(double)(c[1] - a[1]) - (double)(b[1] - a[1])*(double)(c[0] - a[0]))/2;
+            }
+            /* each tooth .5 wide on either side, from 1 to 2; the last gap runs down to the corner */
+            if (teeth == TEETH) CHECK_REL(area, 1.5*(TEETH - 0.5) + 0.25, 1e-10);
+            dem_mesh_free(world, &mesh);
+        }
+        CHECK_STR(dem_world_error(world), "a face that is not convex has 4202 corners, must be at most 4096");
     }
     TEST("health counts open and crowded edges, duplicates and slivers, each once") {
         CHECK_EQ(parse(world, "3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n", &mesh, &health), DEM_OK);
@@ -770,7 +830,7 @@ int main(int argc, char **argv) {
             "solid shell of drum\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n"
             "solid lid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 5\nvertex 2 0 5\nvertex 0 2 5\nendloop\nendfacet\n"
             "facet normal 0 0 1\nouter loop\nvertex 2 0 5\nvertex 2 2 5\nvertex 0 2 5\nendloop\nendfacet\nendsolid lid\n";
-        static const char obj[] = "o shell\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng lid\nv 0 0 5\nv 2 0 5\nv 2 2 5\nv 0 2 5\nf 4 5 6 7\n";
+        static const char obj[] = "g shell\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ng lid\nv 0 0 5\nv 2 0 5\nv 2 2 5\nv 0 2 5\nf 4 5 6 7\n";
         static const char *const names[2] = {"build/tmp/parts.stl", "build/tmp/parts.obj"};
         const dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world = dem_world_create(&desc);
@@ -804,9 +864,57 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_mesh_part_read(world, "build/tmp/none.stl", "lid", &mesh, 0), DEM_ERROR_FILE);
         dem_world_destroy(world);
     }
+    TEST("faces of an OBJ belong to their object and to each of their groups, as exporters write them") {
+        static const char square[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+        static const struct { const char *text, *part; int triangles; } asked[] = {
+            {"o Drum\ng Drum_Steel\nusemtl Steel\nf 1 2 3 4\no Lid\ng Lid_Rubber\nusemtl Rubber\nf 1 2 3\n", "Drum", 2},   /* Blender */
+            {"o Drum\ng Drum_Steel\nusemtl Steel\nf 1 2 3 4\no Lid\ng Lid_Rubber\nusemtl Rubber\nf 1 2 3\n", "Lid_Rubber", 1},
+            {"g shell lifters\nf 1 2 3 4\ng shell\nf 1 2 3\n", "shell", 3},
+            {"g shell lifters\nf 1 2 3 4\ng shell\nf 1 2 3\n", "lifters", 2},
+            {"g shell lifters\nf 1 2 3 4\ng shell\nf 1 2 3\n", "shell lifters", 2},
+            {"g a\nf 1 2 3\ng b\nf 1 2 3\ng a\nf 1 2 3 4\n", "a", 3},
+            {"o Shell\nf 1 2 3 4\ng\nf 1 2 3\n", "Shell", 3},                  /* a bare g ends groups, not the object */
+            {"g Shell\nf 1 2 3 4\ng\nf 1 2 3\n", "Shell", 2},
+            {"o Upper shell\nf 1 2 3 4\no Lower\nf 1 2 3\n", "Upper shell", 2},
+            {"o Part#1\nf 1 2 3 4\no Part#2\nf 1 2 3\n", "Part#2", 1},
+            {"o Part #1\nf 1 2 3 4\no Part #2\nf 1 2 3\n", "Part #2", 1},
+            {"o Shell # of steel\nf 1 2 3 4\no Lid\nf 1 2 3\n", "Shell", 2},
+            {"g Part#1 rest\nf 1 2 3 4\n", "Part", 2},
+            {"o Shell\r\nf 1 2 \\\r\n3 4\r\n", "Shell", 2}};                   /* a line carried on */
+        const dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world = dem_world_create(&desc);
+        size_t k;
+        for (k = 0; k < sizeof asked/sizeof *asked; k++) {
+            dem_mesh mesh;
+            char text[400];
+            snprintf(text, sizeof text, "%s%s", square, asked[k].text);
+            file_put("build/tmp/groups.obj", text, strlen(text));
+            CHECK_EQ(dem_mesh_part_read(world, "build/tmp/groups.obj", asked[k].part, &mesh, 0), DEM_OK);
+            CHECK_EQ(mesh.triangle_count, asked[k].triangles);
+            dem_mesh_free(world, &mesh);
+        }
+        dem_world_destroy(world);
+    }
+
+    TEST("the name of a solid in an STL file is the whole rest of its line, a # included") {
+        static const char facet[] = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+        const dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world = dem_world_create(&desc);
+        dem_mesh mesh;
+        char text[900];
+        snprintf(text, sizeof text, "solid liner #1\n%sendsolid liner #1\nsolid liner #2\n%s%sendsolid\n", facet, facet, facet);
+        file_put("build/tmp/liners.stl", text, strlen(text));
+        CHECK_EQ(dem_mesh_part_read(world, "build/tmp/liners.stl", "liner #2", &mesh, 0), DEM_OK);
+        CHECK_EQ(mesh.triangle_count, 2);
+        dem_mesh_free(world, &mesh);
+        CHECK_EQ(dem_mesh_part_read(world, "build/tmp/liners.stl", "liner", &mesh, 0), DEM_ERROR_FORMAT);
+        CHECK_STR(dem_world_error(world), "must be one of: liner #1, liner #2");
+        dem_world_destroy(world);
+    }
+
     TEST("a machine is named parts of one file, each a wall with its material and motion; where one is refused none is added, "
          "and the sentence says why") {
-        static const char obj[] = "o shell\nv 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\ng lid\nv 0 0 5\nv 2 0 5\nv 2 2 5\nf 4 5 6\n";
+        static const char obj[] = "g shell\nv 0 0 0\nv 1000 0 0\nv 0 1000 0\nf 1 2 3\ng lid\nv 0 0 5\nv 2 0 5\nv 2 2 5\nf 4 5 6\n";
         static const char name[] = "build/tmp/machine.obj";
         const dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world = dem_world_create(&desc);
