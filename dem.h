@@ -23387,21 +23387,26 @@ DEM_API uint64_t dem_world_hash(const dem_world *w) {
    an edge there and back, corners on a line and doubled corners are allowed.
    n corners give n - 2 triangles, always: what is doubled becomes a triangle of no area.
    ---------------------------------------------------------------------------------------------- */
-/* Corners of a face that is not convex, at most: the work grows with the square of their number. */
-enum { DEMI_OUTLINE_MOST = 4096 };
+/* Corners of a face that is not convex, at most: each edge is held against each. Cells along a side
+   of the grid that finds the corners near an ear. */
+enum { DEMI_OUTLINE_MOST = 10000, DEMI_OUTLINE_CELLS = 32 };
 typedef struct demi_outline {
     int count;
     int32_t *corner;               /* vertices of the mesh, in order */
-    int32_t *next, *prev;          /* the ring of corners that are not cut off yet */
+    int32_t *next, *prev;          /* the ring of corners; next -1: cut off */
+    int32_t *beside;               /* the next corner in the same cell, -1: none */
+    int32_t first[DEMI_OUTLINE_CELLS*DEMI_OUTLINE_CELLS];
     double *xy;                    /* count x 2, counterclockwise, m, from the first corner */
+    double lo[2], cell;            /* m */
     double near;                   /* m2: twice an area that is not larger counts as none */
-    double tests;                  /* of a corner against a triangle: so many are left */
+    double work;                   /* corners and cells that may still be looked at */
     int bent, crossed;             /* not flat; an edge crosses another, or it has no area */
 } demi_outline;
 static void demi_outline_free(dem_world *w, demi_outline *o) {
     demi_free(w, o->corner);
     demi_free(w, o->next);
     demi_free(w, o->prev);
+    demi_free(w, o->beside);
     demi_free(w, o->xy);
 }
 /* Room for one more corner; 0: no memory. */
@@ -23410,6 +23415,7 @@ static int demi_outline_grow(dem_world *w, demi_outline *o) {
     return demi_grow(w, DEMI_LOOSE, &o->corner, sizeof *o->corner, n) &&
         demi_grow(w, DEMI_LOOSE, &o->next, sizeof *o->next, n) &&
         demi_grow(w, DEMI_LOOSE, &o->prev, sizeof *o->prev, n) &&
+        demi_grow(w, DEMI_LOOSE, &o->beside, sizeof *o->beside, n) &&
         demi_grow(w, DEMI_LOOSE, &o->xy, sizeof *o->xy, 2*n);
 }
 /* Twice the area of a triangle of three corners, positive if it turns left. */
@@ -23487,28 +23493,69 @@ static int demi_outline_crosses(const demi_outline *o) {
         }
     return 0;
 }
+/* The cell of a coordinate. */
+static int demi_outline_cell(const demi_outline *o, double x, int axis) {
+    const double at = (x - o->lo[axis])/o->cell;
+    return at > 0 ? (int)DEMI_MIN(at, DEMI_OUTLINE_CELLS - 1) : 0;
+}
+/* All corners into their cells. */
+static void demi_outline_sort(demi_outline *o) {
+    double size = 0;
+    int i, k;
+    for (k = 0; k < 2; k++) {
+        double hi = o->lo[k] = o->xy[k];
+        for (i = 1; i < o->count; i++) {
+            o->lo[k] = DEMI_MIN(o->lo[k], o->xy[2*i + k]);
+            hi = DEMI_MAX(hi, o->xy[2*i + k]);
+        }
+        size = DEMI_MAX(size, hi - o->lo[k]);
+    }
+    o->cell = size/DEMI_OUTLINE_CELLS;
+    for (i = 0; i < DEMI_OUTLINE_CELLS*DEMI_OUTLINE_CELLS; i++) o->first[i] = -1;
+    for (i = 0; i < o->count; i++) {
+        int32_t *first = o->first + demi_outline_cell(o, o->xy[2*i], 0) +
+            (int)DEMI_OUTLINE_CELLS*demi_outline_cell(o, o->xy[2*i + 1], 1);
+        o->beside[i] = *first;
+        *first = i;
+    }
+}
+/* 1 if corner q keeps corner i from being cut off: it lies in the triangle, nearer to its sides
+   than margin (m2) does not count; or it is where i is, and the outline leads through it there. */
+static int demi_outline_blocks(const demi_outline *o, int q, int i, double margin) {
+    const int a = o->prev[i], b = o->next[i], out[2] = {o->prev[q], o->next[q]};
+    int k;
+    if (q == i || demi_outline_same(o, q, a) || demi_outline_same(o, q, b)) return 0;
+    if (!demi_outline_same(o, q, i))
+        return demi_outline_turn(o, a, i, q) > margin && demi_outline_turn(o, i, b, q) > margin &&
+            demi_outline_turn(o, b, a, q) > margin;
+    for (k = 0; k < 2; k++)
+        if (demi_outline_turn(o, a, i, out[k]) > o->near &&
+            demi_outline_turn(o, i, b, out[k]) > o->near) return 1;
+    return 0;
+}
 /* 1 if corner i can be cut off. Patience 0: its triangle has an area, and no other corner lies in
    it or on its sides; 1: none lies inside, and it may have no area; 2: always. */
 static int demi_outline_ear(demi_outline *o, int i, int patience) {
-    const int a = o->prev[i], b = o->next[i];
-    const double area = demi_outline_turn(o, a, i, b);
+    const int corner[3] = {o->prev[i], i, o->next[i]};
     const double margin = patience ? o->near : -o->near;
-    int q;
-    if (patience > 1 || demi_outline_same(o, a, i) || demi_outline_same(o, i, b)) return 1;
-    if (!(area > -margin)) return 0;
-    for (q = o->next[b]; q != a; q = o->next[q]) {
-        o->tests--;
-        if (demi_outline_same(o, q, i)) {       /* does the outline lead from there through it? */
-            const int out[2] = {o->prev[q], o->next[q]};
-            int k;
-            for (k = 0; k < 2; k++)
-                if (demi_outline_turn(o, a, i, out[k]) > o->near &&
-                    demi_outline_turn(o, i, b, out[k]) > o->near) return 0;
-        } else if (!demi_outline_same(o, q, a) && !demi_outline_same(o, q, b) &&
-                   demi_outline_turn(o, a, i, q) > margin &&
-                   demi_outline_turn(o, i, b, q) > margin &&
-                   demi_outline_turn(o, b, a, q) > margin) return 0;
+    int from[2], to[2], k, x, y;
+    if (patience > 1 || demi_outline_same(o, corner[0], i) ||
+        demi_outline_same(o, i, corner[2])) return 1;
+    if (!(demi_outline_turn(o, corner[0], i, corner[2]) > -margin)) return 0;
+    for (k = 0; k < 2; k++) {
+        const double p = o->xy[2*corner[0] + k], q = o->xy[2*i + k], r = o->xy[2*corner[2] + k];
+        from[k] = demi_outline_cell(o, DEMI_MIN(p, DEMI_MIN(q, r)), k);
+        to[k] = demi_outline_cell(o, DEMI_MAX(p, DEMI_MAX(q, r)), k);
     }
+    for (y = from[1]; y <= to[1]; y++)
+        for (x = from[0]; x <= to[0]; x++) {
+            int32_t *q = o->first + x + (int)DEMI_OUTLINE_CELLS*y;
+            for (o->work--; *q >= 0; o->work--) {
+                if (o->next[*q] < 0) { *q = o->beside[*q]; continue; }
+                if (demi_outline_blocks(o, *q, i, margin)) return 0;
+                q = o->beside + *q;
+            }
+        }
     return 1;
 }
 /* The face's count - 2 triangles, to `out`. 0: it is not convex and has too many corners. */
@@ -23524,7 +23571,8 @@ static int demi_outline_cut(demi_outline *o, const dem_real *vertices, int32_t *
     }
     if (o->count > DEMI_OUTLINE_MOST) return 0;
     o->crossed = demi_outline_crosses(o);
-    o->tests = 8.0*o->count*o->count + 1000;
+    demi_outline_sort(o);
+    o->work = 1e8;
     for (i = 0; left > 2;) {
         if (left == 3 || demi_outline_ear(o, i, patience)) {
             const int a = o->prev[i], b = o->next[i];
@@ -23533,6 +23581,7 @@ static int demi_outline_cut(demi_outline *o, const dem_real *vertices, int32_t *
             out += 3;
             o->next[a] = b;
             o->prev[b] = a;
+            o->next[i] = -1;
             left--;
             i = o->next[b];
             idle = patience = 0;
@@ -23540,7 +23589,7 @@ static int demi_outline_cut(demi_outline *o, const dem_real *vertices, int32_t *
             i = o->next[i];
             if (++idle >= left) { idle = 0; patience++; }
         }
-        if (o->tests < 0) patience = 2;
+        if (o->work < 0) patience = 2;          /* no outline that is whole comes to this */
     }
     return 1;
 }
