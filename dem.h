@@ -24,6 +24,7 @@
        >>laws        the built-in contact laws, a line each
        >>materials   materials, the pair table, coefficients
        >>shapes      ellipsoids, clusters of spheres: mass properties, supports, meetings
+       >>closed      which side of a mesh is inside: shells, open edges, triangles turned round
        >>hulls       convex polyhedra: the hull of points, its faces and mass properties
        >>unions      several shapes as one; polygons of planar worlds
        >>bodies      grains: slots, arrays, insertion, removal
@@ -1336,8 +1337,9 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc
 enum { DEM_POLYHEDRON_FACES = 100 };
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
 /* The hull of a mesh (dem_mesh_read: STL, OBJ), if the mesh lies nowhere deeper inside it than dent
-   (m, >= 0; 0: it must be convex, but for round-off). If it does: a null id, and the sentence says
-   where. Null id as above. */
+   (m, >= 0; 0: it must be convex, but for round-off). If it does: a null id, and the error message
+   says where. The mesh must bound a body, as for dem_mesh_spheres; for the hull of an open mesh
+   give its vertices to dem_shape_polyhedron_add. Null id as above. */
 struct dem_mesh;
 DEM_API dem_shape dem_shape_mesh_add(dem_world *world, const struct dem_mesh *mesh, dem_real dent);
 
@@ -2018,6 +2020,9 @@ typedef struct dem_mesh_health {
     int open_edges;           /* edges with one triangle */
     int crowded_edges;        /* edges with more than two */
     int duplicates;           /* triangles with the same three corners as an earlier one */
+    int shells;               /* pieces that hang together by edges with two triangles */
+    int flipped;              /* triangles that face another way than most of their shell */
+    int twisted_edges;        /* edges of shells that have one side only, like a Moebius strip */
     int slivers;              /* height below 1e-3 of the longest side, or no area at all */
     int merged_vertices;      /* vertices at the same place, merged on reading (STL) */
     int split_faces;          /* faces of more than three corners, cut into triangles (OBJ) */
@@ -2049,9 +2054,11 @@ DEM_API dem_result dem_mesh_place(dem_world *world, dem_mesh *mesh, dem_real sca
    x 3) and radii (count) in m, in the mesh's frame. Each is where, on a grid of 40 points along the
    longest side, it leaves the fewest points wrong; all are chosen anew, one by one, while that
    helps. The mesh's own volume, centre and inertia, exact, are what dem_cluster_desc wants for
-   DEM_CLUSTER_GIVEN, with which a cluster of few spheres is as heavy as the body. Errors: a mesh
-   that is not closed or encloses nothing, or so thin that no sphere finds room. fit: null: not
-   asked. */
+   DEM_CLUSTER_GIVEN, with which a cluster of few spheres is as heavy as the body. Triangles that
+   face another way than their neighbours, a mesh that is inside out and equal triangles do no harm;
+   a shell within another that faces the other way is a cavity. Errors: a mesh that is open, has
+   edges with triangles that do not pair up or one side only; shells that cross, or that face the
+   way of the one around them; a mesh so thin that no sphere finds room. fit: null: not asked. */
 typedef struct dem_spheres_fit {
     dem_real volume;          /* m3, of the mesh */
     dem_vec3 centre;          /* m */
@@ -5063,6 +5070,368 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
 }
 
 /* ---------------------------------------------------------------------------------------------
+   >>closed
+   Which side of a mesh is inside? Vertices at one place are one; of equal triangles at most one
+   counts. Triangles that share an edge with no third must run along it in opposite directions: so
+   all triangles of a shell (those that such edges join) face the way of its first, or the other
+   way, whatever their order of corners says. A body is bounded by shells without open edges. An
+   outer shell faces out. A shell within a shell is a cavity if it was written to face the other way
+   than the one around it, and nothing that could be decided if not.
+   Tests: tests/test_decompose.c.
+   --------------------------------------------------------------------------------------------- */
+enum { DEMI_CLOSED_SHELLS = 1000, DEMI_CLOSED_LOOKS = 20 };
+typedef struct demi_closed {
+    const dem_mesh *mesh;
+    int32_t *corner;               /* triangles x 3: the first vertex at that place */
+    int32_t *edge;                 /* triangles x 3: the first triangle side that is this edge */
+    int32_t *parent;               /* of a triangle: nearer to the one that stands for its shell */
+    unsigned char *turned;         /* against the parent */
+    signed char *sign;             /* 1; -1: to be turned round; 0: does not count */
+    int open, crowded, duplicates, flipped, twisted, shells;
+} demi_closed;
+
+/* For every key of `width` bytes the index of the first equal one: count int32, to be
+   freed; null without memory. Open addressing, in a table that is at most half full. */
+static int32_t *demi_first_equal(dem_world *w, const void *keys, size_t count, size_t width) {
+    const char *key = (const char *)keys;
+    size_t i, slots = 16;
+    int32_t *first, *table; /* table: index + 1, or 0 */
+    while (slots < 2*count) slots *= 2;
+    first = (int32_t *)demi_alloc(w, count, sizeof(int32_t));
+    table = (int32_t *)demi_alloc(w, slots, sizeof(int32_t));
+    for (i = 0; first && table && i < count; i++) {
+        const char *mine = key + i*width;
+        size_t at = (size_t)demi_hash(DEMI_HASH_START, mine, width) & (slots - 1);
+        while (table[at] && memcmp(key + (size_t)(table[at] - 1)*width, mine, width) != 0)
+            at = (at + 1) & (slots - 1);
+        if (!table[at]) table[at] = (int32_t)i + 1;
+        first[i] = table[at] - 1;
+    }
+    demi_free(w, table);
+    if (!table) demi_free(w, first);
+    return table ? first : 0;
+}
+static void demi_closed_free(dem_world *w, demi_closed *c) {
+    demi_free(w, c->corner);
+    demi_free(w, c->edge);
+    demi_free(w, c->parent);
+    demi_free(w, c->turned);
+    demi_free(w, c->sign);
+}
+/* The triangle that stands for the shell; *turned: is triangle i turned against that one? */
+static int demi_closed_shell(demi_closed *c, int i, int *turned) {
+    for (*turned = 0; c->parent[i] != i; i = c->parent[i]) {
+        const int up = c->parent[i];
+        c->parent[i] = c->parent[up];
+        c->turned[i] ^= c->turned[up];
+        *turned ^= c->turned[i];
+    }
+    return i;
+}
+/* Does side k of triangle i run from the lower to the higher corner? 1 or -1. */
+static int demi_closed_way(const demi_closed *c, size_t side) {
+    return c->corner[side] < c->corner[side - side%3 + (side + 1)%3] ? 1 : -1;
+}
+/* Vertices at one place made one, a zero with a sign like any zero. 0: no memory. */
+static int demi_closed_weld(dem_world *w, demi_closed *c) {
+    const size_t n = (size_t)c->mesh->vertex_count;
+    dem_real *place = (dem_real *)demi_alloc(w, 3*n, sizeof *place);
+    int32_t *first = 0;
+    size_t i;
+    for (i = 0; place && i < 3*n; i++) place[i] = c->mesh->vertices[i] + 0;
+    if (place) first = demi_first_equal(w, place, n, 3*sizeof *place);
+    for (i = 0; first && i < 3*(size_t)c->mesh->triangle_count; i++)
+        c->corner[i] = first[c->mesh->triangles[i]];
+    demi_free(w, place);
+    demi_free(w, first);
+    return first != 0;
+}
+/* Of triangles with the same corners one counts, of those that face the way of most; none, where as
+   many face each way: an inner wall. Nor does a triangle with a corner twice. 0: no memory. */
+static int demi_closed_equals(dem_world *w, demi_closed *c) {
+    const int n = c->mesh->triangle_count;
+    int32_t *key = (int32_t *)demi_alloc(w, 3*(size_t)n, sizeof *key), *first = 0, *most;
+    int i;
+    for (i = 0; key && i < n; i++) {
+        int32_t *k = key + 3*i, a = c->corner[3*i], b = c->corner[3*i + 1], d = c->corner[3*i + 2];
+        k[0] = DEMI_MIN(a, DEMI_MIN(b, d));
+        k[2] = DEMI_MAX(a, DEMI_MAX(b, d));
+        k[1] = DEMI_MAX(DEMI_MIN(a, b), DEMI_MIN(DEMI_MAX(a, b), d));
+        c->sign[i] = (signed char)(a == b || b == d || d == a ? 0 :
+                                   (a < b) + (b < d) + (d < a) == 2 ? 1 : -1);
+    }
+    if (key) first = demi_first_equal(w, key, (size_t)n, 3*sizeof *key);
+    most = key;                                 /* its keys are not needed any more */
+    if (first) memset(most, 0, (size_t)n*sizeof *most);
+    for (i = 0; first && i < n; i++) {
+        most[first[i]] += c->sign[i];
+        c->duplicates += first[i] != i;
+    }
+    for (i = 0; first && i < n; i++) {
+        const int32_t sum = most[first[i]];
+        if (c->sign[i]*sum <= 0) { c->sign[i] = 0; continue; }
+        most[first[i]] = 0;                     /* no other of them */
+        c->sign[i] = 1;
+    }
+    demi_free(w, key);
+    demi_free(w, first);
+    return first != 0;
+}
+/* Edges: how many triangles each has, and shells made of those that have two. 0: no memory. */
+static int demi_closed_join(dem_world *w, demi_closed *c) {
+    const size_t sides = 3*(size_t)c->mesh->triangle_count;
+    int32_t *key = (int32_t *)demi_alloc(w, 2*sides, sizeof *key), *all = key, *live;
+    size_t i;
+    for (i = 0; key && i < sides; i++) {        /* a triangle with a corner twice has no edges */
+        const int32_t *t = c->corner + i/3*3, a = t[i%3], b = t[(i + 1)%3];
+        const int none = t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+        key[2*i] = none ? -1 : DEMI_MIN(a, b);
+        key[2*i + 1] = none ? -1 : DEMI_MAX(a, b);
+    }
+    c->edge = key ? demi_first_equal(w, key, sides, 2*sizeof *key) : 0;
+    if (!c->edge) { demi_free(w, key); return 0; }
+    for (i = 0; i < sides; i++) if (key[2*i] < 0) c->edge[i] = -1;
+    memset(key, 0, 2*sides*sizeof *key);        /* from here on: triangles at each edge */
+    live = key + sides;
+    for (i = 0; i < sides; i++) {
+        if (c->edge[i] < 0) continue;
+        all[c->edge[i]]++;
+        live[c->edge[i]] += c->sign[i/3] != 0;
+    }
+    for (i = 0; i < sides; i++) {
+        c->open += all[i] == 1;
+        c->crowded += all[i] > 2;
+        all[i] = -1;                            /* from here on: the first of the two */
+    }
+    for (i = 0; i < sides; i++) {
+        int32_t *other = all + DEMI_MAX(c->edge[i], 0);
+        int turned, its, a, b;
+        if (c->edge[i] < 0 || !c->sign[i/3] || live[c->edge[i]] != 2) continue;
+        if (*other < 0) { *other = (int32_t)i; continue; }
+        a = demi_closed_shell(c, (int)(i/3), &turned);
+        b = demi_closed_shell(c, *other/3, &its);
+        turned ^= its ^ (demi_closed_way(c, i) == demi_closed_way(c, (size_t)*other));
+        if (a == b) { c->twisted += turned; continue; }
+        c->parent[a] = b;
+        c->turned[a] = (unsigned char)turned;
+    }
+    demi_free(w, key);
+    return 1;
+}
+/* Finds shells, and what is wrong with them. 0: no memory; the caller frees in any case. */
+static int demi_closed_find(dem_world *w, const dem_mesh *mesh, demi_closed *c) {
+    const int n = mesh->triangle_count;
+    int32_t *turned;
+    int i, t;
+    memset(c, 0, sizeof *c);
+    c->mesh = mesh;
+    c->corner = (int32_t *)demi_alloc(w, 3*(size_t)n, sizeof *c->corner);
+    c->parent = (int32_t *)demi_alloc(w, (size_t)n, sizeof *c->parent);
+    c->turned = (unsigned char *)demi_alloc(w, (size_t)n, 1);
+    c->sign = (signed char *)demi_alloc(w, (size_t)n, 1);
+    if (!c->corner || !c->parent || !c->turned || !c->sign) return 0;
+    for (i = 0; i < n; i++) c->parent[i] = i;
+    if (!demi_closed_weld(w, c) || !demi_closed_equals(w, c) || !demi_closed_join(w, c)) return 0;
+    turned = (int32_t *)demi_alloc(w, 2*(size_t)n, sizeof *turned);    /* of each shell; and all */
+    if (!turned) return 0;
+    for (i = 0; i < n; i++) {
+        const int shell = demi_closed_shell(c, i, &t);
+        turned[2*shell] += t;
+        turned[2*shell + 1] += c->sign[i] != 0;
+    }
+    for (i = 0; i < n; i++) {
+        const int shell = demi_closed_shell(c, i, &t);
+        if (!c->sign[i]) continue;
+        t ^= 2*turned[2*shell] > turned[2*shell + 1];   /* most face the way they were written */
+        c->flipped += t;
+        c->sign[i] = (signed char)(t ? -1 : 1);
+        c->shells += shell == i;
+    }
+    demi_free(w, turned);
+    return 1;
+}
+static void demi_mesh_corner(const dem_mesh *mesh, int triangle, int k, double *x) {
+    const dem_vec3 v = demi_at(mesh->vertices + 3*mesh->triangles[3*triangle + k]);
+    x[0] = (double)v.x; x[1] = (double)v.y; x[2] = (double)v.z;
+}
+/* Shells that are to be a body, outward ones with a positive volume. */
+typedef struct demi_shells {
+    int count;
+    int32_t *order, *start;        /* triangles by shell; count + 1 */
+    double *volume;                /* m3, as written */
+    int32_t *around, *depth;       /* the innermost shell around it, -1: none; how many are */
+} demi_shells;
+static void demi_shells_free(dem_world *w, demi_shells *s) {
+    demi_free(w, s->order);
+    demi_free(w, s->start);
+    demi_free(w, s->volume);
+    demi_free(w, s->around);
+    demi_free(w, s->depth);
+}
+/* Sides at which the triangles of a shell do not pair up, by shells as they are now: how many, and
+   the first. -1: no memory. */
+static int demi_closed_loose(dem_world *w, demi_closed *c, int *first_side) {
+    const size_t sides = 3*(size_t)c->mesh->triangle_count;
+    int32_t *key = (int32_t *)demi_alloc(w, 2*sides, sizeof *key), *first = 0;
+    int loose = 0, turned;
+    size_t i;
+    for (i = 0; key && i < sides; i++) {
+        key[2*i] = c->edge[i];
+        key[2*i + 1] = demi_closed_shell(c, (int)(i/3), &turned);
+    }
+    if (key) first = demi_first_equal(w, key, sides, 2*sizeof *key);
+    if (first) memset(key, 0, sides*sizeof *key);
+    for (i = 0; first && i < sides; i++)
+        if (c->edge[i] >= 0) key[first[i]] += c->sign[i/3]*demi_closed_way(c, i);
+    for (i = sides; first && i-- > 0;)
+        if (key[i]) { loose++; *first_side = (int)i; }
+    demi_free(w, key);
+    demi_free(w, first);
+    return first ? loose : -1;
+}
+/* Triangles by shell, and their volumes. 0: no memory. */
+static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
+    const int n = c->mesh->triangle_count;
+    int32_t *number = (int32_t *)demi_alloc(w, (size_t)n, sizeof *number);
+    int i, k, turned;
+    s->count = c->shells;
+    s->order = (int32_t *)demi_alloc(w, (size_t)n, sizeof *s->order);
+    s->start = (int32_t *)demi_alloc(w, (size_t)c->shells + 2, sizeof *s->start);
+    s->volume = (double *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->volume);
+    s->around = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->around);
+    s->depth = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->depth);
+    if (!number || !s->order || !s->start || !s->volume || !s->around || !s->depth) {
+        demi_free(w, number);
+        return 0;
+    }
+    for (i = k = 0; i < n; i++)
+        if (c->sign[i] && demi_closed_shell(c, i, &turned) == i) number[i] = k++;
+    for (i = 0; i < n; i++)
+        if (c->sign[i]) s->start[number[demi_closed_shell(c, i, &turned)] + 2]++;
+    for (k = 2; k <= s->count; k++) s->start[k] += s->start[k - 1];
+    for (i = 0; i < n; i++) {
+        double p[3], q[3], r[3], o[3];
+        int e;
+        if (!c->sign[i]) continue;
+        k = number[demi_closed_shell(c, i, &turned)];
+        s->order[s->start[k + 1]++] = i;
+        demi_mesh_corner(c->mesh, demi_closed_shell(c, i, &turned), 0, o);  /* near: round-off */
+        demi_mesh_corner(c->mesh, i, 0, p);
+        demi_mesh_corner(c->mesh, i, 1, q);
+        demi_mesh_corner(c->mesh, i, 2, r);
+        for (e = 0; e < 3; e++) { p[e] -= o[e]; q[e] -= o[e]; r[e] -= o[e]; }
+        s->volume[k] += c->sign[i]*(p[0]*(q[1]*r[2] - q[2]*r[1]) + p[1]*(q[2]*r[0] - q[0]*r[2]) +
+                                    p[2]*(q[0]*r[1] - q[1]*r[0]))/6;
+    }
+    demi_free(w, number);
+    return 1;
+}
+/* How often a shell goes round a point: about 0 outside, 1 or -1 inside. Sum of the solid angles of
+   its triangles, each by tan(angle/2) = a.(b x c)/(abc + a.b c + b.c a + c.a b), over 4 pi. */
+static double demi_shells_winding(const demi_closed *c, const demi_shells *s, int shell,
+                                  const double *x) {
+    double sum = 0;
+    int i, k, e;
+    for (i = s->start[shell]; i < s->start[shell + 1]; i++) {
+        double p[3][3], l[3], top, bottom;
+        for (k = 0; k < 3; k++) {
+            demi_mesh_corner(c->mesh, s->order[i], k, p[k]);
+            for (e = 0; e < 3; e++) p[k][e] -= x[e];
+            l[k] = sqrt(demi_dot3(p[k], p[k]));
+        }
+        top = p[0][0]*(p[1][1]*p[2][2] - p[1][2]*p[2][1]) +
+            p[0][1]*(p[1][2]*p[2][0] - p[1][0]*p[2][2]) +
+            p[0][2]*(p[1][0]*p[2][1] - p[1][1]*p[2][0]);
+        bottom = l[0]*l[1]*l[2] + demi_dot3(p[0], p[1])*l[2] + demi_dot3(p[1], p[2])*l[0] +
+            demi_dot3(p[2], p[0])*l[1];
+        sum += c->sign[s->order[i]]*2*atan2(top, bottom);
+    }
+    return sum/(4*DEMI_PI);
+}
+/* Is shell a inside shell b? By some of its corners, those off b's surface. -1: they cross. */
+static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a, int b) {
+    const int n = s->start[a + 1] - s->start[a], looks = DEMI_MIN(n, (int)DEMI_CLOSED_LOOKS);
+    int i, in = 0, out = 0;
+    for (i = 0; i < looks; i++) {
+        double x[3], wind;
+        demi_mesh_corner(c->mesh, s->order[s->start[a] + (int)((int64_t)i*n/looks)], i%3, x);
+        wind = fabs(demi_shells_winding(c, s, b, x));
+        in += wind > 0.9;
+        out += wind < 0.1;
+    }
+    return in && out ? -1 : in > 0;
+}
+/* Which shells are inside which. 0, with a sentence: two cross, or one faces as that around it. */
+static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c,
+                            demi_shells *s) {
+    double x[3];
+    int a, b;
+    for (a = 0; a < s->count; a++)
+        for (b = 0; b < s->count; b++) {
+            const int in = a == b ? 0 : demi_shells_inside(c, s, a, b);
+            if (in < 0) {
+                demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
+                demi_fail(w, DEM_ERROR_ARGUMENT, "%s: two closed shells of the mesh cross (one "
+                          "begins at (%g, %g, %g) m), must be apart or one inside the other; "
+                          "unite them in the program that made them, or give them one by one",
+                          call, x[0], x[1], x[2]);
+                return 0;
+            }
+            s->depth[a] += in;
+        }
+    for (a = 0; a < s->count; a++) {
+        for (s->around[a] = -1, b = 0; b < s->count && s->depth[a]; b++)
+            if (b != a && s->depth[b] == s->depth[a] - 1 && demi_shells_inside(c, s, a, b) > 0)
+                s->around[a] = b;
+        if (s->around[a] < 0 || s->volume[a]*s->volume[s->around[a]] < 0) continue;
+        demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the shell of the mesh that begins at (%g, %g, %g) m "
+                  "lies inside another and faces the same way, must face the other way to be a "
+                  "cavity; turn its triangles round, or leave it out if it is a second body", call,
+                  x[0], x[1], x[2]);
+        return 0;
+    }
+    return 1;
+}
+/* Gives each triangle the sign with which outer shells face out and cavities in. 0, with a
+   sentence: the mesh does not bound a body. */
+static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
+    demi_shells s;
+    double x[3] = {0, 0, 0};
+    int side = 0, a, i, good = 0;
+    const int loose = demi_closed_loose(w, c, &side);
+    if (loose < 0) { demi_no_memory(w, call); return 0; }
+    demi_mesh_corner(c->mesh, side/3, side%3, x);
+    if (loose || c->twisted || !c->shells || c->shells > DEMI_CLOSED_SHELLS) {
+        if (c->twisted)
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has one side only (%d edges where no "
+                      "winding fits), must have an inside and an outside; mend it in the program "
+                      "that made it", call, c->twisted);
+        else if (loose)
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is open at %d edges, or more than two "
+                      "triangles meet there (first near (%.4g, %.4g, %.4g) m); it must be closed "
+                      "to have an inside: see dem_mesh_health; close it in the program that made "
+                      "it", call, loose, x[0], x[1], x[2]);
+        else
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has %d closed shells, must have 1 to "
+                      "%d; does it hold bodies, not one? Give them one by one", call, c->shells,
+                      (int)DEMI_CLOSED_SHELLS);
+        return 0;
+    }
+    memset(&s, 0, sizeof s);
+    if (!demi_shells_make(w, c, &s)) demi_no_memory(w, call);
+    else good = demi_shells_nest(w, call, c, &s);
+    for (a = 0; a < s.count && good; a++) {
+        int root = a;
+        while (s.around[root] >= 0) root = s.around[root];
+        for (i = s.start[a]; i < s.start[a + 1] && s.volume[root] < 0; i++)
+            c->sign[s.order[i]] = (signed char)-c->sign[s.order[i]];
+    }
+    demi_shells_free(w, &s);
+    return good;
+}
+
+/* ---------------------------------------------------------------------------------------------
    >>hulls
    Convex polyhedra as shapes: the convex hull of points, its faces, and what follows from them.
    The hull grows point by point, the farthest first, in triangles; those that lie in one plane are
@@ -5544,6 +5913,28 @@ static int demi_mesh_sound(dem_world *w, const char *call, int vertices, const d
         }
     return 1;
 }
+/* The hull of a mesh that bounds a body, of those vertices that its triangles have. 0 with a
+   sentence. */
+static int demi_mesh_hull(dem_world *w, const char *call, const dem_mesh *mesh, demi_shape *shape) {
+    const size_t count = (size_t)mesh->vertex_count;
+    dem_real *points = (dem_real *)demi_alloc(w, 3*count, sizeof *points);
+    unsigned char *taken = (unsigned char *)demi_alloc(w, count, 1);
+    demi_closed c;
+    int i, n = 0, made = 0;
+    if (!demi_closed_find(w, mesh, &c) || !points || !taken) demi_no_memory(w, call);
+    else if (demi_closed_body(w, call, &c)) {
+        for (i = 0; i < 3*mesh->triangle_count; i++) {
+            if (taken[c.corner[i]]) continue;
+            taken[c.corner[i]] = 1;
+            demi_put(points + 3*n++, demi_at(mesh->vertices + 3*c.corner[i]));
+        }
+        made = demi_polyhedron_of(w, call, n, points, shape);
+    }
+    demi_closed_free(w, &c);
+    demi_free(w, points);
+    demi_free(w, taken);
+    return made;
+}
 DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_real dent) {
     const char *call = "dem_shape_mesh_add";
     demi_shape shape;
@@ -5558,8 +5949,7 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_rea
     }
     if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
                          mesh->triangles, 3)) return demi_no_shape;
-    if (!demi_polyhedron_of(w, call, mesh->vertex_count, mesh->vertices, &shape))
-        return demi_no_shape;
+    if (!demi_mesh_hull(w, call, mesh, &shape)) return demi_no_shape;
     for (i = 0; i < 3*mesh->triangle_count; i++) {      /* corners, sides' middles, triangles' */
         const int32_t *t = mesh->triangles + i/3*3;
         dem_vec3 x[3], at[3];
@@ -23602,9 +23992,6 @@ static int demi_outline_cut(demi_outline *o, const dem_real *vertices, int32_t *
    (demi_text_line, demi_text_word) and looking at the present word (demi_text_is, _real, _corner).
    OBJ and STL text have no counts, so they are gone through twice: to count, then to fill arrays of
    the right size.
-
-   demi_first_equal says of each of many keys where it came first. Merging vertices, counting the
-   triangles of an edge and finding doubled triangles are all this one question.
    ---------------------------------------------------------------------------------------------- */
 #include <errno.h>
 
@@ -23981,28 +24368,6 @@ static dem_result demi_stl_binary_pass(demi_text t, dem_mesh *mesh, int fill) {
     return DEM_OK;
 }
 
-/* For every key of `width` bytes the index of the first equal one: count int32, to be
-   freed; null without memory. Open addressing, in a table that is at most half full. */
-static int32_t *demi_first_equal(dem_world *w, const void *keys, size_t count, size_t width) {
-    const char *key = (const char *)keys;
-    size_t i, slots = 16;
-    int32_t *first, *table; /* table: index + 1, or 0 */
-    while (slots < 2*count) slots *= 2;
-    first = (int32_t *)demi_alloc(w, count, sizeof(int32_t));
-    table = (int32_t *)demi_alloc(w, slots, sizeof(int32_t));
-    for (i = 0; first && table && i < count; i++) {
-        const char *mine = key + i*width;
-        size_t at = (size_t)demi_hash(DEMI_HASH_START, mine, width) & (slots - 1);
-        while (table[at] && memcmp(key + (size_t)(table[at] - 1)*width, mine, width) != 0)
-            at = (at + 1) & (slots - 1);
-        if (!table[at]) table[at] = (int32_t)i + 1;
-        first[i] = table[at] - 1;
-    }
-    demi_free(w, table);
-    if (!table) demi_free(w, first);
-    return table ? first : 0;
-}
-
 /* STL has places where others have corners: merges those that are exactly equal. */
 static dem_result demi_mesh_merge(const demi_text *t, dem_mesh *mesh) {
     size_t i, count = (size_t)mesh->vertex_count, unique = 0;
@@ -24076,43 +24441,19 @@ static void demi_health_shapes(const dem_mesh *mesh, dem_mesh_health *health) {
                  "0.001" : "1000");
 }
 
-/* Open and crowded edges, duplicates: what triangles tell together. Pass 0 looks up triangles, pass
-   1 edges; a triangle with one corner twice is a sliver and has no edges worth counting. */
+/* Edges, duplicates and winding: what triangles tell together (>>closed). */
 static dem_result demi_health_edges(const demi_text *t, const dem_mesh *mesh,
                                     dem_mesh_health *health) {
-    size_t i, j, k, n, count = (size_t)mesh->triangle_count, pass;
-    int32_t *keys = (int32_t *)demi_alloc(t->world, 6*count, sizeof(int32_t)), *first = 0;
-    dem_result result = keys ? DEM_OK : DEM_ERROR_MEMORY;
-    for (pass = 0; pass < 2 && result == DEM_OK; pass++) {
-        size_t width = 3 - pass;
-        for (i = n = 0; i < count; i++) {
-            const int32_t *corner = mesh->triangles + 3*i;
-            if (pass && (corner[0] == corner[1] || corner[1] == corner[2] ||
-                         corner[2] == corner[0])) continue;
-            for (k = 0; k < (pass ? 3u : 1u); k++, n++)
-                for (j = 0; j < width; j++) { /* in rising order: insert one by one */
-                    int32_t *key = keys + n*width, present = corner[(k + j)%3];
-                    size_t at = j;
-                    for (; at > 0 && key[at - 1] > present; at--) key[at] = key[at - 1];
-                    key[at] = present;
-                }
-        }
-        if (n == 0) break;
-        first = demi_first_equal(t->world, keys, n, width*sizeof(int32_t));
-        if (!first) result = DEM_ERROR_MEMORY;
-        if (pass) memset(keys, 0, n*sizeof(int32_t)); /* from here on: triangles at each edge */
-        for (i = 0; first && i < n; i++) {
-            if (pass) keys[first[i]]++;
-            else health->duplicates += first[i] != (int32_t)i;
-        }
-        for (i = 0; first && pass && i < n; i++) {
-            health->open_edges += keys[i] == 1;
-            health->crowded_edges += keys[i] > 2;
-        }
-        demi_free(t->world, first);
-    }
-    demi_free(t->world, keys);
-    return result == DEM_OK ? result : demi_text_memory(t);
+    demi_closed c;
+    const int found = demi_closed_find(t->world, mesh, &c);
+    health->open_edges = c.open;
+    health->crowded_edges = c.crowded;
+    health->duplicates = c.duplicates;
+    health->shells = c.shells;
+    health->flipped = c.flipped;
+    health->twisted_edges = c.twisted;
+    demi_closed_free(t->world, &c);
+    return found ? DEM_OK : demi_text_memory(t);
 }
 
 /* Formats of meshes, a row each (>>add-format), in the order in which they are looked for: binary
@@ -24400,6 +24741,7 @@ enum { DEMI_GRAIN_CELLS = 40, DEMI_GRAIN_PICKS = 1500, DEMI_GRAIN_SCALES = 5,
        DEMI_GRAIN_SWEEPS = 4 };
 typedef struct demi_mould {
     const dem_mesh *mesh;
+    const signed char *sign;       /* of its triangles (>>closed) */
     int n[3], count;               /* points along each axis, all */
     double lo[3], step;            /* m */
     unsigned char *inside;
@@ -24436,10 +24778,6 @@ static double demi_corner_distance(const double *a, const double *b, const doubl
     demi_sub3(x, a, ap);
     t = demi_dot3(ap, n);
     return t*t/demi_dot3(n, n);
-}
-static void demi_mesh_corner(const dem_mesh *mesh, int triangle, int k, double *x) {
-    const dem_vec3 v = demi_at(mesh->vertices + 3*mesh->triangles[3*triangle + k]);
-    x[0] = (double)v.x; x[1] = (double)v.y; x[2] = (double)v.z;
 }
 static double demi_mesh_distance(const dem_mesh *mesh, const double *x) {
     double best = 1e300, a[3], b[3], c[3];
@@ -24551,7 +24889,7 @@ static int demi_mould_make(dem_world *w, demi_mould *m, const double *lo, const 
     m->most = (int32_t *)demi_alloc(w, DEMI_GRAIN_SCALES*DEMI_GRAIN_PICKS, sizeof(int32_t));
     if (!m->inside || !m->covered || !m->pick || !m->far || !m->most) return 0;
     for (i = 0; i < DEMI_GRAIN_SCALES*DEMI_GRAIN_PICKS; i++) m->most[i] = INT_MAX/2;
-    for (i = 0; i < m->mesh->triangle_count; i++) demi_mould_cross(m, i);
+    for (i = 0; i < m->mesh->triangle_count; i++) if (m->sign[i]) demi_mould_cross(m, i);
     for (i = 0; i < m->count; i++) inside += m->inside[i];
     for (i = 0; i < m->count; i++) {            /* every so many of those inside, the same number */
         const int64_t now = (int64_t)(seen + 1)*DEMI_GRAIN_PICKS;
@@ -24632,44 +24970,36 @@ static void demi_mould_judge(const demi_mould *m, dem_spheres_fit *fit) {
     fit->inertia_error = (dem_real)worst;
     fit->wrong = (dem_real)((double)wrong/inside);
 }
-DEM_API dem_result dem_mesh_spheres(dem_world *w, const dem_mesh *mesh, int count,
-                                    dem_real *positions, dem_real *radii, dem_spheres_fit *fit) {
-    const char *call = "dem_mesh_spheres";
+/* dem_mesh_spheres of a mesh whose triangles have these signs. */
+static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_mesh *mesh,
+                                    const signed char *sign, int count, dem_real *positions,
+                                    dem_real *radii, dem_spheres_fit *fit) {
     dem_spheres_fit told;
     demi_moments moments;
     demi_mould m;
     double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, a[3], b[3], c[3];
     double *sphere;
     int i, k, sweep, changed = 1;
-    if (demi_null(w, call, mesh, "mesh") || demi_null(w, call, positions, "positions") ||
-        demi_null(w, call, radii, "radii")) return DEM_ERROR_ARGUMENT;
-    if (count < 1 || count > 1000)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to 1000", call, count);
-    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
-                         mesh->triangles, 3)) return DEM_ERROR_ARGUMENT;
     memset(&moments, 0, sizeof moments);
     for (i = 0; i < mesh->triangle_count; i++) {
         demi_mesh_corner(mesh, i, 0, a);
         demi_mesh_corner(mesh, i, 1, b);
         demi_mesh_corner(mesh, i, 2, c);
-        demi_moments_tetrahedron(&moments, a, b, c);
+        if (sign[i] > 0) demi_moments_tetrahedron(&moments, a, b, c);
+        if (sign[i] < 0) demi_moments_tetrahedron(&moments, a, c, b);
         for (k = 0; k < 3; k++) {
             lo[k] = DEMI_MIN(lo[k], DEMI_MIN(a[k], DEMI_MIN(b[k], c[k])));
             hi[k] = DEMI_MAX(hi[k], DEMI_MAX(a[k], DEMI_MAX(b[k], c[k])));
         }
     }
-    if (moments.one < 0) {                      /* it is inside out */
-        moments.one = -moments.one;
-        for (k = 0; k < 3; k++) moments.x[k] = -moments.x[k];
-        for (k = 0; k < 6; k++) moments.xx[k] = -moments.xx[k];
-    }
     if (!(moments.one > 1e-6*(hi[0] - lo[0])*(hi[1] - lo[1])*(hi[2] - lo[2])))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh of %d triangles encloses %.3g m3; it "
-                         "must be closed, its triangles all facing out or all in: see "
-                         "dem_mesh_health", call, mesh->triangle_count,
-                         mesh->triangle_count ? moments.one : 0);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh of %d triangles encloses %.3g m3, "
+                         "must be more than 1e-6 of its box: it is thinner than the grid that "
+                         "spheres are sought on; is it a sheet?", call, mesh->triangle_count,
+                         moments.one);
     memset(&m, 0, sizeof m);
     m.mesh = mesh;
+    m.sign = sign;
     sphere = (double *)demi_alloc(w, 4*(size_t)count, sizeof(double));
     if (!sphere || !demi_mould_make(w, &m, lo, hi) || !m.picks) {
         const int thin = m.far && !m.picks;
@@ -24707,6 +25037,23 @@ DEM_API dem_result dem_mesh_spheres(dem_world *w, const dem_mesh *mesh, int coun
     demi_mould_free(w, &m);
     demi_free(w, sphere);
     return DEM_OK;
+}
+DEM_API dem_result dem_mesh_spheres(dem_world *w, const dem_mesh *mesh, int count,
+                                    dem_real *positions, dem_real *radii, dem_spheres_fit *fit) {
+    const char *call = "dem_mesh_spheres";
+    demi_closed c;
+    dem_result result = DEM_ERROR_ARGUMENT;
+    if (demi_null(w, call, mesh, "mesh") || demi_null(w, call, positions, "positions") ||
+        demi_null(w, call, radii, "radii")) return result;
+    if (count < 1 || count > 1000)
+        return demi_fail(w, result, "%s: count is %d, must be 1 to 1000", call, count);
+    if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
+                         mesh->triangles, 3)) return result;
+    if (!demi_closed_find(w, mesh, &c)) result = demi_no_memory(w, call);
+    else if (demi_closed_body(w, call, &c))
+        result = demi_mesh_spheres(w, call, mesh, c.sign, count, positions, radii, fit);
+    demi_closed_free(w, &c);
+    return result;
 }
 
 /* ---------------------------------------------------------------------------------------------

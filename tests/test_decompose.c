@@ -57,6 +57,61 @@ static dem_mesh bunny(void) {
     return m;
 }
 
+/* Boxes in one mesh, each with vertices of its own. */
+static dem_real pile_vertices[3*64];
+static int32_t pile_triangles[3*96];
+static dem_mesh pile;
+static void pile_begin(void) {
+    memset(&pile, 0, sizeof pile);
+    pile.vertices = pile_vertices;
+    pile.triangles = pile_triangles;
+}
+static void pile_turn(int triangle) {
+    int32_t *t = pile.triangles + 3*triangle, first = t[0];
+    t[0] = t[1];
+    t[1] = first;
+}
+static void pile_again(int triangle) {
+    memcpy(pile.triangles + 3*pile.triangle_count++, pile.triangles + 3*triangle, 3*sizeof(int32_t));
+}
+static void pile_box(double lo, double hi, double x, int inward) {       /* a cube from lo to hi, moved by x */
+    static const int sides[12][3] = {{0,2,3},{0,3,1},{4,5,7},{4,7,6},{0,1,5},{0,5,4},{2,6,7},{2,7,3},{0,4,6},{0,6,2},{1,3,7},{1,7,5}};
+    int i, k;
+    for (i = 0; i < 12; i++) {
+        for (k = 0; k < 3; k++) pile.triangles[3*pile.triangle_count + k] = pile.vertex_count + sides[i][k];
+        pile.triangle_count++;
+        if (inward) pile_turn(pile.triangle_count - 1);
+    }
+    for (i = 0; i < 8; i++, pile.vertex_count++)
+        for (k = 0; k < 3; k++)
+            pile.vertices[3*pile.vertex_count + k] = (dem_real)((i >> k & 1 ? hi : lo) + (k == 0 ? x : 0));
+}
+/* The volume that dem_mesh_spheres finds; -1: it refuses, with these words. */
+static double pile_volume(dem_world *w, const char *why) {
+    dem_real x[3], r[1];
+    dem_spheres_fit fit;
+    if (dem_mesh_spheres(w, &pile, 1, x, r, &fit) == DEM_OK) return (double)fit.volume;
+    CHECK_STR(dem_world_error(w), why);
+    return -1;
+}
+/* What health says of it, written as an OBJ. */
+static dem_mesh_health pile_health(dem_world *w) {
+    static char text[9000];
+    dem_mesh_health health;
+    dem_mesh mesh;
+    size_t n = 0;
+    int i;
+    for (i = 0; i < pile.vertex_count; i++)
+        n += (size_t)sprintf(text + n, "v %g %g %g\n", (double)pile.vertices[3*i], (double)pile.vertices[3*i + 1],
+                             (double)pile.vertices[3*i + 2]);
+    for (i = 0; i < pile.triangle_count; i++)
+        n += (size_t)sprintf(text + n, "f %d %d %d\n", (int)pile.triangles[3*i] + 1, (int)pile.triangles[3*i + 1] + 1,
+                             (int)pile.triangles[3*i + 2] + 1);
+    CHECK_EQ(dem_mesh_parse(w, "pile.obj", text, n, &mesh, &health), DEM_OK);
+    dem_mesh_free(w, &mesh);
+    return health;
+}
+
 int main(int argc, char **argv) {
     static const char *const names[] = {"cube", "flake", "bunny"};
     const int table = getenv("DECOMPOSE_NUMBERS") != 0;
@@ -137,6 +192,96 @@ int main(int argc, char **argv) {
         mesh = block(1, 1, 1e-4);
         CHECK_EQ(dem_mesh_spheres(w, &mesh, 1, x, r, 0), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_world_error(w), "thinner");
+        dem_world_destroy(w);
+    }
+    TEST("a closed mesh has the same volume and hull whatever way its triangles were written, and health counts those turned") {
+        const dem_world_desc desc = DEM_WORLD_DESC;
+        const double exact = sizeof(dem_real) == 8 ? 1e-12 : 1e-6;       /* sums of 12 products */
+        dem_world *w = dem_world_create(&desc);
+        uint64_t random = 11;
+        int trial, i;
+        for (trial = 0; trial < 16; trial++) {
+            dem_shape_info info;
+            int turned = 0;
+            pile_begin();
+            pile_box(0, 1, trial%3*7, 0);
+            for (i = 0; i < 12; i++)
+                if (trial < 12 ? i == trial : scene_random(&random) < 0.5) { pile_turn(i); turned++; }
+            CHECK_NEAR(pile_volume(w, ""), 1, exact);
+            CHECK_EQ(dem_shape_get(w, dem_shape_mesh_add(w, &pile, 0), &info), DEM_OK);
+            CHECK_NEAR((double)info.volume, 1, sizeof(dem_real) == 8 ? 1e-10 : 1e-5);
+            CHECK_EQ(pile_health(w).flipped, turned < 6 ? turned : 12 - turned);
+            CHECK_EQ(pile_health(w).shells, 1);
+        }
+        dem_world_destroy(w);
+    }
+
+    TEST("shells apart add up, a shell inside that faces the other way is a cavity, equal triangles count once") {
+        const dem_world_desc desc = DEM_WORLD_DESC;
+        const double exact = sizeof(dem_real) == 8 ? 1e-12 : 1e-6;
+        dem_world *w = dem_world_create(&desc);
+        int inward;
+        for (inward = 0; inward < 2; inward++) {        /* written outward or, as a whole, inside out */
+            pile_begin();
+            pile_box(0, 1, 0, inward);
+            pile_box(0, 1, 3, !inward);                 /* beside it, the other way round: another body */
+            CHECK_NEAR(pile_volume(w, ""), 2, exact);
+            CHECK_EQ(pile_health(w).shells, 2);
+            pile_begin();
+            pile_box(0, 1, 0, inward);
+            pile_box(0.25, 0.75, 0, !inward);           /* a cavity */
+            CHECK_NEAR(pile_volume(w, ""), 0.875, exact);
+            pile_box(0.4, 0.6, 0, inward);              /* a core in the cavity */
+            CHECK_NEAR(pile_volume(w, ""), 0.883, exact);
+            pile_turn(13);                              /* of the cavity */
+            CHECK_NEAR(pile_volume(w, ""), 0.883, exact);
+            pile_begin();
+            pile_box(0, 1, 0, inward);
+            pile_again(4);
+            pile_again(4);
+            CHECK_NEAR(pile_volume(w, ""), 1, exact);
+            pile_begin();
+            pile_box(0, 1, 0, inward);
+            pile_box(0, 1, 1, inward);                  /* side by side: the wall between them is there twice */
+            CHECK_NEAR(pile_volume(w, ""), 2, exact);
+        }
+        dem_world_destroy(w);
+    }
+
+    TEST("a mesh that does not decide what is inside is refused as a body: open, branched, one-sided, crossing or nested shells") {
+        static const int32_t strip[15] = {0, 1, 2, 1, 3, 2, 2, 3, 4, 3, 0, 4, 4, 0, 1};      /* a Moebius strip of five */
+        const dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *w = dem_world_create(&desc);
+        int i;
+        for (i = 0; i < 3; i++) {
+            pile_begin();
+            pile_box(0, 1, -i, 0);
+            pile.triangle_count -= i + 1;               /* no lid, or half of one */
+            CHECK_NEAR(pile_volume(w, "open"), -1, 0);
+            CHECK(!dem_shape_mesh_add(w, &pile, 1).id);
+            CHECK_STR(dem_world_error(w), "dem_shape_mesh_add: the mesh is open at");
+            CHECK(pile_health(w).open_edges > 2);
+        }
+        pile_begin();
+        pile_box(0, 1, 0, 0);
+        pile_again(0);
+        pile.vertices[3*pile.vertex_count] = pile.vertices[3*pile.vertex_count + 1] = pile.vertices[3*pile.vertex_count + 2] = -1;
+        pile.triangles[3*pile.triangle_count - 1] = pile.vertex_count++;         /* a fin at an edge */
+        CHECK_NEAR(pile_volume(w, "more than two triangles"), -1, 0);
+        pile_begin();
+        pile_box(0, 1, 0, 0);
+        pile_box(0.5, 1.5, 0.1, 0);
+        CHECK_NEAR(pile_volume(w, "shells of the mesh cross"), -1, 0);
+        pile_begin();
+        pile_box(0, 1, 0, 0);
+        pile_box(0.25, 0.75, 0, 0);
+        CHECK_NEAR(pile_volume(w, "faces the same way"), -1, 0);
+        pile_begin();
+        pile_box(0, 1, 0, 0);
+        memcpy(pile.triangles, strip, sizeof strip);
+        pile.triangle_count = 5;
+        CHECK_NEAR(pile_volume(w, "one side only"), -1, 0);
+        CHECK(pile_health(w).twisted_edges > 0);
         dem_world_destroy(w);
     }
     return test_end();
