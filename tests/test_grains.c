@@ -30,6 +30,90 @@ static void refused(dem_world *world, const char *text, const char *why) {
     CHECK(!g.positions && !g.count);
 }
 
+/* Reads two grains that lie as `pair` says; the text is named by its first words. */
+static void pair_read(dem_world *world, const char *text, size_t size, dem_grains *g) {
+    const double eps = fine ? 1e-15 : 1e-7;
+    int k;
+    CHECK_EQ(dem_grains_parse(world, "pair", text, size, g), DEM_OK);
+    if (g->count != 2) {
+        CHECK_EQ(g->count, 2);
+        printf("        %.60s\n        %s\n", text, dem_world_error(world));
+        return;
+    }
+    for (k = 0; k < 2; k++) {
+        CHECK_NEAR(g->positions[3*k], k ? -0.1 : 0.1, eps);
+        CHECK_NEAR(g->positions[3*k + 1], k ? 0.25 : 0.2, eps);
+        CHECK_NEAR(g->positions[3*k + 2], k ? 0.35 : 0.3, eps);
+        CHECK_NEAR(g->radii[k], k ? 0.02 : 0.01, eps);
+        if (g->velocities) CHECK_NEAR(g->velocities[3*k + 2], k ? 2 : -1, 0);
+        if (g->spins) CHECK_NEAR(g->spins[3*k + 1], k ? 7 : 5, 0);
+    }
+}
+/* Base64 of bytes, behind `out`. */
+static size_t base64(const unsigned char *bytes, size_t size, char *out) {
+    static const char signs[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    size_t i, n = 0;
+    for (i = 0; i < size; i += 3) {
+        const unsigned bits = (unsigned)bytes[i] << 16 | (i + 1 < size ? (unsigned)bytes[i + 1] << 8 : 0) |
+            (i + 2 < size ? (unsigned)bytes[i + 2] : 0);
+        out[n++] = signs[bits >> 18];
+        out[n++] = signs[bits >> 12 & 63];
+        out[n++] = i + 1 < size ? signs[bits >> 6 & 63] : '=';
+        out[n++] = i + 2 < size ? signs[bits & 63] : '=';
+    }
+    return n;
+}
+/* A number in so many bytes, the highest first if big. */
+static size_t bytes_put(unsigned char *out, const void *number, int size, int big) {
+    const uint16_t one = 1;
+    const unsigned char *from = (const unsigned char *)number;
+    unsigned char first;
+    int k;
+    memcpy(&first, &one, 1);
+    for (k = 0; k < size; k++) out[k] = from[(first == 1) == big ? size - 1 - k : k];
+    return (size_t)size;
+}
+static size_t real_put(unsigned char *out, double number, int wide, int big) {
+    const float narrow = (float)number;
+    return bytes_put(out, wide ? (const void *)&number : (const void *)&narrow, wide ? 8 : 4, big);
+}
+/* The pair as VTK writes it. form 0: ascii, 1: base64 in the tags, 2: appended base64, 3: raw. */
+static size_t pair_vtp(char *out, int form, int wide, int big, int head) {
+    static const double numbers[4][6] = {{0.01, 0.02}, {1, 0, -1, 3, 0, 2}, {0, 5, 0, 0, 7, 0}, {0.1, 0.2, 0.3, -0.1, 0.25, 0.35}};
+    static const char *const names[4] = {"radius", "velocity", "omega", "Points"};
+    static const char *const formats[4] = {"ascii", "binary", "appended", "appended"};
+    static char tail[2000];
+    size_t n = 0, offset = 0;
+    int a, k;
+    n += (size_t)sprintf(out, "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"%sEndian\" header_type=\"UInt%d\">\n"
+                         " <PolyData>\n  <FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
+                         "0</DataArray></FieldData>\n  <Piece NumberOfPoints=\"2\"\n NumberOfVerts=\"2\">\n   <PointData>\n",
+                         big ? "Big" : "Little", 8*head);
+    for (a = 0; a < 4; a++) {
+        const int width = a ? 3 : 1;
+        unsigned char bytes[80];
+        uint64_t size = (uint64_t)(2*width*(wide ? 8 : 4));
+        uint32_t half = (uint32_t)size;
+        size_t m = bytes_put(bytes, head == 8 ? (const void *)&size : (const void *)&half, head, big);
+        for (k = 0; k < 2*width; k++) m += real_put(bytes + m, numbers[a][k], wide, big);
+        if (a == 3) n += (size_t)sprintf(out + n, "   </PointData>\n   <CellData>\n   </CellData>\n   <Points>\n");
+        n += (size_t)sprintf(out + n, "    <DataArray type=\"Float%d\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"%s\" "
+                             "RangeMin=\"0\" offset=\"%d\">\n", wide ? 64 : 32, names[a], width, formats[form], (int)offset);
+        for (k = 0; form == 0 && k < 2*width; k++) n += (size_t)sprintf(out + n, " %.9g", numbers[a][k]);
+        if (form == 1) n += base64(bytes, m, out + n);
+        if (form == 2) offset += base64(bytes, m, tail + offset);
+        if (form == 3) { memcpy(tail + offset, bytes, m); offset += m; }
+        n += (size_t)sprintf(out + n, "\n<InformationKey name=\"L2_NORM_RANGE\"><Value index=\"0\">1</Value></InformationKey></DataArray>\n");
+    }
+    n += (size_t)sprintf(out + n, "   </Points>\n  </Piece>\n </PolyData>\n");
+    if (form > 1) {
+        n += (size_t)sprintf(out + n, "<AppendedData encoding=\"%s\">\n _", form == 2 ? "base64" : "raw");
+        memcpy(out + n, tail, offset);
+        n += offset;
+    }
+    return n + (size_t)sprintf(out + n, "\n</VTKFile>\n");
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
@@ -88,11 +172,11 @@ int main(int argc, char **argv) {
         dem_world_destroy(text);
     }
 
-    TEST("text and CSV: with names in any order, diameters, semicolons and comments, or by position; other codes' XYZ by its "
+    TEST("text and CSV: with names in any order, diameters and comments, or by position; other codes' XYZ by its "
          "Properties") {
         dem_world *world = heap();
         dem_grains g;
-        CHECK_EQ(parse(world, "# made by hand\nname, d, z, y, x, vz\na, 0.02, 3, 2, 1, -5\nb;0.04;6;5;4;7 # last\n", &g), DEM_OK);
+        CHECK_EQ(parse(world, "# made by hand\nname, d, z, y, x, vz\na, 0.02, 3, 2, 1, -5\nb,0.04,6,5,4,7 # last\n", &g), DEM_OK);
         CHECK_EQ(g.count, 2);
         CHECK_NEAR(g.radii[1], 0.02, 1e-9);
         CHECK_NEAR(g.positions[0], 1, 0);
@@ -129,6 +213,161 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("cells of a table are read as spreadsheets and programs write them") {
+        static const char *const tables[] = {
+            "12,5;3,25;8,75;2\n",                                      /* see below */
+            "x;y;z;r\n0,1;0,2;0,3;0,01\n-0,1;0,25;0,35;0,02\n", "0,1;0,2;0,3;0,01\n-0,1;0,25;0,35;0,02\n",
+            "x\ty\tz\tr\n0,1\t0,2\t0,3\t0,01\n-0,1\t0,25\t0,35\t0,02\n", "0.1\t0.2\t0.3\t0.01\n-0.1\t0.25\t0.35\t0.02\n",
+            "sep=;\nx;y;z;r\n0.1;0.2;0.3;0.01\n-0.1;0.25;0.35;0.02\n", "sep=,\r\nx,y,z,r\r\n0.1,0.2,0.3,0.01\r\n-0.1,0.25,0.35,0.02\r\n",
+            "\xEF\xBB\xBFX;Y;Z;Radius\r\n0.1;0.2;0.3;0.01\r\n-0.1;0.25;0.35;0.02\r\n",
+            "\xEF\xBB\xBF" "0.1 0.2 0.3 0.01\n-0.1 0.25 0.35 0.02\n",
+            ",x,y,z,r\n0,0.1,0.2,0.3,0.01\n1,-0.1,0.25,0.35,0.02\n",   /* pandas numbers its rows */
+            "\"\",\"x\",\"y\",\"z\",\"r\"\n\"1\",0.1,0.2,0.3,0.01\n\"2\",-0.1,0.25,0.35,0.02\n",      /* R */
+            "\"name\",\"x\",\"y\",\"z\",\"r\"\n\"a, b; \"\"c\"\"\",\"0.1\",0.2,0.3,0.01\n\"\",-0.1,0.25,0.35,0.02\n",
+            "x (m),y (m),z (m),radius (m)\n0.1,0.2,0.3,0.01\n-0.1,0.25,0.35,0.02\n",
+            "x [mm];y [mm];z [mm];d [cm]\n100;200;300;2\n-100;250;350;4\n",
+            "x,y,z,r,\n0.1,0.2,0.3,0.01,\n-0.1,0.25,0.35,0.02,\n",     /* a separator at the end */
+            "x,y,z,r,note\n0.1,0.2,0.3,0.01,\n-0.1,0.25,0.35,0.02,round\n",
+            "#format x_y_z_r_matId\n# t=0\n0.1\t0.2\t0.3\t0.01\t0\n-0.1\t0.25\t0.35\t0.02\t0\n",      /* YADE */
+            "# x y z radius\n0.1 0.2 0.3 0.01\n-0.1 0.25 0.35 0.02\n",                                 /* NumPy */
+            "\"radius\",\"velocity:0\",\"velocity:1\",\"velocity:2\",\"spin:0\",\"spin:1\",\"spin:2\",\"id\",\"Points:0\",\"Points:1\",\"Points:2\"\n"
+            "0.01,1,0,-1,0,5,0,0,0.1,0.2,0.3\n0.02,2,0,2,0,7,0,1,-0.1,0.25,0.35\n",                    /* ParaView */
+            "Position.X Position.Y Position.Z Radius\n0.1 0.2 0.3 0.01\n-0.1 0.25 0.35 0.02\n",       /* OVITO */
+            "id x y z omegax omegay omegaz radius \n1 0.1 0.2 0.3 0 5 0 0.01 \n2 -0.1 0.25 0.35 0 7 0 0.02 \n"};
+        dem_world *world = heap();
+        dem_grains g;
+        size_t k;
+        for (k = 1; k < sizeof tables/sizeof *tables; k++) {
+            pair_read(world, tables[k], strlen(tables[k]), &g);
+            dem_grains_free(world, &g);
+        }
+        CHECK_EQ(parse(world, tables[0], &g), DEM_OK);
+        CHECK(!g.velocities);
+        CHECK_NEAR(g.positions[0], 12.5, 0);
+        CHECK_NEAR(g.radii[0], 2, 0);
+        dem_grains_free(world, &g);
+        dem_world_destroy(world);
+    }
+
+    TEST("a cell that is empty or does not fit is an error with its line; columns that are not used are named") {
+        dem_world *world = heap();
+        dem_grains g;
+        refused(world, "x,y,z,r\n1,2,3,.5\n1,,3,.5\n", "line 3: cell 2 is empty");
+        refused(world, "x;y;z;r\n1;2;3;\n", "line 2: cell 4 is empty");
+        refused(world, "x\ty\tz\tr\n\t2\t3\t1\n", "line 2: cell 1 is empty");
+        refused(world, "x,y,z,r\n1,2,3\n", "line 2: cell 4 is empty");
+        refused(world, "x,y,z,r\n1,5,2,3,.5\n", "line 2: found '.5' where the line should end");
+        refused(world, "x;y;z;r\n1.000,5;2;3;.5\n", "line 2: found '1.000,5'");
+        refused(world, "x (inch),y,z,r\n1,2,3,.5\n", "line 1: the unit of column x (inch) is not known");
+        refused(world, "x,y,z,mass\n1,2,3,.5\n", "columns x, y and r (radius) or d (diameter) are needed; not used: mass");
+        refused(world, "id xs ys zs radius\n1 .5 .5 .5 1\n", "xs is a share of the box");
+        CHECK_EQ(parse(world, "id,x,y,z,r,radius,fx,material\n7,1,2,3,.5,9,0,2\n", &g), DEM_OK);
+        CHECK_STR(g.ignored, "id, radius, fx");
+        CHECK_NEAR(g.radii[0], 0.5, 0);
+        CHECK_EQ(g.materials[0], 2);
+        dem_grains_free(world, &g);
+        CHECK_EQ(parse(world, "type,x,y,z,r,material\n7,1,2,3,.5,2\n", &g), DEM_OK);       /* material before type */
+        CHECK_EQ(g.materials[0], 2);
+        dem_grains_free(world, &g);
+        CHECK_EQ(parse(world, "type,x,y,z,r\nsand,1,2,3,.5\n2,1,2,3,.5\n", &g), DEM_OK);   /* a name is no number */
+        CHECK(!g.materials);
+        CHECK_STR(g.ignored, "type");
+        dem_grains_free(world, &g);
+        dem_world_destroy(world);
+    }
+
+    TEST("dumps of LAMMPS and LIGGGHTS are read as they are: the first frame, with velocities, spins and types") {
+        static const char dump[] = "ITEM: TIMESTEP\n1\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp ff\n-1 1\n-1 1\n0 2\n"
+            "ITEM: ATOMS id type type x y z ix iy iz vx vy vz fx fy fz omegax omegay omegaz radius \n"
+            "1 1 1 0.1 0.2 0.3 0 0 0 1 0 -1 0 0 0 0 5 0 0.01 \n2 2 2 -0.1 0.25 0.35 0 0 0 3 0 2 0 0 0 0 7 0 0.02 \n";
+        static char two[2*sizeof dump];
+        dem_world *world = heap();
+        dem_grains g;
+        size_t cut;
+        snprintf(two, sizeof two, "%s%s", dump, dump);
+        for (cut = 1; cut < 3; cut++) {
+            pair_read(world, two, cut*(sizeof dump - 1), &g);
+            CHECK(g.velocities && g.spins && g.materials && g.materials[1] == 2);
+            CHECK_EQ(g.lines_left, cut == 2 ? 11 : 0);
+            dem_grains_free(world, &g);
+        }
+        for (cut = 0; cut + 120 < sizeof dump; cut++) CHECK(dem_grains_parse(world, "cut", dump, cut, &g) != DEM_OK);
+        dem_world_destroy(world);
+    }
+
+    TEST("VTP is read as ascii, base64 and raw bytes, of either order, precision and size of header; compressed it is refused") {
+        dem_world *world = heap();
+        dem_grains g;
+        static char text[6000];
+        int form, k;
+        for (form = 0; form < 4; form++)
+            for (k = 0; k < 8; k++) {
+                size_t size = pair_vtp(text, form, k & 1, k >> 1 & 1, k & 4 ? 8 : 4), cut;
+                dem_grains narrow;
+                CHECK_EQ(dem_grains_parse(world, "pair.vtp", text, size, &narrow), DEM_OK);
+                CHECK(narrow.velocities && narrow.spins);
+                /* as float 0.1 is 0.1 + 1.5e-9 */
+                if (narrow.count == 2 && !(k & 1)) CHECK_NEAR(narrow.positions[3], -0.1, 1e-8);
+                dem_grains_free(world, &narrow);
+                if (k & 1) { pair_read(world, text, size, &g); dem_grains_free(world, &g); }
+                for (cut = 0; cut < size; cut += 7)              /* cut anywhere: whole or refused */
+                    if (dem_grains_parse(world, "cut", text, cut, &narrow) == DEM_OK) {
+                        CHECK_EQ(narrow.count, 2);
+                        dem_grains_free(world, &narrow);
+                    }
+            }
+        CHECK_EQ(parse(world, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
+                       "compressor=\"vtkZLibDataCompressor\">", &g), DEM_ERROR_FORMAT);
+        CHECK_STR(dem_world_error(world), "is compressed (vtkZLibDataCompressor)");
+        dem_world_destroy(world);
+    }
+
+    TEST("legacy VTK is read, in words as ParaView and LIGGGHTS write it, and in bytes as dem.h does") {
+        static const char words[] = "# vtk DataFile Version 5.1\nvtk # output\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\nTimeValue 1 1 double\n0 \n"
+            "METADATA\nINFORMATION 0\n\nPOINTS 2 double\n0.1 0.2 0.3 -0.1\n0.25 0.35 \n\nMETADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION "
+            "vtkDataArray\nDATA 2 0.374166 1 \n\nVERTICES 3 2\nOFFSETS vtktypeint64\n0 1 2 \nCONNECTIVITY vtktypeint64\n0 1 \nPOINT_DATA 2\n"
+            "SCALARS id int\nLOOKUP_TABLE default\n0\n1\nFIELD FieldData 3\nradius 1 2 double\n0.01 0.02 \nMETADATA\nINFORMATION 0\n\n"
+            "v 3 2 double\n1 0 -1 3 0 2 \nomega 3 2 double\n0 5 0 0 7 0\n";
+        dem_world *world = heap(), *again = heap();
+        dem_material a, none;
+        dem_grains g;
+        unsigned char bytes[800];
+        size_t n, cut;
+        int k;
+        pair_read(world, words, sizeof words - 1, &g);
+        CHECK(g.velocities && g.spins);
+        dem_grains_free(world, &g);
+        n = (size_t)sprintf((char *)bytes, "# vtk DataFile Version 5.1\nx\nBINARY\nDATASET POLYDATA\nPOINTS 2 float\n");
+        for (k = 0; k < 6; k++) n += real_put(bytes + n, (k + 1)*0.5, 0, 1);
+        n += (size_t)sprintf((char *)bytes + n, "\nVERTICES 3 2\nOFFSETS vtktypeint64\n");
+        memset(bytes + n, 10, 24);                               /* bytes that look like ends of lines */
+        n += 24 + (size_t)sprintf((char *)bytes + n + 24, "\nCONNECTIVITY vtktypeint64\n");
+        memset(bytes + n, 35, 16);
+        n += 16 + (size_t)sprintf((char *)bytes + n + 16, "\nPOINT_DATA 2\nSCALARS radius double 1\nLOOKUP_TABLE default\n");
+        for (k = 0; k < 2; k++) n += real_put(bytes + n, 0.25*(k + 1), 1, 1);
+        CHECK_EQ(dem_grains_parse(world, "bytes.vtk", bytes, n, &g), DEM_OK);
+        CHECK_EQ(g.count, 2);
+        if (g.count == 2) {
+            CHECK_NEAR(g.positions[5], 3, 0);
+            CHECK_NEAR(g.radii[1], 0.5, 0);
+        }
+        dem_grains_free(world, &g);
+        for (cut = 0; cut < n; cut++) CHECK(dem_grains_parse(world, "cut", bytes, cut, &g) != DEM_OK);
+        a.id = 2;
+        none.id = 0;
+        CHECK_EQ(dem_spheres_fill(world, a, DEM_R(0.005), box_of(-0.03, -0.03, 0.01, 0.03, 0.03, 0.06), 30, 1), 30);
+        dem_temperature_set(world, 0.05, 3);
+        CHECK_EQ(dem_vtk_write(world, "build/tmp/grains.vtk"), DEM_OK);
+        CHECK_EQ(dem_grains_read(again, "build/tmp/grains.vtk", &g), DEM_OK);
+        CHECK_EQ(g.count, 30);
+        CHECK(g.materials && g.velocities && g.spins);
+        CHECK_EQ(dem_grains_add(again, none, &g), DEM_OK);
+        CHECK_NEAR(dem_totals_get(again).kinetic, dem_totals_get(world).kinetic, 0);
+        dem_grains_free(again, &g);
+        dem_world_destroy(world);
+        dem_world_destroy(again);
+    }
+
     TEST("what is wrong with a file of grains is told with its line, and nothing is left behind") {
         dem_world *world = heap();
         dem_grains g;
@@ -143,7 +382,7 @@ int main(int argc, char **argv) {
         refused(world, "5\nProperties=species:S:1:pos:R:3:radius:R:1\nH 1 2 3 .5\n", "1 lines of grains where it says 5");
         refused(world, "tea and cakes\n", "numbers are expected, or names of columns");
         refused(world, "x y r material\n1 2 .5 1.5\n", "a material is expected, a whole number");
-        refused(world, "<?xml version=\"1.0\"?><VTKFile>", "has no appended raw data");
+        refused(world, "<?xml version=\"1.0\"?><VTKFile>", "has no piece with points");
         CHECK_EQ(dem_grains_parse(world, 0, "a\0b", 3, &g), DEM_ERROR_FORMAT);
         CHECK_STR(dem_world_error(world), "not text");
         CHECK_EQ(dem_grains_read(world, "build/tmp/there_is_none.csv", &g), DEM_ERROR_FILE);
