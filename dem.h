@@ -2033,16 +2033,19 @@ typedef struct dem_mesh_health {
     char hint[200];           /* likely unit mistake, or "" */
 } dem_mesh_health;
 /* Reads triangles from [MIL]'s text format (counts; vertices; corners counted from 1), STL (text or
-   binary) or OBJ, told apart by the contents. Free with dem_mesh_free. Errors name file, line and
-   reason. */
+   binary) or OBJ, told apart by the contents. OBJ faces of more than three corners, convex or not,
+   become triangles that cover them once and keep their winding; a face that is not convex may have
+   10,000 corners. Free with dem_mesh_free. Errors name file, line and reason. */
 DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
                                  dem_mesh_health *health);
 DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data,
                                   size_t size, dem_mesh *mesh,
                                   dem_mesh_health *health);
 /* One named part of a file, to be a wall of its own (a drum's shell, its ends, its lifters): the
-   solid of that name (STL as text), or what stands after `o NAME` or `g NAME` (OBJ). A name that
-   the file does not have is refused with those that it has. */
+   solid of that name (STL as text: the whole rest of its line), or the faces of an OBJ whose object
+   (`o NAME`) or one of whose groups (`g NAME NAME`) has that name. A `g` line replaces the groups
+   before it, and leaves the object. A name that the file does not have is refused with those that
+   it has. */
 DEM_API dem_result dem_mesh_part_read(dem_world *world, const char *path, const char *part,
                                       dem_mesh *mesh, dem_mesh_health *health);
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh);
@@ -23911,7 +23914,7 @@ static void demi_outline_sort(demi_outline *o) {
         }
         size = DEMI_MAX(size, hi - o->lo[k]);
     }
-    o->cell = size/DEMI_OUTLINE_CELLS;
+    o->cell = size/(int)DEMI_OUTLINE_CELLS;
     for (i = 0; i < DEMI_OUTLINE_CELLS*DEMI_OUTLINE_CELLS; i++) o->first[i] = -1;
     for (i = 0; i < o->count; i++) {
         int32_t *first = o->first + demi_outline_cell(o, o->xy[2*i], 0) +
@@ -25627,7 +25630,7 @@ static dem_result demi_vtk_array(demi_vtk_in *v, const char *name, size_t length
     demi_numbers in;
     dem_result result;
     memset(&in, 0, sizeof in);
-    if (tuples < 0 || width < 1 || width > DEMI_COLUMNS_MOST ||
+    if (tuples < 0 || width < 1 || width > (int)DEMI_COLUMNS_MOST ||
         !demi_numbers_type(&in, type, type_length))
         return demi_text_fail(t, "an array with a name, counts and a type is expected; export the "
                               "file as ASCII or as VTP");
@@ -25855,9 +25858,10 @@ static dem_result demi_vtp_array(const demi_vtp_in *v, const char *tag, const ch
         words.line--;
         in.text = &words;
     } else if (!appended || !v->raw) {          /* no more of it than the array takes */
-        const double most = (double)n*in.size + (double)head + 3;
-        if (most*4/3 > (double)(end - from) + 16)
+        const double most = ((double)n*in.size + (double)head + 3)*4/3;
+        if (most > (double)(end - from) + 16)
             return demi_vtp_fail(v, "is cut short within an array");
+        if (appended && most + 16 < (double)(end - from)) end = from + (size_t)most + 16;
         bytes = (unsigned char *)demi_alloc(v->t->world, (size_t)(end - from) + 1, 1);
         if (!bytes) return demi_text_memory(v->t);
         in.at = bytes;
@@ -25936,7 +25940,7 @@ static dem_result demi_grains_vtp(const demi_text *t, demi_layout *l, dem_grains
             result != DEM_OK) continue;
         name = demi_attribute(p, end, "Name", &size);
         number = demi_attribute_number(p, end, "NumberOfComponents");
-        width = number < 1 ? 1 : number > DEMI_COLUMNS_MOST ? (int)DEMI_COLUMNS_MOST : (int)number;
+        width = number < 1 ? 1 : (int)DEMI_MIN(number, (int)DEMI_COLUMNS_MOST);
         number = (double)v.points;
         if (places) { name = "points"; size = 6; width = 3; }
         if (!name) { name = ""; size = 0; }
