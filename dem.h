@@ -1766,8 +1766,10 @@ DEM_API dem_result dem_world_run_to(dem_world *world, double time, dem_progress_
 /* Runs until the bodies are at rest: the root of their mean square speed (by mass) below `speed`
    and none faster than 10 times that, over the time that one takes to fall by a radius. speed: m/s,
    0: a hundredth of what a fall by a mean radius gives (without gravity it must be given). Spins do
-   not count: nothing brakes a sphere that spins on a point. DEM_ERROR_STOPPED, with the speeds
-   told, where they are not at rest after so many seconds; the state is intact. */
+   not count: nothing brakes a sphere that spins on a point. All feeds must have brought all their
+   grains first, those that begin later too; a feed that is neither `limited` nor has an `end` is
+   DEM_ERROR_ARGUMENT. DEM_ERROR_STOPPED where the bodies are not at rest after so many seconds: the
+   error says how fast they are, or which feed is not done. The state is intact. */
 DEM_API dem_result dem_world_settle(dem_world *world, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user);
 /* A progress function that rewrites one line on the FILE given as user; where that is no terminal,
@@ -23221,35 +23223,69 @@ static double demi_speeds(const dem_world *w, double *mean) {
     *mean = mass > 0 ? sqrt(sum/mass) : 0;
     return sqrt(most);
 }
+/* m/s, the speed at rest: `speed`, or where that is 0 a hundredth of a fall by a mean radius. *look:
+   s, the time to fall by half a radius, or to go that far: what turns round is not at rest. */
+static double demi_calm(const dem_world *w, double speed, double *look) {
+    const double g = (double)demi_length(w->desc.gravity);
+    double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first to come */
+    int i;
+    if (w->bodies.count) radius = 0;
+    for (i = 0; i < w->bodies.count; i++)
+        radius += (double)w->bodies.pos[4*i + 3]/w->bodies.count;
+    if (!(speed > 0) && g > 0) speed = 0.01*sqrt(2*g*radius);
+    *look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(speed, 1e-300);
+    return speed;
+}
+/* The first feed that still brings grains; -1: none does. */
+static int demi_feed_coming(const dem_world *w) {
+    int i = 0;
+    while (i < w->feed_count && demi_feed_at(w, i)->state.done) i++;
+    return i < w->feed_count ? i : -1;
+}
+/* Time is up: why the bodies are not at rest. */
+static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
+    const int i = demi_feed_coming(w);
+    double mean, most = demi_speeds(w, &mean);
+    if (i >= 0) {
+        const dem_feed_state *f = &demi_feed_at(w, i)->state;
+        return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: feed %d "
+                         "still brings grains; %llu have come and %llu wait for room, and all must "
+                         "have come before they can rest; give it more time, a higher rate or a "
+                         "larger box", seconds, i + 1, (unsigned long long)f->total,
+                         (unsigned long long)f->waiting);
+    }
+    return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: mean "
+                     "speed %.3g m/s, largest %.3g m/s, must be below %.3g and %.3g; give "
+                     "it more time, or look what drives it", seconds, mean, most, below,
+                     10*below);
+}
 DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user) {
     if (demi_null(w, "dem_world_settle", w, "world")) return DEM_ERROR_ARGUMENT;
-    const double g = (double)demi_length(w->desc.gravity), begun = demi_clock();
-    const double start = w->clock.time;
-    double radius = 0, look, mean, most, below = (double)speed, last = begun;
+    const double begun = demi_clock(), start = w->clock.time;
+    double look, below = demi_calm(w, (double)speed, &look), last = begun;
     int i, calm = 0;
-    for (i = 0; i < w->bodies.count; i++)
-        radius += (double)w->bodies.pos[4*i + 3]/w->bodies.count;
-    if (!(below > 0) && g > 0) below = 0.01*sqrt(2*g*radius);
     if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
-        (!(below > 0) && w->bodies.count))
+        (!(below > 0) && (w->bodies.count || demi_feed_coming(w) >= 0)))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: seconds is %g and speed %g m/s, "
                          "must be > 0 and >= 0, and speed > 0 where there is no gravity to compare "
                          "it with; say how slow is at rest", seconds, (double)speed);
+    for (i = 0; i < w->feed_count; i++) {
+        const demi_feed *f = demi_feed_at(w, i);
+        if (!f->desc.limited && !(f->desc.end > 0))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: feed %d has limited 0 and "
+                             "end 0 s, one of them must be > 0, or its grains never stop coming; "
+                             "give it either, or use dem_world_run", i + 1);
+    }
     w->look.tenths_told = 0;
-    /* the time to fall by half a radius, or to go that far: what turns round is not at rest */
-    look = g > 0 ? sqrt(radius/g) : radius/2/DEMI_MAX(below, 1e-300);
-    while (w->bodies.count) {
+    while (w->bodies.count || demi_feed_coming(w) >= 0) {
         const double left = start + seconds - w->clock.time;
+        double mean, most = demi_speeds(w, &mean);
         dem_result result;
-        most = demi_speeds(w, &mean);
-        calm = mean < below && most < 10*below ? calm + 1 : 0;
+        below = demi_calm(w, (double)speed, &look);
+        calm = demi_feed_coming(w) < 0 && mean < below && most < 10*below ? calm + 1 : 0;
         if (calm > 2) break;
-        if (!(left > 0))
-            return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: mean "
-                             "speed %.3g m/s, largest %.3g m/s, must be below %.3g and %.3g; give "
-                             "it more time, or look what drives it", seconds, mean, most, below,
-                             10*below);
+        if (!(left > (double)w->clock.dt/2)) return demi_unsettled(w, seconds, below);
         result = dem_world_run(w, DEMI_MIN(look, left), 0, 0);
         if (result != DEM_OK) return result;
         if (progress && demi_clock() - last > 0.1) {

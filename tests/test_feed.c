@@ -236,6 +236,67 @@ int main(int argc, char **argv) {
         }
     }
 
+    TEST("grains come to rest only when every feed has brought its grains: dem_world_settle waits for them") {
+        /* all at once, at a rate, from 0.2 s on, by mass, until 0.15 s; each under springs and impulses */
+        int way;
+        for (way = 0; way < 10; way++) {
+            const int kind = way/2;
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_feed_desc d = DEM_FEED_DESC;
+            dem_feed_state s;
+            dem_world *world;
+            dem_feed feed;
+            desc.gravity = at(0, 0, -9.81);
+            if (way % 2) { desc.response = DEM_RESPONSE_IMPULSES; desc.dt = DEM_R(1e-3); }
+            world = dem_world_create(&desc);
+            d.material = scene_material(world, 1e6, 0.3, 0.4, 0.1);
+            d.class_count = 1;
+            d.radius[0] = DEM_R(0.002);
+            d.amount[0] = kind == 3 ? 12*2500*4.0/3*3.14159265358979*8e-9 : 12;
+            d.limited = kind != 4;
+            d.by_mass = kind == 3;
+            d.rate = kind == 0 ? 0 : kind == 3 ? d.amount[0]*10 : 100;
+            d.start = kind == 2 ? 0.2 : 0;
+            d.end = kind == 4 ? 0.125 : 0;
+            d.box = box_of(-0.02, -0.02, 0.01, 0.02, 0.02, 0.02);
+            dem_plane_add(world, d.material, at(0, 0, 0), at(0, 0, 1));
+            feed = dem_feed_add(world, &d);
+            CHECK_EQ(dem_world_settle(world, 2, 0, 0, 0), DEM_OK);
+            CHECK_EQ(dem_feed_get(world, feed, &s), DEM_OK);
+            CHECK_EQ(s.done, 1);
+            CHECK_EQ((int)s.total, 12);
+            CHECK_EQ(dem_bodies_get(world).count, 12);
+            CHECK(dem_world_time(world) > d.start + (d.rate > 0 ? 0.1 : 0));
+            CHECK((double)dem_counters_get(world).speed_max < 0.1*sqrt(2*9.81*0.002));
+            dem_world_destroy(world);
+        }
+    }
+
+    TEST("a feed that never ends, or is not done in time, is named by dem_world_settle") {
+        dem_world *world = world_of(9.81, 1e-4);
+        dem_material stuff = soft(world, 100);
+        dem_feed_desc d = feed_of(stuff, 1000);
+        dem_feed_add(world, &d);
+        CHECK_EQ(dem_world_settle(world, 0.1, 0, 0, 0), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "feed 1 has limited 0 and end 0 s");
+        CHECK_EQ((int)dem_world_steps(world), 0);
+        dem_world_destroy(world);
+        world = world_of(0, 1e-4);
+        stuff = soft(world, 100);
+        d = feed_of(stuff, 1000);
+        d.limited = 1;
+        d.velocity = at(0, 0, 0);
+        d.spread = 0;
+        d.box = box_of(0, 0, 0, 0.01, 0.01, 0.01);              /* no room for all 60 */
+        dem_feed_add(world, &d);
+        CHECK_EQ(dem_world_settle(world, 0.1, 0, 0, 0), DEM_ERROR_ARGUMENT);    /* what is slow? */
+        CHECK_EQ(dem_world_settle(world, 0.1, DEM_R(1e-3), 0, 0), DEM_ERROR_STOPPED);
+        CHECK_STR(dem_world_error(world), "feed 1 still brings grains");
+        CHECK_STR(dem_world_error(world), "wait for room");
+        CHECK_EQ(dem_world_settle(world, 1e-20, DEM_R(1e-3), 0, 0), DEM_ERROR_STOPPED);     /* and ends */
+        dem_world_destroy(world);
+    }
+
     TEST("a feed without room keeps its grains until there is some") {
         dem_world *world = world_of(0, 1e-4);
         dem_material stuff = soft(world, 1);
