@@ -1736,7 +1736,9 @@ typedef struct dem_finding {
     dem_severity severity;
     char text[240];            /* one sentence: what, its value, the likely cause, the remedy */
 } dem_finding;
-/* Looks for grains that start inside each other or in walls, overlaps to be expected from speed and
+/* Looks for grains that start inside each other or in walls, or inside a closed mesh, profile or
+   surface of revolution that others are outside of (also those that feeds will bring), overlaps to
+   be expected from speed and
    weight (more than 5 % of a radius, with the modulus that would keep them below 1 %), units
    (metres, kg/m3, Pa), places too far from the origin for their digits, scenes in which nothing
    moves or all falls for ever, walls that nothing can reach, a time step that is too large or
@@ -22077,6 +22079,261 @@ static void demi_check_outside(const dem_world *w, demi_findings *f) {
                   count > 1 ? "s are" : " is");
 }
 
+/* --- Grains on both sides of a closed surface. Meshes, profiles and surfaces of revolution are thin:
+       both sides push, so that grains inside a solid body touch nothing and stay there unseen. A
+       closed container has all grains inside; where some are inside and some are not, one of the
+       two was not meant. What is closed: a shell, that is facets joined by edges (of profiles: by
+       ends), each of which an even number of them has, also of several walls that do not move
+       against each other. A place is inside if a line from it crosses the shell an odd number of
+       times. --- */
+typedef struct demi_probe {
+    double x[3];                   /* m, where the surface was when its motion began */
+    int odd, turn;                 /* crossings: is their number odd; sum of their directions */
+    int feed;                      /* 0: a grain; else a place of this feed's region */
+} demi_probe;
+typedef struct demi_probes {
+    demi_probe *at;                /* in the order of y: those near the surface */
+    int count, grains, places;     /* of these; of grains that can move and feeds' places in all */
+} demi_probes;
+enum { DEMI_FEED_PLACES = 64 };    /* places by which a feed's region is known */
+
+static int demi_probe_compare(const void *a, const void *b) {
+    const double x = ((const demi_probe *)a)->x[1], y = ((const demi_probe *)b)->x[1];
+    return x < y ? -1 : x > y;
+}
+/* Adds x and its periodic images, where they are in the box from lo to hi, to a surface that has
+   moved from `home` to `pose` since. 0 when memory ran out. */
+static int demi_probe_add(dem_world *w, demi_probes *p, size_t *room, const demi_wall *wall,
+                          const double *box, dem_vec3 x, int feed) {
+    int n, k;
+    for (n = 0; n < 27; n++) {
+        const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
+        const dem_vec3 by = demi_wall_shift(w, s[0], s[1], s[2]);
+        const dem_vec3 own = demi_unrotate(wall->pose.rotation,
+                                           demi_sub(demi_add(x, by), wall->pose.position));
+        const dem_vec3 at = demi_add(wall->home.position, demi_rotate(wall->home.rotation, own));
+        demi_probe *to;
+        double c[3];
+        int near = 1;
+        c[0] = (double)at.x; c[1] = (double)at.y; c[2] = (double)at.z;
+        for (k = 0; k < 3; k++)
+            near = near && (!s[k] || w->wall_period[k] > 0) && c[k] >= box[k] && c[k] <= box[3 + k];
+        if (!near) continue;
+        if ((size_t)p->count == *room) {
+            demi_probe *more = (demi_probe *)demi_alloc(w, 2*(*room + 32), sizeof *more);
+            if (!more) return 0;
+            if (p->count) memcpy(more, p->at, (size_t)p->count*sizeof *more);
+            demi_free(w, p->at);
+            p->at = more;
+            *room = 2*(*room + 32);
+        }
+        to = p->at + p->count++;
+        memcpy(to->x, c, sizeof c);
+        to->odd = to->turn = 0;
+        to->feed = feed;
+    }
+    return 1;
+}
+/* Grains and places of feeds that may be inside a surface in this box. 0 when memory ran out. */
+static int demi_probes_make(dem_world *w, demi_probes *p, const demi_wall *wall,
+                            const double *box) {
+    size_t room = 0;
+    int i, n, ok = 1;
+    memset(p, 0, sizeof *p);
+    for (i = 0; i < w->bodies.count && ok; i++) {
+        if (!(w->bodies.inv_mass[i] > 0)) continue;
+        p->grains++;
+        ok = demi_probe_add(w, p, &room, wall, box, demi_at(w->bodies.pos + 4*i), 0);
+    }
+    for (i = 0; i < w->feed_count && ok; i++) {
+        const demi_feed *feed = demi_feed_at(w, i);
+        uint64_t random = 1;
+        demi_region g;
+        if (feed->state.done || !demi_feed_region(w, &feed->desc, &g)) continue;
+        for (n = 0; n < DEMI_FEED_PLACES && ok; n++) {
+            const double u = demi_uniform(&random), v = demi_uniform(&random);
+            const double at[3] = {u, v, demi_uniform(&random)};
+            dem_vec3 x;
+            if (!demi_region_at(&g, at, (dem_real)feed->lo[0], &x)) continue;
+            p->places++;
+            ok = demi_probe_add(w, p, &room, wall, box, x, i + 1);
+        }
+    }
+    if (ok && p->count) qsort(p->at, (size_t)p->count, sizeof *p->at, demi_probe_compare);
+    return ok;
+}
+/* Are there probes on both sides? wall: a number; normals: 1 where its facets have any. */
+static void demi_probes_judge(const dem_world *w, demi_findings *f, const demi_probes *p, int wall,
+                              int normals) {
+    const char *name = demi_wall_kinds[w->walls[wall].kind].name, *way = "";
+    int i, grains = 0, places = 0, feed = 0, turn = 0;
+    for (i = 0; i < p->count; i++) {
+        if (!p->at[i].odd) continue;
+        turn += p->at[i].turn > 0 ? 1 : -1;
+        if (p->at[i].feed) { places++; feed = p->at[i].feed; } else grains++;
+    }
+    if (normals && turn) way = turn > 0 ? " with normals outwards" : " with normals inwards";
+    if (!(grains + places) || grains + places == p->grains + p->places) return;
+    if (grains)
+        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "%d of %d grains "
+                  "begin inside wall %d, a closed %s%s, and stay inside: if it is solid, keep them "
+                  "out (`inside` of dem_region), or remove them; if it is hollow, this is right",
+                  grains, p->grains, wall + 1, name, way);
+    else
+        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "feed %d brings "
+                  "grains inside wall %d, a closed %s%s, and they stay inside: if it is solid, "
+                  "keep them out (`inside` of the feed); if it is hollow, this is right", feed,
+                  wall + 1, name, way);
+}
+/* Does the line from x along the first axis cross the side from a to b? 1: from below, -1: from
+   above; the same of a side from b to a, to the bit. */
+static int demi_probe_crosses(const double *a, const double *b, const double *x) {
+    const int up = b[1] > x[1];
+    const double *lo = up ? a : b, *hi = up ? b : a;
+    if ((a[1] > x[1]) == up) return 0;
+    if (!((lo[0] - x[0])*(hi[1] - x[1]) - (hi[0] - x[0])*(lo[1] - x[1]) > 0)) return 0;
+    return up ? 1 : -1;
+}
+/* Crossings of one facet: of a segment by lines along x, of a triangle by those along z. */
+static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
+    const int per = j->per;
+    const double *c[3], *a, *b;
+    double lo, hi, u[3], v[3], n[3];
+    int k, from = 0, to = p->count;
+    for (k = 0; k < 3; k++) c[k] = j->x + 3*j->facet[5*facet + 2 + (k < per ? k : 0)];
+    lo = DEMI_MIN(c[0][1], DEMI_MIN(c[1][1], c[2][1]));
+    hi = DEMI_MAX(c[0][1], DEMI_MAX(c[1][1], c[2][1]));
+    for (k = 0; k < 3; k++) { u[k] = c[1][k] - c[0][k]; v[k] = c[2][k] - c[0][k]; }
+    for (k = 0; k < 3; k++) n[k] = u[(k + 1)%3]*v[(k + 2)%3] - u[(k + 2)%3]*v[(k + 1)%3];
+    while (from < to) {
+        const int mid = from + (to - from)/2;
+        if (p->at[mid].x[1] < lo) from = mid + 1;
+        else to = mid;
+    }
+    for (; from < p->count && p->at[from].x[1] <= hi; from++) {
+        demi_probe *at = p->at + from;
+        int turn = 0;
+        for (k = 0; k < (per == 3 ? 3 : 1); k++) {
+            a = c[k];
+            b = c[(k + 1)%3];
+            turn += demi_probe_crosses(a, b, at->x);
+        }
+        if (!turn || (per == 3 && !((c[0][2] - at->x[2])*fabs(n[2]) >
+            (n[0]*(at->x[0] - c[0][0]) + n[1]*(at->x[1] - c[0][1]))*(n[2] > 0 ? 1 : -1)))) continue;
+        at->odd = !at->odd;
+        at->turn += turn;
+    }
+}
+/* Shells of the join: root[i]: the first facet of the shell that facet i is of, -1: it is open. */
+static void demi_shells(demi_join *j, int32_t *root) {
+    demi_side *s = j->per == 3 ? j->piece : j->side;
+    const int sides = j->per == 3 ? j->sides : 2*j->facets;
+    int i, end;
+    for (i = 0; i < j->facets; i++) root[i] = i;
+    for (i = 0; i < sides && j->per == 2; i++) {
+        const int32_t at = j->facet[5*(i/2) + 2 + i%2];
+        s[i] = demi_side_of(at, at, i/2, i%2);
+    }
+    if (j->per == 2) qsort(s, (size_t)sides, sizeof *s, demi_side_compare);
+    for (i = 1; i < sides; i++) {
+        int32_t a = s[i - 1].facet, b = s[i].facet;
+        if (s[i].lo != s[i - 1].lo || s[i].hi != s[i - 1].hi) continue;
+        while (root[a] != a) a = root[a] = root[root[a]];
+        while (root[b] != b) b = root[b] = root[root[b]];
+        root[DEMI_MAX(a, b)] = DEMI_MIN(a, b);
+    }
+    for (i = 0; i < j->facets; i++) root[i] = root[root[i]];
+    for (i = 0; i < sides; i = end) {
+        const int32_t of = s[i].facet;
+        for (end = i; end < sides && s[end].lo == s[i].lo && s[end].hi == s[i].hi;) end++;
+        if ((end - i)%2) root[root[of] >= 0 ? root[of] : of] = -1;
+    }
+    for (i = 0; i < j->facets; i++) if (root[i] >= 0) root[i] = root[root[i]];
+}
+/* The closed shells of this wall and those that do not move against it: meshes or profiles. */
+static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per) {
+    double box[6] = {1e300, 1e300, 1e300, -1e300, -1e300, -1e300};
+    int32_t *root = 0, *next = 0;
+    demi_probes p;
+    demi_join j;
+    int i, k, ok = demi_join_begin(w, &j, w->walls[wall].group, per);
+    memset(&p, 0, sizeof p);
+    for (i = 0; i < 3*j.points && ok; i++) {
+        box[i%3] = DEMI_MIN(box[i%3], j.x[i]);
+        box[3 + i%3] = DEMI_MAX(box[3 + i%3], j.x[i]);
+    }
+    if (per == 2) { box[2] = -1e300; box[5] = 1e300; }
+    if (ok) ok = demi_probes_make(w, &p, &w->walls[wall], box);
+    if (ok && p.count) {
+        demi_join_double(&j);                   /* which points are corners */
+        ok = per == 2 || demi_join_cut(w, &j);
+        root = (int32_t *)demi_alloc(w, 2*(size_t)j.facets + 1, sizeof *root);
+    }
+    if (ok && root) {
+        next = root + j.facets;
+        demi_shells(&j, root);
+        for (i = 0; i < j.facets; i++) next[i] = -1;
+        for (i = j.facets - 1; i >= 0; i--) {   /* facets of a shell: a list, its root first */
+            if (root[i] < 0 || root[i] == i) continue;
+            next[i] = next[root[i]];
+            next[root[i]] = i;
+        }
+        for (i = 0; i < j.facets; i++) {
+            if (root[i] != i) continue;
+            for (k = 0; k < p.count; k++) p.at[k].odd = p.at[k].turn = 0;
+            for (k = i; k >= 0; k = next[k]) demi_probes_cross(&j, k, &p);
+            if (j.facet[5*i] >= 0) demi_probes_judge(w, f, &p, j.facet[5*i], per == 3);
+        }
+    }
+    demi_free(w, root);
+    demi_free(w, p.at);
+    demi_join_free(w, &j);
+}
+/* A surface of revolution is closed where it ends on its axis, or where it began. */
+static void demi_check_revolved(dem_world *w, demi_findings *f, int wall) {
+    const demi_wall *s = &w->walls[wall];
+    const int n = s->ring_count;
+    const dem_real *r = s->ring_radius, *h = s->ring_height;
+    const int loop = !(r[0] > r[n - 1]) && !(r[0] < r[n - 1]) && !(h[0] > h[n - 1]) &&
+        !(h[0] < h[n - 1]);
+    const double e = (double)s->extent;
+    const dem_vec3 x = s->home.position;
+    double box[6];
+    demi_probes p;
+    int i, k;
+    if (!loop && (r[0] > 0 || r[n - 1] > 0)) return;
+    box[0] = (double)x.x - e; box[1] = (double)x.y - e; box[2] = (double)x.z - e;
+    for (k = 0; k < 3; k++) box[3 + k] = box[k] + 2*e;
+    if (demi_probes_make(w, &p, s, box)) {
+        for (i = 0; i < p.count; i++) {
+            const dem_vec3 at = demi_v((dem_real)p.at[i].x[0], (dem_real)p.at[i].x[1],
+                                       (dem_real)p.at[i].x[2]);
+            const dem_vec3 own = demi_unrotate(s->home.rotation, demi_sub(at, x));
+            const double c[2] = {sqrt((double)(own.x*own.x + own.y*own.y)), (double)own.z};
+            for (k = 0; k + 1 < n; k++) {
+                const double a[2] = {(double)r[k], (double)h[k]};
+                const double b[2] = {(double)r[k + 1], (double)h[k + 1]};
+                if (demi_probe_crosses(a, b, c)) p.at[i].odd = !p.at[i].odd;
+            }
+        }
+        demi_probes_judge(w, f, &p, wall, 0);
+    }
+    demi_free(w, p.at);
+}
+static void demi_check_enclosed(dem_world *w, demi_findings *f) {
+    int i, k, per;
+    if (!w->facets_valid && !demi_facets_weigh(w)) return;     /* no memory: the run will say so */
+    for (i = 0; i < w->wall_count; i++) {
+        const int kind = w->walls[i].kind;
+        if (kind == DEMI_WALL_REVOLVED) demi_check_revolved(w, f, i);
+        for (per = 2; per <= 3; per++) {
+            for (k = 0; k < i && !demi_join_member(w, k, w->walls[i].group, per);) k++;
+            if (k == i && kind != DEMI_WALL_NONE && demi_join_member(w, i, w->walls[i].group, per))
+                demi_check_shells(w, f, i, per);
+        }
+    }
+}
+
 /* The time step that was asked for, beside what the scene bears. */
 static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f) {
     const double dt = (double)w->desc.dt;
@@ -22166,6 +22423,7 @@ DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     demi_check_materials(w, &f);
     demi_check_walls(w, &f);
     demi_check_outside(w, &f);
+    demi_check_enclosed(w, &f);
     demi_check_overlaps(w, &advice, &f);
     if (!w->bodies.count) return f.count;
     if (!w->stage.list_valid && demi_rebuild(w, "dem_world_check") != DEM_OK) {

@@ -72,6 +72,84 @@ static int tray_check(const tray *t, dem_severity severity, const char *says) {
     return n;
 }
 
+/* A closed surface of half width H about `centre`, which does not move against itself: a mesh; the same in six
+   walls; with two corners on the sides of others; turned inside out; a profile; a can; a ring of square section.
+   open: a piece is left out. Answers how many of the 27 places about its centre are inside. */
+enum { BODY_MESH, BODY_SIX, BODY_JUNCTION, BODY_INSIDE_OUT, BODY_PROFILE, BODY_CAN, BODY_RING, BODIES };
+static const double H = 0.01;
+static int body_make(dem_world *world, dem_material m, int kind, dem_vec3 centre, int open, const dem_motion *motion) {
+    static const int32_t faces[36] = {0,2,1, 1,2,3, 4,5,6, 5,7,6, 0,1,4, 1,5,4, 2,6,3, 3,6,7, 0,4,2, 2,4,6, 1,3,5, 3,7,5};
+    /* the top, 4 5 7 6, cut in three from 8, half way from 4 to 5 */
+    static const int32_t top[9] = {4,8,6, 8,7,6, 8,5,7};
+    dem_real p[27];
+    int32_t t[39];
+    int i, k, first = world->wall_count;
+    if (kind <= BODY_INSIDE_OUT) {
+        dem_mesh mesh;
+        scene_box_points(2*H, 2*H, 2*H, p);
+        p[24] = 0; p[25] = DEM_R(-0.01); p[26] = DEM_R(0.01);
+        for (i = 0; i < 9; i++)
+            for (k = 0; k < 3; k++) p[3*i + k] += k == 0 ? centre.x : k == 1 ? centre.y : centre.z;
+        memcpy(t, faces, sizeof faces);
+        mesh.vertex_count = 9; mesh.vertices = p; mesh.triangle_count = 12 - open; mesh.triangles = t;
+        if (kind == BODY_JUNCTION) {
+            memcpy(t, top, sizeof top);
+            memcpy(t + 9, faces, 6*sizeof *t);
+            memcpy(t + 15, faces + 12, 24*sizeof *t);
+            mesh.triangle_count = 13 - open;
+        }
+        for (i = 0; i < 12 && kind == BODY_INSIDE_OUT; i++) { t[3*i] = faces[3*i + 1]; t[3*i + 1] = faces[3*i]; }
+        for (i = 0; i < (kind == BODY_SIX ? 6 - open : 1); i++) {
+            if (kind == BODY_SIX) { mesh.triangle_count = 2; mesh.triangles = t + 6*i; }
+            CHECK(dem_mesh_add(world, m, &mesh).id > 0);
+        }
+    } else if (kind == BODY_PROFILE) {
+        dem_profile profile;
+        for (i = 0; i < 4; i++) {
+            p[2*i] = centre.x + (dem_real)(i == 0 || i == 3 ? -H : H);
+            p[2*i + 1] = centre.y + (dem_real)(i < 2 ? -H : H);
+            t[2*i] = i;
+            t[2*i + 1] = (i + 1)%4;
+        }
+        profile.vertex_count = 4; profile.vertices = p; profile.segment_count = 4 - open; profile.segments = t;
+        CHECK(dem_profile_add(world, m, &profile, DEM_EDGE_RESOLVED).id > 0);
+    } else {
+        const dem_real can[8] = {0, DEM_R(0.01), DEM_R(0.01), 0, DEM_R(-0.01), DEM_R(-0.01), DEM_R(0.01), DEM_R(0.01)};
+        const dem_real ring[10] = {DEM_R(0.003), DEM_R(0.012), DEM_R(0.012), DEM_R(0.003), DEM_R(0.003),
+                                   DEM_R(-0.01), DEM_R(-0.01), DEM_R(0.01), DEM_R(0.01), DEM_R(-0.01)};
+        const int n = kind == BODY_CAN ? 4 : 5;
+        const dem_real *r = kind == BODY_CAN ? can : ring;
+        CHECK(dem_revolved_add(world, m, centre, at(0, 0, 1), n - open, r, r + n).id > 0);
+    }
+    for (i = first; i < world->wall_count && motion; i++) {
+        dem_wall wall;
+        wall.id = i + 1;
+        CHECK_EQ(dem_wall_motion(world, wall, motion), DEM_OK);
+    }
+    return kind == BODY_RING ? 24 : 27;
+}
+/* Grains at 27 places half a width apart, in line with corners and edges, or five far away. */
+static void body_grains(dem_world *world, dem_material m, dem_vec3 centre, int far_away) {
+    int i;
+    for (i = 0; i < (far_away ? 5 : 27); i++)
+        dem_sphere_add(world, m, DEM_R(1e-4), far_away ? dem_vec3_make(centre.x, DEM_R(0.05) + centre.y, (dem_real)(i*1e-3))
+            : dem_vec3_make(centre.x + (dem_real)((i%3 - 1)*H/2), centre.y + (dem_real)((i/3%3 - 1)*H/2),
+                            centre.z + (dem_real)((i/9 - 1)*H/2)));
+}
+/* Findings that begin with `says`: their number; one of them must have this severity. */
+static int body_findings(dem_world *world, const char *says, dem_severity severity) {
+    dem_finding f[32];
+    const int n = dem_world_check(world, f, 32);
+    int i, count = 0;
+    for (i = 0; i < n && i < 32; i++) {
+        if (!strstr(f[i].text, says)) continue;
+        count++;
+        CHECK_EQ(f[i].severity, severity);
+        CHECK(strlen(f[i].text) < sizeof f[i].text - 1);
+    }
+    return count;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
     TEST("a scene without a mistake has no finding, and looking changes no bit of its run") {
@@ -155,6 +233,54 @@ int main(int argc, char **argv) {
         CHECK_STR(f[0].text, "dt is 0.001 s");
         CHECK_EQ(f[1].severity, DEM_SEVERITY_WARNING);
         dem_world_destroy(world);
+    }
+    TEST("grains inside a closed surface are named where others are outside: nowhere else, whatever it is made of") {
+        /* with grains on both sides; all inside; all outside; on both sides of an open one; brought by a feed;
+           across a face of a periodic world; where the surface has moved to */
+        int kind, way;
+        for (kind = 0; kind < BODIES; kind++)
+            for (way = 0; way < 7; way++) {
+                const dem_severity severity = kind == BODY_INSIDE_OUT ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING;
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_motion motion = DEM_MOTION;
+                dem_vec3 centre = at(0, 0, 0);
+                dem_world *world;
+                dem_material m;
+                char says[80];
+                int in;
+                desc.gravity = at(0, 0, -9.81);
+                desc.domain = box_of(0, -0.1, -0.1, 0.2, 0.1, 0.1);
+                if (way == 5) desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+                desc.allow_large_dt = 1;
+                desc.dt = DEM_R(1e-2);
+                world = dem_world_create(&desc);
+                m = scene_material(world, 1e7, 0.5, 0.3, 0);
+                motion.kind = DEM_MOTION_TRANSLATING;
+                motion.velocity = at(3, 4, 0);
+                in = body_make(world, m, kind, centre, way == 3, way == 6 ? &motion : 0);
+                if (way == 6) {
+                    CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+                    centre = at(0.03, 0.04, 0);
+                }
+                if (way != 2 && way != 4) body_grains(world, m, centre, 0);
+                if (way != 1) body_grains(world, m, centre, 1);
+                if (way == 4) {
+                    dem_feed_desc feed = DEM_FEED_DESC;
+                    feed.material = m;
+                    feed.class_count = 1; feed.radius[0] = DEM_R(1e-4); feed.amount[0] = 10; feed.limited = 1;
+                    feed.box = box_of(0.004, 0.004, -0.005, 0.03, 0.006, 0.005);
+                    CHECK(dem_feed_add(world, &feed).id > 0);
+                }
+                snprintf(says, sizeof says, "%d of 32 grains begin inside wall 1, a closed %s", in, kind == BODY_PROFILE
+                         ? "profile" : kind >= BODY_CAN ? "surface of revolution" : kind == BODY_INSIDE_OUT
+                         ? "mesh with normals inwards" : "mesh with normals outwards");
+                if (way == 4) strcpy(says, "feed 1 brings grains inside wall 1");
+                else if (way == 1 ? in == 27 : way == 2 || way == 3) strcpy(says, "inside wall");
+                else if (way == 1) strcpy(says, "24 of 27 grains begin inside wall 1");
+                CHECK_EQ(body_findings(world, says, severity),
+                         way == 1 ? in != 27 : way != 2 && way != 3);
+                dem_world_destroy(world);
+            }
     }
     return test_end();
 }
