@@ -156,11 +156,13 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     before = dem_totals_get(world);
     if (e->made && !exam_join(e, world, &bond))
         snprintf(m->error, sizeof m->error, "dem_bonds_make makes no bond: %.100s", dem_world_error(world));
-    most = e->made ? (long)floor(20*(double)advice.contact_time/dt + 0.5) : (long)((40*(double)advice.contact_time + 3*e->range/(m->speed*cos(m->angle)))/dt + 2*m->early + 100);
+    /* through the range and back, more slowly than they come */
+    most = e->made ? (long)floor(20*(double)advice.contact_time/dt + 0.5)
+        : (long)((40*(double)advice.contact_time + 6*e->range/(m->speed*cos(m->angle)))/dt + 2*m->early + 100);
     for (k = 0; k < most; k++) {
         const dem_result result = dem_world_step(world, 1);
         const int near_by = exam_gap(world, one, other, e->radius) < e->range;
-        met |= dem_counters_get(world).contacts > 0;
+        met |= near_by;                          /* the law is asked: a film or a charge may part them before they touch */
         if (result != DEM_OK || (met && !near_by && !e->made)) break;
     }
     after = dem_totals_get(world);
@@ -172,7 +174,8 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     m->slip = (double)(b.velocity.y - a.velocity.y);
     m->spin = e->radius*(double)(a.spin.z + b.spin.z);
     if (met && energy >= 0 && energy < 1e30 && !m->error[0]) m->energy = energy;
-    else if (!m->error[0]) snprintf(m->error, sizeof m->error, met ? "energy is not a number" : "they did not meet");
+    else if (!m->error[0]) snprintf(m->error, sizeof m->error, met ? "energy is not a number"
+                                    : "they did not come within %g m of each other", e->range);
     dem_world_destroy(world);
 }
 /* A law that only looks: how a contact comes out of a world. */
