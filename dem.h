@@ -2007,14 +2007,16 @@ typedef struct dem_repose {
     double error;             /* rad, its standard error, of the places it goes through */
     int places;               /* so many, each about a mean diameter wide */
 } dem_repose;
-/* Angle of repose of a heap: grains in box (m; both corners 0: all). The surface is the highest
-   grains by distance from the upright line through the centre of mass; the line goes through it
-   from 20 to 80 % of its height, so that neither the rounded top nor the toe counts. Planar worlds:
-   both flanks. An error without gravity, or where there are fewer than 4 places to go through. */
+/* Angle of repose of a heap: grains in box (m; both corners 0: all) that can move and hang together
+   with gaps below half their mean radius; of several heaps the heaviest. Grains that ran away, fell
+   off a table or fly do not count. The surface is the highest grains by distance from the upright
+   line through the centre of mass; the line goes through it from 20 to 80 % of its height, so that
+   neither the rounded top nor the toe counts. Planar worlds: both flanks. An error without gravity,
+   or where there are fewer than 4 places to go through. */
 DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repose *repose);
 /* Dynamic angle of repose in a drum that turns about `axis` (right-handed, level): positive where
    the charge is carried up as it should be. The line goes through the middle half of the surface.
-   For charges that roll or cascade: grains in flight are of no surface. */
+   For charges that roll or cascade: grains in flight are of no surface. Grains in box as above. */
 DEM_API dem_result dem_repose_drum(const dem_world *world, dem_box box, dem_vec3 axis,
                                    dem_repose *repose);
 
@@ -23863,6 +23865,7 @@ typedef struct demi_surface {
     double width, from;                /* m: of a cell; where the first row begins */
     int rows, columns;
     double *top;                       /* rows x columns, m above the lowest grain; < 0: nobody */
+    int32_t *root, heap;               /* bodies: of which heap; -1: none. The one that is meant */
 } demi_surface;
 /* The mean height of a row, over the columns where there is somebody; < 0: nobody. */
 static double demi_surface_row(const demi_surface *s, int row) {
@@ -23892,13 +23895,75 @@ static int demi_surface_line(const demi_surface *s, int first, int last, dem_rep
     out->places = (int)n;
     return 1;
 }
-/* Is grain i in the box, if there is one? */
+/* Is grain i in the box, if there is one, and can it move? */
 static int demi_repose_sees(const dem_world *w, dem_box b, int i) {
     const dem_real *x = w->bodies.pos + 4*i;
     const dem_vec3 size = demi_sub(b.hi, b.lo);
+    if (!(w->bodies.inv_mass[i] > 0)) return 0;
     if (!(demi_dot(size, size) > 0)) return 1;
     return x[0] >= b.lo.x && x[0] <= b.hi.x && x[1] >= b.lo.y && x[1] <= b.hi.y &&
         x[2] >= b.lo.z && x[2] <= b.hi.z;
+}
+static int32_t demi_heap_of(int32_t *root, int32_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+}
+/* Puts grain i into one heap with those whose gap to it is below half the mean radius; across
+   periodic faces too. */
+static void demi_heap_join(const dem_world *w, const demi_tree *tree, int i, double most,
+                           int32_t *root) {
+    const double r = (double)w->bodies.pos[4*i + 3];
+    const demi_periods p = demi_periods_of(w);
+    demi_search_line line;
+    double x[3];
+    int n, k;
+    for (n = 0; n < 27; n++) {
+        const int s[3] = {n%3 - 1, n/3%3 - 1, n/9 - 1};
+        int32_t other, use = 1;
+        for (k = 0; k < 3; k++) {
+            use = use && (!s[k] || p.period[k] > 0);
+            x[k] = tree->x[3*i + k] + s[k]*(double)p.period[k];
+        }
+        if (!use) continue;
+        demi_tree_line(&line, tree, x, x, 1.25*(r + most));
+        while ((other = demi_tree_next(&line)) >= 0) {
+            const double reach = 1.25*(r + (double)w->bodies.pos[4*other + 3]);
+            if (root[other] < 0 || !(demi_far2(x, tree->x + 3*other) < reach*reach)) continue;
+            other = demi_heap_of(root, other);
+            k = demi_heap_of(root, i);
+            root[DEMI_MAX(k, other)] = DEMI_MIN(k, other);
+        }
+    }
+}
+/* The heaps that the grains in the box form, and which is the heaviest: single grains that ran
+   away, or that fly, are of none. 0 when memory ran out. */
+static int demi_heaps(dem_world *w, dem_box box, demi_surface *s) {
+    const demi_periods p = demi_periods_of(w);
+    const int n = w->bodies.count;
+    double *x = (double *)demi_alloc(w, 3*(size_t)n + 1, sizeof *x);
+    double *mass = (double *)demi_alloc(w, (size_t)n + 1, sizeof *mass), most = 0;
+    demi_tree tree;
+    int i, ok;
+    memset(&tree, 0, sizeof tree);
+    s->root = (int32_t *)demi_alloc(w, (size_t)n + 1, sizeof *s->root);
+    for (i = 0; i < n && x && s->root; i++) {
+        const dem_vec3 at = demi_place_of(&p, demi_at(w->bodies.pos + 4*i));
+        x[3*i] = (double)at.x; x[3*i + 1] = (double)at.y; x[3*i + 2] = (double)at.z;
+        s->root[i] = demi_repose_sees(w, box, i) ? i : -1;
+        most = DEMI_MAX(most, (double)w->bodies.pos[4*i + 3]);
+    }
+    ok = x && mass && s->root && demi_tree_make(w, &tree, x, n);
+    for (i = 0; i < n && ok; i++) if (s->root[i] >= 0) demi_heap_join(w, &tree, i, most, s->root);
+    for (i = 0; i < n && ok; i++) {
+        if (s->root[i] < 0) continue;
+        s->root[i] = demi_heap_of(s->root, i);
+        mass[s->root[i]] += (double)w->bodies.mass[i];
+        s->heap = mass[s->root[i]] > mass[s->heap] ? s->root[i] : s->heap;
+    }
+    demi_tree_free(w, &tree);
+    demi_free(w, x);
+    demi_free(w, mass);
+    return ok;
 }
 /* Row and column of a grain, and how high its top is. */
 static double demi_surface_place(const dem_world *w, const demi_surface *s, int i, double *row,
@@ -23913,9 +23978,9 @@ static double demi_surface_place(const dem_world *w, const demi_surface *s, int 
     *column = DEMI_MIN(DEMI_MAX((int)at, 0), s->columns - 1);
     return (double)demi_dot(d, s->up) + (double)w->bodies.pos[4*i + 3];
 }
-/* Looks at the grains in the box: a surface with the heights above its lowest grain. 0: no memory;
+/* Looks at the grains of the heap: a surface with the heights above its lowest grain. 0: no memory;
    top is null where there are no grains. */
-static int demi_surface_look(dem_world *w, demi_surface *s, dem_box box) {
+static int demi_surface_look(dem_world *w, demi_surface *s) {
     double diameter = 0, lowest = 1e300, least = 1e300, most = -1e300, row;
     int i, column, count = 0;
     s->top = 0;
@@ -23924,7 +23989,7 @@ static int demi_surface_look(dem_world *w, demi_surface *s, dem_box box) {
     s->columns = 1;
     for (i = 0; i < w->bodies.count; i++) {
         double h;
-        if (!demi_repose_sees(w, box, i)) continue;
+        if (s->root[i] != s->heap) continue;
         h = demi_surface_place(w, s, i, &row, &column);
         lowest = DEMI_MIN(lowest, h - 2*(double)w->bodies.pos[4*i + 3]);
         diameter += 2*(double)w->bodies.pos[4*i + 3];
@@ -23933,7 +23998,7 @@ static int demi_surface_look(dem_world *w, demi_surface *s, dem_box box) {
     if (!count) return 1;
     s->width = diameter/count;                  /* rows were metres till now */
     for (i = 0; i < w->bodies.count; i++) {
-        if (!demi_repose_sees(w, box, i)) continue;
+        if (s->root[i] != s->heap) continue;
         demi_surface_place(w, s, i, &row, &column);
         least = DEMI_MIN(least, row);
         most = DEMI_MAX(most, row);
@@ -23947,7 +24012,7 @@ static int demi_surface_look(dem_world *w, demi_surface *s, dem_box box) {
     for (i = 0; i < s->rows*s->columns; i++) s->top[i] = -1;
     for (i = 0; i < w->bodies.count; i++) {
         double h, *top;
-        if (!demi_repose_sees(w, box, i)) continue;
+        if (s->root[i] != s->heap) continue;
         h = demi_surface_place(w, s, i, &row, &column) - lowest;
         if (!(row >= 0 && row < s->rows)) continue;
         top = &s->top[(int)row*s->columns + column];
@@ -23976,12 +24041,25 @@ static dem_result demi_repose_begin(dem_world *w, const char *call, dem_box box,
         s->along = demi_unit(s->along);
     } else if (w->desc.planar) s->along = demi_v(0, 0, 1);
     s->out = demi_cross(s->up, s->along);       /* where the shell goes at the bottom */
-    return DEM_OK;
+    if (demi_heaps(w, box, s)) return DEM_OK;
+    demi_free(w, s->root);
+    return demi_no_memory(w, call);
 }
-static dem_result demi_repose_few(dem_world *w, const char *call, const demi_surface *s) {
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: its surface has %d places, each a mean diameter "
-                     "wide, too few for a line; must be a heap some 10 diameters wide: look at "
-                     "the box, or add grains", call, s->top ? s->rows : 0);
+/* Frees the surface; good: 1, 0: too few places, -1: no memory. */
+static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *s, int good) {
+    int i, all = 0, heap = 0;
+    for (i = 0; i < w->bodies.count; i++) {
+        all += s->root[i] >= 0;
+        heap += s->root[i] == s->heap;
+    }
+    if (!good)
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: its surface has %d places, each a mean diameter "
+                  "wide, too few for a line; must be a heap some 10 diameters wide, and %d of %d "
+                  "grains are of the largest: look at the box, or add grains", call,
+                  s->top ? s->rows : 0, heap, all);
+    demi_free(w, s->top);
+    demi_free(w, s->root);
+    return good > 0 ? DEM_OK : good ? demi_no_memory(w, call) : DEM_ERROR_ARGUMENT;
 }
 DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repose *out) {
     const char *call = "dem_repose_heap";
@@ -23989,18 +24067,20 @@ DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repo
     demi_surface s;
     dem_vec3 sum = demi_v(0, 0, 0);
     double mass = 0, highest = 0;
+    dem_result result;
     int i, first, last, good = 0;
     if (demi_null(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
-    if (demi_repose_begin(w, call, box, demi_v(0, 0, 0), &s) != DEM_OK) return DEM_ERROR_ARGUMENT;
+    result = demi_repose_begin(w, call, box, demi_v(0, 0, 0), &s);
+    if (result != DEM_OK) return result;
     for (i = 0; i < w->bodies.count; i++) {
-        if (!demi_repose_sees(w, box, i)) continue;
+        if (s.root[i] != s.heap) continue;
         sum = demi_add(sum, demi_scale(demi_at(w->bodies.pos + 4*i), w->bodies.mass[i]));
         mass += (double)w->bodies.mass[i];
     }
     if (mass > 0) s.centre = demi_scale(sum, (dem_real)(1/mass));
     s.around = 1;
-    if (!demi_surface_look(w, &s, box)) return demi_no_memory(w, call);
+    if (!demi_surface_look(w, &s)) good = -1;
     for (i = 0; s.top && i < s.rows; i++) highest = DEMI_MAX(highest, demi_surface_row(&s, i));
     /* outward from the last row of 80 % to the first of 20 % */
     for (first = 0, i = 0; s.top && i < s.rows; i++)
@@ -24009,27 +24089,25 @@ DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repo
         if (!(demi_surface_row(&s, last) >= 0.2*highest)) break;
     if (s.top) good = demi_surface_line(&s, first, last, out);
     out->angle = -out->angle;                   /* it falls outward */
-    if (!good) demi_repose_few(w, call, &s);
-    demi_free(w, s.top);
-    return good ? DEM_OK : DEM_ERROR_ARGUMENT;
+    return demi_repose_end(w, call, &s, good);
 }
 DEM_API dem_result dem_repose_drum(const dem_world *world, dem_box box, dem_vec3 axis,
                                    dem_repose *out) {
     const char *call = "dem_repose_drum";
     dem_world *w = (dem_world *)world;
     demi_surface s;
+    dem_result result;
     int good = 0;
     if (demi_null(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     if (!demi_finite3(axis) || !(demi_dot(axis, axis) > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not "
                          "zero", call, (double)axis.x, (double)axis.y, (double)axis.z);
-    if (demi_repose_begin(w, call, box, axis, &s) != DEM_OK) return DEM_ERROR_ARGUMENT;
-    if (!demi_surface_look(w, &s, box)) return demi_no_memory(w, call);
+    result = demi_repose_begin(w, call, box, axis, &s);
+    if (result != DEM_OK) return result;
+    if (!demi_surface_look(w, &s)) good = -1;
     if (s.top) good = demi_surface_line(&s, s.rows/4, s.rows - s.rows/4, out);
-    if (!good) demi_repose_few(w, call, &s);
-    demi_free(w, s.top);
-    return good ? DEM_OK : DEM_ERROR_ARGUMENT;
+    return demi_repose_end(w, call, &s, good);
 }
 
 /* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;

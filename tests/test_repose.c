@@ -68,6 +68,47 @@ int main(int argc, char **argv) {
                 }
     }
 
+    TEST("grains that ran away, fell off the table, fly or form a smaller heap change no bit of a heap's or charge's slope") {
+        int way, drum;
+        for (way = 0; way < 2; way++)
+            for (drum = 0; drum < 2; drum++) {
+                const double r = 0.0011;
+                dem_material m;
+                dem_world *world = world_of(way ? at(0, -1, 0) : at(0, 0, -9.81), way, &m);
+                dem_repose alone, with;
+                dem_body_state state;
+                dem_body body;
+                int i, k;
+                dem_box box = way ? box_of(-0.06, 0, -1, 0.06, 0.06, 1) : box_of(-0.06, -0.06, 0, 0.06, 0.06, 0.06);
+                steep = tan(25*degree);
+                lean = drum;
+                dem_spheres_pack(world, m, (dem_real)r, 0, box, way ? below_flat : below, 0, 0);
+                for (i = 0; i < 2; i++) {
+                    dem_repose *to = i ? &with : &alone;
+                    CHECK_EQ(drum ? dem_repose_drum(world, all, way ? at(0, 0, 1) : at(0, -1, 0), to)
+                                  : dem_repose_heap(world, all, to), DEM_OK);
+                    CHECK_NEAR(to->angle, 25*degree, 1.5*degree);
+                    if (i) continue;
+                    for (k = 0; k < 5; k++) dem_sphere_add(world, m, (dem_real)r, at(0.1 + 0.03*k, way ? r : 0, way ? 0 : r));
+                    dem_sphere_add(world, m, (dem_real)(2*r), way ? at(0.07, -1, 0) : at(0.07, 0, -1));
+                    dem_sphere_add(world, m, (dem_real)r, way ? at(0, 0.5, 0) : at(0, 0, 0.5));
+                    dem_sphere_add(world, m, (dem_real)r, at(1e6, 0, 0));
+                    dem_spheres_pack(world, m, (dem_real)r, 0, box_of(-0.3, 0, 0, -0.25, 0.02, 0.02), 0, 0, 50);
+                    /* a floor of fixed grains holds them together, but is no heap */
+                    for (k = 0; k < 200; k++) {
+                        body = dem_sphere_add(world, m, (dem_real)r, way ? at(-0.3 + 0.0022*k, -r, 0) : at(-0.3 + 0.0022*k, 0, -r));
+                        state = scene_state(world, body);
+                        state.fixed = 1;
+                        CHECK_EQ(dem_body_set(world, body, &state), DEM_OK);
+                    }
+                }
+                CHECK(alone.places == with.places);
+                CHECK_NEAR(with.angle, alone.angle, 0);          /* the same grains, in the same order */
+                CHECK_NEAR(with.error, alone.error, 0);
+                dem_world_destroy(world);
+            }
+    }
+
     TEST("without gravity, grains, or a level axis there is no slope, and the sentence says which") {
         dem_material m;
         dem_world *world = world_of(at(0, 0, 0), 0, &m);
