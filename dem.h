@@ -31383,7 +31383,8 @@ static dem_world *demi_slab_world(dem_slabs *s, const dem_world *from, int index
     }
     w = dem_world_create(&desc);
     if (!w) return 0;
-    w->desc.gravity = from->desc.gravity;       /* of now: dem_world_gravity_set */
+    w->desc.gravity = from->desc.gravity;       /* of now: dem_world_gravity_set, */
+    w->desc.dt = from->desc.dt;                 /* and dem_world_dt_set */
     if (s->ring) w->ring_period[s->axis] = (dem_real)s->period;
     memcpy(w->materials, from->materials, sizeof w->materials);
     memcpy(w->pairs, from->pairs, (size_t)DEMI_MATERIALS*DEMI_MATERIALS*sizeof(demi_pair));
@@ -31781,6 +31782,7 @@ static const char *demi_slabs_skip(const dem_world *w, const demi_slab_sums *sum
 static void demi_slabs_common(const dem_slabs *s, dem_world *w) {
     const dem_world *h = &s->head, *from = s->slabs[0].world;
     int i;
+    w->desc.gravity = h->desc.gravity;       w->desc.dt = h->desc.dt;
     w->clock.time = h->clock.time;           w->clock.steps =
         h->clock.steps;         w->clock.rebuilds = h->clock.rebuilds;
     w->clock.since = h->clock.since;

@@ -1018,6 +1018,42 @@ int main(int argc, char **argv) {
         dem_slabs_destroy(slabs);
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
+    TEST("a time step and a gravity that were set while the world ran hold in slabs and in the world that collects "
+         "them") {
+        int count;
+        for (count = 1; count < 4; count += 2) {
+            dem_world *world[3];                /* stepped, dealt, collected into */
+            dem_slabs *slabs;
+            int k;
+            for (k = 0; k < 3; k++) {
+                dem_world_desc desc = DEM_WORLD_DESC;
+                dem_material glass;
+                desc.threads = 1;
+                desc.dt = DEM_R(1e-5);
+                world[k] = dem_world_create(&desc);
+                glass = scene_material(world[k], 1e6, 0.9, 0.3, 0);
+                dem_plane_add(world[k], glass, at(0, 0, 0), at(0, 0, 1));
+                scene_block(world[k], glass, 16, 3, 3, 1e-3, 1, 0.1, 3);
+                scene_step(world[k], 5);
+                if (k == 2) continue;
+                CHECK_EQ(dem_world_dt_set(world[k], DEM_R(4e-6)), DEM_OK);
+                CHECK_EQ(dem_world_gravity_set(world[k], at(1, 0, -9.81)), DEM_OK);
+            }
+            slabs = deal(world[1], 0, count);
+            CHECK_EQ(go(slabs, 40), DEM_OK);
+            CHECK_EQ(scene_step(world[0], 40), DEM_OK);
+            CHECK_REL(dem_slabs_counters_get(slabs).dt, 4e-6, wide ? 1e-15 : 1e-7);
+            for (k = 1; k < 3; k++) {
+                CHECK_EQ(collect(slabs, world[k]), DEM_OK);
+                if (count == 1) CHECK_EQ(dem_world_hash(world[k]), dem_world_hash(world[0]));
+            }
+            for (k = 0; k < 3; k++) CHECK_EQ(scene_step(world[k], 40), DEM_OK);
+            CHECK_EQ(dem_world_hash(world[1]), dem_world_hash(world[2]));
+            CHECK_REL(dem_world_time(world[2]), dem_world_time(world[0]), 1e-14);     /* rounding of sums */
+            dem_slabs_destroy(slabs);
+            for (k = 0; k < 3; k++) dem_world_destroy(world[k]);
+        }
+    }
     TEST("a time step that is too large for what presses, also across borders, is refused in slabs with the limit "
          "of one world, and one that is chosen is made as small") {
         int count, chosen;
