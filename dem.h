@@ -2198,11 +2198,13 @@ DEM_API dem_result dem_replay_value(dem_replay *replay, const char *name, double
 /* Adds the report and ends the file; the replay is gone whatever the answer. */
 DEM_API dem_result dem_replay_close(dem_replay *replay);
 
-/* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters.
-   Reading replaces the state of a world that was created with the same desc, materials and walls
-   (functions and user pointers cannot be stored), which then continues bit for bit. A file that is
-   cut short, damaged, of another version or precision, or of another scene is refused by name and
-   the world stays as it was. */
+/* A checkpoint holds everything: bodies, walls, memory, candidate list, ledger, fields, counters,
+   and what each scheduled output has written. Reading replaces the state of a world that was
+   created with the same desc, materials and walls (functions and user pointers cannot be stored),
+   which then continues bit for bit. A file that is cut short, damaged or of another version or
+   precision is refused by name. So is one of another scene: the error message names the first field
+   that differs, with both values. Threads, allocator, allow_large_dt and user pointers may differ.
+   A refused call leaves the world as it was. */
 DEM_API dem_result dem_checkpoint_write(dem_world *world, const char *path);
 DEM_API dem_result dem_checkpoint_read(dem_world *world, const char *path);
 
@@ -27255,7 +27257,7 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
 /* ---------------------------------------------------------------------------------------------
    >>checkpoint
    Everything that decides the next step, in one visit that both writes and reads, so that the two
-   cannot differ. The file: magic, version, size of dem_real, byte order, counts; a digest of each
+   cannot differ. The file: magic, version, size of dem_real, byte order, counts; the fields of each
    part of the scene (desc, materials, pairs, shapes, walls, fields, feeds, outlets); numbers,
    domains, bodies, lists, contacts; check sum of all before it.
 
@@ -27265,10 +27267,10 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
    which the next one is chosen.
    --------------------------------------------------------------------------------------------- */
 #define DEMI_CHECKPOINT_MAGIC "DEM-CKPT"
-enum { DEMI_CHECKPOINT_VERSION = 12 };
+enum { DEMI_CHECKPOINT_VERSION = 13 };
 
 /* Writes to file or to memory, or reads the `left` bytes that are at `from`, or (with none of them)
-   counts bytes. */
+   counts bytes. Hashes them where the sum is not 0 at the beginning. */
 typedef struct demi_stream {
     FILE *file;
     char *to;
@@ -27281,10 +27283,9 @@ typedef struct demi_stream {
 static void demi_visit(demi_stream *s, void *data, size_t size) {
     s->size += size;
     if (!size) return;
-    if (s->file) {
-        s->sum = demi_hash(s->sum, data, size);
-        fwrite(data, 1, size, s->file);
-    } else if (s->to) {
+    if (s->sum) s->sum = demi_hash(s->sum, data, size);
+    if (s->file) fwrite(data, 1, size, s->file);
+    else if (s->to) {
         memcpy(s->to, data, size);
         s->to += size;
     } else if (s->from && size <= s->left) {
@@ -27299,166 +27300,266 @@ static void demi_visit(demi_stream *s, void *data, size_t size) {
 }
 #define DEMI_VISIT(s, value) demi_visit(s, &(value), sizeof(value))
 
-/* --- the scene: what a file and the world that reads it must have in common --- */
+/* --- the scene: what a file and the world that reads it must have in common. A row for each field
+       that decides what a run does: a field of a desc that has none is free (threads, allocator,
+       allow_large_dt, what functions are handed). The file holds their values, so that a refusal
+       can name the field and both. --- */
 
-/* --- digests of the parts of a scene: numbers that decide what a run does; pointers only as far as
-       whether there is one --- */
-static uint64_t demi_digest_desc(const dem_world *w, int index) {
-    const dem_world_desc *d = &w->asked;
-    const int flags[] = {(int)d->boundary[0], (int)d->boundary[1], (int)d->boundary[2], d->planar,
-                         (int)d->normal_law, (int)d->tangent_law, (int)d->rolling_law,
-                         (int)d->tension, (int)d->convention, d->law != 0, d->law_memory,
-                         d->law_vectors, d->force != 0, (int)d->integrator, (int)d->search,
-                         d->ledger, (int)d->rotation, (int)d->ellipsoid_overlap,
-                         (int)d->cluster_contacts, d->orientations, d->law_who};
-    const dem_real numbers[] = {d->gravity.x, d->gravity.y, d->gravity.z, d->domain.lo.x,
-                                d->domain.lo.y, d->domain.lo.z, d->domain.hi.x, d->domain.hi.y,
-                                d->domain.hi.z, d->thickness, d->dt, d->impact_speed, d->skin,
-                                d->law_range, d->law_range_radii};
-    const uint64_t h = demi_hash(demi_hash(DEMI_HASH_START, flags, sizeof flags), numbers,
-                                 sizeof numbers);
-    (void)index;
-    return demi_hash(h, w->real_names, w->bodies.real_count ? sizeof w->real_names : 0);
+/* type: 'i' int or enum, 'r' dem_real, 'v' dem_vec3 or dem_box, 'd' double, 'u' uint64_t, 'p' is it
+   null?, 't' a text, of at most `size` bytes, 'h' the digest of what it points to. */
+typedef struct demi_scene_row {
+    const char *name, *words;       /* as a sentence has them: the field, and values from 0 on */
+    size_t offset, size;            /* of the field in its struct; bytes in the file */
+    char type;
+    uint64_t (*digest)(const void *item);
+} demi_scene_row;
+enum { DEMI_ROW_MOST = DEMI_MEMORY*24 };        /* bytes in the file, of one row */
+#define DEMI_ROW_AS(of, name, field, type) \
+    {name, 0, offsetof(of, field), sizeof ((of *)0)->field, type, 0}
+#define DEMI_ROW(of, field, type) DEMI_ROW_AS(of, #field, field, type)
+#define DEMI_ROW_ENUM(of, field, words) \
+    {#field, words, offsetof(of, field), sizeof ((of *)0)->field, 'i', 0}
+#define DEMI_ROW_NULL(of, field) {#field, "none one", offsetof(of, field), sizeof(int32_t), 'p', 0}
+#define DEMI_ROW_TEXT(of, field, most) {#field, 0, offsetof(of, field), (most)*24, 't', 0}
+#define DEMI_ROW_DIGEST(name, digest) {name, 0, 0, sizeof(uint64_t), 'h', digest}
+
+static const demi_scene_row demi_desc_rows[] = {
+    DEMI_ROW(dem_world_desc, gravity, 'v'), DEMI_ROW(dem_world_desc, domain, 'v'),
+    DEMI_ROW_ENUM(dem_world_desc, boundary, "open periodic outflow"),
+    DEMI_ROW(dem_world_desc, planar, 'i'), DEMI_ROW(dem_world_desc, thickness, 'r'),
+    DEMI_ROW_ENUM(dem_world_desc, response, "springs impulses"),
+    DEMI_ROW_ENUM(dem_world_desc, normal_law, "hertz linear hysteretic"),
+    DEMI_ROW_ENUM(dem_world_desc, tangent_law,
+                  "auto none viscous step spring mindlin mindlin_rescaled"),
+    DEMI_ROW_ENUM(dem_world_desc, rolling_law, "auto none step constant epsd"),
+    DEMI_ROW_ENUM(dem_world_desc, tension, "kept clipped none"),
+    DEMI_ROW_ENUM(dem_world_desc, friction_load, "push elastic size"),
+    DEMI_ROW_ENUM(dem_world_desc, slider, "shared spring rest"),
+    DEMI_ROW_ENUM(dem_world_desc, convention, "standard mill"),
+    DEMI_ROW_NULL(dem_world_desc, law), DEMI_ROW(dem_world_desc, law_memory, 'i'),
+    DEMI_ROW_TEXT(dem_world_desc, law_memory_names, DEMI_MEMORY),
+    DEMI_ROW(dem_world_desc, law_vectors, 'i'), DEMI_ROW(dem_world_desc, law_stiffness, 'r'),
+    DEMI_ROW(dem_world_desc, law_range, 'r'), DEMI_ROW(dem_world_desc, law_range_radii, 'r'),
+    DEMI_ROW(dem_world_desc, law_who, 'i'),
+    DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
+    DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, force),
+    DEMI_ROW_NULL(dem_world_desc, body_force),
+    DEMI_ROW_ENUM(dem_world_desc, integrator, "velocity_verlet forward_euler symplectic_euler "
+                  "position_verlet leapfrog"),
+    DEMI_ROW(dem_world_desc, dt, 'r'), DEMI_ROW(dem_world_desc, impact_speed, 'r'),
+    DEMI_ROW_ENUM(dem_world_desc, cone, "coulomb convex"),
+    DEMI_ROW_ENUM(dem_world_desc, solver, "seidel jacobi apgd spectral"),
+    DEMI_ROW(dem_world_desc, sweeps, 'i'), DEMI_ROW(dem_world_desc, tolerance, 'r'),
+    DEMI_ROW(dem_world_desc, cold_start, 'i'),
+    DEMI_ROW_ENUM(dem_world_desc, search, "auto all_pairs grid linked_list levels bins"),
+    DEMI_ROW(dem_world_desc, skin, 'r'),
+    DEMI_ROW_ENUM(dem_world_desc, rotation, "spiral fincham no_squish"),
+    DEMI_ROW_ENUM(dem_world_desc, ellipsoid_overlap, "conservative chord normal"),
+    DEMI_ROW_ENUM(dem_world_desc, cluster_contacts, "one none"),
+    DEMI_ROW(dem_world_desc, orientations, 'i'), DEMI_ROW(dem_world_desc, ledger, 'i')};
+static const demi_scene_row demi_material_rows[] = {
+    DEMI_ROW(dem_material_desc, density, 'r'), DEMI_ROW(dem_material_desc, young, 'r'),
+    DEMI_ROW(dem_material_desc, poisson, 'r'), DEMI_ROW(dem_material_desc, restitution, 'r'),
+    DEMI_ROW(dem_material_desc, friction, 'r'), DEMI_ROW(dem_material_desc, friction_static, 'r'),
+    DEMI_ROW(dem_material_desc, rolling_friction, 'r'), DEMI_ROW(dem_material_desc, stiffness, 'r'),
+    DEMI_ROW(dem_material_desc, stiffness_ratio, 'r'),
+    DEMI_ROW(dem_material_desc, stiffness_unloading, 'r'),
+    DEMI_ROW(dem_material_desc, stiffness_adhesion, 'r')};
+static const demi_scene_row demi_pair_rows[] = {
+    DEMI_ROW(dem_pair, young_eff, 'r'), DEMI_ROW(dem_pair, shear_eff, 'r'),
+    DEMI_ROW(dem_pair, restitution, 'r'), DEMI_ROW(dem_pair, friction, 'r'),
+    DEMI_ROW(dem_pair, friction_static, 'r'), DEMI_ROW(dem_pair, rolling_friction, 'r'),
+    DEMI_ROW(dem_pair, stiffness, 'r'), DEMI_ROW(dem_pair, stiffness_ratio, 'r'),
+    DEMI_ROW(dem_pair, tangent_damping, 'r'), DEMI_ROW(dem_pair, stiffness_adhesion, 'r'),
+    DEMI_ROW(dem_pair, normal_damping, 'r'), DEMI_ROW(dem_pair, spinning_friction, 'r'),
+    DEMI_ROW(dem_pair, cohesion, 'r'), DEMI_ROW(dem_pair, compliance, 'r')};
+
+/* What a shape is, not what was worked out from it; pieces field by field: no padding. */
+static uint64_t demi_digest_spheres(const void *item) {
+    const demi_shape *s = (const demi_shape *)item;
+    return demi_hash(DEMI_HASH_START, s->parts, 4*(size_t)s->count*sizeof(dem_real));
 }
-static uint64_t demi_digest_material(const dem_world *w, int i) {
-    return demi_hash(DEMI_HASH_START, &w->materials[i], sizeof w->materials[i]);
+static uint64_t demi_digest_hull(const void *item) {
+    const demi_shape *s = (const demi_shape *)item;
+    const uint64_t h = demi_hash(DEMI_HASH_START, s->hull, s->faces
+                                 ? demi_shape_hull_reals(s)*sizeof(double) : 0);
+    return demi_hash(h, s->rim, s->faces ? demi_shape_rim_ints(s)*sizeof(int32_t) : 0);
 }
-/* A row of the table: the material with every other. */
-static uint64_t demi_digest_pairs(const dem_world *w, int i) {
+static uint64_t demi_digest_pieces(const void *item) {
+    const demi_shape *s = (const demi_shape *)item;
     uint64_t h = DEMI_HASH_START;
-    int j;
-    for (j = 0; j < w->material_count; j++)
-        h = demi_hash(h, &w->pairs[i*DEMI_MATERIALS + j].given, sizeof(dem_pair));
+    int k;
+    for (k = 0; k < s->pieces; k++) {
+        h = demi_hash(h, &s->piece[k].shape, sizeof s->piece->shape);
+        h = demi_hash(h, &s->piece[k].at, sizeof s->piece->at);
+        h = demi_hash(h, &s->piece[k].q, sizeof s->piece->q);
+    }
     return h;
 }
-/* What a shape is, not what was worked out from it. */
-static uint64_t demi_digest_shape(const dem_world *w, int i) {
-    const demi_shape *shape = &w->shapes[i];
-    uint64_t h = demi_hash(DEMI_HASH_START, &shape->count, sizeof shape->count);
-    int k;
-    h = demi_hash(h, &shape->kind, sizeof shape->kind);
-    h = demi_hash(h, &shape->axes, sizeof shape->axes);
-    h = demi_hash(h, &shape->inertia, sizeof shape->inertia);
-    h = demi_hash(h, &shape->volume, sizeof shape->volume);
-    if (shape->faces) {
-        h = demi_hash(h, shape->hull, demi_shape_hull_reals(shape)*sizeof(double));
-        h = demi_hash(h, shape->rim, demi_shape_rim_ints(shape)*sizeof(int32_t));
-    }
-    for (k = 0; k < shape->pieces; k++) {       /* field by field: no padding */
-        const demi_piece *piece = shape->piece + k;
-        h = demi_hash(h, &piece->shape, sizeof piece->shape);
-        h = demi_hash(h, &piece->at, sizeof piece->at);
-        h = demi_hash(h, &piece->q, sizeof piece->q);
-    }
-    return shape->count ? demi_hash(h, shape->parts, 4*(size_t)shape->count*sizeof(dem_real)) : h;
-}
-static uint64_t demi_digest_sieve(const dem_sieve_desc *s, uint64_t h) {
-    const int which[] = {(int)s->kind, s->staggered, s->model};
-    const dem_real sizes[] = {s->aperture, s->bar, s->length, s->thickness, s->lift, s->radius,
-                              s->clearance};
-    return demi_hash(demi_hash(h, which, sizeof which), sizes, sizeof sizes);
-}
-/* 0: a wall that was removed. */
-static uint64_t demi_digest_wall(const dem_world *w, int i) {
-    const demi_wall *wall = &w->walls[i];
-    const int what[] = {wall->kind, wall->material, wall->inside, (int)wall->rule,
-                        wall->vertex_count, wall->element_count, (int)wall->motion.kind};
-    uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
-    if (wall->kind == DEMI_WALL_NONE) return 0;
-    h = demi_hash(h, &wall->radius, sizeof(dem_real));
-    h = demi_hash(h, &wall->share, sizeof(dem_real));
-    h = demi_hash(h, &wall->first, sizeof wall->first);
-    if (wall->sieve.kind) h = demi_digest_sieve(&wall->sieve, h);
-    if (wall->ring_count) {
-        h = demi_hash(h, &wall->ring_count, sizeof wall->ring_count);
-        h = demi_hash(h, wall->ring_radius, sizeof wall->ring_radius);
-        h = demi_hash(h, wall->ring_height, sizeof wall->ring_height);
-    }
-    if (wall->corners)
-        h = demi_hash(h, wall->corners, (size_t)wall->element_count*sizeof(int32_t)*
-                      (size_t)demi_wall_per(wall));
-    if (wall->vertices)
-        h = demi_hash(h, wall->vertices, (size_t)wall->vertex_count*3*sizeof(dem_real));
-    return h ? h : 1;
-}
-static uint64_t demi_digest_field(const dem_world *w, int i) {
-    const dem_field_desc *f = &w->fields[i].desc;
-    uint64_t h = demi_hash(DEMI_HASH_START, &f->box, sizeof f->box);
-    h = demi_hash(h, f->cells, sizeof f->cells);
-    h = demi_hash(h, &f->start, sizeof f->start);
-    h = demi_hash(h, &f->end, sizeof f->end);
-    h = demi_hash(h, &f->material.id, sizeof f->material.id);
-    h = demi_hash(h, &f->radius_min, sizeof f->radius_min);
-    h = demi_hash(h, &f->radius_max, sizeof f->radius_max);
-    h = demi_hash(h, &f->stress, sizeof f->stress);
-    h = demi_hash(h, &f->width, sizeof f->width);
-    return demi_hash(h, &f->interval, sizeof f->interval);
-}
-static uint64_t demi_digest_feed(const dem_world *w, int i) {
-    const dem_feed_desc *f = &demi_feed_at(w, i)->desc;
-    const int what[] = {(int)f->material.id, f->class_count, f->limited, f->by_mass, f->round};
-    const double when[] = {f->rate, f->start, f->end};
-    uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
-    h = demi_hash(h, when, sizeof when);
-    h = demi_hash(h, f->radius, sizeof f->radius);
-    h = demi_hash(h, f->amount, sizeof f->amount);
-    h = demi_hash(h, f->materials, sizeof f->materials);
-    h = demi_hash(h, f->shapes, sizeof f->shapes);
-    h = demi_hash(h, demi_feed_at(w, i)->hi, sizeof f->amount);
-    h = demi_hash(h, demi_feed_at(w, i)->finer, sizeof demi_feed_at(w, i)->finer);
-    h = demi_hash(h, &f->box, sizeof f->box);
-    h = demi_hash(h, &f->velocity, sizeof f->velocity);
-    h = demi_hash(h, &f->spread, sizeof f->spread);
-    return demi_hash(h, &f->seed, sizeof f->seed);
-}
-static uint64_t demi_digest_outlet(const dem_world *w, int i) {
-    const dem_outlet_desc *o = &demi_outlet_at(w, i)->desc;
-    const int what[] = {(int)o->frame.id, o->class_count, (int)o->material.id, o->keep};
-    const dem_real sizes[] = {o->beyond, o->wanted_min, o->wanted_max};
-    uint64_t h = demi_hash(DEMI_HASH_START, what, sizeof what);
-    h = demi_hash(h, sizes, sizeof sizes);
-    h = demi_hash(h, &o->box, sizeof o->box);
-    return demi_hash(h, o->radius, sizeof o->radius);
-}
+static const demi_scene_row demi_shape_fields[] = {
+    DEMI_ROW(demi_shape, kind, 'i'), DEMI_ROW_AS(demi_shape, "spheres", count, 'i'),
+    DEMI_ROW(demi_shape, axes, 'v'), DEMI_ROW(demi_shape, inertia, 'v'),
+    DEMI_ROW(demi_shape, volume, 'd'), DEMI_ROW(demi_shape, corners, 'i'),
+    DEMI_ROW(demi_shape, faces, 'i'), DEMI_ROW(demi_shape, pieces, 'i'),
+    DEMI_ROW_DIGEST("spheres", demi_digest_spheres), DEMI_ROW_DIGEST("faces", demi_digest_hull),
+    DEMI_ROW_DIGEST("pieces", demi_digest_pieces)};
 
-/* The parts of a scene: one row each. `none`: its number is not told in a sentence. */
+static uint64_t demi_digest_vertices(const void *item) {
+    const demi_wall *w = (const demi_wall *)item;
+    return demi_hash(DEMI_HASH_START, w->vertices, w->vertices
+                     ? (size_t)w->vertex_count*3*sizeof(dem_real) : 0);
+}
+static uint64_t demi_digest_elements(const void *item) {
+    const demi_wall *w = (const demi_wall *)item;
+    return demi_hash(DEMI_HASH_START, w->corners, w->corners ? (size_t)w->element_count*
+                     sizeof(int32_t)*(size_t)demi_wall_per(w) : 0);
+}
+static uint64_t demi_digest_table(const void *item) {
+    const dem_motion *m = &((const demi_wall *)item)->motion;
+    uint64_t h = DEMI_HASH_START;
+    int k;
+    for (k = 0; m->kind == DEM_MOTION_TABLE && k < m->table_count; k++) {
+        h = demi_hash(h, &m->table[k].time, sizeof m->table->time);
+        h = demi_hash(h, &m->table[k].position, sizeof m->table->position);
+        h = demi_hash(h, &m->table[k].rotation, sizeof m->table->rotation);
+    }
+    return h;
+}
+/* kind comes first: see demi_checkpoint_scene. Numbers of a motion are state. */
+static const demi_scene_row demi_wall_rows[] = {
+    DEMI_ROW_ENUM(demi_wall, kind, "none plane cylinder profile segments mesh grains sieve "
+                  "revolved"),
+    DEMI_ROW(demi_wall, material, 'i'), DEMI_ROW(demi_wall, inside, 'i'),
+    DEMI_ROW_ENUM(demi_wall, rule, "resolved fraction"), DEMI_ROW(demi_wall, radius, 'r'),
+    DEMI_ROW(demi_wall, share, 'r'), DEMI_ROW(demi_wall, vertex_count, 'i'),
+    DEMI_ROW(demi_wall, element_count, 'i'),
+    DEMI_ROW_AS(demi_wall, "position", first.position, 'v'),
+    DEMI_ROW_AS(demi_wall, "rotation", first.rotation, 'r'),
+    DEMI_ROW_ENUM(demi_wall, sieve.kind, "none wires bars square round slots reduced"),
+    DEMI_ROW(demi_wall, sieve.aperture, 'r'), DEMI_ROW(demi_wall, sieve.bar, 'r'),
+    DEMI_ROW(demi_wall, sieve.length, 'r'), DEMI_ROW(demi_wall, sieve.thickness, 'r'),
+    DEMI_ROW(demi_wall, sieve.lift, 'r'), DEMI_ROW(demi_wall, sieve.staggered, 'i'),
+    DEMI_ROW(demi_wall, sieve.radius, 'r'), DEMI_ROW(demi_wall, sieve.model, 'i'),
+    DEMI_ROW(demi_wall, sieve.clearance, 'r'),
+    DEMI_ROW_AS(demi_wall, "rings", ring_count, 'i'),
+    DEMI_ROW_AS(demi_wall, "radii", ring_radius, 'r'),
+    DEMI_ROW_AS(demi_wall, "heights", ring_height, 'r'),
+    DEMI_ROW_ENUM(demi_wall, motion.kind,
+                  "fixed translating rotating oscillating user table"),
+    DEMI_ROW(demi_wall, motion.table_count, 'i'), DEMI_ROW(demi_wall, motion.table_repeats, 'i'),
+    DEMI_ROW_DIGEST("vertices", demi_digest_vertices),
+    DEMI_ROW_DIGEST("elements", demi_digest_elements),
+    DEMI_ROW_DIGEST("motion.table", demi_digest_table)};
+static const demi_scene_row demi_field_rows[] = {
+    DEMI_ROW(dem_field_desc, box, 'v'), DEMI_ROW(dem_field_desc, cells, 'i'),
+    DEMI_ROW(dem_field_desc, start, 'd'), DEMI_ROW(dem_field_desc, end, 'd'),
+    DEMI_ROW(dem_field_desc, interval, 'd'), DEMI_ROW(dem_field_desc, material, 'i'),
+    DEMI_ROW(dem_field_desc, radius_min, 'r'), DEMI_ROW(dem_field_desc, radius_max, 'r'),
+    DEMI_ROW(dem_field_desc, stress, 'i'), DEMI_ROW(dem_field_desc, width, 'r')};
+
+/* Of the sizes that were copied: what is drawn from. */
+static uint64_t demi_digest_sizes(const void *item) {
+    const demi_feed *f = (const demi_feed *)item;
+    const uint64_t h = demi_hash(DEMI_HASH_START, f->lo, sizeof f->lo);
+    return demi_hash(demi_hash(h, f->hi, sizeof f->hi), f->finer, sizeof f->finer);
+}
+#define DEMI_FEED_ROW(field, type) DEMI_ROW_AS(demi_feed, #field, desc.field, type)
+static const demi_scene_row demi_feed_rows[] = {
+    DEMI_FEED_ROW(material, 'i'), DEMI_FEED_ROW(class_count, 'i'), DEMI_FEED_ROW(radius, 'r'),
+    DEMI_FEED_ROW(amount, 'd'), DEMI_FEED_ROW(limited, 'i'), DEMI_FEED_ROW(by_mass, 'i'),
+    DEMI_FEED_ROW(rate, 'd'), DEMI_FEED_ROW(start, 'd'), DEMI_FEED_ROW(end, 'd'),
+    DEMI_FEED_ROW(box, 'v'), DEMI_FEED_ROW(round, 'i'), DEMI_FEED_ROW(velocity, 'v'),
+    DEMI_FEED_ROW(spread, 'r'), DEMI_FEED_ROW(seed, 'u'), DEMI_FEED_ROW(materials, 'i'),
+    DEMI_FEED_ROW(shapes, 'i'), DEMI_ROW_NULL(demi_feed, desc.inside),
+    DEMI_ROW_DIGEST("sizes", demi_digest_sizes)};
+static const demi_scene_row demi_outlet_rows[] = {
+    DEMI_ROW(dem_outlet_desc, frame, 'i'), DEMI_ROW(dem_outlet_desc, box, 'v'),
+    DEMI_ROW(dem_outlet_desc, beyond, 'r'), DEMI_ROW(dem_outlet_desc, wanted_min, 'r'),
+    DEMI_ROW(dem_outlet_desc, wanted_max, 'r'), DEMI_ROW(dem_outlet_desc, class_count, 'i'),
+    DEMI_ROW(dem_outlet_desc, radius, 'r'), DEMI_ROW(dem_outlet_desc, material, 'i'),
+    DEMI_ROW(dem_outlet_desc, keep, 'i')};
+
+/* The parts of a scene. */
 typedef struct demi_scene_part {
     const char *name, *many;
-    uint64_t (*digest)(const dem_world *w, int index);
+    const demi_scene_row *rows;
+    size_t row_count;
 } demi_scene_part;
-enum { DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
+#define DEMI_SCENE_PART(name, many, rows) {name, many, rows, sizeof rows/sizeof *rows}
+enum { DEMI_PART_PAIRS = 2, DEMI_PART_WALLS = 4, DEMI_PARTS = 8 };
 static const demi_scene_part demi_scene_parts[DEMI_PARTS] = {
-    {"the desc of the world", "descs", demi_digest_desc},
-    {"material", "materials", demi_digest_material},
-    {"the pairs (dem_pair_set) of material", "materials with pairs", demi_digest_pairs},
-    {"shape", "shapes", demi_digest_shape},
-    {"wall", "walls", demi_digest_wall},
-    {"field", "fields", demi_digest_field},
-    {"feed", "feeds", demi_digest_feed},
-    {"outlet", "outlets", demi_digest_outlet}};
+    DEMI_SCENE_PART("", "descs", demi_desc_rows),
+    DEMI_SCENE_PART(" of material", "materials", demi_material_rows),
+    DEMI_SCENE_PART(" (dem_pair_set) of materials", "pairs of materials", demi_pair_rows),
+    DEMI_SCENE_PART(" of shape", "shapes", demi_shape_fields),
+    DEMI_SCENE_PART(" of wall", "walls", demi_wall_rows),
+    DEMI_SCENE_PART(" of field", "fields", demi_field_rows),
+    DEMI_SCENE_PART(" of feed", "feeds", demi_feed_rows),
+    DEMI_SCENE_PART(" of outlet", "outlets", demi_outlet_rows)};
 /* How many there are of each part, in the order of the rows. */
 static void demi_scene_counts(const dem_world *w, int32_t *counts) {
     counts[0] = 1;
-    counts[1] = counts[2] = w->material_count;
+    counts[1] = w->material_count;
+    counts[DEMI_PART_PAIRS] = w->material_count*w->material_count;
     counts[3] = w->shape_count;
     counts[DEMI_PART_WALLS] = w->wall_count;
     counts[5] = w->field_count;
     counts[6] = w->feed_count;
     counts[7] = w->outlet_count;
 }
+/* What the rows of part number i are of. */
+static const void *demi_scene_item(const dem_world *w, int part, int i) {
+    const int n = w->material_count;
+    switch (part) {
+    case 0: return &w->asked;
+    case 1: return &w->materials[i];
+    case DEMI_PART_PAIRS: return &w->pairs[i/n*DEMI_MATERIALS + i%n].given;
+    case 3: return &w->shapes[i];
+    case DEMI_PART_WALLS: return &w->walls[i];
+    case 5: return &w->fields[i].desc;
+    case 6: return demi_feed_at(w, i);
+    default: return &demi_outlet_at(w, i)->desc;
+    }
+}
+/* What a field is, as the file has it: r->size bytes. */
+static void demi_scene_row_value(const demi_scene_row *r, const void *item, void *out) {
+    const char *at = (const char *)item + r->offset, *text;
+    memset(out, 0, r->size);
+    if (r->type == 'h') {
+        const uint64_t digest = r->digest(item);
+        memcpy(out, &digest, sizeof digest);
+    } else if (r->type == 'p') {
+        char none[sizeof(void (*)(void))] = "";
+        const int32_t one = memcmp(at, none, sizeof none) != 0;
+        memcpy(out, &one, sizeof one);
+    } else if (r->type == 't') {
+        memcpy(&text, at, sizeof text);
+        if (text) strncpy((char *)out, text, r->size - 1);
+    } else memcpy(out, at, r->size);
+}
+/* Writes the scene, or counts or hashes its bytes. */
+static void demi_visit_scene(const dem_world *w, demi_stream *s) {
+    int32_t counts[DEMI_PARTS];
+    char value[DEMI_ROW_MOST];
+    int part, i;
+    size_t k;
+    demi_scene_counts(w, counts);
+    for (part = 0; part < DEMI_PARTS; part++)
+        for (i = 0; i < counts[part]; i++)
+            for (k = 0; k < demi_scene_parts[part].row_count; k++) {
+                const demi_scene_row *r = &demi_scene_parts[part].rows[k];
+                demi_scene_row_value(r, demi_scene_item(w, part, i), value);
+                demi_visit(s, value, r->size);
+            }
+}
 /* All of a scene in one number: do two processes hold the same one? */
 static uint64_t demi_scene_digest(const dem_world *w) {
-    uint64_t h = DEMI_HASH_START;
     int32_t counts[DEMI_PARTS];
-    int part, i;
+    demi_stream s = {0, 0, 0, DEMI_HASH_START, 0, 0, 0};
     demi_scene_counts(w, counts);
-    h = demi_hash(h, counts, sizeof counts);
-    for (part = 0; part < DEMI_PARTS; part++)
-        for (i = 0; i < counts[part]; i++) {
-            const uint64_t one = demi_scene_parts[part].digest(w, i);
-            h = demi_hash(h, &one, sizeof one);
-        }
-    return h;
+    demi_visit(&s, counts, sizeof counts);
+    demi_visit_scene(w, &s);
+    return s.sum;
 }
 
 /* --- the state, visited in the order in which it is checked --- */
@@ -27616,31 +27717,30 @@ typedef struct demi_checkpoint_head {
     char magic[8];
     uint32_t version, real_size, byte_order, int_size;
     uint64_t body_size;             /* bytes that follow the head, without the check sum */
-    int32_t parts[DEMI_PARTS];      /* of the scene; as many digests follow */
+    int32_t parts[DEMI_PARTS];      /* of the scene: how many; their rows follow */
 } demi_checkpoint_head;
 
-/* Of structs that are saved whole, and of what bodies keep: tells files of another dem.h. */
+/* Of structs that are saved whole, of what scenes are compared by and of what bodies keep: tells
+   files of another dem.h, or of domains of another length. */
 static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
-                            sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint)};
+                            sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
+                            (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
+    size_t e;
     int k;
+    for (k = 0; k < DEMI_PARTS; k++)
+        for (e = 0; e < demi_scene_parts[k].row_count; e++) {
+            const demi_scene_row *r = &demi_scene_parts[k].rows[e];
+            h = demi_hash(demi_hash(h, r->name, strlen(r->name)), &r->size, sizeof r->size);
+        }
     for (k = 0; k < DEMI_BODY_ARRAYS; k++) {
         const size_t row[] = {demi_body_arrays[k].item, (size_t)demi_body_arrays[k].who,
                               (size_t)demi_body_arrays[k].what};
         h = demi_hash(h, row, sizeof row);
     }
     return (uint32_t)(h ^ h >> 32);
-}
-/* One number for each part of the scene, so that a refusal can name the part that differs. */
-static void demi_visit_digests(const dem_world *w, demi_stream *s, const int32_t *counts) {
-    int part, i;
-    for (part = 0; part < DEMI_PARTS; part++)
-        for (i = 0; i < counts[part]; i++) {
-            uint64_t digest = demi_scene_parts[part].digest(w, i);
-            demi_visit(s, &digest, sizeof digest);
-        }
 }
 /* The first body whose state is not finite or out of the world; -1: none. */
 static int demi_body_lost(const dem_world *w) {
@@ -27682,13 +27782,13 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     head.byte_order = 0x01020304u;
     head.int_size = demi_checkpoint_layout();
     demi_scene_counts(w, head.parts);
-    demi_visit_digests(w, &s, head.parts);      /* counts */
+    demi_visit_scene(w, &s);                    /* counts */
     demi_visit_state(w, &s);
     head.body_size = s.size;
     s.file = out.file;
     s.sum = DEMI_HASH_START;
     demi_visit(&s, &head, sizeof head);
-    demi_visit_digests(w, &s, head.parts);
+    demi_visit_scene(w, &s);
     demi_visit_state(w, &s);
     sum = s.sum;
     fwrite(&sum, 1, sizeof sum, out.file);
@@ -27733,35 +27833,105 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
                          "built like the one that wrote it", call, path);
     return DEM_OK;
 }
-/* Says which part of the scene differs. A wall that the file's world had removed may still stand
-   here: reading removes it. */
-static dem_result demi_checkpoint_scene(dem_world *w, const char *path, demi_stream *s,
-                                        const int32_t *parts) {
-    const char *call = "dem_checkpoint_read", *advice = "create the world with the same desc, "
-        "materials, pairs, shapes, walls, motions, fields, feeds and outlets as the one that "
-        "wrote it, then read";
+/* Element k of a value, as a sentence has it; digits: of reals. */
+static void demi_scene_row_print(const demi_scene_row *r, const char *value, size_t k, int digits,
+                                 char *out, size_t size) {
+    const char *word = r->words;
+    int32_t i = 0;
+    uint64_t u;
+    dem_real x;
+    double d;
+    switch (r->type) {
+    case 'i': case 'p':
+        memcpy(&i, value + 4*k, sizeof i);
+        for (; word && i > 0; i--) word = strchr(word, ' ') ? strchr(word, ' ') + 1 : 0;
+        if (word) { snprintf(out, size, "%.*s", (int)strcspn(word, " "), word); break; }
+        memcpy(&i, value + 4*k, sizeof i);
+        snprintf(out, size, "%ld", (long)i);
+        break;
+    case 'u':
+        memcpy(&u, value + 8*k, sizeof u);
+        snprintf(out, size, "%llu", (unsigned long long)u);
+        break;
+    case 'd':
+        memcpy(&d, value + 8*k, sizeof d);
+        snprintf(out, size, "%.*g", digits, d);
+        break;
+    case 't': snprintf(out, size, "\"%.40s\"", value); break;
+    default:
+        memcpy(&x, value + sizeof x*k, sizeof x);
+        snprintf(out, size, "%.*g", digits, (double)x);
+    }
+}
+/* A field that is not the same in a file and in the world. */
+static dem_result demi_scene_row_differs(dem_world *w, const char *path, const demi_scene_row *r,
+                                   const char *there, const char *here, const char *of) {
+    static const char *const axes[] = {".x", ".y", ".z", ".lo.x", ".lo.y", ".lo.z", ".hi.x",
+                                       ".hi.y", ".hi.z"};
+    const size_t item = r->type == 't' ? r->size : r->type == 'd' || r->type == 'u' ||
+        r->type == 'h' ? 8 : r->type == 'i' || r->type == 'p' ? 4 : sizeof(dem_real);
+    const size_t count = r->size/item;
+    size_t k = 0;
+    char a[48], b[48], which[24] = "";
+    const char *advice = "create the world with the same desc, materials, pairs, shapes, walls, "
+        "motions, fields, feeds and outlets as the one that wrote it, then read";
+    while (k + 1 < count && !memcmp(there + item*k, here + item*k, item)) k++;
+    if (r->type == 'h')
+        return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another "
+                         "scene: written with other %s%s than this world has; %s", path, r->name,
+                         of, advice);
+    if (r->type == 'v') snprintf(which, sizeof which, "%s", axes[count == 6 ? k + 3 : k]);
+    else if (count > 1) snprintf(which, sizeof which, "[%d]", (int)k);
+    demi_scene_row_print(r, there, k, 6, a, sizeof a);
+    demi_scene_row_print(r, here, k, 6, b, sizeof b);
+    if (!strcmp(a, b)) {
+        demi_scene_row_print(r, there, k, 17, a, sizeof a);
+        demi_scene_row_print(r, here, k, 17, b, sizeof b);
+    }
+    return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another scene: "
+                     "written with %s%s %s%s, this world has %s; %s", path, r->name, which, a, of,
+                     b, advice);
+}
+/* Is the scene of the file that of the world? A wall that the file's world had removed may still
+   stand here: reading removes it, in the twin. */
+static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const char *path,
+                                        demi_stream *s, const int32_t *parts) {
     int32_t counts[DEMI_PARTS];
-    int part, i;
+    char here[DEMI_ROW_MOST], there[DEMI_ROW_MOST], of[80];
+    int part, i, gone;
+    size_t k;
     demi_scene_counts(w, counts);
     for (part = 0; part < DEMI_PARTS; part++)
         if (parts[part] != counts[part])
-            return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene: %d %s "
-                             "there, %d here (removed ones count); %s", call, path,
-                             (int)parts[part], demi_scene_parts[part].many, (int)counts[part],
-                             advice);
+            return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another "
+                             "scene: %d %s there, %d here (removed ones count); create the world "
+                             "as the one that wrote it, then read", path, (int)parts[part],
+                             demi_scene_parts[part].many, (int)counts[part]);
     for (part = 0; part < DEMI_PARTS; part++)
-        for (i = 0; i < counts[part]; i++) {
-            const uint64_t here = demi_scene_parts[part].digest(w, i);
-            uint64_t there = 0;
-            const char *how = "differs";
-            char number[16] = "";
-            demi_visit(s, &there, sizeof there);
-            if (there == here || (part == DEMI_PART_WALLS && !there)) continue;
-            if (part == DEMI_PART_WALLS && !here) how = "was removed here and stands there";
-            if (part) snprintf(number, sizeof number, " %d", i + 1);
-            return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: belongs to another scene: %s%s %s; "
-                             "%s", call, path, demi_scene_parts[part].name, number, how, advice);
-        }
+        for (i = gone = 0; i < counts[part]; i++)
+            for (k = 0; k < demi_scene_parts[part].row_count; k++) {
+                const demi_scene_row *r = &demi_scene_parts[part].rows[k];
+                const int n = w->material_count;
+                demi_scene_row_value(r, demi_scene_item(w, part, i), here);
+                demi_visit(s, there, r->size);
+                if (part == DEMI_PART_WALLS && !k) {
+                    int32_t kind;
+                    memcpy(&kind, there, sizeof kind);
+                    gone = kind == DEMI_WALL_NONE;
+                    if (gone) memset(&twin->walls[i], 0, sizeof twin->walls[i]);
+                    else if (w->walls[i].kind == DEMI_WALL_NONE)
+                        return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: "
+                                         "belongs to another scene: wall %d was removed here and "
+                                         "stands there; read before you remove it", path, i + 1);
+                }
+                if (gone || !memcmp(here, there, r->size)) continue;
+                if (part == DEMI_PART_PAIRS)
+                    snprintf(of, sizeof of, "%s %d and %d", demi_scene_parts[part].name, i/n + 1,
+                             i%n + 1);
+                else snprintf(of, sizeof of, part ? "%s %d" : "%s", demi_scene_parts[part].name,
+                              i + 1);
+                return demi_scene_row_differs(w, path, r, there, here, of);
+            }
     return DEM_OK;
 }
 
@@ -28298,7 +28468,6 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     demi_checkpoint_head head;
     demi_reader r;
     unsigned char *seen = 0;
-    int i;
     dem_result result = demi_checkpoint_check(w, path, data, size, &head);
     if (result != DEM_OK) return result;
     memset(&r, 0, sizeof r);
@@ -28306,23 +28475,10 @@ static dem_result demi_checkpoint_parse(dem_world *w, const char *path, const ch
     r.path = path;
     r.s.from = data + sizeof head;
     r.s.left = (size_t)head.body_size;
-    {
-        demi_stream digests = r.s;              /* once to compare, once to see what was removed */
-        result = demi_checkpoint_scene(w, path, &digests, head.parts);
-    }
-    if (result != DEM_OK) return result;
     r.t = demi_twin_make(w);
     if (!r.t) return demi_no_memory(w, "dem_checkpoint_read");
-    for (i = 0; i < DEMI_PARTS; i++) {
-        int k;
-        for (k = 0; k < head.parts[i]; k++) {
-            uint64_t digest = 0;
-            demi_visit(&r.s, &digest, sizeof digest);
-            if (i == DEMI_PART_WALLS && !digest)
-                memset(&r.t->walls[k], 0, sizeof r.t->walls[k]);
-        }
-    }
-    result = demi_twin_read(&r, &seen);
+    result = demi_checkpoint_scene(w, r.t, path, &r.s, head.parts);
+    if (result == DEM_OK) result = demi_twin_read(&r, &seen);
     demi_free(r.t, seen);
     if (result == DEM_OK) {
         demi_twin_adopt(w, r.t);
