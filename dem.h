@@ -2226,7 +2226,7 @@ typedef struct dem_output_desc {
     /* a run of # in it becomes the number of the output, 0 at `start`: "grains_####.vtp"; without
        one the file is written anew each time (a CSV file: appended to). Copied */
     const char *path;
-    double interval;         /* s, required, > 0 */
+    double interval;         /* s, required, 1e-12 or more */
     double start, end;       /* s, the first and (0: none) the last; in the world's time */
     /* CSV: the loads of this wall (dem_wall_loads_csv); or values of your own: columns names them
        (1 to 32 words as in body_reals, copied), values writes as many; or neither: steps, bodies,
@@ -2241,13 +2241,17 @@ typedef struct dem_output_desc {
 } dem_output_desc;
 static const dem_output_desc DEM_OUTPUT_DESC_ZERO = {DEM_OUTPUT_CALL, 0, 0, 0, 0, {0}, 0, 0, 0, 0};
 #define DEM_OUTPUT_DESC DEM_OUTPUT_DESC_ZERO
-/* Writes by itself, at the steps of the run nearest to start, start + interval and so on, in the
-   order in which outputs were added. The times count from 0, so that a run that goes on from a
-   checkpoint has the same ones: nothing is missing and nothing is double, of a CSV file the lines
-   from the checkpoint on are taken out first. (So a run that begins at 0 writes the file anew; one
-   with other columns is refused.) A file that cannot be written stops the run with its sentence,
-   state intact, and is tried again by the next. Null id on bad values. Outputs are not part of a
-   checkpoint or of slabs: add them before you read. */
+/* Writes automatically, at the steps of the run nearest to start, start + interval and so on, in
+   the order in which outputs were added. The times count from 0. The first line of a CSV file
+   begins the file anew; a file with other columns is refused.
+   A checkpoint stores what each output has written. A world that reads it goes on from there:
+   nothing is missing and nothing is double, and lines of a CSV file that are later than the
+   checkpoint are removed before the next is appended. Outputs of the file and of the world are
+   matched by kind and path, so add them before you read; others may be added, and times may differ.
+   A function (DEM_OUTPUT_CALL) may add outputs, and may write and read checkpoints: one that it
+   writes counts the call as made.
+   A file that cannot be written stops the run with its error message and the state intact, and the
+   next run tries it again. Null id on bad values. Slabs have no outputs. */
 DEM_API dem_output dem_output_add(dem_world *world, const dem_output_desc *desc);
 /* The same in a line: dem_output_every(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01). */
 DEM_API dem_output dem_output_every(dem_world *world, dem_output_kind kind, const char *path,
@@ -3152,14 +3156,32 @@ typedef struct demi_filed {
     int stride;                    /* reals per entry */
 } demi_filed;
 
-/* What looks at a world as it goes on. Not of its state: it stays when that is read from a file. */
+/* What an output has written: state, saved whole. */
+typedef struct demi_written {
+    uint64_t what, when;           /* digests: of its kind and path; of its start and interval */
+    int64_t next;                  /* number of the next; DEMI_OUTPUT_UNKNOWN: the first that is
+                                      due, this moment included */
+    double last;                   /* s: when it wrote; -1e300: not yet */
+} demi_written;
+enum { DEMI_OUTPUT_UNKNOWN = -1 };
+#define DEMI_OUTPUT_MOST 9e15      /* numbers beyond are not all whole in a double */
+#define DEMI_OUTPUT_LEAST 1e-12    /* s: shorter intervals are mistakes */
+typedef struct demi_output {
+    dem_output_desc desc;          /* its texts are the world's own */
+    demi_written written;
+    int resumes;                   /* 1, or 2 where a file that was read knew of it: later lines of
+                                      a CSV file have not been taken out yet */
+} demi_output;
+
+/* What looks at a world as it goes on. Not of its state, but for what outputs have written: it
+   stays when that is read from a file. */
 typedef struct demi_lookers {
     int tenths_told;               /* of this run, where progress is written into a file */
     int under_way;                 /* the user is looking: no step now */
     dem_replay *films;             /* open ones, which take their frames by themselves */
     void (*films_look)(dem_world *w);           /* null: there are none */
-    int output_count;
-    struct demi_output *outputs;
+    int output_count, reads;       /* reads: of checkpoints, so far */
+    demi_output *outputs;
     dem_result (*outputs_look)(dem_world *w);   /* null: there are none */
     void (*outputs_again)(dem_world *w);        /* the state has been read from a file */
 } demi_lookers;
@@ -3241,6 +3263,8 @@ struct dem_world {
     demi_outlet *outlets;
     int joint_count;               /* >>joints */
     demi_joint *joints;
+    int written_count;             /* >>output: those of the file that was read last */
+    demi_written *written;
     struct demi_sphere *crowd;
     struct demi_node *crowd_nodes;
     dem_real *crowd_turned;        /* x 4 */
@@ -27568,7 +27592,8 @@ static uint64_t demi_scene_digest(const dem_world *w) {
 static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->bodies.count);          DEMI_VISIT(s, w->bodies.slot_count);
     DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);
-    DEMI_VISIT(s, w->joint_count);
+    if (!s->from) w->written_count = w->look.output_count;
+    DEMI_VISIT(s, w->joint_count);    DEMI_VISIT(s, w->written_count);
     DEMI_VISIT(s, w->bodies.orienting);      DEMI_VISIT(s, w->bodies.shaped);
     DEMI_VISIT(s, w->filed.count);    DEMI_VISIT(s, w->filed.rows);
     DEMI_VISIT(s, w->filed.stride);
@@ -27699,6 +27724,12 @@ static void demi_visit_joints(dem_world *w, demi_stream *s) {
     if (w->joint_count)
         demi_visit(s, w->joints, (size_t)w->joint_count*sizeof(demi_joint));
 }
+/* What outputs have written. */
+static void demi_visit_outputs(dem_world *w, demi_stream *s) {
+    int i;
+    for (i = 0; i < w->written_count; i++)
+        demi_visit(s, s->from ? &w->written[i] : &w->look.outputs[i].written, sizeof *w->written);
+}
 /* Everything, in the one order that writing and reading share. */
 static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit_numbers(w, s);
@@ -27709,6 +27740,7 @@ static void demi_visit_state(dem_world *w, demi_stream *s) {
     demi_visit_contacts(w, s);
     demi_visit_walls(w, s);
     demi_visit_measured(w, s);
+    demi_visit_outputs(w, s);
 }
 
 /* --- writing --- */
@@ -27726,7 +27758,7 @@ static uint32_t demi_checkpoint_layout(void) {
     const size_t sizes[] = {sizeof(demi_domain), sizeof(demi_kept), sizeof(demi_timing),
                             sizeof(demi_stages), sizeof(demi_margin), sizeof(demi_in_force),
                             sizeof(demi_levels), sizeof(demi_booked), sizeof(demi_joint),
-                            (size_t)DEM_DOMAIN_BODIES};
+                            sizeof(demi_written), (size_t)DEM_DOMAIN_BODIES};
     uint64_t h = demi_hash(DEMI_HASH_START, sizes, sizeof sizes);
     size_t e;
     int k;
@@ -28069,6 +28101,8 @@ static int demi_numbers_check(const demi_reader *r) {
         return demi_lie(r, "the room in its lists", -1);
     if (!demi_left(r, t->joint_count, sizeof(demi_joint)) || (t->joint_count && !demi_impulsive(w)))
         return demi_lie(r, "its number of joints", -1);
+    if (!demi_left(r, t->written_count, sizeof(demi_written)))
+        return demi_lie(r, "its number of outputs", -1);
     if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
         t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
@@ -28348,6 +28382,17 @@ static int demi_joints_check(const demi_reader *r) {
     return 1;
 }
 
+/* Numbers of outputs are whole. */
+static int demi_outputs_check(const demi_reader *r) {
+    int i;
+    for (i = 0; i < r->t->written_count; i++) {
+        const demi_written *o = &r->t->written[i];
+        if (o->next < DEMI_OUTPUT_UNKNOWN || (double)o->next > DEMI_OUTPUT_MOST ||
+            !demi_finite_double(o->last)) return demi_lie(r, "what is written by output", i);
+    }
+    return 1;
+}
+
 /* --- reading: room, and what follows from the rest --- */
 
 /* Bodies get their room as if they were added. */
@@ -28448,7 +28493,8 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!demi_domains_check(r)) return DEM_ERROR_FORMAT;
     *seen = (unsigned char *)demi_alloc(t, (size_t)t->bodies.slot_count + 1, 1);
     if (!*seen || !demi_twin_bodies_room(t) || !demi_twin_lists_room(t) ||
-        !DEMI_GROW(t, t->joints, (size_t)t->joint_count)) return DEM_ERROR_MEMORY;
+        !DEMI_GROW(t, t->joints, (size_t)t->joint_count) ||
+        !DEMI_GROW(t, t->written, (size_t)t->written_count)) return DEM_ERROR_MEMORY;
     demi_visit_bodies(t, s);
     demi_visit_joints(t, s);
     if (!demi_slots_check(r, *seen) || !demi_bodies_sane(r)) return DEM_ERROR_FORMAT;
@@ -28457,9 +28503,10 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     if (!demi_lists_check(r) || !demi_contacts_check(r)) return DEM_ERROR_FORMAT;
     demi_visit_walls(t, s);
     demi_visit_measured(t, s);
+    demi_visit_outputs(t, s);
     if (s->cut || s->left) demi_lie(r, "its length", -1);
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
-        !demi_joints_check(r)) return DEM_ERROR_FORMAT;
+        !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
 }
 /* Reads a checkpoint from memory. */
@@ -28541,18 +28588,10 @@ DEM_API dem_result dem_checkpoint_read(dem_world *w, const char *path) {
 /* ---------------------------------------------------------------------------------------------
    >>output
    Files and calls on a schedule: dem_world_step looks here (demi_lookers) before the first of its
-   steps and after each. What is due follows from the time alone: nothing of it is state, and a run
-   that goes on from a checkpoint writes what the run without a stop would have written. Files of
-   the moment of the checkpoint are written again, as they were; of a CSV file the lines from then
-   on are taken out before the first is appended. Tests: tests/test_output.c.
+   steps and after each. What each output has written is state (demi_written): a run that goes on
+   from a checkpoint writes what the run without a stop would have written, and of a CSV file the
+   lines of later times are taken out before the first is appended. Tests: tests/test_output.c.
    --------------------------------------------------------------------------------------------- */
-enum { DEMI_OUTPUT_UNKNOWN = -1, DEMI_OUTPUT_AFTER = -2 };
-typedef struct demi_output {
-    dem_output_desc desc;          /* its texts are the world's own */
-    int64_t next;                  /* number of the next; or what is to be found out, this moment
-                                      included or not */
-    int resumes;                   /* a CSV file whose later lines have not been taken out yet */
-} demi_output;
 static const char demi_output_columns[] = "steps bodies contacts kinetic rotational overlap_max";
 
 /* A copy of a text, for as long as the world. Null of none, or when memory ran out. */
@@ -28585,7 +28624,7 @@ static void demi_output_heading(const dem_output_desc *d, char *heading) {
    A file with other columns is refused; one that is not there has none. */
 static dem_result demi_csv_resume(dem_world *w, const char *path, const char *heading,
                                   double from) {
-    const char *call = "dem_output_add";
+    const char *call = "dem_world_step";        /* that is what failed, and is tried again */
     const size_t head = strlen(heading);
     char *data = 0, *line;
     size_t size = 0, keep;
@@ -28621,7 +28660,9 @@ static dem_result demi_csv_resume(dem_world *w, const char *path, const char *he
     demi_free(w, data);
     return result;
 }
-static dem_result demi_output_line(dem_world *w, demi_output *o, const char *path) {
+/* A line of a CSV file: the first of a run begins the file anew, the first after a checkpoint was
+   read follows the last one that the checkpoint knows of. */
+static dem_result demi_output_line(dem_world *w, const demi_output *o, const char *path) {
     const dem_output_desc *d = &o->desc;
     double value[DEM_OUTPUT_COLUMNS];
     char heading[DEMI_CSV_LINE], line[DEMI_CSV_LINE];
@@ -28629,7 +28670,7 @@ static dem_result demi_output_line(dem_world *w, demi_output *o, const char *pat
     dem_result result = DEM_OK;
     demi_output_heading(d, heading);
     memset(value, 0, sizeof value);
-    if (d->wall.id) result = demi_loads_values(w, "dem_output_add", d->wall, value);
+    if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
     else {
         count = demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS);
         if (d->values) d->values(w, value, d->user);
@@ -28645,15 +28686,14 @@ static dem_result demi_output_line(dem_world *w, demi_output *o, const char *pat
         }
     }
     if (result != DEM_OK) return result;
-    if (o->resumes) result = demi_csv_resume(w, path, heading, w->clock.time -
+    if (o->resumes) result = demi_csv_resume(w, path, heading, o->written.last +
                                              (double)w->clock.dt/2);
     if (result != DEM_OK) return result;
-    o->resumes = 0;
     demi_csv_line(line, w->clock.time, value, count);
-    return demi_csv_append(w, "dem_output_add", path, heading, line);
+    return demi_csv_append(w, "dem_world_step", path, heading, line);
 }
-/* Output `number` of the world as it is. */
-static dem_result demi_output_write(dem_world *w, demi_output *o, int64_t number) {
+/* Output `number` of the world as it is. o: a copy, since a call may add outputs. */
+static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t number) {
     const dem_output_desc *d = &o->desc;
     size_t length = d->path ? strlen(d->path) : 0, marks = 0, at = 0;
     char digits[24], *path;
@@ -28683,46 +28723,87 @@ static dem_result demi_output_write(dem_world *w, demi_output *o, int64_t number
     demi_free(w, path);
     return result;
 }
-/* What is due at this step. What fails stops the run, and is tried again by the next one. */
+/* What is due at this step. What fails stops the run, and is tried again by the next one. An output
+   counts as written while it writes, so that a checkpoint knows of itself; where it has read one,
+   what is due then is looked for anew. */
 static dem_result demi_outputs_look(dem_world *w) {
-    const double now = w->clock.time, half = (double)w->clock.dt/2;
     int i;
     for (i = 0; i < w->look.output_count; i++) {
-        demi_output *o = &w->look.outputs[i];
-        const dem_output_desc *d = &o->desc;
-        dem_result result;
-        int64_t number;
-        if (o->next == DEMI_OUTPUT_UNKNOWN)
-            o->next = (int64_t)DEMI_MAX(ceil((now - half - d->start)/d->interval), 0);
-        else if (o->next == DEMI_OUTPUT_AFTER)
-            o->next = (int64_t)DEMI_MAX(floor((now + half - d->start)/d->interval) + 1, 0);
-        if (now + half < d->start + (double)o->next*d->interval ||
+        const double now = w->clock.time, half = (double)w->clock.dt/2;
+        const demi_output o = w->look.outputs[i];
+        const dem_output_desc *d = &o.desc;
+        const int reads = w->look.reads;
+        demi_written *written = &w->look.outputs[i].written;
+        dem_result result = DEM_OK;
+        double number = (double)written->next;
+        if (written->next == DEMI_OUTPUT_UNKNOWN)
+            number = DEMI_MAX(ceil((now - half - d->start)/d->interval), 0);
+        if (number < DEMI_OUTPUT_MOST) written->next = (int64_t)number;
+        if (now + half < d->start + number*d->interval ||
             (d->end > 0 && now - half > d->end)) continue;
-        number = (int64_t)DEMI_MAX(floor((now + half - d->start)/d->interval), (double)o->next);
+        number = DEMI_MAX(floor((now + half - d->start)/d->interval), number);
+        if (!(number < DEMI_OUTPUT_MOST))
+            return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: the number of output %d is %g "
+                             "at %g s, must be below %g: its interval is %g s; give a longer one, "
+                             "or an end", i + 1, number, now, DEMI_OUTPUT_MOST, d->interval);
         demi_finish(w);
-        result = demi_output_write(w, o, number);
+        written->next = (int64_t)number + 1;
+        written->last = now;
+        result = demi_output_write(w, &o, (int64_t)number);
+        if (reads != w->look.reads) i = -1;
+        else if (result == DEM_OK) w->look.outputs[i].resumes = 0;
+        else w->look.outputs[i].written = o.written;
         if (result != DEM_OK) return result;
-        o->next = number + 1;
     }
     return DEM_OK;
 }
-/* The state has been read from a file: what is due now is to be found out. */
+/* An output of which nothing is known. */
+static void demi_output_begin(demi_output *o) {
+    const dem_output_desc *d = &o->desc;
+    const int kind = (int)d->kind;
+    const double when[] = {d->start, d->interval};
+    o->written.what = demi_hash(demi_hash(DEMI_HASH_START, &kind, sizeof kind), d->path,
+                                d->path ? strlen(d->path) : 0);
+    o->written.when = demi_hash(DEMI_HASH_START, when, sizeof when);
+    o->written.next = DEMI_OUTPUT_UNKNOWN;
+    o->written.last = -1e300;
+    o->resumes = 1;
+}
+/* A checkpoint has been read: each output goes on from the one of the file that has its kind, path
+   and times; else from one of its kind and path, at the next of its own times. */
 static void demi_outputs_again(dem_world *w) {
-    int i;
-    for (i = 0; i < w->look.output_count; i++) {
-        demi_output *o = &w->look.outputs[i];
-        o->next = o->desc.kind == DEM_OUTPUT_CALL && w->clock.steps ? DEMI_OUTPUT_AFTER
-            : DEMI_OUTPUT_UNKNOWN;
-        o->resumes = 1;
-    }
+    const double now = w->clock.time, half = (double)w->clock.dt/2;
+    int i, k, pass;
+    w->look.reads++;
+    for (i = 0; i < w->look.output_count; i++) demi_output_begin(&w->look.outputs[i]);
+    for (pass = 0; pass < 2; pass++)
+        for (i = 0; i < w->look.output_count; i++) {
+            demi_output *o = &w->look.outputs[i];
+            for (k = 0; k < w->written_count && o->resumes == 1; k++) {
+                demi_written *there = &w->written[k];
+                if (there->what != o->written.what ||
+                    (!pass && there->when != o->written.when)) continue;
+                there->what = 0;                /* taken */
+                o->resumes = 2;
+                o->written.last = there->last;
+                if (!pass) o->written.next = there->next;
+                else if (there->last >= now - half && now >= o->desc.start - half)
+                    o->written.next = (int64_t)DEMI_MIN(floor((now + half - o->desc.start)/
+                        o->desc.interval) + 1, DEMI_OUTPUT_MOST);
+            }
+        }
 }
 /* One sentence on what is wrong with a desc; null: nothing. */
 static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d) {
     if ((int)d->kind < 0 || d->kind > DEM_OUTPUT_SURFACES)
         return "kind is unknown, must be a DEM_OUTPUT_ value; start from DEM_OUTPUT_DESC";
-    if (!(d->interval > 0) || !demi_finite_double(d->interval) ||
-        !demi_finite_double(d->start) || !demi_finite_double(d->end) || !(d->end >= 0))
-        return "interval must be finite and > 0 s, start finite, end finite and >= 0 s";
+    if (!demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
+        !demi_finite_double(d->end) || d->interval < DEMI_OUTPUT_LEAST || d->end < 0 ||
+        fmax(d->interval, fmax(fabs(d->start), d->end)) > DEMI_FARTHEST)
+        return "interval must be 1e-12 to 1e15 s, start at most 1e15 s from 0, end 0 to 1e15 s; "
+            "was a unit other than seconds meant?";
+    if (fabs(w->clock.time - d->start)/d->interval >= DEMI_OUTPUT_MOST)
+        return "start is more than 9e15 intervals from now; give a longer interval";
     if (d->kind == DEM_OUTPUT_CALL)
         return d->function ? 0 : "kind is DEM_OUTPUT_CALL and function is null; give one";
     if (!d->path || !*d->path) return "path is null or empty; give a file name, with #### in it "
@@ -28765,8 +28846,7 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
     o->desc = *desc;
     o->desc.path = path;
     o->desc.columns = columns;
-    o->next = DEMI_OUTPUT_UNKNOWN;
-    o->resumes = 1;
+    demi_output_begin(o);
     w->look.outputs_look = demi_outputs_look;
     w->look.outputs_again = demi_outputs_again;
     demi_built(w, call);
