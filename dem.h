@@ -3173,9 +3173,14 @@ typedef struct demi_output {
                                       a CSV file have not been taken out yet */
 } demi_output;
 
+/* Which call has handed over to a function of the user's; null: none. within: 1 where lists and
+   sums are half made, 0 where the world is whole and files of it may be written. */
+typedef struct demi_calling { const char *who; int within; } demi_calling;
+
 /* What looks at a world as it goes on. Not of its state, but for what outputs have written: it
    stays when that is read from a file. */
 typedef struct demi_lookers {
+    demi_calling calling;          /* see demi_calls */
     int tenths_told;               /* of this run, where progress is written into a file */
     int under_way;                 /* the user is looking: no step now */
     dem_replay *films;             /* open ones, which take their frames by themselves */
@@ -3467,22 +3472,30 @@ static int demi_refused_find(const dem_world *w, const char *call, size_t n) {
     return -1;
 }
 
-static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
-                            ...) DEMI_FORMAT(3, 4);
-static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
+/* The sentence of a call that failed. One that builds the scene is remembered. */
+static void demi_tell(dem_world *w, const char *format, va_list args) DEMI_FORMAT(2, 0);
+static void demi_tell(dem_world *w, const char *format, va_list args) {
     const size_t calls = sizeof w->refused_calls/sizeof *w->refused_calls;
-    va_list args;
     size_t n;
-    va_start(args, format);
     vsnprintf(w->error, sizeof w->error, format, args);
-    va_end(args);
     n = strcspn(w->error, ":");
-    if (n >= sizeof *w->refused_calls || !demi_builds(w->error, n)) return result;
+    if (n >= sizeof *w->refused_calls || !demi_builds(w->error, n)) return;
     if (!w->refused) memcpy(w->refusal, w->error, sizeof w->refusal);
     if (demi_refused_find(w, w->error, n) < 0 && (size_t)w->refused < calls) {
         memcpy(w->refused_calls[w->refused], w->error, n);
         w->refused_calls[w->refused++][n] = 0;
     }
+}
+static dem_result demi_fail(dem_world *w, dem_result result, const char *format,
+                            ...) DEMI_FORMAT(3, 4);
+static dem_result demi_fail(dem_world *w, dem_result result, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+#if DEMI_OPENMP
+    #pragma omp critical(demi_fail)             /* laws on several threads may be refused at once */
+#endif
+    demi_tell(w, format, args);
+    va_end(args);
     return result;
 }
 /* A call that builds the scene went well: an earlier refusal of the same call is made good. */
@@ -3505,13 +3518,42 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
                      "nobody has read why: \"%.320s\"; mend that call, or read dem_world_error "
                      "and go on without it", call, why);
 }
-/* 1, with a sentence where there is a world to hold it, when the world or a pointer that has to
-   lead somewhere is null: the first line of every public function asks. */
-static int demi_null(const dem_world *w, const char *call, const void *pointer, const char *name) {
+/* Before a function of the user's is called: until `w->look.calling` is what this returns again,
+   calls that change the world are refused. */
+static demi_calling demi_calls(dem_world *w, const char *who, int within) {
+    const demi_calling was = w->look.calling;
+    w->look.calling.who = who;
+    w->look.calling.within = within;
+    return was;
+}
+/* The first line of every public function is one of the next three. They return 1, with a sentence
+   where there is a world to hold it, when the world or a pointer that has to lead somewhere is
+   null. The first is for functions that only look: any thread and any function of the user's may
+   call them. */
+static int demi_null_look(const dem_world *w, const char *call, const void *pointer,
+                          const char *name) {
     if (w && pointer) return 0;
     if (w) demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: %s is null; give its address", call,
                      name);
     return 1;
+}
+static int demi_barred(dem_world *w, const char *call) {
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called by a function of yours that %s has called (law, "
+              "field, motion, region, progress or the like), which may only look at the world; "
+              "note what is to be done and do it when %s has returned, or between two steps in an "
+              "output of kind DEM_OUTPUT_CALL", call, w->look.calling.who, w->look.calling.who);
+    return 1;
+}
+/* For functions that need memory of the world but leave its state alone, such as those that read
+   and write files: refused within a step. */
+static int demi_null_write(dem_world *w, const char *call, const void *pointer, const char *name) {
+    return demi_null_look(w, call, pointer, name) ||
+        (w->look.calling.who && w->look.calling.within && demi_barred(w, call));
+}
+/* For all others: refused in every function of the user's but those of outputs. */
+static int demi_null(dem_world *w, const char *call, const void *pointer, const char *name) {
+    return demi_null_look(w, call, pointer, name) ||
+        (w->look.calling.who && demi_barred(w, call));
 }
 static const dem_material demi_no_material = {0};
 static const dem_shape demi_no_shape = {0};
@@ -3547,6 +3589,21 @@ static demi_block *demi_block_of(void *data) { return (demi_block *)data - 1; }
 static size_t demi_room(const void *data, size_t item) {
     return data ? ((const demi_block *)data - 1)->bytes/item : 0;
 }
+/* From the user's allocator and back, which may not change the world that asks. */
+static void *demi_block_alloc(dem_world *w, size_t bytes) {
+    const demi_calling was = w->look.calling;
+    void *p;
+    if (w->desc.allocator.alloc_fn) demi_calls(w, "the allocation of memory", 1);
+    p = demi_raw_alloc(&w->desc.allocator, bytes);
+    if (w->desc.allocator.alloc_fn) w->look.calling = was;
+    return p;
+}
+static void demi_block_free(dem_world *w, void *p, size_t bytes) {
+    const demi_calling was = w->look.calling;
+    if (w->desc.allocator.free_fn) demi_calls(w, "the release of memory", 1);
+    demi_raw_free(&w->desc.allocator, p, bytes);
+    if (w->desc.allocator.free_fn) w->look.calling = was;
+}
 /* count items of size bytes, cleared, that hang on a chain of the world or, DEMI_LOOSE, on none:
    then its maker frees it. Null when there is no room, the product overflows, or count is 0. */
 static void *demi_hold(dem_world *w, int chain, size_t count, size_t size) {
@@ -3555,7 +3612,7 @@ static void *demi_hold(dem_world *w, int chain, size_t count, size_t size) {
     demi_block *block;
     int in;
     if ((size && count > (size_t)-1/2/size) || !bytes) return 0;
-    p = (unsigned char *)demi_raw_alloc(&w->desc.allocator, bytes + 2*DEMI_LINE);
+    p = (unsigned char *)demi_block_alloc(w, bytes + 2*DEMI_LINE);
     if (!p) return 0;
     in = 2*DEMI_LINE - (int)((uintptr_t)p%DEMI_LINE);
     memset(p + in, 0, bytes);
@@ -3581,8 +3638,7 @@ static void demi_free(dem_world *w, void *data) {
     if (block->before) block->before->after = block->after;
     else if (block->chain) w->chains[block->chain] = block->after;
     w->bytes -= block->bytes + 2*DEMI_LINE;
-    demi_raw_free(&w->desc.allocator, (unsigned char *)data - block->in,
-                  block->bytes + 2*DEMI_LINE);
+    demi_block_free(w, (unsigned char *)data - block->in, block->bytes + 2*DEMI_LINE);
 }
 /* Does it hang on this chain? A copy of a world looks at what hangs on another's. */
 static int demi_owns(const dem_world *w, int chain, const void *data) {
@@ -3608,8 +3664,8 @@ static int demi_grow(dem_world *w, int chain, void *array, size_t item, size_t c
     fresh = demi_hold(w, chain, DEMI_MAX(count, room + room/4 + 16), item);
     if (!fresh) return 0;
     if (old) memcpy(fresh, old, room*item);
-    demi_free(w, old);
     memcpy(array, &fresh, sizeof fresh);
+    demi_free(w, old);
     return 1;
 }
 
@@ -3978,7 +4034,7 @@ static dem_result demi_material_index(dem_world *w, const char *call, dem_materi
 
 DEM_API dem_result dem_material_get(const dem_world *world, dem_material material,
                                     dem_material_desc *desc) {
-    if (demi_null(world, "dem_material_get", desc, "desc")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, "dem_material_get", desc, "desc")) return DEM_ERROR_ARGUMENT;
     int m = 0;
     if (demi_material_index((dem_world *)world, "dem_material_get", material, &m))
         return DEM_ERROR_ARGUMENT;
@@ -4015,7 +4071,7 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
 
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
                                 dem_pair *pair) {
-    if (demi_null(world, "dem_pair_get", pair, "pair")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, "dem_pair_get", pair, "pair")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;          /* only the error sentence is written */
     int i = 0, j = 0;
     if (demi_material_index(w, "dem_pair_get", a, &i) ||
@@ -4168,7 +4224,7 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
                                         dem_coefficients *out) {
-    if (demi_null(world, "dem_coefficients_get", out, "out")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, "dem_coefficients_get", out, "out")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;
     int i = 0, j = 0;
     double ra = (double)radius_a, rb = (double)radius_b, ma, r, m;
@@ -4198,7 +4254,7 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
 }
 
 DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
-    if (demi_null(w, "dem_pairs_print", out, "out")) return;
+    if (demi_null_look(w, "dem_pairs_print", out, "out")) return;
     int i, j;
     fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
             "kt/kn\n");
@@ -4704,7 +4760,7 @@ static dem_vec3 demi_shape_alike(const demi_shape *s) {
                   DEMI_SQRT(DEM_R(2.5)*DEMI_MAX(I.x + I.y - I.z, 0)));
 }
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info) {
-    if (demi_null(world, "dem_shape_get", info, "info")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, "dem_shape_get", info, "info")) return DEM_ERROR_ARGUMENT;
     const int i = demi_shape_index((dem_world *)world, "dem_shape_get", shape);
     const demi_shape *s;
     if (i < 0) return DEM_ERROR_ARGUMENT;
@@ -6996,7 +7052,7 @@ DEM_API dem_result dem_body_remove(dem_world *w, dem_body body) {
 }
 
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *s) {
-    if (demi_null(world, "dem_body_get", s, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, "dem_body_get", s, "state")) return DEM_ERROR_ARGUMENT;
     dem_world *w = (dem_world *)world;
     demi_periods p;
     int i = demi_body_index(w, "dem_body_get", body);
@@ -7100,7 +7156,7 @@ static double demi_temperature(const dem_world *w, double *mass, int *count, dou
 DEM_API double dem_temperature_get(const dem_world *w) {
     double mass, mean[3];
     int count;
-    if (demi_null(w, "dem_temperature_get", w, "world")) return 0;
+    if (demi_null_look(w, "dem_temperature_get", w, "world")) return 0;
     return demi_temperature(w, &mass, &count, mean);
 }
 DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_t seed) {
@@ -7161,7 +7217,8 @@ static dem_result demi_reals_ask(const dem_world *world, const char *call, const
                                  int count, int setting) {
     dem_world *w = (dem_world *)world;
     int k;
-    if (demi_null(w, call, reals, "reals")) return DEM_ERROR_ARGUMENT;
+    if (setting ? demi_null(w, call, reals, "reals") : demi_null_look(w, call, reals, "reals"))
+        return DEM_ERROR_ARGUMENT;
     if (!w->bodies.real_count)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grains carry no numbers of your own; name "
                          "them in desc.body_reals when the world is created", call);
@@ -7201,7 +7258,7 @@ DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
     return DEM_OK;
 }
 DEM_API dem_body dem_bodies_id(const dem_world *w, int index) {
-    if (demi_null(w, "dem_bodies_id", w, "world")) return demi_no_body;
+    if (demi_null_look(w, "dem_bodies_id", w, "world")) return demi_no_body;
     dem_body id;
     id.slot = id.generation = 0;
     if (index < 0 || index >= w->bodies.count) return id;
@@ -8958,6 +9015,7 @@ static int demi_wall_symmetric(const demi_wall *wall) {
 DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *motion) {
     if (demi_null(w, "dem_wall_motion", motion, "motion")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, "dem_wall_motion", id);
+    demi_calling was;
     demi_wall *wall;
     dem_motion_row *rows = 0;
     const void *before;
@@ -9003,7 +9061,9 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
     if (!(demi_dot(motion->axis, motion->axis) > 0)) wall->motion.axis = demi_v(0, 0, 1);
     wall->motion.start = DEMI_MAX(motion->start, w->clock.time);
     wall->symmetric = demi_wall_symmetric(wall);
+    was = demi_calls(w, "dem_wall_motion", 1);
     demi_wall_pose_at(wall, w->clock.time, &wall->pose);
+    w->look.calling = was;
     wall->mid = wall->pose;
     w->facets_valid = 0;
     demi_built(w, "dem_wall_motion");
@@ -9012,7 +9072,7 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
 }
 
 DEM_API dem_result dem_wall_pose(const dem_world *world, dem_wall id, dem_pose *pose) {
-    if (demi_null(world, "dem_wall_pose", pose, "pose")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, "dem_wall_pose", pose, "pose")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find((dem_world *)world, "dem_wall_pose", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *pose = world->walls[i].pose;
@@ -9055,7 +9115,7 @@ DEM_API dem_result dem_wall_reals_set(dem_world *w, dem_wall id, const dem_real 
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall id, dem_wall_loads *loads) {
-    if (demi_null(world, "dem_wall_loads_get", loads, "loads")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, "dem_wall_loads_get", loads, "loads")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find((dem_world *)world, "dem_wall_loads_get", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *loads = world->walls[i].loads;
@@ -11171,7 +11231,7 @@ static int demi_list_stale(const dem_world *world, const char *call) {
     return -1;
 }
 DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) {
-    if (demi_null(w, "dem_candidates_get", w, "world")) return -1;
+    if (demi_null_look(w, "dem_candidates_get", w, "world")) return -1;
     int d, l, k, n = 0;
     if (!w->stage.list_valid) return demi_list_stale(w, "dem_candidates_get");
     for (d = 0; d < w->domain_count; d++)
@@ -18793,7 +18853,7 @@ DEM_API dem_result dem_joint_motor(dem_world *w, dem_joint joint, dem_motor moto
 }
 DEM_API dem_result dem_joint_get(const dem_world *w, dem_joint joint, dem_joint_state *state) {
     int i;
-    if (demi_null(w, "dem_joint_get", state, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, "dem_joint_get", state, "state")) return DEM_ERROR_ARGUMENT;
     i = demi_joint_find((dem_world *)w, "dem_joint_get", joint);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *state = w->joints[i].state;
@@ -20059,7 +20119,7 @@ static double demi_size_draw(const demi_size_table *t, double share) {
 }
 DEM_API double dem_sizes_finer(dem_world *w, const dem_sizes *d, dem_real radius) {
     double lo, hi;
-    if (demi_null(w, "dem_sizes_finer", d, "sizes")) return -1;
+    if (demi_null_look(w, "dem_sizes_finer", d, "sizes")) return -1;
     if (!demi_size_ends(w, "dem_sizes_finer", d, &lo, &hi)) return -1;
     return demi_size_finer(d, lo, hi, (double)radius);
 }
@@ -20082,8 +20142,8 @@ static dem_result demi_sizes_draw(dem_world *w, const char *call, const dem_size
 }
 DEM_API dem_result dem_sizes_draw(dem_world *w, const dem_sizes *d, int count, uint64_t seed,
                                   dem_real *radii) {
-    if (demi_null(w, "dem_sizes_draw", d, "sizes")) return DEM_ERROR_ARGUMENT;
-    if (demi_null(w, "dem_sizes_draw", radii, "radii")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, "dem_sizes_draw", d, "sizes")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, "dem_sizes_draw", radii, "radii")) return DEM_ERROR_ARGUMENT;
     return demi_sizes_draw(w, "dem_sizes_draw", d, count, seed, radii);
 }
 DEM_API int dem_sizes_classes(dem_world *w, const dem_sizes *d, int class_count, dem_real *radius,
@@ -20092,8 +20152,8 @@ DEM_API int dem_sizes_classes(dem_world *w, const dem_sizes *d, int class_count,
     demi_size_table *t;
     double lo, hi, all = 0;
     int i, k = 0, n = 0;
-    if (demi_null(w, call, d, "sizes") || demi_null(w, call, radius, "radius") ||
-        demi_null(w, call, amount, "amount")) return 0;
+    if (demi_null_look(w, call, d, "sizes") || demi_null_look(w, call, radius, "radius") ||
+        demi_null_look(w, call, amount, "amount")) return 0;
     if (class_count < 1 || class_count > DEM_CLASSES) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d", call,
                   class_count, (int)DEM_CLASSES);
@@ -20506,6 +20566,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
                      uint64_t seed) {
     demi_region g;
     demi_crowd c;
+    demi_calling was;
     int m = 0, first, done;
     if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
     if (radii) radius = count > 0 ? radii[0] : 1;
@@ -20532,7 +20593,9 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (radii) demi_region_make(w, region, count ? (double)radii[count - 1] : 0, &g);
     done = demi_crowd_begin(w, &c, &g, radius, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
+    was = demi_calls(w, call, 1);
     if (!done) done = demi_fill_places(w, &c, region, radius, radii, shape >= 0, count, seed);
+    w->look.calling = was;
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, shape)) done = -1;
     demi_crowd_end(w);
     if (done < 0) {
@@ -20681,6 +20744,7 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     demi_region room;
     demi_crowd c;
     demi_lattice g;
+    demi_calling was;
     int m = 0, first, done;
     if (demi_null(w, call, w, "world") || demi_material_index(w, call, material, &m) != DEM_OK)
         return 0;
@@ -20701,7 +20765,9 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     }
     done = demi_crowd_begin(w, &c, &room, radius, demi_periods_of(w)) ? 0 : -1;
     first = c.count;
+    was = demi_calls(w, call, 1);
     if (!done) done = demi_lattice_fill(w, &c, &g);
+    w->look.calling = was;
     c.count += DEMI_MAX(done, 0);
     if (done >= 0 && !demi_crowd_settle(w, &c, first, m, -1)) done = -1;
     demi_crowd_end(w);
@@ -21061,7 +21127,7 @@ static dem_result demi_world_feed(dem_world *w) {
     return demi_feeds_run(w, &feeder);
 }
 DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state *state) {
-    if (demi_null(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
     if (id.id < 1 || id.id > w->feed_count)
         return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not "
                          "exist, there are %d", (int)id.id, w->feed_count);
@@ -21211,7 +21277,7 @@ static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_o
     return 0;
 }
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
-    if (demi_null(w, "dem_outlet_get", state, "state")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, "dem_outlet_get", state, "state")) return DEM_ERROR_ARGUMENT;
     const demi_outlet *o = demi_outlet_find(w, "dem_outlet_get", id);
     const demi_periods p = demi_periods_of(w);
     int i;
@@ -21644,7 +21710,7 @@ static double demi_spin_fastest(const dem_world *w) {
 }
 /* Settles dt before stepping: chosen or checked. */
 DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
-    if (demi_null(w, "dem_step_advice", advice, "advice")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, "dem_step_advice", advice, "advice")) return DEM_ERROR_ARGUMENT;
     if (demi_impulsive(w))
         return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: contacts answer by "
                          "impulses, which have no contact time; take a step in which grains move "
@@ -22253,7 +22319,7 @@ static void demi_probes_cross(const demi_join *j, int facet, demi_probes *p) {
     }
 }
 /* Shells of the join: root[i]: the first facet of the shell that facet i is of, -1: it is open. */
-static void demi_shells(demi_join *j, int32_t *root) {
+static void demi_join_shells(demi_join *j, int32_t *root) {
     demi_side *s = j->per == 3 ? j->piece : j->side;
     const int sides = j->per == 3 ? j->sides : 2*j->facets;
     int i, end;
@@ -22299,7 +22365,7 @@ static void demi_check_shells(dem_world *w, demi_findings *f, int wall, int per)
     }
     if (ok && root) {
         next = root + j.facets;
-        demi_shells(&j, root);
+        demi_join_shells(&j, root);
         for (i = 0; i < j.facets; i++) next[i] = -1;
         for (i = j.facets - 1; i >= 0; i--) {   /* facets of a shell: a list, its root first */
             if (root[i] < 0 || root[i] == i) continue;
@@ -22786,7 +22852,7 @@ static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id)
     return 0;
 }
 DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
-    if (demi_null(w, "dem_field_get", data, "data")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, "dem_field_get", data, "data")) return DEM_ERROR_ARGUMENT;
     size_t n;
     const demi_field *f = demi_field_find((dem_world *)w, "dem_field_get", id);
     if (!f) return DEM_ERROR_ARGUMENT;
@@ -22818,7 +22884,7 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     size_t c;
     double n, volume, v[3];
     int e;
-    if (demi_null(w, "dem_field_cell_get", out, "cell")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(w, "dem_field_cell_get", out, "cell")) return DEM_ERROR_ARGUMENT;
     if (!demi_field_find((dem_world *)w, "dem_field_cell_get", id)) return DEM_ERROR_ARGUMENT;
     dem_field_get(w, id, &d);
     if (i < 0 || j < 0 || k < 0 || i >= d.cells[0] || j >= d.cells[1] || k >= d.cells[2])
@@ -23403,9 +23469,24 @@ static dem_result demi_look(dem_world *w) {
     if (w->look.films_look) w->look.films_look(w);
     return w->look.outputs_look ? w->look.outputs_look(w) : DEM_OK;
 }
+/* Before a step: its dt, new grains, forces of a scene that has changed. */
+static dem_result demi_step_ready(dem_world *w) {
+    dem_result result = demi_dt_settle(w);
+    if (result == DEM_OK && w->feed_count) {
+        result = demi_world_feed(w);
+        if (result == DEM_OK) result = demi_dt_settle(w);   /* there may be new grains */
+    }
+    if (result == DEM_OK &&
+        (!w->stage.forces_valid || !w->stage.list_valid || w->stage.pairs_changed))
+        result = demi_refresh(w);
+    if (result == DEM_OK) result = demi_dt_check(w);
+    if (result == DEM_OK && !w->stage.primed) { demi_finish(w); demi_prime(w); }
+    return result;
+}
 DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     if (demi_null(w, "dem_world_step", w, "world")) return DEM_ERROR_ARGUMENT;
     dem_result result = DEM_OK;
+    demi_calling was;
     int i, whole = 1;
     if (steps < 0)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
@@ -23416,23 +23497,15 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
                          "when the run has ended");
     if (steps) result = demi_look(w);
     for (i = 0; i < steps && result == DEM_OK; i++) {
-        if (!w->stage.moved) {
-            result = demi_dt_settle(w);
-            if (result == DEM_OK && w->feed_count) {
-                result = demi_world_feed(w);
-                if (result == DEM_OK) result = demi_dt_settle(w);   /* there may be new grains */
-            }
-            if (result == DEM_OK &&
-                (!w->stage.forces_valid || !w->stage.list_valid || w->stage.pairs_changed))
-                result = demi_refresh(w);
-            if (result == DEM_OK) result = demi_dt_check(w);
-            if (result != DEM_OK) break;
-            if (!w->stage.primed) { demi_finish(w); demi_prime(w); }
+        was = demi_calls(w, "dem_world_step", 1);
+        if (!w->stage.moved) result = demi_step_ready(w);
+        if (result == DEM_OK) {
+            result = demi_step_once(w);
+            whole = result == DEM_OK;
+            if (whole) demi_fields_sample(w);
         }
-        result = demi_step_once(w);
-        whole = result == DEM_OK;
-        if (whole) demi_fields_sample(w);
-        if (whole) result = demi_look(w);
+        w->look.calling = was;
+        if (result == DEM_OK) result = demi_look(w);
     }
     /* half a step: its velocities stay as predicted */
     if (!whole && w->stage.moved) return result;
@@ -23440,6 +23513,16 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
     return result;
 }
 
+/* Asks the user's progress function, if any. `since`: s of wall time when the call began. */
+static dem_result demi_progress(dem_world *w, const char *call, dem_progress_fn progress,
+                                void *user, double done, double since) {
+    const double left = (demi_clock() - since)*(1 - done)/DEMI_MAX(done, 1e-9);
+    const demi_calling was = demi_calls(w, call, 0);
+    const int stop = progress && progress(w, done, done < 1 ? left : 0, user) && done < 1;
+    w->look.calling = was;
+    return stop ? demi_fail(w, DEM_ERROR_STOPPED, "%s: stopped by the progress function at %g s",
+                            call, w->clock.time) : DEM_OK;
+}
 DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn progress,
                                  void *user) {
     if (demi_null(w, "dem_world_run", w, "world")) return DEM_ERROR_ARGUMENT;
@@ -23467,20 +23550,18 @@ DEM_API dem_result dem_world_run(dem_world *w, double seconds, dem_progress_fn p
         result = dem_world_step(w, steps);
         if (result != DEM_OK) return result;
         now = demi_clock();
-        if (now - last > 0.1 && progress) {
-            const double done = (w->clock.time - start)/seconds;
+        if (now - last > 0.1) {
             last = now;
-            if (progress(w, done, (now - begun)*(1 - done)/DEMI_MAX(done, 1e-9), user))
-                return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_run: stopped by the progress "
-                                 "function at %g s", w->clock.time);
+            result = demi_progress(w, "dem_world_run", progress, user,
+                                   (w->clock.time - start)/seconds, begun);
+            if (result != DEM_OK) return result;
         }
         /* short steps: look at the clock less often */
         if (now - begun < 0.05*(double)w->clock.steps && chunk < 1000) chunk++;
     }
     w->clock.run_end = end;
     w->clock.run_steps = w->clock.steps;
-    if (progress) progress(w, 1, 0, user);
-    return DEM_OK;
+    return demi_progress(w, "dem_world_run", progress, user, 1, begun);
 }
 
 DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn progress,
@@ -23574,16 +23655,14 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
         if (!(left > (double)w->clock.dt/2)) return demi_unsettled(w, seconds, below);
         result = dem_world_run(w, DEMI_MIN(look, left), 0, 0);
         if (result != DEM_OK) return result;
-        if (progress && demi_clock() - last > 0.1) {
-            const double done = DEMI_MIN((w->clock.time - start)/seconds, 1);
+        if (demi_clock() - last > 0.1) {
             last = demi_clock();
-            if (progress(w, done, (last - begun)*(1 - done)/DEMI_MAX(done, 1e-9), user))
-                return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: stopped by the progress "
-                                 "function at %g s", w->clock.time);
+            result = demi_progress(w, "dem_world_settle", progress, user,
+                                   (w->clock.time - start)/seconds, begun);
+            if (result != DEM_OK) return result;
         }
     }
-    if (progress) progress(w, 1, 0, user);
-    return DEM_OK;
+    return demi_progress(w, "dem_world_settle", progress, user, 1, begun);
 }
 
 /* Is this a terminal? C has no word for that: asked as readlink is (>>write). Elsewhere: yes. */
@@ -23599,7 +23678,7 @@ static int demi_isatty(int file) { (void)file; return 1; }
 static int demi_fileno(FILE *file) { (void)file; return 0; }
 #endif
 DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_left, void *user) {
-    if (demi_null(w, "dem_progress_print", user, "user")) return 0;
+    if (demi_null_look(w, "dem_progress_print", user, "user")) return 0;
     FILE *out = (FILE *)user;
     const int line = !demi_isatty(demi_fileno(out)), tenths = (int)(10*done + 1e-9);
     if (line && tenths <= w->look.tenths_told) return 0;
@@ -23612,11 +23691,11 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
 }
 
 DEM_API double dem_world_time(const dem_world *w) {
-    if (demi_null(w, "dem_world_time", w, "world")) return 0;
+    if (demi_null_look(w, "dem_world_time", w, "world")) return 0;
     return w->clock.time;
 }
 DEM_API uint64_t dem_world_steps(const dem_world *w) {
-    if (demi_null(w, "dem_world_steps", w, "world")) return 0;
+    if (demi_null_look(w, "dem_world_steps", w, "world")) return 0;
     return w->clock.steps;
 }
 
@@ -23660,7 +23739,7 @@ DEM_API void dem_overlap_reset(dem_world *w) {
 }
 
 DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capacity) {
-    if (demi_null(w, "dem_contacts_get", w, "world")) return -1;
+    if (demi_null_look(w, "dem_contacts_get", w, "world")) return -1;
     int d, k, n = 0;
     if (!w->stage.list_valid) return demi_list_stale(w, "dem_contacts_get");
     for (d = 0; d < w->domain_count; d++) {
@@ -23678,9 +23757,13 @@ DEM_API int dem_contacts_get(const dem_world *w, dem_contact_info *out, int capa
 static dem_result demi_contacts_settle(dem_world *w) {
     const demi_stages *s = &w->stage;
     dem_result result;
+    demi_calling was;
     if (s->list_valid && s->forces_valid && !s->pairs_changed) return DEM_OK;
+    was = demi_calls(w, "the look at contacts", 1);
     result = demi_dt_settle(w);
-    return result == DEM_OK ? demi_refresh(w) : result;
+    if (result == DEM_OK) result = demi_refresh(w);
+    w->look.calling = was;
+    return result;
 }
 DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
     if (demi_null(w, "dem_contacts_each", fn ? w : 0, "fn")) return -1;
@@ -23688,7 +23771,9 @@ DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
     dem_contact_info info;
     dem_real memory[DEMI_MEMORY], was[DEMI_MEMORY], *row;
     int d, k, e, n = 0, changed = 0;
+    demi_calling was_calling;
     if (demi_contacts_settle(w) != DEM_OK) return -1;
+    was_calling = demi_calls(w, "dem_contacts_each", 0);
     stride = (size_t)w->near.stride;
     for (d = 0; d < w->domain_count; d++) {
         const demi_domain *domain = &w->domains[d];
@@ -23715,6 +23800,7 @@ DEM_API int dem_contacts_each(dem_world *w, dem_contact_fn fn, void *user) {
             n++;
         }
     }
+    w->look.calling = was_calling;
     if (changed) demi_scene_changed(w);
     return n;
 }
@@ -23842,7 +23928,7 @@ static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body
    sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
    |n_z| <= mu |n_xy|. */
 DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed) {
-    if (demi_null(w, "dem_sieve_blinded", w, "world")) return -1;
+    if (demi_null_look(w, "dem_sieve_blinded", w, "world")) return -1;
     const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded", sieve);
     const demi_wall *wall = id < 0 ? 0 : &w->walls[id];
     dem_vec3 across, n, m;
@@ -24095,7 +24181,7 @@ DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repo
     double mass = 0, highest = 0;
     dem_result result;
     int i, first, last, good = 0;
-    if (demi_null(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     result = demi_repose_begin(w, call, box, demi_v(0, 0, 0), &s);
     if (result != DEM_OK) return result;
@@ -24124,7 +24210,7 @@ DEM_API dem_result dem_repose_drum(const dem_world *world, dem_box box, dem_vec3
     demi_surface s;
     dem_result result;
     int good = 0;
-    if (demi_null(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_look(world, call, out, "repose")) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     if (!demi_finite3(axis) || !(demi_dot(axis, axis) > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be finite and not "
@@ -24139,7 +24225,7 @@ DEM_API dem_result dem_repose_drum(const dem_world *world, dem_box box, dem_vec3
 /* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;
    contact memory as a sum over contacts of their own digests, for the same reason. */
 DEM_API uint64_t dem_world_hash(const dem_world *w) {
-    if (demi_null(w, "dem_world_hash", w, "world")) return 0;
+    if (demi_null_look(w, "dem_world_hash", w, "world")) return 0;
     const demi_periods p = demi_periods_of(w);
     uint64_t h = DEMI_HASH_START;
     int i;
@@ -25001,7 +25087,7 @@ static dem_result demi_read(dem_world *w, const char *call, const char *path, si
 
 DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void *data, size_t size,
                           dem_mesh *mesh, dem_mesh_health *health) {
-    if (demi_null(world, "dem_mesh_parse", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_mesh_parse", world, "world")) return DEM_ERROR_ARGUMENT;
     if (mesh) memset(mesh, 0, sizeof *mesh);
     if (health) memset(health, 0, sizeof *health);
     if (!mesh || !data)
@@ -25012,7 +25098,7 @@ DEM_API dem_result dem_mesh_parse(dem_world *world, const char *name, const void
 
 DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *mesh,
                                  dem_mesh_health *health) {
-    if (demi_null(world, "dem_mesh_read", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_mesh_read", world, "world")) return DEM_ERROR_ARGUMENT;
     if (health) memset(health, 0, sizeof *health);
     if (!mesh)
         return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_mesh_read: mesh is null; give its "
@@ -25024,10 +25110,10 @@ DEM_API dem_result dem_mesh_read(dem_world *world, const char *path, dem_mesh *m
 DEM_API dem_result dem_mesh_part_read(dem_world *world, const char *path, const char *part,
                                       dem_mesh *mesh, dem_mesh_health *health) {
     const char *call = "dem_mesh_part_read";
-    if (demi_null(world, call, mesh, "mesh")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, call, mesh, "mesh")) return DEM_ERROR_ARGUMENT;
     memset(mesh, 0, sizeof *mesh);
     if (health) memset(health, 0, sizeof *health);
-    if (demi_null(world, call, part, "part")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, call, part, "part")) return DEM_ERROR_ARGUMENT;
     return demi_read(world, call, path, 3, part, mesh, health);
 }
 DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
@@ -25036,7 +25122,7 @@ DEM_API void dem_mesh_free(dem_world *world, dem_mesh *mesh) {
 
 DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, dem_quat rotation,
                                   dem_vec3 to) {
-    if (demi_null(w, "dem_mesh_place", mesh, "mesh")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, "dem_mesh_place", mesh, "mesh")) return DEM_ERROR_ARGUMENT;
     const dem_quat q = demi_quat_most(rotation) > 0 ? demi_quat_unit(rotation)
         : dem_quat_make(1, 0, 0, 0);
     int i;
@@ -25108,7 +25194,7 @@ static dem_result demi_profile_take(dem_world *w, const char *call, const char *
 
 DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const void *data,
                                      size_t size, dem_profile *profile) {
-    if (demi_null(world, "dem_profile_parse", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_profile_parse", world, "world")) return DEM_ERROR_ARGUMENT;
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
     if (profile) memset(profile, 0, sizeof *profile);
@@ -25122,7 +25208,7 @@ DEM_API dem_result dem_profile_parse(dem_world *world, const char *name, const v
 }
 
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile) {
-    if (demi_null(world, "dem_profile_read", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_profile_read", world, "world")) return DEM_ERROR_ARGUMENT;
     dem_mesh lists = {0, 0, 0, 0};
     dem_result result;
     if (!profile)
@@ -25455,8 +25541,8 @@ DEM_API dem_result dem_mesh_spheres(dem_world *w, const dem_mesh *mesh, int coun
     const char *call = "dem_mesh_spheres";
     demi_closed c;
     dem_result result = DEM_ERROR_ARGUMENT;
-    if (demi_null(w, call, mesh, "mesh") || demi_null(w, call, positions, "positions") ||
-        demi_null(w, call, radii, "radii")) return result;
+    if (demi_null_write(w, call, mesh, "mesh") || demi_null_look(w, call, radii, "radii") ||
+        demi_null_look(w, call, positions, "positions")) return result;
     if (count < 1 || count > 1000)
         return demi_fail(w, result, "%s: count is %d, must be 1 to 1000", call, count);
     if (!demi_mesh_sound(w, call, mesh->vertex_count, mesh->vertices, 3, mesh->triangle_count,
@@ -26381,16 +26467,16 @@ static dem_result demi_grains_parse(dem_world *w, const char *call, const char *
 }
 DEM_API dem_result dem_grains_parse(dem_world *w, const char *name, const void *data, size_t size,
                                     dem_grains *g) {
-    if (demi_null(w, "dem_grains_parse", g, "grains")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, "dem_grains_parse", g, "grains")) return DEM_ERROR_ARGUMENT;
     memset(g, 0, sizeof *g);
-    if (demi_null(w, "dem_grains_parse", data, "data")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, "dem_grains_parse", data, "data")) return DEM_ERROR_ARGUMENT;
     return demi_grains_parse(w, "dem_grains_parse", name, (const char *)data, size, g);
 }
 DEM_API dem_result dem_grains_read(dem_world *w, const char *path, dem_grains *g) {
     char *bytes = 0;
     size_t size = 0;
     dem_result result;
-    if (demi_null(w, "dem_grains_read", g, "grains")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, "dem_grains_read", g, "grains")) return DEM_ERROR_ARGUMENT;
     memset(g, 0, sizeof *g);
     result = demi_load(w, "dem_grains_read", path, &bytes, &size);
     if (result == DEM_OK)
@@ -26399,7 +26485,7 @@ DEM_API dem_result dem_grains_read(dem_world *w, const char *path, dem_grains *g
     return result;
 }
 DEM_API void dem_grains_free(dem_world *w, dem_grains *g) {
-    if (demi_null(w, "dem_grains_free", g, "grains")) return;
+    if (demi_null_look(w, "dem_grains_free", g, "grains")) return;
     demi_grains_free(w, g);
 }
 DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem_grains *g) {
@@ -26770,7 +26856,7 @@ static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
 }
 
 DEM_API dem_result dem_vtp_write(dem_world *world, const char *path) {
-    if (demi_null(world, "dem_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
     demi_column column[DEMI_GRAIN_COLUMNS];
     demi_drawing g;
     dem_result result;
@@ -26810,7 +26896,7 @@ static void demi_line_put(const dem_contact_info *c, dem_real *memory, void *use
     for (k = 0; k < l->stride; k++) l->memory[(size_t)(n*l->stride + k)] = memory[k];
 }
 DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
-    if (demi_null(world, "dem_contacts_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_contacts_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
     dem_result result = DEM_ERROR_ARGUMENT;
     demi_column column[7 + DEMI_MEMORY];
     char names[DEMI_MEMORY][24];
@@ -26857,7 +26943,7 @@ DEM_API dem_result dem_contacts_vtp_write(dem_world *world, const char *path) {
 
 /* Legacy VTK, in its binary form: numbers are big-endian. */
 DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
-    if (demi_null(world, "dem_vtk_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_vtk_write", world, "world")) return DEM_ERROR_ARGUMENT;
     demi_column column[DEMI_GRAIN_COLUMNS];
     demi_out o;
     const char *real = sizeof(dem_real) == 4 ? "float" : "double";
@@ -26901,7 +26987,7 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
 /* Extended XYZ. Species, which ASE wants to be chemical elements, tell the material: H is 1, He 2,
    and so on. A domain becomes the lattice; an axis without extent gets 1 m. */
 DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
-    if (demi_null(world, "dem_xyz_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_xyz_write", world, "world")) return DEM_ERROR_ARGUMENT;
     static const char elements[] =
         "H HeLiBeB C N O F NeNaMgAlSiP S ClArK CaScTiV CrMnFeCoNiCuZnGaGe"
         "AsSeBrKrRbSrY ZrNbMoTcRuRhPdAgCdInSnSbTeI XeCsBaLaCePrNdPmSmEuGd";
@@ -27060,7 +27146,7 @@ static int demi_surfaces_room(dem_world *w, demi_surfaces *s, dem_real **reals, 
 }
 DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
     const char *call = "dem_surfaces_vtp_write";
-    if (demi_null(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, call, world, "world")) return DEM_ERROR_ARGUMENT;
     const int n = world->bodies.real_count;
     char names[DEM_BODY_REALS][24];
     demi_column column[7 + DEM_BODY_REALS];
@@ -27169,7 +27255,7 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
 
 DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_real z0,
                                        dem_real z1) {
-    if (demi_null(world, "dem_walls_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_walls_vtp_write", world, "world")) return DEM_ERROR_ARGUMENT;
     int64_t points = 0, triangles = 0, p = 0, t = 0;
     dem_real z[2], *place = 0;
     int32_t *corners = 0, *id = 0;
@@ -27269,7 +27355,7 @@ static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wal
     return DEM_OK;
 }
 DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const char *path) {
-    if (demi_null(world, "dem_wall_loads_csv", world, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(world, "dem_wall_loads_csv", world, "world")) return DEM_ERROR_ARGUMENT;
     const char *call = "dem_wall_loads_csv";
     double value[DEMI_LOADS];
     char line[DEMI_CSV_LINE];
@@ -27791,7 +27877,7 @@ static int demi_body_lost(const dem_world *w) {
     return -1;
 }
 DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
-    if (demi_null(w, "dem_checkpoint_write", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (demi_null_write(w, "dem_checkpoint_write", w, "world")) return DEM_ERROR_ARGUMENT;
     const int lost = demi_body_lost(w);
     demi_checkpoint_head head;
     demi_out out;
@@ -28673,8 +28759,11 @@ static dem_result demi_output_line(dem_world *w, const demi_output *o, const cha
     if (d->wall.id) result = demi_loads_values(w, "dem_world_step", d->wall, value);
     else {
         count = demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS);
-        if (d->values) d->values(w, value, d->user);
-        else {
+        if (d->values) {
+            const demi_calling was = demi_calls(w, "an output of values", 0);
+            d->values(w, value, d->user);
+            w->look.calling = was;
+        } else {
             const dem_counters c = dem_counters_get(w);
             const dem_totals t = dem_totals_get(w);
             value[0] = (double)c.steps;
@@ -29202,6 +29291,7 @@ DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials
         {"contacts", "", dem_observe_contacts, 0, 0}};
     const demi_try *rows[DEM_TRIALS];
     const double begun = demi_clock();
+    demi_calling was;
     char *state;
     size_t size;
     dem_result result;
@@ -29223,6 +29313,7 @@ DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials
     if (result != DEM_OK) return result;
     state = demi_state_keep(w, &size);
     if (!state) return demi_no_memory(w, "dem_advise");
+    was = demi_calls(w, "dem_advise", 1);       /* laws and others are asked for copies of w */
     result = demi_advise_plan(w, state, size, d->budget > 0 ? d->budget : 60, out);
     for (k = 0; k < DEM_TRIALS; k++)
         if (demi_try_fits(w, &demi_tries[k])) rows[out->count++] = &demi_tries[k];
@@ -29238,6 +29329,7 @@ DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials
             result = demi_fail(w, DEM_ERROR_STOPPED, "dem_advise: stopped by the progress function "
                                "after %d of %d trials", k + 1, out->count);
     }
+    w->look.calling = was;
     demi_free(w, state);
     if (result != DEM_OK) return result;
     if (out->trial[0].done < out->seeds)
@@ -29704,19 +29796,12 @@ static void demi_effects_look(dem_world *look, dem_effect *out) {
         if (out[k].state == DEM_EFFECT_IDLE && !out[k].missing) out[k].missing = 1;
     }
 }
-DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
+static int demi_effects_ask(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
     dem_result result = DEM_OK;
     dem_world look;
     int k, count = 0, ok = 1;
     size_t size;
     char *state;
-    if (demi_null(w, "dem_effects_get", out, "effects")) return -1;
-    if (!(budget >= 0) || !demi_finite_double(budget)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_effects_get: budget is %g s, must be >= 0 and "
-                  "finite; 0 means states alone, 5 is enough on a quiet machine", budget);
-        return -1;
-    }
-    if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
     if (budget > 0 && w->bodies.count) {
         if (!w->facets_valid && !demi_facets_weigh(w))
             result = demi_no_memory(w, "dem_effects_get");
@@ -29737,6 +29822,21 @@ DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFE
     demi_no_memory(w, "dem_effects_get");
     return -1;
 }
+DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFECTS]) {
+    demi_calling was;
+    int count;
+    if (demi_null(w, "dem_effects_get", out, "effects")) return -1;
+    if (!(budget >= 0) || !demi_finite_double(budget)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_effects_get: budget is %g s, must be >= 0 and "
+                  "finite; 0 means states alone, 5 is enough on a quiet machine", budget);
+        return -1;
+    }
+    if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
+    was = demi_calls(w, "dem_effects_get", 1);  /* laws and others are asked for copies of w */
+    count = demi_effects_ask(w, budget, out);
+    w->look.calling = was;
+    return count;
+}
 static void demi_effects_lines(const dem_effect *e, FILE *out) {
     static const char *states[] = {"off", "idle", "active"};
     int k;
@@ -29749,7 +29849,7 @@ static void demi_effects_lines(const dem_effect *e, FILE *out) {
 }
 DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
     dem_effect effects[DEM_EFFECTS];
-    if (demi_null(w, "dem_effects_print", out, "out")) return;
+    if (demi_null_look(w, "dem_effects_print", out, "out")) return;
     if (dem_effects_get(w, budget, effects) < 0) return;
     fprintf(out, "effects, and the share of a step's time that goes without each\n");
     demi_effects_lines(effects, out);
@@ -29907,7 +30007,13 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
 DEM_API void dem_world_destroy(dem_world *w) {
     dem_allocator allocator;
     int chain;
-    if (!w) return;
+    if (demi_null(w, "dem_world_destroy", w, "world")) return;
+    if (w->look.under_way) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_destroy: called by the function of an output "
+                  "(dem_output_add) while the world runs; let that function return 1, which stops "
+                  "the run, and destroy the world then");
+        return;
+    }
     for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
     allocator = w->desc.allocator;
     demi_raw_free(&allocator, w, sizeof *w);
@@ -30080,7 +30186,7 @@ static void demi_idle_report(dem_world *look, FILE *out) {
             fprintf(out, "           %s: %s\n", e[k].name, e[k].text);
 }
 DEM_API void dem_world_report(const dem_world *world, FILE *out) {
-    if (demi_null(world, "dem_world_report", out, "out")) return;
+    if (demi_null_look(world, "dem_world_report", out, "out")) return;
     dem_world look = *world, *w = &look;        /* effects not yet worked out are so in a copy */
     const dem_counters c = dem_counters_get(w);
     const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
@@ -31467,14 +31573,16 @@ static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
                      call);
 }
 DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
-    if (!s) return DEM_ERROR_ARGUMENT;
+    if (!s || demi_null(&s->head, "dem_slabs_step", s, "slabs")) return DEM_ERROR_ARGUMENT;
     dem_result result = demi_slabs_usable(s, "dem_slabs_step");
     dem_world *h = &s->head;
+    demi_calling was;
     int i, f, whole = 1;
     if (result != DEM_OK) return result;
     if (steps < 0)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "dem_slabs_step: steps is %d, must be >= 0",
                          steps);
+    was = demi_calls(h, "dem_slabs_step", 1);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         const dem_world *w = s->slabs[0].world;
         int sampling = 0;
@@ -31492,9 +31600,9 @@ DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
         for (f = 0; f < w->field_count; f++) sampling |= demi_field_due(w, &w->fields[f]);
         if (sampling && whole) demi_slabs_phase(s, demi_slab_sample);
     }
-    if (!whole) return result;
-    if (result == DEM_OK) result = demi_slabs_agree(s, 0, 0);  /* of the last forces */
-    if (!h->stage.moved) demi_slabs_phase(s, demi_slab_finish);
+    if (whole && result == DEM_OK) result = demi_slabs_agree(s, 0, 0);  /* of the last forces */
+    if (whole && !h->stage.moved) demi_slabs_phase(s, demi_slab_finish);
+    h->look.calling = was;
     return result;
 }
 
@@ -31810,14 +31918,13 @@ static void demi_slabs_first_borders(dem_slabs *s, const dem_world *w) {
 DEM_API void dem_slabs_destroy(dem_slabs *s) {
     dem_allocator allocator;
     int k;
-    if (!s) return;
+    if (!s || demi_null(&s->head, "dem_slabs_destroy", s, "slabs")) return;
     for (k = 0; k < s->local && s->slabs; k++) dem_world_destroy(s->slabs[k].world);
     allocator = s->head.desc.allocator;
     demi_free_chain(&s->head, DEMI_RUN);
     demi_raw_free(&allocator, s, sizeof *s);
 }
-DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
-    if (demi_null(w, "dem_slabs_create", desc, "desc")) return 0;
+static dem_slabs *demi_slabs_make(dem_world *w, const dem_slabs_desc *desc) {
     const size_t slots = (size_t)w->bodies.slot_count + 1;
     dem_slabs *s;
     uint8_t *marks;
@@ -31858,6 +31965,15 @@ DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
     if (demi_slabs_same(s, w, ok) == DEM_OK) return s;
     dem_slabs_destroy(s);
     return 0;
+}
+DEM_API dem_slabs *dem_slabs_create(dem_world *w, const dem_slabs_desc *desc) {
+    demi_calling was;
+    dem_slabs *s;
+    if (demi_null(w, "dem_slabs_create", desc, "desc")) return 0;
+    was = demi_calls(w, "dem_slabs_create", 1);
+    s = demi_slabs_make(w, desc);
+    w->look.calling = was;
+    return s;
 }
 
 /* --- collect --- */
@@ -32152,13 +32268,17 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     return DEM_OK;
 }
 DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
-    if (!s || demi_null(&s->head, "dem_slabs_collect", w, "world")) return DEM_ERROR_ARGUMENT;
+    if (!s || demi_null(&s->head, "dem_slabs_collect", w, "world") ||
+        demi_null(w, "dem_slabs_collect", w, "world")) return DEM_ERROR_ARGUMENT;
     int32_t *add = 0;
     uint8_t *seen = 0;
     dem_result result = demi_slabs_usable(s, "dem_slabs_collect");
     const int slots = w->bodies.slot_count;
+    demi_calling was[2];
     demi_slab_sums sums;
     int k, i;
+    was[0] = demi_calls(&s->head, "dem_slabs_collect", 1);
+    was[1] = demi_calls(w, "dem_slabs_collect", 1);
     if (result == DEM_OK) result = demi_slabs_gather(s);
     if (result == DEM_OK) result = demi_slabs_room(s, w, &add, &seen);
     if (result == DEM_OK) {
@@ -32183,12 +32303,14 @@ DEM_API dem_result dem_slabs_collect(dem_slabs *s, dem_world *w) {
         demi_effects(w);                        /* the world may never have taken a step itself */
         demi_kernel_choose(w);
     }
+    w->look.calling = was[1];
+    s->head.look.calling = was[0];
     demi_free(w, add);
     demi_free(&s->head, seen);
     return result;
 }
 DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
-    if (!s) return;
+    if (!s || demi_null(&s->head, "dem_slabs_loads_reset", s, "slabs")) return;
     int k, i;
     for (k = 0; k < s->local; k++) {
         dem_world *w = s->slabs[k].world;
@@ -32206,7 +32328,7 @@ DEM_API const char *dem_slabs_error(const dem_slabs *s) {
     return s ? s->head.error : "dem_slabs_create: returned null; dem_world_error(world) says why";
 }
 DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
-    if (!s || demi_null(&s->head, "dem_slab_get", out, "slab")) return DEM_ERROR_ARGUMENT;
+    if (!s || demi_null_look(&s->head, "dem_slab_get", out, "slab")) return DEM_ERROR_ARGUMENT;
     const demi_slab *b;
     if (index < s->first || index >= s->first + s->local)
         return demi_fail((dem_world *)&s->head, DEM_ERROR_ARGUMENT, "dem_slab_get: slab %d is not "
@@ -33008,8 +33130,9 @@ static dem_result demi_film_check(dem_replay *r, const char *call) {
                      "has room", call, r->out.path, errno ? strerror(errno) : "unknown cause");
 }
 DEM_API dem_result dem_replay_frame(dem_replay *r) {
-    if (!r) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, "dem_replay_frame", r, "replay")) return DEM_ERROR_ARGUMENT;
     dem_world *w = r->world;
+    const demi_calling was = w->look.calling;
     double time;
     uint32_t values = 0;
     int s, k;
@@ -33021,6 +33144,7 @@ DEM_API dem_result dem_replay_frame(dem_replay *r) {
         return demi_film_check(r, "dem_replay_frame");
     }
     demi_finish(w);
+    demi_calls(w, "dem_replay_frame", 1);
     const dem_bodies b = dem_bodies_get(w);
     if (!(r->resolution > 0)) demi_film_resolve(r, &b);
     for (; r->shape_count < w->shape_count; r->shape_count++)
@@ -33041,6 +33165,7 @@ DEM_API dem_result dem_replay_frame(dem_replay *r) {
         r->given[k] = 0;
     }
     if (!r->failed) demi_film_block(r);
+    w->look.calling = was;
     r->frames++;
     return demi_film_check(r, "dem_replay_frame");
 }
@@ -33078,7 +33203,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     dem_replay *r;
     size_t k;
     int i, n, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
-    if (demi_null(w, "dem_replay_open", w, "world")) return 0;
+    if (demi_null_write(w, "dem_replay_open", w, "world")) return 0;
     if (!(d.resolution >= 0) || !demi_finite(d.resolution)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: resolution is %g m, must be >= 0; 0 is "
                   "a 32nd of the smallest radius", (double)d.resolution);
@@ -33124,7 +33249,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
 }
 DEM_API dem_result dem_replay_value(dem_replay *r, const char *name, double value) {
     int k;
-    if (!r) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, "dem_replay_value", r, "replay")) return DEM_ERROR_ARGUMENT;
     if (!name || !*name || strlen(name) >= sizeof r->names[0])
         return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value: name is %.80s, must have "
                          "1 to %d letters", name ? *name ? name : "empty" : "null",
@@ -33147,7 +33272,7 @@ DEM_API dem_result dem_replay_value(dem_replay *r, const char *name, double valu
 }
 DEM_API dem_result dem_replay_close(dem_replay *r) {
     dem_result result;
-    if (!r) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, "dem_replay_close", r, "replay")) return DEM_ERROR_ARGUMENT;
     if (r->failed) {                            /* a frame is missing, told when it was asked for */
         demi_out_drop(&r->out);
         result = demi_film_check(r, "dem_replay_close");
