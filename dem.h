@@ -562,8 +562,8 @@ typedef enum dem_boundary {
 /* Added to a length before dividing by it. */
 #define DEMI_TINY (DEMI_SINGLE ? DEM_R(1e-30) : DEM_R(1e-200))
 #if defined(__GNUC__) && !defined(__TINYC__) && !defined(__cplusplus)
-extern double sqrt(double) __attribute__((const));  /* "const": does not set errno, so that roots */
-extern float sqrtf(float) __attribute__((const));  /* can be vectorised without -fno-math-errno */
+extern double (sqrt)(double) __attribute__((const));  /* "const": does not set errno, so roots */
+extern float (sqrtf)(float) __attribute__((const));  /* can be vectorised without -fno-math-errno */
 #endif
 DEM_INLINE dem_vec3 demi_v(dem_real x, dem_real y, dem_real z) { return dem_vec3_make(x, y, z); }
 DEM_INLINE dem_vec3 demi_at(const dem_real *p) { return dem_vec3_make(p[0], p[1], p[2]); }
@@ -2167,8 +2167,9 @@ DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const cha
        dem_replay_close(film);
 
    A grain takes some 6 bytes a frame, at most 29 with orientation and a number; one at rest 1.3.
-   The film is written to path.tmp and renamed by dem_replay_close; what lies there after a run that
-   was killed plays up to its last whole frame when it is renamed to a name in .html. */
+   The film is written to a new file, path.XXXXXXXX.tmp, which dem_replay_close renames to path. A
+   run that was killed leaves that file; it plays up to its last whole frame when it is renamed to a
+   name in .html. */
 typedef struct dem_replay dem_replay;
 enum { DEM_REPLAY_VALUES = 16 };
 typedef struct dem_replay_desc {
@@ -2378,11 +2379,56 @@ static inline dem_world *dem_world_create(const dem_world_desc *desc) {
    ============================================================================================== */
 #if defined(DEM_IMPLEMENTATION) && !defined(DEM_IMPLEMENTATION_DONE)
 #define DEM_IMPLEMENTATION_DONE
-/* windows.h makes macros of these two words. */
+/* windows.h makes macros of these two words, <complex.h> one of I, and programs make them of any
+   capital letter. Formulas below use them as names; the macros are back at the end. */
 #pragma push_macro("near")
 #pragma push_macro("far")
+#pragma push_macro("A")
+#pragma push_macro("B")
+#pragma push_macro("C")
+#pragma push_macro("D")
+#pragma push_macro("E")
+#pragma push_macro("F")
+#pragma push_macro("G")
+#pragma push_macro("H")
+#pragma push_macro("I")
+#pragma push_macro("J")
+#pragma push_macro("K")
+#pragma push_macro("L")
+#pragma push_macro("M")
+#pragma push_macro("N")
+#pragma push_macro("P")
+#pragma push_macro("Q")
+#pragma push_macro("R")
+#pragma push_macro("S")
+#pragma push_macro("T")
+#pragma push_macro("W")
+#pragma push_macro("X")
+#pragma push_macro("Y")
 #undef near
 #undef far
+#undef A
+#undef B
+#undef C
+#undef D
+#undef E
+#undef F
+#undef G
+#undef H
+#undef I
+#undef J
+#undef K
+#undef L
+#undef M
+#undef N
+#undef P
+#undef Q
+#undef R
+#undef S
+#undef T
+#undef W
+#undef X
+#undef Y
 
 /* ---------------------------------------------------------------------------------------------
    >>platform
@@ -18311,7 +18357,7 @@ static void demi_orient_finish(dem_world *w, int begin, int end) {
 
 typedef struct demi_integrator_row {
     const char *name;
-    void (*move)(dem_world *w, int begin, int end, int turning);
+    void (*advance)(dem_world *w, int begin, int end, int turning);
     void (*finish)(dem_world *w, int begin, int end);
     int order;
     int backward;                  /* it needs last_pos, the places of one step ago */
@@ -22952,7 +22998,7 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
     const size_t bytes = (size_t)(end - begin)*4*sizeof(dem_real);
     int i, l;
     if (w->bodies.booked && !w->stage.synced) demi_late_note(w, begin, end);
-    demi_integrator_rows[w->desc.integrator].move(w, begin, end, turning);
+    demi_integrator_rows[w->desc.integrator].advance(w, begin, end, turning);
     if (w->desc.planar)
         for (i = begin; i < end; i++) {
             w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = 0;
@@ -25050,22 +25096,47 @@ static dem_result demi_parse(dem_world *w, const char *call, const char *name, c
     return result;
 }
 
-/* Loads a file whole into bytes, which the caller frees, also after a failure. */
+/* Opens a file to be read. "r+b" does not wait for the other end of a pipe, "rb" would; but a file
+   that may not be written to is opened by the latter alone. */
+static FILE *demi_open(const char *path) {
+    FILE *file = fopen(path, "r+b");
+    return file ? file : fopen(path, "rb");
+}
+/* Bytes of an open file, which is wound back to its begin. DEMI_ENDLESS: a pipe or a terminal,
+   which have no length; of a device it is 0. What a long cannot count is DEMI_ENDLESS - 1. */
+#define DEMI_ENDLESS ((size_t)-1)
+static size_t demi_file_size(FILE *file) {
+    const int known = fseek(file, 0, SEEK_END) == 0;
+    const long size = known ? ftell(file) : -1;
+    if (!known || fseek(file, 0, SEEK_SET) != 0) return DEMI_ENDLESS;
+    return size < 0 ? DEMI_ENDLESS - 1 : (size_t)size;
+}
+/* Loads a file whole into bytes, which the caller frees, also after a failure. No more is read than
+   its length when it was opened: a device may have no end. */
 static dem_result demi_load(dem_world *w, const char *call, const char *path, char **bytes,
                             size_t *size) {
     FILE *file;
+    size_t length;
     dem_result result = DEM_OK;
     *size = 0;
     if (!path)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
-    errno = 0;
-    file = fopen(path, "rb");
-    while (file && !feof(file) && !ferror(file) && result == DEM_OK) {
-        if (demi_grow(w, DEMI_LOOSE, bytes, 1, *size + 65536))
-            *size += fread(*bytes + *size, 1, demi_room(*bytes, 1) - *size, file);
-        else result = demi_fail(w, DEM_ERROR_MEMORY, "%s: %.200s: no memory to load it beyond %.0f "
-                                "bytes; free some", call, path, (double)*size);
+    file = demi_open(path);
+    length = file ? demi_file_size(file) : 0;
+    if (length == DEMI_ENDLESS)
+        result = demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a pipe or a terminal, must be a file; "
+                           "write what comes through it into a file and read that", call, path);
+    if (file) errno = 0;
+    while (file && !feof(file) && !ferror(file) && result == DEM_OK && *size <= length) {
+        if (demi_grow(w, DEMI_LOOSE, bytes, 1, *size + 65536)) {
+            const size_t room = demi_room(*bytes, 1) - *size;
+            *size += fread(*bytes + *size, 1, DEMI_MIN(room, length + 1 - *size), file);
+        } else result = demi_fail(w, DEM_ERROR_MEMORY, "%s: %.200s: no memory to load it beyond "
+                                  "%.0f bytes; free some", call, path, (double)*size);
     }
+    if (result == DEM_OK && file && *size > length)
+        result = demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a device, or grows while it is read, "
+                           "must be a file at rest; copy it and read the copy", call, path);
     if (result == DEM_OK && (!file || ferror(file)))
         result = demi_fail(w, DEM_ERROR_FILE, "%s: cannot read %.200s: %s; check its name and "
                            "permissions", call, path, errno ? strerror(errno) : "unknown cause");
@@ -26531,19 +26602,18 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
 
 /* ---------------------------------------------------------------------------------------------
    >>write
-   demi_out_open gives a file of the name path.tmp; demi_out_close renames it to path when all went
-   well and removes it otherwise, so what stands under path is whole. A symbolic link stays: the
-   file it leads to is the one replaced. Pipes and terminals are refused, and what is there but
-   empty (a file, a device such as /dev/null) is written to as it is: it has nothing to lose. Write
-   errors stick to the FILE and are looked at once, on closing. Text has decimal points whatever the
-   locale says.
+   demi_out_open creates a file of a name that nobody has, path.XXXXXXXX.tmp; demi_out_close renames
+   it to path when all went well and removes it otherwise, so what is under path is whole. A
+   symbolic link stays: the file it leads to is the one replaced. Pipes and terminals are refused; a
+   device such as /dev/null is written to as it is. Write errors stick to the FILE and are looked at
+   once, on closing. Text has decimal points whatever the locale says.
    --------------------------------------------------------------------------------------------- */
 
 typedef struct demi_out {
     dem_world *world;
     const char *call, *path;
     char *place;                /* path, or where it leads when it is a link                      */
-    char *temporary;            /* place.tmp; null: place itself is written to                    */
+    char *temporary;            /* place.XXXXXXXX.tmp; null: place itself is written to           */
     size_t room;                /* bytes of each of the two                                       */
     FILE *file;
 } demi_out;
@@ -26563,6 +26633,7 @@ static long demi_readlink(const char *path, char *to, size_t size) {
 }
 #endif
 enum { DEMI_LINK = 1024, DEMI_LINKS = 16 };   /* bytes of a link's target; links on the way */
+enum { DEMI_SUFFIX = 14 };                      /* bytes of .XXXXXXXX.tmp and the 0 */
 /* Replaces place by what it leads to when it is a link. 0: too long, or in a circle. */
 static int demi_link_follow(char *place, size_t room) {
     char to[DEMI_LINK];
@@ -26572,7 +26643,7 @@ static int demi_link_follow(char *place, size_t room) {
         const char *slash = strrchr(place, '/');
         const size_t folder = n < 1 || to[0] == '/' || !slash ? 0 : (size_t)(slash - place) + 1;
         if (n < 0) return 1;
-        if ((size_t)n >= sizeof to || folder + (size_t)n + 5 > room) return 0;
+        if ((size_t)n >= sizeof to || folder + (size_t)n + DEMI_SUFFIX > room) return 0;
         memcpy(place + folder, to, (size_t)n);
         place[folder + (size_t)n] = 0;
     }
@@ -26583,9 +26654,25 @@ static void demi_out_free(demi_out *o) {
     demi_free(o->world, o->place);
     demi_free(o->world, o->temporary);
 }
-static void demi_out_empty(const demi_out *o) {           /* what was empty is so again */
-    FILE *empty = fopen(o->place, "wb");
-    if (empty) fclose(empty);
+/* Creates a file of a name that nobody has or can guess. C11's "x" refuses a name that is taken,
+   also by a link; a library that does not know it is asked first whether the name is. */
+static FILE *demi_out_create(demi_out *o) {
+    uint64_t random = (uint64_t)time(0) ^ (uint64_t)(uintptr_t)o << 20 ^ (uint64_t)clock() << 40 ^
+        (uint64_t)(uintptr_t)o->temporary ^ (uint64_t)(1e9*fmod(demi_clock(), 1e6));
+    FILE *file = 0;
+    int tries;
+    for (tries = 0; tries < 100 && !file; tries++) {
+        sprintf(o->temporary, "%s.%08lx.tmp", o->place,
+                (unsigned long)(demi_random(&random) >> 32));
+        errno = 0;
+        file = fopen(o->temporary, "wbx");
+        if (file || errno == EEXIST) continue;
+        if (errno != EINVAL) return 0;
+        file = fopen(o->temporary, "rb");
+        if (file) { fclose(file); file = 0; continue; }
+        return fopen(o->temporary, "wb");
+    }
+    return file;
 }
 /* Ends a file: renames it to its place if all was written, removes it if not. Where rename refuses
    to replace a file (Windows), the old one is removed first; a folder of that name never is. */
@@ -26602,7 +26689,6 @@ static dem_result demi_out_close(demi_out *o) {
     }
     if (!whole) {
         if (o->file && o->temporary) remove(o->temporary);
-        if (o->file && !o->temporary) demi_out_empty(o);
         demi_fail(o->world, DEM_ERROR_FILE, "%s: cannot write %.200s: %s; check that its folder "
                   "exists, may be written to and has room", o->call, o->path,
                   cause ? strerror(cause) : "unknown cause");
@@ -26615,20 +26701,20 @@ static dem_result demi_out_close(demi_out *o) {
 static void demi_out_drop(demi_out *o) {
     fclose(o->file);
     if (o->temporary) remove(o->temporary);
-    else demi_out_empty(o);
     demi_out_free(o);
 }
 /* Begins a file under a temporary name. If this fails there is nothing to close. */
 static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, const char *path) {
     size_t length;
     FILE *there;
+    size_t size;
     if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
     memset(o, 0, sizeof *o);
     o->world = w;
     o->call = call;
     o->path = path;
     length = strlen(path);
-    o->room = length + DEMI_LINK + 5;
+    o->room = length + DEMI_LINK + DEMI_SUFFIX;
     o->place = (char *)demi_alloc(w, o->room, 1);
     o->temporary = (char *)demi_alloc(w, o->room, 1);
     if (!o->place || !o->temporary) {
@@ -26637,15 +26723,16 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
     }
     memcpy(o->place, path, length + 1);
     there = fopen(path, "r+b");                 /* of a pipe: does not wait for its other end */
-    if (there && fseek(there, 0, SEEK_END) != 0) {
+    size = there ? demi_file_size(there) : 0;
+    if (size == DEMI_ENDLESS) {
         fclose(there);
         demi_out_free(o);
         return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a pipe or a terminal, must be a file, "
                          "which is written whole or not at all; write a file and send that", call,
                          path);
     }
-    errno = 0;
-    if (there && ftell(there) == 0) {
+    /* beyond the end of an empty file there are places to go to, of a device there are none */
+    if (there && !size && (fseek(there, 1, SEEK_SET) != 0 || ftell(there) != 1)) {
         demi_free(w, o->temporary);
         o->temporary = 0;
         o->file = there;
@@ -26657,11 +26744,7 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
         return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a link that leads in a circle or "
                          "through too many others; give the file itself", call, path);
     }
-    length = strlen(o->place);
-    memcpy(o->temporary, o->place, length);
-    memcpy(o->temporary + length, ".tmp", 5);
-    errno = 0;
-    o->file = fopen(o->temporary, "wb");
+    o->file = demi_out_create(o);
     return o->file ? DEM_OK : demi_out_close(o);
 }
 
@@ -27310,7 +27393,10 @@ static dem_result demi_csv_append(dem_world *w, const char *call, const char *pa
     FILE *file;
     if (!path) return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: path is null; give a file name", call);
     errno = 0;
-    file = fopen(path, "a+b");
+    file = fopen(path, "r+b");                  /* of a pipe: does not wait, and is refused */
+    whole = !file || demi_file_size(file) != DEMI_ENDLESS;
+    if (file) fclose(file);
+    file = whole ? fopen(path, "a+b") : 0;
     whole = file && fseek(file, 0, SEEK_END) == 0;
     if (whole && ftell(file) > 0) {
         whole = fseek(file, -1, SEEK_END) == 0;
@@ -28716,7 +28802,7 @@ static dem_result demi_csv_resume(dem_world *w, const char *path, const char *he
     size_t size = 0, keep;
     demi_out out;
     dem_result result;
-    FILE *there = fopen(path, "rb");
+    FILE *there = demi_open(path);
     if (!there) return DEM_OK;
     fclose(there);
     result = demi_load(w, call, path, &data, &size);
@@ -33297,6 +33383,28 @@ DEM_API dem_result dem_replay_close(dem_replay *r) {
 #elif defined(__GNUC__) && !defined(__TINYC__)
 #pragma GCC pop_options
 #endif
+#pragma pop_macro("Y")
+#pragma pop_macro("X")
+#pragma pop_macro("W")
+#pragma pop_macro("T")
+#pragma pop_macro("S")
+#pragma pop_macro("R")
+#pragma pop_macro("Q")
+#pragma pop_macro("P")
+#pragma pop_macro("N")
+#pragma pop_macro("M")
+#pragma pop_macro("L")
+#pragma pop_macro("K")
+#pragma pop_macro("J")
+#pragma pop_macro("I")
+#pragma pop_macro("H")
+#pragma pop_macro("G")
+#pragma pop_macro("F")
+#pragma pop_macro("E")
+#pragma pop_macro("D")
+#pragma pop_macro("C")
+#pragma pop_macro("B")
+#pragma pop_macro("A")
 #pragma pop_macro("far")
 #pragma pop_macro("near")
 #endif /* DEM_IMPLEMENTATION */

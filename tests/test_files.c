@@ -105,6 +105,13 @@ static int file_is_there(const char *path) {
     return file != 0;
 }
 
+/* Is there no file whose name begins with this one's and a dot? Without a shell: yes. */
+static int nothing_beside(const char *path) {
+    char command[200];
+    snprintf(command, sizeof command, "ls %s.* > build/tmp/beside 2> build/tmp/beside.err", path);
+    return system(command) != 0;
+}
+
 /* What a writer does to a world, for tests that go through all of them. */
 typedef dem_result (*writer_fn)(dem_world *world, const char *path);
 static dem_result walls_write(dem_world *world, const char *path) {
@@ -744,10 +751,11 @@ static void whole_or_absent(void) {
     scene_memory p;
     dem_world *world = three_make(&p);
     dem_mesh mesh;
+    dem_wall wall;
     size_t size;
     char *text;
     parse(world, box_text, &mesh, 0);
-    dem_mesh_add(world, material_make(world), &mesh);
+    wall = dem_mesh_add(world, material_make(world), &mesh);
     dem_mesh_free(world, &mesh);
 
     TEST("a writer that cannot open its file names it and the cause") {
@@ -757,7 +765,7 @@ static void whole_or_absent(void) {
             CHECK_STR(dem_world_error(world), "cannot write build/tmp/no_folder/x.out: ");
             CHECK_EQ(writers[i](world, 0), DEM_ERROR_ARGUMENT);
             CHECK_EQ(writers[i](world, "build/tmp"), DEM_ERROR_FILE); /* a folder stays a folder */
-            CHECK(!file_is_there("build/tmp.tmp"));
+            CHECK(nothing_beside("build/tmp"));
         }
     }
     TEST("a file is replaced as a whole, and nothing temporary is left") {
@@ -767,9 +775,74 @@ static void whole_or_absent(void) {
             text = file_get("build/tmp/old.out", &size);
             CHECK(size > 100);
             free(text);
-            CHECK(!file_is_there("build/tmp/old.out.tmp"));
+            CHECK(nothing_beside("build/tmp/old.out"));
         }
         remove("build/tmp/old.out");
+    }
+    TEST("writing a file leaves alone what has its name and .tmp: a file, a link and where it leads") {
+        remove("build/tmp/victim"); remove("build/tmp/new.out.tmp");
+        for (int i = 0; i < 4; i++) {
+            file_put("build/tmp/victim", "mine", 4);
+            if (i%2 || system("ln -s victim build/tmp/new.out.tmp") != 0)
+                file_put("build/tmp/new.out.tmp", "mine", 4);
+            CHECK_EQ(writers[i](world, "build/tmp/new.out"), DEM_OK);
+            text = file_get("build/tmp/victim", &size);
+            CHECK(size == 4 && !strncmp(text, "mine", 4));
+            free(text);
+            text = file_get("build/tmp/new.out.tmp", &size);
+            CHECK(size == 4 && !strncmp(text, "mine", 4));
+            free(text);
+            remove("build/tmp/new.out.tmp");
+            CHECK(nothing_beside("build/tmp/new.out"));
+            remove("build/tmp/new.out");
+        }
+        remove("build/tmp/victim");
+    }
+    TEST("two writers of one name have a temporary file each, and the last to end gives the file") {
+        demi_out one, two;
+        CHECK_EQ(demi_out_open(&one, world, "one", "build/tmp/same.out"), DEM_OK);
+        CHECK_EQ(demi_out_open(&two, world, "two", "build/tmp/same.out"), DEM_OK);
+        CHECK(strcmp(one.temporary, two.temporary) != 0);
+        fputs("one", one.file);
+        fputs("two", two.file);
+        CHECK_EQ(demi_out_close(&two), DEM_OK);
+        CHECK_EQ(demi_out_close(&one), DEM_OK);
+        text = file_get("build/tmp/same.out", &size);
+        CHECK(size == 3 && !strncmp(text, "one", 3));
+        free(text);
+        CHECK(nothing_beside("build/tmp/same.out"));
+        remove("build/tmp/same.out");
+    }
+    TEST("an empty file stays empty until the one that replaces it is whole") {
+        demi_out out;
+        file_put("build/tmp/empty.out", "", 0);
+        CHECK_EQ(demi_out_open(&out, world, "empty", "build/tmp/empty.out"), DEM_OK);
+        fputs("half", out.file);
+        fflush(out.file);
+        text = file_get("build/tmp/empty.out", &size);
+        CHECK_EQ(size, 0);
+        free(text);
+        demi_out_drop(&out);
+        CHECK(file_is_there("build/tmp/empty.out") && nothing_beside("build/tmp/empty.out"));
+        remove("build/tmp/empty.out");
+    }
+    TEST("meshes, profiles, grains and checkpoints are not read from a pipe, a device or a folder") {
+        static const char *const names[] = {"build/tmp/pipe.in", "/dev/zero", "build/tmp"};
+        dem_mesh read;
+        dem_profile profile;
+        dem_grains grains;
+        remove("build/tmp/pipe.in");
+        CHECK(1);
+        if (system("mkfifo build/tmp/pipe.in && test -c /dev/zero") != 0) continue;
+        for (int i = 0; i < 3; i++) {
+            CHECK_EQ(dem_mesh_read(world, names[i], &read, 0), DEM_ERROR_FILE);
+            CHECK_STR(dem_world_error(world), names[i]);
+            CHECK_EQ(dem_profile_read(world, names[i], &profile), DEM_ERROR_FILE);
+            CHECK_EQ(dem_grains_read(world, names[i], &grains), DEM_ERROR_FILE);
+            CHECK_EQ(dem_checkpoint_read(world, names[i]), DEM_ERROR_FILE);
+        }
+        CHECK_EQ(dem_wall_loads_csv(world, wall, names[0]), DEM_ERROR_FILE);
+        remove("build/tmp/pipe.in");
     }
     TEST("when the disk is full the older file stays whole") {
         FILE *full = fopen("/dev/full", "wb");
@@ -783,7 +856,7 @@ static void whole_or_absent(void) {
         for (int i = 0; i < 100000; i++) demi_out_number(&out, "12345678", 8, 0);
         CHECK_EQ(demi_out_close(&out), DEM_ERROR_FILE);
         CHECK_STR(dem_world_error(world), "dem_vtp_write: cannot write build/tmp/old.out: No space left");
-        CHECK(!file_is_there("build/tmp/old.out.tmp"));
+        CHECK(nothing_beside("build/tmp/old.out"));
         text = file_get("build/tmp/old.out", &size);
         CHECK(text && strcmp(text, "old") == 0);
         free(text);
@@ -800,7 +873,7 @@ static void whole_or_absent(void) {
                 CHECK_EQ(p.bytes, held);
                 if (result == DEM_OK) break;
                 CHECK_EQ(result, DEM_ERROR_MEMORY);
-                CHECK(!file_is_there("build/tmp/memory.out") && !file_is_there("build/tmp/memory.out.tmp"));
+                CHECK(!file_is_there("build/tmp/memory.out") && nothing_beside("build/tmp/memory.out"));
             }
             p.refuse = 0;
             CHECK_EQ(result, DEM_OK);

@@ -330,7 +330,6 @@ int main(int argc, char **argv) {
         dem_replay_desc desc = DEM_REPLAY_DESC;
         dem_replay *film;
         char name[80];
-        FILE *in;
         int k;
         CHECK(!dem_replay_open(0, film_path, 0));
         CHECK(!dem_replay_open(w, 0, 0));
@@ -369,8 +368,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(film_next(&f), 1);
         CHECK_EQ(f.given, DEM_REPLAY_VALUES - 1);          /* what is no number leaves a gap */
         free(f.text);
-        in = fopen("build/tmp/film.html.tmp", "rb");
-        CHECK(!in);
+        CHECK(system("ls build/tmp/film.html.* > build/tmp/beside 2> build/tmp/beside.err") != 0);
         dem_world_destroy(w);
     }
     TEST("a film with an interval takes its frames by itself: at its begin, each interval later to half a step, however the run is "
