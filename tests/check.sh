@@ -33,6 +33,32 @@ one_file="-DDEM_IMPLEMENTATION $user"
 strict="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wundef -Werror"
 float="-DDEM_REAL=float"
 
+# dem.h after other headers, whose macros must not be names in it: all of C99, those of POSIX, and two that are
+# full of macros. capitals: every capital letter is a macro of the program
+after() {                                      # GROUP HEADER...: those that are here, then dem.h
+    group=$1; shift; : > $dir/after.h
+    for header in "$@"; do
+        printf '#include <%s>\n' "$header" > $dir/probe.c
+        if cc -std=gnu99 -fsyntax-only $dir/probe.c 2>/dev/null; then cat $dir/probe.c >> $dir/after.h
+        else skip "<$header> not found: dem.h is not compiled after it${hint:+ ($hint)}"; fi
+    done
+    [ -s $dir/after.h ] || return 0
+    { cat $dir/after.h; printf '#define DEM_IMPLEMENTATION\n#include "dem.h"\n'; } > $dir/after_$group.c
+    headers="$headers $group"
+}
+headers=all_capitals; hint=
+{ for letter in A B C D E F G H I J K L M N O P Q R S T U V W X Y Z; do echo "#define $letter -;"; done
+  printf '#define DEM_IMPLEMENTATION\n#include "dem.h"\n'; } > $dir/after_all_capitals.c
+after standard_C99 assert.h complex.h ctype.h errno.h fenv.h float.h inttypes.h iso646.h limits.h locale.h math.h setjmp.h \
+    signal.h stdarg.h stdbool.h stddef.h stdint.h stdio.h stdlib.h string.h time.h wchar.h wctype.h
+after standard_tgmath tgmath.h
+after system_POSIX dirent.h fcntl.h glob.h grp.h netdb.h netinet/in.h poll.h pthread.h pwd.h regex.h sched.h semaphore.h \
+    sys/ipc.h sys/mman.h sys/param.h sys/resource.h sys/select.h sys/socket.h sys/stat.h sys/sysmacros.h sys/time.h \
+    sys/types.h sys/un.h sys/wait.h syslog.h termios.h unistd.h utime.h
+hint="Debian package libncurses-dev"; after system_curses curses.h
+hint="Debian package libx11-dev"; after system_X11 X11/Xlib.h X11/Xutil.h
+hint=
+
 for cc in gcc clang tcc; do
     found $cc || { skip "$cc not found (Debian package $cc)"; continue; }
     openmp=; hint=; [ $cc = clang ] && hint=" (Debian package libomp-dev)"
@@ -48,6 +74,10 @@ for cc in gcc clang tcc; do
         try "$cc${real:+ float}: DEM_NO_SPECIALIZE"        "$cc -I. $real -DDEM_NO_SPECIALIZE $one_file -o \$bin -lm && \$bin"
         [ "$openmp" ] &&
         try "$cc${real:+ float}: OpenMP"                   "$cc -I. $real -O1 -fopenmp $one_file -o \$bin -lm && \$bin"
+    done
+    for group in $headers; do
+        [ $cc = tcc ] && [ $group != all_capitals ] ||      # tcc does not read all that the C library has
+        try "$cc: after ${group%%_*} headers, ${group#*_}" "$cc -std=gnu99 -I. -c $dir/after_$group.c -o \$bin.o"
     done
     try "$cc: header and implementation of two precisions refuse each other" \
         "$cc -I. -c dem.c -o \$bin.o && $cc -I. $float $user \$bin.o -o \$bin -lm && { \$bin; test \$? -eq 1; }"
