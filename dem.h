@@ -190,6 +190,13 @@
    Ids stay good until what they name is removed; that of a removed body is told from that of the
    one that got its place. Indices (0 .. count - 1) change whenever bodies are sorted.
 
+   Functions that you hand over (laws, fields, motions, regions, progress, numbers of a replay) may
+   call what takes the world as const. All else that changes the world is refused there by name, and
+   nothing happens; note what is to be done and do it after the call, or let the function of an
+   output (DEM_OUTPUT_CALL) do it between two steps: that one may change the world, but not step or
+   destroy it. Progress functions, those of dem_contacts_each and an output's values may also write
+   files and frames of replays.
+
    The report (dem_world_report), line by line:
        bodies      how many, of which radii; inserted = present + removed + left
        time step   t_c, how many steps it has, what binds it: stiffen, soften or slow down that
@@ -1475,7 +1482,7 @@ DEM_API dem_wall dem_cylinder_add(dem_world *world, dem_material material, dem_v
    finite cylinder, a cone, a disc with a hole, a tube that ends in a funnel, a drum with its ends.
    Both sides push. It is one surface: in an inner corner a grain touches both pieces, at an outer
    one and at a rim the ring. A grain that is wider than the place it is in touches it on one side.
-   Spheres, discs and clusters know it, ellipsoids do not. Null id on bad values. */
+   Spheres, discs, clusters and polyhedra touch it; ellipsoids do not. Null id on bad values. */
 enum { DEM_RINGS = 12 };
 DEM_API dem_wall dem_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
@@ -4303,17 +4310,21 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
     if (demi_null_look(w, "dem_pairs_print", out, "out")) return;
     int i, j;
     fprintf(out, "pair       E* [Pa]      G* [Pa]      e      mu     mu_s   mu_r   k [N/m]    "
-            "kt/kn\n");
+            "kt/kn%s\n", demi_impulsive(w) ? "  mu_spin cohesion [N] compliance [m/N]" : "");
     for (i = 0; i < w->material_count; i++)
         for (j = i; j < w->material_count; j++) {
             const dem_pair *p = &w->pairs[i*DEMI_MATERIALS + j].given;
-            fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %.4g\n",
+            fprintf(out, "%2d - %-2d  %12.6g %12.6g  %-6.4g %-6.4g %-6.4g %-6.4g %-10.4g %-6.4g",
                     i + 1, j + 1,
                     (double)p->young_eff, (double)p->shear_eff, (double)p->restitution,
                     (double)p->friction,
                     (double)DEMI_MAX(p->friction, p->friction_static),
                     (double)p->rolling_friction, (double)p->stiffness,
                     (double)p->stiffness_ratio);
+            if (demi_impulsive(w))
+                fprintf(out, " %-7.4g %-12.4g %.4g", (double)p->spinning_friction,
+                        (double)p->cohesion, (double)p->compliance);
+            fprintf(out, "\n");
         }
 }
 
@@ -29519,6 +29530,7 @@ static dem_real demi_any(const dem_pair *p) { (void)p; return 1; }
 static dem_real demi_rubs(const dem_pair *p) { return DEMI_MAX(p->friction, p->friction_static); }
 static dem_real demi_rolls(const dem_pair *p) { return p->rolling_friction; }
 static dem_real demi_sticks(const dem_pair *p) { return p->stiffness_adhesion; }
+static dem_real demi_coheres(const dem_pair *p) { return p->cohesion; }
 
 static dem_effect_state demi_look_contacts(const dem_world *w, dem_effect *e) {
     const char *name = demi_normal_laws[w->desc.normal_law].name;
@@ -29544,7 +29556,7 @@ static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
     return demi_look_pairs(w, demi_rolls, demi_rolling_laws[law].name, e);
 }
 static dem_effect_state demi_look_adhesion(const dem_world *w, dem_effect *e) {
-    if (demi_impulsive(w)) return demi_look_off(e, "impulses only push");
+    if (demi_impulsive(w)) return demi_look_pairs(w, demi_coheres, "cohesion of impulses", e);
     if (w->desc.law) return demi_look_off(e, "left to your own law");
     if (!demi_normal_is(w, DEMI_BRANCHED))
         return demi_look_off(e, "only the hysteretic normal law has it");
@@ -29708,7 +29720,7 @@ static void demi_leave_adhesion(dem_world *t, demi_again *own) {
     for (i = 0; i < t->material_count; i++)
         for (j = i; j < t->material_count; j++) {
             dem_pair p = t->pairs[i*DEMI_MATERIALS + j].given;
-            p.stiffness_adhesion = 0;
+            p.stiffness_adhesion = p.cohesion = 0;
             demi_pair_put(t, i, j, &p);
         }
 }
@@ -33182,7 +33194,7 @@ static void demi_film_grain(dem_replay *r, const dem_bodies *b, int s, int i) {
     } else if (r->real >= 0) own = (float)b->reals[b->real_count*i + r->real];
     if (told != one->speed) flags |= 64;
     if (turn != one->turn) more |= 1;
-    if (own < one->own || own > one->own) more |= 2;
+    if (memcmp(&own, &one->own, sizeof own)) more |= 2;    /* by its bits: what is none, too */
     demi_film_byte(r, more ? flags | 128 : flags);
     for (k = 0; k < 3; k++) {
         const int size = flags >> 2*k & 3;

@@ -433,9 +433,208 @@ static double sticky(double d, double *D, double kn, double kun, double kad) {
     return kun*d - (kun - kn)*(*D);
 }
 
+/* ---- functions of the user's that try to change the world ---- */
+
+enum { FROM_EACH, FROM_BONDS, FROM_MOTION, FROM_FORCE, FROM_LAW, FROM_REALS, FROM_PROGRESS, FROM_NUMBER, FROM_FEED,
+       FROM_FILL, FROM_PACK, FROM_VALUES, FROM_ALLOCATOR, FROM_ADVISE, FROM_SLABS, FROM_COUNT };
+static const char *const intruders[FROM_COUNT] = {
+    "contact function", "bond function", "motion", "force", "law", "rate of numbers", "progress function", "film's number",
+    "feed's region", "filled region", "packed region", "output's values", "allocator", "law of a trial", "law in slabs"};
+/* One to change the world: 1 when it was refused by name and for that reason. The calls of a law are
+   made by two threads at a time. */
+typedef struct intruder {
+    dem_world *world;
+    dem_material stuff;
+    dem_wall wall;
+    dem_slabs *slabs;
+    dem_replay *film;
+    const char *file;
+    long calls, refused;
+} intruder;
+static intruder intrudes;
+static void intrude_each(const dem_contact_info *c, dem_real *m, void *u);
+static int intrude_one(int k) {
+    dem_world *w = intrudes.world;
+    const dem_body first = dem_bodies_id(w, 0);
+    dem_motion still = DEM_MOTION;
+    dem_output_desc output = DEM_OUTPUT_DESC;
+    const dem_vec3 v = at(1, 2, 3);
+    switch (k) {
+    case 0: return dem_body_remove(w, first) != DEM_OK;
+    case 1: return !dem_sphere_add(w, intrudes.stuff, DEM_R(1e-3), v).slot;
+    case 2: return dem_search_now(w) != DEM_OK;
+    case 3: return dem_world_step(w, 1) != DEM_OK;
+    case 4: return !dem_plane_add(w, intrudes.stuff, v, v).id;
+    case 5: return dem_wall_remove(w, intrudes.wall) != DEM_OK;
+    case 6: return dem_checkpoint_read(w, intrudes.file) != DEM_OK;
+    case 7: return dem_world_gravity_set(w, v) != DEM_OK;
+    case 8: return dem_world_run(w, 1e-3, 0, 0) != DEM_OK;
+    case 9: return dem_wall_motion(w, intrudes.wall, &still) != DEM_OK;
+    case 10: dem_world_destroy(w); return 1;
+    case 11: output.interval = 1; output.kind = DEM_OUTPUT_VTP; output.path = "no.vtp";
+        return !dem_output_add(w, &output).id;
+    case 12: return dem_world_check(w, 0, 0) == 0;
+    case 13: return dem_contacts_each(w, intrude_each, 0) < 0;
+    case 14: return dem_world_dt_set(w, DEM_R(1e-9)) != DEM_OK;
+    default: return -1;
+    }
+}
+/* The first calls alone: each tries them all. */
+static void intrude(void) {
+    int k, answer;
+    if ((!intrudes.world && !intrudes.slabs) || intrudes.calls > 3) return;
+#ifdef _OPENMP
+    #pragma omp atomic
+#endif
+    intrudes.calls++;
+    if (intrudes.slabs) {                       /* a world that was dealt to slabs may be changed */
+        dem_slabs_destroy(intrudes.slabs);
+        if (dem_slabs_step(intrudes.slabs, 1) == DEM_OK) intrudes.refused--;
+        return;
+    }
+    for (k = 0; (answer = intrude_one(k)) >= 0; k++)
+        if (!answer) {
+#ifdef _OPENMP
+            #pragma omp atomic
+#endif
+            intrudes.refused--;
+        }
+}
+static void intrude_each(const dem_contact_info *c, dem_real *m, void *u) { (void)c; (void)m; (void)u; intrude(); }
+static void intrude_motion(double t, dem_pose *p, void *u) {
+    (void)t; (void)u;
+    memset(p, 0, sizeof *p);
+    p->rotation[0] = p->rotation[4] = p->rotation[8] = 1;
+    intrude();
+}
+static dem_vec3 intrude_force(dem_vec3 x, dem_vec3 v, dem_real r, dem_real m, double t, void *u) {
+    (void)x; (void)v; (void)r; (void)m; (void)t; (void)u;
+    intrude();
+    return at(0, 0, 0);
+}
+static void intrude_law(const dem_contact *c, dem_real *m, dem_contact_force *f) {
+    (void)m;
+    f->normal = 1000*c->overlap;
+    intrude();
+}
+static void intrude_reals(dem_real *reals, const dem_real *rates, const dem_body_state *body, dem_body id, double time, dem_real dt,
+                          void *user) {
+    (void)reals; (void)rates; (void)body; (void)id; (void)time; (void)dt; (void)user;
+    intrude();
+}
+static int intrude_progress(const dem_world *w, double a, double b, void *u) { (void)w; (void)a; (void)b; (void)u; intrude(); return 0; }
+static double intrude_number(const dem_world *w, dem_body b, void *u) { (void)w; (void)b; (void)u; intrude(); return 0; }
+static int intrude_region(dem_vec3 x, dem_real r, void *u) { (void)x; (void)r; (void)u; intrude(); return 1; }
+static void intrude_values(const dem_world *w, double *v, void *u) { (void)w; (void)u; v[0] = 0; intrude(); }
+static void *intrude_alloc(size_t size, void *u) { if (*(int *)u) intrude(); return malloc(size); }
+static void intrude_free(void *memory, size_t size, void *u) { (void)size; if (*(int *)u) intrude(); free(memory); }
+/* A bed on a floor; from `begin` on the function that `from` names tries to change it. The hash after
+   steps that follow. */
+static uint64_t intruded(int from, int begin, int response) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_motion motion = DEM_MOTION;
+    dem_output_desc output = DEM_OUTPUT_DESC;
+    dem_replay_desc film = DEM_REPLAY_DESC;
+    dem_feed_desc feed = DEM_FEED_DESC;
+    dem_region region = DEM_REGION;
+    dem_slabs_desc slabs = DEM_SLABS_DESC;
+    const dem_shape none = {0};
+    const dem_box above = box_of(0, 0, 0.02, 0.02, 0.02, 0.03);
+    dem_real x[3*27];
+    dem_world *w;
+    int i, trying = 0;
+    uint64_t hash;
+    intrudes.world = 0;
+    intrudes.calls = intrudes.refused = 0;
+    desc.gravity.z = DEM_R(-9.81);
+    desc.threads = 2;
+    desc.dt = DEM_R(1e-6);
+    if (response) desc.response = DEM_RESPONSE_IMPULSES;
+    if (from == FROM_FORCE) desc.force = intrude_force;
+    if (from == FROM_LAW || from == FROM_ADVISE || from == FROM_SLABS) { desc.law = intrude_law; desc.law_stiffness = 1000; }
+    if (from == FROM_REALS) { desc.body_reals = "t"; desc.body_reals_fn = intrude_reals; }
+    if (from == FROM_ALLOCATOR) { desc.allocator.alloc_fn = intrude_alloc; desc.allocator.free_fn = intrude_free; desc.allocator.user = &trying; }
+    w = dem_world_create(&desc);
+    intrudes.stuff = scene_material(w, 1e6, 0.5, 0.5, 0);
+    intrudes.wall = dem_plane_add(w, intrudes.stuff, at(0, 0, 0), at(0, 0, 1));
+    for (i = 0; i < 27; i++) {
+        x[3*i] = DEM_R(1.99e-3)*(dem_real)(i%3);
+        x[3*i + 1] = DEM_R(1.99e-3)*(dem_real)(i/3%3);
+        x[3*i + 2] = DEM_R(0.995e-3) + DEM_R(1.99e-3)*(dem_real)(i/9);
+    }
+    dem_spheres_add(w, intrudes.stuff, 27, x, 0, 0, DEM_R(1e-3));
+    dem_world_step(w, 3);
+    intrudes.file = saved;
+    CHECK_EQ(dem_checkpoint_write(w, saved), DEM_OK);
+    if (begin) intrudes.world = w;
+    trying = begin;
+    motion.kind = DEM_MOTION_USER; motion.function = intrude_motion;
+    film.number_fn = intrude_number;
+    feed.material = intrudes.stuff; feed.class_count = 1; feed.radius[0] = DEM_R(1e-3); feed.amount[0] = 1; feed.rate = 1e6;
+    feed.box = region.box = above; feed.inside = region.inside = intrude_region;
+    output.kind = DEM_OUTPUT_CSV; output.path = "build/tmp/intruded.csv"; output.columns = "a"; output.values = intrude_values;
+    output.interval = 1e-6;
+    slabs.count = 2;
+    switch (from) {
+    case FROM_EACH: dem_contacts_each(w, intrude_each, 0); break;
+    case FROM_BONDS: dem_bonds_make(w, 0, intrude_each, 0); break;
+    case FROM_MOTION: dem_wall_motion(w, intrudes.wall, &motion); break;
+    case FROM_PROGRESS: dem_world_run(w, 1e-5, intrude_progress, 0); break;
+    case FROM_NUMBER: { dem_replay *r = dem_replay_open(w, "build/tmp/intruded.html", &film); dem_replay_frame(r); dem_replay_close(r); break; }
+    case FROM_FEED: dem_feed_add(w, &feed); break;
+    case FROM_FILL: dem_region_fill(w, &region, intrudes.stuff, none, DEM_R(1e-3), 20, 1); break;
+    case FROM_PACK: dem_spheres_pack(w, intrudes.stuff, DEM_R(1e-3), 0, above, intrude_region, 0, 20); break;
+    case FROM_VALUES: dem_output_add(w, &output); break;
+    case FROM_ALLOCATOR: dem_spheres_fill(w, intrudes.stuff, DEM_R(1e-3), above, 200, 1); break;
+    case FROM_ADVISE: {
+        dem_effect effects[DEM_EFFECTS];
+        CHECK_EQ(dem_effects_get(w, 0.02, effects), DEM_EFFECTS);
+        break;
+    }
+    case FROM_SLABS: {
+        dem_slabs *dealt = dem_slabs_create(w, &slabs);
+        intrudes.world = 0;
+        if (begin) intrudes.slabs = dealt;
+        CHECK_EQ(dem_slabs_step(dealt, 3), DEM_OK);
+        intrudes.slabs = 0;
+        if (begin) CHECK_STR(dem_slabs_error(dealt), "dem_slabs_step: called by a function of yours");
+        if (begin) CHECK(intrudes.calls > 0 && intrudes.refused == 0);
+        CHECK_EQ(dem_slabs_collect(dealt, w), DEM_OK);
+        dem_slabs_destroy(dealt);
+        break;
+    }
+    default: break;
+    }
+    dem_world_step(w, 3);                       /* stops short where a refusal builds the scene */
+    if (begin && from != FROM_SLABS) {
+        CHECK(intrudes.calls > 0 && intrudes.refused == 0);
+        CHECK_STR(dem_world_error(w), "called by a function of yours");
+        if (intrudes.refused) printf("        from a %s: %ld calls were not refused\n", intruders[from], -intrudes.refused);
+    }
+    trying = 0;
+    intrudes.world = 0;
+    dem_world_error(w);
+    dem_world_step(w, 20 - (int)dem_world_steps(w));
+    if (from == FROM_PROGRESS) dem_world_step(w, 10);
+    hash = dem_world_hash(w);
+    dem_world_destroy(w);
+    remove("build/tmp/intruded.csv");
+    remove("build/tmp/intruded.html");
+    remove(saved);
+    return hash;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
+    TEST("a law, field, motion, region or other function of the user's that changes the world is refused by name and changes no bit") {
+        int from, response;
+        for (response = 0; response < 2; response++)
+            for (from = 0; from < FROM_COUNT; from++) {
+                if (response && (from == FROM_BONDS || from == FROM_LAW || from == FROM_ADVISE || from == FROM_SLABS)) continue;
+                CHECK(intruded(from, 0, response) == intruded(from, 1, response));
+            }
+    }
     TEST("friction, rolling friction, stiffness and damping that dem_pair_set brings into a run, "
          "or takes out of it, act from the next step on as in a world that had them from the "
          "start; friction taken away and given back begins without memory; threads and a "

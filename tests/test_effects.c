@@ -67,6 +67,37 @@ int main(int argc, char **argv) {
         CHECK_EQ(effects_of(world, "contacts").state, DEM_EFFECT_IDLE);
         dem_world_destroy(world);
     }
+    TEST("cohesion under impulses counts as adhesion, and the pair table prints what impulses have beside springs") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        dem_pair pair;
+        dem_material glass;
+        char text[2000] = "";
+        FILE *out = tmpfile();
+        desc.response = DEM_RESPONSE_IMPULSES;
+        desc.dt = DEM_R(1e-4);
+        world = dem_world_create(&desc);
+        glass = scene_material(world, 1e7, 0.5, 0, 0);
+        dem_sphere_add(world, glass, DEM_R(1e-3), at(0, 0, 0));
+        dem_sphere_add(world, glass, DEM_R(1e-3), at(2e-3, 0, 0));
+        CHECK_EQ(effects_of(world, "adhesion").state, DEM_EFFECT_OFF);
+        CHECK(!strstr(effects_of(world, "adhesion").text, "only push"));
+        dem_pair_get(world, glass, glass, &pair);
+        pair.spinning_friction = DEM_R(0.125);
+        pair.cohesion = DEM_R(3.75e-6);
+        pair.compliance = DEM_R(6.25e-5);
+        CHECK_EQ(dem_pair_set(world, glass, glass, &pair), DEM_OK);
+        CHECK(effects_of(world, "adhesion").state != DEM_EFFECT_OFF);
+        CHECK_EQ(dem_world_step(world, 2), DEM_OK);
+        CHECK_EQ(effects_of(world, "adhesion").state, DEM_EFFECT_ACTIVE);
+        dem_pairs_print(world, out);
+        rewind(out);
+        CHECK(fread(text, 1, sizeof text - 1, out) > 0);
+        CHECK(strstr(text, "mu_spin cohesion [N] compliance [m/N]") && strstr(text, " 0.125 ") && strstr(text, " 3.75e-06 ") &&
+              strstr(text, " 6.25e-05\n"));
+        fclose(out);
+        dem_world_destroy(world);
+    }
     TEST("rolling friction that no contact used and a wall that nothing touched are idle, and the report says so; once "
          "steel has met glass, they are not") {
         dem_world_desc desc = DEM_WORLD_DESC;

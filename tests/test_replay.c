@@ -180,6 +180,10 @@ static dem_world *scene(dem_material *stuff) {
     dem_plane_add(w, *stuff, at(0, 0, 0), at(0, 0, 1));
     return w;
 }
+static double number_now(const dem_world *w, dem_body body, void *user) {
+    (void)w; (void)body;
+    return *(const double *)user;
+}
 static double warmth_of(const dem_world *w, dem_body body, void *user) {
     dem_real reals[2];
     (void)user;
@@ -321,6 +325,31 @@ int main(int argc, char **argv) {
         CHECK(strstr(f.text, "\"number\":\"cold \\u003cb>\"") != 0);
         CHECK_EQ(film_next(&f), 1);
         CHECK_NEAR(f.own[0], -25, 0);
+        free(f.text);
+        dem_world_destroy(w);
+    }
+    TEST("a number of a grain that is NaN in one frame is filmed again in the next") {
+        dem_material stuff;
+        dem_world *w = scene(&stuff);
+        dem_replay_desc desc = DEM_REPLAY_DESC;
+        static const double numbers[] = {5, NAN, NAN, 7, 7, NAN, -1};
+        double now = 0;
+        dem_replay *film;
+        int k;
+        desc.number_fn = number_now;
+        desc.user = &now;
+        dem_sphere_add(w, stuff, DEM_R(0.001), at(0, 0, 1));
+        film = dem_replay_open(w, film_path, &desc);
+        for (k = 0; k < 7; k++) {
+            now = numbers[k];
+            CHECK_EQ(dem_replay_frame(film), DEM_OK);
+        }
+        CHECK_EQ(dem_replay_close(film), DEM_OK);
+        film_read(&f, film_path);
+        for (k = 0; k < 7; k++) {
+            CHECK_EQ(film_next(&f), 1);
+            if (numbers[k] < 1e300) CHECK_NEAR(f.own[0], numbers[k], 0); else CHECK(f.own[0] != f.own[0]);
+        }
         free(f.text);
         dem_world_destroy(w);
     }
