@@ -3085,6 +3085,12 @@ typedef struct demi_laws {
 /* --- what a world knows in numbers alone, by whose they are. Saved and copied whole: a field more
        is saved, too. Pointers, and what follows from other things, do not belong here. --- */
 
+/* Why a chosen time step is shorter than t_c/50, for the report. */
+enum { DEMI_HELD_NOT, DEMI_HELD_DASHPOT, DEMI_HELD_SPIN, DEMI_HELD_PRESSED };
+typedef struct demi_held {
+    double from, limit, contacts;  /* s, t_c/50; s, or rad/s of a spin; that press the body */
+    int32_t by, body;              /* DEMI_HELD_...; the body's id, 0: it is not known */
+} demi_held;
 typedef struct demi_timing {       /* >>step, >>advice */
     double time;                   /* s: since.time + (steps - since.steps) since.dt */
     demi_since since;              /* when the present dt came into force */
@@ -3098,6 +3104,7 @@ typedef struct demi_timing {       /* >>step, >>advice */
     double spin_elsewhere;         /* rad/s, fastest in slabs, of bodies that are not spheres */
     uint64_t press_due;            /* step at which what presses bodies is looked for next */
     uint64_t press_since;          /* step of the last change of the scene */
+    demi_held held;
 } demi_timing;
 /* How far a world has got on its way to the next step. A change of the scene undoes dt_valid,
    forces_valid and primed; one of who is where, list_valid, too. dem_world_step makes good what is
@@ -21610,41 +21617,53 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
     }
 }
 
-/* --- contacts that are there: pressed, and many to a grain. The largest step that is stable, from
-       below: the matrix of all contacts' stiffness is no more than the sum over bodies of twice
-       their own contacts' (once, where the partner does not move), so
-           omega2 <= max over bodies of (a + b)/2 + sqrt((a - b)^2/4 + q^2)
-           A = sum f [k n n + kt (1 - n n)]/m,  B = sum f [kt l^2 (1 - n n) + kr]/I,
-           q = |sum f kt l n|/sqrt(m I),       a, b: norms of A, B (largest sum along a row)
-       and the same for damping. Exact for close packings that shear and spin. A cheap bound per
-       body comes first (max over directions per contact, summed); few bodies need the matrices, and
-       only when the step is within a factor of two or so of its limit. Spheres only. Checked by "a
-       time step that is accepted is stable where twelve contacts a grain are pressed". --- */
+/* --- contacts that are there: pressed, and many to a grain. Small motions x about a state, with
+       stiffness K, damping C and mass M, first grow by changing sign from step to step. Velocity
+       Verlet with predicted velocities keeps them from it while
+           dt^2/4 K + dt C < M    (no eigenvector of M^-1 times the left side reaches 1)
+       A contact stores k (n.(xa - xb))^2/2 <= k [(1 + Ra/Rb) (n.xa)^2 + (1 + Rb/Ra) (n.xb)^2]/2.
+       So it holds for the whole scene where it holds for each body, held by its own contacts alone,
+       each counted f = 1 + Ra/Rb times (once where the partner does not move): six rows,
+           A = sum f [k n n + kt (1 - n n)]/m,  B = sum f [kt l^2 + kr] (1 - n n)/I,
+           Q = sum f kt l [n x]/sqrt(m I),  n outwards; l from the centre; damping likewise
+       Contacts with walls count by their weights, as their forces do (>>facets: those of one place
+       on a curved surface add up to one, some are negative). The bound is exact for close packings
+       that shear and spin, and for one body between walls. A cheap bound per body comes first (the
+       largest of each contact, summed); few bodies need the matrices. Spheres only. Checked by "a
+       step just inside the limit of pressed contacts keeps still, one outside by a twentieth shakes
+       it". --- */
 typedef struct demi_press {
     double omega2, rate;           /* 1/s2, 1/s: the cheap bound */
-    int32_t contacts, whole;       /* how many; 1 + index of its matrices, 0: none needed */
+    double contacts;               /* how many, by their weights */
+    int32_t whole;                 /* 1 + index of its matrices, 0: none needed */
     dem_real deepest;              /* of its radius */
 } demi_press;
 typedef struct demi_press_whole {  /* per mass, inertia, root of both */
     double A[2][6], B[2][6], q[2][3];          /* 0: stiffness, 1: damping */
 } demi_press_whole;
-typedef struct demi_pressed { demi_stiffness s; dem_vec3 n; dem_real overlap; } demi_pressed;
-/* The cheap bound: stiffnesses of all contacts of a body added as if they were along one line. */
-static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, int moving,
+typedef struct demi_pressed {
+    demi_stiffness s;
+    dem_vec3 n;
+    dem_real overlap, weight;
+} demi_pressed;
+/* The cheap bound: stiffnesses of all contacts of a body added as if they were along one line;
+   those that take away are left out. */
+static void demi_press_add(const dem_world *w, int body, const demi_pressed *c, double f,
                            double arm, demi_press *p) {
-    const double m = (double)w->bodies.mass[body], f = moving ? 2 : 1;
+    const double m = (double)w->bodies.mass[body];
     const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
     if (w->bodies.inv_mass[body] <= 0) return;
+    p->contacts += (double)c->weight;
+    if (!(c->weight > 0)) return;
     p->omega2 += f*DEMI_MAX(c->s.k/m, c->s.kt*(1/m + arm*arm/I) + c->s.kr/I);
     p->rate += f*DEMI_MAX(c->s.c/m, c->s.ct*(1/m + arm*arm/I) + c->s.cr/I);
-    p->contacts++;
     p->deepest = DEMI_MAX(p->deepest, c->overlap/w->bodies.pos[4*body + 3]);
 }
 /* The close one, where the cheap bound is not enough: the matrices of stiffness and damping of the
-   body, for its way (A), its turning (B), and how one asks for the other (q). */
-static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, int moving,
+   body, for its way (A), its turning (B), and how one asks for the other (Q, by q: [n x]). */
+static void demi_press_add_whole(const dem_world *w, int body, const demi_pressed *c, double f,
                                  double arm, demi_press_whole *p) {
-    const double m = (double)w->bodies.mass[body], f = moving ? 2 : 1;
+    const double m = (double)w->bodies.mass[body];
     const double I = demi_sphere_inertia(w, m, (double)w->bodies.pos[4*body + 3]);
     const double n[3] = {(double)c->n.x, (double)c->n.y, (double)c->n.z};
     int i, j, e = 0, d;
@@ -21652,24 +21671,44 @@ static void demi_press_add_whole(const dem_world *w, int body, const demi_presse
     for (i = 0; i < 3; i++)
         for (j = i; j < 3; j++, e++)
             for (d = 0; d < 2; d++) {
-                const double one = i == j ? 1 : 0, nn = n[i]*n[j];
+                const double nn = n[i]*n[j], across = (i == j ? 1 : 0) - nn;
                 const double k = d ? c->s.c : c->s.k, kt = d ? c->s.ct : c->s.kt;
-                p->A[d][e] += f*(k*nn + kt*(one - nn))/m;
-                p->B[d][e] += f*(kt*arm*arm*(one - nn) + (d ? c->s.cr : c->s.kr)*one)/I;
+                p->A[d][e] += f*(k*nn + kt*across)/m;
+                p->B[d][e] += f*(kt*arm*arm + (d ? c->s.cr : c->s.kr))*across/I;
             }
     for (d = 0; d < 2; d++)
         for (i = 0; i < 3; i++) p->q[d][i] += f*(d ? c->s.ct : c->s.kt)*arm*n[i]/sqrt(m*I);
 }
-/* The largest sum of a row, of a symmetric matrix of six numbers: no eigenvalue is larger. */
-static double demi_press_norm(const double *A) {
-    const double x = fabs(A[0]) + fabs(A[1]) + fabs(A[2]), y = fabs(A[1]) + fabs(A[3]) + fabs(A[4]);
-    return DEMI_MAX(DEMI_MAX(x, y), fabs(A[2]) + fabs(A[4]) + fabs(A[5]));
+/* Is a step stable for one body? 1 less the matrix above must have a Cholesky factor L. */
+static int demi_press_stable(const demi_press_whole *p, double dt) {
+    static const int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+    const double by[2] = {dt*dt/4, dt};
+    double L[6][6];
+    int i, j, k, d;
+    for (i = 0; i < 6; i++)
+        for (j = 0; j <= i; j++) {
+            double s = i == j ? 1 : 0;
+            const int e = at[i%3][j%3];
+            for (d = 0; d < 2; d++) {
+                if (i/3 == j/3) s -= by[d]*(i < 3 ? p->A[d][e] : p->B[d][e]);
+                else if (i%3 != j) s -= by[d]*p->q[d][3 - i%3 - j]*((i - j)%3 == 1 ? 1 : -1);
+            }
+            for (k = 0; k < j; k++) s -= L[i][k]*L[j][k];
+            if (i == j && !(s > 0)) return 0;
+            L[i][j] = i == j ? sqrt(s) : s/L[j][j];
+        }
+    return 1;
 }
-/* The bound of either matrix, d 0 stiffness, 1 damping. */
-static double demi_press_bound(const demi_press_whole *p, int d) {
-    const double a = demi_press_norm(p->A[d]), b = demi_press_norm(p->B[d]);
-    const double q2 = p->q[d][0]*p->q[d][0] + p->q[d][1]*p->q[d][1] + p->q[d][2]*p->q[d][2];
-    return (a + b)/2 + sqrt((a - b)*(a - b)/4 + q2);
+/* The largest stable step of one body, dt at most. */
+static double demi_press_step(const demi_press_whole *p, double dt) {
+    double lo = 0, hi = dt;
+    int k;
+    if (demi_press_stable(p, dt)) return dt;
+    for (k = 0; k < 40; k++) {
+        const double middle = (lo + hi)/2;
+        if (demi_press_stable(p, middle)) lo = middle; else hi = middle;
+    }
+    return lo;
 }
 /* All contacts of spheres with each other and with walls. */
 static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_whole *whole) {
@@ -21690,14 +21729,16 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             if (whole && !press[a].whole && !press[b].whole) continue;
             demi_span_coefs(w, &span, 0, coef);
             c.s = demi_stiffness_of(w, coef, (double)coef[DEMI_M_EFF], (double)(sum - l));
-            c.n = demi_scale(gap, 1/l);
             c.overlap = sum - l;
+            c.weight = 1;
             for (side = 0; side < 2; side++) {
                 const int i = side ? b : a;
                 const double arm = (double)(l*(side ? y[3] : x[3])/sum);
-                if (!whole) demi_press_add(w, i, &c, both, arm, press + i);
+                const double f = both ? (double)(sum/(side ? x[3] : y[3])) : 1;
+                c.n = demi_scale(gap, (side ? -1 : 1)/l);
+                if (!whole) demi_press_add(w, i, &c, f, arm, press + i);
                 else if (press[i].whole)
-                    demi_press_add_whole(w, i, &c, both, arm, whole + press[i].whole - 1);
+                    demi_press_add_whole(w, i, &c, f, arm, whole + press[i].whole - 1);
             }
         }
         for (p = 0; p < domain->kept; p++) {
@@ -21712,10 +21753,15 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
             coef[DEMI_CN] += root[0]*DEMI_SQRT(w->bodies.mass[i]);
             coef[DEMI_CT] += root[1]*DEMI_SQRT(w->bodies.mass[i]);
             c.s = demi_stiffness_of(w, coef, (double)w->bodies.mass[i], (double)k->overlap);
+            c.s.k *= (double)k->lift;
+            c.s.c *= (double)k->share;
+            c.s.kt *= (double)k->grip; c.s.ct *= (double)k->grip;
+            c.s.kr *= (double)k->grip; c.s.cr *= (double)k->grip;
             c.n = k->normal;
             c.overlap = k->overlap;
-            if (!whole) demi_press_add(w, i, &c, 0, arm, press + i);
-            else demi_press_add_whole(w, i, &c, 0, arm, whole + press[i].whole - 1);
+            c.weight = k->share;
+            if (!whole) demi_press_add(w, i, &c, 1, arm, press + i);
+            else demi_press_add_whole(w, i, &c, 1, arm, whole + press[i].whole - 1);
         }
     }
 }
@@ -21723,7 +21769,6 @@ static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_w
    out. worst: the body. Its room is kept. */
 static double demi_press_limit(dem_world *w, double dt, int *worst) {
     demi_press *press;
-    demi_press_whole *whole;
     double least = dt;
     int i, found = 0;
     if (!w->bodies.count) return 0;
@@ -21735,14 +21780,11 @@ static double demi_press_limit(dem_world *w, double dt, int *worst) {
         if (dt > demi_dt_stable(press[i].omega2, press[i].rate)) press[i].whole = ++found;
     if (!found) return 0;
     if (!DEMI_GROW(w, w->press_whole, (size_t)found)) return -1;
-    whole = w->press_whole;
-    memset(whole, 0, (size_t)found*sizeof *whole);
-    demi_press_visit(w, press, whole);
+    memset(w->press_whole, 0, (size_t)found*sizeof *w->press_whole);
+    demi_press_visit(w, press, w->press_whole);
     for (i = 0; i < w->bodies.count; i++) {
-        const demi_press_whole *p = whole + press[i].whole - 1;
-        double limit;
-        if (!press[i].whole) continue;
-        limit = demi_dt_stable(demi_press_bound(p, 0), demi_press_bound(p, 1));
+        const double limit = press[i].whole
+            ? demi_press_step(w->press_whole + press[i].whole - 1, dt) : dt;
         if (limit < least) { least = limit; *worst = i; }
     }
     return least < dt ? least : 0;
@@ -21820,6 +21862,10 @@ static dem_result demi_dt_settle(dem_world *w) {
         /* half steps were of the old dt */
         if (dt < w->clock.dt || dt > w->clock.dt) { demi_finish(w); w->stage.primed = 0; }
         w->clock.dt = dt;
+        w->clock.held.from = (double)a.contact_time/50;
+        w->clock.held.limit = dt < share*easy ? spin : 5*(double)a.dt;
+        w->clock.held.by = dt < share*easy ? DEMI_HELD_SPIN
+            : (double)easy < 0.99*w->clock.held.from ? DEMI_HELD_DASHPOT : DEMI_HELD_NOT;
     }
     w->clock.assumed_speed = (double)a.speed;
     w->stage.dt_valid = 1;
@@ -21908,6 +21954,22 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
     }
     return DEM_OK;
 }
+/* Why dt is shorter than t_c/50, and by how much. */
+static void demi_held_report(const dem_world *w, FILE *out) {
+    const demi_held *h = &w->clock.held;
+    char who[64] = "a body";
+    if (demi_impulsive(w) || w->desc.dt > 0 || h->by == DEMI_HELD_NOT || !(w->clock.dt > 0)) return;
+    fprintf(out, "           dt is %.3g times shorter than t_c/50 = %.4g s: ",
+            h->from/(double)w->clock.dt, h->from);
+    if (h->body > 0)
+        snprintf(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body, h->contacts);
+    if (h->by == DEMI_HELD_PRESSED)
+        fprintf(out, "%s is stable to %.4g s, and half of that is taken\n", who, h->limit);
+    else if (h->by == DEMI_HELD_SPIN)
+        fprintf(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
+    else fprintf(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
+                 "taken\n", h->limit);
+}
 /* What presses has been looked at: again more and more rarely while the scene stays, at least every
    thousand steps. */
 static void demi_press_looked(demi_timing *clock) {
@@ -21916,10 +21978,11 @@ static void demi_press_looked(demi_timing *clock) {
 /* Refuses a step that was given, for this body is pressed so that `limit` is the largest. */
 static dem_result demi_press_refuse(dem_world *w, double limit, int worst) {
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be at "
-                     "most %g s: body %u is pressed by %d contacts, by %.3g of its radius at most; "
+                     "most %g s: body %u is pressed by %.3g contacts, by %.3g of its radius at "
+                     "most; "
                      "use dt = 0, a smaller dt, or less overlap",
                      (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
-                     (unsigned)w->bodies.slot[worst] + 1, (int)w->press[worst].contacts,
+                     (unsigned)w->bodies.slot[worst] + 1, w->press[worst].contacts,
                      (double)w->press[worst].deepest);
 }
 /* Asks, with lists and contacts at hand, whether the step suits what presses now and how fast
@@ -21949,6 +22012,10 @@ static dem_result demi_dt_check(dem_world *w) {
     demi_finish(w);
     w->stage.primed = 0;
     w->clock.dt = (dem_real)(limit*DEMI_MIN(share/2, 0.95));
+    w->clock.held.by = DEMI_HELD_PRESSED;
+    w->clock.held.limit = limit;
+    w->clock.held.body = (int32_t)w->bodies.slot[worst] + 1;
+    w->clock.held.contacts = w->press[worst].contacts;
     return DEM_OK;
 }
 
@@ -22502,8 +22569,8 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
     else if ((limit = demi_press_limit(w, dt, &worst)) > 0)
         demi_find(f, DEM_SEVERITY_ERROR,
                   "dt is %g s, more than %g s, which body %d bears, pressed by "
-                  "%d contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
-                  (int)w->press[worst].contacts);
+                  "%.3g contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
+                  w->press[worst].contacts);
     else if (dt < (double)a->dt/20)
         demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than need be (t_c/50 = %g "
                   "s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
@@ -30312,6 +30379,7 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
                 "bound by %s\n", (double)a.contact_time,
                 w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
                 (double)a.dt_max, (double)a.rayleigh, a.binds);
+    demi_held_report(w, out);
     fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
             "candidates, %.2f contacts\n",
             demi_searches[w->desc.search].name, w->margin.skin,
@@ -31389,6 +31457,7 @@ static dem_result demi_slabs_settle(dem_slabs *s) {
         result = demi_dt_settle(w);
         memcpy(h->error, w->error, sizeof h->error);
         h->clock.dt = w->clock.dt;
+        h->clock.held = w->clock.held;
         h->stage.dt_valid = w->stage.dt_valid;
         h->clock.assumed_speed = w->clock.assumed_speed;
         h->stage.primed = w->stage.primed;
@@ -31412,6 +31481,10 @@ static dem_result demi_slabs_settle(dem_slabs *s) {
        one above, which sends what it knows of its ghosts down. First the cheap bounds; matrices
        only where those are not enough. --- */
 
+/* The step that is asked about: the given one, twice one that was chosen, s. */
+static double demi_slabs_press_most(const dem_slabs *s) {
+    return (double)s->head.clock.dt*(s->head.desc.dt > 0 ? 1 : 2);
+}
 /* Room for `one` bytes of each ghost in the lower outbox, and of what comes from above. */
 static int demi_slab_press_room(demi_slab *b, size_t one) {
     dem_world *w = b->world;
@@ -31482,11 +31555,10 @@ static void demi_slab_press_limit(dem_slabs *s, demi_slab *b) {
         demi_unpack(&from, &told, sizeof told);
         for (i = 0; i < (int)(sizeof told/sizeof *to); i++) to[i] += add[i];
     }
-    b->press_limit = 1e300;
+    b->press_limit = demi_slabs_press_most(s);
     for (i = 0; i < w->bodies.count; i++) {
-        const demi_press_whole *p = w->press_whole + i;
-        const double limit = demi_is_ghost(w, i) ? 1e300
-            : demi_dt_stable(demi_press_bound(p, 0), demi_press_bound(p, 1));
+        const double limit = demi_is_ghost(w, i) ? b->press_limit
+            : demi_press_step(w->press_whole + i, demi_slabs_press_most(s));
         if (limit < b->press_limit) { b->press_limit = limit; b->press_worst = i; }
     }
 }
@@ -31511,7 +31583,7 @@ static dem_result demi_slabs_press_ask(dem_slabs *s, void (*say)(dem_slabs *, de
 static dem_result demi_slabs_press(dem_slabs *s) {
     dem_world *h = &s->head;
     const int chosen = !(h->desc.dt > 0);
-    const double dt = (double)h->clock.dt*(chosen ? 2 : 1);
+    const double dt = demi_slabs_press_most(s);
     double limit = 0;
     dem_result result;
     int k;
@@ -31530,6 +31602,9 @@ static dem_result demi_slabs_press(dem_slabs *s) {
     if (!chosen) return demi_slabs_agree(s, 0, 0);
     demi_slabs_phase(s, demi_slab_finish);
     h->clock.dt = (dem_real)(limit/2);
+    h->clock.held.by = DEMI_HELD_PRESSED;
+    h->clock.held.limit = limit;
+    h->clock.held.body = 0;
     h->stage.primed = 0;
     return DEM_OK;
 }
@@ -31541,6 +31616,7 @@ static dem_result demi_slabs_dt_check(dem_slabs *s) {
         result = demi_dt_check(w);
         memcpy(h->error, w->error, sizeof h->error);
         h->clock.dt = w->clock.dt;
+        h->clock.held = w->clock.held;
         h->stage.primed = h->stage.primed && w->stage.primed;
         return result;
     }

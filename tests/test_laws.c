@@ -282,6 +282,118 @@ static double pressed(double depth, double frac) {
     return result == DEM_OK ? fastest/3e-4 : 1e30;
 }
 
+/* A ball pressed between `planes` planes by 2 % of its radius, or a close packing of balls pressed by
+   as much, shaken a little (m/s). allow: as in the desc. Linear springs. */
+enum { HELD_CRYSTAL = 0 };
+static dem_world *held_world(int planes, double dt, int allow) {
+    static const double n[6][3] = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+    const double radius = 1e-3, a = 2*radius*0.99*sqrt(2.0), shake = DEMI_SINGLE ? 1e-4 : 1e-7;
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_material_desc m = scene_stuff(1e7, planes ? 0.5 : 1, 0.5, planes ? 1 : 0);
+    dem_material stuff;
+    dem_world *world;
+    uint64_t seed = 7;
+    int i, j;
+    desc.threads = 1;
+    desc.dt = (dem_real)dt;
+    desc.allow_large_dt = allow;
+    desc.normal_law = DEM_NORMAL_LINEAR;
+    m.stiffness = 1e4;
+    desc.domain = box_of(0, 0, 0, 3*a, 3*a, 3*a);
+    for (i = 0; i < 3 && !planes; i++) desc.boundary[i] = DEM_BOUNDARY_PERIODIC;
+    world = dem_world_create(&desc);
+    stuff = dem_material_add(world, &m);
+    for (i = 0; i < planes; i++)
+        dem_plane_add(world, stuff, at(-0.98*radius*n[i][0], -0.98*radius*n[i][1], -0.98*radius*n[i][2]),
+                      at(n[i][0], n[i][1], n[i][2]));
+    for (i = 0; i < (planes ? 1 : 27); i++)
+        for (j = 0; j < (planes ? 1 : 4); j++) {
+            const double x = i%3 + (j == 1 || j == 2 ? 0.5 : 0), y = i/3%3 + (j == 1 || j == 3 ? 0.5 : 0);
+            const double z = i/9 + (j == 2 || j == 3 ? 0.5 : 0);
+            const dem_body body = dem_sphere_add(world, stuff, (dem_real)radius, at(x*a, y*a, z*a));
+            const dem_vec3 v = scene_at(&seed, 2*shake, -shake, 2*shake, -shake, 2*shake, -shake);
+            scene_move(world, body, v, at(1e3*(double)v.y, 1e3*(double)v.z, 1e3*(double)v.x));
+        }
+    return world;
+}
+/* The largest dt that is accepted, s. */
+static double held_limit(int planes) {
+    dem_world *world = held_world(planes, 1e-9, 1);
+    int worst = 0;
+    double limit;
+    CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+    limit = demi_press_limit(world, 1, &worst);
+    CHECK_EQ(worst < world->bodies.count, 1);
+    dem_world_destroy(world);
+    return limit;
+}
+/* By how much the fastest is faster after `steps` of dt than at first. */
+static double held_growth(int planes, double dt, int steps) {
+    dem_world *world = held_world(planes, dt, 1);
+    double before = 0, after = 0;
+    int i, k;
+    for (k = 0; k < 2; k++) {
+        double most = 0;
+        for (i = 0; i < world->bodies.count; i++) {
+            const dem_body_state s = scene_state(world, dem_bodies_id(world, i));
+            most = fmax(most, fmax((double)demi_length(s.velocity), 1e-3*(double)demi_length(s.spin)));
+        }
+        if (k) after = most; else before = most;
+        if (!k) CHECK_EQ(dem_world_step(world, (uint64_t)steps), DEM_OK);
+    }
+    dem_world_destroy(world);
+    return after/before;
+}
+/* A ball of 1 mm in a tube along y, pressed in by 4 %: of triangles of 0.25 mm, or a cylinder. Answers
+   the step that what presses allows, s; *result: of a step of t_c/50. */
+static double tube_limit(int fine, dem_result *result) {
+    enum { AROUND = 24, ALONG = 16 };
+    static dem_real x[3*(AROUND + 1)*(ALONG + 1)];
+    static int32_t corners[6*AROUND*ALONG];
+    const double radius = 1e-3, R = 1.9e-3;
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_advice advice;
+    double limit = 0;
+    int given, i, j, n = 0, worst = 0;
+    for (i = 0; i <= AROUND; i++)
+        for (j = 0; j <= ALONG; j++) {
+            const double angle = (i - AROUND/2)*0.25e-3/R;
+            x[3*((ALONG + 1)*i + j)] = (dem_real)(R*sin(angle));
+            x[3*((ALONG + 1)*i + j) + 1] = (dem_real)((j - ALONG/2)*0.25e-3);
+            x[3*((ALONG + 1)*i + j) + 2] = (dem_real)(-R*cos(angle));
+            if (i == AROUND || j == ALONG) continue;
+            corners[n++] = (ALONG + 1)*i + j;
+            corners[n++] = (ALONG + 1)*(i + 1) + j;
+            corners[n++] = (ALONG + 1)*(i + 1) + j + 1;
+            corners[n++] = (ALONG + 1)*i + j;
+            corners[n++] = (ALONG + 1)*(i + 1) + j + 1;
+            corners[n++] = (ALONG + 1)*i + j + 1;
+        }
+    desc.threads = 1;
+    desc.normal_law = DEM_NORMAL_LINEAR;
+    for (given = 0; given < 2; given++) {       /* the step that is advised; then that, given */
+        dem_world *world = dem_world_create(&desc);
+        dem_material_desc m = scene_stuff(1e7, 0.3, 0.5, 0);
+        dem_material stuff;
+        dem_mesh mesh;
+        m.stiffness = 1e4;
+        stuff = dem_material_add(world, &m);
+        mesh.vertex_count = (AROUND + 1)*(ALONG + 1);
+        mesh.vertices = x;
+        mesh.triangle_count = 2*AROUND*ALONG;
+        mesh.triangles = corners;
+        if (fine) dem_mesh_add(world, stuff, &mesh);
+        else dem_cylinder_add(world, stuff, at(0, 0, 0), at(0, 1, 0), (dem_real)R, 1);
+        dem_sphere_add(world, stuff, (dem_real)radius, at(0, 1e-5, -(R - 0.96*radius)));
+        CHECK_EQ(dem_step_advice(world, &advice), DEM_OK);
+        desc.dt = (dem_real)(0.999*(double)advice.contact_time/50);
+        *result = dem_world_step(world, 1);
+        if (given) limit = demi_press_limit(world, 1, &worst);
+        dem_world_destroy(world);
+    }
+    return limit;
+}
+
 /* A magnet of moment MU (A m2) along its own x in a field B (T) along the world's x. */
 enum { MAGNET = 3 };                            /* MU B = 3 N m */
 static void compass(const dem_body_state *body, dem_body id, double time, dem_vec3 *force,
@@ -477,6 +589,36 @@ int main(int argc, char **argv) {
             CHECK(pressed(depth[i], 0) >= 0);                /* dt = 0: chosen, and always right */
             CHECK(pressed(depth[i], 0) < 3);
         }
+    }
+    TEST("a step just inside the limit of pressed contacts keeps still, one outside by a twentieth shakes it") {
+        static const int planes[] = {HELD_CRYSTAL, 2, 3, 4, 5, 6};
+        int i;
+        for (i = 0; i < 6; i++) {
+            const double limit = held_limit(planes[i]);
+            dem_world *world = held_world(planes[i], 1.001*limit, 0);
+            CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_TIME_STEP);
+            if (planes[i] > 2) CHECK_STR(dem_world_error(world), "body 1 is pressed by");
+            dem_world_destroy(world);
+            /* with dashpots motion dies out; without, it keeps the energy it began with: springs at
+               their longest hold it all, and it wanders from body to body */
+            CHECK(held_growth(planes[i], 0.98*limit, 2000) < (planes[i] ? 1 : 5));
+            /* in single precision motion begins where contacts end and friction gives way */
+            if (!DEMI_SINGLE) CHECK(held_growth(planes[i], 1.05*limit, 200) > 20);
+        }
+    }
+    TEST("the report says what holds a chosen step below t_c/50, and by how much") {
+        dem_world *world = held_world(6, 0, 0);
+        CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+        scene_report_has(world, "times shorter than t_c/50 = ");
+        scene_report_has(world, "body 1, pressed by 6 contacts, is stable to");
+        dem_world_destroy(world);
+    }
+    TEST("fine facets of a tube press a ball as one contact: t_c/50 is accepted, the limit is that of a cylinder") {
+        dem_result smooth, fine;
+        const double one = tube_limit(0, &smooth), many = tube_limit(1, &fine);
+        CHECK_EQ(smooth, DEM_OK);
+        CHECK_EQ(fine, DEM_OK);
+        CHECK_REL(many, one, 0.05);             /* facets meet at 0.13 rad: their valley holds a little more */
     }
     TEST("a pair damped beyond the critical rate has a contact time that its dashpot resolves") {
         static const double share[] = {0.5, 1.5, 3, 30};      /* of sqrt(k m), the pair's mass */
