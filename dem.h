@@ -25741,6 +25741,10 @@ static const struct { const char *name; int what, width; } demi_column_names[] =
     {"angular velocity", DEMI_COLUMN_W, 3}, {"material", DEMI_COLUMN_MATERIAL, 1},
     {"type", DEMI_COLUMN_TYPE, 1}};
 
+/* The same for error messages, in the order of DEMI_COLUMN_X and so on. */
+static const char *const demi_quantity[] = {" (x)", " (y)", " (z)", " (r)", " (d)", " (vx)",
+    " (vy)", " (vz)", " (wx)", " (wy)", " (wz)", " (material)", " (type)", " (xs)", ""};
+
 static void demi_grains_free(dem_world *w, dem_grains *g) {
     demi_free(w, g->positions);
     demi_free(w, g->radii);
@@ -25977,9 +25981,9 @@ static dem_result demi_grain_line(demi_text *t, demi_layout *l, char between, de
                                   "correct the names of the columns");
         if (what == DEMI_COLUMN_OTHER && there) continue;
         if (!t->length)
-            return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: cell %d is empty, must "
-                             "be a number for each column; fill it in, or take its column out",
-                             t->call, t->name, t->line, k + 1);
+            return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: cell %d%s is empty, "
+                             "must be a number for each column; fill it in, or take its column "
+                             "out", t->call, t->name, t->line, k + 1, demi_quantity[what]);
         if (what == DEMI_COLUMN_TYPE && !(*t->word >= '0' && *t->word <= '9')) {
             demi_layout_untype(t, l, g, k);
             continue;
@@ -26546,9 +26550,9 @@ static dem_result demi_grains_vtp(const demi_text *t, demi_layout *l, dem_grains
     const char *p = t->data, *end, *name;
     demi_vtp_in v;
     dem_result result = DEM_OK;
-    double number = -1;
+    double number = -1, factor;
     size_t size = 0;
-    int places = 0, arrays = 0, pieces = 0, width;
+    int places = 0, arrays = 0, pieces = 0, heads = 0, width;
     memset(&v, 0, sizeof v);
     v.t = t;
     v.l = l;
@@ -26557,7 +26561,7 @@ static dem_result demi_grains_vtp(const demi_text *t, demi_layout *l, dem_grains
          p = end) {
         end = (const char *)memchr(p, '>', (size_t)(t->end - p));
         if (!end || demi_tag_is(p, end, "<AppendedData")) break;
-        if (demi_tag_is(p, end, "<VTKFile")) result = demi_vtp_head(&v, p, end);
+        if (demi_tag_is(p, end, "<VTKFile") && !heads++) result = demi_vtp_head(&v, p, end);
         if (demi_tag_is(p, end, "<Piece")) {
             number = demi_attribute_number(p, end, "NumberOfPoints");
             if (number < 0 || number > INT_MAX/64)
@@ -26576,8 +26580,10 @@ static dem_result demi_grains_vtp(const demi_text *t, demi_layout *l, dem_grains
         width = number < 1 ? 1 : (int)DEMI_MIN(number, (int)DEMI_COLUMNS_MOST);
         number = (double)v.points;
         if (places) { name = "points"; size = 6; width = 3; }
-        if (!name) { name = ""; size = 0; }
-        result = demi_vtp_array(&v, p, end + 1, name, size, width);
+        if (!name) continue;
+        if (demi_column_of(name, size, 0, width, &factor) == DEMI_COLUMN_OTHER)
+            demi_grains_ignore(g, name, size);
+        else result = demi_vtp_array(&v, p, end + 1, name, size, width);
     }
     if (result != DEM_OK) return result;
     if (number < 0) return demi_vtp_fail(&v, "has no piece with points");

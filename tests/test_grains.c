@@ -252,10 +252,10 @@ int main(int argc, char **argv) {
     TEST("a cell that is empty or does not fit is an error with its line; columns that are not used are named") {
         dem_world *world = heap();
         dem_grains g;
-        refused(world, "x,y,z,r\n1,2,3,.5\n1,,3,.5\n", "line 3: cell 2 is empty");
-        refused(world, "x;y;z;r\n1;2;3;\n", "line 2: cell 4 is empty");
-        refused(world, "x\ty\tz\tr\n\t2\t3\t1\n", "line 2: cell 1 is empty");
-        refused(world, "x,y,z,r\n1,2,3\n", "line 2: cell 4 is empty");
+        refused(world, "x,y,z,r\n1,2,3,.5\n1,,3,.5\n", "line 3: cell 2 (y) is empty");
+        refused(world, "x;y;z;r\n1;2;3;\n", "line 2: cell 4 (r) is empty");
+        refused(world, "x\ty\tz\tr\n\t2\t3\t1\n", "line 2: cell 1 (x) is empty");
+        refused(world, "x,y,z,r\n1,2,3\n", "line 2: cell 4 (r) is empty");
         refused(world, "x,y,z,r\n1,5,2,3,.5\n", "line 2: found '.5' where the line should end");
         refused(world, "x;y;z;r\n1.000,5;2;3;.5\n", "line 2: found '1.000,5'");
         refused(world, "x (inch),y,z,r\n1,2,3,.5\n", "line 1: the unit of column x (inch) is not known");
