@@ -25626,7 +25626,7 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
     demi_mould m;
     double lo[3] = {1e300, 1e300, 1e300}, hi[3] = {-1e300, -1e300, -1e300}, a[3], b[3], c[3];
     double *sphere;
-    int i, k, sweep, changed = 1;
+    int i, k, sweep, changed = 1, made;
     memset(&moments, 0, sizeof moments);
     for (i = 0; i < mesh->triangle_count; i++) {
         demi_mesh_corner(mesh, i, 0, a);
@@ -25648,11 +25648,11 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
     m.mesh = mesh;
     m.sign = sign;
     sphere = (double *)demi_alloc(w, 4*(size_t)count, sizeof(double));
-    if (!sphere || !demi_mould_make(w, &m, lo, hi) || !m.picks) {
-        const int thin = m.far && !m.picks;
+    made = sphere && demi_mould_make(w, &m, lo, hi);
+    if (!made || !m.picks) {
         demi_mould_free(w, &m);
         demi_free(w, sphere);
-        return thin ? demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is thinner than 1/%d of its "
+        return made ? demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is thinner than 1/%d of its "
                                 "length everywhere: no sphere finds room", call,
                                 (int)DEMI_GRAIN_CELLS) : demi_no_memory(w, call);
     }

@@ -248,6 +248,37 @@ int main(int argc, char **argv) {
         dem_world_destroy(w);
     }
 
+    TEST("every allocation may fail while a body is made of a mesh: the error names memory, and nothing is kept") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        scene_memory memory;
+        dem_world *w;
+        int what;
+        scene_memory_use(&memory, &desc);
+        w = dem_world_create(&desc);
+        pile_begin();
+        pile_box(0, 1, 0, 0);
+        pile_turn(3);
+        for (what = 0; what < 2; what++) {
+            const size_t before = memory.bytes;
+            dem_real x[3], r[1];
+            int made = 0;
+            long k;
+            for (k = 1; k < 60 && !made; k++) {
+                memory.refuse = memory.calls + k;
+                memory.refused = 0;
+                made = what ? dem_shape_mesh_add(w, &pile, 0).id != 0 : dem_mesh_spheres(w, &pile, 1, x, r, 0) == DEM_OK;
+                CHECK_EQ(made, !memory.refused);
+                if (made) break;
+                CHECK_STR(dem_world_error(w), "memory");
+                CHECK_EQ(memory.bytes, before);
+            }
+            CHECK(made && k > 5);
+            memory.refuse = 0;
+        }
+        dem_world_destroy(w);
+        CHECK_EQ(memory.bytes, 0);
+    }
+
     TEST("a mesh that does not decide what is inside is refused as a body: open, branched, one-sided, crossing or nested shells") {
         static const int32_t strip[15] = {0, 1, 2, 1, 3, 2, 2, 3, 4, 3, 0, 4, 4, 0, 1};      /* a Moebius strip of five */
         const dem_world_desc desc = DEM_WORLD_DESC;

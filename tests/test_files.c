@@ -218,6 +218,43 @@ static void meshes(void) {
             dem_mesh_free(world, &mesh);
         }
     }
+    TEST("random faces that lean are cut into triangles of the same area, all facing the same way") {
+        uint64_t random = 7;
+        int trial, i;
+        for (trial = 0; trial < 300; trial++) {
+            static char text[8000];
+            double x[64], y[64], area = 0, sum = 0, least = 0;
+            const double a = 3*scene_random(&random), b = 3*scene_random(&random);
+            const int corners = 4 + (int)(60*scene_random(&random));
+            size_t n = 0;
+            for (i = 0; i < corners; i++) {         /* seen from one point inside, each at its angle: a star */
+                const double angle = 2*3.14159265358979*(i + 0.4*scene_random(&random))/corners, r = 0.2 + scene_random(&random);
+                x[i] = r*cos(angle);
+                y[i] = r*sin(angle);
+                n += (size_t)sprintf(text + n, "v %.17g %.17g %.17g\n", x[i], y[i], a*x[i] + b*y[i]);
+            }
+            n += (size_t)sprintf(text + n, "f");
+            for (i = 0; i < corners; i++) {
+                const int j = (i + 1)%corners;
+                area += (x[i]*y[j] - x[j]*y[i])/2;
+                n += (size_t)sprintf(text + n, " %d", i + 1);
+            }
+            CHECK_EQ(parse(world, text, &mesh, &health), DEM_OK);
+            CHECK_EQ(mesh.triangle_count, corners - 2);
+            CHECK_EQ(health.crossed_faces + health.bent_faces, 0);
+            for (i = 0; i < mesh.triangle_count; i++) {
+                const dem_real *p = mesh.vertices + 3*mesh.triangles[3*i], *q = mesh.vertices + 3*mesh.triangles[3*i + 1];
+                const dem_real *r = mesh.vertices + 3*mesh.triangles[3*i + 2];
+                const double one = ((double)q[0] - (double)p[0])*((double)r[1] - (double)p[1]) -
+                    ((double)q[1] - (double)p[1])*((double)r[0] - (double)p[0]);
+                sum += one/2;
+                if (one < least) least = one;
+            }
+            CHECK_NEAR(sum, area, sizeof(dem_real) == 8 ? 1e-13 : 1e-5);     /* round-off of some 60 terms */
+            CHECK_NEAR(least, 0, sizeof(dem_real) == 8 ? 1e-9 : 1e-6);       /* an ear of no area: 1e-10 of the size squared */
+            dem_mesh_free(world, &mesh);
+        }
+    }
     TEST("a comb of 2000 teeth in one face keeps its area, a larger one is refused with the limit") {
         enum { TEETH = 2000, MORE = 5000 };
         static char text[40*2*MORE + 8*2*MORE + 200];

@@ -368,6 +368,40 @@ int main(int argc, char **argv) {
         dem_world_destroy(again);
     }
 
+    TEST("every allocation may fail while grains are read: the error names memory, and nothing is kept") {
+        static const char *const texts[] = {"x;y;z;r;vx;vy;vz;omegax;omegay;omegaz;type\n0,1;2;3;,5;1;2;3;4;5;6;1\n",
+            "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n1 2 3\nPOINT_DATA 1\nSCALARS radius float\n"
+            "LOOKUP_TABLE default\n.5\nVECTORS v float\n1 2 3\n", 0};
+        static char vtp[6000];
+        dem_world_desc desc = DEM_WORLD_DESC;
+        scene_memory memory;
+        dem_world *world;
+        const size_t vtp_size = pair_vtp(vtp, 1, 1, 0, 4);
+        int what;
+        scene_memory_use(&memory, &desc);
+        world = dem_world_create(&desc);
+        for (what = 0; what < 3; what++) {
+            const size_t before = memory.bytes;
+            dem_result result = DEM_ERROR_MEMORY;
+            dem_grains g;
+            long k;
+            for (k = 1; k < 60 && result != DEM_OK; k++) {
+                memory.refuse = memory.calls + k;
+                result = dem_grains_parse(world, "x", texts[what] ? texts[what] : vtp, texts[what] ? strlen(texts[what]) : vtp_size, &g);
+                if (result == DEM_OK) break;
+                CHECK_EQ(result, DEM_ERROR_MEMORY);
+                CHECK_STR(dem_world_error(world), "memory");
+                CHECK(!g.positions && !g.count);
+                CHECK_EQ(memory.bytes, before);
+            }
+            CHECK(k > 3);
+            memory.refuse = 0;
+            dem_grains_free(world, &g);
+            CHECK_EQ(memory.bytes, before);
+        }
+        dem_world_destroy(world);
+    }
+
     TEST("what is wrong with a file of grains is told with its line, and nothing is left behind") {
         dem_world *world = heap();
         dem_grains g;
