@@ -2117,7 +2117,7 @@ typedef struct dem_grains {
 } dem_grains;
 /* Reads grains from a file of one of these kinds, which the contents tell apart; lengths in m:
    - text or CSV: a line a grain; ; or tabs or commas or blanks separate, whichever the first line
-     has. A decimal comma is read where ; or tabs separate. Cells may stand in quotes, # begins a
+     has. A decimal comma is read where ; or tabs separate. Cells may be quoted, # begins a
      comment. The first line (or a comment before it) names the columns; without names they are x y
      z r, then vx vy vz if there are seven. An empty cell in a column that is used is an error.
    - extended XYZ with Properties (OVITO, ASE, dem_xyz_write), dumps of LAMMPS and LIGGGHTS: the
@@ -5237,12 +5237,12 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
 
 /* ---------------------------------------------------------------------------------------------
    >>closed
-   Which side of a mesh is inside? Vertices at one place are one; of equal triangles at most one
-   counts. Triangles that share an edge with no third must run along it in opposite directions: so
-   all triangles of a shell (those that such edges join) face the way of its first, or the other
-   way, whatever their order of corners says. A body is bounded by shells without open edges. An
-   outer shell faces out. A shell within a shell is a cavity if it was written to face the other way
-   than the one around it, and nothing that could be decided if not.
+   Which side of a mesh is inside? Vertices at the same position are one vertex; of equal triangles
+   at most one counts. Two triangles that share an edge with no third must run along it in opposite
+   directions. This fixes the orientation of every triangle of a shell (the triangles that such
+   edges join) relative to its first, whatever their order of corners. A body is bounded by shells
+   without open edges. An outer shell faces out. A shell within a shell is a cavity if it was written
+   to face the opposite way of the shell around it; if not, the mesh is refused.
    Tests: tests/test_decompose.c.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_CLOSED_SHELLS = 1000, DEMI_CLOSED_LOOKS = 20 };
@@ -5250,7 +5250,7 @@ typedef struct demi_closed {
     const dem_mesh *mesh;
     int32_t *corner;               /* triangles x 3: the first vertex at that place */
     int32_t *edge;                 /* triangles x 3: the first triangle side that is this edge */
-    int32_t *parent;               /* of a triangle: nearer to the one that stands for its shell */
+    int32_t *parent;               /* of a triangle: nearer to the one that represents its shell */
     unsigned char *turned;         /* against the parent */
     signed char *sign;             /* 1; -1: to be turned round; 0: does not count */
     int open, crowded, duplicates, flipped, twisted, shells;
@@ -5284,7 +5284,7 @@ static void demi_closed_free(dem_world *w, demi_closed *c) {
     demi_free(w, c->turned);
     demi_free(w, c->sign);
 }
-/* The triangle that stands for the shell; *turned: is triangle i turned against that one? */
+/* The triangle that represents the shell; *turned: does triangle i face the other way? */
 static int demi_closed_shell(demi_closed *c, int i, int *turned) {
     for (*turned = 0; c->parent[i] != i; i = c->parent[i]) {
         const int up = c->parent[i];
@@ -5527,7 +5527,8 @@ static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a,
     }
     return in && out ? -1 : in > 0;
 }
-/* Which shells are inside which. 0, with a sentence: two cross, or one faces as that around it. */
+/* Which shells are inside which. 0, with an error message: two
+   cross, or one faces as that around it. */
 static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c,
                             demi_shells *s) {
     double x[3];
@@ -5559,8 +5560,8 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
     }
     return 1;
 }
-/* Gives each triangle the sign with which outer shells face out and cavities in. 0, with a
-   sentence: the mesh does not bound a body. */
+/* Gives each triangle the sign with which outer shells face out and cavities in. 0, with an
+   error message: the mesh does not bound a body. */
 static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
     demi_shells s;
     double x[3] = {0, 0, 0};
@@ -5571,8 +5572,8 @@ static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
     if (loose || c->twisted || !c->shells || c->shells > DEMI_CLOSED_SHELLS) {
         if (c->twisted)
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has one side only (%d edges where no "
-                      "winding fits), must have an inside and an outside; mend it in the program "
-                      "that made it", call, c->twisted);
+                      "winding fits), must have an inside and an outside; repair it in the "
+                      "program that made it", call, c->twisted);
         else if (loose)
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is open at %d edges, or more than two "
                       "triangles meet there (first near (%.4g, %.4g, %.4g) m); it must be closed "
@@ -6079,8 +6080,8 @@ static int demi_mesh_sound(dem_world *w, const char *call, int vertices, const d
         }
     return 1;
 }
-/* The hull of a mesh that bounds a body, of those vertices that its triangles have. 0 with a
-   sentence. */
+/* The hull of a mesh that bounds a body, of those vertices that its triangles have. 0 with an error
+   message. */
 static int demi_mesh_hull(dem_world *w, const char *call, const dem_mesh *mesh, demi_shape *shape) {
     const size_t count = (size_t)mesh->vertex_count;
     dem_real *points = (dem_real *)demi_alloc(w, 3*count, sizeof *points);
@@ -24573,12 +24574,12 @@ static int demi_outline_ear(demi_outline *o, int i, int patience) {
 /* The face's count - 2 triangles, to `out`. 0: it is not convex and has too many corners. */
 static int demi_outline_cut(demi_outline *o, const dem_real *vertices, int32_t *out) {
     int i, left = o->count, idle = 0, patience = 0;
-    demi_outline_lay(o, vertices);
+    o->bent = o->crossed = 0;
+    if (o->count > 3) demi_outline_lay(o, vertices);
     if (o->count == 3 || o->crossed || demi_outline_convex(o)) {
         for (i = 1; i + 1 < o->count; i++, out += 3) {
             out[0] = o->corner[0]; out[1] = o->corner[i]; out[2] = o->corner[i + 1];
         }
-        o->crossed &= o->count > 3;
         return 1;
     }
     if (o->count > DEMI_OUTLINE_MOST) return 0;
@@ -24883,13 +24884,13 @@ static dem_result demi_obj_face(demi_text *t, const dem_mesh *mesh, int vertices
                          "triangles", t->call, t->name, t->line, o->count,
                          (int)DEMI_OUTLINE_MOST);
     h->split_faces += o->count > 3;
-    h->bent_faces += o->count > 3 && o->bent;
+    h->bent_faces += o->bent;
     h->crossed_faces += o->crossed;
     return DEM_OK;
 }
 /* OBJ: v and f lines, o and g where a part is wanted, the rest passed over. Faces belong to the
    object named last and to each group of the last g. Without `fill` it counts and allocates; else
-   it goes through twice, for a face may stand before its vertices. The text comes by value: each
+   it goes through twice, for a face may precede its vertices. The text comes by value: each
    pass starts afresh. */
 static dem_result demi_obj_pass(demi_text text, dem_mesh *mesh, int fill) {
     size_t vertices = 0, triangles = 0, axis;
@@ -25843,7 +25844,7 @@ static int demi_column_of(const char *name, size_t length, int c, int width, dou
     }
     return DEMI_COLUMN_OTHER;
 }
-/* One more name that is not used, told once. */
+/* Lists the name of a column or array that is not used. */
 static void demi_grains_ignore(dem_grains *g, const char *name, size_t length) {
     const size_t have = strlen(g->ignored);
     while (length && (*name == '"' || *name == ' ')) { name++; length--; }
@@ -25899,7 +25900,7 @@ static dem_result demi_layout_check(const demi_text *t, const demi_layout *l,
 /* ---- rows ---- */
 
 /* Moves to the next cell of the line; 0 when there is none. Between cells is `between`, or blanks
-   where that is a blank. A cell may stand in quotes; # begins a comment outside them. */
+   where that is a blank. A cell may be quoted; # begins a comment outside quotes. */
 static int demi_cell(demi_text *t, char between) {
     const char *p = t->at, *end = t->next, *from;
     if (!p) return 0;                           /* the last cell was that before */
