@@ -5241,8 +5241,8 @@ static dem_real demi_bodies_gap(const dem_world *w, int a, int b, const dem_real
    at most one counts. Two triangles that share an edge with no third must run along it in opposite
    directions. This fixes the orientation of every triangle of a shell (the triangles that such
    edges join) relative to its first, whatever their order of corners. A body is bounded by shells
-   without open edges. An outer shell faces out. A shell within a shell is a cavity if it was written
-   to face the opposite way of the shell around it; if not, the mesh is refused.
+   without open edges. An outer shell faces out. A shell within a shell is a cavity if it was
+   written to face the opposite way of the shell around it; if not, the mesh is refused.
    Tests: tests/test_decompose.c.
    --------------------------------------------------------------------------------------------- */
 enum { DEMI_CLOSED_SHELLS = 1000, DEMI_CLOSED_LOOKS = 20 };
