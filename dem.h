@@ -5424,13 +5424,14 @@ static void demi_mesh_corner(const dem_mesh *mesh, int triangle, int k, double *
 typedef struct demi_shells {
     int count;
     int32_t *order, *start;        /* triangles by shell; count + 1 */
-    double *volume;                /* m3, as written */
+    double *volume, *box;          /* m3, as written; m: 3 lowest and 3 highest coordinates */
     int32_t *around, *depth;       /* the innermost shell around it, -1: none; how many are */
 } demi_shells;
 static void demi_shells_free(dem_world *w, demi_shells *s) {
     demi_free(w, s->order);
     demi_free(w, s->start);
     demi_free(w, s->volume);
+    demi_free(w, s->box);
     demi_free(w, s->around);
     demi_free(w, s->depth);
 }
@@ -5464,12 +5465,14 @@ static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
     s->order = (int32_t *)demi_alloc(w, (size_t)n, sizeof *s->order);
     s->start = (int32_t *)demi_alloc(w, (size_t)c->shells + 2, sizeof *s->start);
     s->volume = (double *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->volume);
+    s->box = (double *)demi_alloc(w, 6*((size_t)c->shells + 1), sizeof *s->box);
     s->around = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->around);
     s->depth = (int32_t *)demi_alloc(w, (size_t)c->shells + 1, sizeof *s->depth);
-    if (!number || !s->order || !s->start || !s->volume || !s->around || !s->depth) {
+    if (!number || !s->order || !s->start || !s->volume || !s->box || !s->around || !s->depth) {
         demi_free(w, number);
         return 0;
     }
+    for (k = 0; k < 6*s->count; k++) s->box[k] = k%6 < 3 ? 1e300 : -1e300;
     for (i = k = 0; i < n; i++)
         if (c->sign[i] && demi_closed_shell(c, i, &turned) == i) number[i] = k++;
     for (i = 0; i < n; i++)
@@ -5485,7 +5488,14 @@ static int demi_shells_make(dem_world *w, demi_closed *c, demi_shells *s) {
         demi_mesh_corner(c->mesh, i, 0, p);
         demi_mesh_corner(c->mesh, i, 1, q);
         demi_mesh_corner(c->mesh, i, 2, r);
-        for (e = 0; e < 3; e++) { p[e] -= o[e]; q[e] -= o[e]; r[e] -= o[e]; }
+        for (e = 0; e < 3; e++) {
+            double *lo = s->box + 6*k + e, *hi = lo + 3;
+            *lo = DEMI_MIN(*lo, DEMI_MIN(p[e], DEMI_MIN(q[e], r[e])));
+            *hi = DEMI_MAX(*hi, DEMI_MAX(p[e], DEMI_MAX(q[e], r[e])));
+            p[e] -= o[e];
+            q[e] -= o[e];
+            r[e] -= o[e];
+        }
         s->volume[k] += c->sign[i]*(p[0]*(q[1]*r[2] - q[2]*r[1]) + p[1]*(q[2]*r[0] - q[0]*r[2]) +
                                     p[2]*(q[0]*r[1] - q[1]*r[0]))/6;
     }
@@ -5517,7 +5527,9 @@ static double demi_shells_winding(const demi_closed *c, const demi_shells *s, in
 /* Is shell a inside shell b? By some of its corners, those off b's surface. -1: they cross. */
 static int demi_shells_inside(const demi_closed *c, const demi_shells *s, int a, int b) {
     const int n = s->start[a + 1] - s->start[a], looks = DEMI_MIN(n, (int)DEMI_CLOSED_LOOKS);
+    const double *mine = s->box + 6*a, *its = s->box + 6*b;
     int i, in = 0, out = 0;
+    for (i = 0; i < 3; i++) if (mine[i] > its[i + 3] || its[i] > mine[i + 3]) return 0;
     for (i = 0; i < looks; i++) {
         double x[3], wind;
         demi_mesh_corner(c->mesh, s->order[s->start[a] + (int)((int64_t)i*n/looks)], i%3, x);

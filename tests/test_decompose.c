@@ -245,6 +245,9 @@ int main(int argc, char **argv) {
             pile_box(0, 1, 1, inward);                  /* side by side: the wall between them is there twice */
             CHECK_NEAR(pile_volume(w, ""), 2, exact);
         }
+        pile_begin();
+        for (inward = 0; inward < 7; inward++) pile_box(0, 1, 7 - 1.5*inward, inward%2);     /* seven bodies */
+        CHECK_NEAR(pile_volume(w, ""), 7, exact);
         dem_world_destroy(w);
     }
 
