@@ -61,6 +61,7 @@ STUDY_FN void film_close(film *f) {
     f->replay = 0;
     if (dem_replay_close(replay) != DEM_OK) { film_fail(f); return; }
     study.files++;
-    study_say("open %s in a browser: it plays the run", study_path("replay.html"));
+    study_film();                               /* the one before; this one at the end of the study */
+    snprintf(study.film, sizeof study.film, "%s", study_path("replay.html"));
 }
 #endif
