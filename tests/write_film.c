@@ -33,6 +33,7 @@ static int film(dem_world *w, const char *path, const char *title, dem_material 
             dem_sphere_add(w, stuff, DEM_R(0.003), dem_vec3_make(0, DEM_R(0.03), 0));
         }
         dem_replay_value(r, "kinetic energy (J)", dem_totals_get(w).kinetic);
+        dem_replay_value(r, "rotational energy (J)", dem_totals_get(w).rotational);
         dem_replay_value(r, "contacts", dem_counters_get(w).contacts);
         if (dem_replay_frame(r) != DEM_OK) break;
     }
