@@ -2560,7 +2560,8 @@ static double demi_clock(void) {                          /* s of wall time, for
    Small vectors by value, poses, random numbers. Finite is tested on the exponent bits, which
    -ffast-math cannot fold away.
    --------------------------------------------------------------------------------------------- */
-#define DEMI_FARTHEST 1e15          /* m: coordinates beyond are mistakes; squares could overflow */
+#define DEMI_FARTHEST 1e15          /* m, m/s, rad/s, s: what is beyond is a mistake, and refused
+                                       where it enters; squares could overflow */
 #define DEMI_LEAST 1e-12            /* m: surfaces smaller than that in all are mistakes, too */
 static double demi_size(dem_vec3 a) {                     /* largest component */
     return fmax(fabs((double)a.x), fmax(fabs((double)a.y), fabs((double)a.z)));
@@ -2581,6 +2582,8 @@ static int demi_finite_double(double x) {
 static int demi_finite(dem_real x) { return demi_finite_double((double)x); }
 static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y) &&
                                      demi_finite(v.z); }
+static int demi_bounded(double x) { return demi_finite_double(x) && fabs(x) <= DEMI_FARTHEST; }
+/* A place, a velocity or a spin that can be: on entering, in a step, in a file. */
 static int demi_place(dem_vec3 v) { return demi_finite3(v) && demi_size(v) <= DEMI_FARTHEST; }
 
 /* Functions that every C library rounds in its own way. Here are ours, so that a run has the same
@@ -4721,11 +4724,11 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
     }
     for (i = 0; i < desc->count; i++) {
         const dem_real r = desc->radii ? desc->radii[i] : desc->radius;
-        if (demi_finite(r) && r > 0 && demi_finite3(demi_at(desc->positions + 3*i))) continue;
+        if (demi_finite(r) && r > 0 && demi_place(demi_at(desc->positions + 3*i))) continue;
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sphere %d has radius %g m at (%g, %g, %g), must be "
-                  "> 0 and finite; fill in radii or radius", call, i, (double)r,
+                  "> 0 and finite, within %g m of 0; fill in radii or radius", call, i, (double)r,
                   (double)desc->positions[3*i], (double)desc->positions[3*i + 1],
-                  (double)desc->positions[3*i + 2]);
+                  (double)desc->positions[3*i + 2], DEMI_FARTHEST);
         return 0;
     }
     if ((int)desc->mass < 0 || desc->mass > DEM_CLUSTER_GIVEN) {
@@ -4734,13 +4737,13 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
         return 0;
     }
     if (desc->mass != DEM_CLUSTER_GIVEN) return 1;
-    if (desc->volume > 0 && demi_finite(desc->volume) && demi_finite3(desc->centre) && I[0] > 0 &&
+    if (desc->volume > 0 && demi_finite(desc->volume) && demi_place(desc->centre) && I[0] > 0 &&
         I[1] > 0 && I[2] > 0 && I[0] <= I[1] + I[2] && I[1] <= I[0] + I[2] && I[2] <= I[0] + I[1] &&
         demi_finite(I[3]) && demi_finite(I[4]) && demi_finite(I[5]) &&
         demi_finite(I[0] + I[1] + I[2])) return 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the volume given is %g m3 and the moments %g, %g, %g m5, "
-              "must be > 0 and no moment larger than the other two together; per density, not "
-              "times it", call, (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
+              "must be > 0 and no moment larger than the other two together (per density, not "
+              "times it), the centre within 1e15 m; was a unit mistaken?", call, (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
     return 0;
 }
 /* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
@@ -6946,11 +6949,11 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
                              "no sphere was added", i, (double)r);
         if (demi_mass_refuse(w, "dem_spheres_add", m, r, i)) return DEM_ERROR_ARGUMENT;
         if (!demi_place(demi_at(positions + 3*i)) || (velocities &&
-                                                      !demi_finite3(demi_at(velocities + 3*i))))
+                                                      !demi_place(demi_at(velocities + 3*i))))
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of "
-                             "sphere %d is not a finite number, or the position is farther than "
-                             "%g m from the origin; check the data it came from; no sphere was "
-                             "added", i, DEMI_FARTHEST);
+                             "sphere %d is not a finite number, or farther than %g m from the "
+                             "origin, or faster than that in m/s; check the data it came from; no "
+                             "sphere was added", i, DEMI_FARTHEST);
     }
     if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count))
         return demi_no_memory(w, "dem_spheres_add");
@@ -6991,11 +6994,11 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
     }
     for (i = 0; i < count; i++) {
         const dem_quat o = q ? demi_quat_at(q + 4*i) : dem_quat_make(1, 0, 0, 0);
-        if (!demi_place(demi_at(x + 3*i)) || (v && !demi_finite3(demi_at(v + 3*i))) ||
-            (spin && !demi_finite3(demi_at(spin + 3*i)))) {
+        if (!demi_place(demi_at(x + 3*i)) || (v && !demi_place(demi_at(v + 3*i))) ||
+            (spin && !demi_place(demi_at(spin + 3*i)))) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: position, velocity or spin of body %d is not a "
-                      "finite number, or the position is farther than %g m from the origin; check "
-                      "the data it came from; no body was added", call, i, DEMI_FARTHEST);
+                      "finite number, or beyond %g m, m/s or rad/s; check the data it came from; "
+                      "no body was added", call, i, DEMI_FARTHEST);
             return 0;
         }
         if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
@@ -7170,11 +7173,10 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
                          "%g, %g), must be finite and not zero; fill the state with dem_body_get "
                          "first", (unsigned)body.slot, (double)q.w, (double)q.x, (double)q.y,
                          (double)q.z);
-    if (!demi_place(s->position) || !demi_finite3(s->velocity) || !demi_finite3(s->spin))
+    if (!demi_place(s->position) || !demi_place(s->velocity) || !demi_place(s->spin))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_body_set: position, velocity or spin of body "
-                         "%u is not a finite number, or the position is farther than %g m from the "
-                         "origin; check what it was computed from", (unsigned)body.slot,
-                         DEMI_FARTHEST);
+                         "%u is not a finite number, or beyond %g m, m/s or rad/s; check what it "
+                         "was computed from", (unsigned)body.slot, DEMI_FARTHEST);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_body_set");
     before = demi_body_energy(w, i);
     m = (double)w->bodies.mass[i];
@@ -8558,10 +8560,19 @@ static void demi_wall_pose_at(const demi_wall *wall, double time, dem_pose *pose
     }
 }
 
-static int demi_pose_finite(const dem_pose *p) {
-    int i, ok = demi_finite3(p->position) && demi_finite3(p->velocity) && demi_finite3(p->spin);
-    for (i = 0; i < 9; i++) ok = ok && demi_finite(p->rotation[i]);
+/* A rotation, as far as its numbers tell, and a place, a velocity and a spin that can be. */
+static int demi_pose_sane(const dem_pose *p) {
+    int i, ok = demi_place(p->position) && demi_place(p->velocity) && demi_place(p->spin);
+    for (i = 0; i < 9; i++)
+        ok = ok && demi_finite(p->rotation[i]) && DEMI_ABS(p->rotation[i]) <= 2;
     return ok;
+}
+/* The numbers of a motion. */
+static int demi_motion_sane(const dem_motion *m) {
+    return demi_place(m->velocity) && demi_place(m->point) && demi_place(m->axis) &&
+        demi_bounded((double)m->speed) && demi_bounded((double)m->amplitude) &&
+        demi_bounded((double)m->frequency) && demi_bounded((double)m->phase) &&
+        demi_bounded(m->start) && demi_bounded(m->ramp) && m->ramp >= 0;
 }
 
 /* An upper bound of the speed of the wall's surface (m/s); 0 when its motion leaves the surface in
@@ -8783,10 +8794,11 @@ DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 poi
     dem_wall none;
     none.id = 0;
     if (!demi_wall_begin(w, "dem_plane_add", material, DEMI_WALL_PLANE, &wall)) return none;
-    if (!demi_finite3(point) || !demi_finite3(normal) || !(demi_size(normal) > 0)) {
+    if (!demi_place(point) || !demi_finite3(normal) || !(demi_size(normal) > 0)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_plane_add: normal is (%g, %g, %g), must be finite "
-                  "and not zero, point "
-                  "finite", (double)normal.x, (double)normal.y, (double)normal.z);
+                  "and not zero; point is (%g, %g, %g) m, must be within %g m of the origin",
+                  (double)normal.x, (double)normal.y, (double)normal.z, (double)point.x,
+                  (double)point.y, (double)point.z, DEMI_FARTHEST);
         return none;
     }
     wall.element_count = 1;
@@ -8806,11 +8818,11 @@ DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 
     dem_wall none;
     none.id = 0;
     if (!demi_wall_begin(w, "dem_cylinder_add", material, DEMI_WALL_CYLINDER, &wall)) return none;
-    if (!demi_finite3(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) ||
-        !(radius > 0) || !demi_finite(radius)) {
+    if (!demi_place(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) ||
+        !(radius > 0) || !demi_bounded((double)radius)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_cylinder_add: radius is %g m and axis (%g, %g, %g), "
-                  "must be > 0 and not "
-                  "zero", (double)radius, (double)axis.x, (double)axis.y, (double)axis.z);
+                  "must be > 0 and not zero; radius and the point's coordinates at most %g m",
+                  (double)radius, (double)axis.x, (double)axis.y, (double)axis.z, DEMI_FARTHEST);
         return none;
     }
     wall.element_count = 1;
@@ -8988,10 +9000,10 @@ DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int co
     dem_wall none;
     none.id = 0;
     if (!demi_wall_begin(w, "dem_grains_wall_add", material, DEMI_WALL_GRAINS, &wall)) return none;
-    if (!(radius > 0) || !demi_finite(radius) || !(share > 0) || !(share <= 1)) {
+    if (!(radius > 0) || !demi_bounded((double)radius) || !(share > 0) || !(share <= 1)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_grains_wall_add: radius is %g m and share %g, must "
-                  "be > 0 and 0 < share "
-                  "<= 1", (double)radius, (double)share);
+                  "be > 0, at most %g m, and 0 < share <= 1", (double)radius, (double)share,
+                  DEMI_FARTHEST);
         return none;
     }
     wall.radius = radius;
@@ -9015,7 +9027,7 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
     none.id = 0;
     if (!demi_wall_begin(w, "dem_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
 #define DEMI_BAD(field, good, text) \
-    if (!bad && (!demi_finite((dem_real)d->field) || !(good))) { \
+    if (!bad && (!demi_bounded((double)d->field) || !(good))) { \
         bad = #field; value = (dem_real)d->field; limit = text; \
     }
     DEMI_BAD(kind, (int)d->kind > 0 && d->kind <= DEM_SIEVE_REDUCED, "a DEM_SIEVE_ value")
@@ -9035,13 +9047,15 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
              d->clearance > 0 && d->clearance <= 1), "0, or of reduced holes up to 1")
 #undef DEMI_BAD
     if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: %s is %g, must be %s; start from "
-                  "DEM_SIEVE_DESC and set what differs", bad, (double)value, limit);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: %s is %g, must be %s, at most %g; start "
+                  "from DEM_SIEVE_DESC and set what differs", bad, (double)value, limit,
+                  DEMI_FARTHEST);
         return none;
     }
-    if (!demi_finite3(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: point, normal or along is not finite; "
-                  "check how it was computed");
+    if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: point, normal or along is not finite, or "
+                  "point farther than %g m from the origin; check how it was computed",
+                  DEMI_FARTHEST);
         return none;
     }
     n = demi_size(n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
@@ -9094,7 +9108,7 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
     if (demi_null(w, "dem_wall_motion", motion, "motion")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, "dem_wall_motion", id);
     demi_calling was;
-    demi_wall *wall;
+    demi_wall next;
     dem_motion_row *rows = 0;
     const void *before;
     void *old;
@@ -9112,37 +9126,37 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: wall %d has kind DEM_MOTION_USER "
                          "and no function; "
                          "set motion.function", (int)id.id);
-    if (!demi_finite3(motion->velocity) || !demi_finite3(motion->point) ||
-        !demi_finite3(motion->axis) ||
-        !demi_finite(motion->speed) || !demi_finite(motion->amplitude) ||
-        !demi_finite(motion->frequency) ||
-        !demi_finite(motion->phase) || !demi_finite_double(motion->start) ||
-        !demi_finite_double(motion->ramp) || !(motion->ramp >= 0) ||
-        (int)motion->kind < 0 || motion->kind > DEM_MOTION_TABLE)
+    if (!demi_motion_sane(motion) || (int)motion->kind < 0 || motion->kind > DEM_MOTION_TABLE)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: a number in the motion of wall "
-                         "%d is not finite, its ramp, %g s, below 0, or "
-                         "its kind %d unknown", (int)id.id, motion->ramp, (int)motion->kind);
+                         "%d is not finite or beyond %g (m, m/s, rad/s, s), its ramp, %g s, below "
+                         "0, or its kind %d unknown; start from DEM_MOTION", (int)id.id,
+                         DEMI_FARTHEST, motion->ramp, (int)motion->kind);
     if (motion->kind == DEM_MOTION_TABLE && demi_table_check(w, (int)id.id, motion) != DEM_OK)
         return DEM_ERROR_ARGUMENT;
-    if (!demi_table_make(w, motion, &rows) || !demi_list_drop(w)) {
+    if (!demi_table_make(w, motion, &rows)) return demi_no_memory(w, "dem_wall_motion");
+    next = w->walls[i];
+    next.home = next.pose;                      /* goes on from where it is */
+    next.home.velocity = next.home.spin = demi_v(0, 0, 0);
+    next.motion = *motion;
+    next.motion.table = rows;
+    if (!(demi_dot(motion->axis, motion->axis) > 0)) next.motion.axis = demi_v(0, 0, 1);
+    next.motion.start = DEMI_MAX(motion->start, w->clock.time);
+    next.symmetric = demi_wall_symmetric(&next);
+    was = demi_calls(w, "dem_wall_motion", 1);
+    demi_wall_pose_at(&next, w->clock.time, &next.pose);
+    w->look.calling = was;
+    next.mid = next.pose;
+    if (!demi_pose_sane(&next.pose) || !demi_list_drop(w)) {
         demi_free(w, rows);
-        return demi_no_memory(w, "dem_wall_motion");
+        return demi_pose_sane(&next.pose) ? demi_no_memory(w, "dem_wall_motion")
+            : demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: the motion of wall %d gives a "
+                        "pose that is not finite, does not only rotate, or is beyond %g m, m/s or "
+                        "rad/s now, at %g s; check it", (int)id.id, DEMI_FARTHEST, w->clock.time);
     }
-    wall = &w->walls[i];
-    before = wall->motion.table;
+    before = w->walls[i].motion.table;
     memcpy(&old, &before, sizeof old);
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
-    wall->home = wall->pose;                    /* goes on from where it is */
-    wall->home.velocity = wall->home.spin = demi_v(0, 0, 0);
-    wall->motion = *motion;
-    wall->motion.table = rows;
-    if (!(demi_dot(motion->axis, motion->axis) > 0)) wall->motion.axis = demi_v(0, 0, 1);
-    wall->motion.start = DEMI_MAX(motion->start, w->clock.time);
-    wall->symmetric = demi_wall_symmetric(wall);
-    was = demi_calls(w, "dem_wall_motion", 1);
-    demi_wall_pose_at(wall, w->clock.time, &wall->pose);
-    w->look.calling = was;
-    wall->mid = wall->pose;
+    w->walls[i] = next;
     w->facets_valid = 0;
     demi_built(w, "dem_wall_motion");
     demi_scene_changed(w);
@@ -20991,12 +21005,12 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     if (!demi_finite_double(d->rate) || !demi_finite_double(d->start) ||
         !demi_finite_double(d->end) || !(d->rate >= 0) || !(d->rate < 1e15) ||
         !(d->start >= 0) || !(d->end >= 0) || !(d->spread >= 0) ||
-        !demi_finite(d->spread) || !demi_finite3(d->velocity) ||
+        !demi_bounded((double)d->spread) || !demi_place(d->velocity) ||
         (!(d->rate > 0) && !d->limited) || (d->end > 0 && d->end < d->start)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s; "
-                  "must be finite and >= 0, the end 0 or after the start, and all at once (rate 0) "
-                  "needs `limited`, or it has no end", call, d->rate, d->start, d->end,
-                  (double)d->spread);
+                  "must be finite and >= 0, spread and velocity at most %g m/s, the end 0 or after "
+                  "the start, and all at once (rate 0) needs `limited`, or it has no end", call,
+                  d->rate, d->start, d->end, (double)d->spread, DEMI_FARTHEST);
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
@@ -23458,12 +23472,14 @@ static dem_result demi_step_move(dem_world *w) {
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(wall, w->clock.time, &pose);
         demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &mid);
-        if (!demi_pose_finite(&pose) || !demi_pose_finite(&mid)) {
+        if (!demi_pose_sane(&pose) || !demi_pose_sane(&mid)) {
             w->stage.forces_valid = 0;          /* the wall stays where it was, finite */
             w->margin.walls_gone = 1e300;
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: the motion of wall "
-                             "%d gave a pose that is not finite at %g s; check the motion function",
-                             (unsigned long long)w->clock.steps, i + 1, w->clock.time);
+                             "%d gave a pose that is not finite, does not only rotate, or is "
+                             "beyond %g m, m/s or rad/s at %g s; check its motion",
+                             (unsigned long long)w->clock.steps, i + 1, DEMI_FARTHEST,
+                             w->clock.time);
         }
         wall->pose = pose;
         wall->mid = mid;
@@ -23578,10 +23594,10 @@ static dem_result demi_refresh(dem_world *w) {
 
 DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
     if (demi_null(w, "dem_world_gravity_set", w, "world")) return DEM_ERROR_ARGUMENT;
-    if (!demi_finite3(gravity))
+    if (!demi_place(gravity))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_gravity_set: gravity is (%g, %g, %g) "
-                         "m/s2, must be finite; check what it was computed from",
-                         (double)gravity.x, (double)gravity.y, (double)gravity.z);
+                         "m/s2, must be finite and at most %g; check what it was computed from",
+                         (double)gravity.x, (double)gravity.y, (double)gravity.z, DEMI_FARTHEST);
     demi_finish(w);                             /* the half kick that is due is of the old one */
     w->desc.gravity = gravity;
     if (w->desc.planar) w->desc.gravity.z = 0;
@@ -23590,9 +23606,9 @@ DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
 }
 DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
     if (demi_null(w, "dem_world_dt_set", w, "world")) return DEM_ERROR_ARGUMENT;
-    if (!(dt >= 0) || !demi_finite(dt))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be finite and "
-                         ">= 0; 0 lets the library choose", (double)dt);
+    if (!(dt >= 0) || !demi_bounded((double)dt))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be 0 to %g s; "
+                         "0 lets the library choose", (double)dt, DEMI_FARTHEST);
     if (demi_impulsive(w) && !(dt > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have no "
                          "contact time to choose it from; set it, 1e-3 s for grains of "
@@ -23618,6 +23634,10 @@ static dem_result demi_step_ready(dem_world *w) {
         (!w->stage.forces_valid || !w->stage.list_valid || w->stage.pairs_changed))
         result = demi_refresh(w);
     if (result == DEM_OK) result = demi_dt_check(w);
+    if (result == DEM_OK && !demi_bounded(w->clock.time + (double)w->clock.dt))
+        result = demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: time is %g s and dt %g s, must "
+                           "stay below %g s; was dt meant in another unit?", w->clock.time,
+                           (double)w->clock.dt, DEMI_FARTHEST);
     if (result == DEM_OK && !w->stage.primed) { demi_finish(w); demi_prime(w); }
     return result;
 }
@@ -28590,13 +28610,6 @@ static int demi_contacts_check(const demi_reader *r) {
     }
     return 1;
 }
-/* A rotation, as far as its numbers tell, and a place that can be. */
-static int demi_pose_sane(const dem_pose *p) {
-    int k;
-    for (k = 0; k < 9; k++)
-        if (!demi_finite(p->rotation[k]) || DEMI_ABS(p->rotation[k]) > 2) return 0;
-    return demi_pose_finite(p) && demi_size(p->position) <= DEMI_FARTHEST;
-}
 /* Poses turn and do not stretch; motions are of the kind that the scene has. */
 static int demi_walls_check(const demi_reader *r) {
     int i;
@@ -28606,10 +28619,7 @@ static int demi_walls_check(const demi_reader *r) {
         if (wall->kind == DEMI_WALL_NONE) continue;
         if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
             !demi_pose_sane(&wall->mid)) return demi_lie(r, "the pose of wall", i);
-        if (m->kind != own->motion.kind || !demi_finite3(m->velocity) || !demi_finite3(m->point) ||
-            !demi_finite3(m->axis) || !demi_finite(m->speed) || !demi_finite(m->amplitude) ||
-            !demi_finite(m->frequency) || !demi_finite(m->phase) || !demi_finite_double(m->start) ||
-            !demi_sane(m->ramp, 0))
+        if (m->kind != own->motion.kind || !demi_motion_sane(m))
             return demi_lie(r, "the motion of wall", i);
     }
     return 1;
@@ -30087,26 +30097,27 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
     const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
     int k;
-    if (!demi_finite3(d->gravity)) return "dem_world_create: gravity is not finite, must be m/s2; "
-        "check how it was computed";
+    if (!demi_place(d->gravity)) return "dem_world_create: gravity is not finite or beyond 1e15, "
+        "must be m/s2; check how it was computed";
     for (k = 0; k < 3; k++) {
         if ((int)d->boundary[k] < 0 || d->boundary[k] > DEM_BOUNDARY_OUTFLOW)
             return "dem_world_create: a boundary is unknown, must be a DEM_BOUNDARY_ value; start "
                 "from DEM_WORLD_DESC";
-        if (d->boundary[k] != DEM_BOUNDARY_OPEN && (!(hi[k] > lo[k]) || !demi_finite(lo[k]) ||
-                                                    !demi_finite(hi[k])))
+        if (d->boundary[k] != DEM_BOUNDARY_OPEN && (!(hi[k] > lo[k]) ||
+                                                    !demi_bounded((double)lo[k]) ||
+                                                    !demi_bounded((double)hi[k])))
             return "dem_world_create: a boundary is periodic or outflow, but domain.lo is not "
-                "below domain.hi there; set domain";
+                "below domain.hi there, or one is beyond 1e15 m; set domain";
     }
     if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
         return "dem_world_create: planar is 1 and the z boundary is not open; discs live at z = 0: "
             "leave it open";
     if (!(d->thickness >= 0) || !demi_finite(d->thickness)) return "dem_world_create: thickness "
         "must be >= 0 m; 0 means 1 m";
-    if (!(d->dt >= 0) || !demi_finite(d->dt)) return "dem_world_create: dt must be >= 0 s; 0 lets "
-        "the library choose";
-    if (!(d->impact_speed >= 0) || !demi_finite(d->impact_speed)) return "dem_world_create: "
-        "impact_speed must be >= 0 m/s";
+    if (!(d->dt >= 0) || !demi_bounded((double)d->dt)) return "dem_world_create: dt must be 0 to "
+        "1e15 s; 0 lets the library choose";
+    if (!(d->impact_speed >= 0) || !demi_bounded((double)d->impact_speed))
+        return "dem_world_create: impact_speed must be 0 to 1e15 m/s";
     if (!(d->law_stiffness >= 0) || !demi_finite(d->law_stiffness)) return "dem_world_create: "
         "law_stiffness must be finite and >= 0 N/m; 0 means that of the built-in law";
     if (*demi_answer_error(d)) return demi_answer_error(d);

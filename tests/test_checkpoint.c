@@ -5,6 +5,7 @@
 #include "../dem.h"
 #include "test.h"
 #include "scene.h"
+#include "walk.h"
 
 static const char path[] = "build/tmp/state.ckpt";
 enum { LAW_SPRING, LAW_MINDLIN, LAW_RESCALED, LAW_EPSD, LAW_OWN, LAWS };
@@ -564,8 +565,123 @@ static int kept_differ(const dem_world *a, const dem_world *b) {
     return n;
 }
 
+/* --- every field of every desc --- */
+
+/* Fields that no single change of a value leaves both accepted and different: with why. */
+static int walk_alone(const char *name) {
+    static const char *const none[] = {
+        "world.allocator.alloc_fn", "world.allocator.free_fn",      /* both or neither */
+        0};
+    int k;
+    for (k = 0; none[k]; k++) if (!strcmp(none[k], name)) return 1;
+    return 0;
+}
+/* What a run leaves behind, as a checkpoint has it. */
+static char *walk_bytes(dem_world *world, size_t *size) {
+    *size = 0;
+    return dem_checkpoint_write(world, path) == DEM_OK ? file_get(path, size) : 0;
+}
+/* A checkpoint of one scene read into another: 0: refused, and the sentence says both values; 1: goes on to the
+   last byte as the scene that wrote it; -1: wrong. */
+static int walk_into(const walk_scene *from, const walk_scene *to, char *why) {
+    dem_world *a = walk_make(from, 0), *b = walk_make(to, 0);
+    char *x, *y;
+    size_t m, n;
+    int how = 0;
+    if (scene_step(a, 20) != DEM_OK || dem_checkpoint_write(a, path) != DEM_OK) how = -1;
+    else if (dem_checkpoint_read(b, path) != DEM_OK) {
+        snprintf(why, 512, "%s", dem_world_error(b));
+        how = (strstr(why, "written with ") && (strstr(why, ", this world has ") || strstr(why, " than this world has"))) ||
+            (strstr(why, " there, ") && strstr(why, " here (")) ? 0 : -1;
+    } else {
+        const dem_result ra = dem_world_step(a, 100), rb = dem_world_step(b, 100);
+        x = walk_bytes(a, &m);
+        y = walk_bytes(b, &n);
+        /* when a time step is judged next depends on whether it is judged */
+        how = ra == rb && dem_world_hash(a) == dem_world_hash(b) && x && y && m == n &&
+            (from->world.allow_large_dt != to->world.allow_large_dt || !memcmp(x, y, m)) ? 1 : -1;
+        free(x);
+        free(y);
+        snprintf(why, 512, "read, and it goes on %s: %s", how < 0 ? "otherwise" : "alike", dem_world_error(b));
+    }
+    dem_world_destroy(a);
+    dem_world_destroy(b);
+    return how;
+}
+
+/* Is what was accepted, before its first step and after five that went well, written and read? */
+static int walk_again(dem_world *world, char *why) {
+    int k;
+    for (k = 0; k < 2; k++) {
+        if (k && dem_world_step(world, 5) != DEM_OK) return 1;
+        if (dem_checkpoint_write(world, path) == DEM_OK && dem_checkpoint_read(world, path) == DEM_OK) continue;
+        snprintf(why, 512, "%s, %d steps", dem_world_error(world), 5*k);
+        return 0;
+    }
+    return 1;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
+
+    TEST("whatever number a desc accepts, its checkpoint is read, before the first step and after steps") {
+        static const double numbers[] = {1e16, -1e16, 1e30, -1e30, 1e155, 1e300, -1e300, 1e-30, 1e-300, 0};
+        const walk_fields *all = walk_all();
+        int k, way, n, accepted = 0, refusals = 0;
+        for (k = 0; k < all->count; k++)
+            for (n = 0; n < (int)(sizeof numbers/sizeof *numbers); n++)
+                for (way = 0; way < WALKS && (all->field[k].type == 'r' || all->field[k].type == 'd'); way++) {
+                    walk_scene s = walk_begin((k + n + way)%WALKS);    /* one scene that accepts it */
+                    char why[512] = "";
+                    dem_world *world;
+                    int good;
+                    walk_put(&all->field[k], &s, numbers[n]);
+                    world = walk_make(&s, 0);
+                    if (!world) { refusals++; continue; }
+                    accepted++;
+                    good = walk_again(world, why);
+                    CHECK(good);
+                    if (!good) printf("        %s = %g in scene %d: %s\n", all->field[k].name, numbers[n], (k + n + way)%WALKS, why);
+                    dem_world_destroy(world);
+                    break;
+                }
+        CHECK(accepted > 500 && refusals > 500);
+        remove(path);
+    }
+
+    TEST("each field of each desc that differs from the checkpoint's is refused with both values, or the run goes on "
+         "to the same bits") {
+        const walk_fields *all = walk_all();
+        int k, kind, way, refusals = 0, alike = 0;
+        for (k = 0; k < all->count; k++) {
+            const walk_field *f = &all->field[k];
+            int reached = 0;
+            char why[512] = "";
+            for (kind = 0; kind < WALKS; kind++)
+                for (way = 0; way < 6; way++) {
+                    const walk_scene base = walk_begin(kind);
+                    walk_scene other = base;
+                    dem_world *world;
+                    int how;
+                    if (!walk_change(f, &other, way)) break;
+                    if (!memcmp(&other, &base, sizeof base)) continue;
+                    world = walk_make(&other, why);
+                    if (!world) continue;
+                    dem_world_destroy(world);
+                    reached = 1;
+                    how = walk_into(&base, &other, why);
+                    CHECK(how >= 0);
+                    if (how < 0) printf("        %s in scene %d, change %d: %s\n", f->name, kind, way, why);
+                    refusals += how == 0;
+                    alike += how == 1;
+                    break;                       /* one value in each scene is enough */
+                }
+            CHECK(reached || walk_alone(f->name));
+            if (!reached && !walk_alone(f->name)) printf("        %s: no other value is accepted: %s\n", f->name, why);
+        }
+        CHECK(refusals > 300 && alike > 10);
+        remove(path);
+    }
 
     TEST("every byte that bodies keep is found again after a checkpoint, a sort, a removal, and in "
          "a message to another slab") {

@@ -4,6 +4,7 @@
 #include "../dem.h"
 #include "test.h"
 #include "scene.h"
+#include "walk.h"
 
 static dem_slabs *deal(dem_world *world, int axis, int count) {
     dem_slabs_desc desc = DEM_SLABS_DESC;
@@ -1053,6 +1054,44 @@ int main(int argc, char **argv) {
             dem_slabs_destroy(slabs);
             for (k = 0; k < 3; k++) dem_world_destroy(world[k]);
         }
+    }
+    TEST("one slab goes on to the bits of the world, whatever field of whatever desc is changed") {
+        const walk_fields *all = walk_all();
+        int k, kind, way, runs = 0;
+        for (k = 0; k < all->count; k++)
+            for (kind = 0; kind < WALK_IMPULSES; kind++)
+                for (way = 0; way < 6; way++) {
+                    walk_scene s = walk_begin(kind);
+                    dem_world *world[2];
+                    dem_slabs *slabs;
+                    dem_result there, here;
+                    int i;
+                    if (!walk_change(&all->field[k], &s, way)) break;
+                    for (i = 0; i < 2; i++) world[i] = walk_make(&s, 0);
+                    if (!world[0] || !world[1]) {
+                        for (i = 0; i < 2; i++) dem_world_destroy(world[i]);
+                        continue;
+                    }
+                    if (dem_world_step(world[0], 3) == DEM_OK) {
+                        dem_world_step(world[1], 3);
+                        slabs = deal(world[1], 0, 1);
+                        there = dem_slabs_step(slabs, 40);
+                        here = dem_world_step(world[0], 40);
+                        CHECK_EQ(there, here);
+                        if (here == DEM_OK) {
+                            const int before = test_now.wrong;
+                            CHECK_EQ(collect(slabs, world[1]), DEM_OK);
+                            CHECK_EQ(dem_world_hash(world[1]), dem_world_hash(world[0]));
+                            if (test_now.wrong > before) printf("        %s in scene %d\n", all->field[k].name, kind);
+                            runs++;
+                        }
+                        dem_slabs_destroy(slabs);
+                    }
+                    for (i = 0; i < 2; i++) dem_world_destroy(world[i]);
+                    kind = WALKS;                /* one scene that accepts it */
+                    break;
+                }
+        CHECK(runs > 250);
     }
     TEST("a time step that is too large for what presses, also across borders, is refused in slabs with the limit "
          "of one world, and one that is chosen is made as small") {
