@@ -6955,7 +6955,7 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
                              "origin, or faster than that in m/s; check the data it came from; no "
                              "sphere was added", i, DEMI_FARTHEST);
     }
-    if (!demi_list_drop(w) || !demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count))
+    if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) || !demi_list_drop(w))
         return demi_no_memory(w, "dem_spheres_add");
     for (i = 0; i < count; i++) {
         const uint32_t slot = demi_body_append(w, m, radii ? radii[i] : radius,
@@ -8742,11 +8742,10 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
 }
 
 /* Takes over a prepared wall (its arrays included) or frees it. */
-static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
+static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall) {
     dem_wall id;
     int i;
     id.id = 0;
-    wall->pose = wall->mid = wall->first = wall->home;
     for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
         const int part = demi_shape_strange(w, wall, demi_shape_of(w, i));
         if (part < 0) continue;
@@ -8762,8 +8761,7 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
         demi_wall_free(w, wall);
         return id;
     }
-    if (!demi_list_drop(w)) { demi_wall_free(w, wall); demi_no_memory(w, call); return id; }
-    if (!DEMI_GROW(w, w->walls, (size_t)w->wall_count + 1)) {
+    if (!DEMI_GROW(w, w->walls, (size_t)w->wall_count + 1) || !demi_list_drop(w)) {
         demi_wall_free(w, wall);
         demi_no_memory(w, call);
         return id;
@@ -8774,6 +8772,11 @@ static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall)
     demi_scene_changed(w);
     id.id = w->wall_count;
     return id;
+}
+/* The same for a wall at rest in its first pose. */
+static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
+    wall->pose = wall->mid = wall->first = wall->home;
+    return demi_wall_enter(w, call, wall);
 }
 
 /* What all kinds of walls have in common. 0 with a sentence when there is no such material. */
@@ -8980,16 +8983,20 @@ DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_
     return demi_wall_adopt(w, "dem_profile_add", &wall);
 }
 
+/* A wall of triangles that the world has not adopted yet. 0 with a sentence when it is refused. */
+static int demi_mesh_make(dem_world *w, dem_material material, const dem_mesh *mesh,
+                          demi_wall *wall) {
+    if (!demi_wall_begin(w, "dem_mesh_add", material, DEMI_WALL_MESH, wall) ||
+        !demi_wall_load(w, "dem_mesh_add", wall, mesh->vertex_count, mesh->vertices, 3,
+                        mesh->triangle_count, mesh->triangles, 3)) return 0;
+    wall->motion.axis = demi_v(0, 0, 1);
+    return 1;
+}
 DEM_API dem_wall dem_mesh_add(dem_world *w, dem_material material, const dem_mesh *mesh) {
     if (demi_null(w, "dem_mesh_add", mesh, "mesh")) return demi_no_wall;
     demi_wall wall;
-    dem_wall none;
-    none.id = 0;
-    if (!demi_wall_begin(w, "dem_mesh_add", material, DEMI_WALL_MESH, &wall) ||
-        !demi_wall_load(w, "dem_mesh_add", &wall, mesh->vertex_count, mesh->vertices, 3,
-                        mesh->triangle_count, mesh->triangles, 3)) return none;
-    wall.motion.axis = demi_v(0, 0, 1);
-    return demi_wall_adopt(w, "dem_mesh_add", &wall);
+    return demi_mesh_make(w, material, mesh, &wall) ? demi_wall_adopt(w, "dem_mesh_add", &wall)
+                                                    : demi_no_wall;
 }
 
 DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int count,
@@ -9104,15 +9111,8 @@ static int demi_wall_symmetric(const demi_wall *wall) {
     return demi_length(demi_cross(z, off)) <= DEM_R(1e-6)*wall->radius;
 }
 
-DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *motion) {
-    if (demi_null(w, "dem_wall_motion", motion, "motion")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_motion", id);
-    demi_calling was;
-    demi_wall next;
-    dem_motion_row *rows = 0;
-    const void *before;
-    void *old;
-    if (i < 0) return DEM_ERROR_ARGUMENT;
+/* Refuses a motion of the wall of this id, which need not be there yet. */
+static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: axis of rotating wall %d is "
                          "zero; give a direction",
@@ -9131,31 +9131,53 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
                          "%d is not finite or beyond %g (m, m/s, rad/s, s), its ramp, %g s, below "
                          "0, or its kind %d unknown; start from DEM_MOTION", (int)id.id,
                          DEMI_FARTHEST, motion->ramp, (int)motion->kind);
-    if (motion->kind == DEM_MOTION_TABLE && demi_table_check(w, (int)id.id, motion) != DEM_OK)
-        return DEM_ERROR_ARGUMENT;
+    return motion->kind == DEM_MOTION_TABLE ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
+}
+/* The wall of this id, which need not be there yet, as it is once it has this motion. An error
+   leaves *next alone. */
+static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *motion,
+                                  const demi_wall *wall, demi_wall *next) {
+    demi_wall laid = *wall;
+    dem_motion_row *rows = 0;
+    demi_calling was;
+    if (demi_motion_check(w, id, motion) != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (!demi_table_make(w, motion, &rows)) return demi_no_memory(w, "dem_wall_motion");
-    next = w->walls[i];
-    next.home = next.pose;                      /* goes on from where it is */
-    next.home.velocity = next.home.spin = demi_v(0, 0, 0);
-    next.motion = *motion;
-    next.motion.table = rows;
-    if (!(demi_dot(motion->axis, motion->axis) > 0)) next.motion.axis = demi_v(0, 0, 1);
-    next.motion.start = DEMI_MAX(motion->start, w->clock.time);
-    next.symmetric = demi_wall_symmetric(&next);
+    laid.home = laid.pose;                      /* goes on from where it is */
+    laid.home.velocity = laid.home.spin = demi_v(0, 0, 0);
+    laid.motion = *motion;
+    laid.motion.table = rows;
+    if (!(demi_dot(motion->axis, motion->axis) > 0)) laid.motion.axis = demi_v(0, 0, 1);
+    laid.motion.start = DEMI_MAX(motion->start, w->clock.time);
+    laid.symmetric = demi_wall_symmetric(&laid);
     was = demi_calls(w, "dem_wall_motion", 1);
-    demi_wall_pose_at(&next, w->clock.time, &next.pose);
+    demi_wall_pose_at(&laid, w->clock.time, &laid.pose);
     w->look.calling = was;
-    next.mid = next.pose;
-    if (!demi_pose_sane(&next.pose) || !demi_list_drop(w)) {
+    laid.mid = laid.pose;
+    if (!demi_pose_sane(&laid.pose)) {
         demi_free(w, rows);
-        return demi_pose_sane(&next.pose) ? demi_no_memory(w, "dem_wall_motion")
-            : demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: the motion of wall %d gives a "
-                        "pose that is not finite, does not only rotate, or is beyond %g m, m/s or "
-                        "rad/s now, at %g s; check it", (int)id.id, DEMI_FARTHEST, w->clock.time);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: the motion of wall %d gives a "
+                         "pose that is not finite, does not only rotate, or is beyond %g m, m/s or "
+                         "rad/s now, at %g s; check it", (int)id.id, DEMI_FARTHEST, w->clock.time);
     }
-    before = w->walls[i].motion.table;
-    memcpy(&old, &before, sizeof old);
+    *next = laid;
+    return DEM_OK;
+}
+DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *motion) {
+    if (demi_null(w, "dem_wall_motion", motion, "motion")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_motion", id);
+    demi_wall next;
+    const void *rows;
+    void *old;
+    int dropped;
+    dem_result result;
+    if (i < 0) return DEM_ERROR_ARGUMENT;
+    result = demi_motion_lay(w, id, motion, &w->walls[i], &next);
+    if (result != DEM_OK) return result;
+    dropped = demi_list_drop(w);
+    rows = dropped ? w->walls[i].motion.table : next.motion.table;
+    memcpy(&old, &rows, sizeof old);
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
+    if (!dropped) return demi_no_memory(w, "dem_wall_motion");
     w->walls[i] = next;
     w->facets_valid = 0;
     demi_built(w, "dem_wall_motion");
@@ -25317,37 +25339,54 @@ DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, 
                  dem_quat_rotate(q, demi_scale(demi_at(mesh->vertices + 3*i), scale))));
     return DEM_OK;
 }
-/* One part of a machine as a wall; the wall may be there although its motion is refused. */
-static dem_result demi_part_wall(dem_world *w, const char *path, dem_real scale,
-                                 const dem_part *part, dem_wall *wall) {
+/* One part of a machine as a wall, which will have this id. */
+static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
+                                 const dem_part *part, dem_wall id, demi_wall *wall) {
     dem_mesh mesh;
     dem_result result = dem_mesh_part_read(w, path, part->name, &mesh, 0);
     if (result != DEM_OK) return result;
     result = dem_mesh_place(w, &mesh, scale, dem_quat_make(0, 0, 0, 0), demi_v(0, 0, 0));
-    *wall = demi_no_wall;
-    if (result == DEM_OK) *wall = dem_mesh_add(w, part->material, &mesh);
+    if (result == DEM_OK && !demi_mesh_make(w, part->material, &mesh, wall))
+        result = DEM_ERROR_ARGUMENT;
     dem_mesh_free(w, &mesh);
     if (result != DEM_OK) return result;
-    return wall->id ? dem_wall_motion(w, *wall, &part->motion) : DEM_ERROR_ARGUMENT;
+    wall->pose = wall->first = wall->home;
+    return demi_motion_lay(w, id, &part->motion, wall, wall);
 }
+/* What can be refused is before the first wall is added: then nothing of the world has changed. */
 DEM_API dem_result dem_parts_add(dem_world *w, const char *path, dem_real scale, int count,
                                  const dem_part *parts, dem_wall *walls) {
     const char *call = "dem_parts_add";
     char sentence[sizeof w->error];
     dem_result result = DEM_OK;
+    demi_wall *made;
     dem_wall wall = demi_no_wall;
     int i, first;
+    for (i = 0; i < count && walls; i++) walls[i] = demi_no_wall;
     if (demi_null(w, call, parts, "parts")) return DEM_ERROR_ARGUMENT;
     if (count < 1)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be > 0", call, count);
     first = w->wall_count;
+    made = (demi_wall *)demi_alloc(w, (size_t)count, sizeof *made);
+    if (!made) return demi_no_memory(w, call);
     for (i = 0; i < count && result == DEM_OK; i++) {
-        result = demi_part_wall(w, path, scale > 0 || scale < 0 ? scale : 1, parts + i, &wall);
+        wall.id = first + i + 1;
+        result = demi_part_make(w, path, scale > 0 || scale < 0 ? scale : 1, parts + i, wall,
+                                made + i);
+    }
+    if (result == DEM_OK && !DEMI_GROW(w, w->walls, (size_t)first + (size_t)count))
+        result = demi_no_memory(w, call);
+    for (i = 0; i < count && result == DEM_OK; i++) {
+        wall = demi_wall_enter(w, "dem_mesh_add", made + i);
+        memset(made + i, 0, sizeof *made);
+        result = wall.id ? DEM_OK : DEM_ERROR_ARGUMENT;
         if (walls) walls[i] = wall;
     }
-    if (result == DEM_OK) { demi_built(w, call); return DEM_OK; }
     memcpy(sentence, w->error, sizeof sentence);
-    while (w->wall_count > first) {             /* those before it go again */
+    for (i = 0; i < count; i++) demi_wall_free(w, made + i);
+    demi_free(w, made);
+    if (result == DEM_OK) { demi_built(w, call); return DEM_OK; }
+    while (w->wall_count > first) {             /* out of memory: those before it go again */
         const dem_wall last = {w->wall_count};
         dem_wall_remove(w, last);
         w->wall_count--;
