@@ -2201,8 +2201,8 @@ DEM_API dem_replay *dem_replay_open(dem_world *world, const char *path,
 /* The world as it is now: a frame. Ask for one every so often: 30 to 300 make a good film. */
 DEM_API dem_result dem_replay_frame(dem_replay *replay);
 /* A value of the next frame, drawn against time under this name (1 to 63 letters), which ends with
-   its unit in brackets: values of one unit share a scale. At most 16 names. What is no number leaves
-   a gap. */
+   its unit in brackets: values of one unit share a scale. At most 16 names. A value that is not a
+   number leaves a gap. */
 DEM_API dem_result dem_replay_value(dem_replay *replay, const char *name, double value);
 /* Adds the report and ends the file; the replay is gone whatever the answer. */
 DEM_API dem_result dem_replay_close(dem_replay *replay);
@@ -4743,7 +4743,8 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
         demi_finite(I[0] + I[1] + I[2])) return 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the volume given is %g m3 and the moments %g, %g, %g m5, "
               "must be > 0 and no moment larger than the other two together (per density, not "
-              "times it), the centre within 1e15 m; was a unit mistaken?", call, (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
+              "times it), the centre within 1e15 m; was a unit mistaken?", call,
+              (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
     return 0;
 }
 /* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
@@ -22347,8 +22348,8 @@ static void demi_check_outside(const dem_world *w, demi_findings *f) {
                   count > 1 ? "s are" : " is");
 }
 
-/* --- Grains on both sides of a closed surface. Meshes, profiles and surfaces of revolution are thin:
-       both sides push, so that grains inside a solid body touch nothing and stay there unseen. A
+/* --- Grains on both sides of a closed surface. Meshes, profiles and surfaces of revolution are
+       thin: both sides push, so that grains inside a solid body touch nothing and stay there unseen. A
        closed container has all grains inside; where some are inside and some are not, one of the
        two was not meant. What is closed: a shell, that is facets joined by edges (of profiles: by
        ends), each of which an even number of them has, also of several walls that do not move
@@ -23770,8 +23771,8 @@ static double demi_speeds(const dem_world *w, double *mean) {
     *mean = mass > 0 ? sqrt(sum/mass) : 0;
     return sqrt(most);
 }
-/* m/s, the speed at rest: `speed`, or where that is 0 a hundredth of a fall by a mean radius. *look:
-   s, the time to fall by half a radius, or to go that far: what turns round is not at rest. */
+/* m/s, the speed at rest: `speed`, or where that is 0 a hundredth of a fall by a mean radius.
+   *look: s, the time to fall by half a radius, or to go that far: what turns round is not at rest. */
 static double demi_calm(const dem_world *w, double speed, double *look) {
     const double g = (double)demi_length(w->desc.gravity);
     double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first to come */
