@@ -4741,11 +4741,10 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
         I[1] > 0 && I[2] > 0 && I[0] <= I[1] + I[2] && I[1] <= I[0] + I[2] && I[2] <= I[0] + I[1] &&
         demi_finite(I[3]) && demi_finite(I[4]) && demi_finite(I[5]) &&
         demi_finite(I[0] + I[1] + I[2])) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the volume given is %g m3 and the moments %g, %g, %g m5, "
-              "must be > 0 and no moment larger than the other two together (per density, not "
-              "times it), the centre within 1e15 m; was a unit mistaken?", call,
-              (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
-    return 0;
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the volume given is %g m3 and the moments %g, "
+                     "%g, %g m5, must be > 0 and no moment larger than the other two together (per "
+                     "density, not times it), the centre within 1e15 m; was a unit mistaken?", call,
+                     (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]), 0;
 }
 /* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
 static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const demi_shape *shape,
@@ -22349,8 +22348,8 @@ static void demi_check_outside(const dem_world *w, demi_findings *f) {
 }
 
 /* --- Grains on both sides of a closed surface. Meshes, profiles and surfaces of revolution are
-       thin: both sides push, so that grains inside a solid body touch nothing and stay there unseen. A
-       closed container has all grains inside; where some are inside and some are not, one of the
+       thin: both sides push, so that grains inside a solid body touch nothing and stay there
+       unseen. A closed container has all grains inside; where some are inside and some are not, one of the
        two was not meant. What is closed: a shell, that is facets joined by edges (of profiles: by
        ends), each of which an even number of them has, also of several walls that do not move
        against each other. A place is inside if a line from it crosses the shell an odd number of
@@ -23772,7 +23771,8 @@ static double demi_speeds(const dem_world *w, double *mean) {
     return sqrt(most);
 }
 /* m/s, the speed at rest: `speed`, or where that is 0 a hundredth of a fall by a mean radius.
-   *look: s, the time to fall by half a radius, or to go that far: what turns round is not at rest. */
+   *look: s, the time to fall by half a radius, or to go that far: a body that turns round is not at
+   rest. */
 static double demi_calm(const dem_world *w, double speed, double *look) {
     const double g = (double)demi_length(w->desc.gravity);
     double radius = w->feed_count ? demi_feed_at(w, 0)->lo[0] : 0;      /* of the first to come */
