@@ -22349,11 +22349,11 @@ static void demi_check_outside(const dem_world *w, demi_findings *f) {
 
 /* --- Grains on both sides of a closed surface. Meshes, profiles and surfaces of revolution are
        thin: both sides push, so that grains inside a solid body touch nothing and stay there
-       unseen. A closed container has all grains inside; where some are inside and some are not, one of the
-       two was not meant. What is closed: a shell, that is facets joined by edges (of profiles: by
-       ends), each of which an even number of them has, also of several walls that do not move
-       against each other. A place is inside if a line from it crosses the shell an odd number of
-       times. --- */
+       unseen. A closed container has all grains inside; where some are inside and some are not,
+       one of the two was not meant. A shell is closed if an even number of its facets meets at
+       each edge (of profiles: at each end), also if the facets belong to several walls that do not
+       move against each other. A place is inside if a line from it crosses the shell an odd number
+       of times. --- */
 typedef struct demi_probe {
     double x[3];                   /* m, where the surface was when its motion began */
     int odd, turn;                 /* crossings: is their number odd; sum of their directions */
