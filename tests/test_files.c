@@ -222,7 +222,7 @@ static void meshes(void) {
         uint64_t random = 7;
         int trial, i;
         for (trial = 0; trial < 300; trial++) {
-            static char text[8000];
+            static char face[8000];
             double x[64], y[64], area = 0, sum = 0, least = 0;
             const double a = 3*scene_random(&random), b = 3*scene_random(&random);
             const int corners = 4 + (int)(60*scene_random(&random));
@@ -231,15 +231,15 @@ static void meshes(void) {
                 const double angle = 2*3.14159265358979*(i + 0.4*scene_random(&random))/corners, r = 0.2 + scene_random(&random);
                 x[i] = r*cos(angle);
                 y[i] = r*sin(angle);
-                n += (size_t)sprintf(text + n, "v %.17g %.17g %.17g\n", x[i], y[i], a*x[i] + b*y[i]);
+                n += (size_t)sprintf(face + n, "v %.17g %.17g %.17g\n", x[i], y[i], a*x[i] + b*y[i]);
             }
-            n += (size_t)sprintf(text + n, "f");
+            n += (size_t)sprintf(face + n, "f");
             for (i = 0; i < corners; i++) {
                 const int j = (i + 1)%corners;
                 area += (x[i]*y[j] - x[j]*y[i])/2;
-                n += (size_t)sprintf(text + n, " %d", i + 1);
+                n += (size_t)sprintf(face + n, " %d", i + 1);
             }
-            CHECK_EQ(parse(world, text, &mesh, &health), DEM_OK);
+            CHECK_EQ(parse(world, face, &mesh, &health), DEM_OK);
             CHECK_EQ(mesh.triangle_count, corners - 2);
             CHECK_EQ(health.crossed_faces + health.bent_faces, 0);
             for (i = 0; i < mesh.triangle_count; i++) {
@@ -257,16 +257,16 @@ static void meshes(void) {
     }
     TEST("a comb of 2000 teeth in one face keeps its area, a larger one is refused with the limit") {
         enum { TEETH = 2000, MORE = 5000 };
-        static char text[40*2*MORE + 8*2*MORE + 200];
+        static char comb[40*2*MORE + 8*2*MORE + 200];
         int teeth, i;
         for (teeth = TEETH; teeth <= MORE; teeth += MORE - TEETH) {
             size_t n = 0;
             double area = 0;
             for (i = 0; i < teeth; i++)             /* tips at y = 2 over gaps at y = 1, in a plane that leans */
-                n += (size_t)sprintf(text + n, "v %d 2 %d\nv %g 1 %g\n", i, i, i + 0.5, i + 0.5);
-            n += (size_t)sprintf(text + n, "v %d 0 %d\nv 0 0 0\nf", teeth, teeth);
-            for (i = 2*teeth + 2; i > 0; i--) n += (size_t)sprintf(text + n, " %d", i);
-            CHECK_EQ(parse(world, text, &mesh, &health), teeth == TEETH ? DEM_OK : DEM_ERROR_FORMAT);
+                n += (size_t)sprintf(comb + n, "v %d 2 %d\nv %g 1 %g\n", i, i, i + 0.5, i + 0.5);
+            n += (size_t)sprintf(comb + n, "v %d 0 %d\nv 0 0 0\nf", teeth, teeth);
+            for (i = 2*teeth + 2; i > 0; i--) n += (size_t)sprintf(comb + n, " %d", i);
+            CHECK_EQ(parse(world, comb, &mesh, &health), teeth == TEETH ? DEM_OK : DEM_ERROR_FORMAT);
             for (i = 0; i < mesh.triangle_count; i++) {
                 const dem_real *a = mesh.vertices + 3*mesh.triangles[3*i], *b = mesh.vertices + 3*mesh.triangles[3*i + 1];
                 const dem_real *c = mesh.vertices + 3*mesh.triangles[3*i + 2];
