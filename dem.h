@@ -393,7 +393,7 @@ DEM_INLINE dem_box dem_box_make(dem_real x0, dem_real y0, dem_real z0, dem_real 
 DEM_INLINE dem_quat dem_quat_make(dem_real w, dem_real x, dem_real y, dem_real z) {
     dem_quat q; q.w = w; q.x = x; q.y = y; q.z = z; return q;
 }
-/* The rotation by angle (rad) about an axis of any length but 0. */
+/* The rotation by angle (rad; degrees times pi/180) about an axis of any length but 0. */
 DEM_API dem_quat dem_quat_about(dem_vec3 axis, dem_real angle);
 /* First b, then a. */
 DEM_INLINE dem_quat dem_quat_times(dem_quat a, dem_quat b) {
@@ -1745,12 +1745,13 @@ typedef struct dem_finding {
 } dem_finding;
 /* Looks for grains that start inside each other or in walls, or inside a closed mesh, profile or
    surface of revolution that others are outside of (also those that feeds will bring), overlaps to
-   be expected from speed and
-   weight (more than 5 % of a radius, with the modulus that would keep them below 1 %), units
-   (metres, kg/m3, Pa), places too far from the origin for their digits, scenes in which nothing
-   moves or all falls for ever, walls that nothing can reach, a time step that is too large or
-   needlessly small. Makes a list of neighbours. Returns how many findings there are, most severe
-   first; writes at most capacity of them. */
+   be expected from speed and weight (more than 5 % of a radius, with the modulus that would keep
+   them below 1 %), units (metres, kg/m3, Pa), places too far from the origin for their digits,
+   scenes in which nothing moves or all falls for ever, walls that nothing can reach, a time step
+   that is too large or needlessly small. A closed container that holds all grains is right; a mesh
+   is closed if each edge has two triangles, or is made up of others' edges. Makes a list of
+   neighbours. Returns how many findings there are, most severe first; writes at most capacity of
+   them. */
 DEM_API int dem_world_check(dem_world *world, dem_finding *findings, int capacity);
 /* The same as lines of text, the first 16 of them; nothing where nothing is found. */
 DEM_API int dem_check_print(dem_world *world, FILE *out);
@@ -9089,10 +9090,16 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
 
 /* Index of a wall, or -1 with a sentence. */
 static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
-    if (wall.id < 1 || wall.id > w->wall_count || w->walls[wall.id - 1].kind == DEMI_WALL_NONE) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, there are %d; check what "
-                  "adding it returned",
-                  call, (int)wall.id, w->wall_count);
+    if (wall.id < 1 || wall.id > w->wall_count) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, ids here go from 1 to %d; it "
+                  "was not added (dem_world_error says why) or is of another world: check what "
+                  "adding it returned", call, (int)wall.id, w->wall_count);
+        return -1;
+    }
+    if (w->walls[wall.id - 1].kind == DEMI_WALL_NONE) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist any more: it was removed "
+                  "(dem_wall_remove); add it again and use the id that this returns", call,
+                  (int)wall.id);
         return -1;
     }
     return wall.id - 1;
@@ -20996,8 +21003,9 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     id.id = 0;
     if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
     if (d->class_count < 1 || d->class_count > DEM_CLASSES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d (required)", call,
-                  d->class_count, (int)DEM_CLASSES);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d (required); say "
+                  "how many entries of radius and amount are filled in", call, d->class_count,
+                  (int)DEM_CLASSES);
         return id;
     }
     memset(&feed, 0, sizeof feed);
@@ -21244,7 +21252,8 @@ DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state 
     if (demi_null_look(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
     if (id.id < 1 || id.id > w->feed_count)
         return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not "
-                         "exist, there are %d", (int)id.id, w->feed_count);
+                         "exist, ids here go from 1 to %d; it was refused or is of another world: "
+                         "check what dem_feed_add returned", (int)id.id, w->feed_count);
     *state = demi_feed_at(w, id.id - 1)->state;
     return DEM_OK;
 }
@@ -21386,8 +21395,9 @@ static dem_result demi_outlets_run(dem_world *w) {
 }
 static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_outlet id) {
     if (id.id >= 1 && id.id <= w->outlet_count) return demi_outlet_at(w, id.id - 1);
-    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, there are %d",
-              call, (int)id.id, w->outlet_count);
+    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, ids here go "
+              "from 1 to %d; it was refused or is of another world: check what dem_outlet_add "
+              "returned", call, (int)id.id, w->outlet_count);
     return 0;
 }
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {

@@ -297,6 +297,33 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
 
+    TEST("an id that was never given is told from that of a wall which was removed, and a feed without classes says what to do") {
+        dem_world *world = world_of(9.81, 1e-4);
+        dem_material stuff = soft(world, 100);
+        const dem_wall wall = dem_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+        dem_feed_desc d = feed_of(stuff, 1000);
+        dem_feed_state fed;
+        dem_outlet_state out;
+        dem_wall other;
+        dem_pose pose;
+        const dem_feed feed = {2};
+        const dem_outlet outlet = {2};
+        other.id = 7;
+        CHECK_EQ(dem_wall_pose(world, other, &pose), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "wall 7 does not exist, ids here go from 1 to 1");
+        CHECK_EQ(dem_wall_remove(world, wall), DEM_OK);
+        CHECK_EQ(dem_wall_pose(world, wall, &pose), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "wall 1 does not exist any more: it was removed");
+        CHECK_EQ(dem_feed_get(world, feed, &fed), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "check what dem_feed_add returned");
+        CHECK_EQ(dem_outlet_get(world, outlet, &out), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error(world), "check what dem_outlet_add returned");
+        d.class_count = 0;
+        CHECK_EQ(dem_feed_add(world, &d).id, 0);
+        CHECK_STR(dem_world_error(world), "say how many entries of radius and amount");
+        dem_world_destroy(world);
+    }
+
     TEST("a feed without room keeps its grains until there is some") {
         dem_world *world = world_of(0, 1e-4);
         dem_material stuff = soft(world, 1);
