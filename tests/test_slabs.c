@@ -1066,6 +1066,7 @@ int main(int argc, char **argv) {
                     dem_slabs *slabs;
                     dem_result there, here;
                     int i;
+                    s.feed.start = 1;            /* newcomers join lists in another order */
                     if (!walk_change(&all->field[k], &s, way)) break;
                     for (i = 0; i < 2; i++) world[i] = walk_make(&s, 0);
                     if (!world[0] || !world[1]) {

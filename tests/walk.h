@@ -40,7 +40,7 @@ typedef struct walk_fields {
     walk_field field[WALK_FIELDS];
 } walk_fields;
 /* Reads files, one behind the other, without comments. */
-static char *walk_text(void) {
+static inline char *walk_text(void) {
     static const char *const names[] = {"dem.h", "tests/walk.h"};
     char *text = (char *)calloc(1, 4000000);
     size_t n = 0;
@@ -61,11 +61,11 @@ static char *walk_text(void) {
     }
     return text;
 }
-static size_t walk_size(char type) {
+static inline size_t walk_size(char type) {
     return type == 'i' ? 4 : type == 'u' ? sizeof(uint64_t) : type == 'r' ? sizeof(dem_real)
         : type == 'd' ? sizeof(double) : sizeof(void *);
 }
-static size_t walk_align(char type) {
+static inline size_t walk_align(char type) {
     typedef struct walk_u { char c; uint64_t x; } walk_u;
     typedef struct walk_r { char c; dem_real x; } walk_r;
     typedef struct walk_d { char c; double x; } walk_d;
@@ -73,16 +73,16 @@ static size_t walk_align(char type) {
     return type == 'i' ? 4 : type == 'u' ? offsetof(walk_u, x) : type == 'r' ? offsetof(walk_r, x)
         : type == 'd' ? offsetof(walk_d, x) : offsetof(walk_p, x);
 }
-static int walk_letter(int c) { return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-static const char *walk_find(const char *text, const char *before, const char *word, const char *after) {
+static inline int walk_letter(int c) { return c == '_' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+static inline const char *walk_find(const char *text, const char *before, const char *word, const char *after) {
     char all[96];
     snprintf(all, sizeof all, "%s%s%s", before, word, after);
     return strstr(text, all);
 }
-static size_t walk_struct(const char *text, const char *word, const char *name, size_t offset, size_t *align,
+static inline size_t walk_struct(const char *text, const char *word, const char *name, size_t offset, size_t *align,
                           walk_fields *out);
 /* A declarator of the type `word` at *size (of the struct so far); the struct begins at `offset`. */
-static void walk_declare(const char *text, const char *word, const char *name, int pointer, int count, size_t offset,
+static inline void walk_declare(const char *text, const char *word, const char *name, int pointer, int count, size_t offset,
                          size_t *size, size_t *align, walk_fields *out) {
     const char type = pointer || walk_find(text, "(*", word, ")(") ? 'p' : !strcmp(word, "int") ||
         !strcmp(word, "int32_t") || !strcmp(word, "uint32_t") || walk_find(text, "typedef enum ", word, " {") ? 'i'
@@ -115,7 +115,7 @@ static void walk_declare(const char *text, const char *word, const char *name, i
     }
 }
 /* The fields of a struct; answers its size. */
-static size_t walk_struct(const char *text, const char *word, const char *name, size_t offset, size_t *align,
+static inline size_t walk_struct(const char *text, const char *word, const char *name, size_t offset, size_t *align,
                           walk_fields *out) {
     const char *at = walk_find(text, "typedef struct ", word, " {"), *end;
     size_t size = 0;
@@ -159,7 +159,7 @@ static size_t walk_struct(const char *text, const char *word, const char *name, 
     return (size + *align - 1) / *align * *align;
 }
 /* All of walk_scene; made once. */
-static const walk_fields *walk_all(void) {
+static inline const walk_fields *walk_all(void) {
     static walk_fields all;
     size_t align;
     char *text;
@@ -173,30 +173,30 @@ static const walk_fields *walk_all(void) {
 
 /* --- values --- */
 
-static void walk_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
+static inline void walk_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     push->normal = 1000*c->overlap + c->closing_speed/100;
     if (c->dt > 0) memory[3] += c->dt;
 }
-static dem_vec3 walk_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
+static inline dem_vec3 walk_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
     (void)v; (void)radius; (void)time; (void)user;
     return dem_vec3_make(-mass*x.x, 0, 0);
 }
-static void walk_body_force(const dem_body_state *b, dem_body id, double time, dem_vec3 *f, dem_vec3 *t, void *user) {
+static inline void walk_body_force(const dem_body_state *b, dem_body id, double time, dem_vec3 *f, dem_vec3 *t, void *user) {
     (void)id; (void)time; (void)t; (void)user;
     f->y = -b->mass*b->position.y;
 }
-static void walk_reals(dem_real *reals, const dem_real *rates, const dem_body_state *b, dem_body id, double time,
+static inline void walk_reals(dem_real *reals, const dem_real *rates, const dem_body_state *b, dem_body id, double time,
                        dem_real dt, void *user) {
     (void)rates; (void)b; (void)id; (void)time; (void)user;
     reals[0] += dt;
 }
-static void walk_motion(double time, dem_pose *pose, void *user) { (void)time; (void)pose; (void)user; }
-static int walk_inside(dem_vec3 x, dem_real radius, void *user) { (void)radius; (void)user; return x.x > 0; }
+static inline void walk_motion(double time, dem_pose *pose, void *user) { (void)time; (void)pose; (void)user; }
+static inline int walk_inside(dem_vec3 x, dem_real radius, void *user) { (void)radius; (void)user; return x.x > 0; }
 static dem_motion_row walk_rows[3], walk_rows_other[3];
 static dem_sizes walk_sizes[2];
 static dem_real walk_centres[6] = {0, 0, 0, DEM_R(8e-4), 0, 0}, walk_centres_other[6] = {0, 0, 0, 0, DEM_R(7e-4), 0};
 /* Another address of the kind of pointer that `f` is; 0: none is known. */
-static int walk_pointer(const walk_field *f, void *out) {
+static inline int walk_pointer(const walk_field *f, void *out) {
 #define WALK_TO(name, kind, value) \
     if (!strcmp(f->of, name)) { kind *p = value; memcpy(out, &p, sizeof p); return 1; }
 #define WALK_FUNCTION(name, value) \
@@ -210,7 +210,7 @@ static int walk_pointer(const walk_field *f, void *out) {
     return 0;
 }
 /* Another value of a field, the way-th; 0: there are no more ways. */
-static int walk_change(const walk_field *f, walk_scene *s, int way) {
+static inline int walk_change(const walk_field *f, walk_scene *s, int way) {
     static const double factor[] = {1.25, 0.75, 1, 1, 1, 1}, plus[] = {0, 0, 1, 1e-3, 1e-6, 0.3};
     static const int more[] = {1, -1, 2, 3, -2, 5};
     char *at = (char *)s + f->offset;
@@ -238,7 +238,7 @@ static int walk_change(const walk_field *f, walk_scene *s, int way) {
     else memcpy(at, &r, sizeof r);
     return 1;
 }
-static void walk_put(const walk_field *f, walk_scene *s, double d) {
+static inline void walk_put(const walk_field *f, walk_scene *s, double d) {
     const dem_real r = (dem_real)d;
     if (f->type == 'd') memcpy((char *)s + f->offset, &d, sizeof d);
     if (f->type == 'r') memcpy((char *)s + f->offset, &r, sizeof r);
@@ -246,7 +246,7 @@ static void walk_put(const walk_field *f, walk_scene *s, double d) {
 
 /* --- the scene --- */
 
-static walk_scene walk_begin(int kind) {
+static inline walk_scene walk_begin(int kind) {
     walk_scene s;
     int k;
     memset(&s, 0, sizeof s);
@@ -305,7 +305,7 @@ static walk_scene walk_begin(int kind) {
 }
 /* A world of this scene: grains on a moving plane, a cylinder around them; but for planar ones a sieve and a cluster;
    with impulses a joint. Null, with the sentence in *why, where a call refuses it. */
-static dem_world *walk_make(const walk_scene *s, char *why) {
+static inline dem_world *walk_make(const walk_scene *s, char *why) {
     dem_world *w = dem_world_create(&s->world);
     dem_body body[5];
     dem_material m;
