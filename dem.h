@@ -4727,9 +4727,9 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
         const dem_real r = desc->radii ? desc->radii[i] : desc->radius;
         if (demi_finite(r) && r > 0 && demi_place(demi_at(desc->positions + 3*i))) continue;
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sphere %d has radius %g m at (%g, %g, %g), must be "
-                  "> 0 and finite, within %g m of 0; fill in radii or radius", call, i, (double)r,
+                  "> 0 and finite, at most 1e15; fill in radii or radius", call, i, (double)r,
                   (double)desc->positions[3*i], (double)desc->positions[3*i + 1],
-                  (double)desc->positions[3*i + 2], DEMI_FARTHEST);
+                  (double)desc->positions[3*i + 2]);
         return 0;
     }
     if ((int)desc->mass < 0 || desc->mass > DEM_CLUSTER_GIVEN) {
@@ -4742,10 +4742,10 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
         I[1] > 0 && I[2] > 0 && I[0] <= I[1] + I[2] && I[1] <= I[0] + I[2] && I[2] <= I[0] + I[1] &&
         demi_finite(I[3]) && demi_finite(I[4]) && demi_finite(I[5]) &&
         demi_finite(I[0] + I[1] + I[2])) return 1;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the volume given is %g m3 and the moments %g, "
-                     "%g, %g m5, must be > 0 and no moment larger than the other two together (per "
-                     "density, not times it), the centre within 1e15 m; was a unit mistaken?", call,
-                     (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]), 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: volume is %g m3, moments are %g, %g, %g m5 (per density), "
+              "must be > 0, none above the other two together; centre within 1e15 m", call,
+              (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
+    return 0;
 }
 /* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
 static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const demi_shape *shape,

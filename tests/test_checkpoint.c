@@ -439,7 +439,7 @@ static int lie_tell(dem_world *w, int lie) {
 static int lie_write(dem_world *w, int lie) {
     const dem_world truth = *w;
     demi_domain *domains = (demi_domain *)malloc(DEMI_DOMAINS*sizeof *domains);
-    demi_stream s = {0, 0, 0, 0, 0, 0};
+    demi_stream s = {0, 0, 0, 0, 0, 0, 0};
     size_t size;
     char *data;
     int told;

@@ -66,10 +66,10 @@ static inline size_t walk_size(char type) {
         : type == 'd' ? sizeof(double) : sizeof(void *);
 }
 static inline size_t walk_align(char type) {
-    typedef struct walk_u { char c; uint64_t x; } walk_u;
-    typedef struct walk_r { char c; dem_real x; } walk_r;
-    typedef struct walk_d { char c; double x; } walk_d;
-    typedef struct walk_p { char c; void *x; } walk_p;
+    typedef struct { char c; uint64_t x; } walk_u;
+    typedef struct { char c; dem_real x; } walk_r;
+    typedef struct { char c; double x; } walk_d;
+    typedef struct { char c; void *x; } walk_p;
     return type == 'i' ? 4 : type == 'u' ? offsetof(walk_u, x) : type == 'r' ? offsetof(walk_r, x)
         : type == 'd' ? offsetof(walk_d, x) : offsetof(walk_p, x);
 }
