@@ -192,6 +192,11 @@ HEADERS := $(wildcard examples/*.h)
 $(filter-out $(HARD),$(TESTS)): build/%: tests/%.c $(wildcard tests/*.h) $(HEADERS)
 $(HARD): build/%: tests/hard/%.c $(wildcard tests/*.h tests/hard/*.h) $(HEADERS)
 SOURCES := $(patsubst build/%,tests/%.c,$(filter-out $(HARD),$(TOGETHER))) $(wildcard tests/hard/hard_*.c)
+# a call of every public function, each argument bad in turn: made anew when dem.h is another
+tests/refused.h: tests/refused.awk dem.h
+	awk -f tests/refused.awk dem.h > $@
+build/tests build/test_refused: tests/refused.h
+
 build/tests.c: tests/together.awk $(SOURCES)
 	awk -f tests/together.awk $(SOURCES) > $@
 build/tests: build/tests.c $(wildcard tests/*.h tests/hard/*.h) $(HEADERS)

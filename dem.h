@@ -26731,6 +26731,10 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
     const char *call = "dem_grains_add";
     int i, first;
     if (demi_null(w, call, g, "grains")) return DEM_ERROR_ARGUMENT;
+    if (g->count < 0 || (g->count && (!g->positions || !g->radii)))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, positions or radii are null; "
+                         "count must be >= 0 and both be there; give what dem_grains_read wrote",
+                         call, g->count);
     for (i = 0; i < g->count; i++) {
         dem_material m = material;
         int index = 0;
