@@ -1200,7 +1200,7 @@ enum { DEM_SIEVES = 32 };
 typedef struct dem_sizes {
     dem_sizes_kind kind;
     int by_count;            /* shares are 0: of mass, as sieves tell them; 1: of the number */
-    dem_real min, max;       /* m, 0 < min <= max; log-normal: 0: e^(-6 spread) and e^(6 spread)
+    dem_real min, max;       /* m, 1e-15 <= min <= max < 1e15; log-normal: 0: e^(-6 spread) and e^(6 spread)
                                 medians; normal: 0: 6 deviations off, but not below a thousandth of
                                 the median; Weibull, exponential: max 0: all but 1e-9 is finer;
                                 sieves: 0: their ends */
@@ -1680,7 +1680,8 @@ DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_
 typedef struct dem_outlet_desc {
     dem_wall frame;                  /* the region moves with this wall, which then cannot be
                                         removed; null: it stands still */
-    dem_box box;                     /* m, required, in that frame */
+    dem_box box;                     /* m, required, in that frame; lo below hi on every axis (planar:
+                                        z may be 0 to 0) */
     dem_real beyond;                 /* m, only those at least so far from the frame's z axis */
     dem_real wanted_min, wanted_max; /* m, radii that ought to leave here; max 0: no limit */
     int class_count;                 /* 0..16: classes to count by; a grain is of the nearest */
@@ -2564,6 +2565,11 @@ static double demi_clock(void) {                          /* s of wall time, for
 #define DEMI_FARTHEST 1e15          /* m, m/s, rad/s, s: what is beyond is a mistake, and refused
                                        where it enters; squares could overflow */
 #define DEMI_LEAST 1e-12            /* m: surfaces smaller than that in all are mistakes, too */
+/* What enters stays between these, so that squares and quotients of it are numbers. */
+#define DEMI_MOST 1e30              /* in SI units: moduli, densities, stiffnesses */
+#define DEMI_MOST_RATIO 1e9         /* coefficients without a unit */
+#define DEMI_FINEST 1e-15           /* m: radii that a distribution of sizes draws */
+#define DEMI_DT_LEAST 1e-20         /* s: time steps below get nowhere */
 static double demi_size(dem_vec3 a) {                     /* largest component */
     return fmax(fabs((double)a.x), fmax(fabs((double)a.y), fabs((double)a.z)));
 }
@@ -2586,6 +2592,10 @@ static int demi_finite3(dem_vec3 v) { return demi_finite(v.x) && demi_finite(v.y
 static int demi_bounded(double x) { return demi_finite_double(x) && fabs(x) <= DEMI_FARTHEST; }
 /* A place, a velocity or a spin that can be: on entering, in a step, in a file. */
 static int demi_place(dem_vec3 v) { return demi_finite3(v) && demi_size(v) <= DEMI_FARTHEST; }
+/* Neither 0, "chosen for you", nor a time step that gets anywhere. */
+static int demi_dt_bad(dem_real dt) {
+    return !((double)dt >= DEMI_DT_LEAST || DEMI_ABS(dt) <= 0) || (double)dt > DEMI_FARTHEST;
+}
 
 /* Functions that every C library rounds in its own way. Here are ours, so that a run has the same
    bits with all of them: of <math.h> dem.h uses only what IEEE 754 fixes to the last bit (sqrt,
@@ -3974,11 +3984,13 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     DEMI_ROW(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (its size, not its "
              "slope)");
 #undef DEMI_ROW
-    for (i = 0; i < 11; i++)
-        if (!rows[i].ok || !demi_finite(rows[i].value))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s; set it in the desc "
-                             "before the call",
-                             call, rows[i].name, (double)rows[i].value, rows[i].limit);
+    for (i = 0; i < 11; i++) {
+        const double most = (i >= 4 && i <= 6) || i == 8 ? DEMI_MOST_RATIO : DEMI_MOST;
+        if (!rows[i].ok || !((double)rows[i].value <= most))
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %s is %g, must be %s, and at most %g; set "
+                             "it in the desc before the call", call, rows[i].name,
+                             (double)rows[i].value, rows[i].limit, most);
+    }
     if (two_k && d->restitution > 0 && fabs((double)d->restitution*(double)d->restitution*
         (double)d->stiffness_unloading/(double)d->stiffness - 1) > 1e-3)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: restitution is %g, but sqrt(stiffness/"
@@ -4151,31 +4163,32 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     int i = 0, j = 0;
     const char *bad = 0, *limit = "";
     dem_real value = 0;
+    double most = 0;
     if (demi_material_index(w, "dem_pair_set", a, &i) ||
         demi_material_index(w, "dem_pair_set", b, &j))
         return DEM_ERROR_ARGUMENT;
-#define DEMI_BAD(field, good, text) \
-    if (!bad && (!demi_finite(p->field) || !(good))) { \
-        bad = #field; value = p->field; limit = text; \
+#define DEMI_BAD(field, good, highest, text) \
+    if (!bad && (!((double)p->field <= (highest)) || !(good))) { \
+        bad = #field; value = p->field; limit = text; most = highest; \
     }
     DEMI_BAD(young_eff, p->young_eff > 0 || (demi_impulsive(w) && p->young_eff >= 0) ||
              (p->young_eff >= 0 && p->stiffness > 0 &&
-             !demi_normal_is(w, DEMI_HERTZIAN)), "> 0 Pa")
-    DEMI_BAD(shear_eff, p->shear_eff >= 0, ">= 0 Pa")
+             !demi_normal_is(w, DEMI_HERTZIAN)), DEMI_MOST, "> 0 Pa")
+    DEMI_BAD(shear_eff, p->shear_eff >= 0, DEMI_MOST, ">= 0 Pa")
     DEMI_BAD(restitution, (p->restitution > 0 || (demi_impulsive(w) && p->restitution >= 0)) &&
-             p->restitution <= 1, "> 0 (impulses: >= 0) and <= 1")
-    DEMI_BAD(friction, p->friction >= 0, ">= 0")
+             p->restitution <= 1, DEMI_MOST_RATIO, "> 0 (impulses: >= 0) and <= 1")
+    DEMI_BAD(friction, p->friction >= 0, DEMI_MOST_RATIO, ">= 0")
     DEMI_BAD(friction_static, DEMI_ABS(p->friction_static) <= 0 ||
              p->friction_static >= p->friction,
-             "0, to be the same as the sliding friction, or at least that")
-    DEMI_BAD(rolling_friction, p->rolling_friction >= 0, ">= 0")
-    DEMI_BAD(stiffness, p->stiffness >= 0, ">= 0 N/m")
-    DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, ">= 0")
-    DEMI_BAD(tangent_damping, p->tangent_damping >= 0, ">= 0")
-    DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, ">= 0 N/m")
-    DEMI_BAD(normal_damping, p->normal_damping >= 0, ">= 0 N s/m")
+             DEMI_MOST_RATIO, "0, to be the same as the sliding friction, or at least that")
+    DEMI_BAD(rolling_friction, p->rolling_friction >= 0, DEMI_MOST_RATIO, ">= 0")
+    DEMI_BAD(stiffness, p->stiffness >= 0, DEMI_MOST, ">= 0 N/m")
+    DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, DEMI_MOST_RATIO, ">= 0")
+    DEMI_BAD(tangent_damping, p->tangent_damping >= 0, DEMI_MOST_RATIO, ">= 0")
+    DEMI_BAD(stiffness_adhesion, p->stiffness_adhesion >= 0, DEMI_MOST, ">= 0 N/m")
+    DEMI_BAD(normal_damping, p->normal_damping >= 0, DEMI_MOST, ">= 0 N s/m")
 #define DEMI_IMPULSES_ALONE(field, unit) \
-    DEMI_BAD(field, p->field >= 0 && (demi_impulsive(w) || !(p->field > 0)), \
+    DEMI_BAD(field, p->field >= 0 && (demi_impulsive(w) || !(p->field > 0)), DEMI_MOST, \
              ">= 0" unit ", and 0 where springs answer (desc.response)")
     DEMI_IMPULSES_ALONE(spinning_friction, "")
     DEMI_IMPULSES_ALONE(cohesion, " N")
@@ -4184,9 +4197,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
 #undef DEMI_BAD
     if (bad)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
-                         "must be %s; start "
-                         "from dem_pair_get and change what differs", bad, i + 1, j + 1,
-                         (double)value, limit);
+                         "must be %s, and at most %g; start from dem_pair_get and change what "
+                         "differs", bad, i + 1, j + 1, (double)value, limit, most);
     demi_pair_put(w, i, j, p);
     w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
     demi_built(w, "dem_pair_set");
@@ -20147,55 +20159,81 @@ static double demi_size_share(const dem_sizes *d, double r) {
     }
     return r;                                   /* uniform: made to go from 0 to 1 below */
 }
+/* Why a distribution is none, into `why`; "" when it is one. Its ends are then lo and hi. */
+static void demi_size_why(const dem_sizes *d, double *lo, double *hi, char *why, size_t room) {
+    const double median = (double)d->median, scale = (double)d->scale;
+    const double last = d->passing[DEMI_MIN(DEMI_MAX(d->count, 1), DEM_SIEVES) - 1];
+    int k;
+    *why = 0;
+    *lo = (double)d->min;
+    *hi = (double)d->max;
+#define DEMI_SIZE_NEEDS(good, text, value) \
+    if (!*why && !(good)) snprintf(why, room, text, value)
+    DEMI_SIZE_NEEDS((int)d->kind >= 0 && d->kind <= DEM_SIZES_EXPONENTIAL, "kind is %d, must be "
+                    "one of the enum values", (int)d->kind);
+    DEMI_SIZE_NEEDS(demi_finite(d->min) && *lo >= 0, "min is %g m, must be finite and >= 0", *lo);
+    DEMI_SIZE_NEEDS(demi_finite(d->max) && *hi >= 0, "max is %g m, must be finite and >= 0", *hi);
+    if (d->kind == DEM_SIZES_LOGNORMAL || d->kind == DEM_SIZES_NORMAL)
+        DEMI_SIZE_NEEDS(median > 0 && demi_finite(d->median), "median is %g m, must be > 0",
+                        median);
+    if (d->kind == DEM_SIZES_LOGNORMAL) {
+        DEMI_SIZE_NEEDS(d->spread > 0 && d->spread < 10, "spread is %g, must be > 0 and < 10: it "
+                        "is that of the logarithm", d->spread);
+        if (!*why && !(*lo > 0)) *lo = DEMI_MAX(median*demi_exp(-6*d->spread), DEMI_FINEST);
+        if (!*why && !(*hi > 0)) *hi = median*demi_exp(6*d->spread);
+    }
+    if (d->kind == DEM_SIZES_NORMAL) {
+        const double far = 6*(double)d->deviation;
+        DEMI_SIZE_NEEDS(far > 0 && demi_finite(d->deviation), "deviation is %g m, must be > 0",
+                        far/6);
+        if (!*why && !(*lo > 0)) *lo = DEMI_MAX(median - far, median/1000);
+        if (!*why && !(*hi > 0)) *hi = median + far;
+    }
+    if (d->kind == DEM_SIZES_EXPONENTIAL) {
+        DEMI_SIZE_NEEDS(scale > *lo && demi_finite(d->scale), "scale is %g m, must be above min",
+                        scale);
+        if (!*why && !(*hi > 0)) *hi = *lo + (scale - *lo)*-demi_log(1e-9);
+    }
+    if (d->kind == DEM_SIZES_WEIBULL) {
+        DEMI_SIZE_NEEDS(scale > 0 && demi_finite(d->scale), "scale is %g m, must be > 0", scale);
+        DEMI_SIZE_NEEDS(d->modulus > 0.05 && d->modulus < 1e3, "modulus is %g, must be > 0.05 and "
+                        "< 1000", d->modulus);
+        if (!*why && !(*hi > 0)) *hi = scale*demi_pow(-demi_log(1e-9), 1/d->modulus);
+    }
+    if (d->kind == DEM_SIZES_SIEVES) {
+        DEMI_SIZE_NEEDS(d->count >= 2 && d->count <= DEM_SIEVES, "count is %d sieves, must be 2 to "
+                        "32", d->count);
+        DEMI_SIZE_NEEDS(fabs(last - 1) < 1e-9, "the last of passing is %g, must be 1 (not 100 "
+                        "per cent): divide all by it", last);
+        for (k = 0; k < d->count && !*why; k++) {
+            DEMI_SIZE_NEEDS(demi_finite(d->radius[k]) && d->radius[k] > (k ? d->radius[k - 1] : 0),
+                            "radius[%d] must be > 0, finite and above the one before", k);
+            DEMI_SIZE_NEEDS(d->passing[k] >= (k ? d->passing[k - 1] : 0),
+                            "passing[%d] must be >= 0 and at least the one before", k);
+        }
+        if (!*why && !(*lo > 0)) *lo = (double)d->radius[0];
+        if (!*why && !(*hi > 0)) *hi = (double)d->radius[d->count - 1];
+    }
+    DEMI_SIZE_NEEDS(*lo >= DEMI_FINEST, "the least radius is %g m, must be 0 < min <= max and at "
+                    "least 1e-15 m", *lo);
+    DEMI_SIZE_NEEDS(*hi >= *lo && *hi < DEMI_FARTHEST, "the largest radius is %g m, must be at "
+                    "least min and below 1e15 m", *hi);
+    DEMI_SIZE_NEEDS(!(*hi > *lo) || d->kind == DEM_SIZES_UNIFORM ||
+                    demi_size_share(d, *hi) > demi_size_share(d, *lo), "no grains are between min "
+                    "and max, which is %g m; give others", *hi);
+#undef DEMI_SIZE_NEEDS
+}
 /* The ends of a distribution; 0 with a sentence in the name of `call` when it is none. */
 static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, double *lo,
                           double *hi) {
-    const int sieves = d->kind == DEM_SIZES_SIEVES;
-    int k, good = (int)d->kind >= 0 && d->kind <= DEM_SIZES_EXPONENTIAL;
-    *lo = (double)d->min;
-    *hi = (double)d->max;
-    if (d->kind == DEM_SIZES_LOGNORMAL) {
-        good = good && d->median > 0 && d->spread > 0 && d->spread < 10;
-        if (good && !(*lo > 0)) *lo = (double)d->median*demi_exp(-6*d->spread);
-        if (good && !(*hi > 0)) *hi = (double)d->median*demi_exp(6*d->spread);
-    }
-    if (d->kind == DEM_SIZES_NORMAL) {
-        const double m = (double)d->median, far = 6*(double)d->deviation;
-        good = good && m > 0 && far > 0 && demi_finite(d->median) && demi_finite(d->deviation);
-        if (good && !(*lo > 0)) *lo = DEMI_MAX(m - far, m/1000);
-        if (good && !(*hi > 0)) *hi = m + far;
-    }
-    if (d->kind == DEM_SIZES_EXPONENTIAL) {
-        good = good && d->scale > d->min && demi_finite(d->scale);
-        if (good && !(*hi > 0)) *hi = *lo + ((double)d->scale - *lo)*-demi_log(1e-9);
-    }
-    if (d->kind == DEM_SIZES_WEIBULL) {
-        good = good && d->scale > 0 && d->modulus > 0.05 && d->modulus < 1e3;
-        if (good && !(*hi > 0)) *hi = (double)d->scale*demi_pow(-demi_log(1e-9), 1/d->modulus);
-    }
-    if (sieves) {
-        good = good && d->count >= 2 && d->count <= DEM_SIEVES;
-        for (k = 0; good && k < d->count; k++)
-            good = demi_finite(d->radius[k]) && demi_finite_double(d->passing[k]) &&
-                d->radius[k] > (k ? d->radius[k - 1] : 0) &&
-                d->passing[k] >= (k ? d->passing[k - 1] : 0);
-        good = good && fabs(d->passing[d->count - 1] - 1) < 1e-9;
-        if (good && !(*lo > 0)) *lo = (double)d->radius[0];
-        if (good && !(*hi > 0)) *hi = (double)d->radius[d->count - 1];
-    }
-    if (good && *lo > 0 && *hi >= *lo && *hi < DEMI_FARTHEST && demi_finite(d->min) &&
-        demi_finite(d->max) && (!(*hi > *lo) || d->kind == DEM_SIZES_UNIFORM ||
-                                demi_size_share(d, *hi) > demi_size_share(d, *lo))) return 1;
-    if (sieves)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d sieves, radii %g to %g m; must be 2 to %d, radii "
-                  "and shares that pass ascending, the first radius > 0, the last share 1 (not 100 "
-                  "per cent), and some grains between min and max", call, d->count, *lo, *hi,
-                  (int)DEM_SIEVES);
-    else
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sizes of kind %d with radii %g to %g m; must be "
-                  "0 < min <= max in m and finite, log-normal: median and spread > 0, normal: "
-                  "median and deviation > 0, Weibull: scale and modulus > 0, exponential: scale > "
-                  "min; start from DEM_SIZES", call, (int)d->kind, *lo, *hi);
+    static const char *const names[] = {"uniform", "log-normal", "Weibull", "sieves", "normal",
+                                        "exponential"};
+    const int kind = (int)d->kind;
+    char why[160];
+    demi_size_why(d, lo, hi, why, sizeof why);
+    if (!*why) return 1;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sizes, %s: %s; start from DEM_SIZES and set what this "
+              "kind needs", call, kind >= 0 && kind < 6 ? names[kind] : "unknown", why);
     return 0;
 }
 /* Share finer than r of the distribution between its ends. */
@@ -20218,7 +20256,7 @@ static void demi_size_table_make(const dem_world *w, const dem_sizes *d, double 
     t->number[0] = d->by_count ? share : share/demi_size_mass(w, lo);
     for (k = 1; k <= n; k++) {
         const double b = t->at[k] = k < n ? lo*demi_exp(k*ratio) : hi, a = t->at[k - 1];
-        const double more = demi_size_finer(d, lo, hi, b) - share;
+        const double more = DEMI_MAX(demi_size_finer(d, lo, hi, b) - share, 0);    /* rounding */
         share += more;
         t->number[k] = t->number[k - 1] +
             (d->by_count ? more : more/demi_size_mass(w, (a + b)/2));
@@ -20921,6 +20959,16 @@ static demi_feed *demi_feed_at(const dem_world *w, int i) { return w->feeds + i;
 static demi_outlet *demi_outlet_at(const dem_world *w, int i) {
     return w->outlets + i;
 }
+/* Says that nothing can be in a box, in the name of `call`; 0: something can. */
+static int demi_box_empty(dem_world *w, const char *call, dem_box b, int planar) {
+    if (demi_place(b.lo) && demi_place(b.hi) && b.hi.x > b.lo.x && b.hi.y > b.lo.y &&
+        (b.hi.z > b.lo.z || (planar && b.hi.z >= b.lo.z))) return 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box goes from (%g, %g, %g) to (%g, %g, %g) m, must "
+              "be finite with lo below hi on every axis, at most %g m away: nothing can be in it; "
+              "give desc.box two corners that differ", call, (double)b.lo.x, (double)b.lo.y,
+              (double)b.lo.z, (double)b.hi.x, (double)b.hi.y, (double)b.hi.z, DEMI_FARTHEST);
+    return 1;
+}
 static int demi_box_bad(dem_box b, int planar) {
     return !demi_finite3(b.lo) || !demi_finite3(b.hi) || !(b.hi.x >= b.lo.x) ||
            !(b.hi.y >= b.lo.y) || (!planar && !(b.hi.z >= b.lo.z));
@@ -21035,12 +21083,13 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     if (!demi_finite_double(d->rate) || !demi_finite_double(d->start) ||
         !demi_finite_double(d->end) || !(d->rate >= 0) || !(d->rate < 1e15) ||
         !(d->start >= 0) || !(d->end >= 0) || !(d->spread >= 0) ||
-        !demi_bounded((double)d->spread) || !demi_place(d->velocity) ||
+        !((double)d->spread <= DEMI_FARTHEST) || !demi_place(d->velocity) ||
         (!(d->rate > 0) && !d->limited) || (d->end > 0 && d->end < d->start)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s; "
-                  "must be finite and >= 0, spread and velocity at most %g m/s, the end 0 or after "
-                  "the start, and all at once (rate 0) needs `limited`, or it has no end", call,
-                  d->rate, d->start, d->end, (double)d->spread, DEMI_FARTHEST);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s, "
+                  "velocity up to %g m/s; must be finite, >= 0 but for velocities and at most %g, "
+                  "the end 0 or after the start, and all at once (rate 0) needs `limited`, or it "
+                  "has no end", call, d->rate, d->start, d->end, (double)d->spread,
+                  demi_size(d->velocity), DEMI_FARTHEST);
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
@@ -21278,11 +21327,7 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
                   (double)d->wanted_max, (int)DEM_CLASSES);
         return id;
     }
-    if (demi_box_bad(d->box, 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is not finite or lo is above hi; give the "
-                  "region that takes grains out", call);
-        return id;
-    }
+    if (demi_box_empty(w, call, d->box, w->desc.planar)) return id;
     if (d->frame.id && demi_wall_find(w, call, d->frame) < 0) return id;
     if (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK) return id;
     for (k = 0; k < w->outlet_count; k++) kept += demi_outlet_at(w, k)->desc.keep != 0;
@@ -21619,7 +21664,7 @@ static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, in
         s->limit = DEMI_MIN(s->limit, demi_dt_of_contact(w, coef, m_eff, speed));
     }
     if (t >= s->time) return;
-    s->time = t;
+    s->time = t > 1e-37 ? t : 1e-37;            /* 0 would mean that there is none */
     s->radius = r;
     s->partner = partner;
     s->material = i;
@@ -21879,6 +21924,13 @@ DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
     return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: the world has no grain "
                      "that moves; add grains before asking for a time step");
 }
+/* Refuses a step that is chosen so short that time would stand still. */
+static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: the contacts of the scene ask for a "
+                     "step of %g s, must be at least %g s, or time stands still (shortest: %s); a "
+                     "stiffness, damping, rolling friction or speed is far too large, or a grain "
+                     "far too light: look for it with dem_check_print", dt, DEMI_DT_LEAST, by);
+}
 /* The time step for the scene as it is, asked for or advised; one that is not stable is refused.
    A change of the step ends half steps of the old one first. */
 static dem_result demi_dt_settle(dem_world *w) {
@@ -21907,7 +21959,7 @@ static dem_result demi_dt_settle(dem_world *w) {
     demi_advise(w, &a);
     spin = demi_spin_fastest(w);
     if (w->desc.dt > 0) {
-        if (!w->desc.allow_large_dt && a.contact_time > 0 && w->desc.dt > a.dt_max)
+        if (!w->desc.allow_large_dt && a.contact_time > 0 && !(w->desc.dt <= a.dt_max))
             return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most "
                              "t_c/20 = %g s (t_c of %s"
                              "); use dt = 0, a softer material or a smaller dt",
@@ -21919,6 +21971,7 @@ static dem_result demi_dt_settle(dem_world *w) {
         const dem_real easy = a.contact_time > 0 ? a.dt : DEM_R(1e-3);
         const dem_real share = w->dt_share > 0 ? (dem_real)w->dt_share : 1;
         const dem_real dt = share*(spin*(double)easy > 0.1 ? (dem_real)(0.1/spin) : easy);
+        if (!((double)dt >= DEMI_DT_LEAST)) return demi_dt_refuse(w, (double)dt, a.binds);
         /* half steps were of the old dt */
         if (dt < w->clock.dt || dt > w->clock.dt) { demi_finish(w); w->stage.primed = 0; }
         w->clock.dt = dt;
@@ -22069,6 +22122,8 @@ static dem_result demi_dt_check(dem_world *w) {
     demi_press_looked(&w->clock);
     if (!(limit > 0)) return DEM_OK;
     if (!chosen) return demi_press_refuse(w, limit, worst);
+    if (!(limit*DEMI_MIN(share/2, 0.95) >= DEMI_DT_LEAST))
+        return demi_dt_refuse(w, limit*DEMI_MIN(share/2, 0.95), "contacts that press a body");
     demi_finish(w);
     w->stage.primed = 0;
     w->clock.dt = (dem_real)(limit*DEMI_MIN(share/2, 0.95));
@@ -22992,17 +23047,16 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
     int k;
     id.id = 0;
     if (d->cells[0] < 1 || d->cells[1] < 1 || d->cells[2] < 1 ||
-        (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->box.hi.x > d->box.lo.x) ||
-        !(d->box.hi.y > d->box.lo.y) || !(d->box.hi.z > d->box.lo.z) ||
-        !demi_finite3(d->box.lo) || !demi_finite3(d->box.hi) || !(d->interval >= 0) ||
+        (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->interval >= 0) ||
         !(d->start >= 0) || !demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
         !demi_finite_double(d->end)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval %g s; "
                   "must be >= 1 each and at most "
-                  "2^28 in all, the box finite with lo below hi, times finite and >= 0",
+                  "2^28 in all, times finite and >= 0",
                   d->cells[0], d->cells[1], d->cells[2], d->interval);
         return id;
     }
+    if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
     if (!(d->width >= 0) || !demi_finite(d->width) || !(d->radius_min >= 0) ||
         !demi_finite(d->radius_max) || !(d->radius_max >= 0) ||
         (d->radius_max > 0 && d->radius_max < d->radius_min)) {
@@ -23638,9 +23692,10 @@ DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
 }
 DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
     if (demi_null(w, "dem_world_dt_set", w, "world")) return DEM_ERROR_ARGUMENT;
-    if (!(dt >= 0) || !demi_bounded((double)dt))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be 0 to %g s; "
-                         "0 lets the library choose", (double)dt, DEMI_FARTHEST);
+    if (demi_dt_bad(dt))
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is %g s, must be 0 or %g to "
+                         "%g s; 0 lets the library choose", (double)dt, DEMI_DT_LEAST,
+                         DEMI_FARTHEST);
     if (demi_impulsive(w) && !(dt > 0))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have no "
                          "contact time to choose it from; set it, 1e-3 s for grains of "
@@ -30151,8 +30206,8 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
     const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
     const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
     int k;
-    if (!demi_place(d->gravity)) return "dem_world_create: gravity is not finite or beyond 1e15, "
-        "must be m/s2; check how it was computed";
+    if (!demi_place(d->gravity)) return "dem_world_create: gravity is not finite or above 1e15 in "
+        "size, must be m/s2; check how it was computed";
     for (k = 0; k < 3; k++) {
         if ((int)d->boundary[k] < 0 || d->boundary[k] > DEM_BOUNDARY_OUTFLOW)
             return "dem_world_create: a boundary is unknown, must be a DEM_BOUNDARY_ value; start "
@@ -30168,12 +30223,13 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
             "leave it open";
     if (!(d->thickness >= 0) || !demi_finite(d->thickness)) return "dem_world_create: thickness "
         "must be >= 0 m; 0 means 1 m";
-    if (!(d->dt >= 0) || !demi_bounded((double)d->dt)) return "dem_world_create: dt must be 0 to "
-        "1e15 s; 0 lets the library choose";
-    if (!(d->impact_speed >= 0) || !demi_bounded((double)d->impact_speed))
+    if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
+        "library choose";
+    if (!(d->impact_speed >= 0) || !((double)d->impact_speed <= DEMI_FARTHEST))
         return "dem_world_create: impact_speed must be 0 to 1e15 m/s";
-    if (!(d->law_stiffness >= 0) || !demi_finite(d->law_stiffness)) return "dem_world_create: "
-        "law_stiffness must be finite and >= 0 N/m; 0 means that of the built-in law";
+    if (!(d->law_stiffness >= 0) || !((double)d->law_stiffness <= DEMI_MOST))
+        return "dem_world_create: law_stiffness must be 0 to 1e30 N/m; 0 means that of the "
+            "built-in law";
     if (*demi_answer_error(d)) return demi_answer_error(d);
     if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
         return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, digits "
@@ -30190,7 +30246,7 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         "means as many as OpenMP offers";
     if (d->law_memory < 0 || d->law_memory > DEMI_MEMORY) return "dem_world_create: law_memory "
         "must be 0 to 16 reals";
-    if (d->law_vectors < 0 || 3*d->law_vectors > d->law_memory)
+    if (d->law_vectors < 0 || d->law_vectors > d->law_memory/3)
         return "dem_world_create: law_vectors is more than fits into law_memory, must be at most "
             "law_memory/3";
     if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
@@ -31680,11 +31736,14 @@ static dem_result demi_slabs_press(dem_slabs *s) {
     if (limit >= dt) return DEM_OK;
     for (k = 0; k < s->local; k++) {
         demi_slab *b = &s->slabs[k];
-        if (chosen) b->world->clock.dt = (dem_real)(limit/2);
+        if (chosen && limit/2 >= DEMI_DT_LEAST) b->world->clock.dt = (dem_real)(limit/2);
+        else if (chosen) continue;
         else if (!(b->press_limit > limit))
             b->result = demi_press_refuse(b->world, limit, b->press_worst);
     }
     if (!chosen) return demi_slabs_agree(s, 0, 0);
+    if (!(limit/2 >= DEMI_DT_LEAST))
+        return demi_dt_refuse(h, limit/2, "contacts that press a body");
     demi_slabs_phase(s, demi_slab_finish);
     h->clock.dt = (dem_real)(limit/2);
     h->clock.held.by = DEMI_HELD_PRESSED;

@@ -275,6 +275,7 @@ int main(int argc, char **argv) {
         feed.radius[0] = DEM_R(1e-3); feed.amount[0] = 1;
         CHECK_EQ(dem_feed_add(world, &feed).id, 1);
         memset(&outlet, 0, sizeof outlet);
+        outlet.box = box_of(-1, -1, -2, 1, 1, -1);
         CHECK_EQ(dem_outlet_add(world, &outlet).id, 1);
         CHECK_EQ(dem_feed_get(world, dem_feed_add(world, &feed), 0), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_outlet_get(world, dem_outlet_add(world, &outlet), 0), DEM_ERROR_ARGUMENT);
@@ -764,6 +765,94 @@ int main(int argc, char **argv) {
         fclose(f);
         remove("build/tmp/report.txt");
         dem_world_destroy(world);
+    }
+    TEST("a region in which nothing can be is refused, with its corners: of outlets and of fields, on each axis") {
+        dem_world *world = plain_world();
+        dem_outlet_desc outlet = DEM_OUTLET_DESC;
+        dem_field_desc field;
+        int k, way;
+        memset(&field, 0, sizeof field);
+        for (k = 0; k < 3; k++) field.cells[k] = 1;
+        for (k = 0; k < 3; k++)
+            for (way = 0; way < 3; way++) {     /* of no thickness, upside down, at infinity */
+                dem_real x[3] = {1, 1, 1};
+                x[k] = (dem_real)(way == 0 ? 0 : way == 1 ? -1 : 1e30);
+                outlet.box = field.box = box_of(0, 0, 0, (double)x[0], (double)x[1], (double)x[2]);
+                CHECK_EQ(dem_outlet_add(world, &outlet).id, 0);
+                CHECK_STR(dem_world_error(world), "dem_outlet_add: the box goes from (0, 0, 0) to (");
+                CHECK_EQ(dem_field_add(world, &field).id, 0);
+                CHECK_STR(dem_world_error(world), "dem_field_add: the box goes from (0, 0, 0) to (");
+            }
+        dem_world_destroy(world);
+    }
+    TEST("a world never steps by 0 s: coefficients beyond all measure are refused as they come in, a scene that asks "
+         "for less than 1e-20 s before its first step") {
+        static const double large[] = {1e10, 1e20, 1e155, 1e300};
+        dem_world_desc desc = DEM_WORLD_DESC;
+        int field, i, normal;
+        desc.threads = 1;
+        desc.gravity.z = DEM_R(-9.81);
+        for (i = 0; i < 4; i++)
+            for (normal = 0; normal < 2; normal++)
+                for (field = 0; field < 12; field++) {
+                    dem_material_desc m = scene_stuff(1e6, 0.5, 0.5, 0.1);
+                    const dem_real value = (dem_real)large[i];
+                    dem_result result = DEM_OK;
+                    dem_material stuff;
+                    dem_pair pair;
+                    dem_world *world;
+                    desc.normal_law = normal ? DEM_NORMAL_LINEAR : DEM_NORMAL_HERTZ;
+                    if (normal) m.stiffness = 1000;
+                    world = dem_world_create(&desc);
+                    if (field == 0) m.young = value;
+                    if (field == 1) m.stiffness = value;
+                    if (field == 2) m.friction = value;
+                    if (field == 3) m.rolling_friction = value;
+                    if (field == 4) m.stiffness_ratio = value;
+                    stuff = dem_material_add(world, &m);
+                    if (stuff.id) {
+                        dem_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+                        dem_sphere_add(world, stuff, DEM_R(1e-3), at(0, 0, 1e-3));
+                        dem_sphere_add(world, stuff, DEM_R(1e-3), at(0, 0, 3e-3));
+                        dem_pair_get(world, stuff, stuff, &pair);
+                        if (field == 5) pair.tangent_damping = value;
+                        if (field == 6) pair.rolling_friction = value;
+                        if (field == 7) pair.normal_damping = value;
+                        if (field == 8) pair.stiffness_ratio = value;
+                        if (field == 9) pair.shear_eff = value;
+                        result = dem_pair_set(world, stuff, stuff, &pair);
+                        if (result == DEM_OK && field == 10)
+                            scene_move(world, dem_bodies_id(world, 0), at(0, large[i], 0), at(0, 0, 0));
+                        if (result == DEM_OK && field == 11) {
+                            dem_feed_desc feed = DEM_FEED_DESC;
+                            feed.material = stuff; feed.class_count = 1; feed.rate = 1;
+                            feed.radius[0] = DEM_R(1e-3); feed.amount[0] = 1;
+                            feed.box = box_of(0, 0, 1, 1, 1, 2);
+                            feed.velocity.x = value;
+                            result = dem_feed_add(world, &feed).id ? DEM_OK : DEM_ERROR_ARGUMENT;
+                        }
+                    }
+                    if (stuff.id && result == DEM_OK && dem_world_step(world, 1) == DEM_OK)
+                        CHECK(world->clock.dt >= DEM_R(1e-20) && dem_world_time(world) > 0);
+                    else CHECK(strlen(dem_world_error(world)) > 0);
+                    dem_world_destroy(world);
+                }
+        for (i = 0; i < 5; i++) {
+            static const double steps[] = {-1, 1e-21, 1e-37, 1e16, 1e30};
+            dem_world *world = plain_world();
+            desc.dt = (dem_real)steps[i];
+            CHECK(!dem_world_create(&desc));
+            CHECK_STR(dem_create_error(&desc), "dt must be 0 or 1e-20 to 1e15 s");
+            CHECK_EQ(dem_world_dt_set(world, (dem_real)steps[i]), DEM_ERROR_ARGUMENT);
+            CHECK_STR(dem_world_error(world), "must be 0 or 1e-20 to 1e+15 s");
+            dem_world_destroy(world);
+        }
+        desc.dt = 0;
+        desc.law = own_law;
+        desc.law_memory = 3;
+        desc.law_vectors = 1 << 30;
+        CHECK(!dem_world_create(&desc));
+        CHECK_STR(dem_create_error(&desc), "law_vectors");
     }
     return test_end();
 }

@@ -201,5 +201,59 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_sizes_classes(world, &d, 17, radii, 0), 0);
         dem_world_destroy(world);
     }
+    TEST("a distribution of every kind, with ends of every size, is refused or draws radii between them") {
+        static const double ends[] = {0, 1e-300, 1e-100, 1e-38, 1e-16, 1e-9, 1e-3, 1, 1e14, 1e30, 1e300};
+        dem_world *world = empty(0);
+        int kind, i, j, k, drawn = 0;
+        for (kind = 0; kind < 6; kind++)
+            for (i = 0; i < 11; i++)
+                for (j = i; j < 11; j++)
+                    for (k = 0; k < 2; k++) {
+                        dem_sizes d = DEM_SIZES;
+                        double amount[DEM_CLASSES];
+                        int n, bad = 0;
+                        d.kind = (dem_sizes_kind)kind;
+                        d.by_count = k;
+                        d.min = (dem_real)ends[i];
+                        d.max = (dem_real)ends[j];
+                        d.median = DEM_R(8e-4); d.spread = 0.3; d.scale = DEM_R(9e-4); d.modulus = 3;
+                        d.deviation = DEM_R(1e-4);
+                        d.count = 2; d.radius[0] = DEM_R(5e-4); d.radius[1] = DEM_R(1e-3);
+                        d.passing[0] = 0.1; d.passing[1] = 1;
+                        if (dem_sizes_draw(world, &d, 40, 1, radii) != DEM_OK) {
+                            CHECK_STR(dem_world_error(world), "dem_sizes_draw: sizes, ");
+                            continue;
+                        }
+                        drawn++;
+                        for (n = 0; n < 40; n++)
+                            bad += !(radii[n] >= DEM_R(0.99e-15) && radii[n] < DEM_R(1e15)) ||
+                                (d.max > 0 && radii[n] > d.max*DEM_R(1.00001));
+                        CHECK_EQ(bad, 0);
+                        n = dem_sizes_classes(world, &d, DEM_CLASSES, radii, amount);
+                        CHECK(n > 0);
+                        while (n-- > 0) CHECK(radii[n] > 0 && radii[n] < DEM_R(1e15) && amount[n] > 0 && amount[n] <= 1);
+                    }
+        CHECK(drawn > 100);
+        dem_world_destroy(world);
+    }
+    TEST("a sieve curve in per cent is told so, whichever call takes it") {
+        dem_world *world = empty(0);
+        dem_material m = scene_material(world, 1e7, 0.5, 0.5, 0);
+        dem_sizes d = sieves();
+        dem_region region = DEM_REGION;
+        dem_feed_desc feed = DEM_FEED_DESC;
+        int k;
+        for (k = 0; k < d.count; k++) d.passing[k] *= 100;
+        region.box = feed.box = box_of(0, 0, 0, 1, 1, 1);
+        CHECK_EQ(dem_sizes_fill(world, &region, m, &d, 10, 1), 0);
+        CHECK_STR(dem_world_error(world), "dem_sizes_fill: sizes, sieves: the last of passing is 100, must be 1");
+        feed.material = m;
+        feed.class_count = 1;
+        feed.amount[0] = feed.rate = 1;
+        feed.sizes[0] = &d;
+        CHECK_EQ(dem_feed_add(world, &feed).id, 0);
+        CHECK_STR(dem_world_error(world), "dem_feed_add: sizes, sieves: the last of passing is 100, must be 1");
+        dem_world_destroy(world);
+    }
     return test_end();
 }
