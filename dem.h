@@ -1200,10 +1200,10 @@ enum { DEM_SIEVES = 32 };
 typedef struct dem_sizes {
     dem_sizes_kind kind;
     int by_count;            /* shares are 0: of mass, as sieves tell them; 1: of the number */
-    dem_real min, max;       /* m, 1e-15 <= min <= max < 1e15; log-normal: 0: e^(-6 spread) and e^(6 spread)
-                                medians; normal: 0: 6 deviations off, but not below a thousandth of
-                                the median; Weibull, exponential: max 0: all but 1e-9 is finer;
-                                sieves: 0: their ends */
+    dem_real min, max;       /* m, 1e-15 <= min <= max < 1e15; log-normal: 0: e^(-6 spread) and
+                                e^(6 spread) medians; normal: 0: 6 deviations off, but not below a
+                                thousandth of the median; Weibull, exponential: max 0: all but 1e-9
+                                is finer; sieves: 0: their ends */
     dem_real median;         /* m, log-normal and normal, > 0 */
     double spread;           /* log-normal, > 0: standard deviation of ln r */
     dem_real scale;          /* m, Weibull, > 0; exponential: the mean, > min */
@@ -1680,8 +1680,8 @@ DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_
 typedef struct dem_outlet_desc {
     dem_wall frame;                  /* the region moves with this wall, which then cannot be
                                         removed; null: it stands still */
-    dem_box box;                     /* m, required, in that frame; lo below hi on every axis (planar:
-                                        z may be 0 to 0) */
+    dem_box box;                     /* m, required, in that frame; lo below hi on every axis
+                                        (planar: z may be 0 to 0) */
     dem_real beyond;                 /* m, only those at least so far from the frame's z axis */
     dem_real wanted_min, wanted_max; /* m, radii that ought to leave here; max 0: no limit */
     int class_count;                 /* 0..16: classes to count by; a grain is of the nearest */
@@ -4754,9 +4754,9 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
         I[1] > 0 && I[2] > 0 && I[0] <= I[1] + I[2] && I[1] <= I[0] + I[2] && I[2] <= I[0] + I[1] &&
         demi_finite(I[3]) && demi_finite(I[4]) && demi_finite(I[5]) &&
         demi_finite(I[0] + I[1] + I[2])) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: volume is %g m3, moments are %g, %g, %g m5 (per density), "
-              "must be > 0, none above the other two together; centre within 1e15 m", call,
-              (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: volume is %g m3, moments are %g, %g, %g m5 (per "
+              "density), must be > 0, none above the other two together; centre within 1e15 m",
+              call, (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
     return 0;
 }
 /* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
@@ -23899,7 +23899,7 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
         calm = demi_feed_coming(w) < 0 && mean < below && most < 10*below ? calm + 1 : 0;
         if (calm > 2) break;
         if (!(left > (double)w->clock.dt/2)) return demi_unsettled(w, seconds, below);
-        result = dem_world_run(w, DEMI_MIN(look, left), 0, 0);
+        result = dem_world_run(w, DEMI_MIN(DEMI_MIN(look, seconds/4), left), 0, 0);
         if (result != DEM_OK) return result;
         if (demi_clock() - last > 0.1) {
             last = demi_clock();
@@ -26930,6 +26930,18 @@ static void demi_out_drop(demi_out *o) {
     if (o->temporary) remove(o->temporary);
     demi_out_free(o);
 }
+/* Is an open file of this size a device, which must not be replaced by a file? C has no word for
+   devices. They have their places in /dev (but for /dev/shm, which holds files); elsewhere a device
+   seems empty and yet can be read from, or has no place beyond its end to go to. */
+static int demi_is_device(const char *place, FILE *file, size_t size) {
+    int reads;
+    if (!strncmp(place, "/dev/", 5) && strncmp(place, "/dev/shm/", 9)) return 1;
+    if (size) return 0;
+    reads = fgetc(file) != EOF;
+    clearerr(file);
+    return reads || fseek(file, 1, SEEK_SET) != 0 || ftell(file) != 1 ||
+        fseek(file, 0, SEEK_SET) != 0;
+}
 /* Begins a file under a temporary name. If this fails there is nothing to close. */
 static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, const char *path) {
     size_t length;
@@ -26958,19 +26970,19 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
                          "which is written whole or not at all; write a file and send that", call,
                          path);
     }
-    /* beyond the end of an empty file there are places to go to, of a device there are none */
-    if (there && !size && (fseek(there, 1, SEEK_SET) != 0 || ftell(there) != 1)) {
+    if (!demi_link_follow(o->place, o->room)) {
+        if (there) fclose(there);
+        demi_out_free(o);
+        return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a link that leads in a circle or "
+                         "through too many others; give the file itself", call, path);
+    }
+    if (there && demi_is_device(o->place, there, size)) {
         demi_free(w, o->temporary);
         o->temporary = 0;
         o->file = there;
         return DEM_OK;
     }
     if (there) fclose(there);
-    if (!demi_link_follow(o->place, o->room)) {
-        demi_out_free(o);
-        return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a link that leads in a circle or "
-                         "through too many others; give the file itself", call, path);
-    }
     o->file = demi_out_create(o);
     return o->file ? DEM_OK : demi_out_close(o);
 }
