@@ -3016,6 +3016,7 @@ typedef struct demi_wall {
     dem_pose home, pose;           /* pose at motion start, pose now */
     dem_pose first;                /* as it was added */
     dem_pose mid;                  /* in the middle of the step just taken */
+    dem_pose ahead, was;           /* impulses: a step later, see demi_ahead; that of a step ago */
     dem_motion motion;
     int symmetric;                 /* its motion leaves its surface in place: no search needed */
     dem_box box;                   /* local box of the elements */
@@ -3181,7 +3182,11 @@ typedef struct demi_bodies {
     int count, capacity;           /* bodies */
     dem_real *pos, *vel, *spin;    /* x 4; at the full step (predicted while a step is under way) */
     dem_real *half_vel, *half_spin;/* x 4; mean over the step just taken: at the half step */
-    dem_real *last_pos;            /* x 4; one step ago (schemes that look back) */
+    dem_real *last_pos;            /* x 4; one step ago (schemes that look back); impulses: places
+                                      and orientations of the full step, while contacts are
+                                      found at the half step */
+    dem_real *last_orient;
+    uint8_t *went;                 /* impulses: 1: it has made a step since it was put or set */
     dem_real *force, *torque;      /* x 4 */
     dem_real *inv_mass, *inv_inertia, *mass;     /* inv_inertia: 0 unless a sphere that moves */
     int backward;                  /* last_pos exists */
@@ -3416,8 +3421,9 @@ DEM_INLINE dem_real demi_cover(const dem_world *w) {
     return (dem_real)(w->margin.skin + w->margin.reach);
 }
 /* Contacts answer by impulses; each remembers its friction and moment (vectors), its push and what
-   of that cohesion takes, as forces; and whether it slides, 1 or 0. */
-enum { DEMI_IMPULSE_REALS = 9 };
+   of that cohesion takes, as forces; the normal velocity that it was left with, and what it turned
+   back (m/s), see demi_impulse_turns; and whether it slides, 1 or 0. */
+enum { DEMI_IMPULSE_SLIDES = 10, DEMI_IMPULSE_REALS };
 DEM_INLINE int demi_impulsive(const dem_world *w) {
     return w->desc.response == DEM_RESPONSE_IMPULSES;
 }
@@ -3482,14 +3488,15 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
 /* --- what each body has, told once. Making room, adding, removing, sorting, checking, saving and
        sending to another slab are loops over these rows (>>bodies). >>add-array: a field in
        demi_bodies above and a row here. Who has it: DEMI_EVERY body; DEMI_BACK: those of a scheme
-       that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_COUNTED: those of a
+       that looks back; DEMI_TURNED: those of a world where bodies turn; DEMI_BACK_TURNED: those of
+       a world where both hold; DEMI_COUNTED: those of a
        world with numbers of the user's, as many times as there are numbers; DEMI_ZONED: those of a
        world with outlets that only count; DEMI_BOOKED: those of a world with a ledger whose scheme
        predicts velocities; DEMI_SLOTS: every slot.
        What is done with it: DEMI_KEPT: it is state, and 0 in a new body unless set; DEMI_REALS:
        kept, and finite; DEMI_PLACES: reals that begin with a place, which moves by a period; 0:
        room to work in. --- */
-enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED, DEMI_SLOTS };
+enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED, DEMI_SLOTS };
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
     /* where its pointer stands in demi_bodies; bytes of one body (demi_item: of counted ones) */
@@ -3512,8 +3519,10 @@ static const demi_body_array demi_body_arrays[] = {
     DEMI_ARRAY(inv_mass,        1, DEMI_EVERY,  DEMI_REALS),
     DEMI_ARRAY(inv_inertia,     1, DEMI_EVERY,  DEMI_REALS),
     DEMI_ARRAY(last_pos,        4, DEMI_BACK,   DEMI_PLACES),
+    DEMI_ARRAY(went,            1, DEMI_BACK,   DEMI_KEPT),
     DEMI_ARRAY(late,            4, DEMI_BOOKED, DEMI_REALS),
     DEMI_ARRAY(orient,          4, DEMI_TURNED, DEMI_REALS),
+    DEMI_ARRAY(last_orient,     4, DEMI_BACK_TURNED, DEMI_REALS),
     DEMI_ARRAY(angular,         4, DEMI_TURNED, DEMI_REALS),
     DEMI_ARRAY(moment,          4, DEMI_TURNED, DEMI_REALS),
     DEMI_ARRAY(shape,           1, DEMI_TURNED, DEMI_KEPT),
@@ -6722,6 +6731,7 @@ static int demi_list_drop(dem_world *w) {
 /* Does each body of this world (or slot) have one? */
 static int demi_has(const dem_world *w, const demi_body_array *a) {
     return a->who == DEMI_BACK ? w->bodies.backward : a->who == DEMI_TURNED ? w->bodies.orienting
+           : a->who == DEMI_BACK_TURNED ? w->bodies.backward && w->bodies.orienting
            : a->who == DEMI_COUNTED ? w->bodies.real_count > 0
            : a->who == DEMI_ZONED ? w->bodies.zoned
            : a->who == DEMI_BOOKED ? w->bodies.booked : 1;
@@ -6783,6 +6793,7 @@ static int demi_bodies_reserve(dem_world *w, size_t count) {
     const size_t slots = (size_t)w->bodies.slot_count + more;
     const int sets =
         1 << DEMI_EVERY | w->bodies.backward << DEMI_BACK | w->bodies.orienting << DEMI_TURNED |
+        (w->bodies.backward && w->bodies.orienting) << DEMI_BACK_TURNED |
         (w->bodies.real_count > 0) << DEMI_COUNTED | w->bodies.zoned << DEMI_ZONED |
         w->bodies.booked << DEMI_BOOKED;
     if (count > (size_t)(INT_MAX/64) || slots > (size_t)(INT_MAX/64)) return 0;
@@ -6821,7 +6832,8 @@ static void demi_body_copy(dem_world *w, int from, int to) {
 static int demi_orient_begin(dem_world *w) {
     int i;
     if (w->bodies.orienting) return 1;
-    if (!demi_bodies_room(w, 1 << DEMI_TURNED, 0, (size_t)w->bodies.capacity)) return 0;
+    if (!demi_bodies_room(w, 1 << DEMI_TURNED | w->bodies.backward << DEMI_BACK_TURNED, 0,
+                          (size_t)w->bodies.capacity)) return 0;
     w->bodies.orienting = 1;
     for (i = 0; i < w->bodies.count; i++) {
         w->bodies.orient[4*i] = 1;
@@ -7204,6 +7216,7 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
     if (s->fixed) demi_put(w->bodies.spin + 4*i, demi_v(0, 0, 0));
     demi_put(w->bodies.half_vel + 4*i, demi_at(w->bodies.vel + 4*i));
     demi_put(w->bodies.half_spin + 4*i, demi_at(w->bodies.spin + 4*i));
+    if (demi_impulsive(w)) w->bodies.went[i] = 0;
     if (w->bodies.booked) demi_put(w->bodies.late + 4*i, demi_v(0, 0, 0));
     w->bodies.inv_mass[i] = s->fixed ? 0 : (dem_real)(1/m);
     w->bodies.inv_inertia[i] = s->fixed || shape ? 0 : (dem_real)(1/demi_sphere_inertia(w, m,
@@ -7280,6 +7293,7 @@ DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_
                 else *v = (dem_real)(demi_gauss(&seed)/sqrt((double)w->bodies.mass[b]));
                 w->bodies.half_vel[4*b + k] = *v;
             }
+            if (demi_impulsive(w)) w->bodies.went[b] = 0;
             w->booked.inserted += demi_body_energy(w, b) - before;
         }
     }
@@ -8788,7 +8802,7 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
 }
 /* The same for a wall at rest in its first pose. */
 static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
-    wall->pose = wall->mid = wall->first = wall->home;
+    wall->pose = wall->mid = wall->ahead = wall->first = wall->home;
     return demi_wall_enter(w, call, wall);
 }
 
@@ -10818,7 +10832,7 @@ static int demi_quiet_reserve(dem_world *w, int bodies) {
 static int demi_quiet_possible(const dem_world *w) {
     const dem_vec3 g = w->desc.gravity;
     return !(demi_dot(g, g) > 0) && !w->desc.force && !w->desc.body_force && !w->bodies.ghost &&
-           !w->bodies.backward && !w->joint_count;
+           (!w->bodies.backward || demi_impulsive(w)) && !w->joint_count;
 }
 /* Says of every few bodies whether anything is near any of them: where nothing is, and no field
    acts, they fly by themselves, and a step need not gather, nor clear, forces for them. */
@@ -18141,6 +18155,20 @@ static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int tur
         }
     }
 }
+/* x(t+dt) = x + (v(t) + v(t+dt)) dt/2, v(t+dt) = v + a(t+dt/2) dt: impulses, found at x + v dt/2.
+   A velocity that somebody has set may go into a wall, or part a joint: there they are found at x,
+   and take it off before the body goes. */
+static void demi_move_midpoint(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->clock.dt;
+    int i, k;
+    demi_move_velocity_verlet(w, begin, end, turning);
+    for (i = begin; i < end; i++)
+        for (k = 4*i; k < 4*i + 3 && !w->bodies.went[i]; k++) {
+            w->bodies.pos[k] += (w->bodies.vel[k] - w->bodies.half_vel[k])*dt;
+            w->bodies.half_vel[k] = w->bodies.vel[k];
+            w->bodies.half_spin[k] = w->bodies.spin[k];
+        }
+}
 /* x(t+dt) = x + v(t) dt, v(t+dt) = v + a dt [MIL] 4.6 */
 static void demi_move_forward_euler(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->clock.dt;
@@ -18317,18 +18345,21 @@ typedef struct demi_turning {
     dem_real speed2[DEMI_ROW], change2[DEMI_ROW];        /* (m/s)^2, at the moment_arm's end */
     dem_real rate2[DEMI_ROW];                            /* (rad/s)^2 */
 } demi_turning;
-/* One body of the tile: kick L, fly, and say what a law will see and how fast it was. */
-DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real dt) {
+/* One body of the tile: kicks L by T kick, flies for dt, and says what a law will see, with L + T
+   after, and how fast it was. */
+DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real kick, dem_real dt,
+                                 dem_real after) {
     dem_quat q = dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l]), start = q;
     const dem_vec3 T = demi_v(t->T[0][l], t->T[1][l], t->T[2][l]);
     const dem_vec3 I = demi_v(t->I[0][l], t->I[1][l], t->I[2][l]);
     const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z);
-    const dem_vec3 L = demi_v(t->L[0][l] + T.x*dt, t->L[1][l] + T.y*dt, t->L[2][l] + T.z*dt);
+    const dem_vec3 L = demi_v(t->L[0][l] + T.x*kick, t->L[1][l] + T.y*kick,
+                              t->L[2][l] + T.z*kick);
     const dem_vec3 mean = rotation == DEM_ROTATION_SPIRAL ? demi_flight_spiral(&q, L, I, inv, dt)
         : rotation == DEM_ROTATION_FINCHAM ? demi_flight_fincham(&q, L, I, dt)
         : demi_flight_splitting(&q, L, I, dt);
     const dem_vec3 half = dem_quat_rotate(start, mean);
-    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, dt/2)), inv);
+    const dem_vec3 spin = demi_spin_of(q, demi_add(L, demi_scale(T, after)), inv);
     const dem_vec3 by = demi_sub(spin, half);   /* half a step's change */
     t->rate2[l] = demi_dot(half, half);
     t->speed2[l] = t->rate2[l]*t->I[3][l]*t->I[3][l];
@@ -18339,15 +18370,28 @@ DEM_INLINE void demi_turning_fly(demi_turning *t, int l, int rotation, dem_real 
     t->spin[0][l] = spin.x; t->spin[1][l] = spin.y; t->spin[2][l] = spin.z;
 }
 /* The common one, without a question inside, so that it becomes vectors. */
-DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real dt) {
+DEMI_CLONES static void demi_turning_spiral(demi_turning *t, int count, dem_real kick, dem_real dt,
+                                            dem_real after) {
     int l, q;
     for (q = 0; q < count; q += DEMI_LANES) {
         DEMI_VECTOR
-        for (l = 0; l < DEMI_LANES; l++) demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, dt);
+        for (l = 0; l < DEMI_LANES; l++)
+            demi_turning_fly(t, q + l, DEM_ROTATION_SPIRAL, kick, dt, after);
     }
 }
+static void demi_turning_all(const dem_world *w, demi_turning *t, int count, dem_real kick,
+                             dem_real dt, dem_real after) {
+    int l;
+    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(t, count, kick, dt, after);
+    else for (l = 0; l < count; l++)
+        demi_turning_fly(t, l, (int)w->desc.rotation, kick, dt, after);
+}
+/* How long bodies turn: a step, as springs do it; one in halves, kicked in between, as impulses do;
+   the half to where their contacts are found. */
+enum { DEMI_TURN_STEP, DEMI_TURN_HALVES, DEMI_TURN_AHEAD };
 /* Turns the bodies listed, at most a tile; notes how fast and by how much they changed. */
-static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count) {
+static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, int count,
+                             int how) {
     const dem_real dt = w->clock.dt;
     demi_turning t;
     int l, e;
@@ -18360,23 +18404,42 @@ static void demi_orient_some(dem_world *w, demi_domain *domain, const int *who, 
         for (e = 0; e < 4; e++) t.I[e][l] = w->bodies.moment[i + (size_t)e];
         for (e = 0; e < 3; e++) t.L[e][l] = w->bodies.angular[i + (size_t)e];
         for (e = 0; e < 3; e++) t.T[e][l] = w->bodies.torque[i + (size_t)e];
+        if (how == DEMI_TURN_HALVES && !w->bodies.went[i/4])    /* as they move */
+            for (e = 0; e < 3; e++) { t.L[e][l] += t.T[e][l]*dt; t.T[e][l] = 0; }
     }
-    if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_turning_spiral(&t, full, dt);
-    else for (l = 0; l < count; l++) demi_turning_fly(&t, l, (int)w->desc.rotation, dt);
+    if (how == DEMI_TURN_STEP) demi_turning_all(w, &t, full, dt, dt, dt/2);
+    else demi_turning_all(w, &t, full, 0, dt/2, 0);
+    if (how == DEMI_TURN_HALVES) {
+        demi_turning first = t;
+        demi_turning_all(w, &t, full, dt, dt/2, 0);
+        for (l = 0; l < count; l++) {
+            dem_real change2 = 0;
+            for (e = 0; e < 3; e++) {
+                const dem_real by = t.spin[e][l] - first.half[e][l];
+                change2 += by*by;
+                t.half[e][l] = (first.half[e][l] + t.half[e][l])/2;
+            }
+            t.change2[l] = 4*change2*t.I[3][l]*t.I[3][l];
+            t.speed2[l] = DEMI_MAX(t.speed2[l], first.speed2[l]);
+            t.rate2[l] = DEMI_MAX(t.rate2[l], first.rate2[l]);
+        }
+    }
     for (l = 0; l < count; l++) {
         size_t i = 4*(size_t)who[l];
         DEMI_ONE_BY_ONE(i);
         for (e = 0; e < 4; e++) w->bodies.orient[i + (size_t)e] = t.q[e][l];
         for (e = 0; e < 3; e++) w->bodies.angular[i + (size_t)e] = t.L[e][l];
-        for (e = 0; e < 3; e++) w->bodies.half_spin[i + (size_t)e] = t.half[e][l];
+        for (e = 0; e < 3 && how != DEMI_TURN_AHEAD; e++)
+            w->bodies.half_spin[i + (size_t)e] = t.half[e][l];
         for (e = 0; e < 3; e++) w->bodies.spin[i + (size_t)e] = t.spin[e][l];
-        if (w->bodies.centres_valid &&
+        if (w->bodies.centres_valid && how != DEMI_TURN_HALVES &&
             w->shapes[w->bodies.shape[who[l]] - 1].count) demi_centres_rotate(w, who[l]);
         turn = DEMI_MAX(turn, t.change2[l]);
         speed = DEMI_MAX(speed, t.speed2[l]);
         rate = DEMI_MAX(rate, t.rate2[l]);
         check += t.rate2[l];
     }
+    if (!domain) return;
     domain->turn_rate = DEMI_MAX(domain->turn_rate, (double)rate);
     domain->turn = DEMI_MAX(domain->turn, (double)turn);
     domain->turn_speed = DEMI_MAX(domain->turn_speed, (double)speed);
@@ -18395,38 +18458,38 @@ DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real 
         }
     }
 }
-static void demi_orient_balls(dem_world *w, const int *who, int count) {
+static void demi_orient_balls(dem_world *w, const int *who, int count, int how) {
+    const dem_real *spin = how == DEMI_TURN_AHEAD ? w->bodies.spin : w->bodies.half_spin;
     const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     demi_turning t;
     int l, e;
     for (l = 0; l < full; l++) {
         const size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
         for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[i + (size_t)e];
-        for (e = 0; e < 3; e++) t.L[e][l] = w->bodies.half_spin[i + (size_t)e];
+        for (e = 0; e < 3; e++) t.L[e][l] = spin[i + (size_t)e];
     }
-    demi_turning_balls(&t, full, w->clock.dt);
+    demi_turning_balls(&t, full, how == DEMI_TURN_AHEAD ? w->clock.dt/2 : w->clock.dt);
     for (l = 0; l < count; l++)
         for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
 }
-/* Orientations of bodies begin .. end - 1 over one step, and spins of those that are not spheres.
-   */
-static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end) {
+/* Orientations of bodies begin .. end - 1, and spins of those that are not spheres. */
+static void demi_orient_move(dem_world *w, demi_domain *domain, int begin, int end, int how) {
     int who[DEMI_TILE], balls[DEMI_TILE], count = 0, ball_count = 0, i;
     for (i = begin; i < end; i++) {
-        if (w->bodies.inv_mass[i] <= 0) continue;
+        if (w->bodies.inv_mass[i] <= 0 || (how == DEMI_TURN_AHEAD && !w->bodies.went[i])) continue;
         if (w->bodies.shape[i]) {
             who[count++] = i;
-            if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count); count = 0; }
+            if (count == DEMI_TILE) { demi_orient_some(w, domain, who, count, how); count = 0; }
         } else if (w->desc.orientations) {
             balls[ball_count++] = i;
             if (ball_count == DEMI_TILE) {
-                demi_orient_balls(w, balls, ball_count);
+                demi_orient_balls(w, balls, ball_count, how);
                 ball_count = 0;
             }
         }
     }
-    if (count) demi_orient_some(w, domain, who, count);
-    if (ball_count) demi_orient_balls(w, balls, ball_count);
+    if (count) demi_orient_some(w, domain, who, count, how);
+    if (ball_count) demi_orient_balls(w, balls, ball_count, how);
 }
 /* Spins at the full step, from angular momentum at the half step and the torque of now. */
 static void demi_orient_finish(dem_world *w, int begin, int end) {
@@ -18456,8 +18519,10 @@ static const demi_integrator_row demi_integrator_rows[] = {     /* in the order 
     {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0, 0},
     {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1, 1},
     {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
+    /* of impulses, found at the half step; their velocities are finished at once */
+    {"the midpoint rule", demi_move_midpoint, demi_finish_nothing, 2, 1, 0},
 };
-enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
+enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) - 1 };
 
 static void demi_domain_finish(dem_world *w, int d) {
     if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
@@ -18515,6 +18580,7 @@ typedef struct demi_impulse {
 /* Beside it. */
 typedef struct demi_beside {
     dem_real gap, lift, pull, mass; /* m; kg m/s; N s; kg */
+    dem_real turns;                /* m/s, <= 0: part of bias, see demi_impulse_turns */
     int bounces;                   /* bias is that of restitution */
 } demi_beside;
 /* Where there is rolling or spinning friction. */
@@ -18773,8 +18839,35 @@ static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover 
     const demi_wall *wall = &w->walls[k->wall];
     const dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift);
     memset(m, 0, sizeof *m);
-    demi_put(m->v, demi_surface_at(&wall->pose, demi_add(x, k->arm_a)));
-    demi_put(m->w, wall->pose.spin);
+    demi_put(m->v, demi_surface_at(&wall->ahead, demi_add(x, k->arm_a)));
+    demi_put(m->w, wall->ahead.spin);
+}
+/* Normals turn on the way from one place where contacts are found to the next. On a concave wall
+   that alone makes a body close that went along it: if half of it is turned back, bodies go by
+   chords from wall to wall, and keep their energy; with none of it they would lose some in each
+   step. How much it is a contact knows that lasts, from the velocity that it was left with (bodies
+   have the same still; what walls have changed theirs by is no turn). Answers <= 0, m/s, to be added
+   to the bias: never more than the contact closes by, so that it brings no energy. *hits: by how
+   much it closes because something hits. */
+static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, const demi_kept *k,
+                                   const demi_spot *o, dem_real closing, dem_real *hits) {
+    const dem_real *y = o->memory;
+    dem_real turned = closing - y[8*o->stride];
+    *hits = closing;
+    if (!(y[6*o->stride] > 0) || !w->bodies.went[m->a] ||
+        (m->b < w->bodies.count && !w->bodies.went[m->b])) return 0;
+    if (!w->stage.forces_valid) {               /* the same step once more */
+        if (y[9*o->stride] < 0) *hits = 0;
+        return y[9*o->stride];
+    }
+    if (k && k->b < 0) {
+        const demi_wall *wall = &w->walls[k->wall];
+        const dem_vec3 at = demi_add(demi_add(demi_at(w->bodies.pos + 4*k->a), k->shift), k->arm_a);
+        turned -= demi_dot(demi_sub(demi_surface_at(&wall->ahead, at),
+                                    demi_surface_at(&wall->was, at)), o->normal);
+    }
+    *hits = closing - turned;
+    return turned < 0 && closing < 0 ? DEMI_MAX(turned/2, closing) : 0;
 }
 /* The second half of a domain's meetings: all that sweeps need. What is remembered is for turned
    normals: friction stays across them. Cohesion takes hold of what touches, to a millionth of the
@@ -18798,11 +18891,11 @@ static void demi_impulses_lay(dem_world *w, int d) {
         const dem_real points = (dem_real)(k && k->corners ? k->corners : 1);
         const dem_real give = pair->compliance*points, had = w->desc.cold_start ? 0 : dt;
         /* what slid in the last step slides on */
-        const dem_real mu = y[8*o.stride] > 0 ? pair->friction
+        const dem_real mu = y[DEMI_IMPULSE_SLIDES*o.stride] > 0 ? pair->friction
             : DEMI_MAX(pair->friction, pair->friction_static);
         demi_brings g = {0, 0, 0, 0, 0, 0};
         dem_vec3 slip = demi_v(y[0], y[o.stride], y[2*o.stride]);
-        dem_real closing;
+        dem_real closing, hits;
         if (k && k->b < 0) demi_surface_lay(w, k, s->movers + m->b);
         if (shaped) {
             s->arms[2*m->at] = o.arm_a;
@@ -18830,8 +18923,11 @@ static void demi_impulses_lay(dem_world *w, int d) {
         c->slip = demi_scale(demi_sub(slip, demi_scale(o.normal, demi_dot(slip, o.normal))), had);
         closing = demi_dot(demi_impulse_before(w, c), o.normal);
         c->bias = (pair->compliance > 0 ? o.gap : DEMI_MAX(o.gap, 0))/dt;
-        beside->bounces = pair->restitution > 0 && closing < -rest && o.gap + closing*dt <= 0;
-        if (beside->bounces) c->bias = pair->restitution*closing;
+        beside->turns = pair->compliance > 0 ? 0 : demi_impulse_turns(w, m, k, &o, closing, &hits);
+        if (pair->compliance > 0) hits = closing;
+        beside->bounces = pair->restitution > 0 && hits < -rest && o.gap + closing*dt <= 0;
+        if (beside->bounces) { c->bias = pair->restitution*closing; beside->turns = 0; }
+        c->bias += beside->turns;
         beside->gap = o.gap;
         if (o.gap < 0)
             beside->gap = pair->compliance > 0 ? 0 : DEMI_MIN(o.gap + DEMI_LEFT*o.size, 0);
@@ -19853,7 +19949,8 @@ static void demi_impulses_tell(dem_world *w, int d) {
         const dem_vec3 u = demi_scale(demi_add(demi_impulse_before(w, c), after), DEM_R(0.5));
         const dem_real all[DEMI_IMPULSE_REALS] = {c->slip.x*per, c->slip.y*per, c->slip.z*per,
             moment.x*per, moment.y*per, moment.z*per, c->push*per, s->beside[m->at].pull*per,
-            demi_impulse_slides(c, after, slow, o.memory[8*o.stride])};
+            demi_dot(after, c->normal), s->beside[m->at].turns,
+            demi_impulse_slides(c, after, slow, o.memory[DEMI_IMPULSE_SLIDES*o.stride])};
         for (e = 0; e < DEMI_IMPULSE_REALS; e++) memory[(size_t)e*o.stride] = all[e];
         lost[DEMI_E_DASHPOT] -= (double)demi_dot(demi_sub(p, c->slip), u);
         lost[DEMI_E_SLIDE] -= (double)demi_dot(c->slip, u);
@@ -19921,12 +20018,14 @@ static int demi_impulses_tame(dem_world *w, int last) {
         demi_impulse *c = s->contacts + i;
         dem_vec3 before, after, p;
         dem_real gain;
-        if (!s->beside[i].bounces || !(c->bias < 0) || !(c->push > 0)) continue;
+        if (!(s->beside[i].bounces || s->beside[i].turns < 0) || !(c->bias < 0) || !(c->push > 0))
+            continue;
         before = demi_impulse_before(w, c);
         after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
         p = demi_add(demi_scale(c->normal, c->push), c->slip);
         gain = demi_dot(p, demi_add(before, after));
-        if (!(gain > (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-14))*-c->bias*c->push)) continue;
+        if (!(gain > (!s->beside[i].bounces ? DEM_R(1e-3) : DEMI_SINGLE ? DEM_R(1e-6)
+                      : DEM_R(1e-14))*-c->bias*c->push)) continue;
         c->bias = last ? 0 : c->bias/2;
         tamed++;
     }
@@ -19968,11 +20067,67 @@ static void demi_impulses(dem_world *w) {
     for (i = 0; i < DEMI_LIFTS; i++) demi_colours_all(w, demi_impulses_lift);
     for (i = 0; i < w->bodies.count; i++) {
         const dem_vec3 way = demi_scale(demi_at(s->lifts + 4*i), s->dt);
-        demi_force_add(w->bodies.pos + 4*i, way);
+        demi_force_add(w->bodies.last_pos + 4*i, way);
         farthest = DEMI_MAX(farthest, (double)demi_length(way));
     }
     w->margin.gone += farthest;
     w->margin.creep += 2*farthest;
+}
+/* Contacts are found half a step ahead, where bodies get with the velocities they have: there
+   impulses act, and so do fields of force, so that a step is the same forwards and backwards, of
+   second order. Some bodies go there, and come back. */
+enum { DEMI_AHEAD = 1024 };                     /* bodies at a time */
+static void demi_some_ahead(dem_world *w, int index) {
+    const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
+    const dem_real h = w->clock.dt/2;
+    const size_t first = 4*(size_t)begin, size = 4*(size_t)(end - begin)*sizeof(dem_real);
+    int i, k;
+    memcpy(w->bodies.last_pos + first, w->bodies.pos + first, size);
+    for (i = begin; i < end; i++)
+        for (k = 4*i; k < 4*i + 3 && w->bodies.went[i]; k++)
+            w->bodies.pos[k] += w->bodies.vel[k]*h;
+    if (!w->bodies.orienting) return;
+    memcpy(w->bodies.last_orient + first, w->bodies.orient + first, size);
+    demi_orient_move(w, 0, begin, end, DEMI_TURN_AHEAD);
+}
+static void demi_some_back(dem_world *w, int index) {
+    const int begin = index*DEMI_AHEAD, end = DEMI_MIN(begin + DEMI_AHEAD, w->bodies.count);
+    const size_t first = 4*(size_t)begin, size = 4*(size_t)(end - begin)*sizeof(dem_real);
+    int i;
+    memcpy(w->bodies.pos + first, w->bodies.last_pos + first, size);
+    if (!w->bodies.orienting) return;
+    memcpy(w->bodies.orient + first, w->bodies.last_orient + first, size);
+    for (i = begin; i < end; i++) {
+        const dem_vec3 I = demi_at(w->bodies.moment + 4*i);
+        if (!w->bodies.shape[i] || !(w->bodies.inv_mass[i] > 0)) continue;
+        demi_put(w->bodies.spin + 4*i, demi_spin_of(demi_quat_at(w->bodies.orient + 4*i),
+            demi_at(w->bodies.angular + 4*i), demi_v(1/I.x, 1/I.y, 1/I.z)));
+        if (w->bodies.centres_valid && w->shapes[w->bodies.shape[i] - 1].count)
+            demi_centres_rotate(w, i);
+    }
+}
+/* Bodies and walls half a step ahead: `mid` keeps where walls are. Their surfaces have velocities of
+   a whole step ahead, the middle between two places where contacts are found. */
+static void demi_ahead(dem_world *w) {
+    const double dt = (double)w->clock.dt;
+    int i;
+    demi_parallel(w, w->desc.threads, (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD, demi_some_ahead);
+    for (i = 0; i < w->wall_count; i++) {
+        demi_wall *wall = &w->walls[i];
+        dem_pose pose;
+        wall->was = wall->ahead;
+        wall->mid = wall->ahead = wall->pose;
+        if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
+        demi_wall_pose_at(wall, w->clock.time + dt/2, &pose);
+        if (demi_pose_sane(&pose)) wall->pose = pose;
+        demi_wall_pose_at(wall, w->clock.time + dt, &pose);
+        if (demi_pose_sane(&pose)) wall->ahead = pose;
+    }
+}
+static void demi_ahead_back(dem_world *w) {
+    int i;
+    demi_parallel(w, w->desc.threads, (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD, demi_some_back);
+    for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
 /* Walls' and motors' work of the step to come. */
 static void demi_impulses_due(dem_world *w) {
@@ -23198,7 +23353,10 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
             w->bodies.half_vel[4*i + 2] = w->bodies.half_spin[4*i] = w->bodies.half_spin[4*i + 1] =
                 0;
         }
-    if (w->bodies.orienting) demi_orient_move(w, domain, begin, end);
+    if (w->bodies.orienting)
+        demi_orient_move(w, domain, begin, end, demi_impulsive(w) ? DEMI_TURN_HALVES
+                         : DEMI_TURN_STEP);
+    if (demi_impulsive(w)) memset(w->bodies.went + begin, 1, (size_t)(end - begin));
     for (i = begin; i + DEMI_LANES <= end; i += DEMI_LANES) {
         DEMI_VECTOR
         for (l = 0; l < DEMI_LANES; l++) demi_pace_look(w, i + l, pace, l);
@@ -23229,7 +23387,9 @@ static void demi_quiet_move(dem_world *w, int d, int turning, demi_pace *pace) {
             if (q->restless == 1) q->restless = 0;
         } else {
             for (k = 4*i; k < 4*end; k++) x[k] += u[k]*dt;
-            if (w->bodies.orienting) demi_orient_move(w, domain, i, end);
+            if (w->bodies.orienting)
+                demi_orient_move(w, domain, i, end, demi_impulsive(w) ? DEMI_TURN_HALVES
+                                 : DEMI_TURN_STEP);
         }
         pace->speed2[0] = DEMI_MAX(pace->speed2[0], q->speed2);
     }
@@ -23263,9 +23423,24 @@ static void demi_domain_move(dem_world *w, int d) {
         domain->acceleration2 = DEMI_MAX(domain->acceleration2, (double)pace.acceleration2[i]);
         domain->check += (double)pace.sum[i];
     }
+    /* where contacts are found, bodies have gone with the velocity of the end of the step */
+    for (i = domain->begin; i < domain->end && demi_impulsive(w); i++) {
+        const dem_vec3 v = demi_at(w->bodies.vel + 4*i);
+        domain->speed2 = DEMI_MAX(domain->speed2, (double)demi_dot(v, v));
+    }
     if (w->desc.ledger) domain->energy[DEMI_E_GRAVITY] = demi_gravity_work(w, domain);
 }
 
+/* What fields of force see: of impulses the middle of the step to come, velocities as they have
+   changed in the step before. */
+static double demi_field_time(const dem_world *w) {
+    return w->clock.time + (demi_impulsive(w) ? (double)w->clock.dt/2 : 0);
+}
+DEM_INLINE dem_vec3 demi_field_rate(const dem_world *w, const dem_real *now, const dem_real *half,
+                                    int i) {
+    const dem_vec3 v = demi_at(now + 4*i);
+    return demi_impulsive(w) ? demi_sub(demi_scale(v, 2), demi_at(half + 4*i)) : v;
+}
 /* Forces and torques of a field that sees whole bodies. */
 static void demi_domain_fields(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
@@ -23276,7 +23451,9 @@ static void demi_domain_fields(dem_world *w, int d) {
         dem_vec3 force = none, torque = none;
         dem_body_state body;
         if (demi_is_ghost(w, i) || dem_body_get(w, id, &body) != DEM_OK) continue;
-        w->desc.body_force(&body, id, w->clock.time, &force, &torque, w->desc.force_user);
+        body.velocity = demi_field_rate(w, w->bodies.vel, w->bodies.half_vel, i);
+        body.spin = demi_field_rate(w, w->bodies.spin, w->bodies.half_spin, i);
+        w->desc.body_force(&body, id, demi_field_time(w), &force, &torque, w->desc.force_user);
         demi_force_add(w->bodies.force + 4*i, force);
         demi_force_add(w->bodies.torque + 4*i, torque);
         if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
@@ -23299,13 +23476,13 @@ static void demi_domain_clear(dem_world *w, int d) {
                (size_t)w->bodies.real_count*n/4);
     for (i = domain->begin; i < domain->end && w->desc.force; i++) {
         if (demi_is_ghost(w, i)) continue;
-        const dem_vec3 f = w->desc.force(demi_at(w->bodies.pos + 4*i), demi_at(w->bodies.vel + 4*i),
-                                         w->bodies.pos[4*i + 3], w->bodies.mass[i],
-                                         w->clock.time, w->desc.force_user);
+        const dem_vec3 v = demi_field_rate(w, w->bodies.vel, w->bodies.half_vel, i);
+        const dem_vec3 f = w->desc.force(demi_at(w->bodies.pos + 4*i), v, w->bodies.pos[4*i + 3],
+                                         w->bodies.mass[i], demi_field_time(w),
+                                         w->desc.force_user);
         demi_put(w->bodies.force + 4*i, f);
         if (w->desc.ledger && w->stage.forces_valid && w->bodies.inv_mass[i] > 0)
-            w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f,
-                demi_at(w->bodies.vel + 4*i))*(double)w->clock.dt;
+            w->domains[d].energy[DEMI_E_FORCE] += (double)demi_dot(f, v)*(double)w->clock.dt;
     }
     if (w->desc.body_force) demi_domain_fields(w, d);
 }
@@ -23526,7 +23703,7 @@ static dem_result demi_step_move(dem_world *w) {
     int d, i;
     w->clock.half_kick = (double)w->clock.dt/2;
     demi_parallel(w, w->desc.threads, w->domain_count, demi_domain_move);
-    w->stage.synced = 0;
+    w->stage.synced = demi_impulsive(w);
     demi_time_pass(w);
     for (d = 0; d < w->domain_count; d++) {
         const double s = w->domains[d].check;
@@ -23557,7 +23734,8 @@ static dem_result demi_step_move(dem_world *w) {
         double speed;
         if (wall->kind == DEMI_WALL_NONE || wall->motion.kind == DEM_MOTION_FIXED) continue;
         demi_wall_pose_at(wall, w->clock.time, &pose);
-        demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &mid);
+        if (!demi_impulsive(w))
+            demi_wall_pose_at(wall, w->clock.time - w->clock.half_kick, &mid);
         if (!demi_pose_sane(&pose) || !demi_pose_sane(&mid)) {
             w->stage.forces_valid = 0;          /* the wall stays where it was, finite */
             w->margin.walls_gone = 1e300;
@@ -23612,17 +23790,10 @@ static void demi_reals_gain(dem_world *w) {
         for (k = 0; k < w->bodies.real_count; k++)
             w->walls[i].loads.gained[k] += w->walls[i].loads.rate[k]*(double)w->clock.dt;
 }
-/* One step. Numbers as in the manual. A step that ran out of memory after its move goes on from
-   there. */
-static dem_result demi_step_once(dem_world *w) {
+/* A step from its second part on. Numbers as in the manual. */
+static dem_result demi_step_answer(dem_world *w) {
     dem_result result;
     int d, search;
-    if (!w->stage.moved) {
-        result = demi_step_move(w);
-        if (result != DEM_OK) return result;
-        demi_near_pass(w, w->margin.last_change);
-        w->stage.moved = 1;
-    }
     /* 2 search: when something may have come near that is not in the list. Outlets look then:
        nobody gets farther than half a skin between two lists */
     result = demi_outflow(w);
@@ -23655,11 +23826,28 @@ static dem_result demi_step_once(dem_world *w) {
        */
     return demi_overlap(w) < 1 ? DEM_OK : demi_unstable(w);
 }
-
-/* Something changed since the last step: forces at t, by a new list if need be; memory stays. */
-static dem_result demi_refresh(dem_world *w) {
+/* The same where contacts are found: impulses, half a step ahead. */
+static dem_result demi_answer(dem_world *w, dem_result (*answer)(dem_world *w)) {
     dem_result result;
-    demi_finish(w);
+    if (!demi_impulsive(w)) return answer(w);
+    demi_ahead(w);
+    result = answer(w);
+    demi_ahead_back(w);
+    return result;
+}
+/* One step. One that ran out of memory after its move goes on from there. */
+static dem_result demi_step_once(dem_world *w) {
+    if (!w->stage.moved) {
+        const dem_result result = demi_step_move(w);
+        if (result != DEM_OK) return result;
+        demi_near_pass(w, w->margin.last_change);
+        w->stage.moved = 1;
+    }
+    return demi_answer(w, demi_step_answer);
+}
+
+static dem_result demi_refresh_answer(dem_world *w) {
+    dem_result result;
     if (w->stage.pairs_changed) {               /* half steps were of the old forces, and effects */
         w->stage.primed = 0;
         if (!demi_list_drop(w)) return demi_no_memory(w, "dem_world_step");
@@ -23676,6 +23864,11 @@ static dem_result demi_refresh(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     w->stage.forces_valid = 1;
     return DEM_OK;
+}
+/* Something changed since the last step: forces at t, by a new list if need be; memory stays. */
+static dem_result demi_refresh(dem_world *w) {
+    demi_finish(w);
+    return demi_answer(w, demi_refresh_answer);
 }
 
 DEM_API dem_result dem_world_gravity_set(dem_world *w, dem_vec3 gravity) {
@@ -25416,7 +25609,7 @@ static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
         result = DEM_ERROR_ARGUMENT;
     dem_mesh_free(w, &mesh);
     if (result != DEM_OK) return result;
-    wall->pose = wall->first = wall->home;
+    wall->pose = wall->ahead = wall->first = wall->home;
     return demi_motion_lay(w, id, &part->motion, wall, wall);
 }
 /* What can be refused is before the first wall is added: then nothing of the world has changed. */
@@ -28102,6 +28295,7 @@ static void demi_visit_walls(dem_world *w, demi_stream *s) {
         demi_visit(s, &wall->home, sizeof wall->home);
         demi_visit(s, &wall->pose, sizeof wall->pose);
         demi_visit(s, &wall->mid, sizeof wall->mid);
+        demi_visit(s, &wall->ahead, sizeof wall->ahead);
         demi_visit(s, &wall->loads, sizeof wall->loads);
         demi_visit(s, wall->reals, sizeof wall->reals);
         DEMI_VISIT(s, m->kind);     DEMI_VISIT(s, m->velocity);   DEMI_VISIT(s, m->point);
@@ -28739,7 +28933,8 @@ static int demi_walls_check(const demi_reader *r) {
         const dem_motion *m = &wall->motion;
         if (wall->kind == DEMI_WALL_NONE) continue;
         if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
-            !demi_pose_sane(&wall->mid)) return demi_lie(r, "the pose of wall", i);
+            !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
+            return demi_lie(r, "the pose of wall", i);
         if (m->kind != own->motion.kind || !demi_motion_sane(m))
             return demi_lie(r, "the motion of wall", i);
     }
@@ -30302,7 +30497,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
-    if (demi_impulsive(w)) w->desc.integrator = DEM_SYMPLECTIC_EULER;
+    if (demi_impulsive(w)) w->desc.integrator = (dem_integrator)DEMI_INTEGRATORS;
     /* until bodies are there to decide */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
