@@ -18938,8 +18938,9 @@ static void demi_impulses_lay(dem_world *w, int d) {
         if (s->twisted) {
             demi_twist *t = s->twists + m->at;
             t->moment = demi_scale(demi_v(y[3*o.stride], y[4*o.stride], y[5*o.stride]), had);
-            t->per_roll = 1/g.roll;
-            t->per_spin = 1/g.spin;
+            /* nothing turns about an axis in the plane of a planar world */
+            t->per_roll = g.roll > 0 ? 1/g.roll : 0;
+            t->per_spin = g.spin > 0 ? 1/g.spin : 0;
             t->roll = pair->rolling_friction*o.r_eff;
             t->spin = pair->spinning_friction*o.r_eff;
         }
