@@ -26565,6 +26565,11 @@ static dem_result demi_array_read(const demi_text *t, demi_numbers *in, demi_lay
         return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: array %.*s of %.0f x %d numbers is "
                          "cut short; write the file again", t->call, t->name,
                          (int)DEMI_MIN(length, 60), name, (double)n, width);
+    if (used && l->count && n != (size_t)g->count)
+        return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: array %.*s has %.0f points, must "
+                         "have %d like the arrays before it; write the file again, with one set "
+                         "of points", t->call, t->name, (int)DEMI_MIN(length, 60), name, (double)n,
+                         g->count);
     if (used) result = demi_layout_add(t, l, g, name, length, width);
     for (c = from, used = 0; c < l->count && result == DEM_OK; c++) {
         used |= l->what[c] != DEMI_COLUMN_OTHER;

@@ -414,6 +414,13 @@ int main(int argc, char **argv) {
         refused(world, "x y z\n1 2 3\n", "columns x, y and r (radius) or d (diameter) are needed");
         refused(world, "5\nno properties here\nH 1 2 3\n", "Properties=");
         refused(world, "5\nProperties=species:S:1:pos:R:3:radius:R:1\nH 1 2 3 .5\n", "1 lines of grains where it says 5");
+        refused(world, "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n1 2 3\nPOINTS 99 float\n"
+                "1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3\n",
+                "cut short");
+        refused(world, "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n1 2 3\nPOINTS 2 float\n"
+                "1 2 3 4 5 6\nPOINT_DATA 2\nSCALARS radius float\nLOOKUP_TABLE default\n1 1\n", "has 2 points, must have 1");
+        refused(world, "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 0 float\nPOINTS 1 float\n"
+                "1 2 3\nPOINT_DATA 1\nSCALARS radius float\nLOOKUP_TABLE default\n1\n", "has 1 points, must have 0");
         refused(world, "tea and cakes\n", "numbers are expected, or names of columns");
         refused(world, "x y r material\n1 2 .5 1.5\n", "a material is expected, a whole number");
         refused(world, "<?xml version=\"1.0\"?><VTKFile>", "has no piece with points");
