@@ -237,7 +237,8 @@
    Threads. Different worlds may be used from different threads. Several threads may look at one
    world at once, by functions that take it as const, while none changes it. Of those only these
    write: one that fails (its sentence), dem_world_error (that it was read), dem_progress_print
-   (how far it has told), and dem_bodies_get in a periodic world (the places, wrapped into the box).
+   (how far it has told), dem_world_report (that a force of yours is asked), and dem_bodies_get in a
+   periodic world (the places, wrapped into the box).
    Within a world, `threads` of the desc sets the OpenMP threads; the same input gives the same bits
    for any number of them: bodies are dealt to domains that depend on the number of bodies only, and
    every sum runs in a fixed order. To compare bits between builds, and with other systems and
@@ -30711,8 +30712,7 @@ static void demi_idle_report(dem_world *look, FILE *out) {
         if (e[k].missing)
             fprintf(out, "           %s: %s\n", e[k].name, e[k].text);
 }
-DEM_API void dem_world_report(const dem_world *world, FILE *out) {
-    if (demi_null_look(world, "dem_world_report", out, "out")) return;
+static void demi_report(const dem_world *world, FILE *out) {
     dem_world look = *world, *w = &look;        /* effects not yet worked out are so in a copy */
     const dem_counters c = dem_counters_get(w);
     const double per = w->bodies.count ? 1.0/w->bodies.count : 0;
@@ -30764,6 +30764,16 @@ DEM_API void dem_world_report(const dem_world *world, FILE *out) {
     dem_pairs_print(w, out);
     demi_flows_report(w, out);
     if (w->desc.ledger) demi_ledger_report(w, out);
+}
+/* Several threads may report at once: only one that finds nothing under way says that a field may be
+   asked, and takes it back, so that it does not stay said. */
+DEM_API void dem_world_report(const dem_world *w, FILE *out) {
+    if (demi_null_look(w, "dem_world_report", out, "out")) return;
+    dem_world *own = (dem_world *)w;
+    const demi_calling was = w->look.calling;
+    if (!was.who) demi_calls(own, "dem_world_report", 1);
+    demi_report(w, out);
+    if (!was.who) own->look.calling = was;
 }
 
 /* ---------------------------------------------------------------------------------------------

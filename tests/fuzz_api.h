@@ -205,12 +205,61 @@ static const char *fuzz_path(const char *name, char who, char *out) {
     return out;
 }
 
-/* ---- laws, fields, motions of one's own ---- */
+/* ---- laws, fields, motions of one's own; each now and then tries to change the world that calls it ---- */
+static dem_world *fuzz_calling;                 /* null: nobody knows who calls */
+static int fuzz_intrusions;
+static void fuzz_intrude(void) {
+    dem_world *w = fuzz_calling;
+    dem_body_state state;
+    dem_wall wall;
+    int what;
+    if (!w) return;
+#ifdef _OPENMP
+    #pragma omp critical(fuzz_intrude)
+#endif
+    what = ++fuzz_intrusions;
+    if (what%17) return;
+    memset(&state, 0, sizeof state);
+    wall.id = 1;
+    what = what/17%9;
+    if ((what == 0 && dem_body_remove(w, dem_bodies_id(w, 0)) == DEM_OK) ||
+        (what == 1 && dem_world_gravity_set(w, dem_vec3_make(1, 2, 3)) == DEM_OK) ||
+        (what == 2 && dem_search_now(w) == DEM_OK) || (what == 3 && dem_wall_remove(w, wall) == DEM_OK) ||
+        (what == 4 && dem_world_step(w, 1) == DEM_OK) || (what == 5 && dem_checkpoint_read(w, "none") == DEM_OK) ||
+        (what == 6 && dem_body_set(w, dem_bodies_id(w, 0), &state) == DEM_OK) ||
+        (what == 7 && dem_world_run(w, 1e-5, 0, 0) == DEM_OK)) fuzz_fail("a function of the user's changed the world, way %d", what);
+    if (what == 8) dem_world_destroy(w);
+}
+static double fuzz_number(const dem_world *w, dem_body body, void *user) {
+    (void)user;
+    fuzz_intrude();
+    return body.slot%7 ? (double)body.slot + dem_world_time(w) : (double)NAN;
+}
+static void fuzz_values(const dem_world *w, double *values, void *user) {
+    (void)user;
+    fuzz_intrude();
+    values[0] = dem_totals_get(w).kinetic;
+}
+/* The function of an output may change the world, but not step or destroy it. */
+static int fuzz_output_call(dem_world *w, int64_t number, void *user) {
+    (void)user;
+    if (dem_world_step(w, 1) == DEM_OK) fuzz_fail("a step within an output");
+    dem_world_destroy(w);
+    return number < 0;
+}
+static void fuzz_reals(dem_real *reals, const dem_real *rates, const dem_body_state *body, dem_body id, double time, dem_real dt,
+                       void *user) {
+    (void)time; (void)user;
+    fuzz_intrude();
+    reals[0] += dt*(rates[0] + body->velocity.x);
+    reals[1] = (dem_real)id.slot;
+}
 static void fuzz_law(const dem_contact *c, dem_real *memory, dem_contact_force *push) {
     const dem_real k = DEM_R(2e3);
     dem_vec3 xi = dem_memory_rotate(c, dem_vec3_make(memory[0], memory[1], memory[2]));
     xi = dem_vec3_make(xi.x + c->slip_step.x*c->dt, xi.y + c->slip_step.y*c->dt,
                        xi.z + c->slip_step.z*c->dt);
+    fuzz_intrude();
     push->normal = k*c->overlap + DEM_R(0.01)*c->closing_speed;
     push->tangent = dem_vec3_make(-k*xi.x/4, -k*xi.y/4, -k*xi.z/4);
     if (c->dt > 0) {
@@ -220,11 +269,13 @@ static void fuzz_law(const dem_contact *c, dem_real *memory, dem_contact_force *
 }
 static dem_vec3 fuzz_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
     (void)radius; (void)user;
+    fuzz_intrude();
     return dem_vec3_make(mass*(DEM_R(0.015) - x.x)*100 - mass*v.x, mass*(dem_real)time, -mass*v.z);
 }
 static void fuzz_motion(double time, dem_pose *pose, void *user) {
     const double a = 2e-4, w = 600;
     (void)user;
+    fuzz_intrude();
     memset(pose, 0, sizeof *pose);
     pose->rotation[0] = pose->rotation[4] = pose->rotation[8] = 1;
     pose->position.z = (dem_real)(a*sin(w*time));
@@ -232,10 +283,12 @@ static void fuzz_motion(double time, dem_pose *pose, void *user) {
 }
 static int fuzz_inside(dem_vec3 x, dem_real radius, void *user) {
     (void)radius; (void)user;
+    fuzz_intrude();
     return x.x + x.y < DEM_R(0.034);
 }
 static int fuzz_progress(const dem_world *world, double done, double left, void *user) {
     (void)world; (void)done; (void)left; (void)user;
+    fuzz_intrude();
     return 0;                                   /* called by wall time: must not steer */
 }
 
@@ -266,6 +319,10 @@ static dem_world_desc fuzz_desc(fuzz_machine *m, int threads) {
         d.law_stiffness = DEM_R(2e3);
     }
     if (!fuzz_below(m, 6)) d.force = fuzz_force;
+    if (!fuzz_below(m, 5)) {
+        d.body_reals = "heat number";
+        if (fuzz_below(m, 2)) d.body_reals_fn = fuzz_reals;
+    }
     d.integrator = (dem_integrator)fuzz_below(m, 5);
     if (!fuzz_below(m, 4)) d.dt = DEM_R(4e-6);
     d.allow_large_dt = !fuzz_below(m, 6);
@@ -465,6 +522,21 @@ static void fuzz_cylinder(fuzz_machine *m) {
                                           dem_vec3_make(n[0], n[1], n[2]), r, inside));
     }
 }
+static void fuzz_revolved(fuzz_machine *m) {
+    const dem_material stuff = fuzz_material(m);
+    const dem_vec3 mid = dem_vec3_make(DEM_R(0.015), DEM_R(0.015), DEM_R(0.004));
+    const int n = 2 + fuzz_below(m, 4);
+    dem_real radii[6], heights[6];
+    int k;
+    for (k = 0; k < n; k++) {
+        radii[k] = fuzz_below(m, 5) ? fuzz_real(m, 0.009, 0.014) : 0;
+        heights[k] = (dem_real)k*DEM_R(0.005);
+    }
+    fuzz_say(m, "dem_revolved_add %d: %d rings", (int)stuff.id, n);
+    if (n > 2) fuzz_wall_new(m, dem_revolved_add(m->world, stuff, mid, dem_vec3_make(0, 0, 1), n, radii, heights));
+    else fuzz_wall_new(m, dem_cone_add(m->world, stuff, mid, dem_vec3_make(DEM_R(0.015), DEM_R(0.015), DEM_R(0.025)),
+                                       radii[0], radii[1]));
+}
 static void fuzz_profile(fuzz_machine *m) {
     const dem_material stuff = fuzz_material(m);
     const int n = 3 + fuzz_below(m, 20);
@@ -553,7 +625,19 @@ static void fuzz_sieve(fuzz_machine *m) {
 static void fuzz_wall_motion(fuzz_machine *m) {
     const dem_wall wall = fuzz_wall(m);
     dem_motion d = DEM_MOTION;
-    d.kind = (dem_motion_kind)fuzz_below(m, 5);
+    dem_motion_row rows[4];
+    int k;
+    d.kind = (dem_motion_kind)fuzz_below(m, 6);
+    memset(rows, 0, sizeof rows);
+    for (k = 0; k < 4; k++) {
+        rows[k].time = 1e-3*k;
+        rows[k].position = k%2 ? fuzz_vector(m, -2e-4, 2e-4) : dem_vec3_make(0, 0, 0);
+        rows[k].rotation = dem_quat_make(1, 0, k%2 ? DEM_R(0.01) : 0, 0);
+    }
+    d.table = rows;
+    d.table_count = 4;
+    d.table_repeats = fuzz_below(m, 2);
+    if (fuzz_below(m, 2)) d.ramp = 1e-3;
     d.velocity = fuzz_vector(m, -0.1, 0.1);
     d.point = dem_vec3_make(DEM_R(0.015), DEM_R(0.015), DEM_R(0.015));
     if (fuzz_below(m, 2)) d.axis = dem_vec3_make(0, 0, 1);
@@ -1098,6 +1182,52 @@ static void fuzz_files(fuzz_machine *m) {
     if (what != 5 && what != 6 ? fuzz_result(m, r) : fuzz_moldyn_result(m, &d, r)) fuzz_note_file(m, path);
     remove(path);
 }
+/* A replay of some steps, with a number of its own or one of the world's. */
+static void fuzz_replay(fuzz_machine *m) {
+    dem_replay_desc d = DEM_REPLAY_DESC;
+    dem_replay *film;
+    dem_result r = DEM_OK;
+    char path[200];
+    int k;
+    fuzz_path(".html", m->name, path);
+    if (fuzz_below(m, 2)) d.number_fn = fuzz_number;
+    if (fuzz_below(m, 2)) d.interval = 2e-5;
+    fuzz_say(m, "replay: number %d, interval %g", d.number_fn != 0, d.interval);
+    film = dem_replay_open(m->world, path, &d);
+    if (!film) { fuzz_fail("%c: no replay: %s", m->name, dem_world_error(m->world)); return; }
+    for (k = 0; k < 3 && r == DEM_OK; k++) {
+        dem_replay_value(film, "k", k);
+        dem_replay_frame(film);
+        r = dem_world_step(m->world, 4);
+    }
+    m->unstable |= r == DEM_ERROR_UNSTABLE;
+    if (r == DEM_OK) m->bodies_gone = m->pairs_new = 0;
+    if (dem_replay_close(film) != DEM_OK) fuzz_fail("%c: the replay does not close: %s", m->name, dem_world_error(m->world));
+    fuzz_note_int(m, (int)r);
+    remove(path);
+}
+static void fuzz_output(fuzz_machine *m) {
+    dem_output_desc d = DEM_OUTPUT_DESC;
+    char path[200];
+    const int kind = fuzz_below(m, 4);
+    d.kind = kind == 0 ? DEM_OUTPUT_CALL : kind == 1 ? DEM_OUTPUT_VTP : DEM_OUTPUT_CSV;
+    fuzz_path(kind == 1 ? ".out.vtp" : kind == 2 ? ".out.csv" : ".own.csv", m->name, path);
+    d.path = path;
+    d.interval = (double)fuzz_real(m, 2e-5, 2e-4);
+    d.start = (double)fuzz_real(m, 0, 1e-4);
+    if (kind == 0) d.function = fuzz_output_call;
+    if (kind == 3) { d.columns = "kinetic"; d.values = fuzz_values; }
+    fuzz_say(m, "dem_output_add: kind %d, interval %g", (int)d.kind, d.interval);
+    fuzz_id(m, dem_output_add(m->world, &d).id);
+}
+static void fuzz_reals_set(fuzz_machine *m) {
+    dem_real reals[DEM_BODY_REALS];
+    int k;
+    for (k = 0; k < DEM_BODY_REALS; k++) reals[k] = fuzz_real(m, -1, 1);
+    fuzz_say(m, "dem_body_reals_set, dem_wall_reals_set");
+    if (fuzz_result(m, dem_body_reals_set(m->world, fuzz_body(m), reals)) &&
+        fuzz_result(m, dem_body_reals_get(m->world, fuzz_body(m), reals))) fuzz_note_real(m, (double)reals[0]);
+}
 static void fuzz_moldyn(fuzz_machine *m) {
     moldyn d = MOLDYN;
     char cin[200], pin[200];
@@ -1467,6 +1597,7 @@ static const struct fuzz_kind { const char *name; void (*play)(fuzz_machine *m);
     {"polygon", fuzz_polygon, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_SHAPES},
     {"plane", fuzz_plane, 4, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
     {"cylinder", fuzz_cylinder, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
+    {"revolved", fuzz_revolved, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
     {"profile", fuzz_profile, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
     {"mesh", fuzz_mesh, 4, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
     {"grains wall", fuzz_grains_wall, 3, FUZZ_SCENE | FUZZ_MEMORY | FUZZ_GRAINS},
@@ -1496,6 +1627,9 @@ static const struct fuzz_kind { const char *name; void (*play)(fuzz_machine *m);
     {"report", fuzz_report, 3, FUZZ_LOOK | FUZZ_GRAINS},
     {"resets", fuzz_resets, 3, FUZZ_GRAINS | FUZZ_FLOW},
     {"files", fuzz_files, 3, FUZZ_LOOK | FUZZ_GRAINS},
+    {"replay", fuzz_replay, 3, FUZZ_GRAINS | FUZZ_KEPT},
+    {"output", fuzz_output, 2, FUZZ_SCENE | FUZZ_GRAINS | FUZZ_KEPT},
+    {"reals", fuzz_reals_set, 2, FUZZ_GRAINS},
     {"moldyn", fuzz_moldyn, 2, FUZZ_LOOK | FUZZ_GRAINS},
     {"checkpoint", 0, 10, FUZZ_KEPT},
     {"save", fuzz_save, 4, FUZZ_KEPT},
@@ -1517,7 +1651,7 @@ static int fuzz_weights(int mask) {
 static int fuzz_kind_of(unsigned char byte) { return byte%FUZZ_KINDS; }
 /* A program of its own for every seed, about the parts in mask. Returns its size. */
 static size_t fuzz_make(uint64_t seed, int mask, unsigned char bytes[FUZZ_BYTES]) {
-    static const int begin[] = {4, 7, 16};      /* a plane, a mesh, a lattice of spheres */
+    static const int begin[] = {7, 11, 20};     /* a plane, a mesh, a lattice of spheres */
     uint64_t random = seed*UINT64_C(0x2545F4914F6CDD1D) + 12345;
     const int sum = fuzz_weights(mask), calls = 8 + (int)(fuzz_next(&random)%32);
     int i, k;
@@ -1552,7 +1686,10 @@ static void fuzz_call(fuzz_machine *m, const unsigned char *bytes) {
     m->failed = m->refusable = m->must_fail = 0;
     m->before = dem_world_hash(m->world);
     m->rebuilds = dem_counters_get(m->world).rebuilds;
+    fuzz_calling = kind->play == fuzz_slabs_create || kind->play == fuzz_slabs_step ||
+        kind->play == fuzz_slabs_collect ? 0 : m->world;
     kind->play(m);
+    fuzz_calling = 0;
     if (m->memory->refused && fuzz_avoids.memory_refused_hash) m->refusable = 0;
     if (m->failed && m->refusable && dem_world_hash(m->world) != m->before)
         fuzz_fail("%c: %s was refused and changed the hash: %s", m->name, kind->name, dem_world_error(m->world));
@@ -1728,8 +1865,11 @@ static int fuzz_run_program(const unsigned char *bytes, size_t size, int printin
     *at = g.now;
     for (k = 0; k < 2; k++) {
         char path[200];
+        int i;
         fuzz_close(both[k]);
         remove(fuzz_path(".kept", both[k]->name, path));
+        for (i = 0; i < 6; i++)
+            remove(fuzz_path(i%3 == 0 ? ".out.vtp" : i%3 == 1 ? ".out.csv" : ".own.csv", i < 3 ? both[k]->name : 'F', path));
         if (both[k]->memory->live || both[k]->memory->wrong)
             fuzz_fail("%c: %ld blocks of memory were not given back, %d with another size", both[k]->name,
                       both[k]->memory->live, both[k]->memory->wrong);
