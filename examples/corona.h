@@ -8,7 +8,8 @@
        landing   m, x where the grain went down through the plane y = bins; 0: not yet
 
    and are pulled and dragged by a body force. Both are functions of the grain alone, so that threads and restarts do
-   not matter; the third part, what near grains do to each other, is summed by corona_near_update between two steps.
+   not matter; the third part, what near grains do to each other, needs corona_near_update between two steps: it notes who is
+   near whom, and how they move. The force is that at the places where they then are, of second order in the step.
 
        corona c = corona_make();
        c.field = corona_field_make(0.160, 0.019, 0.267, CORONA_PI/6, 30e3);
@@ -167,9 +168,10 @@ typedef struct corona {
     corona_shape shapes[CORONA_SHAPES];      /* by id of shape; 0 is not used */
     /* near grains: Coulomb's force and that of their images, within `range` m; period along z, 0: none */
     double range, period;
-    double (*nearby)[3];                     /* N, by slot */
-    struct corona_place *order;
-    uint32_t near_count, order_count;
+    struct corona_place *order;              /* charged grains along x */
+    int *at, *partner;                       /* by slot: 1 + its place in order, 0: none; in order, of all in turn */
+    uint32_t near_count, order_count, partner_count;
+    double near_time;                        /* s, at which they were looked at */
 } corona;
 
 /* A conductor and a plane, in air; nothing else is switched on. */
@@ -239,6 +241,41 @@ static inline int corona_inside(const corona_window *w, const corona_grain *g) {
     return angle < w->end && g->height < w->depth;
 }
 
+typedef struct corona_place {
+    double x[3], v[3], a[3], charge, radius; /* m, m/s, m/s2, C, m */
+    uint32_t slot;
+    int first, last;                         /* of its partners */
+} corona_place;
+/* Adds to `force` what a charge product (C2) at this distance vector (m) pushes with, N; nearer than `least` it grows no
+   more. */
+static inline void corona_coulomb(double product, const double *way, double least, double *force) {
+    const double d2 = way[0]*way[0] + way[1]*way[1] + way[2]*way[2], d = sqrt(d2) > least ? sqrt(d2) : least;
+    const double f = product/(4*CORONA_PI*CORONA_EPS0*d*d*d);
+    int k;
+    for (k = 0; k < 3; k++) force[k] += f*way[k];
+}
+/* Adds what the grain's partners and their images do to it, N. An image is beyond the rotor's surface as far as its grain
+   is before it, of opposite charge, so that near the rotor the force falls with 1/d^4. Partners are where velocity and
+   force have taken them since corona_near_update: one step later just where velocity Verlet puts them. */
+static inline void corona_near_force(const corona *c, const dem_body_state *body, dem_body id, double time, double *force) {
+    const int me = id.slot <= c->near_count ? c->at[id.slot - 1] - 1 : -1;
+    const double t = time - c->near_time, R2 = c->field.rotor*c->field.rotor;
+    const double x[3] = {(double)body->position.x, (double)body->position.y, (double)body->position.z};
+    int i, k;
+    for (i = me < 0 ? 0 : c->order[me].first; me >= 0 && i < c->order[me].last; i++) {
+        const corona_place *p = c->order + c->partner[i];
+        const double charge = c->order[me].charge*p->charge, least = (p->radius + (double)body->radius)/2;
+        double y[3], way[3], image[3], z;
+        for (k = 0; k < 3; k++) y[k] = p->x[k] + t*(p->v[k] + t/2*p->a[k]);
+        for (k = 0; k < 3; k++) way[k] = x[k] - y[k];
+        if (c->period > 0) way[2] -= c->period*floor(way[2]/c->period + 0.5);
+        corona_coulomb(charge, way, least, force);
+        z = R2/(y[0]*y[0] + y[1]*y[1]);
+        image[2] = way[2];
+        for (k = 0; k < 2; k++) image[k] = x[k] - z*y[k];
+        corona_coulomb(-charge, image, least, force);
+    }
+}
 /* Force and charges of one grain: a dem_body_force_fn; user is the corona.
    A conductor is lifted by 0.832 Q E while it touches and pulled by Q E in flight (eq 10 keeps the factor); ions'
    charge is held by its image and by Q E, which [CRI14] leaves out though it is as large. */
@@ -255,8 +292,7 @@ static inline void corona_force(const dem_body_state *body, dem_body id, double 
     double drag = corona_drag_over_speed(c->drag, g.radius, sqrt(wx*wx + wy*wy + wz*wz), c->air_density,
                                          c->air_viscosity);
     double F[3];
-    int k;
-    (void)time; (void)torque;
+    (void)torque;
     F[0] = charge*g.E[0] - held*g.out[0] + drag*wx;
     F[1] = charge*g.E[1] - held*g.out[1] + drag*wy;
     F[2] = drag*wz;
@@ -266,7 +302,7 @@ static inline void corona_force(const dem_body_state *body, dem_body id, double 
         F[1] -= stop*(double)body->velocity.y;
         F[2] -= stop*(double)body->velocity.z;
     }
-    for (k = 0; k < 3 && id.slot <= c->near_count; k++) F[k] += c->nearby[id.slot - 1][k];
+    corona_near_force(c, body, id, time, F);
     *force = dem_vec3_make((dem_real)F[0], (dem_real)F[1], (dem_real)F[2]);
 }
 
@@ -310,84 +346,77 @@ static inline void corona_reals(dem_real *reals, const dem_real *rates, const de
 
 /* ---- near grains ---- */
 
-typedef struct corona_place { double x[3], charge, away; uint32_t slot; } corona_place;
 static inline int corona_place_before(const void *a, const void *b) {
     const corona_place *p = (const corona_place *)a, *q = (const corona_place *)b;
     if (p->x[0] < q->x[0] || p->x[0] > q->x[0]) return p->x[0] < q->x[0] ? -1 : 1;
     return p->slot < q->slot ? -1 : p->slot > q->slot;
 }
-/* Adds to `force` what a charge product (C2) at this distance vector (m) pushes with, N. */
-static inline void corona_coulomb(double product, const double *way, double *force) {
-    const double d2 = way[0]*way[0] + way[1]*way[1] + way[2]*way[2];
-    const double f = product/(4*CORONA_PI*CORONA_EPS0*d2*sqrt(d2));
-    int k;
-    for (k = 0; k < 3; k++) force[k] += f*way[k];
+/* Room for `count` items at *array, of which there is room for *room. 0: memory ran out. */
+static inline int corona_grow(void **array, uint32_t *room, uint32_t count, size_t size) {
+    void *more = *array;
+    if (count <= *room) return 1;
+    more = realloc(more, 2*(size_t)count*size);
+    if (!more) return 0;
+    *array = more;
+    *room = 2*count;
+    return 1;
 }
-/* Two grains, and each with the other's image: beyond the rotor's surface as far as the other is before it, of opposite
-   charge. So near the rotor the force falls with 1/d^4. */
-static inline void corona_pair(const corona *c, const corona_place *p, const corona_place *q) {
-    const double R2 = c->field.rotor*c->field.rotor, zp = R2/(p->away*p->away), zq = R2/(q->away*q->away);
-    double way[3], image[3], *to_p = c->nearby[p->slot], *to_q = c->nearby[q->slot], force[3] = {0, 0, 0};
-    int k;
-    for (k = 0; k < 3; k++) way[k] = p->x[k] - q->x[k];
-    if (c->period > 0) way[2] -= c->period*floor(way[2]/c->period + 0.5);
-    corona_coulomb(p->charge*q->charge, way, force);
-    for (k = 0; k < 3; k++) { to_p[k] += force[k]; to_q[k] -= force[k]; }
-    image[2] = way[2];
-    for (k = 0; k < 2; k++) image[k] = p->x[k] - zq*q->x[k];
-    corona_coulomb(-p->charge*q->charge, image, to_p);
-    image[2] = -way[2];
-    for (k = 0; k < 2; k++) image[k] = q->x[k] - zp*p->x[k];
-    corona_coulomb(-p->charge*q->charge, image, to_q);
-}
-/* Sums Coulomb's forces between all grains nearer than `range`, as they stand: call it before each step (or so often as
-   grains move by a part of a radius), from one thread. Answers 0 when memory runs out. Free with corona_end. */
+/* Notes which charged grains are nearer than `range` to each other, where they are and how they move: call it before each
+   step, or as often as grains keep their speeds, from one thread. Answers 0 when memory runs out. Free with corona_end. */
 static inline int corona_near_update(corona *c, const dem_world *world) {
     const dem_bodies b = dem_bodies_get(world);
-    uint32_t slots = 0;
-    int i, j, n = 0;
+    const dem_world_desc desc = dem_world_desc_get(world);
+    uint32_t slots = 0, count = 0;
+    void *at = c->at, *order = c->order, *partner = c->partner;
+    int i, j, k, way, n = 0;
     if (!(c->range > 0) || !b.reals) return 1;
     for (i = 0; i < b.count; i++) if (b.slots[i] + 1 > slots) slots = b.slots[i] + 1;
-    if (slots > c->near_count) {
-        double (*more)[3] = (double (*)[3])realloc(c->nearby, 2*(size_t)slots*sizeof *c->nearby);
-        if (!more) return 0;
-        c->nearby = more;
-        c->near_count = 2*slots;
-    }
-    if ((uint32_t)b.count > c->order_count) {
-        corona_place *order = (corona_place *)realloc(c->order, 2*(size_t)b.count*sizeof *order);
-        if (!order) return 0;
-        c->order = order;
-        c->order_count = 2*(uint32_t)b.count;
-    }
-    if (c->near_count) memset(c->nearby, 0, c->near_count*sizeof *c->nearby);
+    if (!corona_grow(&at, &c->near_count, slots, sizeof *c->at)) return 0;
+    c->at = (int *)at;
+    if (!corona_grow(&order, &c->order_count, (uint32_t)b.count, sizeof *c->order)) return 0;
+    c->order = (corona_place *)order;
+    if (c->near_count) memset(c->at, 0, c->near_count*sizeof *c->at);
+    c->near_time = dem_world_time(world);
     for (i = 0; i < b.count; i++) {
-        const dem_real *x = b.positions + 4*i, *reals = b.reals + (size_t)b.real_count*(size_t)i;
-        const double charge = (double)reals[CORONA_INDUCED] + (double)reals[CORONA_IONS];
+        const dem_real *reals = b.reals + (size_t)b.real_count*(size_t)i;
+        const double charge = (double)reals[CORONA_INDUCED] + (double)reals[CORONA_IONS], mass = (double)b.masses[i];
         corona_place *p = c->order + n;
         if (!(charge > 0 || charge < 0)) continue;
-        p->x[0] = (double)x[0]; p->x[1] = (double)x[1]; p->x[2] = (double)x[2];
+        p->a[0] = (double)desc.gravity.x; p->a[1] = (double)desc.gravity.y; p->a[2] = (double)desc.gravity.z;
+        for (k = 0; k < 3; k++) {
+            p->x[k] = (double)b.positions[4*i + k];
+            p->v[k] = (double)b.velocities[4*i + k];
+            p->a[k] += (double)b.forces[4*i + k]/mass;
+        }
+        p->radius = (double)b.positions[4*i + 3];
         p->charge = charge;
-        p->away = sqrt(p->x[0]*p->x[0] + p->x[1]*p->x[1]);
         p->slot = b.slots[i];
         n++;
     }
     if (n) qsort(c->order, (size_t)n, sizeof *c->order, corona_place_before);
-    for (i = 0; i < n; i++)
-        for (j = i + 1; j < n && c->order[j].x[0] - c->order[i].x[0] < c->range; j++) {
-            const corona_place *p = c->order + i, *q = c->order + j;
-            double z = p->x[2] - q->x[2];
-            const double x = p->x[0] - q->x[0], y = p->x[1] - q->x[1];
-            if (c->period > 0) z -= c->period*floor(z/c->period + 0.5);
-            if (x*x + y*y + z*z < c->range*c->range) corona_pair(c, p, q);
-        }
+    for (i = 0; i < n; i++) {
+        c->order[i].first = (int)count;
+        for (way = -1; way <= 1; way += 2)
+            for (j = i + way; j >= 0 && j < n && fabs(c->order[j].x[0] - c->order[i].x[0]) < c->range; j += way) {
+                const double x = c->order[i].x[0] - c->order[j].x[0], y = c->order[i].x[1] - c->order[j].x[1];
+                double z = c->order[i].x[2] - c->order[j].x[2];
+                if (c->period > 0) z -= c->period*floor(z/c->period + 0.5);
+                if (!(x*x + y*y + z*z < c->range*c->range)) continue;
+                if (!corona_grow(&partner, &c->partner_count, count + 1, sizeof *c->partner)) return 0;
+                c->partner = (int *)partner;
+                c->partner[count++] = j;
+            }
+        c->order[i].last = (int)count;
+    }
+    for (i = 0; i < n; i++) c->at[c->order[i].slot] = 1 + i;
     return 1;
 }
 static inline void corona_end(corona *c) {
-    free(c->nearby);
+    free(c->at);
     free(c->order);
-    c->nearby = 0;
+    free(c->partner);
+    c->at = c->partner = 0;
     c->order = 0;
-    c->near_count = c->order_count = 0;
+    c->near_count = c->order_count = c->partner_count = 0;
 }
 #endif
