@@ -672,6 +672,11 @@ typedef struct dem_contact_force {
    round (a and b change places) the first 3*law_vectors reals of the memory change sign: put there
    what is a vector, such as a tangential spring, and scalars after them. */
 typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_force *force);
+/* For a law that answers rates of bodies' own numbers (law_who): how fast this contact alone makes
+   a number of body a (rates[0]) and of body b (rates[1]) follow that of its partner, 1/s, >= 0; the
+   largest of several numbers. They are 0 when it is called. A step is stable while dt times the sum
+   over a body's contacts stays below 1. c: as the law sees it, but at rest: velocities are 0. */
+typedef void (*dem_law_rate_fn)(const dem_contact *c, dem_real *rates);
 
 /* A vector kept in contact memory, carried along with the contact plane over the last step: turned
    with the normal, spun with the mean twist of the two bodies; lies in the tangent plane, keeps its
@@ -1003,6 +1008,9 @@ typedef struct dem_world_desc {
        two ask. 0: it is asked about what touches, and nothing is paid for it */
     dem_real law_range, law_range_radii;
     int law_who;                   /* 1: your law gets c->who: ids, radii, masses, place, time */
+    /* how fast your law changes bodies' own numbers: asked before every step; a dt that is given is
+       refused beyond the limit, one that is chosen is half of it at most. Null: nobody looks */
+    dem_law_rate_fn law_rate;
     /* Numbers of your own that every grain and wall carries (charge, temperature, moisture, age):
        their names, at most 8 words of up to 23 letters, digits and _, such as "temperature charge",
        by which files call them; null: none. New grains begin with zeros. A law of your own sees
@@ -1049,7 +1057,7 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
     DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
     DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
-    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0,
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0,
     DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_SEIDEL, 0, 0, 0, DEM_SEARCH_AUTO, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
@@ -3103,7 +3111,7 @@ typedef struct demi_laws {
        is saved, too. Pointers, and what follows from other things, do not belong here. --- */
 
 /* Why a chosen time step is shorter than t_c/50, for the report. */
-enum { DEMI_HELD_NOT, DEMI_HELD_DASHPOT, DEMI_HELD_SPIN, DEMI_HELD_PRESSED };
+enum { DEMI_HELD_NOT, DEMI_HELD_DASHPOT, DEMI_HELD_SPIN, DEMI_HELD_PRESSED, DEMI_HELD_RATE };
 typedef struct demi_held {
     double from, limit, contacts;  /* s, t_c/50; s, or rad/s of a spin; that press the body */
     int32_t by, body;              /* DEMI_HELD_...; the body's id, 0: it is not known */
@@ -21904,6 +21912,7 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
 typedef struct demi_press {
     double omega2, rate;           /* 1/s2, 1/s: the cheap bound */
     double contacts;               /* how many, by their weights */
+    double relax;                  /* 1/s: how fast its own numbers follow its partners' */
     int32_t whole;                 /* 1 + index of its matrices, 0: none needed */
     dem_real deepest;              /* of its radius */
 } demi_press;
@@ -21979,6 +21988,65 @@ static double demi_press_step(const demi_press_whole *p, double dt) {
     }
     return lo;
 }
+/* Asks the user's law how fast one contact changes the numbers of body a and of body b (-1: wall),
+   each counted `weight` times. */
+static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_contact *c,
+                             double weight, demi_press *press) {
+    dem_real rates[2] = {0, 0};
+    c->user = w->desc.law_user;
+    c->dt = w->clock.dt;
+    c->material_a = w->bodies.material[a];
+    c->material_b = b >= 0 ? w->bodies.material[b] : w->walls[wall].material + 1;
+    c->wall = b >= 0 ? 0 : wall + 1;
+    c->who.a = dem_bodies_id(w, a);
+    if (b >= 0) c->who.b = dem_bodies_id(w, b);
+    c->who.radius_a = w->bodies.pos[4*a + 3];
+    c->who.radius_b = b >= 0 ? w->bodies.pos[4*b + 3] : 0;
+    c->who.mass_a = w->bodies.mass[a];
+    c->who.mass_b = b >= 0 ? w->bodies.mass[b] : 0;
+    c->who.time = w->clock.time;
+    c->who.reals_a = w->bodies.reals + w->bodies.real_count*a;
+    c->who.reals_b = b >= 0 ? w->bodies.reals + w->bodies.real_count*b : w->walls[wall].reals;
+    c->m_eff = b < 0 ? c->who.mass_a : 1/(1/c->who.mass_a + 1/c->who.mass_b);
+    w->desc.law_rate(c, rates);
+    press[a].relax += weight*(double)rates[0];
+    if (b >= 0) press[b].relax += weight*(double)rates[1];
+}
+/* All contacts there are, of every shape, asked so. */
+static void demi_press_rates(const dem_world *w, demi_press *press) {
+    dem_contact c;
+    int d, p;
+    for (d = 0; d < w->domain_count && w->desc.law_rate; d++) {
+        const demi_domain *domain = &w->domains[d];
+        for (p = demi_near_first(domain); p < domain->near_end; p = demi_near_next(domain, p)) {
+            const demi_span span = demi_span_of(w, d, p, 1);
+            const dem_real *x = w->bodies.pos + 4*span.a[0], *y = w->bodies.pos + 4*span.b[0];
+            const dem_vec3 gap = demi_add(demi_sub(demi_at(y), demi_at(x)),
+                                          demi_at(w->image_shift + span.image[0]));
+            const dem_real l = demi_length(gap), sum = x[3] + y[3];
+            memset(&c, 0, sizeof c);
+            c.range = demi_range(w, sum);
+            c.overlap = sum - l;
+            c.normal = demi_scale(gap, 1/DEMI_MAX(l, DEMI_TINY));
+            c.r_eff = x[3]*y[3]/sum;
+            if (c.overlap > -c.range) demi_press_relax(w, span.a[0], span.b[0], -1, &c, 1, press);
+        }
+        for (p = 0; p < domain->kept; p++) {
+            const demi_kept *k = demi_kept_of(w, d) + p;
+            memset(&c, 0, sizeof c);
+            c.range = w->margin.reach > 0 ? demi_range(w, demi_kept_radii(w, k)) : 0;
+            c.overlap = k->overlap;
+            c.normal = k->normal;
+            c.r_eff = k->r_eff;
+            if (c.overlap > -c.range)
+                demi_press_relax(w, k->a, k->b, k->wall, &c, (double)k->share, press);
+        }
+    }
+}
+/* The largest step at which a body's own numbers are stable, dt at most. */
+static double demi_press_rate_step(const demi_press *p, double dt) {
+    return p->relax*dt > 1 ? 1/p->relax : dt;
+}
 /* All contacts of spheres with each other and with walls. */
 static void demi_press_visit(const dem_world *w, demi_press *press, demi_press_whole *whole) {
     int d, p, side;
@@ -22045,15 +22113,15 @@ static double demi_press_limit(dem_world *w, double dt, int *worst) {
     press = w->press;
     memset(press, 0, (size_t)w->bodies.count*sizeof *press);
     demi_press_visit(w, press, 0);
+    demi_press_rates(w, press);
     for (i = 0; i < w->bodies.count; i++)
         if (dt > demi_dt_stable(press[i].omega2, press[i].rate)) press[i].whole = ++found;
-    if (!found) return 0;
-    if (!DEMI_GROW(w, w->press_whole, (size_t)found)) return -1;
-    memset(w->press_whole, 0, (size_t)found*sizeof *w->press_whole);
-    demi_press_visit(w, press, w->press_whole);
+    if (found && !DEMI_GROW(w, w->press_whole, (size_t)found)) return -1;
+    if (found) memset(w->press_whole, 0, (size_t)found*sizeof *w->press_whole);
+    if (found) demi_press_visit(w, press, w->press_whole);
     for (i = 0; i < w->bodies.count; i++) {
-        const double limit = press[i].whole
-            ? demi_press_step(w->press_whole + press[i].whole - 1, dt) : dt;
+        const double rates = demi_press_rate_step(press + i, dt), limit = press[i].whole
+            ? demi_press_step(w->press_whole + press[i].whole - 1, rates) : rates;
         if (limit < least) { least = limit; *worst = i; }
     }
     return least < dt ? least : 0;
@@ -22242,18 +22310,28 @@ static void demi_held_report(const dem_world *w, FILE *out) {
         snprintf(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body, h->contacts);
     if (h->by == DEMI_HELD_PRESSED)
         fprintf(out, "%s is stable to %.4g s, and half of that is taken\n", who, h->limit);
+    else if (h->by == DEMI_HELD_RATE)
+        fprintf(out, "by desc.law_rate numbers of body %d are stable to %.4g s, and half of that "
+                "is taken\n", (int)h->body, h->limit);
     else if (h->by == DEMI_HELD_SPIN)
         fprintf(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
     else fprintf(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
                  "taken\n", h->limit);
 }
 /* What presses has been looked at: again more and more rarely while the scene stays, at least every
-   thousand steps. */
-static void demi_press_looked(demi_timing *clock) {
-    clock->press_due = clock->steps + DEMI_MIN(8*(clock->steps - clock->press_since) + 8, 1000);
+   thousand steps; rates of a law can run away at once, and are asked for in every step. */
+static void demi_press_looked(demi_timing *clock, const dem_world *w) {
+    clock->press_due = clock->steps + (w->desc.law_rate ? 1
+        : DEMI_MIN(8*(clock->steps - clock->press_since) + 8, 1000));
 }
 /* Refuses a step that was given, for this body is pressed so that `limit` is the largest. */
 static dem_result demi_press_refuse(dem_world *w, double limit, int worst) {
+    if (w->press[worst].relax*limit > 0.999)
+        return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be "
+                         "at most %g s: by desc.law_rate the numbers of body %u follow those of "
+                         "its partners at %.3g 1/s; use dt = 0, a smaller dt, or slower rates",
+                         (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
+                         (unsigned)w->bodies.slot[worst] + 1, w->press[worst].relax);
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be at "
                      "most %g s: body %u is pressed by %.3g contacts, by %.3g of its radius at "
                      "most; "
@@ -22283,7 +22361,7 @@ static dem_result demi_dt_check(dem_world *w) {
     if (result != DEM_OK || w->clock.steps < w->clock.press_due || demi_impulsive(w)) return result;
     limit = demi_press_limit(w, (double)w->clock.dt*(chosen ? 2/share : 1), &worst);
     if (limit < 0) return demi_no_memory(w, "dem_world_step");
-    demi_press_looked(&w->clock);
+    demi_press_looked(&w->clock, w);
     if (!(limit > 0)) return DEM_OK;
     if (!chosen) return demi_press_refuse(w, limit, worst);
     if (!(limit*DEMI_MIN(share/2, 0.95) >= DEMI_DT_LEAST))
@@ -22291,7 +22369,7 @@ static dem_result demi_dt_check(dem_world *w) {
     demi_finish(w);
     w->stage.primed = 0;
     w->clock.dt = (dem_real)(limit*DEMI_MIN(share/2, 0.95));
-    w->clock.held.by = DEMI_HELD_PRESSED;
+    w->clock.held.by = w->press[worst].relax*limit > 0.999 ? DEMI_HELD_RATE : DEMI_HELD_PRESSED;
     w->clock.held.limit = limit;
     w->clock.held.body = (int32_t)w->bodies.slot[worst] + 1;
     w->clock.held.contacts = w->press[worst].contacts;
@@ -30404,6 +30482,9 @@ static const char *demi_answer_error(const dem_world_desc *d) {
                     d->law_range_radii > 0 || d->law_who))
         return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
             "they are for a law of your own: name it in law, or leave them 0";
+    if (d->law_rate && (!d->law || !d->law_who || !d->body_reals))
+        return "dem_world_create: law_rate is set without law, law_who or body_reals; it says how "
+            "fast your law changes numbers of bodies: give all four, or leave it null";
     if ((int)d->response < 0 || d->response > DEM_RESPONSE_IMPULSES || (int)d->cone < 0 ||
         d->cone > DEM_CONE_CONVEX || (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
         return "dem_world_create: response, cone or solver is unknown, must be one of the enum "
@@ -31876,6 +31957,7 @@ static void demi_slab_press(dem_slabs *s, demi_slab *b) {
     }
     if (n) memset(w->press, 0, n*sizeof *w->press);
     demi_press_visit(w, w->press, 0);
+    demi_press_rates(w, w->press);
     for (k = 0; k < b->ghost_count; k++)
         memcpy(b->out[0].bytes + (size_t)k*sizeof *w->press, w->press + b->ghost[k],
                sizeof *w->press);
@@ -31892,13 +31974,14 @@ static void demi_slab_press_take(dem_slabs *s, demi_slab *b) {
         sum->omega2 += told.omega2;
         sum->rate += told.rate;
         sum->contacts += told.contacts;
+        sum->relax += told.relax;
         sum->deepest = DEMI_MAX(sum->deepest, told.deepest);
     }
     b->press_limit = 1e300;
     for (i = 0; i < w->bodies.count; i++)
         if (!demi_is_ghost(w, i))
-            b->press_limit = DEMI_MIN(b->press_limit, demi_dt_stable(w->press[i].omega2,
-                                                                     w->press[i].rate));
+            b->press_limit = demi_press_rate_step(w->press + i, DEMI_MIN(
+                b->press_limit, demi_dt_stable(w->press[i].omega2, w->press[i].rate)));
 }
 static void demi_slab_press_whole(dem_slabs *s, demi_slab *b) {
     dem_world *w = b->world;
@@ -31929,7 +32012,8 @@ static void demi_slab_press_limit(dem_slabs *s, demi_slab *b) {
     b->press_limit = demi_slabs_press_most(s);
     for (i = 0; i < w->bodies.count; i++) {
         const double limit = demi_is_ghost(w, i) ? b->press_limit
-            : demi_press_step(w->press_whole + i, demi_slabs_press_most(s));
+            : demi_press_step(w->press_whole + i,
+                              demi_press_rate_step(w->press + i, demi_slabs_press_most(s)));
         if (limit < b->press_limit) { b->press_limit = limit; b->press_worst = i; }
     }
 }
@@ -31962,7 +32046,7 @@ static dem_result demi_slabs_press(dem_slabs *s) {
     if (result == DEM_OK && limit < dt)
         result = demi_slabs_press_ask(s, demi_slab_press_whole, demi_slab_press_limit, &limit);
     if (result != DEM_OK) return result;
-    demi_press_looked(&h->clock);
+    demi_press_looked(&h->clock, h);
     if (limit >= dt) return DEM_OK;
     for (k = 0; k < s->local; k++) {
         demi_slab *b = &s->slabs[k];

@@ -45,6 +45,7 @@ static double heat_through(double young, double g, const char *picture, double *
     desc.law_memory = 4;
     desc.law_vectors = 1;
     desc.law_who = 1;
+    desc.law_rate = heat_rate;
     desc.body_reals = "temperature";
     desc.body_reals_fn = follow;
     desc.body_reals_user = &height;

@@ -144,6 +144,35 @@ static dem_world *chain(int n, dem_body *ids, int threads) {
     }
     return w;
 }
+/* A row of eight that touch as above, whose step of 1e-6 s is `share` of what heat bears in the middle of the row. told: the
+   law tells its rates; given: dt is. */
+static dem_world *hot_row(double share, int told, int given) {
+    static dem_real capacity[1];
+    static heat here = {silver, capacity, 0, 0};
+    dem_world_desc desc = desc_of(heat_only, &here, "temperature", given ? 1e-6 : 0);
+    dem_world *w;
+    dem_material m;
+    int i;
+    capacity[0] = (dem_real)(2*2*400*sqrt(0.5e-3*1e-5)/(2500*4/3.0*pi*1e-9)*1e-6/share);
+    desc.law_rate = told ? heat_rate : 0;
+    desc.threads = 1;
+    w = dem_world_create(&desc);
+    m = scene_material(w, 1e6, 0.5, 0.3, 0);
+    for (i = 0; i < 8; i++) {
+        const dem_real T = i%2 ? 400 : 300;
+        const dem_body id = dem_sphere_add(w, m, DEM_R(1e-3), at(1.99e-3*i, 0, 0));
+        CHECK_EQ(dem_body_reals_set(w, id, &T), DEM_OK);
+    }
+    return w;
+}
+/* How far temperatures are outside 300 .. 400. */
+static double beyond(const dem_world *w) {
+    const dem_bodies b = dem_bodies_get(w);
+    double most = 0;
+    int i;
+    for (i = 0; i < b.count; i++) most = fmax(most, fabs((double)b.reals[i] - 350) - 50);
+    return most;
+}
 static double temperature(const dem_world *w, dem_body id) {
     dem_real T = 0;
     dem_body_reals_get(w, id, &T);
@@ -359,6 +388,38 @@ int main(int argc, char **argv) {
         }
         CHECK_NEAR(error[1], -0.01, wide ? 1e-3 : 2e-3);           /* (1 - 2 h)^(1/h) = exp(-2 - 2 h) */
         if (wide) CHECK_NEAR(error[0]/error[1], 2, 0.05);
+    }
+    TEST("a step that heat does not bear runs away, is refused where the law tells its rates, and not chosen") {
+        int count;
+        dem_world *w = hot_row(2.5, 0, 1);
+        CHECK_EQ(scene_step(w, 100), DEM_OK);
+        CHECK(beyond(w) > 1e6);
+        dem_world_destroy(w);
+        w = hot_row(1.02, 1, 1);
+        CHECK_EQ(dem_world_step(w, 1), DEM_ERROR_TIME_STEP);
+        CHECK_STR(dem_world_error(w), "by desc.law_rate the numbers of body");
+        CHECK_NEAR(beyond(w), 0, 1e-3);
+        dem_world_destroy(w);
+        w = hot_row(0.98, 1, 1);
+        CHECK_EQ(scene_step(w, 100), DEM_OK);
+        CHECK_NEAR(beyond(w), 0, 1e-3);
+        dem_world_destroy(w);
+        w = hot_row(5000, 1, 0);
+        CHECK_EQ(scene_step(w, 100), DEM_OK);
+        CHECK_NEAR(beyond(w), 0, 1e-3);
+        scene_report_has(w, "by desc.law_rate numbers of body");
+        dem_world_destroy(w);
+        for (count = 1; count <= 3; count++) {  /* sums across borders, too */
+            dem_slabs_desc deal = DEM_SLABS_DESC;
+            dem_slabs *slabs;
+            w = hot_row(1.02, 1, 1);
+            deal.count = count;
+            slabs = dem_slabs_create(w, &deal);
+            CHECK_EQ(dem_slabs_step(slabs, 1), DEM_ERROR_TIME_STEP);
+            CHECK_STR(dem_slabs_error(slabs), "by desc.law_rate the numbers of body");
+            dem_slabs_destroy(slabs);
+            dem_world_destroy(w);
+        }
     }
     TEST("a grain of 1 mm that bounces on a metal plate is charged by s A in each impact, less what it has: "
          "4 pi R^2 s (1 - exp(-n A/(4 pi R^2))), and the plate loses that") {
