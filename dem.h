@@ -3506,7 +3506,8 @@ DEM_INLINE dem_real demi_range(const dem_world *w, dem_real radii) {
        What is done with it: DEMI_KEPT: it is state, and 0 in a new body unless set; DEMI_REALS:
        kept, and finite; DEMI_PLACES: reals that begin with a place, which moves by a period; 0:
        room to work in. --- */
-enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED, DEMI_SLOTS };
+enum { DEMI_EVERY, DEMI_BACK, DEMI_TURNED, DEMI_BACK_TURNED, DEMI_COUNTED, DEMI_ZONED, DEMI_BOOKED,
+       DEMI_SLOTS };
 enum { DEMI_KEPT = 1, DEMI_REALS = 3, DEMI_PLACES = 7 };
 typedef struct demi_body_array {
     /* where its pointer stands in demi_bodies; bytes of one body (demi_item: of counted ones) */
@@ -18852,13 +18853,13 @@ static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover 
     demi_put(m->v, demi_surface_at(&wall->ahead, demi_add(x, k->arm_a)));
     demi_put(m->w, wall->ahead.spin);
 }
-/* Normals turn on the way from one place where contacts are found to the next. On a concave wall
-   that alone makes a body close that went along it: if half of it is turned back, bodies go by
-   chords from wall to wall, and keep their energy; with none of it they would lose some in each
-   step. How much it is a contact knows that lasts, from the velocity that it was left with (bodies
-   have the same still; what walls have changed theirs by is no turn). Answers <= 0, m/s, to be added
-   to the bias: never more than the contact closes by, so that it brings no energy. *hits: by how
-   much it closes because something hits. */
+/* Normals turn between two places where contacts are found. On a concave wall that alone makes a
+   body close that moved along it. If half of that closing velocity is turned back, bodies move along
+   chords from wall to wall and keep their energy; otherwise they would lose some in each step. A
+   contact that lasts knows how much it is: closing now, less the normal velocity with which it was
+   left (bodies still have that one; what a wall has changed its own by is no turn). Returns <= 0,
+   m/s, to be added to the bias: never more than the contact closes by, so that it brings no energy.
+   *hits: m/s, the rest of the closing velocity, which is an impact. */
 static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, const demi_kept *k,
                                    const demi_spot *o, dem_real closing, dem_real *hits) {
     const dem_real *y = o->memory;
@@ -20123,12 +20124,13 @@ static void demi_some_back(dem_world *w, int index) {
             demi_centres_rotate(w, i);
     }
 }
-/* Bodies and walls half a step ahead: `mid` keeps where walls are. Their surfaces have velocities of
-   a whole step ahead, the middle between two places where contacts are found. */
+/* Bodies and walls half a step ahead: `mid` keeps where walls are. Their surfaces have velocities
+   of a whole step ahead, the middle between two places where contacts are found. */
 static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
     int i;
-    demi_parallel(w, w->desc.threads, (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD, demi_some_ahead);
+    demi_parallel(w, w->desc.threads, (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD,
+                  demi_some_ahead);
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
@@ -20143,7 +20145,8 @@ static void demi_ahead(dem_world *w) {
 }
 static void demi_ahead_back(dem_world *w) {
     int i;
-    demi_parallel(w, w->desc.threads, (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD, demi_some_back);
+    demi_parallel(w, w->desc.threads, (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD,
+                  demi_some_back);
     for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
 /* Walls' and motors' work of the step to come. */
@@ -28060,7 +28063,7 @@ static const demi_scene_row demi_desc_rows[] = {
     DEMI_ROW_TEXT(dem_world_desc, law_memory_names, DEMI_MEMORY),
     DEMI_ROW(dem_world_desc, law_vectors, 'i'), DEMI_ROW(dem_world_desc, law_stiffness, 'r'),
     DEMI_ROW(dem_world_desc, law_range, 'r'), DEMI_ROW(dem_world_desc, law_range_radii, 'r'),
-    DEMI_ROW(dem_world_desc, law_who, 'i'),
+    DEMI_ROW(dem_world_desc, law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
     DEMI_ROW_TEXT(dem_world_desc, body_reals, DEM_BODY_REALS),
     DEMI_ROW_NULL(dem_world_desc, body_reals_fn), DEMI_ROW_NULL(dem_world_desc, force),
     DEMI_ROW_NULL(dem_world_desc, body_force),
@@ -30846,8 +30849,8 @@ static void demi_report(const dem_world *world, FILE *out) {
     demi_flows_report(w, out);
     if (w->desc.ledger) demi_ledger_report(w, out);
 }
-/* Several threads may report at once: only one that finds nothing under way says that a field may be
-   asked, and takes it back, so that it does not stay said. */
+/* Several threads may report at once: only the one that finds no call under way sets the flag that
+   a field is being called, and only that one clears it. */
 DEM_API void dem_world_report(const dem_world *w, FILE *out) {
     if (demi_null_look(w, "dem_world_report", out, "out")) return;
     dem_world *own = (dem_world *)w;
