@@ -25264,7 +25264,7 @@ static int demi_obj_part(demi_text *t, int group) {
     return t->line_end < t->next && *t->line_end == '#' ? is | demi_text_named(t, from, t->next)
                                                          : is;
 }
-/* Moves to the next word of an OBJ statement, which a \ at the end of a line carries on. */
+/* Moves to the next word of an OBJ face, which a \ at the end of a line carries on. */
 static int demi_obj_word(demi_text *t) {
     int more = demi_text_word(t);
     while (more && demi_text_is(t, "\\")) more = demi_text_line(t);
@@ -25310,18 +25310,19 @@ static dem_result demi_obj_pass(demi_text text, dem_mesh *mesh, int fill) {
             else if (t.part && demi_text_is(&t, "g")) group = demi_obj_part(&t, 1);
             else if (demi_text_is(&t, "v")) {
                 for (axis = 0; !faces && axis < 3 && result == DEM_OK; axis++) {
-                    demi_obj_word(&t);
+                    demi_text_word(&t);
                     result = demi_text_real(&t, &mesh->vertices[3*vertices + axis]);
                 }
                 vertices++;
-            } else if (faces && demi_text_is(&t, "f") && (!t.part || object || group)) {
+            } else if (demi_text_is(&t, "f")) { /* its lines are gone through each time alike */
+                const int wanted = faces && (!t.part || object || group);
                 int corners = 0;
-                if (fill) {
+                if (fill && wanted) {
                     result = demi_obj_face(&t, mesh, (int)vertices, &outline,
                                            mesh->triangles + 3*triangles);
                     corners = outline.count;
                 } else while (demi_obj_word(&t)) corners++;
-                if (corners > 2) triangles += (size_t)corners - 2;
+                if (wanted && corners > 2) triangles += (size_t)corners - 2;
             }
         }
     }

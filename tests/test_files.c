@@ -218,6 +218,13 @@ static void meshes(void) {
             dem_mesh_free(world, &mesh);
         }
     }
+    TEST("a face that a backslash carries on hides the line that follows, whatever that is") {
+        CHECK_EQ(parse(world, "v 0 0 0\nv 1 0 0 \\\nv 0 1 0\nf 1 2 3 \\\nv 9 9 9\n", &mesh, &health), DEM_ERROR_FORMAT);
+        CHECK_EQ(parse(world, "v 0 0 0\nv 1 0 \\\nv 0 1 0\nf 1 2 3\n", &mesh, &health), DEM_ERROR_FORMAT);
+        CHECK_EQ(parse(world, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\n3\n", &mesh, &health), DEM_OK);
+        CHECK_EQ(mesh.triangle_count, 1);
+        dem_mesh_free(world, &mesh);
+    }
     TEST("random faces that lean are cut into triangles of the same area, all facing the same way") {
         uint64_t random = 7;
         int trial, i;
