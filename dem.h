@@ -165,7 +165,7 @@
        a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness; law_range,
                                   law_range_radii: it reaches beyond touch; law_who: it is told
                                   who touches; force, body_force, force_user
-       numbers of my own on grains    body_reals, body_reals_fn, body_reals_user
+       numbers of my own on grains    body_reals, body_reals_fn, body_reals_user; law_rate
        bodies turn by ...         rotation, orientations; ellipsoid_overlap, cluster_contacts
        time goes by ...           integrator, dt, allow_large_dt
        it shall be fast           search, skin, threads
@@ -1008,8 +1008,9 @@ typedef struct dem_world_desc {
        two ask. 0: it is asked about what touches, and nothing is paid for it */
     dem_real law_range, law_range_radii;
     int law_who;                   /* 1: your law gets c->who: ids, radii, masses, place, time */
-    /* how fast your law changes bodies' own numbers: asked before every step; a dt that is given is
-       refused beyond the limit, one that is chosen is half of it at most. Null: nobody looks */
+    /* how fast your law changes bodies' own numbers: asked before the first step and every eighth;
+       a dt that is given is refused beyond the limit, one that is chosen is half of it at most.
+       Null: nobody looks */
     dem_law_rate_fn law_rate;
     /* Numbers of your own that every grain and wall carries (charge, temperature, moisture, age):
        their names, at most 8 words of up to 23 letters, digits and _, such as "temperature charge",
@@ -2372,7 +2373,8 @@ enum { DEM_EFFECTS = 16 };
    user's are asked for the copies, too. Returns how many it filled in; -1 with a sentence when
    there is no world or no room, the budget is below 0, or the scene would not run. */
 DEM_API int dem_effects_get(dem_world *world, double budget, dem_effect effects[DEM_EFFECTS]);
-/* The same as lines of text. */
+/* The same as lines of text; a share that is off by more than 0.1, or beyond -0.1 or 1, is called
+   too noisy. */
 DEM_API void dem_effects_print(dem_world *world, double budget, FILE *out);
 
 /* ---- report ---- */
@@ -22322,10 +22324,10 @@ static void demi_held_report(const dem_world *w, FILE *out) {
                  "taken\n", h->limit);
 }
 /* What presses has been looked at: again more and more rarely while the scene stays, at least every
-   thousand steps; rates of a law can run away at once, and are asked for in every step. */
+   thousand steps; where a law has rates, which run away sooner, at least every eight. */
 static void demi_press_looked(demi_timing *clock, const dem_world *w) {
-    clock->press_due = clock->steps + (w->desc.law_rate ? 1
-        : DEMI_MIN(8*(clock->steps - clock->press_since) + 8, 1000));
+    clock->press_due = clock->steps + DEMI_MIN(8*(clock->steps - clock->press_since) + 8,
+                                               w->desc.law_rate ? 8 : 1000);
 }
 /* Refuses a step that was given, for this body is pressed so that `limit` is the largest. */
 static dem_result demi_press_refuse(dem_world *w, double limit, int worst) {
@@ -30446,13 +30448,20 @@ DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFE
 }
 static void demi_effects_lines(const dem_effect *e, FILE *out) {
     static const char *states[] = {"off", "idle", "active"};
-    int k;
+    int k, noisy = 0;
     for (k = 0; k < DEM_EFFECTS; k++) {
         char share[32] = "";
-        if (e[k].measured)
+        if (e[k].measured && !(e[k].error <= 0.1 && e[k].share >= -0.1 && e[k].share <= 1)) {
+            snprintf(share, sizeof share, "too noisy");
+            noisy++;
+        } else if (e[k].measured)
             snprintf(share, sizeof share, "%5.1f %% +- %.1f", 100*e[k].share, 100*e[k].error);
         fprintf(out, "  %-17s%-7s%-17s%s\n", e[k].name, states[e[k].state], share, e[k].text);
     }
+    if (noisy)
+        fprintf(out, "  too noisy: other programs kept the machine busy while %d of them %s "
+                "measured; measure again on a quiet machine, or with a larger budget\n", noisy,
+                noisy > 1 ? "were" : "was");
 }
 DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
     dem_effect effects[DEM_EFFECTS];

@@ -45,12 +45,13 @@ int main(int argc, char **argv) {
 
     dem_result well = resume ? dem_checkpoint_read(world, "hopper.ckpt")
                              : dem_world_settle(world, 2, 0, dem_progress_print, stderr);
+    if (well != DEM_OK) puts(dem_world_error(world));                   /* before another call fails */
     if (well == DEM_OK && !resume) dem_wall_remove(world, walls[1]);                      /* the gate opens */
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.02;
     dem_replay *film = dem_replay_open(world, resume ? "hopper2.html" : "hopper.html", &film_desc);
-    if (well == DEM_OK) well = dem_world_run_to(world, 1.5, dem_progress_print, stderr);
-    if (well != DEM_OK) puts(dem_world_error(world));
+    if (well == DEM_OK && (well = dem_world_run_to(world, 1.5, dem_progress_print, stderr)) != DEM_OK)
+        puts(dem_world_error(world));
     dem_replay_close(film);
     dem_world_report(world, stdout);
     dem_world_destroy(world);

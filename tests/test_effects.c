@@ -298,5 +298,30 @@ int main(int argc, char **argv) {
         CHECK_EQ(memory.blocks, 0);
         CHECK_EQ(memory.wrong, 0);
     }
+    TEST("a share of time that cannot be right is printed as too noisy, with a remedy, and columns stay apart") {
+        static const double shares[] = {0.12, -34.3, 2.5, 0.2, (double)NAN}, errors[] = {0.01, 1e3, 0.01, 0.5, 0.01};
+        static char text[16000];
+        dem_effect effects[DEM_EFFECTS];
+        FILE *file = tmpfile();
+        int k, found = 0;
+        char *at_word;
+        CHECK(file != 0);
+        memset(effects, 0, sizeof effects);
+        for (k = 0; k < DEM_EFFECTS; k++) {
+            effects[k].name = "friction";
+            effects[k].state = DEM_EFFECT_ACTIVE;
+            effects[k].measured = k < 5;
+            if (k < 5) { effects[k].share = shares[k]; effects[k].error = errors[k]; }
+            strcpy(effects[k].text, "text");
+        }
+        demi_effects_lines(effects, file);
+        rewind(file);
+        text[fread(text, 1, sizeof text - 1, file)] = 0;
+        fclose(file);
+        for (at_word = text; (at_word = strstr(at_word, "too noisy        text")) != 0; at_word++) found++;
+        CHECK_EQ(found, 4);
+        CHECK_STR(text, " 12.0 % +- 1.0   text");
+        CHECK_STR(text, "measure again on a quiet machine");
+    }
     return test_end();
 }
