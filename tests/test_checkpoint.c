@@ -515,6 +515,7 @@ static dem_world *kept_world(int count) {
     egg = dem_shape_ellipsoid_add(world, at(1, 2, 3));
     memset(&counting, 0, sizeof counting);
     counting.keep = 1;
+    counting.box = box_of(0, 0, 7, 1, 1, 8);
     dem_outlet_add(world, &counting);
     for (i = 0; i < count; i++) {
         if (i%3) dem_body_add(world, stuff, egg, at(10*i, 0, 0), dem_quat_make(1, 0, 0, 0));
