@@ -49,6 +49,7 @@
        >>integrators kick, drift, predict; rotation
        >>impulses    in place of laws: impulses that keep bodies apart: who meets whom
        >>joints      what holds bodies together: hinges, motors
+       >>joints-solved  all joints at once: trees, loops, the guard of energy
        >>solvers     how they are found
        >>impulses-told  what they do: forces, memory, losses
        >>ledger      where the energy went
@@ -273,6 +274,7 @@
      [AI11]    Ai, Chen, Rotter & Ooi, Powder Technol. 206 (2011) 269: rolling resistance
      [ALK07]   Alkhaldi, Contact Investigations of Granular Mechanical Media in a Tumbling Sorting
                Machine, thesis, Stuttgart 2007: screening, hysteresis, MOLDYN
+     [BAR96]   Baraff, SIGGRAPH (1996) 137: linear time for trees of joints
      [BER03]   van den Bergen, Collision Detection in Interactive 3D Environments (2003): expanding
                polytopes
      [BER23]   Berry, Zhang & Haeri (2023): what clusters of spheres count twice
@@ -1043,6 +1045,9 @@ typedef struct dem_world_desc {
                                       speed, and none by thirty times that */
     int cold_start;                /* 1: sweeps begin with no impulses, 0: with those of the step
                                       before, turned with their contacts */
+    int unsolved_stops;            /* 1: a run ends with DEM_ERROR_STOPPED after a step whose sweeps
+                                      left more than the tolerance, 0: it goes on; dem_counters,
+                                      the report and dem_progress_print count such steps */
     dem_search search;
     dem_real skin;                 /* m, margin of the candidate list; 0: chosen; < 0: none, the
                                       list is rebuilt every step */
@@ -1059,7 +1064,7 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
     DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
     0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0,
-    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_SEIDEL, 0, 0, 0, DEM_SEARCH_AUTO, 0,
+    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_SEIDEL, 0, 0, 0, 0, DEM_SEARCH_AUTO, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
@@ -1582,11 +1587,11 @@ DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall wall, dem
 DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
 
 /* ---- joints ---- */
-/* What holds a body to another, to a wall or to the space they are in. Joints are found together
-   with the impulses of contacts: with DEM_RESPONSE_IMPULSES and DEM_SOLVER_SEIDEL alone. They are
-   impulses that keep points, and directions, together at the end of each step, so that they bring
-   no energy and do not drift; what they hold is told as force and torque. Bodies that are joined do
-   not touch each other, unless `collide`. */
+/* Joints hold a body to another, to a wall or to the space they are in. They need
+   DEM_RESPONSE_IMPULSES and DEM_SOLVER_SEIDEL. All joints are solved together and exactly, trees
+   and closed loops alike, after every sweep over the contacts; they keep points, and directions,
+   together at the end of each step. What joints hold never adds energy, whatever the number of
+   sweeps: docs/impulses.md says how. Joined bodies do not touch each other, unless `collide`. */
 typedef enum dem_joint_kind {
     DEM_JOINT_NONE = 0,
     DEM_JOINT_POINT,          /* a ball joint: `point` of both stays one */
@@ -1602,13 +1607,14 @@ typedef struct dem_joint_desc {
     dem_joint_kind kind;      /* required */
     dem_motor motor;          /* of a revolute joint */
     dem_body a, b;            /* a is required; b null: the wall, or the space */
-    dem_wall wall;            /* where b is null: moves with it; null: the space, at rest */
+    dem_wall wall;            /* where b is null: moves with it; null: the space, at rest; of no
+                                 meaning where b is given */
     int collide;              /* 1: the two touch as others do */
     dem_vec3 point;           /* m, where they are joined, as they stand now */
     dem_vec3 axis;            /* revolute: of any length but 0, as they stand now */
-    dem_real speed;           /* rad/s, of a against b about axis, right-handed */
-    dem_real torque;          /* N m, on a about axis; of a motor with speed: >= 0, its most; 0: no
-                                 limit */
+    dem_real speed;           /* rad/s, of a against b about axis, right-handed; within +-1e12 */
+    dem_real torque;          /* N m, on a about axis, within +-1e12; of a motor with speed: its
+                                 limit, >= 0; 0: no limit */
 } dem_joint_desc;
 static const dem_joint_desc DEM_JOINT_DESC_ZERO = {DEM_JOINT_NONE, DEM_MOTOR_NONE, {0, 0}, {0, 0},
                                                    {0}, 0, {0, 0, 0}, {0, 0, 0}, 0, 0};
@@ -1617,14 +1623,17 @@ typedef struct dem_joint_state {
     dem_vec3 force, torque;   /* N, N m about the point: on a, of the last step, the motor's with
                                  them; on b the opposite */
     dem_real motor_torque;    /* N m, on a about axis, of the last step */
-    dem_real power;           /* W, given to a and b: that of the motor */
+    dem_real power;           /* W, of the motor, given to a and b; 0: none */
     dem_real gap, tilt;       /* m: distance of the two points; sine between the two axes */
     double turned;            /* rad, of a against b about axis, since it was added */
-    double work;              /* J, sum of power */
+    double work;              /* J, sum of the motor's power over time */
 } dem_joint_state;
-/* Null id with a sentence on bad values, where contacts answer by springs, where neither of the two
-   can move, and of spheres in worlds without desc.orientations. A joint goes with either of its
-   bodies, or its wall, when that is removed or leaves; checkpoints hold it. */
+/* Adds a joint. Returns a null id and an error message on bad values, where contacts answer by
+   springs, where neither of the two can move, and of spheres in worlds without desc.orientations.
+   A joint ends with either of its bodies, or its wall, when that is removed or leaves: from then on
+   calls with its id are errors. While both of its bodies are fixed it holds nothing: force, torque
+   and power are 0; it acts again when one is freed. Ids are never given twice. Checkpoints hold
+   joints. */
 DEM_API dem_joint dem_joint_add(dem_world *world, const dem_joint_desc *desc);
 /* Another motor, from the next step on: as in dem_joint_desc. */
 DEM_API dem_result dem_joint_motor(dem_world *world, dem_joint joint, dem_motor motor,
@@ -1845,7 +1854,8 @@ DEM_API void dem_overlap_reset(dem_world *world);
 typedef struct dem_ledger {
     double kinetic, rotational, elastic;          /* stored */
     double gravity, walls, force, inserted;       /* work in */
-    /* dissipated: dashpot, friction, shear dashpot, rolling */
+    /* dissipated: dashpots, impacts and joints; friction; shear dashpot; rolling. The work of
+       motors is in `walls` */
     double normal, slide, tangent, rolling;
     double removed;                               /* energy taken out with bodies */
     double throughput;                            /* sum of magnitudes of what came in */
@@ -3072,8 +3082,13 @@ typedef struct demi_outlet {
 
 /* Saved whole. */
 typedef struct demi_joint {
-    dem_joint_desc desc;           /* kind none: removed, or one of its bodies was */
+    dem_joint_desc desc;
     dem_joint_state state;
+    int32_t id;
+    double held;                   /* J, given in the last step by what it holds */
+    double bank;                   /* J, what it has taken and may give back */
+    dem_real left, apart;          /* m, gap that is left at the end of the step; of it, made by
+                                      somebody who has moved a body */
     dem_vec3 arm[2], axis[2];      /* m, from the centre of a and b to the point; unit: as seen from
                                       body, wall or space */
 } demi_joint;
@@ -3290,6 +3305,8 @@ struct demi_twist;
 struct demi_mover;
 struct demi_run_sums;
 struct demi_rod;
+struct demi_knot;
+struct demi_link_of;
 typedef struct demi_solver {
     struct demi_meeting *meetings; /* domain d's begin at meeting_first[d] */
     struct demi_impulse *contacts; /* by colour, and so are: */
@@ -3306,6 +3323,11 @@ typedef struct demi_solver {
     struct demi_run_sums *runs;    /* of each run of contacts in the last round */
     struct demi_rod *rods;         /* one per joint */
     int32_t *joined;               /* of each body: its first joint, see demi_joined */
+    struct demi_knot *knots;       /* bodies and joints of the system that joints make */
+    int32_t *knot_of, *rows;       /* of each body; of each entry of the factor */
+    struct demi_link_of *links;
+    double *blocks;                /* x 36: pivots, and entries below them */
+    int knot_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; of the colour being swept; its first run */
     int twisted;                   /* is there rolling or spinning friction? */
     int back;                      /* contacts are swept from the last to the first */
@@ -3358,7 +3380,7 @@ struct dem_world {
     int feed_count, outlet_count;
     demi_feed *feeds;
     demi_outlet *outlets;
-    int joint_count;               /* >>joints */
+    int joint_count, joint_last;   /* >>joints: how many, and the last id */
     demi_joint *joints;
     int written_count;             /* >>output: those of the file that was read last */
     demi_written *written;
@@ -18682,12 +18704,37 @@ static void demi_movers_lay(dem_world *w, int d) {
 typedef struct demi_rod {
     int32_t a, b, rows;            /* movers; rows 0: not in force */
     int32_t next[2];               /* joint of a, and of b, after this one; -1: none */
+    int32_t knot, ends[2];         /* of the joint; of a and b, -1: it goes as it is told */
+    int32_t stuck;                 /* of a motor that is at its limit: its sign; 0: none is */
     dem_vec3 arm[2];               /* m */
     dem_vec3 along[3];             /* unit: about which a may not turn against b; axis of a motor */
-    dem_real wanted[6], given[6];  /* m/s, rad/s: of a against b; N s, N m s */
-    dem_real factor[6][6];         /* Cholesky's, of what impulses bring; last: the motor's */
+    dem_real before[6], given[6];  /* m/s, rad/s: of a against b; N s, N m s */
+    dem_real give[6];              /* 1/kg, 1/(kg m2): softness, see DEMI_GIVE */
     dem_real most, torque;         /* N m s: of a motor; by one of torque */
 } demi_rod;
+/* A body that is held, or a joint in force, in the system that is solved for all of them. */
+typedef struct demi_knot {
+    int32_t mover, rod;            /* one of the two; the other is -1 */
+    int32_t rank, order;           /* when it is eliminated; which is as the so-manieth */
+    int32_t first, count;          /* its column: rows below the pivot */
+    int32_t group;                 /* one of those that hang together; of that: */
+    int32_t guarded, open;         /* may the joints give no energy? are some apart? 2: by
+                                      somebody */
+    int32_t excess, grounded;      /* joints less bodies; does one go to what is not solved for? */
+    double work, bank, kinetic;    /* J */
+    double x[6];                   /* right-hand side, and solution */
+    dem_quat turned;               /* of a body: at the end of the step */
+    int32_t links, waiting, degree, mark, paid;     /* while the order is sought */
+} demi_knot;
+typedef struct demi_link_of { int32_t to, next; } demi_link_of;
+/* Softness of joints, of what an impulse brings; of those in loops, which may hold more than is
+   needed: its square is above the last digit, so that pivots as small do no harm. How near the
+   points shall come to each other, of the smallest radius. Of the kinetic energy, what joints may
+   give back of what they have taken. */
+#define DEMI_GIVE (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-9))
+#define DEMI_GIVE_LOOPS DEM_R(1e-6)
+#define DEMI_JOINED (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-8))
+#define DEMI_BANKED 1e-3
 /* Are these two joined, so that they do not touch? b < 0: wall. */
 static int demi_joined(const dem_world *w, int a, int b, int wall) {
     int j, next;
@@ -18963,39 +19010,69 @@ static void demi_impulses_lay(dem_world *w, int d) {
 
 /* ---------------------------------------------------------------------------------------------
    >>joints
-   What holds bodies together, to walls or to the space: rows of velocities of a against b that
-   shall be `wanted` after the step, three of the common point and for a hinge two of its axis, and
-   one of a motor. A joint is solved exactly as one block in every sweep, by Cholesky's factor of
-   what impulses bring; the motor stands last, so that its limit is kept within the substitution.
-   What the points are apart already is wanted back within the step: that is the constraint on
-   places at its end, to first order (SHAKE's first iteration), so that joints do not drift, and
-   what they do to energy stays bounded. Joints are solved in their order by one thread.
-   Owns w->joints, and rods and joined of the solver. Tests: tests/test_joints.c.
+   Joints hold bodies together, to walls or to the space. A joint has rows: three of velocity at the
+   common point, for a hinge two of spin across its axis, and one of a motor. J u of them is the
+   velocity of a against b. All joints are solved at once,
+       [ M  -J'  ] [ dv ]   [  0 ]
+       [ -J -give] [ dp ] = [ -r ]   (M: mass and inertia; r: by what the rows are off)
+   by block LDL' in an order of fewest neighbours: from the leaves of a tree to its root, O(n) and
+   without fill ([BAR96]); loops fill in a little. `give`, a softness of 1e-9 of what an impulse
+   brings, makes loops solvable that hold more than is needed.
+   r is by what points and axes will be apart where the next step finds them (in its middle, see
+   demi_ahead), with rotations as the integrator makes them, over dt: SHAKE, with a few Newton steps.
+   Its energy swings by O(dt^2).
+   Impulses p of joints that hang together give p (J u before + J u after)/2, exactly. Where that
+   is more than they have taken before (at most 1e-3 of their kinetic energy is remembered), rows
+   are wanted at J u after = -J u before/2, and if need be at -J u before, which gives nothing
+   whatever contacts, motors and fields do. Gaps that are left are closed by moving places alone.
+   A motor with a limit is a row until it reaches that, and then a torque.
+   Owns w->joints. Tests: tests/test_joints.c.
    --------------------------------------------------------------------------------------------- */
 
+/* Index of a body by its id; -1: it is no more. */
+static int demi_joint_body(const dem_world *w, dem_body b) {
+    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
+        w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
+    return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
+}
+/* Is what a joint holds still there? */
+static int demi_joint_alive(const dem_world *w, const demi_joint *j) {
+    if (demi_joint_body(w, j->desc.a) < 0) return 0;
+    if (j->desc.b.slot) return demi_joint_body(w, j->desc.b) >= 0;
+    return !j->desc.wall.id || w->walls[j->desc.wall.id - 1].kind != DEMI_WALL_NONE;
+}
 static int demi_joints_in_force(const dem_world *w) {
     int i, n = 0;
-    for (i = 0; i < w->joint_count; i++) n += w->joints[i].desc.kind != DEM_JOINT_NONE;
+    for (i = 0; i < w->joint_count; i++) n += demi_joint_alive(w, w->joints + i);
     return n;
 }
-/* Its index, or -1 with a sentence. */
+/* Its index, or -1 with a sentence. Ids rise and are never given again, so they are in order. */
 static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
-    if (joint.id >= 1 && joint.id <= w->joint_count &&
-        w->joints[joint.id - 1].desc.kind != DEM_JOINT_NONE) return joint.id - 1;
+    int low = 0, high = w->joint_count;
+    while (low < high) {
+        const int mid = low + (high - low)/2;
+        if (w->joints[mid].id < joint.id) low = mid + 1;
+        else high = mid;
+    }
+    if (low < w->joint_count && w->joints[low].id == joint.id &&
+        demi_joint_alive(w, w->joints + low)) return low;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: joint %d does not exist, there are %d; it was removed, "
-              "or one of its bodies was, or adding it was refused", call, (int)joint.id,
-              w->joint_count);
+              "or one of its bodies or its wall was, or adding it was refused", call,
+              (int)joint.id, demi_joints_in_force(w));
     return -1;
 }
-/* What is wrong with a motor; 0 with a sentence. */
+/* What is wrong with a motor; 0 with a sentence. The limit is far beyond any machine, and squares
+   of what such a motor brings about are still numbers. */
+#define DEMI_MOTOR_MOST DEM_R(1e12)
 static int demi_motor_sane(dem_world *w, const char *call, dem_joint_kind kind, dem_motor motor,
                            dem_real speed, dem_real torque) {
-    if ((int)motor >= 0 && motor <= DEM_MOTOR_TORQUE && demi_finite(speed) && demi_finite(torque) &&
-        !(motor == DEM_MOTOR_SPEED && torque < 0) &&
+    if ((int)motor >= 0 && motor <= DEM_MOTOR_TORQUE && DEMI_ABS(speed) <= DEMI_MOTOR_MOST &&
+        DEMI_ABS(torque) <= DEMI_MOTOR_MOST && !(motor == DEM_MOTOR_SPEED && torque < 0) &&
         (motor == DEM_MOTOR_NONE || kind == DEM_JOINT_REVOLUTE)) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, speed %g rad/s, torque %g N m; motors turn "
-              "revolute joints, speed and torque are finite, and the most torque of a motor with "
-              "speed is >= 0 (0: no limit)", call, (int)motor, (double)speed, (double)torque);
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, speed %g rad/s, torque %g N m; speed and "
+              "torque must lie within +-1e12, and the limit on torque of DEM_MOTOR_SPEED must be "
+              ">= 0 (0: no limit); likely the units are not SI, or the joint is no hinge; motors "
+              "act on revolute joints alone", call, (int)motor, (double)speed, (double)torque);
     return 0;
 }
 /* A place or direction, as seen from body `index` (with `place`: from its centre). */
@@ -19061,6 +19138,8 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     memset(&j, 0, sizeof j);
     j.desc = *d;
     j.desc.axis = d->kind == DEM_JOINT_REVOLUTE ? demi_unit(d->axis) : demi_v(0, 0, 0);
+    if (d->b.slot) j.desc.wall.id = 0;          /* not used, and so of no meaning */
+    else j.desc.b.generation = 0;
     j.arm[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), d->point, 1);
     j.axis[0] = demi_joint_from_body(w, demi_body_index(w, call, d->a), j.desc.axis, 0);
     j.arm[1] = d->point;
@@ -19074,10 +19153,10 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
         j.arm[1] = demi_unrotate(pose->rotation, demi_sub(d->point, pose->position));
         j.axis[1] = demi_unrotate(pose->rotation, j.desc.axis);
     }
+    id.id = j.id = ++w->joint_last;
     w->joints[w->joint_count++] = j;
     demi_scene_changed(w);
     demi_built(w, call);
-    id.id = w->joint_count;
     return id;
 }
 DEM_API dem_result dem_joint_motor(dem_world *w, dem_joint joint, dem_motor motor, dem_real speed,
@@ -19107,86 +19186,213 @@ DEM_API dem_result dem_joint_remove(dem_world *w, dem_joint joint) {
     if (demi_null(w, "dem_joint_remove", w, "world")) return DEM_ERROR_ARGUMENT;
     i = demi_joint_find(w, "dem_joint_remove", joint);
     if (i < 0) return DEM_ERROR_ARGUMENT;
-    memset(&w->joints[i], 0, sizeof w->joints[i]);
+    w->joint_count--;
+    memmove(w->joints + i, w->joints + i + 1, (size_t)(w->joint_count - i)*sizeof *w->joints);
     demi_scene_changed(w);
     return DEM_OK;
 }
 
-/* Index of a body by its id; -1: it is no more. */
-static int demi_joint_body(const dem_world *w, dem_body b) {
-    if (b.slot < 1 || b.slot > (uint32_t)w->bodies.slot_count ||
-        w->bodies.slot_generation[b.slot - 1] != b.generation) return -1;
-    return DEMI_MAX(w->bodies.slot_index[b.slot - 1], -1);
+/* ---------------------------------------------------------------------------------------------
+   >>joints-solved
+   The system that joints and the bodies they hold make: the order of elimination, the blocks, the
+   factor; sweeps over it, the guard of energy, and what joints have come to. Owns rods, knots and
+   what belongs to them in the solver. Tests: tests/test_joints.c, tests/hard/hard_joints.c.
+   --------------------------------------------------------------------------------------------- */
+
+/* Joins knot b to the list of a. 0: memory ran out. */
+static int demi_knot_link(dem_world *w, int32_t *list, int to) {
+    demi_solver *s = &w->solver;
+    if (!DEMI_GROW(w, s->links, (size_t)s->link_count + 1)) return 0;
+    s->links[s->link_count].to = to;
+    s->links[s->link_count].next = *list;
+    *list = s->link_count++;
+    return 1;
 }
-/* One end of a joint as it stands: its mover, the arm from that, the point in space, the axis. */
-typedef struct demi_rod_end { int mover; dem_vec3 arm, point, axis; } demi_rod_end;
-static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int body) {
+static int demi_knot_add(demi_solver *s, int mover, int rod) {
+    demi_knot *k = s->knots + s->knot_count;
+    memset(k, 0, sizeof *k);
+    k->mover = mover;
+    k->rod = rod;
+    k->links = k->waiting = k->rank = k->mark = -1;
+    k->group = s->knot_count;
+    return s->knot_count++;
+}
+static int demi_knot_group(demi_solver *s, int knot) {
+    while (s->knots[knot].group != knot)
+        knot = s->knots[knot].group = s->knots[s->knots[knot].group].group;
+    return knot;
+}
+/* May it be eliminated? A body may. A joint may when a body of its own is gone, one for each, or
+   both of its bodies are: only then does something give way to it. */
+static int demi_knot_ready(const demi_solver *s, const demi_knot *k) {
+    int e, gone = 1;
+    if (k->rod < 0 || k->paid) return 1;
+    for (e = 0; e < 2; e++) {
+        const int end = s->rods[k->rod].ends[e];
+        gone &= end < 0 || s->knots[end].rank >= 0;
+    }
+    return gone;
+}
+/* Eliminates one: those it is linked to become its column, and are linked to each other. */
+static int demi_knot_eliminate(dem_world *w, int knot, int rank) {
+    demi_solver *s = &w->solver;
+    const int first = s->row_count;
+    int i, j, e, paid = s->knots[knot].rod >= 0;
+    s->knots[knot].rank = rank;
+    s->knots[rank].order = knot;
+    s->knots[knot].first = first;
+    for (e = s->knots[knot].links; e >= 0; e = s->links[e].next) {
+        const int to = s->links[e].to;
+        if (s->knots[to].rank >= 0) continue;
+        if (!DEMI_GROW(w, s->rows, (size_t)s->row_count + 1)) return 0;
+        s->rows[s->row_count++] = to;
+        if (paid || s->knots[to].rod < 0 || s->knots[to].paid ||
+            (s->rods[s->knots[to].rod].ends[0] != knot &&
+             s->rods[s->knots[to].rod].ends[1] != knot)) continue;
+        s->knots[to].paid = paid = 1;
+    }
+    s->knots[knot].count = s->row_count - first;
+    for (i = first; i < s->row_count; i++) {
+        const int a = s->rows[i];
+        for (e = s->knots[a].links; e >= 0; e = s->links[e].next)
+            s->knots[s->links[e].to].mark = a;
+        s->knots[a].degree--;
+        for (j = first; j < s->row_count; j++) {
+            const int b = s->rows[j];
+            if (b == a || s->knots[b].mark == a) continue;
+            if (!demi_knot_link(w, &s->knots[a].links, b)) return 0;
+            s->knots[a].degree++;
+        }
+        if (demi_knot_ready(s, s->knots + a) &&
+            !demi_knot_link(w, &s->knots[s->knots[a].degree].waiting, a)) return 0;
+    }
+    return 1;
+}
+/* Whichever has the fewest neighbours goes first: from the leaves of a tree to its root, where
+   nothing is filled in, and around loops what fills in little. */
+static int demi_knots_order(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int i, rank = 0, d;
+    for (i = s->knot_count - 1; i >= 0; i--)
+        if (s->knots[i].rod < 0 &&
+            !demi_knot_link(w, &s->knots[s->knots[i].degree].waiting, i)) return 0;
+    for (d = 0; d < s->knot_count; ) {
+        demi_knot *k = s->knots + d;
+        const int e = k->waiting;
+        if (e < 0) { d++; continue; }
+        k->waiting = s->links[e].next;
+        i = s->links[e].to;
+        if (s->knots[i].rank >= 0 || s->knots[i].degree != d) continue;
+        if (!demi_knot_eliminate(w, i, rank++)) return 0;
+        d = 0;
+    }
+    return 1;
+}
+/* Joints as they are in force in this step, and room for what solves them; those that have lost a
+   body go. 0: memory ran out. */
+static int demi_joints_room(dem_world *w) {
+    demi_solver *s = &w->solver;
+    const size_t bodies = (size_t)w->bodies.count;
+    int i, n = 0, e;
+    for (i = 0; i < w->joint_count; i++)
+        if (demi_joint_alive(w, w->joints + i)) {
+            if (n < i) w->joints[n] = w->joints[i];
+            n++;
+        }
+    w->joint_count = n;
+    s->knot_count = s->link_count = s->row_count = 0;
+    if (!n) return 1;
+    if (!DEMI_GROW(w, s->rods, (size_t)n) || !DEMI_GROW(w, s->joined, bodies) ||
+        !DEMI_GROW(w, s->knot_of, bodies) || !DEMI_GROW(w, s->knots, 3*(size_t)n)) return 0;
+    for (i = 0; i < w->bodies.count; i++) s->joined[i] = s->knot_of[i] = -1;
+    for (i = 0; i < n; i++) {
+        const dem_joint_desc *d = &w->joints[i].desc;
+        demi_rod *r = s->rods + i;
+        const int body[2] = {demi_joint_body(w, d->a),
+                             d->b.slot ? demi_joint_body(w, d->b) : -1};
+        memset(r, 0, sizeof *r);
+        r->a = body[0];
+        r->b = body[1] >= 0 ? body[1] : w->bodies.count + w->kept_first[DEMI_DOMAINS] + i;
+        for (e = 0; e < 2; e++) {
+            r->ends[e] = -1;
+            if (body[e] < 0) continue;
+            r->next[e] = s->joined[body[e]];
+            s->joined[body[e]] = i;
+            if (!(w->bodies.inv_mass[body[e]] > 0)) continue;
+            if (s->knot_of[body[e]] < 0) s->knot_of[body[e]] = demi_knot_add(s, body[e], -1);
+            r->ends[e] = s->knot_of[body[e]];
+            r->rows = d->kind == DEM_JOINT_POINT ? 3 : 5 + (d->motor == DEM_MOTOR_SPEED);
+        }
+        if (!r->rows) continue;
+        r->knot = demi_knot_add(s, -1, i);
+        for (e = 0; e < 2; e++) {
+            const int end = r->ends[e];
+            if (end < 0) continue;
+            s->knots[demi_knot_group(s, r->knot)].group = demi_knot_group(s, end);
+            if (!demi_knot_link(w, &s->knots[end].links, r->knot) ||
+                !demi_knot_link(w, &s->knots[r->knot].links, end)) return 0;
+            s->knots[end].degree++;
+            s->knots[r->knot].degree++;
+        }
+    }
+    for (i = 0; i < s->knot_count; i++) {
+        demi_knot *group = s->knots + demi_knot_group(s, i);
+        const demi_rod *r = s->rods + s->knots[i].rod;
+        group->excess += s->knots[i].rod < 0 ? -1 : 1;
+        group->grounded |= s->knots[i].rod >= 0 && (r->ends[0] < 0 || r->ends[1] < 0);
+    }
+    return demi_knots_order(w) &&
+        DEMI_GROW(w, s->blocks, 36*((size_t)s->knot_count + (size_t)s->row_count));
+}
+
+/* --- the system of one step --- */
+
+/* One end of a joint: the arm from its centre, the point in space, the axis; as it stands, or
+   (ahead) a step later, with the velocities that the impulses found so far make. */
+typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
+static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int ahead) {
     const demi_joint *j = &w->joints[joint];
+    const demi_solver *s = &w->solver;
+    const demi_rod *r = s->rods + joint;
+    const int body = end ? r->b : r->a;
+    const dem_real by = ahead ? s->dt : 0;
     demi_rod_end o;
-    if (body >= 0) {
-        const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
-        o.mover = body;
+    if (body < w->bodies.count) {
+        const dem_quat q = ahead && r->ends[end] >= 0 ? s->knots[r->ends[end]].turned
+            : demi_quat_at(w->bodies.orient + 4*body);
         o.arm = dem_quat_rotate(q, j->arm[end]);
         o.axis = dem_quat_rotate(q, j->axis[end]);
-        o.point = demi_add(demi_at(w->bodies.pos + 4*body), o.arm);
+        o.point = demi_add(demi_add(demi_at(w->bodies.pos + 4*body), o.arm),
+                           demi_scale(demi_at(s->movers[body].v), by));
     } else {
-        demi_mover *m;
-        o.mover = w->bodies.count + w->kept_first[DEMI_DOMAINS] + joint;
         o.arm = demi_v(0, 0, 0);
         o.point = j->arm[end];
         o.axis = j->axis[end];
-        m = w->solver.movers + o.mover;
-        memset(m, 0, sizeof *m);
         if (j->desc.wall.id) {
             const dem_pose *pose = &w->walls[j->desc.wall.id - 1].pose;
-            o.point = demi_add(pose->position, demi_rotate(pose->rotation, o.point));
-            o.axis = demi_rotate(pose->rotation, o.axis);
-            demi_put(m->v, demi_surface_at(pose, o.point));
-            demi_put(m->w, pose->spin);
+            const dem_quat q = demi_quat_exp(demi_scale(pose->spin, by));
+            o.point = dem_quat_rotate(q, demi_rotate(pose->rotation, o.point));
+            o.point = demi_add(demi_add(pose->position, o.point), demi_scale(pose->velocity, by));
+            o.axis = dem_quat_rotate(q, demi_rotate(pose->rotation, o.axis));
         }
     }
     return o;
 }
-/* What impulses of the rows bring, factored in place. */
-static void demi_rod_factor(const dem_world *w, demi_rod *r) {
-    const demi_solver *s = &w->solver;
-    static const dem_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    int end, i, j, k;
-    memset(r->factor, 0, sizeof r->factor);
-    for (end = 0; end < 2; end++) {
-        const int body = end ? r->b : r->a;
-        if (!(s->movers[body].inv > 0)) continue;
-        for (i = 0; i < r->rows; i++) {
-            const dem_vec3 l = i < 3 ? demi_cross(r->arm[end], unit[i]) : r->along[i - 3];
-            const dem_vec3 turn = demi_mover_turn(s, body, l, w->bodies.shaped > 0);
-            for (j = i; j < r->rows; j++)
-                r->factor[j][i] += demi_dot(j < 3 ? demi_cross(r->arm[end], unit[j])
-                                            : r->along[j - 3], turn);
-            if (i < 3) r->factor[i][i] += s->movers[body].inv;
-        }
-    }
-    for (i = 0; i < r->rows; i++)
-        for (j = i; j < r->rows; j++) {
-            dem_real sum = r->factor[j][i];
-            for (k = 0; k < i; k++) sum -= r->factor[i][k]*r->factor[j][k];
-            r->factor[j][i] = j > i ? sum/r->factor[i][i] : DEMI_SQRT(DEMI_MAX(sum, DEMI_TINY));
-        }
-}
-/* Velocity of a against b in row i. */
-DEM_INLINE void demi_rod_velocity(const demi_solver *s, const demi_rod *r, dem_real *u) {
+/* Velocity of a against b in the rows. */
+static void demi_rod_velocity(const demi_solver *s, const demi_rod *r, dem_real *u) {
     const demi_mover *a = s->movers + r->a, *b = s->movers + r->b;
     const dem_vec3 turn = demi_sub(demi_at(a->w), demi_at(b->w));
     const dem_vec3 va = demi_add(demi_at(a->v), demi_cross(demi_at(a->w), r->arm[0]));
     const dem_vec3 vb = demi_add(demi_at(b->v), demi_cross(demi_at(b->w), r->arm[1]));
     int k;
     demi_put(u, demi_sub(va, vb));
-    for (k = 3; k < r->rows; k++) u[k] = demi_dot(turn, r->along[k - 3]);
+    for (k = 3; k < 6; k++) u[k] = demi_dot(turn, r->along[k - 3]);
 }
-/* Force and torque of impulses in the rows, on a. */
-DEM_INLINE dem_vec3 demi_rod_twist(const demi_rod *r, const dem_real *p) {
+/* Torque of impulses in the rows, on a. */
+static dem_vec3 demi_rod_twist(const demi_rod *r, const dem_real *p) {
     dem_vec3 l = demi_v(0, 0, 0);
     int k;
-    for (k = 3; k < r->rows; k++) l = demi_add(l, demi_scale(r->along[k - 3], p[k]));
+    for (k = 3; k < 6; k++) l = demi_add(l, demi_scale(r->along[k - 3], p[k]));
     return l;
 }
 static void demi_rod_apply(const dem_world *w, const demi_rod *r, const dem_real *p,
@@ -19203,75 +19409,256 @@ static dem_real demi_rod_size(const dem_world *w, const demi_rod *r) {
     const dem_real a = w->bodies.pos[4*r->a + 3];
     return r->b < w->bodies.count ? DEMI_MIN(a, w->bodies.pos[4*r->b + 3]) : a;
 }
-/* Rows of joint i between these two, with what is remembered. */
-static void demi_rod_lay(dem_world *w, int i, int a, int b) {
+/* Is row k of a joint in force? In the plane nothing tilts; a motor at its limit is a torque. */
+static int demi_rod_row(const dem_world *w, const demi_rod *r, int k) {
+    return k < r->rows && (k < 3 || (k < 5 ? !w->desc.planar : !r->stuck));
+}
+/* Row k of a joint's end as a row of six: what the velocity and spin there are taken by. */
+static void demi_rod_jacobian(const dem_world *w, const demi_rod *r, int end, int k, double *row) {
+    static const dem_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const int body = end ? r->b : r->a;
+    const double sign = end ? -1 : 1;
+    const dem_vec3 l = k < 3 ? demi_cross(r->arm[end], unit[k]) : r->along[k - 3];
+    const dem_real turn[3] = {l.x, l.y, l.z};
+    int i;
+    for (i = 0; i < 3; i++) {
+        const int turns = (w->bodies.inv_inertia[body] > 0 || demi_shape_of(w, body)) &&
+            (i == 2 || !w->desc.planar);
+        row[i] = i == k ? sign : 0;
+        row[3 + i] = turns ? sign*(double)turn[i] : 0;
+    }
+}
+/* Mass and inertia of a body, 6 x 6; 1 where nothing turns. */
+static void demi_knot_mass(const dem_world *w, int body, double *m) {
+    const double inv = (double)w->bodies.inv_inertia[body];
+    int i, k;
+    memset(m, 0, 36*sizeof *m);
+    for (i = 0; i < 3; i++) {
+        m[7*i] = 1/(double)w->bodies.inv_mass[body];
+        m[7*(3 + i)] = inv > 0 ? 1/inv : 1;
+    }
+    if (!w->bodies.shaped || !w->bodies.shape[body]) return;
+    if (w->desc.planar) {
+        m[35] = 1/(double)w->solver.tensors[6*body + 2];
+        return;
+    }
+    for (i = 0; i < 3; i++) {
+        const dem_vec3 axis = demi_v(i == 0, i == 1, i == 2);
+        const dem_quat q = demi_quat_at(w->bodies.orient + 4*body);
+        const dem_vec3 x = dem_quat_unrotate(q, axis), I = demi_at(w->bodies.moment + 4*body);
+        const dem_vec3 y = dem_quat_rotate(q, demi_v(I.x*x.x, I.y*x.y, I.z*x.z));
+        const dem_real column[3] = {y.x, y.y, y.z};
+        for (k = 0; k < 3; k++) m[6*(3 + k) + 3 + i] = (double)column[k];
+    }
+}
+/* Inverse of a symmetric matrix, 6 x 6, sign times a positive definite one, in place. Squares of
+   its factor's diagonal are at least those of `least`, if given. */
+static void demi_block_invert(double *m, double sign, const dem_real *least) {
+    double f[36], inv[36];
+    int i, j, k;
+    for (i = 0; i < 6; i++)
+        for (j = i; j < 6; j++) {
+            double sum = sign*m[6*j + i];
+            for (k = 0; k < i; k++) sum -= f[6*i + k]*f[6*j + k];
+            f[6*j + i] = j > i ? sum*f[7*i] : 1/sqrt(DEMI_MAX(sum, least ? (double)least[i]
+                                                                        : DBL_MIN));
+        }
+    for (i = 0; i < 6; i++) {                   /* of the factor; f's diagonal is inverse already */
+        inv[7*i] = f[7*i];
+        for (j = i + 1; j < 6; j++) {
+            double sum = 0;
+            for (k = i; k < j; k++) sum -= f[6*j + k]*inv[6*k + i];
+            inv[6*j + i] = sum*f[7*j];
+        }
+    }
+    for (i = 0; i < 6; i++)
+        for (j = 0; j <= i; j++) {
+            double sum = 0;
+            for (k = i; k < 6; k++) sum += inv[6*k + i]*inv[6*k + j];
+            m[6*i + j] = m[6*j + i] = sign*sum;
+        }
+}
+/* c -= a b', 6 x 6 */
+static void demi_block_less(double *c, const double *a, const double *b) {
+    int i, j, k;
+    for (i = 0; i < 6; i++)
+        for (j = 0; j < 6; j++) {
+            double sum = 0;
+            for (k = 0; k < 6; k++) sum += a[6*i + k]*b[6*j + k];
+            c[6*i + j] -= sum;
+        }
+}
+/* y -= a x, or a' x */
+static void demi_block_times(double *y, const double *a, const double *x, int transposed) {
+    int i, k;
+    for (i = 0; i < 6; i++)
+        for (k = 0; k < 6; k++) y[i] -= a[transposed ? 6*k + i : 6*i + k]*x[k];
+}
+/* The block of two knots that are linked: in the column of whichever goes first, rows of the other.
+   */
+static double *demi_knots_block(const demi_solver *s, int a, int b) {
+    const int early = s->knots[a].rank < s->knots[b].rank ? a : b, late = early == a ? b : a;
+    int e = s->knots[early].first;
+    while (s->rows[e] != late) e++;
+    return s->blocks + 36*((size_t)s->knot_count + (size_t)e);
+}
+/* [M -J'; -J -give], factored: M of bodies, J rows of joints, give their softness. */
+static void demi_knots_factor(dem_world *w) {
+    demi_solver *s = &w->solver;
+    double row[6];
+    int i, k, e, l, rank;
+    memset(s->blocks, 0, 36*((size_t)s->knot_count + (size_t)s->row_count)*sizeof *s->blocks);
+    for (i = 0; i < s->knot_count; i++) {
+        const demi_rod *r = s->rods + s->knots[i].rod;
+        if (s->knots[i].rod < 0) demi_knot_mass(w, s->knots[i].mover, s->blocks + 36*(size_t)i);
+        for (k = 0; k < 6 && s->knots[i].rod >= 0; k++) {
+            const int on = demi_rod_row(w, r, k);
+            s->blocks[36*(size_t)i + 7*(size_t)k] = on ? -(double)r->give[k] : -1;
+            for (e = 0; e < 2; e++) {
+                const int body = r->ends[e];
+                double *block;
+                if (!on || body < 0) continue;
+                block = demi_knots_block(s, i, body);
+                demi_rod_jacobian(w, r, e, k, row);
+                for (l = 0; l < 6; l++)
+                    block[s->knots[body].rank < s->knots[i].rank ? 6*k + l : 6*l + k] -= row[l];
+            }
+        }
+    }
+    for (rank = 0; rank < s->knot_count; rank++) {
+        const int v = s->knots[rank].order, first = s->knots[v].first;
+        const int end = first + s->knots[v].count;
+        const double *columns = s->blocks + 36*(size_t)s->knot_count;
+        double *pivot = s->blocks + 36*(size_t)v;
+        if (s->knots[v].rod < 0) demi_block_invert(pivot, 1, 0);
+        else demi_block_invert(pivot, -1, s->rods[s->knots[v].rod].give);
+        for (k = first; k < end; k++) {
+            const int a = s->rows[k];
+            double by[36];
+            memset(by, 0, sizeof by);
+            demi_block_less(by, columns + 36*(size_t)k, pivot);    /* - B D^-1 */
+            for (l = 0; l < 36; l++) by[l] = -by[l];
+            demi_block_less(s->blocks + 36*(size_t)a, by, columns + 36*(size_t)k);
+            for (l = first; l < end; l++)
+                if (s->knots[s->rows[l]].rank < s->knots[a].rank)
+                    demi_block_less(demi_knots_block(s, a, s->rows[l]), by, columns + 36*(size_t)l);
+        }
+    }
+}
+/* From the right-hand sides x of all knots to the solution. */
+static void demi_knots_solve(demi_solver *s) {
+    const double *columns = s->blocks + 36*(size_t)s->knot_count;
+    int rank, e;
+    for (rank = 0; rank < s->knot_count; rank++) {
+        const demi_knot *k = s->knots + s->knots[rank].order;
+        double y[6] = {0, 0, 0, 0, 0, 0};
+        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);       /* - D^-1 x */
+        for (e = 0; e < 6; e++) y[e] = -y[e];
+        for (e = k->first; e < k->first + k->count; e++)
+            demi_block_times(s->knots[s->rows[e]].x, columns + 36*(size_t)e, y, 0);
+    }
+    while (rank-- > 0) {
+        demi_knot *k = s->knots + s->knots[rank].order;
+        double y[6] = {0, 0, 0, 0, 0, 0};
+        for (e = k->first; e < k->first + k->count; e++)
+            demi_block_times(k->x, columns + 36*(size_t)e, s->knots[s->rows[e]].x, 1);
+        demi_block_times(y, s->blocks + 36*(k - s->knots), k->x, 0);
+        for (e = 0; e < 6; e++) k->x[e] = -y[e];
+    }
+}
+/* Rows of joint i, with what is remembered. */
+static void demi_rod_lay(dem_world *w, int i) {
     demi_solver *s = &w->solver;
     demi_joint *j = &w->joints[i];
     demi_rod *r = s->rods + i;
     const demi_periods p = demi_periods_of(w);
-    const demi_rod_end x = demi_rod_end_of(w, i, 0, a), y = demi_rod_end_of(w, i, 1, b);
+    const demi_rod_end x = demi_rod_end_of(w, i, 0, 0), y = demi_rod_end_of(w, i, 1, 0);
     const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
-    const dem_vec3 tilt = demi_cross(y.axis, x.axis);       /* of a against b */
-    dem_real most;
-    int k;
-    r->a = x.mover;
-    r->b = y.mover;
-    r->arm[0] = demi_sub(x.arm, demi_scale(off, DEM_R(0.5)));   /* to one place: angular momentum */
-    r->arm[1] = b >= 0 ? demi_add(y.arm, demi_scale(off, DEM_R(0.5))) : y.arm;
-    most = demi_rod_size(w, r)/10;
+    const int b = r->b < w->bodies.count;
+    const demi_knot *group = s->knots + (r->rows ? demi_knot_group(s, r->knot) : 0);
+    const dem_real give = group->excess + !group->grounded > 0 ? DEMI_GIVE_LOOPS : DEMI_GIVE;
+    int k, e;
+    /* to one place: angular momentum */
+    r->arm[0] = demi_sub(x.arm, demi_scale(off, DEM_R(0.5)));
+    r->arm[1] = b ? demi_add(y.arm, demi_scale(off, DEM_R(0.5))) : y.arm;
     j->state.gap = demi_length(off);
-    j->state.tilt = demi_length(tilt);
-    r->rows = 3;
-    demi_put(r->wanted, demi_scale(off, -DEMI_MIN(1, most/(j->state.gap + DEMI_TINY))/s->dt));
+    j->state.tilt = demi_length(demi_cross(y.axis, x.axis));
     if (j->desc.kind == DEM_JOINT_REVOLUTE) {
-        const dem_real part = DEMI_MIN(1, DEM_R(0.1)/(j->state.tilt + DEMI_TINY));
         r->along[0] = demi_across(x.axis);
         r->along[1] = demi_cross(x.axis, r->along[0]);
         r->along[2] = x.axis;
-        r->rows = j->desc.motor == DEM_MOTOR_SPEED ? 6 : 5;
-        for (k = 0; k < 2; k++) r->wanted[3 + k] = -demi_dot(tilt, r->along[k])*part/s->dt;
-        r->wanted[5] = j->desc.speed;
         r->most = j->desc.motor == DEM_MOTOR_SPEED ? j->desc.torque*s->dt : 0;
         r->torque = j->desc.motor == DEM_MOTOR_TORQUE ? j->desc.torque*s->dt : 0;
-        if (w->stage.forces_valid)
-            j->state.turned += (double)(s->dt*demi_dot(x.axis, demi_sub(
-                demi_at(w->bodies.spin + 4*a), b >= 0 ? demi_at(w->bodies.spin + 4*b)
-                : demi_at(s->movers[r->b].w))));
     }
     demi_put(r->given, demi_scale(j->state.force, s->dt));
-    for (k = 3; k < r->rows; k++)
-        r->given[k] = demi_dot(j->state.torque, r->along[k - 3])*s->dt;
-    if (r->rows == 6) r->given[5] = j->desc.motor == DEM_MOTOR_SPEED ? r->given[5] : 0;
-    if (r->most > 0) r->given[5] = DEMI_MAX(-r->most, DEMI_MIN(r->given[5], r->most));
-    demi_rod_factor(w, r);
+    for (k = 3; k < 5; k++) r->given[k] = demi_dot(j->state.torque, r->along[k - 3])*s->dt;
+    r->given[5] = r->rows == 6 ? j->state.motor_torque*s->dt : 0;
+    if (r->most > 0) {
+        r->stuck = (r->given[5] >= r->most) - (r->given[5] <= -r->most);
+        r->given[5] = DEMI_MAX(-r->most, DEMI_MIN(r->given[5], r->most));
+    }
+    for (k = 0; k < 6; k++) {
+        dem_real sum = 0;
+        for (e = 0; e < 2; e++) {
+            const int body = e ? r->b : r->a;
+            static const dem_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+            const dem_vec3 l = k < 3 ? demi_cross(r->arm[e], unit[k]) : r->along[k - 3];
+            if (r->ends[e] < 0) continue;
+            sum += demi_dot(l, demi_mover_turn(s, body, l, w->bodies.shaped > 0));
+            if (k < 3) sum += s->movers[body].inv;
+        }
+        r->give[k] = sum*(k < 5 ? give : give*DEM_R(1e-3));
+        if (k >= r->rows) r->given[k] = 0;
+    }
 }
-/* Joints as they stand in this step; those that have lost a body go. */
+/* Joints as they stand in this step. */
 static void demi_joints_lay(dem_world *w) {
     demi_solver *s = &w->solver;
-    int i;
-    if (!w->joint_count) return;
-    for (i = 0; i < w->bodies.count; i++) s->joined[i] = -1;
+    int i, e;
     for (i = 0; i < w->joint_count; i++) {
         demi_joint *j = &w->joints[i];
         demi_rod *r = s->rods + i;
-        const int a = demi_joint_body(w, j->desc.a), wall = j->desc.wall.id - 1;
-        const int b = j->desc.b.slot ? demi_joint_body(w, j->desc.b) : -1;
-        memset(r, 0, sizeof *r);
-        if (j->desc.kind == DEM_JOINT_NONE) continue;
-        if (a < 0 || (j->desc.b.slot && b < 0) ||
-            (!j->desc.b.slot && wall >= 0 && w->walls[wall].kind == DEMI_WALL_NONE)) {
-            memset(j, 0, sizeof *j);
-            continue;
+        if (r->b >= w->bodies.count) {
+            demi_mover *m = s->movers + r->b;
+            memset(m, 0, sizeof *m);
+            if (j->desc.wall.id) {
+                const dem_pose *pose = &w->walls[j->desc.wall.id - 1].pose;
+                demi_put(m->v, demi_surface_at(pose, demi_rod_end_of(w, i, 1, 0).point));
+                demi_put(m->w, pose->spin);
+            }
         }
-        if (!(s->movers[a].inv + (b >= 0 ? s->movers[b].inv : 0) > 0)) continue;
         if (w->stage.forces_valid) j->state.work += (double)j->state.power*(double)s->dt;
-        demi_rod_lay(w, i, a, b);
-        r->next[0] = s->joined[a];
-        s->joined[a] = i;
-        if (b < 0) continue;
-        r->next[1] = s->joined[b];
-        s->joined[b] = i;
+        demi_rod_lay(w, i);
+        for (e = 0; e < 2; e++) {               /* velocities before the step */
+            const int body = e ? r->b : r->a;
+            const dem_real sign = e ? -1 : 1;
+            dem_vec3 v = demi_at(s->movers[r->b].v), turn = demi_at(s->movers[r->b].w);
+            int k;
+            if (body < w->bodies.count) {
+                v = demi_at(w->bodies.vel + 4*body);
+                turn = demi_at(w->bodies.spin + 4*body);
+            }
+            v = demi_add(v, demi_cross(turn, r->arm[e]));
+            r->before[0] += sign*v.x; r->before[1] += sign*v.y; r->before[2] += sign*v.z;
+            for (k = 3; k < 6; k++) r->before[k] += sign*demi_dot(turn, r->along[k - 3]);
+        }
+        if (w->stage.forces_valid) j->state.turned += (double)(s->dt*r->before[5]);
     }
+    for (i = 0; i < s->knot_count; i++) {
+        const int body = s->knots[i].mover;
+        demi_knot *group = s->knots + demi_knot_group(s, i);
+        if (body < 0) {
+            demi_joint *j = w->joints + s->knots[i].rod;
+            const dem_real size = demi_rod_size(w, s->rods + s->knots[i].rod), few = size/10;
+            const dem_real gap = j->state.gap + j->state.tilt*size;
+            group->bank += j->bank;
+            j->apart = gap > j->left + few ? gap : DEMI_MIN(j->apart, gap);
+            group->open |= (gap > 100*DEMI_JOINED*size) | (j->apart > few)*2;
+        } else group->kinetic += ((double)w->bodies.mass[body]*(double)demi_dot(
+            demi_at(w->bodies.vel + 4*body), demi_at(w->bodies.vel + 4*body)) +
+            (double)demi_dot(demi_angular_of(w, body), demi_at(w->bodies.spin + 4*body)))/2;
+    }
+    s->factored = 0;
 }
 /* Begins with what is remembered, and what motors of a given torque do. */
 static void demi_joints_warm(dem_world *w) {
@@ -19282,75 +19669,271 @@ static void demi_joints_warm(dem_world *w) {
                                                              demi_scale(r->along[2], r->torque)));
     }
 }
-/* Solves each joint once; answers the farthest that one was from it, squared, m/s. */
-static dem_real demi_joints_sweep(dem_world *w) {
+/* Orientations a step later, as the integrator will bring them about. */
+static void demi_knots_ahead(dem_world *w) {
     const demi_solver *s = &w->solver;
-    dem_real worst = 0;
-    int i, j, k;
-    for (i = 0; i < w->joint_count; i++) {
+    const dem_real dt = s->dt;
+    int i;
+    for (i = 0; i < s->knot_count; i++) {
+        const int body = s->knots[i].mover;
+        dem_quat q;
+        dem_vec3 turn;
+        if (body < 0) continue;
+        q = demi_quat_at(w->bodies.orient + 4*body);
+        turn = demi_at(s->movers[body].w);
+        if (w->bodies.shaped && w->bodies.shape[body]) {
+            const dem_vec3 I = demi_at(w->bodies.moment + 4*body);
+            const dem_vec3 inv = demi_v(1/I.x, 1/I.y, 1/I.z), m = dem_quat_unrotate(q, turn);
+            const dem_vec3 L = dem_quat_rotate(q, demi_v(I.x*m.x, I.y*m.y, I.z*m.z));
+            if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_flight_spiral(&q, L, I, inv, dt);
+            else if (w->desc.rotation == DEM_ROTATION_FINCHAM) demi_flight_fincham(&q, L, I, dt);
+            else demi_flight_splitting(&q, L, I, dt);
+        } else q = demi_quat_again(dem_quat_times(demi_quat_exp(demi_scale(turn, dt)), q));
+        s->knots[i].turned = q;
+    }
+}
+/* By what velocities a joint is off: that its points, and axes, be together at the end of the step;
+   or, where that would give energy, that the velocity after the step be the opposite of that before
+   (`shifts`: what is left then, which is made good by places alone). Answers its square. */
+static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *lacks) {
+    const demi_solver *s = &w->solver;
+    const demi_rod *r = s->rods + i;
+    const dem_real size = demi_rod_size(w, r);
+    dem_real u[6], left = 0;
+    int k;
+    memset(lacks, 0, 6*sizeof *lacks);
+    if (!r->rows) return 0;
+    demi_rod_velocity(s, r, u);
+    if (s->knots[s->knots[r->knot].group].guarded && !shifts) {
+        const dem_real back = s->knots[s->knots[r->knot].group].guarded > 1 ? 1 : DEM_R(0.5);
+        for (k = 0; k < 5; k++) lacks[k] = -back*r->before[k] - u[k];
+    } else {
+        const demi_periods p = demi_periods_of(w);
+        const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
+        const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
+        const dem_vec3 tilt = demi_cross(y.axis, x.axis);       /* of a against b */
+        const dem_real part = DEMI_MIN(1, size/(10*demi_length(off) + DEMI_TINY))/s->dt;
+        const dem_real turn = DEMI_MIN(1, DEM_R(0.1)/(demi_length(tilt) + DEMI_TINY))/s->dt;
+        demi_put(lacks, demi_scale(off, -part));
+        for (k = 0; k < 2; k++) lacks[3 + k] = -turn*demi_dot(tilt, r->along[k]);
+    }
+    if (!shifts) lacks[5] = w->joints[i].desc.speed - u[5];
+    for (k = 0; k < 6; k++) {
+        if (!demi_rod_row(w, r, k)) lacks[k] = 0;
+        else if (!shifts) lacks[k] -= r->give[k]*r->given[k];
+        left += lacks[k]*lacks[k]*(k < 3 ? 1 : size*size);
+    }
+    return left;
+}
+/* Solves all joints at once; answers the farthest that one was from it, squared, m/s. x of the
+   knots: what it has changed. */
+static dem_real demi_joints_solve(dem_world *w, int shifts) {
+    demi_solver *s = &w->solver;
+    dem_real worst = 0, lacks[6];
+    int i, k;
+    if (!s->factored) demi_knots_factor(w);
+    s->factored = 1;
+    demi_knots_ahead(w);
+    for (i = 0; i < s->knot_count; i++) {
+        demi_knot *knot = s->knots + i;
+        memset(knot->x, 0, sizeof knot->x);
+        if (knot->rod < 0) continue;
+        worst = DEMI_MAX(worst, demi_rod_lacks(w, knot->rod, shifts, lacks));
+        for (k = 0; k < 6; k++) knot->x[k] = -(double)lacks[k];
+    }
+    demi_knots_solve(s);
+    for (i = 0; i < w->joint_count && !shifts; i++) {
         demi_rod *r = s->rods + i;
-        dem_real u[6], x[6], left = 0, size;
+        dem_real by[6];
         if (!r->rows) continue;
-        size = demi_rod_size(w, r);
-        demi_rod_velocity(s, r, u);
-        for (j = 0; j < r->rows; j++) {         /* down the factor */
-            const dem_real lacks = r->wanted[j] - u[j];
-            x[j] = lacks;
-            for (k = 0; k < j; k++) x[j] -= r->factor[j][k]*x[k];
-            x[j] /= r->factor[j][j];
-            if (j < 5) left += lacks*lacks*(j < 3 ? 1 : size*size);
-        }
-        for (j = r->rows - 1; j >= 0; j--) {    /* and up: the motor first, within its limit */
-            for (k = j + 1; k < r->rows; k++) x[j] -= r->factor[k][j]*x[k];
-            x[j] /= r->factor[j][j];
-            if (j < 5) continue;
-            if (r->most > 0)
-                x[j] = DEMI_MAX(-r->most, DEMI_MIN(r->given[j] + x[j], r->most)) - r->given[j];
-            left += x[j]*x[j]*r->factor[j][j]*r->factor[j][j]*size*size;
-        }
-        for (j = 0; j < r->rows; j++) r->given[j] += x[j];
-        demi_rod_apply(w, r, x, demi_rod_twist(r, x));
-        worst = DEMI_MAX(worst, left);
+        for (k = 0; k < 6; k++) r->given[k] += by[k] = (dem_real)s->knots[r->knot].x[k];
+        demi_rod_apply(w, r, by, demi_rod_twist(r, by));
     }
     return worst;
+}
+/* Motors that have come to their limit push with that; those that push the wrong way are let go
+   (`free`). Answers how many. */
+static int demi_motors_bound(dem_world *w, int free) {
+    demi_solver *s = &w->solver;
+    int i, n = 0;
+    for (i = 0; i < w->joint_count; i++) {
+        demi_rod *r = s->rods + i;
+        dem_real by[6] = {0, 0, 0, 0, 0, 0}, u[6];
+        if (r->rows < 6 || !(r->most > 0)) continue;
+        if (r->stuck && free) {
+            demi_rod_velocity(s, r, u);
+            if (!((w->joints[i].desc.speed - u[5])*(dem_real)r->stuck < 0)) continue;
+            r->stuck = 0;
+            n++;
+        } else if (!r->stuck && DEMI_ABS(r->given[5]) > r->most) {
+            r->stuck = r->given[5] > 0 ? 1 : -1;
+            by[5] = (dem_real)r->stuck*r->most - r->given[5];
+            r->given[5] = (dem_real)r->stuck*r->most;
+            demi_rod_apply(w, r, by, demi_rod_twist(r, by));
+            n++;
+        }
+    }
+    if (n) s->factored = 0;
+    return n;
+}
+/* One sweep over the joints; answers as demi_joints_solve, or 0 below the last digits of places. */
+static dem_real demi_joints_sweep(dem_world *w) {
+    const demi_solver *s = &w->solver;
+    const dem_real enough = DEMI_JOINED*w->effects.radius_min/s->dt;
+    dem_real worst, left, far2 = 0, digit;
+    int rounds = 0, i;
+    if (!s->knot_count) return 0;
+    for (i = 0; i < s->knot_count; i++) {
+        const dem_real *x = w->bodies.pos + 4*DEMI_MAX(s->knots[i].mover, 0);
+        far2 = DEMI_MAX(far2, demi_dot(demi_at(x), demi_at(x)));
+    }
+    digit = 8*(DEMI_SINGLE ? DEM_R(FLT_EPSILON) : DEM_R(DBL_EPSILON))/s->dt;
+    demi_motors_bound(w, 1);
+    worst = left = demi_joints_solve(w, 0);
+    while (demi_motors_bound(w, 0) || (++rounds < 4 && left > enough*enough))
+        left = demi_joints_solve(w, 0);
+    return worst > digit*digit*far2 ? worst : 0;
+}
+/* J, what a joint's impulses have given, but for its motor: exactly, by the mean of the velocities
+   before and after. */
+static double demi_rod_work(const dem_world *w, const demi_rod *r) {
+    dem_real u[6];
+    double work = 0;
+    int k;
+    demi_rod_velocity(&w->solver, r, u);
+    for (k = 0; k < 5; k++)
+        if (demi_rod_row(w, r, k)) work += (double)(r->given[k]*(r->before[k] + u[k]))/2;
+    return work;
+}
+/* Whether joints that hang together would give more energy than they have taken before: such are
+   bound to turn their velocities round, which gives none, whatever else acts. Answers how many
+   were not yet. */
+static int demi_joints_guard(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int i, n = 0;
+    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        if (r->rows) s->knots[demi_knot_group(s, r->knot)].work += demi_rod_work(w, r);
+    }
+    for (i = 0; i < s->knot_count; i++) {
+        demi_knot *k = s->knots + i;
+        if (k->group != i || k->guarded > 1 || !(k->work > DEMI_MAX(k->bank, 0))) continue;
+        k->guarded++;
+        n++;
+    }
+    for (i = 0; i < s->knot_count && n; i++) s->knots[i].group = demi_knot_group(s, i);
+    return n;
+}
+/* What guarded joints are still off is undone by places alone, as far as what they have taken pays
+   for what that lifts; a gap that somebody has made by moving a body is closed at any price.
+   Answers how far one has gone, m. */
+static double demi_joints_shift(dem_world *w) {
+    demi_solver *s = &w->solver;
+    double farthest = 0;
+    int i, any = 0;
+    for (i = 0; i < s->knot_count; i++) any |= s->knots[i].guarded && s->knots[i].open;
+    if (!any) return 0;
+    demi_joints_solve(w, 1);
+    for (i = 0; i < s->knot_count; i++) s->knots[i].work = 0;
+    for (i = 0; i < s->knot_count; i++) {
+        const demi_knot *k = s->knots + i;
+        const double g[3] = {(double)w->desc.gravity.x, (double)w->desc.gravity.y,
+                             (double)w->desc.gravity.z};
+        if (k->mover >= 0)
+            s->knots[k->group].work -= (g[0]*k->x[0] + g[1]*k->x[1] + g[2]*k->x[2])*
+                (double)(w->bodies.mass[k->mover]*s->dt);
+    }
+    for (i = 0; i < s->knot_count; i++) {
+        const demi_knot *k = s->knots + i, *group = s->knots + k->group;
+        const double paid = group->open > 1 || !(group->work > group->bank) ? 1
+            : DEMI_MAX(group->bank, 0)/group->work;
+        const dem_real by = (dem_real)paid*s->dt;
+        const dem_vec3 way = demi_v((dem_real)k->x[0]*by, (dem_real)k->x[1]*by,
+                                    (dem_real)k->x[2]*by);
+        const dem_vec3 turn = demi_v((dem_real)k->x[3]*by, (dem_real)k->x[4]*by,
+                                     (dem_real)k->x[5]*by);
+        dem_quat q;
+        dem_real *o;
+        if (!group->guarded || !group->open) continue;
+        if (k->mover < 0) {
+            if (group->work > 0 && group->bank > 0)
+                w->joints[k->rod].bank *= 1 - DEMI_MIN(1, group->work/group->bank);
+            continue;
+        }
+        o = w->bodies.last_orient + 4*k->mover;  /* where demi_ahead_back puts it */
+        q = demi_quat_again(dem_quat_times(demi_quat_exp(turn), demi_quat_at(o)));
+        o[0] = q.w; o[1] = q.x; o[2] = q.y; o[3] = q.z;
+        demi_force_add(w->bodies.last_pos + 4*k->mover, way);
+        farthest = DEMI_MAX(farthest, (double)(demi_length(way) + demi_length(turn)*
+                                               w->bodies.pos[4*k->mover + 3]));
+    }
+    return farthest;
+}
+/* What joints have taken is theirs to give back, up to a part of the kinetic energy: velocities
+   that are together with places swing about those that keep energy. */
+static void demi_joints_bank(dem_world *w) {
+    demi_solver *s = &w->solver;
+    int i;
+    for (i = 0; i < s->knot_count; i++) s->knots[i].bank = 0;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        w->joints[i].bank -= w->joints[i].held;
+        if (r->rows) s->knots[demi_knot_group(s, r->knot)].bank += w->joints[i].bank;
+    }
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_rod *r = s->rods + i;
+        const demi_knot *k = r->rows ? s->knots + demi_knot_group(s, r->knot) : 0;
+        if (!k) w->joints[i].bank = 0;
+        else if (k->bank > DEMI_BANKED*k->kinetic)
+            w->joints[i].bank *= DEMI_BANKED*k->kinetic/k->bank;
+    }
+}
+/* m, by how much a joint will be apart at the end of the step, tilt and all. */
+static dem_real demi_rod_gap(const dem_world *w, int i) {
+    const demi_periods p = demi_periods_of(w);
+    const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
+    return demi_length(demi_nearest(&p, demi_sub(x.point, y.point))) +
+        demi_length(demi_cross(y.axis, x.axis))*demi_rod_size(w, w->solver.rods + i);
 }
 /* What joints have come to: forces, power; on walls, and on bodies that go as they are told. */
 static void demi_joints_tell(dem_world *w) {
     const demi_solver *s = &w->solver;
     const dem_real per = 1/s->dt;
     int i, k;
+    demi_knots_ahead(w);
     for (i = 0; i < w->joint_count; i++) {
         const demi_rod *r = s->rods + i;
-        dem_joint_state *o = &w->joints[i].state;
-        const int wall = w->joints[i].desc.b.slot ? -1 : w->joints[i].desc.wall.id - 1;
-        dem_vec3 u, turn;
-        if (!r->rows) continue;
+        demi_joint *j = &w->joints[i];
+        dem_joint_state *o = &j->state;
+        const int wall = j->desc.b.slot ? -1 : j->desc.wall.id - 1;
+        dem_real u[6];
+        j->held = 0;
+        j->left = 0;
         o->force = demi_scale(demi_at(r->given), per);
-        o->motor_torque = ((r->rows == 6 ? r->given[5] : 0) + r->torque)*per;
+        o->motor_torque = r->rows ? (r->given[5] + r->torque)*per : 0;
+        o->torque = demi_v(0, 0, 0);
+        o->power = 0;
+        if (!r->rows) continue;
         o->torque = demi_scale(demi_add(demi_rod_twist(r, r->given),
                                         demi_scale(r->along[2], r->torque)), per);
-        u = turn = demi_v(0, 0, 0);
+        demi_rod_velocity(s, r, u);
+        j->left = demi_rod_gap(w, i);
+        o->power = o->motor_torque*(r->before[5] + u[5])/2;
+        j->held = demi_rod_work(w, r);
         for (k = 0; k < 2; k++) {
             const int body = k ? r->b : r->a;
-            const demi_mover *m = s->movers + body;
-            const int moves = body < w->bodies.count;
             const dem_real sign = k ? -1 : 1;
-            const dem_vec3 was = moves ? demi_at(w->bodies.vel + 4*body) : demi_at(m->v);
-            const dem_vec3 spun = moves ? demi_at(w->bodies.spin + 4*body) : demi_at(m->w);
-            const dem_vec3 spin = demi_scale(demi_add(spun, demi_at(m->w)), sign/2);
-            turn = demi_add(turn, spin);
-            u = demi_add(u, demi_add(demi_scale(demi_add(was, demi_at(m->v)), sign/2),
-                                     demi_cross(spin, r->arm[k])));
-            if (!moves || m->inv > 0) continue;
-            demi_force_add(w->bodies.force + 4*body, demi_scale(o->force, sign));
-            demi_force_add(w->bodies.torque + 4*body,
-                           demi_scale(demi_add(o->torque, demi_cross(r->arm[k], o->force)), sign));
+            const dem_vec3 f = demi_scale(o->force, sign);
+            const dem_vec3 t = demi_scale(demi_add(o->torque, demi_cross(r->arm[k], o->force)),
+                                          sign);
+            if (body >= w->bodies.count || r->ends[k] >= 0) continue;
+            demi_force_add(w->bodies.force + 4*body, f);
+            demi_force_add(w->bodies.torque + 4*body, t);
         }
-        o->power = demi_dot(o->force, u) + demi_dot(o->torque, turn);
         if (wall >= 0)
-            demi_wall_sum_add(w, w->wall_sums + wall, wall,
-                              demi_rod_end_of(w, i, 1, -1).point, o->force, o->torque,
-                              demi_at(s->movers[r->b].v));
+            demi_wall_sum_add(w, w->wall_sums + wall, wall, demi_rod_end_of(w, i, 1, 0).point,
+                              o->force, o->torque, demi_at(s->movers[r->b].v));
     }
 }
 
@@ -19581,7 +20164,7 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
         sums = demi_runs_sum(&w->solver);
         sums.worst = DEMI_MAX(sums.worst, demi_joints_sweep(w));
         demi_solved_tell(&w->solver, &o, sums);
-    } while (++o.sweeps < most && demi_solved_open(w, &o));
+    } while ((++o.sweeps < most && demi_solved_open(w, &o)) || demi_joints_guard(w));
     return o;
 }
 
@@ -19879,12 +20462,11 @@ static int demi_impulses_room(dem_world *w) {
     demi_solver *s = &w->solver;
     const size_t vectors = (size_t)demi_solvers[w->desc.solver].vectors;
     const size_t bodies = (size_t)w->bodies.count;
-    const size_t joints = (size_t)w->joint_count;
-    const size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS] + joints;
-    size_t n = 0;
+    size_t movers = bodies + (size_t)w->kept_first[DEMI_DOMAINS], n = 0;
     int d;
     if (!demi_impulsive(w)) return 1;
-    if (joints && (!DEMI_GROW(w, s->rods, joints) || !DEMI_GROW(w, s->joined, bodies))) return 0;
+    if (!demi_joints_room(w)) return 0;
+    movers += (size_t)w->joint_count;
     for (d = 0; d < w->domain_count; d++) {
         s->meeting_first[d] = (int)n;
         n += (size_t)(w->domains[d].near_end + w->domains[d].kept_next);
@@ -20090,6 +20672,8 @@ static void demi_impulses(dem_world *w) {
         demi_force_add(w->bodies.last_pos + 4*i, way);
         farthest = DEMI_MAX(farthest, (double)demi_length(way));
     }
+    demi_joints_bank(w);
+    farthest += demi_joints_shift(w);
     w->margin.gone += farthest;
     w->margin.creep += 2*farthest;
 }
@@ -20154,8 +20738,11 @@ static void demi_ahead_back(dem_world *w) {
 /* Walls' and motors' work of the step to come. */
 static void demi_impulses_due(dem_world *w) {
     int i;
-    for (i = 0; i < w->joint_count; i++)
-        w->booked.due[3] += (double)w->joints[i].state.power*(double)w->clock.dt;
+    for (i = 0; i < w->joint_count; i++) {
+        const demi_joint *j = &w->joints[i];
+        w->booked.due[0] -= j->held;
+        w->booked.due[3] += (double)j->state.power*(double)w->clock.dt;
+    }
     for (i = 0; i < w->wall_count; i++)
         w->booked.due[3] += (double)w->walls[i].loads.power*(double)w->clock.dt;
 }
@@ -23884,6 +24471,7 @@ static void demi_reals_gain(dem_world *w) {
 }
 /* A step from its second part on. Numbers as in the manual. */
 static dem_result demi_step_answer(dem_world *w) {
+    const uint64_t unsolved = w->booked.unsolved;
     dem_result result;
     int d, search;
     /* 2 search: when something may have come near that is not in the list. Outlets look then:
@@ -23916,7 +24504,13 @@ static dem_result demi_step_answer(dem_world *w) {
 
     /* 6 kick: the second half kick waits until somebody looks or the next step begins (demi_finish)
        */
-    return demi_overlap(w) < 1 ? DEM_OK : demi_unstable(w);
+    if (!(demi_overlap(w) < 1)) return demi_unstable(w);
+    if (!w->desc.unsolved_stops || w->booked.unsolved == unsolved) return DEM_OK;
+    return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: step %llu: %d sweeps left %.3g m/s, "
+                     "more than the tolerance; contacts press each other, or a joint, harder than "
+                     "so many sweeps resolve: allow more sweeps or a larger tolerance, take a "
+                     "smaller dt, or go on with desc.unsolved_stops = 0",
+                     (unsigned long long)w->clock.steps, w->booked.sweeps, w->booked.residual);
 }
 /* The same where contacts are found: impulses, half a step ahead. */
 static dem_result demi_answer(dem_world *w, dem_result (*answer)(dem_world *w)) {
@@ -24214,9 +24808,12 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     const int line = !demi_isatty(demi_fileno(out)), tenths = (int)(10*done + 1e-9);
     if (line && tenths <= w->look.tenths_told) return 0;
     ((dem_world *)w)->look.tenths_told = tenths;
-    fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   %s", line ? "" : "\r",
-            100*done, w->clock.time, w->bodies.count, seconds_left,
-            line || done >= 1 ? "\n" : "");
+    fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
+            100*done, w->clock.time, w->bodies.count, seconds_left);
+    if (w->booked.unsolved)
+        fprintf(out, "%llu steps left more than the tolerance   ",
+                (unsigned long long)w->booked.unsolved);
+    if (line || done >= 1) fputc('\n', out);
     fflush(out);
     return 0;
 }
@@ -28295,7 +28892,8 @@ static void demi_visit_numbers(dem_world *w, demi_stream *s) {
     DEMI_VISIT(s, w->bodies.count);          DEMI_VISIT(s, w->bodies.slot_count);
     DEMI_VISIT(s, w->domain_count);   DEMI_VISIT(s, w->join_room);
     if (!s->from) w->written_count = w->look.output_count;
-    DEMI_VISIT(s, w->joint_count);    DEMI_VISIT(s, w->written_count);
+    DEMI_VISIT(s, w->joint_count);    DEMI_VISIT(s, w->joint_last);
+    DEMI_VISIT(s, w->written_count);
     DEMI_VISIT(s, w->bodies.orienting);      DEMI_VISIT(s, w->bodies.shaped);
     DEMI_VISIT(s, w->filed.count);    DEMI_VISIT(s, w->filed.rows);
     DEMI_VISIT(s, w->filed.stride);
@@ -29061,12 +29659,14 @@ static int demi_joints_check(const demi_reader *r) {
     for (i = 0; i < r->t->joint_count; i++) {
         const demi_joint *j = &r->t->joints[i];
         const dem_joint_state *o = &j->state;
-        if (j->desc.kind == DEM_JOINT_NONE) continue;
-        if ((int)j->desc.kind < 0 || j->desc.kind > DEM_JOINT_REVOLUTE ||
+        if ((int)j->desc.kind <= 0 || j->desc.kind > DEM_JOINT_REVOLUTE ||
             (int)j->desc.motor < 0 || j->desc.motor > DEM_MOTOR_TORQUE || !r->t->bodies.orienting ||
             (j->desc.motor != DEM_MOTOR_NONE && j->desc.kind != DEM_JOINT_REVOLUTE) ||
             j->desc.wall.id < 0 || j->desc.wall.id > r->t->wall_count ||
-            !demi_finite(j->desc.speed) || !demi_finite(j->desc.torque) ||
+            j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||
+            !(DEMI_ABS(j->desc.speed) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->bank) ||
+            !(DEMI_ABS(j->desc.torque) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->held) ||
+            !demi_finite(j->left) || !demi_finite(j->apart) ||
             !demi_place(j->arm[0]) || !demi_place(j->arm[1]) || !demi_finite3(j->axis[0]) ||
             !demi_finite3(j->axis[1]) || !demi_finite3(o->force) || !demi_finite3(o->torque) ||
             !demi_finite(o->power) || !demi_finite(o->motor_torque) ||
@@ -30763,9 +31363,10 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
     }
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
-        if (w->joints[i].desc.kind == DEM_JOINT_NONE) continue;
+        if (!demi_joint_alive(w, w->joints + i)) continue;
         fprintf(out, "joint %-3d  force %.4g N, torque %.4g N m; motor %.4g N m, %.4g W; off by "
-                "%.3g m\n", i + 1, (double)demi_length(j->force), (double)demi_length(j->torque),
+                "%.3g m\n", (int)w->joints[i].id, (double)demi_length(j->force),
+                (double)demi_length(j->torque),
                 (double)j->motor_torque, (double)j->power, (double)j->gap);
     }
     for (i = 0; i < w->feed_count; i++) {
