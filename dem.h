@@ -943,7 +943,8 @@ DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_co
 }
 
 /* Force in N on a body at position (m) with velocity (m/s), of radius (m) and mass (kg), at time
-   (s). Called once per body and step, from several threads. */
+   (s). With impulses these are of the middle of the step. Called once per body and step, from
+   several threads. */
 typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real radius,
                                  dem_real mass,
                                  double time, void *user);
@@ -964,8 +965,9 @@ typedef void (*dem_body_force_fn)(const dem_body_state *body, dem_body id, doubl
 typedef void (*dem_reals_fn)(dem_real *reals, const dem_real *rates, const dem_body_state *body,
                              dem_body id, double time, dem_real dt, void *user);
 
-/* Fills in a wall's pose at a time (s). Called twice a step (for its end and its middle) from one
-   thread. Must be smooth, with velocity and spin the exact derivatives of position and rotation. */
+/* Fills in a wall's pose at a time (s). Called twice a step (for its end and its middle; with
+   impulses also for the end of the next step) from one thread. Must be smooth, with velocity and
+   spin the exact derivatives of position and rotation. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
 
 /* Both functions or neither. size is given back on release. May be called from one thread at a
@@ -18190,20 +18192,6 @@ static void demi_move_symplectic_euler(dem_world *w, int begin, int end, int tur
         }
     }
 }
-/* x(t+dt) = x + (v(t) + v(t+dt)) dt/2, v(t+dt) = v + a(t+dt/2) dt: impulses, found at x + v dt/2.
-   A velocity that somebody has set may go into a wall, or part a joint: there they are found at x,
-   and take it off before the body goes. */
-static void demi_move_midpoint(dem_world *w, int begin, int end, int turning) {
-    const dem_real dt = w->clock.dt;
-    int i, k;
-    demi_move_velocity_verlet(w, begin, end, turning);
-    for (i = begin; i < end; i++)
-        for (k = 4*i; k < 4*i + 3 && !w->bodies.went[i]; k++) {
-            w->bodies.pos[k] += (w->bodies.vel[k] - w->bodies.half_vel[k])*dt;
-            w->bodies.half_vel[k] = w->bodies.vel[k];
-            w->bodies.half_spin[k] = w->bodies.spin[k];
-        }
-}
 /* x(t+dt) = x + v(t) dt, v(t+dt) = v + a dt [MIL] 4.6 */
 static void demi_move_forward_euler(dem_world *w, int begin, int end, int turning) {
     const dem_real dt = w->clock.dt;
@@ -18218,6 +18206,20 @@ static void demi_move_forward_euler(dem_world *w, int begin, int end, int turnin
             if (turning) s.v[k] += s.f[k]*s.inv*dt;
         }
     }
+}
+/* x(t+dt) = x + (v(t) + v(t+dt)) dt/2, v(t+dt) = v + a(t+dt/2) dt: impulses, found at x + v dt/2.
+   A velocity that somebody has set may go into a wall, or part a joint: there they are found at x,
+   and take it off before the body goes. */
+static void demi_move_midpoint(dem_world *w, int begin, int end, int turning) {
+    const dem_real dt = w->clock.dt;
+    int i, k;
+    demi_move_velocity_verlet(w, begin, end, turning);
+    for (i = begin; i < end; i++)
+        for (k = 4*i; k < 4*i + 3 && !w->bodies.went[i]; k++) {
+            w->bodies.pos[k] += (w->bodies.vel[k] - w->bodies.half_vel[k])*dt;
+            w->bodies.half_vel[k] = w->bodies.vel[k];
+            w->bodies.half_spin[k] = w->bodies.spin[k];
+        }
 }
 static void demi_finish_nothing(dem_world *w, int begin, int end) { (void)w; (void)begin;
     (void)end; }
@@ -18554,14 +18556,18 @@ static const demi_integrator_row demi_integrator_rows[] = {     /* in the order 
     {"symplectic Euler", demi_move_symplectic_euler, demi_finish_nothing, 1, 0, 0},
     {"position Verlet", demi_move_position_verlet, demi_finish_halves, 2, 1, 1},
     {"leapfrog", demi_move_leapfrog, demi_finish_halves, 2, 0, 1},
-    /* of impulses, found at the half step; their velocities are finished at once */
-    {"the midpoint rule", demi_move_midpoint, demi_finish_nothing, 2, 1, 0},
 };
-enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) - 1 };
+enum { DEMI_INTEGRATORS = (int)(sizeof demi_integrator_rows/sizeof *demi_integrator_rows) };
+/* Impulses have their own, whose velocities are finished at once. */
+static const demi_integrator_row *demi_integrator_of(const dem_world *w) {
+    static const demi_integrator_row midpoint = {"the midpoint rule", demi_move_midpoint,
+                                                 demi_finish_nothing, 2, 1, 0};
+    return demi_impulsive(w) ? &midpoint : demi_integrator_rows + w->desc.integrator;
+}
 
 static void demi_domain_finish(dem_world *w, int d) {
     if (w->bodies.booked) demi_late_note(w, w->domains[d].begin, w->domains[d].end);
-    demi_integrator_rows[w->desc.integrator].finish(w, w->domains[d].begin, w->domains[d].end);
+    demi_integrator_of(w)->finish(w, w->domains[d].begin, w->domains[d].end);
     if (w->bodies.shaped && !demi_impulsive(w))         /* impulses finish it by themselves */
         demi_orient_finish(w, w->domains[d].begin, w->domains[d].end);
 }
@@ -18577,9 +18583,11 @@ static void demi_finish(dem_world *w) {
 /* ---------------------------------------------------------------------------------------------
    >>impulses
    In place of contact laws: rigid grains, and impulses that keep them out of each other ([TAS10],
-   [STE96]). At the end of a step positions and velocities belong to one time; every contact and gap
-   nearer than the law's range is laid down here, and >>solvers looks for impulses so that after the
-   next kick
+   [STE96]). At the end of a step positions and velocities belong to one time. The next step's
+   contacts are found half a step ahead (demi_ahead), at x + v dt/2: from there bodies go on by
+   whole steps, so that the next places where contacts are found, a dt later, are those at which
+   nothing may overlap. Every contact and gap nearer than the law's range is laid down here, and
+   >>solvers looks for impulses so that after the next kick
        un + bias >= 0, push >= 0, one of the two 0;   bias = gap/dt, or e un before an impact;
        friction |T| <= mu push against the slip (DEM_CONE_COULOMB), or both together in the cone's
        own convex sense (DEM_CONE_CONVEX); rolling |R| <= mu_r R* push and twist |S| <= mu_s R* push
@@ -20710,13 +20718,13 @@ static void demi_some_back(dem_world *w, int index) {
             demi_centres_rotate(w, i);
     }
 }
-/* Bodies and walls half a step ahead: `mid` keeps where walls are. Their surfaces have velocities
-   of a whole step ahead, the middle between two places where contacts are found. */
+/* Bodies and walls half a step ahead: `mid` keeps where walls are. Surfaces have the velocities of
+   a whole step ahead, the middle between two places where contacts are found. */
 static void demi_ahead(dem_world *w) {
     const double dt = (double)w->clock.dt;
+    const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->desc.threads, (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD,
-                  demi_some_ahead);
+    demi_parallel(w, w->desc.threads, runs, demi_some_ahead);
     for (i = 0; i < w->wall_count; i++) {
         demi_wall *wall = &w->walls[i];
         dem_pose pose;
@@ -20730,9 +20738,9 @@ static void demi_ahead(dem_world *w) {
     }
 }
 static void demi_ahead_back(dem_world *w) {
+    const int runs = (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD;
     int i;
-    demi_parallel(w, w->desc.threads, (w->bodies.count + DEMI_AHEAD - 1)/DEMI_AHEAD,
-                  demi_some_back);
+    demi_parallel(w, w->desc.threads, runs, demi_some_back);
     for (i = 0; i < w->wall_count; i++) w->walls[i].pose = w->walls[i].mid;
 }
 /* Walls' and motors' work of the step to come. */
@@ -24024,7 +24032,7 @@ static void demi_some_move(dem_world *w, demi_domain *domain, int begin, int end
     const size_t bytes = (size_t)(end - begin)*4*sizeof(dem_real);
     int i, l;
     if (w->bodies.booked && !w->stage.synced) demi_late_note(w, begin, end);
-    demi_integrator_rows[w->desc.integrator].advance(w, begin, end, turning);
+    demi_integrator_of(w)->advance(w, begin, end, turning);
     if (w->desc.planar)
         for (i = begin; i < end; i++) {
             w->bodies.pos[4*i + 2] = w->bodies.vel[4*i + 2] = 0;
@@ -31205,15 +31213,15 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
-    if (demi_impulsive(w)) w->desc.integrator = (dem_integrator)DEMI_INTEGRATORS;
+    if (demi_impulsive(w)) w->desc.integrator = DEM_SYMPLECTIC_EULER;
     /* until bodies are there to decide */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
     w->bodies.slot_free = w->bodies.slot_pending = -1;
     w->stage.synced = 1;
     w->bodies.orienting = desc->orientations != 0;
-    w->bodies.backward = demi_integrator_rows[w->desc.integrator].backward;
-    w->bodies.booked = desc->ledger && demi_integrator_rows[w->desc.integrator].predicts;
+    w->bodies.backward = demi_integrator_of(w)->backward;
+    w->bodies.booked = desc->ledger && demi_integrator_of(w)->predicts;
     w->pairs = (demi_pair *)demi_hold(w, DEMI_SCENE, (size_t)DEMI_MATERIALS*DEMI_MATERIALS,
                                       sizeof(demi_pair));
     w->domains = (demi_domain *)demi_hold(w, DEMI_RUN, DEMI_DOMAINS, sizeof(demi_domain));
@@ -31428,8 +31436,8 @@ static void demi_report(const dem_world *world, FILE *out) {
             (unsigned long long)w->bodies.balance.left);
     fprintf(out, "time       %g s in %llu steps of %g s by %s (order %d)\n", w->clock.time,
             (unsigned long long)w->clock.steps, (double)w->clock.dt,
-            demi_integrator_rows[w->desc.integrator].name,
-            demi_integrator_rows[w->desc.integrator].order);
+            demi_integrator_of(w)->name,
+            demi_integrator_of(w)->order);
     if (!demi_impulsive(w))
         fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit t_c/20 = %.4g s; Rayleigh %.4g s; "
                 "bound by %s\n", (double)a.contact_time,
