@@ -20628,14 +20628,12 @@ static int demi_impulses_tame(dem_world *w, int last) {
         demi_impulse *c = s->contacts + i;
         dem_vec3 before, after, p;
         dem_real gain;
-        if (!(s->beside[i].bounces || s->beside[i].turns < 0) || !(c->bias < 0) || !(c->push > 0))
-            continue;
+        if (!s->beside[i].bounces || !(c->bias < 0) || !(c->push > 0)) continue;
         before = demi_impulse_before(w, c);
         after = demi_impulse_velocity(s, c, w->bodies.shaped > 0);
         p = demi_add(demi_scale(c->normal, c->push), c->slip);
         gain = demi_dot(p, demi_add(before, after));
-        if (!(gain > (!s->beside[i].bounces ? DEM_R(1e-3) : DEMI_SINGLE ? DEM_R(1e-6)
-                      : DEM_R(1e-14))*-c->bias*c->push)) continue;
+        if (!(gain > (DEMI_SINGLE ? DEM_R(1e-6) : DEM_R(1e-14))*-c->bias*c->push)) continue;
         c->bias = last ? 0 : c->bias/2;
         tamed++;
     }
