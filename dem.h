@@ -11196,6 +11196,8 @@ static int demi_list_join(dem_world *w, int i, const int32_t *found, int count) 
     const demi_periods p = demi_periods_of(w);
     int k, leading = 0;
     w->domains[last].end = i + 1;
+    /* contacts of impulses are found half a step ahead */
+    if (demi_impulsive(w)) w->margin.gone += w->margin.step_gone/2;
     if (count >= w->join_room) return 0;
     w->join_room -= count;
     for (k = 0; k < count; k++) {
