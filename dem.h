@@ -3332,7 +3332,6 @@ typedef struct demi_solver {
     int knot_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; of the colour being swept; its first run */
     int twisted;                   /* is there rolling or spinning friction? */
-    int back;                      /* contacts are swept from the last to the first */
     int begins[65];                /* of each colour */
     int meeting_first[DEMI_DOMAINS], meeting_count[DEMI_DOMAINS];
     dem_real dt, step;             /* s; of some solvers, see there */
@@ -19954,8 +19953,7 @@ static void demi_joints_tell(dem_world *w) {
    that would solve it alone, in m/s (the natural map in the metric of its inverse mass).
      Gauss-Seidel   contact after contact, each solved exactly in its own metric: [JEA99], and for
                     the convex cone [TAS10] with its projection in that metric (a cone again, with
-                    mu sqrt(gt/gn)). Sweeps go forwards and backwards in turn: in one order
-                    alone the points of a wedge hand on to each other what is left.
+                    mu sqrt(gt/gn)).
      Jacobi         all at once, each taking a part of its step as small as its bodies have
                     contacts [TON12]. For comparison: six to twelve times the sweeps.
      APGD           Nesterov's gradients with restarts [MAZ15]; one product of N = D' M^-1 D with
@@ -20065,13 +20063,13 @@ static void demi_run_bounds(const demi_solver *s, int index, int *begin, int *en
     *begin = s->first + index*DEMI_SWEEP_RUN;
     *end = DEMI_MIN(*begin + DEMI_SWEEP_RUN, s->last);
 }
-/* Every colour once, on the way back from the last to the first: the task over its runs. */
+/* Every colour once: the task over its runs. */
 static void demi_colours_all(dem_world *w, demi_task task) {
     demi_solver *s = &w->solver;
-    int i;
+    int k;
     s->run = 0;
-    for (i = 0; i < DEMI_COLOURS; i++) {
-        const int k = s->back ? DEMI_COLOURS - 1 - i : i, n = s->begins[k + 1] - s->begins[k];
+    for (k = 0; k < DEMI_COLOURS && s->begins[k] < s->count; k++) {
+        const int n = s->begins[k + 1] - s->begins[k];
         const int runs = (n + DEMI_SWEEP_RUN - 1)/DEMI_SWEEP_RUN;
         s->first = s->begins[k];
         s->last = s->begins[k + 1];
@@ -20121,17 +20119,14 @@ enum { DEMI_SOON = 8 }; /* bodies are fetched this many contacts ahead: a tenth 
     static void NAME(dem_world *w, int index) { \
         demi_solver *s = &w->solver; \
         demi_run_sums sums = {0, 0, 0, 0}; \
-        const int way = s->back ? -1 : 1, soon = way*DEMI_SOON; \
-        demi_impulse *c; \
         int i, end; \
-        demi_run_bounds(s, index, &i, &end); \
-        c = s->contacts + (s->back ? end - 1 : i); \
-        for (; i < end; i++, c += way) { \
+        for (demi_run_bounds(s, index, &i, &end); i < end; i++) { \
+            demi_impulse *c = s->contacts + i; \
             dem_real push; \
             dem_vec3 slip, by; \
             if (i + DEMI_SOON < end) { \
-                DEMI_FETCH(s->movers + c[soon].a); \
-                DEMI_FETCH(s->movers + c[soon].b); \
+                DEMI_FETCH(s->movers + c[DEMI_SOON].a); \
+                DEMI_FETCH(s->movers + c[DEMI_SOON].b); \
             } \
             demi_sums_add(&sums, demi_impulse_wanted(c, demi_impulse_velocity(s, c, SHAPED), \
                                                      &push, &slip, CONVEX)); \
@@ -20168,9 +20163,7 @@ static demi_solved demi_solve_seidel(dem_world *w, int most) {
     demi_solved o = {0, 0, 0};
     do {
         demi_run_sums sums;
-        w->solver.back = o.sweeps & 1;
         demi_colours_all(w, task);
-        w->solver.back = 0;
         sums = demi_runs_sum(&w->solver);
         sums.worst = DEMI_MAX(sums.worst, demi_joints_sweep(w));
         demi_solved_tell(&w->solver, &o, sums);
