@@ -238,8 +238,8 @@
    Threads. Different worlds may be used from different threads. Several threads may look at one
    world at once, by functions that take it as const, while none changes it. Of those only these
    write: one that fails (its sentence), dem_world_error (that it was read), dem_progress_print
-   (how far it has told), dem_world_report (that a force of yours is asked), and dem_bodies_get in a
-   periodic world (the places, wrapped into the box).
+   (how far it has told), dem_world_report and dem_contacts_get (that a function of yours is asked),
+   and dem_bodies_get in a periodic world (the places, wrapped into the box).
    Within a world, `threads` of the desc sets the OpenMP threads; the same input gives the same bits
    for any number of them: bodies are dealt to domains that depend on the number of bodies only, and
    every sum runs in a fixed order. To compare bits between builds, and with other systems and
@@ -3645,6 +3645,16 @@ static demi_calling demi_calls(dem_world *w, const char *who, int within) {
     w->look.calling.who = who;
     w->look.calling.within = within;
     return was;
+}
+/* The same where a world is only looked at, maybe by several threads: one that finds nothing under
+   way says so and takes it back, others do neither, so that it does not stay said. */
+static demi_calling demi_look_calls(const dem_world *w, const char *who) {
+    const demi_calling was = w->look.calling;
+    if (!was.who) demi_calls((dem_world *)w, who, 1);
+    return was;
+}
+static void demi_look_called(const dem_world *w, demi_calling was) {
+    if (!was.who) ((dem_world *)w)->look.calling = was;
 }
 /* The first line of every public function is one of the next three. They return 1, with a sentence
    where there is a world to hold it, when the world or a pointer that has to lead somewhere is
@@ -23646,6 +23656,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     demi_tile tile;
     dem_contact c;
     dem_contact_force f;
+    demi_calling was;
     dem_vec3 gap;
     int e;
     tile.memory[r.same.at_sliding][0] = 0;      /* demi_law takes it from `memory` */
@@ -23662,7 +23673,9 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
     demi_who_clear(&c.who);
     demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
+    was = demi_look_calls(w, "a look at contacts");
     demi_law(w, &c, memory, &f);
+    demi_look_called(w, was);
     demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
     out->a = dem_bodies_id(w, a);
     out->b = dem_bodies_id(w, b);
@@ -31461,15 +31474,12 @@ static void demi_report(const dem_world *world, FILE *out) {
     demi_flows_report(w, out);
     if (w->desc.ledger) demi_ledger_report(w, out);
 }
-/* Several threads may report at once: only the one that finds no call under way sets the flag that
-   a field is being called, and only that one clears it. */
 DEM_API void dem_world_report(const dem_world *w, FILE *out) {
+    demi_calling was;
     if (demi_null_look(w, "dem_world_report", out, "out")) return;
-    dem_world *own = (dem_world *)w;
-    const demi_calling was = w->look.calling;
-    if (!was.who) demi_calls(own, "dem_world_report", 1);
+    was = demi_look_calls(w, "dem_world_report");
     demi_report(w, out);
-    if (!was.who) own->look.calling = was;
+    demi_look_called(w, was);
 }
 
 /* ---------------------------------------------------------------------------------------------

@@ -436,11 +436,11 @@ static double sticky(double d, double *D, double kn, double kun, double kad) {
 /* ---- functions of the user's that try to change the world ---- */
 
 enum { FROM_EACH, FROM_BONDS, FROM_MOTION, FROM_FORCE, FROM_LAW, FROM_REALS, FROM_PROGRESS, FROM_NUMBER, FROM_FEED,
-       FROM_FILL, FROM_PACK, FROM_VALUES, FROM_ALLOCATOR, FROM_ADVISE, FROM_REPORT, FROM_SLABS, FROM_COUNT };
+       FROM_FILL, FROM_PACK, FROM_VALUES, FROM_ALLOCATOR, FROM_ADVISE, FROM_REPORT, FROM_CONTACTS, FROM_SLABS, FROM_COUNT };
 static const char *const intruders[FROM_COUNT] = {
     "contact function", "bond function", "motion", "force", "law", "rate of numbers", "progress function", "film's number",
     "feed's region", "filled region", "packed region", "output's values", "allocator", "law of a trial",
-    "force in a report", "law in slabs"};
+    "force in a report", "law in a look", "law in slabs"};
 /* One to change the world: 1 when it was refused by name and for that reason. The calls of a law are
    made by two threads at a time. */
 typedef struct intruder {
@@ -552,7 +552,7 @@ static uint64_t intruded(int from, int begin, int response) {
     desc.dt = DEM_R(1e-6);
     if (response) desc.response = DEM_RESPONSE_IMPULSES;
     if (from == FROM_FORCE || from == FROM_REPORT) desc.force = intrude_force;
-    if (from == FROM_LAW || from == FROM_ADVISE || from == FROM_SLABS) { desc.law = intrude_law; desc.law_stiffness = 1000; }
+    if (from == FROM_LAW || from == FROM_ADVISE || from == FROM_CONTACTS || from == FROM_SLABS) { desc.law = intrude_law; desc.law_stiffness = 1000; }
     if (from == FROM_REALS) { desc.body_reals = "t"; desc.body_reals_fn = intrude_reals; }
     if (from == FROM_ALLOCATOR) { desc.allocator.alloc_fn = intrude_alloc; desc.allocator.free_fn = intrude_free; desc.allocator.user = &trying; }
     w = dem_world_create(&desc);
@@ -593,6 +593,7 @@ static uint64_t intruded(int from, int begin, int response) {
         break;
     }
     case FROM_REPORT: { FILE *out = tmpfile(); dem_world_report(w, out); fclose(out); break; }
+    case FROM_CONTACTS: { static dem_contact_info found[100]; CHECK(dem_contacts_get(w, found, 100) > 0); break; }
     case FROM_SLABS: {
         dem_slabs *dealt = dem_slabs_create(w, &slabs);
         intrudes.world = 0;
@@ -608,7 +609,7 @@ static uint64_t intruded(int from, int begin, int response) {
     default: break;
     }
     dem_world_step(w, 3);                       /* stops short where a refusal builds the scene */
-    if (from == FROM_REPORT) intrudes.world = 0;
+    if (from == FROM_REPORT || from == FROM_CONTACTS) intrudes.world = 0;
     if (begin && from != FROM_SLABS) {
         CHECK(intrudes.calls > 0 && intrudes.refused == 0);
         CHECK_STR(dem_world_error(w), "called by a function of yours");
@@ -634,7 +635,7 @@ int main(int argc, char **argv) {
         int from, response;
         for (response = 0; response < 2; response++)
             for (from = 0; from < FROM_COUNT; from++) {
-                if (response && (from == FROM_BONDS || from == FROM_LAW || from == FROM_ADVISE || from == FROM_SLABS)) continue;
+                if (response && (from == FROM_BONDS || from == FROM_LAW || from == FROM_ADVISE || from == FROM_CONTACTS || from == FROM_SLABS)) continue;
                 CHECK(intruded(from, 0, response) == intruded(from, 1, response));
             }
     }
