@@ -18922,12 +18922,12 @@ static void demi_surface_lay(const dem_world *w, const demi_kept *k, demi_mover 
     demi_put(m->w, wall->ahead.spin);
 }
 /* Normals turn between two places where contacts are found. On a concave wall that alone makes a
-   body close that moved along it. If half of that closing velocity is turned back, bodies move along
-   chords from wall to wall and keep their energy; otherwise they would lose some in each step. A
-   contact that lasts knows how much it is: closing now, less the normal velocity with which it was
-   left (bodies still have that one; what a wall has changed its own by is no turn). Returns <= 0,
-   m/s, to be added to the bias: never more than the contact closes by, so that it brings no energy.
-   *hits: m/s, the rest of the closing velocity, which is an impact. */
+   body close that moved along it. If half of that closing velocity is turned back, bodies move
+   along chords from wall to wall and keep their energy; otherwise they would lose some in each
+   step. A contact that lasts knows how much it is: closing now, less the normal velocity with which
+   it was left (bodies still have that one; what a wall has changed its own by is no turn). Returns
+   <= 0, m/s, to be added to the bias: never more than the contact closes by, so that it brings no
+   energy. *hits: m/s, the rest of the closing velocity, which is an impact. */
 static dem_real demi_impulse_turns(const dem_world *w, const demi_meeting *m, const demi_kept *k,
                                    const demi_spot *o, dem_real closing, dem_real *hits) {
     const dem_real *y = o->memory;
@@ -19038,8 +19038,8 @@ static void demi_impulses_lay(dem_world *w, int d) {
    without fill ([BAR96]); loops fill in a little. `give`, a softness of 1e-9 of what an impulse
    brings, makes loops solvable that hold more than is needed.
    r is by what points and axes will be apart where the next step finds them (in its middle, see
-   demi_ahead), with rotations as the integrator makes them, over dt: SHAKE, with a few Newton steps.
-   Its energy swings by O(dt^2).
+   demi_ahead), with rotations as the integrator makes them, over dt: SHAKE, with a few Newton
+   steps. Its energy swings by O(dt^2).
    Impulses p of joints that hang together give p (J u before + J u after)/2, exactly. Where that
    is more than they have taken before (at most 1e-3 of their kinetic energy is remembered), rows
    are wanted at J u after = -J u before/2, and if need be at -J u before, which gives nothing
@@ -24792,7 +24792,8 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
         calm = demi_feed_coming(w) < 0 && mean < below && most < 10*below ? calm + 1 : 0;
         if (calm > 2) break;
         if (!(left > (double)w->clock.dt/2)) return demi_unsettled(w, seconds, below);
-        result = dem_world_run(w, DEMI_MIN(DEMI_MIN(look, seconds/4), left), 0, 0);
+        look = DEMI_MAX(DEMI_MIN(look, seconds/4), (double)w->clock.dt);
+        result = dem_world_run(w, DEMI_MIN(look, left), 0, 0);
         if (result != DEM_OK) return result;
         if (demi_clock() - last > 0.1) {
             last = demi_clock();

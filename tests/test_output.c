@@ -460,6 +460,18 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_settle(world, 1, DEM_R(1e-3), 0, 0), DEM_OK);
         dem_world_destroy(world);
     }
+    TEST("settling ends after a time that is no whole number of steps, although less than a step of it is left") {
+        dem_world_desc desc = DEM_WORLD_DESC;
+        dem_world *world;
+        int k;
+        desc.gravity = at(0, 0, -9.81);
+        desc.dt = DEM_R(1e-5);
+        world = dem_world_create(&desc);
+        dem_sphere_add(world, scene_material(world, 1e6, 0.5, 0, 0), DEM_R(1e-3), at(0, 0, 1));
+        for (k = 1; k < 20; k++)
+            CHECK_EQ(dem_world_settle(world, 1.03e-5*k, DEM_R(1e-6), 0, 0), DEM_ERROR_STOPPED);
+        dem_world_destroy(world);
+    }
 
     TEST("velocities drawn for a temperature have it, their mean is kept, light grains and heavy ones share the energy "
          "evenly; scaled ones keep their directions; the ledger counts what came in") {
