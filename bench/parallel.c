@@ -509,7 +509,7 @@ static void mill_part(void) {
         if (!full_form) most_workers = most < 2 ? most : 2;
         of.name = "mill253125"; of.count = 45*s.one.grains; of.warm_up = 40; s.count = 45; s.whole = 0;
         of.axis = 2;
-        study_result_text("mill253125.published", "18.35e6", "particle-steps/s ([MIL] Fig 6.16, GTX 560 Ti, single precision; "
+        study_result_text("mill253125.published", "18.35e6", "particle-steps/s ([MIL] Fig 6.16, GTX 560 Ti, double precision; "
                           "others there 2.02e4 to 4.74e6)");
         compare_ways(&of, s.one.dt);
         most_workers = most;

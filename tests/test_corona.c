@@ -1,5 +1,5 @@
 /* The corona electrostatic separator (examples/corona.h, examples/separator.h): field, charges and forces against
-   closed forms and published figures, single grains on the drum, and a small machine that loses nobody and
+   closed forms and separate integrations, single grains on the drum, and a small machine that loses nobody and
    repeats itself. */
 #define DEM_IMPLEMENTATION
 #include "../dem.h"
@@ -27,7 +27,7 @@ static dem_body_state grain_at(double x, double y, double radius, int material) 
 }
 
 /* One grain put on top of the drum, at the drum's speed and spin; rolling friction keeps it from rolling, for the
-   published trajectories are those of points. free_drag: the air drags it in flight alone. */
+   trajectories that it is compared with are those of points. free_drag: the air drags it in flight alone. */
 typedef struct ride { double radius, volts, strength; int metal, pull, free_drag; } ride;
 typedef struct ridden { double slip, leave, x, pinned; } ridden;
 static ridden ride_run(const ride *r, double dt) {
@@ -397,9 +397,9 @@ int main(int argc, char **argv) {
         CHECK(coarse < 0.01);
         CHECK_NEAR(coarse/fine, 4, 0.3);        /* second order; the next term is of the fourth */
     }
-    TEST("single grains leave the drum and land where the published trajectories have them") {
-        /* radius mm, V, V/m; metal, Q E on ions; slip and leave (degrees after the top), x at y = -0.5 m. They were
-           reckoned for points without drag on the drum and with drag in flight: so here */
+    TEST("single grains leave the drum and land where a separate integration of a point's equations has them") {
+        /* radius mm, V, V/m; metal, Q E on ions; slip and leave (degrees after the top), x at y = -0.5 m. This project
+           integrated them before it wrote the machine, for points without drag on the drum and with drag in flight */
         static const ride rides[8] = {
             {0.15e-3, 30e3, 0, 1, 1, 1}, {0.30e-3, 30e3, 0, 1, 1, 1}, {0.30e-3, 1e-3, 0, 1, 1, 1},
             {1.0e-3, 30e3, 0, 1, 1, 1}, {1.0e-3, 1e-3, 0, 1, 1, 1}, {0.30e-3, 30e3, 0, 0, 0, 1},
