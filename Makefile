@@ -60,7 +60,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install test hard law lessons web examples studies mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags parts recipes snippets clean
+.PHONY: help all run new install test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags parts recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -101,6 +101,9 @@ examples: lessons $(SHOWS) snippets ## the lessons, the other examples that chec
 	if test -n "$$failed"; then echo "examples failed:$$failed"; exit 1; fi; echo "all examples as expected"
 
 studies: $(STUDIES) ## build the studies into build/: each takes --help
+
+studies-check: build/mill build/screener build/ellipsoids build/separator ## run every command of these four that README.md and docs/ name, in its short form; LONG=1: as it is written, in an hour
+	@JOBS=$(JOBS) sh tests/studies.sh $(if $(LONG),long)
 
 mpi: build/dem.o ## build examples/mpi and run them on 1, 2 and 3 processes, where mpicc and its headers are found
 	@printf '%s\n' '$(hash)include <mpi.h>' 'int main(void) { return MPI_Finalize(); }' > build/probe.c; \

@@ -72,9 +72,9 @@ static const double restitutions[RESTITUTIONS] = {0.9, 0.95, 0.98};
 static struct gas_options {
     double xi, restitution, fraction, overlap, collisions, run_in, dt, seconds;
     const char *damping, *hold, *out;
-    int count, seed, threads, quick, all, theory, direct, speeds, replay;
+    int count, seed, threads, quick, brief, all, theory, direct, speeds, replay;
 } options = {0, 0, 0.058, 0.003, 40, 8, 0, 3, "exact", "true", "build/out/ellipsoids",
-             512, 1, 1, 0, 0, 0, 0, 0, 0};
+             512, 1, 1, 0, 0, 0, 0, 0, 0, 0};
 
 static const study_option table[] = {
     {"xi", STUDY_REAL, &options.xi, 0, 10, "", "elongation; 1: spheres; 0: 1, 1.5, 2, 3"},
@@ -93,6 +93,7 @@ static const study_option table[] = {
     {"threads", STUDY_INT, &options.threads, 0, 64, "", "0: as many as there are"},
     {"out", STUDY_TEXT, &options.out, 0, 0, "", "folder for results"},
     {"quick", STUDY_FLAG, &options.quick, 0, 0, "", "one case, of fewer collisions"},
+    {"short", STUDY_FLAG, &options.brief, 0, 0, "", STUDY_SHORT},
     {"replay", STUDY_FLAG, &options.replay, 0, 0, "", "a film of the first case, replay.html"},
     {"all", STUDY_FLAG, &options.all, 0, 0, "", "Table 1's elongations at .90, .95, .98"},
     {"theory", STUDY_FLAG, &options.theory, 0, 0, "", "S_c, <D>_c, theta, zeta*, and no gas"},
@@ -587,7 +588,7 @@ static int gas_case(gas *g, double xi, double e) {
     g->zeta_theory = zeta;
     temperature = g->mass*pow(speed*g->radius, 2)/(g->mass/2/STIFFNESS);
     if (gas_fill(g, temperature, 0)) return 1;
-    wait = g->spheres ? 2 : settling(g, reduced_damping, theta) + 2;
+    wait = options.brief ? 0.5 : g->spheres ? 2 : settling(g, reduced_damping, theta) + 2;
     snprintf(what, sizeof what, "xi %.2f e %.2f run-in", xi, e);
     start = dem_totals_get(g->world).kinetic + dem_totals_get(g->world).rotational;
     if (options.run_in > 0 && gas_run(g, what, options.run_in/g->t.d_root, 0)) return 1;
@@ -699,8 +700,8 @@ static void direct_case(double xi, double e) {
     g.random = (uint64_t)options.seed;
     theory_make(xi, &g.t);
     theory_state(&g.t, e, 0, &theta, &zeta);
-    wait = settling(&g, 0, theta) + 2;
-    end = wait + options.collisions;
+    wait = options.brief ? 0.05 : settling(&g, 0, theta) + 2;
+    end = wait + (options.brief ? 0.4 : options.collisions);
     for (i = 0; i < COUNT; i++) {
         draw *d = &bodies[i];
         double any[3];
@@ -969,10 +970,10 @@ static void speeds_run(void) {
     static const double seed[2][5] = {{1.1e5, 7.4e5, 3.9e6, 4.5e6, 4.2e6},
                                       {2.4e5, 1.5e6, 5.8e6, 7.7e6, 8.2e6}};
     double data[5][5];
-    const double *columns[5];
+    const double *columns[5] = {data[0], data[1], data[2], data[3], data[4]};
+    const int sizes = options.brief ? 3 : 5;
     int size, kind;
-    for (size = 0; size < 5; size++) {
-        columns[size] = data[size];
+    for (size = 0; size < sizes; size++) {
         data[0][size] = pow(8, size + 2);
         for (kind = 0; kind < 2; kind++) {
             static gas g;
@@ -1006,7 +1007,7 @@ static void speeds_run(void) {
             gas_destroy(&g);
         }
     }
-    study_csv("speeds.csv", "bodies,ellipsoids,ellipsoids_seed,spheres,spheres_seed", 5, 5,
+    study_csv("speeds.csv", "bodies,ellipsoids,ellipsoids_seed,spheres,spheres_seed", sizes, 5,
               columns);
 }
 
@@ -1020,6 +1021,12 @@ int main(int argc, char **argv) {
         options.collisions = 15;
         options.run_in = 4;
         study_options(argc, argv, about, table, count);
+    }
+    if (options.brief) {
+        options.count = 64;
+        options.collisions = 3;
+        options.run_in = 0.5;
+        options.seconds = 0.05;
     }
     study_begin(options.out);
     if (options.theory) theory_tell();

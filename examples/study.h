@@ -92,6 +92,9 @@ typedef struct study_option {
     const char *help;
 } study_option;
 
+/* Help of the flag --short, which every study takes with all its other options; tests/studies.sh gives it. */
+#define STUDY_SHORT "for tests: all runs that were asked for, in seconds, whatever else is said of their length"
+
 STUDY_FN void study_help(const char *about, const study_option *table, int count) {
     static const char *const kinds[5] = {"", " N", " X", " TEXT", " WORD"};
     int i;

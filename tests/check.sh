@@ -178,6 +178,12 @@ if [ "$1" != short ]; then
     found gcc && try "gcc -std=gnu99 -O3 -march=native: test_threads" "gcc -std=gnu99 -O3 -march=native -I. tests/test_threads.c -o \$bin -lm && \$bin"
     found g++ && tests "g++ -std=c++11" "g++ -std=c++11 -O2 -ffp-contract=off -x c++"
     try "the same bits on Windows, aarch64, WebAssembly" "sh tests/cross.sh \$bin"
+    turn=1
+    try "every documented command of the studies, as it is written" \
+        "mkdir -p \$bin/build && ln -s \$PWD/docs \$PWD/README.md \$PWD/examples \$bin && cc -O2 -c dem.c -o \$bin/dem.o &&" \
+        "for p in mill screener ellipsoids separator; do cc -O2 examples/\$p.c \$bin/dem.o -o \$bin/build/\$p -lm || exit 1; done &&" \
+        "top=\$PWD && cd \$bin && JOBS=1 sh \$top/tests/studies.sh long"
+    turn=2
     try "outside: make new, make install, pkg-config, CMake" "sh tests/outside.sh \$bin"
     if found node && { found wasm-ld || found wasm-ld-14; }; then
         try "the browser lesson: the same digests in node, in a browser and native" "sh tests/web.sh \$bin.web; code=\$?; rm -rf \$bin.web; exit \$code"
