@@ -143,7 +143,7 @@ bench-parallel: build/parallel ## threads, sizes, searches beside published figu
 bench-peers: $(BENCHES) $(BENCH_ALSO) ## the same scenes in LAMMPS, LIGGGHTS and YADE, where those are installed
 	@sh bench/peers.sh
 
-bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener ## measure anew what docs/ tells of speed; PAGES=roofline: one page
+bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener build/ellipsoids ## measure anew what docs/ tells of speed; PAGES=roofline: one page
 	@sh bench/pages.sh $(PAGES)
 
 fuzz: ## FUZZ_SECONDS (600) per reader, and for programs of calls, under clang's fuzzer and sanitizers

@@ -65,18 +65,23 @@ STUDY_FN FILE *bench_page_open(void) { return study_open("page.md"); }
 
 /* ---- what it ran on ---- */
 
-STUDY_FN int bench_processors(char *name, size_t room) { /* how many; 0: not known                     */
+/* How many processors, 0 if not known, and their name. "AMD EPYC" is sold in every generation: x86 tells them apart by
+   family and model. */
+STUDY_FN int bench_processors(char *name, size_t room) {
     char line[512];
-    int count = 0;
+    int count = 0, family = 0, model = 0;
     FILE *file = fopen("/proc/cpuinfo", "r");
     snprintf(name, room, "unknown processor");
     while (file && fgets(line, sizeof line, file)) {
         const char *colon = strchr(line, ':');
         if (!strncmp(line, "processor", 9)) count++;
+        if (colon && !strncmp(line, "cpu family", 10)) family = atoi(colon + 1);
+        if (colon && !strncmp(line, "model\t", 6)) model = atoi(colon + 1);
         if (strncmp(line, "model name", 10) || !colon) continue;
         snprintf(name, room, "%.200s", colon + 2);
         name[strcspn(name, "\n")] = 0;
     }
+    if (family) snprintf(name + strlen(name), room - strlen(name), " (family %d, model %d)", family, model);
     if (file) fclose(file);
     return count;
 }

@@ -1,5 +1,5 @@
-# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [blocks] [responses]: measures anew what stands in those pages
-# of docs/ (effects: the prices in accuracy.md and README.md; screener: its times in studies.md; peers: the table in README.md; blocks: that of shapes.md beside other codes),
+# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [blocks] [responses] [ellipsoids]: measures anew what stands in those pages
+# of docs/ (effects: the prices in accuracy.md and README.md; screener: its times in studies.md; peers: the table in README.md; blocks: that of shapes.md beside other codes; ellipsoids: Table 2 of ellipsoids.md),
 # effects to clusters when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
 [ "$1" ] || set -- effects accuracy roofline clusters
 export OMP_PROC_BIND=true OMP_PLACES=cores
@@ -78,6 +78,14 @@ screener_times() {
             return t ? sprintf("%.0f s | %.0f | %.3f", t, thesis[n]/t, value[n, "overlap", k]) : " | | " }'
 }
 
+# a row a size: millions of bodies times steps a second, beside the card of [RUB15]
+gas_speeds() {
+    awk -F '[\t ]*: ' '/^cpu family/ { f = $2 } /^model\t/ { m = $2 } /^model name/ { n = $2 }
+        END { printf "%s (family %s, model %s), dem.h at commit %s.\n\n", n, f, m, commit }' commit="$(git rev-parse --short HEAD)" /proc/cpuinfo
+    awk -F , 'NR == 1 { print "| bodies | ellipsoids, one core | GPU of [RUB15] | ratio | spheres, one core | GPU of [RUB15] | ratio |"; print "|---|---|---|---|---|---|---|"; next }
+        { printf "| %d | %.1f | %.2g | %.1f | %.0f | %.2g | %.0f |\n", $1, 1e-6*$2, 1e-6*$3, $2/$3, 1e-6*$4, 1e-6*$5, $4/$5 }' "$1"
+}
+
 at=build/out
 for page in "$@"; do
     case $page in
@@ -116,6 +124,10 @@ for page in "$@"; do
         for k in 200 2000; do build/screener --study size --stiffness $k --out $at/screener_size$k || exit 1; done
         screener_times $at/screener_size200/summary.txt $at/screener_size2000/summary.txt > build/page.times
         splice studies.md screener build/page.times ;;
+    ellipsoids)
+        build/ellipsoids --speeds --threads 1 || exit 1
+        gas_speeds $at/ellipsoids/speeds.csv > build/page.speeds
+        splice ellipsoids.md speeds build/page.speeds ;;
     peers)
         SCENES="bed drum gas" sh bench/peers.sh > build/peers.out || { cat build/peers.out; exit 1; }
         cat build/peers.out
@@ -126,6 +138,6 @@ for page in "$@"; do
         cat build/blocks.out
         grep -q ' = ' build/blocks.out || { echo "neither code was found: shapes.md stays as it was"; exit 1; }
         blocks build/blocks.out > build/blocks.md && splice shapes.md blocks build/blocks.md || exit 1 ;;
-    *) echo "no page $page: effects, accuracy, roofline, clusters, shapes, screener, peers or blocks"; exit 1 ;;
+    *) echo "no page $page: effects, accuracy, roofline, clusters, shapes, screener, ellipsoids, peers or blocks"; exit 1 ;;
     esac
 done

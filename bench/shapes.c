@@ -1,7 +1,7 @@
 /* shapes.c - what bodies that are not spheres cost: meetings of ellipsoids, rotation, whole steps. MIT licence.
 
-   build/shapes            about two minutes; results in build/out/shapes, page.md for docs/shapes.md among them
-   build/shapes --part meet|rotation|gas|pile
+   build/shapes            about a minute; results in build/out/shapes, page.md for docs/shapes.md among them
+   build/shapes --part meet|rotation|pile
 
    meet      Perram and Wertheim's function solved for 100,000 pairs of each aspect ratio, scaled distance W0 in
              .98..1: from nothing (cold), from the solution of a moment ago (warm: turned by 1e-4 rad and moved by
@@ -9,8 +9,6 @@
              are told apart at the first look
    rotation  a free body of moments 1, 2, 2.6 and |w| = 1.2 for 40 s: error of its orientation against the smallest
              step, energy after 2000 s, and the time of a step, for every integrator
-   gas       particle-steps/s of the cooling gas of [RUB15] (volume fraction .058, aspect ratio 2), ellipsoids and
-             spheres, beside its graphics card
    pile      a bed at rest of 1000 spheres, ellipsoids, tetrahedra of spheres: time of a step and body */
 #define DEM_IMPLEMENTATION
 #include "dem.h"
@@ -246,78 +244,6 @@ static void rotation_part(void) {
     }
 }
 
-/* ---- gas ---- */
-
-static double normal_random(void) {
-    double s = -6;
-    int i;
-    for (i = 0; i < 12; i++) s += demi_uniform(&seed);
-    return s;
-}
-/* Seed 002, section 4: `side`^3 bodies on a lattice in a periodic cube, restitution .95, t_c/50. */
-static double gas_rate(int side, double ratio) {
-    const int count = side*side*side, steps = count > 100000 ? 100 : count > 10000 ? 400 : 2000000/count;
-    const double box = 0.125*side, b = cbrt(0.058*box*box*box/count*3/(4*DEMI_PI)/ratio), a = ratio*b;
-    const double mass = 2000*4/3.0*DEMI_PI*a*b*b, spin = sqrt(5/(a*a + b*b));
-    dem_world_desc desc = DEM_WORLD_DESC;
-    dem_material_desc m = DEM_MATERIAL_DESC;
-    dem_real *x = (dem_real *)study_alloc(9*(size_t)count, sizeof(dem_real)), *v = x + 3*count, *w = v + 3*count;
-    double times[TURNS];
-    dem_world *world;
-    dem_material stuff;
-    dem_result result;
-    int i, k;
-    desc.normal_law = DEM_NORMAL_LINEAR;
-    desc.domain = dem_box_make(0, 0, 0, (dem_real)box, (dem_real)box, (dem_real)box);
-    for (k = 0; k < 3; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
-    desc.dt = (dem_real)(DEMI_PI*sqrt(mass/2/1e8)/50);
-    desc.threads = 1;
-    world = dem_world_create(&desc);
-    m.density = 2000;
-    m.stiffness = (dem_real)1e8;
-    m.restitution = (dem_real)0.95;
-    stuff = dem_material_add(world, &m);
-    for (i = 0; i < count; i++)
-        for (k = 0; k < 3; k++) {
-            const int n = k == 0 ? i%side : k == 1 ? i/side%side : i/side/side;
-            x[3*i + k] = (dem_real)((n + 0.5)*box/side);
-            v[3*i + k] = (dem_real)normal_random();
-            w[3*i + k] = (dem_real)(k == 1 ? 0 : spin*normal_random());
-        }
-    result = ratio > 1 ? dem_bodies_add(world, stuff, dem_shape_ellipsoid_add(world, dem_vec3_make((dem_real)b, (dem_real)a,
-        (dem_real)b)), count, x, 0, v, w, 0) : dem_spheres_add(world, stuff, count, x, v, 0, (dem_real)b);
-    if (result == DEM_OK) result = dem_world_step(world, count > 100000 ? 1000 : 6000);   /* off the lattice */
-    for (k = 0; k < TURNS && result == DEM_OK; k++) {
-        const double begun = study_clock();
-        result = dem_world_step(world, steps);
-        times[k] = (double)count*steps/(study_clock() - begun);
-    }
-    if (result != DEM_OK) study_fail("%s", dem_world_error(world));
-    dem_world_destroy(world);
-    free(x);
-    return result == DEM_OK ? bench_median(times, TURNS) : 0;
-}
-static void gas_part(void) {
-    static const int sides[5] = {4, 8, 16, 32, 64};
-    static const double card[2][5] = {{1.1e5, 7.4e5, 3.9e6, 4.5e6, 4.2e6}, {2.4e5, 1.5e6, 5.8e6, 7.7e6, 8.2e6}};
-    char name[64];
-    int i, k;
-    if (page)
-        fprintf(page, "\n### The granular gas\n\n| bodies | ellipsoids, M/s | card of [RUB15] | ratio | spheres, M/s | card of [RUB15] "
-                "| ratio |\n|---|---|---|---|---|---|---|\n");
-    for (i = 0; i < 5; i++) {
-        double rate[2];
-        for (k = 0; k < 2; k++) {
-            rate[k] = gas_rate(sides[i], k ? 1 : 2);
-            snprintf(name, sizeof name, "gas.%s.%d.rate", k ? "spheres" : "ellipsoids", sides[i]*sides[i]*sides[i]);
-            bench_result_rate(name, rate[k]);
-        }
-        if (page)
-            fprintf(page, "| %d | %.1f | %.2f | %.1f | %.0f | %.2f | %.0f |\n", sides[i]*sides[i]*sides[i], 1e-6*rate[0],
-                    1e-6*card[0][i], rate[0]/card[0][i], 1e-6*rate[1], 1e-6*card[1][i], rate[1]/card[1][i]);
-    }
-}
-
 /* ---- pile ---- */
 
 static const char *const kinds[4] = {"spheres", "ellipsoids", "tetrahedra", "rods"};
@@ -391,7 +317,7 @@ static void pile_part(void) {
 int main(int argc, char **argv) {
     static const char *part = "all", *out = "build/out/shapes";
     static const study_option table[] = {
-        {"part", STUDY_TEXT, &part, 0, 0, "", "meet, rotation, gas, pile or all"},
+        {"part", STUDY_TEXT, &part, 0, 0, "", "meet, rotation, pile or all"},
         {"out", STUDY_TEXT, &out, 0, 0, "", "folder of results"},
     };
     const double load = bench_load();
@@ -403,7 +329,6 @@ int main(int argc, char **argv) {
     if (page) bench_page_machine(page, load);
     if (all || !strcmp(part, "meet")) meet_part();
     if (all || !strcmp(part, "rotation")) rotation_part();
-    if (all || !strcmp(part, "gas")) gas_part();
     if (all || !strcmp(part, "pile")) pile_part();
     study_close(page, "page.md");
     return study_end();
