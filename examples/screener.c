@@ -836,7 +836,9 @@ int main(int argc, char **argv) {
         o.friction = 0.4;           also(&o, "friction0.4");    o = options;
         o.spacing = 0.25;           also(&o, "spacing0.25");    o = options;
         o.open = 0.25;              also(&o, "open0.25");       o = options;
-        o.vane = 0;                 also(&o, "no_vane");        o = options;
+        o.wall_friction = 0.2;
+        if (!(o.seconds > 0)) o.seconds = 15;
+        also(&o, "wall_friction0.2"); o = options;
         o.eccentricity = 20;        also(&o, "eccentricity20"); o = options;
         o.barrel = "stepped";       also(&o, "stepped");
     } else if (is(o.study, "hour")) {
