@@ -249,7 +249,8 @@ static int desc_of(separator_desc *d, const struct separator_options *o) {
     *d = separator_desc_make();
     d->rotor = o->rotor; d->electrode = o->electrode; d->distance = o->distance;
     d->angle = o->angle*CORONA_PI/180; d->voltage = 1000*o->voltage; d->rpm = o->rpm;
-    d->width = o->width; d->feed_width = o->feed_width; d->rate = o->rate; d->feed_time = o->seconds;
+    d->width = o->width; d->feed_width = o->feed_width; d->feed_time = o->seconds;
+    d->rate = o->brief ? fmin(o->rate, 5000) : o->rate;      /* shapes in a crowd take minutes */
     d->feeder_speed = o->feeder_speed; d->feeder_angle = o->feeder_angle*CORONA_PI/180;
     d->feeder_length = o->feeder_length; d->feeder_edge = o->feeder_edge; d->near_interval = o->near_interval/1000;
     d->density[SEPARATOR_METAL] = o->density_metal; d->density[SEPARATOR_PLASTIC] = o->density_plastic;
@@ -863,8 +864,8 @@ int main(int argc, char **argv) {
     }
     if (options.brief) {
         options.repeats = 1;
-        options.seconds = 0.15;
-        options.drain = 0.35;                  /* 0.45 s after it was fed a grain lands; not by springs */
+        options.seconds = 0.05;
+        options.drain = 0.45;                  /* in which grains land; not by springs */
     }
     if (options.check) options.study = "check";
     study_begin(options.out);
