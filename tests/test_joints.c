@@ -469,7 +469,7 @@ static void unused_values(void) {
     dem_world_destroy(world);
 }
 /* Fifty balls on top of each other, and one sweep. */
-static void unsolved(void) {
+static void short_of_sweeps(void) {
     int stops, i;
     for (stops = 0; stops < 2; stops++) {
         FILE *out = tmpfile();
@@ -709,6 +709,6 @@ int main(int argc, char **argv) {
     TEST("joints: ids that are not used may be anything; torques beyond 1e12 N m are refused; checkpoints are read")
         unused_values();
     TEST("impulses: steps that end above tolerance are counted, printed with progress, and end a run on request")
-        unsolved();
+        short_of_sweeps();
     return test_end();
 }
