@@ -492,7 +492,7 @@ typedef enum dem_convention {
 
 typedef enum dem_integrator {
     DEM_VELOCITY_VERLET = 0, /* second order; the default */
-    DEM_FORWARD_EULER,       /* first order, gains energy; what [MIL] used */
+    DEM_FORWARD_EULER,       /* first order, gains energy; what the text of [MIL] names */
     DEM_SYMPLECTIC_EULER,    /* first order, energy bounded */
     DEM_POSITION_VERLET,     /* original Verlet: x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 */
     DEM_LEAPFROG,            /* velocities kept at half steps; same path as velocity Verlet */
