@@ -3343,7 +3343,7 @@ struct dem_world {
     dem_world_desc desc;           /* as given, with choices filled in */
     dem_world_desc asked;          /* as given */
     char real_names[DEM_BODY_REALS*24];    /* what body_reals of both point to, */
-    char memory_names[DEMI_MEMORY*24];     /* and law_memory_names */
+    char memory_names[DEM_LAW_MEMORY*24];     /* and law_memory_names */
     /* >>memory: sentences (demi_fail), and all that was allocated */
     char error[512];
     char refusal[512];             /* of the first call that builds the scene and was refused */
@@ -18507,16 +18507,22 @@ DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real 
     }
 }
 static void demi_orient_balls(dem_world *w, const int *who, int count, int how) {
-    const dem_real *spin = how == DEMI_TURN_AHEAD ? w->bodies.spin : w->bodies.half_spin;
+    const dem_real *now = w->bodies.spin, *mean = w->bodies.half_spin;
+    const dem_real dt = how == DEMI_TURN_STEP ? w->clock.dt : w->clock.dt/2;
     const int full = (count + DEMI_LANES - 1)/DEMI_LANES*DEMI_LANES;
     demi_turning t;
-    int l, e;
-    for (l = 0; l < full; l++) {
-        const size_t i = 4*(size_t)who[DEMI_MIN(l, count - 1)];
-        for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[i + (size_t)e];
-        for (e = 0; e < 3; e++) t.L[e][l] = spin[i + (size_t)e];
+    int l, e, half;
+    for (l = 0; l < full; l++)
+        for (e = 0; e < 4; e++) t.q[e][l] = w->bodies.orient[4*who[DEMI_MIN(l, count - 1)] + e];
+    for (half = 0; half < (how == DEMI_TURN_HALVES ? 2 : 1); half++) {
+        for (l = 0; l < full; l++)
+            for (e = 0; e < 3; e++) {
+                const int i = 4*who[DEMI_MIN(l, count - 1)] + e;
+                t.L[e][l] = how == DEMI_TURN_STEP ? mean[i]
+                    : how == DEMI_TURN_HALVES && !half ? 2*mean[i] - now[i] : now[i];
+            }
+        demi_turning_balls(&t, full, dt);
     }
-    demi_turning_balls(&t, full, how == DEMI_TURN_AHEAD ? w->clock.dt/2 : w->clock.dt);
     for (l = 0; l < count; l++)
         for (e = 0; e < 4; e++) w->bodies.orient[4*(size_t)who[l] + (size_t)e] = t.q[e][l];
 }
@@ -19369,12 +19375,17 @@ static int demi_joints_room(dem_world *w) {
 /* One end of a joint: the arm from its centre, the point in space, the axis; as it stands, or
    (ahead) a step later, with the velocities that the impulses found so far make. */
 typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
+/* s: from where contacts are found in this step to where they are found in the next. A body that has
+   made no step since it was set is found at its beginning, not in its middle. */
+static dem_real demi_knot_ahead(const dem_world *w, int body) {
+    return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
+}
 static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int ahead) {
     const demi_joint *j = &w->joints[joint];
     const demi_solver *s = &w->solver;
     const demi_rod *r = s->rods + joint;
     const int body = end ? r->b : r->a;
-    const dem_real by = ahead ? s->dt : 0;
+    const dem_real by = ahead ? demi_knot_ahead(w, body) : 0;
     demi_rod_end o;
     if (body < w->bodies.count) {
         const dem_quat q = ahead && r->ends[end] >= 0 ? s->knots[r->ends[end]].turned
@@ -19691,13 +19702,14 @@ static void demi_joints_warm(dem_world *w) {
 /* Orientations a step later, as the integrator will bring them about. */
 static void demi_knots_ahead(dem_world *w) {
     const demi_solver *s = &w->solver;
-    const dem_real dt = s->dt;
     int i;
     for (i = 0; i < s->knot_count; i++) {
         const int body = s->knots[i].mover;
         dem_quat q;
         dem_vec3 turn;
+        dem_real dt;
         if (body < 0) continue;
+        dt = demi_knot_ahead(w, body);
         q = demi_quat_at(w->bodies.orient + 4*body);
         turn = demi_at(s->movers[body].w);
         if (w->bodies.shaped && w->bodies.shape[body]) {
@@ -19731,8 +19743,9 @@ static dem_real demi_rod_lacks(const dem_world *w, int i, int shifts, dem_real *
         const demi_rod_end x = demi_rod_end_of(w, i, 0, 1), y = demi_rod_end_of(w, i, 1, 1);
         const dem_vec3 off = demi_nearest(&p, demi_sub(x.point, y.point));
         const dem_vec3 tilt = demi_cross(y.axis, x.axis);       /* of a against b */
-        const dem_real part = DEMI_MIN(1, size/(10*demi_length(off) + DEMI_TINY))/s->dt;
-        const dem_real turn = DEMI_MIN(1, DEM_R(0.1)/(demi_length(tilt) + DEMI_TINY))/s->dt;
+        const dem_real dt = DEMI_MAX(demi_knot_ahead(w, r->a), demi_knot_ahead(w, r->b));
+        const dem_real part = DEMI_MIN(1, size/(10*demi_length(off) + DEMI_TINY))/dt;
+        const dem_real turn = DEMI_MIN(1, DEM_R(0.1)/(demi_length(tilt) + DEMI_TINY))/dt;
         demi_put(lacks, demi_scale(off, -part));
         for (k = 0; k < 2; k++) lacks[3 + k] = -turn*demi_dot(tilt, r->along[k]);
     }
@@ -19809,7 +19822,7 @@ static dem_real demi_joints_sweep(dem_world *w) {
     digit = 8*(DEMI_SINGLE ? DEM_R(FLT_EPSILON) : DEM_R(DBL_EPSILON))/s->dt;
     demi_motors_bound(w, 1);
     worst = left = demi_joints_solve(w, 0);
-    while (demi_motors_bound(w, 0) || (++rounds < 4 && left > enough*enough))
+    while (demi_motors_bound(w, 0) || (++rounds < 8 && left > enough*enough))
         left = demi_joints_solve(w, 0);
     return worst > digit*digit*far2 ? worst : 0;
 }
@@ -28675,7 +28688,7 @@ static const demi_scene_row demi_desc_rows[] = {
     DEMI_ROW_ENUM(dem_world_desc, slider, "shared spring rest"),
     DEMI_ROW_ENUM(dem_world_desc, convention, "standard mill"),
     DEMI_ROW_NULL(dem_world_desc, law), DEMI_ROW(dem_world_desc, law_memory, 'i'),
-    DEMI_ROW_TEXT(dem_world_desc, law_memory_names, DEMI_MEMORY),
+    DEMI_ROW_TEXT(dem_world_desc, law_memory_names, DEM_LAW_MEMORY),
     DEMI_ROW(dem_world_desc, law_vectors, 'i'), DEMI_ROW(dem_world_desc, law_stiffness, 'r'),
     DEMI_ROW(dem_world_desc, law_range, 'r'), DEMI_ROW(dem_world_desc, law_range_radii, 'r'),
     DEMI_ROW(dem_world_desc, law_who, 'i'), DEMI_ROW_NULL(dem_world_desc, law_rate),
@@ -31174,7 +31187,7 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         "choose, below 0 means none";
     if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64; 0 "
         "means as many as OpenMP offers";
-    if (d->law_memory < 0 || d->law_memory > DEMI_MEMORY) return "dem_world_create: law_memory "
+    if (d->law_memory < 0 || d->law_memory > DEM_LAW_MEMORY) return "dem_world_create: law_memory "
         "must be 0 to 16 reals";
     if (d->law_vectors < 0 || d->law_vectors > d->law_memory/3)
         return "dem_world_create: law_vectors is more than fits into law_memory, must be at most "

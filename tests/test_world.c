@@ -456,15 +456,15 @@ int main(int argc, char **argv) {
         glass.id = 1; floor.id = 1; no.id = 2;
         hash = dem_world_hash(world);
         refused(world, dem_wall_motion(world, no, &m), DEM_ERROR_ARGUMENT, hash,
-                "dem_wall_motion: ", "wall 2", "there are 1");
+                "dem_wall_motion: ", "wall 2", "ids here go from 1 to 1");
         refused(world, dem_wall_pose(world, no, &pose), DEM_ERROR_ARGUMENT, hash, "dem_wall_pose: ",
-                "wall 2", "there are 1");
+                "wall 2", "ids here go from 1 to 1");
         refused(world, dem_wall_remove(world, no), DEM_ERROR_ARGUMENT, hash, "dem_wall_remove: ",
-                "wall 2", "there are 1");
+                "wall 2", "ids here go from 1 to 1");
         refused(world, dem_wall_loads_get(world, no, &ch), DEM_ERROR_ARGUMENT, hash,
-                "dem_wall_loads_get: ", "wall 2", "there are 1");
+                "dem_wall_loads_get: ", "wall 2", "ids here go from 1 to 1");
         refused(world, dem_wall_loads_reset(world, no), DEM_ERROR_ARGUMENT, hash,
-                "dem_wall_loads_reset: ", "wall 2", "there are 1");
+                "dem_wall_loads_reset: ", "wall 2", "ids here go from 1 to 1");
         m.kind = DEM_MOTION_ROTATING;
         refused(world, dem_wall_motion(world, floor, &m), DEM_ERROR_ARGUMENT, hash,
                 "dem_wall_motion: ", "axis", "direction");
@@ -709,7 +709,8 @@ int main(int argc, char **argv) {
             if (i == 3) f.interval = -1;
             if (i == 4) f.start = nan_number;
             if (i == 5) f.box.lo.z = (dem_real)nan_number;
-            refused_id(world, dem_field_add(world, &f).id, hash, "dem_field_add: ", "cells", ">= ");
+            refused_id(world, dem_field_add(world, &f).id, hash, "dem_field_add: ",
+                       i == 2 || i == 5 ? "the box goes" : "cells", i == 2 || i == 5 ? "lo below hi" : ">= ");
         }
         CHECK_EQ(dem_world_step(world, 0), DEM_OK);
         CHECK_EQ(dem_world_run(world, 0, 0, 0), DEM_OK);

@@ -177,6 +177,7 @@ static inline void walk_law(const dem_contact *c, dem_real *memory, dem_contact_
     push->normal = 1000*c->overlap + c->closing_speed/100;
     if (c->dt > 0) memory[3] += c->dt;
 }
+static inline void walk_rate(const dem_contact *c, dem_real *rates) { rates[0] = c->overlap; }
 static inline dem_vec3 walk_force(dem_vec3 x, dem_vec3 v, dem_real radius, dem_real mass, double time, void *user) {
     (void)v; (void)radius; (void)time; (void)user;
     return dem_vec3_make(-mass*x.x, 0, 0);
@@ -201,7 +202,7 @@ static inline int walk_pointer(const walk_field *f, void *out) {
     if (!strcmp(f->of, name)) { kind *p = value; memcpy(out, &p, sizeof p); return 1; }
 #define WALK_FUNCTION(name, value) \
     if (!strcmp(f->of, #name)) { name p = value; memcpy(out, &p, sizeof p); return 1; }
-    WALK_FUNCTION(dem_law_fn, walk_law) WALK_FUNCTION(dem_force_fn, walk_force)
+    WALK_FUNCTION(dem_law_fn, walk_law) WALK_FUNCTION(dem_law_rate_fn, walk_rate) WALK_FUNCTION(dem_force_fn, walk_force)
     WALK_FUNCTION(dem_body_force_fn, walk_body_force) WALK_FUNCTION(dem_reals_fn, walk_reals)
     WALK_FUNCTION(dem_motion_fn, walk_motion) WALK_FUNCTION(dem_inside_fn, walk_inside)
     WALK_TO("char", const char, "b a") WALK_TO("dem_motion_row", const dem_motion_row, walk_rows_other)
@@ -263,7 +264,7 @@ static inline walk_scene walk_begin(int kind) {
     s.world.dt = kind == WALK_IMPULSES ? DEM_R(1e-4) : DEM_R(1e-6);
     s.world.body_reals = "heat";
     s.world.ledger = 1;
-    if (kind == WALK_LAW) { s.world.law = walk_law; s.world.law_memory = 6; s.world.law_stiffness = 1000; s.world.law_memory_names = "a b c d e f"; }
+    if (kind == WALK_LAW) { s.world.law = walk_law; s.world.law_who = 1; s.world.law_memory = 6; s.world.law_stiffness = 1000; s.world.law_memory_names = "a b c d e f"; }
     if (kind == WALK_HYSTERETIC) s.world.normal_law = DEM_NORMAL_HYSTERETIC;
     if (kind == WALK_IMPULSES) { s.world.response = DEM_RESPONSE_IMPULSES; s.world.orientations = 1; s.world.tolerance = DEM_R(1e-5); }
     s.material.density = 2500; s.material.young = DEM_R(1e6); s.material.poisson = DEM_R(0.25);

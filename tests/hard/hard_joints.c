@@ -95,11 +95,11 @@ static mechanism mechanism_make(uint64_t *seed) {
     }
     return m;
 }
-/* J: the energy that symplectic Euler conserves in free fall. */
+/* J: kinetic and potential energy. */
 static double energy_of(const mechanism *m) {
     const dem_totals t = dem_totals_get(m->world);
     return t.kinetic + t.rotational - (double)m->world->desc.gravity.z*
-        (t.mass*t.centre[2] - t.momentum[2]*(double)m->world->clock.dt/2);
+        t.mass*t.centre[2];
 }
 /* J, given by joints but for their motors in the step that comes */
 static double given_of(const mechanism *m) {

@@ -247,8 +247,8 @@ static void motion_goes_wrong(int kind, int threads) {
     t.on = 1;
     CHECK_EQ(dem_world_step(world, 5), DEM_ERROR_UNSTABLE);
     CHECK_EQ(dem_world_steps(world), GOOD + 1);
-    says(world, "dem_world_step: step 11", "motion of wall 1", "not finite at 0.00011 s",
-         "check the motion function");
+    says(world, "dem_world_step: step 11: the motion of wall 1", "not finite", "at 0.00011 s",
+         "check its motion");
     CHECK_EQ(not_finite(world, odd, &others), 0);
     scene_report_has(world, "wall 1");
     t.on = 0;
@@ -714,10 +714,12 @@ int main(int argc, char **argv) {
             CHECK_STR(sentence[0], "too fast for dt = ");
         }
         explode(0.9, 1, 0, &result[0], sentence[0], &steps[0]);
-        CHECK_EQ(result[0], DEM_ERROR_TIME_STEP);   /* one contact bears it, six pressed do not */
+        CHECK_EQ(result[0], DEM_ERROR_TIME_STEP);   /* one contact bears it, several do not */
         CHECK_EQ(steps[0], 0);
         CHECK_STR(sentence[0], "body ");
-        CHECK_STR(sentence[0], "is pressed by 6 contacts, by 0.03 of its radius");
+        /* what limits dt is rotation, which four contacts resist inside the block and on its faces alike */
+        CHECK(strstr(sentence[0], "is pressed by 6 contacts, by 0.03 of its radius") ||
+              strstr(sentence[0], "is pressed by 5 contacts, by 0.03 of its radius"));
         CHECK_STR(sentence[0], "use dt = 0, a smaller dt, or less overlap");
     }
     TEST("a grain that begins 1.02 radii deep in another or in a wall, be it sphere, ellipsoid or "
