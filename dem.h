@@ -19375,8 +19375,8 @@ static int demi_joints_room(dem_world *w) {
 /* One end of a joint: the arm from its centre, the point in space, the axis; as it stands, or
    (ahead) a step later, with the velocities that the impulses found so far make. */
 typedef struct demi_rod_end { dem_vec3 arm, point, axis; } demi_rod_end;
-/* s: from where contacts are found in this step to where they are found in the next. A body that has
-   made no step since it was set is found at its beginning, not in its middle. */
+/* s: from where contacts are found in this step to where they are found in the next. A body that
+   has made no step since it was set is found at its beginning, not in its middle. */
 static dem_real demi_knot_ahead(const dem_world *w, int body) {
     return w->solver.dt*(body >= w->bodies.count || w->bodies.went[body] ? 1 : DEM_R(1.5));
 }

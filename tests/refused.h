@@ -143,6 +143,7 @@ static const refused_field refused_fields[] = {
     {"dem_grains", "velocities", offsetof(dem_grains, velocities), FIELD_POINTER, sizeof(((dem_grains *)0)->velocities)},
     {"dem_grains", "spins", offsetof(dem_grains, spins), FIELD_POINTER, sizeof(((dem_grains *)0)->spins)},
     {"dem_grains", "materials", offsetof(dem_grains, materials), FIELD_POINTER, sizeof(((dem_grains *)0)->materials)},
+    {"dem_grains", "lines_left", offsetof(dem_grains, lines_left), FIELD_INT, sizeof(((dem_grains *)0)->lines_left)},
     {"dem_replay_desc", "title", offsetof(dem_replay_desc, title), FIELD_POINTER, sizeof(((dem_replay_desc *)0)->title)},
     {"dem_replay_desc", "number", offsetof(dem_replay_desc, number), FIELD_POINTER, sizeof(((dem_replay_desc *)0)->number)},
     {"dem_replay_desc", "user", offsetof(dem_replay_desc, user), FIELD_POINTER, sizeof(((dem_replay_desc *)0)->user)},
