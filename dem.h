@@ -5592,7 +5592,7 @@ static double demi_shells_winding(const demi_closed *c, const demi_shells *s, in
             p[0][2]*(p[1][0]*p[2][1] - p[1][1]*p[2][0]);
         bottom = l[0]*l[1]*l[2] + demi_dot3(p[0], p[1])*l[2] + demi_dot3(p[1], p[2])*l[0] +
             demi_dot3(p[2], p[0])*l[1];
-        sum += c->sign[s->order[i]]*2*atan2(top, bottom);
+        sum += c->sign[s->order[i]]*2*demi_atan2(top, bottom);
     }
     return sum/(4*DEMI_PI);
 }
