@@ -19041,8 +19041,8 @@ static void demi_impulses_lay(dem_world *w, int d) {
        [ M  -J'  ] [ dv ]   [  0 ]
        [ -J -give] [ dp ] = [ -r ]   (M: mass and inertia; r: by what the rows are off)
    by block LDL' in an order of fewest neighbours: from the leaves of a tree to its root, O(n) and
-   without fill ([BAR96]); loops fill in a little. `give`, a softness of 1e-9 of what an impulse
-   brings, makes loops solvable that hold more than is needed.
+   without fill ([BAR96]); loops fill in a little. `give` is a softness: 1e-9 of what an impulse
+   brings (DEMI_GIVE); 1e-6 in groups with loops, which may hold more than is needed.
    r is by what points and axes will be apart where the next step finds them (in its middle, see
    demi_ahead), with rotations as the integrator makes them, over dt: SHAKE, with a few Newton
    steps. Its energy swings by O(dt^2).
