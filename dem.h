@@ -105,7 +105,7 @@
            glass_desc.rolling_friction = 0.2;
            dem_material glass = dem_material_add(world, &glass_desc);
 
-           dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+           dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
            dem_feed_desc feed = {glass, 1, {2e-3}, {600}}; // 600 beads of 2 mm radius, one class,
            feed.limited = 1;
            feed.rate = 600;                                // so many a second, from here (m):
@@ -117,11 +117,11 @@
            dem_replay *film = dem_replay_open(world, "heap.html", &film_desc);    // for a browser
            if (dem_world_run(world, 1, dem_progress_print, stderr) != DEM_OK ||
                dem_world_settle(world, 2, 0, dem_progress_print, stderr) != DEM_OK)
-               puts(dem_world_error(world));
+               puts(dem_world_error_get(world));
            dem_replay_close(film);
            dem_repose slope;
            dem_box all = {{0, 0, 0}, {0, 0, 0}};
-           if (dem_repose_heap(world, all, &slope) == DEM_OK)
+           if (dem_repose_heap_get(world, all, &slope) == DEM_OK)
                printf("slope %.2f +- %.2f rad\n", slope.angle, slope.error);
            dem_world_report(world, stdout);                // what was done, its price, the step
            dem_world_destroy(world);
@@ -186,7 +186,7 @@
    Lifetimes. What you hand over is copied at the call: descs, arrays, meshes, profiles. Functions
    and user pointers in a desc must live as long as the world. Pointers that you are handed:
        dem_bodies_get, dem_field_get     until the next call that steps or changes the world
-       dem_world_error                   until the next call that fails
+       dem_world_error_get                   until the next call that fails
        dem_mesh_read and the like        until you free them, with the world that read them
    Ids stay good until what they name is removed; that of a removed body is told from that of the
    one that got its place. Indices (0 .. count - 1) change whenever bodies are sorted.
@@ -224,20 +224,20 @@
    before.
 
    Errors. A function that can fail returns a `dem_result`, or a null id or null pointer, and leaves
-   one sentence in dem_world_error: the call, the value, the limit, the likely cause, the remedy.
-   The world stays as it was before the call. If nobody reads why a part of the scene was refused,
-   the next run does not begin and quotes it. Null worlds, descs and places for answers are
+   one error message in dem_world_error_get: the call, the value, the limit, the likely cause, the
+   remedy. The world stays as it was before the call. If nobody reads why a part of the scene was
+   refused, the next run does not begin and quotes it. Null worlds, descs and places for answers are
    answered: DEM_ERROR_ARGUMENT, a null id, 0. A run that cannot be right (a force that is not
    finite, an overlap larger than a radius) stops at the step that caused it. dem.h never prints,
    exits or aborts.
 
-   A scene that does something else than it should: dem_check_print(world, stdout) before the first
-   run says what looks wrong (units, overlaps, a floor that is missing), dem_world_report after it
-   what was simulated, and dem_advise what another step, stiffness or law would change.
+   A scene that does something else than it should: dem_world_check_print(world, stdout) before the
+   first run says what looks wrong (units, overlaps, a floor that is missing), dem_world_report
+   after it what was simulated, and dem_trials_run what another step, stiffness or law would change.
 
    Threads. Different worlds may be used from different threads. Several threads may look at one
    world at once, by functions that take it as const, while none changes it. Of those only these
-   write: one that fails (its sentence), dem_world_error (that it was read), dem_progress_print
+   write: one that fails (its sentence), dem_world_error_get (that it was read), dem_progress_print
    (how far it has told), dem_world_report and dem_contacts_get (that a function of yours is asked),
    and dem_bodies_get in a periodic world (the places, wrapped into the box).
    Within a world, `threads` of the desc sets the OpenMP threads; the same input gives the same bits
@@ -399,7 +399,7 @@ DEM_INLINE dem_quat dem_quat_make(dem_real w, dem_real x, dem_real y, dem_real z
 /* The rotation by angle (rad; degrees times pi/180) about an axis of any length but 0. */
 DEM_API dem_quat dem_quat_about(dem_vec3 axis, dem_real angle);
 /* First b, then a. */
-DEM_INLINE dem_quat dem_quat_times(dem_quat a, dem_quat b) {
+DEM_INLINE dem_quat dem_quat_multiply(dem_quat a, dem_quat b) {
     return dem_quat_make(a.w*b.w - a.x*b.x - a.y*b.y - a.z*b.z,
                          a.w*b.x + a.x*b.w + a.y*b.z - a.z*b.y,
                          a.w*b.y - a.x*b.z + a.y*b.w + a.z*b.x,
@@ -425,142 +425,201 @@ typedef struct dem_body { uint32_t slot, generation; } dem_body;  /* slot counts
 
 typedef struct dem_world dem_world;
 
-/* ---- choices ---- */
+/* ---- choices: the constants of dem_world_desc ---- */
+/* The law of the normal force. delta: overlap, m; v: closing speed, m/s. */
 typedef enum dem_normal_law {
-    DEM_NORMAL_HERTZ = 0,  /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92] */
-    DEM_NORMAL_LINEAR,     /* F = kn delta + cn v; kn given, or from Young's modulus and a speed */
-    DEM_NORMAL_HYSTERETIC, /* [ALK07] eq 2.47: loads along kn delta, unloads and reloads with slope
-                              kun, pulls by at most kad delta; needs no dashpot */
+    /* F = kn delta^(3/2) + cn delta^(1/4) v  [HER82, TSU92] */
+    DEM_NORMAL_HERTZ = 0,
+    /* F = kn delta + cn v. kn is given, or follows from Young's modulus and an impact speed. */
+    DEM_NORMAL_LINEAR,
+    /* [ALK07] eq 2.47: the contact loads along kn delta, unloads and reloads with slope kun, and
+       attracts by at most kad delta. It needs no dashpot. */
+    DEM_NORMAL_HYSTERETIC
 } dem_normal_law;
 
+/* The law of friction. Every law except DEM_TANGENT_NONE limits the force by Coulomb's law. */
 typedef enum dem_tangent_law {
-    DEM_TANGENT_AUTO = 0,       /* DEM_TANGENT_SPRING when any pair has friction, else none */
-    DEM_TANGENT_NONE,           /* no tangential force at all */
-    DEM_TANGENT_VISCOUS,        /* -ct v_t, capped by Coulomb */
-    DEM_TANGENT_STEP,           /* [MIL]: -kt (v_t dt) - ct v_t, capped; without memory */
-    DEM_TANGENT_SPRING,         /* [CS79]: -kt xi - ct v_t, xi = integral of v_t dt, capped */
-    DEM_TANGENT_MINDLIN,  /* [DIR05]: increments of force, kt of the present overlap; capped */
-    DEM_TANGENT_MINDLIN_RESCALED, /* [THO13]: the same, scaled down with kt while unloading */
+    /* DEM_TANGENT_SPRING if any pair has friction, otherwise DEM_TANGENT_NONE */
+    DEM_TANGENT_AUTO = 0,
+    /* no tangential force */
+    DEM_TANGENT_NONE,
+    /* -ct v_t, without history */
+    DEM_TANGENT_VISCOUS,
+    /* [MIL]: -kt (v_t dt) - ct v_t, without history */
+    DEM_TANGENT_STEP,
+    /* [CS79]: -kt xi - ct v_t, where xi is the integral of v_t over the contact */
+    DEM_TANGENT_SPRING,
+    /* [DIR05]: the force grows by increments, with kt of the present overlap */
+    DEM_TANGENT_MINDLIN,
+    /* [THO13]: as DEM_TANGENT_MINDLIN, but the force is scaled down with kt during unloading */
+    DEM_TANGENT_MINDLIN_RESCALED
 } dem_tangent_law;
 
+/* The law of rolling resistance. */
 typedef enum dem_rolling_law {
-    DEM_ROLLING_AUTO = 0,   /* DEM_ROLLING_EPSD when any pair has rolling friction, else none */
+    /* DEM_ROLLING_EPSD if any pair has rolling friction, otherwise DEM_ROLLING_NONE */
+    DEM_ROLLING_AUTO = 0,
+    /* no rolling resistance */
     DEM_ROLLING_NONE,
-    DEM_ROLLING_STEP,       /* [MIL] section 4.5: mu_r R min(Fn, |w|), dimensions as printed */
-    DEM_ROLLING_CONSTANT,   /* [ZHO99]: mu_r R* Fn against the relative spin; at rest up to that */
-    DEM_ROLLING_EPSD,       /* [AI11]: elastic-plastic spring-dashpot, with memory */
+    /* [MIL] section 4.5: mu_r R min(Fn, |w|), with the dimensions as printed there */
+    DEM_ROLLING_STEP,
+    /* [ZHO99]: a moment mu_r R* Fn against the relative spin; at rest any moment up to that */
+    DEM_ROLLING_CONSTANT,
+    /* [AI11]: an elastic-plastic spring and a dashpot, with history */
+    DEM_ROLLING_EPSD
 } dem_rolling_law;
 
+/* What the dashpot does at the end of a contact, where it would attract. */
 typedef enum dem_tension {
-    DEM_TENSION_KEPT = 0,  /* the dashpot may pull at the end of a contact: restitution is as set */
-    DEM_TENSION_CLIPPED,   /* never pull: the contact ends at zero force; restitution comes out
-                              higher (.66 gives about .69) [SP07] */
-    DEM_TENSION_NONE       /* never pull, and damped so that restitution is as set all the same:
-                              the closed form of [SP07] solved for the dashpot, as in [THO13] */
+    /* The dashpot may attract; the restitution is the given one. */
+    DEM_TENSION_ALLOWED = 0,
+    /* The contact ends at zero force. The restitution becomes higher than the given one: 0.66 gives
+       about 0.69 [SP07]. */
+    DEM_TENSION_CLIPPED,
+    /* The contact ends at zero force and the damping is raised so that the restitution is the given
+       one: the closed form of [SP07] solved for the dashpot, as in [THO13]. */
+    DEM_TENSION_COMPENSATED
 } dem_tension;
 
-/* What friction's limit is mu times of, where the normal force has a dashpot. */
+/* The load L of Coulomb's limit mu L. The choices differ where the normal force has a dashpot. */
 typedef enum dem_load {
-    DEM_LOAD_PUSH = 0,     /* the whole normal force, 0 while it pulls: Coulomb's law at every
-                              instant. Over an impact that slides throughout, friction's impulse is
-                              more than mu times the normal one: by 9 % at e = .25, 14 % at .1 */
-    DEM_LOAD_ELASTIC,      /* the spring's part of it: the impulse is mu times the normal impulse
-                              whatever the restitution, as a rigid body's is */
-    DEM_LOAD_SIZE          /* its size, pulling or pushing, as LAMMPS, LIGGGHTS and MercuryDPM have
-                              it: 18 % at e = .25, 28 % at .1 */
+    /* L is the whole normal force, or 0 while it attracts: Coulomb's law at every instant. In an
+       impact that slides throughout, the impulse of friction is larger than mu times the normal
+       impulse: by 9 % at a restitution of 0.25, by 14 % at 0.1. */
+    DEM_LOAD_REPULSIVE = 0,
+    /* L is the elastic part of the normal force. In an impact that slides throughout, the impulse
+       of friction is mu times the normal impulse for any restitution, as for rigid bodies. */
+    DEM_LOAD_ELASTIC,
+    /* L is the magnitude of the normal force, as in LAMMPS, LIGGGHTS and MercuryDPM. The excess is
+       18 % at a restitution of 0.25 and 28 % at 0.1. */
+    DEM_LOAD_MAGNITUDE
 } dem_load;
 
-/* How the tangential spring and dashpot meet friction's limit. Force and slip are the same while
-   nothing slides, and once all slides; they differ in what the spring holds on the way. */
+/* How the tangential spring and dashpot share Coulomb's limit while a contact slides. The force is
+   the same; the energy that the spring holds differs. */
 typedef enum dem_slider {
-    DEM_SLIDER_SHARED = 0, /* side by side behind the slider: together they hold what friction can.
-                              Never makes energy */
-    DEM_SLIDER_SPRING,     /* the spring alone holds it: what [THO13] and its published impacts
-                              have; makes up to 3 % of an impact's energy at e = .5, 15 % at .1 */
-    DEM_SLIDER_REST        /* the spring holds what the dashpot leaves of it, as LAMMPS, MercuryDPM
-                              and MFiX have it; stores energy that the slip did not bring.
-                              Under Hertz, with a dashpot, what it gives hangs on the step: an
-                              oblique impact leaves at 0.247 of its speed at t_c/100, at 0.221
-                              from t_c/25600 on */
+    /* Spring and dashpot act in parallel behind one slider. This never creates energy. */
+    DEM_SLIDER_PARALLEL = 0,
+    /* The spring alone takes the whole limit, as in [THO13] and its published impacts. Creates up
+       to 3 % of an impact's energy at a restitution of 0.5 and 15 % at 0.1. */
+    DEM_SLIDER_SPRING,
+    /* The spring takes what the dashpot leaves of the limit, as in LAMMPS, MercuryDPM and MFiX. It
+       stores energy that no slip supplied. Under Hertz's law with a dashpot the result depends on
+       the time step: an oblique impact leaves at 0.247 of its speed at t_c/100, and at 0.221 at
+       t_c/25600 and below. */
+    DEM_SLIDER_REMAINDER
 } dem_slider;
 
+/* Conventions for effective quantities and overlaps. */
 typedef enum dem_convention {
-    DEM_CONVENTION_STANDARD = 0, /* E*, G*, R*, m* and overlap as in the contact literature */
-    DEM_CONVENTION_MILL          /* [MIL] Fig 5.23: E* = E, 8 G, half overlaps between grains, R/2
-                                    and m/2 against walls. For reproducing that thesis only */
+    /* E*, G*, R*, m* and the overlap as in the contact literature */
+    DEM_CONVENTION_STANDARD = 0,
+    /* [MIL] Fig 5.23: E* = E, 8 G, half overlaps between grains, R/2 and m/2 against walls. Only
+       for reproducing that thesis. */
+    DEM_CONVENTION_MILL
 } dem_convention;
 
 typedef enum dem_integrator {
-    DEM_VELOCITY_VERLET = 0, /* second order; the default */
-    DEM_FORWARD_EULER,       /* first order, gains energy; what the text of [MIL] names */
-    DEM_SYMPLECTIC_EULER,    /* first order, energy bounded */
-    DEM_POSITION_VERLET,     /* original Verlet: x(t+dt) = 2 x(t) - x(t-dt) + a dt^2 */
-    DEM_LEAPFROG,            /* velocities kept at half steps; same path as velocity Verlet */
+    /* second order; the default */
+    DEM_INTEGRATOR_VELOCITY_VERLET = 0,
+    /* first order, gains energy; the scheme named in the text of [MIL] */
+    DEM_INTEGRATOR_FORWARD_EULER,
+    /* first order, bounded error of energy */
+    DEM_INTEGRATOR_SYMPLECTIC_EULER,
+    /* the original Verlet scheme: x(t + dt) = 2 x(t) - x(t - dt) + a dt^2 */
+    DEM_INTEGRATOR_POSITION_VERLET,
+    /* velocities at half steps; the same trajectory as velocity Verlet */
+    DEM_INTEGRATOR_LEAPFROG
 } dem_integrator;
 
-/* How contacts answer. Springs push by their overlap, by the laws above; steps are a fiftieth of a
-   contact time. Impulses keep rigid bodies from going into each other (>>impulses): of the laws
-   above only restitution, friction, static friction and rolling friction hold, and steps are as
-   long as the flow asks, 1e-3 s for grains of millimetres. */
+/* How contacts respond. */
 typedef enum dem_response {
+    /* Soft contacts: forces grow with the overlap, by the laws above. A time step is a fiftieth of
+       a contact time. */
     DEM_RESPONSE_SPRINGS = 0,
+    /* Rigid contacts (non-smooth dynamics, >>impulses): impulses prevent overlap. Of the laws above
+       only restitution, friction, static friction and rolling friction apply. A time step is as
+       long as the flow allows, 1e-3 s for grains of some millimetres. */
     DEM_RESPONSE_IMPULSES
 } dem_response;
-/* What friction asks of impulses. */
+/* The friction law of impulses. */
 typedef enum dem_cone {
-    DEM_CONE_COULOMB = 0,    /* Coulomb's law: contacts that slide stay closed */
-    DEM_CONE_CONVEX          /* the convex law of [TAS10]: what slides at v opens by mu v dt */
+    /* Coulomb's law: sliding contacts stay closed. */
+    DEM_CONE_COULOMB = 0,
+    /* The convex relaxation of [TAS10]: a contact that slides at speed v opens by mu v dt. */
+    DEM_CONE_CONVEX
 } dem_cone;
-/* How impulses are found (>>solvers); docs/impulses.md has what each reaches in how many sweeps. */
+/* The iterative solver for impulses (>>solvers). docs/impulses.md compares their convergence. */
 typedef enum dem_solver {
-    DEM_SOLVER_SEIDEL = 0,   /* contact after contact: robust, the fewest sweeps; the default */
-    DEM_SOLVER_JACOBI,       /* all at once: for comparison */
-    DEM_SOLVER_APGD,         /* accelerated gradients [MAZ15]: for residuals far below the usual */
-    DEM_SOLVER_SPECTRAL      /* gradients with steps of Barzilai and Borwein [HEY13]: likewise */
+    /* one contact after another: robust, and needs the fewest sweeps; the default */
+    DEM_SOLVER_GAUSS_SEIDEL = 0,
+    /* all contacts at once; for comparison */
+    DEM_SOLVER_JACOBI,
+    /* accelerated projected gradient descent [MAZ15]; for residuals far below the default */
+    DEM_SOLVER_APGD,
+    /* projected gradients with Barzilai-Borwein steps [HEY13]; for residuals far below the default
+       */
+    DEM_SOLVER_SPECTRAL
 } dem_solver;
 
-/* How bodies that are not spheres turn. All keep angular momentum to round-off while nothing
-   pushes, and are of second order in dt under torques; docs/shapes.md has their errors and
-   prices. */
+/* How the orientations of bodies other than spheres are integrated. Every choice conserves angular
+   momentum to round-off in free flight and is of second order in dt under torques. docs/shapes.md
+   compares errors and costs. */
 typedef enum dem_rotation {
-    DEM_ROTATION_SPIRAL = 0,   /* [SPI24], with angular momentum kept: the most accurate */
-    DEM_ROTATION_FINCHAM,      /* [FIN92], what [RUB15] used: cheap, gains energy */
-    DEM_ROTATION_NO_SQUISH     /* splitting [DLM97]: energy without drift, dearest */
+    /* [SPI24] with conserved angular momentum; the most accurate */
+    DEM_ROTATION_SPIRAL = 0,
+    /* [FIN92], as used by [RUB15]; cheap, gains energy */
+    DEM_ROTATION_FINCHAM,
+    /* splitting [DLM97]; no drift of energy, the most expensive */
+    DEM_ROTATION_NO_SQUISH
 } dem_rotation;
 
-/* What counts as the overlap of two ellipsoids. W0: both scaled by it about their centres touch in
-   one point; hA, hB: their heights along the normal there. */
+/* The overlap of two ellipsoids. Scaled about their centres by W0, the two touch in one point. hA
+   and hB are their support heights along the normal there. */
 typedef enum dem_overlap {
-    DEM_OVERLAP_CONSERVATIVE = 0, /* l (1 - W0), l the sum of the radii of spheres of their volumes;
-                                     the force is its gradient, with a radius of equal volume for
-                                     the stiffness: conserves energy (built-in laws) */
-    DEM_OVERLAP_CHORD,            /* [RUB15] 3.2: the piece of the line V2 V3 that lies in both */
-    DEM_OVERLAP_NORMAL            /* (hA + hB)(1 - W0): along the normal */
+    /* l (1 - W0), where l is the sum of the radii of spheres of equal volume. The force is the
+       gradient of an energy, so built-in laws conserve energy. */
+    DEM_OVERLAP_CONSERVATIVE = 0,
+    /* [RUB15] section 3.2: the length of the line V2 V3 inside both ellipsoids */
+    DEM_OVERLAP_CHORD,
+    /* (hA + hB)(1 - W0), along the normal */
+    DEM_OVERLAP_NORMAL
 } dem_overlap;
 
-/* Contacts of two bodies, one a cluster, through several spheres at once. */
-typedef enum dem_sharing {
-    DEM_SHARING_ONE = 0,       /* those that push the same way are one contact in all: stiffness and
-                                  restitution do not depend on how many spheres touch [BER23] */
-    DEM_SHARING_NONE           /* each is a contact by itself: stiffness grows with their number;
-                                  conserves elastic energy exactly */
-} dem_sharing;
+/* How several contacts between the spheres of two bodies count, if one body is a cluster. */
+typedef enum dem_cluster_contacts {
+    /* Contacts with similar normals act as one contact. Stiffness and restitution do not depend on
+       the number of spheres that touch [BER23]. */
+    DEM_CLUSTER_CONTACTS_MERGED = 0,
+    /* Each is a contact of its own. The stiffness grows with their number; elastic energy is
+       conserved exactly. */
+    DEM_CLUSTER_CONTACTS_SEPARATE
+} dem_cluster_contacts;
 
+/* The broad phase of contact detection. All choices find the same contacts. */
 typedef enum dem_search {
-    DEM_SEARCH_AUTO = 0,     /* grid, or levels where radii differ so much that they pay; which and
-                                why is in dem_world_report */
-    DEM_SEARCH_ALL_PAIRS,    /* every pair; the oracle for the others */
-    DEM_SEARCH_GRID,         /* uniform grid of cells */
-    DEM_SEARCH_LINKED_LIST,  /* linked linear list [ALK07] 2.3.2: sorted box ends on three axes */
-    DEM_SEARCH_LEVELS,       /* hierarchical grid [OGA12]: each class of radii has its own cells */
-    DEM_SEARCH_BINS          /* bins of bounding boxes [MAZ11]: each body in every bin it touches */
+    /* a grid, or a hierarchical grid if radii differ enough; dem_world_report prints the choice */
+    DEM_SEARCH_AUTO = 0,
+    /* every pair; the reference for the others */
+    DEM_SEARCH_ALL_PAIRS,
+    /* a uniform grid of cells */
+    DEM_SEARCH_GRID,
+    /* a linked linear list [ALK07] section 2.3.2: sorted ends of boxes on three axes */
+    DEM_SEARCH_LINKED_LIST,
+    /* a hierarchical grid [OGA12]: each class of radii has its own cells */
+    DEM_SEARCH_HIERARCHICAL,
+    /* bins [MAZ11]: each body is entered in every bin that its box touches */
+    DEM_SEARCH_BINS
 } dem_search;
 
+/* What happens where a body leaves the domain box, per axis. */
 typedef enum dem_boundary {
-    DEM_BOUNDARY_OPEN = 0,   /* bodies may leave the domain box; nothing happens */
-    DEM_BOUNDARY_PERIODIC,   /* leaves on one side, enters on the other */
-    /* bodies whose centre leaves the box are taken out in that step and counted as left; each time
-       a new list of neighbours is made: many that leave one by one are cheaper with an outlet */
+    /* nothing: bodies may leave */
+    DEM_BOUNDARY_OPEN = 0,
+    /* a body that leaves on one side enters on the other */
+    DEM_BOUNDARY_PERIODIC,
+    /* A body whose centre leaves is removed in that step and counted as left. Each removal rebuilds
+       the neighbour list, so an outlet is cheaper where many bodies leave one by one. */
     DEM_BOUNDARY_OUTFLOW
 } dem_boundary;
 
@@ -713,13 +772,13 @@ DEM_INLINE dem_vec3 dem_memory_rotate(const dem_contact *c, dem_vec3 v) {
    friction_load says, and takes away what pulls, if tension says so. hold: N, what adhesion holds
    besides, 0 if there is none. */
 DEM_INLINE void dem_law_load(const dem_contact *c, dem_contact_force *f, dem_real hold) {
-    const int clipped = c->tension != DEM_TENSION_KEPT;
+    const int clipped = c->tension != DEM_TENSION_ALLOWED;
     const dem_real least = f->elastic < 0 ? f->elastic : 0;  /* adhesion may pull, no dashpot */
     const dem_real whole = (clipped || c->friction_load != DEM_LOAD_ELASTIC ? f->normal
                                                                           : f->elastic) + hold;
     const dem_real size = f->normal < 0 ? -f->normal : f->normal;
     f->load = whole > 0 ? whole : 0;
-    if (!clipped && c->friction_load == DEM_LOAD_SIZE) f->load = size;
+    if (!clipped && c->friction_load == DEM_LOAD_MAGNITUDE) f->load = size;
     if (clipped) f->normal = f->normal < least ? least : f->normal;
     f->energy.dashpot = (f->normal - f->elastic)*c->closing_speed*c->dt;
 }
@@ -840,7 +899,7 @@ DEM_INLINE dem_vec3 demi_law_give(const dem_contact *c, dem_contact_force *f, de
                                   dem_real cut) {
     const dem_real shared = (1 - cut)*c->dt/(f->kt*c->dt + f->ct + DEMI_TINY);
     const dem_real all = (c->dt > 0 ? 1 - cut : 0)/(f->kt + DEMI_TINY);      /* m/N */
-    dem_vec3 lost = demi_scale(t, c->slider == DEM_SLIDER_SHARED ? shared : all);
+    dem_vec3 lost = demi_scale(t, c->slider == DEM_SLIDER_PARALLEL ? shared : all);
     if (c->slider == DEM_SLIDER_SPRING)
         lost = demi_add(lost, demi_scale(c->slip, c->dt > 0 && cut < 1 ? f->ct/(f->kt + DEMI_TINY)
                                                   : 0));
@@ -1030,13 +1089,13 @@ typedef struct dem_world_desc {
     void *force_user;              /* handed to either */
 
     dem_integrator integrator;
-    dem_real dt;                   /* s; 0: chosen from the live scene, see dem_step_advice */
+    dem_real dt;                   /* s; 0: chosen from the live scene, see dem_step_advice_get */
     int allow_large_dt;  /* 1: run even when dt exceeds t_c/20. For showing what happens */
     dem_real impact_speed;         /* m/s, typical: for linear stiffness and the time step; 0: from
                                       gravity, walls and grains (linear stiffness: 1 m/s) */
-    /* With DEM_RESPONSE_IMPULSES dt has to be given, integrator is DEM_SYMPLECTIC_EULER (or left
-       0), law null; law_range (m) is the gap from which on a contact is looked at; 0: what two
-       may approach by in a step, between a tenth of the largest radius and all of it */
+    /* With DEM_RESPONSE_IMPULSES dt has to be given, integrator is DEM_INTEGRATOR_SYMPLECTIC_EULER
+       (or left 0), law null; law_range (m) is the gap from which on a contact is looked at; 0: what
+       two may approach by in a step, between a tenth of the largest radius and all of it */
     dem_response response;
     dem_cone cone;
     dem_solver solver;
@@ -1055,7 +1114,7 @@ typedef struct dem_world_desc {
                                       list is rebuilt every step */
     dem_rotation rotation;         /* of bodies that are not spheres */
     dem_overlap ellipsoid_overlap;
-    dem_sharing cluster_contacts;
+    dem_cluster_contacts cluster_contacts;
     int orientations;              /* 1: spheres have an orientation, too */
     int ledger;                    /* 1: account for energy: dem_ledger_get */
     int threads;                   /* 0: as many as OpenMP offers; 1..64 */
@@ -1063,18 +1122,18 @@ typedef struct dem_world_desc {
 } dem_world_desc;
 static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0, 0}},
     {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
-    DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_KEPT,
-    DEM_LOAD_PUSH, DEM_SLIDER_SHARED, DEM_CONVENTION_STANDARD,
-    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_VELOCITY_VERLET, 0, 0, 0,
-    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_SEIDEL, 0, 0, 0, 0, DEM_SEARCH_AUTO, 0,
-    DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_SHARING_ONE, 0, 0, 0, {0, 0, 0}};
+    DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, DEM_TENSION_ALLOWED,
+    DEM_LOAD_REPULSIVE, DEM_SLIDER_PARALLEL, DEM_CONVENTION_STANDARD,
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, DEM_INTEGRATOR_VELOCITY_VERLET, 0, 0, 0,
+    DEM_RESPONSE_SPRINGS, DEM_CONE_COULOMB, DEM_SOLVER_GAUSS_SEIDEL, 0, 0, 0, 0, DEM_SEARCH_AUTO, 0,
+    DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_CLUSTER_CONTACTS_MERGED, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
 /* Creates an empty world. Returns null when a value is out of its limits or memory runs out; why is
-   told by dem_create_error(desc). */
+   told by dem_world_create_error_get(desc). */
 static inline dem_world *dem_world_create(const dem_world_desc *desc);
 /* One sentence on why dem_world_create refuses this desc, or "" when it does not. */
-DEM_API const char *dem_create_error(const dem_world_desc *desc);
+DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
 DEM_API void dem_world_destroy(dem_world *world);
 /* The sentence of the last failed call on this world; "" when none failed yet. Of a null world:
    that it is null. When a call that builds the scene (adds bodies, materials, shapes, walls, feeds,
@@ -1082,8 +1141,8 @@ DEM_API void dem_world_destroy(dem_world *world);
    begin but quote it, until this function was called or the refused one went well: a scene that
    lacks its floor would run, and answer DEM_OK. A program that handles a refusal by itself and goes
    on without what was refused calls this first. */
-DEM_API const char *dem_world_error(const dem_world *world);
-DEM_API const char *dem_result_name(dem_result result);
+DEM_API const char *dem_world_error_get(const dem_world *world);
+DEM_API const char *dem_result_name_get(dem_result result);
 /* The desc as it is in force: zeros replaced by what was chosen. */
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
 
@@ -1195,20 +1254,32 @@ typedef struct dem_region {
 } dem_region;
 static const dem_region DEM_REGION_ZERO = {{{0, 0, 0}, {0, 0, 0}}, 0, 0, 0};
 #define DEM_REGION DEM_REGION_ZERO
+/* The whole of a box. */
+DEM_INLINE dem_region dem_region_make(dem_box box) {
+    dem_region region = DEM_REGION;
+    region.box = box;
+    return region;
+}
+/* The centres in a box for which inside(centre, radius, user) is not 0. */
+DEM_INLINE dem_region dem_region_inside_make(dem_box box, dem_inside_fn inside, void *user) {
+    dem_region region = dem_region_make(box);
+    region.inside = inside;
+    region.user = user;
+    return region;
+}
 /* Random filling: count spheres of one radius inside box, in random sequence; seed makes it
    repeatable. A place is free when nothing there overlaps another body, across periodic faces too,
    or touches a wall: behind a plane, on the wrong side of a cylinder and in a sieve there is none;
    the inside of a closed mesh is a place like any other. Returns how many found a place (fewer than
    asked: it is too full, 2000 tries for one were in vain; the sentence says so). */
 DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius,
-                             dem_box box, int count,
-                             uint64_t seed);
+                             dem_region region, int count, uint64_t seed);
 /* A distribution of size, by radius. Between min and max, and nowhere else. */
 typedef enum dem_sizes_kind {
     DEM_SIZES_UNIFORM = 0,   /* equal shares for equal ranges of radius */
     DEM_SIZES_LOGNORMAL,     /* median, spread */
     DEM_SIZES_WEIBULL,       /* Rosin-Rammler: 1 - exp(-(r/scale)^modulus) is finer than r */
-    DEM_SIZES_SIEVES,        /* a sieve curve: what passes each of `count` sieves */
+    DEM_SIZES_SIEVE_CURVE,        /* a sieve curve: what passes each of `count` sieves */
     DEM_SIZES_NORMAL,        /* median and, in m, deviation */
     DEM_SIZES_EXPONENTIAL    /* Zhang's: min, and beyond it exponential with the mean `scale` - min:
                                 1 - exp(-(r - min)/(scale - min)) is finer than r */
@@ -1234,7 +1305,7 @@ typedef struct dem_sizes {
 static const dem_sizes DEM_SIZES_ZERO = {DEM_SIZES_UNIFORM, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0};
 #define DEM_SIZES DEM_SIZES_ZERO
 /* Share that is finer than a radius (m), of mass or number as by_count says. -1 on bad values. */
-DEM_API double dem_sizes_finer(dem_world *world, const dem_sizes *sizes, dem_real radius);
+DEM_API double dem_sizes_finer_get(dem_world *world, const dem_sizes *sizes, dem_real radius);
 /* Draws radii (count). seed 0: not by chance but at equal steps of the distribution of numbers, so
    that a few hundred have its shares within a per cent; ascending. Mass goes as r^3 (planar worlds:
    r^2). Nothing is written where something is wrong. */
@@ -1243,20 +1314,18 @@ DEM_API dem_result dem_sizes_draw(dem_world *world, const dem_sizes *sizes, int 
 /* The distribution in at most class_count (1..16) classes, for dem_feed_desc.radius and .amount,
    with by_mass as by_count is not: ranges of equal ratio; the radius of each is that of its mean
    grain. Answers how many have a share; 0 on bad values. */
-DEM_API int dem_sizes_classes(dem_world *world, const dem_sizes *sizes, int class_count,
+DEM_API int dem_sizes_classes_get(dem_world *world, const dem_sizes *sizes, int class_count,
                               dem_real *radius, double *amount);
-/* Fills a region as dem_region_fill does with count spheres whose radii are drawn as above, the
-   largest first, for which there is most room at the beginning. */
-DEM_API int dem_sizes_fill(dem_world *world, const dem_region *region, dem_material material,
-                           const dem_sizes *sizes, int count, uint64_t seed);
-/* Hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, in layers
-   along z: of its places those that are free, as above, and for which inside(centre, radius, user)
-   is not 0 (null: all), at most count (0: all that fit). Centres keep a radius from the box, and
-   across periodic faces the packing keeps off itself, but does not go on. Returns how many were
-   added. */
+/* Fills a region as dem_spheres_fill does with count spheres whose radii are drawn as above (seed 0
+   there), the largest first, for which there is most room at the beginning. */
+DEM_API int dem_sizes_fill(dem_world *world, dem_material material, const dem_sizes *sizes,
+                           dem_region region, int count, uint64_t seed);
+/* Adds a hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, in
+   layers along z: those of its places that are in the region and free, as above; at most count (0:
+   all that fit). Centres keep a radius from the box, and across periodic faces the packing keeps
+   off itself, but does not go on. Returns how many were added. */
 DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real radius,
-                             dem_real padding,
-                             dem_box box, dem_inside_fn inside, void *user, int count);
+                             dem_real padding, dem_region region, int count);
 DEM_API dem_result dem_body_remove(dem_world *world, dem_body body);
 
 /* State of one body. */
@@ -1299,7 +1368,7 @@ typedef struct dem_bodies {
     const dem_real *forces;
     const dem_real *torques;    /* count x 4: x, y, z [N m], 0 */
     const dem_real *masses;     /* count: kg */
-    /* count: slot of dem_body less 1; dem_bodies_id gives the id       */
+    /* count: slot of dem_body less 1; dem_body_id_get gives the id       */
     const uint32_t *slots;
     const int32_t *materials;   /* count: dem_material ids */
     /* count x 4: w, x, y, z, from principal axes to the world; null when no body has any */
@@ -1310,7 +1379,7 @@ typedef struct dem_bodies {
     const dem_real *rates;      /* count x real_count: 1/s, of the last step; null as above */
 } dem_bodies;
 DEM_API dem_bodies dem_bodies_get(const dem_world *world);
-DEM_API dem_body dem_bodies_id(const dem_world *world, int index);
+DEM_API dem_body dem_body_id_get(const dem_world *world, int index);
 
 /* Numbers of your own (desc.body_reals) of one grain, of all in the order of dem_bodies_get (count
    x real_count), or of a wall: finite ones. Laws see them from the next step's forces on. An error
@@ -1407,12 +1476,10 @@ DEM_API dem_result dem_bodies_add(dem_world *world, dem_material material, dem_s
                                   int count, const dem_real *positions,
                                   const dem_real *orientations, const dem_real *velocities,
                                   const dem_real *spins, const dem_real *scales);
-/* Random filling as dem_spheres_fill, in random orientations, with room for each to turn freely. */
-DEM_API int dem_bodies_fill(dem_world *world, dem_material material, dem_shape shape, dem_box box,
-                            int count, uint64_t seed);
-/* The same in a region; shape: null: spheres of this radius, else the radius is not used. */
-DEM_API int dem_region_fill(dem_world *world, const dem_region *region, dem_material material,
-                            dem_shape shape, dem_real radius, int count, uint64_t seed);
+/* Fills a region as dem_spheres_fill does, in random orientations, with room for each to turn
+   freely. */
+DEM_API int dem_bodies_fill(dem_world *world, dem_material material, dem_shape shape,
+                            dem_region region, int count, uint64_t seed);
 
 /* Two ellipsoids by themselves, for analysis. orientation: of any length; 0: not turned. */
 typedef struct dem_ellipsoid { dem_vec3 position, semi_axes; dem_quat orientation; } dem_ellipsoid;
@@ -1425,12 +1492,12 @@ typedef struct dem_ellipsoid_contact {
     int iterations;              /* evaluations it took */
 } dem_ellipsoid_contact;
 /* lambda: where to begin, from a contact a little while ago; 0: unknown. */
-DEM_API dem_ellipsoid_contact dem_ellipsoids_contact(const dem_ellipsoid *a,
+DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
                                                      const dem_ellipsoid *b, dem_real lambda);
 
 /* inserted = present + removed + left, always. */
-typedef struct dem_balance { uint64_t inserted, present, removed, left; } dem_balance;
-DEM_API dem_balance dem_balance_get(const dem_world *world);
+typedef struct dem_body_counts { uint64_t inserted, present, removed, left; } dem_body_counts;
+DEM_API dem_body_counts dem_body_counts_get(const dem_world *world);
 
 /* ---- walls ---- */
 typedef enum dem_motion_kind {
@@ -1488,10 +1555,10 @@ typedef struct dem_profile { int vertex_count, segment_count; dem_real *vertices
                             int32_t *segments; } dem_profile;
 
 /* Plane through point; grains live on the side normal points to. */
-DEM_API dem_wall dem_plane_add(dem_world *world, dem_material material, dem_vec3 point,
+DEM_API dem_wall dem_wall_plane_add(dem_world *world, dem_material material, dem_vec3 point,
                                dem_vec3 normal);
 /* Endless cylinder about axis through point. inside = 1: grains live inside. */
-DEM_API dem_wall dem_cylinder_add(dem_world *world, dem_material material, dem_vec3 point,
+DEM_API dem_wall dem_wall_cylinder_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis,
                                   dem_real radius, int inside);
 /* A surface of revolution about `axis` through `point`: straight pieces from ring to ring, count
@@ -1501,23 +1568,24 @@ DEM_API dem_wall dem_cylinder_add(dem_world *world, dem_material material, dem_v
    one and at a rim the ring. A grain that is wider than the place it is in touches it on one side.
    Spheres, discs, clusters and polyhedra touch it; ellipsoids do not. Null id on bad values. */
 enum { DEM_RINGS = 12 };
-DEM_API dem_wall dem_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
+DEM_API dem_wall dem_wall_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
                                   const dem_real *heights);
 /* One piece of it: a cone from here to there (m, not the same place), of these radii (m, >= 0, not
    both 0) at its ends, which are open. Equal radii: a finite cylinder. */
-DEM_API dem_wall dem_cone_add(dem_world *world, dem_material material, dem_vec3 from, dem_vec3 to,
+DEM_API dem_wall dem_wall_cone_add(dem_world *world, dem_material material, dem_vec3 from,
+                                   dem_vec3 to,
                               dem_real radius_from, dem_real radius_to);
 /* Segments in the x-y plane drawn out along z without end; both sides push. The data is copied. */
-DEM_API dem_wall dem_profile_add(dem_world *world, dem_material material,
+DEM_API dem_wall dem_wall_profile_add(dem_world *world, dem_material material,
                                  const dem_profile *profile,
                                  dem_edge_rule rule);
 /* Triangles; both sides push. The data is copied. */
-DEM_API dem_wall dem_mesh_add(dem_world *world, dem_material material, const dem_mesh *mesh);
+DEM_API dem_wall dem_wall_mesh_add(dem_world *world, dem_material material, const dem_mesh *mesh);
 /* Spheres at positions (count x 3), all of one radius, fixed to each other: [MIL]'s wall of
    particles. share (0 < share <= 1) multiplies every force: overlapping spheres stand for one
    surface. */
-DEM_API dem_wall dem_grains_wall_add(dem_world *world, dem_material material, int count,
+DEM_API dem_wall dem_wall_grains_add(dem_world *world, dem_material material, int count,
                                      const dem_real *positions,
                                      dem_real radius, dem_real share);
 
@@ -1557,16 +1625,17 @@ typedef struct dem_sieve_desc {
 static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = {DEM_SIEVE_NONE, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
                                                    0, 0, 0, 0, 0, 0, 0, 0, 0};
 #define DEM_SIEVE_DESC DEM_SIEVE_DESC_ZERO
-DEM_API dem_wall dem_sieve_add(dem_world *world, dem_material material, const dem_sieve_desc *desc);
+DEM_API dem_wall dem_wall_sieve_add(dem_world *world, dem_material material,
+                                    const dem_sieve_desc *desc);
 /* Grains that blind a sieve of wires or a plate: stuck in a hole, that is touching it on opposite
    sides, with the wedge between the two so narrow that friction holds it. Those moving faster than
    speed (m/s; 0: any) against the sieve are not counted. -1 with a sentence when there is no list
    of contacts (see dem_contacts_get) or the wall is no sieve. Clusters count too; reduced holes
    are never blinded. */
-DEM_API int dem_sieve_blinded(const dem_world *world, dem_wall sieve, dem_real speed);
+DEM_API int dem_sieve_blinded_get(const dem_world *world, dem_wall sieve, dem_real speed);
 
-DEM_API dem_result dem_wall_motion(dem_world *world, dem_wall wall, const dem_motion *motion);
-DEM_API dem_result dem_wall_pose(const dem_world *world, dem_wall wall, dem_pose *pose);
+DEM_API dem_result dem_wall_motion_set(dem_world *world, dem_wall wall, const dem_motion *motion);
+DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall wall, dem_pose *pose);
 DEM_API dem_result dem_wall_remove(dem_world *world, dem_wall wall);
 
 /* What the grains do to a wall. Torque is about the point of its motion; axial is its part along
@@ -1590,10 +1659,11 @@ DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
 
 /* ---- joints ---- */
 /* Joints hold a body to another, to a wall or to the space they are in. They need
-   DEM_RESPONSE_IMPULSES and DEM_SOLVER_SEIDEL. All joints are solved together and exactly, trees
-   and closed loops alike, after every sweep over the contacts; they keep points, and directions,
-   together at the end of each step. What joints hold never adds energy, whatever the number of
-   sweeps: docs/impulses.md says how. Joined bodies do not touch each other, unless `collide`. */
+   DEM_RESPONSE_IMPULSES and DEM_SOLVER_GAUSS_SEIDEL. All joints are solved together and exactly,
+   trees and closed loops alike, after every sweep over the contacts; they keep points, and
+   directions, together at the end of each step. What joints hold never adds energy, whatever the
+   number of sweeps: docs/impulses.md says how. Joined bodies do not touch each other, unless
+   `collide`. */
 typedef enum dem_joint_kind {
     DEM_JOINT_NONE = 0,
     DEM_JOINT_POINT,          /* a ball joint: `point` of both stays one */
@@ -1638,7 +1708,7 @@ typedef struct dem_joint_state {
    joints. */
 DEM_API dem_joint dem_joint_add(dem_world *world, const dem_joint_desc *desc);
 /* Another motor, from the next step on: as in dem_joint_desc. */
-DEM_API dem_result dem_joint_motor(dem_world *world, dem_joint joint, dem_motor motor,
+DEM_API dem_result dem_joint_motor_set(dem_world *world, dem_joint joint, dem_motor motor,
                                    dem_real speed, dem_real torque);
 DEM_API dem_result dem_joint_get(const dem_world *world, dem_joint joint, dem_joint_state *state);
 DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
@@ -1753,7 +1823,7 @@ typedef struct dem_advice {
 } dem_advice;
 /* What contacts that are pressed already allow is looked at when the run begins, and as it goes on:
    a step that is too large for them is refused then, or made smaller where it was chosen. */
-DEM_API dem_result dem_step_advice(const dem_world *world, dem_advice *advice);
+DEM_API dem_result dem_step_advice_get(const dem_world *world, dem_advice *advice);
 
 /* What is likely to be wrong with a scene, found before it runs: nothing moves. */
 typedef enum dem_severity {
@@ -1776,12 +1846,12 @@ typedef struct dem_finding {
    them. */
 DEM_API int dem_world_check(dem_world *world, dem_finding *findings, int capacity);
 /* The same as lines of text, the first 16 of them; nothing where nothing is found. */
-DEM_API int dem_check_print(dem_world *world, FILE *out);
+DEM_API int dem_world_check_print(dem_world *world, FILE *out);
 
 /* Takes so many steps (>= 0), or fewer where one cannot be taken: the answer is its reason, and
-   the sentence in dem_world_error names the step. A step that ran out of memory (DEM_ERROR_MEMORY)
-   may have moved the bodies already, and be counted; the first of the next call is then what is
-   left of it, here or in a world that read what was saved meanwhile: no bit is lost. */
+   error message names the step. A step that ran out of memory (DEM_ERROR_MEMORY) may have moved the
+   bodies already, and be counted; the first of the next call is then what is left of it, here or in
+   a world that read what was saved meanwhile: no bit is lost. */
 DEM_API dem_result dem_world_step(dem_world *world, int steps);
 /* Runs on for seconds, to the step nearest to the end. Runs that follow each other add up: twenty
    of 0.05 s end within half a step of 1 s, since each counts from where the one before should have
@@ -1819,11 +1889,11 @@ DEM_API dem_result dem_world_gravity_set(dem_world *world, dem_vec3 gravity);
    An error where it is below 0 or not finite, or 0 where impulses act: nothing changes. */
 DEM_API dem_result dem_world_dt_set(dem_world *world, dem_real dt);
 
-DEM_API double dem_world_time(const dem_world *world);     /* s */
-DEM_API uint64_t dem_world_steps(const dem_world *world);
+DEM_API double dem_world_time_get(const dem_world *world);     /* s */
+DEM_API uint64_t dem_world_steps_get(const dem_world *world);
 /* 64-bit digest of positions, velocities, spins, contact memory, walls and time; equal runs, equal
    hash. */
-DEM_API uint64_t dem_world_hash(const dem_world *world);
+DEM_API uint64_t dem_world_hash_get(const dem_world *world);
 
 /* Counters since creation; set once, read often. */
 typedef struct dem_counters {
@@ -1845,7 +1915,7 @@ typedef struct dem_counters {
     size_t memory;              /* bytes held */
 } dem_counters;
 DEM_API dem_counters dem_counters_get(const dem_world *world);
-DEM_API void dem_overlap_reset(dem_world *world);
+DEM_API void dem_overlap_max_reset(dem_world *world);
 
 /* Where the energy went since the ledger was opened (J). stored = kinetic + rotational + elastic.
    residual = (stored - stored at opening) - gravity - walls - force - inserted + removed
@@ -1877,24 +1947,24 @@ DEM_API dem_totals dem_totals_get(const dem_world *world);
 
 /* One number that a world is judged by. Averages over many grains or much time say more than
    places: where grains collide, those depend on the last bit. */
-typedef double (*dem_observe_fn)(const dem_world *world, void *user);
+typedef double (*dem_observer_fn)(const dem_world *world, void *user);
 /* m, the centre of mass above the origin: against gravity, or along z where there is none. */
-DEM_API double dem_observe_height(const dem_world *world, void *user);
+DEM_API double dem_observer_height(const dem_world *world, void *user);
 /* J, kinetic and rotational energy of all bodies. */
-DEM_API double dem_observe_kinetic(const dem_world *world, void *user);
+DEM_API double dem_observer_kinetic(const dem_world *world, void *user);
 /* Contacts per body, those with walls included: a contact of two bodies counts for both. */
-DEM_API double dem_observe_contacts(const dem_world *world, void *user);
+DEM_API double dem_observer_contacts(const dem_world *world, void *user);
 /* N, sum over walls of the force on each. */
-DEM_API double dem_observe_walls(const dem_world *world, void *user);
+DEM_API double dem_observer_walls(const dem_world *world, void *user);
 
 enum { DEM_OBSERVABLES = 8, DEM_TRIALS = 8 };
 typedef struct dem_observable {
     const char *name, *unit;       /* of text that outlives the call */
-    dem_observe_fn function;
+    dem_observer_fn function;
     void *user;
     double scale;                  /* what it is measured by; 0: its own value in the reference */
 } dem_observable;
-typedef struct dem_advise_desc {
+typedef struct dem_trials_desc {
     double duration;               /* s that each trial simulates, > 0; observables are averages
                                       over its second half */
     double budget;                 /* s of wall time for all trials, as estimated from some steps of
@@ -1910,11 +1980,11 @@ typedef struct dem_advise_desc {
     dem_progress_fn progress;      /* called after each trial with the world asked about; or null.
                                       A non-zero answer ends the call: DEM_ERROR_STOPPED */
     void *user;
-} dem_advise_desc;
-static const dem_advise_desc DEM_ADVISE_DESC_ZERO = {0, 0, 0, 0, 0,
+} dem_trials_desc;
+static const dem_trials_desc DEM_TRIALS_DESC_ZERO = {0, 0, 0, 0, 0,
     {{0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0},
      {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}, {0, 0, 0, 0, 0}}, 0, 0};
-#define DEM_ADVISE_DESC DEM_ADVISE_DESC_ZERO
+#define DEM_TRIALS_DESC DEM_TRIALS_DESC_ZERO
 typedef struct dem_trial {
     const char *name;              /* what differs from the scene */
     double step, stiffness;        /* factors: on the time step that the scene has, or chooses as it
@@ -1946,13 +2016,14 @@ typedef struct dem_trials {
    (laws, fields, motions, regions of feeds) are asked for the copies, too, of which two at the same
    simulated time may come one after the other. What is refused: a value out of its limits, no
    bodies, a scene that would not run. */
-DEM_API dem_result dem_advise(dem_world *world, const dem_advise_desc *desc, dem_trials *trials);
+DEM_API dem_result dem_trials_run(dem_world *world, const dem_trials_desc *desc,
+                                  dem_trials *trials);
 /* The trials as a table, and the advice. */
 DEM_API void dem_trials_print(const dem_trials *trials, FILE *out);
 
 /* Grain-grain contacts as they are now, for analysis. Calls the same law as the run, on a copy of
    the memory. Returns how many there are; fills at most capacity. -1 with a sentence when bodies or
-   walls changed since the last step: dem_search_now makes a new list. */
+   walls changed since the last step: dem_candidates_rebuild makes a new list. */
 typedef struct dem_contact_info {
     dem_body a, b;
     int32_t wall;                        /* dem_wall id when b is a wall, then b is null */
@@ -1976,7 +2047,7 @@ DEM_API int dem_bonds_make(dem_world *world, dem_real gap, dem_contact_fn make, 
    are; -1 as above. */
 DEM_API int dem_candidates_get(const dem_world *world, uint32_t *out, int capacity);
 /* Rebuilds the candidate list now (for tests and analysis; a run does it by itself). */
-DEM_API dem_result dem_search_now(dem_world *world);
+DEM_API dem_result dem_candidates_rebuild(dem_world *world);
 
 /* ---- measuring ---- */
 
@@ -2044,11 +2115,11 @@ typedef struct dem_repose {
    line through the centre of mass; the line goes through it from 20 to 80 % of its height, so that
    neither the rounded top nor the toe counts. Planar worlds: both flanks. An error without gravity,
    or where there are fewer than 4 places to go through. */
-DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repose *repose);
+DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_repose *repose);
 /* Dynamic angle of repose in a drum that turns about `axis` (right-handed, level): positive where
    the charge is carried up as it should be. The line goes through the middle half of the surface.
    For charges that roll or cascade: grains in flight are of no surface. Grains in box as above. */
-DEM_API dem_result dem_repose_drum(const dem_world *world, dem_box box, dem_vec3 axis,
+DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_vec3 axis,
                                    dem_repose *repose);
 
 /* ---- files ---- */
@@ -2115,13 +2186,13 @@ DEM_API dem_result dem_mesh_spheres(dem_world *world, const dem_mesh *mesh, int 
    its material, with its motion. The file's lengths times scale are m (0: 1). walls: count ids;
    null: not asked. A part that the file does not have, and what a wall or motion is refused for,
    is an error; then no wall is added. */
-typedef struct dem_part {
+typedef struct dem_wall_part {
     const char *name;
     dem_material material;
     dem_motion motion;        /* DEM_MOTION: it stands still */
-} dem_part;
-DEM_API dem_result dem_parts_add(dem_world *world, const char *path, dem_real scale, int count,
-                                 const dem_part *parts, dem_wall *walls);
+} dem_wall_part;
+DEM_API dem_result dem_wall_parts_add(dem_world *world, const char *path, dem_real scale, int count,
+                                 const dem_wall_part *parts, dem_wall *walls);
 /* Reads segments from [MIL]'s text format in 2-D: counts; x y per vertex; two corners counted from
    1. */
 DEM_API dem_result dem_profile_read(dem_world *world, const char *path, dem_profile *profile);
@@ -2183,7 +2254,7 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
 DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path);
 /* Appends the loads of a wall as one CSV line; writes the heading first when the file is new or
    empty. */
-DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const char *path);
+DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, const char *path);
 
 /* ---- replay: a film of a run in one HTML file ---- */
 
@@ -2213,7 +2284,7 @@ typedef struct dem_replay_desc {
     dem_real resolution;        /* m, to which places are told, >= 0; 0: 1/32 of the smallest radius
                                    in the first frame */
     /* s, >= 0: the film takes its frames by itself, at the steps of the run nearest to its begin, a
-       multiple of this later, and so on; 0: only when dem_replay_frame is called */
+       multiple of this later, and so on; 0: only when dem_replay_frame_write is called */
     double interval;
 } dem_replay_desc;
 static const dem_replay_desc DEM_REPLAY_DESC_ZERO = {0, 0, 0, 0, 0, 0};
@@ -2223,11 +2294,11 @@ static const dem_replay_desc DEM_REPLAY_DESC_ZERO = {0, 0, 0, 0, 0, 0};
 DEM_API dem_replay *dem_replay_open(dem_world *world, const char *path,
                                     const dem_replay_desc *desc);
 /* The world as it is now: a frame. Ask for one every so often: 30 to 300 make a good film. */
-DEM_API dem_result dem_replay_frame(dem_replay *replay);
+DEM_API dem_result dem_replay_frame_write(dem_replay *replay);
 /* A value of the next frame, drawn against time under this name (1 to 63 letters), which ends with
    its unit in brackets: values of one unit share a scale. At most 16 names. A value that is not a
    number leaves a gap. */
-DEM_API dem_result dem_replay_value(dem_replay *replay, const char *name, double value);
+DEM_API dem_result dem_replay_value_set(dem_replay *replay, const char *name, double value);
 /* Adds the report and ends the file; the replay is gone whatever the answer. */
 DEM_API dem_result dem_replay_close(dem_replay *replay);
 
@@ -2261,9 +2332,9 @@ typedef struct dem_output_desc {
     const char *path;
     double interval;         /* s, required, 1e-12 or more */
     double start, end;       /* s, the first and (0: none) the last; in the world's time */
-    /* CSV: the loads of this wall (dem_wall_loads_csv); or values of your own: columns names them
-       (1 to 32 words as in body_reals, copied), values writes as many; or neither: steps, bodies,
-       contacts, kinetic and rotational energy (J), overlap_max */
+    /* CSV: the loads of this wall (dem_wall_loads_csv_write); or values of your own: columns names
+       them (1 to 32 words as in body_reals, copied), values writes as many; or neither: steps,
+       bodies, contacts, kinetic and rotational energy (J), overlap_max */
     dem_wall wall;
     const char *columns;
     void (*values)(const dem_world *world, double *values, void *user);
@@ -2286,8 +2357,8 @@ static const dem_output_desc DEM_OUTPUT_DESC_ZERO = {DEM_OUTPUT_CALL, 0, 0, 0, 0
    A file that cannot be written stops the run with its error message and the state intact, and the
    next run tries it again. Null id on bad values. Slabs have no outputs. */
 DEM_API dem_output dem_output_add(dem_world *world, const dem_output_desc *desc);
-/* The same in a line: dem_output_every(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01). */
-DEM_API dem_output dem_output_every(dem_world *world, dem_output_kind kind, const char *path,
+/* The same in a line: dem_output_every_add(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01). */
+DEM_API dem_output dem_output_every_add(dem_world *world, dem_output_kind kind, const char *path,
                                     double interval);
 
 /* ---- slabs: one scene on many processors ---- */
@@ -2327,19 +2398,19 @@ typedef struct dem_slabs dem_slabs;
 /* Deals the grains of a world to slabs, which take along everything a step needs; the world itself
    stays as it is and may even be destroyed. Every process builds the same world and asks for its
    own slabs. Feeds and outlets go on in the slabs. Null on bad values or when memory runs out;
-   dem_world_error(world) says why. */
+   dem_world_error_get(world) says why. */
 DEM_API dem_slabs *dem_slabs_create(dem_world *world, const dem_slabs_desc *desc);
 DEM_API void dem_slabs_destroy(dem_slabs *slabs);
 DEM_API dem_result dem_slabs_step(dem_slabs *slabs, int steps);
 /* Writes the state of all slabs into a world of the same scene, in every process: grains, contact
    memory, walls, loads, fields, feeds, outlets, ledger, time. The world may then be looked at,
    written, stepped, or dealt to slabs anew; the slabs go on unaware of it. It has no list of
-   contacts until dem_search_now; after that it steps on as the slabs would. */
+   contacts until dem_candidates_rebuild; after that it steps on as the slabs would. */
 DEM_API dem_result dem_slabs_collect(dem_slabs *slabs, dem_world *world);
 /* Begins the walls' sums over time and the largest overlap anew. */
 DEM_API void dem_slabs_loads_reset(dem_slabs *slabs);
 /* The sentence of the last failed call; "" when none failed yet. */
-DEM_API const char *dem_slabs_error(const dem_slabs *slabs);
+DEM_API const char *dem_slabs_error_get(const dem_slabs *slabs);
 
 typedef struct dem_slab {
     int grains, ghosts;      /* its own; copies of the lower neighbour's */
@@ -3243,7 +3314,7 @@ typedef struct demi_bodies {
     uint8_t *ghost;              /* by slot; null outside >>slabs: 1: a copy, owned elsewhere */
     dem_real *scratch;             /* x 4, for permuting */
     int32_t *order, *cell_of;      /* permutation, cell of each body */
-    dem_balance balance;
+    dem_body_counts balance;
 } demi_bodies;
 /* The road of a contact's memory. While a list holds, memory of two spheres stands in columns of
    the near list, beside its pair; every other contact carries its own (demi_kept). A near list
@@ -3347,7 +3418,7 @@ struct dem_world {
     /* >>memory: sentences (demi_fail), and all that was allocated */
     char error[512];
     char refusal[512];             /* of the first call that builds the scene and was refused */
-    int refused;                   /* calls that were, since dem_world_error was read */
+    int refused;                   /* calls that were, since dem_world_error_get was read */
     char refused_calls[24][32];    /* their names */
     size_t bytes;
     struct demi_block *chains[DEMI_CHAINS];
@@ -3576,7 +3647,7 @@ enum { DEMI_BODY_ARRAYS = (int)(sizeof demi_body_arrays/sizeof *demi_body_arrays
    chosen a run is another one. Those that take away, look, read or write do not. */
 static int demi_builds(const char *call, size_t n) {
     static const char *const ends[] = {"_add", "_fill", "_pack", "dem_pair_set", "dem_material_set",
-                                       "dem_wall_motion"};
+                                       "dem_wall_motion_set"};
     size_t k, l;
     for (k = 0; k < sizeof ends/sizeof *ends; k++) {
         l = strlen(ends[k]);
@@ -3635,7 +3706,7 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
     if (!w->refused) return DEM_OK;
     memcpy(why, w->refusal, sizeof why);
     return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: not begun, because a call before was refused and "
-                     "nobody has read why: \"%.320s\"; mend that call, or read dem_world_error "
+                     "nobody has read why: \"%.320s\"; mend that call, or read dem_world_error_get "
                      "and go on without it", call, why);
 }
 /* Before a function of the user's is called: until `w->look.calling` is what this returns again,
@@ -3980,14 +4051,14 @@ static void demi_who_reals(const dem_world *w, int a, int b, int wall, dem_real 
 /* What the desc says about how dashpots meet the end of a contact and friction's limit; what it
    says where nothing is asked for. */
 DEM_INLINE void demi_contact_usual(dem_contact *c) {
-    c->tension = DEM_TENSION_KEPT;
-    c->friction_load = DEM_LOAD_PUSH;
-    c->slider = DEM_SLIDER_SHARED;
+    c->tension = DEM_TENSION_ALLOWED;
+    c->friction_load = DEM_LOAD_REPULSIVE;
+    c->slider = DEM_SLIDER_PARALLEL;
     c->friction_static = c->friction;
 }
 static int demi_laws_usual(const dem_world *w) {
-    return w->desc.tension == DEM_TENSION_KEPT && w->desc.friction_load == DEM_LOAD_PUSH &&
-           w->desc.slider == DEM_SLIDER_SHARED && w->laws.at_sliding == DEMI_MEMORY;
+    return w->desc.tension == DEM_TENSION_ALLOWED && w->desc.friction_load == DEM_LOAD_REPULSIVE &&
+           w->desc.slider == DEM_SLIDER_PARALLEL && w->laws.at_sliding == DEMI_MEMORY;
 }
 /* The force of one contact by the laws in force, or by the user's. memory: all that the contact
    keeps, c->sliding included. */
@@ -4107,7 +4178,7 @@ static double demi_restitution_clipped(double beta) {
 static double demi_damping_for(double e, dem_tension tension) {
     double lo = 0, hi = 1;
     int i;
-    if (tension != DEM_TENSION_NONE || e >= 1) return demi_damping_ratio(e);
+    if (tension != DEM_TENSION_COMPENSATED || e >= 1) return demi_damping_ratio(e);
     while (demi_restitution_clipped(hi) > e && hi < 1e6) hi *= 2;
     for (i = 0; i < 100; i++) {                 /* falls with beta */
         const double mid = (lo + hi)/2;
@@ -4409,11 +4480,10 @@ DEM_API void dem_pairs_print(const dem_world *w, FILE *out) {
 
 /* ---------------------------------------------------------------------------------------------
    >>shapes
-   What a body is when it is not a sphere: an ellipsoid, or a rigid cluster of spheres. A shape is
-   kept in its principal frame, its centre of mass at the origin, per unit of mass and of the body's
-   scale; a body has a position, a quaternion and, as its radius, that of its bounding sphere, which
-   tells its scale. Here are mass properties, how far a body reaches in a direction, and where two
-   ellipsoids meet. Knows no material and no law.
+   Ellipsoids and rigid clusters of spheres: mass properties, support heights, contact of two
+   ellipsoids. A shape is stored in its principal frame about its centre of mass, per unit of mass
+   and scale. A body has a position, a quaternion and the radius of its bounding sphere, which gives
+   its scale. Uses no material and no law.
    --------------------------------------------------------------------------------------------- */
 DEM_API dem_quat dem_quat_about(dem_vec3 axis, dem_real angle) {
     const dem_vec3 e = demi_unit(axis);
@@ -5099,19 +5169,18 @@ static double demi_meet_chord(const demi_meet *m, const double *A) {
     in = (m->l*ds - sqrt(m->l*m->l*ds*ds + du*(1 - m->fb)))/du;
     return (out - in)*sqrt(demi_dot3(d, d));
 }
-DEM_API dem_ellipsoid_contact dem_ellipsoids_contact(const dem_ellipsoid *a, const dem_ellipsoid *b,
-                                        dem_real lambda) {
-    if (!a || !b) { dem_ellipsoid_contact nothing; memset(&nothing, 0,
-                                                          sizeof nothing); return nothing; }
+DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
+                                                         const dem_ellipsoid *b,
+                                                         dem_real lambda) {
+    dem_ellipsoid_contact out = {0, 0, {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0};
+    if (!a || !b) return out;
     const dem_quat none = dem_quat_make(1, 0, 0, 0);
     const dem_quat qa = demi_quat_most(a->orientation) > 0 ? demi_quat_unit(a->orientation) : none;
     const dem_quat qb = demi_quat_most(b->orientation) > 0 ? demi_quat_unit(b->orientation) : none;
     const dem_vec3 gap = demi_sub(b->position, a->position);
     double A[6], B[6], r[3], n[3], ha, hb, w0;
-    dem_ellipsoid_contact out;
     demi_meet m;
     r[0] = (double)gap.x; r[1] = (double)gap.y; r[2] = (double)gap.z;
-    memset(&out, 0, sizeof out);
     demi_ellipsoid_matrix(qa, a->semi_axes, A);
     demi_ellipsoid_matrix(qb, b->semi_axes, B);
     if (!(demi_dot3(r, r) > 0)) {               /* centres coincide: any direction is as good */
@@ -5161,7 +5230,7 @@ static demi_part demi_part_of(const dem_world *w, int body, int k) {
             p.shape = &w->shapes[piece->shape];
             p.kind = p.shape->kind;
             p.centre = demi_scale(dem_quat_rotate(p.q, piece->at), scale);
-            p.q = dem_quat_times(p.q, piece->q);
+            p.q = dem_quat_multiply(p.q, piece->q);
             p.radius = p.shape->radius*scale;
             p.axes = demi_scale(p.shape->axes, scale);
         } else p.axes = demi_scale(shape->axes, scale);
@@ -6346,7 +6415,7 @@ static int demi_union_make(dem_world *w, const char *call, int count, const int3
             : dem_quat_make(1, 0, 0, 0);
         demi_piece *piece = out->piece + i;
         piece->shape = which[i];
-        piece->q = dem_quat_times(q, one->frame);
+        piece->q = dem_quat_multiply(q, one->frame);
         piece->at = dem_quat_rotate(q, one->centre);
         if (positions) piece->at = demi_add(demi_at(positions + 3*i), piece->at);
         demi_moments_piece(&m, one, piece->q, piece->at);
@@ -6357,7 +6426,7 @@ static int demi_union_make(dem_world *w, const char *call, int count, const int3
         const dem_quat back = dem_quat_make(out->frame.w, -out->frame.x, -out->frame.y,
                                             -out->frame.z);
         piece->at = dem_quat_unrotate(out->frame, demi_sub(piece->at, out->centre));
-        piece->q = demi_quat_unit(dem_quat_times(back, piece->q));
+        piece->q = demi_quat_unit(dem_quat_multiply(back, piece->q));
     }
     demi_union_bounds(w, out);
     if (w->desc.planar)
@@ -6995,7 +7064,7 @@ static void demi_body_shape(dem_world *w, int i, int shape, dem_real scale, dem_
     w->bodies.inv_inertia[i] = 0;
     demi_put(w->bodies.moment + 4*i, demi_moments_of(w, i));
     w->bodies.moment[4*i + 3] = as->moment_arm*scale;
-    demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(dem_quat_times(
+    demi_quat_put(w->bodies.orient + 4*i, demi_quat_unit(dem_quat_multiply(
         w->desc.planar ? demi_quat_flat(orientation) : orientation, as->frame)));
     w->bodies.shaped++;
 }
@@ -7050,7 +7119,7 @@ DEM_API dem_body dem_sphere_add(dem_world *w, dem_material material, dem_real ra
     id.slot = id.generation = 0;
     demi_put(x, position);
     if (dem_spheres_add(w, material, 1, x, 0, 0, radius) != DEM_OK) return id;
-    return dem_bodies_id(w, w->bodies.count - 1);
+    return dem_body_id_get(w, w->bodies.count - 1);
 }
 
 /* 0 with a sentence when an array for bodies has a bad value. */
@@ -7157,7 +7226,7 @@ DEM_API dem_body dem_body_add(dem_world *w, dem_material material, dem_shape sha
     demi_put(x, position);
     demi_quat_put(q, orientation);
     if (demi_bodies_add(w, "dem_body_add", material, shape, 1, x, q, 0, 0, 0) != DEM_OK) return id;
-    return dem_bodies_id(w, w->bodies.count - 1);
+    return dem_body_id_get(w, w->bodies.count - 1);
 }
 
 /* Index of a body, or -1 with a sentence. */
@@ -7226,7 +7295,7 @@ DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_
     s->orientation = dem_quat_make(1, 0, 0, 0);
     if (w->bodies.orienting) s->orientation = demi_quat_at(w->bodies.orient + 4*i);
     if (demi_shape_of(w, i))                     /* as its user gave it */
-        s->orientation = dem_quat_times(s->orientation,
+        s->orientation = dem_quat_multiply(s->orientation,
                                         demi_quat_conjugate(demi_shape_of(w, i)->frame));
     return DEM_OK;
 }
@@ -7269,7 +7338,8 @@ DEM_API dem_result dem_body_set(dem_world *w, dem_body body, const dem_body_stat
         (double)w->bodies.pos[4*i + 3]));
     if (w->bodies.orienting) {
         demi_quat_put(w->bodies.orient + 4*i,
-                      demi_quat_unit(shape ? dem_quat_times(w->desc.planar ? demi_quat_flat(q) : q,
+                      demi_quat_unit(shape ? dem_quat_multiply(w->desc.planar ? demi_quat_flat(q)
+                                                               : q,
                                                             shape->frame) : q));
         demi_put(w->bodies.angular + 4*i, demi_angular_of(w, i));
     }
@@ -7410,8 +7480,8 @@ DEM_API dem_result dem_bodies_reals_set(dem_world *w, const dem_real *reals) {
                (size_t)(w->bodies.count*w->bodies.real_count)*sizeof *reals);
     return DEM_OK;
 }
-DEM_API dem_body dem_bodies_id(const dem_world *w, int index) {
-    if (demi_null_look(w, "dem_bodies_id", w, "world")) return demi_no_body;
+DEM_API dem_body dem_body_id_get(const dem_world *w, int index) {
+    if (demi_null_look(w, "dem_body_id_get", w, "world")) return demi_no_body;
     dem_body id;
     id.slot = id.generation = 0;
     if (index < 0 || index >= w->bodies.count) return id;
@@ -7419,8 +7489,8 @@ DEM_API dem_body dem_bodies_id(const dem_world *w, int index) {
     id.generation = w->bodies.slot_generation[w->bodies.slot[index]];
     return id;
 }
-DEM_API dem_balance dem_balance_get(const dem_world *w) {
-    dem_balance none;
+DEM_API dem_body_counts dem_body_counts_get(const dem_world *w) {
+    dem_body_counts none;
     memset(&none, 0, sizeof none);
     return w ? w->bodies.balance : none;
 }
@@ -8562,11 +8632,11 @@ static int demi_table_make(dem_world *w, const dem_motion *m, dem_motion_row **o
     *out = rows;
     return 1;
 }
-/* Of a motion with a table: what is wrong with it, in the name of dem_wall_motion. */
+/* Of a motion with a table: what is wrong with it, in the name of dem_wall_motion_set. */
 static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) {
     int k, bad = -1;
     if (!m->table || m->table_count < 2)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: the table of wall %d has %d "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: the table of wall %d has %d "
                          "rows, must have at least 2; set table and table_count", wall,
                          m->table ? m->table_count : 0);
     for (k = 0; k < m->table_count && bad < 0; k++) {
@@ -8576,7 +8646,8 @@ static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) 
             (k ? !(r->time > r[-1].time) : r->time < 0 || r->time > 0)) bad = k;
     }
     if (bad < 0) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: row %d of the table of wall %d, at "
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: row %d of the table of wall %d, "
+                     "at "
                      "%g s, is not finite or not later than the one before; the first is at 0 s",
                      bad, wall, m->table[bad].time);
 }
@@ -8863,15 +8934,16 @@ static int demi_wall_begin(dem_world *w, const char *call, dem_material material
     return demi_material_index(w, call, material, &wall->material) == DEM_OK;
 }
 
-DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 point,
+DEM_API dem_wall dem_wall_plane_add(dem_world *w, dem_material material, dem_vec3 point,
                                dem_vec3 normal) {
-    if (demi_null(w, "dem_plane_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, "dem_wall_plane_add", w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_plane_add", material, DEMI_WALL_PLANE, &wall)) return none;
+    if (!demi_wall_begin(w, "dem_wall_plane_add", material, DEMI_WALL_PLANE, &wall)) return none;
     if (!demi_place(point) || !demi_finite3(normal) || !(demi_size(normal) > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_plane_add: normal is (%g, %g, %g), must be finite "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_plane_add: normal is (%g, %g, %g), must be "
+                  "finite "
                   "and not zero; point is (%g, %g, %g) m, must be within %g m of the origin",
                   (double)normal.x, (double)normal.y, (double)normal.z, (double)point.x,
                   (double)point.y, (double)point.z, DEMI_FARTHEST);
@@ -8883,20 +8955,22 @@ DEM_API dem_wall dem_plane_add(dem_world *w, dem_material material, dem_vec3 poi
     wall.motion.axis = demi_unit(normal);
     demi_frame_of(wall.home.rotation, demi_unit(normal));
     wall.extent = -1;
-    return demi_wall_adopt(w, "dem_plane_add", &wall);
+    return demi_wall_adopt(w, "dem_wall_plane_add", &wall);
 }
 
-DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 point,
+DEM_API dem_wall dem_wall_cylinder_add(dem_world *w, dem_material material, dem_vec3 point,
                                   dem_vec3 axis,
                                   dem_real radius, int inside) {
-    if (demi_null(w, "dem_cylinder_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, "dem_wall_cylinder_add", w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_cylinder_add", material, DEMI_WALL_CYLINDER, &wall)) return none;
+    if (!demi_wall_begin(w, "dem_wall_cylinder_add", material, DEMI_WALL_CYLINDER,
+                         &wall)) return none;
     if (!demi_place(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) ||
         !(radius > 0) || !demi_bounded((double)radius)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_cylinder_add: radius is %g m and axis (%g, %g, %g), "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_cylinder_add: radius is %g m and axis (%g, %g, "
+                  "%g), "
                   "must be > 0 and not zero; radius and the point's coordinates at most %g m",
                   (double)radius, (double)axis.x, (double)axis.y, (double)axis.z, DEMI_FARTHEST);
         return none;
@@ -8909,10 +8983,10 @@ DEM_API dem_wall dem_cylinder_add(dem_world *w, dem_material material, dem_vec3 
     wall.motion.axis = demi_unit(axis);
     demi_frame_of(wall.home.rotation, demi_unit(axis));
     wall.extent = -1;
-    return demi_wall_adopt(w, "dem_cylinder_add", &wall);
+    return demi_wall_adopt(w, "dem_wall_cylinder_add", &wall);
 }
 
-/* dem_revolved_add, in the name of `call`. */
+/* dem_wall_revolved_add, in the name of `call`. */
 static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material material,
                                    dem_vec3 point, dem_vec3 axis, int count,
                                    const dem_real *radii, const dem_real *heights) {
@@ -8951,23 +9025,24 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
     demi_frame_of(wall.home.rotation, wall.motion.axis);
     return demi_wall_adopt(w, call, &wall);
 }
-DEM_API dem_wall dem_revolved_add(dem_world *w, dem_material material, dem_vec3 point,
+DEM_API dem_wall dem_wall_revolved_add(dem_world *w, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
                                   const dem_real *heights) {
-    if (demi_null(w, "dem_revolved_add", radii, "radii") ||
-        demi_null(w, "dem_revolved_add", heights, "heights")) return demi_no_wall;
-    return demi_revolved_make(w, "dem_revolved_add", material, point, axis, count, radii, heights);
+    if (demi_null(w, "dem_wall_revolved_add", radii, "radii") ||
+        demi_null(w, "dem_wall_revolved_add", heights, "heights")) return demi_no_wall;
+    return demi_revolved_make(w, "dem_wall_revolved_add", material, point, axis, count, radii,
+                              heights);
 }
-DEM_API dem_wall dem_cone_add(dem_world *w, dem_material material, dem_vec3 from, dem_vec3 to,
+DEM_API dem_wall dem_wall_cone_add(dem_world *w, dem_material material, dem_vec3 from, dem_vec3 to,
                               dem_real radius_from, dem_real radius_to) {
     const dem_vec3 way = demi_sub(to, from);
     dem_real radii[2], heights[2];
-    if (demi_null(w, "dem_cone_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, "dem_wall_cone_add", w, "world")) return demi_no_wall;
     radii[0] = radius_from;
     radii[1] = radius_to;
     heights[0] = 0;
     heights[1] = demi_length(way);
-    return demi_revolved_make(w, "dem_cone_add", material, from, way, 2, radii, heights);
+    return demi_revolved_make(w, "dem_wall_cone_add", material, from, way, 2, radii, heights);
 }
 /* For pictures a surface of revolution is so many flat sides around. */
 enum { DEMI_RING_SIDES = 48 };
@@ -9030,58 +9105,62 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
     return 1;
 }
 
-DEM_API dem_wall dem_profile_add(dem_world *w, dem_material material, const dem_profile *profile,
+DEM_API dem_wall dem_wall_profile_add(dem_world *w, dem_material material,
+                                      const dem_profile *profile,
                                  dem_edge_rule rule) {
-    if (demi_null(w, "dem_profile_add", profile, "profile")) return demi_no_wall;
+    if (demi_null(w, "dem_wall_profile_add", profile, "profile")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_profile_add", material, rule == DEM_EDGE_FRACTION
+    if (!demi_wall_begin(w, "dem_wall_profile_add", material, rule == DEM_EDGE_FRACTION
                          ? DEMI_WALL_SEGMENTS : DEMI_WALL_PROFILE, &wall)) return none;
     if (rule < DEM_EDGE_RESOLVED || rule > DEM_EDGE_FRACTION) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_profile_add: rule is %d, must be DEM_EDGE_RESOLVED "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is %d, must be "
+                  "DEM_EDGE_RESOLVED "
                   "(0) to DEM_EDGE_FRACTION (%d); was it set?", (int)rule, (int)DEM_EDGE_FRACTION);
         return none;
     }
     if (rule == DEM_EDGE_FRACTION && (w->desc.law_range > 0 || w->desc.law_range_radii > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_profile_add: rule is DEM_EDGE_FRACTION, and the law "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is DEM_EDGE_FRACTION, and the "
+                  "law "
                   "of this world has a range; what counts there is the chord of a segment in a "
                   "grain, and there is none before the two touch: use DEM_EDGE_RESOLVED");
         return none;
     }
     wall.rule = rule;
-    if (!demi_wall_load(w, "dem_profile_add", &wall, profile->vertex_count, profile->vertices, 2,
+    if (!demi_wall_load(w, "dem_wall_profile_add", &wall, profile->vertex_count, profile->vertices,
+                        2,
                         profile->segment_count, profile->segments, 2)) return none;
     wall.motion.axis = demi_v(0, 0, 1);
-    return demi_wall_adopt(w, "dem_profile_add", &wall);
+    return demi_wall_adopt(w, "dem_wall_profile_add", &wall);
 }
 
 /* A wall of triangles that the world has not adopted yet. 0 with a sentence when it is refused. */
 static int demi_mesh_make(dem_world *w, dem_material material, const dem_mesh *mesh,
                           demi_wall *wall) {
-    if (!demi_wall_begin(w, "dem_mesh_add", material, DEMI_WALL_MESH, wall) ||
-        !demi_wall_load(w, "dem_mesh_add", wall, mesh->vertex_count, mesh->vertices, 3,
+    if (!demi_wall_begin(w, "dem_wall_mesh_add", material, DEMI_WALL_MESH, wall) ||
+        !demi_wall_load(w, "dem_wall_mesh_add", wall, mesh->vertex_count, mesh->vertices, 3,
                         mesh->triangle_count, mesh->triangles, 3)) return 0;
     wall->motion.axis = demi_v(0, 0, 1);
     return 1;
 }
-DEM_API dem_wall dem_mesh_add(dem_world *w, dem_material material, const dem_mesh *mesh) {
-    if (demi_null(w, "dem_mesh_add", mesh, "mesh")) return demi_no_wall;
+DEM_API dem_wall dem_wall_mesh_add(dem_world *w, dem_material material, const dem_mesh *mesh) {
+    if (demi_null(w, "dem_wall_mesh_add", mesh, "mesh")) return demi_no_wall;
     demi_wall wall;
-    return demi_mesh_make(w, material, mesh, &wall) ? demi_wall_adopt(w, "dem_mesh_add", &wall)
+    return demi_mesh_make(w, material, mesh, &wall) ? demi_wall_adopt(w, "dem_wall_mesh_add", &wall)
                                                     : demi_no_wall;
 }
 
-DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int count,
+DEM_API dem_wall dem_wall_grains_add(dem_world *w, dem_material material, int count,
                                      const dem_real *positions,
                                      dem_real radius, dem_real share) {
-    if (demi_null(w, "dem_grains_wall_add", w, "world")) return demi_no_wall;
+    if (demi_null(w, "dem_wall_grains_add", w, "world")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_grains_wall_add", material, DEMI_WALL_GRAINS, &wall)) return none;
+    if (!demi_wall_begin(w, "dem_wall_grains_add", material, DEMI_WALL_GRAINS, &wall)) return none;
     if (!(radius > 0) || !demi_bounded((double)radius) || !(share > 0) || !(share <= 1)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_grains_wall_add: radius is %g m and share %g, must "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_grains_add: radius is %g m and share %g, must "
                   "be > 0, at most %g m, and 0 < share <= 1", (double)radius, (double)share,
                   DEMI_FARTHEST);
         return none;
@@ -9089,13 +9168,13 @@ DEM_API dem_wall dem_grains_wall_add(dem_world *w, dem_material material, int co
     wall.radius = radius;
     wall.share = share;
     wall.motion.axis = demi_v(0, 0, 1);
-    if (!demi_wall_load(w, "dem_grains_wall_add", &wall, count, positions, 3, count, 0,
+    if (!demi_wall_load(w, "dem_wall_grains_add", &wall, count, positions, 3, count, 0,
                         0)) return none;
-    return demi_wall_adopt(w, "dem_grains_wall_add", &wall);
+    return demi_wall_adopt(w, "dem_wall_grains_add", &wall);
 }
 
-DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
-    if (demi_null(w, "dem_sieve_add", d, "desc")) return demi_no_wall;
+DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const dem_sieve_desc *d) {
+    if (demi_null(w, "dem_wall_sieve_add", d, "desc")) return demi_no_wall;
     demi_wall wall;
     dem_wall none;
     const char *bad = 0, *limit = "";
@@ -9105,7 +9184,7 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
     const int plate = d->kind == DEM_SIEVE_SQUARE || d->kind == DEM_SIEVE_ROUND ||
                       d->kind == DEM_SIEVE_SLOTS;
     none.id = 0;
-    if (!demi_wall_begin(w, "dem_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
+    if (!demi_wall_begin(w, "dem_wall_sieve_add", material, DEMI_WALL_SIEVE, &wall)) return none;
 #define DEMI_BAD(field, good, text) \
     if (!bad && (!demi_bounded((double)d->field) || !(good))) { \
         bad = #field; value = (dem_real)d->field; limit = text; \
@@ -9127,13 +9206,15 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
              d->clearance > 0 && d->clearance <= 1), "0, or of reduced holes up to 1")
 #undef DEMI_BAD
     if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: %s is %g, must be %s, at most %g; start "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: %s is %g, must be %s, at most %g; "
+                  "start "
                   "from DEM_SIEVE_DESC and set what differs", bad, (double)value, limit,
                   DEMI_FARTHEST);
         return none;
     }
     if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_sieve_add: point, normal or along is not finite, or "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: point, normal or along is not "
+                  "finite, or "
                   "point farther than %g m from the origin; check how it was computed",
                   DEMI_FARTHEST);
         return none;
@@ -9157,14 +9238,14 @@ DEM_API dem_wall dem_sieve_add(dem_world *w, dem_material material, const dem_si
     wall.home.position = wall.motion.point = d->point;
     wall.motion.axis = n;
     wall.extent = d->radius > 0 ? d->radius + d->thickness + d->lift + d->bar : -1;
-    return demi_wall_adopt(w, "dem_sieve_add", &wall);
+    return demi_wall_adopt(w, "dem_wall_sieve_add", &wall);
 }
 
 /* Index of a wall, or -1 with a sentence. */
 static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
     if (wall.id < 1 || wall.id > w->wall_count) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, ids here go from 1 to %d; it "
-                  "was not added (dem_world_error says why) or is of another world: check what "
+                  "was not added (dem_world_error_get says why) or is of another world: check what "
                   "adding it returned", call, (int)wall.id, w->wall_count);
         return -1;
     }
@@ -9193,20 +9274,22 @@ static int demi_wall_symmetric(const demi_wall *wall) {
 /* Refuses a motion of the wall of this id, which need not be there yet. */
 static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion *motion) {
     if (motion->kind == DEM_MOTION_ROTATING && !(demi_dot(motion->axis, motion->axis) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: axis of rotating wall %d is "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: axis of rotating wall %d is "
                          "zero; give a direction",
                          (int)id.id);
     if (motion->kind == DEM_MOTION_OSCILLATING && !(demi_dot(motion->velocity,
                                                              motion->velocity) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: velocity, the direction of "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity, the direction of "
                          "oscillating wall %d, is "
                          "zero; give a direction", (int)id.id);
     if (motion->kind == DEM_MOTION_USER && !motion->function)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: wall %d has kind DEM_MOTION_USER "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: wall %d has kind "
+                         "DEM_MOTION_USER "
                          "and no function; "
                          "set motion.function", (int)id.id);
     if (!demi_motion_sane(motion) || (int)motion->kind < 0 || motion->kind > DEM_MOTION_TABLE)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: a number in the motion of wall "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: a number in the motion of "
+                         "wall "
                          "%d is not finite or beyond %g (m, m/s, rad/s, s), its ramp, %g s, below "
                          "0, or its kind %d unknown; start from DEM_MOTION", (int)id.id,
                          DEMI_FARTHEST, motion->ramp, (int)motion->kind);
@@ -9220,7 +9303,7 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     dem_motion_row *rows = 0;
     demi_calling was;
     if (demi_motion_check(w, id, motion) != DEM_OK) return DEM_ERROR_ARGUMENT;
-    if (!demi_table_make(w, motion, &rows)) return demi_no_memory(w, "dem_wall_motion");
+    if (!demi_table_make(w, motion, &rows)) return demi_no_memory(w, "dem_wall_motion_set");
     laid.home = laid.pose;                      /* goes on from where it is */
     laid.home.velocity = laid.home.spin = demi_v(0, 0, 0);
     laid.motion = *motion;
@@ -9228,22 +9311,23 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     if (!(demi_dot(motion->axis, motion->axis) > 0)) laid.motion.axis = demi_v(0, 0, 1);
     laid.motion.start = DEMI_MAX(motion->start, w->clock.time);
     laid.symmetric = demi_wall_symmetric(&laid);
-    was = demi_calls(w, "dem_wall_motion", 1);
+    was = demi_calls(w, "dem_wall_motion_set", 1);
     demi_wall_pose_at(&laid, w->clock.time, &laid.pose);
     w->look.calling = was;
     laid.mid = laid.pose;
     if (!demi_pose_sane(&laid.pose)) {
         demi_free(w, rows);
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion: the motion of wall %d gives a "
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: the motion of wall %d gives "
+                         "a "
                          "pose that is not finite, does not only rotate, or is beyond %g m, m/s or "
                          "rad/s now, at %g s; check it", (int)id.id, DEMI_FARTHEST, w->clock.time);
     }
     *next = laid;
     return DEM_OK;
 }
-DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *motion) {
-    if (demi_null(w, "dem_wall_motion", motion, "motion")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find(w, "dem_wall_motion", id);
+DEM_API dem_result dem_wall_motion_set(dem_world *w, dem_wall id, const dem_motion *motion) {
+    if (demi_null(w, "dem_wall_motion_set", motion, "motion")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find(w, "dem_wall_motion_set", id);
     demi_wall next;
     const void *rows;
     void *old;
@@ -9256,17 +9340,17 @@ DEM_API dem_result dem_wall_motion(dem_world *w, dem_wall id, const dem_motion *
     rows = dropped ? w->walls[i].motion.table : next.motion.table;
     memcpy(&old, &rows, sizeof old);
     if (demi_owns(w, DEMI_SCENE, old)) demi_free(w, old);
-    if (!dropped) return demi_no_memory(w, "dem_wall_motion");
+    if (!dropped) return demi_no_memory(w, "dem_wall_motion_set");
     w->walls[i] = next;
     w->facets_valid = 0;
-    demi_built(w, "dem_wall_motion");
+    demi_built(w, "dem_wall_motion_set");
     demi_scene_changed(w);
     return DEM_OK;
 }
 
-DEM_API dem_result dem_wall_pose(const dem_world *world, dem_wall id, dem_pose *pose) {
-    if (demi_null_look(world, "dem_wall_pose", pose, "pose")) return DEM_ERROR_ARGUMENT;
-    const int i = demi_wall_find((dem_world *)world, "dem_wall_pose", id);
+DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_pose *pose) {
+    if (demi_null_look(world, "dem_wall_pose_get", pose, "pose")) return DEM_ERROR_ARGUMENT;
+    const int i = demi_wall_find((dem_world *)world, "dem_wall_pose_get", id);
     if (i < 0) return DEM_ERROR_ARGUMENT;
     *pose = world->walls[i].pose;
     return DEM_OK;
@@ -9647,7 +9731,8 @@ static void demi_levels_choose(dem_world *w) {
     double top[DEMI_LEVELS], least[DEMI_LEVELS + 1], room, one;
     int below[DEMI_LEVELS + 1], next[DEMI_LEVELS + 1], i, k;
     const int alike = w->effects.radius_max <= 2*w->effects.radius_min;    /* enough for one grid */
-    const int by_name = w->desc.search == DEM_SEARCH_LEVELS && w->asked.search != DEM_SEARCH_AUTO;
+    const int by_name = w->desc.search == DEM_SEARCH_HIERARCHICAL &&
+    w->asked.search != DEM_SEARCH_AUTO;
     w->levels.wide = w->levels.count = 0;
     w->levels.tests[0] = w->levels.tests[1] = 0;
     if (w->asked.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
@@ -9676,8 +9761,9 @@ static void demi_levels_choose(dem_world *w) {
     w->levels.wide = !alike && w->levels.count > 1 && 2*least[0] < one;
     w->levels.tests[0] = one/w->bodies.count;
     w->levels.tests[1] = least[0]/w->bodies.count;
-    if (w->asked.search == DEM_SEARCH_AUTO && w->levels.wide) w->desc.search = DEM_SEARCH_LEVELS;
-    if (w->desc.search == DEM_SEARCH_LEVELS) return;
+    if (w->asked.search == DEM_SEARCH_AUTO &&
+        w->levels.wide) w->desc.search = DEM_SEARCH_HIERARCHICAL;
+    if (w->desc.search == DEM_SEARCH_HIERARCHICAL) return;
     /* bodies are sorted by finer cells than those of the grid asked for: one level is that grid */
     w->levels.count = w->levels.wide && w->desc.search == DEM_SEARCH_GRID;
     w->levels.level[0].radius = (double)w->effects.radius_max;
@@ -11421,7 +11507,8 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
 /* Answers -1 with a sentence, for those who ask about a list that no longer fits. */
 static int demi_list_stale(const dem_world *world, const char *call) {
     demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: there was no step since bodies or "
-              "walls were added or changed, so there is no list of contacts; call dem_search_now "
+              "walls were added or changed, so there is no list of contacts; call "
+              "dem_candidates_rebuild "
               "or dem_world_step first", call);
     return -1;
 }
@@ -11441,9 +11528,9 @@ DEM_API int dem_candidates_get(const dem_world *w, uint32_t *out, int capacity) 
         }
     return n;
 }
-DEM_API dem_result dem_search_now(dem_world *w) {
-    if (demi_null(w, "dem_search_now", w, "world")) return DEM_ERROR_ARGUMENT;
-    return demi_rebuild(w, "dem_search_now");
+DEM_API dem_result dem_candidates_rebuild(dem_world *w) {
+    if (demi_null(w, "dem_candidates_rebuild", w, "world")) return DEM_ERROR_ARGUMENT;
+    return demi_rebuild(w, "dem_candidates_rebuild");
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -12805,8 +12892,8 @@ static DEMI_APART void demi_tile_who(const demi_tile *t, const demi_run *r, int 
     const int a = r->span->a[q], b = r->span->b[q];
     const demi_periods periods = demi_periods_of(w);
     const dem_real *x = w->bodies.pos + 4*a, *y = w->bodies.pos + 4*b;
-    c->who.a = dem_bodies_id(w, a);
-    c->who.b = dem_bodies_id(w, b);
+    c->who.a = dem_body_id_get(w, a);
+    c->who.b = dem_body_id_get(w, b);
     c->who.radius_a = x[3];
     c->who.radius_b = y[3];
     c->who.mass_a = w->bodies.mass[a];
@@ -14632,7 +14719,7 @@ static demi_part demi_part_local(const dem_real *R, const demi_part *p) {
     double turn[3][3];
     int i, e;
     for (i = 0; i < 3; i++) for (e = 0; e < 3; e++) turn[i][e] = (double)R[3*e + i];
-    local.q = demi_quat_unit(dem_quat_times(demi_quat_of(turn), p->q));
+    local.q = demi_quat_unit(dem_quat_multiply(demi_quat_of(turn), p->q));
     return local;
 }
 static int demi_facets_ellipsoid(const dem_world *w, int d, int first, int last, dem_real gone,
@@ -16930,7 +17017,7 @@ static int demi_is_cluster(const dem_world *w, int body) {
    s U'), so that mu is the ratio of both sums. Checked by "a cluster that lands on one, two and
    three spheres" and tests/test_facets.c. */
 static void demi_kept_share(const dem_world *w, demi_kept *c, int n) {
-    const int one = n > 1 && w->desc.cluster_contacts == DEM_SHARING_ONE &&
+    const int one = n > 1 && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED &&
         (demi_is_cluster(w, c->a) || (c->b >= 0 && demi_is_cluster(w, c->b)));
     int i, j;
     for (i = 0; i < n; i++) {
@@ -17270,7 +17357,7 @@ DEM_INLINE void demi_kept_on_wall(dem_world *w, int d, int first, int last, int 
         c->shift = found[i].shift;
         if (!shaped || p->kind == DEMI_BALL) {  /* the commonest, without a call */
             demi_ball_on_wall(w, wall, p, &found[i], c);
-            if (shaped && w->desc.cluster_contacts == DEM_SHARING_ONE && c->overlap > 0)
+            if (shaped && w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED && c->overlap > 0)
                 demi_wall_bend(wall, w->wall_element + base + first, last - first,
                                DEMI_MAX(p->radius - c->overlap, p->radius/10),
                                demi_add(found[i].point, c->shift), c);
@@ -17555,11 +17642,11 @@ static dem_real demi_kept_radii(const dem_world *w, const demi_kept *k) {
 static void demi_kept_who(const dem_world *w, const demi_kept *k, dem_real *rates,
                           dem_contact_who *who) {
     const demi_periods periods = demi_periods_of(w);
-    who->a = dem_bodies_id(w, k->a);
+    who->a = dem_body_id_get(w, k->a);
     who->radius_a = demi_part_now(w, k->a, k->part_a).radius;
     who->mass_a = w->bodies.mass[k->a];
     if (k->b >= 0) {
-        who->b = dem_bodies_id(w, k->b);
+        who->b = dem_body_id_get(w, k->b);
         who->radius_b = demi_part_now(w, k->b, k->part_b).radius;
         who->mass_b = w->bodies.mass[k->b];
     } else if (demi_wall_is(&w->walls[k->wall], DEMI_BALLS))
@@ -18334,11 +18421,11 @@ DEM_INLINE dem_vec3 demi_flight_spiral(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_
     end = demi_add(w, demi_add(demi_scale(w1, h), end));
     mean = demi_add(w, demi_add(demi_scale(w1, h*DEM_R(0.5)), mean));
     magnus = demi_scale(demi_cross(w, end), h*DEM_R(1.0/12));
-    *q = dem_quat_times(*q, demi_quat_exp(demi_scale(demi_add(mean, magnus), h)));
+    *q = dem_quat_multiply(*q, demi_quat_exp(demi_scale(demi_add(mean, magnus), h)));
     end = demi_v(I.x*end.x, I.y*end.y, I.z*end.z);
     g = dem_quat_unrotate(*q, L);
     c = demi_scale(demi_cross(end, g), ll > DEMI_TINY ? DEM_R(0.5)/ll : 0);
-    *q = demi_quat_again(dem_quat_times(*q, dem_quat_make(1, c.x, c.y, c.z)));
+    *q = demi_quat_again(dem_quat_multiply(*q, dem_quat_make(1, c.x, c.y, c.z)));
     return demi_add(mean, magnus);
 }
 /* [FIN92], which [RUB15] eq 17 to 21 uses with w for L (the same for spheroids that do not spin
@@ -18348,12 +18435,12 @@ static dem_vec3 demi_flight_fincham(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_rea
     const dem_quat start = *q;
     dem_vec3 m = dem_quat_unrotate(start, L), w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
     dem_quat mid, by;
-    by = dem_quat_times(start, dem_quat_make(0, w.x*h/4, w.y*h/4, w.z*h/4));
+    by = dem_quat_multiply(start, dem_quat_make(0, w.x*h/4, w.y*h/4, w.z*h/4));
     mid = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
                                        start.z + by.z));
     m = dem_quat_unrotate(mid, L);
     w = demi_v(m.x/I.x, m.y/I.y, m.z/I.z);
-    by = dem_quat_times(mid, dem_quat_make(0, w.x*h/2, w.y*h/2, w.z*h/2));
+    by = dem_quat_multiply(mid, dem_quat_make(0, w.x*h/2, w.y*h/2, w.z*h/2));
     *q = demi_quat_unit(dem_quat_make(start.w + by.w, start.x + by.x, start.y + by.y,
                                       start.z + by.z));
     return dem_quat_unrotate(start, dem_quat_rotate(mid, w));
@@ -18372,7 +18459,7 @@ static dem_vec3 demi_flight_splitting(dem_quat *q, dem_vec3 L, dem_vec3 I, dem_r
         const dem_real c = (dem_real)demi_cos(rate*step/2), s = (dem_real)demi_sin(rate*step/2);
         const dem_quat r = dem_quat_make(c, order[k] == 0 ? s : 0, order[k] == 1 ? s : 0,
                                          order[k] == 2 ? s : 0);
-        *q = dem_quat_times(*q, r);
+        *q = dem_quat_multiply(*q, r);
         m = dem_quat_unrotate(r, m);
     }
     *q = demi_quat_unit(*q);
@@ -18499,7 +18586,7 @@ DEMI_CLONES static void demi_turning_balls(demi_turning *t, int count, dem_real 
     for (k = 0; k < count; k += DEMI_LANES) {
         DEMI_VECTOR
         for (l = k; l < k + DEMI_LANES; l++) {
-            const dem_quat q = demi_quat_again(dem_quat_times(
+            const dem_quat q = demi_quat_again(dem_quat_multiply(
                 demi_quat_exp(demi_v(t->L[0][l]*dt, t->L[1][l]*dt, t->L[2][l]*dt)),
                 dem_quat_make(t->q[0][l], t->q[1][l], t->q[2][l], t->q[3][l])));
             t->q[0][l] = q.w; t->q[1][l] = q.x; t->q[2][l] = q.y; t->q[3][l] = q.z;
@@ -19184,9 +19271,10 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
     demi_built(w, call);
     return id;
 }
-DEM_API dem_result dem_joint_motor(dem_world *w, dem_joint joint, dem_motor motor, dem_real speed,
+DEM_API dem_result dem_joint_motor_set(dem_world *w, dem_joint joint, dem_motor motor,
+                                       dem_real speed,
                                    dem_real torque) {
-    const char *call = "dem_joint_motor";
+    const char *call = "dem_joint_motor_set";
     int i;
     if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
     i = demi_joint_find(w, call, joint);
@@ -19719,7 +19807,7 @@ static void demi_knots_ahead(dem_world *w) {
             if (w->desc.rotation == DEM_ROTATION_SPIRAL) demi_flight_spiral(&q, L, I, inv, dt);
             else if (w->desc.rotation == DEM_ROTATION_FINCHAM) demi_flight_fincham(&q, L, I, dt);
             else demi_flight_splitting(&q, L, I, dt);
-        } else q = demi_quat_again(dem_quat_times(demi_quat_exp(demi_scale(turn, dt)), q));
+        } else q = demi_quat_again(dem_quat_multiply(demi_quat_exp(demi_scale(turn, dt)), q));
         s->knots[i].turned = q;
     }
 }
@@ -19894,7 +19982,7 @@ static double demi_joints_shift(dem_world *w) {
             continue;
         }
         o = w->bodies.last_orient + 4*k->mover;  /* where demi_ahead_back puts it */
-        q = demi_quat_again(dem_quat_times(demi_quat_exp(turn), demi_quat_at(o)));
+        q = demi_quat_again(dem_quat_multiply(demi_quat_exp(turn), demi_quat_at(o)));
         o[0] = q.w; o[1] = q.x; o[2] = q.y; o[3] = q.z;
         demi_force_add(w->bodies.last_pos + 4*k->mover, way);
         farthest = DEMI_MAX(farthest, (double)(demi_length(way) + demi_length(turn)*
@@ -20790,8 +20878,8 @@ static int demi_impulse_info(const dem_world *w, int d, int p, dem_contact_info 
     const dem_real l = demi_length(way), overlap = x[3] + y[3] - l;
     if (!(memory[6*stride] > 0) && !(memory[7*stride] > 0) && !(overlap > 0)) return 0;
     if (!out) return 1;
-    out->a = dem_bodies_id(w, a);
-    out->b = dem_bodies_id(w, b);
+    out->a = dem_body_id_get(w, a);
+    out->b = dem_body_id_get(w, b);
     out->wall = 0;
     out->normal = demi_scale(way, 1/l);
     out->overlap = overlap;
@@ -20936,7 +21024,7 @@ static double demi_size_share(const dem_sizes *d, double r) {
             ? 1 - demi_exp(-(r - (double)d->min)/((double)d->scale - (double)d->min)) : 0;
     case DEM_SIZES_WEIBULL:
         return r > 0 ? 1 - demi_exp(-demi_pow(r/(double)d->scale, d->modulus)) : 0;
-    case DEM_SIZES_SIEVES:
+    case DEM_SIZES_SIEVE_CURVE:
         if (r < (double)d->radius[0]) return 0;
         for (k = 1; k < d->count; k++) {
             const double a = (double)d->radius[k - 1], b = (double)d->radius[k];
@@ -20988,7 +21076,7 @@ static void demi_size_why(const dem_sizes *d, double *lo, double *hi, char *why,
                         "< 1000", d->modulus);
         if (!*why && !(*hi > 0)) *hi = scale*demi_pow(-demi_log(1e-9), 1/d->modulus);
     }
-    if (d->kind == DEM_SIZES_SIEVES) {
+    if (d->kind == DEM_SIZES_SIEVE_CURVE) {
         DEMI_SIZE_NEEDS(d->count >= 2 && d->count <= DEM_SIEVES, "count is %d sieves, must be 2 to "
                         "32", d->count);
         DEMI_SIZE_NEEDS(fabs(last - 1) < 1e-9, "the last of passing is %g, must be 1 (not 100 "
@@ -21027,7 +21115,7 @@ static int demi_size_ends(dem_world *w, const char *call, const dem_sizes *d, do
 /* Share finer than r of the distribution between its ends. */
 static double demi_size_finer(const dem_sizes *d, double lo, double hi, double r) {
     /* what passes the first sieve is of its size: a step there */
-    const int step = d->kind == DEM_SIZES_SIEVES && lo <= (double)d->radius[0];
+    const int step = d->kind == DEM_SIZES_SIEVE_CURVE && lo <= (double)d->radius[0];
     const double below = step ? 0 : demi_size_share(d, lo);
     if (r < lo) return 0;
     if (r >= hi) return 1;
@@ -21064,10 +21152,10 @@ static double demi_size_draw(const demi_size_table *t, double share) {
     return t->at[lo] + (t->at[hi] - t->at[lo])*(share - t->number[lo])/
         DEMI_MAX(t->number[hi] - t->number[lo], 1e-300);
 }
-DEM_API double dem_sizes_finer(dem_world *w, const dem_sizes *d, dem_real radius) {
+DEM_API double dem_sizes_finer_get(dem_world *w, const dem_sizes *d, dem_real radius) {
     double lo, hi;
-    if (demi_null_look(w, "dem_sizes_finer", d, "sizes")) return -1;
-    if (!demi_size_ends(w, "dem_sizes_finer", d, &lo, &hi)) return -1;
+    if (demi_null_look(w, "dem_sizes_finer_get", d, "sizes")) return -1;
+    if (!demi_size_ends(w, "dem_sizes_finer_get", d, &lo, &hi)) return -1;
     return demi_size_finer(d, lo, hi, (double)radius);
 }
 /* dem_sizes_draw, in the name of `call`. */
@@ -21093,9 +21181,10 @@ DEM_API dem_result dem_sizes_draw(dem_world *w, const dem_sizes *d, int count, u
     if (demi_null_look(w, "dem_sizes_draw", radii, "radii")) return DEM_ERROR_ARGUMENT;
     return demi_sizes_draw(w, "dem_sizes_draw", d, count, seed, radii);
 }
-DEM_API int dem_sizes_classes(dem_world *w, const dem_sizes *d, int class_count, dem_real *radius,
+DEM_API int dem_sizes_classes_get(dem_world *w, const dem_sizes *d, int class_count,
+                                  dem_real *radius,
                               double *amount) {
-    const char *call = "dem_sizes_classes";
+    const char *call = "dem_sizes_classes_get";
     demi_size_table *t;
     double lo, hi, all = 0;
     int i, k = 0, n = 0;
@@ -21352,6 +21441,19 @@ static int demi_region_at(const demi_region *g, const double *u, dem_real radius
                 g->lo.z + (dem_real)(g->size[2]*u[2]));
     return !g->inside || g->inside(*x, radius, g->user);
 }
+/* True if the centre x, which is in the box, is in the region. */
+static int demi_region_has(const demi_region *g, dem_vec3 x, dem_real radius) {
+    double round = 0, at[3];
+    int k;
+    at[0] = (double)(x.x - g->lo.x);
+    at[1] = (double)(x.y - g->lo.y);
+    at[2] = (double)(x.z - g->lo.z);
+    for (k = 0; k < 3; k++) {
+        const double half = g->size[k]/2, off = half > 0 ? (at[k] - half)/half : 0;
+        if (g->cylinder && g->cylinder != 1 + k) round += off*off;
+    }
+    return round <= 1 && (!g->inside || g->inside(x, radius, g->user));
+}
 
 /* Begins a crowd with the bodies that spheres of this radius in the region could overlap; one look
    at each body. p: the scene's, which a slab does not have. 0 when memory ran out. */
@@ -21506,6 +21608,12 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *regio
     }
     return count;
 }
+static int demi_cylinder_refuse(dem_world *w, const char *call, const dem_region *region) {
+    if (!region->cylinder || (region->cylinder >= 'x' && region->cylinder <= 'z')) return 0;
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the axis "
+              "it is along, or 0 for all of the box", call, region->cylinder);
+    return 1;
+}
 /* Fills a region with spheres, or with bodies of a shape (>= 0), whose bounding sphere has this
    radius; or with spheres of these radii, the largest first. */
 static int demi_fill(dem_world *w, const char *call, dem_material material, int shape,
@@ -21525,11 +21633,7 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (shape < 0 ? demi_mass_refuse(w, call, m, radii && count ? radii[count - 1] : radius, 0)
                  : demi_shape_mass_refuse(w, call, m, shape, 1, 0) ||
                    demi_walls_strange(w, call, shape)) return 0;
-    if (region->cylinder && (region->cylinder < 'x' || region->cylinder > 'z')) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the "
-                  "axis it is along, or 0 for all of the box", call, region->cylinder);
-        return 0;
-    }
+    if (demi_cylinder_refuse(w, call, region)) return 0;
     if (!demi_place(region->box.lo) || !demi_place(region->box.hi) ||
         !demi_region_make(w, region, (double)radius, &g)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
@@ -21559,45 +21663,24 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     demi_built(w, call);                        /* fewer than asked: the answer says so */
     return done;
 }
-/* All of a box: no cylinder, no function. */
-static dem_region demi_region_box(dem_box box) {
-    dem_region region;
-    memset(&region, 0, sizeof region);
-    region.box = box;
-    return region;
-}
-DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius, dem_box box,
-                             int count, uint64_t seed) {
-    const dem_region region = demi_region_box(box);
+DEM_API int dem_spheres_fill(dem_world *w, dem_material material, dem_real radius,
+                             dem_region region, int count, uint64_t seed) {
     if (demi_null(w, "dem_spheres_fill", w, "world")) return 0;
     return demi_fill(w, "dem_spheres_fill", material, -1, radius, 0, &region, count, seed);
 }
-static int demi_shape_fill(dem_world *w, const char *call, dem_material material, dem_shape shape,
-                          const dem_region *region, int count, uint64_t seed) {
-    const int i = demi_shape_index(w, call, shape);
-    if (i < 0) return 0;
-    return demi_fill(w, call, material, i, w->shapes[i].radius, 0, region, count, seed);
+DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape,
+                            dem_region region, int count, uint64_t seed) {
+    const char *call = "dem_bodies_fill";
+    const int i = demi_null(w, call, w, "world") ? -1 : demi_shape_index(w, call, shape);
+    return i < 0 ? 0
+                 : demi_fill(w, call, material, i, w->shapes[i].radius, 0, &region, count, seed);
 }
-DEM_API int dem_bodies_fill(dem_world *w, dem_material material, dem_shape shape, dem_box box,
-                            int count, uint64_t seed) {
-    const dem_region region = demi_region_box(box);
-    if (demi_null(w, "dem_bodies_fill", w, "world")) return 0;
-    return demi_shape_fill(w, "dem_bodies_fill", material, shape, &region, count, seed);
-}
-DEM_API int dem_region_fill(dem_world *w, const dem_region *region, dem_material material,
-                            dem_shape shape, dem_real radius, int count, uint64_t seed) {
-    const char *call = "dem_region_fill";
-    if (demi_null(w, call, region, "region")) return 0;
-    return shape.id ? demi_shape_fill(w, call, material, shape, region, count, seed)
-                    : demi_fill(w, call, material, -1, radius, 0, region, count, seed);
-}
-
-DEM_API int dem_sizes_fill(dem_world *w, const dem_region *region, dem_material material,
-                           const dem_sizes *sizes, int count, uint64_t seed) {
+DEM_API int dem_sizes_fill(dem_world *w, dem_material material, const dem_sizes *sizes,
+                           dem_region region, int count, uint64_t seed) {
     const char *call = "dem_sizes_fill";
     dem_real *radii;
     int i, done = 0;
-    if (demi_null(w, call, region, "region") || demi_null(w, call, sizes, "sizes")) return 0;
+    if (demi_null(w, call, sizes, "sizes")) return 0;
     radii = (dem_real *)demi_alloc(w, (size_t)DEMI_MAX(count, 0) + 1, sizeof *radii);
     if (!radii) { demi_no_memory(w, call); return 0; }
     if (demi_sizes_draw(w, call, sizes, count, 0, radii) == DEM_OK) {
@@ -21606,7 +21689,7 @@ DEM_API int dem_sizes_fill(dem_world *w, const dem_region *region, dem_material 
             radii[i] = radii[count - 1 - i];
             radii[count - 1 - i] = r;
         }
-        done = demi_fill(w, call, material, -1, 0, radii, region, count, seed);
+        done = demi_fill(w, call, material, -1, 0, radii, &region, count, seed);
     }
     demi_free(w, radii);
     return done;
@@ -21625,8 +21708,7 @@ typedef struct demi_lattice {
     dem_vec3 lo;                   /* m, the first place */
     double size[3], r;             /* m, how far the last one may be from it; half a pitch */
     dem_real radius;
-    dem_inside_fn inside;
-    void *user;
+    const demi_region *room;
     int count;                     /* at most; 0: all */
     double looked;                 /* places looked at */
 } demi_lattice;
@@ -21648,7 +21730,7 @@ static int demi_lattice_fill(dem_world *w, demi_crowd *c, demi_lattice *g) {
                 demi_sphere *to;
                 if ((double)s.x > g->size[0] + slack) break;
                 if (++g->looked > DEMI_PACK_MOST || c->count == INT_MAX/64) return done;
-                if (g->inside && !g->inside(x, g->radius, g->user)) continue;
+                if (!demi_region_has(g->room, x, g->radius)) continue;
                 if (!demi_room_free(w, c, x, g->radius*DEM_R(0.999999))) continue;
                 if (!DEMI_GROW(w, w->crowd, (size_t)c->count + (size_t)done + 1)) return -1;
                 to = demi_crowd_spheres(w) + c->count + done++;
@@ -21665,16 +21747,16 @@ static double demi_lattice_places(const dem_world *w, const demi_lattice *g) {
     return (g->size[0]/(2*g->r) + 1)*rows*(w->desc.planar ? 1 : layers);
 }
 /* A lattice in a box. 0: not one place. */
-static int demi_lattice_make(const dem_world *w, dem_box box, dem_real radius, dem_real padding,
-                             demi_region *room, demi_lattice *g) {
+static int demi_lattice_make(const dem_world *w, const dem_region *region, dem_real radius,
+                             dem_real padding, demi_region *room, demi_lattice *g) {
     const demi_periods p = demi_periods_of(w);
-    const dem_region region = demi_region_box(box);
     dem_real lo[3];
     int k;
     memset(g, 0, sizeof *g);
     g->r = (double)radius + (double)padding/2;
     g->radius = radius;
-    if (!demi_region_make(w, &region, (double)radius, room)) return 0;
+    g->room = room;
+    if (!demi_region_make(w, region, (double)radius, room)) return 0;
     demi_put(lo, room->lo);
     for (k = 0; k < 3; k++) {                   /* round a period, the last keeps off the first */
         const int full = p.period[k] > 0 && room->size[k] >= (double)p.period[k];
@@ -21686,7 +21768,7 @@ static int demi_lattice_make(const dem_world *w, dem_box box, dem_real radius, d
     return 1;
 }
 DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radius, dem_real padding,
-                             dem_box box, dem_inside_fn inside, void *user, int count) {
+                             dem_region region, int count) {
     const char *call = "dem_spheres_pack";
     demi_region room;
     demi_crowd c;
@@ -21696,15 +21778,15 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     if (demi_null(w, call, w, "world") || demi_material_index(w, call, material, &m) != DEM_OK)
         return 0;
     if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
-        count < 0 || !demi_place(box.lo) || !demi_place(box.hi)) {
+        count < 0 || !demi_place(region.box.lo) || !demi_place(region.box.hi)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius %g, padding %g, count %d; must be > 0, >= 0, "
                   ">= 0 and the box finite", call, (double)radius, (double)padding, count);
         return 0;
     }
-    if (demi_mass_refuse(w, call, m, radius, 0) ||
-        !demi_lattice_make(w, box, radius, padding, &room, &g)) return 0;
-    g.inside = inside; g.user = user; g.count = count;
-    if (!count && !inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
+    if (demi_mass_refuse(w, call, m, radius, 0) || demi_cylinder_refuse(w, call, &region) ||
+        !demi_lattice_make(w, &region, radius, padding, &room, &g)) return 0;
+    g.count = count;
+    if (!count && !region.inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has about %.3g places for spheres of radius "
                   "%g m, must be at most %d, which is what a world holds; make the box smaller or "
                   "give a count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
@@ -22016,7 +22098,7 @@ static int demi_world_put(void *who, demi_feed *f, const demi_region *g) {
 }
 /* Where a feed's grains may begin: centres of all sizes alike. */
 static int demi_feed_region(const dem_world *w, const dem_feed_desc *d, demi_region *g) {
-    dem_region region = demi_region_box(d->box);
+    dem_region region = dem_region_make(d->box);
     region.cylinder = d->round ? 'z' : 0;
     region.inside = d->inside;
     region.user = d->inside_user;
@@ -22614,8 +22696,8 @@ static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_con
     c->material_a = w->bodies.material[a];
     c->material_b = b >= 0 ? w->bodies.material[b] : w->walls[wall].material + 1;
     c->wall = b >= 0 ? 0 : wall + 1;
-    c->who.a = dem_bodies_id(w, a);
-    if (b >= 0) c->who.b = dem_bodies_id(w, b);
+    c->who.a = dem_body_id_get(w, a);
+    if (b >= 0) c->who.b = dem_body_id_get(w, b);
     c->who.radius_a = w->bodies.pos[4*a + 3];
     c->who.radius_b = b >= 0 ? w->bodies.pos[4*b + 3] : 0;
     c->who.mass_a = w->bodies.mass[a];
@@ -22761,15 +22843,17 @@ static double demi_spin_fastest(const dem_world *w) {
     return most;
 }
 /* Settles dt before stepping: chosen or checked. */
-DEM_API dem_result dem_step_advice(const dem_world *w, dem_advice *advice) {
-    if (demi_null_look(w, "dem_step_advice", advice, "advice")) return DEM_ERROR_ARGUMENT;
+DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
+    if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
     if (demi_impulsive(w))
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: contacts answer by "
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: contacts answer "
+                         "by "
                          "impulses, which have no contact time; take a step in which grains move "
                          "by less than a tenth of their radius");
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
-    return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice: the world has no grain "
+    return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: the world has no "
+                     "grain "
                      "that moves; add grains before asking for a time step");
 }
 /* Refuses a step that is chosen so short that time would stand still. */
@@ -22777,7 +22861,8 @@ static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: the contacts of the scene ask for a "
                      "step of %g s, must be at least %g s, or time stands still (shortest: %s); a "
                      "stiffness, damping, rolling friction or speed is far too large, or a grain "
-                     "far too light: look for it with dem_check_print", dt, DEMI_DT_LEAST, by);
+                     "far too light: look for it with dem_world_check_print", dt, DEMI_DT_LEAST,
+                     by);
 }
 /* The time step for the scene as it is, asked for or advised; one that is not stable is refused.
    A change of the step ends half steps of the old one first. */
@@ -22789,10 +22874,11 @@ static dem_result demi_dt_settle(dem_world *w) {
         if (demi_impulses_twist(w) && !demi_solvers[w->desc.solver].moments)
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there is rolling or spinning "
                              "friction between materials, which %s does not know; leave "
-                             "desc.solver DEM_SOLVER_SEIDEL", demi_solvers[w->desc.solver].name);
+                             "desc.solver DEM_SOLVER_GAUSS_SEIDEL",
+                             demi_solvers[w->desc.solver].name);
         if (demi_joints_in_force(w) && !demi_solvers[w->desc.solver].joints)
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which %s "
-                             "does not know; leave desc.solver DEM_SOLVER_SEIDEL",
+                             "does not know; leave desc.solver DEM_SOLVER_GAUSS_SEIDEL",
                              demi_solvers[w->desc.solver].name);
         w->clock.dt = w->desc.dt;
         w->clock.press_since = w->clock.steps;
@@ -23627,7 +23713,7 @@ DEM_API int dem_world_check(dem_world *w, dem_finding *findings, int capacity) {
     return f.count;
 }
 
-DEM_API int dem_check_print(dem_world *w, FILE *out) {
+DEM_API int dem_world_check_print(dem_world *w, FILE *out) {
     static const char *const severities[] = {"note", "note", "warning", "error"};
     dem_finding findings[16];
     int i, n = dem_world_check(w, findings, 16);
@@ -23648,8 +23734,8 @@ DEM_API int dem_check_print(dem_world *w, FILE *out) {
 static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_info *out) {
     const demi_periods p = demi_periods_of(w);
     dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
-    out->a = dem_bodies_id(w, c->a);
-    out->b = dem_bodies_id(w, c->b);
+    out->a = dem_body_id_get(w, c->a);
+    out->b = dem_body_id_get(w, c->b);
     out->wall = c->b < 0 ? c->wall + 1 : 0;
     out->normal = c->normal;
     if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
@@ -23690,8 +23776,8 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     demi_law(w, &c, memory, &f);
     demi_look_called(w, was);
     demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
-    out->a = dem_bodies_id(w, a);
-    out->b = dem_bodies_id(w, b);
+    out->a = dem_body_id_get(w, a);
+    out->b = dem_body_id_get(w, b);
     out->wall = 0;
     out->normal = demi_row(tile.normal, 0);
     out->overlap = tile.overlap[0];
@@ -24152,7 +24238,7 @@ static void demi_domain_fields(dem_world *w, int d) {
     demi_domain *domain = &w->domains[d];
     int i;
     for (i = domain->begin; i < domain->end; i++) {
-        const dem_body id = dem_bodies_id(w, i);
+        const dem_body id = dem_body_id_get(w, i);
         const dem_vec3 none = demi_v(0, 0, 0);
         dem_vec3 force = none, torque = none;
         dem_body_state body;
@@ -24478,7 +24564,7 @@ static void demi_domain_gain(dem_world *w, int d) {
     for (i = w->domains[d].begin; i < w->domains[d].end; i++) {
         dem_real *reals = w->bodies.reals + n*i;
         const dem_real *rates = w->bodies.rates + n*i;
-        const dem_body id = dem_bodies_id(w, i);
+        const dem_body id = dem_body_id_get(w, i);
         dem_body_state body;
         if (demi_is_ghost(w, i)) continue;
         if (!w->desc.body_reals_fn) for (k = 0; k < n; k++) reals[k] += rates[k]*dt;
@@ -24846,12 +24932,12 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     return 0;
 }
 
-DEM_API double dem_world_time(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_time", w, "world")) return 0;
+DEM_API double dem_world_time_get(const dem_world *w) {
+    if (demi_null_look(w, "dem_world_time_get", w, "world")) return 0;
     return w->clock.time;
 }
-DEM_API uint64_t dem_world_steps(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_steps", w, "world")) return 0;
+DEM_API uint64_t dem_world_steps_get(const dem_world *w) {
+    if (demi_null_look(w, "dem_world_steps_get", w, "world")) return 0;
     return w->clock.steps;
 }
 
@@ -24889,8 +24975,8 @@ DEM_API dem_counters dem_counters_get(const dem_world *w) {
     c.memory = w->bytes;
     return c;
 }
-DEM_API void dem_overlap_reset(dem_world *w) {
-    if (demi_null(w, "dem_overlap_reset", w, "world")) return;
+DEM_API void dem_overlap_max_reset(dem_world *w) {
+    if (demi_null(w, "dem_overlap_max_reset", w, "world")) return;
     w->booked.overlap_max = 0;
 }
 
@@ -25083,20 +25169,21 @@ static int demi_wall_press(const dem_world *w, int d, int k, int wall, int *body
 /* Contacts of one grain follow each other. Stuck: two of them push against each other in the
    sieve's plane (their parts in it point apart), and both are flatter than friction's angle:
    |n_z| <= mu |n_xy|. */
-DEM_API int dem_sieve_blinded(const dem_world *w, dem_wall sieve, dem_real speed) {
-    if (demi_null_look(w, "dem_sieve_blinded", w, "world")) return -1;
-    const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded", sieve);
+DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real speed) {
+    if (demi_null_look(w, "dem_sieve_blinded_get", w, "world")) return -1;
+    const int id = demi_wall_find((dem_world *)w, "dem_sieve_blinded_get", sieve);
     const demi_wall *wall = id < 0 ? 0 : &w->walls[id];
     dem_vec3 across, n, m;
     dem_real mu, mu_m;
     int d, k, j, body, same, count = 0;
     if (!wall) return -1;
     if (!wall->sieve.kind) {
-        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded: wall %d is not a sieve; "
-                  "give what dem_sieve_add returned", (int)sieve.id);
+        demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded_get: wall %d is not a "
+                  "sieve; "
+                  "give what dem_wall_sieve_add returned", (int)sieve.id);
         return -1;
     }
-    if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded");
+    if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded_get");
     across = demi_v(wall->pose.rotation[2], wall->pose.rotation[5], wall->pose.rotation[8]);
     for (d = 0; d < w->domain_count; d++) {
         const int all = w->domains[d].kept;
@@ -25329,8 +25416,8 @@ static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *
     demi_free(w, s->root);
     return good > 0 ? DEM_OK : good ? demi_no_memory(w, call) : DEM_ERROR_ARGUMENT;
 }
-DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repose *out) {
-    const char *call = "dem_repose_heap";
+DEM_API dem_result dem_repose_heap_get(const dem_world *world, dem_box box, dem_repose *out) {
+    const char *call = "dem_repose_heap_get";
     dem_world *w = (dem_world *)world;          /* its sentence, and memory for a while */
     demi_surface s;
     dem_vec3 sum = demi_v(0, 0, 0);
@@ -25359,9 +25446,9 @@ DEM_API dem_result dem_repose_heap(const dem_world *world, dem_box box, dem_repo
     out->angle = -out->angle;                   /* it falls outward */
     return demi_repose_end(w, call, &s, good);
 }
-DEM_API dem_result dem_repose_drum(const dem_world *world, dem_box box, dem_vec3 axis,
+DEM_API dem_result dem_repose_drum_get(const dem_world *world, dem_box box, dem_vec3 axis,
                                    dem_repose *out) {
-    const char *call = "dem_repose_drum";
+    const char *call = "dem_repose_drum_get";
     dem_world *w = (dem_world *)world;
     demi_surface s;
     dem_result result;
@@ -25380,8 +25467,8 @@ DEM_API dem_result dem_repose_drum(const dem_world *world, dem_box box, dem_vec3
 
 /* Bodies in the order of their slots, so that the digest does not hang on the order of the arrays;
    contact memory as a sum over contacts of their own digests, for the same reason. */
-DEM_API uint64_t dem_world_hash(const dem_world *w) {
-    if (demi_null_look(w, "dem_world_hash", w, "world")) return 0;
+DEM_API uint64_t dem_world_hash_get(const dem_world *w) {
+    if (demi_null_look(w, "dem_world_hash_get", w, "world")) return 0;
     const demi_periods p = demi_periods_of(w);
     uint64_t h = DEMI_HASH_START;
     int i;
@@ -26318,7 +26405,7 @@ DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, 
 }
 /* One part of a machine as a wall, which will have this id. */
 static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
-                                 const dem_part *part, dem_wall id, demi_wall *wall) {
+                                 const dem_wall_part *part, dem_wall id, demi_wall *wall) {
     dem_mesh mesh;
     dem_result result = dem_mesh_part_read(w, path, part->name, &mesh, 0);
     if (result != DEM_OK) return result;
@@ -26331,9 +26418,9 @@ static dem_result demi_part_make(dem_world *w, const char *path, dem_real scale,
     return demi_motion_lay(w, id, &part->motion, wall, wall);
 }
 /* What can be refused is before the first wall is added: then nothing of the world has changed. */
-DEM_API dem_result dem_parts_add(dem_world *w, const char *path, dem_real scale, int count,
-                                 const dem_part *parts, dem_wall *walls) {
-    const char *call = "dem_parts_add";
+DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real scale, int count,
+                                 const dem_wall_part *parts, dem_wall *walls) {
+    const char *call = "dem_wall_parts_add";
     char sentence[sizeof w->error];
     dem_result result = DEM_OK;
     demi_wall *made;
@@ -26354,7 +26441,7 @@ DEM_API dem_result dem_parts_add(dem_world *w, const char *path, dem_real scale,
     if (result == DEM_OK && !DEMI_GROW(w, w->walls, (size_t)first + (size_t)count))
         result = demi_no_memory(w, call);
     for (i = 0; i < count && result == DEM_OK; i++) {
-        wall = demi_wall_enter(w, "dem_mesh_add", made + i);
+        wall = demi_wall_enter(w, "dem_wall_mesh_add", made + i);
         memset(made + i, 0, sizeof *made);
         result = wall.id ? DEM_OK : DEM_ERROR_ARGUMENT;
         if (walls) walls[i] = wall;
@@ -28071,7 +28158,8 @@ static dem_result demi_vtp(dem_world *w, const char *call, const char *path,
             "</DataArray></FieldData>\n<Piece NumberOfPoints=\"%d\" NumberOfVerts=\"%d\" "
             "NumberOfLines=\"%d\" NumberOfStrips=\"0\" NumberOfPolys=\"%d\">\n",
             demi_is_little_endian() ? "LittleEndian" : "BigEndian",
-            demi_format_real(time, dem_world_time(w), 17), column[0].count, verts, lines, polys);
+            demi_format_real(time, dem_world_time_get(w), 17), column[0].count, verts, lines,
+            polys);
     for (i = 0; i < columns; i++) {
         const demi_column *c = column + i;
         if (i > 0 && strcmp(c->section, section) != 0) fprintf(o.file, "</%s>\n", section);
@@ -28185,7 +28273,7 @@ DEM_API dem_result dem_vtk_write(dem_world *world, const char *path) {
     demi_column column[DEMI_GRAIN_COLUMNS];
     demi_out o;
     const char *real = sizeof(dem_real) == 4 ? "float" : "double";
-    double time = dem_world_time(world);
+    double time = dem_world_time_get(world);
     int i, n, count, turn = demi_is_little_endian();
     demi_drawing g;
     dem_result result;
@@ -28258,7 +28346,7 @@ DEM_API dem_result dem_xyz_write(dem_world *world, const char *path) {
     fprintf(o.file, "Properties=species:S:1:pos:R:3:radius:R:1:velo:R:3:%s",
             g.orient ? "orientation:R:4:aspherical_shape:R:3:" : "");
     for (k = 0; k < g.real_count; k++) fprintf(o.file, "%s:R:1:", g.names[k]);
-    fprintf(o.file, "id:I:1 Time=%s\n", demi_format_real(text[0], dem_world_time(world), 12));
+    fprintf(o.file, "id:I:1 Time=%s\n", demi_format_real(text[0], dem_world_time_get(world), 12));
     for (i = 0; i < g.count; i++) {
         const char *element = elements + 2*((g.materials[i] - 1) & 63);
         fprintf(o.file, "%.*s", element[1] == ' ' ? 1 : 2, element);
@@ -28473,7 +28561,7 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
     if (demi_wall_per(wall) < 2) return;
     *points += sides*up;
     *triangles += sides*(int64_t)wall->element_count;
-    if (!place || dem_wall_pose(w, handle, &pose) != DEM_OK) return;
+    if (!place || dem_wall_pose_get(w, handle, &pose) != DEM_OK) return;
     for (k = 0; k < sides*up; k++) {
         dem_vec3 local = demi_at(wall->vertices + 3*(k%up));
         if (profile) local.z = z[k/up];
@@ -28595,13 +28683,14 @@ static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wal
     value[8] = c.contacts;
     return DEM_OK;
 }
-DEM_API dem_result dem_wall_loads_csv(dem_world *world, dem_wall wall, const char *path) {
-    if (demi_null_write(world, "dem_wall_loads_csv", world, "world")) return DEM_ERROR_ARGUMENT;
-    const char *call = "dem_wall_loads_csv";
+DEM_API dem_result dem_wall_loads_csv_write(dem_world *world, dem_wall wall, const char *path) {
+    if (demi_null_write(world, "dem_wall_loads_csv_write", world,
+                        "world")) return DEM_ERROR_ARGUMENT;
+    const char *call = "dem_wall_loads_csv_write";
     double value[DEMI_LOADS];
     char line[DEMI_CSV_LINE];
     if (demi_loads_values(world, call, wall, value) != DEM_OK) return DEM_ERROR_ARGUMENT;
-    demi_csv_line(line, dem_world_time(world), value, DEMI_LOADS);
+    demi_csv_line(line, dem_world_time_get(world), value, DEMI_LOADS);
     return demi_csv_append(world, call, path, demi_loads_heading, line);
 }
 
@@ -30178,7 +30267,7 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
     id.id = w->look.output_count;
     return id;
 }
-DEM_API dem_output dem_output_every(dem_world *w, dem_output_kind kind, const char *path,
+DEM_API dem_output dem_output_every_add(dem_world *w, dem_output_kind kind, const char *path,
                                     double interval) {
     dem_output_desc desc;
     memset(&desc, 0, sizeof desc);
@@ -30195,7 +30284,7 @@ DEM_API dem_output dem_output_every(dem_world *w, dem_output_kind kind, const ch
    changes counts only as far as it is more than what chance does. Copies live within the
    call; nothing of the world itself is stepped.
    --------------------------------------------------------------------------------------------- */
-DEM_API double dem_observe_height(const dem_world *w, void *user) {
+DEM_API double dem_observer_height(const dem_world *w, void *user) {
     const dem_totals t = dem_totals_get(w);
     dem_vec3 up;
     (void)user;
@@ -30204,12 +30293,12 @@ DEM_API double dem_observe_height(const dem_world *w, void *user) {
         ? demi_scale(w->desc.gravity, -1/demi_length(w->desc.gravity)) : demi_v(0, 0, 1);
     return t.centre[0]*(double)up.x + t.centre[1]*(double)up.y + t.centre[2]*(double)up.z;
 }
-DEM_API double dem_observe_kinetic(const dem_world *w, void *user) {
+DEM_API double dem_observer_kinetic(const dem_world *w, void *user) {
     const dem_totals t = dem_totals_get(w);
     (void)user;
     return t.kinetic + t.rotational;
 }
-DEM_API double dem_observe_contacts(const dem_world *w, void *user) {
+DEM_API double dem_observer_contacts(const dem_world *w, void *user) {
     const dem_counters c = dem_counters_get(w);
     int d, kept = 0;
     (void)user;
@@ -30217,7 +30306,7 @@ DEM_API double dem_observe_contacts(const dem_world *w, void *user) {
         kept += w->domains[d].kept - w->domains[d].kept_walls;
     return w && w->bodies.count ? (2.0*(c.contacts + kept) + c.wall_contacts)/w->bodies.count : 0;
 }
-DEM_API double dem_observe_walls(const dem_world *w, void *user) {
+DEM_API double dem_observer_walls(const dem_world *w, void *user) {
     double sum = 0;
     int i;
     (void)user;
@@ -30409,7 +30498,7 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
     for (k = 0; k < out->seeds && !*trial->refusal; k++) {
         dem_world *t = demi_twin_in_state(w, state, size);
         double begun;
-        if (!t) return demi_no_memory(w, "dem_advise");
+        if (!t) return demi_no_memory(w, "dem_trials_run");
         demi_try_set(t, row);
         demi_try_shake(t, (uint64_t)k);
         begun = demi_clock();
@@ -30431,11 +30520,11 @@ static dem_result demi_trial_run(dem_world *w, const char *state, size_t size, c
     return DEM_OK;
 }
 /* 1 with a sentence when the desc asks for what cannot be. */
-static int demi_advise_refuse(dem_world *w, const dem_advise_desc *d) {
+static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
     const int lost = demi_body_lost(w);
     int e;
     if (demi_impulsive(w)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: contacts answer by impulses, and what it "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: contacts answer by impulses, and what it "
                   "tries are steps, stiffnesses and laws of springs; compare runs of other dt, "
                   "sweeps and tolerance");
         return 1;
@@ -30444,31 +30533,35 @@ static int demi_advise_refuse(dem_world *w, const dem_advise_desc *d) {
         !demi_finite_double(d->budget) || !(d->tolerance >= 0) ||
         !demi_finite_double(d->tolerance) || d->seeds < 0 || d->seeds == 1 ||
         d->seeds > 16 || d->observable_count < 0 || d->observable_count > DEM_OBSERVABLES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: duration is %g s, budget %g s, tolerance %g, "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: duration is %g s, budget %g s, tolerance "
+                  "%g, "
                   "seeds %d, observables %d; must be > 0, >= 0, >= 0, 2 to 16 (0: 3) and 0 to %d; "
-                  "start from DEM_ADVISE_DESC and set duration", d->duration, d->budget,
+                  "start from DEM_TRIALS_DESC and set duration", d->duration, d->budget,
                   d->tolerance, d->seeds, d->observable_count, (int)DEM_OBSERVABLES);
         return 1;
     }
     for (e = 0; e < d->observable_count; e++)
         if (!d->observables[e].function || !d->observables[e].name) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: observable %d has no function or no "
-                      "name; give both, as {\"height\", \"m\", dem_observe_height, 0, 0}", e + 1);
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: observable %d has no function or no "
+                      "name; give both, as {\"height\", \"m\", dem_observer_height, 0, 0}", e + 1);
             return 1;
         }
     for (e = 0; e < d->observable_count; e++)
         if (!(d->observables[e].scale >= 0) || !demi_finite_double(d->observables[e].scale)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: the scale of observable %d is %g, must "
+            demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: the scale of observable %d is %g, "
+                      "must "
                       "be finite and >= 0; 0 means its own value in the reference", e + 1,
                       d->observables[e].scale);
             return 1;
         }
     if (lost < 0 && w->bodies.count) return 0;
     if (lost < 0)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: there are no bodies: nothing to judge by; "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: there are no bodies: nothing to judge "
+                  "by; "
                   "add them, or run until some are fed");
     else
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: body %u is no longer at a finite place and "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: body %u is no longer at a finite place "
+                  "and "
                   "speed: the run has blown up; go back to an earlier checkpoint",
                   (unsigned)w->bodies.slot[lost] + 1);
     return 1;
@@ -30482,7 +30575,7 @@ static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size,
     double steps = 0, each, begun;
     int k;
     dem_result result;
-    if (!t) return demi_no_memory(w, "dem_advise");
+    if (!t) return demi_no_memory(w, "dem_trials_run");
     result = dem_world_step(t, 5);
     begun = demi_clock();
     if (result == DEM_OK) result = dem_world_step(t, 20);
@@ -30492,13 +30585,16 @@ static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size,
             steps += out->seeds/(double)t->clock.dt/demi_tries[k].step*
                 demi_pow(demi_tries[k].stiffness, 0.4);
     if (each*steps*out->duration > budget) out->duration = budget/each/steps;
-    if (result != DEM_OK) demi_fail(w, result, "dem_advise: the scene as it is: %.400s", t->error);
+    if (result != DEM_OK) demi_fail(w, result, "dem_trials_run: the scene as it is: %.400s",
+                                    t->error);
     else if (asked < 64*(double)t->clock.dt)
-        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: duration is %g s, must be at least "
+        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: duration is %g s, must be at "
+                           "least "
                            "64 steps of %g s; let trials simulate as long as observables need to "
                            "settle", asked, (double)t->clock.dt);
     else if (out->duration < 64*(double)t->clock.dt)
-        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_advise: %g s of wall time allow for %g s of "
+        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: %g s of wall time allow for %g "
+                           "s of "
                            "this scene in each trial, must be at least 64 steps of %g s; give more "
                            "budget, fewer seeds, or a smaller part of the scene", budget,
                            out->duration, (double)t->clock.dt);
@@ -30518,13 +30614,13 @@ static void demi_usual_scales(const dem_world *w, dem_trials *out) {
         lowest = DEMI_MIN(lowest, (double)demi_dot(demi_at(w->bodies.pos + 4*i), up) - r);
         fall += (double)w->bodies.mass[i]*g*r;
     }
-    out->observables[0].scale = DEMI_MAX(dem_observe_height(w, 0) - lowest, 0);
-    out->observables[1].scale = dem_observe_kinetic(w, 0) + fall;
+    out->observables[0].scale = DEMI_MAX(dem_observer_height(w, 0) - lowest, 0);
+    out->observables[1].scale = dem_observer_kinetic(w, 0) + fall;
 }
-DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials *out) {
+DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_trials *out) {
     static const dem_observable usual[] = {
-        {"height", "m", dem_observe_height, 0, 0}, {"kinetic", "J", dem_observe_kinetic, 0, 0},
-        {"contacts", "", dem_observe_contacts, 0, 0}};
+        {"height", "m", dem_observer_height, 0, 0}, {"kinetic", "J", dem_observer_kinetic, 0, 0},
+        {"contacts", "", dem_observer_contacts, 0, 0}};
     const demi_try *rows[DEM_TRIALS];
     const double begun = demi_clock();
     demi_calling was;
@@ -30532,9 +30628,9 @@ DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials
     size_t size;
     dem_result result;
     int k;
-    if (demi_null(w, "dem_advise", d, "desc") || demi_null(w, "dem_advise", out, "trials"))
+    if (demi_null(w, "dem_trials_run", d, "desc") || demi_null(w, "dem_trials_run", out, "trials"))
         return DEM_ERROR_ARGUMENT;
-    if (demi_unbuilt(w, "dem_advise") != DEM_OK || demi_advise_refuse(w, d))
+    if (demi_unbuilt(w, "dem_trials_run") != DEM_OK || demi_advise_refuse(w, d))
         return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);
     out->duration = d->duration;
@@ -30544,12 +30640,12 @@ DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials
     memcpy(out->observables, d->observable_count ? d->observables : usual,
            (size_t)out->observable_count*sizeof *usual);
     if (!d->observable_count) demi_usual_scales(w, out);
-    if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, "dem_advise");
+    if (!w->facets_valid && !demi_facets_weigh(w)) return demi_no_memory(w, "dem_trials_run");
     result = demi_dt_settle(w);                 /* refused as a run would be */
     if (result != DEM_OK) return result;
     state = demi_state_keep(w, &size);
-    if (!state) return demi_no_memory(w, "dem_advise");
-    was = demi_calls(w, "dem_advise", 1);       /* laws and others are asked for copies of w */
+    if (!state) return demi_no_memory(w, "dem_trials_run");
+    was = demi_calls(w, "dem_trials_run", 1);       /* laws and others are asked for copies of w */
     result = demi_advise_plan(w, state, size, d->budget > 0 ? d->budget : 60, out);
     for (k = 0; k < DEM_TRIALS; k++)
         if (demi_try_fits(w, &demi_tries[k])) rows[out->count++] = &demi_tries[k];
@@ -30562,14 +30658,15 @@ DEM_API dem_result dem_advise(dem_world *w, const dem_advise_desc *d, dem_trials
         if (result == DEM_OK && d->progress &&
             d->progress(w, (k + 1.0)/out->count,
                         (demi_clock() - begun)*(out->count - k - 1)/(k + 1), d->user))
-            result = demi_fail(w, DEM_ERROR_STOPPED, "dem_advise: stopped by the progress function "
+            result = demi_fail(w, DEM_ERROR_STOPPED, "dem_trials_run: stopped by the progress "
+                               "function "
                                "after %d of %d trials", k + 1, out->count);
     }
     w->look.calling = was;
     demi_free(w, state);
     if (result != DEM_OK) return result;
     if (out->trial[0].done < out->seeds)
-        return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_advise: the scene as it is does not run: "
+        return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_trials_run: the scene as it is does not run: "
                          "%.300s", out->trial[0].refusal);
     demi_trials_judge(out);
     demi_trials_advise(out);
@@ -30707,7 +30804,7 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
     if (!w->desc.force && !w->desc.body_force)
         return demi_look_off(e, "desc.force and desc.body_force are null");
     for (i = 0; i < w->bodies.count; i++) {
-        const dem_body id = dem_bodies_id(w, i);
+        const dem_body id = dem_body_id_get(w, i);
         dem_vec3 force = demi_v(0, 0, 0), torque = force;
         dem_body_state body;
         if (!(w->bodies.inv_mass[i] > 0) || dem_body_get(w, id, &body) != DEM_OK) continue;
@@ -30869,7 +30966,7 @@ static void demi_leave_motions(dem_world *t, demi_again *own) {
     /* facets will be weighed anew: in arrays of its own. A wall that has no room for them goes */
     for (id.id = 1; id.id <= t->wall_count; id.id++)
         if (demi_wall_own(t, &t->walls[id.id - 1]) &&
-            t->walls[id.id - 1].kind != DEMI_WALL_NONE) dem_wall_motion(t, id, &DEM_MOTION);
+            t->walls[id.id - 1].kind != DEMI_WALL_NONE) dem_wall_motion_set(t, id, &DEM_MOTION);
 }
 static void demi_leave_walls(dem_world *t, demi_again *own) {
     dem_wall id;
@@ -31106,7 +31203,7 @@ DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
    for, by the same functions that a run asks, on a copy: a report changes nothing. Taking it
    down frees two chains of blocks (demi_hold), so that no array can be forgotten.
    --------------------------------------------------------------------------------------------- */
-DEM_API const char *dem_result_name(dem_result r) {
+DEM_API const char *dem_result_name_get(dem_result r) {
     static const char *names[] = {"ok", "bad argument", "out of memory", "file error",
                                   "bad format", "time step too large",
                                   "unstable", "stopped"};
@@ -31137,13 +31234,14 @@ static const char *demi_answer_error(const dem_world_desc *d) {
         return "dem_world_create: response is DEM_RESPONSE_IMPULSES and dt is 0 s; impulses have "
             "no contact time to choose it from: give one in which grains move by less than a tenth "
             "of their radius, such as 1e-3 s";
-    if (d->response == DEM_RESPONSE_IMPULSES && (d->law || (d->integrator != DEM_VELOCITY_VERLET &&
-                                                 d->integrator != DEM_SYMPLECTIC_EULER)))
+    if (d->response == DEM_RESPONSE_IMPULSES && (d->law ||
+                                                 (d->integrator != DEM_INTEGRATOR_VELOCITY_VERLET &&
+                                                 d->integrator != DEM_INTEGRATOR_SYMPLECTIC_EULER)))
         return "dem_world_create: response is DEM_RESPONSE_IMPULSES, with a law or an integrator "
             "of its own; impulses need neither: leave both 0";
     return "";
 }
-DEM_API const char *dem_create_error(const dem_world_desc *d) {
+DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     if (!d) return "dem_world_create: desc is null; give the address of a dem_world_desc that "
         "began as DEM_WORLD_DESC";
     const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
@@ -31197,12 +31295,12 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
         !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
         return "dem_world_create: a contact law is unknown, must be one of the enum values; start "
             "from DEM_WORLD_DESC";
-    if ((int)d->tension < 0 || d->tension > DEM_TENSION_NONE || (int)d->convention < 0 ||
+    if ((int)d->tension < 0 || d->tension > DEM_TENSION_COMPENSATED || (int)d->convention < 0 ||
         d->convention > DEM_CONVENTION_MILL)
         return "dem_world_create: tension or convention is unknown, must be one of the enum "
                "values; start from DEM_WORLD_DESC";
-    if ((int)d->friction_load < 0 || d->friction_load > DEM_LOAD_SIZE || (int)d->slider < 0 ||
-        d->slider > DEM_SLIDER_REST)
+    if ((int)d->friction_load < 0 || d->friction_load > DEM_LOAD_MAGNITUDE || (int)d->slider < 0 ||
+        d->slider > DEM_SLIDER_REMAINDER)
         return "dem_world_create: friction_load or slider is unknown, must be one of the enum "
                "values; start from DEM_WORLD_DESC";
     if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
@@ -31211,7 +31309,7 @@ DEM_API const char *dem_create_error(const dem_world_desc *d) {
             "start from DEM_WORLD_DESC";
     if ((int)d->rotation < 0 || d->rotation > DEM_ROTATION_NO_SQUISH ||
         (int)d->ellipsoid_overlap < 0 || d->ellipsoid_overlap > DEM_OVERLAP_NORMAL ||
-        (int)d->cluster_contacts < 0 || d->cluster_contacts > DEM_SHARING_NONE)
+        (int)d->cluster_contacts < 0 || d->cluster_contacts > DEM_CLUSTER_CONTACTS_SEPARATE)
         return "dem_world_create: rotation, ellipsoid_overlap or cluster_contacts is unknown, must "
             "be one of the enum values; start from DEM_WORLD_DESC";
     if (!d->allocator.alloc_fn != !d->allocator.free_fn)
@@ -31224,7 +31322,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
                                             size_t real_size) {
     dem_world *w;
     if (version != DEM_VERSION || real_size != sizeof(dem_real) ||
-        *dem_create_error(desc)) return 0;
+        *dem_world_create_error_get(desc)) return 0;
     w = (dem_world *)demi_raw_alloc(&desc->allocator, sizeof *w);
     if (!w) return 0;
     memset(w, 0, sizeof *w);
@@ -31233,7 +31331,7 @@ DEM_API dem_world *dem_world_create_checked(const dem_world_desc *desc, int vers
     w->bytes = sizeof *w;
     if (!(w->desc.thickness > 0)) w->desc.thickness = 1;
     if (w->desc.planar) w->desc.gravity.z = 0;
-    if (demi_impulsive(w)) w->desc.integrator = DEM_SYMPLECTIC_EULER;
+    if (demi_impulsive(w)) w->desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
     /* until bodies are there to decide */
     if (w->desc.search == DEM_SEARCH_AUTO) w->desc.search = DEM_SEARCH_GRID;
     if (w->desc.threads == 0) w->desc.threads = DEMI_MIN(demi_threads_available(), 64);
@@ -31268,9 +31366,9 @@ DEM_API void dem_world_destroy(dem_world *w) {
     demi_raw_free(&allocator, w, sizeof *w);
 }
 
-DEM_API const char *dem_world_error(const dem_world *w) {
+DEM_API const char *dem_world_error_get(const dem_world *w) {
     if (!w) return "dem_world_create: the world is null, so it was refused and this call too; "
-        "dem_create_error(desc) says why";
+        "dem_world_create_error_get(desc) says why";
     ((dem_world *)w)->refused = 0;              /* somebody looks */
     return w->error;
 }
@@ -31286,7 +31384,7 @@ DEM_API dem_world_desc dem_world_desc_get(const dem_world *w) {
 static void demi_levels_report(const dem_world *w, FILE *out) {
     const int auto_ = w->asked.search == DEM_SEARCH_AUTO;
     int i;
-    if (w->desc.search == DEM_SEARCH_LEVELS && w->levels.count) {
+    if (w->desc.search == DEM_SEARCH_HIERARCHICAL && w->levels.count) {
         fprintf(out, "           %d level%s for radii 1 : %.3g, of up to", w->levels.count,
                 w->levels.count == 1 ? "" : "s",
                 (double)w->effects.radius_max/DEMI_MAX((double)w->effects.radius_min, 1e-300));
@@ -31319,7 +31417,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     static const char *loads[] = {"the normal force", "its spring's part", "its size"};
     static const char *sliders[] = {"spring and dashpot share it", "the spring alone holds it",
                                     "the spring holds what the dashpot leaves"};
-    const int load = w->desc.tension != DEM_TENSION_KEPT ? DEM_LOAD_PUSH
+    const int load = w->desc.tension != DEM_TENSION_ALLOWED ? DEM_LOAD_REPULSIVE
         : (int)w->desc.friction_load;           /* nothing pulls there */
     const demi_laws *laws = &w->laws;
     char text[64];
@@ -31353,7 +31451,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     }
     fprintf(out, "effects    normal: %s%s%s%s\n", laws->normal->name,
             w->desc.tension == DEM_TENSION_CLIPPED ? ", tension clipped"
-            : w->desc.tension == DEM_TENSION_NONE ? ", no tension" : "",
+            : w->desc.tension == DEM_TENSION_COMPENSATED ? ", no tension" : "",
             demi_law_memory_text(laws->normal, text), unused);
     fprintf(out, "           tangential: %s%s\n", laws->tangent->name, laws->tangent->law
             ? demi_law_memory_text(laws->tangent, text)
@@ -31372,7 +31470,7 @@ static void demi_shapes_report(const dem_world *w, FILE *out) {
         fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap "
                 "%s; a cluster's contacts %s; %.2f contacts per body\n", w->bodies.shaped,
                 rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
-                w->desc.cluster_contacts == DEM_SHARING_ONE ? "are shared" : "add up",
+                w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are shared" : "add up",
                 w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
     else if (w->bodies.orienting)
         fprintf(out, "           orientations of spheres are followed, because you asked\n");
@@ -31816,7 +31914,7 @@ static dem_result demi_slabs_agree(dem_slabs *s, double *flags, int count) {
         return demi_fail(&s->head, result, "dem_slabs_step: slab %d: %.440s", index,
                          s->slabs[index - s->first].world->error);
     return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
-                     "holds it has the sentence", index, dem_result_name(result));
+                     "holds it has the sentence", index, dem_result_name_get(result));
 }
 
 /* Outboxes that lead to other processes, up, down or both ways. Sizes are told first unless both
@@ -33108,7 +33206,7 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
 /* Do all processes hold the same scene in the same order, with a list or without, have they got
    their memory, and all slabs between them? Digests travel as whole numbers of 32 bits. */
 static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
-    uint64_t digest = demi_scene_digest(w) ^ (dem_world_hash(w) << 1);
+    uint64_t digest = demi_scene_digest(w) ^ (dem_world_hash_get(w) << 1);
     double v[9], slabs = s->local;
     dem_result result;
     int k, differ = 0;
@@ -33595,8 +33693,9 @@ DEM_API void dem_slabs_loads_reset(dem_slabs *s) {
     }
 }
 
-DEM_API const char *dem_slabs_error(const dem_slabs *s) {
-    return s ? s->head.error : "dem_slabs_create: returned null; dem_world_error(world) says why";
+DEM_API const char *dem_slabs_error_get(const dem_slabs *s) {
+    return s ? s->head.error : "dem_slabs_create: returned null; dem_world_error_get(world) says "
+    "why";
 }
 DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
     if (!s || demi_null_look(&s->head, "dem_slab_get", out, "slab")) return DEM_ERROR_ARGUMENT;
@@ -34057,7 +34156,8 @@ static const char *const demi_viewer[] = {
     "r (const [k, b] of blocks('frame').entries()) {\ntry { decode(bytes(b.textContent)); } catch ",
     "(e) { if (!k) throw e; break; }  // cut short\nb.remove();\nif (k%20 === 19) { $('say').textC",
     "ontent = 'reading ' + (k + 1);\nawait new Promise(done => setTimeout(done)); }\n}\nif (!frame",
-    "s.length) throw Error('no frames in this file: was dem_replay_frame called?');\nmeasure(); ra",
+    "s.length) throw Error('no frames in this file: was dem_replay_frame_write "
+    "called?');\nmeasure(); ra",
     "nges(); look(); prepare(); makePlots(); paces();\nconst names = { speed: 'speed', size: 'size",
     "', material: 'material' };\nif (head.number) names.own = head.number;\nfor (const n in names)",
     " {\nconst o = document.createElement('option');\no.value = n; o.textContent = names[n]; $('co",
@@ -34423,28 +34523,29 @@ static dem_result demi_film_check(dem_replay *r, const char *call) {
     return demi_fail(r->world, DEM_ERROR_FILE, "%s: cannot write %.200s: %s; check that its folder "
                      "has room", call, r->out.path, errno ? strerror(errno) : "unknown cause");
 }
-DEM_API dem_result dem_replay_frame(dem_replay *r) {
-    if (!r || demi_null_write(r->world, "dem_replay_frame", r, "replay")) return DEM_ERROR_ARGUMENT;
+DEM_API dem_result dem_replay_frame_write(dem_replay *r) {
+    if (!r || demi_null_write(r->world, "dem_replay_frame_write", r,
+                              "replay")) return DEM_ERROR_ARGUMENT;
     dem_world *w = r->world;
     const demi_calling was = w->look.calling;
     double time;
     uint32_t values = 0;
     int s, k;
     errno = 0;
-    dem_result result = demi_film_check(r, "dem_replay_frame");
+    dem_result result = demi_film_check(r, "dem_replay_frame_write");
     if (result != DEM_OK) return result;
     if (!demi_grow(w, DEMI_LOOSE, &r->seen, sizeof *r->seen, (size_t)w->bodies.slot_count + 1)) {
         r->failed = 1;
-        return demi_film_check(r, "dem_replay_frame");
+        return demi_film_check(r, "dem_replay_frame_write");
     }
     demi_finish(w);
-    demi_calls(w, "dem_replay_frame", 1);
+    demi_calls(w, "dem_replay_frame_write", 1);
     const dem_bodies b = dem_bodies_get(w);
     if (!(r->resolution > 0)) demi_film_resolve(r, &b);
     for (; r->shape_count < w->shape_count; r->shape_count++)
         demi_film_shape(r, r->shape_count + 1);
     r->size = 0;
-    time = dem_world_time(w);
+    time = dem_world_time_get(w);
     demi_film_put(r, &time, sizeof time, 1);
     demi_film_walls(r);
     demi_film_cast(r, &b);
@@ -34461,7 +34562,7 @@ DEM_API dem_result dem_replay_frame(dem_replay *r) {
     if (!r->failed) demi_film_block(r);
     w->look.calling = was;
     r->frames++;
-    return demi_film_check(r, "dem_replay_frame");
+    return demi_film_check(r, "dem_replay_frame_write");
 }
 
 /* --- begin, plots, end --- */
@@ -34474,7 +34575,7 @@ static void demi_films_look(dem_world *w) {
         if (r->failed || w->clock.time < r->begun + r->due*r->desc.interval -
             (double)w->clock.dt/2) continue;
         r->due = floor((w->clock.time + (double)w->clock.dt/2 - r->begun)/r->desc.interval) + 1;
-        dem_replay_frame(r);
+        dem_replay_frame_write(r);
     }
 }
 
@@ -34505,7 +34606,7 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     }
     if (!(d.interval >= 0) || !demi_finite_double(d.interval)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: interval is %g s, must be >= 0; 0: "
-                  "frames when dem_replay_frame is called", d.interval);
+                  "frames when dem_replay_frame_write is called", d.interval);
         return 0;
     }
     for (i = 0; d.number && !d.number_fn && i < w->bodies.real_count; i++) {
@@ -34541,16 +34642,19 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     }
     return r;
 }
-DEM_API dem_result dem_replay_value(dem_replay *r, const char *name, double value) {
+DEM_API dem_result dem_replay_value_set(dem_replay *r, const char *name, double value) {
     int k;
-    if (!r || demi_null_write(r->world, "dem_replay_value", r, "replay")) return DEM_ERROR_ARGUMENT;
+    if (!r || demi_null_write(r->world, "dem_replay_value_set", r,
+                              "replay")) return DEM_ERROR_ARGUMENT;
     if (!name || !*name || strlen(name) >= sizeof r->names[0])
-        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value: name is %.80s, must have "
+        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value_set: name is %.80s, must "
+                         "have "
                          "1 to %d letters", name ? *name ? name : "empty" : "null",
                          (int)sizeof r->names[0] - 1);
     for (k = 0; k < r->value_count && strcmp(r->names[k], name) != 0; k++) {}
     if (k == DEM_REPLAY_VALUES)
-        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value: \"%.60s\" would be value "
+        return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value_set: \"%.60s\" would be "
+                         "value "
                          "%d, a replay draws at most %d; leave some out", name, k + 1,
                          (int)DEM_REPLAY_VALUES);
     if (k == r->value_count) {

@@ -27,10 +27,10 @@ static int gas_build(built *b, const choice *c, int seed) { /* velocities unifor
     uint64_t state = (uint64_t)seed*977;
     int i, ok;
     b->stuff = scene_material(b->world, c, 1, 0, 0);
-    ok = b->stuff.id && dem_spheres_fill(b->world, b->stuff, DEM_R(SCENE_RADIUS), desc.domain, GAS_GRAINS,
-                                         (uint64_t)seed) == GAS_GRAINS;
+    ok = b->stuff.id && dem_spheres_fill(b->world, b->stuff, DEM_R(SCENE_RADIUS), dem_region_make(desc.domain),
+                                         GAS_GRAINS, (uint64_t)seed) == GAS_GRAINS;
     for (i = 0; i < GAS_GRAINS && ok; i++) {
-        const dem_body body = dem_bodies_id(b->world, i);
+        const dem_body body = dem_body_id_get(b->world, i);
         dem_body_state s;
         ok = dem_body_get(b->world, body, &s) == DEM_OK;
         s.velocity = dem_vec3_make((dem_real)gas_random(&state), (dem_real)gas_random(&state),
@@ -90,12 +90,12 @@ static const choice gas_choices[] = {
     {.label = "t_c/200", .step = 0.25, .soften = 1}, {"velocity Verlet", "t_c/50", .soften = 1},
     {"velocity Verlet", "t_c/100", .step = 0.5, .soften = 1}, {"velocity Verlet", "t_c/20", .step = 2.5, .soften = 1},
     {"velocity Verlet", "t_c/10", .step = 5, .soften = 1}, {"velocity Verlet", "t_c/5", .step = 10, .soften = 1},
-    {"leapfrog", "t_c/50", .integrator = DEM_LEAPFROG, .soften = 1},
-    {"position Verlet", "t_c/50", .integrator = DEM_POSITION_VERLET, .soften = 1},
-    {"symplectic Euler", "t_c/50", .integrator = DEM_SYMPLECTIC_EULER, .soften = 1},
-    {"symplectic Euler", "t_c/20", .integrator = DEM_SYMPLECTIC_EULER, .step = 2.5, .soften = 1},
-    {"forward Euler", "t_c/50", .integrator = DEM_FORWARD_EULER, .soften = 1},
-    {"forward Euler", "t_c/100", .integrator = DEM_FORWARD_EULER, .step = 0.5, .soften = 1}};
+    {"leapfrog", "t_c/50", .integrator = DEM_INTEGRATOR_LEAPFROG, .soften = 1},
+    {"position Verlet", "t_c/50", .integrator = DEM_INTEGRATOR_POSITION_VERLET, .soften = 1},
+    {"symplectic Euler", "t_c/50", .integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER, .soften = 1},
+    {"symplectic Euler", "t_c/20", .integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER, .step = 2.5, .soften = 1},
+    {"forward Euler", "t_c/50", .integrator = DEM_INTEGRATOR_FORWARD_EULER, .soften = 1},
+    {"forward Euler", "t_c/100", .integrator = DEM_INTEGRATOR_FORWARD_EULER, .step = 0.5, .soften = 1}};
 enum { GAS_CHOICES = (int)(sizeof gas_choices/sizeof *gas_choices), GAS_SEEDS = 4 };
 static outcome gas_out[GAS_CHOICES*SCENE_SEEDS];
 static int gas_done;
@@ -128,7 +128,7 @@ static int bed_build(built *b, const choice *c, int seed) {
     memset(&region, 0, sizeof region);
     region.box = dem_box_make(0, 0, 0, DEM_R(BED_SIDE), DEM_R(BED_SIDE), DEM_R(0.3));
     b->stuff = scene_material(b->world, c, 0.5, 0.5, 0);
-    b->wall = dem_plane_add(b->world, b->stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    b->wall = dem_wall_plane_add(b->world, b->stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
     return b->stuff.id && b->wall.id && scene_fill(b, SCENE_RADIUS, &region, BED_GRAINS, seed);
 }
 /* value: |force on the floor over weight - 1|, mean of .1 s; solid fraction; kinetic energy over m g d, a grain. */
@@ -183,9 +183,9 @@ static int spheroids_build(built *b, const choice *c, int seed) {
     int i, ok;
     b->stuff = scene_material(b->world, c, 1, 0, 0);
     ok = b->stuff.id && shape.id &&
-         dem_bodies_fill(b->world, b->stuff, shape, desc.domain, GAS_ELLIPSOIDS, (uint64_t)seed) == GAS_ELLIPSOIDS;
+         dem_bodies_fill(b->world, b->stuff, shape, dem_region_make(desc.domain), GAS_ELLIPSOIDS, (uint64_t)seed) == GAS_ELLIPSOIDS;
     for (i = 0; i < GAS_ELLIPSOIDS && ok; i++) { /* no spin about the long axis: nothing ever changes it    */
-        const dem_body body = dem_bodies_id(b->world, i);
+        const dem_body body = dem_body_id_get(b->world, i);
         dem_body_state s;
         ok = dem_body_get(b->world, body, &s) == DEM_OK;
         s.velocity = dem_vec3_make((dem_real)gas_random(&state), (dem_real)gas_random(&state),
@@ -282,7 +282,7 @@ static double cluster_rebound(int n, double tilt) {
     int ok = dem_body_get(world, body, &state) == DEM_OK, k, touched = 0;
     state.velocity.z = (dem_real)-v;
     ok = ok && dem_body_set(world, body, &state) == DEM_OK &&
-         dem_plane_add(world, stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
+         dem_wall_plane_add(world, stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
     for (k = 0; k < 2000000 && ok; k++) {
         int touches;
         ok = dem_world_step(world, 1) == DEM_OK;
@@ -291,15 +291,16 @@ static double cluster_rebound(int n, double tilt) {
         touched |= touches;
     }
     ok = ok && touched && dem_body_get(world, body, &state) == DEM_OK;
-    if (!ok) study_fail("cluster: %s", dem_world_error(world));
+    if (!ok) study_fail("cluster: %s", dem_world_error_get(world));
     dem_world_destroy(world);
     return ok ? (double)state.velocity.z/v - expected/v : (double)NAN;
 }
 static int cluster_build(built *b, const choice *c, int seed) {
     const dem_box box = dem_box_make(0, 0, 0, DEM_R(BED_SIDE), DEM_R(BED_SIDE), DEM_R(0.4));
     b->stuff = scene_material(b->world, c, 0.5, 0.5, 0);
-    return b->stuff.id && dem_plane_add(b->world, b->stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id &&
-           dem_bodies_fill(b->world, b->stuff, cluster_shape(b->world, c->kind), box, CLUSTER_BODIES, (uint64_t)seed) ==
+    return b->stuff.id && dem_wall_plane_add(b->world, b->stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id &&
+           dem_bodies_fill(b->world, b->stuff, cluster_shape(b->world, c->kind), dem_region_make(box),
+                           CLUSTER_BODIES, (uint64_t)seed) ==
            CLUSTER_BODIES;
 }
 /* value: solid fraction of the bed into which they fall. */
@@ -363,13 +364,13 @@ static double skin_time(const bench_scene *start, const bench_choice *how, bench
     ok = ok && dem_world_step(world, quick ? 30 : 150) == DEM_OK;
     spent = cpu_clock() - begun;
     if (ok) bench_scene_take(end, world);
-    else study_fail("drum: %s", dem_world_error(world));
+    else study_fail("drum: %s", dem_world_error_get(world));
     dem_world_destroy(world);
     return spent;
 }
 static void fill_skin(points *p) {
     static const struct { dem_search which; const char *name; } searches[SEARCHES] = {
-        {DEM_SEARCH_GRID, "grid"}, {DEM_SEARCH_LEVELS, "levels"}, {DEM_SEARCH_LINKED_LIST, "linked list"}};
+        {DEM_SEARCH_GRID, "grid"}, {DEM_SEARCH_HIERARCHICAL, "levels"}, {DEM_SEARCH_LINKED_LIST, "linked list"}};
     static double times[SEARCHES*SKINS + 2][BENCH_MOST_LOOPS];
     bench_scene start = bench_scene_read(data_folder, "drum"), first = bench_scene_make("drum", start.count);
     bench_scene end = bench_scene_make("drum", start.count);

@@ -5,19 +5,19 @@
 
 enum { SCHEMES = 5, STEPS = 6, PHASES = 16, BOUNCES = 1000, ANGLES = 8 };
 static const struct { dem_integrator which; const char *name; } schemes[SCHEMES] = {
-    {DEM_VELOCITY_VERLET, "velocity Verlet"}, {DEM_LEAPFROG, "leapfrog"}, {DEM_POSITION_VERLET, "position Verlet"},
-    {DEM_SYMPLECTIC_EULER, "symplectic Euler"}, {DEM_FORWARD_EULER, "forward Euler"}};
+    {DEM_INTEGRATOR_VELOCITY_VERLET, "velocity Verlet"}, {DEM_INTEGRATOR_LEAPFROG, "leapfrog"}, {DEM_INTEGRATOR_POSITION_VERLET, "position Verlet"},
+    {DEM_INTEGRATOR_SYMPLECTIC_EULER, "symplectic Euler"}, {DEM_INTEGRATOR_FORWARD_EULER, "forward Euler"}};
 static const double steps_of_contact[STEPS] = {20, 30, 50, 100, 200, 400};
 
 /* ---- what a step costs on the bed of bench/scenes.h, over that of the library's own choice ---- */
 
 enum { PRICES = 10, PRICE_TURNS = 5 };
 static const struct { dem_integrator integrator; dem_tangent_law tangent; } priced[PRICES] = {
-    {DEM_VELOCITY_VERLET, DEM_TANGENT_AUTO}, {DEM_LEAPFROG, DEM_TANGENT_AUTO}, {DEM_POSITION_VERLET, DEM_TANGENT_AUTO},
-    {DEM_SYMPLECTIC_EULER, DEM_TANGENT_AUTO}, {DEM_FORWARD_EULER, DEM_TANGENT_AUTO},
-    {DEM_VELOCITY_VERLET, DEM_TANGENT_VISCOUS}, {DEM_VELOCITY_VERLET, DEM_TANGENT_STEP},
-    {DEM_VELOCITY_VERLET, DEM_TANGENT_SPRING}, {DEM_VELOCITY_VERLET, DEM_TANGENT_MINDLIN},
-    {DEM_VELOCITY_VERLET, DEM_TANGENT_MINDLIN_RESCALED}};
+    {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_AUTO}, {DEM_INTEGRATOR_LEAPFROG, DEM_TANGENT_AUTO}, {DEM_INTEGRATOR_POSITION_VERLET, DEM_TANGENT_AUTO},
+    {DEM_INTEGRATOR_SYMPLECTIC_EULER, DEM_TANGENT_AUTO}, {DEM_INTEGRATOR_FORWARD_EULER, DEM_TANGENT_AUTO},
+    {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_VISCOUS}, {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_STEP},
+    {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_SPRING}, {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_MINDLIN},
+    {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_MINDLIN_RESCALED}};
 static double price_ratio[PRICES];
 
 static void prices(void) { /* in turns; once                                                                */
@@ -73,7 +73,7 @@ static dem_world *bounce_world(dem_integrator which, double dt, double height, d
     desc.impact_speed = 1;
     desc.threads = 1;
     world = dem_world_create(&desc);
-    if (!world) { study_fail("bounce: %s", dem_create_error(&desc)); return 0; }
+    if (!world) { study_fail("bounce: %s", dem_world_create_error_get(&desc)); return 0; }
     m.density = (dem_real)BENCH_DENSITY;
     m.young = (dem_real)BENCH_YOUNG;
     m.poisson = (dem_real)BENCH_POISSON;
@@ -83,19 +83,19 @@ static dem_world *bounce_world(dem_integrator which, double dt, double height, d
     ok = dem_body_get(world, body, &state) == DEM_OK;
     state.velocity.z = -1;
     ok = ok && dem_body_set(world, body, &state) == DEM_OK &&
-         dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id &&
-         (gap <= 0 || dem_plane_add(world, glass, dem_vec3_make(0, 0, (dem_real)(2*BENCH_RADIUS + gap)),
+         dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id &&
+         (gap <= 0 || dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, (dem_real)(2*BENCH_RADIUS + gap)),
                                     dem_vec3_make(0, 0, -1)).id);
     if (ok) return world;
-    study_fail("bounce: %s", dem_world_error(world));
+    study_fail("bounce: %s", dem_world_error_get(world));
     dem_world_destroy(world);
     return 0;
 }
 static double contact_time(void) {
-    dem_world *world = bounce_world(DEM_VELOCITY_VERLET, 0, 1e-4, 0, 1);
+    dem_world *world = bounce_world(DEM_INTEGRATOR_VELOCITY_VERLET, 0, 1e-4, 0, 1);
     dem_advice advice;
     double t = 0;
-    if (world && dem_step_advice(world, &advice) == DEM_OK) t = (double)advice.contact_time;
+    if (world && dem_step_advice_get(world, &advice) == DEM_OK) t = (double)advice.contact_time;
     dem_world_destroy(world);
     return t;
 }
@@ -111,7 +111,7 @@ static double bounce_error(dem_integrator which, double tc, double steps, double
         double before, error;
         if (!world) return (double)NAN;
         before = kinetic(world);
-        if (dem_world_step(world, (int)(1.5*steps) + 10) != DEM_OK) study_fail("%s", dem_world_error(world));
+        if (dem_world_step(world, (int)(1.5*steps) + 10) != DEM_OK) study_fail("%s", dem_world_error_get(world));
         error = kinetic(world)/before;
         error = restitution < 1 ? sqrt(error)/restitution - 1 : error - 1;
         sum += error*error;
@@ -200,7 +200,7 @@ static int shot_fire(const shot *s, double degrees, double out[2]) {
     desc.slider = s->slider;
     desc.normal_law = s->linear ? DEM_NORMAL_LINEAR : DEM_NORMAL_HERTZ;
     world = dem_world_create(&desc);
-    if (!world) { study_fail("shot: %s", dem_create_error(&desc)); return 0; }
+    if (!world) { study_fail("shot: %s", dem_world_create_error_get(&desc)); return 0; }
     stuff.density = 4000;
     stuff.young = DEM_R(380e9);
     stuff.poisson = DEM_R(0.23);
@@ -210,13 +210,13 @@ static int shot_fire(const shot *s, double degrees, double out[2]) {
     ok = dem_pair_get(world, oxide, oxide, &pair) == DEM_OK;
     if (s->linear) { pair.stiffness = DEM_R(1.72e7); pair.stiffness_ratio = DEM_R(1.48/1.72); }
     ok = ok && dem_pair_set(world, oxide, oxide, &pair) == DEM_OK &&
-         dem_plane_add(world, oxide, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
+         dem_wall_plane_add(world, oxide, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
     body = dem_sphere_add(world, oxide, (dem_real)r, dem_vec3_make(0, 0, (dem_real)(r + s->phase*dt*v)));
     ok = ok && dem_body_get(world, body, &state) == DEM_OK;
     state.velocity = dem_vec3_make((dem_real)(speed*sin(angle)), 0, (dem_real)-v);
     ok = ok && dem_body_set(world, body, &state) == DEM_OK && dem_world_step(world, (int)(2*s->steps) + 6) == DEM_OK &&
          dem_body_get(world, body, &state) == DEM_OK;
-    if (!ok) study_fail("shot: %s", dem_world_error(world));
+    if (!ok) study_fail("shot: %s", dem_world_error_get(world));
     out[0] = (double)state.velocity.x/speed;
     out[1] = r*(double)state.spin.y/speed;
     dem_world_destroy(world);
@@ -249,18 +249,18 @@ static void shot_series(points *p, const char *name, shot s, double converged[AN
 }
 static void fill_oblique(points *p) {
     static const struct { const char *name; dem_tangent_law law; dem_slider slider; } laws[] = {
-        {"spring", DEM_TANGENT_SPRING, DEM_SLIDER_SHARED},
+        {"spring", DEM_TANGENT_SPRING, DEM_SLIDER_PARALLEL},
         {"spring; slider: spring", DEM_TANGENT_SPRING, DEM_SLIDER_SPRING},
-        {"spring; slider: rest", DEM_TANGENT_SPRING, DEM_SLIDER_REST},
-        {"Mindlin", DEM_TANGENT_MINDLIN, DEM_SLIDER_SHARED},
-        {"Mindlin; slider: rest", DEM_TANGENT_MINDLIN, DEM_SLIDER_REST},
-        {"Mindlin rescaled", DEM_TANGENT_MINDLIN_RESCALED, DEM_SLIDER_SHARED},
-        {"step, without memory", DEM_TANGENT_STEP, DEM_SLIDER_SHARED},
-        {"viscous, without memory", DEM_TANGENT_VISCOUS, DEM_SLIDER_SHARED}};
+        {"spring; slider: rest", DEM_TANGENT_SPRING, DEM_SLIDER_REMAINDER},
+        {"Mindlin", DEM_TANGENT_MINDLIN, DEM_SLIDER_PARALLEL},
+        {"Mindlin; slider: rest", DEM_TANGENT_MINDLIN, DEM_SLIDER_REMAINDER},
+        {"Mindlin rescaled", DEM_TANGENT_MINDLIN_RESCALED, DEM_SLIDER_PARALLEL},
+        {"step, without memory", DEM_TANGENT_STEP, DEM_SLIDER_PARALLEL},
+        {"viscous, without memory", DEM_TANGENT_VISCOUS, DEM_SLIDER_PARALLEL}};
     double converged[8][ANGLES][2], apart;
     int k, i;
     for (k = 0; k < 8; k++) {
-        shot s = {DEM_VELOCITY_VERLET, laws[k].law, laws[k].slider, 0, 0, 0};
+        shot s = {DEM_INTEGRATOR_VELOCITY_VERLET, laws[k].law, laws[k].slider, 0, 0, 0};
         shot_series(p, laws[k].name, s, converged[k]);
     }
     remark_add(p, "Errors are against each law's own converged answer. How far those are from that of the spring:");
@@ -276,7 +276,7 @@ static void fill_oblique_mfix(points *p) {
     double converged[ANGLES][2], apart = 0;
     int k, i;
     for (k = 0; k < SCHEMES; k++) {
-        shot s = {DEM_VELOCITY_VERLET, DEM_TANGENT_SPRING, DEM_SLIDER_SHARED, 1, 0, 0};
+        shot s = {DEM_INTEGRATOR_VELOCITY_VERLET, DEM_TANGENT_SPRING, DEM_SLIDER_PARALLEL, 1, 0, 0};
         double own[ANGLES][2];
         s.integrator = schemes[k].which;
         shot_series(p, schemes[k].name, s, own);
@@ -309,7 +309,7 @@ static double ball_one(dem_integrator which, double steps, double height) {
     desc.gravity.z = DEM_R(-9.81);
     desc.normal_law = DEM_NORMAL_LINEAR;
     world = dem_world_create(&desc);
-    if (!world) { study_fail("ball: %s", dem_create_error(&desc)); return (double)NAN; }
+    if (!world) { study_fail("ball: %s", dem_world_create_error_get(&desc)); return (double)NAN; }
     stuff.density = 2600;
     stuff.young = DEM_R(1e7);
     stuff.restitution = 1;
@@ -317,7 +317,7 @@ static double ball_one(dem_integrator which, double steps, double height) {
     ok = dem_pair_get(world, rubber, rubber, &pair) == DEM_OK;
     pair.stiffness = (dem_real)k;
     ok = ok && dem_pair_set(world, rubber, rubber, &pair) == DEM_OK &&
-         dem_plane_add(world, rubber, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
+         dem_wall_plane_add(world, rubber, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
     body = dem_sphere_add(world, rubber, DEM_R(0.1), dem_vec3_make(0, 0, (dem_real)(0.1 + height)));
     for (i = 0; i < (int)(10/dt) && ok; i++) {
         ok = dem_world_step(world, 1) == DEM_OK && dem_body_get(world, body, &state) == DEM_OK;
@@ -393,7 +393,7 @@ static double top_error(dem_rotation rotation, double dt, double *seconds) {
     begun = cpu_clock();
     ok = ok && dem_world_step(world, (int)(10/dt + 0.5)) == DEM_OK && dem_body_get(world, body, &s) == DEM_OK;
     *seconds = cpu_clock() - begun;
-    if (!ok) study_fail("top: %s", dem_world_error(world));
+    if (!ok) study_fail("top: %s", dem_world_error_get(world));
     const double q[4] = {(double)s.orientation.w, (double)s.orientation.x, (double)s.orientation.y,
                          (double)s.orientation.z};
     for (i = 0; i < 4; i++) { plus += pow(q[i] - exact[i], 2); minus += pow(q[i] + exact[i], 2); }

@@ -136,9 +136,9 @@ static int scene_build(built *b, dem_world_desc desc, const choice *c, build_fn 
     for (pass = 0; pass < 2 && ok; pass++) {
         memset(b, 0, sizeof *b);
         b->world = dem_world_create(&desc);
-        if (!b->world) { study_fail("%s", dem_create_error(&desc)); return 0; }
-        ok = build(b, c, seed) && dem_step_advice(b->world, &advice) == DEM_OK;
-        if (!ok) study_fail("a scene was refused: %s", dem_world_error(b->world));
+        if (!b->world) { study_fail("%s", dem_world_create_error_get(&desc)); return 0; }
+        ok = build(b, c, seed) && dem_step_advice_get(b->world, &advice) == DEM_OK;
+        if (!ok) study_fail("a scene was refused: %s", dem_world_error_get(b->world));
         if (!pass || !ok) dem_world_destroy(b->world);
         if (ok) desc.dt = advice.dt*(dem_real)(c->step > 0 ? c->step : 1);
     }
@@ -149,7 +149,7 @@ static int scene_run(built *b, double seconds, outcome *o) {
     const double begun = cpu_clock();
     o->ok = dem_world_run(b->world, seconds, 0, 0) == DEM_OK;
     o->seconds += cpu_clock() - begun;
-    if (!o->ok) (void)dem_world_error(b->world); /* too long a step breaks the run: a point without an error */
+    if (!o->ok) (void)dem_world_error_get(b->world); /* too long a step breaks the run: a point without an error */
     return o->ok;
 }
 static void scene_end(built *b, outcome *o) {
@@ -160,8 +160,8 @@ static void scene_end(built *b, outcome *o) {
 static int scene_fill(built *b, double radius, const dem_region *region, int count, int seed) {
     int k, done = 0;
     for (k = 2; k >= 0; k--)
-        done += dem_region_fill(b->world, region, b->stuff, (dem_shape){0}, (dem_real)(radius*(0.8 + 0.2*k)), count/3,
-                                (uint64_t)(100*seed + k));
+        done += dem_spheres_fill(b->world, b->stuff, (dem_real)(radius*(0.8 + 0.2*k)), *region, count/3,
+                                 (uint64_t)(100*seed + k));
     return done == 3*(count/3);
 }
 static dem_region scene_box(double x0, double y0, double x1, double y1) {
@@ -182,10 +182,10 @@ static dem_wall scene_line(built *b, const double *xy, int count, int closed) {
     profile.segment_count = closed ? count : count - 1;
     profile.vertices = v;
     profile.segments = segment;
-    return dem_profile_add(b->world, b->stuff, &profile, DEM_EDGE_RESOLVED);
+    return dem_wall_profile_add(b->world, b->stuff, &profile, DEM_EDGE_RESOLVED);
 }
 static dem_wall scene_side(built *b, double x, double y, double nx, double ny) {
-    return dem_plane_add(b->world, b->stuff, dem_vec3_make((dem_real)x, (dem_real)y, 0),
+    return dem_wall_plane_add(b->world, b->stuff, dem_vec3_make((dem_real)x, (dem_real)y, 0),
                          dem_vec3_make((dem_real)nx, (dem_real)ny, 0));
 }
 /* Below y grains are taken out. */
@@ -313,12 +313,11 @@ static int drum_build(built *b, const choice *c, int seed) {
     turning.speed = (dem_real)d->speed;
     region.cylinder = 'z';
     if (!b->stuff.id || !(b->wall = scene_line(b, xy, count, 1)).id ||
-        dem_wall_motion(b->world, b->wall, &turning) != DEM_OK) return 0;
+        dem_wall_motion_set(b->world, b->wall, &turning) != DEM_OK) return 0;
     if (!d->small) return scene_fill(b, d->radius, &region, d->large, seed);
-    done = dem_region_fill(b->world, &region, b->stuff, (dem_shape){0}, (dem_real)d->radius, d->large,
-                           (uint64_t)(100*seed));
-    done += dem_region_fill(b->world, &region, b->stuff, (dem_shape){0}, (dem_real)(d->radius/2), d->small,
-                            (uint64_t)(100*seed + 1));
+    done = dem_spheres_fill(b->world, b->stuff, (dem_real)d->radius, region, d->large, (uint64_t)(100*seed));
+    done += dem_spheres_fill(b->world, b->stuff, (dem_real)(d->radius/2), region, d->small,
+                             (uint64_t)(100*seed + 1));
     return done == d->small + d->large;
 }
 /* How near small grains are to the middle of the charge, over large ones: 1 mixed, 0 all at one place. */

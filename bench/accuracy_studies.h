@@ -21,7 +21,7 @@ static void fill_pile(points *p) {
         {"time step", "t_c/10", .step = 5}, {"without memory", "viscous", .tangent = DEM_TANGENT_VISCOUS},
         {"without memory", "step", .tangent = DEM_TANGENT_STEP},
         {"friction", "Mindlin", .tangent = DEM_TANGENT_MINDLIN},
-        {"friction", "slider: rest", .slider = DEM_SLIDER_REST},
+        {"friction", "slider: rest", .slider = DEM_SLIDER_REMAINDER},
         {"without rolling", "none", .rolling = DEM_ROLLING_NONE},
         {"rolling", "constant", .rolling = DEM_ROLLING_CONSTANT}, {"rolling", "step", .rolling = DEM_ROLLING_STEP}};
     fill_scene(p, scene_pile, c, CHOICES(c), 5, 0);
@@ -52,8 +52,8 @@ static void fill_mill(points *p) {
     static const choice c[] = {
         {.label = "t_c/100", .step = 0.5}, {"time step", "t_c/50", .step = 1},
         {"time step", "t_c/20", .step = 2.5}, {"time step", "t_c/10", .step = 5},
-        {"integrator", "symplectic", .integrator = DEM_SYMPLECTIC_EULER},
-        {"integrator", "forward", .integrator = DEM_FORWARD_EULER},
+        {"integrator", "symplectic", .integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER},
+        {"integrator", "forward", .integrator = DEM_INTEGRATOR_FORWARD_EULER},
         {"without memory", "viscous", .tangent = DEM_TANGENT_VISCOUS},
         {"without memory", "step", .tangent = DEM_TANGENT_STEP},
         {"friction", "Mindlin", .tangent = DEM_TANGENT_MINDLIN}, {"normal", "linear", .normal = DEM_NORMAL_LINEAR}};
@@ -81,20 +81,21 @@ static int sieve_build(built *b, const choice *c, int seed) {
     sieve.thickness = sieve.kind == DEM_SIEVE_SQUARE || sieve.kind == DEM_SIEVE_ROUND ? DEM_R(0.003) : 0;
     sieve.model = c->kind >= 6 ? 2 : c->kind >= 4 ? 1 : 0;
     sieve.clearance = (dem_real)clearance[c->kind];
-    b->wall = dem_sieve_add(b->world, b->stuff, &sieve);
+    b->wall = dem_wall_sieve_add(b->world, b->stuff, &sieve);
     shaking.kind = DEM_MOTION_OSCILLATING;
     shaking.velocity = dem_vec3_make(DEM_R(0.3), DEM_R(0.2), 1);
     shaking.amplitude = DEM_R(0.0015);
     shaking.frequency = 20;
-    if (!b->stuff.id || !b->wall.id || dem_wall_motion(b->world, b->wall, &shaking) != DEM_OK) return 0;
+    if (!b->stuff.id || !b->wall.id || dem_wall_motion_set(b->world, b->wall, &shaking) != DEM_OK) return 0;
     for (k = 0; k < 4; k++)
-        if (!dem_plane_add(b->world, b->stuff, dem_vec3_make(DEM_R(0.065*side[k][0]), DEM_R(0.065*side[k][1]), 0),
+        if (!dem_wall_plane_add(b->world, b->stuff, dem_vec3_make(DEM_R(0.065*side[k][0]), DEM_R(0.065*side[k][1]), 0),
                            dem_vec3_make((dem_real)-side[k][0], (dem_real)-side[k][1], 0)).id) return 0;
     memset(&outlet, 0, sizeof outlet);
     outlet.box = dem_box_make(-1, -1, -10, 1, 1, DEM_R(-0.1));
     b->outlet = dem_outlet_add(b->world, &outlet);
     for (k = 0; k < 3; k++)
-        done += dem_spheres_fill(b->world, b->stuff, (dem_real)radius[k], box, SIEVE_GRAINS/3, (uint64_t)(10*seed + k));
+        done += dem_spheres_fill(b->world, b->stuff, (dem_real)radius[k], dem_region_make(box), SIEVE_GRAINS/3,
+                                 (uint64_t)(10*seed + k));
     return b->outlet.id && done == SIEVE_GRAINS;
 }
 /* value: share of the balls that is through after a second. */

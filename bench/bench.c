@@ -61,7 +61,7 @@ static int repeats(void) { return repeat_asked ? repeat_asked : full ? 9 : 5; }
 static double loop(const char *what, dem_world *world, int steps) {
     const double begun = now();
     if (dem_world_step(world, steps) == DEM_OK) return now() - begun;
-    study_fail("%s: %s", what, dem_world_error(world));
+    study_fail("%s: %s", what, dem_world_error_get(world));
     return -1;
 }
 static dem_world *warm(const char *what, const bench_scene *s, const bench_choice *o) {
@@ -131,7 +131,7 @@ static void measure(const bench_scene *s) {
         bench_result_short(name, bench_median_ratio(ta, tb, turns), "");
         snprintf(name, sizeof name, "threads%d.rate_spread", threads_asked);
         bench_result_short(name, bench_spread(tb, turns), "%");
-        if (dem_world_hash(one) != dem_world_hash(other))
+        if (dem_world_hash_get(one) != dem_world_hash_get(other))
             study_fail("%s: 1 and %d threads do not agree to the last bit", s->name, threads_asked);
     }
     if (other) dem_world_destroy(other);
@@ -194,10 +194,10 @@ static const effect_row effect_rows[] = {
     {"field", "bed", "solidicity and velocity on a grid, every 100 steps", {.field = 1}, {0}, {.field = 2}},
     {"feed", "drum", "a bead fed every fourth step", {.feed = 50000}, {0}, {.feed = 1e-3}},
     {"outlet", "drum", "beads that fly through the middle are taken out", {.outlet = 1}, {0}, {.outlet = 2}},
-    {"integrator.leapfrog", "bed", "the path of velocity Verlet", {.integrator = DEM_LEAPFROG}, {0}, {0}},
-    {"integrator.position_verlet", "bed", "the path of velocity Verlet", {.integrator = DEM_POSITION_VERLET}, {0}, {0}},
-    {"integrator.symplectic_euler", "bed", "first order, energy bounded", {.integrator = DEM_SYMPLECTIC_EULER}, {0}, {0}},
-    {"integrator.forward_euler", "bed", "first order, gains energy", {.integrator = DEM_FORWARD_EULER}, {0}, {0}},
+    {"integrator.leapfrog", "bed", "the path of velocity Verlet", {.integrator = DEM_INTEGRATOR_LEAPFROG}, {0}, {0}},
+    {"integrator.position_verlet", "bed", "the path of velocity Verlet", {.integrator = DEM_INTEGRATOR_POSITION_VERLET}, {0}, {0}},
+    {"integrator.symplectic_euler", "bed", "first order, energy bounded", {.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER}, {0}, {0}},
+    {"integrator.forward_euler", "bed", "first order, gains energy", {.integrator = DEM_INTEGRATOR_FORWARD_EULER}, {0}, {0}},
     {"skin0", "bed", "nothing: a new list at every step", {.skin = -1}, {0}, {0}},
     {"search.linked_list", "drum", "nothing here: pays at wide size ranges [ALK07]", {.search = DEM_SEARCH_LINKED_LIST}, {0}, {0}},
     {"search.bins", "drum", "nothing here: bodies of very different extent [MAZ11]", {.search = DEM_SEARCH_BINS}, {0}, {0}},
@@ -288,7 +288,7 @@ static int walls_mesh(dem_world *world, dem_material glass, int n, double side) 
             int e;
             for (e = 0; e < 6; e++) mesh.triangles[k++] = corners[e];
         }
-    ok = dem_mesh_add(world, glass, &mesh).id != 0;
+    ok = dem_wall_mesh_add(world, glass, &mesh).id != 0;
     free(mesh.vertices);
     free(mesh.triangles);
     return ok;
@@ -311,9 +311,9 @@ static dem_world *walls_world(walls_kind kind, int n) {
     m.friction = (dem_real)BENCH_FRICTION;
     world = dem_world_create(&desc);
     glass = dem_material_add(world, &m);
-    if (kind == WALLS_PLANE) ok = dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id != 0;
+    if (kind == WALLS_PLANE) ok = dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id != 0;
     if (kind == WALLS_CYLINDER)
-        ok = dem_cylinder_add(world, glass, dem_vec3_make((dem_real)(side/2), 0, (dem_real)drum), dem_vec3_make(0, 1, 0),
+        ok = dem_wall_cylinder_add(world, glass, dem_vec3_make((dem_real)(side/2), 0, (dem_real)drum), dem_vec3_make(0, 1, 0),
                               (dem_real)drum, 1).id != 0;
     if (kind == WALLS_MESH) ok = walls_mesh(world, glass, n, side);
     for (i = 0; i < WALLS_BEADS && ok; i++) {
@@ -326,7 +326,7 @@ static dem_world *walls_world(walls_kind kind, int n) {
         ok = ok && dem_body_set(world, bead, &state) == DEM_OK;
     }
     if (ok && dem_world_step(world, WARM_UP) == DEM_OK) return world;
-    study_fail("walls: %s", dem_world_error(world));
+    study_fail("walls: %s", dem_world_error_get(world));
     dem_world_destroy(world);
     return 0;
 }
@@ -414,19 +414,19 @@ static dem_world *sizes_world(int ratio, int mixed, dem_search search) {
     desc.domain = dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)side);
     for (k = 0; k < 3 && ratio < 100; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
     world = dem_world_create(&desc);
-    if (!world) { study_fail("sizes: %s", dem_create_error(&desc)); return 0; }
+    if (!world) { study_fail("sizes: %s", dem_world_create_error_get(&desc)); return 0; }
     m.density = (dem_real)BENCH_DENSITY;
     m.young = (dem_real)BENCH_YOUNG;
     m.poisson = (dem_real)BENCH_POISSON;
     m.restitution = DEM_R(0.9);
     m.friction = (dem_real)BENCH_FRICTION;
     material = dem_material_add(world, &m);
-    k = dem_spheres_pack(world, material, (dem_real)r, (dem_real)(0.02*r), desc.domain, sizes_inside, &place,
-                         SIZES_SMALL);
+    k = dem_spheres_pack(world, material, (dem_real)r, (dem_real)(0.02*r),
+                         dem_region_inside_make(desc.domain, sizes_inside, &place), SIZES_SMALL);
     if (k < SIZES_SMALL) study_fail("sizes: only %d of %d small grains found a place", k, (int)SIZES_SMALL);
     for (i = 0; i < k; i++) {
         dem_body_state state;
-        const dem_body body = dem_bodies_id(world, i);
+        const dem_body body = dem_body_id_get(world, i);
         dem_body_get(world, body, &state);
         state.velocity = dem_vec3_make((dem_real)(0.2*demi_uniform(&seed) - 0.1), (dem_real)(0.2*demi_uniform(&seed) - 0.1),
                                        (dem_real)(0.2*demi_uniform(&seed) - 0.1));
@@ -457,12 +457,12 @@ static void sizes(void) {
             if (row[i].search == DEM_SEARCH_GRID && k > 1) continue;
             t[i][k] = loop(row[i].name, world[i], steps);
             ok = t[i][k] >= 0;
-            t[i][k] /= (double)dem_balance_get(world[i]).present*steps;
+            t[i][k] /= (double)dem_body_counts_get(world[i]).present*steps;
         }
     names_begin("sizes");
     for (i = 0; i < SIZES_WORLDS && ok; i++) {
         const dem_counters c = dem_counters_get(world[i]);
-        const double count = (double)dem_balance_get(world[i]).present;
+        const double count = (double)dem_body_counts_get(world[i]).present;
         char name[64];
         if (row[i].search == DEM_SEARCH_GRID && turns > 2) turns = 2;  /* the last row */
         snprintf(name, sizeof name, "%s.rate", row[i].name);
@@ -507,7 +507,7 @@ static int run(dem_world *world, const char *what, int steps) {
     for (done = 0; done < steps; done += 200) {
         if (loop(what, world, steps - done < 200 ? steps - done : 200) < 0) return 0;
         study_progress(what, (done + 200.0)/steps < 1 ? (done + 200.0)/steps : 1,
-                       (double)dem_balance_get(world).present*(done + 200.0));
+                       (double)dem_body_counts_get(world).present*(done + 200.0));
     }
     return 1;
 }

@@ -54,7 +54,7 @@ static dem_world *box_make(double dt, double friction, double restitution, dem_m
     desc.skin = (dem_real)skin_asked;
     desc.allow_large_dt = any;
     desc.threads = threads_asked;
-    desc.cluster_contacts = strcmp(sharing, "none") ? DEM_SHARING_ONE : DEM_SHARING_NONE;
+    desc.cluster_contacts = strcmp(sharing, "none") ? DEM_CLUSTER_CONTACTS_MERGED : DEM_CLUSTER_CONTACTS_SEPARATE;
     w = dem_world_create(&desc);
     m.density = (dem_real)BLOCKS_DENSITY;
     m.stiffness = (dem_real)BLOCKS_STIFFNESS;
@@ -62,10 +62,10 @@ static dem_world *box_make(double dt, double friction, double restitution, dem_m
     m.restitution = (dem_real)restitution;
     m.friction = (dem_real)friction;
     *stuff = dem_material_add(w, &m);
-    dem_plane_add(w, *stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_wall_plane_add(w, *stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
     for (k = 0; k < 4; k++) {
         const dem_real s = (dem_real)(k & 1 ? BLOCKS_SIDE : 0), n = (dem_real)(k & 1 ? -1 : 1);
-        dem_plane_add(w, *stuff, k < 2 ? dem_vec3_make(s, 0, 0) : dem_vec3_make(0, s, 0),
+        dem_wall_plane_add(w, *stuff, k < 2 ? dem_vec3_make(s, 0, 0) : dem_vec3_make(0, s, 0),
                       k < 2 ? dem_vec3_make(n, 0, 0) : dem_vec3_make(0, n, 0));
     }
     return w;
@@ -85,7 +85,7 @@ static void state_write(const char *name, const dem_world *w) {
     fprintf(file, "%s %d 7 columns: x y z in nm, orientation w x y z in 1e-9\n", name, BLOCKS);
     for (i = 0; i < BLOCKS; i++) {
         dem_body_state s;
-        dem_body_get(w, dem_bodies_id(w, i), &s);
+        dem_body_get(w, dem_body_id_get(w, i), &s);
         fprintf(file, "%.0f %.0f %.0f %.0f %.0f %.0f %.0f\n", 1e9*(double)s.position.x, 1e9*(double)s.position.y,
                 1e9*(double)s.position.z, 1e9*(double)s.orientation.w, 1e9*(double)s.orientation.x,
                 1e9*(double)s.orientation.y, 1e9*(double)s.orientation.z);
@@ -98,12 +98,13 @@ static void settle_scene(const char *name) {
     dem_material stuff;
     dem_world *w = box_make(dt_asked, 0.5, 0.3, &stuff);
     const dem_shape shape = block_shape(w, clumps);
-    const int n = dem_bodies_fill(w, stuff, shape, dem_box_make(0, 0, 0, side, side, (dem_real)0.6), BLOCKS, 3);
+    const int n = dem_bodies_fill(w, stuff, shape,
+                                  dem_region_make(dem_box_make(0, 0, 0, side, side, (dem_real)0.6)), BLOCKS, 3);
     dem_totals t;
     int i;
-    if (n != BLOCKS) { study_fail("%d of %d blocks found room: %s", n, BLOCKS, dem_world_error(w)); return; }
+    if (n != BLOCKS) { study_fail("%d of %d blocks found room: %s", n, BLOCKS, dem_world_error_get(w)); return; }
     for (i = 1; i <= 12; i++) {
-        if (dem_world_run(w, 0.05, 0, 0) != DEM_OK) { study_fail("%s", dem_world_error(w)); return; }
+        if (dem_world_run(w, 0.05, 0, 0) != DEM_OK) { study_fail("%s", dem_world_error_get(w)); return; }
         study_progress("blocks come to rest", i/12.0, BLOCKS*(double)dem_counters_get(w).steps);
     }
     state_write(name, w);
@@ -191,12 +192,12 @@ static void measure(const char *name) {
     w = box_make(dt_asked, 0.5, 0.3, &stuff);
     if (dem_bodies_add(w, stuff, block_shape(w, clumps), BLOCKS, x, q, 0, 0, 0) != DEM_OK ||
         (high = dem_totals_get(w).centre[2], dem_world_step(w, warm_asked)) != DEM_OK) {
-        study_fail("%s", dem_world_error(w));
+        study_fail("%s", dem_world_error_get(w));
         return;
     }
     for (k = 0; k < repeat_asked; k++) {
         const clock_t begun = clock();
-        if (dem_world_step(w, steps_asked) != DEM_OK) { study_fail("%s", dem_world_error(w)); return; }
+        if (dem_world_step(w, steps_asked) != DEM_OK) { study_fail("%s", dem_world_error_get(w)); return; }
         times[k] = (double)(clock() - begun)/CLOCKS_PER_SEC;
         c = dem_counters_get(w);
         t = dem_totals_get(w);

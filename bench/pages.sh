@@ -47,7 +47,7 @@ blocks() {
         / = / && $1 ~ /^(clumps|cubes)\./ { value = $0; sub(/.* = /, "", value); ratio[$1] = value }
         END { print "| bed | | us a step and body | contacts per body | its middle sank, um | its time over that of dem.h |"; print "|---|---|---|---|---|---|"
             about["clumps"] = "clumps of 8 spheres"; about["cubes"] = "cubes"
-            name["double"] = "dem.h"; name["unshared"] = "dem.h, `DEM_SHARING_NONE`"; name["liggghts"] = "LIGGGHTS, multispheres"
+            name["double"] = "dem.h"; name["unshared"] = "dem.h, `DEM_CLUSTER_CONTACTS_SEPARATE`"; name["liggghts"] = "LIGGGHTS, multispheres"
             name["yadeclumps"] = "YADE, clumps"; name["yadecubes"] = "YADE, polyhedra"
             n = split("clumps.double clumps.unshared clumps.liggghts clumps.yade cubes.double cubes.yade", row, " ")
             for (i = 1; i <= n; i++) { split(row[i], p, "."); s = p[1]; c = p[2]

@@ -74,7 +74,7 @@ static void lay(int i, double size) {
     dem_quat turn;
     if (cosine < -0.999) { lay(i, size); return; }
     turn = demi_quat_again(dem_quat_make((dem_real)(1 + cosine), demi_cross(m, n).x, demi_cross(m, n).y, demi_cross(m, n).z));
-    q->q = dem_quat_times(turn, q->q);
+    q->q = dem_quat_multiply(turn, q->q);
     pairs[i].gap = demi_add(demi_scale(n, (dem_real)(p->shape->hull[4*f + 3] + q->shape->hull[4*g + 3] - 1e-3*size)),
                             demi_scale(aside, (dem_real)(0.1*size)));
 }
@@ -103,7 +103,7 @@ static void measure_gaps(dem_world *w, int corners, const char *kind, double siz
     for (i = 0; i < PAIRS; i++) {
         const dem_quat now = pairs[i].q.q;
         pairs[i].normal = dem_vec3_make(0, 0, 0);
-        pairs[i].q.q = dem_quat_times(turn, now);
+        pairs[i].q.q = dem_quat_multiply(turn, now);
         gap_of(w, i, size, pairs[i].normal, &pairs[i].normal);
         pairs[i].q.q = now;
     }
@@ -141,7 +141,7 @@ static void measure(int corners) {
     m.restitution = (dem_real)0.5;
     stuff = dem_material_add(w, &m);
     shape = hull(w, corners);
-    if (dem_shape_get(w, shape, &info) != DEM_OK || info.corners != corners) { study_fail("%s", dem_world_error(w)); return; }
+    if (dem_shape_get(w, shape, &info) != DEM_OK || info.corners != corners) { study_fail("%s", dem_world_error_get(w)); return; }
     size = cbrt(3*(double)info.volume/(4*DEMI_PI));
     dem_body_add(w, stuff, shape, dem_vec3_make(0, 0, 0), dem_quat_make(1, 0, 0, 0));
     dem_body_add(w, stuff, shape, dem_vec3_make(9, 0, 0), dem_quat_make(1, 0, 0, 0));

@@ -71,7 +71,7 @@ static void *threads_start(const subject *s, int workers) {
     return threads_missing(workers, "thread") ? 0 : s->world(s, workers);
 }
 static dem_result threads_steps(void *run, int count) { return dem_world_step((dem_world *)run, count); }
-static const char *threads_error(const void *run) { return dem_world_error((const dem_world *)run); }
+static const char *threads_error(const void *run) { return dem_world_error_get((const dem_world *)run); }
 static const dem_world *threads_world(void *run) { return (const dem_world *)run; }
 static void threads_stop(void *run) { dem_world_destroy((dem_world *)run); }
 
@@ -107,7 +107,7 @@ static void *slabs_start(const subject *s, int workers) {
     d->world = s->world(s, workers);
     d->slabs = d->world ? dem_slabs_create(d->world, &desc) : 0;
     if (d->slabs) return d;
-    if (d->world) printf("SKIP: %s: %s\n", s->name, dem_world_error(d->world));
+    if (d->world) printf("SKIP: %s: %s\n", s->name, dem_world_error_get(d->world));
     slabs_stop(d);
     return 0;
 }
@@ -121,7 +121,7 @@ static dem_result slabs_steps(void *run, int count) {
     }
     return result;
 }
-static const char *slabs_error(const void *run) { return dem_slabs_error(((const dealt *)run)->slabs); }
+static const char *slabs_error(const void *run) { return dem_slabs_error_get(((const dealt *)run)->slabs); }
 static const dem_world *slabs_world(void *run) {
     dealt *d = (dealt *)run;
     return dem_slabs_collect(d->slabs, d->world) == DEM_OK ? d->world : 0;
@@ -195,7 +195,7 @@ static double runs_agree(const subject *s, run *serial, run *r, int early) {
     double apart = 0;
     if (!b) study_fail("%s: %s", s->name, r->how->error(r->self));
     else if (r->how->same_bits) {
-        if (!early && dem_world_hash(a) != dem_world_hash(b))
+        if (!early && dem_world_hash_get(a) != dem_world_hash_get(b))
             study_fail("%s: 1 and %d %ss do not agree to the last bit", s->name, r->workers, r->how->worker);
     } else if (early) {
         apart = grains_apart(a, b);
@@ -424,7 +424,7 @@ static int slices_settle(slices *s) {
     if (mill_begin(&s->one)) return 0;
     steps = (int)(twelfths*SAMPLES/12*s->one.sample_steps + 0.5);
     snprintf(path, sizeof path, "%s/mill_%.0f_of_12.state", study.folder, twelfths);
-    if (dem_checkpoint_read(s->one.world, path) != DEM_OK || dem_world_steps(s->one.world) != (uint64_t)steps) {
+    if (dem_checkpoint_read(s->one.world, path) != DEM_OK || dem_world_steps_get(s->one.world) != (uint64_t)steps) {
         for (done = 0; done < steps; done += 500) {
             study_progress("mill turns", (double)done/steps, (double)s->one.grains*done);
             if (refused(s->one.world, dem_world_step(s->one.world, steps - done < 500 ? steps - done : 500))) return 0;
@@ -475,7 +475,7 @@ static dem_world *slices_world(const subject *subject_of, int threads) {
     bad = world_create(&m, &desc) || materials_add(&m) || shell_add(&m) ||
           refused(m.world, dem_spheres_add(m.world, m.glass, subject_of->count, x, v, 0, (dem_real)m.o.radius));
     for (i = 0; i < subject_of->count && !bad; i++) {
-        const dem_body body = dem_bodies_id(m.world, i);
+        const dem_body body = dem_body_id_get(m.world, i);
         dem_body_state state;
         bad = refused(m.world, dem_body_get(m.world, body, &state));
         state.spin = dem_vec3_make((dem_real)s->spin[3*(i%n)], (dem_real)s->spin[3*(i%n) + 1], (dem_real)s->spin[3*(i%n) + 2]);
@@ -599,7 +599,7 @@ static dem_world *discs_world_at(const discs *d, int threads, double dt) {
         desc.domain = dem_box_make(0, -1, -1, (dem_real)d->width, 1000, 1);
     }
     world = dem_world_create(&desc);
-    if (!world) { study_fail("discs: %s", dem_create_error(&desc)); free(x); free(v); free(r); return 0; }
+    if (!world) { study_fail("discs: %s", dem_world_create_error_get(&desc)); free(x); free(v); free(r); return 0; }
     glass.density = 2500;
     glass.stiffness = DEM_R(DISC_STIFFNESS);
     glass.restitution = DEM_R(DISC_RESTITUTION);
@@ -607,9 +607,9 @@ static dem_world *discs_world_at(const discs *d, int threads, double dt) {
     ok = material.id && dem_pair_get(world, material, material, &pair) == DEM_OK;
     if (ok) pair.stiffness = DEM_R(DISC_STIFFNESS); /* of the pair, not two in series */
     ok = ok && dem_pair_set(world, material, material, &pair) == DEM_OK;
-    ok = ok && (d->tank > 0 ? dem_cylinder_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1),
+    ok = ok && (d->tank > 0 ? dem_wall_cylinder_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1),
                                                (dem_real)d->tank, 1).id
-                            : dem_plane_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0)).id);
+                            : dem_wall_plane_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0)).id);
     for (i = 0; i < d->count; i++) {
         x[3*i] = (dem_real)d->x[i]; x[3*i + 1] = (dem_real)d->y[i];
         v[3*i] = (dem_real)d->u[i]; v[3*i + 1] = (dem_real)d->v[i];
@@ -618,7 +618,7 @@ static dem_world *discs_world_at(const discs *d, int threads, double dt) {
     if (ok && dem_spheres_add(world, material, d->count, x, v, r, 0) == DEM_OK) ok = 2;
     free(x); free(v); free(r);
     if (ok == 2) return world;
-    study_fail("discs: %s", dem_world_error(world));
+    study_fail("discs: %s", dem_world_error_get(world));
     dem_world_destroy(world);
     return 0;
 }
@@ -632,13 +632,13 @@ static int discs_fall(discs *d, double seconds) {
     int i;
     if (!world) return 0;
     if (dem_world_step(world, (int)(seconds/(8*DISC_DT) + 0.5)) != DEM_OK) {
-        study_fail("discs: %s", dem_world_error(world));
+        study_fail("discs: %s", dem_world_error_get(world));
         dem_world_destroy(world);
         return 0;
     }
     b = dem_bodies_get(world);
     for (i = 0; i < b.count; i++) {
-        const size_t to = dem_bodies_id(world, i).slot - 1;
+        const size_t to = dem_body_id_get(world, i).slot - 1;
         d->x[to] = (double)b.positions[4*i];
         d->y[to] = (double)b.positions[4*i + 1];
         if (d->width > 0) d->x[to] -= d->width*floor(d->x[to]/d->width);
@@ -707,7 +707,7 @@ static int search_here(discs *d, int steps, int turns, double seconds[SEARCHES],
             t[k][r] = (study_clock() - begun)/(steps*DISC_DT);
         }
     for (k = 0; k < SEARCHES; k++) {
-        if (worlds[k] && !ok) study_fail("%s: %s", searches[k].name, dem_world_error(worlds[k]));
+        if (worlds[k] && !ok) study_fail("%s: %s", searches[k].name, dem_world_error_get(worlds[k]));
         if (ok) {
             const dem_counters c = dem_counters_get(worlds[k]);
             seconds[k] = bench_median(t[k], turns);
@@ -785,7 +785,7 @@ static void bed_rest(bench_scene *s) {
     choice.force = bed_drag;
     world = bench_world(s, &choice);
     if (!world) return;
-    if (dem_world_step(world, (int)(0.06/s->dt)) != DEM_OK) study_fail("bed: %s", dem_world_error(world));
+    if (dem_world_step(world, (int)(0.06/s->dt)) != DEM_OK) study_fail("bed: %s", dem_world_error_get(world));
     bench_scene_take(s, world);
     memset(s->v, 0, 3*(size_t)s->count*sizeof *s->v);
     memset(s->spin, 0, 3*(size_t)s->count*sizeof *s->spin);

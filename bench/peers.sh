@@ -10,7 +10,7 @@
 # for the machine is up to a quarter faster than a distribution's package: name yours with LAMMPS=, LIGGGHTS=, YADE=.
 # Of blocks what is compared is the time of the processor, on one core: others may run beside. YADE takes half a
 # second for a step of cubes: it does one step in 25, and is given 25 times its time. clumps.unshared is dem.h with
-# DEM_SHARING_NONE, the law of the others: each two spheres that touch are a contact by themselves.
+# DEM_CLUSTER_CONTACTS_SEPARATE, the law of the others: each two spheres that touch are a contact by themselves.
 #   STEPS=N    steps of bed, drum and blocks; gas takes five times as many        ROUNDS=N    turns
 #   CORES="1 2"   SCENES="bed drum gas clumps cubes"   PROCESSOR=0   LAMMPS=lmp   LIGGGHTS=liggghts   YADE=yade
 #   WARM=500   DT=5e-6    of blocks: steps before the timed ones; time step, s

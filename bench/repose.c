@@ -86,7 +86,7 @@ static void sheet(dem_world *world, dem_material material, int sides, double x, 
     motion.kind = DEM_MOTION_TRANSLATING;
     motion.velocity.z = DEM_R(0.15);
     motion.start = from;
-    dem_wall_motion(world, dem_mesh_add(world, material, &mesh), &motion);
+    dem_wall_motion_set(world, dem_wall_mesh_add(world, material, &mesh), &motion);
 }
 /* The straight line through the highest grains of a slope that falls along x: mean over strips of the highest grain's
    centre in each, from 20 to 80 % of its height; its angle and what the fit leaves open, degrees. */
@@ -163,24 +163,24 @@ static int heap(const char *kind, int seed, struct told *told) {
     gravel.friction = (dem_real)asked.friction;
     if (round) gravel.rolling_friction = (dem_real)asked.rolling;
     m = dem_material_add(world, &gravel);
-    dem_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_wall_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
     if (asked.tube) sheet(world, m, 24, radius, 0, tall + 0.1, from);
     else {
-        dem_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(1, 0, 0));
-        dem_cylinder_add(world, m, dem_vec3_make((dem_real)length, 0, 0), dem_vec3_make(0, 1, 0), (dem_real)edge, 0);
+        dem_wall_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(1, 0, 0));
+        dem_wall_cylinder_add(world, m, dem_vec3_make((dem_real)length, 0, 0), dem_vec3_make(0, 1, 0), (dem_real)edge, 0);
         sheet(world, m, 1, length + edge, width/2, tall + 0.1, from);
         over.box = dem_box_make((dem_real)(length + edge), -1, -1, 1, 1, 1);
         dem_outlet_add(world, &over);
     }
     if (!round) shape = cube(world, spheres, &fit);
-    placed = round ? dem_spheres_fill(world, m, same, box, count, (uint64_t)seed)
-                   : dem_bodies_fill(world, m, shape, box, count, (uint64_t)seed);
+    placed = round ? dem_spheres_fill(world, m, same, dem_region_make(box), count, (uint64_t)seed)
+                   : dem_bodies_fill(world, m, shape, dem_region_make(box), count, (uint64_t)seed);
     snprintf(path, sizeof path, "repose_%s.html", kind);
     film_desc.interval = 0.02;
     if (asked.film) replay = dem_replay_open(world, path, &film_desc);
     spent = (double)clock();
     if (placed < count || dem_world_run(world, end, 0, 0) != DEM_OK) {
-        printf("%s, seed %d, %g s: %s\n", kind, seed, dem_world_time(world), dem_world_error(world));
+        printf("%s, seed %d, %g s: %s\n", kind, seed, dem_world_time_get(world), dem_world_error_get(world));
         fflush(stdout);
         if (replay) dem_replay_close(replay);
         dem_world_destroy(world);
@@ -199,7 +199,7 @@ static int heap(const char *kind, int seed, struct told *told) {
     /* a cone: height 4 times that of its centre of mass, radius 3/2 of the mean distance; a wedge: both 3 times */
     told->cone = atan((asked.tube ? 2 : 1)*(high/inside - (double)same)/(out/inside))/degree;
     if (!asked.tube) told->slope = line(world, length, width, &told->error);
-    else if (dem_repose_heap(world, (dem_box){{0, 0, 0}, {0, 0, 0}}, &flank) == DEM_OK) {
+    else if (dem_repose_heap_get(world, (dem_box){{0, 0, 0}, {0, 0, 0}}, &flank) == DEM_OK) {
         told->slope = flank.angle/degree;
         told->error = flank.error/degree;
     }

@@ -52,7 +52,7 @@ static dem_material stuff_of(dem_world *world, const way *a, double rolling) {
 typedef struct told { double value, time; } told;
 static told refused(dem_world *world) {
     const told none = {-1, 0};
-    printf("  %s\n", dem_world_error(world));
+    printf("  %s\n", dem_world_error_get(world));
     dem_world_destroy(world);
     return none;
 }
@@ -81,28 +81,29 @@ static told hopper_run(const way *a, int seed) {
     desc.gravity.y = (dem_real)-g;
     world = dem_world_create(&desc);
     m = stuff_of(world, a, 0);
-    dem_profile_add(world, m, &hopper, DEM_EDGE_RESOLVED);
-    closed = dem_profile_add(world, m, &lid, DEM_EDGE_RESOLVED);
+    dem_wall_profile_add(world, m, &hopper, DEM_EDGE_RESOLVED);
+    closed = dem_wall_profile_add(world, m, &lid, DEM_EDGE_RESOLVED);
     for (i = 0; i < 2; i++)
-        dem_spheres_fill(world, m, (dem_real)((0.95 + 0.1*i)*R), dem_box_make((dem_real)-x, 0, 0, (dem_real)x,
-                         DEM_R(0.24), 0), COUNT/2, (uint64_t)(2*seed + i));
+        dem_spheres_fill(world, m, (dem_real)((0.95 + 0.1*i)*R),
+                         dem_region_make(dem_box_make((dem_real)-x, 0, 0, (dem_real)x, DEM_R(0.24), 0)), COUNT/2,
+                         (uint64_t)(2*seed + i));
     memset(&below, 0, sizeof below);
     below.box = dem_box_make((dem_real)-x, DEM_R(-0.2), -1, (dem_real)x, DEM_R(-0.02), 1);
     out = dem_outlet_add(world, &below);
     clock = study_clock();
     if (dem_world_run(world, 0.3, 0, 0) != DEM_OK) return refused(world);
     dem_wall_remove(world, closed);
-    begun = dem_world_time(world);
-    while (stage < 2 && dem_world_time(world) < begun + 5) {
+    begun = dem_world_time_get(world);
+    while (stage < 2 && dem_world_time_get(world) < begun + 5) {
         if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) return refused(world);
         dem_outlet_get(world, out, &gone);
         if ((int)gone.total >= COUNT*(stage ? 6 : 1)/10) {
-            mark[stage] = dem_world_time(world);
+            mark[stage] = dem_world_time_get(world);
             mass[stage++] = (double)gone.total_mass;
         }
     }
     o.value = (mass[1] - mass[0])/(mark[1] - mark[0]);
-    o.time = (study_clock() - clock)/dem_world_time(world);
+    o.time = (study_clock() - clock)/dem_world_time_get(world);
     dem_world_destroy(world);
     return o;
 }
@@ -136,12 +137,13 @@ static told drum_run(const way *a, int seed) {
     desc.gravity.y = (dem_real)-g;
     world = dem_world_create(&desc);
     m = stuff_of(world, a, 0.05);
-    drum = dem_profile_add(world, m, &shell, DEM_EDGE_RESOLVED);
+    drum = dem_wall_profile_add(world, m, &shell, DEM_EDGE_RESOLVED);
     turning.kind = DEM_MOTION_ROTATING;
     turning.axis = dem_vec3_make(0, 0, 1);
     turning.speed = (dem_real)speed;
-    dem_wall_motion(world, drum, &turning);
-    dem_spheres_fill(world, m, (dem_real)r, dem_box_make(DEM_R(-0.03), DEM_R(-0.024), 0, DEM_R(0.03), DEM_R(0.024), 0),
+    dem_wall_motion_set(world, drum, &turning);
+    dem_spheres_fill(world, m, (dem_real)r,
+                     dem_region_make(dem_box_make(DEM_R(-0.03), DEM_R(-0.024), 0, DEM_R(0.03), DEM_R(0.024), 0)),
                      160, (uint64_t)seed + 1);
     clock = study_clock();
     if (dem_world_run(world, 0.6, 0, 0) != DEM_OK) return refused(world);
@@ -149,7 +151,7 @@ static told drum_run(const way *a, int seed) {
     if (dem_world_run(world, 2, 0, 0) != DEM_OK) return refused(world);
     dem_wall_loads_get(world, drum, &loads);
     o.value = fabs(loads.torque_impulse/loads.time);
-    o.time = (study_clock() - clock)/dem_world_time(world);
+    o.time = (study_clock() - clock)/dem_world_time_get(world);
     dem_world_destroy(world);
     return o;
 }
@@ -177,19 +179,20 @@ static told pile_run(const way *a, int seed) {
     desc.gravity.y = (dem_real)-g;
     world = dem_world_create(&desc);
     m = stuff_of(world, a, 0.2);
-    dem_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
+    dem_wall_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
     up.kind = DEM_MOTION_TRANSLATING;
     up.velocity.y = DEM_R(0.2);
     up.start = 0.3;
-    dem_wall_motion(world, dem_profile_add(world, m, &walls, DEM_EDGE_RESOLVED), &up);
+    dem_wall_motion_set(world, dem_wall_profile_add(world, m, &walls, DEM_EDGE_RESOLVED), &up);
     for (i = 0; i < 2; i++)
-        dem_spheres_fill(world, m, (dem_real)((0.9 + 0.2*i)*R), dem_box_make((dem_real)-half, 0, 0, (dem_real)half,
-                         DEM_R(0.19), 0), COUNT/2, (uint64_t)(2*seed + i));
+        dem_spheres_fill(world, m, (dem_real)((0.9 + 0.2*i)*R),
+                         dem_region_make(dem_box_make((dem_real)-half, 0, 0, (dem_real)half, DEM_R(0.19), 0)),
+                         COUNT/2, (uint64_t)(2*seed + i));
     clock = study_clock();
-    if (dem_world_run(world, 1.6, 0, 0) != DEM_OK || dem_repose_heap(world, all, &slope) != DEM_OK)
+    if (dem_world_run(world, 1.6, 0, 0) != DEM_OK || dem_repose_heap_get(world, all, &slope) != DEM_OK)
         return refused(world);
     o.value = slope.angle*180/pi;
-    o.time = (study_clock() - clock)/dem_world_time(world);
+    o.time = (study_clock() - clock)/dem_world_time_get(world);
     dem_world_destroy(world);
     return o;
 }
@@ -209,20 +212,21 @@ static told silo_run(const way *a, int seed) {
     desc.gravity.z = (dem_real)-g;
     world = dem_world_create(&desc);
     m = stuff_of(world, a, 0);
-    floor = dem_plane_add(world, m, origin, up);
-    tube = dem_cylinder_add(world, m, origin, up, (dem_real)(D/2), 1);
+    floor = dem_wall_plane_add(world, m, origin, up);
+    tube = dem_wall_cylinder_add(world, m, origin, up, (dem_real)(D/2), 1);
     drawn.kind = DEM_MOTION_TRANSLATING;
     drawn.velocity.z = DEM_R(0.01);
-    dem_wall_motion(world, tube, &drawn);
-    dem_spheres_fill(world, m, DEM_R(2e-3), dem_box_make((dem_real)(-D/2), (dem_real)(-D/2), 0, (dem_real)(D/2),
-                     (dem_real)(D/2), DEM_R(0.096)), COUNT, (uint64_t)seed + 1);
+    dem_wall_motion_set(world, tube, &drawn);
+    dem_spheres_fill(world, m, DEM_R(2e-3),
+                     dem_region_make(dem_box_make((dem_real)(-D/2), (dem_real)(-D/2), 0, (dem_real)(D/2), (dem_real)(D/2), DEM_R(0.096))),
+                     COUNT, (uint64_t)seed + 1);
     clock = study_clock();
     if (dem_world_run(world, 0.4, 0, 0) != DEM_OK) return refused(world);
     dem_wall_loads_reset(world, floor);
     if (dem_world_run(world, 0.2, 0, 0) != DEM_OK) return refused(world);
     dem_wall_loads_get(world, floor, &below);
     o.value = -below.impulse[2]/below.time/(g*dem_totals_get(world).mass);
-    o.time = (study_clock() - clock)/dem_world_time(world);
+    o.time = (study_clock() - clock)/dem_world_time_get(world);
     dem_world_destroy(world);
     return o;
 }
@@ -295,8 +299,9 @@ static dem_world *heap_make(dem_world_desc desc, int count) {
     desc.dt = DEM_R(4e-4);
     world = dem_world_create(&desc);
     m = stuff_of(world, &stiff, 0);
-    dem_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-    dem_spheres_fill(world, m, DEM_R(6e-4), dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)(2.2*side)),
+    dem_wall_plane_add(world, m, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_spheres_fill(world, m, DEM_R(6e-4),
+                     dem_region_make(dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)(2.2*side))),
                      count, 1);
     return world;
 }
@@ -345,7 +350,7 @@ static void sweeps_part(void) {
     if (dem_world_run(world, 0.2, 0, 0) != DEM_OK) { refused(world); return; }
     count = dem_bodies_get(world).count;
     all = (dem_body_state *)malloc((size_t)count*sizeof *all);
-    for (i = 0; i < count; i++) dem_body_get(world, dem_bodies_id(world, i), &all[i]);
+    for (i = 0; i < count; i++) dem_body_get(world, dem_body_id_get(world, i), &all[i]);
     dem_world_destroy(world);
     for (cone = 0; cone < 2; cone++) {
         if (page) fprintf(page, "\n| left (rms, m/s) after | 30 | 100 | 300 | 1000 sweeps |\n|---|---|---|---|---|\n");
@@ -362,7 +367,7 @@ static void sweeps_part(void) {
                 desc.tolerance = DEM_R(1e-12);
                 world = heap_make(desc, 2000);
                 dem_world_dt_set(world, DEM_R(1e-3));
-                for (q = 0; q < count; q++) dem_body_set(world, dem_bodies_id(world, q), &all[q]);
+                for (q = 0; q < count; q++) dem_body_set(world, dem_body_id_get(world, q), &all[q]);
                 if (demi_dt_settle(world) != DEM_OK || demi_refresh(world) != DEM_OK) { refused(world); return; }
                 c = dem_counters_get(world);
                 snprintf(label, sizeof label, "sweeps.%s.%s.%d", cone ? "convex" : "coulomb", demi_solvers[k].name,

@@ -334,7 +334,7 @@ static double search_rare(dem_world *w, double *times, int turns, double rebuild
     double spent = 0, begun;
     if (!(rebuilds > 0)) {
         begun = study_clock();
-        if (demi_rebuild(w, "dem_world_step") != DEM_OK) study_fail("%s", dem_world_error(w));
+        if (demi_rebuild(w, "dem_world_step") != DEM_OK) study_fail("%s", dem_world_error_get(w));
         spent = (study_clock() - begun)/steps/w->bodies.count;
         rebuilds = 1.0/(steps*turns);
     }
@@ -371,7 +371,7 @@ static void scene_place(const char *folder, const char *name) {
             tell_scene(&s, &c, times, turns_asked, &t);
         }
     }
-    if (!ok) study_fail("%s: %s", name, w ? dem_world_error(w) : "no world");
+    if (!ok) study_fail("%s: %s", name, w ? dem_world_error_get(w) : "no world");
     dem_world_destroy(w);
     bench_scene_free(&s);
 }

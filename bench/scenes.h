@@ -81,7 +81,7 @@ typedef struct bench_choice {
     int reals;                  /* 1: grains carry a number                                     */
 } bench_choice;
 #define BENCH_CHOICE {0, 0, 0, DEM_NORMAL_HERTZ, DEM_TANGENT_AUTO, DEM_ROLLING_AUTO, \
-    DEM_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+    DEM_INTEGRATOR_VELOCITY_VERLET, DEM_SEARCH_AUTO, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
 STUDY_FN int bench_is(const bench_scene *s, const char *name) { return !strcmp(s->name, name); }
 
@@ -179,7 +179,7 @@ STUDY_FN void bench_scene_take(bench_scene *s, const dem_world *world) {
     const dem_bodies b = dem_bodies_get(world);
     int i, c;
     for (i = 0; i < b.count; i++) {
-        const size_t to = 3*(size_t)(dem_bodies_id(world, i).slot - 1);
+        const size_t to = 3*(size_t)(dem_body_id_get(world, i).slot - 1);
         for (c = 0; c < 3; c++) {
             s->x[to + (size_t)c] = (double)b.positions[4*i + c];
             s->v[to + (size_t)c] = (double)b.velocities[4*i + c];
@@ -263,13 +263,13 @@ STUDY_FN int bench_drum_walls(dem_world *world, dem_material glass, double degre
     mesh.triangles = (int32_t *)study_alloc(3*BENCH_DRUM_TRIANGLES, sizeof(int32_t));
     for (k = 0; k < 9*BENCH_DRUM_TRIANGLES; k++) mesh.vertices[k] = (dem_real)p[k];
     for (k = 0; k < 3*BENCH_DRUM_TRIANGLES; k++) mesh.triangles[k] = k;
-    drum = dem_mesh_add(world, glass, &mesh);
+    drum = dem_wall_mesh_add(world, glass, &mesh);
     turning.kind = DEM_MOTION_ROTATING;
     turning.axis = dem_vec3_make(0, 1, 0);
     turning.speed = (dem_real)BENCH_DRUM_SPEED;
-    ok = drum.id && dem_wall_motion(world, drum, &turning) == DEM_OK &&
-         dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0)).id &&
-         dem_plane_add(world, glass, dem_vec3_make(0, (dem_real)BENCH_DRUM_LENGTH, 0),
+    ok = drum.id && dem_wall_motion_set(world, drum, &turning) == DEM_OK &&
+         dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0)).id &&
+         dem_wall_plane_add(world, glass, dem_vec3_make(0, (dem_real)BENCH_DRUM_LENGTH, 0),
                        dem_vec3_make(0, -1, 0)).id;
     free(mesh.vertices); free(mesh.triangles); free(p);
     return ok;
@@ -368,7 +368,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
     }
     for (c = 0; c < 3 && o->open; c++) desc.boundary[c] = DEM_BOUNDARY_OPEN;
     world = dem_world_create(&desc);
-    if (!world) { study_fail("%s: %s", s->name, dem_create_error(&desc)); return 0; }
+    if (!world) { study_fail("%s: %s", s->name, dem_world_create_error_get(&desc)); return 0; }
 
     m.density = (dem_real)BENCH_DENSITY;
     m.restitution = (dem_real)(gas ? BENCH_GAS_RESTITUTION : BENCH_RESTITUTION);
@@ -386,7 +386,7 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
         ok = ok && dem_pair_set(world, material, material, &pair) == DEM_OK;
     }
     ok = ok && material.id;
-    if (bed) ok = ok && dem_plane_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
+    if (bed) ok = ok && dem_wall_plane_add(world, material, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id;
     if (drum) ok = ok && bench_drum_walls(world, material, degrees) && bench_drum_flow(world, material, o);
     ok = ok && bench_field(world, s, o);
 
@@ -409,14 +409,14 @@ STUDY_FN dem_world *bench_world_at(const bench_scene *s, const bench_choice *o, 
         dem_body_state state;
         dem_body body;
         if (!(fabs(spin[0]) + fabs(spin[1]) + fabs(spin[2]) > 0)) continue;
-        body = dem_bodies_id(world, i);
+        body = dem_body_id_get(world, i);
         result = dem_body_get(world, body, &state);
         state.spin = dem_vec3_make((dem_real)spin[0], (dem_real)spin[1], (dem_real)spin[2]);
         if (result == DEM_OK) result = dem_body_set(world, body, &state);
     }
     free(x); free(v); free(r);
     if (!ok || result != DEM_OK) {
-        study_fail("%s: %s", s->name, dem_world_error(world));
+        study_fail("%s: %s", s->name, dem_world_error_get(world));
         dem_world_destroy(world);
         return 0;
     }

@@ -45,7 +45,7 @@ static void pair_make(int i, double ratio) {
         a.x = 1; a.y = (dem_real)pow(ratio, demi_uniform(&seed)); a.z = (dem_real)ratio;
         demi_ellipsoid_matrix(q, a, k ? m->B : m->A);
         for (n = 0; n < 3; n++) { by[n] = 0; jog(&by[n]); }
-        p = demi_quat_again(dem_quat_times(q, demi_quat_exp(dem_vec3_make((dem_real)by[0], (dem_real)by[1],
+        p = demi_quat_again(dem_quat_multiply(q, demi_quat_exp(dem_vec3_make((dem_real)by[0], (dem_real)by[1],
                                                                       (dem_real)by[2]))));
         demi_ellipsoid_matrix(p, a, k ? was->B : was->A);
     }
@@ -185,7 +185,7 @@ static dem_world *top_world(int rotation, double dt, int count) {
         spin[3*i] = (dem_real)0.4; spin[3*i + 1] = (dem_real)0.9; spin[3*i + 2] = (dem_real)0.7;
     }
     if (dem_bodies_add(w, dem_material_add(w, &m), dem_shape_cluster_add(w, &c), count, at, 0, 0, spin, 0) != DEM_OK)
-        study_fail("%s", dem_world_error(w));
+        study_fail("%s", dem_world_error_get(w));
     free(at);
     free(spin);
     return w;
@@ -194,14 +194,14 @@ static dem_quat top_fly(int rotation, double dt, double time, double *energy) {
     dem_world *w = top_world(rotation, dt, 1);
     dem_body_state s;
     const double first = dem_totals_get(w).rotational;
-    if (dem_world_step(w, (int)(time/dt + 0.5)) != DEM_OK) study_fail("%s", dem_world_error(w));
-    dem_body_get(w, dem_bodies_id(w, 0), &s);
+    if (dem_world_step(w, (int)(time/dt + 0.5)) != DEM_OK) study_fail("%s", dem_world_error_get(w));
+    dem_body_get(w, dem_body_id_get(w, 0), &s);
     *energy = dem_totals_get(w).rotational/first - 1;
     dem_world_destroy(w);
     return s.orientation;
 }
 static double quat_apart(dem_quat a, dem_quat b) {
-    const dem_quat d = dem_quat_times(dem_quat_make(a.w, -a.x, -a.y, -a.z), b);
+    const dem_quat d = dem_quat_multiply(dem_quat_make(a.w, -a.x, -a.y, -a.z), b);
     return 2*sqrt((double)(d.x*d.x + d.y*d.y + d.z*d.z));
 }
 static double turn_price(int rotation) { /* ns of a step and body */
@@ -291,15 +291,17 @@ static void pile_part(void) {
         m.restitution = (dem_real)0.3;
         m.friction = (dem_real)0.5;
         stuff = dem_material_add(w, &m);
-        dem_plane_add(w, stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-        n = kind ? dem_bodies_fill(w, stuff, kind_shape(w, kind, volume), dem_box_make(0, 0, 0, (dem_real)0.025,
-                (dem_real)0.025, (dem_real)0.4), 1000, 3)
-            : dem_spheres_fill(w, stuff, (dem_real)1e-3, dem_box_make(0, 0, 0, (dem_real)0.025, (dem_real)0.025, (dem_real)0.4),
+        dem_wall_plane_add(w, stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+        n = kind ? dem_bodies_fill(w, stuff, kind_shape(w, kind, volume),
+                                   dem_region_make(dem_box_make(0, 0, 0, (dem_real)0.025, (dem_real)0.025, (dem_real)0.4)),
+                                   1000, 3)
+            : dem_spheres_fill(w, stuff, (dem_real)1e-3,
+                               dem_region_make(dem_box_make(0, 0, 0, (dem_real)0.025, (dem_real)0.025, (dem_real)0.4)),
                                1000, 3);
-        if (n != 1000 || dem_world_run(w, 0.35, 0, 0) != DEM_OK) study_fail("%s", dem_world_error(w));
+        if (n != 1000 || dem_world_run(w, 0.35, 0, 0) != DEM_OK) study_fail("%s", dem_world_error_get(w));
         for (k = 0; k < TURNS; k++) {
             const double begun = study_clock();
-            if (dem_world_step(w, 300) != DEM_OK) study_fail("%s", dem_world_error(w));
+            if (dem_world_step(w, 300) != DEM_OK) study_fail("%s", dem_world_error_get(w));
             times[k] = 1e9*(study_clock() - begun)/300/1000;
         }
         c = dem_counters_get(w);

@@ -32,9 +32,9 @@ int main(int argc, char **argv) {
     glass_desc.poisson = 0.23;
     glass_desc.restitution = restitution;
     dem_material glass = dem_material_add(world, &glass_desc);
-    dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
     dem_body ball = dem_sphere_add(world, glass, radius, dem_vec3_make(0, 0, radius + height));
-    dem_check_print(world, stdout);                                 /* says what looks wrong: here, nothing */
+    dem_world_check_print(world, stdout);                                 /* says what looks wrong: here, nothing */
 
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.01;                                      /* s, from frame to frame */
@@ -43,19 +43,19 @@ int main(int argc, char **argv) {
     /* the run: one step at a time, for we want the moment at which the ball turns round */
     double expected = height, last_speed = 0, last_impact = 0;
     int bounces = 0;
-    while (dem_world_time(world) < 3.2) {
-        if (dem_world_step(world, 1) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+    while (dem_world_time_get(world) < 3.2) {
+        if (dem_world_step(world, 1) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
         dem_body_state state;
         dem_body_get(world, ball, &state);
         double bottom = state.position.z - radius;                  /* m, of the ball above the floor */
-        dem_replay_value(film, "height (m)", bottom);               /* without a film nothing happens */
+        dem_replay_value_set(film, "height (m)", bottom);               /* without a film nothing happens */
         if (last_speed > 0 && state.velocity.z <= 0 && bounces < 5) {
             char name[32];
             expected *= restitution*restitution;
             snprintf(name, sizeof name, "height of rebound %d [m]", ++bounces);
             lesson_row(name, bottom, 0, expected, 1);
         }
-        if (state.velocity.z > 0.02) last_impact = dem_world_time(world);   /* m/s: it still leaves the floor */
+        if (state.velocity.z > 0.02) last_impact = dem_world_time_get(world);   /* m/s: it still leaves the floor */
         last_speed = state.velocity.z;
     }
     lesson_row("lies still at [s]", last_impact, 0, sqrt(2*height/g)*(1 + restitution)/(1 - restitution), 2);

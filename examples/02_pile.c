@@ -33,7 +33,7 @@ static dem_world *yard(double friction, double rolling, dem_material *wood) {
     wood_desc.friction = friction;
     wood_desc.rolling_friction = rolling;                           /* of the radius */
     *wood = dem_material_add(world, &wood_desc);
-    dem_plane_add(world, *wood, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
+    dem_wall_plane_add(world, *wood, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
     return world;
 }
 /* Degrees: the slope of what becomes of a column when the walls beside it are drawn up; < 0: the run broke. */
@@ -44,22 +44,23 @@ static double slope(double rolling, int seed, int replay, double *overlap) {
     dem_real corners[8] = {-half, 0, -half, 0.23, half, 0, half, 0.23};
     int32_t sides[4] = {0, 1, 2, 3};
     dem_profile walls = {4, 2, corners, sides};
-    dem_wall column = dem_profile_add(world, wood, &walls, DEM_EDGE_RESOLVED);
+    dem_wall column = dem_wall_profile_add(world, wood, &walls, DEM_EDGE_RESOLVED);
     for (int i = 0; i < 2; i++)                                     /* two sizes, lest they lie like bricks */
-        dem_spheres_fill(world, wood, i ? 0.8*R : R, dem_box_make(-half, 0, 0, half, 0.22, 0), 55,
+        dem_spheres_fill(world, wood, i ? 0.8*R : R,
+                         dem_region_make(dem_box_make(-half, 0, 0, half, 0.22, 0)), 55,
                          (uint64_t)(2*seed + i));
     dem_motion up = DEM_MOTION;
     up.kind = DEM_MOTION_TRANSLATING;
     up.velocity.y = 0.4;                                            /* m/s */
     up.start = 0.25;                                                /* s: when all have fallen */
-    dem_wall_motion(world, column, &up);
+    dem_wall_motion_set(world, column, &up);
 
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.02;                                      /* s */
     dem_replay *film = replay ? dem_replay_open(world, "02_pile.html", &film_desc) : 0;
     double degrees = 0;
     for (int i = 0; i < 60; i++) {
-        if (dem_world_run(world, 0.02, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return -1; }
+        if (dem_world_run(world, 0.02, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
         dem_bodies discs = dem_bodies_get(world);
         double height = 0, distance = 0;
         for (int k = 0; k < discs.count; k++) {
@@ -67,7 +68,7 @@ static double slope(double rolling, int seed, int replay, double *overlap) {
             distance += fabs(discs.positions[4*k]);
         }
         degrees = atan(height/distance)*180/3.14159265;
-        dem_replay_value(film, "slope (degrees)", degrees);
+        dem_replay_value_set(film, "slope (degrees)", degrees);
     }
     if (dem_counters_get(world).overlap_max > *overlap) *overlap = dem_counters_get(world).overlap_max;
     dem_replay_close(film);
@@ -83,7 +84,7 @@ static int stands(double friction) {
     dem_sphere_add(world, wood, R, dem_vec3_make(-R, R, 0));
     dem_sphere_add(world, wood, R, dem_vec3_make(R, R, 0));
     dem_body upper = dem_sphere_add(world, wood, R, dem_vec3_make(0, R + sqrt(3.0)*R, 0));
-    if (dem_world_run(world, 1, 0, 0) != DEM_OK) puts(dem_world_error(world));
+    if (dem_world_run(world, 1, 0, 0) != DEM_OK) puts(dem_world_error_get(world));
     dem_body_get(world, upper, &top);
     dem_world_destroy(world);
     return top.position.y > 2.5*R;

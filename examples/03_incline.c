@@ -35,9 +35,9 @@ int main(int argc, char **argv) {
         steel_desc.restitution = 0.3;
         steel_desc.friction = mu;
         dem_material steel = dem_material_add(world, &steel_desc);
-        dem_plane_add(world, steel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+        dem_wall_plane_add(world, steel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
         dem_body ball = dem_sphere_add(world, steel, radius, dem_vec3_make(0, 0, radius));
-        dem_check_print(world, stdout);
+        dem_world_check_print(world, stdout);
 
         /* let it settle onto the plane, then measure over half a second */
         dem_replay_desc film_desc = DEM_REPLAY_DESC;
@@ -47,13 +47,13 @@ int main(int argc, char **argv) {
         dem_body_get(world, ball, &from);
         double start = 0;
         for (int i = 0; i < 60; i++) {
-            if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+            if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
             dem_body_get(world, ball, &to);
-            dem_replay_value(film, "speed (m/s)", to.velocity.x);
-            dem_replay_value(film, "radius times spin (m/s)", radius*to.spin.y);
-            if (i == 9) { from = to; start = dem_world_time(world); }
+            dem_replay_value_set(film, "speed (m/s)", to.velocity.x);
+            dem_replay_value_set(film, "radius times spin (m/s)", radius*to.spin.y);
+            if (i == 9) { from = to; start = dem_world_time_get(world); }
         }
-        double time = dem_world_time(world) - start;
+        double time = dem_world_time_get(world) - start;
         int rolls = s/c <= 3.5*mu;
         char name[64];
         snprintf(name, sizeof name, "%d degrees, %s: a [m/s2]", angle, rolls ? "rolls" : "slides");

@@ -70,14 +70,14 @@ static double collide(springs *k, double speed, dem_replay_desc *film_desc) {
         state.velocity.x = (1 - 2*i)*speed/2;
         dem_body_set(world, pair[i], &state);
     }
-    dem_check_print(world, stdout);
+    dem_world_check_print(world, stdout);
     dem_replay *film = film_desc ? dem_replay_open(world, "04_own_law.html", film_desc) : 0;
     const double bit = (0.1*radius/speed + 5e-3)/100;               /* s */
     for (int i = 0; i < 100; i++) {
-        if (dem_world_run(world, bit, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return -1; }
+        if (dem_world_run(world, bit, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
         dem_body_get(world, pair[1], &state);
-        dem_replay_value(film, "force (N)", state.force.x);
-        dem_replay_value(film, "speed (m/s)", state.velocity.x);
+        dem_replay_value_set(film, "force (N)", state.force.x);
+        dem_replay_value_set(film, "speed (m/s)", state.velocity.x);
     }
     dem_replay_close(film);
     dem_world_destroy(world);

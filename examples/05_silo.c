@@ -43,25 +43,25 @@ static int fill(int count, int seed, int replay, column *out) {
     glass_desc.friction = mu;
     dem_material glass = dem_material_add(world, &glass_desc);
     dem_vec3 origin = dem_vec3_make(0, 0, 0), up = dem_vec3_make(0, 0, 1);
-    dem_wall floor = dem_plane_add(world, glass, origin, up), tube = dem_cylinder_add(world, glass, origin, up, D/2, 1);
+    dem_wall floor = dem_wall_plane_add(world, glass, origin, up), tube = dem_wall_cylinder_add(world, glass, origin, up, D/2, 1);
     dem_motion drawn = DEM_MOTION;
     drawn.kind = DEM_MOTION_TRANSLATING;
     drawn.velocity.z = 0.01;                                        /* m/s */
-    dem_wall_motion(world, tube, &drawn);
+    dem_wall_motion_set(world, tube, &drawn);
     dem_box box = dem_box_make(-D/2, -D/2, 0, D/2, D/2, 0.006 + count*3e-4);   /* of it, what is in the tube */
-    if (dem_spheres_fill(world, glass, R, box, count, (uint64_t)seed) < count) puts(dem_world_error(world));
+    if (dem_spheres_fill(world, glass, R, dem_region_make(box), count, (uint64_t)seed) < count) puts(dem_world_error_get(world));
 
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.005;                                     /* s */
     dem_replay *film = replay ? dem_replay_open(world, "05_silo.html", &film_desc) : 0;
     dem_wall_loads below, around;
     for (int i = 0; i < 70; i++) {                                  /* means from .25 s on: all is at rest */
-        if (i == 50) dem_overlap_reset(world), dem_wall_loads_reset(world, floor), dem_wall_loads_reset(world, tube);
-        if (dem_world_run(world, 0.005, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+        if (i == 50) dem_overlap_max_reset(world), dem_wall_loads_reset(world, floor), dem_wall_loads_reset(world, tube);
+        if (dem_world_run(world, 0.005, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
         dem_wall_loads_get(world, floor, &below);
         dem_wall_loads_get(world, tube, &around);
-        dem_replay_value(film, "floor bears (N)", -below.force.z);
-        dem_replay_value(film, "wall bears (N)", -around.force.z);
+        dem_replay_value_set(film, "floor bears (N)", -below.force.z);
+        dem_replay_value_set(film, "wall bears (N)", -around.force.z);
     }
     dem_totals totals = dem_totals_get(world);
     out->height = 2*totals.centre[2];                               /* twice that of the centre of mass */

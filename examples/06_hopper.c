@@ -42,32 +42,33 @@ static int run_out(double hole, int seed, int replay, outflow *f) {
     dem_real x = half, b = hole/2, corners[] = {-x, 0.25, -x, 0, -b, 0, b, 0, x, 0, x, 0.25};
     int32_t sides[] = {0, 1, 1, 2, 3, 4, 4, 5}, across[] = {2, 3};
     dem_profile hopper = {6, 4, corners, sides}, lid = {6, 1, corners, across};
-    dem_profile_add(world, bead, &hopper, DEM_EDGE_RESOLVED);
-    dem_wall closed = dem_profile_add(world, bead, &lid, DEM_EDGE_RESOLVED);
+    dem_wall_profile_add(world, bead, &hopper, DEM_EDGE_RESOLVED);
+    dem_wall closed = dem_wall_profile_add(world, bead, &lid, DEM_EDGE_RESOLVED);
     for (int i = 0; i < 2; i++)                                     /* two sizes, lest they lie in rows */
-        dem_spheres_fill(world, bead, (0.95 + 0.1*i)*R, dem_box_make(-x, 0, 0, x, 0.24, 0), COUNT/2,
+        dem_spheres_fill(world, bead, (0.95 + 0.1*i)*R,
+                         dem_region_make(dem_box_make(-x, 0, 0, x, 0.24, 0)), COUNT/2,
                          (uint64_t)(2*seed + i));
     dem_outlet_desc below;
     memset(&below, 0, sizeof below);
     below.box = dem_box_make(-x, -0.2, -1, x, -0.02, 1);
     dem_outlet out = dem_outlet_add(world, &below);
 
-    if (dem_world_run(world, 0.3, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+    if (dem_world_run(world, 0.3, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
     dem_totals full = dem_totals_get(world);
     f->bulk = full.mass/(4*half*full.centre[1])/thickness;          /* as wide as the hopper, twice its centre high */
     dem_wall_remove(world, closed);
-    dem_overlap_reset(world);
+    dem_overlap_max_reset(world);
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.01;                                      /* s */
     dem_replay *film = replay ? dem_replay_open(world, "06_hopper.html", &film_desc) : 0;
     dem_outlet_state gone;
-    double begun = dem_world_time(world), mark[4] = {0, 0, 0, 0}, mass[4] = {0, 0, 0, 0};
-    for (int stage = 0; stage < 4 && dem_world_time(world) < begun + 5;) {
-        if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+    double begun = dem_world_time_get(world), mark[4] = {0, 0, 0, 0}, mass[4] = {0, 0, 0, 0};
+    for (int stage = 0; stage < 4 && dem_world_time_get(world) < begun + 5;) {
+        if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
         dem_outlet_get(world, out, &gone);
-        dem_replay_value(film, "run out (kg)", gone.total_mass);
+        dem_replay_value_set(film, "run out (kg)", gone.total_mass);
         if ((int)gone.total >= COUNT*(1 + 2*stage)/10) {            /* 10, 30, 50, 70 % of the discs are out */
-            mark[stage] = dem_world_time(world);
+            mark[stage] = dem_world_time_get(world);
             mass[stage++] = gone.total_mass;
         }
     }

@@ -45,21 +45,22 @@ static int shake(double gamma, double frequency, int periods, int seed, int repl
     dem_real corners[] = {-half, 0.16, -half, 0, half, 0, half, 0.16};
     int32_t sides[] = {0, 1, 1, 2, 2, 3};
     dem_profile shape = {4, 3, corners, sides};
-    dem_wall box = dem_profile_add(world, bead, &shape, DEM_EDGE_RESOLVED);
+    dem_wall box = dem_wall_profile_add(world, bead, &shape, DEM_EDGE_RESOLVED);
     dem_body nut = dem_sphere_add(world, bead, big, dem_vec3_make(0, 1.01*big, 0));
     for (int i = 0; i < 2; i++)
-        dem_spheres_fill(world, bead, (0.95 + 0.15*i)*r, dem_box_make(-half, 0, 0, half, 0.11, 0), 65,
+        dem_spheres_fill(world, bead, (0.95 + 0.15*i)*r,
+                         dem_region_make(dem_box_make(-half, 0, 0, half, 0.11, 0)), 65,
                          (uint64_t)(2*seed + i));
-    if (dem_world_run(world, 0.25, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+    if (dem_world_run(world, 0.25, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
 
     dem_motion up_and_down = DEM_MOTION;                            /* a sine of the time since it was set */
     up_and_down.kind = DEM_MOTION_OSCILLATING;
     up_and_down.velocity.y = 1;                                     /* only its direction counts */
     up_and_down.frequency = frequency;                              /* Hz */
     up_and_down.amplitude = gamma*g/pow(2*pi*frequency, 2);         /* m */
-    if (dem_wall_motion(world, box, &up_and_down) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+    if (dem_wall_motion_set(world, box, &up_and_down) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
     dem_wall_loads_reset(world, box);
-    dem_overlap_reset(world);
+    dem_overlap_max_reset(world);
 
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.2/frequency;                             /* s */
@@ -69,9 +70,9 @@ static int shake(double gamma, double frequency, int periods, int seed, int repl
     printf("Gamma = %.1f, seed %d, small diameters that it has risen:", gamma, seed);
     for (int i = 0; i < periods; i++) {
         for (int k = 0; k < 5; k++) {
-            if (dem_world_run(world, 0.2/frequency, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+            if (dem_world_run(world, 0.2/frequency, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
             dem_body_get(world, nut, &now);
-            dem_replay_value(film, "height of the big disc (mm)", 1e3*now.position.y);
+            dem_replay_value_set(film, "height of the big disc (mm)", 1e3*now.position.y);
         }
         out->rise = (now.position.y - start.position.y)/(2*r);
         if (i%6 == 5) printf(" %.1f", out->rise);

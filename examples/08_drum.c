@@ -54,13 +54,14 @@ static int turn(double froude, int replay, turned *out) {
         segments[2*i + 1] = i%2 ? i : (i + 2)%(2*SIDES);
     }
     dem_profile shell = {2*SIDES, 2*SIDES, corners, segments};
-    dem_wall drum = dem_profile_add(world, bead, &shell, DEM_EDGE_RESOLVED);
+    dem_wall drum = dem_wall_profile_add(world, bead, &shell, DEM_EDGE_RESOLVED);
     dem_motion turning = DEM_MOTION;
     turning.kind = DEM_MOTION_ROTATING;
     turning.axis = dem_vec3_make(0, 0, 1);
     turning.speed = speed;
-    dem_wall_motion(world, drum, &turning);
-    dem_spheres_fill(world, bead, r, dem_box_make(-0.03, -0.024, 0, 0.03, 0.024, 0), 160, 1);
+    dem_wall_motion_set(world, drum, &turning);
+    dem_spheres_fill(world, bead, r,
+                     dem_region_make(dem_box_make(-0.03, -0.024, 0, 0.03, 0.024, 0)), 160, 1);
 
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.02;                                      /* s */
@@ -68,12 +69,12 @@ static int turn(double froude, int replay, turned *out) {
     dem_wall_loads loads;
     double centre[2] = {0, 0}, above = 0, weight = 0;
     for (int i = 0; i < FRAMES; i++) {
-        if (i == LATE) { dem_wall_loads_reset(world, drum); dem_overlap_reset(world); }
-        if (dem_world_run(world, 0.02, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+        if (i == LATE) { dem_wall_loads_reset(world, drum); dem_overlap_max_reset(world); }
+        if (dem_world_run(world, 0.02, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
         dem_totals t = dem_totals_get(world);
         dem_wall_loads_get(world, drum, &loads);
-        dem_replay_value(film, "torque that turns it (mN m)", -1e3*loads.torque_axial);
-        dem_replay_value(film, "M g x (mN m)", 1e3*t.mass*g*t.centre[0]);
+        dem_replay_value_set(film, "torque that turns it (mN m)", -1e3*loads.torque_axial);
+        dem_replay_value_set(film, "M g x (mN m)", 1e3*t.mass*g*t.centre[0]);
         weight = t.mass*g;
         dem_bodies grains = dem_bodies_get(world);
         if (i < LATE) continue;

@@ -59,19 +59,19 @@ int main(int argc, char **argv) {
         dem_material rubber = dem_material_add(world, &rubber_desc);
         if (i == 0) {
             dem_mesh mesh;
-            if (dem_mesh_read(world, "belt.stl", &mesh, &health) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+            if (dem_mesh_read(world, "belt.stl", &mesh, &health) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
             printf("belt.stl: %d triangles, %d open edges, %d slivers. %s\n", mesh.triangle_count, health.open_edges,
                    health.slivers, health.hint);
             dem_mesh_place(world, &mesh, 1e-3, dem_quat_make(1, 0, 0, 0), dem_vec3_make(0, 0.003, 0));  /* mm to m */
-            belt[i] = dem_mesh_add(world, rubber, &mesh);           /* the world keeps a copy */
+            belt[i] = dem_wall_mesh_add(world, rubber, &mesh);           /* the world keeps a copy */
             dem_mesh_free(world, &mesh);
-        } else belt[i] = dem_plane_add(world, rubber, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+        } else belt[i] = dem_wall_plane_add(world, rubber, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
         dem_motion motion = DEM_MOTION;
         motion.kind = DEM_MOTION_TRANSLATING;
         motion.velocity.x = V;
-        dem_wall_motion(world, belt[i], &motion);
+        dem_wall_motion_set(world, belt[i], &motion);
         ball[i] = dem_sphere_add(world, rubber, radius, dem_vec3_make(0, 0, radius));
-        dem_check_print(world, stdout);
+        dem_world_check_print(world, stdout);
     }
 
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
@@ -82,14 +82,14 @@ int main(int argc, char **argv) {
     puts("time [s]  speed [m/s]  expected");
     for (int i = 1; i <= 60; i++) {
         for (int k = 0; k < 2; k++) {
-            if (dem_world_run(worlds[k], 0.0025, 0, 0) != DEM_OK) { puts(dem_world_error(worlds[k])); return 1; }
+            if (dem_world_run(worlds[k], 0.0025, 0, 0) != DEM_OK) { puts(dem_world_error_get(worlds[k])); return 1; }
             dem_body_get(worlds[k], ball[k], &state[k]);
         }
-        const double t = dem_world_time(worlds[0]), sliding = mu*g*t, rolling = 2*V/7;
+        const double t = dem_world_time_get(worlds[0]), sliding = mu*g*t, rolling = 2*V/7;
         const dem_vec3 a = state[0].position, b = state[1].position;
         apart = fmax(apart, hypot(a.x - b.x, a.z - b.z));
-        dem_replay_value(film, "speed (m/s)", state[0].velocity.x);
-        dem_replay_value(film, "-R w (m/s)", -radius*state[0].spin.y);
+        dem_replay_value_set(film, "speed (m/s)", state[0].velocity.x);
+        dem_replay_value_set(film, "-R w (m/s)", -radius*state[0].spin.y);
         if (i%10 == 0) printf("%8.3f  %11.4f  %8.4f\n", t, state[0].velocity.x, sliding < rolling ? sliding : rolling);
     }
     dem_wall_loads loads;

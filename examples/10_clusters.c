@@ -47,8 +47,8 @@ static double heap(int tetrahedra, int seed, int replay, double *inertia, double
     gravel_desc.rolling_friction = tetrahedra ? 0 : 0.05;           /* or balls would roll away */
     dem_material gravel = dem_material_add(world, &gravel_desc);
     const dem_vec3 origin = dem_vec3_make(0, 0, 0), up = dem_vec3_make(0, 0, 1);
-    dem_plane_add(world, gravel, origin, up);
-    dem_wall tube = dem_cylinder_add(world, gravel, origin, up, 0.012, 1);
+    dem_wall_plane_add(world, gravel, origin, up);
+    dem_wall tube = dem_wall_cylinder_add(world, gravel, origin, up, 0.012, 1);
 
     dem_shape shape = {0};                                          /* 0: a ball */
     dem_shape_info info;
@@ -61,8 +61,8 @@ static double heap(int tetrahedra, int seed, int replay, double *inertia, double
     memset(&inside, 0, sizeof inside);
     inside.box = dem_box_make(-0.012, -0.012, 0, 0.012, 0.012, 0.045);
     inside.cylinder = 'z';
-    if (dem_region_fill(world, &inside, gravel, shape, cbrt(4.0)*r, COUNT, (uint64_t)seed) < COUNT) {
-        puts(dem_world_error(world));
+    if (dem_bodies_fill(world, gravel, shape, inside, COUNT, (uint64_t)seed) < COUNT) {
+        puts(dem_world_error_get(world));
         return -1;
     }
 
@@ -72,7 +72,7 @@ static double heap(int tetrahedra, int seed, int replay, double *inertia, double
     double slope = 0;
     for (int i = 0; i < 55; i++) {
         if (i == 20) dem_wall_remove(world, tube);
-        if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return -1; }
+        if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
         const dem_bodies all = dem_bodies_get(world);
         double high = 0, far = 0;
         for (int k = 0; k < all.count; k++) {
@@ -80,7 +80,7 @@ static double heap(int tetrahedra, int seed, int replay, double *inertia, double
             far += hypot(all.positions[4*k], all.positions[4*k + 1]);
         }
         slope = atan(4*high/(2*far))*180/pi;
-        dem_replay_value(film, "slope (degrees)", slope);
+        dem_replay_value_set(film, "slope (degrees)", slope);
     }
     *overlap = fmax(*overlap, dem_counters_get(world).overlap_max);
     dem_replay_close(film);

@@ -6,7 +6,7 @@
               reduced mass, modulus and radius: it goes with E^(-2/5), so that 10 times softer buys steps 2.5 times as
               long. The power is told by the torque's theorem too, w M g x of the centre of mass (lesson 8): a number to
               judge the runs by.
-   dem_advise lets copies of a scene run on with other steps, other stiffnesses and other laws, each three times from
+   dem_trials_run lets copies of a scene run on with other steps, other stiffnesses and other laws, each three times from
    places that hardly differ, so that a change is told from chance. The budget is wall time: on a busy machine trials
    simulate less.
    Build:     cc -O2 11_advise.c ../dem.c -lm
@@ -46,14 +46,15 @@ int main(int argc, char **argv) {
     glass_desc.friction = 0.4;
     dem_material glass = dem_material_add(world, &glass_desc);
 
-    dem_wall drum = dem_cylinder_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1), 0.05, 1);
+    dem_wall drum = dem_wall_cylinder_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1), 0.05, 1);
     dem_motion turning = DEM_MOTION;
     turning.kind = DEM_MOTION_ROTATING;
     turning.axis = dem_vec3_make(0, 0, 1);
     turning.speed = speed;
-    dem_wall_motion(world, drum, &turning);
-    dem_spheres_fill(world, glass, 2e-3, dem_box_make(-0.035, -0.035, 0, 0.035, 0.015, 0), 150, 1);
-    dem_check_print(world, stdout);
+    dem_wall_motion_set(world, drum, &turning);
+    dem_spheres_fill(world, glass, 2e-3,
+                     dem_region_make(dem_box_make(-0.035, -0.035, 0, 0.035, 0.015, 0)), 150, 1);
+    dem_world_check_print(world, stdout);
 
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.02;                                      /* s */
@@ -61,15 +62,15 @@ int main(int argc, char **argv) {
     double lever = 0;                                               /* m, of the weight about the axis: a mean */
     for (int i = 0; i < 50; i++) {
         if (i == 25) dem_wall_loads_reset(world, drum);
-        if (dem_world_run(world, 0.02, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return 1; }
-        dem_replay_value(film, "w M g x (mW)", 1e3*speed*g*dem_totals_get(world).mass*dem_totals_get(world).centre[0]);
+        if (dem_world_run(world, 0.02, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
+        dem_replay_value_set(film, "w M g x (mW)", 1e3*speed*g*dem_totals_get(world).mass*dem_totals_get(world).centre[0]);
         if (i >= 25) lever += dem_totals_get(world).centre[0]/25;
     }
     dem_replay_close(film);
     const double direct = power(world, &drum), by_torque = speed*g*dem_totals_get(world).mass*lever;
 
     dem_wall_loads_reset(world, drum);
-    dem_advise_desc how = DEM_ADVISE_DESC;
+    dem_trials_desc how = DEM_TRIALS_DESC;
     how.duration = 1;                                               /* s of simulated time, each trial */
     how.budget = 10;                                                /* s of wall time, all of them */
     how.tolerance = 0.1;                                            /* share of the power by which it may be off */
@@ -80,9 +81,9 @@ int main(int argc, char **argv) {
     how.observables[0].user = &drum;
     how.progress = dem_progress_print;
     how.user = stderr;
-    const uint64_t before = dem_world_hash(world);
+    const uint64_t before = dem_world_hash_get(world);
     dem_trials trials;
-    if (dem_advise(world, &how, &trials) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+    if (dem_trials_run(world, &how, &trials) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
     dem_trials_print(&trials, stdout);
 
     double as_it_is = 0, softer = 0;                                /* s, the steps of two trials */
@@ -93,7 +94,7 @@ int main(int argc, char **argv) {
     }
     lesson_row("10 times softer: steps longer by", softer/as_it_is, 0, pow(10, 0.4), 10);
     lesson_row("power [mW] beside w M g x", 1e3*direct, 0, 1e3*by_torque, 5);
-    lesson_range("bits of the scene that the trials changed", dem_world_hash(world) != before, 0, 0, 0);
+    lesson_range("bits of the scene that the trials changed", dem_world_hash_get(world) != before, 0, 0, 0);
     lesson_range("letters of advice", (double)strlen(trials.advice), 0, 20, 400);
     dem_world_destroy(world);
     return lesson_end();

@@ -53,22 +53,23 @@ static dem_world *bed(int things, int replay) {
     glass_desc.friction = things >= FRICTION ? 0.4 : 0;
     glass_desc.rolling_friction = things >= ROLLING ? 0.05 : 0;
     dem_material glass = dem_material_add(world, &glass_desc);
-    dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-    dem_spheres_fill(world, glass, things >= SIZES ? 0.8e-3 : 1e-3, desc.domain, BEADS/2, 1);
-    dem_spheres_fill(world, glass, 1e-3, desc.domain, BEADS/2, 2);
+    dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_spheres_fill(world, glass, things >= SIZES ? 0.8e-3 : 1e-3, dem_region_make(desc.domain),
+                     BEADS/2, 1);
+    dem_spheres_fill(world, glass, 1e-3, dem_region_make(desc.domain), BEADS/2, 2);
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.002;                                     /* s */
     dem_replay *film = replay ? dem_replay_open(world, "12_effects.html", &film_desc) : 0;
     for (int i = 0; i < 140; i++) {
-        if (dem_world_run(world, 0.002, 0, 0) != DEM_OK) puts(dem_world_error(world));
-        dem_replay_value(film, "contacts per bead", dem_counters_get(world).contacts/(double)BEADS);
+        if (dem_world_run(world, 0.002, 0, 0) != DEM_OK) puts(dem_world_error_get(world));
+        dem_replay_value_set(film, "contacts per bead", dem_counters_get(world).contacts/(double)BEADS);
     }
     dem_replay_close(film);
     return world;
 }
 static double seconds_of(dem_world *world, int steps) {
     clock_t begun = clock();
-    if (dem_world_step(world, steps) != DEM_OK) puts(dem_world_error(world));
+    if (dem_world_step(world, steps) != DEM_OK) puts(dem_world_error_get(world));
     return (double)(clock() - begun)/CLOCKS_PER_SEC;
 }
 static int lower_first(const void *a, const void *b) {
@@ -98,8 +99,8 @@ int main(int argc, char **argv) {
     steel_desc.young = 2e7;
     steel_desc.restitution = 0.8;
     dem_material steel = dem_material_add(all, &steel_desc);
-    dem_wall lid = dem_plane_add(all, steel, dem_vec3_make(0, 0, 0.07), dem_vec3_make(0, 0, -1));
-    if (dem_world_step(all, 100) != DEM_OK) puts(dem_world_error(all));
+    dem_wall lid = dem_wall_plane_add(all, steel, dem_vec3_make(0, 0, 0.07), dem_vec3_make(0, 0, -1));
+    if (dem_world_step(all, 100) != DEM_OK) puts(dem_world_error_get(all));
     dem_effects_print(all, 2, stdout);                              /* 2 s of wall time for the shares */
     dem_effect effects[DEM_EFFECTS];
     int missing = 0;

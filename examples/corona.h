@@ -376,7 +376,7 @@ static inline int corona_near_update(corona *c, const dem_world *world) {
     if (!corona_grow(&order, &c->order_count, (uint32_t)b.count, sizeof *c->order)) return 0;
     c->order = (corona_place *)order;
     if (c->near_count) memset(c->at, 0, c->near_count*sizeof *c->at);
-    c->near_time = dem_world_time(world);
+    c->near_time = dem_world_time_get(world);
     for (i = 0; i < b.count; i++) {
         const dem_real *reals = b.reals + (size_t)b.real_count*(size_t)i;
         const double charge = (double)reals[CORONA_INDUCED] + (double)reals[CORONA_IONS], mass = (double)b.masses[i];

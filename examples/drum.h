@@ -1,10 +1,10 @@
 /* drum.h - a drum lined with grains: the wall of particles of the tumbling mill in [MIL], for
-   dem_grains_wall_add. MIT licence. Include it after dem.h.
+   dem_wall_grains_add. MIT licence. Include it after dem.h.
 
        count = drum_grains(R, L, r, 0, 0);                   how many
        at = (dem_real *)malloc(3*(size_t)count*sizeof *at);
        drum_grains(R, L, r, 0, at);                          where
-       wall = dem_grains_wall_add(world, material, count, at, r, 1);
+       wall = dem_wall_grains_add(world, material, count, at, r, 1);
 
    The shell is [MIL] Algorithm 5.2: circles of touching spheres at R - r, in layers r sqrt(3) apart
    along z, every other one turned by half a place. The ends are Algorithm 5.3: hexagonal sheets

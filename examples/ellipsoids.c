@@ -106,7 +106,7 @@ static int is(const char *a, const char *b) { return !strcmp(a, b); }
 static int is_sphere(double xi) { return xi < 1 + 1e-9 && xi > 1 - 1e-9; }
 
 static int refused(dem_world *world, dem_result result) {
-    if (result != DEM_OK) study_fail("%s", dem_world_error(world));
+    if (result != DEM_OK) study_fail("%s", dem_world_error_get(world));
     return result != DEM_OK;
 }
 
@@ -304,7 +304,7 @@ static int gas_create(gas *g, double xi, double e, int count) {
     }
     seed_gamma = 0;
     g->world = dem_world_create(&desc);
-    if (!g->world) { study_fail("%s", dem_create_error(&desc)); return 1; }
+    if (!g->world) { study_fail("%s", dem_world_create_error_get(&desc)); return 1; }
     stuff.density = DENSITY;
     stuff.stiffness = STIFFNESS;
     stuff.restitution = 1;
@@ -362,12 +362,13 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
     if (!bad && (anywhere || 2*g->a > 1.001*pitch)) { /* then speeds in the order they stand in */
         const dem_box box = dem_box_make(0, 0, 0, g->cube, g->cube, g->cube);
         const int placed = g->spheres
-            ? dem_spheres_fill(g->world, g->material, g->radius, box, g->count, 1)
-            : dem_bodies_fill(g->world, g->material, shape, box, g->count, 1);
+            ? dem_spheres_fill(g->world, g->material, g->radius, dem_region_make(box), g->count,
+                               1)
+            : dem_bodies_fill(g->world, g->material, shape, dem_region_make(box), g->count, 1);
         bad = placed < g->count && refused(g->world, DEM_ERROR_ARGUMENT);
         for (i = 0; !bad && i < g->count; i++) {
             dem_body_state s;
-            const dem_body id = dem_bodies_id(g->world, i);
+            const dem_body id = dem_body_id_get(g->world, i);
             dem_body_get(g->world, id, &s);
             s.velocity = dem_vec3_make(v[3*i], v[3*i + 1], v[3*i + 2]);
             if (!g->spheres) s.spin = dem_quat_rotate(s.orientation, dem_quat_unrotate(
@@ -383,7 +384,7 @@ static int gas_fill(gas *g, double temperature, int anywhere) {
                                                v, w, 0));
     }
     free(at); free(turned); free(v); free(w);
-    if (!bad) dem_check_print(g->world, stderr);
+    if (!bad) dem_world_check_print(g->world, stderr);
     return bad;
 }
 
@@ -405,7 +406,7 @@ static int gas_scale(gas *g, double by) {
     int i;
     for (i = 0; i < g->count; i++) {
         dem_body_state s;
-        const dem_body id = dem_bodies_id(g->world, i);
+        const dem_body id = dem_body_id_get(g->world, i);
         dem_body_get(g->world, id, &s);
         s.velocity = dem_vec3_make(by*s.velocity.x, by*s.velocity.y, by*s.velocity.z);
         s.spin = dem_vec3_make(by*s.spin.x, by*s.spin.y, by*s.spin.z);

@@ -146,7 +146,7 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
         one = dem_sphere_add(world, stuff, (dem_real)e->radius, dem_vec3_make((dem_real)-x, (dem_real)-y, 0));
         other = dem_sphere_add(world, stuff, (dem_real)e->radius, dem_vec3_make((dem_real)x, (dem_real)y, 0));
         if (dem_body_get(world, one, &a) != DEM_OK || dem_body_get(world, other, &b) != DEM_OK ||
-            dem_step_advice(world, &advice) != DEM_OK) break;
+            dem_step_advice_get(world, &advice) != DEM_OK) break;
         dt = m->step < 0 ? -m->step*(double)advice.dt_max : m->step*(double)advice.dt;
     }
     a.velocity = dem_vec3_make((dem_real)(m->speed/2*cos(m->angle)), (dem_real)(m->speed/2*sin(m->angle)), 0);
@@ -155,7 +155,7 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     dem_body_set(world, other, &b);
     before = dem_totals_get(world);
     if (e->made && !exam_join(e, world, &bond))
-        snprintf(m->error, sizeof m->error, "dem_bonds_make makes no bond: %.100s", dem_world_error(world));
+        snprintf(m->error, sizeof m->error, "dem_bonds_make makes no bond: %.100s", dem_world_error_get(world));
     /* through the range and back, more slowly than they come */
     most = e->made ? (long)floor(20*(double)advice.contact_time/dt + 0.5)
         : (long)((40*(double)advice.contact_time + 6*e->range/(m->speed*cos(m->angle)))/dt + 2*m->early + 100);
@@ -167,7 +167,7 @@ static inline void exam_collide(const exam *e, exam_impact *m) {
     }
     after = dem_totals_get(world);
     energy = (after.kinetic + after.rotational)/(before.kinetic + before.rotational);
-    if (!m->error[0]) snprintf(m->error, sizeof m->error, "%.150s", dem_world_error(world));
+    if (!m->error[0]) snprintf(m->error, sizeof m->error, "%.150s", dem_world_error_get(world));
     dem_body_get(world, one, &a);
     dem_body_get(world, other, &b);
     m->normal = (double)(b.velocity.x - a.velocity.x);

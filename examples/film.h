@@ -21,7 +21,7 @@ typedef struct film {
 } film;
 
 STUDY_FN void film_fail(film *f) {
-    study_fail("%s", dem_world_error(f->world));
+    study_fail("%s", dem_world_error_get(f->world));
     if (f->replay) dem_replay_close(f->replay);
     f->replay = 0;
 }
@@ -33,7 +33,7 @@ STUDY_FN film film_open_by(dem_world *world, int frames, double seconds, const c
     memset(&f, 0, sizeof f);
     if (study.quiet || frames < 1) return f;
     f.world = world;
-    f.start = dem_world_time(world);
+    f.start = dem_world_time_get(world);
     f.interval = seconds/frames;
     desc.title = title;
     desc.number = number;
@@ -46,13 +46,13 @@ STUDY_FN film film_open(dem_world *world, int frames, double seconds, const char
     return film_open_by(world, frames, seconds, title, 0, 0);
 }
 STUDY_FN int film_due(const film *f) {
-    return f->replay && dem_world_time(f->world) >= f->start + (f->taken - 1e-6)*f->interval;
+    return f->replay && dem_world_time_get(f->world) >= f->start + (f->taken - 1e-6)*f->interval;
 }
 STUDY_FN void film_value(film *f, const char *name, double value) {
-    if (f->replay && dem_replay_value(f->replay, name, value) != DEM_OK) film_fail(f);
+    if (f->replay && dem_replay_value_set(f->replay, name, value) != DEM_OK) film_fail(f);
 }
 STUDY_FN void film_frame(film *f) {
-    if (f->replay && dem_replay_frame(f->replay) != DEM_OK) film_fail(f);
+    if (f->replay && dem_replay_frame_write(f->replay) != DEM_OK) film_fail(f);
     f->taken++;
 }
 STUDY_FN void film_close(film *f) {

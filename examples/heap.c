@@ -57,7 +57,7 @@ static void tube(dem_world *world, dem_material material, double radius, double 
     motion.kind = DEM_MOTION_TRANSLATING;
     motion.velocity.z = DEM_R(0.15);                                /* m/s */
     motion.start = 0.25;                                            /* s: when all have fallen */
-    dem_wall_motion(world, dem_mesh_add(world, material, &mesh), &motion);
+    dem_wall_motion_set(world, dem_wall_mesh_add(world, material, &mesh), &motion);
 }
 
 /* The heap from the side, every sphere a disc, the farthest first. */
@@ -100,27 +100,29 @@ int main(int argc, char **argv) {
         gravel_desc.friction = DEM_R(0.5);
         if (kind == SPHERES) gravel_desc.rolling_friction = DEM_R(0.05);    /* or they would roll away */
         dem_material gravel = dem_material_add(world, &gravel_desc);
-        dem_plane_add(world, gravel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+        dem_wall_plane_add(world, gravel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
         tube(world, gravel, 0.027, 0.5);
 
         dem_shape shape = tetrahedron(world, radius);
         dem_shape_info info;
-        if (dem_shape_get(world, shape, &info) != DEM_OK) { puts(dem_world_error(world)); return 1; }
+        if (dem_shape_get(world, shape, &info) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
         const dem_real same = (dem_real)cbrt(3*(double)info.volume/(4*3.14159265358979));
         const dem_box box = dem_box_make(DEM_R(-0.018), DEM_R(-0.018), 0, DEM_R(0.018), DEM_R(0.018),
                                          DEM_R(0.40)*(dem_real)count/2000);
-        const int placed = kind == TETRAHEDRA ? dem_bodies_fill(world, gravel, shape, box, count, 1)
-                                              : dem_spheres_fill(world, gravel, same, box, count, 1);
-        if (placed < count) { puts(dem_world_error(world)); return 1; }
+        const int placed = kind == TETRAHEDRA ? dem_bodies_fill(world, gravel, shape,
+                                                                dem_region_make(box), count, 1)
+                                              : dem_spheres_fill(world, gravel, same,
+                                                                 dem_region_make(box), count, 1);
+        if (placed < count) { puts(dem_world_error_get(world)); return 1; }
 
         /* fall, come to rest; how still it is then and a while later */
-        dem_check_print(world, stdout);
+        dem_world_check_print(world, stdout);
         const dem_totals before = dem_totals_get(world);
         const double fall = before.mass*9.81*before.centre[2];      /* J, from there to the floor */
         double still[2] = {0, 0}, height[2] = {0, 0};
         for (int late = 0; late < 2; late++) {
             if (dem_world_run(world, late ? 0.2 : 1.2, dem_progress_print, stderr) != DEM_OK) {
-                puts(dem_world_error(world));
+                puts(dem_world_error_get(world));
                 return 1;
             }
             const dem_totals t = dem_totals_get(world);

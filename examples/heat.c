@@ -58,20 +58,21 @@ static double heat_through(double young, double g, const char *picture, double *
     steel_desc.restitution = 0.3;
     steel_desc.friction = 0.3;
     dem_material steel = dem_material_add(world, &steel_desc);
-    dem_wall floor = dem_plane_add(world, steel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_wall floor = dem_wall_plane_add(world, steel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
     dem_wall_reals_set(world, floor, &warm);
     dem_spheres_fill(world, steel, (dem_real)R,
-                     dem_box_make(0, 0, 0, (dem_real)(8*R), (dem_real)(8*R), (dem_real)(40*R)), 150, 1);
+                     dem_region_make(dem_box_make(0, 0, 0, (dem_real)(8*R), (dem_real)(8*R), (dem_real)(40*R))),
+                     150, 1);
     dem_bodies balls = dem_bodies_get(world);
-    for (int i = 0; i < balls.count; i++) dem_body_reals_set(world, dem_bodies_id(world, i), &cold);
+    for (int i = 0; i < balls.count; i++) dem_body_reals_set(world, dem_body_id_get(world, i), &cold);
 
-    if (dem_world_run(world, 0.35, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return -1; }
+    if (dem_world_run(world, 0.35, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
     balls = dem_bodies_get(world);
     for (int i = 0; i < balls.count; i++)
         if (i == 0 || (double)balls.positions[4*i + 2] > height + 2*R) height = (double)balls.positions[4*i + 2] - 2*R;
     for (int i = 0; i < balls.count; i++)                           /* what it warmed as it fell does not count */
-        dem_body_reals_set(world, dem_bodies_id(world, i), &cold);
-    if (dem_world_run(world, 0.4, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return -1; }
+        dem_body_reals_set(world, dem_body_id_get(world, i), &cold);
+    if (dem_world_run(world, 0.4, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
 
     dem_wall_loads loads;
     dem_wall_loads_get(world, floor, &loads);
@@ -81,7 +82,7 @@ static double heat_through(double young, double g, const char *picture, double *
     for (int i = 0; i < balls.count; i++)
         if (!((double)balls.positions[4*i + 2] < height))
             *top += (double)(balls.rates[i]*balls.masses[i]*capacity[0]);
-    if (picture && dem_vtp_write(world, picture) != DEM_OK) puts(dem_world_error(world));
+    if (picture && dem_vtp_write(world, picture) != DEM_OK) puts(dem_world_error_get(world));
     dem_world_destroy(world);
     return given;
 }

@@ -30,28 +30,28 @@ int main(int argc, char **argv) {
         dem_mesh mesh;
         dem_mesh_part_read(world, "hopper.stl", parts[k], &mesh, 0);
         dem_mesh_place(world, &mesh, 1e-3, dem_quat_make(1, 0, 0, 0), dem_vec3_make(0, 0, 0)); /* mm to m */
-        walls[k] = dem_mesh_add(world, grit, &mesh);
+        walls[k] = dem_wall_mesh_add(world, grit, &mesh);
         dem_mesh_free(world, &mesh);
     }
-    dem_sizes curve = {DEM_SIZES_SIEVES, 0, 0, 0, 0, 0, 0, 0, 3, {1e-3, 1.5e-3, 2e-3}, {0.2, 0.6, 1}};    /* m, shares */
+    dem_sizes curve = {DEM_SIZES_SIEVE_CURVE, 0, 0, 0, 0, 0, 0, 0, 3, {1e-3, 1.5e-3, 2e-3}, {0.2, 0.6, 1}};    /* m, shares */
     dem_region above = {{{-0.017, -0.017, 0.045}, {0.017, 0.017, 0.1}}, 'z', 0, 0};
-    dem_sizes_fill(world, &above, grit, &curve, 1200, 1);
+    dem_sizes_fill(world, grit, &curve, above, 1200, 1);
     dem_outlet_desc mouth = {{0}, {{-1, -1, -1}, {1, 1, 0.01}}, 0, 0, 0, 0, {0}, {0}, 0};
     dem_outlet outlet = dem_outlet_add(world, &mouth);
 
     dem_output_desc lines = {DEM_OUTPUT_CSV, "hopper.csv", 0.02, 0, 0, {0}, "mass grains", out_of_it, 0, &outlet};
     dem_output_add(world, &lines);
-    dem_output_every(world, DEM_OUTPUT_CHECKPOINT, "hopper.ckpt", 0.2);
+    dem_output_every_add(world, DEM_OUTPUT_CHECKPOINT, "hopper.ckpt", 0.2);
 
     dem_result well = resume ? dem_checkpoint_read(world, "hopper.ckpt")
                              : dem_world_settle(world, 2, 0, dem_progress_print, stderr);
-    if (well != DEM_OK) puts(dem_world_error(world));                   /* before another call fails */
+    if (well != DEM_OK) puts(dem_world_error_get(world));                   /* before another call fails */
     if (well == DEM_OK && !resume) dem_wall_remove(world, walls[1]);                      /* the gate opens */
     dem_replay_desc film_desc = DEM_REPLAY_DESC;
     film_desc.interval = 0.02;
     dem_replay *film = dem_replay_open(world, resume ? "hopper2.html" : "hopper.html", &film_desc);
     if (well == DEM_OK && (well = dem_world_run_to(world, 1.5, dem_progress_print, stderr)) != DEM_OK)
-        puts(dem_world_error(world));
+        puts(dem_world_error_get(world));
     dem_replay_close(film);
     dem_world_report(world, stdout);
     dem_world_destroy(world);

@@ -147,13 +147,13 @@ static int place_of(const char *word, const char *list) { /* in "one|another"; i
 }
 
 static int refused(dem_world *world, dem_result result) {
-    if (result != DEM_OK) study_fail("%s", dem_world_error(world));
+    if (result != DEM_OK) study_fail("%s", dem_world_error_get(world));
     return result != DEM_OK;
 }
 
 static int world_create(mill *m, const dem_world_desc *desc) {
     m->world = dem_world_create(desc);
-    if (!m->world) study_fail("%s", dem_create_error(desc));
+    if (!m->world) study_fail("%s", dem_world_create_error_get(desc));
     return !m->world;
 }
 
@@ -269,17 +269,17 @@ static int shell_add(mill *m) {
         count = drum_grains(R, lining, r, 0, 0);
         at = (dem_real *)study_alloc(3*(size_t)count, sizeof *at);
         drum_grains(R, lining, r, 0, at);
-        m->walls[0] = dem_grains_wall_add(m->world, m->lining, count, at, r, 1);
+        m->walls[0] = dem_wall_grains_add(m->world, m->lining, count, at, r, 1);
         free(at);
     } else if (is(m->o.profile, "none")) {
-        m->walls[0] = dem_cylinder_add(m->world, m->lining, centre, axis, R, 1);
+        m->walls[0] = dem_wall_cylinder_add(m->world, m->lining, centre, axis, R, 1);
     } else {
         if (profile_load(m)) return 1;
-        m->walls[0] = dem_profile_add(m->world, m->lining, &m->profile, DEM_EDGE_RESOLVED);
+        m->walls[0] = dem_wall_profile_add(m->world, m->lining, &m->profile, DEM_EDGE_RESOLVED);
     }
     for (i = -1; i <= 1 && is(m->o.ends, "flat"); i += 2) {
         centre.z = i*L/2;
-        m->walls[m->wall_count++] = dem_plane_add(m->world, m->lining, centre,
+        m->walls[m->wall_count++] = dem_wall_plane_add(m->world, m->lining, centre,
                                                   dem_vec3_make(0, 0, -i));
     }
     turning.kind = DEM_MOTION_ROTATING;
@@ -287,7 +287,7 @@ static int shell_add(mill *m) {
     turning.speed = m->omega;
     for (i = 0; i < m->wall_count; i++) {
         if (!m->walls[i].id) return refused(m->world, DEM_ERROR_ARGUMENT);
-        if (refused(m->world, dem_wall_motion(m->world, m->walls[i], &turning))) return 1;
+        if (refused(m->world, dem_wall_motion_set(m->world, m->walls[i], &turning))) return 1;
     }
     return 0;
 }
@@ -318,7 +318,8 @@ static int charge_add(mill *m) {
     int i, bad;
     mill packed = *m;
     if (world_create(&packed, &desc) || materials_add(&packed)) return 1;
-    dem_spheres_pack(packed.world, packed.glass, r, padding, box, is_site, m, 0);
+    dem_spheres_pack(packed.world, packed.glass, r, padding, dem_region_inside_make(box, is_site, m),
+                     0);
     sites = dem_bodies_get(packed.world);
     at = (dem_real *)study_alloc(3*(size_t)sites.count, sizeof *at);
     velocity = (dem_real *)study_alloc(3*(size_t)sites.count, sizeof *velocity);
@@ -389,7 +390,7 @@ static int mill_begin(mill *m) {
     m->settled = (int)(m->o.settle*SAMPLES + 0.5);
     if (!(wanted > 0) && is(m->o.response, "impulses")) wanted = 2e-4;
     if (!(wanted > 0)) {
-        int bad = mill_create(m, 0) || refused(m->world, dem_step_advice(m->world, &advice));
+        int bad = mill_create(m, 0) || refused(m->world, dem_step_advice_get(m->world, &advice));
         mill_destroy(m);
         if (bad) return 1;
         wanted = advice.contact_time/m->o.contact_steps;
@@ -397,7 +398,7 @@ static int mill_begin(mill *m) {
     m->sample_steps = (int)ceil(m->period/SAMPLES/wanted);
     m->dt = m->o.dt > 0 ? m->o.dt : m->period/SAMPLES/m->sample_steps;
     if (mill_create(m, m->dt)) return 1;
-    dem_check_print(m->world, mill_rank ? 0 : stderr);             /* all look, so that all stay alike */
+    dem_world_check_print(m->world, mill_rank ? 0 : stderr);             /* all look, so that all stay alike */
     m->mass = dem_totals_get(m->world).mass;
     return 0;
 }
@@ -406,7 +407,7 @@ static void sample_take(const mill *m, sample *s) {
     dem_totals totals = dem_totals_get(m->world);
     int i;
     memset(s, 0, sizeof *s);
-    s->time = dem_world_time(m->world);
+    s->time = dem_world_time_get(m->world);
     s->ledger = dem_ledger_get(m->world);
     s->x = totals.centre[0];
     s->angular = totals.angular[2];
@@ -466,7 +467,7 @@ static int mill_step(mill *m, dem_slabs *slabs) {
     if (!slabs) return refused(m->world, dem_world_step(m->world, m->sample_steps));
     if (dem_slabs_step(slabs, m->sample_steps) == DEM_OK &&
         dem_slabs_collect(slabs, m->world) == DEM_OK) return 0;
-    study_fail("%s", dem_slabs_error(slabs));
+    study_fail("%s", dem_slabs_error_get(slabs));
     return 1;
 }
 /* A frame of the film where one is due; torque and power are means since the last. */
@@ -665,7 +666,7 @@ static void grains_draw(mill *m) { /* all grains of the slice, as they are at th
     double *v[6];
     dem_pose pose;
     study_figure f = section_figure(m, "The charge at the end of the run", "speed (m/s)");
-    if (refused(m->world, dem_wall_pose(m->world, m->walls[0], &pose))) return;
+    if (refused(m->world, dem_wall_pose_get(m->world, m->walls[0], &pose))) return;
     for (k = 0; k < 6; k++)
         v[k] = (double *)study_alloc((size_t)(k < 4 ? b.count : points), sizeof(double));
     for (i = 0; i < b.count; i++) {
@@ -766,7 +767,7 @@ static void torque_write(mill *m) {
 
 static void state_write(mill *m) { /* what the whole run left behind */
     dem_ledger ledger = dem_ledger_get(m->world);
-    dem_balance balance = dem_balance_get(m->world);
+    dem_body_counts balance = dem_body_counts_get(m->world);
     dem_bodies b = dem_bodies_get(m->world);
     char text[32];
     FILE *report;
@@ -778,7 +779,7 @@ static void state_write(mill *m) { /* what the whole run left behind */
     study_result("ledger_residual", fabs(ledger.residual)/ledger.throughput, "");
     study_result("grains_missing", missing, "");
     if (missing != 0) study_fail("%g grains got lost", missing);
-    snprintf(text, sizeof text, "%016llx", (unsigned long long)dem_world_hash(m->world));
+    snprintf(text, sizeof text, "%016llx", (unsigned long long)dem_world_hash_get(m->world));
     study_result_text("hash", text, "");
     report = study_open("report.txt");
     if (report) dem_world_report(m->world, report);
@@ -866,12 +867,12 @@ static int throw_bead(const throw_of *t, int figure, int thesis, double *const *
     desc.dt = thesis ? 1e-6 : 1e-7;
     if (thesis) {
         desc.convention = DEM_CONVENTION_MILL;
-        desc.integrator = DEM_SYMPLECTIC_EULER;
+        desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
         desc.tangent_law = DEM_TANGENT_STEP;
         desc.allow_large_dt = 1;
     }
     if (world_create(&m, &desc) || materials_add(&m)) return 1;
-    dem_plane_add(m.world, thesis ? m.lining : m.glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
+    dem_wall_plane_add(m.world, thesis ? m.lining : m.glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
     bead = bead_add(&m, m.o.radius + t->height, t->vx, t->vy);
     steps = (int)((options.brief ? 0.05 : t->time)/desc.dt + 0.5);      /* 0.05 s: one bounce, or two */
     stride = steps/ROWS;
@@ -969,8 +970,8 @@ static int study_overlap(void) { /* Fig 6.0: a bead hits another, or the mill, h
             if (world_create(&m, &desc) || materials_add(&m)) return 1;
             bead_add(&m, r, 0, k%2 ? -v : -v/2);
             if (!(k%2)) bead_add(&m, -r, 0, v/2);
-            else dem_plane_add(m.world, m.lining, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
-            if (refused(m.world, dem_step_advice(m.world, &advice))) return 1;
+            else dem_wall_plane_add(m.world, m.lining, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 1, 0));
+            if (refused(m.world, dem_step_advice_get(m.world, &advice))) return 1;
             span = 2*advice.contact_time + 0.003*r/v;
             if (refused(m.world, dem_world_run(m.world, span, 0, 0))) return 1;
             column[k + 1][i] = 100*dem_counters_get(m.world).overlap_max;

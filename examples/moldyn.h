@@ -44,7 +44,7 @@
    centre of mass, its angle (rad, anticlockwise) from how it is listed. Polygons of grains have
    3 to 98 corners (dem_shape_polygon_add), those of walls 3 to 1000, chains 2 to 1000; none may
    cross or touch itself. The corners of walls are their surface (the thickness of walls is that of
-   straight ones), and both sides push (dem_profile_add). A chain is a sheet: a polygon can hang on
+   straight ones), and both sides push (dem_wall_profile_add). A chain is a sheet: a polygon can hang on
    its sharp ends, and gain energy there; where grains meet ends, give a closed part a thickness.
 
    Not in the files, so chosen here: Poisson's ratio is 0.25, which sets the tangential stiffness to
@@ -918,7 +918,7 @@ static dem_result moldyn_outlines_check(moldyn *m, const char *call, const moldy
     if (o->count && !m->planar)
         return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: there are %d %s and planar is 0, must be 1: "
                            "they are for scenes in a plane; in space use "
-                           "dem_shape_polyhedron_add and dem_mesh_add", call, o->count, kind->key);
+                           "dem_shape_polyhedron_add and dem_wall_mesh_add", call, o->count, kind->key);
     for (i = 0; i < o->count; i++) {
         const dem_real *corners = moldyn_corners(o, i, &count);
         if (moldyn_outline_fault(kind, i, corners, count, fault, sizeof fault))
@@ -961,11 +961,11 @@ static dem_result moldyn_suits(moldyn *m, const char *call, const dem_world *wor
     const dem_world_desc have = dem_world_desc_get(world), need = moldyn_desc(m);
     const int bodies = dem_bodies_get(world).count;
     if (!world) return moldyn_null(m, call, "world");
-    if (bodies || dem_world_steps(world) || !have.planar != !need.planar ||
+    if (bodies || dem_world_steps_get(world) || !have.planar != !need.planar ||
         have.normal_law != need.normal_law)
         return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: the world has %d bodies, has made %.0f "
                            "steps, or has another law or dimension; make an empty one with "
-                           "moldyn_desc", call, bodies, (double)dem_world_steps(world));
+                           "moldyn_desc", call, bodies, (double)dem_world_steps_get(world));
     return DEM_OK;
 }
 /* The world's own sentence is left to the user: as long as nobody reads it, the world does not run
@@ -973,7 +973,7 @@ static dem_result moldyn_suits(moldyn *m, const char *call, const dem_world *wor
 static dem_result moldyn_refused(moldyn *m, const char *call, dem_result result, const char *what,
                                  int i) {
     return moldyn_fail(m, result, "%s: the world refused %s %d and holds a part of the scene only; "
-                       "dem_world_error tells why; destroy the world", call, what, i);
+                       "dem_world_error_get tells why; destroy the world", call, what, i);
 }
 static dem_result moldyn_materials_add(moldyn *m, const char *call, dem_world *world) {
     dem_material_desc d = DEM_MATERIAL_DESC;
@@ -1007,7 +1007,7 @@ static dem_result moldyn_planes_add(moldyn *m, const char *call, dem_world *worl
     for (i = 0; i < m->wall_count; i++) {
         double p[3], n[3];
         moldyn_plane(m, i, p, n);
-        m->planes[i] = dem_plane_add(world, m->wall_material, dem_vec3_make((dem_real)p[0],
+        m->planes[i] = dem_wall_plane_add(world, m->wall_material, dem_vec3_make((dem_real)p[0],
                                      (dem_real)p[1], (dem_real)p[2]), dem_vec3_make((dem_real)n[0],
                                      (dem_real)n[1], (dem_real)n[2]));
         if (!m->planes[i].id) return moldyn_refused(m, call, DEM_ERROR_MEMORY, "wall", i);
@@ -1033,7 +1033,7 @@ static dem_result moldyn_outlines_add(moldyn *m, const char *call, dem_world *wo
             ends[2*k] = k;
             ends[2*k + 1] = (k + 1)%profile.vertex_count;
         }
-        planes[i] = dem_profile_add(world, m->wall_material, &profile, DEM_EDGE_RESOLVED);
+        planes[i] = dem_wall_profile_add(world, m->wall_material, &profile, DEM_EDGE_RESOLVED);
         if (!planes[i].id) return moldyn_refused(m, call, DEM_ERROR_ARGUMENT, kind->name, i + 1);
     }
     return DEM_OK;
@@ -1057,7 +1057,7 @@ static dem_body moldyn_polygon_add(const moldyn *m, dem_world *world, int i) {
     turn[0] = q.w; turn[1] = q.x; turn[2] = q.y; turn[3] = q.z;
     if (dem_bodies_add(world, m->grain_material, m->shapes[m->kinds[i] - 1], 1, row, turn, row + 3,
                        row + 9, row + 12) != DEM_OK) return none;
-    return dem_bodies_id(world, dem_bodies_get(world).count - 1);
+    return dem_body_id_get(world, dem_bodies_get(world).count - 1);
 }
 static dem_result moldyn_grains_add(moldyn *m, const char *call, dem_world *world) {
     int i;
@@ -1111,7 +1111,7 @@ MOLDYN_API dem_result moldyn_add(moldyn *m, dem_world *world) {
     if ((result = moldyn_suits(m, call, world)) != DEM_OK) return result;
     if ((result = moldyn_check(m, call)) != DEM_OK) return result;
     if ((result = moldyn_ids_new(m, call)) != DEM_OK) return result;
-    m->origin = m->start - dem_world_time(world);
+    m->origin = m->start - dem_world_time_get(world);
     result = moldyn_materials_add(m, call, world);
     if (result == DEM_OK) result = moldyn_planes_add(m, call, world);
     if (result == DEM_OK)
@@ -1154,7 +1154,7 @@ static dem_result moldyn_bodies_get(moldyn *m, const char *call, const dem_world
 static dem_body_state moldyn_body(const dem_world *world, const moldyn_bodies *all, int i) {
     dem_body_state s;
     memset(&s, 0, sizeof s);
-    dem_body_get(world, dem_bodies_id(world, all->index[i]), &s);
+    dem_body_get(world, dem_body_id_get(world, all->index[i]), &s);
     return s;
 }
 /* Which of m's polygons a shape of the world is, counted from 1; 0: none. The world may be another
@@ -1203,7 +1203,7 @@ static int moldyn_taken_fill(const moldyn *m, const dem_world *world, const mold
     for (i = 0; i < all->count; i++) {
         const dem_body_state s = moldyn_body(world, all, i);
         dem_real *row = to->rows + (size_t)i*MOLDYN_GRAIN;
-        to->bodies[i] = dem_bodies_id(world, all->index[i]);
+        to->bodies[i] = dem_body_id_get(world, all->index[i]);
         moldyn_vec3_put(row, s.position);
         moldyn_vec3_put(row + 3, s.velocity);
         moldyn_vec3_put(row + 9, s.spin);
@@ -1224,7 +1224,7 @@ static int moldyn_taken_fill(const moldyn *m, const dem_world *world, const mold
 }
 /* Takes the grains of a world as they are now in place of those of m, in the order in which they
    came. Angles of polygons are within -pi and pi, or as they were if they have not turned; those of
-   others are 0. Then start is what it was when they were added plus dem_world_time(world), and end
+   others are 0. Then start is what it was when they were added plus dem_world_time_get(world), and end
    at least that. The bodies must be spheres, or discs and polygons of m that moldyn_add has added.
    If it fails, m stays as it was. */
 MOLDYN_API dem_result moldyn_take(moldyn *m, const dem_world *world) {
@@ -1263,7 +1263,7 @@ MOLDYN_API dem_result moldyn_take(moldyn *m, const dem_world *world) {
     m->kinds = to.kinds;
     m->bodies = to.bodies;
     m->grain_count = m->body_count = all.count;
-    m->start = m->origin + dem_world_time(world);
+    m->start = m->origin + dem_world_time_get(world);
     if (m->end < m->start) m->end = m->start;
     return DEM_OK;
 }
@@ -1442,7 +1442,7 @@ static dem_real moldyn_round_radius(const dem_world *world, const dem_body_state
     return (dem_real)(sqrt((double)info.volume/(3.14159265358979323846*(double)desc.thickness))*
                       (double)(s->radius/info.radius));
 }
-/* Appends a frame for XBALLS: a line with count, time (s, of the file: origin + dem_world_time) and
+/* Appends a frame for XBALLS: a line with count, time (s, of the file: origin + dem_world_time_get) and
    the corners of box; then a line a grain: x, y (in space: z), their velocities, radius (of a
    polygon: that of the disc of its area), spin. The text of the appendix calls these six numbers
    place and velocity in space. m: MOLDYN will do, if there is no other; it holds the origin of time
@@ -1461,7 +1461,7 @@ MOLDYN_API dem_result moldyn_xb_append(moldyn *m, const dem_world *world, const 
     file = moldyn_append_open(m, call, path, &fresh);
     if (!file) { free(all.index); return DEM_ERROR_FILE; }
     fprintf(file, "%d ", all.count);
-    moldyn_put(file, m->origin + dem_world_time(world), 12, ' ');
+    moldyn_put(file, m->origin + dem_world_time_get(world), 12, ' ');
     moldyn_put(file, (double)box.lo.x, 0, ' ');
     moldyn_put(file, (double)(planar ? box.lo.y : box.lo.z), 0, ' ');
     moldyn_put(file, (double)box.hi.x, 0, ' ');
@@ -1526,7 +1526,7 @@ static dem_result moldyn_str_check(moldyn *m, const char *call, const dem_world 
         return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: wall_count is %d, must be >= 0 with as many "
                            "walls; give m.planes and m.wall_count, or 0", call, wall_count);
     for (i = 0; i < wall_count; i++)
-        if (dem_wall_pose(world, walls[i], &pose) != DEM_OK)
+        if (dem_wall_pose_get(world, walls[i], &pose) != DEM_OK)
             return moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: walls[%d] has id %ld, which the world "
                                "does not have; leave out walls that were removed", call, i,
                                (long)walls[i].id);
@@ -1570,7 +1570,7 @@ MOLDYN_API dem_result moldyn_str_append(moldyn *m, const dem_world *world, const
     }
     for (i = 0; i < wall_count; i++) {
         dem_pose pose;
-        if (dem_wall_pose(world, walls[i], &pose) == DEM_OK)
+        if (dem_wall_pose_get(world, walls[i], &pose) == DEM_OK)
             moldyn_str_row(file, pose.rotation, pose.position);
     }
     free(all.index);

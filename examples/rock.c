@@ -61,19 +61,20 @@ static double press(double strength, int every, int bonds[2], int pictures) {
     stone_desc.restitution = 0.3;
     stone_desc.friction = 0.5;
     dem_material stone = dem_material_add(world, &stone_desc);
-    dem_plane_add(world, stone, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-    dem_wall plate = dem_plane_add(world, stone, dem_vec3_make(0, 0, (dem_real)tall), dem_vec3_make(0, 0, -1));
-    dem_spheres_pack(world, stone, (dem_real)R, (dem_real)(0.01*R), dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side,
-                                                                                 (dem_real)tall), place, &seed, 0);
-    if (dem_bonds_make(world, (dem_real)(0.1*R), glue_bond, &tube) < 0) { puts(dem_world_error(world)); return -1; }
+    dem_wall_plane_add(world, stone, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_wall plate = dem_wall_plane_add(world, stone, dem_vec3_make(0, 0, (dem_real)tall), dem_vec3_make(0, 0, -1));
+    dem_spheres_pack(world, stone, (dem_real)R, (dem_real)(0.01*R),
+                     dem_region_inside_make(dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)tall), place, &seed),
+                     0);
+    if (dem_bonds_make(world, (dem_real)(0.1*R), glue_bond, &tube) < 0) { puts(dem_world_error_get(world)); return -1; }
 
     dem_motion down = DEM_MOTION;
     down.kind = DEM_MOTION_TRANSLATING;
     down.velocity.z = DEM_R(-0.1);                                  /* m/s */
-    dem_wall_motion(world, plate, &down);
+    dem_wall_motion_set(world, plate, &down);
     for (step = 0; step < 600 && !(force < 0.5*largest && largest > 0.1); step++) {
         dem_wall_loads loads;
-        if (dem_world_run(world, 5e-5, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return -1; }
+        if (dem_world_run(world, 5e-5, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
         dem_wall_loads_get(world, plate, &loads);
         force = (double)loads.force.z;                              /* N */
         if (force > largest) largest = force;
@@ -81,7 +82,7 @@ static double press(double strength, int every, int bonds[2], int pictures) {
     bonds[0] = bonds[1] = 0;
     dem_contacts_each(world, bond_count, bonds);
     if (pictures && (dem_vtp_write(world, "rock.vtp") != DEM_OK || dem_contacts_vtp_write(world, "bonds.vtp") != DEM_OK))
-        puts(dem_world_error(world));
+        puts(dem_world_error_get(world));
     printf("%d grains, %d steps of 50 us; ", dem_bodies_get(world).count, step);
     dem_world_destroy(world);
     return largest/(side*side);

@@ -119,7 +119,7 @@ typedef struct screener {
 
 static int is(const char *a, const char *b) { return !strcmp(a, b); }
 static int refused(dem_world *world, dem_result result) {
-    if (result != DEM_OK) study_fail("%s", dem_world_error(world));
+    if (result != DEM_OK) study_fail("%s", dem_world_error_get(world));
     return result != DEM_OK;
 }
 
@@ -176,7 +176,7 @@ static int part_move(screener *s, int part, dem_wall wall, double z) {
     s->part[part].place[0] = s->part[part].place[1] = 0;
     s->part[part].place[2] = z;
     motion = tumbler_motion(&s->part[part]);
-    return refused(s->world, dem_wall_motion(s->world, wall, &motion));
+    return refused(s->world, dem_wall_motion_set(s->world, wall, &motion));
 }
 
 /* The rim: 96 segments, those of the openings left out; a vane at the end of each opening that a
@@ -209,7 +209,7 @@ static int rim_add(screener *s, dem_material stuff) {
         dem_profile p;
         p.vertex_count = points; p.segment_count = count;
         p.vertices = xy; p.segments = segments;
-        s->rim = dem_profile_add(s->world, stuff, &p, DEM_EDGE_RESOLVED);
+        s->rim = dem_wall_profile_add(s->world, stuff, &p, DEM_EDGE_RESOLVED);
         return part_move(s, LEVELS, s->rim, 0);
     }
     xyz = (dem_real *)study_alloc((size_t)(6*N*s->levels), sizeof *xyz);
@@ -239,7 +239,7 @@ static int rim_add(screener *s, dem_material stuff) {
         dem_mesh mesh;
         mesh.vertex_count = 2*N*s->levels; mesh.triangle_count = faces;
         mesh.vertices = xyz; mesh.triangles = triangles;
-        s->rim = dem_mesh_add(s->world, stuff, &mesh);
+        s->rim = dem_wall_mesh_add(s->world, stuff, &mesh);
     }
     free(xyz);
     free(triangles);
@@ -259,7 +259,7 @@ static int decks_add(screener *s, dem_material stuff) {
     }
     floor.vertex_count = 4; floor.triangle_count = 2;
     floor.vertices = corners; floor.triangles = triangles;
-    s->floor = dem_mesh_add(s->world, stuff, &floor);
+    s->floor = dem_wall_mesh_add(s->world, stuff, &floor);
     if (part_move(s, 0, s->floor, 0)) return 1;
     for (k = 1; k < s->levels; k++) {
         dem_sieve_desc d = DEM_SIEVE_DESC;
@@ -270,7 +270,7 @@ static int decks_add(screener *s, dem_material stuff) {
         d.radius = (dem_real)(is(s->o.barrel, "stepped") ? level_radius(s, k - 1) : s->R);
         d.model = d.kind != DEM_SIEVE_REDUCED ? 0 : is(s->o.holes, "model1") ? 1 : 2;
         d.clearance = d.kind == DEM_SIEVE_REDUCED ? (dem_real)s->o.zeta : 0;
-        s->sieve[k] = dem_sieve_add(s->world, stuff, &d);
+        s->sieve[k] = dem_wall_sieve_add(s->world, stuff, &d);
         if (part_move(s, k, s->sieve[k], k*s->o.spacing)) return 1;
     }
     return 0;
@@ -314,7 +314,7 @@ static int hopper_add(screener *s, dem_material stuff, double z, double wide, do
         }
     mesh.vertex_count = 3*N; mesh.triangle_count = n/3;
     mesh.vertices = xyz; mesh.triangles = triangles;
-    return dem_mesh_add(s->world, stuff, &mesh).id ? 0 : refused(s->world, DEM_ERROR_ARGUMENT);
+    return dem_wall_mesh_add(s->world, stuff, &mesh).id ? 0 : refused(s->world, DEM_ERROR_ARGUMENT);
 }
 static int feed_add(screener *s, dem_material ball, dem_material wall) {
     dem_feed_desc d;
@@ -358,7 +358,7 @@ static int screener_create(screener *s, double dt) {
     desc.threads = s->o.threads;
     desc.dt = (dem_real)dt;
     s->world = dem_world_create(&desc);
-    if (!s->world) { study_fail("%s", dem_create_error(&desc)); return 1; }
+    if (!s->world) { study_fail("%s", dem_world_create_error_get(&desc)); return 1; }
     stuff.density = 2500;
     stuff.poisson = DEM_R(0.25);
     stuff.stiffness = (dem_real)s->o.stiffness;
@@ -388,11 +388,11 @@ static dem_outlet_state let_out(const screener *s, int deck) {
 }
 static void sample_take(screener *s) {
     sorting sorted;
-    const dem_balance balance = dem_balance_get(s->world);
+    const dem_body_counts balance = dem_body_counts_get(s->world);
     const int i = s->samples;
     int k;
     if (i == SAMPLES || sorting_get(s->world, s->outlet, s->levels, &sorted) != DEM_OK) return;
-    s->time[i] = dem_world_time(s->world);
+    s->time[i] = dem_world_time_get(s->world);
     s->efficiency[i] = 100*sorted.efficiency_number;
     s->mass_efficiency[i] = 100*sorted.efficiency_mass;
     s->gangue[i] = 100*sorted.gangue_mass;
@@ -416,7 +416,7 @@ static double deck_rate(const screener *s, int deck) {
    the world's balance. */
 static int screener_balanced(const screener *s) {
     const dem_bodies b = dem_bodies_get(s->world);
-    const dem_balance balance = dem_balance_get(s->world);
+    const dem_body_counts balance = dem_body_counts_get(s->world);
     const dem_feed_state feed = fed(s);
     uint64_t found[LEVELS] = {0}, left = 0;
     int i, k, ok;
@@ -452,7 +452,7 @@ static void picture_draw(screener *s, int above, const char *title, const char *
     memset(&f, 0, sizeof f);
     memset(&pose, 0, sizeof pose);
     for (k = 0; k < 4; k++) v[k] = (double *)study_alloc((size_t)b.count + 1, sizeof(double));
-    dem_wall_pose(s->world, s->sieve[s->levels - 1], &pose);
+    dem_wall_pose_get(s->world, s->sieve[s->levels - 1], &pose);
     for (i = 0; i < b.count; i++) {
         const dem_real *p = b.positions + 4*i;
         const double up = (double)(p[2] - pose.position.z);
@@ -463,7 +463,7 @@ static void picture_draw(screener *s, int above, const char *title, const char *
         v[3][n++] = 1000*(double)p[3];
     }
     for (k = above ? s->levels - 1 : 0; k < s->levels; k++) {
-        dem_wall_pose(s->world, k ? s->sieve[k] : s->floor, &pose);
+        dem_wall_pose_get(s->world, k ? s->sieve[k] : s->floor, &pose);
         for (i = 0; i < RIM; i++) {              /* its rim, as a tilted circle */
             const double a = level_radius(s, k)*cos(2*PI*i/(RIM - 1));
             const double c = level_radius(s, k)*sin(2*PI*i/(RIM - 1));
@@ -514,47 +514,47 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
     memset(s, 0, sizeof *s);
     s->o = *o;
     screener_settle(s);
-    bad = screener_create(s, 0) || refused(s->world, dem_step_advice(s->world, &advice));
+    bad = screener_create(s, 0) || refused(s->world, dem_step_advice_get(s->world, &advice));
     dem_world_destroy(s->world);
     s->world = 0;
     if (bad) return 1;
     s->dt = s->dt_first = (double)advice.contact_time/s->o.steps;
     if (screener_create(s, s->dt)) return 1;
-    dem_check_print(s->world, stderr);
+    dem_world_check_print(s->world, stderr);
     f = film_open(s->world, o->replay ? 250 : 0, s->o.seconds, "A tumbling screening machine");
     begun = study_clock();
-    while (!bad && dem_world_time(s->world) < s->o.seconds - s->dt/2) {
-        const double left = (next - dem_world_time(s->world))/s->dt;
+    while (!bad && dem_world_time_get(s->world) < s->o.seconds - s->dt/2) {
+        const double left = (next - dem_world_time_get(s->world))/s->dt;
         const int steps = left > 1 && !counting ? left < 500 ? (int)(left + 0.5) : 500 : 1;
         bad = screener_step(s, steps);
         if (counting) unbalanced += !screener_balanced(s);
-        work += (double)steps*(double)dem_balance_get(s->world).present;
-        if (dem_world_time(s->world) >= next - s->dt/2) {
+        work += (double)steps*(double)dem_body_counts_get(s->world).present;
+        if (dem_world_time_get(s->world) >= next - s->dt/2) {
             sample_take(s);
             next += s->o.seconds/(SAMPLES - 1);
         }
         if (film_due(&f)) {
             const int last = s->samples - 1;
-            film_value(&f, "balls in the machine", (double)dem_balance_get(s->world).present);
+            film_value(&f, "balls in the machine", (double)dem_body_counts_get(s->world).present);
             if (last >= 0) film_value(&f, "efficiency by number (%)", s->efficiency[last]);
             if (last >= 0) film_value(&f, "gangue, share of mass (%)", s->gangue[last]);
             film_frame(&f);
         }
-        if (!drawn && is(o->study, "run") && 2*dem_world_time(s->world) >= s->o.seconds) {
+        if (!drawn && is(o->study, "run") && 2*dem_world_time_get(s->world) >= s->o.seconds) {
             picture_draw(s, 0, "Half way through, from the side", "side.svg");
             picture_draw(s, 1, "The highest deck, half way through", "top.svg");
             drawn = 1;
         }
-        if (frame < s->o.frames && dem_world_time(s->world) >= frame*s->o.seconds/s->o.frames)
+        if (frame < s->o.frames && dem_world_time_get(s->world) >= frame*s->o.seconds/s->o.frames)
             frame_write(s, frame++);
-        study_progress(name, fmin(1, dem_world_time(s->world)/s->o.seconds), work);
+        study_progress(name, fmin(1, dem_world_time_get(s->world)/s->o.seconds), work);
     }
     s->compute = study_clock() - begun;
     film_close(&f);
     if (!bad) {
         sorting sorted;
         const dem_feed_state feed = fed(s);
-        const dem_balance balance = dem_balance_get(s->world);
+        const dem_body_counts balance = dem_body_counts_get(s->world);
         int blinded = 0;
         char text[64];
         sorting_get(s->world, s->outlet, s->levels, &sorted);
@@ -568,7 +568,7 @@ static int screener_run(screener *s, const struct screener_options *o, const cha
             study_result(text, (double)out.gangue, "");
             snprintf(text, sizeof text, "deck%d.rate", i + 1);
             study_result(text, deck_rate(s, i), "kg/s");
-            if (i) blinded += dem_sieve_blinded(s->world, s->sieve[i], DEM_R(0.1));
+            if (i) blinded += dem_sieve_blinded_get(s->world, s->sieve[i], DEM_R(0.1));
         }
         study_result("gangue_number", 100*sorted.gangue_number, "%");
         study_result("gangue_mass", 100*sorted.gangue_mass, "%");

@@ -236,7 +236,7 @@ static void setting_set(separator_desc *d, const struct separator_options *o) {
     d->response = springs ? DEM_RESPONSE_SPRINGS : DEM_RESPONSE_IMPULSES;
     d->cone = convex ? DEM_CONE_CONVEX : DEM_CONE_COULOMB;
     d->solver = is(o->solver, "jacobi") ? DEM_SOLVER_JACOBI : is(o->solver, "apgd") ? DEM_SOLVER_APGD
-        : is(o->solver, "spectral") ? DEM_SOLVER_SPECTRAL : DEM_SOLVER_SEIDEL;
+        : is(o->solver, "spectral") ? DEM_SOLVER_SPECTRAL : DEM_SOLVER_GAUSS_SEIDEL;
     d->dt = o->dt > 0 ? o->dt : springs ? 0 : seeds ? 1e-3 : fragments_fed(o) ? 5e-5 : 2.5e-4;
     d->sweeps = o->sweeps ? o->sweeps : seeds ? 100 : 0;
     d->tolerance = o->tolerance > 0 ? o->tolerance : seeds ? 1e-30 : 0;      /* all of the 100 */
@@ -479,7 +479,7 @@ static int separator_run(separator *s, const struct separator_options *o, const 
         grain_charge);
     begun = study_clock();
     for (;;) {
-        const double now = dem_world_time(s->world);
+        const double now = dem_world_time_get(s->world);
         const int count = dem_bodies_get(s->world).count;
         if (now > all || (now > o->seconds && !separator_present(s))) break;
         result = separator_step(s);
@@ -799,15 +799,15 @@ static uint64_t bits_run(separator *s, const struct separator_options *o, int th
     if (from) {
         result = dem_checkpoint_read(s->world, path);
         if (result == DEM_OK) result = separator_restored(s);
-        if (result != DEM_OK) study_fail("%s", dem_world_error(s->world));
+        if (result != DEM_OK) study_fail("%s", dem_world_error_get(s->world));
     }
     for (i = from; i < steps && result == DEM_OK; i++) {      /* of a millisecond */
         result = separator_step(s);
         if (result != DEM_OK) study_fail("%s", s->error);
         if (i + 1 == steps/2 && !from && dem_checkpoint_write(s->world, path) != DEM_OK)
-            study_fail("%s", dem_world_error(s->world));
+            study_fail("%s", dem_world_error_get(s->world));
     }
-    hash = dem_world_hash(s->world);
+    hash = dem_world_hash_get(s->world);
     if (s->unbalanced) study_fail("%.0f steps at which a class was not in balance", (double)s->unbalanced);
     return hash;
 }

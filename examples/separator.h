@@ -8,7 +8,7 @@
        separator s;
        d.rate = 2000;
        if (separator_create(&s, &d) != DEM_OK) puts(s.error);
-       while (dem_world_time(s.world) < 4 && separator_step(&s) == DEM_OK) continue;
+       while (dem_world_time_get(s.world) < 4 && separator_step(&s) == DEM_OK) continue;
        ... s.landed[0 .. s.landed_count - 1] ...
        separator_end(&s);
 
@@ -260,8 +260,8 @@ static inline int separator_walls_add(separator *s) {
     int32_t segments[4] = {0, 1, 1, 2};
     const double x = d->feeder_edge - d->feeder_length*cos(d->feeder_angle);
     const double y = d->rotor + 0.004 + d->feeder_length*sin(d->feeder_angle);
-    s->rotor = dem_cylinder_add(s->world, s->rotor_stuff, origin, along, (dem_real)d->rotor, 0);
-    s->electrode = dem_cylinder_add(s->world, s->plate_stuff, dem_vec3_make((dem_real)(d->distance*cos(d->angle)),
+    s->rotor = dem_wall_cylinder_add(s->world, s->rotor_stuff, origin, along, (dem_real)d->rotor, 0);
+    s->electrode = dem_wall_cylinder_add(s->world, s->plate_stuff, dem_vec3_make((dem_real)(d->distance*cos(d->angle)),
                                     (dem_real)(d->distance*sin(d->angle)), 0), along, (dem_real)d->electrode, 0);
     turn.kind = DEM_MOTION_ROTATING;
     turn.axis = along;
@@ -271,9 +271,9 @@ static inline int separator_walls_add(separator *s) {
     corners[4] = (dem_real)d->feeder_edge; corners[5] = (dem_real)(d->rotor + 0.004);
     profile.vertex_count = 3; profile.segment_count = 2;
     profile.vertices = corners; profile.segments = segments;
-    s->plate = dem_profile_add(s->world, s->plate_stuff, &profile, DEM_EDGE_RESOLVED);
+    s->plate = dem_wall_profile_add(s->world, s->plate_stuff, &profile, DEM_EDGE_RESOLVED);
     return s->rotor.id && s->electrode.id && s->plate.id &&
-        dem_wall_motion(s->world, s->rotor, &turn) == DEM_OK && separator_feed_add(s, x, y);
+        dem_wall_motion_set(s->world, s->rotor, &turn) == DEM_OK && separator_feed_add(s, x, y);
 }
 static inline int separator_outlet_add(separator *s) {
     const double y = s->desc.bins - 0.05;            /* counted at the bins, taken out below */
@@ -299,7 +299,7 @@ static inline void separator_corona_set(separator *s) {
     }
 }
 static inline dem_result separator_refused(separator *s, dem_result result) {
-    if (result != DEM_OK) separator_say(s, dem_world_error(s->world));
+    if (result != DEM_OK) separator_say(s, dem_world_error_get(s->world));
     return result;
 }
 /* s must stay where it is while its world lives. */
@@ -335,7 +335,7 @@ static inline dem_result separator_create(separator *s, const separator_desc *de
         d.allow_large_dt = desc->range < 8*desc->dt;
     } else d.normal_law = desc->normal_law;
     s->world = dem_world_create(&d);
-    if (!s->world) { separator_say(s, dem_create_error(&d)); return DEM_ERROR_ARGUMENT; }
+    if (!s->world) { separator_say(s, dem_world_create_error_get(&d)); return DEM_ERROR_ARGUMENT; }
     if (!separator_stuff_add(s) || !separator_walls_add(s) || !separator_outlet_add(s))
         return separator_refused(s, DEM_ERROR_ARGUMENT);
     return DEM_OK;
@@ -376,7 +376,7 @@ static inline int separator_land(separator *s, double x, double mass, int fed_cl
         s->landed_room = room;
     }
     l = &s->landed[s->landed_count++];
-    l->x = x; l->mass = mass; l->time = dem_world_time(s->world);
+    l->x = x; l->mass = mass; l->time = dem_world_time_get(s->world);
     l->fed_class = fed_class; l->part = s->class_part[fed_class];
     return 1;
 }
@@ -388,7 +388,7 @@ static inline dem_result separator_tally(separator *s, uint64_t *present) {
     for (i = 0; i < b.count; i++) {
         const int k = separator_class_of(s, b.materials[i], b.shapes ? b.shapes[i] : 0);
         const double x = (double)b.reals[b.real_count*i + CORONA_LANDING];
-        const uint32_t slot = b.slots[i], generation = dem_bodies_id(s->world, i).generation + 1;
+        const uint32_t slot = b.slots[i], generation = dem_body_id_get(s->world, i).generation + 1;
         if (!(x > 0 || x < 0)) { present[k]++; continue; }
         if (!separator_seen_grow(s, slot)) return DEM_ERROR_MEMORY;
         if (s->seen[slot] == generation) continue;
@@ -400,7 +400,7 @@ static inline dem_result separator_tally(separator *s, uint64_t *present) {
 }
 /* 1: of each class as many were fed as have landed and are here. */
 static inline int separator_balanced(const separator *s, const uint64_t *present) {
-    const dem_balance balance = dem_balance_get(s->world);
+    const dem_body_counts balance = dem_body_counts_get(s->world);
     dem_feed_state fed;
     uint64_t sum = 0;
     int k, ok;

@@ -31,7 +31,7 @@ typedef struct sorting {
 static inline dem_result sorting_get(const dem_world *world, const dem_outlet *outlets, int count,
                                      sorting *out) {
     double number = 0, mass = 0, gangue = 0, gangue_mass = 0, seconds = 0;
-    const double now = dem_world_time(world);
+    const double now = dem_world_time_get(world);
     int i;
     if (!out) return DEM_ERROR_ARGUMENT;
     memset(out, 0, sizeof *out);

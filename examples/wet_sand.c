@@ -39,19 +39,19 @@ static double castle(double R, double water, const char *picture) {
     sand_desc.restitution = 0.4;
     sand_desc.friction = 0.5;
     dem_material sand = dem_material_add(world, &sand_desc);
-    dem_plane_add(world, sand, origin, up);
-    dem_wall mould = dem_cylinder_add(world, sand, origin, up, (dem_real)(6*R), 1);
+    dem_wall_plane_add(world, sand, origin, up);
+    dem_wall mould = dem_wall_cylinder_add(world, sand, origin, up, (dem_real)(6*R), 1);
     dem_region inside = {0};
     inside.box = dem_box_make((dem_real)(-6*R), (dem_real)(-6*R), 0, (dem_real)(6*R), (dem_real)(6*R), (dem_real)(40*R));
     inside.cylinder = 'z';
-    dem_region_fill(world, &inside, sand, (dem_shape){0}, (dem_real)R, 250, 1);
+    dem_spheres_fill(world, sand, (dem_real)R, inside, 250, 1);
 
-    if (dem_world_run(world, 3*fall, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return -1; }
+    if (dem_world_run(world, 3*fall, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
     before = dem_totals_get(world).centre[2];
     dem_wall_remove(world, mould);
-    if (dem_world_run(world, 3*fall, 0, 0) != DEM_OK) { puts(dem_world_error(world)); return -1; }
+    if (dem_world_run(world, 3*fall, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
     after = dem_totals_get(world).centre[2];
-    if (picture && dem_vtp_write(world, picture) != DEM_OK) puts(dem_world_error(world));
+    if (picture && dem_vtp_write(world, picture) != DEM_OK) puts(dem_world_error_get(world));
     dem_world_destroy(world);
     return after/before;
 }

@@ -19,16 +19,16 @@ int main(void) {
     glass.density = 2500; glass.young = DEM_R(1e6); glass.poisson = DEM_R(0.25); glass.restitution = DEM_R(0.6);
     glass.friction = DEM_R(0.4); glass.rolling_friction = DEM_R(0.1);
     stuff = dem_material_add(w, &glass);
-    drum = dem_cylinder_add(w, stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1), DEM_R(0.03), 1);
+    drum = dem_wall_cylinder_add(w, stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1), DEM_R(0.03), 1);
     motion.kind = DEM_MOTION_ROTATING; motion.axis = dem_vec3_make(0, 0, 1); motion.speed = 5;
-    dem_wall_motion(w, drum, &motion);
+    dem_wall_motion_set(w, drum, &motion);
     for (k = 0; k < 2; k++)
-        dem_plane_add(w, stuff, dem_vec3_make(0, 0, (dem_real)(k ? 0.01 : -0.01)), dem_vec3_make(0, 0, (dem_real)(k ? -1 : 1)));
+        dem_wall_plane_add(w, stuff, dem_vec3_make(0, 0, (dem_real)(k ? 0.01 : -0.01)), dem_vec3_make(0, 0, (dem_real)(k ? -1 : 1)));
     for (k = 0; k < 200; k++)
         dem_sphere_add(w, stuff, (dem_real)(k%2 ? 0.0015 : 0.002), dem_vec3_make((dem_real)(0.0045*(k%10 - 4.5)),
                        (dem_real)(0.0042*(k/40) - 0.008), (dem_real)(0.0045*(k/10%4 - 1.5))));
-    if (dem_world_step(w, 3000) != DEM_OK) { puts(dem_world_error(w)); return 1; }
-    printf("%016llx %d\n", (unsigned long long)dem_world_hash(w), dem_counters_get(w).contacts);
+    if (dem_world_step(w, 3000) != DEM_OK) { puts(dem_world_error_get(w)); return 1; }
+    printf("%016llx %d\n", (unsigned long long)dem_world_hash_get(w), dem_counters_get(w).contacts);
     dem_world_destroy(w);
     return 0;
 }

@@ -83,7 +83,7 @@ typedef struct fuzz_machine {
     int scene, bodies_gone, pairs_new;   /* scene: its version; what changed since the last step */
     int saved, saved_scene;           /* a file is there; the version it was written from */
     uint64_t saved_hash;
-    dem_balance dealt;                /* when slabs were created */
+    dem_body_counts dealt;                /* when slabs were created */
     /* of the call under way */
     uint64_t random, answer, before, rebuilds;
     int failed, refusable;            /* 1: refused; 1: then the hash must be as before */
@@ -144,7 +144,7 @@ static dem_body fuzz_body(fuzz_machine *m) {
     dem_body none;
     none.slot = none.generation = 0;
     if (!all.count) return none;
-    return dem_bodies_id(m->world, fuzz_below(m, all.count));
+    return dem_body_id_get(m->world, fuzz_below(m, all.count));
 }
 
 static void fuzz_say(fuzz_machine *m, const char *format, ...) {
@@ -182,12 +182,12 @@ static void fuzz_refused(fuzz_machine *m, const char *error) {
 }
 static int fuzz_result(fuzz_machine *m, dem_result r) {              /* 1: ok */
     fuzz_note_int(m, (int)r);
-    if (r != DEM_OK) fuzz_refused(m, dem_world_error(m->world));
+    if (r != DEM_OK) fuzz_refused(m, dem_world_error_get(m->world));
     return r == DEM_OK;
 }
 static int fuzz_id(fuzz_machine *m, int32_t id) {
     fuzz_note_int(m, id);
-    if (!id) fuzz_refused(m, dem_world_error(m->world));
+    if (!id) fuzz_refused(m, dem_world_error_get(m->world));
     else fuzz_say(m, " -> %d", (int)id);
     return id != 0;
 }
@@ -222,18 +222,18 @@ static void fuzz_intrude(void) {
     memset(&state, 0, sizeof state);
     wall.id = 1;
     what = what/17%9;
-    if ((what == 0 && dem_body_remove(w, dem_bodies_id(w, 0)) == DEM_OK) ||
+    if ((what == 0 && dem_body_remove(w, dem_body_id_get(w, 0)) == DEM_OK) ||
         (what == 1 && dem_world_gravity_set(w, dem_vec3_make(1, 2, 3)) == DEM_OK) ||
-        (what == 2 && dem_search_now(w) == DEM_OK) || (what == 3 && dem_wall_remove(w, wall) == DEM_OK) ||
+        (what == 2 && dem_candidates_rebuild(w) == DEM_OK) || (what == 3 && dem_wall_remove(w, wall) == DEM_OK) ||
         (what == 4 && dem_world_step(w, 1) == DEM_OK) || (what == 5 && dem_checkpoint_read(w, "none") == DEM_OK) ||
-        (what == 6 && dem_body_set(w, dem_bodies_id(w, 0), &state) == DEM_OK) ||
+        (what == 6 && dem_body_set(w, dem_body_id_get(w, 0), &state) == DEM_OK) ||
         (what == 7 && dem_world_run(w, 1e-5, 0, 0) == DEM_OK)) fuzz_fail("a function of the user's changed the world, way %d", what);
     if (what == 8) dem_world_destroy(w);
 }
 static double fuzz_number(const dem_world *w, dem_body body, void *user) {
     (void)user;
     fuzz_intrude();
-    return body.slot%7 ? (double)body.slot + dem_world_time(w) : (double)NAN;
+    return body.slot%7 ? (double)body.slot + dem_world_time_get(w) : (double)NAN;
 }
 static void fuzz_values(const dem_world *w, double *values, void *user) {
     (void)user;
@@ -331,7 +331,7 @@ static dem_world_desc fuzz_desc(fuzz_machine *m, int threads) {
     if (!fuzz_below(m, 3)) d.skin = fuzz_below(m, 3) ? DEM_R(3e-4) : DEM_R(-1);
     d.rotation = (dem_rotation)fuzz_below(m, 3);
     d.ellipsoid_overlap = (dem_overlap)fuzz_below(m, 3);
-    d.cluster_contacts = (dem_sharing)fuzz_below(m, 2);
+    d.cluster_contacts = (dem_cluster_contacts)fuzz_below(m, 2);
     d.orientations = !fuzz_below(m, 4);
     d.ledger = fuzz_below(m, 2);
     d.threads = threads;
@@ -362,7 +362,7 @@ static void fuzz_open(fuzz_machine *m, uint32_t seed, int threads) {
     d = fuzz_desc(m, threads);
     m->impulses = d.response == DEM_RESPONSE_IMPULSES;
     m->world = dem_world_create(&d);
-    if (!m->world) { fuzz_fail("%c: no world: %s", m->name, dem_create_error(&d)); return; }
+    if (!m->world) { fuzz_fail("%c: no world: %s", m->name, dem_world_create_error_get(&d)); return; }
     fuzz_say(m, "world: threads %d, gravity (%g 0 %g), domain %g..%g, boundary %d %d %d, planar %d, laws %d %d %d, "
              "tension %d, convention %d, own law %d, own force %d, integrator %d, dt %g, large %d, impact %g, "
              "search %d, skin %g, rotation %d, overlap %d, sharing %d, orientations %d, ledger %d, impulses %d, "
@@ -502,10 +502,10 @@ static void fuzz_plane(fuzz_machine *m) {
     p[axis] = (dem_real)(up ? fuzz_lo : fuzz_hi) + fuzz_real(m, -1e-4, 1e-4);
     n[axis] = up ? DEM_R(1) : DEM_R(-1);
     if (!fuzz_below(m, 4)) n[(axis + 1)%3] = fuzz_real(m, -0.05, 0.05);
-    fuzz_say(m, "dem_plane_add %d", (int)stuff.id);
+    fuzz_say(m, "dem_wall_plane_add %d", (int)stuff.id);
     fuzz_say_vector(m, "point", dem_vec3_make(p[0], p[1], p[2]));
     fuzz_say_vector(m, "normal", dem_vec3_make(n[0], n[1], n[2]));
-    fuzz_wall_new(m, dem_plane_add(m->world, stuff, dem_vec3_make(p[0], p[1], p[2]),
+    fuzz_wall_new(m, dem_wall_plane_add(m->world, stuff, dem_vec3_make(p[0], p[1], p[2]),
                                    dem_vec3_make(n[0], n[1], n[2])));
 }
 static void fuzz_cylinder(fuzz_machine *m) {
@@ -517,8 +517,8 @@ static void fuzz_cylinder(fuzz_machine *m) {
     for (k = 0; k < 3; k++) p[k] = (dem_real)(inside ? fuzz_all/2 : fuzz_lo - 0.001);
     {
         const dem_real r = inside ? fuzz_real(m, 0.0125, 0.014) : fuzz_real(m, 1e-3, 1.5e-3);
-        fuzz_say(m, "dem_cylinder_add %d axis %d radius %.9g inside %d", (int)stuff.id, axis, (double)r, inside);
-        fuzz_wall_new(m, dem_cylinder_add(m->world, stuff, dem_vec3_make(p[0], p[1], p[2]),
+        fuzz_say(m, "dem_wall_cylinder_add %d axis %d radius %.9g inside %d", (int)stuff.id, axis, (double)r, inside);
+        fuzz_wall_new(m, dem_wall_cylinder_add(m->world, stuff, dem_vec3_make(p[0], p[1], p[2]),
                                           dem_vec3_make(n[0], n[1], n[2]), r, inside));
     }
 }
@@ -532,9 +532,9 @@ static void fuzz_revolved(fuzz_machine *m) {
         radii[k] = fuzz_below(m, 5) ? fuzz_real(m, 0.009, 0.014) : 0;
         heights[k] = (dem_real)k*DEM_R(0.005);
     }
-    fuzz_say(m, "dem_revolved_add %d: %d rings", (int)stuff.id, n);
-    if (n > 2) fuzz_wall_new(m, dem_revolved_add(m->world, stuff, mid, dem_vec3_make(0, 0, 1), n, radii, heights));
-    else fuzz_wall_new(m, dem_cone_add(m->world, stuff, mid, dem_vec3_make(DEM_R(0.015), DEM_R(0.015), DEM_R(0.025)),
+    fuzz_say(m, "dem_wall_revolved_add %d: %d rings", (int)stuff.id, n);
+    if (n > 2) fuzz_wall_new(m, dem_wall_revolved_add(m->world, stuff, mid, dem_vec3_make(0, 0, 1), n, radii, heights));
+    else fuzz_wall_new(m, dem_wall_cone_add(m->world, stuff, mid, dem_vec3_make(DEM_R(0.015), DEM_R(0.015), DEM_R(0.025)),
                                        radii[0], radii[1]));
 }
 static void fuzz_profile(fuzz_machine *m) {
@@ -555,8 +555,8 @@ static void fuzz_profile(fuzz_machine *m) {
     profile.vertex_count = profile.segment_count = n;
     profile.vertices = v;
     profile.segments = s;
-    fuzz_say(m, "dem_profile_add %d: drum of %d segments, rule %d", (int)stuff.id, n, (int)rule);
-    fuzz_wall_new(m, dem_profile_add(m->world, stuff, &profile, rule));
+    fuzz_say(m, "dem_wall_profile_add %d: drum of %d segments, rule %d", (int)stuff.id, n, (int)rule);
+    fuzz_wall_new(m, dem_wall_profile_add(m->world, stuff, &profile, rule));
 }
 static void fuzz_mesh(fuzz_machine *m) {
     const dem_material stuff = fuzz_material(m);
@@ -583,8 +583,8 @@ static void fuzz_mesh(fuzz_machine *m) {
     mesh.triangle_count = 2*n*n;
     mesh.vertices = v;
     mesh.triangles = t;
-    fuzz_say(m, "dem_mesh_add %d: floor of %d by %d, bumps %g", (int)stuff.id, n, n, bump);
-    fuzz_wall_new(m, dem_mesh_add(m->world, stuff, &mesh));
+    fuzz_say(m, "dem_wall_mesh_add %d: floor of %d by %d, bumps %g", (int)stuff.id, n, n, bump);
+    fuzz_wall_new(m, dem_wall_mesh_add(m->world, stuff, &mesh));
 }
 static void fuzz_grains_wall(fuzz_machine *m) {
     const dem_material stuff = fuzz_material(m);
@@ -599,8 +599,8 @@ static void fuzz_grains_wall(fuzz_machine *m) {
     }
     {
         const dem_real share = fuzz_below(m, 2) ? DEM_R(1) : fuzz_real(m, 0.1, 1);
-        fuzz_say(m, "dem_grains_wall_add %d: %d by %d, radius %g, share %g", (int)stuff.id, n, n, r, (double)share);
-        fuzz_wall_new(m, dem_grains_wall_add(m->world, stuff, n*n, x, (dem_real)r, share));
+        fuzz_say(m, "dem_wall_grains_add %d: %d by %d, radius %g, share %g", (int)stuff.id, n, n, r, (double)share);
+        fuzz_wall_new(m, dem_wall_grains_add(m->world, stuff, n*n, x, (dem_real)r, share));
     }
 }
 static void fuzz_sieve(fuzz_machine *m) {
@@ -618,9 +618,9 @@ static void fuzz_sieve(fuzz_machine *m) {
     if (d.kind == DEM_SIEVE_ROUND) d.staggered = fuzz_below(m, 2);
     if (!fuzz_below(m, 3)) d.radius = DEM_R(0.012);
     if (d.kind == DEM_SIEVE_REDUCED) { d.model = fuzz_below(m, 3); d.clearance = fuzz_real(m, 0, 1); }
-    fuzz_say(m, "dem_sieve_add %d: kind %d, aperture %g, bar %g, radius %g", (int)stuff.id, (int)d.kind,
+    fuzz_say(m, "dem_wall_sieve_add %d: kind %d, aperture %g, bar %g, radius %g", (int)stuff.id, (int)d.kind,
              (double)d.aperture, (double)d.bar, (double)d.radius);
-    fuzz_wall_new(m, dem_sieve_add(m->world, stuff, &d));
+    fuzz_wall_new(m, dem_wall_sieve_add(m->world, stuff, &d));
 }
 static void fuzz_wall_motion(fuzz_machine *m) {
     const dem_wall wall = fuzz_wall(m);
@@ -646,10 +646,10 @@ static void fuzz_wall_motion(fuzz_machine *m) {
     d.amplitude = fuzz_real(m, 0, 5e-4);
     d.frequency = fuzz_real(m, 0, 200);
     d.phase = fuzz_real(m, 0, 6);
-    if (!fuzz_below(m, 3)) d.start = dem_world_time(m->world) + (double)fuzz_real(m, -1e-3, 1e-3);
+    if (!fuzz_below(m, 3)) d.start = dem_world_time_get(m->world) + (double)fuzz_real(m, -1e-3, 1e-3);
     d.function = fuzz_motion;
-    fuzz_say(m, "dem_wall_motion %d: kind %d, start %.9g", (int)wall.id, (int)d.kind, d.start);
-    fuzz_result(m, dem_wall_motion(m->world, wall, &d));
+    fuzz_say(m, "dem_wall_motion_set %d: kind %d, start %.9g", (int)wall.id, (int)d.kind, d.start);
+    fuzz_result(m, dem_wall_motion_set(m->world, wall, &d));
 }
 static void fuzz_wall_remove(fuzz_machine *m) {
     const dem_wall wall = fuzz_wall(m);
@@ -772,7 +772,7 @@ static void fuzz_fill(fuzz_machine *m) {
     const int count = 1 + fuzz_below(m, 120);
     const uint64_t seed = (uint64_t)fuzz_below(m, 100);
     fuzz_say(m, "dem_spheres_fill %d radius %.9g count %d", (int)stuff.id, (double)r, count);
-    fuzz_count(m, dem_spheres_fill(m->world, stuff, r, box, count, seed));
+    fuzz_count(m, dem_spheres_fill(m->world, stuff, r, dem_region_make(box), count, seed));
 }
 static void fuzz_pack(fuzz_machine *m) {
     const dem_material stuff = fuzz_material(m);
@@ -781,7 +781,8 @@ static void fuzz_pack(fuzz_machine *m) {
     const int inside = fuzz_below(m, 2), count = 1 + fuzz_below(m, 150);
     fuzz_say(m, "dem_spheres_pack %d radius %.9g padding %g inside %d count %d", (int)stuff.id, (double)r,
              (double)padding, inside, count);
-    fuzz_count(m, dem_spheres_pack(m->world, stuff, r, padding, box, inside ? fuzz_inside : 0, 0, count));
+    fuzz_count(m, dem_spheres_pack(m->world, stuff, r, padding,
+                                   dem_region_inside_make(box, inside ? fuzz_inside : 0, 0), count));
 }
 static void fuzz_body_add(fuzz_machine *m) {
     const dem_material stuff = fuzz_material(m);
@@ -822,7 +823,7 @@ static void fuzz_bodies_fill(fuzz_machine *m) {
     const int count = 1 + fuzz_below(m, 60);
     const uint64_t seed = (uint64_t)fuzz_below(m, 100);
     fuzz_say(m, "dem_bodies_fill %d shape %d count %d", (int)stuff.id, (int)shape.id, count);
-    fuzz_count(m, dem_bodies_fill(m->world, stuff, shape, box, count, seed));
+    fuzz_count(m, dem_bodies_fill(m->world, stuff, shape, dem_region_make(box), count, seed));
 }
 static void fuzz_body_set(fuzz_machine *m) {
     const dem_body b = fuzz_body(m);
@@ -854,7 +855,7 @@ static void fuzz_bodies_remove(fuzz_machine *m) {
     fuzz_say(m, "dem_body_remove: one of %d, from the last", every);
     for (i = dem_bodies_get(m->world).count - 1; i >= 0; i--) {
         if (fuzz_below(m, every) || i >= dem_bodies_get(m->world).count) continue;
-        if (!fuzz_result(m, dem_body_remove(m->world, dem_bodies_id(m->world, i)))) break;
+        if (!fuzz_result(m, dem_body_remove(m->world, dem_body_id_get(m->world, i)))) break;
         gone++;
     }
     if (gone) m->refusable = 0;
@@ -894,8 +895,8 @@ static void fuzz_joint_add(fuzz_machine *m) {
 static void fuzz_joint_change(fuzz_machine *m) {
     const dem_joint id = fuzz_joint(m);
     if (fuzz_below(m, 3)) {
-        fuzz_say(m, "dem_joint_motor %d", (int)id.id);
-        fuzz_result(m, dem_joint_motor(m->world, id, (dem_motor)fuzz_below(m, 3), fuzz_real(m, -50, 50),
+        fuzz_say(m, "dem_joint_motor_set %d", (int)id.id);
+        fuzz_result(m, dem_joint_motor_set(m->world, id, (dem_motor)fuzz_below(m, 3), fuzz_real(m, -50, 50),
                                        fuzz_real(m, 0, 1e-4)));
     } else {
         fuzz_say(m, "dem_joint_remove %d", (int)id.id);
@@ -911,9 +912,9 @@ static void fuzz_ran(fuzz_machine *m, dem_result r, uint64_t steps) {
     if (r == DEM_ERROR_TIME_STEP) m->refusable = 0;         /* also found out on the way */
     if (r == DEM_ERROR_ARGUMENT && m->feeds && fuzz_avoids.step_refused_after_feed) m->refusable = 0;
     /* a wall that moved grew longer than the period in the middle of a step */
-    if (r == DEM_ERROR_ARGUMENT && strstr(dem_world_error(m->world), "longer than the period"))
+    if (r == DEM_ERROR_ARGUMENT && strstr(dem_world_error_get(m->world), "longer than the period"))
         m->refusable = 0;
-    if (dem_world_steps(m->world) == steps) return;
+    if (dem_world_steps_get(m->world) == steps) return;
     if (r == DEM_OK) m->bodies_gone = 0;
     if (r == DEM_OK && dem_counters_get(m->world).rebuilds != m->rebuilds) m->pairs_new = 0;
 }
@@ -921,27 +922,27 @@ static void fuzz_step(fuzz_machine *m) {
     const int n = fuzz_below(m, 3) ? 1 + fuzz_below(m, 40) : fuzz_below(m, 3);
     fuzz_say(m, "dem_world_step %d", n);
     {
-        const uint64_t steps = dem_world_steps(m->world);
+        const uint64_t steps = dem_world_steps_get(m->world);
         fuzz_ran(m, dem_world_step(m->world, n), steps);
     }
 }
 static void fuzz_run(fuzz_machine *m) {
     const double used = (double)dem_counters_get(m->world).dt;
     dem_advice advice;
-    const dem_result known = dem_step_advice(m->world, &advice);    /* grains may be new since */
+    const dem_result known = dem_step_advice_get(m->world, &advice);    /* grains may be new since */
     const double dt = known == DEM_OK && (double)advice.dt < used ? (double)advice.dt : used;
     const double seconds = dt*(double)fuzz_real(m, 0.6, 30);
     fuzz_say(m, "dem_world_run %.17g", seconds);
     if (!(dt > 0)) { fuzz_say(m, " (no time step yet: left out)"); return; }
     {
-        const uint64_t steps = dem_world_steps(m->world);
+        const uint64_t steps = dem_world_steps_get(m->world);
         fuzz_ran(m, dem_world_run(m->world, seconds, fuzz_progress, 0), steps);
-        fuzz_say(m, " (%d steps)", (int)(dem_world_steps(m->world) - steps));
+        fuzz_say(m, " (%d steps)", (int)(dem_world_steps_get(m->world) - steps));
     }
 }
 static void fuzz_search(fuzz_machine *m) {
-    fuzz_say(m, "dem_search_now");
-    if (fuzz_result(m, dem_search_now(m->world))) m->bodies_gone = 0;
+    fuzz_say(m, "dem_candidates_rebuild");
+    if (fuzz_result(m, dem_candidates_rebuild(m->world))) m->bodies_gone = 0;
 }
 
 /* Makes a list, too, where there is none. */
@@ -978,7 +979,7 @@ static void fuzz_look_contacts(fuzz_machine *m) {
 static void fuzz_look_bodies(fuzz_machine *m) {
     const dem_bodies b = dem_bodies_get(m->world);
     const size_t n = (size_t)b.count, r = sizeof(dem_real);
-    const dem_balance balance = dem_balance_get(m->world);
+    const dem_body_counts balance = dem_body_counts_get(m->world);
     int i, k;
     fuzz_note(m, &balance, sizeof balance);
     fuzz_note_int(m, b.count);
@@ -1016,8 +1017,8 @@ static void fuzz_look_counts(fuzz_machine *m) {
     fuzz_note_int(m, (int)c.search); fuzz_note_int(m, c.domains);
     fuzz_note(m, &l, sizeof l);
     fuzz_note(m, &t, sizeof t);
-    fuzz_note_real(m, dem_world_time(m->world));
-    fuzz_note_int(m, (int)dem_step_advice(m->world, &a));
+    fuzz_note_real(m, dem_world_time_get(m->world));
+    fuzz_note_int(m, (int)dem_step_advice_get(m->world, &a));
     fuzz_note_real(m, (double)a.dt); fuzz_note_real(m, (double)a.dt_max); fuzz_note_real(m, (double)a.speed);
     fuzz_note_real(m, (double)a.contact_time); fuzz_note_real(m, (double)a.rayleigh);
     fuzz_note(m, a.binds, strlen(a.binds));
@@ -1059,9 +1060,9 @@ static void fuzz_look_walls(fuzz_machine *m) {
         fuzz_note_int(m, c.contacts);
         for (k = 0; k < 3; k++) fuzz_note_real(m, c.impulse[k]);
         fuzz_note_real(m, c.torque_impulse); fuzz_note_real(m, c.work); fuzz_note_real(m, c.time);
-        fuzz_note_int(m, (int)dem_wall_pose(m->world, id, &p));
+        fuzz_note_int(m, (int)dem_wall_pose_get(m->world, id, &p));
         fuzz_note(m, &p, sizeof p);
-        fuzz_note_int(m, dem_sieve_blinded(m->world, id, 0));
+        fuzz_note_int(m, dem_sieve_blinded_get(m->world, id, 0));
     }
     for (i = 1; i <= m->fields; i++) {
         dem_field id;
@@ -1089,12 +1090,12 @@ enum { FUZZ_PARTS = 5 };
 static const char *const fuzz_part_names[FUZZ_PARTS] = {"hash", "bodies in order", "contacts or candidates",
     "counters, ledger, totals, advice, feeds or outlets", "walls, fields or joints"};
 static void fuzz_look(fuzz_machine *m, uint64_t parts[FUZZ_PARTS]) {
-    parts[0] = dem_world_hash(m->world);
+    parts[0] = dem_world_hash_get(m->world);
     parts[1] = fuzz_part(m, fuzz_look_bodies);
     parts[2] = fuzz_part(m, fuzz_look_contacts);
     parts[3] = fuzz_part(m, fuzz_look_counts);
     parts[4] = fuzz_part(m, fuzz_look_walls);
-    if (parts[0] != dem_world_hash(m->world)) fuzz_fail("%c: looking changed the hash", m->name);
+    if (parts[0] != dem_world_hash_get(m->world)) fuzz_fail("%c: looking changed the hash", m->name);
 }
 /* For the reader of a failing program: the numbers that most often differ. */
 static void fuzz_show(const fuzz_machine *m) {
@@ -1102,7 +1103,7 @@ static void fuzz_show(const fuzz_machine *m) {
     const dem_ledger l = dem_ledger_get(m->world);
     dem_advice a;
     memset(&a, 0, sizeof a);
-    dem_step_advice(m->world, &a);
+    dem_step_advice_get(m->world, &a);
     printf("\n    %c: steps %d, rebuilds %d, candidates %d, contacts %d, wall contacts %d, overlap %.17g, speed %.17g, "
            "skin %.17g, dt %.17g, search %d, domains %d; stored %.17g %.17g %.17g, residual %.17g; advice %.17g (%s)",
            m->name, (int)c.steps, (int)c.rebuilds, c.candidates, c.contacts, c.wall_contacts, (double)c.overlap_max,
@@ -1147,9 +1148,9 @@ static void fuzz_resets(fuzz_machine *m) {
     const int what = fuzz_below(m, 4);
     field.id = m->fields ? 1 + fuzz_below(m, m->fields) : 1;
     outlet.id = m->outlets ? 1 + fuzz_below(m, m->outlets) : 1;
-    fuzz_say(m, what == 0 ? "dem_overlap_reset" : what == 1 ? "dem_wall_loads_reset" : what == 2 ?
+    fuzz_say(m, what == 0 ? "dem_overlap_max_reset" : what == 1 ? "dem_wall_loads_reset" : what == 2 ?
              "dem_field_reset" : "dem_outlet_reset");
-    if (what == 0) dem_overlap_reset(m->world);
+    if (what == 0) dem_overlap_max_reset(m->world);
     if (what == 1) fuzz_result(m, dem_wall_loads_reset(m->world, fuzz_wall(m)));
     if (what == 2) fuzz_result(m, dem_field_reset(m->world, field));
     if (what == 3) fuzz_result(m, dem_outlet_reset(m->world, outlet));
@@ -1175,7 +1176,7 @@ static void fuzz_files(fuzz_machine *m) {
     if (what == 1) r = dem_vtk_write(m->world, path);
     if (what == 2) r = dem_xyz_write(m->world, path);
     if (what == 3) r = dem_walls_vtp_write(m->world, path, 0, DEM_R(0.03));
-    if (what == 4) r = dem_wall_loads_csv(m->world, wall, path);
+    if (what == 4) r = dem_wall_loads_csv_write(m->world, wall, path);
     if (what == 5) r = moldyn_xb_append(&d, m->world, path, dem_box_make(0, 0, 0, 1, 1, 1));
     if (what == 6) r = moldyn_str_append(&d, m->world, path, 1e-3, 10, &wall, 1);
     if (what == 7) r = dem_surfaces_vtp_write(m->world, path);
@@ -1194,15 +1195,15 @@ static void fuzz_replay(fuzz_machine *m) {
     if (fuzz_below(m, 2)) d.interval = 2e-5;
     fuzz_say(m, "replay: number %d, interval %g", d.number_fn != 0, d.interval);
     film = dem_replay_open(m->world, path, &d);
-    if (!film) { fuzz_fail("%c: no replay: %s", m->name, dem_world_error(m->world)); return; }
+    if (!film) { fuzz_fail("%c: no replay: %s", m->name, dem_world_error_get(m->world)); return; }
     for (k = 0; k < 3 && r == DEM_OK; k++) {
-        dem_replay_value(film, "k", k);
-        dem_replay_frame(film);
+        dem_replay_value_set(film, "k", k);
+        dem_replay_frame_write(film);
         r = dem_world_step(m->world, 4);
     }
     m->unstable |= r == DEM_ERROR_UNSTABLE;
     if (r == DEM_OK) m->bodies_gone = m->pairs_new = 0;
-    if (dem_replay_close(film) != DEM_OK) fuzz_fail("%c: the replay does not close: %s", m->name, dem_world_error(m->world));
+    if (dem_replay_close(film) != DEM_OK) fuzz_fail("%c: the replay does not close: %s", m->name, dem_world_error_get(m->world));
     fuzz_note_int(m, (int)r);
     remove(path);
 }
@@ -1245,7 +1246,7 @@ static void fuzz_moldyn(fuzz_machine *m) {
 /* ---- calls: slabs ---- */
 static void fuzz_slabs_error(fuzz_machine *m, dem_result r) {
     fuzz_note_int(m, (int)r);
-    if (r != DEM_OK) fuzz_refused(m, dem_slabs_error(m->slabs));
+    if (r != DEM_OK) fuzz_refused(m, dem_slabs_error_get(m->slabs));
 }
 static void fuzz_slabs_create(fuzz_machine *m) {
     dem_slabs_desc d = DEM_SLABS_DESC;
@@ -1255,7 +1256,7 @@ static void fuzz_slabs_create(fuzz_machine *m) {
     fuzz_say(m, "dem_slabs_create: axis %d, count %d", d.axis, d.count);
     if (m->slabs) dem_slabs_destroy(m->slabs);
     m->slabs = dem_slabs_create(m->world, &d);
-    m->dealt = dem_balance_get(m->world);
+    m->dealt = dem_body_counts_get(m->world);
     fuzz_id(m, m->slabs != 0);
 }
 static void fuzz_slabs_step(fuzz_machine *m) {
@@ -1275,14 +1276,14 @@ static void fuzz_slabs_collect(fuzz_machine *m) {
     fuzz_say(m, "dem_slabs_collect");
     if (!m->slabs) { fuzz_say(m, " (no slabs: left out)"); return; }
     {
-        const dem_balance now = dem_balance_get(m->world);
+        const dem_body_counts now = dem_body_counts_get(m->world);
         if (fuzz_avoids.slabs_collect_changed && memcmp(&now, &m->dealt, sizeof now)) {
             fuzz_say(m, " (avoided)");
             return;
         }
     }
     fuzz_slabs_error(m, dem_slabs_collect(m->slabs, m->world));
-    m->dealt = dem_balance_get(m->world);
+    m->dealt = dem_body_counts_get(m->world);
     if (!m->failed) m->bodies_gone = 1;         /* the world has no list now */
 }
 
@@ -1300,7 +1301,7 @@ static void fuzz_save(fuzz_machine *m) {
     if (!fuzz_result(m, dem_checkpoint_write(m->world, path))) return;
     m->saved = 1;
     m->saved_scene = m->scene;
-    m->saved_hash = dem_world_hash(m->world);
+    m->saved_hash = dem_world_hash_get(m->world);
 }
 static void fuzz_restore(fuzz_machine *m) {
     char path[200];
@@ -1309,11 +1310,11 @@ static void fuzz_restore(fuzz_machine *m) {
     if (fuzz_avoids.checkpoint_oriented_reader && m->shapes) { fuzz_say(m, " (avoided)"); return; }
     fuzz_path(".kept", m->name == 'B' ? 'B' : 'A', path);
     if (fuzz_result(m, dem_checkpoint_read(m->world, path))) {
-        if (dem_world_hash(m->world) != m->saved_hash)
+        if (dem_world_hash_get(m->world) != m->saved_hash)
             fuzz_fail("%c: a kept checkpoint gives another hash", m->name);
         m->bodies_gone = m->pairs_new = 0;
     } else if (m->scene == m->saved_scene && !m->memory->refused)
-        fuzz_fail("%c: a kept checkpoint of the same scene is refused: %s", m->name, dem_world_error(m->world));
+        fuzz_fail("%c: a kept checkpoint of the same scene is refused: %s", m->name, dem_world_error_get(m->world));
 }
 /* A byte of a good file is changed, or its end is missing. */
 static void fuzz_damaged(fuzz_machine *m) {
@@ -1338,7 +1339,7 @@ static void fuzz_damaged(fuzz_machine *m) {
         const dem_result r = dem_checkpoint_read(m->world, bad);   /* the sentence names the file */
         fuzz_note_int(m, (int)r);
         m->failed = m->refusable = r != DEM_OK;
-        if (r != DEM_OK && !*dem_world_error(m->world)) fuzz_fail("%c: refused without a sentence", m->name);
+        if (r != DEM_OK && !*dem_world_error_get(m->world)) fuzz_fail("%c: refused without a sentence", m->name);
     }
     remove(path);
     remove(bad);
@@ -1347,7 +1348,7 @@ static void fuzz_damaged(fuzz_machine *m) {
 /* ---- calls: bad ones ---- */
 static void fuzz_refused_count(fuzz_machine *m, int count) {
     fuzz_note_int(m, count);
-    if (count <= 0) fuzz_refused(m, dem_world_error(m->world));
+    if (count <= 0) fuzz_refused(m, dem_world_error_get(m->world));
 }
 static void fuzz_bad_grain(fuzz_machine *m) {
     static const dem_real spot[3] = {0, 0, 0};
@@ -1378,10 +1379,10 @@ static void fuzz_bad_grain(fuzz_machine *m) {
     case 4: fuzz_result(m, dem_body_remove(m->world, body)); break;
     case 5: fuzz_result(m, dem_body_get(m->world, body, &state)); break;
     case 6: fuzz_result(m, dem_body_set(m->world, body, &state)); break;
-    case 7: fuzz_refused_count(m, dem_spheres_fill(m->world, stuff, bad, box, 10, 1)); break;
-    case 8: fuzz_refused_count(m, dem_spheres_fill(m->world, stuff, DEM_R(1e-3), turned, 10, 1)); break;
-    case 9: fuzz_refused_count(m, dem_spheres_pack(m->world, stuff, bad, 0, box, 0, 0, 10)); break;
-    case 10: fuzz_refused_count(m, dem_spheres_pack(m->world, stuff, DEM_R(1e-3), -1, box, 0, 0, 10)); break;
+    case 7: fuzz_refused_count(m, dem_spheres_fill(m->world, stuff, bad, dem_region_make(box), 10, 1)); break;
+    case 8: fuzz_refused_count(m, dem_spheres_fill(m->world, stuff, DEM_R(1e-3), dem_region_make(turned), 10, 1)); break;
+    case 9: fuzz_refused_count(m, dem_spheres_pack(m->world, stuff, bad, 0, dem_region_make(box), 10)); break;
+    case 10: fuzz_refused_count(m, dem_spheres_pack(m->world, stuff, DEM_R(1e-3), -1, dem_region_make(box), 10)); break;
     case 11: fuzz_id(m, dem_shape_ellipsoid_add(m->world, dem_vec3_make(DEM_R(1e-3), DEM_R(1e-3), bad)).id); break;
     case 12: fuzz_id(m, dem_shape_cluster_add(m->world, &cluster).id); break;
     case 13: fuzz_id(m, (int32_t)dem_body_add(m->world, stuff, shape, at0, dem_quat_make(1, 0, 0, 0)).slot); break;
@@ -1414,27 +1415,27 @@ static void fuzz_bad_wall(fuzz_machine *m) {
     sieve.kind = DEM_SIEVE_WIRES;
     sieve.aperture = sieve.bar = DEM_R(1e-3);
     switch (what) {
-    case 0: fuzz_id(m, dem_plane_add(m->world, stuff, zero, zero).id); break;
-    case 1: fuzz_id(m, dem_plane_add(m->world, none, zero, up).id); break;
-    case 2: fuzz_id(m, dem_plane_add(m->world, stuff, dem_vec3_make((dem_real)NAN, 0, 0), up).id); break;
-    case 3: fuzz_id(m, dem_cylinder_add(m->world, stuff, zero, up, bad, 1).id); break;
-    case 4: fuzz_id(m, dem_cylinder_add(m->world, stuff, zero, zero, 1, 1).id); break;
-    case 5: fuzz_id(m, dem_mesh_add(m->world, stuff, &mesh).id); break;
-    case 6: t[2] = 2; v[4] = (dem_real)NAN; fuzz_id(m, dem_mesh_add(m->world, stuff, &mesh).id); break;
-    case 7: fuzz_id(m, dem_profile_add(m->world, stuff, &profile, DEM_EDGE_RESOLVED).id); break;
-    case 8: fuzz_id(m, dem_grains_wall_add(m->world, stuff, 1, v, bad, 1).id); break;
-    case 9: fuzz_id(m, dem_grains_wall_add(m->world, stuff, 1, v, 1, fuzz_below(m, 2) ? 2 : bad).id); break;
-    case 10: sieve.aperture = bad; fuzz_id(m, dem_sieve_add(m->world, stuff, &sieve).id); break;
+    case 0: fuzz_id(m, dem_wall_plane_add(m->world, stuff, zero, zero).id); break;
+    case 1: fuzz_id(m, dem_wall_plane_add(m->world, none, zero, up).id); break;
+    case 2: fuzz_id(m, dem_wall_plane_add(m->world, stuff, dem_vec3_make((dem_real)NAN, 0, 0), up).id); break;
+    case 3: fuzz_id(m, dem_wall_cylinder_add(m->world, stuff, zero, up, bad, 1).id); break;
+    case 4: fuzz_id(m, dem_wall_cylinder_add(m->world, stuff, zero, zero, 1, 1).id); break;
+    case 5: fuzz_id(m, dem_wall_mesh_add(m->world, stuff, &mesh).id); break;
+    case 6: t[2] = 2; v[4] = (dem_real)NAN; fuzz_id(m, dem_wall_mesh_add(m->world, stuff, &mesh).id); break;
+    case 7: fuzz_id(m, dem_wall_profile_add(m->world, stuff, &profile, DEM_EDGE_RESOLVED).id); break;
+    case 8: fuzz_id(m, dem_wall_grains_add(m->world, stuff, 1, v, bad, 1).id); break;
+    case 9: fuzz_id(m, dem_wall_grains_add(m->world, stuff, 1, v, 1, fuzz_below(m, 2) ? 2 : bad).id); break;
+    case 10: sieve.aperture = bad; fuzz_id(m, dem_wall_sieve_add(m->world, stuff, &sieve).id); break;
     case 11:
         memcpy(&sieve.kind, unknown, sizeof sieve.kind);
-        fuzz_id(m, dem_sieve_add(m->world, stuff, &sieve).id);
+        fuzz_id(m, dem_wall_sieve_add(m->world, stuff, &sieve).id);
         break;
-    case 12: fuzz_result(m, dem_wall_motion(m->world, wall, &motion)); break;
-    case 13: fuzz_result(m, dem_wall_pose(m->world, wall, &pose)); break;
+    case 12: fuzz_result(m, dem_wall_motion_set(m->world, wall, &motion)); break;
+    case 13: fuzz_result(m, dem_wall_pose_get(m->world, wall, &pose)); break;
     case 14: fuzz_result(m, dem_wall_loads_get(m->world, wall, &loads)); break;
     default:
         motion.kind = fuzz_below(m, 2) ? DEM_MOTION_USER : DEM_MOTION_ROTATING;   /* no function, no axis */
-        fuzz_result(m, dem_wall_motion(m->world, fuzz_wall(m), &motion));
+        fuzz_result(m, dem_wall_motion_set(m->world, fuzz_wall(m), &motion));
     }
 }
 static void fuzz_bad_rest(fuzz_machine *m) {
@@ -1529,11 +1530,13 @@ static void fuzz_unusable(fuzz_machine *m) {
     switch (what) {
     case 0: fuzz_id(m, (int32_t)dem_sphere_add(m->world, stuff, small, x).slot); break;
     case 1: fuzz_id(m, (int32_t)dem_sphere_add(m->world, stuff, large, x).slot); break;
-    case 2: fuzz_id(m, dem_profile_add(m->world, stuff, &profile, rule).id); break;
+    case 2: fuzz_id(m, dem_wall_profile_add(m->world, stuff, &profile, rule).id); break;
     case 3: fuzz_id(m, dem_shape_cluster_add(m->world, &cluster).id); break;
     case 4: fuzz_result(m, dem_spheres_add(m->world, stuff, -1, spot, 0, 0, DEM_R(1e-3))); break;
-    case 5: fuzz_refused_count(m, dem_spheres_fill(m->world, stuff, DEM_R(1e-3), fuzz_box(m), -1, 1)); break;
-    default: fuzz_refused_count(m, dem_spheres_pack(m->world, stuff, DEM_R(1e-3), 0, fuzz_box(m), 0, 0, -1));
+    case 5: fuzz_refused_count(m, dem_spheres_fill(m->world, stuff, DEM_R(1e-3), dem_region_make(fuzz_box(m)),
+                                                   -1, 1)); break;
+    default: fuzz_refused_count(m, dem_spheres_pack(m->world, stuff, DEM_R(1e-3), 0,
+                                                    dem_region_make(fuzz_box(m)), -1));
     }
 }
 /* Null pointers where something is needed: answered, and nothing happens. */
@@ -1550,12 +1553,12 @@ static void fuzz_null(fuzz_machine *m) {
     case 2: fuzz_result(m, dem_pair_set(m->world, stuff, stuff, 0)); break;
     case 3: fuzz_result(m, dem_spheres_add(m->world, stuff, 1, 0, 0, 0, DEM_R(1e-3))); break;
     case 4: fuzz_id(m, dem_shape_cluster_add(m->world, 0).id); break;
-    case 5: fuzz_id(m, dem_mesh_add(m->world, stuff, 0).id); break;
-    case 6: fuzz_id(m, dem_profile_add(m->world, stuff, 0, DEM_EDGE_RESOLVED).id); break;
-    case 7: fuzz_id(m, dem_grains_wall_add(m->world, stuff, 1, 0, DEM_R(1e-3), 1).id); break;
-    case 8: fuzz_id(m, dem_sieve_add(m->world, stuff, 0).id); break;
-    case 9: fuzz_result(m, dem_wall_motion(m->world, wall, 0)); break;
-    case 10: fuzz_result(m, dem_wall_pose(m->world, wall, 0)); break;
+    case 5: fuzz_id(m, dem_wall_mesh_add(m->world, stuff, 0).id); break;
+    case 6: fuzz_id(m, dem_wall_profile_add(m->world, stuff, 0, DEM_EDGE_RESOLVED).id); break;
+    case 7: fuzz_id(m, dem_wall_grains_add(m->world, stuff, 1, 0, DEM_R(1e-3), 1).id); break;
+    case 8: fuzz_id(m, dem_wall_sieve_add(m->world, stuff, 0).id); break;
+    case 9: fuzz_result(m, dem_wall_motion_set(m->world, wall, 0)); break;
+    case 10: fuzz_result(m, dem_wall_pose_get(m->world, wall, 0)); break;
     case 11: fuzz_result(m, dem_wall_loads_get(m->world, wall, 0)); break;
     case 12: fuzz_id(m, dem_feed_add(m->world, 0).id); break;
     case 13: fuzz_id(m, dem_outlet_add(m->world, 0).id); break;
@@ -1566,12 +1569,12 @@ static void fuzz_null(fuzz_machine *m) {
     case 18: fuzz_result(m, dem_checkpoint_read(m->world, 0)); break;
     default:                                    /* no world at all */
         m->must_fail = 0;
-        if (dem_world_step(0, 1) == DEM_OK || dem_world_run(0, 1, 0, 0) == DEM_OK || dem_search_now(0) == DEM_OK ||
-            dem_plane_add(0, stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id ||
+        if (dem_world_step(0, 1) == DEM_OK || dem_world_run(0, 1, 0, 0) == DEM_OK || dem_candidates_rebuild(0) == DEM_OK ||
+            dem_wall_plane_add(0, stuff, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1)).id ||
             dem_sphere_add(0, stuff, 1, dem_vec3_make(0, 0, 0)).slot || dem_vtp_write(0, "x") == DEM_OK ||
-            dem_bodies_get(0).count || dem_world_time(0) > 0 || dem_contacts_get(0, 0, 0) > 0)
+            dem_bodies_get(0).count || dem_world_time_get(0) > 0 || dem_contacts_get(0, 0, 0) > 0)
             fuzz_fail("%c: a null world was accepted", m->name);
-        dem_world_hash(0);
+        dem_world_hash_get(0);
         dem_world_report(0, 0);
         dem_world_destroy(0);
     }
@@ -1684,21 +1687,21 @@ static void fuzz_call(fuzz_machine *m, const unsigned char *bytes) {
     m->random = fuzz_seed(bytes);
     m->answer = UINT64_C(14695981039346656037);
     m->failed = m->refusable = m->must_fail = 0;
-    m->before = dem_world_hash(m->world);
+    m->before = dem_world_hash_get(m->world);
     m->rebuilds = dem_counters_get(m->world).rebuilds;
     fuzz_calling = kind->play == fuzz_slabs_create || kind->play == fuzz_slabs_step ||
         kind->play == fuzz_slabs_collect ? 0 : m->world;
     kind->play(m);
     fuzz_calling = 0;
     if (m->memory->refused && fuzz_avoids.memory_refused_hash) m->refusable = 0;
-    if (m->failed && m->refusable && dem_world_hash(m->world) != m->before)
-        fuzz_fail("%c: %s was refused and changed the hash: %s", m->name, kind->name, dem_world_error(m->world));
+    if (m->failed && m->refusable && dem_world_hash_get(m->world) != m->before)
+        fuzz_fail("%c: %s was refused and changed the hash: %s", m->name, kind->name, dem_world_error_get(m->world));
     {
         const int domains = dem_counters_get(m->world).domains;
         if (domains > m->domains_most) m->domains_most = domains;
     }
     if (m->must_fail && !m->failed) fuzz_fail("%c: %s was accepted", m->name, kind->name);
-    dem_world_error(m->world);                  /* read: a refusal does not keep runs from beginning */
+    dem_world_error_get(m->world);                  /* read: a refusal does not keep runs from beginning */
 }
 /* A fresh world with the scene of a; with != 0: and what bodies were added, anyhow. */
 static int fuzz_fresh(fuzz_game *g, fuzz_machine *f, int threads, int with) {
@@ -1719,7 +1722,7 @@ static int fuzz_fresh(fuzz_game *g, fuzz_machine *f, int threads, int with) {
             fuzz_call(f, bytes);
             if (!k && f->failed)
                 fuzz_fail("F: %s was accepted in A and is refused in a fresh world: %s",
-                          fuzz_kinds[fuzz_kind_of(bytes[0])].name, dem_world_error(f->world));
+                          fuzz_kinds[fuzz_kind_of(bytes[0])].name, dem_world_error_get(f->world));
         }
     f->domains_most = g->a.domains_most;
     f->joints = g->a.joints;
@@ -1749,27 +1752,27 @@ static void fuzz_checkpoint(fuzz_game *g, const unsigned char *bytes) {
     if (fuzz_checkpoint_avoided(a)) { fuzz_say(a, "    (avoided)\n"); return; }
     fuzz_path(".ckpt", 'A', path);
     if (dem_checkpoint_write(writer->world, path) != DEM_OK) {
-        if (a->unstable) { fuzz_say(a, "    (refused: %s)\n", dem_world_error(writer->world)); return; }
-        fuzz_fail("%c: dem_checkpoint_write: %s", writer->name, dem_world_error(writer->world));
+        if (a->unstable) { fuzz_say(a, "    (refused: %s)\n", dem_world_error_get(writer->world)); return; }
+        fuzz_fail("%c: dem_checkpoint_write: %s", writer->name, dem_world_error_get(writer->world));
         return;
     }
     if (which & 2) {
         if (dem_checkpoint_read(a->world, path) != DEM_OK)
-            fuzz_fail("A: does not read its own checkpoint: %s", dem_world_error(a->world));
+            fuzz_fail("A: does not read its own checkpoint: %s", dem_world_error_get(a->world));
         else fuzz_same(a, b, "when A has read the checkpoint back");
     }
     if (fuzz_wrong[0] || !fuzz_fresh(g, &fresh, threads, which >> 2 & 1 &
                                      !(fuzz_avoids.checkpoint_oriented_reader && a->shapes))) return;
     if (!fuzz_wrong[0] && dem_checkpoint_read(fresh.world, path) != DEM_OK)
-        fuzz_fail("F: a fresh world with the same scene refuses the checkpoint: %s", dem_world_error(fresh.world));
+        fuzz_fail("F: a fresh world with the same scene refuses the checkpoint: %s", dem_world_error_get(fresh.world));
     if (!fuzz_wrong[0]) fuzz_same(&fresh, b, "when a fresh world has read the checkpoint");
     for (i = 0; i < (one_by_one ? 20 : 2) && !fuzz_wrong[0]; i++) {
         ra = dem_world_step(a->world, one_by_one ? 1 : 10);
         rb = dem_world_step(b->world, one_by_one ? 1 : 10);
         rf = dem_world_step(fresh.world, one_by_one ? 1 : 10);
-        if (ra != rb || ra != rf || (ra != DEM_OK && strcmp(dem_world_error(b->world), dem_world_error(fresh.world))))
-            fuzz_fail("step %d after the checkpoint: A %s, B %s, F %s; %s", i, dem_result_name(ra), dem_result_name(rb),
-                      dem_result_name(rf), dem_world_error(ra != DEM_OK ? a->world : fresh.world));
+        if (ra != rb || ra != rf || (ra != DEM_OK && strcmp(dem_world_error_get(b->world), dem_world_error_get(fresh.world))))
+            fuzz_fail("step %d after the checkpoint: A %s, B %s, F %s; %s", i, dem_result_name_get(ra), dem_result_name_get(rb),
+                      dem_result_name_get(rf), dem_world_error_get(ra != DEM_OK ? a->world : fresh.world));
         if (ra == DEM_OK) a->bodies_gone = b->bodies_gone = 0;
         if (dem_counters_get(b->world).domains > a->domains_most)
             a->domains_most = b->domains_most = dem_counters_get(b->world).domains;
@@ -1823,12 +1826,12 @@ static void fuzz_turn_of(fuzz_game *g, const unsigned char *bytes) {
         fuzz_call(b, bytes);
         if (a->answer != b->answer || a->failed != b->failed)
             fuzz_fail("A and B answer differently to: %s (%s; %s)", kind->name,
-                      a->failed ? dem_world_error(a->world) : "ok", b->failed ? dem_world_error(b->world) : "ok");
+                      a->failed ? dem_world_error_get(a->world) : "ok", b->failed ? dem_world_error_get(b->world) : "ok");
     }
     if (kind->flags & FUZZ_SCENE && !a->failed) { a->scene++; b->scene++; }
     g->done[g->now] = (unsigned char)!a->failed;
     if (!g->quiet) fuzz_same(a, b, "after the call");
-    else if (dem_world_hash(a->world) != dem_world_hash(b->world)) fuzz_fail("A and B differ after the call: hash");
+    else if (dem_world_hash_get(a->world) != dem_world_hash_get(b->world)) fuzz_fail("A and B differ after the call: hash");
 }
 /* 0: all as it should be; else fuzz_wrong says what is not, and *at where. */
 static int fuzz_run_program(const unsigned char *bytes, size_t size, int printing, int *at) {

@@ -34,8 +34,8 @@ static dem_world *scene(int steps, int remove) {
     stuff.density = 2500; stuff.young = DEM_R(1e6); stuff.poisson = DEM_R(0.25);
     stuff.restitution = stuff.friction = DEM_R(0.5);
     glass = dem_material_add(world, &stuff);
-    dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-    dem_mesh_add(world, glass, &mesh);
+    dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_wall_mesh_add(world, glass, &mesh);
     two.count = 2; two.positions = centres; two.radius = DEM_R(6e-4);
     pair = dem_shape_cluster_add(world, &two);
     for (i = 0; i < 20; i++) {
@@ -57,7 +57,7 @@ static dem_world *scene(int steps, int remove) {
     for (i = 0; i < 3; i++) field.cells[i] = 2;
     dem_field_add(world, &field);
     if (dem_world_step(world, steps) != DEM_OK) abort();
-    if (remove) dem_body_remove(world, dem_bodies_id(world, 3));
+    if (remove) dem_body_remove(world, dem_body_id_get(world, 3));
     return world;
 }
 static good make(int state) {
@@ -114,13 +114,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     world = scene(1, 0);
     if (!world) abort();
     result = demi_checkpoint_parse(world, "fuzz", bad, bytes);
-    if (result != DEM_OK && !dem_world_error(world)[0]) abort();
-    if (result != DEM_OK && dem_world_steps(world) != 1) abort();
-    dem_world_hash(world);
+    if (result != DEM_OK && !dem_world_error_get(world)[0]) abort();
+    if (result != DEM_OK && dem_world_steps_get(world) != 1) abort();
+    dem_world_hash_get(world);
     dem_contacts_get(world, 0, 0);
     result = dem_world_step(world, 20);
     if (result == DEM_OK) {
-        dem_world_hash(world);
+        dem_world_hash_get(world);
         dem_contacts_get(world, 0, 0);
     }
     dem_world_destroy(world);

@@ -22,7 +22,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         if (grains.count < 0 || !grains.positions || !grains.radii) abort();
         for (i = 0; i < grains.count; i++) if (!(grains.radii[i] > 0)) abort();
         dem_grains_add(world, stuff, &grains);      /* may refuse what is too large */
-    } else if (grains.positions || grains.count || !dem_world_error(world)[0]) abort();
+    } else if (grains.positions || grains.count || !dem_world_error_get(world)[0]) abort();
     dem_grains_free(world, &grains);
     dem_world_destroy(world);
     return 0;

@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             if (mesh.triangles[i] < 0 || mesh.triangles[i] >= mesh.vertex_count) abort();
         for (i = 0; i < 3*mesh.vertex_count; i++)
             if (!(mesh.vertices[i] >= DEM_R(-1.01e15) && mesh.vertices[i] <= DEM_R(1.01e15))) abort();
-    } else if (mesh.vertices || mesh.triangles || !dem_world_error(world)[0]) abort();
+    } else if (mesh.vertices || mesh.triangles || !dem_world_error_get(world)[0]) abort();
     dem_mesh_free(world, &mesh);
     dem_world_destroy(world);
     return 0;

@@ -20,7 +20,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             if (profile.segments[i] < 0 || profile.segments[i] >= profile.vertex_count) abort();
         for (i = 0; i < 2*profile.vertex_count; i++)
             if (!(profile.vertices[i] >= DEM_R(-1.01e15) && profile.vertices[i] <= DEM_R(1.01e15))) abort();
-    } else if (profile.vertices || profile.segments || !dem_world_error(world)[0]) abort();
+    } else if (profile.vertices || profile.segments || !dem_world_error_get(world)[0]) abort();
     dem_profile_free(world, &profile);
     dem_world_destroy(world);
     return 0;

@@ -55,8 +55,8 @@ static void serves(dem_world_desc desc, const char *name) {
     CHECK_EQ(scene_step(b, 1000), DEM_OK);
     CHECK_EQ(dem_checkpoint_read(c, path), DEM_OK);
     CHECK_EQ(scene_step(c, 1000), DEM_OK);
-    CHECK(dem_world_hash(a) == dem_world_hash(b));
-    CHECK(dem_world_hash(a) == dem_world_hash(c));
+    CHECK(dem_world_hash_get(a) == dem_world_hash_get(b));
+    CHECK(dem_world_hash_get(a) == dem_world_hash_get(c));
     CHECK(file != 0);
     if (file) {
         dem_world_report(a, file);
@@ -84,7 +84,7 @@ static double bounce(dem_world_desc desc, double speed) {
     dem_pair_get(world, m, m, &pair);
     pair.normal_damping = 10;
     dem_pair_set(world, m, m, &pair);
-    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     ball = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.01));
     scene_move(world, ball, at(0, 0, -speed), at(0, 0, 0));
     scene_step(world, 400);
@@ -112,8 +112,8 @@ static void rods_bounce(void) {
     m = scene_material(world, 1e7, 1, 0, 0);
     rod = dem_shape_capsule_add(world, DEM_R(0.01), DEM_R(0.004));
     CHECK(rod.id == 1);
-    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-    dem_plane_add(world, m, at(0, 0, 0.06), at(0, 0, -1));
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, m, at(0, 0, 0.06), at(0, 0, -1));
     body[0] = dem_body_add(world, m, rod, at(0, 0, 0.03), dem_quat_make(1, DEM_R(0.3), DEM_R(0.2), 0));
     body[1] = dem_body_add(world, m, rod, at(1, 0, 0.03), dem_quat_make(1, 0, 0, 0));
     body[2] = dem_body_add(world, m, rod, at(1.03, 0.007, 0.028), dem_quat_make(1, 1, DEM_R(0.2), 0));
@@ -175,9 +175,9 @@ static void rods_rest(void) {
         two.radius = DEM_R(0.005);
         shape[0] = dem_shape_capsule_add(world, DEM_R(0.006), DEM_R(0.004));
         shape[1] = dem_shape_cluster_add(world, &two);
-        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
         for (i = 0; i < 4; i++)
-            dem_plane_add(world, m, at(i == 0 ? -0.02 : i == 1 ? 0.06 : 0, i == 2 ? -0.02 : i == 3 ? 0.06 : 0, 0),
+            dem_wall_plane_add(world, m, at(i == 0 ? -0.02 : i == 1 ? 0.06 : 0, i == 2 ? -0.02 : i == 3 ? 0.06 : 0, 0),
                           at(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, 0));
         for (i = 0; i < 36; i++) {
             const dem_vec3 x = at(0.02*(i%3), 0.02*(i/3%3), 0.012 + 0.02*(i/9));
@@ -188,7 +188,7 @@ static void rods_rest(void) {
         if (run == 1) CHECK_EQ(dem_checkpoint_write(world, path), DEM_OK);
         if (run == 2) CHECK_EQ(dem_checkpoint_read(world, path), DEM_OK);
         CHECK_EQ(dem_world_run(world, 0.9, 0, 0), DEM_OK);
-        hash[run] = dem_world_hash(world);
+        hash[run] = dem_world_hash_get(world);
         CHECK(dem_counters_get(world).contacts > 20);
         CHECK(energy_of_motion(world) < 1e-5);    /* it fell by some 2e-2 J */
         for (i = 0; i < 36; i++) CHECK(demi_at(world->bodies.pos + 4*i).z > DEM_R(0.0039));
@@ -203,14 +203,14 @@ static void rods_refused(void) {
     dem_material m = scene_material(world, 1e6, 0.5, 0, 0);
     dem_shape rod;
     CHECK_EQ(dem_shape_capsule_add(world, 0, 1).id, 0);
-    CHECK_STR(dem_world_error(world), "half_length is 0");
+    CHECK_STR(dem_world_error_get(world), "half_length is 0");
     rod = dem_shape_capsule_add(world, DEM_R(0.01), DEM_R(0.004));
     CHECK_EQ(dem_shape_ellipsoid_add(world, at(1, 2, 3)).id, 0);
-    CHECK_STR(dem_world_error(world), "dem_shape_ellipsoid_add: shape 2, an ellipsoid, and shape 1, a capsule, do not "
+    CHECK_STR(dem_world_error_get(world), "dem_shape_ellipsoid_add: shape 2, an ellipsoid, and shape 1, a capsule, do not "
                                       "know each other");
     scene_floor(world, m, -0.1, -0.1, 0.1, 0.1, 3, 3);
     CHECK_EQ(dem_body_add(world, m, rod, at(0, 0, 1), dem_quat_make(1, 0, 0, 0)).slot, 0);
-    CHECK_STR(dem_world_error(world), "wall 1 is a mesh and the body a capsule");
+    CHECK_STR(dem_world_error_get(world), "wall 1 is a mesh and the body a capsule");
     dem_world_destroy(world);
 }
 
@@ -235,7 +235,7 @@ int main(int argc, char **argv) {
         desc.gravity.z = DEM_R(-9.81);
         world = dem_world_create(&desc);
         m = scene_material(world, 1e6, 0.5, 0.3, 0);
-        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
         ball = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.01));
         scene_move(world, ball, at(0.5, 0, 0), at(0, 0, 0));
         CHECK_EQ(dem_world_run(world, 0.2, 0, 0), DEM_OK);
@@ -272,8 +272,8 @@ int main(int argc, char **argv) {
             CHECK_EQ(dem_world_run(world, 3.14159265358979*sqrt(1.4*length/9.81) - 0.5, 0, 0),
                      DEM_OK);
             CHECK_REL(scene_state(world, ball).position.x, -length*sin(start), 0.02);
-            hash[k] = dem_world_hash(world);
-            CHECK_EQ(dem_wall_pose(world, shell, &pose), DEM_OK);
+            hash[k] = dem_world_hash_get(world);
+            CHECK_EQ(dem_wall_pose_get(world, shell, &pose), DEM_OK);
             CHECK_NEAR(pose.position.z, 1, 1e-12);
             dem_world_destroy(world);
         }
@@ -286,13 +286,13 @@ int main(int argc, char **argv) {
             two.radius = DEM_R(0.005);
             m = scene_material(world, 1e6, 0.3, 0.5, 0.1);
             CHECK_EQ(dem_shell_add(world, m, at(0, 0, 1), 0).id, 0);
-            CHECK_STR(dem_world_error(world), "dem_shell_add: radius is 0 m, must be > 0");
+            CHECK_STR(dem_world_error_get(world), "dem_shell_add: radius is 0 m, must be > 0");
             CHECK_EQ(dem_shell_add(world, m, at(0, 0, 1), DEM_R(0.05)).id, 1);
             pair = dem_shape_cluster_add(world, &two);
             ball = dem_body_add(world, m, pair, at(0.01, 0, 0.97), dem_quat_make(1, 0, 0, 0));
             CHECK_EQ(dem_body_add(world, m, dem_shape_ellipsoid_add(world, at(1, 2, 3)),
                                   at(0, 0, 1), dem_quat_make(1, 0, 0, 0)).slot, 0);
-            CHECK_STR(dem_world_error(world), "wall 1 is a shell");
+            CHECK_STR(dem_world_error_get(world), "wall 1 is a shell");
             CHECK_EQ(dem_world_run(world, 2, 0, 0), DEM_OK);
             {   /* on both of its spheres, wherever friction holds it */
                 const dem_vec3 x = scene_state(world, ball).position;
@@ -322,10 +322,10 @@ int main(int argc, char **argv) {
         int i, round;
         for (i = 0; i < a->bodies.count; i++)
             a->bodies.charge[i] = (dem_real)(1 + a->bodies.slot[i]);
-        dem_body_remove(a, dem_bodies_id(a, 5));
+        dem_body_remove(a, dem_body_id_get(a, 5));
         CHECK_EQ(scene_step(a, 1000), DEM_OK);
         CHECK_EQ(dem_checkpoint_write(a, path), DEM_OK);
-        dem_body_remove(b, dem_bodies_id(b, 5));
+        dem_body_remove(b, dem_body_id_get(b, 5));
         CHECK_EQ(dem_checkpoint_read(b, path), DEM_OK);
         CHECK_EQ(b->bodies.count, 26);
         for (round = 0; round < 2; round++) {
@@ -355,7 +355,7 @@ int main(int argc, char **argv) {
         world = dem_world_create(&desc);
         ball = dem_sphere_add(world, scene_material(world, 1e6, 0.5, 0.3, 0), DEM_R(0.01), at(0, 0, 0));
         scene_step(world, 1000);
-        t = dem_world_time(world);
+        t = dem_world_time_get(world);
         CHECK_REL(scene_state(world, ball).position.z, -9.81*t*t/2, 1e-10);
         CHECK_REL(scene_state(world, ball).velocity.z, -9.81*t, 1e-10);
         desc.integrator = (dem_integrator)((int)DEM_TAYLOR + 1);

@@ -37,10 +37,6 @@ static const refused_field refused_fields[] = {
     {"dem_sizes", "radius", offsetof(dem_sizes, radius), FIELD_REAL, sizeof(((dem_sizes *)0)->radius)},
     {"dem_sizes", "passing", offsetof(dem_sizes, passing), FIELD_DOUBLE, sizeof(((dem_sizes *)0)->passing)},
     {"dem_sizes", "deviation", offsetof(dem_sizes, deviation), FIELD_REAL, sizeof(((dem_sizes *)0)->deviation)},
-    {"dem_region", "box", offsetof(dem_region, box), FIELD_REAL, sizeof(((dem_region *)0)->box)},
-    {"dem_region", "cylinder", offsetof(dem_region, cylinder), FIELD_INT, sizeof(((dem_region *)0)->cylinder)},
-    {"dem_region", "inside", offsetof(dem_region, inside), FIELD_POINTER, sizeof(((dem_region *)0)->inside)},
-    {"dem_region", "user", offsetof(dem_region, user), FIELD_POINTER, sizeof(((dem_region *)0)->user)},
     {"dem_cluster_desc", "count", offsetof(dem_cluster_desc, count), FIELD_INT, sizeof(((dem_cluster_desc *)0)->count)},
     {"dem_cluster_desc", "positions", offsetof(dem_cluster_desc, positions), FIELD_POINTER, sizeof(((dem_cluster_desc *)0)->positions)},
     {"dem_cluster_desc", "radii", offsetof(dem_cluster_desc, radii), FIELD_POINTER, sizeof(((dem_cluster_desc *)0)->radii)},
@@ -118,13 +114,13 @@ static const refused_field refused_fields[] = {
     {"dem_outlet_desc", "radius", offsetof(dem_outlet_desc, radius), FIELD_REAL, sizeof(((dem_outlet_desc *)0)->radius)},
     {"dem_outlet_desc", "material", offsetof(dem_outlet_desc, material), FIELD_INT, sizeof(((dem_outlet_desc *)0)->material)},
     {"dem_outlet_desc", "keep", offsetof(dem_outlet_desc, keep), FIELD_INT, sizeof(((dem_outlet_desc *)0)->keep)},
-    {"dem_advise_desc", "duration", offsetof(dem_advise_desc, duration), FIELD_DOUBLE, sizeof(((dem_advise_desc *)0)->duration)},
-    {"dem_advise_desc", "budget", offsetof(dem_advise_desc, budget), FIELD_DOUBLE, sizeof(((dem_advise_desc *)0)->budget)},
-    {"dem_advise_desc", "tolerance", offsetof(dem_advise_desc, tolerance), FIELD_DOUBLE, sizeof(((dem_advise_desc *)0)->tolerance)},
-    {"dem_advise_desc", "seeds", offsetof(dem_advise_desc, seeds), FIELD_INT, sizeof(((dem_advise_desc *)0)->seeds)},
-    {"dem_advise_desc", "observable_count", offsetof(dem_advise_desc, observable_count), FIELD_INT, sizeof(((dem_advise_desc *)0)->observable_count)},
-    {"dem_advise_desc", "progress", offsetof(dem_advise_desc, progress), FIELD_POINTER, sizeof(((dem_advise_desc *)0)->progress)},
-    {"dem_advise_desc", "user", offsetof(dem_advise_desc, user), FIELD_POINTER, sizeof(((dem_advise_desc *)0)->user)},
+    {"dem_trials_desc", "duration", offsetof(dem_trials_desc, duration), FIELD_DOUBLE, sizeof(((dem_trials_desc *)0)->duration)},
+    {"dem_trials_desc", "budget", offsetof(dem_trials_desc, budget), FIELD_DOUBLE, sizeof(((dem_trials_desc *)0)->budget)},
+    {"dem_trials_desc", "tolerance", offsetof(dem_trials_desc, tolerance), FIELD_DOUBLE, sizeof(((dem_trials_desc *)0)->tolerance)},
+    {"dem_trials_desc", "seeds", offsetof(dem_trials_desc, seeds), FIELD_INT, sizeof(((dem_trials_desc *)0)->seeds)},
+    {"dem_trials_desc", "observable_count", offsetof(dem_trials_desc, observable_count), FIELD_INT, sizeof(((dem_trials_desc *)0)->observable_count)},
+    {"dem_trials_desc", "progress", offsetof(dem_trials_desc, progress), FIELD_POINTER, sizeof(((dem_trials_desc *)0)->progress)},
+    {"dem_trials_desc", "user", offsetof(dem_trials_desc, user), FIELD_POINTER, sizeof(((dem_trials_desc *)0)->user)},
     {"dem_field_desc", "box", offsetof(dem_field_desc, box), FIELD_REAL, sizeof(((dem_field_desc *)0)->box)},
     {"dem_field_desc", "cells", offsetof(dem_field_desc, cells), FIELD_INT, sizeof(((dem_field_desc *)0)->cells)},
     {"dem_field_desc", "start", offsetof(dem_field_desc, start), FIELD_DOUBLE, sizeof(((dem_field_desc *)0)->start)},
@@ -135,8 +131,8 @@ static const refused_field refused_fields[] = {
     {"dem_field_desc", "radius_max", offsetof(dem_field_desc, radius_max), FIELD_REAL, sizeof(((dem_field_desc *)0)->radius_max)},
     {"dem_field_desc", "stress", offsetof(dem_field_desc, stress), FIELD_INT, sizeof(((dem_field_desc *)0)->stress)},
     {"dem_field_desc", "width", offsetof(dem_field_desc, width), FIELD_REAL, sizeof(((dem_field_desc *)0)->width)},
-    {"dem_part", "name", offsetof(dem_part, name), FIELD_POINTER, sizeof(((dem_part *)0)->name)},
-    {"dem_part", "material", offsetof(dem_part, material), FIELD_INT, sizeof(((dem_part *)0)->material)},
+    {"dem_wall_part", "name", offsetof(dem_wall_part, name), FIELD_POINTER, sizeof(((dem_wall_part *)0)->name)},
+    {"dem_wall_part", "material", offsetof(dem_wall_part, material), FIELD_INT, sizeof(((dem_wall_part *)0)->material)},
     {"dem_grains", "count", offsetof(dem_grains, count), FIELD_INT, sizeof(((dem_grains *)0)->count)},
     {"dem_grains", "positions", offsetof(dem_grains, positions), FIELD_POINTER, sizeof(((dem_grains *)0)->positions)},
     {"dem_grains", "radii", offsetof(dem_grains, radii), FIELD_POINTER, sizeof(((dem_grains *)0)->radii)},
@@ -170,7 +166,6 @@ TAKE_OUT(dem_pair)
 TAKE_CONST(dem_pair)
 TAKE_OUT(dem_coefficients)
 TAKE_CONST(dem_sizes)
-TAKE_CONST(dem_region)
 TAKE_OUT(dem_body_state)
 TAKE_CONST(dem_body_state)
 TAKE_CONST(dem_cluster_desc)
@@ -190,7 +185,7 @@ TAKE_CONST(dem_outlet_desc)
 TAKE_OUT(dem_outlet_state)
 TAKE_OUT(dem_advice)
 TAKE_OUT(dem_finding)
-TAKE_CONST(dem_advise_desc)
+TAKE_CONST(dem_trials_desc)
 TAKE_OUT(dem_trials)
 TAKE_OUT(dem_contact_info)
 TAKE_CONST(dem_field_desc)
@@ -200,7 +195,7 @@ TAKE_OUT(dem_repose)
 TAKE_OUT(dem_mesh)
 TAKE_OUT(dem_mesh_health)
 TAKE_OUT(dem_spheres_fit)
-TAKE_CONST(dem_part)
+TAKE_CONST(dem_wall_part)
 TAKE_OUT(dem_wall)
 TAKE_OUT(dem_profile)
 TAKE_OUT(dem_grains)
@@ -210,8 +205,8 @@ TAKE_CONST(dem_output_desc)
 TAKE_CONST(dem_slabs_desc)
 TAKE_OUT(dem_effect)
 
-static int call_dem_world_error(refuser *r) {
-    (void)dem_world_error(r->world);
+static int call_dem_world_error_get(refuser *r) {
+    (void)dem_world_error_get(r->world);
     return 1;
 }
 
@@ -286,16 +281,16 @@ static int call_dem_spheres_add(refuser *r) {
 static int call_dem_spheres_fill(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     dem_real radius = take_dem_real(r, 3, "radius");
-    dem_box box = take_dem_box(r, 4, "box");
+    dem_region region = take_dem_region(r, 4, "region");
     int count = take_int(r, 5, "count");
     uint64_t seed = take_uint64_t(r, 6, "seed");
-    return dem_spheres_fill(r->world, material, radius, box, count, seed) > 0;
+    return dem_spheres_fill(r->world, material, radius, region, count, seed) > 0;
 }
 
-static int call_dem_sizes_finer(refuser *r) {
+static int call_dem_sizes_finer_get(refuser *r) {
     const dem_sizes *sizes = take_const_dem_sizes(r, 2, "sizes");
     dem_real radius = take_dem_real(r, 3, "radius");
-    (void)dem_sizes_finer(r->world, sizes, radius);
+    (void)dem_sizes_finer_get(r->world, sizes, radius);
     return 1;
 }
 
@@ -307,32 +302,30 @@ static int call_dem_sizes_draw(refuser *r) {
     return dem_sizes_draw(r->world, sizes, count, seed, radii) == DEM_OK;
 }
 
-static int call_dem_sizes_classes(refuser *r) {
+static int call_dem_sizes_classes_get(refuser *r) {
     const dem_sizes *sizes = take_const_dem_sizes(r, 2, "sizes");
     int class_count = take_int(r, 3, "class_count");
     dem_real *radius = take_out_dem_real(r, 4, "radius");
     double *amount = take_out_double(r, 5, "amount");
-    return dem_sizes_classes(r->world, sizes, class_count, radius, amount) > 0;
+    return dem_sizes_classes_get(r->world, sizes, class_count, radius, amount) > 0;
 }
 
 static int call_dem_sizes_fill(refuser *r) {
-    const dem_region *region = take_const_dem_region(r, 2, "region");
-    dem_material material = take_dem_material(r, 3, "material");
-    const dem_sizes *sizes = take_const_dem_sizes(r, 4, "sizes");
+    dem_material material = take_dem_material(r, 2, "material");
+    const dem_sizes *sizes = take_const_dem_sizes(r, 3, "sizes");
+    dem_region region = take_dem_region(r, 4, "region");
     int count = take_int(r, 5, "count");
     uint64_t seed = take_uint64_t(r, 6, "seed");
-    return dem_sizes_fill(r->world, region, material, sizes, count, seed) > 0;
+    return dem_sizes_fill(r->world, material, sizes, region, count, seed) > 0;
 }
 
 static int call_dem_spheres_pack(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     dem_real radius = take_dem_real(r, 3, "radius");
     dem_real padding = take_dem_real(r, 4, "padding");
-    dem_box box = take_dem_box(r, 5, "box");
-    dem_inside_fn inside = take_dem_inside_fn(r, 6, "inside");
-    void *user = take_out_void(r, 7, "user");
-    int count = take_int(r, 8, "count");
-    return dem_spheres_pack(r->world, material, radius, padding, box, inside, user, count) > 0;
+    dem_region region = take_dem_region(r, 5, "region");
+    int count = take_int(r, 6, "count");
+    return dem_spheres_pack(r->world, material, radius, padding, region, count) > 0;
 }
 
 static int call_dem_body_remove(refuser *r) {
@@ -368,9 +361,9 @@ static int call_dem_bodies_get(refuser *r) {
     return 1;
 }
 
-static int call_dem_bodies_id(refuser *r) {
+static int call_dem_body_id_get(refuser *r) {
     int index = take_int(r, 2, "index");
-    return dem_bodies_id(r->world, index).slot != 0;
+    return dem_body_id_get(r->world, index).slot != 0;
 }
 
 static int call_dem_body_reals_get(refuser *r) {
@@ -467,106 +460,96 @@ static int call_dem_bodies_add(refuser *r) {
 static int call_dem_bodies_fill(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     dem_shape shape = take_dem_shape(r, 3, "shape");
-    dem_box box = take_dem_box(r, 4, "box");
+    dem_region region = take_dem_region(r, 4, "region");
     int count = take_int(r, 5, "count");
     uint64_t seed = take_uint64_t(r, 6, "seed");
-    return dem_bodies_fill(r->world, material, shape, box, count, seed) > 0;
+    return dem_bodies_fill(r->world, material, shape, region, count, seed) > 0;
 }
 
-static int call_dem_region_fill(refuser *r) {
-    const dem_region *region = take_const_dem_region(r, 2, "region");
-    dem_material material = take_dem_material(r, 3, "material");
-    dem_shape shape = take_dem_shape(r, 4, "shape");
-    dem_real radius = take_dem_real(r, 5, "radius");
-    int count = take_int(r, 6, "count");
-    uint64_t seed = take_uint64_t(r, 7, "seed");
-    return dem_region_fill(r->world, region, material, shape, radius, count, seed) > 0;
-}
-
-static int call_dem_balance_get(refuser *r) {
-    (void)dem_balance_get(r->world);
+static int call_dem_body_counts_get(refuser *r) {
+    (void)dem_body_counts_get(r->world);
     return 1;
 }
 
-static int call_dem_plane_add(refuser *r) {
+static int call_dem_wall_plane_add(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     dem_vec3 point = take_dem_vec3(r, 3, "point");
     dem_vec3 normal = take_dem_vec3(r, 4, "normal");
-    return dem_plane_add(r->world, material, point, normal).id != 0;
+    return dem_wall_plane_add(r->world, material, point, normal).id != 0;
 }
 
-static int call_dem_cylinder_add(refuser *r) {
+static int call_dem_wall_cylinder_add(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     dem_vec3 point = take_dem_vec3(r, 3, "point");
     dem_vec3 axis = take_dem_vec3(r, 4, "axis");
     dem_real radius = take_dem_real(r, 5, "radius");
     int inside = take_int(r, 6, "inside");
-    return dem_cylinder_add(r->world, material, point, axis, radius, inside).id != 0;
+    return dem_wall_cylinder_add(r->world, material, point, axis, radius, inside).id != 0;
 }
 
-static int call_dem_revolved_add(refuser *r) {
+static int call_dem_wall_revolved_add(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     dem_vec3 point = take_dem_vec3(r, 3, "point");
     dem_vec3 axis = take_dem_vec3(r, 4, "axis");
     int count = take_int(r, 5, "count");
     const dem_real *radii = take_const_dem_real(r, 6, "radii");
     const dem_real *heights = take_const_dem_real(r, 7, "heights");
-    return dem_revolved_add(r->world, material, point, axis, count, radii, heights).id != 0;
+    return dem_wall_revolved_add(r->world, material, point, axis, count, radii, heights).id != 0;
 }
 
-static int call_dem_cone_add(refuser *r) {
+static int call_dem_wall_cone_add(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     dem_vec3 from = take_dem_vec3(r, 3, "from");
     dem_vec3 to = take_dem_vec3(r, 4, "to");
     dem_real radius_from = take_dem_real(r, 5, "radius_from");
     dem_real radius_to = take_dem_real(r, 6, "radius_to");
-    return dem_cone_add(r->world, material, from, to, radius_from, radius_to).id != 0;
+    return dem_wall_cone_add(r->world, material, from, to, radius_from, radius_to).id != 0;
 }
 
-static int call_dem_profile_add(refuser *r) {
+static int call_dem_wall_profile_add(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     const dem_profile *profile = take_const_dem_profile(r, 3, "profile");
     dem_edge_rule rule = take_dem_edge_rule(r, 4, "rule");
-    return dem_profile_add(r->world, material, profile, rule).id != 0;
+    return dem_wall_profile_add(r->world, material, profile, rule).id != 0;
 }
 
-static int call_dem_mesh_add(refuser *r) {
+static int call_dem_wall_mesh_add(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     const dem_mesh *mesh = take_const_dem_mesh(r, 3, "mesh");
-    return dem_mesh_add(r->world, material, mesh).id != 0;
+    return dem_wall_mesh_add(r->world, material, mesh).id != 0;
 }
 
-static int call_dem_grains_wall_add(refuser *r) {
+static int call_dem_wall_grains_add(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     int count = take_int(r, 3, "count");
     const dem_real *positions = take_const_dem_real(r, 4, "positions");
     dem_real radius = take_dem_real(r, 5, "radius");
     dem_real share = take_dem_real(r, 6, "share");
-    return dem_grains_wall_add(r->world, material, count, positions, radius, share).id != 0;
+    return dem_wall_grains_add(r->world, material, count, positions, radius, share).id != 0;
 }
 
-static int call_dem_sieve_add(refuser *r) {
+static int call_dem_wall_sieve_add(refuser *r) {
     dem_material material = take_dem_material(r, 2, "material");
     const dem_sieve_desc *desc = take_const_dem_sieve_desc(r, 3, "desc");
-    return dem_sieve_add(r->world, material, desc).id != 0;
+    return dem_wall_sieve_add(r->world, material, desc).id != 0;
 }
 
-static int call_dem_sieve_blinded(refuser *r) {
+static int call_dem_sieve_blinded_get(refuser *r) {
     dem_wall sieve = take_dem_wall(r, 2, "sieve");
     dem_real speed = take_dem_real(r, 3, "speed");
-    return dem_sieve_blinded(r->world, sieve, speed) > 0;
+    return dem_sieve_blinded_get(r->world, sieve, speed) > 0;
 }
 
-static int call_dem_wall_motion(refuser *r) {
+static int call_dem_wall_motion_set(refuser *r) {
     dem_wall wall = take_dem_wall(r, 2, "wall");
     const dem_motion *motion = take_const_dem_motion(r, 3, "motion");
-    return dem_wall_motion(r->world, wall, motion) == DEM_OK;
+    return dem_wall_motion_set(r->world, wall, motion) == DEM_OK;
 }
 
-static int call_dem_wall_pose(refuser *r) {
+static int call_dem_wall_pose_get(refuser *r) {
     dem_wall wall = take_dem_wall(r, 2, "wall");
     dem_pose *pose = take_out_dem_pose(r, 3, "pose");
-    return dem_wall_pose(r->world, wall, pose) == DEM_OK;
+    return dem_wall_pose_get(r->world, wall, pose) == DEM_OK;
 }
 
 static int call_dem_wall_remove(refuser *r) {
@@ -590,12 +573,12 @@ static int call_dem_joint_add(refuser *r) {
     return dem_joint_add(r->world, desc).id != 0;
 }
 
-static int call_dem_joint_motor(refuser *r) {
+static int call_dem_joint_motor_set(refuser *r) {
     dem_joint joint = take_dem_joint(r, 2, "joint");
     dem_motor motor = take_dem_motor(r, 3, "motor");
     dem_real speed = take_dem_real(r, 4, "speed");
     dem_real torque = take_dem_real(r, 5, "torque");
-    return dem_joint_motor(r->world, joint, motor, speed, torque) == DEM_OK;
+    return dem_joint_motor_set(r->world, joint, motor, speed, torque) == DEM_OK;
 }
 
 static int call_dem_joint_get(refuser *r) {
@@ -636,9 +619,9 @@ static int call_dem_outlet_reset(refuser *r) {
     return dem_outlet_reset(r->world, outlet) == DEM_OK;
 }
 
-static int call_dem_step_advice(refuser *r) {
+static int call_dem_step_advice_get(refuser *r) {
     dem_advice *advice = take_out_dem_advice(r, 2, "advice");
-    return dem_step_advice(r->world, advice) == DEM_OK;
+    return dem_step_advice_get(r->world, advice) == DEM_OK;
 }
 
 static int call_dem_world_check(refuser *r) {
@@ -647,9 +630,9 @@ static int call_dem_world_check(refuser *r) {
     return dem_world_check(r->world, findings, capacity) > 0;
 }
 
-static int call_dem_check_print(refuser *r) {
+static int call_dem_world_check_print(refuser *r) {
     FILE *out = take_out_FILE(r, 2, "out");
-    return dem_check_print(r->world, out) > 0;
+    return dem_world_check_print(r->world, out) > 0;
 }
 
 static int call_dem_world_step(refuser *r) {
@@ -696,18 +679,18 @@ static int call_dem_world_dt_set(refuser *r) {
     return dem_world_dt_set(r->world, dt) == DEM_OK;
 }
 
-static int call_dem_world_time(refuser *r) {
-    (void)dem_world_time(r->world);
+static int call_dem_world_time_get(refuser *r) {
+    (void)dem_world_time_get(r->world);
     return 1;
 }
 
-static int call_dem_world_steps(refuser *r) {
-    (void)dem_world_steps(r->world);
+static int call_dem_world_steps_get(refuser *r) {
+    (void)dem_world_steps_get(r->world);
     return 1;
 }
 
-static int call_dem_world_hash(refuser *r) {
-    (void)dem_world_hash(r->world);
+static int call_dem_world_hash_get(refuser *r) {
+    (void)dem_world_hash_get(r->world);
     return 1;
 }
 
@@ -716,8 +699,8 @@ static int call_dem_counters_get(refuser *r) {
     return 1;
 }
 
-static int call_dem_overlap_reset(refuser *r) {
-    dem_overlap_reset(r->world);
+static int call_dem_overlap_max_reset(refuser *r) {
+    dem_overlap_max_reset(r->world);
     return 1;
 }
 
@@ -731,34 +714,34 @@ static int call_dem_totals_get(refuser *r) {
     return 1;
 }
 
-static int call_dem_observe_height(refuser *r) {
+static int call_dem_observer_height(refuser *r) {
     void *user = take_out_void(r, 2, "user");
-    (void)dem_observe_height(r->world, user);
+    (void)dem_observer_height(r->world, user);
     return 1;
 }
 
-static int call_dem_observe_kinetic(refuser *r) {
+static int call_dem_observer_kinetic(refuser *r) {
     void *user = take_out_void(r, 2, "user");
-    (void)dem_observe_kinetic(r->world, user);
+    (void)dem_observer_kinetic(r->world, user);
     return 1;
 }
 
-static int call_dem_observe_contacts(refuser *r) {
+static int call_dem_observer_contacts(refuser *r) {
     void *user = take_out_void(r, 2, "user");
-    (void)dem_observe_contacts(r->world, user);
+    (void)dem_observer_contacts(r->world, user);
     return 1;
 }
 
-static int call_dem_observe_walls(refuser *r) {
+static int call_dem_observer_walls(refuser *r) {
     void *user = take_out_void(r, 2, "user");
-    (void)dem_observe_walls(r->world, user);
+    (void)dem_observer_walls(r->world, user);
     return 1;
 }
 
-static int call_dem_advise(refuser *r) {
-    const dem_advise_desc *desc = take_const_dem_advise_desc(r, 2, "desc");
+static int call_dem_trials_run(refuser *r) {
+    const dem_trials_desc *desc = take_const_dem_trials_desc(r, 2, "desc");
     dem_trials *trials = take_out_dem_trials(r, 3, "trials");
-    return dem_advise(r->world, desc, trials) == DEM_OK;
+    return dem_trials_run(r->world, desc, trials) == DEM_OK;
 }
 
 static int call_dem_contacts_get(refuser *r) {
@@ -786,8 +769,8 @@ static int call_dem_candidates_get(refuser *r) {
     return dem_candidates_get(r->world, out, capacity) > 0;
 }
 
-static int call_dem_search_now(refuser *r) {
-    return dem_search_now(r->world) == DEM_OK;
+static int call_dem_candidates_rebuild(refuser *r) {
+    return dem_candidates_rebuild(r->world) == DEM_OK;
 }
 
 static int call_dem_field_add(refuser *r) {
@@ -815,17 +798,17 @@ static int call_dem_field_reset(refuser *r) {
     return dem_field_reset(r->world, field) == DEM_OK;
 }
 
-static int call_dem_repose_heap(refuser *r) {
+static int call_dem_repose_heap_get(refuser *r) {
     dem_box box = take_dem_box(r, 2, "box");
     dem_repose *repose = take_out_dem_repose(r, 3, "repose");
-    return dem_repose_heap(r->world, box, repose) == DEM_OK;
+    return dem_repose_heap_get(r->world, box, repose) == DEM_OK;
 }
 
-static int call_dem_repose_drum(refuser *r) {
+static int call_dem_repose_drum_get(refuser *r) {
     dem_box box = take_dem_box(r, 2, "box");
     dem_vec3 axis = take_dem_vec3(r, 3, "axis");
     dem_repose *repose = take_out_dem_repose(r, 4, "repose");
-    return dem_repose_drum(r->world, box, axis, repose) == DEM_OK;
+    return dem_repose_drum_get(r->world, box, axis, repose) == DEM_OK;
 }
 
 static int call_dem_mesh_read(refuser *r) {
@@ -875,13 +858,13 @@ static int call_dem_mesh_spheres(refuser *r) {
     return dem_mesh_spheres(r->world, mesh, count, positions, radii, fit) == DEM_OK;
 }
 
-static int call_dem_parts_add(refuser *r) {
+static int call_dem_wall_parts_add(refuser *r) {
     const char *path = take_const_char(r, 2, "path");
     dem_real scale = take_dem_real(r, 3, "scale");
     int count = take_int(r, 4, "count");
-    const dem_part *parts = take_const_dem_part(r, 5, "parts");
+    const dem_wall_part *parts = take_const_dem_wall_part(r, 5, "parts");
     dem_wall *walls = take_out_dem_wall(r, 6, "walls");
-    return dem_parts_add(r->world, path, scale, count, parts, walls) == DEM_OK;
+    return dem_wall_parts_add(r->world, path, scale, count, parts, walls) == DEM_OK;
 }
 
 static int call_dem_profile_read(refuser *r) {
@@ -962,10 +945,10 @@ static int call_dem_surfaces_vtp_write(refuser *r) {
     return dem_surfaces_vtp_write(r->world, path) == DEM_OK;
 }
 
-static int call_dem_wall_loads_csv(refuser *r) {
+static int call_dem_wall_loads_csv_write(refuser *r) {
     dem_wall wall = take_dem_wall(r, 2, "wall");
     const char *path = take_const_char(r, 3, "path");
-    return dem_wall_loads_csv(r->world, wall, path) == DEM_OK;
+    return dem_wall_loads_csv_write(r->world, wall, path) == DEM_OK;
 }
 
 static int call_dem_replay_open(refuser *r) {
@@ -989,11 +972,11 @@ static int call_dem_output_add(refuser *r) {
     return dem_output_add(r->world, desc).id != 0;
 }
 
-static int call_dem_output_every(refuser *r) {
+static int call_dem_output_every_add(refuser *r) {
     dem_output_kind kind = take_dem_output_kind(r, 2, "kind");
     const char *path = take_const_char(r, 3, "path");
     double interval = take_double(r, 4, "interval");
-    return dem_output_every(r->world, kind, path, interval).id != 0;
+    return dem_output_every_add(r->world, kind, path, interval).id != 0;
 }
 
 static int call_dem_slabs_create(refuser *r) {
@@ -1021,7 +1004,7 @@ static int call_dem_world_report(refuser *r) {
 }
 
 static const refused_call refused_calls[] = {
-    {"dem_world_error", call_dem_world_error, 1},
+    {"dem_world_error_get", call_dem_world_error_get, 1},
     {"dem_world_desc_get", call_dem_world_desc_get, 1},
     {"dem_material_add", call_dem_material_add, 0},
     {"dem_material_set", call_dem_material_set, 0},
@@ -1033,9 +1016,9 @@ static const refused_call refused_calls[] = {
     {"dem_sphere_add", call_dem_sphere_add, 0},
     {"dem_spheres_add", call_dem_spheres_add, 0},
     {"dem_spheres_fill", call_dem_spheres_fill, 0},
-    {"dem_sizes_finer", call_dem_sizes_finer, 0},
+    {"dem_sizes_finer_get", call_dem_sizes_finer_get, 0},
     {"dem_sizes_draw", call_dem_sizes_draw, 0},
-    {"dem_sizes_classes", call_dem_sizes_classes, 0},
+    {"dem_sizes_classes_get", call_dem_sizes_classes_get, 0},
     {"dem_sizes_fill", call_dem_sizes_fill, 0},
     {"dem_spheres_pack", call_dem_spheres_pack, 0},
     {"dem_body_remove", call_dem_body_remove, 0},
@@ -1044,7 +1027,7 @@ static const refused_call refused_calls[] = {
     {"dem_temperature_get", call_dem_temperature_get, 1},
     {"dem_temperature_set", call_dem_temperature_set, 0},
     {"dem_bodies_get", call_dem_bodies_get, 1},
-    {"dem_bodies_id", call_dem_bodies_id, 1},
+    {"dem_body_id_get", call_dem_body_id_get, 1},
     {"dem_body_reals_get", call_dem_body_reals_get, 1},
     {"dem_body_reals_set", call_dem_body_reals_set, 0},
     {"dem_bodies_reals_set", call_dem_bodies_reals_set, 0},
@@ -1060,24 +1043,23 @@ static const refused_call refused_calls[] = {
     {"dem_body_add", call_dem_body_add, 0},
     {"dem_bodies_add", call_dem_bodies_add, 0},
     {"dem_bodies_fill", call_dem_bodies_fill, 0},
-    {"dem_region_fill", call_dem_region_fill, 0},
-    {"dem_balance_get", call_dem_balance_get, 1},
-    {"dem_plane_add", call_dem_plane_add, 0},
-    {"dem_cylinder_add", call_dem_cylinder_add, 0},
-    {"dem_revolved_add", call_dem_revolved_add, 0},
-    {"dem_cone_add", call_dem_cone_add, 0},
-    {"dem_profile_add", call_dem_profile_add, 0},
-    {"dem_mesh_add", call_dem_mesh_add, 0},
-    {"dem_grains_wall_add", call_dem_grains_wall_add, 0},
-    {"dem_sieve_add", call_dem_sieve_add, 0},
-    {"dem_sieve_blinded", call_dem_sieve_blinded, 1},
-    {"dem_wall_motion", call_dem_wall_motion, 0},
-    {"dem_wall_pose", call_dem_wall_pose, 1},
+    {"dem_body_counts_get", call_dem_body_counts_get, 1},
+    {"dem_wall_plane_add", call_dem_wall_plane_add, 0},
+    {"dem_wall_cylinder_add", call_dem_wall_cylinder_add, 0},
+    {"dem_wall_revolved_add", call_dem_wall_revolved_add, 0},
+    {"dem_wall_cone_add", call_dem_wall_cone_add, 0},
+    {"dem_wall_profile_add", call_dem_wall_profile_add, 0},
+    {"dem_wall_mesh_add", call_dem_wall_mesh_add, 0},
+    {"dem_wall_grains_add", call_dem_wall_grains_add, 0},
+    {"dem_wall_sieve_add", call_dem_wall_sieve_add, 0},
+    {"dem_sieve_blinded_get", call_dem_sieve_blinded_get, 1},
+    {"dem_wall_motion_set", call_dem_wall_motion_set, 0},
+    {"dem_wall_pose_get", call_dem_wall_pose_get, 1},
     {"dem_wall_remove", call_dem_wall_remove, 0},
     {"dem_wall_loads_get", call_dem_wall_loads_get, 1},
     {"dem_wall_loads_reset", call_dem_wall_loads_reset, 0},
     {"dem_joint_add", call_dem_joint_add, 0},
-    {"dem_joint_motor", call_dem_joint_motor, 0},
+    {"dem_joint_motor_set", call_dem_joint_motor_set, 0},
     {"dem_joint_get", call_dem_joint_get, 1},
     {"dem_joint_remove", call_dem_joint_remove, 0},
     {"dem_feed_add", call_dem_feed_add, 0},
@@ -1085,9 +1067,9 @@ static const refused_call refused_calls[] = {
     {"dem_outlet_add", call_dem_outlet_add, 0},
     {"dem_outlet_get", call_dem_outlet_get, 1},
     {"dem_outlet_reset", call_dem_outlet_reset, 0},
-    {"dem_step_advice", call_dem_step_advice, 1},
+    {"dem_step_advice_get", call_dem_step_advice_get, 1},
     {"dem_world_check", call_dem_world_check, 0},
-    {"dem_check_print", call_dem_check_print, 0},
+    {"dem_world_check_print", call_dem_world_check_print, 0},
     {"dem_world_step", call_dem_world_step, 0},
     {"dem_world_run", call_dem_world_run, 0},
     {"dem_world_run_to", call_dem_world_run_to, 0},
@@ -1095,36 +1077,36 @@ static const refused_call refused_calls[] = {
     {"dem_progress_print", call_dem_progress_print, 1},
     {"dem_world_gravity_set", call_dem_world_gravity_set, 0},
     {"dem_world_dt_set", call_dem_world_dt_set, 0},
-    {"dem_world_time", call_dem_world_time, 1},
-    {"dem_world_steps", call_dem_world_steps, 1},
-    {"dem_world_hash", call_dem_world_hash, 1},
+    {"dem_world_time_get", call_dem_world_time_get, 1},
+    {"dem_world_steps_get", call_dem_world_steps_get, 1},
+    {"dem_world_hash_get", call_dem_world_hash_get, 1},
     {"dem_counters_get", call_dem_counters_get, 1},
-    {"dem_overlap_reset", call_dem_overlap_reset, 0},
+    {"dem_overlap_max_reset", call_dem_overlap_max_reset, 0},
     {"dem_ledger_get", call_dem_ledger_get, 1},
     {"dem_totals_get", call_dem_totals_get, 1},
-    {"dem_observe_height", call_dem_observe_height, 1},
-    {"dem_observe_kinetic", call_dem_observe_kinetic, 1},
-    {"dem_observe_contacts", call_dem_observe_contacts, 1},
-    {"dem_observe_walls", call_dem_observe_walls, 1},
-    {"dem_advise", call_dem_advise, 0},
+    {"dem_observer_height", call_dem_observer_height, 1},
+    {"dem_observer_kinetic", call_dem_observer_kinetic, 1},
+    {"dem_observer_contacts", call_dem_observer_contacts, 1},
+    {"dem_observer_walls", call_dem_observer_walls, 1},
+    {"dem_trials_run", call_dem_trials_run, 0},
     {"dem_contacts_get", call_dem_contacts_get, 1},
     {"dem_contacts_each", call_dem_contacts_each, 0},
     {"dem_bonds_make", call_dem_bonds_make, 0},
     {"dem_candidates_get", call_dem_candidates_get, 1},
-    {"dem_search_now", call_dem_search_now, 0},
+    {"dem_candidates_rebuild", call_dem_candidates_rebuild, 0},
     {"dem_field_add", call_dem_field_add, 0},
     {"dem_field_get", call_dem_field_get, 1},
     {"dem_field_cell_get", call_dem_field_cell_get, 1},
     {"dem_field_reset", call_dem_field_reset, 0},
-    {"dem_repose_heap", call_dem_repose_heap, 1},
-    {"dem_repose_drum", call_dem_repose_drum, 1},
+    {"dem_repose_heap_get", call_dem_repose_heap_get, 1},
+    {"dem_repose_drum_get", call_dem_repose_drum_get, 1},
     {"dem_mesh_read", call_dem_mesh_read, 0},
     {"dem_mesh_parse", call_dem_mesh_parse, 0},
     {"dem_mesh_part_read", call_dem_mesh_part_read, 0},
     {"dem_mesh_free", call_dem_mesh_free, 0},
     {"dem_mesh_place", call_dem_mesh_place, 0},
     {"dem_mesh_spheres", call_dem_mesh_spheres, 0},
-    {"dem_parts_add", call_dem_parts_add, 0},
+    {"dem_wall_parts_add", call_dem_wall_parts_add, 0},
     {"dem_profile_read", call_dem_profile_read, 0},
     {"dem_profile_parse", call_dem_profile_parse, 0},
     {"dem_profile_free", call_dem_profile_free, 0},
@@ -1138,12 +1120,12 @@ static const refused_call refused_calls[] = {
     {"dem_contacts_vtp_write", call_dem_contacts_vtp_write, 0},
     {"dem_walls_vtp_write", call_dem_walls_vtp_write, 0},
     {"dem_surfaces_vtp_write", call_dem_surfaces_vtp_write, 0},
-    {"dem_wall_loads_csv", call_dem_wall_loads_csv, 0},
+    {"dem_wall_loads_csv_write", call_dem_wall_loads_csv_write, 0},
     {"dem_replay_open", call_dem_replay_open, 0},
     {"dem_checkpoint_write", call_dem_checkpoint_write, 0},
     {"dem_checkpoint_read", call_dem_checkpoint_read, 0},
     {"dem_output_add", call_dem_output_add, 0},
-    {"dem_output_every", call_dem_output_every, 0},
+    {"dem_output_every_add", call_dem_output_every_add, 0},
     {"dem_slabs_create", call_dem_slabs_create, 0},
     {"dem_effects_get", call_dem_effects_get, 0},
     {"dem_effects_print", call_dem_effects_print, 0},

@@ -131,7 +131,7 @@ static inline double scene_sampled(const demi_solid *s, double (*off)(const doub
 /* Steps and says why when that fails. */
 static inline dem_result scene_step(dem_world *world, int steps) {
     const dem_result result = dem_world_step(world, steps);
-    if (result != DEM_OK) puts(dem_world_error(world));
+    if (result != DEM_OK) puts(dem_world_error_get(world));
     return result;
 }
 
@@ -229,7 +229,7 @@ static inline dem_wall scene_floor(dem_world *world, dem_material material, doub
                 t[3] = a; t[4] = d; t[5] = c;
                 n += 2;
             }
-        wall = dem_mesh_add(world, material, &mesh);
+        wall = dem_wall_mesh_add(world, material, &mesh);
     }
     free(mesh.vertices);
     free(mesh.triangles);
@@ -252,6 +252,6 @@ static inline dem_wall scene_drum(dem_world *world, dem_material material, doubl
     profile.vertex_count = profile.segment_count = n;
     profile.vertices = vertices;
     profile.segments = segments;
-    return dem_profile_add(world, material, &profile, DEM_EDGE_RESOLVED);
+    return dem_wall_profile_add(world, material, &profile, DEM_EDGE_RESOLVED);
 }
 #endif

@@ -1,4 +1,4 @@
-/* dem_advise: trials on copies of a scene, judged by observables. Whether the advice holds is asked of
+/* dem_trials_run: trials on copies of a scene, judged by observables. Whether the advice holds is asked of
    runs of their own, which last longer. Which of several good trials is the cheapest is a matter of the
    machine, so sentences here ask what holds for any. */
 #define DEM_IMPLEMENTATION
@@ -28,22 +28,24 @@ static dem_world *advise_world(advise_scene scene, double dt, double stiffness) 
     glass = scene_material(world, (scene == ADVISE_PILE ? 5e6 : 2e7)*stiffness, scene == ADVISE_GAS ? 0.9 : 0.6,
                            scene == ADVISE_GAS ? 0 : 0.4, 0);
     if (scene == ADVISE_PILE) {
-        dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
-        dem_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 1), DEM_R(5e-3), 1);
-        dem_spheres_fill(world, glass, DEM_R(1e-3), box_of(-4e-3, -4e-3, 1e-3, 4e-3, 4e-3, 0.02), 60, 1);
+        dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 1), DEM_R(5e-3), 1);
+        dem_spheres_fill(world, glass, DEM_R(1e-3),
+                         dem_region_make(box_of(-4e-3, -4e-3, 1e-3, 4e-3, 4e-3, 0.02)), 60, 1);
     }
     if (scene == ADVISE_GAS) {
-        dem_spheres_fill(world, glass, DEM_R(1e-3), desc.domain, 400, 1);
+        dem_spheres_fill(world, glass, DEM_R(1e-3), dem_region_make(desc.domain), 400, 1);
         for (i = 0; i < world->bodies.count; i++)
-            scene_move(world, dem_bodies_id(world, i), at(sin(1.0*i), sin(2.3*i), cos(7.1*i)), at(0, 0, 0));
+            scene_move(world, dem_body_id_get(world, i), at(sin(1.0*i), sin(2.3*i), cos(7.1*i)), at(0, 0, 0));
     }
     if (scene == ADVISE_MILL) {
-        drum = dem_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 1), DEM_R(0.03), 1);
+        drum = dem_wall_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 1), DEM_R(0.03), 1);
         motion.kind = DEM_MOTION_ROTATING;
         motion.axis = at(0, 0, 1);
         motion.speed = DEM_R(6.0);
-        dem_wall_motion(world, drum, &motion);
-        dem_spheres_fill(world, glass, DEM_R(2e-3), box_of(-0.02, -0.02, 0, 0.02, 0.015, 0), 70, 1);
+        dem_wall_motion_set(world, drum, &motion);
+        dem_spheres_fill(world, glass, DEM_R(2e-3), dem_region_make(box_of(-0.02, -0.02, 0, 0.02, 0.015, 0)), 70,
+                         1);
     }
     return world;
 }
@@ -86,7 +88,7 @@ static dem_world *advise_again(advise_scene scene, const dem_trial *t, uint64_t 
         world->desc.impact_speed = 1;
     }
     for (i = 0; i < dem_bodies_get(world).count; i++) {
-        const dem_body body = dem_bodies_id(world, i);
+        const dem_body body = dem_body_id_get(world, i);
         dem_body_state s = scene_state(world, body);
         const double off = 1e-6*(double)s.radius;
         const dem_vec3 d = scene_at(&seed, 2*off, -off, 2*off, -off, 0, 0);
@@ -119,7 +121,7 @@ static void advise_runs(advise_scene scene, const dem_trial *t, double begin, do
 static void advise_follow(advise_scene scene, double begin, double duration, double tolerance,
                           const dem_observable *observable) {
     dem_world *world = advise_world(scene, 0, 1);
-    dem_advise_desc desc = DEM_ADVISE_DESC;
+    dem_trials_desc desc = DEM_TRIALS_DESC;
     dem_trials trials;
     double right, chance, mean, variance;
     int k, good = 0;
@@ -129,7 +131,7 @@ static void advise_follow(advise_scene scene, double begin, double duration, dou
     desc.tolerance = tolerance;
     desc.observable_count = 1;
     desc.observables[0] = *observable;
-    CHECK_EQ(dem_advise(world, &desc, &trials), DEM_OK);
+    CHECK_EQ(dem_trials_run(world, &desc, &trials), DEM_OK);
     dem_world_destroy(world);
     CHECK(trials.trial[trials.best].promise <= tolerance);
     CHECK(!strcmp(trials.trial[trials.reference].name, "step quartered"));
@@ -144,11 +146,11 @@ int main(int argc, char **argv) {
     test_begin(argc, argv);
 
     TEST("advice on grains that fall into a heap, followed, holds in runs twice as long: the height within 5 %") {
-        const dem_observable height = {"height", "m", dem_observe_height, 0, 0};
+        const dem_observable height = {"height", "m", dem_observer_height, 0, 0};
         advise_follow(ADVISE_PILE, 0, 0.12, 0.05, &height);
     }
     TEST("advice on a gas that cools, followed, holds in runs twice as long: the energy within 5 %") {
-        const dem_observable kinetic = {"kinetic", "J", dem_observe_kinetic, 0, 0};
+        const dem_observable kinetic = {"kinetic", "J", dem_observer_kinetic, 0, 0};
         advise_follow(ADVISE_GAS, 0.005, 0.02, 0.05, &kinetic);
     }
     TEST("advice on a slice of a mill, followed, holds in runs twice as long: the power within 20 %") {
@@ -159,7 +161,7 @@ int main(int argc, char **argv) {
     }
     TEST("the world asked about goes on as one that was never asked, and holds no more memory") {
         dem_world *asked = advise_world(ADVISE_MILL, 0, 1), *control = advise_world(ADVISE_MILL, 0, 1);
-        dem_advise_desc desc = DEM_ADVISE_DESC;
+        dem_trials_desc desc = DEM_TRIALS_DESC;
         dem_trials trials;
         size_t bytes;
         CHECK_EQ(scene_step(asked, 700), DEM_OK);
@@ -167,21 +169,21 @@ int main(int argc, char **argv) {
         bytes = dem_counters_get(asked).memory;
         desc.duration = 0.01;
         desc.budget = 1e9;
-        CHECK_EQ(dem_advise(asked, &desc, &trials), DEM_OK);
+        CHECK_EQ(dem_trials_run(asked, &desc, &trials), DEM_OK);
         CHECK_EQ(trials.observable_count, 3);
         CHECK_EQ(trials.count, DEM_TRIALS);
         CHECK_EQ(dem_counters_get(asked).memory, bytes);
-        CHECK_EQ(dem_world_hash(asked), dem_world_hash(control));
+        CHECK_EQ(dem_world_hash_get(asked), dem_world_hash_get(control));
         CHECK_EQ(scene_step(asked, 700), DEM_OK);
         CHECK_EQ(scene_step(control, 700), DEM_OK);
-        CHECK_EQ(dem_world_hash(asked), dem_world_hash(control));
+        CHECK_EQ(dem_world_hash_get(asked), dem_world_hash_get(control));
         dem_world_destroy(asked);
         dem_world_destroy(control);
     }
     TEST("a world is advised before its first step, too, and when its walls are meshes") {
         dem_world *asked = advise_world(ADVISE_PILE, 0, 1), *control = advise_world(ADVISE_PILE, 0, 1);
         dem_world *worlds[2];
-        dem_advise_desc desc = DEM_ADVISE_DESC;
+        dem_trials_desc desc = DEM_TRIALS_DESC;
         dem_trials trials;
         int k;
         worlds[0] = asked; worlds[1] = control;
@@ -192,16 +194,16 @@ int main(int argc, char **argv) {
         }
         desc.duration = 1e-3;
         desc.budget = 1e9;
-        CHECK_EQ(dem_advise(asked, &desc, &trials), DEM_OK);
+        CHECK_EQ(dem_trials_run(asked, &desc, &trials), DEM_OK);
         CHECK_EQ(scene_step(asked, 300), DEM_OK);
         CHECK_EQ(scene_step(control, 300), DEM_OK);
-        CHECK_EQ(dem_world_hash(asked), dem_world_hash(control));
+        CHECK_EQ(dem_world_hash_get(asked), dem_world_hash_get(control));
         dem_world_destroy(asked);
         dem_world_destroy(control);
     }
     TEST("a step so large that impacts gain energy by it is found out, and something else advised") {
         dem_world_desc desc = DEM_WORLD_DESC;
-        dem_advise_desc how = DEM_ADVISE_DESC;
+        dem_trials_desc how = DEM_TRIALS_DESC;
         dem_trials trials;
         dem_world *world;
         dem_material steel;
@@ -212,15 +214,15 @@ int main(int argc, char **argv) {
         desc.dt = DEM_R(3e-5);                  /* some t_c/3 of an impact at 0.8 m/s */
         world = dem_world_create(&desc);
         steel = scene_material(world, 1e8, 1, 0, 0);
-        dem_plane_add(world, steel, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_plane_add(world, steel, at(0, 0, 0), at(0, 0, 1));
         for (i = 0; i < 20; i++) dem_sphere_add(world, steel, DEM_R(1e-3), at(0.01*i, 0, 0.03 + 1e-3*i));
         how.duration = 1;
         how.tolerance = 0.01;
         how.budget = 1e9;
         how.observable_count = 1;
         how.observables[0].name = "height";
-        how.observables[0].function = dem_observe_height;
-        CHECK_EQ(dem_advise(world, &how, &trials), DEM_OK);
+        how.observables[0].function = dem_observer_height;
+        CHECK_EQ(dem_trials_run(world, &how, &trials), DEM_OK);
         CHECK(trials.trial[0].promise > how.tolerance);     /* t_c/3 */
         CHECK(trials.trial[1].promise > 1);                 /* t_c/1.7 */
         CHECK(trials.best > 1);
@@ -230,7 +232,7 @@ int main(int argc, char **argv) {
     TEST("where the library chooses the step, trials choose a share of it as the run goes on: a scene that grows "
          "faster by the thousand is advised on as it would run") {
         dem_world_desc desc = DEM_WORLD_DESC;
-        dem_advise_desc how = DEM_ADVISE_DESC;
+        dem_trials_desc how = DEM_TRIALS_DESC;
         dem_trials trials;
         dem_world *world;
         dem_material glass;
@@ -246,7 +248,7 @@ int main(int argc, char **argv) {
         before = dem_counters_get(world).dt;
         how.duration = 0.03;
         how.budget = 1e9;
-        CHECK_EQ(dem_advise(world, &how, &trials), DEM_OK);
+        CHECK_EQ(dem_trials_run(world, &how, &trials), DEM_OK);
         CHECK_EQ(trials.trial[0].done, 3);
         CHECK_EQ(dem_world_run(world, 0.03, 0, 0), DEM_OK);
         CHECK((double)dem_counters_get(world).dt < 0.8*(double)before);
@@ -258,61 +260,61 @@ int main(int argc, char **argv) {
          "world, too small a budget") {
         dem_world *world = advise_world(ADVISE_PILE, 0, 1), *empty;
         dem_world_desc desc = DEM_WORLD_DESC;
-        dem_advise_desc good = DEM_ADVISE_DESC, bad;
+        dem_trials_desc good = DEM_TRIALS_DESC, bad;
         dem_trials trials;
         good.duration = 1e-3;
         good.budget = 1e9;
         bad = good; bad.duration = 0;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_ARGUMENT);
-        CHECK(strstr(dem_world_error(world), "duration is 0 s") != 0);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
+        CHECK(strstr(dem_world_error_get(world), "duration is 0 s") != 0);
         bad = good; bad.seeds = 1;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_ARGUMENT);
-        CHECK(strstr(dem_world_error(world), "seeds 1") != 0);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
+        CHECK(strstr(dem_world_error_get(world), "seeds 1") != 0);
         bad = good; bad.observable_count = DEM_OBSERVABLES + 1;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
         bad = good; bad.observable_count = 1;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_ARGUMENT);
-        CHECK(strstr(dem_world_error(world), "observable 1 has no function") != 0);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
+        CHECK(strstr(dem_world_error_get(world), "observable 1 has no function") != 0);
         bad.observables[0].name = "nothing";
         bad.observables[0].function = advise_none;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_UNSTABLE);
-        CHECK(strstr(dem_world_error(world), "nothing is not finite") != 0);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_UNSTABLE);
+        CHECK(strstr(dem_world_error_get(world), "nothing is not finite") != 0);
         bad = good; bad.budget = 1e-9;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_ARGUMENT);
-        CHECK(strstr(dem_world_error(world), "at least 64 steps") != 0);
-        CHECK_EQ(dem_advise(world, 0, &trials), DEM_ERROR_ARGUMENT);
-        CHECK_EQ(dem_advise(world, &good, 0), DEM_ERROR_ARGUMENT);
-        CHECK_EQ(dem_advise(0, &good, &trials), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
+        CHECK(strstr(dem_world_error_get(world), "at least 64 steps") != 0);
+        CHECK_EQ(dem_trials_run(world, 0, &trials), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_trials_run(world, &good, 0), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_trials_run(0, &good, &trials), DEM_ERROR_ARGUMENT);
         empty = dem_world_create(&desc);
-        CHECK_EQ(dem_advise(empty, &good, &trials), DEM_ERROR_ARGUMENT);
-        CHECK(strstr(dem_world_error(empty), "no bodies") != 0);
+        CHECK_EQ(dem_trials_run(empty, &good, &trials), DEM_ERROR_ARGUMENT);
+        CHECK(strstr(dem_world_error_get(empty), "no bodies") != 0);
         dem_world_destroy(empty);
         bad = good; bad.duration = 1e-5;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_ARGUMENT);
-        CHECK(strstr(dem_world_error(world), "duration is 1e-05 s, must be at least 64 steps") != 0);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
+        CHECK(strstr(dem_world_error_get(world), "duration is 1e-05 s, must be at least 64 steps") != 0);
         bad = good; bad.tolerance = (double)INFINITY;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
         bad = good; bad.observable_count = 1;
         bad.observables[0].name = "height";
-        bad.observables[0].function = dem_observe_height;
+        bad.observables[0].function = dem_observer_height;
         bad.observables[0].scale = (double)INFINITY;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
         bad.observables[0].scale = -1;
-        CHECK_EQ(dem_advise(world, &bad, &trials), DEM_ERROR_ARGUMENT);
-        CHECK(strstr(dem_world_error(world), "scale of observable 1 is -1") != 0);
+        CHECK_EQ(dem_trials_run(world, &bad, &trials), DEM_ERROR_ARGUMENT);
+        CHECK(strstr(dem_world_error_get(world), "scale of observable 1 is -1") != 0);
         {
             dem_material none;
             none.id = 1;
-            dem_plane_add(world, none, at(0, 0, 0), at(0, 0, 0));   /* refused, and nobody reads why */
-            CHECK_EQ(dem_advise(world, &good, &trials), DEM_ERROR_ARGUMENT);
-            CHECK(strstr(dem_world_error(world), "dem_plane_add") != 0);
+            dem_wall_plane_add(world, none, at(0, 0, 0), at(0, 0, 0));   /* refused, and nobody reads why */
+            CHECK_EQ(dem_trials_run(world, &good, &trials), DEM_ERROR_ARGUMENT);
+            CHECK(strstr(dem_world_error_get(world), "dem_wall_plane_add") != 0);
         }
-        CHECK_EQ(dem_advise(world, &good, &trials), DEM_OK);
+        CHECK_EQ(dem_trials_run(world, &good, &trials), DEM_OK);
         dem_world_destroy(world);
     }
     TEST("advice that gets no memory, at any request, says so; nothing leaks and the world is as it was") {
         dem_world_desc desc = DEM_WORLD_DESC;
-        dem_advise_desc how = DEM_ADVISE_DESC;
+        dem_trials_desc how = DEM_TRIALS_DESC;
         scene_memory memory;
         dem_trials trials;
         dem_world *world;
@@ -329,7 +331,7 @@ int main(int argc, char **argv) {
         scene_floor(world, glass, -0.01, -0.01, 0.02, 0.02, 1, 1);
         scene_block(world, glass, 3, 3, 3, 1e-3, 1, 0.1, 3);
         CHECK_EQ(scene_step(world, 20), DEM_OK);
-        hash = dem_world_hash(world);
+        hash = dem_world_hash_get(world);
         bytes = memory.bytes;
         how.duration = 1e-3;
         how.budget = 1e9;
@@ -338,9 +340,9 @@ int main(int argc, char **argv) {
             dem_result result;
             memory.refuse = memory.calls + k;
             memory.refused = 0;
-            result = dem_advise(world, &how, &trials);
+            result = dem_trials_run(world, &how, &trials);
             CHECK_EQ(memory.bytes, bytes);
-            CHECK_EQ(dem_world_hash(world), hash);
+            CHECK_EQ(dem_world_hash_get(world), hash);
             if (!memory.refused) { CHECK_EQ(result, DEM_OK); break; }
             refused++;                          /* in a run of a trial, it is that trial's end */
             CHECK(result == DEM_ERROR_MEMORY || result == DEM_ERROR_UNSTABLE || result == DEM_OK);

@@ -22,7 +22,7 @@ static void set_velocity(dem_world *world, dem_body body, dem_vec3 velocity) {
     dem_body_set(world, body, &s);
 }
 static void step(dem_world *world, int steps) {
-    if (dem_world_step(world, steps) != DEM_OK) puts(dem_world_error(world));
+    if (dem_world_step(world, steps) != DEM_OK) puts(dem_world_error_get(world));
 }
 static double ball_mass(double density, double r) { return density*4/3*pi*r*r*r; }
 static double damping(double e) { return -log(e)/sqrt(pi*pi + log(e)*log(e)); }
@@ -59,9 +59,9 @@ static roll slide_to_roll(double mu, double v0) {
     const dem_body body = dem_sphere_add(world, m, (dem_real)r, at(0, 0, r - sink));
     double before = v0;
     roll out = {0, 0, 0, 0};
-    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     set_velocity(world, body, at(v0, 0, 0));
-    while (dem_world_time(world) < 0.5*v0/(mu*9.81)) {
+    while (dem_world_time_get(world) < 0.5*v0/(mu*9.81)) {
         dem_body_state s;
         double slip;
         step(world, 1);
@@ -69,7 +69,7 @@ static roll slide_to_roll(double mu, double v0) {
         slip = (double)s.velocity.x - r*(double)s.spin.y;
         if (slip <= 0 && out.time <= 0) {    /* slip falls linearly: where it crossed zero */
             const double late = slip/(slip - before)*dt;
-            out.time = dem_world_time(world) - late;
+            out.time = dem_world_time_get(world) - late;
             out.speed = (double)s.velocity.x + mu*9.81*late;
             out.way = (double)s.position.x - out.speed*late;
         }
@@ -92,7 +92,7 @@ static descent run_down(double degrees, double g, double mu, double seconds) {
     const int half = (int)(seconds/dt/2 + 0.5);
     dem_body_state first, last;
     descent out;
-    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     step(world, half);
     first = state_of(world, body);
     step(world, half);
@@ -196,9 +196,9 @@ static drop drop_bead(dem_convention convention, dem_integrator integrator, doub
         sheet = mill_lining(world);
         mill_pair(world, glass, sheet);
     }
-    dem_plane_add(world, sheet, at(0, 0, 0), at(0, 1, 0));
+    dem_wall_plane_add(world, sheet, at(0, 0, 0), at(0, 1, 0));
     bead = dem_sphere_add(world, glass, (dem_real)mill_radius, at(0, mill_radius + height, 0));
-    while (bounce < 3 && dem_world_time(world) < 1) {
+    while (bounce < 3 && dem_world_time_get(world) < 1) {
         double v;
         step(world, 1);
         s = state_of(world, bead);
@@ -245,14 +245,14 @@ int main(int argc, char **argv) {
             world = dem_world_create(&desc);
             m = dem_material_add(world, &stuff);
             body = dem_sphere_add(world, m, (dem_real)r, at(0, 0, r + 0.5));
-            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-            while (dem_world_time(world) < 1.1*rows[i][1]) {
+            dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            while (dem_world_time_get(world) < 1.1*rows[i][1]) {
                 dem_body_state s;
                 double gap;
                 step(world, 4);
                 s = state_of(world, body);
                 gap = (double)s.position.z - r;
-                if (gap > 0) rest = dem_world_time(world);           /* of the last flight */
+                if (gap > 0) rest = dem_world_time_get(world);           /* of the last flight */
                 if (s.velocity.z < 0) down = 1;
                 if (gap > 0 && s.velocity.z > 0 && down && bounce < 4) {
                     const double up = (double)s.velocity.z;
@@ -364,7 +364,7 @@ int main(int argc, char **argv) {
             set_velocity(world, a, at(1e-3, 0, 0));
             if (refused) {                   /* "a ratio of 1:20" */
                 CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_TIME_STEP);
-                CHECK_STR(dem_world_error(world), "t_c/20");
+                CHECK_STR(dem_world_error_get(world), "t_c/20");
             } else {
                 double time = 0, parted = 0;
                 for (i = 0; i < 4000 && parted <= 0; i++) {
@@ -373,7 +373,7 @@ int main(int argc, char **argv) {
                     const double rate = (double)(t.velocity.x - s.velocity.x);
                     if (i == 0 || gap <= 0) { step(world, 1); continue; }
                     parted = rate;
-                    time = dem_world_time(world) - gap/rate;
+                    time = dem_world_time_get(world) - gap/rate;
                 }
                 CHECK_REL(parted/1e-3, e, 1e-4);                      /* dt = tc/2000 */
                 CHECK_REL(time, pi/w, 1e-3);
@@ -466,7 +466,7 @@ int main(int argc, char **argv) {
         static const double heights[] = {0.003, 0.005, 0.0075};
         int i, k;
         for (i = 0; i < 3; i++) {            /* dt about tc/90 */
-            const drop d = drop_bead(DEM_CONVENTION_STANDARD, DEM_VELOCITY_VERLET, 2e-7, heights[i]);
+            const drop d = drop_bead(DEM_CONVENTION_STANDARD, DEM_INTEGRATOR_VELOCITY_VERLET, 2e-7, heights[i]);
             for (k = 0; k < 3; k++) CHECK_NEAR(d.e[k], 0.66, 0.002);
             CHECK(d.aside <= 0);             /* exactly */
             CHECK(d.spin <= 0);
@@ -482,7 +482,7 @@ int main(int argc, char **argv) {
         double sum = 0, least = 1, most = 0;
         int i, k, count = 0;
         for (i = 0; i < 12; i++) {
-            const drop d = drop_bead(DEM_CONVENTION_MILL, DEM_SYMPLECTIC_EULER, mill_dt,
+            const drop d = drop_bead(DEM_CONVENTION_MILL, DEM_INTEGRATOR_SYMPLECTIC_EULER, mill_dt,
                                      0.005 + 3.1e-6*i);
             for (k = 0; k < 3; k++) {
                 least = fmin(least, d.e[k]);
@@ -502,7 +502,7 @@ int main(int argc, char **argv) {
     TEST("tumbling mill thesis, Fig 6.1: forward Euler, as its text has it, rebounds with .70 to .72") {
         int i, k;
         for (i = 0; i < 3; i++) {
-            const drop d = drop_bead(DEM_CONVENTION_MILL, DEM_FORWARD_EULER, mill_dt, 0.003 + 1e-3*i);
+            const drop d = drop_bead(DEM_CONVENTION_MILL, DEM_INTEGRATOR_FORWARD_EULER, mill_dt, 0.003 + 1e-3*i);
             for (k = 0; k < 3; k++) CHECK_NEAR(d.e[k], 0.71, 0.01);
             CHECK(d.aside <= 0);
             CHECK(d.spin <= 0);

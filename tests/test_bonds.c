@@ -114,9 +114,9 @@ int main(int argc, char **argv) {
                 if (scene_step(w, 5) != DEM_OK) { CHECK(0); break; }
                 z = (double)scene_state(w, last).position.z;
                 if (before > 0 && !(z > 0)) {
-                    if (begun < 0) begun = dem_world_time(w);
+                    if (begun < 0) begun = dem_world_time_get(w);
                     else crossings++;
-                    ended = dem_world_time(w);
+                    ended = dem_world_time_get(w);
                 }
                 before = z;
             }

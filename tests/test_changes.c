@@ -137,18 +137,18 @@ static void scene_fill(scene *s, change what) {
     const dem_quat askew = dem_quat_about(at(1, 2, 3), 1);
     dem_motion m = scene_motion(what, 0);
     int i;
-    s->floor = dem_plane_add(s->world, s->stuff, at(0, 0, 0.03*ball_size), at(0, 0, 1));
-    if (m.kind) CHECK_EQ(dem_wall_motion(s->world, s->floor, &m), DEM_OK);
+    s->floor = dem_wall_plane_add(s->world, s->stuff, at(0, 0, 0.03*ball_size), at(0, 0, 1));
+    if (m.kind) CHECK_EQ(dem_wall_motion_set(s->world, s->floor, &m), DEM_OK);
     scene_block(s->world, s->stuff, side, side, side, ball_size, 0, 0.3, 7);
     for (i = 0; i < dem_bodies_get(s->world).count; i++) {       /* they spin, too */
-        const dem_body id = dem_bodies_id(s->world, i);
+        const dem_body id = dem_body_id_get(s->world, i);
         const dem_body_state b = scene_state(s->world, id);
         scene_move(s->world, id, b.velocity, at(200*(i%3 - 1), 150*(i%5 - 2), 100));
     }
     if (what == RADIUS_GONE)
         s->odd = dem_sphere_add(s->world, s->stuff, DEM_R(1.3e-3), top);
     if (what == SHAPE_GONE) s->odd = dem_body_add(s->world, s->stuff, s->egg, top, askew);
-    if (what == FIXED || what == FREED) s->odd = dem_bodies_id(s->world, side*side*side/2);
+    if (what == FIXED || what == FREED) s->odd = dem_body_id_get(s->world, side*side*side/2);
     if (what == FREED) {
         dem_body_state b = scene_state(s->world, s->odd);
         b.fixed = 1;
@@ -192,7 +192,7 @@ static void scene_change(scene *s, change what) {
         CHECK_EQ(dem_body_remove(s->world, s->odd), DEM_OK);
     if (what == WALL_GOES || what == WALL_STOPS || what == WALL_TURNS) {
         const dem_motion m = scene_motion(what, 1);
-        CHECK_EQ(dem_wall_motion(s->world, s->floor, &m), DEM_OK);
+        CHECK_EQ(dem_wall_motion_set(s->world, s->floor, &m), DEM_OK);
     }
     if (what == FIXED || what == FREED) {
         b = scene_state(s->world, s->odd);
@@ -206,7 +206,7 @@ static int scene_ids(const dem_world *world, dem_body *ids, int room) {
     int i, n = 0;
     memset(ids, 0, (size_t)room*sizeof *ids);
     for (i = 0; i < b.count; i++)
-        if ((int)b.slots[i] < room) ids[b.slots[i]] = dem_bodies_id(world, i);
+        if ((int)b.slots[i] < room) ids[b.slots[i]] = dem_body_id_get(world, i);
     for (i = 0; i < room; i++) if (ids[i].slot) ids[n++] = ids[i];
     return n;
 }
@@ -219,11 +219,11 @@ static void scene_from(scene *s, change what, const scene *other, const dem_body
     if (what <= DAMPED) scene_pair(s, what, 1);
     scene_other(s, what);
     s->push.since = -1;
-    s->push.clock = dem_world_time(other->world);
-    CHECK_EQ(dem_wall_pose(other->world, other->floor, &pose), DEM_OK);
-    s->floor = dem_plane_add(s->world, s->stuff, pose.position,
+    s->push.clock = dem_world_time_get(other->world);
+    CHECK_EQ(dem_wall_pose_get(other->world, other->floor, &pose), DEM_OK);
+    s->floor = dem_wall_plane_add(s->world, s->stuff, pose.position,
                              dem_vec3_make(pose.rotation[2], pose.rotation[5], pose.rotation[8]));
-    if (m.kind) CHECK_EQ(dem_wall_motion(s->world, s->floor, &m), DEM_OK);
+    if (m.kind) CHECK_EQ(dem_wall_motion_set(s->world, s->floor, &m), DEM_OK);
     for (i = 0; i < count; i++) {
         const dem_body_state b = scene_state(other->world, ids[i]);
         const dem_body id = b.shape.id
@@ -283,10 +283,10 @@ static void scene_again(change what, uint64_t hash) {
     CHECK_EQ(dem_checkpoint_write(s.world, saved), DEM_OK);
     CHECK_EQ(scene_step(s.world, AFTER), DEM_OK);
     if (side == 13) CHECK(dem_counters_get(s.world).domains >= 2);
-    CHECK_EQ(dem_world_hash(s.world), hash);
+    CHECK_EQ(dem_world_hash_get(s.world), hash);
     CHECK_EQ(dem_checkpoint_read(s.world, saved), DEM_OK);
     CHECK_EQ(scene_step(s.world, AFTER), DEM_OK);
-    CHECK_EQ(dem_world_hash(s.world), hash);
+    CHECK_EQ(dem_world_hash_get(s.world), hash);
     dem_world_destroy(s.world);
 }
 /* Along x nothing but the field pushes: smooth grains, a smooth floor. What it gives is the sum
@@ -318,7 +318,7 @@ static void change_matters(const scene *a, change what, uint64_t hash) {
     apart d;
     scene_up_to(&c, what, 1);
     CHECK_EQ(scene_step(c.world, AFTER), DEM_OK);
-    CHECK(dem_world_hash(c.world) != hash);
+    CHECK(dem_world_hash_get(c.world) != hash);
     scene_ids(c.world, ids[2], ROOM);
     d = scene_apart(a, ids[0], &c, ids[2], count);
     CHECK(d.speed + d.spin > 50*small());
@@ -347,7 +347,7 @@ static void changed(change what) {
         CHECK_NEAR(d.spin, 0, small());
         CHECK_NEAR(d.force, 0, small());
     }
-    hash = dem_world_hash(a.world);
+    hash = dem_world_hash_get(a.world);
     if (what == FORCE || what == GRAVITY_TURNS) push_given(&a, before);
     scene_again(what, hash);
     if (!by_itself(what)) change_matters(&a, what, hash);
@@ -385,11 +385,11 @@ static void law_comes(dem_normal_law normal, dem_tangent_law tangent, dem_rollin
         dem_material_desc m = scene_stuff(1e7, 0.7, rolling == DEM_ROLLING_NONE ? 0 : 0.4, 0);
         s[w].world = dem_world_create(&desc);
         s[w].stuff = dem_material_add(s[w].world, &m);
-        dem_plane_add(s[w].world, s[w].stuff, at(0, 0, 0.03*ball_size), at(0, 0, 1));
+        dem_wall_plane_add(s[w].world, s[w].stuff, at(0, 0, 0.03*ball_size), at(0, 0, 1));
         if (!w) {
             scene_block(s[w].world, s[w].stuff, 4, 4, 4, ball_size, 0, 0.3, 7);
             for (i = 0; i < 64; i++) {
-                const dem_body id = dem_bodies_id(s[w].world, i);
+                const dem_body id = dem_body_id_get(s[w].world, i);
                 scene_move(s[w].world, id, scene_state(s[w].world, id).velocity,
                            at(200*(i%3 - 1), 150*(i%5 - 2), 100));
             }
@@ -456,21 +456,21 @@ static intruder intrudes;
 static void intrude_each(const dem_contact_info *c, dem_real *m, void *u);
 static int intrude_one(int k) {
     dem_world *w = intrudes.world;
-    const dem_body first = dem_bodies_id(w, 0);
+    const dem_body first = dem_body_id_get(w, 0);
     dem_motion still = DEM_MOTION;
     dem_output_desc output = DEM_OUTPUT_DESC;
     const dem_vec3 v = at(1, 2, 3);
     switch (k) {
     case 0: return dem_body_remove(w, first) != DEM_OK;
     case 1: return !dem_sphere_add(w, intrudes.stuff, DEM_R(1e-3), v).slot;
-    case 2: return dem_search_now(w) != DEM_OK;
+    case 2: return dem_candidates_rebuild(w) != DEM_OK;
     case 3: return dem_world_step(w, 1) != DEM_OK;
-    case 4: return !dem_plane_add(w, intrudes.stuff, v, v).id;
+    case 4: return !dem_wall_plane_add(w, intrudes.stuff, v, v).id;
     case 5: return dem_wall_remove(w, intrudes.wall) != DEM_OK;
     case 6: return dem_checkpoint_read(w, intrudes.file) != DEM_OK;
     case 7: return dem_world_gravity_set(w, v) != DEM_OK;
     case 8: return dem_world_run(w, 1e-3, 0, 0) != DEM_OK;
-    case 9: return dem_wall_motion(w, intrudes.wall, &still) != DEM_OK;
+    case 9: return dem_wall_motion_set(w, intrudes.wall, &still) != DEM_OK;
     case 10: dem_world_destroy(w); return 1;
     case 11: output.interval = 1; output.kind = DEM_OUTPUT_VTP; output.path = "no.vtp";
         return !dem_output_add(w, &output).id;
@@ -557,7 +557,7 @@ static uint64_t intruded(int from, int begin, int response) {
     if (from == FROM_ALLOCATOR) { desc.allocator.alloc_fn = intrude_alloc; desc.allocator.free_fn = intrude_free; desc.allocator.user = &trying; }
     w = dem_world_create(&desc);
     intrudes.stuff = scene_material(w, 1e6, 0.5, 0.5, 0);
-    intrudes.wall = dem_plane_add(w, intrudes.stuff, at(0, 0, 0), at(0, 0, 1));
+    intrudes.wall = dem_wall_plane_add(w, intrudes.stuff, at(0, 0, 0), at(0, 0, 1));
     for (i = 0; i < 27; i++) {
         x[3*i] = DEM_R(1.99e-3)*(dem_real)(i%3);
         x[3*i + 1] = DEM_R(1.99e-3)*(dem_real)(i/3%3);
@@ -579,14 +579,15 @@ static uint64_t intruded(int from, int begin, int response) {
     switch (from) {
     case FROM_EACH: dem_contacts_each(w, intrude_each, 0); break;
     case FROM_BONDS: dem_bonds_make(w, 0, intrude_each, 0); break;
-    case FROM_MOTION: dem_wall_motion(w, intrudes.wall, &motion); break;
+    case FROM_MOTION: dem_wall_motion_set(w, intrudes.wall, &motion); break;
     case FROM_PROGRESS: dem_world_run(w, 1e-5, intrude_progress, 0); break;
-    case FROM_NUMBER: { dem_replay *r = dem_replay_open(w, "build/tmp/intruded.html", &film); dem_replay_frame(r); dem_replay_close(r); break; }
+    case FROM_NUMBER: { dem_replay *r = dem_replay_open(w, "build/tmp/intruded.html", &film); dem_replay_frame_write(r); dem_replay_close(r); break; }
     case FROM_FEED: dem_feed_add(w, &feed); break;
-    case FROM_FILL: dem_region_fill(w, &region, intrudes.stuff, none, DEM_R(1e-3), 20, 1); break;
-    case FROM_PACK: dem_spheres_pack(w, intrudes.stuff, DEM_R(1e-3), 0, above, intrude_region, 0, 20); break;
+    case FROM_FILL: dem_spheres_fill(w, intrudes.stuff, DEM_R(1e-3), region, 20, 1); break;
+    case FROM_PACK: dem_spheres_pack(w, intrudes.stuff, DEM_R(1e-3), 0,
+                                     dem_region_inside_make(above, intrude_region, 0), 20); break;
     case FROM_VALUES: dem_output_add(w, &output); break;
-    case FROM_ALLOCATOR: dem_spheres_fill(w, intrudes.stuff, DEM_R(1e-3), above, 200, 1); break;
+    case FROM_ALLOCATOR: dem_spheres_fill(w, intrudes.stuff, DEM_R(1e-3), dem_region_make(above), 200, 1); break;
     case FROM_ADVISE: {
         dem_effect effects[DEM_EFFECTS];
         CHECK_EQ(dem_effects_get(w, 0.02, effects), DEM_EFFECTS);
@@ -600,7 +601,7 @@ static uint64_t intruded(int from, int begin, int response) {
         if (begin) intrudes.slabs = dealt;
         CHECK_EQ(dem_slabs_step(dealt, 3), DEM_OK);
         intrudes.slabs = 0;
-        if (begin) CHECK_STR(dem_slabs_error(dealt), "dem_slabs_step: called by a function of yours");
+        if (begin) CHECK_STR(dem_slabs_error_get(dealt), "dem_slabs_step: called by a function of yours");
         if (begin) CHECK(intrudes.calls > 0 && intrudes.refused == 0);
         CHECK_EQ(dem_slabs_collect(dealt, w), DEM_OK);
         dem_slabs_destroy(dealt);
@@ -612,15 +613,15 @@ static uint64_t intruded(int from, int begin, int response) {
     if (from == FROM_REPORT || from == FROM_CONTACTS) intrudes.world = 0;
     if (begin && from != FROM_SLABS) {
         CHECK(intrudes.calls > 0 && intrudes.refused == 0);
-        CHECK_STR(dem_world_error(w), "called by a function of yours");
+        CHECK_STR(dem_world_error_get(w), "called by a function of yours");
         if (intrudes.refused) printf("        from a %s: %ld calls were not refused\n", intruders[from], -intrudes.refused);
     }
     trying = 0;
     intrudes.world = 0;
-    dem_world_error(w);
-    dem_world_step(w, 20 - (int)dem_world_steps(w));
+    dem_world_error_get(w);
+    dem_world_step(w, 20 - (int)dem_world_steps_get(w));
     if (from == FROM_PROGRESS) dem_world_step(w, 10);
-    hash = dem_world_hash(w);
+    hash = dem_world_hash_get(w);
     dem_world_destroy(w);
     remove("build/tmp/intruded.csv");
     remove("build/tmp/intruded.html");
@@ -678,14 +679,14 @@ int main(int argc, char **argv) {
     TEST("friction and rolling friction of every law, under every normal law and integrator, come "
          "in in mid-run as they would be from the start") {
         int n, t, r, i;
-        const int last = DEM_LEAPFROG;
+        const int last = DEM_INTEGRATOR_LEAPFROG;
         for (n = DEM_NORMAL_HERTZ; n <= DEM_NORMAL_LINEAR; n++) {
             for (t = DEM_TANGENT_VISCOUS; t <= DEM_TANGENT_MINDLIN_RESCALED; t++)
-                for (i = DEM_VELOCITY_VERLET; i <= last; i++)
+                for (i = DEM_INTEGRATOR_VELOCITY_VERLET; i <= last; i++)
                     law_comes((dem_normal_law)n, (dem_tangent_law)t, DEM_ROLLING_NONE,
                               (dem_integrator)i);
             for (r = DEM_ROLLING_STEP; r <= DEM_ROLLING_EPSD; r++)
-                for (i = DEM_VELOCITY_VERLET; i <= last; i++)
+                for (i = DEM_INTEGRATOR_VELOCITY_VERLET; i <= last; i++)
                     law_comes((dem_normal_law)n, DEM_TANGENT_VISCOUS, (dem_rolling_law)r,
                               (dem_integrator)i);
         }
@@ -707,7 +708,7 @@ int main(int argc, char **argv) {
         d.stiffness = (dem_real)kn;
         world = dem_world_create(&desc);
         m = dem_material_add(world, &d);
-        dem_plane_add(world, m, at(0, 0, -ball_size), at(0, 0, 1));
+        dem_wall_plane_add(world, m, at(0, 0, -ball_size), at(0, 0, 1));
         ball = dem_sphere_add(world, m, (dem_real)ball_size, at(0, 0, -0.02*ball_size));
         for (i = 0; i < 4; i++) {
             static const double places[4][3] = {{0.02, 0.05, 0.04}, {0.04, 0.038, 0.035},
@@ -794,7 +795,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(scene_step(w, 10000), DEM_OK);
         CHECK_EQ(dem_world_gravity_set(w, at(20, 0, 0)), DEM_OK);
         CHECK_EQ(dem_world_gravity_set(w, at(NAN, 0, 0)), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(w), "must be finite");
+        CHECK_STR(dem_world_error_get(w), "must be finite");
         CHECK_EQ(scene_step(w, 10000), DEM_OK);
         b = scene_state(w, ball);
         CHECK_NEAR(b.velocity.x, 2, 20000*2*eps());
@@ -812,10 +813,10 @@ int main(int argc, char **argv) {
             m = scene_material(w, 1e6, 0.5, 0.3, 0);
             for (quarter = 0; quarter < 6; quarter++) {
                 const double side = quarter%2 ? -1 : 1, far = quarter%2 ? 0.012 : 0;
-                dem_plane_add(w, m, at(quarter/2 == 0 ? far : 0, quarter/2 == 1 ? far : 0, quarter/2 == 2 ? far : 0),
+                dem_wall_plane_add(w, m, at(quarter/2 == 0 ? far : 0, quarter/2 == 1 ? far : 0, quarter/2 == 2 ? far : 0),
                               at(quarter/2 == 0 ? side : 0, quarter/2 == 1 ? side : 0, quarter/2 == 2 ? side : 0));
             }
-            dem_spheres_fill(w, m, DEM_R(1e-3), box_of(0, 0, 0, 0.012, 0.012, 0.012), 60, 3);
+            dem_spheres_fill(w, m, DEM_R(1e-3), dem_region_make(box_of(0, 0, 0, 0.012, 0.012, 0.012)), 60, 3);
             for (quarter = 0; quarter < 4; quarter++) {
                 const dem_vec3 g[4] = {at(0, 0, -10), at(10, 0, 0), at(0, 0, 10), at(-10, 0, 0)};
                 CHECK_EQ(dem_world_gravity_set(w, g[quarter]), DEM_OK);
@@ -830,8 +831,8 @@ int main(int argc, char **argv) {
             CHECK_EQ(scene_step(w, 1000), DEM_OK);
             ledger = dem_ledger_get(w);
             CHECK(fabs(ledger.residual) < 2e-3*ledger.throughput);
-            if (!k) hash = dem_world_hash(w);
-            else CHECK(dem_world_hash(w) == hash);
+            if (!k) hash = dem_world_hash_get(w);
+            else CHECK(dem_world_hash_get(w) == hash);
             if (k == 2) {
                 cut.count = 2;
                 other = w;
@@ -883,7 +884,7 @@ int main(int argc, char **argv) {
         dem_world_gravity_set(world, at(9.81*sin(0.3), 0, -9.81*cos(0.3)));
         m = dem_material_add(world, &d);
         other = dem_material_add(world, &d);
-        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
         for (k = 0; k < 10; k++) dem_sphere_add(world, m, DEM_R(0.005), at(0.02*k, 0, 0.00499));
         CHECK_EQ(dem_pair_get(world, m, other, &set), DEM_OK);
         set.friction = set.friction_static = DEM_R(0.123);
@@ -892,7 +893,7 @@ int main(int argc, char **argv) {
         before = dem_totals_get(world);
         dt = dem_counters_get(world).dt;
         CHECK_EQ(dem_world_dt_set(world, -1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "dt is -1 s");
+        CHECK_STR(dem_world_error_get(world), "dt is -1 s");
         CHECK_EQ(dem_world_dt_set(world, dt/3), DEM_OK);
         CHECK_EQ(dem_world_run(world, 0.1, 0, 0), DEM_OK);
         CHECK_NEAR(dem_counters_get(world).dt, dt/3, 1e-6*(double)dt);
@@ -912,11 +913,11 @@ int main(int argc, char **argv) {
         CHECK(now.centre[2] > before.centre[2]);             /* stiffer: they sink in less */
         d.density *= 2;
         CHECK_EQ(dem_material_set(world, m, &d), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "must stay 2500");
+        CHECK_STR(dem_world_error_get(world), "must stay 2500");
         d.density /= 2;
         d.restitution = 2;
         CHECK_EQ(dem_material_set(world, m, &d), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "dem_material_set: restitution is 2");
+        CHECK_STR(dem_world_error_get(world), "dem_material_set: restitution is 2");
         CHECK_EQ(dem_material_get(world, m, &d), DEM_OK);
         CHECK_REL(d.young, 4e6, 1e-6);
         CHECK_REL(d.restitution, 0.3, 1e-6);
@@ -931,8 +932,9 @@ int main(int argc, char **argv) {
             dem_material m;
             world[k] = dem_world_create(&desc);
             m = scene_material(world[k], 1e6, 0.5, 0.3, 0);
-            dem_plane_add(world[k], m, at(0, 0, 0), at(0, 0, 1));
-            dem_spheres_fill(world[k], m, DEM_R(0.005), box_of(-0.02, -0.02, 0, 0.02, 0.02, 0.08), 30, 1);
+            dem_wall_plane_add(world[k], m, at(0, 0, 0), at(0, 0, 1));
+            dem_spheres_fill(world[k], m, DEM_R(0.005),
+                             dem_region_make(box_of(-0.02, -0.02, 0, 0.02, 0.02, 0.08)), 30, 1);
         }
         CHECK_EQ(dem_world_run(world[0], 0.1, 0, 0), DEM_OK);
         CHECK_EQ(dem_world_dt_set(world[0], dem_counters_get(world[0]).dt/2), DEM_OK);
@@ -940,7 +942,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_checkpoint_write(world[0], saved), DEM_OK);
         CHECK_EQ(dem_checkpoint_read(world[1], saved), DEM_OK);
         for (k = 0; k < 2; k++) CHECK_EQ(scene_step(world[k], 500), DEM_OK);
-        CHECK(dem_world_hash(world[0]) == dem_world_hash(world[1]));
+        CHECK(dem_world_hash_get(world[0]) == dem_world_hash_get(world[1]));
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
     return test_end();

@@ -68,14 +68,14 @@ static ridden ride_run(const ride *r, double dt) {
     dem_pair_get(world, grain, steel, &pair);
     pair.rolling_friction = 1;
     dem_pair_set(world, grain, steel, &pair);
-    drum = dem_cylinder_add(world, steel, at(0, 0, 0), at(0, 0, 1), (dem_real)R, 0);
+    drum = dem_wall_cylinder_add(world, steel, at(0, 0, 0), at(0, 0, 1), (dem_real)R, 0);
     turn.kind = DEM_MOTION_ROTATING;
     turn.axis = at(0, 0, 1);
     turn.speed = (dem_real)-turn_speed;
-    CHECK_EQ(dem_wall_motion(world, drum, &turn), DEM_OK);
+    CHECK_EQ(dem_wall_motion_set(world, drum, &turn), DEM_OK);
     body = dem_sphere_add(world, grain, (dem_real)r->radius, at(0, top, 0));
     scene_move(world, body, at(turn_speed*top, 0, 0), at(0, 0, -turn_speed));
-    while (dem_world_time(world) < 1.2) {
+    while (dem_world_time_get(world) < 1.2) {
         dem_body_state s;
         dem_wall_loads loads;
         double angle, speed, gap;
@@ -164,7 +164,7 @@ static uint64_t small_run(int threads, int steps) {
     int i, ok = separator_create(&small, &d) == DEM_OK;
     for (i = 0; i < steps && ok; i++) ok = separator_step(&small) == DEM_OK;
     CHECK(ok);
-    if (ok) hash = dem_world_hash(small.world);
+    if (ok) hash = dem_world_hash_get(small.world);
     else puts(small.error);
     return hash;
 }
@@ -454,7 +454,7 @@ int main(int argc, char **argv) {
             "build/tmp/corona.dem") == DEM_OK &&
             separator_restored(&second) == DEM_OK;
         for (i = 0; i < 150 && ok; i++) ok = separator_step(&second) == DEM_OK;
-        CHECK(ok && dem_world_hash(second.world) == hash);
+        CHECK(ok && dem_world_hash_get(second.world) == hash);
         CHECK_EQ(second.unbalanced, 0);
         separator_end(&second);
         separator_end(&small);

@@ -91,7 +91,7 @@ static double pile_volume(dem_world *w, const char *why) {
     dem_real x[3], r[1];
     dem_spheres_fit fit;
     if (dem_mesh_spheres(w, &pile, 1, x, r, &fit) == DEM_OK) return (double)fit.volume;
-    CHECK_STR(dem_world_error(w), why);
+    CHECK_STR(dem_world_error_get(w), why);
     return -1;
 }
 /* What health says of it, written as an OBJ. */
@@ -182,16 +182,16 @@ int main(int argc, char **argv) {
         swap = mesh.triangles[4];
         mesh.triangles[4] = 99;
         CHECK_EQ(dem_mesh_spheres(w, &mesh, 1, x, r, 0), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(w), "vertex 99");
+        CHECK_STR(dem_world_error_get(w), "vertex 99");
         CHECK(!dem_shape_mesh_add(w, &mesh, 0).id);
-        CHECK_STR(dem_world_error(w), "vertex 99");
+        CHECK_STR(dem_world_error_get(w), "vertex 99");
         mesh.triangles[4] = swap;
         mesh.triangle_count = 2;
         CHECK_EQ(dem_mesh_spheres(w, &mesh, 1, x, r, 0), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(w), "closed");
+        CHECK_STR(dem_world_error_get(w), "closed");
         mesh = block(1, 1, 1e-4);
         CHECK_EQ(dem_mesh_spheres(w, &mesh, 1, x, r, 0), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(w), "thinner");
+        CHECK_STR(dem_world_error_get(w), "thinner");
         dem_world_destroy(w);
     }
     TEST("a closed mesh has the same volume and hull whatever way its triangles were written, and health counts those turned") {
@@ -272,7 +272,7 @@ int main(int argc, char **argv) {
                 made = what ? dem_shape_mesh_add(w, &pile, 0).id != 0 : dem_mesh_spheres(w, &pile, 1, x, r, 0) == DEM_OK;
                 CHECK_EQ(made, !memory.refused);
                 if (made) break;
-                CHECK_STR(dem_world_error(w), "memory");
+                CHECK_STR(dem_world_error_get(w), "memory");
                 CHECK_EQ(memory.bytes, before);
             }
             CHECK(made && k > 5);
@@ -293,7 +293,7 @@ int main(int argc, char **argv) {
             pile.triangle_count -= i + 1;               /* no lid, or half of one */
             CHECK_NEAR(pile_volume(w, "open"), -1, 0);
             CHECK(!dem_shape_mesh_add(w, &pile, 1).id);
-            CHECK_STR(dem_world_error(w), "dem_shape_mesh_add: the mesh is open at");
+            CHECK_STR(dem_world_error_get(w), "dem_shape_mesh_add: the mesh is open at");
             CHECK(pile_health(w).open_edges > 2);
         }
         pile_begin();

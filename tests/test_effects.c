@@ -20,8 +20,8 @@ static effects_scene effects_world(dem_world_desc desc) {
     dem_pair_get(s.world, glass, steel, &pair);
     pair.rolling_friction = DEM_R(0.1);
     dem_pair_set(s.world, glass, steel, &pair);
-    dem_plane_add(s.world, glass, at(0, 0, 0), at(0, 0, 1));
-    dem_plane_add(s.world, steel, at(0, 0, 1), at(0, 0, -1));
+    dem_wall_plane_add(s.world, glass, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(s.world, steel, at(0, 0, 1), at(0, 0, -1));
     s.glass = dem_sphere_add(s.world, glass, DEM_R(1e-3), at(0, 0, 0.999e-3));
     s.steel = dem_sphere_add(s.world, steel, DEM_R(1e-3), at(0.3, 0, 0.5));
     return s;
@@ -167,7 +167,7 @@ int main(int argc, char **argv) {
         lid.id = 2;
         motion.kind = DEM_MOTION_TRANSLATING;
         motion.velocity = at(0, 0, 1e-3);
-        CHECK_EQ(dem_wall_motion(s.world, lid, &motion), DEM_OK);
+        CHECK_EQ(dem_wall_motion_set(s.world, lid, &motion), DEM_OK);
         memset(&feed, 0, sizeof feed);
         feed.material.id = 2;
         feed.class_count = 1;
@@ -223,10 +223,10 @@ int main(int argc, char **argv) {
                 CHECK_EQ(all[k].measured, all[k].state != DEM_EFFECT_OFF && can);
                 CHECK(all[k].error >= 0 && all[k].share < 1);
             }
-            CHECK_EQ(dem_world_hash(s.world), dem_world_hash(plain.world));
+            CHECK_EQ(dem_world_hash_get(s.world), dem_world_hash_get(plain.world));
             CHECK_EQ(scene_step(s.world, 300), DEM_OK);
             CHECK_EQ(scene_step(plain.world, 300), DEM_OK);
-            CHECK_EQ(dem_world_hash(s.world), dem_world_hash(plain.world));
+            CHECK_EQ(dem_world_hash_get(s.world), dem_world_hash_get(plain.world));
             dem_world_destroy(s.world);
             dem_world_destroy(plain.world);
         }
@@ -256,11 +256,11 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_effects_get(0, 0, all), -1);
         CHECK_EQ(dem_effects_get(s.world, 0, 0), -1);
         CHECK_EQ(dem_effects_get(s.world, -1, all), -1);
-        CHECK(strstr(dem_world_error(s.world), "dem_effects_get: budget is -1 s") != 0);
+        CHECK(strstr(dem_world_error_get(s.world), "dem_effects_get: budget is -1 s") != 0);
         CHECK_EQ(dem_effects_get(s.world, (double)INFINITY, all), -1);
-        CHECK(!dem_plane_add(s.world, none, at(0, 0, 0), at(0, 0, 1)).id);
+        CHECK(!dem_wall_plane_add(s.world, none, at(0, 0, 0), at(0, 0, 1)).id);
         CHECK_EQ(dem_effects_get(s.world, 0, all), -1);
-        CHECK(strstr(dem_world_error(s.world), "dem_plane_add") != 0);
+        CHECK(strstr(dem_world_error_get(s.world), "dem_wall_plane_add") != 0);
         CHECK_EQ(dem_effects_get(s.world, 0, all), DEM_EFFECTS);
         dem_world_destroy(s.world);
     }
@@ -277,7 +277,7 @@ int main(int argc, char **argv) {
         desc.ledger = 1;
         s = effects_world(desc);
         CHECK_EQ(scene_step(s.world, 50), DEM_OK);
-        hash = dem_world_hash(s.world);
+        hash = dem_world_hash_get(s.world);
         bytes = memory.bytes;
         for (k = 1;; k += 1 + k/8) {
             int count;
@@ -285,13 +285,13 @@ int main(int argc, char **argv) {
             memory.refused = 0;
             count = dem_effects_get(s.world, 1e-9, all);
             CHECK_EQ(memory.bytes, bytes);
-            CHECK_EQ(dem_world_hash(s.world), hash);
+            CHECK_EQ(dem_world_hash_get(s.world), hash);
             if (!memory.refused) { CHECK_EQ(count, DEM_EFFECTS); break; }
             refused++;
             for (e = 0, unmeasured = 0; e < DEM_EFFECTS && count == DEM_EFFECTS; e++)
                 unmeasured += !all[e].measured && !strcmp(all[e].name, "friction") + !strcmp(all[e].name, "walls") +
                     !strcmp(all[e].name, "rolling friction") + !strcmp(all[e].name, "ledger");
-            CHECK(count < 0 ? strstr(dem_world_error(s.world), "memory") != 0 : unmeasured == 1);
+            CHECK(count < 0 ? strstr(dem_world_error_get(s.world), "memory") != 0 : unmeasured == 1);
         }
         CHECK(refused > 30);
         dem_world_destroy(s.world);

@@ -108,9 +108,9 @@ static dem_wall soup_add(dem_world *world, dem_material material, const soup *s)
     mesh.triangle_count = profile.segment_count = s->facets;
     mesh.vertices = profile.vertices = x;
     mesh.triangles = profile.segments = c;
-    wall = per == 3 ? dem_mesh_add(world, material, &mesh)
-        : dem_profile_add(world, material, &profile, DEM_EDGE_RESOLVED);
-    if (!wall.id) puts(dem_world_error(world));
+    wall = per == 3 ? dem_wall_mesh_add(world, material, &mesh)
+        : dem_wall_profile_add(world, material, &profile, DEM_EDGE_RESOLVED);
+    if (!wall.id) puts(dem_world_error_get(world));
     free(x);
     free(c);
     return wall;
@@ -367,7 +367,7 @@ typedef struct impacts {
     double dt;                     /* of the contact time, 1/50 */
     int shape, hertz, count;
     double friction;
-    dem_sharing sharing;
+    dem_cluster_contacts sharing;
     dem_overlap overlap;
     uint64_t seed;
     double worst, gain, rms;       /* largest error of the energy, largest gain, rms; of the energy */
@@ -421,9 +421,9 @@ static void impacts_run(impacts *q, const soup *given, int kind, int inside) {
                                 dem_quat_make(1, 0, 0, 0));
         }
         if (n) break;
-        if (!given) dem_plane_add(world, material, at(0, 0, 0), at(0, 0, 1));
-        else dem_plane_add(world, material, at(0, 0, -5), at(0, 0, 1));
-        dem_step_advice(world, &advice);
+        if (!given) dem_wall_plane_add(world, material, at(0, 0, 0), at(0, 0, 1));
+        else dem_wall_plane_add(world, material, at(0, 0, -5), at(0, 0, 1));
+        dem_step_advice_get(world, &advice);
         desc.dt = (dem_real)(q->dt*(q->hertz ? (double)advice.contact_time : tc));
         desc.allow_large_dt = 1;
         dem_world_destroy(world);
@@ -436,8 +436,8 @@ static void impacts_run(impacts *q, const soup *given, int kind, int inside) {
         }
         s = scaled;
         soup_add(world, material, &s);
-    } else if (kind == 1) dem_cylinder_add(world, material, at(0, 0, 0), at(0, 0, 1), (dem_real)(4*r), 1);
-    else if (kind == 2) dem_cylinder_add(world, material, at(0, 0, 0), at(0, 0, 1), (dem_real)r, 0);
+    } else if (kind == 1) dem_wall_cylinder_add(world, material, at(0, 0, 0), at(0, 0, 1), (dem_real)(4*r), 1);
+    else if (kind == 2) dem_wall_cylinder_add(world, material, at(0, 0, 0), at(0, 0, 1), (dem_real)r, 0);
     else if (kind == 3) {
         dem_real place[3*100];
         for (i = 0; i < 100; i++) {
@@ -445,8 +445,8 @@ static void impacts_run(impacts *q, const soup *given, int kind, int inside) {
             place[3*i + 1] = (dem_real)((int)(i/10) - 4.5)*(dem_real)r;
             place[3*i + 2] = 0;
         }
-        dem_grains_wall_add(world, material, 100, place, (dem_real)(0.7*r), 1);
-    } else dem_plane_add(world, material, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_grains_add(world, material, 100, place, (dem_real)(0.7*r), 1);
+    } else dem_wall_plane_add(world, material, at(0, 0, 0), at(0, 0, 1));
     q->worst = q->gain = 0;
     q->hits = 0;
     while (q->hits < q->count && tries++ < 20*q->count + 100) {
@@ -618,7 +618,7 @@ static void rides_check(const char *name, rides r) {
 }
 
 
-static impacts impacts_shared(int shape, int hertz, int count, dem_sharing sharing) {
+static impacts impacts_shared(int shape, int hertz, int count, dem_cluster_contacts sharing) {
     impacts q = impacts_of(shape, hertz, count);
     q.sharing = sharing;
     return q;
@@ -666,7 +666,7 @@ int main(int argc, char **argv) {
                 const int n = cut[i][0];
                 soup s = drum_of(10, 4, n, cut[i][1]);
                 rail mesh = rail_on(&s), smooth = rail_begin(1);
-                dem_cylinder_add(smooth.world, smooth.material, at(0, 0, 0), up, 10, in);
+                dem_wall_cylinder_add(smooth.world, smooth.material, at(0, 0, 0), up, 10, in);
                 smooth.body = dem_sphere_add(smooth.world, smooth.material, 1, at(in ? 0 : 50, 0, 0));
                 for (o = 0; o < overlap_count; o++) {
                     double lo = 1e300, hi = 0;
@@ -950,7 +950,7 @@ int main(int argc, char **argv) {
             impacts_fall(k == 0 ? "plane, ball, linear" : k == 1 ? "plane, ellipsoid, linear" : k == 2
                          ? "plane, cluster, linear, each" : k == 3 ? "plane, ball, Hertz" : k == 4
                          ? "plane, ellipsoid, Hertz" : "plane, cluster, Hertz, each",
-                         impacts_shared(k%3, k/3, 12, DEM_SHARING_NONE), 0, 0, 0, limit_plane());
+                         impacts_shared(k%3, k/3, 12, DEM_CLUSTER_CONTACTS_SEPARATE), 0, 0, 0, limit_plane());
     }
     TEST("elastic impacts on rims, bumps, drums, boxes and profiles keep the energy as those on a plane do") {
         int i, k;
@@ -960,7 +960,7 @@ int main(int argc, char **argv) {
                 char name[80];
                 sprintf(name, "%s, %s", surface_name[i], k == 0 ? "ball, linear" : k == 1 ? "ball, Hertz"
                         : "cluster, each");
-                impacts_fall(name, impacts_shared(k == 2 ? impact_cluster : impact_ball, k == 1, 8, DEM_SHARING_NONE),
+                impacts_fall(name, impacts_shared(k == 2 ? impact_cluster : impact_ball, k == 1, 8, DEM_CLUSTER_CONTACTS_SEPARATE),
                              &s, 0, i == 2, limit());
             }
             soup_free(&s);
@@ -970,13 +970,13 @@ int main(int argc, char **argv) {
         int i;
         for (i = 1; i < 4; i++)
             impacts_fall(i == 1 ? "inside of a cylinder, ellipsoid" : i == 2 ? "outside of a cylinder, ellipsoid"
-                         : "grains, ellipsoid", impacts_shared(impact_ellipsoid, 0, 8, DEM_SHARING_ONE), 0, i, 0,
+                         : "grains, ellipsoid", impacts_shared(impact_ellipsoid, 0, 8, DEM_CLUSTER_CONTACTS_MERGED), 0, i, 0,
                          limit());
         for (i = 0; i < surface_count; i++) {
             soup s = surface_of(i);
             char name[80];
             sprintf(name, "%s, ellipsoid", surface_name[i]);
-            impacts_fall(name, impacts_shared(impact_ellipsoid, i & 1, 8, DEM_SHARING_ONE), &s, 0, i == 2, limit());
+            impacts_fall(name, impacts_shared(impact_ellipsoid, i & 1, 8, DEM_CLUSTER_CONTACTS_MERGED), &s, 0, i == 2, limit());
             soup_free(&s);
         }
     }
@@ -987,7 +987,7 @@ int main(int argc, char **argv) {
             char name[80];
             for (hertz = 0; hertz < 2; hertz++) {
                 sprintf(name, "%s, cluster, shared%s", i < 0 ? "plane" : surface_name[i], hertz ? ", Hertz" : "");
-                impacts_fall(name, impacts_shared(impact_cluster, hertz, 40, DEM_SHARING_ONE), i < 0 ? 0 : &s, 0,
+                impacts_fall(name, impacts_shared(impact_cluster, hertz, 40, DEM_CLUSTER_CONTACTS_MERGED), i < 0 ? 0 : &s, 0,
                              i == 2, limit());
             }
             soup_free(&s);
@@ -998,7 +998,7 @@ int main(int argc, char **argv) {
         for (i = 0; i < surface_count; i++) {
             soup s = surface_of(i);
             for (k = 0; k < 2; k++) {
-                impacts q = impacts_shared(k ? impact_ellipsoid : impact_ball, 0, 12, DEM_SHARING_NONE);
+                impacts q = impacts_shared(k ? impact_ellipsoid : impact_ball, 0, 12, DEM_CLUSTER_CONTACTS_SEPARATE);
                 q.friction = 0.4;
                 q.dt = 0.01;
                 impacts_run(&q, &s, 0, i == 2);
@@ -1054,10 +1054,10 @@ int main(int argc, char **argv) {
                 dem_motion m = DEM_MOTION;
                 m.kind = DEM_MOTION_TRANSLATING;
                 m.velocity = at(0, DEM_R(1e-3), 0);
-                dem_wall_motion(q.world, right, &m);
+                dem_wall_motion_set(q.world, right, &m);
                 CHECK_NEAR(rail_at(&q, at(0, 0.1, 0.99)).z, 0.02, 1e-6);        /* two surfaces, two contacts */
-                dem_wall_motion(q.world, right, &m);
-                dem_wall_motion(q.world, left, &m);
+                dem_wall_motion_set(q.world, right, &m);
+                dem_wall_motion_set(q.world, left, &m);
                 CHECK_NEAR(rail_at(&q, at(0, 0.1, 0.99)).z, 0.01, 1e-6);        /* they go together: one */
                 dem_wall_remove(q.world, right);
                 CHECK_NEAR(rail_at(&q, at(-0.01, 0.1, 0.99)).z, 0.01, 1e-6);
@@ -1094,7 +1094,7 @@ int main(int argc, char **argv) {
                 m.friction = DEM_R(0.3);
                 m.rolling_friction = way == 0 ? DEM_R(0.3) : 0;
                 stuff = dem_material_add(world, &m);
-                if (kind == 0) dem_plane_add(world, stuff, at(0, 0, 0), up);
+                if (kind == 0) dem_wall_plane_add(world, stuff, at(0, 0, 0), up);
                 else {
                     soup a = box_of_facets(-0.05, -0.05, -0.02, 0, 0.05, 0, 0);
                     soup b = box_of_facets(0, kind == 1 ? -0.05 : -0.08, -0.02, 0.05, 0.05, 0, kind == 2);
@@ -1162,7 +1162,7 @@ int main(int argc, char **argv) {
             m.restitution = DEM_R(0.5);
             m.friction = 1;
             stuff = dem_material_add(world, &m);
-            if (!facets[k]) dem_cylinder_add(world, stuff, at(0, 0, 0), up, DEM_R(0.1), 1);
+            if (!facets[k]) dem_wall_cylinder_add(world, stuff, at(0, 0, 0), up, DEM_R(0.1), 1);
             else {
                 soup d = drum_of(0.1, 0.04, facets[k], 2);
                 soup_add(world, stuff, &d);
@@ -1170,7 +1170,7 @@ int main(int argc, char **argv) {
             }
             body = dem_sphere_add(world, stuff, DEM_R(0.01), at(-(0.09 - 1e-6)*cos(start),
                                                                 -(0.09 - 1e-6)*sin(start), 1e-3));
-            while ((double)scene_state(world, body).position.x < 0 && dem_world_time(world) < 2)
+            while ((double)scene_state(world, body).position.x < 0 && dem_world_time_get(world) < 2)
                 if (scene_step(world, 20) != DEM_OK) { CHECK(0); break; }
             s = scene_state(world, body);
             t = dem_totals_get(world);
@@ -1178,7 +1178,7 @@ int main(int argc, char **argv) {
             turn[k] = fabs((double)s.spin.z);
             energy[k] = t.kinetic + t.rotational;
             if (tables()) printf("    %4d facets round: speed %.5f spin %.3f energy %.6e t %.4f\n", facets[k], speed[k],
-                                 turn[k], energy[k], dem_world_time(world));
+                                 turn[k], energy[k], dem_world_time_get(world));
             if (k > 1) {                        /* 300 and more: chords turn the speed by .02 rad each, which costs its
                                                    square; the dashpot takes it */
                 CHECK_REL(speed[k], speed[0], 0.01);
@@ -1256,8 +1256,8 @@ int main(int argc, char **argv) {
                 mesh.triangles = t;
                 mesh.vertex_count = 3*s.facets;
                 mesh.triangle_count = s.facets;
-                wall = dem_mesh_add(q.world, q.material, &mesh);
-                if (!wall.id) CHECK_STR(dem_world_error(q.world), "dem_mesh_add");
+                wall = dem_wall_mesh_add(q.world, q.material, &mesh);
+                if (!wall.id) CHECK_STR(dem_world_error_get(q.world), "dem_wall_mesh_add");
                 else {
                     dem_vec3 f;
                     q.body = dem_sphere_add(q.world, q.material, 1, at(off, 0, 50));
@@ -1337,10 +1337,10 @@ int main(int argc, char **argv) {
         mesh.vertices = x;
         mesh.triangles = t;
         x[4] = (dem_real)NAN;
-        CHECK(dem_mesh_add(q.world, q.material, &mesh).id == 0);
-        CHECK_STR(dem_world_error(q.world), "vertex 1");
+        CHECK(dem_wall_mesh_add(q.world, q.material, &mesh).id == 0);
+        CHECK_STR(dem_world_error_get(q.world), "vertex 1");
         x[4] = (dem_real)INFINITY;
-        CHECK(dem_mesh_add(q.world, q.material, &mesh).id == 0);
+        CHECK(dem_wall_mesh_add(q.world, q.material, &mesh).id == 0);
         dem_world_destroy(q.world);
     }
     TEST("a ball that starts exactly above a vertex, an edge, a rim or a corner, above or below, in any frame, feels "
@@ -1412,18 +1412,18 @@ int main(int argc, char **argv) {
         m.axis = at(0.2, 1, 0.3);
         m.point = at(0.5, 0.1, -0.4);
         m.speed = 40;
-        for (i = 0; i < 2; i++) dem_wall_motion(q.world, w[i], &m);
+        for (i = 0; i < 2; i++) dem_wall_motion_set(q.world, w[i], &m);
         q.body = dem_sphere_add(q.world, q.material, 1, at(0, 0, 50));
         for (i = 0; i < 100; i++) {
             dem_vec3 x, f;
             scene_step(q.world, 2);
-            dem_wall_pose(q.world, w[0], &pose);
+            dem_wall_pose_get(q.world, w[0], &pose);
             x = demi_add(pose.position, demi_rotate(pose.rotation, at(0.004*(i - 50), 0.1, 0.99)));
             rail_put(&q, x, at(0, 0, 0), at(0, 0, 0));
-            dem_search_now(q.world);
+            dem_candidates_rebuild(q.world);
             scene_step(q.world, 1);             /* by then the walls are one step on: .04 rad r less or more */
             f = rail_force(&q);
-            dem_wall_pose(q.world, w[0], &pose);
+            dem_wall_pose_get(q.world, w[0], &pose);
             x = demi_unrotate(pose.rotation, demi_sub(x, pose.position));
             f = demi_unrotate(pose.rotation, f);
             CHECK_NEAR(f.z, DEMI_MAX(1 - (double)x.z, 0.0), DEMI_SINGLE ? 1e-4 : 1e-11);
@@ -1434,7 +1434,7 @@ int main(int argc, char **argv) {
     }
     TEST("balls and ellipsoids on two meshes: the same bits from 1 and 2 threads, from every search, and after "
          "a checkpoint in the middle") {
-        static const dem_search search[4] = {DEM_SEARCH_GRID, DEM_SEARCH_LEVELS, DEM_SEARCH_ALL_PAIRS,
+        static const dem_search search[4] = {DEM_SEARCH_GRID, DEM_SEARCH_HIERARCHICAL, DEM_SEARCH_ALL_PAIRS,
                                              DEM_SEARCH_LINKED_LIST};
         uint64_t hash[6];
         int k;
@@ -1467,7 +1467,7 @@ int main(int argc, char **argv) {
                 CHECK(scene_step(world[0], 1500) == DEM_OK);
             }
             if (k < 5) CHECK(scene_step(world[0], 1500) == DEM_OK);
-            hash[k] = dem_world_hash(world[0]);
+            hash[k] = dem_world_hash_get(world[0]);
             if (k == 5) {
                 dem_world_destroy(world[0]);
                 world[0] = dem_world_create(&desc);
@@ -1490,7 +1490,7 @@ int main(int argc, char **argv) {
                 CHECK(dem_checkpoint_read(world[1], "test_facets.tmp") == DEM_OK);
                 remove("test_facets.tmp");
                 CHECK(scene_step(world[1], 1500) == DEM_OK);
-                hash[k] = dem_world_hash(world[1]);
+                hash[k] = dem_world_hash_get(world[1]);
             }
             dem_world_destroy(world[0]);
             dem_world_destroy(world[1]);

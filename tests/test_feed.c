@@ -99,12 +99,12 @@ static void machine_build(machine *m, int threads) {
     ring.segment_count = 18;
     for (i = 0; i < 18; i++) { segments[2*i] = i; segments[2*i + 1] = i + 1; }
     ring.vertices = vertices; ring.segments = segments;
-    walls[0] = dem_mesh_add(m->world, stuff, &floor);
-    walls[1] = dem_sieve_add(m->world, stuff, &sieve);
-    walls[2] = dem_profile_add(m->world, stuff, &ring, DEM_EDGE_RESOLVED);
+    walls[0] = dem_wall_mesh_add(m->world, stuff, &floor);
+    walls[1] = dem_wall_sieve_add(m->world, stuff, &sieve);
+    walls[2] = dem_wall_profile_add(m->world, stuff, &ring, DEM_EDGE_RESOLVED);
     for (i = 0; i < 3; i++) {
         motion = tumbler_motion(&m->part[i]);
-        CHECK_EQ(dem_wall_motion(m->world, walls[i], &motion), DEM_OK);
+        CHECK_EQ(dem_wall_motion_set(m->world, walls[i], &motion), DEM_OK);
     }
     memset(&outlet, 0, sizeof outlet);
     outlet.frame = walls[0];
@@ -126,7 +126,7 @@ static void machine_build(machine *m, int threads) {
 static int machine_balanced(const machine *m) {
     dem_feed_state f;
     dem_outlet_state o[2];
-    const dem_balance b = dem_balance_get(m->world);
+    const dem_body_counts b = dem_body_counts_get(m->world);
     int here[3], k, ok = b.inserted == b.present + b.removed + b.left;
     dem_feed_get(m->world, m->feed, &f);
     dem_outlet_get(m->world, m->outlet[0], &o[0]);
@@ -166,9 +166,9 @@ int main(int argc, char **argv) {
             }
             /* they fly on without gravity: those far away are taken out */
             while (dem_bodies_get(world).count > 20) {
-                dem_balance b;
-                dem_body_remove(world, dem_bodies_id(world, 0));
-                b = dem_balance_get(world);
+                dem_body_counts b;
+                dem_body_remove(world, dem_body_id_get(world, 0));
+                b = dem_body_counts_get(world);
                 CHECK(b.inserted == b.present + b.removed + b.left);
             }
         }
@@ -194,7 +194,7 @@ int main(int argc, char **argv) {
         for (i = 0; i < 20000; i++) {
             scene_step(world, 1);
             while (dem_bodies_get(world).count > 20)
-                dem_body_remove(world, dem_bodies_id(world, 0));
+                dem_body_remove(world, dem_body_id_get(world, 0));
         }
         dem_feed_get(world, feed, &s);
         CHECK_NEAR(s.mass, 0.03*20, 2500*4.19*0.004*0.004*0.004);      /* within a grain */
@@ -217,7 +217,7 @@ int main(int argc, char **argv) {
             int here[3];
             d.limited = 1;
             d.round = way;
-            dem_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
             feed = dem_feed_add(world, &d);
             CHECK_EQ(scene_step(world, 1), DEM_OK);
             dem_feed_get(world, feed, &s);
@@ -259,14 +259,14 @@ int main(int argc, char **argv) {
             d.start = kind == 2 ? 0.2 : 0;
             d.end = kind == 4 ? 0.125 : 0;
             d.box = box_of(-0.02, -0.02, 0.01, 0.02, 0.02, 0.02);
-            dem_plane_add(world, d.material, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_plane_add(world, d.material, at(0, 0, 0), at(0, 0, 1));
             feed = dem_feed_add(world, &d);
             CHECK_EQ(dem_world_settle(world, 2, 0, 0, 0), DEM_OK);
             CHECK_EQ(dem_feed_get(world, feed, &s), DEM_OK);
             CHECK_EQ(s.done, 1);
             CHECK_EQ((int)s.total, 12);
             CHECK_EQ(dem_bodies_get(world).count, 12);
-            CHECK(dem_world_time(world) > d.start + (d.rate > 0 ? 0.1 : 0));
+            CHECK(dem_world_time_get(world) > d.start + (d.rate > 0 ? 0.1 : 0));
             CHECK((double)dem_counters_get(world).speed_max < 0.1*sqrt(2*9.81*0.002));
             dem_world_destroy(world);
         }
@@ -278,8 +278,8 @@ int main(int argc, char **argv) {
         dem_feed_desc d = feed_of(stuff, 1000);
         dem_feed_add(world, &d);
         CHECK_EQ(dem_world_settle(world, 0.1, 0, 0, 0), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "feed 1 has limited 0 and end 0 s");
-        CHECK_EQ((int)dem_world_steps(world), 0);
+        CHECK_STR(dem_world_error_get(world), "feed 1 has limited 0 and end 0 s");
+        CHECK_EQ((int)dem_world_steps_get(world), 0);
         dem_world_destroy(world);
         world = world_of(0, 1e-4);
         stuff = soft(world, 100);
@@ -291,8 +291,8 @@ int main(int argc, char **argv) {
         dem_feed_add(world, &d);
         CHECK_EQ(dem_world_settle(world, 0.1, 0, 0, 0), DEM_ERROR_ARGUMENT);    /* what is slow? */
         CHECK_EQ(dem_world_settle(world, 0.1, DEM_R(1e-3), 0, 0), DEM_ERROR_STOPPED);
-        CHECK_STR(dem_world_error(world), "feed 1 still brings grains");
-        CHECK_STR(dem_world_error(world), "wait for room");
+        CHECK_STR(dem_world_error_get(world), "feed 1 still brings grains");
+        CHECK_STR(dem_world_error_get(world), "wait for room");
         CHECK_EQ(dem_world_settle(world, 1e-20, DEM_R(1e-3), 0, 0), DEM_ERROR_STOPPED);     /* and ends */
         dem_world_destroy(world);
     }
@@ -300,7 +300,7 @@ int main(int argc, char **argv) {
     TEST("an id that was never given is told from that of a wall which was removed, and a feed without classes says what to do") {
         dem_world *world = world_of(9.81, 1e-4);
         dem_material stuff = soft(world, 100);
-        const dem_wall wall = dem_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+        const dem_wall wall = dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
         dem_feed_desc d = feed_of(stuff, 1000);
         dem_feed_state fed;
         dem_outlet_state out;
@@ -309,18 +309,18 @@ int main(int argc, char **argv) {
         const dem_feed feed = {2};
         const dem_outlet outlet = {2};
         other.id = 7;
-        CHECK_EQ(dem_wall_pose(world, other, &pose), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "wall 7 does not exist, ids here go from 1 to 1");
+        CHECK_EQ(dem_wall_pose_get(world, other, &pose), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "wall 7 does not exist, ids here go from 1 to 1");
         CHECK_EQ(dem_wall_remove(world, wall), DEM_OK);
-        CHECK_EQ(dem_wall_pose(world, wall, &pose), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "wall 1 does not exist any more: it was removed");
+        CHECK_EQ(dem_wall_pose_get(world, wall, &pose), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "wall 1 does not exist any more: it was removed");
         CHECK_EQ(dem_feed_get(world, feed, &fed), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "check what dem_feed_add returned");
+        CHECK_STR(dem_world_error_get(world), "check what dem_feed_add returned");
         CHECK_EQ(dem_outlet_get(world, outlet, &out), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "check what dem_outlet_add returned");
+        CHECK_STR(dem_world_error_get(world), "check what dem_outlet_add returned");
         d.class_count = 0;
         CHECK_EQ(dem_feed_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error(world), "say how many entries of radius and amount");
+        CHECK_STR(dem_world_error_get(world), "say how many entries of radius and amount");
         dem_world_destroy(world);
     }
 
@@ -338,7 +338,7 @@ int main(int argc, char **argv) {
         dem_feed_get(world, feed, &s);
         CHECK(s.total < 20);
         CHECK_NEAR((double)(s.total + s.waiting), 100, 1);
-        while (dem_bodies_get(world).count) dem_body_remove(world, dem_bodies_id(world, 0));
+        while (dem_bodies_get(world).count) dem_body_remove(world, dem_body_id_get(world, 0));
         scene_step(world, 20);
         CHECK(dem_bodies_get(world).count > 0);
         dem_world_destroy(world);
@@ -351,19 +351,19 @@ int main(int argc, char **argv) {
             dem_world *world = world_of(0, 1e-3);
             dem_material stuff = soft(world, 1);
             dem_feed_desc d = feed_of(stuff, 1);
-            dem_wall wall = dem_plane_add(world, stuff, at(5, 0, -3), at(0, 0, 1));
+            dem_wall wall = dem_wall_plane_add(world, stuff, at(5, 0, -3), at(0, 0, 1));
             dem_outlet_desc o;
             d.seed = (uint64_t)i;
             dem_feed_add(world, &d);
-            hash[i] = dem_world_hash(world);
-            CHECK_EQ(dem_wall_remove(world, dem_plane_add(world, stuff, at(0, 0, -9), at(0, 0, 1))),
+            hash[i] = dem_world_hash_get(world);
+            CHECK_EQ(dem_wall_remove(world, dem_wall_plane_add(world, stuff, at(0, 0, -9), at(0, 0, 1))),
                      DEM_OK);
             memset(&o, 0, sizeof o);
             o.frame = wall;
             o.box = box_of(0, 0, 0, 1, 1, 1);
             CHECK(dem_outlet_add(world, &o).id > 0);
             CHECK_EQ(dem_wall_remove(world, wall), DEM_ERROR_ARGUMENT);
-            CHECK_STR(dem_world_error(world), "outlet 1 moves with wall");
+            CHECK_STR(dem_world_error_get(world), "outlet 1 moves with wall");
             dem_world_destroy(world);
         }
         CHECK(hash[0] != hash[1]);
@@ -397,7 +397,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(s.done, 0);
         d.amount[0] = 0.3;
         CHECK_EQ(dem_feed_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error(world), "which is 0.3 grains");
+        CHECK_STR(dem_world_error_get(world), "which is 0.3 grains");
         dem_world_destroy(world);
     }
 
@@ -425,7 +425,7 @@ int main(int argc, char **argv) {
     TEST("outlets count by class and by what is wanted, standing still and on a turning wall") {
         dem_world *world = world_of(0, 1e-3);
         dem_material stuff = soft(world, 1);
-        dem_wall wall = dem_plane_add(world, stuff, at(5, 0, -3), at(0, 0, 1));
+        dem_wall wall = dem_wall_plane_add(world, stuff, at(5, 0, -3), at(0, 0, 1));
         dem_motion turn = DEM_MOTION;
         dem_outlet_desc d;
         dem_outlet outlet[2];
@@ -437,7 +437,7 @@ int main(int argc, char **argv) {
         turn.axis = at(0, 0, 1);
         turn.point = at(5, 0, 0);
         turn.speed = DEM_R(3.14159265358979/2);
-        dem_wall_motion(world, wall, &turn);
+        dem_wall_motion_set(world, wall, &turn);
         memset(&d, 0, sizeof d);
         d.box = box_of(1, -1, -1, 2, 1, 1);
         d.class_count = 2;
@@ -476,7 +476,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(sorting_get(world, outlet, 2, &sorted), DEM_OK);
         CHECK_REL(sorted.efficiency_number, (0.4 + 1)/2, 1e-12);      /* eq 4.33 */
         CHECK_REL(sorted.gangue_number, 3/6.0, 1e-12);
-        CHECK_REL(sorted.rate_number, 6/dem_world_time(world), 1e-9);
+        CHECK_REL(sorted.rate_number, 6/dem_world_time_get(world), 1e-9);
         dem_world_destroy(world);
     }
 
@@ -492,7 +492,7 @@ int main(int argc, char **argv) {
         }
         CHECK_EQ(bad, 0);
         CHECK_EQ(sorting_get(m.world, m.outlet, 2, &sorted), DEM_OK);
-        CHECK(dem_balance_get(m.world).left > 20);
+        CHECK(dem_body_counts_get(m.world).left > 20);
         CHECK_EQ(sorted.silent, 0);
         CHECK(sorted.efficiency_number > 0.5);
         dem_world_destroy(m.world);
@@ -520,7 +520,7 @@ int main(int argc, char **argv) {
                 desc.domain = box_of(-0.03, -0.03, 0, 0.03, 0.03, 0.1);
                 world[way] = dem_world_create(&desc);
                 stuff = soft(world[way], 1000);
-                dem_plane_add(world[way], stuff, at(0, 0, 0), at(0, 0, 1));
+                dem_wall_plane_add(world[way], stuff, at(0, 0, 0), at(0, 0, 1));
                 scene_block(world[way], stuff, 12, 12, 4, 2e-3, 1, 0.02, 3);
                 d = feed_of(stuff, 12500);                   /* one in eight steps, some onto the bed */
                 d.class_count = 1;
@@ -538,8 +538,8 @@ int main(int argc, char **argv) {
             if (!s) {
                 const dem_bodies b = dem_bodies_get(world[0]);
                 for (i = 0; i < b.count; i++) {
-                    dem_body_state x = scene_state(world[0], dem_bodies_id(world[0], i));
-                    dem_body_state y = scene_state(world[1], dem_bodies_id(world[0], i));
+                    dem_body_state x = scene_state(world[0], dem_body_id_get(world[0], i));
+                    dem_body_state y = scene_state(world[1], dem_body_id_get(world[0], i));
                     const double dx = (double)(x.position.x - y.position.x);
                     const double dz = (double)(x.position.z - y.position.z);
                     if (fabs(dx) < 0.03) apart = DEMI_MAX(apart, fabs(dx));
@@ -547,7 +547,7 @@ int main(int argc, char **argv) {
                 }
                 dem_world_destroy(world[1]);
             }
-            hash[s] = dem_world_hash(world[0]);
+            hash[s] = dem_world_hash_get(world[0]);
             dem_world_destroy(world[0]);
         }
         CHECK(rebuilds[1] > 790);
@@ -586,13 +586,13 @@ int main(int argc, char **argv) {
             b = dem_bodies_get(world);
             for (k = 0; k < b.count; k++)
                 if (b.positions[4*k] > 0) {
-                    const uint32_t slot = dem_bodies_id(world, k).slot - 1;
+                    const uint32_t slot = dem_body_id_get(world, k).slot - 1;
                     deepest = DEMI_MAX(deepest, (double)b.positions[4*k]);
                     since[slot]++;
                     most = DEMI_MAX(most, since[slot]);
                 }
         }
-        gone = (int)dem_balance_get(world).left;
+        gone = (int)dem_body_counts_get(world).left;
         CHECK_EQ(gone, 400);
         CHECK(most > 0 && most <= 64);
         CHECK(deepest < 0.5e-3 + 0.2*1e-5);
@@ -612,7 +612,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_checkpoint_read(b.world, path), DEM_OK);
         CHECK_EQ(scene_step(a.world, 3000), DEM_OK);
         CHECK_EQ(scene_step(b.world, 3000), DEM_OK);
-        CHECK(dem_world_hash(a.world) == dem_world_hash(b.world));
+        CHECK(dem_world_hash_get(a.world) == dem_world_hash_get(b.world));
         dem_feed_get(a.world, a.feed, &fa);
         dem_feed_get(b.world, b.feed, &fb);
         CHECK(memcmp(&fa, &fb, sizeof fa) == 0);
@@ -662,9 +662,9 @@ int main(int argc, char **argv) {
         memset(&fine_sizes, 0, sizeof fine_sizes);      /* copied */
         for (i = 0; i < 2000; i++) {
             if (scene_step(world, 1) != DEM_OK) { CHECK(0); break; }
-            while (dem_balance_get(world).present) {
+            while (dem_body_counts_get(world).present) {
                 const dem_bodies b = dem_bodies_get(world);
-                const dem_body id = dem_bodies_id(world, 0);
+                const dem_body id = dem_body_id_get(world, 0);
                 const int k = b.shapes[0];
                 const double r = cbrt((double)b.masses[0]/2500*3/4/3.14159265358979);
                 CHECK_EQ(b.materials[0], k ? metal.id : plastic.id);
@@ -716,13 +716,13 @@ int main(int argc, char **argv) {
                 sizes.spread = 0.2;
                 d.sizes[0] = d.sizes[1] = &sizes;
                 d.shapes[1] = dem_shape_ellipsoid_add(world[part], at(1, 1, 1.5));
-                dem_plane_add(world[part], stuff, at(0, 0, 0.19), at(0, 0, 1));
+                dem_wall_plane_add(world[part], stuff, at(0, 0, 0.19), at(0, 0, 1));
                 CHECK(dem_feed_add(world[part], &d).id);
                 sieve.kind = DEM_SIEVE_SQUARE;
                 sieve.aperture = DEM_R(0.01);
                 sieve.bar = DEM_R(0.002);
-                CHECK(!dem_sieve_add(world[part], stuff, &sieve).id);
-                CHECK_STR(dem_world_error(world[part]), "ellipsoid");
+                CHECK(!dem_wall_sieve_add(world[part], stuff, &sieve).id);
+                CHECK_STR(dem_world_error_get(world[part]), "ellipsoid");
             }
             CHECK_EQ(scene_step(world[0], 800), DEM_OK);
             if (k == 1) {
@@ -739,9 +739,9 @@ int main(int argc, char **argv) {
                 CHECK_EQ(dem_slabs_collect(slabs, world[0]), DEM_OK);
                 dem_slabs_destroy(slabs);
             } else CHECK_EQ(scene_step(world[0], 800), DEM_OK);
-            CHECK(dem_balance_get(world[k == 1]).present > 50);
-            CHECK_EQ(dem_search_now(world[k == 1]), DEM_OK);
-            hash[k] = dem_world_hash(world[k == 1]);
+            CHECK(dem_body_counts_get(world[k == 1]).present > 50);
+            CHECK_EQ(dem_candidates_rebuild(world[k == 1]), DEM_OK);
+            hash[k] = dem_world_hash_get(world[k == 1]);
             CHECK(hash[k] == hash[0]);
             dem_world_destroy(world[0]);
             dem_world_destroy(world[1]);
@@ -756,23 +756,23 @@ int main(int argc, char **argv) {
         dem_outlet none;
         sorting sorted;
         CHECK_EQ(dem_feed_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error(world), "needs `limited`");
+        CHECK_STR(dem_world_error_get(world), "needs `limited`");
         d.rate = 1;
         d.class_count = 0;
         CHECK_EQ(dem_feed_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error(world), "class_count is 0");
+        CHECK_STR(dem_world_error_get(world), "class_count is 0");
         d.class_count = 4;
         CHECK_EQ(dem_feed_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error(world), "class 3 has radius 0");
+        CHECK_STR(dem_world_error_get(world), "class 3 has radius 0");
         d.class_count = 3;
         d.box.hi.x = -1;
         CHECK_EQ(dem_feed_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error(world), "lo is above hi");
+        CHECK_STR(dem_world_error_get(world), "lo is above hi");
         memset(&o, 0, sizeof o);
         o.wanted_min = 2;
         o.wanted_max = 1;
         CHECK_EQ(dem_outlet_add(world, &o).id, 0);
-        CHECK_STR(dem_world_error(world), "wanted 2 to 1");
+        CHECK_STR(dem_world_error_get(world), "wanted 2 to 1");
         none.id = 3;
         CHECK_EQ(sorting_get(world, &none, 1, &sorted), DEM_ERROR_ARGUMENT);
         CHECK_STR(sorted.error, "outlet 3, number 1 of 1, does not exist");
@@ -796,7 +796,7 @@ int main(int argc, char **argv) {
             world[k] = world_of(9.81, 2e-5);
             a = soft(world[k], 5000);
             b = soft(world[k], 5000);
-            dem_plane_add(world[k], a, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_plane_add(world[k], a, at(0, 0, 0), at(0, 0, 1));
             /* ten of each fall from above the plane z = .1 m, on to a floor from which the glass bounces back */
             for (i = 0; i < 10; i++) {
                 dem_sphere_add(world[k], a, DEM_R(0.003), at(0.01*i, 0, 0.12));
@@ -829,13 +829,13 @@ int main(int argc, char **argv) {
         dem_outlet_get(world[0], only, &s);
         CHECK_EQ((int)s.count[0], 0);
         CHECK_EQ((int)s.total, 10);
-        CHECK_EQ((int)dem_balance_get(world[0]).present, 30);
+        CHECK_EQ((int)dem_body_counts_get(world[0]).present, 30);
         CHECK_EQ(dem_checkpoint_write(world[0], "build/tmp/counts.ckpt"), DEM_OK);
         CHECK_EQ(dem_checkpoint_read(world[1], "build/tmp/counts.ckpt"), DEM_OK);
         for (k = 0; k < 2; k++) {
             for (i = 0; i < 30; i++) {                   /* thrown up again: back through the plane */
-                dem_body_state st = scene_state(world[k], dem_bodies_id(world[k], i));
-                if ((double)st.radius > 0.004) scene_move(world[k], dem_bodies_id(world[k], i), at(0, 0, 2), at(0, 0, 0));
+                dem_body_state st = scene_state(world[k], dem_body_id_get(world[k], i));
+                if ((double)st.radius > 0.004) scene_move(world[k], dem_body_id_get(world[k], i), at(0, 0, 2), at(0, 0, 0));
             }
             CHECK_EQ(dem_world_run_to(world[k], 0.23, 0, 0), DEM_OK);
             dem_outlet_get(world[k], below, &s);
@@ -845,14 +845,14 @@ int main(int argc, char **argv) {
             CHECK_EQ((int)s.held_total, 20);
             CHECK_REL(s.back_total_mass, 10*2500*4.18879020478639*0.005*0.005*0.005, sizeof(dem_real) == 8 ? 1e-9 : 1e-5);
         }
-        CHECK(dem_world_hash(world[0]) == dem_world_hash(world[1]));
+        CHECK(dem_world_hash_get(world[0]) == dem_world_hash_get(world[1]));
         CHECK_EQ(dem_outlet_reset(world[0], below), DEM_OK);
         dem_outlet_get(world[0], below, &s);
         CHECK_EQ((int)s.back_total + (int)s.total, 0);
         CHECK_EQ((int)s.held_total, 20);
         for (i = 2; i < 16; i++) CHECK_EQ(dem_outlet_add(world[0], &d).id, i + 1);
         CHECK_EQ(dem_outlet_add(world[0], &d).id, 0);
-        CHECK_STR(dem_world_error(world[0]), "16 outlets that only count");
+        CHECK_STR(dem_world_error_get(world[0]), "16 outlets that only count");
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
     return test_end();

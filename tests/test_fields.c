@@ -81,9 +81,9 @@ int main(int argc, char **argv) {
         desc.domain = box_of(0, 0, 0, 0.04, 0.04, 1);
         world = dem_world_create(&desc);
         m = scene_material(world, 5e6, 0.3, 0.5, 0.1);
-        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-        dem_spheres_fill(world, m, DEM_R(0.0030), box_of(0, 0, 0, 0.04, 0.04, 0.16), 300, 1);
-        dem_spheres_fill(world, m, DEM_R(0.0022), box_of(0, 0, 0, 0.04, 0.04, 0.16), 500, 2);
+        dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_spheres_fill(world, m, DEM_R(0.0030), dem_region_make(box_of(0, 0, 0, 0.04, 0.04, 0.16)), 300, 1);
+        dem_spheres_fill(world, m, DEM_R(0.0022), dem_region_make(box_of(0, 0, 0, 0.04, 0.04, 0.16)), 500, 2);
         CHECK_EQ(dem_world_settle(world, 5, DEM_R(5e-4), 0, 0), DEM_OK);
         f = field_of(world, box_of(0, 0, 0, 0.04, 0.04, 0.08), 1, 1, 8, 2e-4, 0);
         memset(&part, 0, sizeof part);
@@ -120,7 +120,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(a.grains, 500, 1e-6);
         CHECK_REL((a.stress[2] + b.stress[2])*0.08, (all_of(&d, d.stress, 6, 2) + all_of(&d, d.flux, 6, 2))/1.6e-3, 1e-3);
         CHECK_EQ(dem_field_cell_get(world, small, 0, 1, 0, &a), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "cell (0, 1, 0) is none of 1 x 1 x 1");
+        CHECK_STR(dem_world_error_get(world), "cell (0, 1, 0) is none of 1 x 1 x 1");
         dem_world_destroy(world);
     }
 
@@ -136,8 +136,8 @@ int main(int argc, char **argv) {
         desc.domain = box_of(0, 0, 0, 0.1, 0.1, 0.1);
         world = dem_world_create(&desc);
         m = scene_material(world, 1e6, 1, 0, 0);
-        dem_spheres_fill(world, m, DEM_R(2e-4), desc.domain, 400, 4);
-        for (i = 0; i < 400; i++) scene_move(world, dem_bodies_id(world, i), at(0.5, 0, 0), at(0, 0, 0));
+        dem_spheres_fill(world, m, DEM_R(2e-4), dem_region_make(desc.domain), 400, 4);
+        for (i = 0; i < 400; i++) scene_move(world, dem_body_id_get(world, i), at(0.5, 0, 0), at(0, 0, 0));
         CHECK_EQ(dem_temperature_set(world, 0.04, 9), DEM_OK);
         f = field_of(world, desc.domain, 1, 1, 1, 1e-9, 0);
         CHECK_EQ(scene_step(world, 1), DEM_OK);
@@ -161,7 +161,7 @@ int main(int argc, char **argv) {
         desc.domain = box_of(0, 0, 0, 0.05, 0.05, 0.05);
         world = dem_world_create(&desc);
         m = scene_material(world, 1e6, 1, 0, 0);
-        dem_spheres_fill(world, m, DEM_R(1.5e-3), desc.domain, 1500, 4);
+        dem_spheres_fill(world, m, DEM_R(1.5e-3), dem_region_make(desc.domain), 1500, 4);
         f = field_of(world, desc.domain, 10, 10, 10, 1e-9, 0.006);
         cells = field_of(world, desc.domain, 10, 10, 10, 1e-9, 0);
         CHECK_EQ(scene_step(world, 1), DEM_OK);
@@ -187,16 +187,16 @@ int main(int argc, char **argv) {
         d.cells[0] = d.cells[1] = d.cells[2] = 2;
         d.width = -1;
         CHECK_EQ(dem_field_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error(world), "width is -1 m");
+        CHECK_STR(dem_world_error_get(world), "width is -1 m");
         d.width = 0;
         d.radius_min = 2;
         d.radius_max = 1;
         CHECK_EQ(dem_field_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error(world), "radii 2 to 1 m");
+        CHECK_STR(dem_world_error_get(world), "radii 2 to 1 m");
         d.radius_min = d.radius_max = 0;
         d.material.id = 3;
         CHECK_EQ(dem_field_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error(world), "material 3 does not exist");
+        CHECK_STR(dem_world_error_get(world), "material 3 does not exist");
         dem_world_destroy(world);
     }
     return test_end();

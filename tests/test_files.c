@@ -283,7 +283,7 @@ static void meshes(void) {
             if (teeth == TEETH) CHECK_REL(area, 1.5*(TEETH - 0.5) + 0.25, 1e-10);
             dem_mesh_free(world, &mesh);
         }
-        CHECK_STR(dem_world_error(world), "a face that is not convex has 10002 corners, must be at most 10000");
+        CHECK_STR(dem_world_error_get(world), "a face that is not convex has 10002 corners, must be at most 10000");
     }
     TEST("health counts open and crowded edges, duplicates and slivers, each once") {
         CHECK_EQ(parse(world, "3 1\n0 0 0\n1 0 0\n0 1 0\n1 2 3\n", &mesh, &health), DEM_OK);
@@ -322,7 +322,7 @@ static void meshes(void) {
         CHECK_EQ(dem_mesh_place(world, &mesh, 1, none, at(0, 0, 0)), DEM_OK);
         CHECK_NEAR(mesh.vertices[4], 2.3, 1e-6);
         CHECK_EQ(dem_mesh_place(world, &mesh, 0, quarter, at(0, 0, 0)), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "dem_mesh_place: scale is 0, must be finite and > 0");
+        CHECK_STR(dem_world_error_get(world), "dem_mesh_place: scale is 0, must be finite and > 0");
         CHECK_EQ(dem_mesh_place(world, &mesh, 1, quarter, at(0, sqrt(-1.0), 0)), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_mesh_place(world, 0, 1, quarter, at(0, 0, 0)), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_mesh_place(0, &mesh, 1, quarter, at(0, 0, 0)), DEM_ERROR_ARGUMENT);
@@ -408,9 +408,9 @@ static void bad_meshes(void) {
             memset(&mesh, 255, sizeof mesh);
             CHECK_EQ(parse(world, bad[i][0], &mesh, &health), DEM_ERROR_FORMAT);
             CHECK(mesh_is_empty(&mesh));
-            CHECK_STR(dem_world_error(world), "dem_mesh_parse: some.mesh");
-            CHECK_STR(dem_world_error(world), bad[i][1]);
-            CHECK(strlen(dem_world_error(world)) < 400);
+            CHECK_STR(dem_world_error_get(world), "dem_mesh_parse: some.mesh");
+            CHECK_STR(dem_world_error_get(world), bad[i][1]);
+            CHECK(strlen(dem_world_error_get(world)) < 400);
             CHECK_EQ(p.bytes, held);
         }
     }
@@ -421,11 +421,11 @@ static void bad_meshes(void) {
             const long calls = p.calls;
             CHECK_EQ(parse(world, lies[i], &mesh, &health), DEM_ERROR_FORMAT);
             CHECK_EQ(p.calls, calls);
-            CHECK_STR(dem_world_error(world), "bytes follow");
+            CHECK_STR(dem_world_error_get(world), "bytes follow");
         }
         memset(binary + 80, 255, 4);
         CHECK_EQ(dem_mesh_parse(world, "x.stl", binary, 84, &mesh, 0), DEM_ERROR_FORMAT);
-        CHECK_STR(dem_world_error(world), "a binary STL has 84 and 50 for each triangle");
+        CHECK_STR(dem_world_error_get(world), "a binary STL has 84 and 50 for each triangle");
         binary[80] = binary[81] = binary[82] = binary[83] = 0;
         CHECK_EQ(dem_mesh_parse(world, "x.stl", binary, 84, &mesh, 0), DEM_ERROR_FORMAT);
         CHECK_EQ(p.bytes, held);
@@ -435,7 +435,7 @@ static void bad_meshes(void) {
         bytes[80] = 1;
         bytes[84 + 12 + 4*4 + 2] = 0xC0; bytes[84 + 12 + 4*4 + 3] = 0x7F; /* nan */
         CHECK_EQ(dem_mesh_parse(world, "x.stl", bytes, sizeof bytes, &mesh, 0), DEM_ERROR_FORMAT);
-        CHECK_STR(dem_world_error(world), "x.stl byte 112");
+        CHECK_STR(dem_world_error_get(world), "x.stl byte 112");
         bytes[84 + 12 + 4*4 + 2] = 0x80;                                  /* inf */
         CHECK_EQ(dem_mesh_parse(world, "x.stl", bytes, sizeof bytes, &mesh, 0), DEM_ERROR_FORMAT);
         CHECK_EQ(p.bytes, held);
@@ -483,7 +483,7 @@ static void bad_meshes(void) {
                 else result = dem_mesh_parse(world, "x", whole, size, &mesh, &health);
                 if (result == DEM_OK) break;
                 CHECK_EQ(result, DEM_ERROR_MEMORY);
-                CHECK_STR(dem_world_error(world), "memory");
+                CHECK_STR(dem_world_error_get(world), "memory");
                 if (form != 4) CHECK(mesh_is_empty(&mesh));
                 CHECK_EQ(p.bytes, before);
             }
@@ -498,7 +498,7 @@ static void bad_meshes(void) {
     }
     TEST("a file that is not there, a folder and a null name are refused by name") {
         CHECK_EQ(dem_mesh_read(world, "build/tmp/none.stl", &mesh, &health), DEM_ERROR_FILE);
-        CHECK_STR(dem_world_error(world), "dem_mesh_read: cannot read build/tmp/none.stl: ");
+        CHECK_STR(dem_world_error_get(world), "dem_mesh_read: cannot read build/tmp/none.stl: ");
         CHECK_EQ(dem_mesh_read(world, "build/tmp", &mesh, 0), DEM_ERROR_FILE);
         CHECK_EQ(dem_mesh_read(world, 0, &mesh, 0), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_mesh_parse(world, "x", 0, 5, &mesh, 0), DEM_ERROR_ARGUMENT);
@@ -523,7 +523,7 @@ static void bad_meshes(void) {
         text[size - 2] = 'x';
         file_put("build/tmp/strip.txt", text, size);
         CHECK_EQ(dem_mesh_read(world, "build/tmp/strip.txt", &mesh, &health), DEM_ERROR_FORMAT);
-        CHECK_STR(dem_world_error(world), "dem_mesh_read: build/tmp/strip.txt line 40003: found '2000x'");
+        CHECK_STR(dem_world_error_get(world), "dem_mesh_read: build/tmp/strip.txt line 40003: found '2000x'");
         remove("build/tmp/strip.txt");
         free(text);
         CHECK_EQ(p.bytes, held);
@@ -558,8 +558,8 @@ static void profiles(void) {
             {"2 1\n0 0\n1 1\n1 2\n1", "line 5"}, {"solid x\n", "found 'solid'"}};
         for (size_t i = 0; i < sizeof bad/sizeof *bad; i++) {
             CHECK_EQ(dem_profile_parse(world, "p.txt", bad[i][0], strlen(bad[i][0]), &profile), DEM_ERROR_FORMAT);
-            CHECK_STR(dem_world_error(world), "dem_profile_parse: p.txt");
-            CHECK_STR(dem_world_error(world), bad[i][1]);
+            CHECK_STR(dem_world_error_get(world), "dem_profile_parse: p.txt");
+            CHECK_STR(dem_world_error_get(world), bad[i][1]);
             CHECK(!profile.vertices && !profile.segments && profile.vertex_count == 0 && profile.segment_count == 0);
             CHECK_EQ(p.bytes, held);
         }
@@ -666,15 +666,15 @@ static void walls(void) {
     size_t size;
     parse(world, "3 1\n1 0 0\n0 1 0\n0 0 1\n1 2 3\n", &mesh, 0);
     dem_profile_parse(world, "p", profile_text, strlen(profile_text), &profile);
-    plane = dem_plane_add(world, steel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-    moved = dem_mesh_add(world, steel, &mesh);
+    plane = dem_wall_plane_add(world, steel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    moved = dem_wall_mesh_add(world, steel, &mesh);
 
     TEST("walls are drawn where they are now, profiles between z0 and z1, endless walls not at all") {
         dem_motion motion = DEM_MOTION;
         motion.kind = DEM_MOTION_USER;
         motion.function = quarter;
-        CHECK_EQ(dem_wall_motion(world, moved, &motion), DEM_OK);
-        dem_profile_add(world, steel, &profile, DEM_EDGE_RESOLVED);
+        CHECK_EQ(dem_wall_motion_set(world, moved, &motion), DEM_OK);
+        dem_wall_profile_add(world, steel, &profile, DEM_EDGE_RESOLVED);
         CHECK_EQ(dem_walls_vtp_write(world, "build/tmp/walls.vtp", -2, 2), DEM_OK);
         char *text = file_get("build/tmp/walls.vtp", &size);
         CHECK(text != 0);
@@ -742,15 +742,15 @@ static void walls(void) {
         dem_world_destroy(w);
     }
     TEST("profiles cannot be drawn between z1 and z0") {
-        dem_profile_add(world, steel, &profile, DEM_EDGE_RESOLVED);
+        dem_wall_profile_add(world, steel, &profile, DEM_EDGE_RESOLVED);
         CHECK_EQ(dem_walls_vtp_write(world, "build/tmp/walls.vtp", 1, 1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "z0 is 1 and z1 is 1");
+        CHECK_STR(dem_world_error_get(world), "z0 is 1 and z1 is 1");
     }
     TEST("loads are appended line by line under one heading") {
         const char *const path = "build/tmp/loads.csv";
         remove(path);
-        CHECK_EQ(dem_wall_loads_csv(world, plane, path), DEM_OK);
-        CHECK_EQ(dem_wall_loads_csv(world, plane, path), DEM_OK);
+        CHECK_EQ(dem_wall_loads_csv_write(world, plane, path), DEM_OK);
+        CHECK_EQ(dem_wall_loads_csv_write(world, plane, path), DEM_OK);
         char *text = file_get(path, &size);
         int lines = 0, commas = 0;
         CHECK(text != 0);
@@ -760,12 +760,12 @@ static void walls(void) {
         CHECK(text && strncmp(text, "time,fx,fy,fz,tx,ty,tz,torque_axial,power,contacts\n0,", 53) == 0);
         free(text);
         file_put(path, "", 0);
-        CHECK_EQ(dem_wall_loads_csv(world, plane, path), DEM_OK);
+        CHECK_EQ(dem_wall_loads_csv_write(world, plane, path), DEM_OK);
         text = file_get(path, &size);
         CHECK(text && strncmp(text, "time,", 5) == 0);
         free(text);
         file_put(path, "time\n0.5,1,2", 12); /* cut short by a full disk */
-        CHECK_EQ(dem_wall_loads_csv(world, plane, path), DEM_OK);
+        CHECK_EQ(dem_wall_loads_csv_write(world, plane, path), DEM_OK);
         text = file_get(path, &size);
         CHECK(text && strncmp(text, "time\n0.5,1,2\n0,", 15) == 0);
         free(text);
@@ -774,16 +774,16 @@ static void walls(void) {
     TEST("loads of a wall that is not there, or into a folder that is not there, are refused") {
         dem_wall none;
         none.id = 77;
-        CHECK_EQ(dem_wall_loads_csv(world, none, "build/tmp/none.csv"), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "dem_wall_loads_csv: wall 77");
+        CHECK_EQ(dem_wall_loads_csv_write(world, none, "build/tmp/none.csv"), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "dem_wall_loads_csv_write: wall 77");
         CHECK(!file_is_there("build/tmp/none.csv"));
-        CHECK_EQ(dem_wall_loads_csv(world, plane, "build/tmp/no_folder/x.csv"), DEM_ERROR_FILE);
-        CHECK_STR(dem_world_error(world), "cannot write build/tmp/no_folder/x.csv: ");
-        CHECK_EQ(dem_wall_loads_csv(world, plane, 0), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_wall_loads_csv_write(world, plane, "build/tmp/no_folder/x.csv"), DEM_ERROR_FILE);
+        CHECK_STR(dem_world_error_get(world), "cannot write build/tmp/no_folder/x.csv: ");
+        CHECK_EQ(dem_wall_loads_csv_write(world, plane, 0), DEM_ERROR_ARGUMENT);
         FILE *full = fopen("/dev/full", "rb");
         if (full) {
             fclose(full);
-            CHECK_EQ(dem_wall_loads_csv(world, plane, "/dev/full"), DEM_ERROR_FILE);
+            CHECK_EQ(dem_wall_loads_csv_write(world, plane, "/dev/full"), DEM_ERROR_FILE);
         }
     }
     dem_mesh_free(world, &mesh);
@@ -799,14 +799,14 @@ static void whole_or_absent(void) {
     size_t size;
     char *text;
     parse(world, box_text, &mesh, 0);
-    wall = dem_mesh_add(world, material_make(world), &mesh);
+    wall = dem_wall_mesh_add(world, material_make(world), &mesh);
     dem_mesh_free(world, &mesh);
 
     TEST("a writer that cannot open its file names it and the cause") {
         for (int i = 0; i < 4; i++) {
             CHECK_EQ(writers[i](world, "build/tmp/no_folder/x.out"), DEM_ERROR_FILE);
-            CHECK_STR(dem_world_error(world), writer_names[i]);
-            CHECK_STR(dem_world_error(world), "cannot write build/tmp/no_folder/x.out: ");
+            CHECK_STR(dem_world_error_get(world), writer_names[i]);
+            CHECK_STR(dem_world_error_get(world), "cannot write build/tmp/no_folder/x.out: ");
             CHECK_EQ(writers[i](world, 0), DEM_ERROR_ARGUMENT);
             CHECK_EQ(writers[i](world, "build/tmp"), DEM_ERROR_FILE); /* a folder stays a folder */
             CHECK(nothing_beside("build/tmp"));
@@ -880,12 +880,12 @@ static void whole_or_absent(void) {
         if (system("mkfifo build/tmp/pipe.in && test -c /dev/zero") != 0) continue;
         for (int i = 0; i < 3; i++) {
             CHECK_EQ(dem_mesh_read(world, names[i], &read, 0), DEM_ERROR_FILE);
-            CHECK_STR(dem_world_error(world), names[i]);
+            CHECK_STR(dem_world_error_get(world), names[i]);
             CHECK_EQ(dem_profile_read(world, names[i], &profile), DEM_ERROR_FILE);
             CHECK_EQ(dem_grains_read(world, names[i], &grains), DEM_ERROR_FILE);
             CHECK_EQ(dem_checkpoint_read(world, names[i]), DEM_ERROR_FILE);
         }
-        CHECK_EQ(dem_wall_loads_csv(world, wall, names[0]), DEM_ERROR_FILE);
+        CHECK_EQ(dem_wall_loads_csv_write(world, wall, names[0]), DEM_ERROR_FILE);
         remove("build/tmp/pipe.in");
     }
     TEST("when the disk is full the older file stays whole") {
@@ -899,7 +899,7 @@ static void whole_or_absent(void) {
         out.file = full;
         for (int i = 0; i < 100000; i++) demi_out_number(&out, "12345678", 8, 0);
         CHECK_EQ(demi_out_close(&out), DEM_ERROR_FILE);
-        CHECK_STR(dem_world_error(world), "dem_vtp_write: cannot write build/tmp/old.out: No space left");
+        CHECK_STR(dem_world_error_get(world), "dem_vtp_write: cannot write build/tmp/old.out: No space left");
         CHECK(nothing_beside("build/tmp/old.out"));
         text = file_get("build/tmp/old.out", &size);
         CHECK(text && strcmp(text, "old") == 0);
@@ -970,8 +970,8 @@ int main(int argc, char **argv) {
             CHECK_NEAR(mesh.vertices[3], 1, 0);
             dem_mesh_free(world, &mesh);
             CHECK_EQ(dem_mesh_part_read(world, names[k], "door", &mesh, &health), DEM_ERROR_FORMAT);
-            CHECK_STR(dem_world_error(world), "no triangles of a part \"door\"");
-            CHECK_STR(dem_world_error(world), k ? "shell, lid" : "shell of drum, lid");
+            CHECK_STR(dem_world_error_get(world), "no triangles of a part \"door\"");
+            CHECK_STR(dem_world_error_get(world), k ? "shell, lid" : "shell of drum, lid");
             CHECK(!mesh.vertices);
             CHECK_EQ(dem_mesh_read(world, names[k], &mesh, 0), DEM_OK);
             CHECK_EQ(mesh.triangle_count, 3);
@@ -1025,7 +1025,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(mesh.triangle_count, 2);
         dem_mesh_free(world, &mesh);
         CHECK_EQ(dem_mesh_part_read(world, "build/tmp/liners.stl", "liner", &mesh, 0), DEM_ERROR_FORMAT);
-        CHECK_STR(dem_world_error(world), "must be one of: liner #1, liner #2");
+        CHECK_STR(dem_world_error_get(world), "must be one of: liner #1, liner #2");
         dem_world_destroy(world);
     }
 
@@ -1035,7 +1035,7 @@ int main(int argc, char **argv) {
         static const char name[] = "build/tmp/machine.obj";
         const dem_world_desc desc = DEM_WORLD_DESC;
         dem_world *world = dem_world_create(&desc);
-        dem_part part[2];
+        dem_wall_part part[2];
         dem_wall wall[2];
         dem_pose pose, home;
         dem_material steel;
@@ -1050,34 +1050,34 @@ int main(int argc, char **argv) {
         part[0].material = part[1].material = steel;
         part[1].motion.kind = DEM_MOTION_TRANSLATING;
         part[1].motion.velocity = at(0, 0, 2);
-        CHECK_EQ(dem_parts_add(world, name, DEM_R(1e-3), 2, part, wall), DEM_OK);
+        CHECK_EQ(dem_wall_parts_add(world, name, DEM_R(1e-3), 2, part, wall), DEM_OK);
         CHECK(wall[0].id == 1 && wall[1].id == 2);
-        dem_wall_pose(world, wall[1], &home);
+        dem_wall_pose_get(world, wall[1], &home);
         dem_sphere_add(world, steel, DEM_R(0.01), at(0.3, 0.3, 0.0095));    /* on the shell; beyond it: mm became m */
         dem_sphere_add(world, steel, DEM_R(0.01), at(0.8, 0.8, 0.0095));
         CHECK_EQ(dem_world_step(world, 1), DEM_OK);
         CHECK_EQ(dem_counters_get(world).wall_contacts, 1);
         CHECK_EQ(dem_world_run_to(world, 0.01, 0, 0), DEM_OK);
-        dem_wall_pose(world, wall[1], &pose);
+        dem_wall_pose_get(world, wall[1], &pose);
         CHECK_NEAR((double)pose.position.z - (double)home.position.z, 0.02, 1e-4);
-        before = dem_world_hash(world);
+        before = dem_world_hash_get(world);
         part[1].name = "door";
-        CHECK(dem_parts_add(world, name, 1, 2, part, wall) != DEM_OK);
-        CHECK_STR(dem_world_error(world), "dem_parts_add");
-        CHECK_STR(dem_world_error(world), "door");
+        CHECK(dem_wall_parts_add(world, name, 1, 2, part, wall) != DEM_OK);
+        CHECK_STR(dem_world_error_get(world), "dem_wall_parts_add");
+        CHECK_STR(dem_world_error_get(world), "door");
         CHECK(!wall[0].id && !wall[1].id);
-        CHECK_EQ(dem_parts_add(world, "build/tmp/none.obj", 1, 2, part, wall), DEM_ERROR_FILE);
+        CHECK_EQ(dem_wall_parts_add(world, "build/tmp/none.obj", 1, 2, part, wall), DEM_ERROR_FILE);
         part[1].name = "lid";
         part[1].motion.velocity.x = (dem_real)NAN;
-        CHECK(dem_parts_add(world, name, 1, 2, part, 0) != DEM_OK);
+        CHECK(dem_wall_parts_add(world, name, 1, 2, part, 0) != DEM_OK);
         part[1].motion.velocity.x = 0;
         part[1].material.id = 7;
-        CHECK(dem_parts_add(world, name, 1, 2, part, 0) != DEM_OK);
-        CHECK_STR(dem_world_error(world), "material 7");
+        CHECK(dem_wall_parts_add(world, name, 1, 2, part, 0) != DEM_OK);
+        CHECK_STR(dem_world_error_get(world), "material 7");
         wall[0].id = 3;
-        CHECK_EQ(dem_wall_pose(world, wall[0], &pose), DEM_ERROR_ARGUMENT);
-        CHECK_EQ(dem_search_now(world), DEM_OK);
-        CHECK(dem_world_hash(world) == before);
+        CHECK_EQ(dem_wall_pose_get(world, wall[0], &pose), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
+        CHECK(dem_world_hash_get(world) == before);
         CHECK_EQ(dem_world_run_to(world, 0.02, 0, 0), DEM_OK);
         dem_world_destroy(world);
         remove(name);

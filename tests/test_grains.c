@@ -15,7 +15,7 @@ static dem_world *heap(void) {
     world = dem_world_create(&desc);
     a = scene_material(world, 1e6, 0.5, 0.3, 0.1);
     b = scene_material(world, 1e6, 0.5, 0.3, 0.1);
-    dem_plane_add(world, a, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, a, at(0, 0, 0), at(0, 0, 1));
     (void)b;
     return world;
 }
@@ -25,8 +25,8 @@ static dem_result parse(dem_world *world, const char *text, dem_grains *g) {
 static void refused(dem_world *world, const char *text, const char *why) {
     dem_grains g;
     CHECK_EQ(parse(world, text, &g), DEM_ERROR_FORMAT);
-    CHECK_STR(dem_world_error(world), "dem_grains_parse: some.csv");
-    CHECK_STR(dem_world_error(world), why);
+    CHECK_STR(dem_world_error_get(world), "dem_grains_parse: some.csv");
+    CHECK_STR(dem_world_error_get(world), why);
     CHECK(!g.positions && !g.count);
 }
 
@@ -37,7 +37,7 @@ static void pair_read(dem_world *world, const char *text, size_t size, dem_grain
     CHECK_EQ(dem_grains_parse(world, "pair", text, size, g), DEM_OK);
     if (g->count != 2) {
         CHECK_EQ(g->count, 2);
-        printf("        %.60s\n        %s\n", text, dem_world_error(world));
+        printf("        %.60s\n        %s\n", text, dem_world_error_get(world));
         return;
     }
     for (k = 0; k < 2; k++) {
@@ -127,13 +127,15 @@ int main(int argc, char **argv) {
         a.id = 1;
         b.id = 2;
         own.id = 0;
-        CHECK_EQ(dem_spheres_fill(world, a, DEM_R(0.005), box_of(-0.03, -0.03, 0.01, 0.03, 0.03, 0.06), 40, 1), 40);
-        CHECK_EQ(dem_spheres_fill(world, b, DEM_R(0.003), box_of(-0.03, -0.03, 0.01, 0.03, 0.03, 0.06), 40, 1), 40);
+        CHECK_EQ(dem_spheres_fill(world, a, DEM_R(0.005),
+                                  dem_region_make(box_of(-0.03, -0.03, 0.01, 0.03, 0.03, 0.06)), 40, 1), 40);
+        CHECK_EQ(dem_spheres_fill(world, b, DEM_R(0.003),
+                                  dem_region_make(box_of(-0.03, -0.03, 0.01, 0.03, 0.03, 0.06)), 40, 1), 40);
         dem_temperature_set(world, 0.05, 3);
         for (i = 0; i < 80; i++) {
-            dem_body_state s = scene_state(world, dem_bodies_id(world, i));
+            dem_body_state s = scene_state(world, dem_body_id_get(world, i));
             s.spin = at(i, 2, 3);
-            dem_body_set(world, dem_bodies_id(world, i), &s);
+            dem_body_set(world, dem_body_id_get(world, i), &s);
         }
         CHECK_EQ(dem_vtp_write(world, "build/tmp/grains.vtp"), DEM_OK);
         CHECK_EQ(dem_xyz_write(world, "build/tmp/grains.xyz"), DEM_OK);
@@ -155,7 +157,7 @@ int main(int argc, char **argv) {
         }
         CHECK_EQ(dem_grains_add(again, own, &g), DEM_OK);
         CHECK_EQ(dem_grains_add(text, own, &x), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(text), "material is null and the grains have none");
+        CHECK_STR(dem_world_error_get(text), "material is null and the grains have none");
         CHECK_EQ(dem_grains_add(text, a, &x), DEM_OK);
         CHECK_EQ(dem_world_run_to(world, 0.02, 0, 0), DEM_OK);
         CHECK_EQ(dem_world_run_to(again, 0.02, 0, 0), DEM_OK);
@@ -163,8 +165,8 @@ int main(int argc, char **argv) {
         CHECK_REL(dem_totals_get(text).mass, dem_totals_get(world).mass, 1e-6);
         g.materials[79] = 3;
         CHECK_EQ(dem_grains_add(again, own, &g), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(again), "material 3 does not exist");
-        CHECK_EQ((int)dem_balance_get(again).present, 80);      /* all or nothing */
+        CHECK_STR(dem_world_error_get(again), "material 3 does not exist");
+        CHECK_EQ((int)dem_body_counts_get(again).present, 80);      /* all or nothing */
         dem_grains_free(again, &g);
         dem_grains_free(text, &x);
         dem_world_destroy(world);
@@ -318,7 +320,7 @@ int main(int argc, char **argv) {
             }
         CHECK_EQ(parse(world, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt32\" "
                        "compressor=\"vtkZLibDataCompressor\">", &g), DEM_ERROR_FORMAT);
-        CHECK_STR(dem_world_error(world), "is compressed (vtkZLibDataCompressor)");
+        CHECK_STR(dem_world_error_get(world), "is compressed (vtkZLibDataCompressor)");
         dem_world_destroy(world);
     }
 
@@ -355,7 +357,8 @@ int main(int argc, char **argv) {
         for (cut = 0; cut < n; cut++) CHECK(dem_grains_parse(world, "cut", bytes, cut, &g) != DEM_OK);
         a.id = 2;
         none.id = 0;
-        CHECK_EQ(dem_spheres_fill(world, a, DEM_R(0.005), box_of(-0.03, -0.03, 0.01, 0.03, 0.03, 0.06), 30, 1), 30);
+        CHECK_EQ(dem_spheres_fill(world, a, DEM_R(0.005),
+                                  dem_region_make(box_of(-0.03, -0.03, 0.01, 0.03, 0.03, 0.06)), 30, 1), 30);
         dem_temperature_set(world, 0.05, 3);
         CHECK_EQ(dem_vtk_write(world, "build/tmp/grains.vtk"), DEM_OK);
         CHECK_EQ(dem_grains_read(again, "build/tmp/grains.vtk", &g), DEM_OK);
@@ -390,7 +393,7 @@ int main(int argc, char **argv) {
                 result = dem_grains_parse(world, "x", texts[what] ? texts[what] : vtp, texts[what] ? strlen(texts[what]) : vtp_size, &g);
                 if (result == DEM_OK) break;
                 CHECK_EQ(result, DEM_ERROR_MEMORY);
-                CHECK_STR(dem_world_error(world), "memory");
+                CHECK_STR(dem_world_error_get(world), "memory");
                 CHECK(!g.positions && !g.count);
                 CHECK_EQ(memory.bytes, before);
             }
@@ -425,7 +428,7 @@ int main(int argc, char **argv) {
         refused(world, "x y r material\n1 2 .5 1.5\n", "a material is expected, a whole number");
         refused(world, "<?xml version=\"1.0\"?><VTKFile>", "has no piece with points");
         CHECK_EQ(dem_grains_parse(world, 0, "a\0b", 3, &g), DEM_ERROR_FORMAT);
-        CHECK_STR(dem_world_error(world), "not text");
+        CHECK_STR(dem_world_error_get(world), "not text");
         CHECK_EQ(dem_grains_read(world, "build/tmp/there_is_none.csv", &g), DEM_ERROR_FILE);
         CHECK_EQ(dem_grains_read(world, 0, &g), DEM_ERROR_ARGUMENT);
         {                                            /* a VTP file cut anywhere is refused */

@@ -189,8 +189,8 @@ int main(int argc, char **argv) {
         CHECK_REL(k.kun, KUN, 1e-6);
         CHECK_REL(k.contact_time, 3.14159265358979/2*(sqrt(mass/KL) + sqrt(mass/KUN)), 1e-6);
         dem_sphere_add(world, a, DEM_R(0.01), at(0, 0, 0.01));
-        dem_plane_add(world, b, at(0, 0, 0), at(0, 0, 1));
-        CHECK_EQ(dem_step_advice(world, &advice), DEM_OK);
+        dem_wall_plane_add(world, b, at(0, 0, 0), at(0, 0, 1));
+        CHECK_EQ(dem_step_advice_get(world, &advice), DEM_OK);
         CHECK_REL(advice.contact_time, 3.14159265358979*sqrt(mass/KUN), 1e-6); /* steepest branch */
         dem_world_destroy(world);
     }
@@ -224,7 +224,7 @@ int main(int argc, char **argv) {
             dem_material stuff = dem_material_add(world, &m);
             dem_body grain;
             int k;
-            dem_plane_add(world, stuff, at(0, 0, 0.5), at(0, 0, -1));
+            dem_wall_plane_add(world, stuff, at(0, 0, 0.5), at(0, 0, -1));
             grain = dem_sphere_add(world, stuff, (dem_real)radius, at(0, 0, 0.5 - radius + D));
             scene_step(world, 1);                /* it now remembers D */
             /* let it down slowly: its speed is taken from it at every step, until it is settled */
@@ -299,9 +299,9 @@ int main(int argc, char **argv) {
             dem_sphere_add(world, stuff, DEM_R(0.01), at(0.0190, 0, 0));
             dem_world_step(world, 1);
             for (k = 0; k < 2; k++) {            /* one of them drawn back: unloading */
-                dem_body_state s = scene_state(world, dem_bodies_id(world, k));
+                dem_body_state s = scene_state(world, dem_body_id_get(world, k));
                 s.position.x += s.position.x > DEM_R(0.01) ? DEM_R(0.0001) : 0;
-                dem_body_set(world, dem_bodies_id(world, k), &s);
+                dem_body_set(world, dem_body_id_get(world, k), &s);
             }
             dem_world_step(world, 1);
             dem_contacts_get(world, &before, 1);
@@ -310,9 +310,9 @@ int main(int argc, char **argv) {
             for (k = 0; k < 7; k++)
                 dem_sphere_add(world, stuff, DEM_R(0.01), at(-0.1 - 0.05*(k%3), 0.1*k, 0.2));
             for (k = 0; k < 2; k++) {
-                dem_body_state s = scene_state(world, dem_bodies_id(world, k));
+                dem_body_state s = scene_state(world, dem_body_id_get(world, k));
                 (void)s;
-                dem_search_now(world);
+                dem_candidates_rebuild(world);
                 dem_world_step(world, 1);
             }
             dem_contacts_get(world, &after, 1);
@@ -344,7 +344,7 @@ int main(int argc, char **argv) {
             dem_pair_get(world, stuff, stuff, &pair);
             pair.normal_damping = 1;             /* along k_un nothing else is lost */
             dem_pair_set(world, stuff, stuff, &pair);
-            dem_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1));
             a = dem_sphere_add(world, stuff, DEM_R(0.01), at(0, 0, 0.0099));
             CHECK_EQ(dem_world_run(world, 3, 0, 0), DEM_OK);
             first = scene_state(world, a);
@@ -374,7 +374,7 @@ int main(int argc, char **argv) {
             c.count = 2;
             c.positions = places;
             c.radii = radii;
-            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
             body[0] = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.0099));
             body[1] = dem_sphere_add(world, m, DEM_R(0.01), run < 3 ? at(0, 0, 0.0297) : at(0.3, 0, 0.0099));
             body[2] = dem_body_add(world, m, dem_shape_cluster_add(world, &c), at(0.1, 0, 0.0059),
@@ -405,17 +405,17 @@ int main(int argc, char **argv) {
         dem_world *world = world_of(0, 0);
         dem_material_desc m = sticky(KL/2, 0);
         CHECK_EQ(dem_material_add(world, &m).id, 0);
-        CHECK_STR(dem_world_error(world), "stiffness_unloading is 500");
+        CHECK_STR(dem_world_error_get(world), "stiffness_unloading is 500");
         m = sticky(KUN, -3);
         CHECK_EQ(dem_material_add(world, &m).id, 0);
-        CHECK_STR(dem_world_error(world), "stiffness_adhesion is -3");
+        CHECK_STR(dem_world_error_get(world), "stiffness_adhesion is -3");
         m = sticky(0, 0);
         CHECK_EQ(dem_material_add(world, &m).id, 0);
-        CHECK_STR(dem_world_error(world), "restitution is 0");
+        CHECK_STR(dem_world_error_get(world), "restitution is 0");
         m = sticky(KUN, 0);
         m.restitution = DEM_R(0.7);
         CHECK_EQ(dem_material_add(world, &m).id, 0);
-        CHECK_STR(dem_world_error(world), "give one of the two");
+        CHECK_STR(dem_world_error_get(world), "give one of the two");
         m.restitution = DEM_R(0.5);
         CHECK(dem_material_add(world, &m).id > 0);
         dem_world_destroy(world);

@@ -24,11 +24,11 @@ static int again(dem_world *world, scene_memory *c, int failed, const char *call
     }
     if (!c->refused) {
         CHECK(!"a call failed though memory was there");
-        printf("        %s\n", dem_world_error(world));
+        printf("        %s\n", dem_world_error_get(world));
         return 0;
     }
-    CHECK_STR(dem_world_error(world), call);
-    CHECK_STR(dem_world_error(world), "memory");
+    CHECK_STR(dem_world_error_get(world), call);
+    CHECK_STR(dem_world_error_get(world), "memory");
     c->refused = 0;
     return 1;
 }
@@ -61,7 +61,7 @@ static void scenario(scene_memory *c, dem_search search, long refuse, uint64_t *
     dem_mesh_health health;
     dem_motion motion = DEM_MOTION;
     dem_body body;
-    dem_balance b;
+    dem_body_counts b;
     uint64_t present;
     int i, n;
     desc.search = search;
@@ -71,29 +71,30 @@ static void scenario(scene_memory *c, dem_search search, long refuse, uint64_t *
     while (!(world = dem_world_create(&desc))) {
         CHECK(c->refused);
         CHECK_EQ(c->blocks, 0);
-        CHECK(*dem_create_error(&desc) == 0);
-        CHECK(*dem_world_error(world) != 0);
+        CHECK(*dem_world_create_error_get(&desc) == 0);
+        CHECK(*dem_world_error_get(world) != 0);
         if (!c->refused) return;
         c->refused = 0;
     }
     c->refused = 0;
     ID("dem_material_add", glass, scene_material(world, 1e7, 0.5, 0.3, 0.1));
-    ID("dem_plane_add", plane, dem_plane_add(world, glass, at(0, 0, -0.03), at(0, 0, 1)));
-    ID("dem_cylinder_add", plane, dem_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 1), 1, 1));
-    ID("dem_profile_add", drum, scene_drum(world, glass, 0, 0, 0.1, 24));
-    ID("dem_mesh_add", mesh_wall, scene_floor(world, glass, -0.02, -0.02, 0.06, 0.06, 4, 4));
-    ID("dem_grains_wall_add", plane, dem_grains_wall_add(world, glass, 5, beads, DEM_R(1e-3), 1));
+    ID("dem_wall_plane_add", plane, dem_wall_plane_add(world, glass, at(0, 0, -0.03), at(0, 0, 1)));
+    ID("dem_wall_cylinder_add", plane, dem_wall_cylinder_add(world, glass, at(0, 0, 0), at(0, 0, 1), 1, 1));
+    ID("dem_wall_profile_add", drum, scene_drum(world, glass, 0, 0, 0.1, 24));
+    ID("dem_wall_mesh_add", mesh_wall, scene_floor(world, glass, -0.02, -0.02, 0.06, 0.06, 4, 4));
+    ID("dem_wall_grains_add", plane, dem_wall_grains_add(world, glass, 5, beads, DEM_R(1e-3), 1));
     motion.kind = DEM_MOTION_ROTATING;
     motion.axis = at(0, 0, 1);
     motion.speed = 10;
-    CALL("dem_wall_motion", dem_wall_motion(world, mesh_wall, &motion));
+    CALL("dem_wall_motion_set", dem_wall_motion_set(world, mesh_wall, &motion));
     memset(&field_desc, 0, sizeof field_desc);
     field_desc.box = box_of(0, 0, 0, 0.02, 0.02, 0.02);
     for (i = 0; i < 3; i++) field_desc.cells[i] = 3;
     field_desc.interval = 1e-5;
     for (i = 0; i < 5; i++) ID("dem_field_add", field, dem_field_add(world, &field_desc));
     CALL("dem_spheres_add", scene_block(world, glass, 3, 3, 4, 2e-3, 1, 0.5, 3));
-    do n = dem_spheres_fill(world, glass, DEM_R(1e-3), box_of(0.02, 0, 0, 0.03, 0.01, 0.01), 9, 1);
+    do n = dem_spheres_fill(world, glass, DEM_R(1e-3), dem_region_make(box_of(0.02, 0, 0, 0.03, 0.01, 0.01)), 9,
+                            1);
     while (again(world, c, n == 0, "dem_spheres_fill"));
     CHECK_EQ(n, 9);
     ID("dem_shape_ellipsoid_add", egg, dem_shape_ellipsoid_add(world, at(1e-3, 1.5e-3, 2e-3)));
@@ -102,26 +103,26 @@ static void scenario(scene_memory *c, dem_search search, long refuse, uint64_t *
     cluster.radius = DEM_R(2e-3);
     ID("dem_shape_cluster_add", rod, dem_shape_cluster_add(world, &cluster));
     CALL("dem_bodies_add", dem_bodies_add(world, glass, rod, 2, beads_high, 0, 0, 0, 0));
-    do n = dem_bodies_fill(world, glass, egg, box_of(0.02, 0.01, 0, 0.03, 0.02, 0.01), 4, 1);
+    do n = dem_bodies_fill(world, glass, egg, dem_region_make(box_of(0.02, 0.01, 0, 0.03, 0.02, 0.01)), 4, 1);
     while (again(world, c, n == 0, "dem_bodies_fill"));
     CHECK_EQ(n, 4);
     CALL("dem_world_step", dem_world_step(world, 3));
     /* while contacts have memory, and more than there is room for */
     do {
-        present = dem_balance_get(world).present;
-        n = dem_spheres_pack(world, glass, DEM_R(1e-3), 0, box_of(0, 0, 0.02, 0.01, 0.01, 0.03), 0,
-                             0, 60);
-        CHECK_EQ(dem_balance_get(world).present, present + (uint64_t)n);
+        present = dem_body_counts_get(world).present;
+        n = dem_spheres_pack(world, glass, DEM_R(1e-3), 0, dem_region_make(box_of(0, 0, 0.02, 0.01, 0.01, 0.03)),
+                             60);
+        CHECK_EQ(dem_body_counts_get(world).present, present + (uint64_t)n);
         if (n < 60) CHECK_EQ(n, 0);            /* its sentence says that nothing was changed */
     } while (again(world, c, n < 60, "dem_spheres_pack"));
     CALL("dem_world_step", dem_world_step(world, 3));
-    body = dem_bodies_id(world, 5);
+    body = dem_body_id_get(world, 5);
     CALL("dem_body_remove", dem_body_remove(world, body));
     CALL("dem_world_step", dem_world_step(world, 3));
-    ID("dem_plane_add", plane, dem_plane_add(world, glass, at(0, 0, -0.04), at(0, 0, 1)));
+    ID("dem_wall_plane_add", plane, dem_wall_plane_add(world, glass, at(0, 0, -0.04), at(0, 0, 1)));
     CALL("dem_world_step", dem_world_step(world, 1));
     CALL("dem_wall_remove", dem_wall_remove(world, plane));
-    CALL("dem_search_now", dem_search_now(world));
+    CALL("dem_candidates_rebuild", dem_candidates_rebuild(world));
     CALL("dem_world_step", dem_world_step(world, 3));
     CALL("dem_checkpoint_write", dem_checkpoint_write(world, "build/tmp/memory.ckpt"));
     CALL("dem_checkpoint_read", dem_checkpoint_read(world, "build/tmp/memory.ckpt"));
@@ -133,14 +134,14 @@ static void scenario(scene_memory *c, dem_search search, long refuse, uint64_t *
     CALL("dem_walls_vtp_write", dem_walls_vtp_write(world, "build/tmp/memory.vtp", 0, 1));
     c->refuse = 0;
     CHECK_EQ(dem_world_step(world, 100), DEM_OK);
-    b = dem_balance_get(world);
+    b = dem_body_counts_get(world);
     CHECK_EQ(b.inserted, b.present + b.removed + b.left);
     CHECK_EQ(b.inserted, 36 + 9 + 6 + 60);
     CHECK_EQ(b.removed, 1);
     CHECK_EQ(b.present, dem_bodies_get(world).count);
     CHECK(dem_counters_get(world).contacts > 10);
     CHECK_EQ(dem_counters_get(world).memory, c->bytes);
-    *hash = dem_world_hash(world);
+    *hash = dem_world_hash_get(world);
     dem_world_destroy(world);
     CHECK_EQ(c->blocks, 0);
     CHECK_EQ(c->bytes, 0);
@@ -174,7 +175,7 @@ static dem_world *packing(scene_memory *c, int threads, double skin, dem_search 
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e6, 0.2, 0.5, 0.1);
     for (k = 0; k < 4; k++)
-        dem_plane_add(world, glass, at(k == 1 ? 0.0257 : 0, k == 3 ? 0.0257 : 0, 0),
+        dem_wall_plane_add(world, glass, at(k == 1 ? 0.0257 : 0, k == 3 ? 0.0257 : 0, 0),
                       at((k == 0) - (k == 1), (k == 2) - (k == 3), 0));
     scene_floor(world, glass, -0.01, -0.01, 0.04, 0.04, 5, 5);
     scene_block(world, glass, 6, 6, 6, 2.1e-3, 1, 0.1, 3);
@@ -208,7 +209,7 @@ static void swarm_add(dem_world *world, int mixed) {
    The hash is that of the run in which none was. */
 static void swarm_each(int mixed) {
     int search;
-    for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
+    for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_HIERARCHICAL; search++) {
         uint64_t hash = 0;
         long k, calls = 1;
         for (k = 0; k <= calls && test_now.wrong == 0; k++) {
@@ -224,16 +225,16 @@ static void swarm_each(int mixed) {
             swarm_add(world, mixed);
             before = c.calls;
             c.refuse = k ? before + k : 0;
-            while ((dem_world_steps(world) < 500 || failed) && tries < 1000) {
+            while ((dem_world_steps_get(world) < 500 || failed) && tries < 1000) {
                 const dem_result r = dem_world_step(world, 1);
                 failed = r != DEM_OK;
                 if (failed) { tries++; CHECK_EQ(r, DEM_ERROR_MEMORY); }
             }
-            if (k == 0) { calls = c.calls - before; hash = dem_world_hash(world); }
+            if (k == 0) { calls = c.calls - before; hash = dem_world_hash_get(world); }
             CHECK(k == 0 || tries > 0);
             CHECK((double)dem_counters_get(world).overlap_max > 0);
-            CHECK_EQ(dem_world_steps(world), 500);
-            CHECK_EQ(dem_world_hash(world), hash);
+            CHECK_EQ(dem_world_steps_get(world), 500);
+            CHECK_EQ(dem_world_hash_get(world), hash);
             if (test_now.wrong) printf("        at request %ld of %ld\n", k, calls);
             dem_world_destroy(world);
             CHECK_EQ(c.blocks, 0);
@@ -258,23 +259,23 @@ static int search_refused(long refuse) {
     for (k = 0; k < 3; k++) desc.boundary[k] = DEM_BOUNDARY_PERIODIC;
     world = dem_world_create(&desc);
     stuff = scene_material(world, 1e7, 1, 0.3, 0);
-    CHECK_EQ(dem_spheres_fill(world, stuff, DEM_R(0.002), desc.domain, 300, 1), 300);
+    CHECK_EQ(dem_spheres_fill(world, stuff, DEM_R(0.002), dem_region_make(desc.domain), 300, 1), 300);
     for (i = 0; i < 300; i++)
-        scene_move(world, dem_bodies_id(world, i), at(-2, -2, -2), at(0, 0, 0));
+        scene_move(world, dem_body_id_get(world, i), at(-2, -2, -2), at(0, 0, 0));
     for (k = 0, i = 300; k < 100 && i == 300; k++) {
         CHECK_EQ(scene_step(world, 10), DEM_OK);
         for (i = 0; i < 300 && world->bodies.pos[4*i] >= 0; i++) continue;
     }
     CHECK(i < world->bodies.count);                   /* one stands outside */
-    CHECK_EQ(dem_spheres_fill(world, stuff, DEM_R(0.002), desc.domain, 1200, 2), 1200);
-    hash = dem_world_hash(world);
+    CHECK_EQ(dem_spheres_fill(world, stuff, DEM_R(0.002), dem_region_make(desc.domain), 1200, 2), 1200);
+    hash = dem_world_hash_get(world);
     c.refuse = c.calls + refuse;
-    refused = dem_search_now(world) != DEM_OK;
+    refused = dem_candidates_rebuild(world) != DEM_OK;
     CHECK_EQ(refused, c.refused);
-    CHECK_EQ(dem_world_hash(world), hash);
+    CHECK_EQ(dem_world_hash_get(world), hash);
     c.refuse = 0;
-    CHECK_EQ(dem_search_now(world), DEM_OK);
-    CHECK_EQ(dem_world_hash(world), hash);
+    CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
+    CHECK_EQ(dem_world_hash_get(world), hash);
     dem_world_destroy(world);
     CHECK_EQ(c.blocks, 0);
     return refused;
@@ -299,7 +300,7 @@ int main(int argc, char **argv) {
     }
     TEST("a warm step takes no memory when the list is rebuilt every step, whatever the search") {
         int search;
-        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_LEVELS; search++) {
+        for (search = DEM_SEARCH_ALL_PAIRS; search <= DEM_SEARCH_HIERARCHICAL; search++) {
             scene_memory c;
             dem_world *world = packing(&c, 1, -1, (dem_search)search);
             long before;
@@ -335,8 +336,8 @@ int main(int argc, char **argv) {
         dem_ledger_get(world);
         dem_totals_get(world);
         dem_counters_get(world);
-        dem_world_hash(world);
-        dem_step_advice(world, &advice);
+        dem_world_hash_get(world);
+        dem_step_advice_get(world, &advice);
         if (nowhere) { dem_world_report(world, nowhere); fclose(nowhere); }
         CHECK_EQ(c.calls, before);
         dem_world_destroy(world);
@@ -352,7 +353,7 @@ int main(int argc, char **argv) {
         refuse_each(DEM_SEARCH_BINS);
     }
     TEST("whichever request for memory fails, the call says so and the world goes on (levels)") {
-        refuse_each(DEM_SEARCH_LEVELS);
+        refuse_each(DEM_SEARCH_HIERARCHICAL);
     }
     TEST("whichever request for memory fails in a step, repeating the step gives the run without "
          "failure") {
@@ -388,16 +389,16 @@ int main(int argc, char **argv) {
             scene_material(small, 1e7, 0.5, 0.3, 0);
             scene_block(small, glass, 3, 3, 3, 1e-3, 1, 0.1, 1);
             scene_step(small, 2);
-            hash = dem_world_hash(small);
+            hash = dem_world_hash_get(small);
             d.refuse = d.calls + k;
             result = dem_checkpoint_read(small, "build/tmp/memory.ckpt");
             d.refuse = 0;
             if (result != DEM_OK) {
                 CHECK_EQ(result, DEM_ERROR_MEMORY);
-                CHECK_EQ(dem_world_hash(small), hash);
+                CHECK_EQ(dem_world_hash_get(small), hash);
                 CHECK_EQ(scene_step(small, 50), DEM_OK);
-                if (k == 1) end = dem_world_hash(small);
-                CHECK_EQ(dem_world_hash(small), end);
+                if (k == 1) end = dem_world_hash_get(small);
+                CHECK_EQ(dem_world_hash_get(small), end);
                 CHECK_EQ(dem_bodies_get(small).count, 27);
             } else CHECK_EQ(dem_bodies_get(small).count, 16*16*17);
             dem_world_destroy(small);
@@ -430,7 +431,7 @@ int main(int argc, char **argv) {
         for (k = 0; k < 3; k++) {              /* refused once; never; from a checkpoint */
             world[k] = dem_world_create(k ? &plain : &desc);
             m = scene_material(world[k], 1e6, 0.5, 0.3, 0);
-            dem_plane_add(world[k], m, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_plane_add(world[k], m, at(0, 0, 0), at(0, 0, 1));
             for (i = 0; i < count; i++) {
                 const dem_body b = dem_sphere_add(world[k], m, DEM_R(1e-3),
                                                   at(0.0021*(i%50), 0.0021*(i/50), 9.99e-4));
@@ -439,29 +440,29 @@ int main(int argc, char **argv) {
             CHECK_EQ(scene_step(world[k], 50), DEM_OK);
             CHECK_EQ(world[k]->domain_count, 2);
             for (i = 0; i < 20; i++)
-                dem_body_remove(world[k], dem_bodies_id(world[k], world[k]->bodies.count - 1));
+                dem_body_remove(world[k], dem_body_id_get(world[k], world[k]->bodies.count - 1));
         }
-        hash = dem_world_hash(world[0]);
-        CHECK(hash == dem_world_hash(world[1]));
+        hash = dem_world_hash_get(world[0]);
+        CHECK(hash == dem_world_hash_get(world[1]));
         CHECK_EQ(dem_checkpoint_write(world[0], path), DEM_OK);
         CHECK_EQ(dem_checkpoint_read(world[0], path), DEM_OK);  /* its lists fit now: new ones take room */
         for (i = 1, k = 0; i < 40; i++) {
             c.refuse = c.calls + i;
             c.refused = 0;
-            if (dem_search_now(world[0]) == DEM_OK) break;
+            if (dem_candidates_rebuild(world[0]) == DEM_OK) break;
             k++;
             CHECK(c.refused);
-            CHECK(dem_world_hash(world[0]) == hash);
+            CHECK(dem_world_hash_get(world[0]) == hash);
             CHECK_EQ(dem_checkpoint_write(world[0], path), DEM_OK);
             CHECK_EQ(dem_checkpoint_read(world[2], path), DEM_OK);
-            CHECK(dem_world_hash(world[2]) == hash);
+            CHECK(dem_world_hash_get(world[2]) == hash);
         }
         CHECK(k > 0);
         c.refuse = 0;
         CHECK_EQ(world[0]->domain_count, 1);
         for (k = 0; k < 3; k++) CHECK_EQ(scene_step(world[k], 50), DEM_OK);
-        CHECK(dem_world_hash(world[0]) == dem_world_hash(world[1]));
-        CHECK(dem_world_hash(world[0]) == dem_world_hash(world[2]));
+        CHECK(dem_world_hash_get(world[0]) == dem_world_hash_get(world[1]));
+        CHECK(dem_world_hash_get(world[0]) == dem_world_hash_get(world[2]));
         for (k = 0; k < 3; k++) dem_world_destroy(world[k]);
         CHECK_EQ(c.blocks + none.blocks, 0);
         remove(path);

@@ -109,13 +109,13 @@ int main(int argc, char **argv) {
         CHECK_EQ(moldyn_add(&m, a), DEM_OK);
         CHECK_EQ(dem_world_run(a, m.end - m.start, 0, 0), DEM_OK);
         for (k = 0; k < 4; k++) {                /* they lie on the walls' surfaces, 1.5 mm inside */
-            const dem_body_state s = scene_state(a, dem_bodies_id(a, k));
+            const dem_body_state s = scene_state(a, dem_body_id_get(a, k));
             CHECK(s.fixed || (double)(s.position.z - s.radius) > 0.001 - 0.0005);
         }
         CHECK_EQ(moldyn_take(&m, a), DEM_OK);
         CHECK_REL(m.start, 2.4, 1e-5);           /* half a step */
         CHECK_EQ(moldyn_take(&m, a), DEM_OK);    /* once more is no later */
-        CHECK_NEAR(m.start, 2 + dem_world_time(a), 0);
+        CHECK_NEAR(m.start, 2 + dem_world_time_get(a), 0);
         CHECK_EQ(moldyn_write(&m, path[3], path[4], path[5]), DEM_OK);
         CHECK_EQ(moldyn_read(&n, path[3], path[4], path[5]), DEM_OK);
         CHECK_EQ(n.grain_count, 4);
@@ -125,7 +125,7 @@ int main(int argc, char **argv) {
         CHECK_REL(n.stiffness_adhesion, m.stiffness_adhesion, 1e-6);
         b = world_of(&n);
         CHECK_EQ(moldyn_add(&n, b), DEM_OK);
-        CHECK_NEAR(dem_world_time(b), 0, 0);     /* a world's clock begins at 0 */
+        CHECK_NEAR(dem_world_time_get(b), 0, 0);     /* a world's clock begins at 0 */
         ba = dem_bodies_get(a);
         bb = dem_bodies_get(b);
         CHECK_EQ(ba.count, bb.count);
@@ -137,7 +137,7 @@ int main(int argc, char **argv) {
                 }
         CHECK_EQ(dem_world_run(b, 0.05, 0, 0), DEM_OK);
         CHECK_EQ(moldyn_take(&n, b), DEM_OK);
-        CHECK_NEAR(n.start, m.start + dem_world_time(b), 0);
+        CHECK_NEAR(n.start, m.start + dem_world_time_get(b), 0);
         moldyn_free(&m);
         moldyn_free(&n);
         dem_world_destroy(a);
@@ -179,12 +179,12 @@ int main(int argc, char **argv) {
         m.damping_wall = 100;                    /* a disc of .6 kg: at rest soon */
         w = world_of(&m);
         CHECK_EQ(moldyn_add(&m, w), DEM_OK);
-        s = scene_state(w, dem_bodies_id(w, 0));
+        s = scene_state(w, dem_body_id_get(w, 0));
         CHECK_NEAR(s.position.y, 1, 1e-6);
         CHECK_NEAR(s.spin.z, 2, 1e-6);
         CHECK_NEAR(s.velocity.x, 0.5, 1e-6);
         CHECK_EQ(dem_world_run(w, 2, 0, 0), DEM_OK);
-        s = scene_state(w, dem_bodies_id(w, scene_state(w, dem_bodies_id(w, 0)).fixed));
+        s = scene_state(w, dem_body_id_get(w, scene_state(w, dem_body_id_get(w, 0)).fixed));
         CHECK_NEAR(s.position.y, 0.11, 0.003);   /* on the wall's surface, .01 above its middle */
         moldyn_free(&m);
         dem_world_destroy(w);
@@ -302,7 +302,7 @@ int main(int argc, char **argv) {
         remove(path);
         CHECK_EQ(moldyn_str_append(&m, w, path, 0.1, 2, m.planes, m.wall_count), DEM_OK);
         CHECK_EQ(moldyn_str_append(&m, w, path, 0.1, 2, m.planes, m.wall_count), DEM_OK);
-        dem_body_remove(w, dem_bodies_id(w, 0));
+        dem_body_remove(w, dem_body_id_get(w, 0));
         CHECK_EQ(moldyn_str_append(&m, w, path, 0.1, 2, m.planes, m.wall_count), DEM_ERROR_FORMAT);
         CHECK_STR(m.error, "is not of 5 bodies");
         dem_world_destroy(w);

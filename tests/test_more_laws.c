@@ -84,7 +84,7 @@ static double parted(const exam *e, double speed) {
     dem_advice advice;
     dem_world_desc desc;
     double left;
-    dem_step_advice(world, &advice);
+    dem_step_advice_get(world, &advice);
     desc = dem_world_desc_get(world);
     dem_world_destroy(world);
     desc.dt = advice.dt/20;

@@ -23,7 +23,7 @@ static dem_world *stage(dem_wall *wall, double dt) {
     mesh.triangle_count = 1;
     mesh.vertices = (dem_real *)corners;
     mesh.triangles = (int32_t *)triangle;
-    *wall = dem_mesh_add(world, m, &mesh);
+    *wall = dem_wall_mesh_add(world, m, &mesh);
     return world;
 }
 /* Steps; the largest difference of the told velocity and spin from the difference of poses two steps apart, over the
@@ -32,7 +32,7 @@ static double derivative_off(dem_world *world, dem_wall wall, double dt, int ste
     dem_pose p[3];
     double off = 0, most = 1e-12, before = 0;
     int k, i, j;
-    for (k = 0; k < 3; k++) { CHECK_EQ(scene_step(world, 1), DEM_OK); dem_wall_pose(world, wall, &p[k]); }
+    for (k = 0; k < 3; k++) { CHECK_EQ(scene_step(world, 1), DEM_OK); dem_wall_pose_get(world, wall, &p[k]); }
     for (k = 0; k < steps; k++) {
         const double x[3] = {(double)(p[2].position.x - p[0].position.x), (double)(p[2].position.y - p[0].position.y),
                              (double)(p[2].position.z - p[0].position.z)};
@@ -54,7 +54,7 @@ static double derivative_off(dem_world *world, dem_wall wall, double dt, int ste
         p[0] = p[1];
         p[1] = p[2];
         CHECK_EQ(scene_step(world, 1), DEM_OK);
-        dem_wall_pose(world, wall, &p[2]);
+        dem_wall_pose_get(world, wall, &p[2]);
         /* no jumps of velocity: what a step changes is small beside all of it */
         before = fmax(before, fabs((double)(p[2].velocity.x - p[1].velocity.x)) + fabs((double)(p[2].spin.z - p[1].spin.z)));
     }
@@ -91,10 +91,10 @@ int main(int argc, char **argv) {
             m.amplitude = DEM_R(0.1);
             m.frequency = 1;
             m.ramp = 0.5;
-            CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_OK);
+            CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_OK);
             CHECK(derivative_off(world, wall, 2e-3, 500, &fastest) < near_by);
             CHECK_EQ(dem_world_run_to(world, 2, 0, 0), DEM_OK);
-            dem_wall_pose(world, wall, &p);
+            dem_wall_pose_get(world, wall, &p);
             if (kind == DEM_MOTION_TRANSLATING) {
                 CHECK_NEAR(p.position.x, 0.3*(2 - 0.25), 1e-3);
                 CHECK_REL(fastest, 0.4, 1e-6);
@@ -105,8 +105,8 @@ int main(int argc, char **argv) {
                 CHECK_NEAR((double)(p.rotation[0] + p.rotation[4] + p.rotation[8]), 1 + 2*cos(3.5), 1e-2);
             }
             m.ramp = -1;
-            CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_ERROR_ARGUMENT);
-            CHECK_STR(dem_world_error(world), "ramp, -1 s, below 0");
+            CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_ERROR_ARGUMENT);
+            CHECK_STR(dem_world_error_get(world), "ramp, -1 s, below 0");
             dem_world_destroy(world);
         }
     }
@@ -130,34 +130,34 @@ int main(int argc, char **argv) {
         m.table = rows;
         m.table_count = 5;
         m.point = at(1, 2, 0);
-        CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_OK);
+        CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_OK);
         memset(rows, 0, sizeof rows);
         dem_world_destroy(world);
         /* at a row the acceleration jumps, and with it the difference of two steps by a quarter of that */
         world = stage(&wall, 1e-4);
         m.table = told;
-        CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_OK);
+        CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_OK);
         CHECK(derivative_off(world, wall, 1e-4, 15000, 0) < (fine ? 2e-3 : 0.1));
         dem_world_destroy(world);
         world = stage(&wall, 2e-3);
         m.table = told;
-        CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_OK);
+        CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_OK);
         for (k = 1; k < 5; k++) {
             /* the corner that the wall turns about, and the one beside it */
             const double c = cos(k < 3 ? (k == 1 ? 1 : 2.5) : 4), s = sin(k < 3 ? (k == 1 ? 1 : 2.5) : 4);
             CHECK_EQ(dem_world_run_to(world, told[k].time, 0, 0), DEM_OK);
-            dem_wall_pose(world, wall, &p);
+            dem_wall_pose_get(world, wall, &p);
             CHECK_NEAR(p.rotation[0], c, 5e-3);
             CHECK_NEAR(p.rotation[3], s, 5e-3);
             CHECK_NEAR(p.position.x + p.rotation[0] + 2*p.rotation[1], 1 + (double)told[k].position.x, 2e-3);
             CHECK_NEAR(p.position.y + p.rotation[3] + 2*p.rotation[4], 2 + (double)told[k].position.y, 2e-3);
         }
         CHECK_EQ(dem_world_run_to(world, 3, 0, 0), DEM_OK);
-        dem_wall_pose(world, wall, &p);
+        dem_wall_pose_get(world, wall, &p);
         CHECK_NEAR(demi_length(p.velocity) + demi_length(p.spin), 0, 1e-12);
         /* given anew, again and again, it takes no more memory */
         memory = dem_counters_get(world).memory;
-        for (k = 0; k < 100; k++) CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_OK);
+        for (k = 0; k < 100; k++) CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_OK);
         CHECK_EQ(dem_counters_get(world).memory, memory);
         CHECK_EQ(dem_wall_remove(world, wall), DEM_OK);
         dem_world_destroy(world);
@@ -177,16 +177,16 @@ int main(int argc, char **argv) {
         m.table = rows;
         m.table_count = 5;
         m.table_repeats = 1;
-        CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_OK);
-        CHECK_EQ(dem_wall_motion(copy, other, &m), DEM_OK);
+        CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_OK);
+        CHECK_EQ(dem_wall_motion_set(copy, other, &m), DEM_OK);
         CHECK(derivative_off(world, wall, 1e-3, 2200, 0) < (fine ? 4e-3 : 0.1));
-        dem_wall_pose(world, wall, &p);
+        dem_wall_pose_get(world, wall, &p);
         CHECK_REL(p.spin.z, 2*acos(-1.0), 0.1);          /* a turn a second, nearly evenly */
         CHECK_EQ(dem_checkpoint_write(world, "build/tmp/motion.ckpt"), DEM_OK);
         CHECK_EQ(dem_checkpoint_read(copy, "build/tmp/motion.ckpt"), DEM_OK);
         CHECK_EQ(scene_step(world, 333), DEM_OK);
         CHECK_EQ(scene_step(copy, 333), DEM_OK);
-        CHECK(dem_world_hash(world) == dem_world_hash(copy));
+        CHECK(dem_world_hash_get(world) == dem_world_hash_get(copy));
         CHECK(dem_effects_get(copy, 0.05, effects) > 0);  /* copies of the world leave its table alone */
         CHECK_EQ(scene_step(copy, 1), DEM_OK);
         dem_world_destroy(world);
@@ -213,18 +213,19 @@ int main(int argc, char **argv) {
             mesh.triangle_count = 1;
             mesh.vertices = (dem_real *)corners;
             mesh.triangles = (int32_t *)triangle;
-            walls[0] = dem_mesh_add(asked[k], m, &mesh);
-            walls[1] = dem_mesh_add(asked[k], m, &mesh);       /* one upon the other: they share */
+            walls[0] = dem_wall_mesh_add(asked[k], m, &mesh);
+            walls[1] = dem_wall_mesh_add(asked[k], m, &mesh);       /* one upon the other: they share */
             up.kind = DEM_MOTION_TRANSLATING;
             up.velocity = at(0, 0, 0.01);
-            CHECK_EQ(dem_wall_motion(asked[k], walls[0], &up), DEM_OK);
-            CHECK_EQ(dem_wall_motion(asked[k], walls[1], &up), DEM_OK);
-            dem_spheres_fill(asked[k], m, DEM_R(0.005), box_of(0.05, 0.02, 0.005, 0.15, 0.1, 0.05), 40, 1);
+            CHECK_EQ(dem_wall_motion_set(asked[k], walls[0], &up), DEM_OK);
+            CHECK_EQ(dem_wall_motion_set(asked[k], walls[1], &up), DEM_OK);
+            dem_spheres_fill(asked[k], m, DEM_R(0.005),
+                             dem_region_make(box_of(0.05, 0.02, 0.005, 0.15, 0.1, 0.05)), 40, 1);
             CHECK_EQ(dem_world_run_to(asked[k], 0.1, 0, 0), DEM_OK);
             if (k) CHECK(dem_effects_get(asked[k], 0.2, effects) > 0);
             CHECK_EQ(dem_world_run_to(asked[k], 0.15, 0, 0), DEM_OK);
         }
-        CHECK(dem_world_hash(asked[0]) == dem_world_hash(asked[1]));
+        CHECK(dem_world_hash_get(asked[0]) == dem_world_hash_get(asked[1]));
         for (k = 0; k < 2; k++) dem_world_destroy(asked[k]);
     }
 
@@ -234,22 +235,22 @@ int main(int argc, char **argv) {
         dem_motion m = DEM_MOTION;
         dem_motion_row rows[3];
         m.kind = DEM_MOTION_TABLE;
-        CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "has 0 rows, must have at least 2");
+        CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "has 0 rows, must have at least 2");
         rows[0] = row(0, at(0, 0, 0), 0);
         rows[1] = row(1, at(0, 0, 0), 0);
         rows[2] = row(1, at(0, 0, 0), 0);
         m.table = rows;
         m.table_count = 3;
-        CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "row 2 of the table of wall 1, at 1 s");
+        CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "row 2 of the table of wall 1, at 1 s");
         rows[0].time = 0.5;
-        CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "row 0");
+        CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "row 0");
         rows[0].time = 0;
         rows[1].position.x = DEM_R(1e300*1e300);
-        CHECK_EQ(dem_wall_motion(world, wall, &m), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "row 1");
+        CHECK_EQ(dem_wall_motion_set(world, wall, &m), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "row 1");
         dem_world_destroy(world);
     }
     return test_end();

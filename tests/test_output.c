@@ -56,8 +56,8 @@ static dem_world *heap(void) {
     desc.gravity = at(0, 0, -9.81);
     world = dem_world_create(&desc);
     m = scene_material(world, 1e6, 0.5, 0.3, 0.1);
-    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-    dem_spheres_fill(world, m, DEM_R(0.005), box_of(-0.03, -0.03, 0, 0.03, 0.03, 0.1), 60, 1);
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_spheres_fill(world, m, DEM_R(0.005), dem_region_make(box_of(-0.03, -0.03, 0, 0.03, 0.03, 0.1)), 60, 1);
     return world;
 }
 static dem_world *scheduled(const char *run, int *calls) {
@@ -65,9 +65,9 @@ static dem_world *scheduled(const char *run, int *calls) {
     dem_output_desc own = DEM_OUTPUT_DESC, loads = DEM_OUTPUT_DESC, call = DEM_OUTPUT_DESC;
     char name[128];
     file_name(name, run, ".csv");
-    CHECK(dem_output_every(world, DEM_OUTPUT_CSV, name, 0.007).id == 1);
+    CHECK(dem_output_every_add(world, DEM_OUTPUT_CSV, name, 0.007).id == 1);
     file_name(name, run, "_##.vtp");
-    CHECK(dem_output_every(world, DEM_OUTPUT_VTP, name, 0.05).id == 2);
+    CHECK(dem_output_every_add(world, DEM_OUTPUT_VTP, name, 0.05).id == 2);
     file_name(name, run, "_own.csv");
     own.kind = DEM_OUTPUT_CSV;
     own.path = name;
@@ -85,7 +85,7 @@ static dem_world *scheduled(const char *run, int *calls) {
     loads.wall.id = 1;
     CHECK(dem_output_add(world, &loads).id == 4);
     file_name(name, run, ".ckpt");
-    CHECK(dem_output_every(world, DEM_OUTPUT_CHECKPOINT, name, 0.08).id == 5);
+    CHECK(dem_output_every_add(world, DEM_OUTPUT_CHECKPOINT, name, 0.08).id == 5);
     call.interval = 0.02;
     call.function = count_call;
     call.user = calls;
@@ -106,7 +106,7 @@ static int heats(dem_world *world, int64_t number, void *user) {
 /* One grain that each call of an output makes faster; the call comes before the checkpoint of the same step or
    after it. */
 static int blow(dem_world *world, int64_t number, void *user) {
-    const dem_body b = dem_bodies_id(world, 0);
+    const dem_body b = dem_body_id_get(world, 0);
     dem_body_state s = scene_state(world, b);
     (void)number;
     ++*(int *)user;
@@ -132,7 +132,7 @@ static dem_output every(dem_world *world, double interval, int (*function)(dem_w
 static dem_world *blown(int call_first, int *calls) {
     dem_world *world = lone();
     if (call_first) every(world, 1e-3, blow, calls);
-    dem_output_every(world, DEM_OUTPUT_CHECKPOINT, "build/tmp/output_blown_#.ckpt", 1e-3);
+    dem_output_every_add(world, DEM_OUTPUT_CHECKPOINT, "build/tmp/output_blown_#.ckpt", 1e-3);
     if (!call_first) every(world, 1e-3, blow, calls);
     return world;
 }
@@ -174,7 +174,7 @@ int main(int argc, char **argv) {
                 back_to(b, from);
                 CHECK_EQ(dem_world_run_to(b, 4e-3, 0, 0), DEM_OK);
                 CHECK_EQ(again, 5 - from - first);
-                CHECK_EQ(dem_world_hash(a), dem_world_hash(b));
+                CHECK_EQ(dem_world_hash_get(a), dem_world_hash_get(b));
                 dem_world_destroy(a);
                 dem_world_destroy(b);
             }
@@ -231,7 +231,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_run_to(world, 8e-3, 0, 0), DEM_OK);
         for (k = 0; k <= 8; k++) CHECK_EQ(r.calls[k], k >= 3 && k <= 6 ? 2 : 1);
         for (k = 0; k <= 8; k++) CHECK_EQ(other[k], k >= 3 && k <= 5 ? 2 : 1);     /* 6: it had not come yet */
-        CHECK_NEAR(dem_world_time(world), 8e-3, 1e-9);
+        CHECK_NEAR(dem_world_time_get(world), 8e-3, 1e-9);
         dem_world_destroy(world);
         remove("build/tmp/output_back.ckpt");
     }
@@ -276,11 +276,11 @@ int main(int argc, char **argv) {
             dem_world *world = lone();
             char name[64];
             sprintf(name, "build/tmp/output_folder_%d/a", kind);
-            CHECK(dem_output_every(world, (dem_output_kind)kind, name, 1e-3).id == 1);
+            CHECK(dem_output_every_add(world, (dem_output_kind)kind, name, 1e-3).id == 1);
             CHECK_EQ(dem_world_run(world, 2e-3, 0, 0), DEM_ERROR_FILE);
             CHECK_EQ(dem_world_run(world, 2e-3, 0, 0), DEM_ERROR_FILE);   /* nor does it now; not: "not begun" */
-            CHECK_STR(dem_world_error(world), name);
-            CHECK_EQ(dem_world_steps(world), 0);
+            CHECK_STR(dem_world_error_get(world), name);
+            CHECK_EQ(dem_world_steps_get(world), 0);
             dem_world_destroy(world);
         }
     }
@@ -288,7 +288,7 @@ int main(int argc, char **argv) {
         dem_world *world = lone();
         int calls = 0;
         CHECK(every(world, 1e-30, blow, &calls).id == 0);
-        CHECK_STR(dem_world_error(world), "dem_output_add: interval must be 1e-12 to 1e15 s");
+        CHECK_STR(dem_world_error_get(world), "dem_output_add: interval must be 1e-12 to 1e15 s");
         CHECK(every(world, 1e16, blow, &calls).id == 0);
         CHECK(every(world, (double)NAN, blow, &calls).id == 0);
         {
@@ -298,7 +298,7 @@ int main(int argc, char **argv) {
             d.interval = 1e-6;
             d.start = -1e12;
             CHECK(dem_output_add(world, &d).id == 0);
-            CHECK_STR(dem_world_error(world), "9e15 intervals");
+            CHECK_STR(dem_world_error_get(world), "9e15 intervals");
             d.start = 1e16;
             CHECK(dem_output_add(world, &d).id == 0);
         }
@@ -319,9 +319,9 @@ int main(int argc, char **argv) {
         b = scheduled("parts", parts);
         file_name(name, "parts", ".ckpt");
         CHECK_EQ(dem_checkpoint_read(b, name), DEM_OK);
-        CHECK_NEAR(dem_world_time(b), 0.08, (double)dem_counters_get(b).dt);
+        CHECK_NEAR(dem_world_time_get(b), 0.08, (double)dem_counters_get(b).dt);
         CHECK_EQ(dem_world_run_to(b, 0.2, 0, 0), DEM_OK);
-        CHECK(dem_world_hash(a) == dem_world_hash(b));
+        CHECK(dem_world_hash_get(a) == dem_world_hash_get(b));
         files_equal("whole", "parts", ".csv");
         files_equal("whole", "parts", "_own.csv");
         files_equal("whole", "parts", "_floor.csv");
@@ -353,31 +353,31 @@ int main(int argc, char **argv) {
         CHECK(f != 0);
         if (f) { fputs("time,tea\n1,2\n", f); fclose(f); }
         CHECK(dem_output_add(world, &d).id == 0);            /* no interval */
-        CHECK_STR(dem_world_error(world), "interval must be 1e-12 to 1e15 s");
+        CHECK_STR(dem_world_error_get(world), "interval must be 1e-12 to 1e15 s");
         d.interval = 0.01;
         CHECK(dem_output_add(world, &d).id == 0);
-        CHECK_STR(dem_world_error(world), "function is null");
+        CHECK_STR(dem_world_error_get(world), "function is null");
         d.kind = DEM_OUTPUT_VTP;
         CHECK(dem_output_add(world, &d).id == 0);
-        CHECK_STR(dem_world_error(world), "path is null");
+        CHECK_STR(dem_world_error_get(world), "path is null");
         d.kind = DEM_OUTPUT_CSV;
         d.path = "build/tmp/output_#.csv";
         CHECK(dem_output_add(world, &d).id == 0);
-        CHECK_STR(dem_world_error(world), "leave it out");
+        CHECK_STR(dem_world_error_get(world), "leave it out");
         d.path = "build/tmp/output_other.csv";
         d.columns = "b c";
         CHECK(dem_output_add(world, &d).id == 0);
-        CHECK_STR(dem_world_error(world), "columns and values");
+        CHECK_STR(dem_world_error_get(world), "columns and values");
         d.columns = 0;
         d.wall.id = 9;
         CHECK(dem_output_add(world, &d).id == 0);
-        CHECK_STR(dem_world_error(world), "wall names none");
+        CHECK_STR(dem_world_error_get(world), "wall names none");
         d.wall.id = 0;
-        CHECK(dem_output_every(0, DEM_OUTPUT_CSV, "x", 1).id == 0);
+        CHECK(dem_output_every_add(0, DEM_OUTPUT_CSV, "x", 1).id == 0);
         CHECK(dem_output_add(world, &d).id == 1);
         before = dem_counters_get(world);
         CHECK_EQ(dem_world_run(world, 0.02, 0, 0), DEM_ERROR_FORMAT);
-        CHECK_STR(dem_world_error(world), "other columns");
+        CHECK_STR(dem_world_error_get(world), "other columns");
         CHECK_EQ(dem_counters_get(world).steps, before.steps);
         text = file_text("other", ".csv", &n);
         CHECK(text && !strcmp(text, "time,tea\n1,2\n"));
@@ -396,7 +396,7 @@ int main(int argc, char **argv) {
         d.function = stop_at_two;
         dem_output_add(world, &d);
         CHECK_EQ(dem_world_run(world, 1, 0, 0), DEM_ERROR_STOPPED);
-        CHECK_NEAR(dem_world_time(world), 0.02, (double)dem_counters_get(world).dt);
+        CHECK_NEAR(dem_world_time_get(world), 0.02, (double)dem_counters_get(world).dt);
         dem_world_destroy(world);
         world = heap();
         d.function = steps_itself;
@@ -404,7 +404,7 @@ int main(int argc, char **argv) {
         dem_output_add(world, &d);
         CHECK_EQ(dem_world_run(world, 0.005, 0, 0), DEM_OK);
         CHECK(refused);
-        CHECK_STR(dem_world_error(world), "looks at the world between two steps");
+        CHECK_STR(dem_world_error_get(world), "looks at the world between two steps");
         dem_world_destroy(world);
         world = heap();
         d.function = heats;
@@ -420,14 +420,14 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_step(world, 17), DEM_OK);
         dt = dem_counters_get(world).dt;
         CHECK_EQ(dem_world_run_to(world, 0.05, 0, 0), DEM_OK);
-        CHECK_NEAR(dem_world_time(world), 0.05, 0.51*(double)dt);
+        CHECK_NEAR(dem_world_time_get(world), 0.05, 0.51*(double)dt);
         CHECK_EQ(dem_world_step(world, 3), DEM_OK);
         CHECK_EQ(dem_world_run_to(world, 0.07, 0, 0), DEM_OK);
-        CHECK_NEAR(dem_world_time(world), 0.07, 0.51*(double)dt);
+        CHECK_NEAR(dem_world_time_get(world), 0.07, 0.51*(double)dt);
         CHECK_EQ(dem_world_run_to(world, 0.07, 0, 0), DEM_OK);
         CHECK_EQ(dem_world_run_to(world, 0.06, 0, 0), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "not before now");
-        CHECK_NEAR(dem_world_time(world), 0.07, 0.51*(double)dt);
+        CHECK_STR(dem_world_error_get(world), "not before now");
+        CHECK_NEAR(dem_world_time_get(world), 0.07, 0.51*(double)dt);
         dem_world_destroy(world);
     }
 
@@ -437,17 +437,17 @@ int main(int argc, char **argv) {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material m;
         CHECK_EQ(dem_world_settle(world, 5, 0, 0, 0), DEM_OK);
-        CHECK(dem_world_time(world) > 0.1 && dem_world_time(world) < 5);
+        CHECK(dem_world_time_get(world) > 0.1 && dem_world_time_get(world) < 5);
         CHECK((double)dem_counters_get(world).speed_max < 0.1*sqrt(2*9.81*0.005));
         dem_world_destroy(world);
         desc.gravity = at(0, 0, -9.81);
         world = dem_world_create(&desc);
         m = scene_material(world, 1e7, 1, 0, 0);
-        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
         dem_sphere_add(world, m, DEM_R(0.005), at(0, 0, 0.05));
         CHECK_EQ(dem_world_settle(world, 2, 0, 0, 0), DEM_ERROR_STOPPED);
-        CHECK_STR(dem_world_error(world), "not at rest after 2 s");
-        CHECK_NEAR(dem_world_time(world), 2, 1e-3);
+        CHECK_STR(dem_world_error_get(world), "not at rest after 2 s");
+        CHECK_NEAR(dem_world_time_get(world), 2, 1e-3);
         CHECK_EQ(dem_world_settle(world, 0, 0, 0, 0), DEM_ERROR_ARGUMENT);
         dem_world_destroy(world);
         desc.gravity = at(0, 0, 0);
@@ -456,7 +456,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_settle(world, 1, 0, 0, 0), DEM_OK);   /* nobody there: at rest */
         dem_sphere_add(world, m, DEM_R(0.005), at(0, 0, 0.05));
         CHECK_EQ(dem_world_settle(world, 1, 0, 0, 0), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "where there is no gravity");
+        CHECK_STR(dem_world_error_get(world), "where there is no gravity");
         CHECK_EQ(dem_world_settle(world, 1, DEM_R(1e-3), 0, 0), DEM_OK);
         dem_world_destroy(world);
     }
@@ -493,7 +493,7 @@ int main(int argc, char **argv) {
         }
         CHECK_NEAR(dem_temperature_get(world), 0, 1e-12);
         CHECK_EQ(dem_temperature_set(world, 0.04, 0), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "give a seed");
+        CHECK_STR(dem_world_error_get(world), "give a seed");
         CHECK_EQ(dem_temperature_set(world, -1, 3), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_temperature_set(world, 0.04, 3), DEM_OK);
         CHECK_REL(dem_temperature_get(world), 0.04, 1e-5);
@@ -501,14 +501,14 @@ int main(int argc, char **argv) {
         CHECK_REL(t.momentum[0]/t.mass, 0.3, 1e-5);
         CHECK_REL(t.momentum[2]/t.mass, -0.1, 1e-5);
         for (i = 0; i < 2000; i++) {
-            s = scene_state(world, dem_bodies_id(world, i));
+            s = scene_state(world, dem_body_id_get(world, i));
             s.velocity = at((double)s.velocity.x - 0.3, (double)s.velocity.y, (double)s.velocity.z + 0.1);
             share[(double)s.radius > 1.5e-3] += (double)(s.mass*demi_dot(s.velocity, s.velocity));
         }
         CHECK_REL(share[1], share[0], 5*sqrt(2.0/3000 + 2.0/3000));   /* 3 x 1000 draws each: 5 standard errors */
-        s = scene_state(world, dem_bodies_id(world, 7));
+        s = scene_state(world, dem_body_id_get(world, 7));
         CHECK_EQ(dem_temperature_set(world, 0.01, 0), DEM_OK);
-        s2 = scene_state(world, dem_bodies_id(world, 7));
+        s2 = scene_state(world, dem_body_id_get(world, 7));
         CHECK_REL(dem_temperature_get(world), 0.01, 1e-5);
         CHECK_NEAR((double)s2.velocity.y, (double)s.velocity.y/2, 1e-6);
         CHECK_EQ(dem_world_step(world, 10), DEM_OK);

@@ -47,12 +47,12 @@ static uint64_t run(dem_law_fn law, int mixed, int periodic, int reals, int ledg
     if (periodic) desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e7, 0.5, 0.3, 0);
-    dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
     scene_block(world, glass, 7, 7, 7, 1e-3, mixed, 1, 3);
     CHECK_EQ(scene_step(world, 200), DEM_OK);
     CHECK(dem_counters_get(world).wall_contacts > 0);
     *inlined = demi_whole_stage(world, world->effects.uniform) == demi_stage_own_inlined;
-    hash = dem_world_hash(world);
+    hash = dem_world_hash_get(world);
     dem_world_destroy(world);
     return hash;
 }

@@ -68,9 +68,9 @@ static dem_world *place_gas(dem_world_desc *desc, dem_material *m) {
     desc->skin = DEM_R(0.004);                  /* long between two rebuilds: many stand outside */
     world = dem_world_create(desc);
     *m = scene_material(world, 1e7, 1, 0, 0);
-    dem_spheres_fill(world, *m, DEM_R(0.002), desc->domain, 200, 1);
+    dem_spheres_fill(world, *m, DEM_R(0.002), dem_region_make(desc->domain), 200, 1);
     for (i = 0; i < 200; i++) {
-        const dem_body b = dem_bodies_id(world, i);
+        const dem_body b = dem_body_id_get(world, i);
         scene_move(world, b, scene_at(&random, 2, -1, 2, -1, 2, -1), at(0, 0, 0));
     }
     return world;
@@ -86,10 +86,10 @@ static void fills(void) {
             dem_world *world = place_world(1, 1, 1, "xyz", &m);
             const dem_box box = wide ? box_of(-0.4, -0.4, -0.4, 1.3, 1.3, 1.3) : desc.domain;
             dem_sphere_add(world, m, DEM_R(0.2), at(0.5, 0.5, 0.98));
-            CHECK_EQ(dem_spheres_fill(world, m, DEM_R(0.03), box, 300, 1), 300);
+            CHECK_EQ(dem_spheres_fill(world, m, DEM_R(0.03), dem_region_make(box), 300, 1), 300);
             CHECK(place_least(world, &desc) >= -rounding);
             CHECK_EQ(place_outside(world, &desc), 0);
-            CHECK_EQ(dem_search_now(world), DEM_OK);
+            CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
             CHECK_EQ(dem_contacts_get(world, 0, 0), 0);
             dem_world_destroy(world);
         }
@@ -102,8 +102,9 @@ static void fills(void) {
             dem_bodies b;
             int i, outer = 0;
             if (kind) dem_bodies_fill(world, m, dem_shape_ellipsoid_add(world, at(3e-3, 4e-3, 5e-3)),
-                                      box_of(0, 0, 0, 0.2, 0.025, 0.2), 400, 2);
-            else dem_spheres_fill(world, m, DEM_R(0.005), box_of(0, 0, 0, 0.2, 0.025, 0.2), 400, 2);
+                                      dem_region_make(box_of(0, 0, 0, 0.2, 0.025, 0.2)), 400, 2);
+            else dem_spheres_fill(world, m, DEM_R(0.005), dem_region_make(box_of(0, 0, 0, 0.2, 0.025, 0.2)), 400,
+                                  2);
             b = dem_bodies_get(world);
             CHECK_EQ(b.count, 400);
             for (i = 0; i < b.count; i++)
@@ -124,14 +125,14 @@ static void fills(void) {
             const dem_material m = scene_material(world, 1e7, 0.9, 0, 0);
             dem_real *seen = (dem_real *)malloc(4*900*sizeof *seen);
             int count = 0, wrong = 0;
-            dem_plane_add(world, m, at(0, 0, 0.3), at(0, 0, 1));
+            dem_wall_plane_add(world, m, at(0, 0, 0.3), at(0, 0, 1));
             for (size = 0; size < 4; size++) {
                 const double r = radius[order][size];
                 const dem_box box = box_of(0, 0, 0, 1, 1, 0.8);
                 uint64_t random = (uint64_t)size;
                 dem_bodies b;
-                const int done = dem_spheres_fill(world, m, (dem_real)r, box, wanted[order][size],
-                                                  (uint64_t)size);
+                const int done = dem_spheres_fill(world, m, (dem_real)r, dem_region_make(box),
+                                                  wanted[order][size], (uint64_t)size);
                 for (i = 0; i < done; i++) {
                     int tries, taken = 1;
                     dem_real *x = seen + 4*count;
@@ -179,29 +180,29 @@ static void fills(void) {
             sieve.normal = at(0, 0, 1);
             sieve.aperture = DEM_R(0.1);
             sieve.bar = DEM_R(0.02);
-            if (kind == 0) wall = dem_plane_add(world, m, at(0, 0, 0.4), at(0, 0.1, 1));
-            if (kind == 1) wall = dem_cylinder_add(world, m, at(0.5, 0, 0.5), at(0, 1, 0), DEM_R(0.4), 1);
-            if (kind == 2) wall = dem_cylinder_add(world, m, at(0.5, 0, 0.5), at(0, 1, 0), DEM_R(0.3), 0);
+            if (kind == 0) wall = dem_wall_plane_add(world, m, at(0, 0, 0.4), at(0, 0.1, 1));
+            if (kind == 1) wall = dem_wall_cylinder_add(world, m, at(0.5, 0, 0.5), at(0, 1, 0), DEM_R(0.4), 1);
+            if (kind == 2) wall = dem_wall_cylinder_add(world, m, at(0.5, 0, 0.5), at(0, 1, 0), DEM_R(0.3), 0);
             if (kind == 3) wall = scene_floor(world, m, 0, 0, 1, 1, 9, 9);
             if (kind == 4) wall = scene_drum(world, m, 0.5, 0.5, 0.35, 40);
-            if (kind == 5) wall = dem_grains_wall_add(world, m, 9, grains, DEM_R(0.08), 1);
-            if (kind == 6) wall = dem_sieve_add(world, m, &sieve);
+            if (kind == 5) wall = dem_wall_grains_add(world, m, 9, grains, DEM_R(0.08), 1);
+            if (kind == 6) wall = dem_wall_sieve_add(world, m, &sieve);
             CHECK(wall.id > 0);
             if (kind == 3) {                    /* up to the middle, and a step on */
                 motion.kind = DEM_MOTION_TRANSLATING;
                 motion.velocity = at(0, 0, 1);
-                dem_wall_motion(world, wall, &motion);
+                dem_wall_motion_set(world, wall, &motion);
                 CHECK_EQ(dem_world_run(world, 0.5, 0, 0), DEM_OK);
                 motion.kind = DEM_MOTION_FIXED;
-                dem_wall_motion(world, wall, &motion);
+                dem_wall_motion_set(world, wall, &motion);
             }
-            CHECK_EQ(dem_spheres_fill(world, m, DEM_R(0.03), box_of(0, 0, 0, 1, 1, 1), 300, 3), 300);
+            CHECK_EQ(dem_spheres_fill(world, m, DEM_R(0.03), dem_region_make(box_of(0, 0, 0, 1, 1, 1)), 300, 3), 300);
             CHECK_EQ(dem_world_step(world, 0), DEM_OK);
             CHECK_EQ(scene_step(world, 1), DEM_OK);
             CHECK_EQ(dem_wall_loads_get(world, wall, &loads), DEM_OK);
             CHECK_EQ(loads.contacts, 0);
             for (i = 0; i < 300; i++) {
-                const dem_vec3 x = scene_state(world, dem_bodies_id(world, i)).position;
+                const dem_vec3 x = scene_state(world, dem_body_id_get(world, i)).position;
                 if (kind == 0) CHECK((double)x.z + 0.1*(double)x.y > 0.4);
                 if (kind == 1) CHECK(hypot((double)x.x - 0.5, (double)x.z - 0.5) < 0.4);
             }
@@ -211,10 +212,11 @@ static void fills(void) {
     TEST("a fill of 2^31 - 1 spheres in a box for few ends soon, with those that fit") {
         dem_material m;
         dem_world *world = place_world(1, 1, 1, "", &m);
-        const int n = dem_spheres_fill(world, m, DEM_R(0.1), box_of(0, 0, 0, 1, 1, 1), 2147483647, 1);
+        const int n = dem_spheres_fill(world, m, DEM_R(0.1), dem_region_make(box_of(0, 0, 0, 1, 1, 1)),
+                                       2147483647, 1);
         CHECK(n > 50);
-        CHECK_EQ(dem_balance_get(world).present, n);
-        CHECK_STR(dem_world_error(world), "2147483647");
+        CHECK_EQ(dem_body_counts_get(world).present, n);
+        CHECK_STR(dem_world_error_get(world), "2147483647");
         dem_world_destroy(world);
     }
     TEST("a box that begins at a periodic face but is shorter than the period has faces: bodies stay "
@@ -223,7 +225,7 @@ static void fills(void) {
         dem_world *world = place_world(1, 1, 1, "x", &m);
         dem_bodies b;
         int i;
-        CHECK_EQ(dem_spheres_fill(world, m, DEM_R(0.04), box_of(0, 0, 0, 0.5, 1, 1), 100, 1), 100);
+        CHECK_EQ(dem_spheres_fill(world, m, DEM_R(0.04), dem_region_make(box_of(0, 0, 0, 0.5, 1, 1)), 100, 1), 100);
         b = dem_bodies_get(world);
         for (i = 0; i < b.count; i++)
             CHECK(b.positions[4*i] >= DEM_R(0.04) && b.positions[4*i] <= DEM_R(0.46001));
@@ -237,10 +239,10 @@ static void packings(void) {
         dem_material m;
         dem_world *world = place_world(1, 1, 1, "", &m);
         const dem_box box = box_of(0, 0, 0, 1000, 1000, 1000);
-        CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, box, 0, 0, 5), 5);
-        CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, box, 0, 0, 0), 0);
-        CHECK_STR(dem_world_error(world), "dem_spheres_pack: the box has about 1.77e+17 places");
-        CHECK_EQ(dem_balance_get(world).present, 5);
+        CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, dem_region_make(box), 5), 5);
+        CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, dem_region_make(box), 0), 0);
+        CHECK_STR(dem_world_error_get(world), "dem_spheres_pack: the box has about 1.77e+17 places");
+        CHECK_EQ(dem_body_counts_get(world).present, 5);
         dem_world_destroy(world);
     }
     TEST("a packing leaves out places that bodies or walls take, and keeps off itself across a face") {
@@ -248,16 +250,16 @@ static void packings(void) {
         const dem_world_desc desc = place_desc(1, 1, 1, "xy");
         dem_world *world = place_world(1, 1, 1, "xy", &m);
         int all, n;
-        all = dem_spheres_pack(world, m, DEM_R(0.05), DEM_R(0.004), desc.domain, 0, 0, 0);
+        all = dem_spheres_pack(world, m, DEM_R(0.05), DEM_R(0.004), dem_region_make(desc.domain), 0);
         CHECK(place_least(world, &desc) >= 0.004/0.1 - rounding);
         dem_world_destroy(world);
         world = place_world(1, 1, 1, "xy", &m);
         dem_sphere_add(world, m, DEM_R(0.2), at(0.95, 0.5, 0.6));
-        dem_plane_add(world, m, at(0, 0, 0.2), at(0, 0, 1));
-        n = dem_spheres_pack(world, m, DEM_R(0.05), DEM_R(0.004), desc.domain, 0, 0, 0);
+        dem_wall_plane_add(world, m, at(0, 0, 0.2), at(0, 0, 1));
+        n = dem_spheres_pack(world, m, DEM_R(0.05), DEM_R(0.004), dem_region_make(desc.domain), 0);
         CHECK(n > all/2 && n < all*4/5);
         CHECK(place_least(world, &desc) >= -rounding);
-        CHECK_EQ(dem_search_now(world), DEM_OK);
+        CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
         CHECK_EQ(dem_contacts_get(world, 0, 0), 0);
         dem_world_destroy(world);
     }
@@ -272,7 +274,7 @@ static void feeds(void) {
         dem_feed id;
         dem_feed_state state;
         dem_sphere_add(world, m, DEM_R(0.02), at(0.099, 0.05, 0.0701));
-        dem_plane_add(world, m, at(0, 0, 0.05), at(0, 0, 1));
+        dem_wall_plane_add(world, m, at(0, 0, 0.05), at(0, 0, 1));
         scene_floor(world, m, 0, 0, 0.1, 0.1, 3, 3);
         memset(&feed, 0, sizeof feed);
         feed.material = m;
@@ -337,7 +339,7 @@ static void places(void) {
             CHECK_EQ(dem_world_step(world, 1), DEM_OK);
             got += place_outside(world, &desc);
             for (k = 0; k < 200; k++) {
-                const dem_vec3 x = scene_state(world, dem_bodies_id(world, k)).position;
+                const dem_vec3 x = scene_state(world, dem_body_id_get(world, k)).position;
                 one += !(x.x >= 0 && x.x < DEM_R(0.1) && x.y >= 0 && x.y < DEM_R(0.1) && x.z >= 0 &&
                          x.z < DEM_R(0.1));
                 raw += !(world->bodies.pos[4*k] >= 0 && world->bodies.pos[4*k] < DEM_R(0.1));
@@ -364,10 +366,10 @@ static void places(void) {
             dem_world *world = place_gas(&desc, &m);
             for (i = 0; i < 200; i++) {
                 CHECK_EQ(dem_world_step(world, 1), DEM_OK);
-                for (k = 0; k < 200 && look == 1; k++) scene_state(world, dem_bodies_id(world, k));
+                for (k = 0; k < 200 && look == 1; k++) scene_state(world, dem_body_id_get(world, k));
                 if (look == 1) dem_bodies_get(world);
             }
-            hash[look] = dem_world_hash(world);
+            hash[look] = dem_world_hash_get(world);
             dem_world_destroy(world);
         }
         CHECK_EQ(hash[0], hash[1]);
@@ -413,7 +415,7 @@ static void places(void) {
             dem_world *world = place_world(1, 1, 1, "x", &m);
             dem_outlet_desc d;
             memset(&d, 0, sizeof d);
-            if (moving) d.frame = dem_plane_add(world, m, at(0.9, 0, -1), at(0, 0, 1));
+            if (moving) d.frame = dem_wall_plane_add(world, m, at(0.9, 0, -1), at(0, 0, 1));
             /* the frame of that wall begins at (.9, 0, -1); which way x points is its own affair */
             d.box = moving ? box_of(-0.2, -0.2, 1, 0.2, 0.2, 2) : box_of(0.7, 0, 0, 1.1, 0.2, 1);
             CHECK(dem_outlet_add(world, &d).id > 0);
@@ -421,7 +423,7 @@ static void places(void) {
             dem_sphere_add(world, m, DEM_R(0.01), at(0.95, 0.1, 0.5));
             dem_sphere_add(world, m, DEM_R(0.01), at(0.15, 0.1, 0.5));
             CHECK_EQ(scene_step(world, 200), DEM_OK);
-            CHECK_EQ(dem_balance_get(world).left, 2);
+            CHECK_EQ(dem_body_counts_get(world).left, 2);
             dem_world_destroy(world);
         }
     }
@@ -482,7 +484,7 @@ static void walls(void) {
             desc.gravity = at(0.5, 0, -9.81);   /* pulled along: friction is at work all the time */
             world = dem_world_create(&desc);
             m = scene_material(world, 1e7, 0.5, 0.5, 0);
-            if (flat) dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            if (flat) dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
             else scene_floor(world, m, 0, 0, 0.1, 0.1, 3, 3);
             ball = dem_sphere_add(world, m, DEM_R(0.01), at(0.05, 0.031, 0.01));
             CHECK_EQ(dem_world_run(world, 2, 0, 0), DEM_OK);
@@ -552,7 +554,7 @@ static void walls(void) {
                 CHECK_EQ(dem_slabs_collect(slabs, world), DEM_OK);
                 dem_slabs_destroy(slabs);
             } else CHECK_EQ(dem_world_step(world, 1000), DEM_OK);
-            if (way < 2) hash[way] = dem_world_hash(world);
+            if (way < 2) hash[way] = dem_world_hash_get(world);
             v[way] = (double)dem_bodies_get(world).velocities[0];
             z[way] = (double)dem_bodies_get(world).positions[2];
             dem_world_destroy(world);
@@ -570,16 +572,16 @@ static void walls(void) {
             const dem_material m = scene_material(world, 1e7, 1, 0, 0);
             /* a ball of wall, radius .2, centred on the face (5 periods on, when it has moved) */
             const dem_real x[3] = {0, DEM_R(0.5), DEM_R(0.5)};
-            dem_wall wall = dem_grains_wall_add(world, m, 1, x, DEM_R(0.2), 1);
+            dem_wall wall = dem_wall_grains_add(world, m, 1, x, DEM_R(0.2), 1);
             dem_motion motion = DEM_MOTION;
             dem_body left, right;
             if (moved) {
                 motion.kind = DEM_MOTION_TRANSLATING;
                 motion.velocity = at(1000, 0, 0);
-                dem_wall_motion(world, wall, &motion);
+                dem_wall_motion_set(world, wall, &motion);
                 CHECK_EQ(dem_world_run(world, 0.005, 0, 0), DEM_OK);
                 motion.kind = DEM_MOTION_FIXED;
-                dem_wall_motion(world, wall, &motion);
+                dem_wall_motion_set(world, wall, &motion);
             }
             left = dem_sphere_add(world, m, DEM_R(0.05), at(0.3, 0.5, 0.5));
             right = dem_sphere_add(world, m, DEM_R(0.05), at(0.7, 0.5, 0.5));
@@ -595,11 +597,11 @@ static void walls(void) {
          "enough beyond it is a floor like any other") {
         dem_material m;
         dem_world *world = place_slide(3, 0.005, 0, &m);
-        const uint64_t hash = dem_world_hash(world);
+        const uint64_t hash = dem_world_hash_get(world);
         dem_sphere_add(world, m, DEM_R(0.01), at(0.05, 0.031, 0.011));
         CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "wall 1");
-        CHECK_STR(dem_world_error(world), "periodic");
+        CHECK_STR(dem_world_error_get(world), "wall 1");
+        CHECK_STR(dem_world_error_get(world), "periodic");
         (void)hash;
         dem_world_destroy(world);
         world = place_slide(3, 0.03, 0, &m);

@@ -77,7 +77,7 @@ static dem_world *heap(int threads, int impulses) {
     shapes[1] = dem_shape_polygon_add(w, 10, five);
     shapes[2] = dem_shape_polygon_add(w, 6, six);
     for (k = 0; k < 3; k++)
-        dem_plane_add(w, m, at(k == 1 ? -0.06 : k == 2 ? 0.06 : 0, 0, 0), at(k == 1 ? 1 : k == 2 ? -1 : 0, k ? 0 : 1, 0));
+        dem_wall_plane_add(w, m, at(k == 1 ? -0.06 : k == 2 ? 0.06 : 0, 0, 0), at(k == 1 ? 1 : k == 2 ? -1 : 0, k ? 0 : 1, 0));
     for (k = 0; k < 24; k++) {
         const dem_vec3 x = at(-0.045 + 0.03*(k%4), 0.016 + 0.03*(k/4), 0);
         dem_body b = k%4 == 3 ? dem_sphere_add(w, m, DEM_R(0.007), x)
@@ -136,17 +136,17 @@ int main(int argc, char **argv) {
         dem_material m;
         dem_world *w = flat(0, 0, &m, 1, 0);
         CHECK(!dem_shape_polygon_add(w, 4, bow).id);
-        CHECK_STR(dem_world_error(w), "from point 0 and from point 2 cross");
+        CHECK_STR(dem_world_error_get(w), "from point 0 and from point 2 cross");
         CHECK(!dem_shape_polygon_add(w, 3, line).id);
-        CHECK_STR(dem_world_error(w), "dem_shape_polygon_add");
+        CHECK_STR(dem_world_error_get(w), "dem_shape_polygon_add");
         CHECK(!dem_shape_polygon_add(w, 2, line).id);
-        CHECK_STR(dem_world_error(w), "must be 3 to 98");
+        CHECK_STR(dem_world_error_get(w), "must be 3 to 98");
         CHECK(!dem_shape_polygon_add(w, 3, 0).id);
         CHECK_EQ(w->shape_count, 0);
         dem_world_destroy(w);
         w = dem_world_create(&desc);
         CHECK(!dem_shape_polygon_add(w, 6, ell).id);
-        CHECK_STR(dem_world_error(w), "not planar");
+        CHECK_STR(dem_world_error_get(w), "not planar");
         dem_world_destroy(w);
     }
 
@@ -175,7 +175,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_shape_get(w, dem_shape_polygon_add(w, 98, comb), &info), DEM_OK);
         CHECK_REL((double)info.volume, (48*1 + 24*2)*0.01, fine ? 1e-12 : 1e-5);
         CHECK(!dem_shape_polygon_add(w, 5, back).id);
-        CHECK_STR(dem_world_error(w), "cross or touch");
+        CHECK_STR(dem_world_error_get(w), "cross or touch");
         dem_world_destroy(w);
     }
 
@@ -200,10 +200,10 @@ int main(int argc, char **argv) {
         CHECK_REL((double)b.inertia.z, (double)a.inertia.z, fine ? 1e-12 : 1e-5);
         CHECK_REL((double)b.radius, (double)a.radius, fine ? 1e-12 : 1e-5);
         CHECK(!dem_shape_union_add(w, 1, &ball, x, 0).id);
-        CHECK_STR(dem_world_error(w), "is a cluster or a union");
+        CHECK_STR(dem_world_error_get(w), "is a cluster or a union");
         CHECK(!dem_shape_union_add(w, 1, &two, x, 0).id);
         CHECK(!dem_shape_union_add(w, 1, &one, far, 0).id);
-        CHECK_STR(dem_world_error(w), "piece 0");
+        CHECK_STR(dem_world_error_get(w), "piece 0");
         CHECK(!dem_shape_union_add(w, 1, &one, x, none).id);
         CHECK(!dem_shape_union_add(w, 0, &one, x, 0).id);
         CHECK(!dem_shape_union_add(w, 1, &one, 0, 0).id);
@@ -245,7 +245,7 @@ int main(int argc, char **argv) {
                 }
                 for (i = 0; i < (space ? 6 : 4); i++) {
                     const double side = i & 1 ? 0.04 : -0.04, n = i & 1 ? -1 : 1;
-                    dem_plane_add(w, m, at(i/2 == 0 ? side : 0, i/2 == 1 ? side : 0, i/2 == 2 ? side : 0),
+                    dem_wall_plane_add(w, m, at(i/2 == 0 ? side : 0, i/2 == 1 ? side : 0, i/2 == 2 ? side : 0),
                                   at(i/2 == 0 ? n : 0, i/2 == 1 ? n : 0, i/2 == 2 ? n : 0));
                 }
                 for (i = 0; i < 5; i++) {
@@ -294,7 +294,7 @@ int main(int argc, char **argv) {
             profile.segment_count = 1;
             profile.vertices = line;
             profile.segments = ends;
-            CHECK(dem_profile_add(w, m, &profile, DEM_EDGE_RESOLVED).id);
+            CHECK(dem_wall_profile_add(w, m, &profile, DEM_EDGE_RESOLVED).id);
             for (i = 0; i < corners; i++) {
                 corner[2*i] = (dem_real)(0.01*cos(6.28318530717959*i/corners));
                 corner[2*i + 1] = (dem_real)(0.01*sin(6.28318530717959*i/corners));
@@ -337,7 +337,7 @@ int main(int argc, char **argv) {
                 desc.gravity = at(weight*sin(angle), -weight*cos(angle), 0);
                 w = dem_world_create(&desc);
                 m = dem_material_add(w, &stuff);
-                dem_plane_add(w, m, at(0, 0, 0), at(0, 1, 0));
+                dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 1, 0));
                 b = dem_body_add(w, m, k == 2 ? dem_shape_polygon_add(w, 4, brick)
                                  : k ? halves_add(w, 0.03, 0.01, 0.02) : scene_box(w, 0.03, 0.01, 0.02), at(0, 0.005, 0), straight);
                 CHECK(b.slot);
@@ -376,8 +376,8 @@ int main(int argc, char **argv) {
                     off = fmax(off, fabs((double)w->bodies.pos[4*i + 2]) + fabs((double)w->bodies.spin[4*i]) +
                                     fabs((double)w->bodies.spin[4*i + 1]));
                 CHECK_NEAR(off, 0, 0);
-                CHECK_EQ(dem_search_now(w), DEM_OK);
-                hash[k] = dem_world_hash(w);
+                CHECK_EQ(dem_candidates_rebuild(w), DEM_OK);
+                hash[k] = dem_world_hash_get(w);
                 dem_world_destroy(w);
             }
             for (k = 1; k < 6; k++) CHECK(hash[k] == hash[0]);

@@ -66,13 +66,13 @@ static void wall_add(dem_world *w, dem_material m, int kind) {
         : kind == SQUARE ? DEM_SIEVE_SQUARE : kind == SLOTS ? DEM_SIEVE_SLOTS
         : kind == ROUND ? DEM_SIEVE_ROUND : DEM_SIEVE_REDUCED;
     switch (kind) {
-    case PLANE: dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1)); break;
-    case INSIDE: dem_cylinder_add(w, m, at(0, 0, 5e-3), at(0, 1, 0), DEM_R(5e-3), 1); break;
-    case OUTSIDE: dem_cylinder_add(w, m, at(0, 0, -4e-3), at(0, 1, 0), DEM_R(4e-3), 0); break;
-    case STEP: case TRENCH: dem_mesh_add(w, m, &mesh); break;
-    case PROFILE: dem_profile_add(w, m, &profile, DEM_EDGE_RESOLVED); break;
-    case GRAINS: dem_grains_wall_add(w, m, 25, balls, DEM_R(1.2e-3), 1); break;
-    default: dem_sieve_add(w, m, &s);
+    case PLANE: dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1)); break;
+    case INSIDE: dem_wall_cylinder_add(w, m, at(0, 0, 5e-3), at(0, 1, 0), DEM_R(5e-3), 1); break;
+    case OUTSIDE: dem_wall_cylinder_add(w, m, at(0, 0, -4e-3), at(0, 1, 0), DEM_R(4e-3), 0); break;
+    case STEP: case TRENCH: dem_wall_mesh_add(w, m, &mesh); break;
+    case PROFILE: dem_wall_profile_add(w, m, &profile, DEM_EDGE_RESOLVED); break;
+    case GRAINS: dem_wall_grains_add(w, m, 25, balls, DEM_R(1.2e-3), 1); break;
+    default: dem_wall_sieve_add(w, m, &s);
     }
 }
 /* Where the body is after 8 ms, and how often it has bounced off (in *turns). */
@@ -87,7 +87,7 @@ static dem_vec3 thrown(int kind, int cluster, int thicker, uint64_t seed, int *t
     dem_vec3 x;
     dem_real last = 0;
     int i;
-    desc.cluster_contacts = DEM_SHARING_NONE;
+    desc.cluster_contacts = DEM_CLUSTER_CONTACTS_SEPARATE;
     desc.gravity = kind == PROFILE ? at(0, -9.81, 0) : at(0, 0, -9.81);
     w = dem_world_create(&desc);
     m = scene_material(w, 1e7, 1, 0, 0);
@@ -170,8 +170,8 @@ static dem_world *gas(dem_world_desc desc, int shapes, int walls, double thicker
         dem_real v[12] = {-0.01f, -0.01f, 0, 0.03f, -0.01f, 0, 0.03f, 0.03f, 0, -0.01f, 0.03f, 0};
         int32_t t[6] = {0, 1, 2, 0, 2, 3};
         const dem_mesh floor_ = {4, 2, v, t};
-        dem_mesh_add(w, m[0], &floor_);
-        dem_plane_add(w, m[0], at(0, 0, 0.016), at(0, 0, -1));
+        dem_wall_mesh_add(w, m[0], &floor_);
+        dem_wall_plane_add(w, m[0], at(0, 0, 0.016), at(0, 0, -1));
     }
     return w;
 }
@@ -208,7 +208,7 @@ static uint64_t bridges(int search, double skin, int threads, int restart, int s
         s = dem_slabs_create(w, &sd);
         CHECK(s != 0);
         CHECK_EQ(dem_slabs_step(s, 800), DEM_OK);
-        if (dem_slabs_error(s)[0]) puts(dem_slabs_error(s));
+        if (dem_slabs_error_get(s)[0]) puts(dem_slabs_error_get(s));
         CHECK_EQ(dem_slabs_collect(s, w), DEM_OK);
         dem_slabs_destroy(s);
     } else if (restart) {
@@ -220,11 +220,11 @@ static uint64_t bridges(int search, double skin, int threads, int restart, int s
         w = other;
         CHECK_EQ(scene_step(w, 400), DEM_OK);
     } else CHECK_EQ(scene_step(w, 800), DEM_OK);
-    dem_search_now(w);
+    dem_candidates_rebuild(w);
     n = dem_contacts_get(w, list, 4000);
     for (i = 0, *count = 0; i < n; i++)
         *count += !(list[i].overlap > 0) && demi_length(list[i].force) > 0;
-    hash = dem_world_hash(w);
+    hash = dem_world_hash_get(w);
     dem_world_destroy(w);
     return hash;
 }
@@ -254,7 +254,7 @@ static double let_go(int other, double along, double skin) {
     a = dem_sphere_add(w, m, DEM_R(1e-3), at(9.9e-3, 9.9e-3, 1.05e-3));
     b.slot = b.generation = 0;
     if (other == 0) b = dem_sphere_add(w, m, DEM_R(1e-3), at(9.9e-3, 9.9e-3, -1e-3));
-    if (other == 1) dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+    if (other == 1) dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
     if (other >= 2) b = dem_body_add(w, m, other == 2 ? dem_shape_cluster_add(w, &pair)
         : dem_shape_ellipsoid_add(w, at(0.7e-3, 0.8e-3, 1e-3)), at(9.9e-3, 9.9e-3, -1e-3),
         dem_quat_make(1, 0, 0, 0));
@@ -326,7 +326,7 @@ int main(int argc, char **argv) {
             for (k = 0; k < 2; k++) {          /* in m; in radii */
                 dem_world_desc desc = desc_of(shell, k ? 0 : 3e-4, k ? 0.2 : 0);
                 dem_world *a, *b;
-                desc.cluster_contacts = DEM_SHARING_NONE;
+                desc.cluster_contacts = DEM_CLUSTER_CONTACTS_SEPARATE;
                 if (shapes && k) continue;     /* a cluster's spheres would not lie as they did */
                 a = gas(desc, shapes, 0, 0, 0);
                 desc.law_range = desc.law_range_radii = 0;
@@ -344,7 +344,7 @@ int main(int argc, char **argv) {
         int first = 0, count = 0, k;
         const uint64_t hash = bridges(DEM_SEARCH_ALL_PAIRS, 0, 1, 0, 0, &first);
         CHECK(first > 20);
-        for (k = DEM_SEARCH_GRID; k <= DEM_SEARCH_LEVELS; k++) {
+        for (k = DEM_SEARCH_GRID; k <= DEM_SEARCH_HIERARCHICAL; k++) {
             CHECK_EQ(bridges(k, 0, 1, 0, 0, &count), hash);
             CHECK_EQ(count, first);
         }
@@ -392,7 +392,7 @@ int main(int argc, char **argv) {
             p.semi_axes = q.semi_axes = axes;
             q.position = scene_at(&seed, 2.4e-3, -1.2e-3, 2.4e-3, -1.2e-3, 1.6e-3, -0.8e-3);
             q.orientation = dem_quat_make(1, (dem_real)scene_random(&seed), (dem_real)scene_random(&seed), 0);
-            c = dem_ellipsoids_contact(&p, &q, 0);
+            c = dem_ellipsoids_contact_get(&p, &q, 0);
             gap = (double)demi_length(q.position)*(1 - 1/(double)c.scale);
             dem_body_add(w, m, dem_shape_ellipsoid_add(w, axes), p.position, p.orientation);
             dem_body_add(w, m, dem_shape_ellipsoid_add(w, axes), q.position, q.orientation);
@@ -424,7 +424,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(seen.who.point.z, 2.9e-3/3, 1e-9);
         CHECK_NEAR(seen.who.time, 1.5e-5, 1e-9);
         dem_body_remove(w, b);
-        dem_plane_add(w, m, at(0, 0, -0.9e-3), at(0, 0, 1));
+        dem_wall_plane_add(w, m, at(0, 0, -0.9e-3), at(0, 0, 1));
         CHECK_EQ(scene_step(w, 1), DEM_OK);
         CHECK_EQ(seen.who.b.slot, 0);
         CHECK_EQ(seen.wall, 1);
@@ -478,7 +478,7 @@ int main(int argc, char **argv) {
             desc.law_memory = 0;
             w = dem_world_create(&desc);
             m = scene_material(w, 1e5, 0.5, 0, 0);
-            dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
             body = dem_sphere_add(w, m, DEM_R(1e-3), at(0, 0, 1e-3));
             scene_move(w, body, at(0, 0, -0.5), at(0, 0, 0));
             CHECK_EQ(scene_step(w, 4), DEM_OK);
@@ -511,14 +511,14 @@ int main(int argc, char **argv) {
         const dem_profile p = {2, 1, v, s};
         dem_world *w;
         desc.law_range = 1;
-        CHECK_STR(dem_create_error(&desc), "law is null");
+        CHECK_STR(dem_world_create_error_get(&desc), "law is null");
         desc.law = shell;
         desc.law_range_radii = -1;
-        CHECK_STR(dem_create_error(&desc), "law_range_radii must be finite and >= 0");
+        CHECK_STR(dem_world_create_error_get(&desc), "law_range_radii must be finite and >= 0");
         desc.law_range_radii = 0;
         w = dem_world_create(&desc);
-        CHECK_EQ(dem_profile_add(w, scene_material(w, 1e7, 1, 0, 0), &p, DEM_EDGE_FRACTION).id, 0);
-        CHECK_STR(dem_world_error(w), "DEM_EDGE_RESOLVED");
+        CHECK_EQ(dem_wall_profile_add(w, scene_material(w, 1e7, 1, 0, 0), &p, DEM_EDGE_FRACTION).id, 0);
+        CHECK_STR(dem_world_error_get(w), "DEM_EDGE_RESOLVED");
         dem_world_destroy(w);
     }
     return test_end();

@@ -57,6 +57,14 @@ static dem_box take_dem_box(refuser *r, int at_, const char *name) {
     if (is_bad(r, at_, BADS + 1, name)) b.hi.y = (dem_real)(r->kind == BADS ? 0.02 : bad_number(r->kind));
     return b;
 }
+/* A box of bad numbers or without size, or a cylinder along no axis. */
+static dem_region take_dem_region(refuser *r, int at_, const char *name) {
+    dem_region g = dem_region_make(box_of(0.02, 0.02, 0.02, 0.04, 0.04, 0.04));
+    if (!is_bad(r, at_, BADS + 2, name)) return g;
+    if (r->kind > BADS) g.cylinder = 'w';
+    else g.box.hi.y = (dem_real)(r->kind == BADS ? 0.02 : bad_number(r->kind));
+    return g;
+}
 /* Ids: of nothing, negative, beyond all that there are. */
 static int32_t take_id(refuser *r, int at_, const char *name) {
     static const int32_t none[] = {0, -1, 99, INT_MAX, INT_MIN};
@@ -65,7 +73,7 @@ static int32_t take_id(refuser *r, int at_, const char *name) {
 #define TAKE_ID(type) static type take_##type(refuser *r, int at_, const char *name) { type id; id.id = take_id(r, at_, name); return id; }
 TAKE_ID(dem_material) TAKE_ID(dem_shape) TAKE_ID(dem_wall) TAKE_ID(dem_joint) TAKE_ID(dem_feed) TAKE_ID(dem_outlet) TAKE_ID(dem_field)
 static dem_body take_dem_body(refuser *r, int at_, const char *name) {
-    dem_body id = dem_bodies_id(r->world, 0);
+    dem_body id = dem_body_id_get(r->world, 0);
     if (!is_bad(r, at_, 4, name)) return id;
     if (r->kind == 0) id.slot = 0;
     if (r->kind == 1) id.slot = 9999;
@@ -113,19 +121,19 @@ static dem_material_desc good_dem_material_desc(refuser *r) { dem_material_desc 
 static dem_pair good_dem_pair(refuser *r) { dem_pair p; dem_material m; m.id = 1; dem_pair_get(r->world, m, m, &p); return p; }
 static dem_sizes good_dem_sizes(refuser *r) { dem_sizes d; (void)r; memset(&d, 0, sizeof d); d.min = DEM_R(1e-3); d.max = DEM_R(2e-3); return d; }
 static dem_region good_dem_region(refuser *r) { dem_region g = DEM_REGION; (void)r; g.box = box_of(0.02, 0.02, 0.02, 0.04, 0.04, 0.04); return g; }
-static dem_body_state good_dem_body_state(refuser *r) { dem_body_state s; dem_body_get(r->world, dem_bodies_id(r->world, 0), &s); return s; }
+static dem_body_state good_dem_body_state(refuser *r) { dem_body_state s; dem_body_get(r->world, dem_body_id_get(r->world, 0), &s); return s; }
 static dem_cluster_desc good_dem_cluster_desc(refuser *r) { dem_cluster_desc d; (void)r; memset(&d, 0, sizeof d); d.count = 2; d.positions = corner_reals; d.radius = DEM_R(0.2); return d; }
 static dem_mesh good_dem_mesh(refuser *r) { static int32_t t[12] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}; static dem_real v[12]; dem_mesh m; (void)r; memcpy(v, corner_reals, sizeof v); memset(&m, 0, sizeof m); m.vertex_count = 4; m.triangle_count = 4; m.vertices = v; m.triangles = t; return m; }
 static dem_shape good_dem_shape(refuser *r) { (void)r; return good_shape; }
 static dem_profile good_dem_profile(refuser *r) { static int32_t s[2] = {0, 1}; static dem_real v[4] = {0.1f, 0.1f, 0.2f, 0.2f}; dem_profile p; (void)r; memset(&p, 0, sizeof p); p.vertex_count = 2; p.segment_count = 1; p.vertices = v; p.segments = s; return p; }
 static dem_sieve_desc good_dem_sieve_desc(refuser *r) { dem_sieve_desc d; (void)r; memset(&d, 0, sizeof d); d.normal = at(0, 0, 1); d.point = at(0, 0, -1); d.aperture = DEM_R(0.01); d.bar = DEM_R(0.002); return d; }
 static dem_motion good_dem_motion(refuser *r) { dem_motion m = DEM_MOTION; (void)r; m.kind = DEM_MOTION_TRANSLATING; m.velocity = at(0, 0, 1e-3); return m; }
-static dem_joint_desc good_dem_joint_desc(refuser *r) { dem_joint_desc d = DEM_JOINT_DESC; d.kind = DEM_JOINT_POINT; d.a = dem_bodies_id(r->world, 0); d.b = dem_bodies_id(r->world, 1); return d; }
+static dem_joint_desc good_dem_joint_desc(refuser *r) { dem_joint_desc d = DEM_JOINT_DESC; d.kind = DEM_JOINT_POINT; d.a = dem_body_id_get(r->world, 0); d.b = dem_body_id_get(r->world, 1); return d; }
 static dem_feed_desc good_dem_feed_desc(refuser *r) { dem_feed_desc d = DEM_FEED_DESC; (void)r; d.material.id = 1; d.class_count = 1; d.radius[0] = DEM_R(1e-3); d.amount[0] = 1; d.rate = 1; d.box = box_of(0.02, 0.02, 0.02, 0.04, 0.04, 0.04); return d; }
 static dem_outlet_desc good_dem_outlet_desc(refuser *r) { dem_outlet_desc d = DEM_OUTLET_DESC; (void)r; d.box = box_of(1, 1, 1, 2, 2, 2); return d; }
-static dem_advise_desc good_dem_advise_desc(refuser *r) { dem_advise_desc d; (void)r; memset(&d, 0, sizeof d); return d; }
+static dem_trials_desc good_dem_trials_desc(refuser *r) { dem_trials_desc d; (void)r; memset(&d, 0, sizeof d); return d; }
 static dem_field_desc good_dem_field_desc(refuser *r) { dem_field_desc d; (void)r; memset(&d, 0, sizeof d); d.box = box_of(0, 0, 0, 1, 1, 1); d.cells[0] = d.cells[1] = d.cells[2] = 2; return d; }
-static dem_part good_dem_part(refuser *r) { static const char first[] = "a"; static dem_part two[2]; (void)r; memset(two, 0, sizeof two); two[0].name = two[1].name = first; two[0].material.id = two[1].material.id = 1; return two[0]; }
+static dem_wall_part good_dem_wall_part(refuser *r) { static const char first[] = "a"; static dem_wall_part two[2]; (void)r; memset(two, 0, sizeof two); two[0].name = two[1].name = first; two[0].material.id = two[1].material.id = 1; return two[0]; }
 static dem_grains good_dem_grains(refuser *r) { static dem_real radii[2] = {0.001f, 0.001f}; static dem_real places[6]; dem_grains g; (void)r; memset(&g, 0, sizeof g); memcpy(places, corner_reals, sizeof places); g.count = 2; g.positions = places; g.radii = radii; return g; }
 static dem_replay_desc good_dem_replay_desc(refuser *r) { dem_replay_desc d = DEM_REPLAY_DESC; (void)r; return d; }
 static dem_output_desc good_dem_output_desc(refuser *r) { dem_output_desc d = DEM_OUTPUT_DESC; (void)r; d.kind = DEM_OUTPUT_VTP; d.path = "build/tmp/refused_####.vtp"; d.interval = 1; d.start = 1; return d; }
@@ -140,7 +148,7 @@ static int spoil(refuser *r, void *desc, const char *type);
     value[0] = value[1] = value[2] = good_##type(r); \
     if (at_ != r->bad) return value; \
     if (r->kind == 0) { snprintf(r->what, sizeof r->what, "%s null", name); return 0; } \
-    r->spent = !spoil(r, value + (sizeof(type) > 4 && !strcmp(#type, "dem_part")), #type); \
+    r->spent = !spoil(r, value + (sizeof(type) > 4 && !strcmp(#type, "dem_wall_part")), #type); \
     return value; }
 #define TAKE_OUT(type) static type *take_out_##type(refuser *r, int at_, const char *name) { \
     static type value[64]; memset(value, 0, sizeof value); return is_bad(r, at_, 1, name) ? 0 : value; }
@@ -178,7 +186,7 @@ static dem_world *refused_world(int impulses) {
     if (impulses) desc.response = DEM_RESPONSE_IMPULSES;
     r.world = w = dem_world_create(&desc);
     stuff = scene_material(w, 1e6, 0.5, 0.5, 0);
-    dem_plane_add(w, stuff, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(w, stuff, at(0, 0, 0), at(0, 0, 1));
     good_shape = dem_shape_ellipsoid_add(w, at(1e-3, 2e-3, 1e-3));
     for (i = 0; i < 27; i++) {
         x[3*i] = DEM_R(1.99e-3)*(dem_real)(i%3);
@@ -190,13 +198,13 @@ static dem_world *refused_world(int impulses) {
     { const dem_outlet_desc d = good_dem_outlet_desc(&r); dem_outlet_add(w, &d); }
     { const dem_field_desc d = good_dem_field_desc(&r); dem_field_add(w, &d); }
     if (impulses) { const dem_joint_desc d = good_dem_joint_desc(&r); dem_joint_add(w, &d); }
-    if (dem_world_step(w, 5) != DEM_OK) printf("        %s\n", dem_world_error(w));
+    if (dem_world_step(w, 5) != DEM_OK) printf("        %s\n", dem_world_error_get(w));
     return w;
 }
 /* Calls one function in every bad way. A world that took a bad call is not looked at further. */
 static long refuse_all(const refused_call *one, int impulses) {
     dem_world *a = refused_world(impulses), *b = refused_world(impulses);
-    const uint64_t hash = dem_world_hash(b);
+    const uint64_t hash = dem_world_hash_get(b);
     long refused = 0;
     int k, same = 1;
     refuser r;
@@ -207,21 +215,21 @@ static long refuse_all(const refused_call *one, int impulses) {
             r.what[0] = 0;
             a->error[0] = 0;
             /* taken, or stopped after some steps: the good call is among these */
-            if (one->call(&r) || !a->error[0] || dem_world_steps(a) != dem_world_steps(b)) {
+            if (one->call(&r) || !a->error[0] || dem_world_steps_get(a) != dem_world_steps_get(b)) {
                 if (!one->looks) { dem_world_destroy(a); a = refused_world(impulses); }
             } else {
                 refused += !r.spent && r.what[0];
-                if (dem_world_hash(a) != hash && same)
+                if (dem_world_hash_get(a) != hash && same)
                     printf("        %s (%s): refused, and the hash is another: %s\n", one->name, r.what, a->error);
-                same = same && dem_world_hash(a) == hash;
+                same = same && dem_world_hash_get(a) == hash;
             }
             if (r.spent || !r.what[0]) break;
         }
-    dem_world_error(a);
+    dem_world_error_get(a);
     for (k = 0; k < 100 && same; k++) {
         const dem_result result = dem_world_step(a, 1);
-        same = result == dem_world_step(b, 1) && dem_world_hash(a) == dem_world_hash(b);
-        if (!same) printf("        %s: refused %ld times, and other bits %d steps later; %s\n", one->name, refused, k + 1, dem_world_error(a));
+        same = result == dem_world_step(b, 1) && dem_world_hash_get(a) == dem_world_hash_get(b);
+        if (!same) printf("        %s: refused %ld times, and other bits %d steps later; %s\n", one->name, refused, k + 1, dem_world_error_get(a));
     }
     CHECK(same);
     dem_world_destroy(a);

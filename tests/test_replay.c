@@ -127,7 +127,7 @@ static void film_compare(const film *f, const dem_world *w) {
     int i, k, e, there = 0;
     for (i = 0; i < 300; i++) there += f->there[i];
     CHECK_EQ(there, b.count);
-    CHECK_NEAR(f->time, dem_world_time(w), 0);
+    CHECK_NEAR(f->time, dem_world_time_get(w), 0);
     for (i = 0; i < b.count; i++) {
         const int s = (int)b.slots[i];
         const dem_real *v = b.velocities + 4*i;
@@ -177,7 +177,7 @@ static dem_world *scene(dem_material *stuff) {
     desc.threads = 1;
     w = dem_world_create(&desc);
     *stuff = scene_material(w, 1e6, 0.5, 0.4, 0);
-    dem_plane_add(w, *stuff, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(w, *stuff, at(0, 0, 0), at(0, 0, 1));
     return w;
 }
 static double number_now(const dem_world *w, dem_body body, void *user) {
@@ -202,9 +202,9 @@ int main(int argc, char **argv) {
         dem_replay *film;
         int k, i;
         desc.number = "warmth";
-        dem_bodies_fill(w, stuff, egg, box_of(-0.01, -0.01, 0, 0.01, 0.01, 0.02), 30, 1);
-        dem_spheres_fill(w, stuff, DEM_R(0.001), box_of(-0.01, -0.01, 0.02, 0.01, 0.01,
-                                                              0.04), 60, 2);
+        dem_bodies_fill(w, stuff, egg, dem_region_make(box_of(-0.01, -0.01, 0, 0.01, 0.01, 0.02)), 30, 1);
+        dem_spheres_fill(w, stuff, DEM_R(0.001), dem_region_make(box_of(-0.01, -0.01, 0.02, 0.01, 0.01, 0.04)),
+                         60, 2);
         film = dem_replay_open(w, film_path, &desc);
         CHECK(film != 0);
         for (k = 0; k < 6; k++) {
@@ -212,11 +212,11 @@ int main(int argc, char **argv) {
             for (i = 0; i < dem_bodies_get(w).count; i++) {
                 dem_real reals[2];
                 reals[0] = 1; reals[1] = (dem_real)(300 + i + 100*k*(i%2));
-                dem_body_reals_set(w, dem_bodies_id(w, i), reals);
+                dem_body_reals_set(w, dem_body_id_get(w, i), reals);
             }
-            CHECK_EQ(dem_replay_value(film, "kinetic energy (J)", dem_totals_get(w).kinetic), DEM_OK);
-            if (k > 2) CHECK_EQ(dem_replay_value(film, "late", 10*k), DEM_OK);
-            CHECK_EQ(dem_replay_frame(film), DEM_OK);
+            CHECK_EQ(dem_replay_value_set(film, "kinetic energy (J)", dem_totals_get(w).kinetic), DEM_OK);
+            if (k > 2) CHECK_EQ(dem_replay_value_set(film, "late", 10*k), DEM_OK);
+            CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
             dem_checkpoint_write(w, k == 0 ? "build/tmp/film0.ckpt" : k == 5 ? "build/tmp/film5.ckpt" : "build/tmp/film.ckpt");
         }
         CHECK_EQ(dem_replay_close(film), DEM_OK);
@@ -249,20 +249,20 @@ int main(int argc, char **argv) {
         dem_replay *film = dem_replay_open(w, film_path, 0);
         int k;
         dem_sphere_add(w, stuff, DEM_R(0.002), at(0.01, 0, 0.002));
-        CHECK_EQ(dem_replay_frame(film), DEM_OK);
+        CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
         dem_body_remove(w, first);
         for (k = 0; k < 3; k++) {
-            wall = dem_cylinder_add(w, stuff, at(0, 0, 0.1), at(1, 0, 0), DEM_R(0.01), 0);
+            wall = dem_wall_cylinder_add(w, stuff, at(0, 0, 0.1), at(1, 0, 0), DEM_R(0.01), 0);
             if (k < 2) dem_wall_remove(w, wall);
         }
         motion.kind = DEM_MOTION_TRANSLATING;
         motion.velocity.x = 1;
-        dem_wall_motion(w, wall, &motion);
+        dem_wall_motion_set(w, wall, &motion);
         CHECK_EQ(dem_world_run(w, DEM_R(0.01), 0, 0), DEM_OK);
         dem_sphere_add(w, stuff, DEM_R(0.003), at(0, 0.05, 0.004));     /* into the slot of the first */
-        CHECK_EQ(dem_replay_frame(film), DEM_OK);
+        CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
         dem_wall_remove(w, wall);
-        CHECK_EQ(dem_replay_frame(film), DEM_OK);
+        CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
         CHECK_EQ(dem_replay_close(film), DEM_OK);
         film_read(&f, film_path);
         CHECK_EQ(film_next(&f), 1);
@@ -273,7 +273,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(f.gone, 1);
         film_compare(&f, w);
         CHECK_EQ(f.wall_there[wall.id], 1);
-        CHECK_NEAR(f.wall[wall.id][0], dem_world_time(w), 1e-7);
+        CHECK_NEAR(f.wall[wall.id][0], dem_world_time_get(w), 1e-7);
         CHECK_EQ(film_next(&f), 1);
         CHECK_EQ(f.fresh + f.gone, 0);
         CHECK_EQ(f.wall_there[wall.id], 0);
@@ -287,13 +287,13 @@ int main(int argc, char **argv) {
         long size[3];
         int k, part;
         FILE *in;
-        dem_spheres_fill(w, stuff, DEM_R(0.001), box_of(-0.008, -0.008, 0, 0.008, 0.008,
-                                                              0.03), 250, 2);
+        dem_spheres_fill(w, stuff, DEM_R(0.001), dem_region_make(box_of(-0.008, -0.008, 0, 0.008, 0.008, 0.03)),
+                         250, 2);
         size[0] = 0;
         for (part = 0; part < 3; part++) {                /* nothing; settling; at rest */
             film = dem_replay_open(w, film_path, 0);
             for (k = 0; k < (part ? 20 : 1); k++) {
-                CHECK_EQ(dem_replay_frame(film), DEM_OK);
+                CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
                 if (part == 1) dem_world_run(w, DEM_R(0.01), 0, 0);
             }
             CHECK_EQ(dem_replay_close(film), DEM_OK);
@@ -317,8 +317,8 @@ int main(int argc, char **argv) {
         desc.number = "cold <b>";
         dem_body_reals_set(w, dem_sphere_add(w, stuff, DEM_R(0.001), at(0, 0, 1)), reals);
         film = dem_replay_open(w, film_path, &desc);
-        CHECK_EQ(dem_replay_value(film, "</script>", 1), DEM_OK);
-        CHECK_EQ(dem_replay_frame(film), DEM_OK);
+        CHECK_EQ(dem_replay_value_set(film, "</script>", 1), DEM_OK);
+        CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
         CHECK_EQ(dem_replay_close(film), DEM_OK);
         film_read(&f, film_path);
         CHECK(strstr(f.text, "\"title\":\"a \\u003c/script> \\u0022title\\u0022\\u005c\"") != 0);
@@ -342,7 +342,7 @@ int main(int argc, char **argv) {
         film = dem_replay_open(w, film_path, &desc);
         for (k = 0; k < 7; k++) {
             now = numbers[k];
-            CHECK_EQ(dem_replay_frame(film), DEM_OK);
+            CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
         }
         CHECK_EQ(dem_replay_close(film), DEM_OK);
         film_read(&f, film_path);
@@ -362,18 +362,18 @@ int main(int argc, char **argv) {
         int k;
         CHECK(!dem_replay_open(0, film_path, 0));
         CHECK(!dem_replay_open(w, 0, 0));
-        CHECK_STR(dem_world_error(w), "dem_replay_open: path is null");
+        CHECK_STR(dem_world_error_get(w), "dem_replay_open: path is null");
         CHECK(!dem_replay_open(w, "build/tmp/no/such/film.html", 0));
-        CHECK_STR(dem_world_error(w), "dem_replay_open: cannot write build/tmp/no/such/film.html");
+        CHECK_STR(dem_world_error_get(w), "dem_replay_open: cannot write build/tmp/no/such/film.html");
         desc.number = "charm";
         CHECK(!dem_replay_open(w, film_path, &desc));
-        CHECK_STR(dem_world_error(w), "number is \"charm\", which desc.body_reals does not name");
+        CHECK_STR(dem_world_error_get(w), "number is \"charm\", which desc.body_reals does not name");
         desc.number = 0;
         desc.resolution = -1;
         CHECK(!dem_replay_open(w, film_path, &desc));
-        CHECK_STR(dem_world_error(w), "resolution is -1 m, must be >= 0");
-        CHECK_EQ(dem_replay_frame(0), DEM_ERROR_ARGUMENT);
-        CHECK_EQ(dem_replay_value(0, "a", 1), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(w), "resolution is -1 m, must be >= 0");
+        CHECK_EQ(dem_replay_frame_write(0), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_replay_value_set(0, "a", 1), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_replay_close(0), DEM_ERROR_ARGUMENT);
         remove(film_path);
         film = dem_replay_open(w, film_path, 0);
@@ -381,14 +381,14 @@ int main(int argc, char **argv) {
         film = dem_replay_open(w, film_path, 0);
         for (k = 0; k < DEM_REPLAY_VALUES; k++) {
             snprintf(name, sizeof name, "value %d", k);
-            CHECK_EQ(dem_replay_value(film, name, k ? 1 : sqrt(-1.0)), DEM_OK);
+            CHECK_EQ(dem_replay_value_set(film, name, k ? 1 : sqrt(-1.0)), DEM_OK);
         }
-        CHECK_EQ(dem_replay_value(film, "one more", 1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(w), "a replay draws at most 16");
-        CHECK_EQ(dem_replay_value(film, "value 3", 1), DEM_OK);
-        CHECK_EQ(dem_replay_value(film, "", 1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(w), "dem_replay_value: name is empty");
-        CHECK_EQ(dem_replay_frame(film), DEM_OK);
+        CHECK_EQ(dem_replay_value_set(film, "one more", 1), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(w), "a replay draws at most 16");
+        CHECK_EQ(dem_replay_value_set(film, "value 3", 1), DEM_OK);
+        CHECK_EQ(dem_replay_value_set(film, "", 1), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(w), "dem_replay_value_set: name is empty");
+        CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
         film_read(&f, film_path);
         CHECK_EQ(film_blocks(&f, "dem/frame"), 0);
         free(f.text);
@@ -414,21 +414,21 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_step(bare, 7), DEM_OK);
         desc.interval = -1;
         CHECK(!dem_replay_open(w, film_path, &desc));
-        CHECK_STR(dem_world_error(w), "dem_replay_open: interval is -1 s, must be >= 0");
+        CHECK_STR(dem_world_error_get(w), "dem_replay_open: interval is -1 s, must be >= 0");
         desc.interval = 0.01;
         film[0] = dem_replay_open(w, film_path, &desc);
         desc.interval = 0.025;
         film[1] = dem_replay_open(w, "build/tmp/film2.html", &desc);
-        dt = dem_world_time(w);
+        dt = dem_world_time_get(w);
         for (k = 0; k < 2; k++) CHECK_EQ(dem_world_run(w, 0.03, 0, 0), DEM_OK);
         CHECK_EQ(dem_world_step(w, (int)(0.041/(double)dem_counters_get(w).dt)), DEM_OK);
-        CHECK_EQ(dem_world_step(bare, (int)(dem_world_steps(w) - 7)), DEM_OK);
+        CHECK_EQ(dem_world_step(bare, (int)(dem_world_steps_get(w) - 7)), DEM_OK);
         CHECK_EQ(dem_replay_close(film[0]), DEM_OK);
         CHECK_EQ(dem_world_step(w, 10), DEM_OK);
         CHECK_EQ(dem_replay_close(film[1]), DEM_OK);
         CHECK_EQ(dem_world_step(w, 10), DEM_OK);
         CHECK_EQ(dem_world_step(bare, 20), DEM_OK);
-        CHECK(dem_world_hash(w) == dem_world_hash(bare));
+        CHECK(dem_world_hash_get(w) == dem_world_hash_get(bare));
         film_read(&f, film_path);
         CHECK_EQ(film_blocks(&f, "dem/frame"), 11);
         for (k = 0; k < 11; k++) {
@@ -476,10 +476,10 @@ int main(int argc, char **argv) {
         for (k = 0; k < 40 && !whole; k++) {
             requests_left = k;
             film = dem_replay_open(w, film_path, 0);
-            if (!film) { refused++; CHECK_STR(dem_world_error(w), "memory"); requests_left = -1; continue; }
-            first = dem_replay_frame(film);
-            second = dem_replay_frame(film);
-            if (first != DEM_OK) { refused++; CHECK(second != DEM_OK); CHECK_STR(dem_world_error(w), "dem_replay_frame: out of memory"); }
+            if (!film) { refused++; CHECK_STR(dem_world_error_get(w), "memory"); requests_left = -1; continue; }
+            first = dem_replay_frame_write(film);
+            second = dem_replay_frame_write(film);
+            if (first != DEM_OK) { refused++; CHECK(second != DEM_OK); CHECK_STR(dem_world_error_get(w), "dem_replay_frame_write: out of memory"); }
             whole = first == DEM_OK && second == DEM_OK;
             requests_left = -1;
             CHECK_EQ(dem_replay_close(film), whole ? DEM_OK : DEM_ERROR_MEMORY);
@@ -494,16 +494,16 @@ int main(int argc, char **argv) {
         dem_replay *film;
         int k;
         for (k = 0; k < 2; k++)
-            dem_spheres_fill(k ? b : a, stuff, DEM_R(0.001), box_of(-0.005, -0.005, 0, 0.005,
-                             0.005, 0.02), 100, 2);
+            dem_spheres_fill(k ? b : a, stuff, DEM_R(0.001),
+                             dem_region_make(box_of(-0.005, -0.005, 0, 0.005, 0.005, 0.02)), 100, 2);
         film = dem_replay_open(a, film_path, 0);
         for (k = 0; k < 20; k++) {
             CHECK_EQ(dem_world_step(a, 50), DEM_OK);
             CHECK_EQ(dem_world_step(b, 50), DEM_OK);
-            CHECK_EQ(dem_replay_frame(film), DEM_OK);
+            CHECK_EQ(dem_replay_frame_write(film), DEM_OK);
         }
         CHECK_EQ(dem_replay_close(film), DEM_OK);
-        CHECK(dem_world_hash(a) == dem_world_hash(b));
+        CHECK(dem_world_hash_get(a) == dem_world_hash_get(b));
         dem_world_destroy(a);
         dem_world_destroy(b);
     }

@@ -46,20 +46,22 @@ int main(int argc, char **argv) {
                         : way == 2 ? box_of(-0.06, 0, -1, 0.06, 0.06, 1) : box_of(-0.06, -0.06, 0, 0.06, 0.06, 0.06);
                     steep = tan(angle*degree);
                     lean = drum;
-                    CHECK(dem_spheres_pack(world, m, DEM_R(0.0011), 0, box, way == 2 ? below_flat : way == 1 ? below_turned : below, 0, 0) >
+                    CHECK(dem_spheres_pack(world, m, DEM_R(0.0011), 0,
+                                           dem_region_inside_make(box, way == 2 ? below_flat : way == 1 ? below_turned : below, 0),
+                                           0) >
                           (way == 2 ? 100 : 1000));
                     if (drum) {
                         /* shell goes towards +x at the bottom: up x axis */
                         const dem_vec3 axis = way == 0 ? at(0, -1, 0) : way == 1 ? at(-1, 0, 0) : at(0, 0, 1);
-                        CHECK_EQ(dem_repose_drum(world, all, axis, &r), DEM_OK);
+                        CHECK_EQ(dem_repose_drum_get(world, all, axis, &r), DEM_OK);
                         CHECK_NEAR(r.angle, angle*degree, 1.5*degree);
-                        CHECK_EQ(dem_repose_drum(world, all, dem_vec3_make(-axis.x, -axis.y, -axis.z), &r), DEM_OK);
+                        CHECK_EQ(dem_repose_drum_get(world, all, dem_vec3_make(-axis.x, -axis.y, -axis.z), &r), DEM_OK);
                         CHECK_NEAR(r.angle, -angle*degree, 1.5*degree);
                     } else {
-                        CHECK_EQ(dem_repose_heap(world, all, &r), DEM_OK);
+                        CHECK_EQ(dem_repose_heap_get(world, all, &r), DEM_OK);
                         CHECK_NEAR(r.angle, angle*degree, 1.5*degree);
                         dem_sphere_add(world, m, DEM_R(0.0011), way == 0 ? at(0.2, 0, 0.5) : at(0.2, 0.5, 0));
-                        CHECK_EQ(dem_repose_heap(world, box, &r), DEM_OK);
+                        CHECK_EQ(dem_repose_heap_get(world, box, &r), DEM_OK);
                         CHECK_NEAR(r.angle, angle*degree, 1.5*degree);
                     }
                     CHECK(r.places >= 4 && r.error < 3*degree);
@@ -82,18 +84,19 @@ int main(int argc, char **argv) {
                 dem_box box = way ? box_of(-0.06, 0, -1, 0.06, 0.06, 1) : box_of(-0.06, -0.06, 0, 0.06, 0.06, 0.06);
                 steep = tan(25*degree);
                 lean = drum;
-                dem_spheres_pack(world, m, (dem_real)r, 0, box, way ? below_flat : below, 0, 0);
+                dem_spheres_pack(world, m, (dem_real)r, 0, dem_region_inside_make(box, way ? below_flat : below, 0), 0);
                 for (i = 0; i < 2; i++) {
                     dem_repose *to = i ? &with : &alone;
-                    CHECK_EQ(drum ? dem_repose_drum(world, all, way ? at(0, 0, 1) : at(0, -1, 0), to)
-                                  : dem_repose_heap(world, all, to), DEM_OK);
+                    CHECK_EQ(drum ? dem_repose_drum_get(world, all, way ? at(0, 0, 1) : at(0, -1, 0), to)
+                                  : dem_repose_heap_get(world, all, to), DEM_OK);
                     CHECK_NEAR(to->angle, 25*degree, 1.5*degree);
                     if (i) continue;
                     for (k = 0; k < 5; k++) dem_sphere_add(world, m, (dem_real)r, at(0.1 + 0.03*k, way ? r : 0, way ? 0 : r));
                     dem_sphere_add(world, m, (dem_real)(2*r), way ? at(0.07, -1, 0) : at(0.07, 0, -1));
                     dem_sphere_add(world, m, (dem_real)r, way ? at(0, 0.5, 0) : at(0, 0, 0.5));
                     dem_sphere_add(world, m, (dem_real)r, at(1e6, 0, 0));
-                    dem_spheres_pack(world, m, (dem_real)r, 0, box_of(-0.3, 0, 0, -0.25, 0.02, 0.02), 0, 0, 50);
+                    dem_spheres_pack(world, m, (dem_real)r, 0,
+                                     dem_region_make(box_of(-0.3, 0, 0, -0.25, 0.02, 0.02)), 50);
                     /* a floor of fixed grains holds them together, but is no heap */
                     for (k = 0; k < 200; k++) {
                         body = dem_sphere_add(world, m, (dem_real)r, way ? at(-0.3 + 0.0022*k, -r, 0) : at(-0.3 + 0.0022*k, 0, -r));
@@ -113,18 +116,18 @@ int main(int argc, char **argv) {
         dem_material m;
         dem_world *world = world_of(at(0, 0, 0), 0, &m);
         dem_repose r;
-        CHECK_EQ(dem_repose_heap(world, all, &r), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "gravity is 0 m/s2");
+        CHECK_EQ(dem_repose_heap_get(world, all, &r), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "gravity is 0 m/s2");
         dem_world_gravity_set(world, at(0, 0, -9.81));
-        CHECK_EQ(dem_repose_heap(world, all, &r), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "0 places");
+        CHECK_EQ(dem_repose_heap_get(world, all, &r), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "0 places");
         dem_sphere_add(world, m, DEM_R(0.001), at(0, 0, 0));
         dem_sphere_add(world, m, DEM_R(0.001), at(1e9, 0, 0));
-        CHECK_EQ(dem_repose_heap(world, all, &r), DEM_ERROR_ARGUMENT);
-        CHECK_EQ(dem_repose_drum(world, all, at(0, 0, 1), &r), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "is upright");
-        CHECK_EQ(dem_repose_drum(world, all, at(0, 0, 0), &r), DEM_ERROR_ARGUMENT);
-        CHECK_EQ(dem_repose_drum(world, all, at(0, 1, 0), 0), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_repose_heap_get(world, all, &r), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_repose_drum_get(world, all, at(0, 0, 1), &r), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "is upright");
+        CHECK_EQ(dem_repose_drum_get(world, all, at(0, 0, 0), &r), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_repose_drum_get(world, all, at(0, 1, 0), 0), DEM_ERROR_ARGUMENT);
         dem_world_destroy(world);
     }
     return test_end();

@@ -16,9 +16,9 @@ static dem_world *world_of(double g, int ledger) {
 static double apart(const dem_world *a, const dem_world *b) {
     double most = 0;
     int i;
-    CHECK_EQ(dem_balance_get(a).present, dem_balance_get(b).present);
-    for (i = 0; i < (int)dem_balance_get(a).present; i++) {
-        const dem_body_state s = scene_state(a, dem_bodies_id(a, i)), t = scene_state(b, dem_bodies_id(b, i));
+    CHECK_EQ(dem_body_counts_get(a).present, dem_body_counts_get(b).present);
+    for (i = 0; i < (int)dem_body_counts_get(a).present; i++) {
+        const dem_body_state s = scene_state(a, dem_body_id_get(a, i)), t = scene_state(b, dem_body_id_get(b, i));
         most = fmax(most, (double)demi_length(demi_sub(s.position, t.position)));
     }
     return most;
@@ -27,7 +27,7 @@ static dem_wall tube_of(dem_world *world, dem_material m, int count, const doubl
     dem_real radii[DEM_RINGS], heights[DEM_RINGS];
     int k;
     for (k = 0; k < count; k++) { radii[k] = (dem_real)r[k]; heights[k] = (dem_real)h[k]; }
-    return dem_revolved_add(world, m, at(0, 0, 0), at(0, 0, 1), count, radii, heights);
+    return dem_wall_revolved_add(world, m, at(0, 0, 0), at(0, 0, 1), count, radii, heights);
 }
 
 int main(int argc, char **argv) {
@@ -44,11 +44,11 @@ int main(int argc, char **argv) {
             world[k] = world_of(9.81, 0);
             m = scene_material(world[k], 1e6, 0.6, 0.4, 0.1);
             if (k) {
-                dem_cone_add(world[k], m, at(0, 0, -0.5), at(0, 0, 0.5), DEM_R(0.02), DEM_R(0.02));
-                dem_cone_add(world[k], m, at(0, 0, 0), at(0, 0, 1e-9), 0, DEM_R(0.5));
+                dem_wall_cone_add(world[k], m, at(0, 0, -0.5), at(0, 0, 0.5), DEM_R(0.02), DEM_R(0.02));
+                dem_wall_cone_add(world[k], m, at(0, 0, 0), at(0, 0, 1e-9), 0, DEM_R(0.5));
             } else {
-                dem_cylinder_add(world[k], m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.02), 1);
-                dem_plane_add(world[k], m, at(0, 0, 0), at(0, 0, 1));
+                dem_wall_cylinder_add(world[k], m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.02), 1);
+                dem_wall_plane_add(world[k], m, at(0, 0, 0), at(0, 0, 1));
             }
             for (int i = 0; i < 5; i++) {
                 const dem_body b = dem_sphere_add(world[k], m, DEM_R(0.004), at(0.003*i - 0.006, 0.004, 0.01 + 0.01*i));
@@ -80,7 +80,7 @@ int main(int argc, char **argv) {
         /* the cone's surface is r = .05 + z: inward normal (-1, 1)/sqrt 2; a ball over the point at z = -.02 */
         s.position = at(0, 0.03 - c*(R - deep), -0.02 + c*(R - deep));
         dem_body_set(world, ball, &s);
-        CHECK_EQ(dem_search_now(world), DEM_OK);
+        CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
         CHECK_EQ(scene_step(world, 0), DEM_OK);
         CHECK_EQ(scene_step(world, 1), DEM_OK);
         CHECK_EQ(dem_contacts_get(world, info, 4), 1);
@@ -93,7 +93,7 @@ int main(int argc, char **argv) {
         /* the cone is (z - r + .05)/sqrt 2 away: so that both are R - deep */
         s.position.z = (dem_real)((R - deep)/c - (R - deep));
         dem_body_set(world, ball, &s);
-        CHECK_EQ(dem_search_now(world), DEM_OK);
+        CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
         CHECK_EQ(scene_step(world, 1), DEM_OK);
         CHECK_EQ(dem_contacts_get(world, info, 4), 2);
         CHECK_NEAR(info[0].overlap, deep, 2e-6);
@@ -104,7 +104,7 @@ int main(int argc, char **argv) {
         s.position = at(0, 0.05 + 0.8*(R - deep), -0.6*(R - deep));
         s.velocity = at(0, 0, 0);
         dem_body_set(world, ball, &s);
-        CHECK_EQ(dem_search_now(world), DEM_OK);
+        CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
         CHECK_EQ(scene_step(world, 1), DEM_OK);
         CHECK_EQ(dem_contacts_get(world, info, 4), 1);
         CHECK_NEAR(info[0].normal.y, -0.8, 1e-3);
@@ -182,23 +182,23 @@ int main(int argc, char **argv) {
             memset(&region, 0, sizeof region);
             region.box = box_of(-0.029, -0.029, 0.001, 0.029, 0.029, 0.029);
             region.cylinder = 'z';
-            CHECK_EQ(dem_region_fill(world, &region, m, none, DEM_R(0.002), 150, 1), 150);
+            CHECK_EQ(dem_spheres_fill(world, m, DEM_R(0.002), region, 150, 1), 150);
             for (i = 0; i < 150; i++)
-                scene_move(world, dem_bodies_id(world, i), scene_at(&seed, 1, -0.5, 1, -0.5, 1, -0.5), at(0, 0, 0));
+                scene_move(world, dem_body_id_get(world, i), scene_at(&seed, 1, -0.5, 1, -0.5, 1, -0.5), at(0, 0, 0));
             motion.kind = moving == 1 ? DEM_MOTION_ROTATING : moving == 2 ? DEM_MOTION_OSCILLATING : DEM_MOTION_FIXED;
             motion.axis = at(0, 0, 1);
             motion.speed = 10;
             motion.velocity = at(1, 0, 1);
             motion.amplitude = DEM_R(0.002);
             motion.frequency = 10;
-            CHECK_EQ(dem_wall_motion(world, wall, &motion), DEM_OK);
+            CHECK_EQ(dem_wall_motion_set(world, wall, &motion), DEM_OK);
             before = dem_totals_get(world);
             CHECK_EQ(dem_world_run_to(world, 0.5, 0, 0), DEM_OK);
             after = dem_totals_get(world);
             if (!moving) CHECK_REL(after.kinetic, before.kinetic, 0.02);
             CHECK_NEAR(dem_ledger_get(world).residual, 0, 5e-3*dem_ledger_get(world).throughput + 0.02*before.kinetic);
             for (i = 0; i < 150; i++) {
-                const dem_vec3 x = scene_state(world, dem_bodies_id(world, i)).position;
+                const dem_vec3 x = scene_state(world, dem_body_id_get(world, i)).position;
                 if (!(sqrt((double)(x.x*x.x + x.y*x.y)) < 0.032 && (double)x.z > -0.003 && (double)x.z < 0.073)) CHECK(0);
             }
             dem_world_destroy(world);
@@ -218,7 +218,8 @@ int main(int argc, char **argv) {
         pair.positions = two;
         pair.radius = DEM_R(0.003);
         shape = dem_shape_cluster_add(world, &pair);
-        CHECK_EQ(dem_bodies_fill(world, m, shape, box_of(-0.018, -0.018, 0.03, 0.018, 0.018, 0.1), 40, 1), 40);
+        CHECK_EQ(dem_bodies_fill(world, m, shape,
+                                 dem_region_make(box_of(-0.018, -0.018, 0.03, 0.018, 0.018, 0.1)), 40, 1), 40);
         CHECK_EQ(dem_world_settle(world, 3, DEM_R(0.003), 0, 0), DEM_OK);
         dem_wall_loads_reset(world, wall);
         CHECK_EQ(dem_world_run(world, 0.05, 0, 0), DEM_OK);
@@ -239,16 +240,16 @@ int main(int argc, char **argv) {
             desc.domain = box_of(k ? 0.05 : 0, -1, -1, k ? 0.15 : 0.1, 1, 1);
             world[k] = dem_world_create(&desc);
             m = scene_material(world[k], 1e6, 0.6, 0.3, 0);
-            dem_cone_add(world[k], m, at(0.02, 0, 0), at(0.02, 0, 0.04), DEM_R(0.002), DEM_R(0.04));
+            dem_wall_cone_add(world[k], m, at(0.02, 0, 0), at(0.02, 0, 0.04), DEM_R(0.002), DEM_R(0.04));
             for (i = 0; i < 8; i++)
                 dem_sphere_add(world[k], m, DEM_R(0.004), at(0.02 + 0.025*cos(i), 0.025*sin(i), 0.045 + 0.001*i));
             CHECK_EQ(dem_world_run_to(world[k], 0.1, 0, 0), DEM_OK);
         }
         for (i = 0; i < 8; i++) {
-            const dem_body_state a = scene_state(world[0], dem_bodies_id(world[0], i));
+            const dem_body_state a = scene_state(world[0], dem_body_id_get(world[0], i));
             int j, found = 0;
             for (j = 0; j < 8; j++) {
-                const dem_body_state b = scene_state(world[1], dem_bodies_id(world[1], j));
+                const dem_body_state b = scene_state(world[1], dem_body_id_get(world[1], j));
                 const double x = fabs((double)(a.position.x - b.position.x)), tiny = fine ? 1e-9 : 1e-4;
                 found += (x < tiny || fabs(x - 0.1) < tiny) && fabs((double)(a.position.z - b.position.z)) < tiny &&
                          fabs((double)(a.position.y - b.position.y)) < tiny;
@@ -261,13 +262,13 @@ int main(int argc, char **argv) {
         desc.domain = box_of(0, -1, -1, 0.1, 1, 1);
         world[1] = dem_world_create(&desc);
         m = scene_material(world[1], 1e6, 0.6, 0.3, 0);
-        dem_cone_add(world[1], m, at(0.02, 0, 0), at(0.02, 0, 0.04), DEM_R(0.003), DEM_R(0.04));
+        dem_wall_cone_add(world[1], m, at(0.02, 0, 0), at(0.02, 0, 0.04), DEM_R(0.003), DEM_R(0.04));
         CHECK_EQ(dem_checkpoint_read(world[1], "build/tmp/revolved.ckpt"), DEM_ERROR_FORMAT);
-        CHECK_STR(dem_world_error(world[1]), "of wall 1, this world has");
+        CHECK_STR(dem_world_error_get(world[1]), "of wall 1, this world has");
         {
             const dem_shape egg = dem_shape_ellipsoid_add(world[1], at(0.002, 0.003, 0.004));
             CHECK_EQ((int)dem_body_add(world[1], m, egg, at(0, 0, 0.5), dem_quat_make(1, 0, 0, 0)).slot, 0);
-            CHECK_STR(dem_world_error(world[1]), "surface of revolution");
+            CHECK_STR(dem_world_error_get(world[1]), "surface of revolution");
         }
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
@@ -278,16 +279,16 @@ int main(int argc, char **argv) {
         static const double r[] = {0.1, 0.1, 0, 0}, h[] = {0, 0, 1, 2};
         dem_real bad[2] = {1, -1}, up[2] = {0, 1};
         CHECK_EQ(tube_of(world, m, 1, r, h).id, 0);
-        CHECK_STR(dem_world_error(world), "count is 1");
+        CHECK_STR(dem_world_error_get(world), "count is 1");
         CHECK_EQ(tube_of(world, m, 2, r, h).id, 0);
-        CHECK_STR(dem_world_error(world), "ring 1 has radius 0.1 m at height 0 m");
+        CHECK_STR(dem_world_error_get(world), "ring 1 has radius 0.1 m at height 0 m");
         CHECK_EQ(tube_of(world, m, 2, r + 2, h + 2).id, 0);
-        CHECK_STR(dem_world_error(world), "not 0 twice running");
-        CHECK_EQ(dem_revolved_add(world, m, at(0, 0, 0), at(0, 0, 0), 2, up, up).id, 0);
-        CHECK_EQ(dem_revolved_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, bad, up).id, 0);
-        CHECK_STR(dem_world_error(world), "ring 1 has radius -1 m");
-        CHECK_EQ(dem_revolved_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, 0, up).id, 0);
-        CHECK_EQ(dem_cone_add(world, m, at(0, 0, 1), at(0, 0, 1), 1, 1).id, 0);
+        CHECK_STR(dem_world_error_get(world), "not 0 twice running");
+        CHECK_EQ(dem_wall_revolved_add(world, m, at(0, 0, 0), at(0, 0, 0), 2, up, up).id, 0);
+        CHECK_EQ(dem_wall_revolved_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, bad, up).id, 0);
+        CHECK_STR(dem_world_error_get(world), "ring 1 has radius -1 m");
+        CHECK_EQ(dem_wall_revolved_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, 0, up).id, 0);
+        CHECK_EQ(dem_wall_cone_add(world, m, at(0, 0, 1), at(0, 0, 1), 1, 1).id, 0);
         dem_world_destroy(world);
     }
     return test_end();

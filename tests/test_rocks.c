@@ -51,7 +51,7 @@ static double slides(double angle, double friction, double width, double height,
     dem_world *w = rigid(0, 0, friction, &m);
     dem_body b;
     dem_body_state s;
-    if (floor == 0) dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+    if (floor == 0) dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
     else if (floor == 1) {                      /* 9 x 9 squares of two triangles */
         dem_real v[300];
         int32_t t[600];
@@ -67,7 +67,7 @@ static double slides(double angle, double friction, double width, double height,
             t[6*i] = a; t[6*i + 1] = a + 1; t[6*i + 2] = a + 11;
             t[6*i + 3] = a; t[6*i + 4] = a + 11; t[6*i + 5] = a + 10;
         }
-        CHECK(dem_mesh_add(w, m, &mesh).id);
+        CHECK(dem_wall_mesh_add(w, m, &mesh).id);
     } else {
         const dem_body under = dem_body_add(w, m, scene_box(w, 2, 2, 0.2), at(0, 0, -0.1), straight);
         s = scene_state(w, under);
@@ -105,20 +105,22 @@ static dem_world *drum(int threads) {
     cluster.count = 2;
     cluster.positions = pair;
     cluster.radius = DEM_R(0.002);
-    shell = dem_cylinder_add(w, m, at(0, 0, 0), at(0, 1, 0), DEM_R(0.05), 1);
+    shell = dem_wall_cylinder_add(w, m, at(0, 0, 0), at(0, 1, 0), DEM_R(0.05), 1);
     turning.kind = DEM_MOTION_ROTATING;
     turning.axis = at(0, 1, 0);
     turning.speed = 5;
-    dem_wall_motion(w, shell, &turning);
-    dem_plane_add(w, m, at(0, -0.015, 0), at(0, 1, 0));
-    dem_plane_add(w, m, at(0, 0.015, 0), at(0, -1, 0));
+    dem_wall_motion_set(w, shell, &turning);
+    dem_wall_plane_add(w, m, at(0, -0.015, 0), at(0, 1, 0));
+    dem_wall_plane_add(w, m, at(0, 0.015, 0), at(0, -1, 0));
     shapes[0] = scene_rock(w, &random, 16, 0.003);
     shapes[1] = scene_box(w, 0.005, 0.004, 0.003);
     shapes[2] = dem_shape_ellipsoid_add(w, at(0.003, 0.002, 0.0025));
     shapes[3] = dem_shape_cluster_add(w, &cluster);
     for (k = 0; k < 4; k++)
-        dem_bodies_fill(w, m, shapes[k], box_of(-0.035, -0.015, -0.035, 0.035, 0.015, 0.035), 25, (uint64_t)k + 1);
-    dem_spheres_fill(w, m, DEM_R(0.002), box_of(-0.035, -0.015, -0.035, 0.035, 0.015, 0.035), 40, 9);
+        dem_bodies_fill(w, m, shapes[k], dem_region_make(box_of(-0.035, -0.015, -0.035, 0.035, 0.015, 0.035)),
+                        25, (uint64_t)k + 1);
+    dem_spheres_fill(w, m, DEM_R(0.002), dem_region_make(box_of(-0.035, -0.015, -0.035, 0.035, 0.015, 0.035)),
+                     40, 9);
     return w;
 }
 /* A law that holds on to what is near: 1 N over the last of its range. */
@@ -238,7 +240,7 @@ int main(int argc, char **argv) {
                 dem_vec3 low = at(0, 0, 1);
                 double rise;
                 int i;
-                dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+                dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
                 b = dem_body_add(w, m, scene_box(w, 0.02, 0.02, 0.02), x, q);
                 scene_move(w, b, at(0, 0, -1), at(0, 0, 0));
                 for (i = 0; i < 30 && !(scene_state(w, b).velocity.z > DEM_R(-0.999)); i++) scene_step(w, 1);
@@ -276,14 +278,14 @@ int main(int argc, char **argv) {
                     dem_material m;
                     dem_world *w = rigid_to(1e-9, earth, 0, 0.5, &m);
                     const dem_quat along = dem_quat_about(at(0, 0, 1), (dem_real)(pi/4));
-                    const dem_quat q = pose == 2 ? straight : dem_quat_times(along, dem_quat_about(at(1, 0, 0), (dem_real)(pi/4)));
+                    const dem_quat q = pose == 2 ? straight : dem_quat_multiply(along, dem_quat_about(at(1, 0, 0), (dem_real)(pi/4)));
                     const dem_shape shape = pose == 2 ? dem_shape_polyhedron_add(w, 4, spike)
                         : scene_box(w, pose ? 0.1 : 2*half, 2*half, 2*half);
                     dem_shape_info info;
                     dem_body b;
                     double most;
                     mesh.vertex_count = 4; mesh.triangle_count = 2; mesh.vertices = v; mesh.triangles = t;
-                    dem_mesh_add(w, m, &mesh);
+                    dem_wall_mesh_add(w, m, &mesh);
                     dem_shape_get(w, shape, &info);
                     b = dem_body_add(w, m, shape, pose == 2
                                      ? at(0.2 + off[k] + (double)info.centre.x, 0.2 + (double)info.centre.y,
@@ -310,7 +312,7 @@ int main(int argc, char **argv) {
                 dem_world *w = rigid_to(1e-7, earth, 0.2, 0.5, &m);
                 dem_body b;
                 int i, deep = 0;
-                CHECK(dem_revolved_add(w, m, at(0, 0, 0), at(0, 0, 1), kind == 1 ? 4 : 2, r[kind], z[kind]).id);
+                CHECK(dem_wall_revolved_add(w, m, at(0, 0, 0), at(0, 0, 1), kind == 1 ? 4 : 2, r[kind], z[kind]).id);
                 b = dem_body_add(w, m, scene_box(w, 0.006, 0.006, 0.004), at((kind == 2 ? 0.05 : 0.04) + off[k], 0, 2.3e-3), straight);
                 dem_world_dt_set(w, DEM_R(1e-4));
                 for (i = 0; i < 400; i++) {
@@ -336,7 +338,7 @@ int main(int argc, char **argv) {
             int k, gained = 0;
             for (k = 0; k < 6; k++) {
                 const double x = k & 1 ? 0.04 : -0.04, sign = k & 1 ? -1 : 1;
-                if (friction) dem_plane_add(w, m, at(k/2 == 0 ? x : 0, k/2 == 1 ? x : 0, k/2 == 2 ? x : 0),
+                if (friction) dem_wall_plane_add(w, m, at(k/2 == 0 ? x : 0, k/2 == 1 ? x : 0, k/2 == 2 ? x : 0),
                                             at(k/2 == 0 ? sign : 0, k/2 == 1 ? sign : 0, k/2 == 2 ? sign : 0));
             }
             for (k = 0; k < 27; k++) {
@@ -373,7 +375,7 @@ int main(int argc, char **argv) {
         dem_body b[10];
         dem_wall_loads loads;
         dem_vec3 from;
-        dem_wall floor = dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall floor = dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
         int k;
         for (k = 0; k < 10; k++)
             b[k] = dem_body_add(w, m, cube, at(k%2 ? 2e-4 : 0, k%3 ? 1e-4 : 0, 0.01 + 0.02*k),
@@ -408,8 +410,8 @@ int main(int argc, char **argv) {
                 CHECK_EQ(dem_world_step(w, 150), DEM_OK);
             } else CHECK_EQ(scene_step(w, 300), DEM_OK);
             CHECK(dem_counters_get(w).contacts > 100);
-            CHECK_EQ(dem_search_now(w), DEM_OK);
-            hash[k] = dem_world_hash(w);
+            CHECK_EQ(dem_candidates_rebuild(w), DEM_OK);
+            hash[k] = dem_world_hash_get(w);
             dem_world_destroy(w);
         }
         for (k = 1; k < 7; k++) CHECK(hash[k] == hash[0]);
@@ -436,14 +438,14 @@ int main(int argc, char **argv) {
             b = dem_body_add(w, m, cube, at(k == 3 ? 0.05 - 0.01 - gap : 0, 0, 0.01 + gap), straight);
             CHECK(b.slot);
             if (k == 0) dem_body_add(w, m, cube, at(0.001, 0.002, -0.01), straight);
-            if (k == 1) dem_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
+            if (k == 1) dem_wall_plane_add(w, m, at(0, 0, 0), at(0, 0, 1));
             if (k == 2) {
                 dem_real v[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
                 int32_t t[6] = {0, 1, 2, 0, 2, 3};
                 const dem_mesh mesh = {4, 2, v, t};
-                dem_mesh_add(w, m, &mesh);
+                dem_wall_mesh_add(w, m, &mesh);
             }
-            if (k == 3) dem_plane_add(w, m, at(0.05, 0, 0), at(-1, 0, 0));
+            if (k == 3) dem_wall_plane_add(w, m, at(0.05, 0, 0), at(-1, 0, 0));
             if (k == 4) dem_sphere_add(w, m, DEM_R(0.01), at(0, 0, -0.01));
             CHECK_EQ(scene_step(w, 1), DEM_OK);
             CHECK_REL((double)demi_length(demi_at(w->bodies.force + 4*(w->bodies.pos[2] > 0 ? 0 : 1))), 1 - gap/range, 1e-6);

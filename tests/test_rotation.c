@@ -153,7 +153,7 @@ static top spin_on_floor(dem_rotation rotation, double dt, double time, double l
     desc.rotation = rotation;
     world = dem_world_create(&desc);
     material = dem_material_add(world, &stuff);
-    dem_plane_add(world, material, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, material, at(0, 0, 0), at(0, 0, 1));
     body = dem_body_add(world, material, dem_shape_ellipsoid_add(world, at(b, b, a)),
                         at(0, 0, h - mass*g/stiffness),
                         dem_quat_about(at(0, 1, 0), (dem_real)lean));
@@ -185,7 +185,7 @@ int main(int argc, char **argv) {
         const dem_vec3 v = at(0.3, -1.2, 0.8), z = dem_quat_rotate(dem_quat_about(at(0, 0, 2),
                                                                  (dem_real)(pi/2)), at(1, 0, 0));
         const dem_vec3 back = dem_quat_unrotate(p, dem_quat_rotate(p, v));
-        const dem_vec3 once = dem_quat_rotate(dem_quat_times(p, q), v);
+        const dem_vec3 once = dem_quat_rotate(dem_quat_multiply(p, q), v);
         const dem_vec3 twice = dem_quat_rotate(p, dem_quat_rotate(q, v));
         const double eps = SINGLE ? 1e-6 : 1e-15;      /* round-off */
         CHECK_NEAR(back.x, v.x, 2*eps); CHECK_NEAR(back.y, v.y, 2*eps);

@@ -8,7 +8,7 @@
 
 enum { METHODS = 5, MOST = 900 };
 static const dem_search methods[METHODS] = {DEM_SEARCH_ALL_PAIRS, DEM_SEARCH_GRID,
-                                            DEM_SEARCH_LINKED_LIST, DEM_SEARCH_LEVELS, DEM_SEARCH_BINS};
+                                            DEM_SEARCH_LINKED_LIST, DEM_SEARCH_HIERARCHICAL, DEM_SEARCH_BINS};
 static uint32_t listed[MOST][MOST], mark;      /* pairs of slots seen under the present mark */
 static uint32_t pairs[2*MOST*(MOST - 1)/2];
 
@@ -86,8 +86,8 @@ static dem_world *churn_world(const churn *c, dem_search method, dem_world_desc 
         const double e[3] = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
         const double l = c->length;
         if (c->periodic[k] || (c->planar && k == 2)) continue;
-        dem_plane_add(world, grain, at(0, 0, 0), at(e[0], e[1], e[2]));
-        dem_plane_add(world, grain, at(l*e[0], l*e[1], l*e[2]), at(-e[0], -e[1], -e[2]));
+        dem_wall_plane_add(world, grain, at(0, 0, 0), at(e[0], e[1], e[2]));
+        dem_wall_plane_add(world, grain, at(l*e[0], l*e[1], l*e[2]), at(-e[0], -e[1], -e[2]));
     }
     return world;
 }
@@ -121,7 +121,7 @@ static int churn_add(dem_world **world, const dem_world_desc *desc, const churn 
 static int churn_look(dem_world **world, const dem_world_desc *desc, uint64_t *rebuilds) {
     int m, contacts, wrong = 0;
     for (m = 0; m < METHODS; m++) {
-        CHECK_EQ(dem_search_now(world[m]), DEM_OK);
+        CHECK_EQ(dem_candidates_rebuild(world[m]), DEM_OK);
         wrong += wrong_pairs(world[m], &desc[m], 1, &contacts);
         rebuilds[m] = dem_counters_get(world[m]).rebuilds;
     }
@@ -130,7 +130,7 @@ static int churn_look(dem_world **world, const dem_world_desc *desc, uint64_t *r
 /* Takes out a random body, the same of all worlds. */
 static void churn_remove(dem_world **world, uint64_t *seed) {
     const dem_bodies b = dem_bodies_get(world[0]);
-    const dem_body body = dem_bodies_id(world[0], (int)(scene_random(seed)*b.count));
+    const dem_body body = dem_body_id_get(world[0], (int)(scene_random(seed)*b.count));
     int m;
     for (m = 0; m < METHODS; m++) CHECK_EQ(dem_body_remove(world[m], body), DEM_OK);
 }
@@ -159,7 +159,7 @@ static void churn_run(churn c, uint64_t seed) {
                 wrong += wrong_pairs(world[m], &desc[m], fresh, &contacts);
                 miscounted += now.contacts != contacts;
             }
-            if (m && step%5 == 0) apart += dem_world_hash(world[m]) != dem_world_hash(world[0]);
+            if (m && step%5 == 0) apart += dem_world_hash_get(world[m]) != dem_world_hash_get(world[0]);
         }
         touched += contacts;
         if (step%(c.steps/8) == c.steps/16) { /* as many in as out, then more in, then more out */
@@ -227,7 +227,7 @@ static dem_world *mix_world(const mix *x, dem_search method) {
         place[i] = (dem_real)(x->planar && i%3 == 2 ? 0 : side*scene_random(&seed));
     CHECK_EQ(dem_spheres_add(world, grain, x->count, place, 0, r, 0), DEM_OK);
     free(place);
-    CHECK_EQ(dem_search_now(world), DEM_OK);
+    CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
     return world;
 }
 /* Do two worlds have the same candidates, in the same order? */
@@ -241,7 +241,7 @@ static int mix_same(const dem_world *a, const dem_world *b) {
         same = memcmp(p, q, (size_t)n*2*sizeof *p) == 0;
     }
     free(p);
-    return same && dem_world_hash(a) == dem_world_hash(b);
+    return same && dem_world_hash_get(a) == dem_world_hash_get(b);
 }
 static void mix_compare(mix x, int levels) {
     dem_world *right, *world;
@@ -252,7 +252,7 @@ static void mix_compare(mix x, int levels) {
         x.threads = 1 + m%2;
         world = mix_world(&x, methods[m]);
         CHECK(mix_same(right, world));
-        if (methods[m] == DEM_SEARCH_LEVELS) CHECK(world->levels.count >= levels);
+        if (methods[m] == DEM_SEARCH_HIERARCHICAL) CHECK(world->levels.count >= levels);
         dem_world_destroy(world);
     }
     dem_world_destroy(right);
@@ -273,9 +273,9 @@ static dem_search mix_chosen(double ratio, double share) {
         rewind(out);
         n = fread(text, 1, sizeof text - 1, out);
         text[n] = 0;
-        CHECK_STR(text, chosen == DEM_SEARCH_LEVELS ? "levels (hierarchical grid)"
+        CHECK_STR(text, chosen == DEM_SEARCH_HIERARCHICAL ? "levels (hierarchical grid)"
                   : "uniform grid");
-        if (chosen == DEM_SEARCH_LEVELS) CHECK_STR(text, "levels for radii 1 : ");
+        if (chosen == DEM_SEARCH_HIERARCHICAL) CHECK_STR(text, "levels for radii 1 : ");
         if (ratio > 2.5) CHECK_STR(text, "chosen: about");
         fclose(out);
     }
@@ -359,11 +359,11 @@ int main(int argc, char **argv) {
                     dem_sphere_add(world[m], grain, DEM_R(2e-4), at(x, y, 0.05 + d*u));
             }
             for (m = 0; m < METHODS; m++) {
-                CHECK_EQ(dem_search_now(world[m]), DEM_OK);
+                CHECK_EQ(dem_candidates_rebuild(world[m]), DEM_OK);
                 CHECK_EQ(wrong_pairs(world[m], &desc[m], 1, &contacts), 0);
                 count[m] = dem_candidates_get(world[m], 0, 0);
                 CHECK_EQ(count[m], count[0]);
-                CHECK_EQ(dem_world_hash(world[m]), dem_world_hash(world[0]));
+                CHECK_EQ(dem_world_hash_get(world[m]), dem_world_hash_get(world[0]));
                 CHECK(contacts > 100);
             }
             for (m = 0; m < METHODS; m++) dem_world_destroy(world[m]);
@@ -385,10 +385,10 @@ int main(int argc, char **argv) {
     }
     TEST("levels give one list for any number of threads") {
         mix x = {30, -1, 20000, 3, 0, 1};
-        dem_world *one = mix_world(&x, DEM_SEARCH_LEVELS), *other;
+        dem_world *one = mix_world(&x, DEM_SEARCH_HIERARCHICAL), *other;
         CHECK(dem_counters_get(one).domains > 4);
         for (x.threads = 2; x.threads <= 8; x.threads++) {
-            other = mix_world(&x, DEM_SEARCH_LEVELS);
+            other = mix_world(&x, DEM_SEARCH_HIERARCHICAL);
             CHECK(mix_same(one, other));
             dem_world_destroy(other);
         }
@@ -396,10 +396,10 @@ int main(int argc, char **argv) {
     }
     TEST("the library takes levels for mixtures of 1 : 10 and 1 : 100, and the grid for grains "
          "alike or 1 : 2, and says so") {
-        CHECK_EQ(mix_chosen(10, 0.5), DEM_SEARCH_LEVELS);
-        CHECK_EQ(mix_chosen(10, 0.1), DEM_SEARCH_LEVELS);
-        CHECK_EQ(mix_chosen(100, 0.9), DEM_SEARCH_LEVELS);
-        CHECK_EQ(mix_chosen(100, -1), DEM_SEARCH_LEVELS);
+        CHECK_EQ(mix_chosen(10, 0.5), DEM_SEARCH_HIERARCHICAL);
+        CHECK_EQ(mix_chosen(10, 0.1), DEM_SEARCH_HIERARCHICAL);
+        CHECK_EQ(mix_chosen(100, 0.9), DEM_SEARCH_HIERARCHICAL);
+        CHECK_EQ(mix_chosen(100, -1), DEM_SEARCH_HIERARCHICAL);
         CHECK_EQ(mix_chosen(1, 0), DEM_SEARCH_GRID);
         CHECK_EQ(mix_chosen(2, 0.5), DEM_SEARCH_GRID);
         CHECK_EQ(mix_chosen(2, 0.01), DEM_SEARCH_GRID);
@@ -418,7 +418,7 @@ int main(int argc, char **argv) {
             for (i = 0; i < 200; i++)
                 dem_sphere_add(world, grain, DEM_R(2e-3), at(i%2*1000 + 0.04*scene_random(&seed),
                                0.04*scene_random(&seed), 0.04*scene_random(&seed)));
-            CHECK_EQ(dem_search_now(world), DEM_OK);
+            CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
             CHECK_EQ(wrong_pairs(world, &desc, 0, &contacts), 0);
             CHECK(contacts > 20);
             CHECK(dem_counters_get(world).memory < 4000000);
@@ -427,7 +427,7 @@ int main(int argc, char **argv) {
     }
     TEST("how long a near list lasts does not change a bit: made in every step, or when it is due") {
         int integrator, late, k;
-        for (integrator = DEM_VELOCITY_VERLET; integrator <= DEM_LEAPFROG; integrator++) {
+        for (integrator = DEM_INTEGRATOR_VELOCITY_VERLET; integrator <= DEM_INTEGRATOR_LEAPFROG; integrator++) {
             uint64_t hash[2], makes[2] = {0, 0};
             for (late = 0; late < 2; late++) {
                 dem_world_desc desc = DEM_WORLD_DESC;
@@ -446,7 +446,7 @@ int main(int argc, char **argv) {
                     contacts += (uint64_t)dem_counters_get(world).contacts;
                 }
                 CHECK(contacts > 50000);
-                hash[late] = dem_world_hash(world);
+                hash[late] = dem_world_hash_get(world);
                 dem_world_destroy(world);
             }
             CHECK(makes[0] > 3*makes[1]);
@@ -500,9 +500,9 @@ int main(int argc, char **argv) {
                         many_near += count == DEMI_BALLS_ALL;
                     }
             }
-            CHECK_STR(dem_world_error(world), "");
+            CHECK_STR(dem_world_error_get(world), "");
             CHECK_EQ(k, 600);
-            hash[late] = dem_world_hash(world);
+            hash[late] = dem_world_hash_get(world);
             dem_world_destroy(world);
         }
         if (getenv("SEARCH_NUMBERS"))
@@ -516,7 +516,7 @@ int main(int argc, char **argv) {
     }
     TEST("the list stays safe with every integrator when all grains brake within one step") {
         int i, m;
-        for (i = DEM_VELOCITY_VERLET; i <= DEM_LEAPFROG; i++)
+        for (i = DEM_INTEGRATOR_VELOCITY_VERLET; i <= DEM_INTEGRATOR_LEAPFROG; i++)
             for (m = 0; m < METHODS; m++) {
                 const double dt = 1e-5, r = 1e-3, skin = 1e-4, speed = 6;
                 dem_world_desc desc = DEM_WORLD_DESC;
@@ -564,8 +564,8 @@ int main(int argc, char **argv) {
         world = dem_world_create(&desc);
         grain = scene_material(world, 1e8, 1, 0, 0);
         for (i = 1; i < 3; i++) {
-            dem_plane_add(world, grain, at(0, 0, 0), at(0, i == 1, i == 2));
-            dem_plane_add(world, grain, at(0, 0.03, 0.03), at(0, -(i == 1), -(i == 2)));
+            dem_wall_plane_add(world, grain, at(0, 0, 0), at(0, i == 1, i == 2));
+            dem_wall_plane_add(world, grain, at(0, 0.03, 0.03), at(0, -(i == 1), -(i == 2)));
         }
         for (i = 0; i < 25; i++) {              /* few: a wide skin pays */
             dem_body b = dem_sphere_add(world, grain, DEM_R(1e-3),
@@ -589,7 +589,7 @@ int main(int argc, char **argv) {
             scene_block(world, grain, 3, 3, 3, 1e-3, 1, 0.1, 1);
             CHECK_EQ(scene_step(world, 20), DEM_OK);
             scene_block(world, grain, 8, 8, 8, 1e-3, 1, 0.1, 2);  /* over the first: overlaps */
-            CHECK_EQ(dem_search_now(world), DEM_OK);
+            CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
             CHECK_EQ(wrong_pairs(world, &desc, 1, &contacts), 0);
             dem_world_destroy(world);
         }

@@ -155,18 +155,18 @@ static double shake(shaking *q, int *out) {
     int i, k, before = 0;
     uint64_t seed = q->seed;
     s.radius = (dem_real)(apart*row + 20*pitch);
-    wall = dem_sieve_add(world, stuff, &s);
+    wall = dem_wall_sieve_add(world, stuff, &s);
     motion.kind = DEM_MOTION_OSCILLATING;
     motion.velocity = at(0.3, 0.2, 1);
     motion.amplitude = (dem_real)q->amplitude;
     motion.frequency = (dem_real)q->frequency;
-    dem_wall_motion(world, wall, &motion);
-    if (q->lid > 0) dem_plane_add(world, stuff, at(0, 0, q->lid), at(0, 0, -1));
+    dem_wall_motion_set(world, wall, &motion);
+    if (q->lid > 0) dem_wall_plane_add(world, stuff, at(0, 0, q->lid), at(0, 0, -1));
     for (i = 0; i < 4; i++) {                    /* a fence on the sieve keeps them over it */
-        const dem_wall fence = dem_plane_add(world, stuff,
+        const dem_wall fence = dem_wall_plane_add(world, stuff,
             at(i == 0 ? -5*pitch : i == 1 ? apart*row : 0, i == 2 ? -5*pitch : i == 3 ? apart*row : 0, 0),
             at(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, 0));
-        dem_wall_motion(world, fence, &motion);
+        dem_wall_motion_set(world, fence, &motion);
     }
     for (i = 0; i < q->grains; i++) {
         const double x = apart*(i%row) + pitch*scene_random(&seed);
@@ -238,7 +238,7 @@ int main(int argc, char **argv) {
         uint64_t seed = 3;
         int i, k, touched[400] = {0}, agree = 0, pass = 0;
         dem_bodies b;
-        dem_sieve_add(world, stuff, &s);
+        dem_wall_sieve_add(world, stuff, &s);
         for (i = 0; i < 400; i++) {
             const double x = 0.05*(i%20) + 0.014*scene_random(&seed);
             const double y = 0.05*(i/20) + 0.014*scene_random(&seed);
@@ -421,14 +421,14 @@ int main(int argc, char **argv) {
             const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.01, 0.004);
             dem_world *world = world_of(9.81, 1e-5);
             dem_material stuff = stiff(world, i == 2 ? 5e4 : 1e5, 0.4, mu[i]);
-            dem_wall wall = dem_sieve_add(world, stuff, &s);
+            dem_wall wall = dem_wall_sieve_add(world, stuff, &s);
             dem_body grain = i == 2 ? headed_add(world, stuff, at(0, 0, 0.006))
                 : dem_sphere_add(world, stuff, DEM_R(0.0051), at(0, 0, 0.006));
             dem_body rests = dem_sphere_add(world, stuff, DEM_R(0.009), at(0.07, 0.07, 0.0115));
-            CHECK_EQ(dem_sieve_blinded(world, wall, 0), -1);
+            CHECK_EQ(dem_sieve_blinded_get(world, wall, 0), -1);
             scene_move(world, grain, at(0, 0, -1), at(0, 0, 0));
             scene_step(world, 30000);
-            CHECK_EQ(dem_sieve_blinded(world, wall, DEM_R(0.05)), i == 1 ? 0 : 1);
+            CHECK_EQ(dem_sieve_blinded_get(world, wall, DEM_R(0.05)), i == 1 ? 0 : 1);
             CHECK((double)scene_state(world, rests).position.z > 0.005);   /* rests on, not in */
             CHECK_NEAR(scene_state(world, grain).position.z, 0.002, 0.002);
             scene_move(world, grain, at(0, 0, 0.15), at(0, 0, 0));     /* a knock from below */
@@ -450,7 +450,7 @@ int main(int argc, char **argv) {
             const dem_sieve_desc s = sieve_of(kinds[i], 0.01, 0.003);
             dem_body grain;
             double e, over;
-            dem_sieve_add(world, stuff, &s);
+            dem_wall_sieve_add(world, stuff, &s);
             grain = dem_sphere_add(world, stuff, DEM_R(0.012),
                                    at(0.013*(k%6 + 0.5)/6, 0.013*(k/6 + 0.5)/6, 0.016));
             scene_move(world, grain, at(0.15, 0.1, -0.5), at(0, 0, 0));
@@ -481,7 +481,7 @@ int main(int argc, char **argv) {
                     s.model = 2;
                     s.clearance = DEM_R(0.5);
                 } else if (kinds[i] != DEM_SIEVE_WIRES) s.thickness = DEM_R(0.002);
-                CHECK(dem_sieve_add(world, stuff, &s).id > 0);
+                CHECK(dem_wall_sieve_add(world, stuff, &s).id > 0);
                 grain = dem_sphere_add(world, stuff, DEM_R(0.003),
                                        at((k%2 ? 0.056 : 0.045)*cos(a), (k%2 ? 0.056 : 0.045)*sin(a), height));
                 scene_move(world, grain, at(0.3*c*cos(a), 0.3*c*sin(a), k%2 ? 0 : -0.1), at(0, 0, 0));
@@ -509,7 +509,7 @@ int main(int argc, char **argv) {
             world = dem_world_create(&desc);          /* Hertz: R* matters */
             stuff = scene_material(world, 1e6, 0.3, 0, 0);
             if (k) { s.model = 2; s.clearance = DEM_R(0.5); }
-            CHECK(dem_sieve_add(world, stuff, &s).id > 0);
+            CHECK(dem_wall_sieve_add(world, stuff, &s).id > 0);
             cluster.count = 1;
             cluster.positions = middle;
             cluster.radius = DEM_R(0.005);
@@ -529,13 +529,13 @@ int main(int argc, char **argv) {
         dem_world *world = world_of(9.81, 1e-5);
         dem_material stuff = stiff(world, 1e4, 0.3, 0);
         const dem_sieve_desc s = sieve_of(DEM_SIEVE_WIRES, 0.004, 0.002);
-        const dem_wall wall = dem_sieve_add(world, stuff, &s);
+        const dem_wall wall = dem_wall_sieve_add(world, stuff, &s);
         dem_motion motion = DEM_MOTION;
         motion.kind = DEM_MOTION_OSCILLATING;
         motion.velocity = at(0, 0, 1);
         motion.amplitude = DEM_R(0.0005);
         motion.frequency = 30;
-        dem_wall_motion(world, wall, &motion);
+        dem_wall_motion_set(world, wall, &motion);
         dem_sphere_add(world, stuff, DEM_R(0.01), at(0, 0, 0.011));
         CHECK_EQ(scene_step(world, 3000), DEM_OK);
         CHECK((int)dem_counters_get(world).rebuilds < 300);
@@ -555,7 +555,7 @@ int main(int argc, char **argv) {
             int k;
             s.model = 2;
             s.clearance = DEM_R(0.6);
-            dem_sieve_add(world, stuff, &s);
+            dem_wall_sieve_add(world, stuff, &s);
             cluster.count = 2;
             cluster.positions = places;
             cluster.radius = DEM_R(0.003);
@@ -588,7 +588,7 @@ int main(int argc, char **argv) {
             memset(&pose, 0, sizeof pose);
             s.normal = at(rows[i][0], rows[i][1], rows[i][2]);
             s.along = at(rows[i][3], rows[i][4], rows[i][5]);
-            CHECK_EQ(dem_wall_pose(world, dem_sieve_add(world, stiff(world, 1e4, 0.5, 0), &s), &pose),
+            CHECK_EQ(dem_wall_pose_get(world, dem_wall_sieve_add(world, stiff(world, 1e4, 0.5, 0), &s), &pose),
                      DEM_OK);
             for (j = 0; j < 3; j++) for (k = 0; k <= j; k++)
                 CHECK_NEAR(pose.rotation[j]*pose.rotation[k] + pose.rotation[3 + j]*pose.rotation[3 + k]
@@ -605,8 +605,8 @@ int main(int argc, char **argv) {
             dem_world *world = world_of(9.81, 2e-5);
             dem_material stuff = stiff(world, 2e4, 0.5, 0.3);
             dem_body grain;
-            if (i) dem_sieve_add(world, stuff, &s);
-            else dem_plane_add(world, stuff, at(0, 0, 0.001), at(0, 0, 1));
+            if (i) dem_wall_sieve_add(world, stuff, &s);
+            else dem_wall_plane_add(world, stuff, at(0, 0, 0.001), at(0, 0, 1));
             grain = dem_sphere_add(world, stuff, DEM_R(0.01), at(0.003, 0, 0.01 + 0.001 - 1e-6));
             scene_move(world, grain, at(0, 1, 0), at(0, 0, 0));
             scene_step(world, 5000);             /* 5 cm and more: 15 crossings */
@@ -635,7 +635,7 @@ int main(int argc, char **argv) {
             dem_bodies b;
             s.model = rows[i].model;
             s.clearance = (dem_real)rows[i].zeta;
-            dem_sieve_add(world, stuff, &s);
+            dem_wall_sieve_add(world, stuff, &s);
             for (k = 0; k < 900; k++) {
                 const double x = 0.030*(k%30) + 0.015*scene_random(&seed);
                 const double y = 0.030*(k/30) + 0.015*scene_random(&seed);
@@ -660,7 +660,7 @@ int main(int argc, char **argv) {
         dem_material stuff = stiff(world, 1e4, 0.5, 0);
         dem_body grain;
         s.model = 2;
-        dem_sieve_add(world, stuff, &s);
+        dem_wall_sieve_add(world, stuff, &s);
         grain = dem_sphere_add(world, stuff, DEM_R(0.004), at(0, 0, 0.0041));
         scene_move(world, grain, at(0.5, 0, 0), at(0, 0, 0));      /* a pitch in .03 s; 8 mm take .04 */
         CHECK_EQ(scene_step(world, 5000), DEM_OK);
@@ -678,7 +678,7 @@ int main(int argc, char **argv) {
             dem_world *world = world_of(9.81, 2e-5);
             dem_material stuff = stiff(world, 1e4, 0.5, 0.3);
             int k;
-            dem_sieve_add(world, stuff, &s);
+            dem_wall_sieve_add(world, stuff, &s);
             if (i == 0)
                 for (k = 0; k < 60; k++)
                     dem_sphere_add(world, stuff, DEM_R(0.0052), at(0.0107*(k%10), 0.0111*(k/10),
@@ -690,11 +690,11 @@ int main(int argc, char **argv) {
             } else if (i == 1) CHECK_EQ(dem_checkpoint_read(world, path), DEM_OK);
             else {
                 CHECK_EQ(dem_checkpoint_read(world, path), DEM_ERROR_FORMAT);
-                CHECK_STR(dem_world_error(world), "another scene");
+                CHECK_STR(dem_world_error_get(world), "another scene");
             }
             if (i < 2) {
                 scene_step(world, 1000);
-                hash[i] = dem_world_hash(world);
+                hash[i] = dem_world_hash_get(world);
             }
             dem_world_destroy(world);
         }
@@ -706,26 +706,26 @@ int main(int argc, char **argv) {
         dem_world *world = world_of(0, 0);
         dem_material stuff = stiff(world, 1e4, 0.5, 0.3);
         dem_sieve_desc s = sieve_of(DEM_SIEVE_NONE, 1, 1);
-        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
-        CHECK_STR(dem_world_error(world), "kind is 0");
+        CHECK_EQ(dem_wall_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error_get(world), "kind is 0");
         s = sieve_of(DEM_SIEVE_WIRES, 0, 1);
-        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
-        CHECK_STR(dem_world_error(world), "aperture is 0");
+        CHECK_EQ(dem_wall_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error_get(world), "aperture is 0");
         s = sieve_of(DEM_SIEVE_WIRES, 1, 1);
         s.thickness = 1;
-        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
-        CHECK_STR(dem_world_error(world), "thickness is 1");
+        CHECK_EQ(dem_wall_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error_get(world), "thickness is 1");
         s = sieve_of(DEM_SIEVE_SLOTS, 1, 1);
         s.length = DEM_R(0.5);
-        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
-        CHECK_STR(dem_world_error(world), "length is 0.5");
+        CHECK_EQ(dem_wall_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error_get(world), "length is 0.5");
         s = sieve_of(DEM_SIEVE_REDUCED, 1, 1);
         s.clearance = DEM_R(1.5);
-        CHECK_EQ(dem_sieve_add(world, stuff, &s).id, 0);
-        CHECK_STR(dem_world_error(world), "clearance is 1.5");
-        CHECK_EQ(dem_sieve_blinded(world, dem_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1)), 0),
+        CHECK_EQ(dem_wall_sieve_add(world, stuff, &s).id, 0);
+        CHECK_STR(dem_world_error_get(world), "clearance is 1.5");
+        CHECK_EQ(dem_sieve_blinded_get(world, dem_wall_plane_add(world, stuff, at(0, 0, 0), at(0, 0, 1)), 0),
                  -1);
-        CHECK_STR(dem_world_error(world), "not a sieve");
+        CHECK_STR(dem_world_error_get(world), "not a sieve");
         dem_world_destroy(world);
     }
 

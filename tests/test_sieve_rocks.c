@@ -51,11 +51,11 @@ static double energy(const dem_world *w) {
 }
 static void box_around(dem_world *w, dem_material m, double half, double low, double high) {
     int i;
-    dem_plane_add(w, m, at(0, 0, low), at(0, 0, 1));
-    dem_plane_add(w, m, at(0, 0, high), at(0, 0, -1));
+    dem_wall_plane_add(w, m, at(0, 0, low), at(0, 0, 1));
+    dem_wall_plane_add(w, m, at(0, 0, high), at(0, 0, -1));
     for (i = 0; i < 4; i++) {
         const double side = i & 1 ? half : -half, n = i & 1 ? -1 : 1;
-        dem_plane_add(w, m, i < 2 ? at(side, 0, 0) : at(0, side, 0), i < 2 ? at(n, 0, 0) : at(0, n, 0));
+        dem_wall_plane_add(w, m, i < 2 ? at(side, 0, 0) : at(0, side, 0), i < 2 ? at(n, 0, 0) : at(0, n, 0));
     }
 }
 /* Distance of a point outside of the solid of a sieve with holes at the origin, m; inside 0. */
@@ -123,12 +123,12 @@ static dem_world *shaken(int impulses, int sort, int threads) {
     uint64_t random = 3;
     int i;
     dem_wall wall;
-    wall = dem_sieve_add(w, m, &s);
+    wall = dem_wall_sieve_add(w, m, &s);
     shake.kind = DEM_MOTION_OSCILLATING;
     shake.velocity = at(0, 0, 1);
     shake.amplitude = DEM_R(0.002);
     shake.frequency = 25;
-    CHECK_EQ(dem_wall_motion(w, wall, &shake), DEM_OK);
+    CHECK_EQ(dem_wall_motion_set(w, wall, &shake), DEM_OK);
     box_around(w, m, 0.04, -0.05, 0.08);
     for (i = 0; i < 60; i++) {
         const dem_shape rock = i%2 ? scene_rock(w, &random, 16, i%4 == 1 ? 0.007 : 0.004) : scene_box(w, 0.007, 0.006, 0.005);
@@ -152,7 +152,7 @@ int main(int argc, char **argv) {
             int i, result = DEM_OK;
             s.point = at(0.003, 0.001, 0);
             s.along = at(1, 0.3, 0);
-            CHECK(dem_sieve_add(w, m, &s).id);
+            CHECK(dem_wall_sieve_add(w, m, &s).id);
             box_around(w, m, 0.04, -0.06, 0.06);
             for (i = 0; i < 12; i++) {
                 const dem_shape rock = i%2 ? scene_rock(w, &random, 20, i%4 == 1 ? 0.010 : 0.005)
@@ -223,7 +223,7 @@ int main(int argc, char **argv) {
                     dem_world *w = world_of(impulses, earth, 1e8, 0.2, 0.3, impulses ? 1e-3 : 2e-5, 1, &m);
                     dem_body cube;
                     double z;
-                    dem_sieve_add(w, m, &s);
+                    dem_wall_sieve_add(w, m, &s);
                     cube = dem_body_add(w, m, scene_box(w, edge, edge, edge), at(2e-4, 1e-4, 0.016), straight);
                     CHECK_EQ(dem_world_run(w, 0.25, 0, 0), DEM_OK);
                     z = (double)scene_state(w, cube).position.z;
@@ -244,7 +244,7 @@ int main(int argc, char **argv) {
             const double dt = sort < SQUARE ? 1e-4 : 1e-3;      /* a round wire is a plane for a step */
             dem_world *w = world_of(1, 0, 0, 0, 0.5, dt, 1, &m);
             dem_body block;
-            dem_sieve_add(w, m, &s);
+            dem_wall_sieve_add(w, m, &s);
             block = dem_body_add(w, m, scene_box(w, edge, edge, edge/2), at(3e-4, 2e-4, top_of(sort, 0.004) + edge/4), straight);
             dem_world_gravity_set(w, at(earth*sin(angle), 0, -earth*cos(angle)));
             CHECK_EQ(dem_world_run(w, 0.2, 0, 0), DEM_OK);
@@ -266,11 +266,11 @@ int main(int argc, char **argv) {
                 dem_material m;
                 dem_world *w = world_of(impulses, earth, 1e7, 0.2, 0.5, impulses ? 1e-3 : 2e-5, 1, &m);
                 dem_body wedge;
-                dem_wall sieve = dem_sieve_add(w, m, &s);
+                dem_wall sieve = dem_wall_sieve_add(w, m, &s);
                 wedge = dem_body_add(w, m, dem_shape_polyhedron_add(w, 5, p), at(0, 0, 0.02), straight);
-                CHECK_EQ(dem_sieve_blinded(w, sieve, 0) > 0, 0);
+                CHECK_EQ(dem_sieve_blinded_get(w, sieve, 0) > 0, 0);
                 CHECK_EQ(dem_world_run(w, 0.3, 0, 0), DEM_OK);
-                CHECK_EQ(dem_sieve_blinded(w, sieve, DEM_R(0.01)), 1);
+                CHECK_EQ(dem_sieve_blinded_get(w, sieve, DEM_R(0.01)), 1);
                 CHECK(scene_state(w, wedge).position.z > DEM_R(-0.02));
                 dem_world_destroy(w);
             }
@@ -288,8 +288,8 @@ int main(int argc, char **argv) {
             double most = 0, twist = 0;
             int i;
             s.thickness = DEM_R(0.01);
-            if (tube) dem_cylinder_add(w, m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.005), 1);
-            else dem_sieve_add(w, m, &s);
+            if (tube) dem_wall_cylinder_add(w, m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.005), 1);
+            else dem_wall_sieve_add(w, m, &s);
             prism = dem_body_add(w, m, scene_box(w, 2*half, 2*half, 0.008), at(0, 0, 0), straight);
             scene_move(w, prism, at(0, 0, 0), at(0, 0, 0.3));
             for (i = 0; i < 400; i++) {
@@ -317,7 +317,7 @@ int main(int argc, char **argv) {
                 CHECK_EQ(dem_checkpoint_read(u, "build/tmp/sieve_rocks.dem"), DEM_OK);
                 CHECK_EQ(scene_step(u, steps - steps/2), DEM_OK);
                 CHECK(dem_contacts_get(w, 0, 0) > 20);
-                CHECK_EQ(dem_world_hash(u), dem_world_hash(w));
+                CHECK_EQ(dem_world_hash_get(u), dem_world_hash_get(w));
                 dem_world_destroy(u);
                 dem_world_destroy(v);
                 dem_world_destroy(w);
@@ -339,10 +339,10 @@ int main(int argc, char **argv) {
             two[!(order & 1)] = egg;
             both = dem_shape_union_add(w, 2, two, x, 0);
             CHECK(both.id);
-            if (order & 2) CHECK(dem_sieve_add(w, m, &s).id);
+            if (order & 2) CHECK(dem_wall_sieve_add(w, m, &s).id);
             CHECK_EQ(dem_body_add(w, m, both, at(0, 0, 0.03), straight).slot > 0, !(order & 2));
-            if (!(order & 2)) CHECK_EQ(dem_sieve_add(w, m, &s).id, 0);
-            CHECK_STR(dem_world_error(w), "an ellipsoid: the two do not know each other");
+            if (!(order & 2)) CHECK_EQ(dem_wall_sieve_add(w, m, &s).id, 0);
+            CHECK_STR(dem_world_error_get(w), "an ellipsoid: the two do not know each other");
             CHECK_EQ(scene_step(w, 2), DEM_OK);
             dem_world_destroy(w);
         }
@@ -357,11 +357,11 @@ int main(int argc, char **argv) {
                 if (k == 1) s.radius = DEM_R(0.1);
                 if (k >= 2) s.thickness = 0;
                 for (turn = 0; turn < 2; turn++)
-                    done = order == turn ? dem_sieve_add(w, m, &s).id > 0
+                    done = order == turn ? dem_wall_sieve_add(w, m, &s).id > 0
                         : dem_body_add(w, m, box, at(0, 0, 0.02), straight).slot > 0;
                 CHECK_EQ(done, k == 3);
-                if (k < 3) CHECK_STR(dem_world_error(w), says[k]);
-                if (k < 3) CHECK_STR(dem_world_error(w), "nothing was added");
+                if (k < 3) CHECK_STR(dem_world_error_get(w), says[k]);
+                if (k < 3) CHECK_STR(dem_world_error_get(w), "nothing was added");
                 CHECK_EQ(scene_step(w, 2), DEM_OK);
                 dem_world_destroy(w);
             }

@@ -13,7 +13,7 @@ static dem_sizes sieves(void) {
     dem_sizes d = DEM_SIZES;
     const double mm[] = {0.5, 1, 2, 4}, pass[] = {0.1, 0.3, 0.8, 1};
     int k;
-    d.kind = DEM_SIZES_SIEVES;
+    d.kind = DEM_SIZES_SIEVE_CURVE;
     d.count = 4;
     for (k = 0; k < 4; k++) { d.radius[k] = (dem_real)(mm[k]*1e-3); d.passing[k] = pass[k]; }
     return d;
@@ -57,7 +57,7 @@ int main(int argc, char **argv) {
                         for (i = 1; i < 10; i++) {
                             const double r = lo + (hi - lo)*i/10;
                             /* by chance: 5 standard errors of the mass share, whose coarse tail is few grains */
-                            CHECK_NEAR(finer(radii, many, by_count ? 0 : planar ? 2 : 3, r), dem_sizes_finer(world, &d, (dem_real)r),
+                            CHECK_NEAR(finer(radii, many, by_count ? 0 : planar ? 2 : 3, r), dem_sizes_finer_get(world, &d, (dem_real)r),
                                        seed ? 0.015 : 2e-3);
                         }
                         for (i = 0; i < many; i++) if ((double)radii[i] < lo*(1 - 1e-6) || (double)radii[i] > hi*(1 + 1e-6)) break;
@@ -76,8 +76,8 @@ int main(int argc, char **argv) {
         d.kind = DEM_SIZES_LOGNORMAL;
         d.median = DEM_R(0.001);
         d.spread = 0.3;
-        CHECK_NEAR(dem_sizes_finer(world, &d, d.median), 0.5, 1e-6);
-        CHECK_NEAR(dem_sizes_finer(world, &d, (dem_real)(0.001*exp(0.3))), 0.8413447460685429, 1e-6);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, d.median), 0.5, 1e-6);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, (dem_real)(0.001*exp(0.3))), 0.8413447460685429, 1e-6);
         /* mean of the number when the shares are of the mass: median e^(-2.5 spread^2) (Hatch and Choate 1929) */
         CHECK_EQ(dem_sizes_draw(world, &d, many, 0, radii), DEM_OK);
         {
@@ -90,18 +90,18 @@ int main(int argc, char **argv) {
         d.scale = DEM_R(0.002);
         d.modulus = 2.5;
         d.min = DEM_R(1e-5);
-        CHECK_NEAR(dem_sizes_finer(world, &d, d.scale), 1 - exp(-1.0), 1e-5);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, d.scale), 1 - exp(-1.0), 1e-5);
         memset(&d, 0, sizeof d);
         d.kind = DEM_SIZES_NORMAL;
         d.median = DEM_R(0.002);
         d.deviation = DEM_R(0.0003);
-        CHECK_NEAR(dem_sizes_finer(world, &d, d.median), 0.5, 1e-6);
-        CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(0.0023)), 0.8413447460685429, 1e-6);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, d.median), 0.5, 1e-6);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, DEM_R(0.0023)), 0.8413447460685429, 1e-6);
         d.kind = DEM_SIZES_EXPONENTIAL;         /* min 1 mm, mean 3 mm */
         d.by_count = 1;
         d.min = DEM_R(0.001);
         d.scale = DEM_R(0.003);
-        CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(0.003)), 1 - exp(-1.0), 1e-6);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, DEM_R(0.003)), 1 - exp(-1.0), 1e-6);
         CHECK_EQ(dem_sizes_draw(world, &d, many, 0, radii), DEM_OK);
         {
             double sum = 0;
@@ -109,13 +109,13 @@ int main(int argc, char **argv) {
             CHECK_REL(sum, 0.003, 1e-3);
         }
         d.scale = d.min;
-        CHECK_NEAR(dem_sizes_finer(world, &d, d.median), -1, 0);
-        CHECK_STR(dem_world_error(world), "exponential");
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, d.median), -1, 0);
+        CHECK_STR(dem_world_error_get(world), "exponential");
         d = sieves();
-        CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(0.49e-3)), 0, 0);
-        CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(0.5e-3)), 0.1, 1e-9);
-        CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(1.5e-3)), 0.55, 1e-6);
-        CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(4e-3)), 1, 0);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, DEM_R(0.49e-3)), 0, 0);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, DEM_R(0.5e-3)), 0.1, 1e-9);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, DEM_R(1.5e-3)), 0.55, 1e-6);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, DEM_R(4e-3)), 1, 0);
         CHECK_EQ(dem_sizes_draw(world, &d, many, 0, radii), DEM_OK);
         CHECK_REL(radii[0], 0.5e-3, 1e-6);
         dem_world_destroy(world);
@@ -129,7 +129,7 @@ int main(int argc, char **argv) {
         double sum = 0, number = 0, drawn = 0;
         int i;
         memset(&f, 0, sizeof f);
-        f.class_count = dem_sizes_classes(world, &d, 8, f.radius, f.amount);
+        f.class_count = dem_sizes_classes_get(world, &d, 8, f.radius, f.amount);
         CHECK_EQ(f.class_count, 8);
         for (i = 0; i < f.class_count; i++) {
             sum += f.amount[i];
@@ -160,7 +160,7 @@ int main(int argc, char **argv) {
         memset(&region, 0, sizeof region);
         region.box = box_of(0, 0, 0, 0.03, 0.03, 0.04);
         region.cylinder = 'z';
-        CHECK_EQ(dem_sizes_fill(world, &region, m, &d, 2000, 3), 2000);
+        CHECK_EQ(dem_sizes_fill(world, m, &d, region, 2000, 3), 2000);
         b = dem_bodies_get(world);
         for (i = 0; i < b.count; i++) {
             const double x = (double)b.positions[4*i] - 0.015, y = (double)b.positions[4*i + 1] - 0.015;
@@ -169,12 +169,12 @@ int main(int argc, char **argv) {
             if (sqrt(x*x + y*y) > 0.015 - r + 1e-6) CHECK(0);
         }
         CHECK_NEAR(finer(radii, 2000, 3, 1.5e-3), 0.55, 0.03);
-        CHECK_EQ(dem_search_now(world), DEM_OK);
+        CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
         CHECK_EQ(dem_contacts_get(world, &none, 0), 0);
         region.box = box_of(0, 0, 0.05, 0.01, 0.01, 0.06);
-        CHECK(dem_sizes_fill(world, &region, m, &d, 5000, 3) < 5000);
-        CHECK_STR(dem_world_error(world), "dem_sizes_fill: ");
-        CHECK_STR(dem_world_error(world), "found a place");
+        CHECK(dem_sizes_fill(world, m, &d, region, 5000, 3) < 5000);
+        CHECK_STR(dem_world_error_get(world), "dem_sizes_fill: ");
+        CHECK_STR(dem_world_error_get(world), "found a place");
         dem_world_destroy(world);
     }
 
@@ -182,7 +182,7 @@ int main(int argc, char **argv) {
         dem_world *world = empty(0);
         dem_sizes d = DEM_SIZES;
         CHECK_EQ(dem_sizes_draw(world, &d, 10, 0, radii), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "0 < min <= max");
+        CHECK_STR(dem_world_error_get(world), "0 < min <= max");
         d.min = d.max = DEM_R(0.001);
         CHECK_EQ(dem_sizes_draw(world, &d, 10, 0, radii), DEM_OK);
         CHECK_REL(radii[9], 0.001, 1e-6);
@@ -193,12 +193,12 @@ int main(int argc, char **argv) {
         d = sieves();
         d.passing[3] = 100;
         CHECK_EQ(dem_sizes_draw(world, &d, 10, 0, radii), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "not 100 per cent");
+        CHECK_STR(dem_world_error_get(world), "not 100 per cent");
         d = sieves();
         d.radius[2] = d.radius[1];
-        CHECK_NEAR(dem_sizes_finer(world, &d, DEM_R(1)), -1, 0);
+        CHECK_NEAR(dem_sizes_finer_get(world, &d, DEM_R(1)), -1, 0);
         d = sieves();
-        CHECK_EQ(dem_sizes_classes(world, &d, 17, radii, 0), 0);
+        CHECK_EQ(dem_sizes_classes_get(world, &d, 17, radii, 0), 0);
         dem_world_destroy(world);
     }
     TEST("a distribution of every kind, with ends of every size, is refused or draws radii between them") {
@@ -221,7 +221,7 @@ int main(int argc, char **argv) {
                         d.count = 2; d.radius[0] = DEM_R(5e-4); d.radius[1] = DEM_R(1e-3);
                         d.passing[0] = 0.1; d.passing[1] = 1;
                         if (dem_sizes_draw(world, &d, 40, 1, radii) != DEM_OK) {
-                            CHECK_STR(dem_world_error(world), "dem_sizes_draw: sizes, ");
+                            CHECK_STR(dem_world_error_get(world), "dem_sizes_draw: sizes, ");
                             continue;
                         }
                         drawn++;
@@ -229,7 +229,7 @@ int main(int argc, char **argv) {
                             bad += !(radii[n] >= DEM_R(0.99e-15) && radii[n] < DEM_R(1e15)) ||
                                 (d.max > 0 && radii[n] > d.max*DEM_R(1.00001));
                         CHECK_EQ(bad, 0);
-                        n = dem_sizes_classes(world, &d, DEM_CLASSES, radii, amount);
+                        n = dem_sizes_classes_get(world, &d, DEM_CLASSES, radii, amount);
                         CHECK(n > 0);
                         while (n-- > 0) CHECK(radii[n] > 0 && radii[n] < DEM_R(1e15) && amount[n] > 0 && amount[n] <= 1);
                     }
@@ -245,14 +245,14 @@ int main(int argc, char **argv) {
         int k;
         for (k = 0; k < d.count; k++) d.passing[k] *= 100;
         region.box = feed.box = box_of(0, 0, 0, 1, 1, 1);
-        CHECK_EQ(dem_sizes_fill(world, &region, m, &d, 10, 1), 0);
-        CHECK_STR(dem_world_error(world), "dem_sizes_fill: sizes, sieves: the last of passing is 100, must be 1");
+        CHECK_EQ(dem_sizes_fill(world, m, &d, region, 10, 1), 0);
+        CHECK_STR(dem_world_error_get(world), "dem_sizes_fill: sizes, sieves: the last of passing is 100, must be 1");
         feed.material = m;
         feed.class_count = 1;
         feed.amount[0] = feed.rate = 1;
         feed.sizes[0] = &d;
         CHECK_EQ(dem_feed_add(world, &feed).id, 0);
-        CHECK_STR(dem_world_error(world), "dem_feed_add: sizes, sieves: the last of passing is 100, must be 1");
+        CHECK_STR(dem_world_error_get(world), "dem_feed_add: sizes, sieves: the last of passing is 100, must be 1");
         dem_world_destroy(world);
     }
     return test_end();

@@ -12,17 +12,17 @@ static dem_slabs *deal(dem_world *world, int axis, int count) {
     desc.axis = axis;
     desc.count = count;
     slabs = dem_slabs_create(world, &desc);
-    if (!slabs) puts(dem_world_error(world));
+    if (!slabs) puts(dem_world_error_get(world));
     return slabs;
 }
 static dem_result go(dem_slabs *slabs, int steps) {
     const dem_result result = dem_slabs_step(slabs, steps);
-    if (result != DEM_OK) puts(dem_slabs_error(slabs));
+    if (result != DEM_OK) puts(dem_slabs_error_get(slabs));
     return result;
 }
 static dem_result collect(dem_slabs *slabs, dem_world *world) {
     const dem_result result = dem_slabs_collect(slabs, world);
-    if (result != DEM_OK) puts(dem_slabs_error(slabs));
+    if (result != DEM_OK) puts(dem_slabs_error_get(slabs));
     return result;
 }
 /* A close packing of 1024 hard balls of 1 mm, pressed into each other by 1 % of their radius, periodic: 12 contacts each.
@@ -55,8 +55,8 @@ static dem_world *crystal(double dt, double speed, double pull) {
 }
 /* Digest with contact memory: that is in it only while there is a list. */
 static uint64_t digest(dem_world *world) {
-    dem_search_now(world);
-    return dem_world_hash(world);
+    dem_candidates_rebuild(world);
+    return dem_world_hash_get(world);
 }
 
 /* 600 grains of three radii in a drum about x that turns, with lifters, between end planes or
@@ -100,12 +100,12 @@ static dem_world *drum(const drum_desc *d) {
     }
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e6, 0.6, 0.4, 0.05);
-    wall = dem_cylinder_add(world, glass, at(0, 0.006, 0.006), at(1, 0, 0), DEM_R(0.0066), 1);
+    wall = dem_wall_cylinder_add(world, glass, at(0, 0.006, 0.006), at(1, 0, 0), DEM_R(0.0066), 1);
     motion.kind = DEM_MOTION_ROTATING;
     motion.axis = at(1, 0, 0);
     motion.point = at(0, 0.006, 0.006);
     motion.speed = 20;
-    dem_wall_motion(world, wall, &motion);
+    dem_wall_motion_set(world, wall, &motion);
     for (k = 0; k < 3; k++) {                  /* lifters: blades across the drum */
         dem_mesh mesh;
         dem_real p[12];
@@ -119,12 +119,12 @@ static dem_world *drum(const drum_desc *d) {
         }
         mesh.vertex_count = 4; mesh.triangle_count = 2;
         mesh.vertices = p; mesh.triangles = t;
-        wall = dem_mesh_add(world, glass, &mesh);
-        dem_wall_motion(world, wall, &motion);
+        wall = dem_wall_mesh_add(world, glass, &mesh);
+        dem_wall_motion_set(world, wall, &motion);
     }
     if (!d->periodic) {
-        dem_plane_add(world, glass, at(0, 0, 0), at(1, 0, 0));
-        dem_plane_add(world, glass, at(0.048, 0, 0), at(-1, 0, 0));
+        dem_wall_plane_add(world, glass, at(0, 0, 0), at(1, 0, 0));
+        dem_wall_plane_add(world, glass, at(0.048, 0, 0), at(-1, 0, 0));
     }
     for (i = 0; i < 600; i++) {                /* 24 x 5 x 5 places 2 mm apart, radii 0.95..1.05 */
         x[3*i] = (dem_real)(0.002*(i%24) + 0.001);
@@ -135,9 +135,9 @@ static dem_world *drum(const drum_desc *d) {
     }
     dem_spheres_add(world, glass, 600, x, v, r, 0);
     for (i = 0; i < 600; i += 97) {            /* some never move */
-        dem_body_state state = scene_state(world, dem_bodies_id(world, i));
+        dem_body_state state = scene_state(world, dem_body_id_get(world, i));
         state.fixed = 1;
-        dem_body_set(world, dem_bodies_id(world, i), &state);
+        dem_body_set(world, dem_body_id_get(world, i), &state);
     }
     return world;
 }
@@ -211,7 +211,7 @@ static void scene_plate(dem_world *world, dem_material glass) {
     dem_mesh mesh;
     mesh.vertex_count = 4; mesh.triangle_count = 2;
     mesh.vertices = p; mesh.triangles = t;
-    dem_mesh_add(world, glass, &mesh);
+    dem_wall_mesh_add(world, glass, &mesh);
 }
 
 /* Heaps along x: `tilted` lets all grains run to x = 0. */
@@ -230,14 +230,14 @@ static dem_world *crate(double gx, double gz, dem_boundary end, int count, scene
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e6, 0.5, 0.3, 0);
     if (end != DEM_BOUNDARY_PERIODIC) {
-        if (end == DEM_BOUNDARY_OPEN) dem_plane_add(world, glass, at(0, 0, 0), at(1, 0, 0));
-        dem_plane_add(world, glass, at(0.06, 0, 0), at(-1, 0, 0));
+        if (end == DEM_BOUNDARY_OPEN) dem_wall_plane_add(world, glass, at(0, 0, 0), at(1, 0, 0));
+        dem_wall_plane_add(world, glass, at(0.06, 0, 0), at(-1, 0, 0));
     }
-    dem_plane_add(world, glass, at(0, 0, 0), at(0, 1, 0));
-    dem_plane_add(world, glass, at(0, 0.012, 0), at(0, -1, 0));
-    dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
-    dem_plane_add(world, glass, at(0, 0, 0.012), at(0, 0, -1));
-    dem_spheres_fill(world, glass, DEM_R(1e-3), box_of(0, 0, 0, 0.06, 0.012, 0.012), count, 7);
+    dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 1, 0));
+    dem_wall_plane_add(world, glass, at(0, 0.012, 0), at(0, -1, 0));
+    dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, glass, at(0, 0, 0.012), at(0, 0, -1));
+    dem_spheres_fill(world, glass, DEM_R(1e-3), dem_region_make(box_of(0, 0, 0, 0.06, 0.012, 0.012)), count, 7);
     return world;
 }
 
@@ -256,14 +256,14 @@ static dem_world *gas(int periodic, int threads) {
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e6, 1, 0, 0);
     for (i = 0; i < 6 && !periodic; i++)
-        dem_plane_add(world, glass, i < 3 ? at(0, 0, 0) : at(0.05, 0.016, 0.016),
+        dem_wall_plane_add(world, glass, i < 3 ? at(0, 0, 0) : at(0.05, 0.016, 0.016),
                       at(i == 0 ? 1 : i == 3 ? -1 : 0, i == 1 ? 1 : i == 4 ? -1 : 0,
                          i == 2 ? 1 : i == 5 ? -1 : 0));
     for (k = 2; k >= 0; k--)
-        dem_spheres_fill(world, glass, (dem_real)(5e-4*(1 + k)), desc.domain, 40*(3 - k),
+        dem_spheres_fill(world, glass, (dem_real)(5e-4*(1 + k)), dem_region_make(desc.domain), 40*(3 - k),
                          (uint64_t)k + 1);
     for (i = 0; i < world->bodies.count; i++)
-        scene_move(world, dem_bodies_id(world, i),
+        scene_move(world, dem_body_id_get(world, i),
                    scene_at(&seed, 1, -0.5, 1, -0.5, 1, -0.5), at(0, 0, 0));
     return world;
 }
@@ -290,11 +290,11 @@ static dem_world *mixture(int on, dem_boundary end, int threads, int each, scene
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e6, 0.5, 0.4, 0.02);
     if (end != DEM_BOUNDARY_PERIODIC) {
-        dem_plane_add(world, glass, at(0, 0, 0), at(1, 0, 0));
-        dem_plane_add(world, glass, at(0.06, 0, 0), at(-1, 0, 0));
+        dem_wall_plane_add(world, glass, at(0, 0, 0), at(1, 0, 0));
+        dem_wall_plane_add(world, glass, at(0.06, 0, 0), at(-1, 0, 0));
     }
-    dem_plane_add(world, glass, at(0, 0, 0), at(0, 1, 0));
-    dem_plane_add(world, glass, at(0, 0.012, 0), at(0, -1, 0));
+    dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 1, 0));
+    dem_wall_plane_add(world, glass, at(0, 0.012, 0), at(0, -1, 0));
     if (on == ON_SIEVE) {
         dem_sieve_desc sieve = DEM_SIEVE_DESC;
         dem_motion shake = DEM_MOTION;
@@ -305,7 +305,7 @@ static dem_world *mixture(int on, dem_boundary end, int threads, int each, scene
         shake.velocity = at(0, 0, 1);
         shake.amplitude = DEM_R(2e-4);
         shake.frequency = 50;
-        dem_wall_motion(world, dem_sieve_add(world, glass, &sieve), &shake);
+        dem_wall_motion_set(world, dem_wall_sieve_add(world, glass, &sieve), &shake);
     } else {
         dem_real p[12] = {DEM_R(-0.06), DEM_R(-0.01), 0, DEM_R(0.12), DEM_R(-0.01), 0, DEM_R(0.12),
                           DEM_R(0.03), 0, DEM_R(-0.06), DEM_R(0.03), 0};
@@ -313,15 +313,15 @@ static dem_world *mixture(int on, dem_boundary end, int threads, int each, scene
         dem_mesh mesh;
         mesh.vertex_count = 4; mesh.triangle_count = 2;
         mesh.vertices = p; mesh.triangles = t;
-        dem_mesh_add(world, glass, &mesh);
-        dem_bodies_fill(world, glass, dem_shape_ellipsoid_add(world, at(1.2e-3, 8e-4, 6e-4)), room,
-                        each, 5);
+        dem_wall_mesh_add(world, glass, &mesh);
+        dem_bodies_fill(world, glass, dem_shape_ellipsoid_add(world, at(1.2e-3, 8e-4, 6e-4)),
+                        dem_region_make(room), each, 5);
     }
     two.count = 2;
     two.positions = centres;
     two.radius = DEM_R(7e-4);
-    dem_bodies_fill(world, glass, dem_shape_cluster_add(world, &two), room, each, 6);
-    dem_spheres_fill(world, glass, DEM_R(8e-4), room, each, 7);
+    dem_bodies_fill(world, glass, dem_shape_cluster_add(world, &two), dem_region_make(room), each, 6);
+    dem_spheres_fill(world, glass, DEM_R(8e-4), dem_region_make(room), each, 7);
     memset(&field, 0, sizeof field);
     field.box = room;
     field.cells[1] = field.cells[2] = 1;
@@ -346,13 +346,13 @@ static dem_world *leaking(void) {
     d.class_count = 1;
     d.radius[0] = DEM_R(1e-3);
     CHECK_EQ(dem_outlet_add(world, &d).id, 1);
-    d.frame = dem_plane_add(world, glass, at(0, 0, -0.01), at(0, 0, 1));
+    d.frame = dem_wall_plane_add(world, glass, at(0, 0, -0.01), at(0, 0, 1));
     d.box = box_of(0.03, 0, 0.01, 0.035, 0.012, 0.013);
     shake.kind = DEM_MOTION_OSCILLATING;
     shake.velocity = at(1, 0, 0);
     shake.amplitude = DEM_R(0.004);
     shake.frequency = 30;
-    CHECK_EQ(dem_wall_motion(world, d.frame, &shake), DEM_OK);
+    CHECK_EQ(dem_wall_motion_set(world, d.frame, &shake), DEM_OK);
     CHECK_EQ(dem_outlet_add(world, &d).id, 2);
     /* one that only counts, shaken like the other: grains come in and go back */
     d.box = box_of(0.02, 0, -1, 0.03, 0.012, 1);
@@ -568,7 +568,7 @@ int main(int argc, char **argv) {
                 other = drum(&d);
                 slabs = deal(other, 0, count);
                 for (k = 0; k < (wide ? 4 : 2); k++) {
-                    const int steps = after[k] - (int)dem_world_steps(one);
+                    const int steps = after[k] - (int)dem_world_steps_get(one);
                     dem_ledger a, b;
                     dem_wall_loads c, e;
                     dem_wall wall;
@@ -598,7 +598,7 @@ int main(int argc, char **argv) {
                 }
                 CHECK_REL(dem_slabs_counters_get(slabs).rebuilds, dem_counters_get(one).rebuilds,
                           0.2);                /* one skin, by the same model */
-                CHECK_EQ(dem_search_now(other), DEM_OK);       /* what was collected goes on */
+                CHECK_EQ(dem_candidates_rebuild(other), DEM_OK);       /* what was collected goes on */
                 CHECK_EQ(scene_step(one, 10), DEM_OK);
                 CHECK_EQ(scene_step(other, 10), DEM_OK);
                 if (wide) CHECK_NEAR(apart(one, other), 0, 1e-8);
@@ -625,7 +625,7 @@ int main(int argc, char **argv) {
             else if (k < 14) d.integrator = k - 9;
             else if (k < 16) d.search = k - 13;        /* all pairs, grid */
             if (k == 16) d.search = DEM_SEARCH_LINKED_LIST;
-            if (k == 19) d.search = DEM_SEARCH_LEVELS;
+            if (k == 19) d.search = DEM_SEARCH_HIERARCHICAL;
             if (k == 17) { d.force = updraught; d.ledger = 1; }
             if (k == 18 || k == 19) d.law = own_law;
             if (k == 15) d.normal = DEM_NORMAL_LINEAR;
@@ -723,7 +723,7 @@ int main(int argc, char **argv) {
                 /* outlets look when a list is made, and every 64 steps */
                 CHECK_NEAR(b.last, a.last, count == 1 ? 0 : 64*2e-5);
             }
-            CHECK_EQ((int)dem_balance_get(other).left, (int)dem_balance_get(one).left);
+            CHECK_EQ((int)dem_body_counts_get(other).left, (int)dem_body_counts_get(one).left);
             CHECK_EQ(other->bodies.count, one->bodies.count);
             if (count == 1) CHECK_EQ(digest(other), digest(one));
             else CHECK_NEAR(apart(one, other), 0, 1e-6);
@@ -748,7 +748,7 @@ int main(int argc, char **argv) {
                 glass.id = 1;
                 for (k = 0; k < 2; k++)         /* of two radii from the first: new ones join the list */
                     CHECK_EQ(dem_spheres_fill(k ? one : other, glass, DEM_R(9e-4),
-                                              box_of(0, 0, 0, 0.06, 0.012, 0.012), 1, 3), 1);
+                                              dem_region_make(box_of(0, 0, 0, 0.06, 0.012, 0.012)), 1, 3), 1);
                 CHECK_EQ(scene_step(one, 20), DEM_OK);
                 CHECK_EQ(scene_step(other, 20), DEM_OK);
                 slabs = deal(other, 0, count);
@@ -764,10 +764,10 @@ int main(int argc, char **argv) {
                     CHECK_EQ((int)y.fed[0], (int)x.fed[0]);
                     CHECK_EQ((int)y.waiting, (int)x.waiting);
                     CHECK(whole(slabs, one->bodies.count));
-                    CHECK_EQ((int)dem_balance_get(other).inserted,
-                             (int)dem_balance_get(one).inserted);
-                    CHECK_EQ((int)dem_balance_get(other).present,
-                             (int)dem_balance_get(one).present);
+                    CHECK_EQ((int)dem_body_counts_get(other).inserted,
+                             (int)dem_body_counts_get(one).inserted);
+                    CHECK_EQ((int)dem_body_counts_get(other).present,
+                             (int)dem_body_counts_get(one).present);
                     CHECK_NEAR(apart(one, other), 0, wide ? 1e-7 : 1e-3);
                     CHECK_NEAR(dem_ledger_get(other).inserted, dem_ledger_get(one).inserted,
                                1e-9*dem_ledger_get(one).throughput);
@@ -778,7 +778,7 @@ int main(int argc, char **argv) {
                 /* what came into the world since is not the slabs' */
                 CHECK(dem_sphere_add(other, glass, DEM_R(5e-4), at(0.02, 0.005, 0.05)).slot > 0);
                 CHECK_EQ(dem_slabs_collect(slabs, other), DEM_ERROR_ARGUMENT);
-                CHECK_STR(dem_slabs_error(slabs), "added to the world after");
+                CHECK_STR(dem_slabs_error_get(slabs), "added to the world after");
                 dem_slabs_destroy(slabs);
                 dem_world_destroy(one);
                 dem_world_destroy(other);
@@ -800,7 +800,7 @@ int main(int argc, char **argv) {
                 field.id = 1;
                 for (k = 0; k < (wide ? 3 : 1); k++) {
                     const int steps = (k == 0 ? 300 : k == 1 ? 1500 : 3000) -
-                                      (int)dem_world_steps(one);
+                                      (int)dem_world_steps_get(one);
                     CHECK_EQ(scene_step(one, steps), DEM_OK);
                     CHECK_EQ(go(slabs, steps), DEM_OK);
                     CHECK_EQ(collect(slabs, other), DEM_OK);
@@ -808,7 +808,7 @@ int main(int argc, char **argv) {
                     CHECK_NEAR(apart(one, other), 0, wide && k < 2 ? bound[k] : chaos);
                     if (getenv("SLABS_NUMBERS"))
                         printf("scene %d, %d slabs, step %d: %.2g m apart; %d bodies, %d contacts\n",
-                               scene, count, (int)dem_world_steps(one), apart(one, other),
+                               scene, count, (int)dem_world_steps_get(one), apart(one, other),
                                one->bodies.count, dem_counters_get(one).contacts);
                 }
                 for (k = 0; k < one->bodies.slot_count; k++) {
@@ -887,11 +887,11 @@ int main(int argc, char **argv) {
                 scene_plate(world[k], glass);
                 dem_spheres_add(world[k], glass, 4, x, 0, 0, DEM_R(1e-3));
                 for (i = 0; i < 3; i++)
-                    scene_move(world[k], dem_bodies_id(world[k], i), at(1, 0, 0),
+                    scene_move(world[k], dem_body_id_get(world[k], i), at(1, 0, 0),
                                at(i == 1 ? 3 : 0, 0, i == 0 ? 2 : 0));
-                s = scene_state(world[k], dem_bodies_id(world[k], 3));
+                s = scene_state(world[k], dem_body_id_get(world[k], 3));
                 s.fixed = 1;
-                dem_body_set(world[k], dem_bodies_id(world[k], 3), &s);
+                dem_body_set(world[k], dem_body_id_get(world[k], 3), &s);
             }
             slabs = deal(world[1], 0, 2);
             for (steps = 0; steps < 4000; steps += 50) {
@@ -902,7 +902,7 @@ int main(int argc, char **argv) {
                 CHECK_EQ(collect(slabs, world[1]), DEM_OK);
                 CHECK_NEAR(apart(world[0], world[1]), 0, wide ? 1e-12 : 1e-5);
                 for (k = 0; k < 2; k++) {      /* a search does not touch memory */
-                    dem_search_now(world[k]);
+                    dem_candidates_rebuild(world[k]);
                     n[k] = dem_contacts_get(world[k], info[k], 8);
                 }
                 CHECK_EQ(n[1], n[0]);
@@ -965,20 +965,20 @@ int main(int argc, char **argv) {
         dem_slabs *slabs = deal(other, 0, 3);
         int k;
         for (k = 0; k < 6; k++) {
-            dem_balance a, b;
+            dem_body_counts a, b;
             CHECK_EQ(scene_step(one, 500), DEM_OK);
             CHECK_EQ(go(slabs, 500), DEM_OK);
             CHECK_EQ(collect(slabs, other), DEM_OK);
-            a = dem_balance_get(one);
-            b = dem_balance_get(other);
+            a = dem_body_counts_get(one);
+            b = dem_body_counts_get(other);
             CHECK_EQ(b.left, a.left);
             CHECK_EQ(b.present, a.present);
             CHECK_EQ(b.inserted, b.present + b.removed + b.left);
             CHECK_EQ(dem_bodies_get(other).count, b.present);
             CHECK_REL(dem_ledger_get(other).removed, dem_ledger_get(one).removed, 1e-3);
         }
-        CHECK(dem_balance_get(one).left > 20);
-        CHECK(dem_balance_get(one).left < 200);
+        CHECK(dem_body_counts_get(one).left > 20);
+        CHECK(dem_body_counts_get(one).left < 200);
         dem_slabs_destroy(slabs);
         dem_world_destroy(one);
         dem_world_destroy(other);
@@ -995,7 +995,7 @@ int main(int argc, char **argv) {
             desc.threads = 1;
             world[k] = dem_world_create(&desc);
             glass = scene_material(world[k], 1e6, 0.9, 0.3, 0);
-            dem_plane_add(world[k], glass, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_plane_add(world[k], glass, at(0, 0, 0), at(0, 0, 1));
             scene_block(world[k], glass, 16, 3, 3, 1e-3, 1, 0.1, 3);
         }
         slabs = deal(world[1], 0, 3);
@@ -1008,7 +1008,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(collect(slabs, world[1]), DEM_OK);
         dem_slabs_destroy(slabs);
         for (k = 0; k < 2; k++)                /* from now on one is much faster */
-            scene_move(world[k], dem_bodies_id(world[k], world[k]->bodies.slot_index[5]), at(0, 0, 4),
+            scene_move(world[k], dem_body_id_get(world[k], world[k]->bodies.slot_index[5]), at(0, 0, 4),
                        at(0, 0, 0));
         slabs = deal(world[1], 0, 3);
         scene_step(world[0], 50);
@@ -1033,7 +1033,7 @@ int main(int argc, char **argv) {
                 desc.dt = DEM_R(1e-5);
                 world[k] = dem_world_create(&desc);
                 glass = scene_material(world[k], 1e6, 0.9, 0.3, 0);
-                dem_plane_add(world[k], glass, at(0, 0, 0), at(0, 0, 1));
+                dem_wall_plane_add(world[k], glass, at(0, 0, 0), at(0, 0, 1));
                 scene_block(world[k], glass, 16, 3, 3, 1e-3, 1, 0.1, 3);
                 scene_step(world[k], 5);
                 if (k == 2) continue;
@@ -1046,11 +1046,11 @@ int main(int argc, char **argv) {
             CHECK_REL(dem_slabs_counters_get(slabs).dt, 4e-6, wide ? 1e-15 : 1e-7);
             for (k = 1; k < 3; k++) {
                 CHECK_EQ(collect(slabs, world[k]), DEM_OK);
-                if (count == 1) CHECK_EQ(dem_world_hash(world[k]), dem_world_hash(world[0]));
+                if (count == 1) CHECK_EQ(dem_world_hash_get(world[k]), dem_world_hash_get(world[0]));
             }
             for (k = 0; k < 3; k++) CHECK_EQ(scene_step(world[k], 40), DEM_OK);
-            CHECK_EQ(dem_world_hash(world[1]), dem_world_hash(world[2]));
-            CHECK_REL(dem_world_time(world[2]), dem_world_time(world[0]), 1e-14);     /* rounding of sums */
+            CHECK_EQ(dem_world_hash_get(world[1]), dem_world_hash_get(world[2]));
+            CHECK_REL(dem_world_time_get(world[2]), dem_world_time_get(world[0]), 1e-14);     /* rounding of sums */
             dem_slabs_destroy(slabs);
             for (k = 0; k < 3; k++) dem_world_destroy(world[k]);
         }
@@ -1082,7 +1082,7 @@ int main(int argc, char **argv) {
                         if (here == DEM_OK) {
                             const int before = test_now.wrong;
                             CHECK_EQ(collect(slabs, world[1]), DEM_OK);
-                            CHECK_EQ(dem_world_hash(world[1]), dem_world_hash(world[0]));
+                            CHECK_EQ(dem_world_hash_get(world[1]), dem_world_hash_get(world[0]));
                             if (test_now.wrong > before) printf("        %s in scene %d\n", all->field[k].name, kind);
                             runs++;
                         }
@@ -1107,15 +1107,15 @@ int main(int argc, char **argv) {
                 CHECK_EQ(dem_slabs_step(slabs, 1), expected);
                 if (chosen) {
                     dem_advice advice;
-                    CHECK_EQ(dem_step_advice(world, &advice), DEM_OK);
+                    CHECK_EQ(dem_step_advice_get(world, &advice), DEM_OK);
                     CHECK(world->clock.dt < DEM_R(0.9)*advice.dt);      /* what presses binds */
                     CHECK_REL(slabs->head.clock.dt, world->clock.dt, 1e-9);
                     CHECK_EQ(go(slabs, 100), DEM_OK);
                 } else {
-                    limit = strstr(dem_world_error(world), "must be at most");
+                    limit = strstr(dem_world_error_get(world), "must be at most");
                     CHECK(limit && strstr(limit, "is pressed by 12 contacts"));
-                    CHECK_STR(dem_slabs_error(slabs), "is pressed by 12 contacts");
-                    CHECK(limit && !strncmp(limit, strstr(dem_slabs_error(slabs), "must be at most"), 24));
+                    CHECK_STR(dem_slabs_error_get(slabs), "is pressed by 12 contacts");
+                    CHECK(limit && !strncmp(limit, strstr(dem_slabs_error_get(slabs), "must be at most"), 24));
                 }
                 dem_slabs_destroy(slabs);
                 dem_world_destroy(world);
@@ -1128,14 +1128,14 @@ int main(int argc, char **argv) {
             dem_world *world = crystal(1e-7, 2e4, 0);
             dem_slabs *slabs = deal(world, 0, count);
             CHECK_EQ(dem_slabs_step(slabs, 1), DEM_ERROR_TIME_STEP);
-            CHECK_STR(dem_slabs_error(slabs), "radii of the smallest grain");
+            CHECK_STR(dem_slabs_error_get(slabs), "radii of the smallest grain");
             CHECK_NEAR(slabs->head.clock.time, 0, 0);
             dem_slabs_destroy(slabs);
             dem_world_destroy(world);
             world = crystal(1e-7, 0, 1e9);
             slabs = deal(world, 0, count);
             CHECK_EQ(dem_slabs_step(slabs, 1000), DEM_ERROR_TIME_STEP);
-            CHECK_STR(dem_slabs_error(slabs), "radii of the smallest grain");
+            CHECK_STR(dem_slabs_error_get(slabs), "radii of the smallest grain");
             CHECK(slabs->head.clock.time > 0);
             dem_slabs_destroy(slabs);
             dem_world_destroy(world);
@@ -1163,19 +1163,19 @@ int main(int argc, char **argv) {
                 desc.balance_interval = 1;
                 c.refuse = k ? before + k : 0;
                 for (tries = 0; !slabs && tries < 3; tries++) {
-                    const uint64_t was = dem_world_hash(world);
+                    const uint64_t was = dem_world_hash_get(world);
                     slabs = dem_slabs_create(world, &desc);
                     if (slabs) break;
-                    CHECK_STR(dem_world_error(world), "dem_slabs_create: out of memory");
-                    CHECK_EQ(dem_world_hash(world), was);
+                    CHECK_STR(dem_world_error_get(world), "dem_slabs_create: out of memory");
+                    CHECK_EQ(dem_world_hash_get(world), was);
                 }
                 for (tries = 0; tries < 3; tries++) {
                     const int left = steps - (int)dem_slabs_counters_get(slabs).steps;
                     result = dem_slabs_step(slabs, left + (slabs->head.stage.moved != 0));
                     if (result == DEM_OK) break;
                     CHECK_EQ(result, DEM_ERROR_MEMORY);
-                    CHECK_STR(dem_slabs_error(slabs), "out of memory");
-                    CHECK_STR(dem_slabs_error(slabs), "dem_slabs_step: slab");
+                    CHECK_STR(dem_slabs_error_get(slabs), "out of memory");
+                    CHECK_STR(dem_slabs_error_get(slabs), "dem_slabs_step: slab");
                     CHECK_EQ(dem_slabs_collect(slabs, world), DEM_OK);     /* nothing was lost */
                     CHECK_EQ(dem_bodies_get(world).count, 90);
                 }
@@ -1209,30 +1209,30 @@ int main(int argc, char **argv) {
         dem_material first;
         dem_wall wall;
         CHECK(!dem_slabs_create(world, &desc));
-        CHECK_STR(dem_world_error(world), "count is 0, must be 1 to 1024");
+        CHECK_STR(dem_world_error_get(world), "count is 0, must be 1 to 1024");
         desc.count = 2;
         desc.axis = 3;
         CHECK(!dem_slabs_create(world, &desc));
-        CHECK_STR(dem_world_error(world), "axis is 3, must be 0, 1 or 2");
+        CHECK_STR(dem_world_error_get(world), "axis is 3, must be 0, 1 or 2");
         desc.axis = 0;
         desc.first = 1; desc.local = 2;
         CHECK(!dem_slabs_create(world, &desc));
-        CHECK_STR(dem_world_error(world), "slabs 1 to 2 are asked for, must lie in 0 to 1");
+        CHECK_STR(dem_world_error_get(world), "slabs 1 to 2 are asked for, must lie in 0 to 1");
         desc.local = 1;
         CHECK(!dem_slabs_create(world, &desc));
-        CHECK_STR(dem_world_error(world), "1 of 2 slabs are here and the transport lacks");
+        CHECK_STR(dem_world_error_get(world), "1 of 2 slabs are here and the transport lacks");
         desc.first = desc.local = 0;
         desc.balance = DEM_R(0.5);
         CHECK(!dem_slabs_create(world, &desc));
-        CHECK_STR(dem_world_error(world), "balance is 0.5");
+        CHECK_STR(dem_world_error_get(world), "balance is 0.5");
         planar.planar = 1;
         flat = dem_world_create(&planar);
         desc.balance = 0;
         desc.axis = 2;
         CHECK(!dem_slabs_create(flat, &desc));
-        CHECK_STR(dem_world_error(flat), "discs live at z = 0");
+        CHECK_STR(dem_world_error_get(flat), "discs live at z = 0");
         desc.axis = 0;
-        CHECK_STR(dem_slabs_error(0), "dem_slabs_create: returned null");
+        CHECK_STR(dem_slabs_error_get(0), "dem_slabs_create: returned null");
         slabs = deal(world, 0, 3);
         CHECK_EQ(go(slabs, 20), DEM_OK);
         dem_slabs_loads_reset(slabs);
@@ -1242,31 +1242,31 @@ int main(int argc, char **argv) {
         dem_wall_loads_get(world, wall, &c);
         CHECK_NEAR(c.time, 1e-4, 1e-9);
         CHECK_EQ(dem_slab_get(slabs, 3, &slab), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_slabs_error(slabs), "slab 3 is not here, this process holds 0 to 2 of 3");
+        CHECK_STR(dem_slabs_error_get(slabs), "slab 3 is not here, this process holds 0 to 2 of 3");
         CHECK_EQ(dem_slabs_step(slabs, -1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_slabs_error(slabs), "steps is -1, must be >= 0");
+        CHECK_STR(dem_slabs_error_get(slabs), "steps is -1, must be >= 0");
         CHECK_EQ(dem_slabs_collect(slabs, small), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_slabs_error(slabs), "collect into the world they were created from");
-        dem_body_remove(world, dem_bodies_id(world, 3));
+        CHECK_STR(dem_slabs_error_get(slabs), "collect into the world they were created from");
+        dem_body_remove(world, dem_body_id_get(world, 3));
         CHECK_EQ(dem_slabs_collect(slabs, world), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_slabs_error(slabs), "no longer in the world; collect before removing");
+        CHECK_STR(dem_slabs_error_get(slabs), "no longer in the world; collect before removing");
         first.id = 1;
-        CHECK_EQ(dem_search_now(world), DEM_OK);                /* from now on its slot is free */
+        CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);                /* from now on its slot is free */
         dem_sphere_add(world, first, DEM_R(1e-3), at(0, 0, 0.5));   /* takes the removed one's slot */
         CHECK_EQ(dem_slabs_collect(slabs, world), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_slabs_error(slabs), "was added to the world after the slabs had been created");
+        CHECK_STR(dem_slabs_error_get(slabs), "was added to the world after the slabs had been created");
         dem_slabs_destroy(slabs);
         slabs = deal(small, 0, 16);            /* 50 mm in 16 slabs: 3.1 mm, largest grain 3 mm */
         CHECK_EQ(dem_slabs_step(slabs, 1), DEM_OK);
         dem_slabs_destroy(slabs);
         slabs = deal(small, 0, 17);
         CHECK_EQ(dem_slabs_step(slabs, 1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_slabs_error(slabs), "use at most 16 slabs or a smaller skin");
+        CHECK_STR(dem_slabs_error_get(slabs), "use at most 16 slabs or a smaller skin");
         dem_slabs_destroy(slabs);
         slabs = deal(flat, 1, 3);              /* discs in a plane, none of them: nothing to do */
         CHECK_EQ(go(slabs, 5), DEM_OK);
         CHECK_EQ(collect(slabs, flat), DEM_OK);
-        CHECK_EQ(dem_world_steps(flat), 5);
+        CHECK_EQ(dem_world_steps_get(flat), 5);
         dem_slabs_destroy(slabs);
         dem_world_destroy(world);
         dem_world_destroy(small);
@@ -1279,13 +1279,13 @@ int main(int argc, char **argv) {
         int i, one = 0;
         for (i = 1; i < 60; i++)
             if (world->bodies.pos[4*i] > world->bodies.pos[4*one]) one = i;
-        s = scene_state(world, dem_bodies_id(world, one));
+        s = scene_state(world, dem_body_id_get(world, one));
         s.velocity.x = 45;                    /* nearly a radius a step */
-        dem_body_set(world, dem_bodies_id(world, one), &s);
+        dem_body_set(world, dem_body_id_get(world, one), &s);
         slabs = deal(world, 0, 3);
         CHECK_EQ(dem_slabs_step(slabs, 20), DEM_ERROR_UNSTABLE);
-        CHECK_STR(dem_slabs_error(slabs), "dem_slabs_step: slab 2: ");
-        CHECK_STR(dem_slabs_error(slabs), "overlap");
+        CHECK_STR(dem_slabs_error_get(slabs), "dem_slabs_step: slab 2: ");
+        CHECK_STR(dem_slabs_error_get(slabs), "overlap");
         dem_slabs_destroy(slabs);
         dem_world_destroy(world);
     }

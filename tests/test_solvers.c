@@ -32,8 +32,8 @@ static dem_counters heap_step(dem_world_desc desc, double compliance, int shaped
     dem_pair_get(world, m, m, &pair);
     pair.compliance = (dem_real)compliance;
     CHECK_EQ(dem_pair_set(world, m, m, &pair), DEM_OK);
-    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-    dem_plane_add(world, m, at(0, 0, 0), at(1, 0, 0));
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(1, 0, 0));
     if (shaped) shape = dem_shape_ellipsoid_add(world, at(0.01, 0.009, 0.0095));
     for (i = 0; i < heap_count; i++) {
         const int x = i%heap_side, y = i/heap_side%heap_side, z = i/heap_side/heap_side;
@@ -131,7 +131,7 @@ int main(int argc, char **argv) {
         }
     }
     TEST("impulses: sweeps end where they are told to, and the counters and the report say what was left") {
-        dem_world_desc desc = solver_desc(DEM_SOLVER_SEIDEL, DEM_CONE_COULOMB);
+        dem_world_desc desc = solver_desc(DEM_SOLVER_GAUSS_SEIDEL, DEM_CONE_COULOMB);
         dem_counters c;
         desc.sweeps = 3;
         desc.tolerance = DEM_R(1e-12);
@@ -144,14 +144,14 @@ int main(int argc, char **argv) {
         double low;
         int k;
         for (k = 0; k < 2; k++) {
-            dem_world_desc desc = solver_desc(DEM_SOLVER_SEIDEL, DEM_CONE_COULOMB);
+            dem_world_desc desc = solver_desc(DEM_SOLVER_GAUSS_SEIDEL, DEM_CONE_COULOMB);
             dem_material_desc stuff = scene_stuff(0, 0, 0.5, 0);
             dem_world *world = dem_world_create(&desc);
             const dem_material m = dem_material_add(world, &stuff);
             dem_body ball;
             dem_pair pair;
             double weight;
-            const dem_wall ceiling = dem_plane_add(world, m, at(0, 0, 0), at(0, 0, -1));
+            const dem_wall ceiling = dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, -1));
             ball = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, -0.01));
             weight = (double)scene_state(world, ball).mass*g;
             dem_pair_get(world, m, m, &pair);
@@ -170,13 +170,13 @@ int main(int argc, char **argv) {
         }
     }
     TEST("impulses: on a compliant floor a ball sinks by compliance times weight") {
-        dem_world_desc desc = solver_desc(DEM_SOLVER_SEIDEL, DEM_CONE_COULOMB);
+        dem_world_desc desc = solver_desc(DEM_SOLVER_GAUSS_SEIDEL, DEM_CONE_COULOMB);
         dem_material_desc stuff = scene_stuff(0, 0, 0.5, 0);
         dem_world *world = dem_world_create(&desc);
         const dem_material m = dem_material_add(world, &stuff);
         dem_body ball;
         dem_pair pair;
-        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
         ball = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.01));
         dem_pair_get(world, m, m, &pair);
         pair.compliance = DEM_R(2e-3);
@@ -186,14 +186,14 @@ int main(int argc, char **argv) {
         dem_world_destroy(world);
     }
     TEST("impulses: a ball that spins on the spot stops after 2/5 r w/(mu_s g)") {
-        dem_world_desc desc = solver_desc(DEM_SOLVER_SEIDEL, DEM_CONE_COULOMB);
+        dem_world_desc desc = solver_desc(DEM_SOLVER_GAUSS_SEIDEL, DEM_CONE_COULOMB);
         dem_material_desc stuff = scene_stuff(0, 0, 0.5, 0);
         dem_world *world = dem_world_create(&desc);
         const dem_material m = dem_material_add(world, &stuff);
         const double w = 40, stop = 0.4*0.01*w/(0.1*g);         /* s */
         dem_body ball;
         dem_pair pair;
-        dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
         ball = dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.01));
         scene_move(world, ball, at(0, 0, 0), at(0, 0, w));
         dem_pair_get(world, m, m, &pair);
@@ -214,14 +214,14 @@ int main(int argc, char **argv) {
         dem_pair_get(world, m, m, &pair);
         pair.cohesion = 1;
         CHECK_EQ(dem_pair_set(world, m, m, &pair), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "cohesion of materials 1 and 1 is 1, must be >= 0 N, and 0 where springs answer");
+        CHECK_STR(dem_world_error_get(world), "cohesion of materials 1 and 1 is 1, must be >= 0 N, and 0 where springs answer");
         dem_world_destroy(world);
         desc = solver_desc(DEM_SOLVER_APGD, DEM_CONE_COULOMB);
         world = dem_world_create(&desc);
         m = dem_material_add(world, &stuff);
         dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0));
         CHECK_EQ(dem_world_step(world, 1), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error(world), "rolling or spinning friction between materials, which APGD does not know");
+        CHECK_STR(dem_world_error_get(world), "rolling or spinning friction between materials, which APGD does not know");
         dem_world_destroy(world);
     }
     return test_end();

@@ -30,13 +30,13 @@ static dem_world *bed_world(int threads, dem_wall *plane) {
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e7, 0.7, 0.3, 0.1);
     scene_block(world, glass, 19, 18, 18, 1e-3, 1, 2, 7);
-    *plane = dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    *plane = dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
     wall = scene_floor(world, glass, -0.02, -0.02, 0.06, 0.06, 12, 12);
     motion.kind = DEM_MOTION_ROTATING;
     motion.axis = at(0, 0, 1);
     motion.point = at(0.018, 0.018, 0);
     motion.speed = 100;
-    dem_wall_motion(world, wall, &motion);
+    dem_wall_motion_set(world, wall, &motion);
     return world;
 }
 static outcome bed(int threads, int steps, int at_once) {
@@ -46,7 +46,7 @@ static outcome bed(int threads, int steps, int at_once) {
     int done;
     for (done = 0; done < steps; done += at_once) CHECK_EQ(scene_step(world, at_once), DEM_OK);
     memset(&out, 0, sizeof out);
-    out.hash = dem_world_hash(world);
+    out.hash = dem_world_hash_get(world);
     out.ledger = dem_ledger_get(world);
     dem_wall_loads_get(world, plane, &out.floor);
     out.domains = dem_counters_get(world).domains;
@@ -83,7 +83,7 @@ static uint64_t block(int friction, int rolling, int ledger, int mixed, int peri
     desc.domain = box_of(0, 0, 0, 7*1.97e-3, 7*1.97e-3, 7*1.97e-3);
     world = dem_world_create(&desc);
     glass = scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, rolling ? 0.1 : 0);
-    if (!periodic) dem_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
+    if (!periodic) dem_wall_plane_add(world, glass, at(0, 0, 0), at(0, 0, 1));
     for (k = 1; k < materials; k++) scene_material(world, 1e7, 0.8, friction ? 0.3 : 0, rolling ? 0.1 : 0);
     scene_block(world, glass, 7, 7, 7, 1e-3, mixed, 1, 5);
     for (k = 0; k < world->bodies.count && materials > 1; k++)
@@ -93,7 +93,7 @@ static uint64_t block(int friction, int rolling, int ledger, int mixed, int peri
     *whole = demi_whole_stage(world, world->effects.uniform) != 0;
     block_species = world->effects.species_count;
     CHECK_EQ(dem_counters_get(world).rebuilds, 1);
-    hash = dem_world_hash(world);
+    hash = dem_world_hash_get(world);
     if (ledger) {
         const dem_ledger book = dem_ledger_get(world);
         hash = demi_hash(hash, &book, sizeof book);
@@ -140,8 +140,8 @@ int main(int argc, char **argv) {
                 CHECK_EQ(scene_step(first, 1), DEM_OK);
                 CHECK_EQ(scene_step(second, 1), DEM_OK);
             }
-            CHECK_EQ(dem_world_hash(first), one.hash);
-            CHECK_EQ(dem_world_hash(second), one.hash);
+            CHECK_EQ(dem_world_hash_get(first), one.hash);
+            CHECK_EQ(dem_world_hash_get(second), one.hash);
             dem_world_destroy(first);
             dem_world_destroy(second);
         }
@@ -267,13 +267,13 @@ int main(int argc, char **argv) {
             wall = scene_floor(world, glass, -0.01, -0.01, 0.02, 0.02, 1, 1);
             motion.kind = DEM_MOTION_USER;      /* nobody knows how fast it will be */
             motion.function = kicking;
-            dem_wall_motion(world, wall, &motion);
+            dem_wall_motion_set(world, wall, &motion);
             scene_step(world, 1);
             first = dem_counters_get(world).dt;
             if (k == 0) CHECK_EQ(scene_step(world, 400), DEM_OK);
             else for (i = 0; i < 400; i += 4*k - 3) CHECK_EQ(scene_step(world, 4*k - 3), DEM_OK);
             CHECK((double)dem_counters_get(world).dt < 0.9*(double)first);
-            hash[k] = dem_world_hash(world);
+            hash[k] = dem_world_hash_get(world);
             dem_world_destroy(world);
         }
         CHECK_EQ(hash[1], hash[0]);

@@ -157,18 +157,18 @@ int main(int argc, char **argv) {
             dem_pair_set(world, glue, glue, &pair);
             deck = scene_floor(world, glue, -0.5, -0.5, 0.5, 0.5, 1, 1);
             motion = tumbler_motion(&part);
-            CHECK_EQ(dem_wall_motion(world, deck, &motion), DEM_OK);
-            dem_wall_pose(world, deck, &pose);
+            CHECK_EQ(dem_wall_motion_set(world, deck, &motion), DEM_OK);
+            dem_wall_pose_get(world, deck, &pose);
             x = demi_add(pose.position, demi_rotate(pose.rotation, at(0.2, 0.1, 0.0095)));
             grain = dem_sphere_add(world, glue, DEM_R(0.01), x);
             scene_move(world, grain, demi_add(pose.velocity, demi_cross(pose.spin,
                        demi_sub(x, pose.position))), pose.spin);
             CHECK_EQ(dem_world_run(world, 2*2*3.14159265/m.speed, 0, 0), DEM_OK);
-            dem_wall_pose(world, deck, &pose);
+            dem_wall_pose_get(world, deck, &pose);
             first = demi_unrotate(pose.rotation, demi_sub(scene_state(world, grain).position,
                                                         pose.position));
             CHECK_EQ(dem_world_run(world, 100*2*3.14159265/m.speed, 0, 0), DEM_OK);
-            dem_wall_pose(world, deck, &pose);
+            dem_wall_pose_get(world, deck, &pose);
             last = demi_unrotate(pose.rotation, demi_sub(scene_state(world, grain).position,
                                                        pose.position));
             CHECK_NEAR(first.x, 0.2, 1e-3);

@@ -313,14 +313,14 @@ static inline dem_world *walk_make(const walk_scene *s, char *why) {
     dem_wall plane;
     int i, good;
     if (why) *why = 0;
-    if (!w) { if (why) snprintf(why, 512, "%s", dem_create_error(&s->world)); return 0; }
+    if (!w) { if (why) snprintf(why, 512, "%s", dem_world_create_error_get(&s->world)); return 0; }
     memset(body, 0, sizeof body);
     m = dem_material_add(w, &s->material);
     dem_material_add(w, &s->material);
     dem_pair_set(w, m, m, &s->pair);
-    plane = dem_plane_add(w, m, s->plane_point, s->plane_normal);
-    dem_wall_motion(w, plane, &s->motion);
-    dem_cylinder_add(w, m, s->cylinder_point, s->cylinder_axis, s->cylinder_radius, 1);
+    plane = dem_wall_plane_add(w, m, s->plane_point, s->plane_normal);
+    dem_wall_motion_set(w, plane, &s->motion);
+    dem_wall_cylinder_add(w, m, s->cylinder_point, s->cylinder_axis, s->cylinder_radius, 1);
     for (i = 0; i < 4; i++) {
         const double up = 0.998e-3 + 1.99e-3*(i/2), aside = 1.99e-3*(i%2);
         const dem_vec3 x = s->plane_normal.y > 0 ? dem_vec3_make((dem_real)aside, (dem_real)up, 0)
@@ -329,7 +329,7 @@ static inline dem_world *walk_make(const walk_scene *s, char *why) {
     }
     if (!s->world.planar && !(s->plane_normal.y > 0)) {
         const dem_shape pair = dem_shape_cluster_add(w, &s->cluster);
-        dem_sieve_add(w, m, &s->sieve);
+        dem_wall_sieve_add(w, m, &s->sieve);
         body[4] = dem_body_add(w, m, pair, dem_vec3_make(0, DEM_R(5e-3), DEM_R(0.7e-3)), dem_quat_make(1, 0, 0, 0));
     }
     if (s->world.response == DEM_RESPONSE_IMPULSES) {
@@ -348,8 +348,8 @@ static inline dem_world *walk_make(const walk_scene *s, char *why) {
         state.spin = s->spin;
         good = good && dem_body_set(w, body[3], &state) == DEM_OK;
     }
-    if (good && !*dem_world_error(w)) return w;
-    if (why) snprintf(why, 512, "%s", dem_world_error(w));
+    if (good && !*dem_world_error_get(w)) return w;
+    if (why) snprintf(why, 512, "%s", dem_world_error_get(w));
     dem_world_destroy(w);
     return 0;
 }

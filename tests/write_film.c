@@ -32,13 +32,13 @@ static int film(dem_world *w, const char *path, const char *title, dem_material 
             dem_body_remove(w, gone);
             dem_sphere_add(w, stuff, DEM_R(0.003), dem_vec3_make(0, DEM_R(0.03), 0));
         }
-        dem_replay_value(r, "kinetic energy (J)", dem_totals_get(w).kinetic);
-        dem_replay_value(r, "rotational energy (J)", dem_totals_get(w).rotational);
-        dem_replay_value(r, "contacts", dem_counters_get(w).contacts);
-        if (dem_replay_frame(r) != DEM_OK) break;
+        dem_replay_value_set(r, "kinetic energy (J)", dem_totals_get(w).kinetic);
+        dem_replay_value_set(r, "rotational energy (J)", dem_totals_get(w).rotational);
+        dem_replay_value_set(r, "contacts", dem_counters_get(w).contacts);
+        if (dem_replay_frame_write(r) != DEM_OK) break;
     }
     k = r && k == frames && dem_replay_close(r) == DEM_OK;
-    if (!k) fprintf(stderr, "%s\n", dem_world_error(w));
+    if (!k) fprintf(stderr, "%s\n", dem_world_error_get(w));
     dem_world_destroy(w);
     return k;
 }
@@ -61,17 +61,17 @@ static int shapes(const char *path) {
     mesh.vertex_count = 4; mesh.triangle_count = 2; mesh.vertices = square; mesh.triangles = corners;
     twin_desc.count = 2; twin_desc.positions = centres; twin_desc.radius = DEM_R(0.0015);
     twin = dem_shape_cluster_add(w, &twin_desc);
-    dem_cylinder_add(w, stuff[0], dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1), DEM_R(0.04), 1);
-    plate = dem_mesh_add(w, stuff[0], &mesh);
+    dem_wall_cylinder_add(w, stuff[0], dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1), DEM_R(0.04), 1);
+    plate = dem_wall_mesh_add(w, stuff[0], &mesh);
     turning.kind = DEM_MOTION_ROTATING; turning.axis = dem_vec3_make(0, 1, 0); turning.speed = 6;
-    dem_wall_motion(w, plate, &turning);
-    dem_bodies_fill(w, stuff[0], egg, box, 40, 1);
-    dem_bodies_fill(w, stuff[1], twin, box, 40, 2);
-    dem_spheres_fill(w, stuff[1], DEM_R(0.001), box, 60, 3);
+    dem_wall_motion_set(w, plate, &turning);
+    dem_bodies_fill(w, stuff[0], egg, dem_region_make(box), 40, 1);
+    dem_bodies_fill(w, stuff[1], twin, dem_region_make(box), 40, 2);
+    dem_spheres_fill(w, stuff[1], DEM_R(0.001), dem_region_make(box), 60, 3);
     gone = dem_sphere_add(w, stuff[0], DEM_R(0.002), dem_vec3_make(0, DEM_R(0.035), 0));
     for (k = 0; k < dem_bodies_get(w).count; k++) {
         warmth = 300 + k;
-        dem_body_reals_set(w, dem_bodies_id(w, k), &warmth);
+        dem_body_reals_set(w, dem_body_id_get(w, k), &warmth);
     }
     return film(w, path, "shapes </script> & \"quotes\"", stuff[0], 40, gone);
 }
@@ -87,16 +87,17 @@ static int sieve(const char *path) {
     dem_wall wall;
     dem_body gone;
     trough.vertex_count = 4; trough.segment_count = 3; trough.vertices = line; trough.segments = segments;
-    dem_profile_add(w, stuff[0], &trough, DEM_EDGE_RESOLVED);
-    dem_plane_add(w, stuff[0], dem_vec3_make(0, DEM_R(-0.045), 0), dem_vec3_make(0, 1, 0));
+    dem_wall_profile_add(w, stuff[0], &trough, DEM_EDGE_RESOLVED);
+    dem_wall_plane_add(w, stuff[0], dem_vec3_make(0, DEM_R(-0.045), 0), dem_vec3_make(0, 1, 0));
     deck.kind = DEM_SIEVE_SQUARE; deck.normal = dem_vec3_make(0, 1, 0); deck.aperture = DEM_R(0.004);
     deck.bar = DEM_R(0.002); deck.radius = DEM_R(0.025);
-    wall = dem_sieve_add(w, stuff[0], &deck);
+    wall = dem_wall_sieve_add(w, stuff[0], &deck);
     shaking.kind = DEM_MOTION_OSCILLATING; shaking.velocity = dem_vec3_make(1, 1, 0);
     shaking.amplitude = DEM_R(0.002); shaking.frequency = 20;
-    dem_wall_motion(w, wall, &shaking);
-    dem_spheres_fill(w, stuff[0], DEM_R(0.0015), dem_box_make(DEM_R(-0.015), DEM_R(0.005), DEM_R(-0.015), DEM_R(0.015),
-                     DEM_R(0.03), DEM_R(0.015)), 150, 1);
+    dem_wall_motion_set(w, wall, &shaking);
+    dem_spheres_fill(w, stuff[0], DEM_R(0.0015),
+                     dem_region_make(dem_box_make(DEM_R(-0.015), DEM_R(0.005), DEM_R(-0.015), DEM_R(0.015), DEM_R(0.03), DEM_R(0.015))),
+                     150, 1);
     gone = dem_sphere_add(w, stuff[1], DEM_R(0.003), dem_vec3_make(0, DEM_R(0.035), 0));
     return film(w, path, "a sieve", stuff[0], 40, gone);
 }

@@ -34,26 +34,26 @@ static dem_world *drum(void) {
     glass_desc.restitution = DEM_R(0.6);
     glass_desc.friction = DEM_R(0.4);
     glass = dem_material_add(world, &glass_desc);
-    shell = dem_cylinder_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(1, 0, 0),
+    shell = dem_wall_cylinder_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(1, 0, 0),
                              DEM_R(0.02), 1);
     motion.kind = DEM_MOTION_ROTATING;
     motion.axis.x = 1;
     motion.speed = 10;
-    dem_wall_motion(world, shell, &motion);
-    dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(1, 0, 0));
-    dem_plane_add(world, glass, dem_vec3_make(DEM_R(0.12), 0, 0), dem_vec3_make(-1, 0, 0));
+    dem_wall_motion_set(world, shell, &motion);
+    dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(1, 0, 0));
+    dem_wall_plane_add(world, glass, dem_vec3_make(DEM_R(0.12), 0, 0), dem_vec3_make(-1, 0, 0));
     for (k = 2; k >= 0; k--) {
         const dem_real half = DEM_R(0.0135);
         dem_spheres_fill(world, glass, (dem_real)(1e-3*(1 + 0.3*k)),
-                         dem_box_make(0, -half, -half, DEM_R(0.12), half, half), GRAINS/3,
-                         (uint64_t)k + 1);
+                         dem_region_make(dem_box_make(0, -half, -half, DEM_R(0.12), half, half)),
+                         GRAINS/3, (uint64_t)k + 1);
     }
     return world;
 }
 /* The digest with contact memory: that is in it only while there is a list. */
 static uint64_t digest(dem_world *world) {
-    dem_search_now(world);
-    return dem_world_hash(world);
+    dem_candidates_rebuild(world);
+    return dem_world_hash_get(world);
 }
 /* Largest distance between the same grains of two worlds; twos, when each stands once in both. */
 static double apart(const dem_world *a, const dem_world *b, int *twos) {
@@ -94,17 +94,17 @@ int main(int argc, char **argv) {
     desc.transport.exchange_fn = mpi_exchange;
     desc.transport.reduce_fn = mpi_reduce;
     slabs = dem_slabs_create(world, &desc);
-    if (!slabs) { puts(dem_world_error(world)); MPI_Abort(MPI_COMM_WORLD, 1); }
+    if (!slabs) { puts(dem_world_error_get(world)); MPI_Abort(MPI_COMM_WORLD, 1); }
     begun = MPI_Wtime();
     if (dem_slabs_step(slabs, steps) != DEM_OK) {
-        puts(dem_slabs_error(slabs));
+        puts(dem_slabs_error_get(slabs));
         MPI_Abort(MPI_COMM_WORLD, 1);
     }
     seconds = MPI_Wtime() - begun;
     dem_slab_get(slabs, rank, &slab);
     printf("slab %d: %d grains, %d ghosts, %.2f s of %.2f s at work, %.1f kB sent a step\n", rank,
            slab.grains, slab.ghosts, slab.seconds, seconds, 1e-3*(double)slab.bytes/steps);
-    if (dem_slabs_collect(slabs, world) != DEM_OK) puts(dem_slabs_error(slabs));
+    if (dem_slabs_collect(slabs, world) != DEM_OK) puts(dem_slabs_error_get(slabs));
     dem_slabs_destroy(slabs);
 
     one = drum();                               /* the same in one world, and in one process */

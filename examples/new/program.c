@@ -24,19 +24,20 @@ int main(void) {
     dem_material glass = dem_material_add(world, &glass_desc);
 
     /* walls, and 200 grains of 2 mm radius at random places in a box (m) */
-    dem_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-    dem_spheres_fill(world, glass, 2e-3, dem_box_make(-0.015, -0.015, 0, 0.015, 0.015, 0.1), 200, 1);
-    dem_check_print(world, stderr);                     /* what looks wrong, before it runs */
+    dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
+    dem_spheres_fill(world, glass, 2e-3,
+                     dem_region_make(dem_box_make(-0.015, -0.015, 0, 0.015, 0.015, 0.1)), 200, 1);
+    dem_world_check_print(world, stderr);                     /* what looks wrong, before it runs */
 
     /* the run: half a second, filmed 60 times */
     dem_replay *film = dem_replay_open(world, "NAME.html", NULL);
     for (int k = 0; k <= 60; k++) {
         if (k > 0 && dem_world_run(world, 0.5/60, dem_progress_print, stderr) != DEM_OK) break;
-        dem_replay_value(film, "kinetic energy (J)", dem_totals_get(world).kinetic);
-        dem_replay_frame(film);
+        dem_replay_value_set(film, "kinetic energy (J)", dem_totals_get(world).kinetic);
+        dem_replay_frame_write(film);
     }
     dem_replay_close(film);
-    if (*dem_world_error(world)) printf("%s\n", dem_world_error(world));
+    if (*dem_world_error_get(world)) printf("%s\n", dem_world_error_get(world));
     dem_world_report(world, stdout);                    /* what was simulated, its price, the step and what binds it */
     dem_world_destroy(world);
     return 0;

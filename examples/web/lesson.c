@@ -48,7 +48,7 @@ static dem_wall wall_of(int first) {
         for (int k = 0; k < 2; k++) segments[2*profile.segment_count + k] = profile.vertex_count++;
         profile.segment_count++;
     }
-    return dem_profile_add(now.world, now.material, &profile, DEM_EDGE_RESOLVED);
+    return dem_wall_profile_add(now.world, now.material, &profile, DEM_EDGE_RESOLVED);
 }
 /* A ring with a lip of a grain's radius at every second corner. */
 static dem_wall drum_make(void) {
@@ -93,9 +93,9 @@ LESSON_API(lesson_set) int lesson_set(double friction, double restitution, doubl
     } else if (now.scene == PILE) {
         motion.kind = DEM_MOTION_TRANSLATING;
         motion.velocity.y = own;
-        motion.start = fmax(0, 0.5 - dem_world_time(now.world));        /* s: the grains lie still by then */
+        motion.start = fmax(0, 0.5 - dem_world_time_get(now.world));        /* s: the grains lie still by then */
     }
-    if (now.scene != HOPPER && dem_wall_motion(now.world, now.moving, &motion) != DEM_OK) return 1;
+    if (now.scene != HOPPER && dem_wall_motion_set(now.world, now.moving, &motion) != DEM_OK) return 1;
     return dem_material_set(now.world, now.material, &now.gravel) != DEM_OK;
 }
 /* Where grains may begin: in the drum, off its lips. */
@@ -137,7 +137,8 @@ LESSON_API(lesson_begin) int lesson_begin(int scene, int grains, double friction
     const dem_real R = now.R, wide = scene == DRUM ? R : scene == HOPPER ? 0.84*R : 0.59*R;
     const dem_box room = dem_box_make(-wide, scene == DRUM ? -R : scene == HOPPER ? 0.5*R : 0, 0, wide, 6*R, 0);
     for (int k = 0; k < 2; k++)
-        dem_spheres_pack(now.world, now.material, radius[k], 0.02*r, room, inside, 0, (int)count[k]);
+        dem_spheres_pack(now.world, now.material, radius[k], 0.02*r,
+                         dem_region_inside_make(room, inside, 0), (int)count[k]);
     if (scene != DRUM) {
         dem_outlet_desc below = DEM_OUTLET_DESC;            /* counts in the hopper's box; takes away beside a pile */
         below.box = dem_box_make(-9*R, -9*R, 0, 9*R, -3*r, 0);
@@ -146,25 +147,25 @@ LESSON_API(lesson_begin) int lesson_begin(int scene, int grains, double friction
     }
     now.start = calloc((size_t)grains + 1, sizeof *now.start);
     now.grains = calloc((size_t)grains + 1, NUMBERS*sizeof *now.grains);
-    if (!now.start || !now.grains || dem_step_advice(now.world, &advice) != DEM_OK) return 1;
+    if (!now.start || !now.grains || dem_step_advice_get(now.world, &advice) != DEM_OK) return 1;
     return dem_world_dt_set(now.world, 0.8*advice.dt_max) != DEM_OK || lesson_set(friction, restitution, own);
 }
 /* Sliders may ask for contacts that the time step is too long for (little restitution: a strong dashpot): it is made
    shorter then, and the steps go on. */
 LESSON_API(lesson_step) int lesson_step(int steps) {
-    const uint64_t end = dem_world_steps(now.world) + (uint64_t)steps;
+    const uint64_t end = dem_world_steps_get(now.world) + (uint64_t)steps;
     dem_result result = DEM_OK;
-    for (int i = 0; i < 20 && dem_world_steps(now.world) < end; i++) {
-        result = dem_world_step(now.world, (int)(end - dem_world_steps(now.world)));
+    for (int i = 0; i < 20 && dem_world_steps_get(now.world) < end; i++) {
+        result = dem_world_step(now.world, (int)(end - dem_world_steps_get(now.world)));
         if (result == DEM_OK || result != DEM_ERROR_TIME_STEP) break;
         if (dem_world_dt_set(now.world, 0.7*dem_world_desc_get(now.world).dt) != DEM_OK) break;
     }
     return result != DEM_OK;
 }
-LESSON_API(lesson_steps) double lesson_steps(void) { return (double)dem_world_steps(now.world); }
-LESSON_API(lesson_time) double lesson_time(void) { return dem_world_time(now.world); }
-LESSON_API(lesson_hash) uint64_t lesson_hash(void) { return dem_world_hash(now.world); }
-LESSON_API(lesson_error) const char *lesson_error(void) { return dem_world_error(now.world); }
+LESSON_API(lesson_steps) double lesson_steps(void) { return (double)dem_world_steps_get(now.world); }
+LESSON_API(lesson_time) double lesson_time(void) { return dem_world_time_get(now.world); }
+LESSON_API(lesson_hash) uint64_t lesson_hash(void) { return dem_world_hash_get(now.world); }
+LESSON_API(lesson_error) const char *lesson_error(void) { return dem_world_error_get(now.world); }
 LESSON_API(lesson_overlap) double lesson_overlap(void) { return dem_counters_get(now.world).overlap_max; }
 LESSON_API(lesson_count) int lesson_count(void) { return dem_bodies_get(now.world).count; }
 /* lesson_count x 5: x, y, radius [m], speed [m/s], where it was when first asked for, about 0 to 1 (in the
@@ -187,7 +188,7 @@ LESSON_API(lesson_line_count) int lesson_line_count(void) { return now.line_coun
 LESSON_API(lesson_lines) const float *lesson_lines(void) {
     dem_pose pose;
     memcpy(now.moved, now.lines, sizeof now.moved);
-    if (dem_wall_pose(now.world, now.moving, &pose) != DEM_OK) return now.moved;
+    if (dem_wall_pose_get(now.world, now.moving, &pose) != DEM_OK) return now.moved;
     for (int i = 2*now.still; i < 2*now.line_count; i++) {
         const float *x = now.lines + 2*i;
         now.moved[2*i] = (float)(pose.position.x + pose.rotation[0]*x[0] + pose.rotation[1]*x[1]);
@@ -201,8 +202,8 @@ LESSON_API(lesson_measure) double lesson_measure(void) {
     dem_repose slope;
     dem_outlet_state out;
     if (now.scene == HOPPER) return dem_outlet_get(now.world, now.out, &out) == DEM_OK ? (double)out.total : 0;
-    if ((now.scene == DRUM ? dem_repose_drum(now.world, all, dem_vec3_make(0, 0, 1), &slope)
-                           : dem_repose_heap(now.world, all, &slope)) != DEM_OK) return -100;
+    if ((now.scene == DRUM ? dem_repose_drum_get(now.world, all, dem_vec3_make(0, 0, 1), &slope)
+                           : dem_repose_heap_get(now.world, all, &slope)) != DEM_OK) return -100;
     return slope.angle*180/pi;
 }
 

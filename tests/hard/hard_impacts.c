@@ -110,7 +110,7 @@ static dem_wall sheets_add(dem_world *world, dem_material m, const sweep *q, int
                 t += 2;
             }
     }
-    wall = dem_mesh_add(world, m, &mesh);
+    wall = dem_wall_mesh_add(world, m, &mesh);
     free(mesh.vertices);
     free(mesh.triangles);
     return wall;
@@ -127,7 +127,7 @@ static dem_wall grains_add(dem_world *world, dem_material m, const sweep *q) {
         place[3*i + 1] = c.y + (dem_real)((int)(k/side) - 2.5);
         place[3*i + 2] = DEM_R(-0.7);
     }
-    wall = dem_grains_wall_add(world, m, q->lanes*side*side, place, DEM_R(0.7), 1);
+    wall = dem_wall_grains_add(world, m, q->lanes*side*side, place, DEM_R(0.7), 1);
     free(place);
     return wall;
 }
@@ -148,7 +148,7 @@ static dem_wall sieve_add(dem_world *world, dem_material m, target t) {
     s.point = at(0, 0, -(t == on_lifted ? 0.45 : s.thickness > 0 ? 0.25
                          : s.kind == DEM_SIEVE_WIRES || s.kind == DEM_SIEVE_BARS ? 0.3 : 0));
     s.length = t == on_slots ? DEM_R(4) : 0;
-    return dem_sieve_add(world, m, &s);
+    return dem_wall_sieve_add(world, m, &s);
 }
 static dem_wall target_add(dem_world *world, dem_material m, const sweep *q) {
     static dem_real corners[] = {-3, DEM_R(-0.9), -1, 0, 0, DEM_R(-0.1), DEM_R(0.5), -1,
@@ -156,9 +156,9 @@ static dem_wall target_add(dem_world *world, dem_material m, const sweep *q) {
     static int32_t segments[] = {0, 1, 1, 2, 2, 3, 3, 4};
     dem_profile profile;
     switch (q->at) {
-    case on_plane: return dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-    case in_cylinder: return dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 4, 1);
-    case on_rod: return dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 1, 0);
+    case on_plane: return dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    case in_cylinder: return dem_wall_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 4, 1);
+    case on_rod: return dem_wall_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 1, 0);
     case on_bumps: return sheets_add(world, m, q, 8, 4, 0.15);
     case on_plate: return sheets_add(world, m, q, 2, 1.5, 0);
     case on_grains: return grains_add(world, m, q);
@@ -167,7 +167,7 @@ static dem_wall target_add(dem_world *world, dem_material m, const sweep *q) {
         profile.segment_count = 4;
         profile.vertices = corners;
         profile.segments = segments;
-        return dem_profile_add(world, m, &profile, DEM_EDGE_RESOLVED);
+        return dem_wall_profile_add(world, m, &profile, DEM_EDGE_RESOLVED);
     default: return sieve_add(world, m, q->at);
     }
 }
@@ -220,7 +220,7 @@ static dem_body body_add(dem_world *world, dem_material m, dem_shape shape, doub
     const dem_real x[3] = {place.x, place.y, place.z};
     if (!shape.id) return dem_sphere_add(world, m, size, place);
     dem_bodies_add(world, m, shape, 1, x, turn, 0, 0, &size);
-    return dem_bodies_id(world, dem_bodies_get(world).count - 1);
+    return dem_body_id_get(world, dem_bodies_get(world).count - 1);
 }
 /* Of the material of a lane; friction: 0, 0.4 and the most, in turns. */
 static const double restitutions[stuffs] = {1, 1, 1, 0.9, 0.9, 0.9, 0.5, 0.5, 0.5, 0.1, 0.1, 0.1};
@@ -285,7 +285,7 @@ static void sweep_run(sweep *q) {
     double time;
     int i;
     memset(&advice, 0, sizeof advice);
-    CHECK_EQ(dem_step_advice(world, &advice), DEM_OK);
+    CHECK_EQ(dem_step_advice_get(world, &advice), DEM_OK);
     dem_world_destroy(world);
     world = sweep_world(q, q->step*(double)advice.dt, lanes);
     q->hits = q->gaining = 0;

@@ -84,7 +84,7 @@ static void impacts(uint64_t seed, int kind, int on_floor, int *hit, int *gained
         info.volume = 1;
         info.inertia = at(0.4*0.008*0.008, 0.4*0.008*0.008, 0.4*0.008*0.008);
     }
-    if (on_floor) dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    if (on_floor) dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     for (i = 0; i < lanes; i++) {
         before[i] = 0;
         for (k = 0; k < each; k++) {
@@ -134,7 +134,7 @@ static int rod_slides(double friction, double way, double speed[20], double *slo
     tt = 1 + az*az*per;
     nt = -ax*az*per;
     *slows = way*g/(nn - friction*way*nt)*(nt - friction*way*tt);
-    floor = dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    floor = dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     /* its axis, x, turned down about y: the lower end is at + x */
     body = dem_body_add(world, m, shape, at(0, 0, half*sin(lean) + r),
                         dem_quat_make((dem_real)cos(lean/2), 0, (dem_real)sin(lean/2), 0));
@@ -166,7 +166,7 @@ static dem_world *stack_of_boxes(void) {
     dem_world *world = rigid(g, 1e-3, 0, 0.5, 0, &m);
     const dem_shape shape = box(world, 0.1, 0.1, 0.05, 0.01);
     int k;
-    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     for (k = 0; k < 10; k++) dem_body_add(world, m, shape, at(0, 0, 0.025 + 0.05*k), dem_quat_make(1, 0, 0, 0));
     return world;
 }
@@ -175,7 +175,7 @@ static dem_world *column_of_spheres(int count) {
     dem_material m;
     dem_world *world = rigid(g, 1e-3, 0, 0.5, 0.05, &m);
     int k;
-    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     for (k = 0; k < count; k++) dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0.01 + 0.02*k));
     return world;
 }
@@ -198,8 +198,9 @@ static dem_world *heap(int count) {
     dem_pair_get(world, m, m, &pair);
     pair.spinning_friction = DEM_R(0.05);        /* who lies on one contact may turn about it for ever otherwise */
     dem_pair_set(world, m, m, &pair);
-    dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-    CHECK_EQ((int)dem_spheres_fill(world, m, DEM_R(6e-4), box_of(0, 0, 0, side, side, 2.2*side), count, 1), count);
+    dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    CHECK_EQ((int)dem_spheres_fill(world, m, DEM_R(6e-4), dem_region_make(box_of(0, 0, 0, side, side, 2.2*side)),
+                                   count, 1), count);
     CHECK_EQ(dem_world_run(world, 0.3, 0, 0), DEM_OK);
     CHECK_EQ(dem_world_dt_set(world, DEM_R(1e-3)), DEM_OK);
     return world;
@@ -215,17 +216,17 @@ static double stands(dem_world *world, double side, int settling) {
     int i;
     CHECK_EQ(scene_step(world, settling), DEM_OK);
     for (i = 0; i < count; i++) {
-        who[i] = dem_bodies_id(world, i);
+        who[i] = dem_body_id_get(world, i);
         was[i] = scene_state(world, who[i]).position;
     }
-    before = dem_world_time(world);
+    before = dem_world_time_get(world);
     CHECK_EQ(scene_step(world, steps), DEM_OK);
     for (i = 0; i < count; i++) {
         const dem_body_state s = scene_state(world, who[i]);
         const double x = nearest((double)(s.position.x - was[i].x), side);
         const double y = nearest((double)(s.position.y - was[i].y), side);
         const double z = (double)(s.position.z - was[i].z), wx = (double)s.spin.x, wy = (double)s.spin.y;
-        most = fmax(most, sqrt(x*x + y*y + z*z)/(dem_world_time(world) - before));
+        most = fmax(most, sqrt(x*x + y*y + z*z)/(dem_world_time_get(world) - before));
         most = fmax(most, (double)s.radius*sqrt(wx*wx + wy*wy + (double)(s.spin.z*s.spin.z)));
     }
     free(was);

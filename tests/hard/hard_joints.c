@@ -32,7 +32,7 @@ static dem_joint hold(mechanism *m, uint64_t *seed, dem_body a, dem_body b, dem_
     }
     joint = dem_joint_add(m->world, &desc);
     if (joint.id) m->joints++;
-    else dem_world_error(m->world);             /* both fixed: there is nothing to hold */
+    else dem_world_error_get(m->world);             /* both fixed: there is nothing to hold */
     return joint;
 }
 static mechanism mechanism_make(uint64_t *seed) {
@@ -61,7 +61,7 @@ static mechanism mechanism_make(uint64_t *seed) {
     stuff = scene_material(m.world, 1e7, scene_random(seed), scene_random(seed), 0);
     for (i = 0; i < 24; i++) corners[i] = (dem_real)(radius*(i % 3 ? 0.4 : 0.9)*((i/3 >> i % 3 & 1) ? 1 : -1));
     box = dem_shape_polyhedron_add(m.world, 8, corners);
-    if (m.contacts) dem_plane_add(m.world, stuff, at(0, 0, -2*radius), at(0, 0, 1));
+    if (m.contacts) dem_wall_plane_add(m.world, stuff, at(0, 0, -2*radius), at(0, 0, 1));
     for (i = 0; i < m.bodies; i++) {
         const int parent = (int)(i*scene_random(seed));
         double nearest;

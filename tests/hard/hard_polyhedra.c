@@ -71,14 +71,14 @@ static void stone_sheet(dem_world *world, dem_material m, stone_target target, d
     mesh.vertices = v;
     for (k = 0; k < 3*mesh.vertex_count; k++)
         v[k] = (k%3 == 0 ? c.x : k%3 == 1 ? c.y : c.z) + (dem_real)x[k];
-    CHECK(dem_mesh_add(world, m, &mesh).id);
+    CHECK(dem_wall_mesh_add(world, m, &mesh).id);
 }
 /* What stands still in all lanes. */
 static void stone_walls(dem_world *world, dem_material m, stone_target target) {
     int i;
-    if (target == on_floor) dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-    if (target == in_tube) dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 4, 1);
-    if (target == on_tube) dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, 0);
+    if (target == on_floor) dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    if (target == in_tube) dem_wall_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 4, 1);
+    if (target == on_tube) dem_wall_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, 0);
     if (target == on_weave || target == on_holes || target == on_rounds) {
         dem_sieve_desc s = DEM_SIEVE_DESC;
         s.kind = target == on_weave ? DEM_SIEVE_WIRES : target == on_holes ? DEM_SIEVE_SQUARE : DEM_SIEVE_ROUND;
@@ -86,13 +86,13 @@ static void stone_walls(dem_world *world, dem_material m, stone_target target) {
         s.bar = DEM_R(0.6);
         s.thickness = target == on_weave ? 0 : DEM_R(0.5);
         s.lift = target == on_weave ? DEM_R(0.5) : 0;
-        CHECK(dem_sieve_add(world, m, &s).id);
+        CHECK(dem_wall_sieve_add(world, m, &s).id);
     }
     for (i = 0; i < stone_lanes; i++) {
         static const dem_real radii[2] = {2, DEM_R(1.6)}, heights[2] = {-3, 0};
         const dem_vec3 c = stone_place(target, i);
         if (target == on_roof || target == on_edge || target == on_hood) stone_sheet(world, m, target, c);
-        if (target == on_rim) CHECK(dem_revolved_add(world, m, c, at(0, 0, 1), 2, radii, heights).id);
+        if (target == on_rim) CHECK(dem_wall_revolved_add(world, m, c, at(0, 0, 1), 2, radii, heights).id);
     }
 }
 /* Impacts of one kind in so many lanes. restitution 1 and no friction: elastic. */
@@ -148,7 +148,7 @@ static void stones_throw(stone_target target, int lanes, int elastic, uint64_t s
         lane[i].before = stone_energy(world, lane[i].a) + (lane[i].b.slot ? stone_energy(world, lane[i].b) : 0);
     }
     CHECK_EQ(dem_world_run(world, 2.5, 0, 0), DEM_OK);
-    if (*dem_world_error(world)) printf("%s: %s\n", stone_target_name[target], dem_world_error(world));
+    if (*dem_world_error_get(world)) printf("%s: %s\n", stone_target_name[target], dem_world_error_get(world));
     for (i = 0; i < lanes; i++) {
         double after = stone_energy(world, lane[i].a), gain;
         int k, touching = 0;

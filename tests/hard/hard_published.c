@@ -33,7 +33,7 @@ static void set_motion(dem_world *world, dem_body body, dem_vec3 velocity, dem_v
     dem_body_set(world, body, &s);
 }
 static void step(dem_world *world, int steps) {
-    if (dem_world_step(world, steps) != DEM_OK) puts(dem_world_error(world));
+    if (dem_world_step(world, steps) != DEM_OK) puts(dem_world_error_get(world));
 }
 static dem_world_desc one_thread(double dt) {
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -71,7 +71,7 @@ static dem_wall mesh_add(dem_world *world, dem_material material, const dem_real
     mesh.triangle_count = triangle_count;
     mesh.vertices = (dem_real *)(uintptr_t)vertices;    /* the data is copied, never written */
     mesh.triangles = (int32_t *)(uintptr_t)triangles;
-    return dem_mesh_add(world, material, &mesh);
+    return dem_wall_mesh_add(world, material, &mesh);
 }
 /* A floor y = 0 from (x0, z0) to (x1, z1) in nx by nz quads of two triangles. */
 static dem_wall grid_floor(dem_world *world, dem_material material, double x0, double z0,
@@ -130,7 +130,7 @@ static double growth(mode what, dem_integrator integrator, double dt, int steps,
         b = dem_sphere_add(world, m, 1, at(-1 + press/2, 0, 0));
         set_motion(world, b, mix(at(0, 0, 0), -nudge, way), at(0, 0, 0));
     } else {
-        dem_plane_add(world, m, at(0, 0, 0), at(1, 0, 0));
+        dem_wall_plane_add(world, m, at(0, 0, 0), at(1, 0, 0));
         a = b = dem_sphere_add(world, m, 1, at(1 - press, 0, 0));
     }
     set_motion(world, a, mix(at(0, 0, 0), nudge, way), at(0, 0, 0));
@@ -224,7 +224,7 @@ static turned turn_once(dem_vec3 axis, int own_law, int steps) {
     for (i = 0; i < 2; i++)
         set_motion(world, body[i], mix(at(0, 0, 0), (i ? 1 : -1)*rate*distance/2, side),
                    mix(at(0, 0, 0), rate, axis));            /* no slip over a step */
-    CHECK_EQ(dem_search_now(world), DEM_OK); /* setting a body's state drops the list */
+    CHECK_EQ(dem_candidates_rebuild(world), DEM_OK); /* setting a body's state drops the list */
     CHECK_EQ(dem_contacts_get(world, &c, 1), 1);
     f0 = mix(c.force, -dot(c.force, c.normal), c.normal);
     size0 = length(f0);
@@ -300,8 +300,8 @@ static int pairs_by_force(const dem_world *world, double skin, uint32_t *out) {
             const double dx = (double)(p[0] - q[0]), dy = (double)(p[1] - q[1]);
             const double dz = (double)(p[2] - q[2]), cut = (double)(p[3] + q[3]) + skin;
             if (!(dx*dx + dy*dy + dz*dz < cut*cut)) continue;
-            out[2*n] = dem_bodies_id(world, i).slot;
-            out[2*n + 1] = dem_bodies_id(world, j).slot;
+            out[2*n] = dem_body_id_get(world, i).slot;
+            out[2*n + 1] = dem_body_id_get(world, j).slot;
             n++;
         }
     pairs_sort(out, n);
@@ -336,7 +336,7 @@ static dem_wall target_add(dem_world *world, dem_material m, target t) {
     case EDGE: return mesh_add(world, m, edge, 4, edge_corners, 2);
     case VERTEX: return mesh_add(world, m, fan, 7, fan_corners, 6);
     case GRID: return grid_floor(world, m, -2, -2, 2, 2, 20, 20); /* a vertex below the centre */
-    case PLANE: return dem_plane_add(world, m, at(0, 0, 0), at(0, 1, 0));
+    case PLANE: return dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 1, 0));
     default: return none;
     }
 }
@@ -348,26 +348,26 @@ int main(int argc, char **argv) {
        k and m. */
     TEST("stability limit: a sphere on a linear wall stays bounded below dt = 2 sqrt(m/k) and "
          "blows up above") {
-        check_limit(WALL_NORMAL, DEM_SYMPLECTIC_EULER, 2, 0.02);
-        check_limit(WALL_NORMAL, DEM_LEAPFROG, 2, 0.02);
-        check_limit(WALL_NORMAL, DEM_VELOCITY_VERLET, 2, 0.02);
-        check_limit(WALL_NORMAL, DEM_POSITION_VERLET, 2, 0.02);
+        check_limit(WALL_NORMAL, DEM_INTEGRATOR_SYMPLECTIC_EULER, 2, 0.02);
+        check_limit(WALL_NORMAL, DEM_INTEGRATOR_LEAPFROG, 2, 0.02);
+        check_limit(WALL_NORMAL, DEM_INTEGRATOR_VELOCITY_VERLET, 2, 0.02);
+        check_limit(WALL_NORMAL, DEM_INTEGRATOR_POSITION_VERLET, 2, 0.02);
     }
     TEST("stability limit: 1.41421 sqrt(m/k) for two equal spheres that press on each other") {
-        check_limit(PAIR_NORMAL, DEM_SYMPLECTIC_EULER, sqrt(2.0), 0.01);
-        check_limit(PAIR_NORMAL, DEM_VELOCITY_VERLET, sqrt(2.0), 0.01);
+        check_limit(PAIR_NORMAL, DEM_INTEGRATOR_SYMPLECTIC_EULER, sqrt(2.0), 0.01);
+        check_limit(PAIR_NORMAL, DEM_INTEGRATOR_VELOCITY_VERLET, sqrt(2.0), 0.01);
     }
     TEST("stability limit: 1.06904 sqrt(m/kt) for the tangential spring of a sphere on a wall, "
          "spin included") {
-        check_limit(WALL_TANGENT, DEM_SYMPLECTIC_EULER, 2*sqrt(2.0/7), 0.01);
-        check_limit(WALL_TANGENT, DEM_LEAPFROG, 2*sqrt(2.0/7), 0.01);
-        check_limit(WALL_TANGENT, DEM_VELOCITY_VERLET, 2*sqrt(2.0/7), 0.01);
+        check_limit(WALL_TANGENT, DEM_INTEGRATOR_SYMPLECTIC_EULER, 2*sqrt(2.0/7), 0.01);
+        check_limit(WALL_TANGENT, DEM_INTEGRATOR_LEAPFROG, 2*sqrt(2.0/7), 0.01);
+        check_limit(WALL_TANGENT, DEM_INTEGRATOR_VELOCITY_VERLET, 2*sqrt(2.0/7), 0.01);
     }
     TEST("stability limit: .755929 sqrt(m/kt) for the tangential spring between two equal "
          "spheres") {
-        check_limit(PAIR_TANGENT, DEM_SYMPLECTIC_EULER, 2*sqrt(1.0/7), 0.01);
-        check_limit(PAIR_TANGENT, DEM_LEAPFROG, 2*sqrt(1.0/7), 0.01);
-        check_limit(PAIR_TANGENT, DEM_VELOCITY_VERLET, 2*sqrt(1.0/7), 0.01);
+        check_limit(PAIR_TANGENT, DEM_INTEGRATOR_SYMPLECTIC_EULER, 2*sqrt(1.0/7), 0.01);
+        check_limit(PAIR_TANGENT, DEM_INTEGRATOR_LEAPFROG, 2*sqrt(1.0/7), 0.01);
+        check_limit(PAIR_TANGENT, DEM_INTEGRATOR_VELOCITY_VERLET, 2*sqrt(1.0/7), 0.01);
     }
 
     TEST("Rayleigh's time step: pi R sqrt(rho/G)/(.1631 nu + .8766), 12.928 us for Chung & Ooi's "
@@ -383,7 +383,7 @@ int main(int argc, char **argv) {
             desc.impact_speed = 20;
             world = dem_world_create(&desc);
             dem_sphere_add(world, dem_material_add(world, &stuff), DEM_R(0.01), at(0, 0, 0));
-            CHECK_EQ(dem_step_advice(world, &advice), DEM_OK);
+            CHECK_EQ(dem_step_advice_get(world, &advice), DEM_OK);
             /* the formula */
             CHECK_REL(advice.rayleigh, pi*0.01*sqrt(2800/shear)/(0.1631*nu[i] + 0.8766), 1e-6);
             /* as printed */
@@ -455,7 +455,7 @@ int main(int argc, char **argv) {
                 desc.normal_law = DEM_NORMAL_LINEAR;
                 world = dem_world_create(&desc);
                 m = dem_material_add(world, &stuff);
-                if (i) dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+                if (i) dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
                 else mesh_add(world, m, vertices, 8, triangles, 6);
                 body = dem_sphere_add(world, m, DEM_R(0.5), at(2, k == 1 ? 0 : -0.5, 0.4995));
                 set_motion(world, body, at(-1, k == 2 ? 0.4 : 0, 0), at(0, 0, 0));
@@ -486,12 +486,12 @@ int main(int argc, char **argv) {
             world = dem_world_create(&desc);
             m = dem_material_add(world, &stuff);
             if (i) {
-                dem_plane_add(world, m, at(0, 0, 0), at(0, 1, 0));
-                dem_plane_add(world, m, at(0, 2*side, 0), at(0, -1, 0));
-                dem_plane_add(world, m, at(-side, 0, 0), at(1, 0, 0));
-                dem_plane_add(world, m, at(side, 0, 0), at(-1, 0, 0));
-                dem_plane_add(world, m, at(0, 0, -side), at(0, 0, 1));
-                dem_plane_add(world, m, at(0, 0, side), at(0, 0, -1));
+                dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 1, 0));
+                dem_wall_plane_add(world, m, at(0, 2*side, 0), at(0, -1, 0));
+                dem_wall_plane_add(world, m, at(-side, 0, 0), at(1, 0, 0));
+                dem_wall_plane_add(world, m, at(side, 0, 0), at(-1, 0, 0));
+                dem_wall_plane_add(world, m, at(0, 0, -side), at(0, 0, 1));
+                dem_wall_plane_add(world, m, at(0, 0, side), at(0, 0, -1));
             } else {                          /* corner c: bits x, y, z */
                 static const int32_t faces[] = {0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6,
                                                 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3,
@@ -550,7 +550,7 @@ int main(int argc, char **argv) {
          "finds") {
         static uint32_t found[2*20000], right[2*20000];
         int method;
-        for (method = DEM_SEARCH_ALL_PAIRS; method <= DEM_SEARCH_LEVELS; method++) {
+        for (method = DEM_SEARCH_ALL_PAIRS; method <= DEM_SEARCH_HIERARCHICAL; method++) {
             const dem_material_desc stuff = hertz_stuff(2500, 1e7, 0.25, 0.8, 0.3);
             dem_world_desc desc = one_thread(1e-6);
             uint64_t random = 7;
@@ -579,7 +579,7 @@ int main(int argc, char **argv) {
                 n++;
             }
             for (round = 0; round < 5; round++) {
-                CHECK_EQ(dem_search_now(world), DEM_OK);
+                CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
                 i = dem_candidates_get(world, found, 20000);
                 expected = pairs_by_force(world, (double)dem_counters_get(world).skin, right);
                 CHECK_EQ(dem_counters_get(world).search, method);
@@ -610,9 +610,9 @@ int main(int argc, char **argv) {
         desc.normal_law = DEM_NORMAL_LINEAR;
         world = dem_world_create(&desc);
         mat = dem_material_add(world, &stuff);
-        dem_plane_add(world, mat, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_plane_add(world, mat, at(0, 0, 0), at(0, 0, 1));
         body = dem_sphere_add(world, mat, DEM_R(0.1), at(0, 0, top));
-        while (dem_world_time(world) < 10) {
+        while (dem_world_time_get(world) < 10) {
             dem_body_state s;
             step(world, 50);
             s = state_of(world, body);
@@ -685,7 +685,7 @@ int main(int argc, char **argv) {
             desc.gravity.y = DEM_R(-9.81);
             world = dem_world_create(&desc);
             m = dem_material_add(world, &stuff);
-            if (t == 0) dem_plane_add(world, m, at(0, 0, 0), at(0, 1, 0));
+            if (t == 0) dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 1, 0));
             else grid_floor(world, m, -1, -1, 6, 1.1, t == 1 ? 1 : 28, t == 1 ? 1 : 10);
             dem_coefficients_get(world, m, m, DEM_R(0.3), 0, &c);
             sink = pow(mass*9.81/(double)c.kn, 2.0/3);
@@ -734,7 +734,7 @@ int main(int argc, char **argv) {
                         set_motion(world, dem_sphere_add(world, stuff, DEM_R(0.005), at(0, 0, 0)),
                                    at(1, tangent[j], 0), at(0, 0, 0));
                         dem_sphere_add(world, stuff, DEM_R(0.005), at(0.0101, 0, 0));
-                        dem_step_advice(world, &advice);
+                        dem_step_advice_get(world, &advice);
                         desc.dt = advice.dt/2;
                     }
                     before = dem_totals_get(world).kinetic;

@@ -102,8 +102,8 @@ static wide scale_searched(const dem_ellipsoid *a, const dem_ellipsoid *b) {
 typedef struct worst { double scale, swap, normal; int iterations; } worst;
 /* Against brute force, and with a and b exchanged. */
 static void meet(const dem_ellipsoid *a, const dem_ellipsoid *b, worst *w) {
-    const dem_ellipsoid_contact m = dem_ellipsoids_contact(a, b, 0);
-    const dem_ellipsoid_contact n = dem_ellipsoids_contact(b, a, 0);
+    const dem_ellipsoid_contact m = dem_ellipsoids_contact_get(a, b, 0);
+    const dem_ellipsoid_contact n = dem_ellipsoids_contact_get(b, a, 0);
     const dem_vec3 sum = demi_add(m.normal, n.normal);
     const double should = (double)scale_searched(a, b);
     CHECK(demi_finite(m.scale) && demi_finite3(m.point) && demi_finite3(m.normal));
@@ -168,7 +168,7 @@ static void meet_parallel(int way, double aspect, uint64_t *seed) {
                 : at(2*(double)s.x*(1 + gap), 0, off*(double)s.z));
             dem_ellipsoid a = egg(0, 0, 0, 1, 1, 1, q), b = a;
             b.position = r;
-            b.orientation = dem_quat_times(q, t);
+            b.orientation = dem_quat_multiply(q, t);
             a.semi_axes = b.semi_axes = s;
             meet(&a, &b, &w);
         }
@@ -224,7 +224,7 @@ static outcome collide(dem_vec3 s, dem_quat qa, dem_quat qb, dem_vec3 from, dem_
         a = dem_body_add(world, m, shape, at(0, 0, 0), qa);
         b = dem_body_add(world, m, shape, k ? demi_scale(from,
             (dem_real)(1 + before*4*(double)desc.dt/size)) : from, qb);
-        CHECK_EQ(dem_step_advice(world, &advice), DEM_OK);
+        CHECK_EQ(dem_step_advice_get(world, &advice), DEM_OK);
         desc.dt = (dem_real)(share*(double)advice.dt_max);
         o.rate = pi/20/(double)advice.dt_max;
         if ((double)desc.dt*(double)demi_length(spin) > 0.1)
@@ -305,7 +305,7 @@ static void collide_some(double aspect, int way, double spin) {
 enum { ON_PLANE, ON_FACE, ON_EDGE, ON_VERTEX, GROUNDS };
 static void ground_add(dem_world *world, dem_material m, int ground) {
     const double x = ground == ON_FACE ? 0.013 : ground == ON_EDGE ? 0.02 : 0;
-    if (ground == ON_PLANE) dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+    if (ground == ON_PLANE) dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
     else scene_floor(world, m, -0.08 + x, -0.08 + (ground == ON_FACE ? 0.006 : 0), 0.08 + x,
                      0.08 + (ground == ON_FACE ? 0.006 : 0), 4, 4);
 }
@@ -392,7 +392,7 @@ static dem_wall trough_add(dem_world *world, dem_material m, double s) {
     mesh.triangle_count = 6;
     mesh.vertices = v;
     mesh.triangles = t;
-    return dem_mesh_add(world, m, &mesh);
+    return dem_wall_mesh_add(world, m, &mesh);
 }
 
 int main(int argc, char **argv) {
@@ -425,24 +425,24 @@ int main(int argc, char **argv) {
             const double g = gaps[i], eps = single ? 1e-6 : 1e-12;
             dem_ellipsoid a = egg(0, 0, 0, 1, 1, 1000, upright()), b = a;
             b.position = at(0, 0, 2000*g);
-            CHECK_NEAR(dem_ellipsoids_contact(&a, &b, 0).scale, g, eps);
+            CHECK_NEAR(dem_ellipsoids_contact_get(&a, &b, 0).scale, g, eps);
             b.position = at(2*g, 0, 0);
-            CHECK_NEAR(dem_ellipsoids_contact(&a, &b, 0).scale, g, eps);
+            CHECK_NEAR(dem_ellipsoids_contact_get(&a, &b, 0).scale, g, eps);
             b.position = at(0, 2*g, 0);         /* crossed: thin on thin */
             b.orientation = cross;
-            CHECK_NEAR(dem_ellipsoids_contact(&a, &b, 0).scale, g, single ? 1e-4 : 1e-9);
+            CHECK_NEAR(dem_ellipsoids_contact_get(&a, &b, 0).scale, g, single ? 1e-4 : 1e-9);
             b.position = at(0, 0, 1001*g);      /* tip on side */
-            CHECK_NEAR(dem_ellipsoids_contact(&a, &b, 0).scale, g, single ? 1e-4 : 1e-9);
+            CHECK_NEAR(dem_ellipsoids_contact_get(&a, &b, 0).scale, g, single ? 1e-4 : 1e-9);
             a.semi_axes = b.semi_axes = at(1000, 1000, 1);
             b.orientation = upright();
             b.position = at(0, 0, 2*g);         /* face on face, rim on rim */
-            CHECK_NEAR(dem_ellipsoids_contact(&a, &b, 0).scale, g, eps);
+            CHECK_NEAR(dem_ellipsoids_contact_get(&a, &b, 0).scale, g, eps);
             b.position = at(2000*g, 0, 0);
-            CHECK_NEAR(dem_ellipsoids_contact(&a, &b, 0).scale, g, eps);
+            CHECK_NEAR(dem_ellipsoids_contact_get(&a, &b, 0).scale, g, eps);
             b.position = at(0, 0, 0);           /* one in the other */
             b.semi_axes = at(1, 3, 1000);
-            CHECK_NEAR(dem_ellipsoids_contact(&a, &b, 0).scale, 0, 1e-6);
-            CHECK(demi_finite3(dem_ellipsoids_contact(&a, &b, 0).normal));
+            CHECK_NEAR(dem_ellipsoids_contact_get(&a, &b, 0).scale, 0, 1e-6);
+            CHECK(demi_finite3(dem_ellipsoids_contact_get(&a, &b, 0).normal));
         }
     }
     TEST("needles and discs of 100 and 1000 to 1 collide elastically: what they gain or lose of "
@@ -482,7 +482,7 @@ int main(int argc, char **argv) {
             b[1] = dem_body_add(world, m, s, at(0, 0, 0), way ? upright()
                                 : dem_quat_about(at(1, 2, 3), 1));
             CHECK(dem_world_step(world, 5) != DEM_OK);
-            CHECK(strlen(dem_world_error(world)) > 20);
+            CHECK(strlen(dem_world_error_get(world)) > 20);
             for (k = 0; k < 2; k++) {
                 const dem_body_state x = scene_state(world, b[k]);
                 CHECK(demi_finite3(x.position) && demi_finite3(x.velocity) && demi_finite3(x.spin));
@@ -503,7 +503,7 @@ int main(int argc, char **argv) {
             dem_body b;
             int k;
             for (k = 0; k < 3000; k++) x[k] = (dem_real)(1e-3*(k%3 + 1));
-            dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
             if (which) {
                 const dem_shape s = cluster_add(world, 1000, x, 2e-3, DEM_CLUSTER_UNION);
                 CHECK_EQ(dem_shape_get(world, s, &info), DEM_OK);
@@ -555,7 +555,7 @@ int main(int argc, char **argv) {
         u = dem_totals_get(world);
         for (k = 0; k < 3; k++)
             CHECK_NEAR(u.angular[k], t.angular[k], fabs(t.angular[2])*(single ? 1e-3 : 1e-10));
-        dem_plane_add(world, m, at(0, 0, 0.0997), at(0, 0, 1));   /* one end falls on it */
+        dem_wall_plane_add(world, m, at(0, 0, 0.0997), at(0, 0, 1));   /* one end falls on it */
         { /* lies along x again; turns so that the right end goes down */
             dem_body_state s0 = scene_state(world, b);
             s0.orientation = upright();
@@ -602,7 +602,7 @@ int main(int argc, char **argv) {
             dem_quat_rotate(dem_quat_about(at(0, 0, 1), (dem_real)(pi/2)), down.centre)),
             dem_quat_about(at(0, 0, 1), (dem_real)(pi/2)));
         for (round = 0; round < 10; round++) CHECK_EQ(dem_world_run(world, 0.1, 0, 0), DEM_OK);
-        CHECK_EQ(dem_search_now(world), DEM_OK);
+        CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);
         n = dem_contacts_get(world, c, 20);
         CHECK(n >= 1 && n <= 20);
         for (k = 0; k < n && k < 20; k++)
@@ -672,8 +672,8 @@ int main(int argc, char **argv) {
         shape[0] = dem_shape_ellipsoid_add(world, at(1e-3, 1e-3, 1e-2));
         shape[1] = dem_shape_ellipsoid_add(world, at(6e-3, 6e-3, 6e-4));
         shape[2] = cluster_add(world, 3, three, 2e-3, DEM_CLUSTER_UNION);
-        floor = dem_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-        dem_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.03), 1);
+        floor = dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), DEM_R(0.03), 1);
         for (i = 0; i < count; i++) {
             const double a = 2*pi*(i%6)/6, r = 0.018;
             const dem_vec3 x = at(r*cos(a), r*sin(a), 0.012 + 0.014*(i/6));
@@ -700,7 +700,7 @@ int main(int argc, char **argv) {
             CHECK(kinetic[k] < kinetic[k - 1] || kinetic[k] < at_rest);
             CHECK(twirl[k] <= twirl[k - 1]*(1 + 1e-12) || kinetic[k - 1] > 1e-9 || twirl[k] < at_rest);
         }
-        CHECK_EQ(dem_balance_get(world).present, count);
+        CHECK_EQ(dem_body_counts_get(world).present, count);
         dem_world_destroy(world);
     }
     return test_end();
