@@ -36,7 +36,7 @@ ACCURACY_ALSO := $(if $(wildcard bench/accuracy.c),build/accuracy_single build/a
 hash := \#
 
 # ---- what the compiler can do; asked only when something is to be compiled ----
-ifneq ($(filter-out help new clean tags parts recipes viewer web check fuzz docs,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help new clean tags english parts recipes viewer web check fuzz docs,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -60,7 +60,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags parts recipes snippets clean
+.PHONY: help all run new install test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags english parts recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -159,6 +159,9 @@ readers: build/write_files ## write every file format and open it with VTK and A
 
 tags: ## every part named in dem.h's contents stands there once and in order; parts and functions keep their limits
 	@awk -f tests/tags.awk dem.h
+
+english: ## sentences of pages, public comments, error messages and test names that need a second reading
+	@awk -f tests/english.awk README.md CHANGELOG.md CONTRIBUTING.md docs/*.md dem.h examples/*.c examples/*.h examples/laws/*.h tests/*.c tests/hard/*.c
 
 web: ## the browser lesson: build/web/lesson.html, dem.h in WebAssembly with sliders, and the same as a program
 	@sh examples/web/make.sh build/web || test $$? -eq 77

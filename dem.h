@@ -34156,18 +34156,17 @@ static const char *const demi_viewer[] = {
     "r (const [k, b] of blocks('frame').entries()) {\ntry { decode(bytes(b.textContent)); } catch ",
     "(e) { if (!k) throw e; break; }  // cut short\nb.remove();\nif (k%20 === 19) { $('say').textC",
     "ontent = 'reading ' + (k + 1);\nawait new Promise(done => setTimeout(done)); }\n}\nif (!frame",
-    "s.length) throw Error('no frames in this file: was dem_replay_frame_write "
-    "called?');\nmeasure(); ra",
-    "nges(); look(); prepare(); makePlots(); paces();\nconst names = { speed: 'speed', size: 'size",
-    "', material: 'material' };\nif (head.number) names.own = head.number;\nfor (const n in names)",
-    " {\nconst o = document.createElement('option');\no.value = n; o.textContent = names[n]; $('co",
-    "lour').append(o);\n}\n$('at').max = frames.length - 1;\nconst report = blocks('report')[0];\n",
-    "if (report) { $('report').hidden = false;\n$('report').querySelector('pre').textContent = rep",
-    "ort.textContent; }\nshowKey(); hands(); $('say').hidden = true; $('say').style.display = 'non",
-    "e';\ndraw(); play(frames.length > 1); requestAnimationFrame(tick);\nreplay.ready = true; repl",
-    "ay.opened = performance.now() - begun;\nreplay.seek = seek; replay.play = play; replay.draw =",
-    " draw;\n} catch (e) { replay.error = $('say').textContent = String(e.message || e); }\n});\n<",
-    "/script>\n<!-- what follows is written by dem_replay_open, _frame and _close -->\n"};
+    "s.length) throw Error('no frames in this file: was dem_replay_frame_write called?');\nmeasure",
+    "(); ranges(); look(); prepare(); makePlots(); paces();\nconst names = { speed: 'speed', size:",
+    " 'size', material: 'material' };\nif (head.number) names.own = head.number;\nfor (const n in ",
+    "names) {\nconst o = document.createElement('option');\no.value = n; o.textContent = names[n];",
+    " $('colour').append(o);\n}\n$('at').max = frames.length - 1;\nconst report = blocks('report')",
+    "[0];\nif (report) { $('report').hidden = false;\n$('report').querySelector('pre').textContent",
+    " = report.textContent; }\nshowKey(); hands(); $('say').hidden = true; $('say').style.display ",
+    "= 'none';\ndraw(); play(frames.length > 1); requestAnimationFrame(tick);\nreplay.ready = true",
+    "; replay.opened = performance.now() - begun;\nreplay.seek = seek; replay.play = play; replay.",
+    "draw = draw;\n} catch (e) { replay.error = $('say').textContent = String(e.message || e); }\n",
+    "});\n</script>\n<!-- what follows is written by dem_replay_open, _frame and _close -->\n"};
 /* viewer: end */
 
 /* ---------------------------------------------------------------------------------------------
