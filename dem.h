@@ -2359,7 +2359,10 @@ static const dem_output_desc DEM_OUTPUT_DESC_ZERO = {DEM_OUTPUT_CALL, 0, 0, 0, 0
 DEM_API dem_output dem_output_add(dem_world *world, const dem_output_desc *desc);
 /* The same in a line: dem_output_every_add(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01). */
 DEM_API dem_output dem_output_every_add(dem_world *world, dem_output_kind kind, const char *path,
-                                    double interval);
+                                        double interval);
+/* Ends an output; files that it has written stay. Its id is never used again. To change an output,
+   remove it and add another. The function of an output may remove any output, also its own. */
+DEM_API dem_result dem_output_remove(dem_world *world, dem_output output);
 
 /* ---- slabs: one scene on many processors ---- */
 
@@ -3348,6 +3351,7 @@ enum { DEMI_OUTPUT_UNKNOWN = -1 };
 typedef struct demi_output {
     dem_output_desc desc;          /* its texts are the world's own */
     demi_written written;
+    int32_t id;                    /* outputs are in the order of their ids, which ascend */
     int resumes;                   /* 1, or 2 where a file that was read knew of it: later lines of
                                       a CSV file have not been taken out yet */
 } demi_output;
@@ -3365,6 +3369,7 @@ typedef struct demi_lookers {
     dem_replay *films;             /* open ones, which take their frames by themselves */
     void (*films_look)(dem_world *w);           /* null: there are none */
     int output_count, reads;       /* reads: of checkpoints, so far */
+    int32_t output_last;           /* the last id that was given */
     demi_output *outputs;
     dem_result (*outputs_look)(dem_world *w);   /* null: there are none */
     void (*outputs_again)(dem_world *w);        /* the state has been read from a file */
@@ -30137,6 +30142,12 @@ static dem_result demi_output_write(dem_world *w, const demi_output *o, int64_t 
     demi_free(w, path);
     return result;
 }
+/* Index of the first output whose id is not below this one. */
+static int demi_output_place(const dem_world *w, int32_t id) {
+    int i;
+    for (i = 0; i < w->look.output_count && w->look.outputs[i].id < id; i++) {}
+    return i;
+}
 /* What is due at this step. What fails stops the run, and is tried again by the next one. An output
    counts as written while it writes, so that a checkpoint knows of itself; where it has read one,
    what is due then is looked for anew. */
@@ -30159,12 +30170,14 @@ static dem_result demi_outputs_look(dem_world *w) {
         if (!(number < DEMI_OUTPUT_MOST))
             return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: the number of output %d is %g "
                              "at %g s, must be below %g: its interval is %g s; give a longer one, "
-                             "or an end", i + 1, number, now, DEMI_OUTPUT_MOST, d->interval);
+                             "or an end", (int)o.id, number, now, DEMI_OUTPUT_MOST, d->interval);
         demi_finish(w);
         written->next = (int64_t)number + 1;
         written->last = now;
         result = demi_output_write(w, &o, (int64_t)number);
-        if (reads != w->look.reads) i = -1;
+        if (reads != w->look.reads) { i = -1; continue; }
+        i = demi_output_place(w, o.id);         /* its function may have removed some */
+        if (i == w->look.output_count || w->look.outputs[i].id != o.id) i--;
         else if (result == DEM_OK) w->look.outputs[i].resumes = 0;
         else w->look.outputs[i].written = o.written;
         if (result != DEM_OK) return result;
@@ -30260,15 +30273,32 @@ DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
     o->desc = *desc;
     o->desc.path = path;
     o->desc.columns = columns;
+    id.id = o->id = ++w->look.output_last;
     demi_output_begin(o);
     w->look.outputs_look = demi_outputs_look;
     w->look.outputs_again = demi_outputs_again;
     demi_built(w, call);
-    id.id = w->look.output_count;
     return id;
 }
+DEM_API dem_result dem_output_remove(dem_world *w, dem_output output) {
+    const char *call = "dem_output_remove";
+    demi_output *o;
+    int i;
+    if (demi_null(w, call, w, "world")) return DEM_ERROR_ARGUMENT;
+    i = demi_output_place(w, output.id);
+    o = w->look.outputs + i;
+    if (i == w->look.output_count || o->id != output.id)
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: output %d does not exist; it was removed "
+                         "before or is of another world: give what dem_output_add returned", call,
+                         (int)output.id);
+    demi_free(w, (char *)o->desc.path);
+    demi_free(w, (char *)o->desc.columns);
+    w->look.output_count--;
+    memmove(o, o + 1, (size_t)(w->look.output_count - i)*sizeof *o);
+    return DEM_OK;
+}
 DEM_API dem_output dem_output_every_add(dem_world *w, dem_output_kind kind, const char *path,
-                                    double interval) {
+                                        double interval) {
     dem_output_desc desc;
     memset(&desc, 0, sizeof desc);
     desc.kind = kind;

@@ -1209,6 +1209,7 @@ static void fuzz_replay(fuzz_machine *m) {
 }
 static void fuzz_output(fuzz_machine *m) {
     dem_output_desc d = DEM_OUTPUT_DESC;
+    dem_output output;
     char path[200];
     const int kind = fuzz_below(m, 4);
     d.kind = kind == 0 ? DEM_OUTPUT_CALL : kind == 1 ? DEM_OUTPUT_VTP : DEM_OUTPUT_CSV;
@@ -1219,7 +1220,9 @@ static void fuzz_output(fuzz_machine *m) {
     if (kind == 0) d.function = fuzz_output_call;
     if (kind == 3) { d.columns = "kinetic"; d.values = fuzz_values; }
     fuzz_say(m, "dem_output_add: kind %d, interval %g", (int)d.kind, d.interval);
-    fuzz_id(m, dem_output_add(m->world, &d).id);
+    output = dem_output_add(m->world, &d);
+    fuzz_id(m, output.id);
+    if (!fuzz_below(m, 3)) fuzz_result(m, dem_output_remove(m->world, output));
 }
 static void fuzz_reals_set(fuzz_machine *m) {
     dem_real reals[DEM_BODY_REALS];

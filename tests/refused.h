@@ -979,6 +979,11 @@ static int call_dem_output_every_add(refuser *r) {
     return dem_output_every_add(r->world, kind, path, interval).id != 0;
 }
 
+static int call_dem_output_remove(refuser *r) {
+    dem_output output = take_dem_output(r, 2, "output");
+    return dem_output_remove(r->world, output) == DEM_OK;
+}
+
 static int call_dem_slabs_create(refuser *r) {
     const dem_slabs_desc *desc = take_const_dem_slabs_desc(r, 2, "desc");
     return slabs_dropped(dem_slabs_create(r->world, desc));
@@ -1126,6 +1131,7 @@ static const refused_call refused_calls[] = {
     {"dem_checkpoint_read", call_dem_checkpoint_read, 0},
     {"dem_output_add", call_dem_output_add, 0},
     {"dem_output_every_add", call_dem_output_every_add, 0},
+    {"dem_output_remove", call_dem_output_remove, 0},
     {"dem_slabs_create", call_dem_slabs_create, 0},
     {"dem_effects_get", call_dem_effects_get, 0},
     {"dem_effects_print", call_dem_effects_print, 0},

@@ -129,6 +129,17 @@ static dem_output every(dem_world *world, double interval, int (*function)(dem_w
     d.user = user;
     return dem_output_add(world, &d);
 }
+/* Four outputs; the second removes one of them at its second call. */
+typedef struct removal { dem_output id[4]; int calls[4], victim; } removal;
+static removal removing;
+static int count_first(dem_world *w, int64_t n, void *u) { (void)w; (void)n; (void)u; removing.calls[0]++; return 0; }
+static int count_second(dem_world *w, int64_t n, void *u) {
+    (void)u;
+    removing.calls[1]++;
+    return n == 1 && dem_output_remove(w, removing.id[removing.victim]) != DEM_OK;
+}
+static int count_third(dem_world *w, int64_t n, void *u) { (void)w; (void)n; (void)u; removing.calls[2]++; return 0; }
+static int count_fourth(dem_world *w, int64_t n, void *u) { (void)w; (void)n; (void)u; removing.calls[3]++; return 0; }
 static dem_world *blown(int call_first, int *calls) {
     dem_world *world = lone();
     if (call_first) every(world, 1e-3, blow, calls);
@@ -163,6 +174,22 @@ static int returns(dem_world *world, int64_t number, void *user) {
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
+    TEST("the function of an output removes any output, also its own, and no other output misses a call") {
+        static int (*const functions[4])(dem_world *, int64_t, void *) = {count_first, count_second, count_third, count_fourth};
+        int victim, k;
+        for (victim = 0; victim < 4; victim++) {
+            dem_world *world = lone();
+            memset(&removing, 0, sizeof removing);
+            removing.victim = victim;
+            for (k = 0; k < 4; k++) removing.id[k] = every(world, 1e-3, functions[k], 0);
+            CHECK_EQ(dem_world_run(world, 4e-3, 0, 0), DEM_OK);
+            for (k = 0; k < 4; k++) CHECK_EQ(removing.calls[k], k != victim ? 5 : victim < 2 ? 2 : 1);
+            CHECK_EQ(dem_output_remove(world, removing.id[victim]), DEM_ERROR_ARGUMENT);
+            CHECK_STR(dem_world_error_get(world), "dem_output_remove: output");
+            CHECK_EQ(every(world, 1e-3, count_first, 0).id, 5);          /* ids are never used again */
+            dem_world_destroy(world);
+        }
+    }
     TEST("a call on a schedule comes once before and after each checkpoint, also at the step of the checkpoint") {
         int first, from;
         for (first = 0; first < 2; first++)

@@ -71,7 +71,7 @@ static int32_t take_id(refuser *r, int at_, const char *name) {
     return is_bad(r, at_, 5, name) ? none[r->kind] : 1;
 }
 #define TAKE_ID(type) static type take_##type(refuser *r, int at_, const char *name) { type id; id.id = take_id(r, at_, name); return id; }
-TAKE_ID(dem_material) TAKE_ID(dem_shape) TAKE_ID(dem_wall) TAKE_ID(dem_joint) TAKE_ID(dem_feed) TAKE_ID(dem_outlet) TAKE_ID(dem_field)
+TAKE_ID(dem_material) TAKE_ID(dem_shape) TAKE_ID(dem_wall) TAKE_ID(dem_joint) TAKE_ID(dem_feed) TAKE_ID(dem_outlet) TAKE_ID(dem_field) TAKE_ID(dem_output)
 static dem_body take_dem_body(refuser *r, int at_, const char *name) {
     dem_body id = dem_body_id_get(r->world, 0);
     if (!is_bad(r, at_, 4, name)) return id;

@@ -46,7 +46,9 @@ static inline char *walk_text(void) {
     size_t n = 0;
     int k, c, before;
     for (k = 0; k < 2 && text; k++) {
+        char path[64] = "../../../";            /* the folder of a case of tests/check.sh is three below the top */
         FILE *f = fopen(names[k], "rb");
+        if (!f) f = fopen(strcat(path, names[k]), "rb");
         CHECK(f != 0);
         if (!f) continue;
         for (before = 0; (c = fgetc(f)) != EOF && n < 3999990; before = c) {
