@@ -3407,6 +3407,7 @@ typedef struct demi_solver {
     double *blocks;                /* x 36: pivots, and entries below them */
     int knot_count, row_count, link_count, factored;
     int count, first, last, run;   /* contacts; of the colour being swept; its first run */
+    int limited;                   /* contacts at their friction limit in the last unsolved step */
     int twisted;                   /* is there rolling or spinning friction? */
     int begins[65];                /* of each colour */
     int meeting_first[DEMI_DOMAINS], meeting_count[DEMI_DOMAINS];
@@ -20750,6 +20751,17 @@ static int demi_impulses_tame(dem_world *w, int last) {
     }
     return tamed;
 }
+/* Number of contacts whose friction is at its limit: where many of them hold one body, sweeps
+   converge with a power of their number only (docs/impulses.md). */
+static int demi_solver_limited(const demi_solver *s) {
+    int i, limited = 0;
+    for (i = 0; i < s->count; i++) {
+        const demi_impulse *c = &s->contacts[i];
+        const dem_real most = c->mu*c->push*DEM_R(0.999999);
+        limited += most > 0 && demi_dot(c->slip, c->slip) >= most*most;
+    }
+    return limited;
+}
 /* Impulses of the step to come, as forces. Fields of force have been added by now. */
 static void demi_impulses(dem_world *w) {
     demi_solver *s = &w->solver;
@@ -20773,7 +20785,10 @@ static void demi_impulses(dem_world *w) {
     w->booked.sweeps = solved.sweeps;
     w->booked.residual = solved.worst;
     w->booked.residual_rms = solved.rms;
-    if (demi_solved_open(w, &solved)) w->booked.unsolved++;
+    if (demi_solved_open(w, &solved)) {
+        w->booked.unsolved++;
+        s->limited = demi_solver_limited(s);
+    }
     demi_parallel(w, w->desc.threads, w->domain_count, demi_movers_force);
     demi_parallel(w, w->desc.threads, w->domain_count, demi_impulses_tell);
     demi_impulses_fixed(w);
@@ -24625,10 +24640,12 @@ static dem_result demi_step_answer(dem_world *w) {
     if (!(demi_overlap(w) < 1)) return demi_unstable(w);
     if (!w->desc.unsolved_stops || w->booked.unsolved == unsolved) return DEM_OK;
     return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: step %llu: %d sweeps left %.3g m/s, "
-                     "more than the tolerance; contacts press each other, or a joint, harder than "
-                     "so many sweeps resolve: allow more sweeps or a larger tolerance, take a "
-                     "smaller dt, or go on with desc.unsolved_stops = 0",
-                     (unsigned long long)w->clock.steps, w->booked.sweeps, w->booked.residual);
+                     "more than the tolerance; %d of %d contacts are at their friction limit, %s; "
+                     "allow more sweeps or a larger tolerance, take a smaller dt, or go on with "
+                     "desc.unsolved_stops = 0", (unsigned long long)w->clock.steps,
+                     w->booked.sweeps, w->booked.residual, w->solver.limited, w->solver.count,
+                     2*w->solver.limited > w->solver.count ? "where sweeps converge slowly"
+                     : "the others carry more load than so many sweeps pass on");
 }
 /* The same where contacts are found: impulses, half a step ahead. */
 static dem_result demi_answer(dem_world *w, dem_result (*answer)(dem_world *w)) {
@@ -31458,9 +31475,10 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     if (demi_impulsive(w)) {
         fprintf(out, "effects    contacts answer by impulses, %s; gaps up to %.3g m are looked at\n"
                 "           last step: %d sweeps left %.3g m/s; %llu steps did not reach their "
-                "tolerance\n", w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
+                "tolerance, in the last of them %d contacts were at their friction limit\n",
+                w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
                 w->margin.reach, w->booked.sweeps, w->booked.residual,
-                (unsigned long long)w->booked.unsolved);
+                (unsigned long long)w->booked.unsolved, w->solver.limited);
         return;
     }
     if (w->desc.law) {

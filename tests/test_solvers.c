@@ -140,6 +140,26 @@ int main(int argc, char **argv) {
         CHECK_EQ(c.unsolved, 2);                /* the one that finds the first forces counts */
         CHECK((double)c.residual > 1e-12);
     }
+    TEST("a step that ends unsolved names the contacts at their friction limit: all four of a sliding box") {
+        dem_world_desc desc = solver_desc(DEM_SOLVER_GAUSS_SEIDEL, DEM_CONE_COULOMB);
+        dem_material_desc stuff = scene_stuff(0, 0, 0.5, 0);
+        dem_world *world;
+        dem_material m;
+        dem_body box;
+        desc.sweeps = 1;
+        desc.tolerance = DEM_R(1e-12);
+        desc.unsolved_stops = 1;
+        stuff.friction = DEM_R(0.2);
+        world = dem_world_create(&desc);
+        m = dem_material_add(world, &stuff);
+        dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        box = dem_body_add(world, m, scene_box(world, 0.01, 0.01, 0.005), at(0, 0, 0.005), dem_quat_make(1, 0, 0, 0));
+        scene_move(world, box, at(1, 0, 0), at(0, 0, 0));
+        CHECK_EQ(dem_world_step(world, 5), DEM_ERROR_STOPPED);
+        CHECK_STR(dem_world_error_get(world), "4 of 4 contacts are at their friction limit, where sweeps converge slowly");
+        scene_report_has(world, "4 contacts were at their friction limit");
+        dem_world_destroy(world);
+    }
     TEST("impulses: cohesion holds up what weighs less, and lets go of what weighs more; a contact tells its pull") {
         double low;
         int k;
