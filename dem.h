@@ -1039,18 +1039,33 @@ typedef struct dem_allocator {
 
 /* ---------------------------------------------------------------------------------------------
    >>scene
-   What a scene is made of, in the order in which a program builds it: the world, materials, grains
-   and other bodies, walls, feeds and outlets.
+   The parts of a scene, in the order in which a program builds it: the world, materials, grains
+   and other bodies, walls, joints, feeds and outlets.
+
+   Errors. A function that fails changes nothing. It returns an error code, an id of zeros or 0,
+   and dem_world_error_get says why. A function fails if a value is out of range, if an id or a
+   pointer is wrong, or if memory runs out; the comments below state only further reasons.
+   Positions (m), velocities (m/s) and angular velocities (rad/s) must be finite and at most 1e15.
+
+   Descs. Start from the constant of its name (DEM_WORLD_DESC) and set what differs. A field that is
+   left 0 is absent or has the stated default; a required field must be set.
    --------------------------------------------------------------------------------------------- */
 
 /* ---- world ---- */
+/* The description of a world. dem_world_create_error_get checks it. */
 typedef struct dem_world_desc {
-    dem_vec3 gravity;              /* m/s2; 0: none */
-    dem_box domain;                /* m; needed for periodic and outflow boundaries; 0: unbounded */
-    dem_boundary boundary[3];      /* per axis */
-    int planar;  /* 1: discs in the x-y plane: z and the spins about x, y stay put */
-    dem_real thickness;            /* m, of discs; 0: 1 m */
+    /* -- gravity and domain -- */
+    dem_vec3 gravity;              /* m/s2 */
+    /* m. Required on axes whose boundary is periodic or outflow, not needed on open axes. A
+       periodic axis must be at least as long as four of the largest radii and two skins. */
+    dem_box domain;
+    dem_boundary boundary[3];      /* of the axes x, y and z */
+    /* 1 makes the world two-dimensional: bodies are discs and polygons that move in the plane z = 0
+       and rotate about z only. gravity.z is ignored. */
+    int planar;
+    dem_real thickness;            /* m, of discs and polygons along z; default 1 m */
 
+    /* -- contact laws, for DEM_RESPONSE_SPRINGS: see "choices" above -- */
     dem_normal_law normal_law;
     dem_tangent_law tangent_law;
     dem_rolling_law rolling_law;
@@ -1058,67 +1073,88 @@ typedef struct dem_world_desc {
     dem_load friction_load;
     dem_slider slider;
     dem_convention convention;
-    dem_law_fn law;                /* your law; replaces normal, tangential and rolling laws */
-    void *law_user;                /* handed to your law as c->user */
-    int law_memory;                /* reals of memory per contact for your law, 0..16 */
-    const char *law_memory_names;  /* of them, for dem_contacts_vtp_write, a word each as in
-                                      body_reals; null: memory0, memory1 and so on */
-    int law_vectors;  /* how many leading triples of them are vectors, 0..law_memory/3 */
-    dem_real law_stiffness;  /* N/m, the stiffest your law gets: for the time step; 0: built-in */
-    /* m, >= 0: your law is asked while the gap is below law_range + law_range_radii times the two
-       radii (with a wall: the one; of ellipsoids the bounding ones). There c->overlap is below 0:
-       laws of dem.h that it calls want overlap > 0. Lists of neighbours reach as far as the largest
-       two ask. 0: it is asked about what touches, and nothing is paid for it */
+
+    /* -- user-defined law -- */
+    dem_law_fn law;                /* replaces the normal, tangential and rolling law */
+    void *law_user;                /* passed to law as c->user */
+    int law_memory;                /* reals of contact history per contact: 0 to 16 */
+    /* Names of these reals for dem_contacts_vtp_write, written as in body_reals. Default: memory0,
+       memory1, ... */
+    const char *law_memory_names;
+    int law_vectors;               /* leading triples of them that are vectors: 0 to law_memory/3 */
+    /* N/m, the largest stiffness of law; limits the time step. 0 means the stiffness of the
+       built-in law. */
+    dem_real law_stiffness;
+    /* m, and a factor; both >= 0. law is also called for two bodies that do not touch while their
+       gap is below law_range + law_range_radii (Ra + Rb), with c->overlap < 0. A wall counts with
+       radius 0, an ellipsoid with its bounding sphere. Built-in laws that it calls need overlap >
+       0. With both 0, law is called in contact only, at no extra cost. */
     dem_real law_range, law_range_radii;
-    int law_who;                   /* 1: your law gets c->who: ids, radii, masses, place, time */
-    /* how fast your law changes bodies' own numbers: asked before the first step and every eighth;
-       a dt that is given is refused beyond the limit, one that is chosen is half of it at most.
-       Null: nobody looks */
+    int law_who;                   /* 1 fills in c->who: ids, radii, masses, contact point, time */
+    /* Returns how fast law changes numbers on bodies; limits the time step. It needs law, law_who
+       and body_reals. It is called before the first step and at least every eighth. A given dt
+       above the stable limit is an error; a chosen dt is at most half of it. Null: these rates do
+       not limit dt. */
     dem_law_rate_fn law_rate;
-    /* Numbers of your own that every grain and wall carries (charge, temperature, moisture, age):
-       their names, at most 8 words of up to 23 letters, digits and _, such as "temperature charge",
-       by which files call them; null: none. New grains begin with zeros. A law of your own sees
-       them and answers rates (law_who). Grains gain rate dt in each step, or what body_reals_fn
-       makes of it; walls keep theirs, and count what they are given (dem_wall_loads) */
+
+    /* -- numbers on bodies -- */
+    /* Names of numbers that every body and wall carries, such as "temperature charge": at most 8
+       words of up to 23 letters, digits and _. Files use these names. The numbers begin as 0. With
+       law_who, law reads them and returns their rates (1/s). Null: no numbers. */
     const char *body_reals;
+    /* Updates the numbers of a body after each step. Null: each grows by rate dt. Numbers of walls
+       stay as set; dem_wall_loads sums what they would gain. */
     dem_reals_fn body_reals_fn;
-    void *body_reals_user;         /* handed to it */
+    void *body_reals_user;         /* passed to body_reals_fn */
 
-    dem_force_fn force;            /* force field of your own; 0: none */
-    dem_body_force_fn body_force;  /* with torque; 0: none. Both may be given: they add up */
-    void *force_user;              /* handed to either */
+    /* -- force fields; both may be given and add up -- */
+    dem_force_fn force;            /* force on a body */
+    dem_body_force_fn body_force;  /* force and torque on a body */
+    void *force_user;              /* passed to both */
 
+    /* -- time stepping -- */
     dem_integrator integrator;
-    dem_real dt;                   /* s; 0: chosen from the live scene, see dem_step_advice_get */
-    int allow_large_dt;  /* 1: run even when dt exceeds t_c/20. For showing what happens */
-    dem_real impact_speed;         /* m/s, typical: for linear stiffness and the time step; 0: from
-                                      gravity, walls and grains (linear stiffness: 1 m/s) */
-    /* With DEM_RESPONSE_IMPULSES dt has to be given, integrator is DEM_INTEGRATOR_SYMPLECTIC_EULER
-       (or left 0), law null; law_range (m) is the gap from which on a contact is looked at; 0: what
-       two may approach by in a step, between a tenth of the largest radius and all of it */
+    dem_real dt;                   /* s; 0 means chosen from the scene, see dem_step_advice_get */
+    int allow_large_dt;            /* 1 allows dt above t_c/20, to show what happens then */
+    /* m/s, typical impact speed. The time step and, in the linear and hysteretic law, a stiffness
+       from Young's modulus depend on it. If it is 0, the time step is for the largest speed
+       expected from grains, walls and height of fall, and the stiffness is for 1 m/s. */
+    dem_real impact_speed;
+
+    /* -- impulses -- */
+    /* DEM_RESPONSE_IMPULSES needs dt > 0 and law null; the integrator is symplectic Euler
+       (integrator 0 or DEM_INTEGRATOR_SYMPLECTIC_EULER). law_range (m) is then the gap below which
+       contacts are solved; 0 means three times the distance that the fastest body moves in a step,
+       between 0.1 and 1 of the largest radius. The fields that follow apply to impulses only. */
     dem_response response;
     dem_cone cone;
     dem_solver solver;
-    int sweeps;                    /* over all contacts, at most, in a step; 0: 200 */
-    dem_real tolerance;            /* m/s: sweeps end when one changes no contact's velocity by
-                                      more; 0: when it changes them by less (rms) than a twentieth
-                                      of what gravity brings in a step and 1e-5 of the largest
-                                      speed, and none by thirty times that */
-    int cold_start;                /* 1: sweeps begin with no impulses, 0: with those of the step
-                                      before, turned with their contacts */
-    int unsolved_stops;            /* 1: a run ends with DEM_ERROR_STOPPED after a step whose sweeps
-                                      left more than the tolerance, 0: it goes on; dem_counters,
-                                      the report and dem_progress_print count such steps */
+    int sweeps;                    /* most sweeps over all contacts in a step; default 200 */
+    /* m/s. The sweeps end when no contact changes its velocity by more in one sweep. Default: when
+       the root mean square change is below 1/20 of the speed that gravity adds in a step plus 1e-5
+       of the largest speed, and the largest change is below 30 times that. */
+    dem_real tolerance;
+    int cold_start;                /* 1 begins with zero impulses, not those of the last step */
+    /* 1 ends the run with DEM_ERROR_STOPPED after a step whose sweeps did not reach the tolerance.
+       With 0 it continues; dem_counters_get, the report and dem_progress_print count such steps. */
+    int unsolved_stops;
+
+    /* -- contact detection -- */
     dem_search search;
-    dem_real skin;                 /* m, margin of the candidate list; 0: chosen; < 0: none, the
-                                      list is rebuilt every step */
+    /* m, margin of the neighbour list; 0 means chosen for speed; < 0 means none: the list is
+       rebuilt in every step. */
+    dem_real skin;
+
+    /* -- other shapes -- */
     dem_rotation rotation;         /* of bodies that are not spheres */
     dem_overlap ellipsoid_overlap;
     dem_cluster_contacts cluster_contacts;
-    int orientations;              /* 1: spheres have an orientation, too */
-    int ledger;                    /* 1: account for energy: dem_ledger_get */
-    int threads;                   /* 0: as many as OpenMP offers; 1..64 */
-    dem_allocator allocator;
+    int orientations;              /* 1 follows the orientations of spheres too */
+
+    /* -- running -- */
+    int ledger;                    /* 1 accounts for energy, see dem_ledger_get */
+    int threads;                   /* 1 to 64; 0 means as many as OpenMP offers, at most 64 */
+    dem_allocator allocator;       /* default malloc and free */
 } dem_world_desc;
 static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0, 0}},
     {DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN, DEM_BOUNDARY_OPEN}, 0, 0,
@@ -1129,261 +1165,293 @@ static const dem_world_desc DEM_WORLD_DESC_ZERO = {{0, 0, 0}, {{0, 0, 0}, {0, 0,
     DEM_ROTATION_SPIRAL, DEM_OVERLAP_CONSERVATIVE, DEM_CLUSTER_CONTACTS_MERGED, 0, 0, 0, {0, 0, 0}};
 #define DEM_WORLD_DESC DEM_WORLD_DESC_ZERO
 
-/* Creates an empty world. Returns null when a value is out of its limits or memory runs out; why is
-   told by dem_world_create_error_get(desc). */
+/* Creates an empty world. Returns null if a value of desc is out of range or memory runs out;
+   dem_world_create_error_get(desc) says why. */
 static inline dem_world *dem_world_create(const dem_world_desc *desc);
-/* One sentence on why dem_world_create refuses this desc, or "" when it does not. */
+/* Returns the reason why dem_world_create refuses desc, or "" if it accepts desc. */
 DEM_API const char *dem_world_create_error_get(const dem_world_desc *desc);
+/* Frees a world and all that belongs to it. Null does nothing. The function of an output cannot
+   destroy its world. */
 DEM_API void dem_world_destroy(dem_world *world);
-/* The sentence of the last failed call on this world; "" when none failed yet. Of a null world:
-   that it is null. When a call that builds the scene (adds bodies, materials, shapes, walls, feeds,
-   outlets, fields; sets a pair or a motion) is refused, dem_world_step and dem_world_run do not
-   begin but quote it, until this function was called or the refused one went well: a scene that
-   lacks its floor would run, and answer DEM_OK. A program that handles a refusal by itself and goes
-   on without what was refused calls this first. */
+/* Returns the error message of the last call on this world that failed; "" if none failed. For a
+   null world the message says that it is null.
+   After a failed call that builds the scene (one whose name ends in _add, _fill or _pack,
+   dem_pair_set, dem_material_set, dem_wall_motion_set), dem_world_step, dem_world_run and others
+   that run the scene return an error that quotes its message, because a scene without its floor
+   would run and return DEM_OK. They work again after a call of this function or after the failed
+   call has been repeated with success. A program that handles such an error and continues calls
+   this function first. */
 DEM_API const char *dem_world_error_get(const dem_world *world);
+/* Returns a short text for a result, such as "out of memory". */
 DEM_API const char *dem_result_name_get(dem_result result);
-/* The desc as it is in force: zeros replaced by what was chosen. */
+/* Returns the desc in force: zeros are replaced by the values that were chosen. */
 DEM_API dem_world_desc dem_world_desc_get(const dem_world *world);
 
 /* ---- materials ---- */
+/* A material. Moduli, stiffnesses and the density may be at most 1e30 (SI), friction coefficients
+   at most 1e9. With impulses young may be 0 and restitution may be 0. */
 typedef struct dem_material_desc {
-    dem_real density;          /* kg/m3, required, > 0 */
-    dem_real young;            /* Pa, required, > 0 (for a linear law with stiffness: not needed) */
-    dem_real poisson;          /* 0 <= nu < 0.5; 0 is a physical value */
-    /* required, 0 < e <= 1: speed after over speed before a normal impact. Hysteretic law: either
-       this or stiffness_unloading; e = sqrt(kn/kun), of a contact that does not stick */
+    dem_real density;              /* kg/m3, required, > 0 */
+    /* Pa, required, > 0; may be 0 if a linear or hysteretic law has a stiffness */
+    dem_real young;
+    dem_real poisson;              /* 0 <= nu < 0.5; 0 is a physical value */
+    /* Required, 0 < e <= 1: speed after a normal impact over speed before it. The hysteretic law
+       takes either this or stiffness_unloading; they are related by e = sqrt(kn/kun) for a contact
+       without adhesion. */
     dem_real restitution;
-    dem_real friction;         /* sliding friction mu, >= 0; 0: none */
-    /* static friction mu_s, >= friction; 0: the same as friction. Friction may reach mu_s N until
-       the contact slides; then it is mu N until the slip stops or turns back */
+    dem_real friction;             /* sliding friction mu, >= 0 */
+    /* Static friction mu_s, >= friction; 0 means equal to friction. The limit of friction is mu_s
+       Fn until the contact slides, then mu Fn until the slip stops or reverses. */
     dem_real friction_static;
-    dem_real rolling_friction; /* mu_r, >= 0, of the effective radius; 0: none */
-    /* N/m, linear and hysteretic law (there of loading); 0: from young and impact_speed [DIM04] */
+    dem_real rolling_friction;     /* mu_r, >= 0, relative to the effective radius */
+    /* N/m, kn of the linear and hysteretic law; 0 means from young and impact_speed [DIM04] */
     dem_real stiffness;
-    dem_real stiffness_ratio;  /* kt/kn of these two laws; 0: 2(1-nu)/(2-nu) */
-    dem_real stiffness_unloading; /* N/m, hysteretic law: kun >= stiffness; 0: from restitution */
-    dem_real stiffness_adhesion;  /* N/m, hysteretic law: kad >= 0 ([ALK07] has it negative);
-                                     0: never pulls */
+    dem_real stiffness_ratio;      /* kt/kn of these two laws; 0 means 2(1 - nu)/(2 - nu) */
+    /* N/m, kun of the hysteretic law, >= stiffness; 0 means from restitution. Needs stiffness. */
+    dem_real stiffness_unloading;
+    /* N/m, kad of the hysteretic law, >= 0 (a negative slope in [ALK07]); 0 means no adhesion */
+    dem_real stiffness_adhesion;
 } dem_material_desc;
 static const dem_material_desc DEM_MATERIAL_DESC_ZERO = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 #define DEM_MATERIAL_DESC DEM_MATERIAL_DESC_ZERO
 
-/* Adds a material. At most 64. Null id on bad values. */
+/* Adds a material. A world holds at most 64. */
 DEM_API dem_material dem_material_add(dem_world *world, const dem_material_desc *desc);
-
-/* Changes a material that is in use, in a world under way: moduli, restitution, friction. What it
-   has with others is mixed anew, but where dem_pair_set has replaced that; contacts keep what they
-   remember, the time step is chosen anew. density must be what it was: bodies have their masses. An
-   error on bad values: nothing changes. A checkpoint written after it is read by a world whose
-   material has been changed likewise. */
+/* Changes moduli, restitution and friction of a material, also while the world runs. Its pairs are
+   mixed again, except those that dem_pair_set has replaced. Contacts keep their history; a chosen
+   time step is chosen again. The density must stay the same, because bodies have their masses. A
+   checkpoint that is written afterwards can be read only by a world whose material has been changed
+   in the same way. */
 DEM_API dem_result dem_material_set(dem_world *world, dem_material material,
                                     const dem_material_desc *desc);
-/* The desc of a material, as it is in force. */
+/* Writes the present values of a material to desc. */
 DEM_API dem_result dem_material_get(const dem_world *world, dem_material material,
                                     dem_material_desc *desc);
 
-/* What holds between two materials. Mixed from both when not set: restitution, friction, static
-   friction, rolling friction and stiffness of adhesion by the geometric mean; moduli by Hertz (1/E*
-   = sum (1-nu^2)/E, 1/G* = sum (2-nu)/G); given stiffnesses in series. Walls follow the same rule
-   as grains. */
+/* The contact properties of two materials. Unless dem_pair_set sets them, they are mixed from the
+   materials: restitution, the three friction coefficients and the stiffness of adhesion by the
+   geometric mean; moduli in series as for Hertz, 1/E* = sum (1 - nu^2)/E and 1/G* = sum (2 - nu)/G;
+   given stiffnesses by the harmonic mean (one alone counts only without E*). Grains and walls
+   follow the same rule. */
 typedef struct dem_pair {
-    dem_real young_eff;        /* E*, Pa */
-    dem_real shear_eff;        /* G*, Pa */
+    dem_real young_eff;            /* E*, Pa */
+    dem_real shear_eff;            /* G*, Pa */
     dem_real restitution, friction;
-    dem_real friction_static;  /* >= friction; 0: the same as friction, and so it is when mixed from
-                                  materials that leave it 0: it follows when friction is changed */
-    dem_real rolling_friction;
-    /* N/m, linear and hysteretic law; 0: from E* and impact speed, per pair of radii */
+    /* mu_s, >= friction; 0 means equal to friction, also when friction changes. Mixed: 0 if both
+       materials leave it 0. */
+    dem_real friction_static;
+    dem_real rolling_friction;     /* mu_r, relative to the effective radius */
+    /* N/m, linear and hysteretic law; 0 means from E* and impact_speed for each pair of radii */
     dem_real stiffness;
-    dem_real stiffness_ratio;  /* kt/kn, linear and hysteretic law */
-    /* >= 0, factor on the tangential dashpot; 1 when mixed, 0: no dashpot */
-    dem_real tangent_damping;
-    dem_real stiffness_adhesion; /* N/m, hysteretic law; its kun is stiffness/restitution^2 */
-    dem_real normal_damping;   /* N s/m, linear and hysteretic law: the dashpot itself, whatever the
-                                  masses; 0: linear: from restitution, hysteretic: none */
-    /* of impulses alone; 0 when mixed, 0 with springs */
-    dem_real spinning_friction; /* mu_s, >= 0, of the effective radius: moment about the normal */
-    dem_real cohesion;         /* N, >= 0: pulls what touches together, and up to a gap of a
-                                  thousandth of the smaller radius what it has held */
-    dem_real compliance;       /* m/N, >= 0: a spring of 1/compliance, taken at the step's end:
-                                  stable for any, damped where the step does not resolve it */
+    dem_real stiffness_ratio;      /* kt/kn, linear and hysteretic law */
+    dem_real tangent_damping;      /* factor on the tangential dashpot, >= 0; mixed: 1 */
+    /* N/m, kad of the hysteretic law; its kun is stiffness/restitution^2 */
+    dem_real stiffness_adhesion;
+    /* N s/m, the normal dashpot of the linear and hysteretic law for all masses; 0 means from
+       restitution (linear) or none (hysteretic) */
+    dem_real normal_damping;
+    /* The last three are for impulses only: 0 when mixed, and must be 0 with springs. */
+    dem_real spinning_friction;    /* mu_spin, >= 0: moment about the normal up to mu_spin R* Fn */
+    /* N, >= 0: attractive force between bodies in contact. It holds until the gap exceeds 1e-3 of
+       the smaller radius. */
+    dem_real cohesion;
+    /* m/N, >= 0: a spring of stiffness 1/compliance, evaluated at the end of the step. It is stable
+       for any value; oscillations that the step does not resolve are damped. */
+    dem_real compliance;
 } dem_pair;
+/* Writes the contact properties of two materials to pair. */
 DEM_API dem_result dem_pair_get(const dem_world *world, dem_material a, dem_material b,
                                 dem_pair *pair);
-/* Replaces what was mixed; both orders at once. */
+/* Replaces the contact properties of two materials, in both orders. Start from dem_pair_get. */
 DEM_API dem_result dem_pair_set(dem_world *world, dem_material a, dem_material b,
                                 const dem_pair *pair);
 
-/* The coefficients of the built-in laws for two radii (m); radius_b = 0: a against a wall of b. */
+/* The coefficients of the built-in laws for two spheres. */
 typedef struct dem_coefficients {
-    dem_real r_eff, m_eff;     /* m, kg */
-    dem_real kn, cn, kt, ct;  /* as in dem_contact: F = kn d^(3/2) + cn d^(1/4) v, or kn d + cn v */
-    dem_real kun, kad;         /* N/m, hysteretic law; otherwise 0 */
-    dem_real damping_ratio;    /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
-    dem_real contact_time;     /* s, at the world's impact speed; hysteretic law: [ALK07] eq 2.45 */
+    dem_real r_eff, m_eff;         /* m, kg: effective radius and mass */
+    dem_real kn, cn, kt, ct;       /* see dem_contact: kn d^(3/2) + cn d^(1/4) v or kn d + cn v */
+    dem_real kun, kad;             /* N/m, hysteretic law; otherwise 0 */
+    dem_real damping_ratio;        /* beta = -ln e / sqrt(pi^2 + ln^2 e) */
+    dem_real contact_time;         /* s, at the impact speed; hysteretic law: [ALK07] eq 2.45 */
 } dem_coefficients;
+/* Computes the coefficients for spheres of radius_a and radius_b (m). radius_b = 0 means a wall of
+   material b. The impact speed is that of the desc, or 1 m/s if it is 0 there. */
 DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, dem_material b,
                                         dem_real radius_a, dem_real radius_b,
                                         dem_coefficients *out);
-/* The resolved pair table, one line a pair. */
+/* Prints the contact properties of all pairs of materials, one line per pair. */
 DEM_API void dem_pairs_print(const dem_world *world, FILE *out);
 
 /* ---- grains ---- */
 
-/* Adds a sphere (or disc) at rest. radius > 0 (m). Null id on bad values or when memory runs out.
-   */
+/* Adds a sphere, or in a planar world a disc, at rest. radius > 0 and position in m. */
 DEM_API dem_body dem_sphere_add(dem_world *world, dem_material material, dem_real radius,
                                 dem_vec3 position);
-/* Adds count spheres: positions (count x 3), radii (count) or null for one radius. velocities
-   (count x 3) may be null. All or nothing. */
+/* Adds count spheres, all or none. positions: count x 3, m. velocities: count x 3, m/s, or null for
+   rest. radii: count, m, or null if all have `radius`. */
 DEM_API dem_result dem_spheres_add(dem_world *world, dem_material material, int count,
                                    const dem_real *positions,
                                    const dem_real *velocities, const dem_real *radii,
                                    dem_real radius);
-/* Says which places there are: not 0 for those where a body of this (bounding) radius may be. */
+/* Returns nonzero if a body with this bounding radius (m) may have its centre here. */
 typedef int (*dem_inside_fn)(dem_vec3 centre, dem_real radius, void *user);
-/* Where new bodies may be. */
+/* A region for new bodies. */
 typedef struct dem_region {
-    dem_box box;             /* m, required: bodies are wholly in it. On a periodic axis a box as
-                                long as the domain has no faces: centres are anywhere */
-    int cylinder;            /* 'x', 'y' or 'z': in the cylinder along that axis that the box holds
-                                (elliptic as the box); 0: all of the box */
-    dem_inside_fn inside;    /* of those, which; 0: all */
-    void *user;
+    /* m, required. Bodies lie wholly inside. If the box spans the domain on a periodic axis, it has
+       no faces there and centres may be anywhere. */
+    dem_box box;
+    /* 'x', 'y' or 'z' restricts the region to the cylinder inscribed in the box along that axis,
+       elliptic if the box is not square. 0 means the whole box. */
+    int cylinder;
+    dem_inside_fn inside;          /* restricts the region further; null means no restriction */
+    void *user;                    /* passed to inside */
 } dem_region;
 static const dem_region DEM_REGION_ZERO = {{{0, 0, 0}, {0, 0, 0}}, 0, 0, 0};
 #define DEM_REGION DEM_REGION_ZERO
-/* The whole of a box. */
+/* Returns the region that is a whole box. */
 DEM_INLINE dem_region dem_region_make(dem_box box) {
     dem_region region = DEM_REGION;
     region.box = box;
     return region;
 }
-/* The centres in a box for which inside(centre, radius, user) is not 0. */
+/* Returns the region of the centres in a box for which inside(centre, radius, user) is nonzero. */
 DEM_INLINE dem_region dem_region_inside_make(dem_box box, dem_inside_fn inside, void *user) {
     dem_region region = dem_region_make(box);
     region.inside = inside;
     region.user = user;
     return region;
 }
-/* Random filling: count spheres of one radius inside box, in random sequence; seed makes it
-   repeatable. A place is free when nothing there overlaps another body, across periodic faces too,
-   or touches a wall: behind a plane, on the wrong side of a cylinder and in a sieve there is none;
-   the inside of a closed mesh is a place like any other. Returns how many found a place (fewer than
-   asked: it is too full, 2000 tries for one were in vain; the sentence says so). */
+/* Adds up to count spheres of one radius (m) at random positions in a region, one after the other.
+   The same seed gives the same positions. A position is free if the sphere there overlaps no body
+   (a body that is not a sphere counts with its bounding sphere), also across periodic faces, and
+   touches no wall. No position is free behind a plane, on the wrong side of a cylinder or in a
+   sieve; the inside of a closed mesh counts like its outside. Returns how many were added. If these
+   are fewer than count, 2000 tries for one sphere failed; dem_world_error_get says so, but the
+   world can run. */
 DEM_API int dem_spheres_fill(dem_world *world, dem_material material, dem_real radius,
                              dem_region region, int count, uint64_t seed);
-/* A distribution of size, by radius. Between min and max, and nowhere else. */
+/* The kind of a size distribution. F(r) is the fraction finer than radius r. All are truncated to
+   min <= r <= max and scaled to 1. */
 typedef enum dem_sizes_kind {
-    DEM_SIZES_UNIFORM = 0,   /* equal shares for equal ranges of radius */
-    DEM_SIZES_LOGNORMAL,     /* median, spread */
-    DEM_SIZES_WEIBULL,       /* Rosin-Rammler: 1 - exp(-(r/scale)^modulus) is finer than r */
-    DEM_SIZES_SIEVE_CURVE,        /* a sieve curve: what passes each of `count` sieves */
-    DEM_SIZES_NORMAL,        /* median and, in m, deviation */
-    DEM_SIZES_EXPONENTIAL    /* Zhang's: min, and beyond it exponential with the mean `scale` - min:
-                                1 - exp(-(r - min)/(scale - min)) is finer than r */
+    DEM_SIZES_UNIFORM = 0,         /* F grows linearly with r */
+    DEM_SIZES_LOGNORMAL,           /* log-normal, by median and spread */
+    DEM_SIZES_WEIBULL,             /* Weibull or Rosin-Rammler: F = 1 - exp(-(r/scale)^modulus) */
+    DEM_SIZES_SIEVE_CURVE,         /* the fraction that passes each of `count` sieves */
+    DEM_SIZES_NORMAL,              /* normal, by median and deviation */
+    /* exponential beyond min with mean `scale` (docs/separator.md): F = 1 - exp(-(r - min)/(scale -
+       min)) */
+    DEM_SIZES_EXPONENTIAL
 } dem_sizes_kind;
-enum { DEM_SIEVES = 32 };
+enum { DEM_SIEVES = 32 };          /* largest number of sieves of a sieve curve */
+/* A size distribution, by radius. */
 typedef struct dem_sizes {
     dem_sizes_kind kind;
-    int by_count;            /* shares are 0: of mass, as sieves tell them; 1: of the number */
-    dem_real min, max;       /* m, 1e-15 <= min <= max < 1e15; log-normal: 0: e^(-6 spread) and
-                                e^(6 spread) medians; normal: 0: 6 deviations off, but not below a
-                                thousandth of the median; Weibull, exponential: max 0: all but 1e-9
-                                is finer; sieves: 0: their ends */
-    dem_real median;         /* m, log-normal and normal, > 0 */
-    double spread;           /* log-normal, > 0: standard deviation of ln r */
-    dem_real scale;          /* m, Weibull, > 0; exponential: the mean, > min */
-    double modulus;          /* Weibull, > 0 */
-    int count;               /* sieves, 2..32 */
-    dem_real radius[DEM_SIEVES];   /* m, half the apertures, ascending, the first > 0 */
-    double passing[DEM_SIEVES];    /* share that passes, ascending, the last 1; straight between
-                                      two, what passes the first is of its radius */
-    dem_real deviation;      /* m, normal, > 0: standard deviation */
+    int by_count;                  /* 0: F is a fraction of the mass, 1: of the number */
+    /* m, 1e-15 <= min <= max < 1e15. 0 means a default. Log-normal: exp(-6 spread) and exp(6
+       spread) medians. Normal: 6 deviations from the median, min at least 1e-3 medians. Sieve
+       curve: its ends. Weibull and exponential: max where F = 1 - 1e-9, min required. Uniform: both
+       required. */
+    dem_real min, max;
+    dem_real median;               /* m, log-normal and normal, > 0 */
+    double spread;                 /* log-normal, > 0 and < 10: standard deviation of ln r */
+    dem_real scale;                /* m, Weibull > 0; exponential: the mean, > min */
+    double modulus;                /* Weibull, > 0.05 and < 1000 */
+    int count;                     /* number of sieves, 2 to 32 */
+    dem_real radius[DEM_SIEVES];   /* m, half the apertures, > 0, ascending */
+    /* Fraction that passes each sieve, ascending, the last 1. F is linear between two sieves;
+       grains that pass the first have its radius. */
+    double passing[DEM_SIEVES];
+    dem_real deviation;            /* m, normal, > 0: standard deviation */
 } dem_sizes;
 static const dem_sizes DEM_SIZES_ZERO = {DEM_SIZES_UNIFORM, 0, 0, 0, 0, 0, 0, 0, 0, {0}, {0}, 0};
 #define DEM_SIZES DEM_SIZES_ZERO
-/* Share that is finer than a radius (m), of mass or number as by_count says. -1 on bad values. */
+/* Returns the fraction finer than a radius (m), of mass or number as by_count says; -1 on error. */
 DEM_API double dem_sizes_finer_get(dem_world *world, const dem_sizes *sizes, dem_real radius);
-/* Draws radii (count). seed 0: not by chance but at equal steps of the distribution of numbers, so
-   that a few hundred have its shares within a per cent; ascending. Mass goes as r^3 (planar worlds:
-   r^2). Nothing is written where something is wrong. */
+/* Draws count radii (m) at random or, with seed 0, at equal steps of the distribution of numbers,
+   ascending: then a few hundred radii represent it within 1 %. Mass is proportional to r^3, in
+   planar worlds to r^2. */
 DEM_API dem_result dem_sizes_draw(dem_world *world, const dem_sizes *sizes, int count,
                                   uint64_t seed, dem_real *radii);
-/* The distribution in at most class_count (1..16) classes, for dem_feed_desc.radius and .amount,
-   with by_mass as by_count is not: ranges of equal ratio; the radius of each is that of its mean
-   grain. Answers how many have a share; 0 on bad values. */
+/* Divides a distribution into at most class_count (1 to 16) classes, whose bounds have equal
+   ratios, for the fields radius and amount of dem_feed_desc (with by_mass = 1 - by_count). radius
+   (m) is that of a grain of the mean mass of its class; the amounts sum to 1. Returns the number of
+   classes that are not empty; 0 on error. */
 DEM_API int dem_sizes_classes_get(dem_world *world, const dem_sizes *sizes, int class_count,
                               dem_real *radius, double *amount);
-/* Fills a region as dem_spheres_fill does with count spheres whose radii are drawn as above (seed 0
-   there), the largest first, for which there is most room at the beginning. */
+/* Adds up to count spheres, as dem_spheres_fill does, with radii as dem_sizes_draw gives them for
+   its seed 0, largest first, while there is most room. seed is for the positions. */
 DEM_API int dem_sizes_fill(dem_world *world, dem_material material, const dem_sizes *sizes,
                            dem_region region, int count, uint64_t seed);
-/* Adds a hexagonal close packing of spheres with a gap of padding (m, >= 0) between surfaces, in
-   layers along z: those of its places that are in the region and free, as above; at most count (0:
-   all that fit). Centres keep a radius from the box, and across periodic faces the packing keeps
-   off itself, but does not go on. Returns how many were added. */
+/* Adds spheres on a hexagonal close packing, in layers along z, with a gap of padding (m, >= 0)
+   between surfaces: at most count (0: all that fit), at those sites that lie in the region and are
+   free as in dem_spheres_fill. In a planar world the packing is a triangular lattice. Spheres at
+   opposite periodic faces do not overlap, but the lattice does not continue across the faces.
+   Returns how many were added. */
 DEM_API int dem_spheres_pack(dem_world *world, dem_material material, dem_real radius,
                              dem_real padding, dem_region region, int count);
+/* Removes a body. Its id becomes invalid. */
 DEM_API dem_result dem_body_remove(dem_world *world, dem_body body);
 
-/* State of one body. */
+/* The state of a body. dem_body_set uses position, velocity, spin, orientation and fixed and
+   ignores the rest. */
 struct dem_body_state {
     dem_vec3 position, velocity, spin;   /* m, m/s, rad/s */
-    dem_vec3 force, torque;              /* N, N m: of the last step; ignored by dem_body_set */
-    dem_real radius, mass, inertia;      /* m, kg, kg m2; ignored by dem_body_set; not a sphere: of
-                                            its bounding sphere, the smallest principal moment */
+    dem_vec3 force, torque;        /* N, N m: of the last step, without gravity */
+    /* m, kg, kg m2. For a body that is not a sphere: the radius of its bounding sphere and the
+       smallest principal moment. */
+    dem_real radius, mass, inertia;
     dem_material material;
-    int fixed;                           /* 1: never moves, whatever pushes it */
-    dem_quat orientation;  /* of the frame the shape was given in; dem_body_set: any length but 0.
-                              Spheres: followed when the world desc asks for orientations */
-    dem_shape shape;                     /* id 0: a sphere; ignored by dem_body_set */
-    dem_vec3 moments;      /* kg m2, about the principal axes; ignored by dem_body_set */
-    const dem_real *reals; /* numbers of your own (desc.body_reals), till the next step; null: none;
-                              ignored by dem_body_set */
+    int fixed;                     /* 1: the body never moves, whatever forces act on it */
+    /* Rotates the frame in which the shape was given into the world. dem_body_set accepts any
+       length but 0. Spheres have one if desc.orientations is 1. */
+    dem_quat orientation;
+    dem_shape shape;               /* id 0 for a sphere */
+    dem_vec3 moments;              /* kg m2, about the principal axes */
+    const dem_real *reals;         /* desc.body_reals, valid until the next step; null: none */
 };
+/* Writes the state of a body to state. */
 DEM_API dem_result dem_body_get(const dem_world *world, dem_body body, dem_body_state *state);
-/* Sets position, velocity, spin, orientation and fixed. */
+/* Sets position, velocity, spin, orientation and fixed. Start from dem_body_get. */
 DEM_API dem_result dem_body_set(dem_world *world, dem_body body, const dem_body_state *state);
 
-/* Granular temperature, m2/s2: the mean square of velocities about their mean, by mass and per axis
-   (two of them in a planar world), of the bodies that can move. 0 for fewer than two. */
+/* Returns the granular temperature, m2/s2: the mass-weighted mean square deviation of velocities
+   from their mean, per axis (two in a planar world), over all bodies that can move. Returns 0 for
+   fewer than two bodies. */
 DEM_API double dem_temperature_get(const dem_world *world);
-/* Makes it so: seed 0 scales the velocities about their mean; any other draws them anew from
-   Maxwell's distribution, of equal energy for every mass, the mean kept. Spins stay. An error where
-   temperature is below 0 or not finite, fewer than two bodies can move, or there is nothing to
-   scale. */
+/* Sets the granular temperature (m2/s2, >= 0). seed 0 scales the deviations from the mean velocity;
+   any other seed draws velocities from Maxwell's distribution, with equal mean energy for all
+   masses. The mean velocity and the spins stay. It is an error if fewer than two bodies can move,
+   or if seed is 0 and the present temperature is 0. */
 DEM_API dem_result dem_temperature_set(dem_world *world, double temperature, uint64_t seed);
 
-/* All bodies at once, in the library's own order, which changes when the candidate list is rebuilt;
-   slots tell who is who. Pointers hold until the next step or change. Stride 4: x y z and one more.
-   */
+/* The arrays of all bodies. Their order changes when the neighbour list is rebuilt; slots identify
+   the bodies. Pointers are valid until the next step or change. */
 typedef struct dem_bodies {
     int count;
-    const dem_real *positions;  /* count x 4: x, y, z [m], (bounding) radius [m] */
-    const dem_real *velocities; /* count x 4: x, y, z [m/s], 0 */
-    const dem_real *spins;      /* count x 4: x, y, z [rad/s], 0 */
-    /* count x 4: x, y, z [N] of contacts and force field, gravity not; 0 */
-    const dem_real *forces;
-    const dem_real *torques;    /* count x 4: x, y, z [N m], 0 */
-    const dem_real *masses;     /* count: kg */
-    /* count: slot of dem_body less 1; dem_body_id_get gives the id       */
-    const uint32_t *slots;
-    const int32_t *materials;   /* count: dem_material ids */
-    /* count x 4: w, x, y, z, from principal axes to the world; null when no body has any */
+    const dem_real *positions;     /* count x 4: x, y, z [m], (bounding) radius [m] */
+    const dem_real *velocities;    /* count x 4: x, y, z [m/s], 0 */
+    const dem_real *spins;         /* count x 4: x, y, z [rad/s], 0 */
+    const dem_real *forces;        /* count x 4: x, y, z [N], 0; gravity is not included */
+    const dem_real *torques;       /* count x 4: x, y, z [N m], 0 */
+    const dem_real *masses;        /* count [kg] */
+    const uint32_t *slots;         /* count: slot of dem_body less 1; see dem_body_id_get */
+    const int32_t *materials;      /* count: ids of dem_material */
+    /* count x 4: w, x, y, z, from principal axes to the world; null if none is followed */
     const dem_real *orientations;
-    const int32_t *shapes;      /* count: dem_shape ids, 0: a sphere; null when all are */
-    int real_count;             /* numbers of your own per body: as many as desc.body_reals names */
-    const dem_real *reals;      /* count x real_count; null when there are none */
-    const dem_real *rates;      /* count x real_count: 1/s, of the last step; null as above */
+    const int32_t *shapes;         /* count: ids of dem_shape, 0: sphere; null if all are */
+    int real_count;                /* numbers per body (desc.body_reals) */
+    const dem_real *reals;         /* count x real_count; null if there are none */
+    const dem_real *rates;         /* count x real_count [1/s], of the last step; null likewise */
 } dem_bodies;
+/* Returns the arrays of all bodies; zeros for a null world. */
 DEM_API dem_bodies dem_bodies_get(const dem_world *world);
+/* Returns the id of the body at this index of the arrays; zeros if there is none. */
 DEM_API dem_body dem_body_id_get(const dem_world *world, int index);
 
-/* Numbers of your own (desc.body_reals) of one grain, of all in the order of dem_bodies_get (count
-   x real_count), or of a wall: finite ones. Laws see them from the next step's forces on. An error
-   where desc.body_reals names none. */
+/* The next five functions copy the numbers (desc.body_reals) of one body, of all bodies in the
+   order of dem_bodies_get (count x real_count) or of a wall: out of the world (_get) or into it
+   (_set). Values must be finite. Laws use them from the next step on. It is an error if
+   desc.body_reals names none. */
 DEM_API dem_result dem_body_reals_get(const dem_world *world, dem_body body, dem_real *reals);
 DEM_API dem_result dem_body_reals_set(dem_world *world, dem_body body, const dem_real *reals);
 DEM_API dem_result dem_bodies_reals_set(dem_world *world, const dem_real *reals);
@@ -1392,111 +1460,125 @@ DEM_API dem_result dem_wall_reals_set(dem_world *world, dem_wall wall, const dem
 
 /* ---- bodies that are not spheres ---- */
 
-/* An ellipsoid with these semi-axes (m, each > 0, longest at most 1000 times the shortest) along x,
-   y, z of its own frame. Null id on bad values, in a planar world or when memory runs out. */
+/* Adds an ellipsoid with these semi-axes (m, > 0) along x, y and z of its frame. The longest may be
+   at most 1000 times the shortest. Not in planar worlds. */
 DEM_API dem_shape dem_shape_ellipsoid_add(dem_world *world, dem_vec3 semi_axes);
 
+/* How the mass properties of a cluster are found. */
 typedef enum dem_cluster_mass {
-    DEM_CLUSTER_UNION = 0,   /* where spheres overlap, matter counts once: ray quadrature */
-    DEM_CLUSTER_SUM,         /* every sphere counts in full */
-    DEM_CLUSTER_GIVEN        /* volume, centre and inertia below */
+    /* volume shared by several spheres counts once, integrated along parallel rays */
+    DEM_CLUSTER_UNION = 0,
+    DEM_CLUSTER_SUM,               /* every sphere counts in full */
+    DEM_CLUSTER_GIVEN              /* volume, centre and inertia are given */
 } dem_cluster_mass;
+/* A rigid cluster of spheres, in a frame of your choice. */
 typedef struct dem_cluster_desc {
-    int count;                   /* spheres, required, 1..1000 */
-    const dem_real *positions;   /* count x 3, m, in a frame of your choice */
-    const dem_real *radii;       /* count, m, > 0; null: all of `radius` */
-    dem_real radius;             /* m */
+    int count;                     /* spheres, required, 1 to 1000 */
+    const dem_real *positions;     /* count x 3, m, required */
+    const dem_real *radii;         /* count, m, > 0; null if all have `radius` */
+    dem_real radius;               /* m */
     dem_cluster_mass mass;
-    int rays;                    /* union: rays along each side of the outline, 16..4096; 0: 512 */
-    dem_real volume;             /* given: m3 */
-    dem_vec3 centre;             /* given: m, centre of mass in that frame */
-    dem_real inertia[6];         /* given: m5, xx yy zz xy xz yz about the centre, per density;
-                                    off-diagonal ones as in a tensor: -(integral of x y) */
+    /* DEM_CLUSTER_UNION: rays per side of the outline, 16 to 4096; default 512. It is an error if
+       rays are more than a quarter of the smallest radius apart. */
+    int rays;
+    /* The rest is for DEM_CLUSTER_GIVEN. */
+    dem_real volume;               /* m3 */
+    dem_vec3 centre;               /* m, centre of mass */
+    /* m5, moments of inertia about the centre per density: xx, yy, zz, xy, xz, yz. Off-diagonal
+       ones are elements of the tensor: xy is -(integral of x y). */
+    dem_real inertia[6];
 } dem_cluster_desc;
 static const dem_cluster_desc DEM_CLUSTER_DESC_ZERO = {0, 0, 0, 0, DEM_CLUSTER_UNION, 0, 0,
     {0, 0, 0}, {0, 0, 0, 0, 0, 0}};
 #define DEM_CLUSTER_DESC DEM_CLUSTER_DESC_ZERO
-/* A rigid cluster of spheres; its principal axes are found for you. The data is copied. Null id as
-   above. */
+/* Adds a cluster and computes its principal axes. Not in planar worlds. */
 DEM_API dem_shape dem_shape_cluster_add(dem_world *world, const dem_cluster_desc *desc);
 
-/* A convex polyhedron: the hull of points (count x 3, m, 4 to 10,000, in a frame of your choice).
-   Points inside it, or on its faces, are of no account: to 1e-10 of its size (single precision:
-   1e-6), and where that leaves more than DEM_POLYHEDRON_FACES faces, to as much as 1e-5. Null
-   id on bad values, points in a plane, too many faces, in a planar world or when memory runs out.
-   Two push each other by what they share (>>polyhedra), spheres and ellipsoids where they are
-   nearest. A contact of two, or with a wall, is told as four (dem_contacts_get): points that its
-   force is spread over; counters count it once. With impulses it is as many points as keep the two
-   apart, four at most, each with its own gap (>>gaps); counters count those that push. */
+/* Adds a convex polyhedron: the convex hull of points (count x 3, m, 4 to 10,000), in a frame of
+   your choice. Points inside it or on its faces, to within 1e-10 of its size (single precision:
+   1e-6), are dropped; if it has more than DEM_POLYHEDRON_FACES faces then, to within as much as
+   1e-5. It is an error if it still has more, or if the points lie in a plane. Not in planar worlds.
+   Two polyhedra repel each other by the volume they share (>>polyhedra), a polyhedron and a sphere
+   or ellipsoid at the nearest point. dem_contacts_get reports a contact of two polyhedra, or of one
+   with a wall, as four points over which its force is spread; counters count it once. With impulses
+   it has up to four points, each with its own gap (>>gaps); counters count the points with a
+   repulsive force. */
 enum { DEM_POLYHEDRON_FACES = 100 };
 DEM_API dem_shape dem_shape_polyhedron_add(dem_world *world, int count, const dem_real *points);
-/* The hull of a mesh (dem_mesh_read: STL, OBJ), if the mesh lies nowhere deeper inside it than dent
-   (m, >= 0; 0: it must be convex, but for round-off). If it does: a null id, and the error message
-   says where. The mesh must bound a body, as for dem_mesh_spheres; for the hull of an open mesh
-   give its vertices to dem_shape_polyhedron_add. Null id as above. */
+/* Adds the convex hull of a mesh (dem_mesh_read: STL, OBJ). It is an error, which says where, if
+   the mesh lies deeper inside its hull than dent (m, >= 0; 0 accepts convex meshes only, up to
+   round-off). The mesh must bound a body, as for dem_mesh_spheres; for an open mesh pass its
+   vertices to dem_shape_polyhedron_add. Not in planar worlds. */
 struct dem_mesh;
 DEM_API dem_shape dem_shape_mesh_add(dem_world *world, const struct dem_mesh *mesh, dem_real dent);
 
-/* Several polyhedra or ellipsoids as one rigid body: shapes that are there already (count: 1 to
-   1000), each with a place (count x 3, m) and an orientation (count x 4, null: none turned) in a
-   frame of your choice. Mass and moments are the sum of all, and so are forces: where two overlap
-   both count twice. Null id on bad values, clusters or unions among the shapes, or when memory runs
-   out. */
+/* Adds a union: count (1 to 1000) polyhedra, polygons or ellipsoids as one rigid body, in a frame
+   of your choice. Each piece is a shape of this world, with a position (count x 3, m) and an
+   orientation (count x 4; null means none is rotated). Mass, moments and contact forces are the
+   sums over the pieces: overlapping pieces count twice. Clusters and unions cannot be pieces. */
 DEM_API dem_shape dem_shape_union_add(dem_world *world, int count, const dem_shape *shapes,
                                       const dem_real *positions, const dem_real *orientations);
-/* In a planar world: a polygon (points: count x 2, m, 3 to 98, in turn, either way round), which
-   turns in the plane. A concave one is cut into convex pieces and is their union; they are shapes
-   of their own. Its mass is density x area x desc.thickness; towards others it is a prism as thick
-   as makes its volume that of the sphere of its disc: 4/3 sqrt(area/pi). Null id on bad values,
-   where sides cross, in a world that is not planar, or when memory runs out. */
+/* Adds a polygon in a planar world: corners in sequence, clockwise or anticlockwise (count x 2, m,
+   3 to 98). A concave polygon becomes the union of convex pieces, which are shapes too. The mass is
+   density x area x desc.thickness. For contacts the polygon is a prism of thickness 4/3
+   sqrt(area/pi), which gives it the volume of the sphere with the same area of cross-section. It is
+   an error if sides cross. */
 DEM_API dem_shape dem_shape_polygon_add(dem_world *world, int count, const dem_real *points);
 
+/* Properties of a shape. */
 typedef struct dem_shape_info {
-    int spheres;                 /* of a cluster; else 0 */
-    int corners, faces;          /* of a polyhedron; else 0 */
-    dem_real volume;             /* m3 */
-    dem_vec3 centre;             /* m, centre of mass in the frame the shape was given in */
-    dem_quat frame;              /* turns principal axes into that frame */
-    dem_vec3 inertia;            /* m5, principal moments per density */
-    dem_vec3 semi_axes;          /* m, of the ellipsoid; others: of the one of equal moments */
-    dem_real radius;             /* m, of the smallest sphere about the centre that holds it all */
-    int pieces;                  /* of a union; else 0 */
+    int spheres;                   /* of a cluster; otherwise 0 */
+    int corners, faces;            /* of a polyhedron; otherwise 0 */
+    dem_real volume;               /* m3 */
+    dem_vec3 centre;               /* m, centre of mass in the frame in which the shape was given */
+    dem_quat frame;                /* rotates the principal axes into that frame */
+    dem_vec3 inertia;              /* m5, principal moments of inertia per density */
+    dem_vec3 semi_axes;            /* m, of the ellipsoid with the same moments */
+    dem_real radius;               /* m, of the smallest sphere about the centre that contains it */
+    int pieces;                    /* of a union; otherwise 0 */
 } dem_shape_info;
+/* Writes the properties of a shape to info. */
 DEM_API dem_result dem_shape_get(const dem_world *world, dem_shape shape, dem_shape_info *info);
 
-/* Adds a body at rest: centre of mass at position (m), turned by orientation (any length but 0)
-   from the frame its shape was given in. Null id on bad values, when memory runs out, or where a
-   wall does not know the shape: sieves and profiles of DEM_EDGE_FRACTION do not know ellipsoids. */
+/* Adds a body of a shape at rest, with its centre of mass at position (m) and rotated by
+   orientation (any length but 0) from the frame in which the shape was given. It is an error if a
+   wall has no contact with this shape: sieves, surfaces of revolution and DEM_EDGE_FRACTION
+   profiles have none with ellipsoids; such profiles and some sieves have none with polyhedra. */
 DEM_API dem_body dem_body_add(dem_world *world, dem_material material, dem_shape shape,
                               dem_vec3 position, dem_quat orientation);
-/* Adds count bodies. Arrays but positions may be null: orientations (count x 4: w x y z; null: as
-   given), velocities and spins (count x 3: m/s, rad/s in the world's frame; null: at rest), scales
-   (count: all lengths of the shape times this, > 0; null: 1). All or nothing. */
+/* Adds count bodies of a shape, all or none. positions: count x 3, m. The other arrays may be null:
+   orientations (count x 4: w, x, y, z; null: not rotated), velocities and spins (count x 3: m/s and
+   rad/s in the world's frame; null: at rest), scales (count, > 0: factor on all lengths of the
+   shape; null: 1). */
 DEM_API dem_result dem_bodies_add(dem_world *world, dem_material material, dem_shape shape,
                                   int count, const dem_real *positions,
                                   const dem_real *orientations, const dem_real *velocities,
                                   const dem_real *spins, const dem_real *scales);
-/* Fills a region as dem_spheres_fill does, in random orientations, with room for each to turn
-   freely. */
+/* Adds up to count bodies of a shape in random orientations, as dem_spheres_fill does. Bounding
+   spheres do not overlap, so that every body is free to rotate. */
 DEM_API int dem_bodies_fill(dem_world *world, dem_material material, dem_shape shape,
                             dem_region region, int count, uint64_t seed);
 
-/* Two ellipsoids by themselves, for analysis. orientation: of any length; 0: not turned. */
+/* An ellipsoid outside any world, for analysis. In m; orientation of any length, 0 means none. */
 typedef struct dem_ellipsoid { dem_vec3 position, semi_axes; dem_quat orientation; } dem_ellipsoid;
+/* The contact of two ellipsoids. */
 typedef struct dem_ellipsoid_contact {
-    dem_real scale;              /* W0: both scaled by this touch in one point; < 1: they overlap */
-    dem_real lambda;             /* 0..1, where Perram and Wertheim's function is largest */
-    dem_vec3 point, normal;      /* m, where they touch; unit, from a to b */
-    dem_real depth_normal, depth_chord, depth_conservative;   /* m, overlaps, see dem_overlap;
-                                    < 0: apart; depth_chord then is 0 */
-    int iterations;              /* evaluations it took */
+    /* W0: scaled by it about their centres, the two touch in one point. < 1 if they overlap. */
+    dem_real scale;
+    dem_real lambda;               /* 0 to 1, maximises the function of Perram and Wertheim */
+    dem_vec3 point, normal;        /* m, of that contact; unit vector from a to b */
+    /* m, overlaps as in dem_overlap; negative if the two are apart, where depth_chord is 0 */
+    dem_real depth_normal, depth_chord, depth_conservative;
+    int iterations;                /* evaluations of that function */
 } dem_ellipsoid_contact;
-/* lambda: where to begin, from a contact a little while ago; 0: unknown. */
+/* Returns the contact of two ellipsoids. lambda is an initial guess, or 0. */
 DEM_API dem_ellipsoid_contact dem_ellipsoids_contact_get(const dem_ellipsoid *a,
                                                      const dem_ellipsoid *b, dem_real lambda);
 
-/* inserted = present + removed + left, always. */
+/* Numbers of bodies. inserted = present + removed + left holds at all times. `left` counts those
+   that left through outflow boundaries and outlets. */
 typedef struct dem_body_counts { uint64_t inserted, present, removed, left; } dem_body_counts;
+/* Returns the numbers of bodies. */
 DEM_API dem_body_counts dem_body_counts_get(const dem_world *world);
 
 /* ---- walls ---- */
