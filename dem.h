@@ -1582,37 +1582,47 @@ typedef struct dem_body_counts { uint64_t inserted, present, removed, left; } de
 DEM_API dem_body_counts dem_body_counts_get(const dem_world *world);
 
 /* ---- walls ---- */
+/* Walls repel grains and move as prescribed; grains do not move them. Functions that add a wall
+   copy their data. */
+
+/* The kind of a wall's motion. */
 typedef enum dem_motion_kind {
-    DEM_MOTION_FIXED = 0,
-    DEM_MOTION_TRANSLATING,   /* velocity */
-    DEM_MOTION_ROTATING,      /* speed [rad/s] about axis through point, right-handed */
-    /* displacement velocity/|velocity| * amplitude * sin(2 pi f t + phase) */
+    DEM_MOTION_FIXED = 0,          /* at rest */
+    DEM_MOTION_TRANSLATING,        /* with `velocity` */
+    DEM_MOTION_ROTATING,           /* at `speed` about `axis` through `point`, right-handed */
+    /* displaced by velocity/|velocity| amplitude sin(2 pi frequency t + phase), t = time - start */
     DEM_MOTION_OSCILLATING,
-    DEM_MOTION_USER,          /* function */
-    DEM_MOTION_TABLE          /* table: poses at given times, smoothly from one to the next */
+    DEM_MOTION_USER,               /* as `function` says */
+    DEM_MOTION_TABLE               /* through the poses of `table`, smoothly */
 } dem_motion_kind;
+/* A pose of a wall at a time. */
 typedef struct dem_motion_row {
-    double time;              /* s, after start; the first 0, ascending */
-    dem_vec3 position;        /* m, from where the wall stood when it was given its motion */
-    dem_quat rotation;        /* about `point`, which goes along: any length; 0: not turned */
+    double time;                   /* s, after start; the first is 0, ascending */
+    dem_vec3 position;             /* m, displacement from the pose in which the motion started */
+    dem_quat rotation;             /* from that pose, about the displaced `point`; 0: not rotated */
 } dem_motion_row;
+/* The motion of a wall. It starts from the pose that the wall has when dem_wall_motion_set is
+   called. */
 typedef struct dem_motion {
     dem_motion_kind kind;
-    dem_vec3 velocity;        /* m/s (translating); direction only (oscillating) */
-    dem_vec3 point, axis;  /* m, any length but 0: axis of rotation, and the one torque refers to */
-    dem_real speed;           /* rad/s */
-    dem_real amplitude, frequency, phase; /* m, Hz, rad */
-    /* s: rotating, translating: at rest in its first pose before; default 0*/
+    dem_vec3 velocity;             /* m/s (translating); direction only (oscillating) */
+    /* m and direction: the axis of rotation, and the axis to which dem_wall_loads refers torques.
+       An axis of 0 means along z, except for rotating walls, which need one. */
+    dem_vec3 point, axis;
+    dem_real speed;                /* rad/s */
+    dem_real amplitude, frequency, phase;  /* m, Hz, rad */
+    /* s. Before it rotating and translating walls are at rest. A time in the past means now. */
     double start;
-    dem_motion_fn function;
-    void *user;
-    /* s, >= 0: translating, rotating, oscillating: speed, or amplitude, rises from 0 to full in the
-       first `ramp` after start, by 3 u^2 - 2 u^3 of the time u: no jerk; 0: at once */
+    dem_motion_fn function;        /* DEM_MOTION_USER */
+    void *user;                    /* passed to function */
+    /* s, >= 0. The speed (translating, rotating) or amplitude (oscillating) rises as 3 u^2 - 2 u^3,
+       u = (time - start)/ramp, to its full value. 0 means at once. */
     double ramp;
-    /* table: rows (copied, >= 2). Between two of them cubic, so that velocity and spin have no
-       jumps (tangents: of the parabola through three rows); it begins and ends at rest, and stays.
-       repeats 1: begins anew after the last row, whose pose should be the first one's, without
-       stopping. Turns by less than half a turn from row to row */
+    /* The rows of DEM_MOTION_TABLE, at least 2. Between rows the pose is a cubic, so that velocity
+       and spin are continuous (tangents of the parabola through three rows). The wall is at rest
+       before the first row and after the last. With table_repeats = 1 the table starts again after
+       its last row without stopping; that row should have the pose of the first. From row to row
+       the wall rotates by less than pi. */
     const dem_motion_row *table;
     int table_count, table_repeats;
 } dem_motion;
@@ -1620,211 +1630,228 @@ static const dem_motion DEM_MOTION_ZERO = {DEM_MOTION_FIXED, {0, 0, 0}, {0, 0, 0
                                            0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
 #define DEM_MOTION DEM_MOTION_ZERO
 
-/* How a wall of segments shares the force where a grain straddles two of them. */
+/* How the segments of a profile share the force of a grain that touches several. */
 typedef enum dem_edge_rule {
-    DEM_EDGE_RESOLVED = 0,    /* as one surface, whatever the cut (>>facets): a flat one gives
-                                 exactly the plane's force */
-    DEM_EDGE_FRACTION         /* [MIL] Fig 5.19: every segment pushes along its own line's normal
-                                 with the fraction a^2(3-2a), a = share of the chord inside.
-                                 Profiles only */
+    /* The profile acts as one surface, however it is divided (>>facets): a flat one exerts exactly
+       the force of a plane. */
+    DEM_EDGE_RESOLVED = 0,
+    /* [MIL] Fig 5.19: each segment exerts the force along the normal of its own line times a^2 (3 -
+       2a), where a is its fraction of the chord inside the grain. Only for spheres and clusters,
+       and without law_range. */
+    DEM_EDGE_FRACTION
 } dem_edge_rule;
 
-/* Triangles: vertices (vertex_count x 3), triangles (triangle_count x 3, counted from 0).
-   Segments:  vertices (vertex_count x 2), segments  (segment_count x 2, counted from 0). */
+/* A triangle mesh: vertex_count x 3 coordinates (m), triangle_count x 3 vertex numbers from 0. */
 typedef struct dem_mesh { int vertex_count, triangle_count; dem_real *vertices;
                          int32_t *triangles; } dem_mesh;
+/* A profile: vertex_count x 2 coordinates (m), segment_count x 2 vertex numbers from 0. */
 typedef struct dem_profile { int vertex_count, segment_count; dem_real *vertices;
                             int32_t *segments; } dem_profile;
 
-/* Plane through point; grains live on the side normal points to. */
+/* Adds a plane through point (m). Grains are on the side to which normal points. */
 DEM_API dem_wall dem_wall_plane_add(dem_world *world, dem_material material, dem_vec3 point,
                                dem_vec3 normal);
-/* Endless cylinder about axis through point. inside = 1: grains live inside. */
+/* Adds an infinite cylinder of radius (m) about an axis through point (m). Grains are inside if
+   inside = 1, and outside if inside = 0. */
 DEM_API dem_wall dem_wall_cylinder_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis,
                                   dem_real radius, int inside);
-/* A surface of revolution about `axis` through `point`: straight pieces from ring to ring, count
-   (2..12) of them, of these radii (m, >= 0) at these heights (m, along the axis from `point`): a
-   finite cylinder, a cone, a disc with a hole, a tube that ends in a funnel, a drum with its ends.
-   Both sides push. It is one surface: in an inner corner a grain touches both pieces, at an outer
-   one and at a rim the ring. A grain that is wider than the place it is in touches it on one side.
-   Spheres, discs, clusters and polyhedra touch it; ellipsoids do not. Null id on bad values. */
+/* Adds a surface of revolution about an axis through point (m): straight pieces between count (2 to
+   DEM_RINGS) rings of these radii (m, >= 0) at these heights (m, along the axis from point). It can
+   be a finite cylinder, a cone, a disc with a hole, a tube with a funnel or a drum with its ends.
+   Both sides repel. In an inner corner a grain touches both pieces; at an outer corner and at a rim
+   it touches the ring. A grain too wide for a narrow part touches one side of it only. Ellipsoids
+   have no contact with it. */
 enum { DEM_RINGS = 12 };
 DEM_API dem_wall dem_wall_revolved_add(dem_world *world, dem_material material, dem_vec3 point,
                                   dem_vec3 axis, int count, const dem_real *radii,
                                   const dem_real *heights);
-/* One piece of it: a cone from here to there (m, not the same place), of these radii (m, >= 0, not
-   both 0) at its ends, which are open. Equal radii: a finite cylinder. */
+/* Adds one piece of a surface of revolution: an open cone between two points (m) with these radii
+   (m, >= 0, not both 0). Equal radii make a finite cylinder. */
 DEM_API dem_wall dem_wall_cone_add(dem_world *world, dem_material material, dem_vec3 from,
                                    dem_vec3 to,
                               dem_real radius_from, dem_real radius_to);
-/* Segments in the x-y plane drawn out along z without end; both sides push. The data is copied. */
+/* Adds a profile: segments in the x-y plane, extruded along z without end. Both sides repel. */
 DEM_API dem_wall dem_wall_profile_add(dem_world *world, dem_material material,
                                  const dem_profile *profile,
                                  dem_edge_rule rule);
-/* Triangles; both sides push. The data is copied. */
+/* Adds a triangle mesh. Both sides repel. */
 DEM_API dem_wall dem_wall_mesh_add(dem_world *world, dem_material material, const dem_mesh *mesh);
-/* Spheres at positions (count x 3), all of one radius, fixed to each other: [MIL]'s wall of
-   particles. share (0 < share <= 1) multiplies every force: overlapping spheres stand for one
-   surface. */
+/* Adds a wall of spheres of one radius (m) at positions (count x 3, m), as in [MIL]. All forces are
+   multiplied by share (0 < share <= 1), because overlapping spheres represent one surface. */
 DEM_API dem_wall dem_wall_grains_add(dem_world *world, dem_material material, int count,
                                      const dem_real *positions,
                                      dem_real radius, dem_real share);
 
-/* A sieve: a plane with holes, whose rows go on without end, or as far as a disc reaches. What a
-   grain costs does not depend on how many holes there are; a polyhedron's cost on a plate goes with
-   the holes that it lies over. Spheres and clusters know every sieve, polyhedra those without end
-   of wires and bars, and plates (to springs: of some thickness). */
+/* The kind of a sieve. Spheres and clusters have contact with all sieves, ellipsoids with none.
+   Polyhedra have contact with infinite sieves except DEM_SIEVE_REDUCED; under DEM_RESPONSE_SPRINGS
+   plates need a thickness for it. */
 typedef enum dem_sieve_kind {
     DEM_SIEVE_NONE = 0,
-    DEM_SIEVE_WIRES,          /* square weave of round wires */
-    DEM_SIEVE_BARS,           /* parallel round wires, across `along` */
-    DEM_SIEVE_SQUARE,         /* plate with square holes */
-    DEM_SIEVE_ROUND,          /* plate with round holes */
-    DEM_SIEVE_SLOTS,          /* plate with slots, longer along `along` */
-    /* [ALK07] 4.3.3: a plane; a grain whose centre is above the reduced part of a square hole falls
-       through, without touching. Cheaper, never blinded; but what passes is what clearance says */
+    DEM_SIEVE_WIRES,               /* a square weave of round wires */
+    DEM_SIEVE_BARS,                /* parallel round wires, across `along` */
+    DEM_SIEVE_SQUARE,              /* a plate with square holes */
+    DEM_SIEVE_ROUND,               /* a plate with round holes */
+    DEM_SIEVE_SLOTS,               /* a plate with slots, longer along `along` */
+    /* [ALK07] 4.3.3: a plane through which a sphere falls without contact if its centre is above
+       the reduced part of a square hole. It is cheaper and never blinds, but the clearance decides
+       what passes. */
     DEM_SIEVE_REDUCED
 } dem_sieve_kind;
+/* A sieve: a plane with rows of holes, infinite or cut out as a disc. The cost per sphere does not
+   depend on the number of holes; that of a polyhedron on a plate grows with the holes below it. */
 typedef struct dem_sieve_desc {
-    dem_sieve_kind kind;      /* required */
-    dem_vec3 point;           /* m, middle of a hole, half way through */
-    dem_vec3 normal;          /* across the sieve; 0: along z */
-    dem_vec3 along;           /* rows of holes go this way; 0, or within .05 degrees of the normal:
-                                 along x, or y where x is near the normal */
-    dem_real aperture;        /* m, required, > 0: clear width, side or diameter of a hole */
-    dem_real bar;             /* m, required, > 0: diameter of a wire, or solid between two holes */
-    dem_real length;          /* m, of slots; 0: without end */
-    dem_real thickness;       /* m, of plates; 0: a sheet with sharp rims */
-    dem_real lift;            /* m, between the axes of the two layers of wires; 0: in one plane,
-                                 bar: laid on each other. Real wires wind between the two */
-    int staggered;            /* 1: round holes in a triangular pattern */
-    dem_real radius;          /* m, of the disc it is cut from; 0: without end */
-    int model;                /* reduced: 1 (or 0): the whole grain above the reduced hole, 2: its
-                                 centre only */
-    dem_real clearance;       /* reduced: zeta of eq 4.20 or 4.21, 0 (open) to 1 (closed) */
+    dem_sieve_kind kind;           /* required */
+    dem_vec3 point;                /* m, centre of a hole, at half the thickness */
+    dem_vec3 normal;               /* across the sieve; 0 means along z */
+    /* Direction of the rows of holes. If it is 0 or within 0.001 rad of the normal: along x, or y
+       if x is near the normal. */
+    dem_vec3 along;
+    dem_real aperture;             /* m, required, > 0: clear width, side or diameter of a hole */
+    dem_real bar;                  /* m, required, > 0: wire diameter, or width between two holes */
+    dem_real length;               /* m, of slots, >= aperture; 0 means infinite */
+    dem_real thickness;            /* m, of plates; 0 means a sheet with sharp rims */
+    /* m, between the axes of the two layers of wires: 0 puts them in one plane, `bar` one on the
+       other. Real wires wind between the two. */
+    dem_real lift;
+    int staggered;                 /* 1 puts round holes in a triangular pattern */
+    dem_real radius;               /* m, of the disc; 0 means an infinite sieve */
+    /* Reduced holes: 0 or 1, the whole sphere must be above one; 2, its centre only. */
+    int model;
+    dem_real clearance;            /* reduced holes: zeta of eq 4.20 or 4.21, 0 open, 1 closed */
 } dem_sieve_desc;
 static const dem_sieve_desc DEM_SIEVE_DESC_ZERO = {DEM_SIEVE_NONE, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
                                                    0, 0, 0, 0, 0, 0, 0, 0, 0};
 #define DEM_SIEVE_DESC DEM_SIEVE_DESC_ZERO
+/* Adds a sieve. */
 DEM_API dem_wall dem_wall_sieve_add(dem_world *world, dem_material material,
                                     const dem_sieve_desc *desc);
-/* Grains that blind a sieve of wires or a plate: stuck in a hole, that is touching it on opposite
-   sides, with the wedge between the two so narrow that friction holds it. Those moving faster than
-   speed (m/s; 0: any) against the sieve are not counted. -1 with a sentence when there is no list
-   of contacts (see dem_contacts_get) or the wall is no sieve. Clusters count too; reduced holes
-   are never blinded. */
+/* Returns how many grains, clusters included, blind a sieve. Such a grain is stuck in a hole: it
+   touches the sieve on opposite sides, and the wedge between the two contacts is so narrow that
+   friction holds the grain. Grains faster than speed (m/s, relative to the sieve; 0 means any) do
+   not count. Reduced holes never blind. Returns -1 on error, also while there is no list of
+   contacts (see dem_contacts_get). */
 DEM_API int dem_sieve_blinded_get(const dem_world *world, dem_wall sieve, dem_real speed);
 
+/* Sets the motion of a wall, which begins at its present pose. */
 DEM_API dem_result dem_wall_motion_set(dem_world *world, dem_wall wall, const dem_motion *motion);
+/* Writes the present pose of a wall to pose. */
 DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall wall, dem_pose *pose);
+/* Removes a wall. Ids of other walls stay valid. It is an error if an outlet moves with it. */
 DEM_API dem_result dem_wall_remove(dem_world *world, dem_wall wall);
 
-/* What the grains do to a wall. Torque is about the point of its motion; axial is its part along
-   axis. */
+/* The loads of grains on a wall. Torques are about the point of its motion (of a wall without a
+   motion: its own point, or the origin for profiles, meshes and walls of grains). */
 typedef struct dem_wall_loads {
-    dem_vec3 force;           /* N, of the last step */
-    dem_vec3 torque;          /* N m, of the last step */
-    dem_real torque_axial;    /* N m */
-    dem_real power;           /* W, the wall gives to the grains: -(force . v + torque . w) */
-    int contacts;             /* now */
-    int touched;              /* 1: something has touched it since it was added */
-    double impulse[3];        /* N s, since dem_wall_loads_reset */
-    double torque_impulse;    /* N m s, of torque_axial */
-    double work;              /* J, done on the grains */
-    double time;              /* s, over which the last three were summed */
-    double rate[DEM_BODY_REALS];   /* 1/s, what your law says the wall gains, of the last step */
-    double gained[DEM_BODY_REALS]; /* the same, summed since dem_wall_loads_reset */
+    dem_vec3 force;                /* N, of the last step */
+    dem_vec3 torque;               /* N m, of the last step */
+    dem_real torque_axial;         /* N m, component along the axis of its motion */
+    dem_real power;                /* W, from the wall to the grains: -(force . v + torque . w) */
+    int contacts;                  /* present number */
+    int touched;                   /* 1 if a grain has touched the wall since it was added */
+    /* All that follow except `rate` are sums since dem_wall_loads_reset. */
+    double impulse[3];             /* N s */
+    double torque_impulse;         /* N m s, of torque_axial */
+    double work;                   /* J, from the wall to the grains */
+    double time;                   /* s, over which these sums extend */
+    double rate[DEM_BODY_REALS];   /* 1/s, last step: gain of its numbers (desc.body_reals) */
+    double gained[DEM_BODY_REALS]; /* its sum over time */
 } dem_wall_loads;
+/* Writes the loads of a wall to loads. */
 DEM_API dem_result dem_wall_loads_get(const dem_world *world, dem_wall wall, dem_wall_loads *loads);
+/* Sets the sums of a wall's loads to 0. */
 DEM_API dem_result dem_wall_loads_reset(dem_world *world, dem_wall wall);
 
 /* ---- joints ---- */
-/* Joints hold a body to another, to a wall or to the space they are in. They need
-   DEM_RESPONSE_IMPULSES and DEM_SOLVER_GAUSS_SEIDEL. All joints are solved together and exactly,
-   trees and closed loops alike, after every sweep over the contacts; they keep points, and
-   directions, together at the end of each step. What joints hold never adds energy, whatever the
-   number of sweeps: docs/impulses.md says how. Joined bodies do not touch each other, unless
-   `collide`. */
+/* Joints connect a body to another body, to a wall or to space. They need DEM_RESPONSE_IMPULSES and
+   DEM_SOLVER_GAUSS_SEIDEL. After every sweep over the contacts all joints, trees and closed loops
+   alike, are solved together and exactly; the joined points and axes coincide at the end of each
+   step. Joints never add energy, for any number of sweeps (docs/impulses.md). Two bodies that are
+   joined have no contact with each other unless `collide` is 1. */
 typedef enum dem_joint_kind {
     DEM_JOINT_NONE = 0,
-    DEM_JOINT_POINT,          /* a ball joint: `point` of both stays one */
-    DEM_JOINT_REVOLUTE        /* a hinge, an axle: `axis` of both stays one, too */
+    DEM_JOINT_POINT,               /* a ball joint: keeps `point` of both together */
+    DEM_JOINT_REVOLUTE             /* a hinge or axle: keeps `axis` of both together too */
 } dem_joint_kind;
+/* The motor of a revolute joint. */
 typedef enum dem_motor {
     DEM_MOTOR_NONE = 0,
-    DEM_MOTOR_SPEED,          /* turns a against b with `speed`, by at most `torque` */
-    DEM_MOTOR_TORQUE          /* turns a against b with `torque` */
+    DEM_MOTOR_SPEED,               /* rotates a against b at `speed`, by at most `torque` */
+    DEM_MOTOR_TORQUE               /* exerts `torque` on a, and the opposite on b */
 } dem_motor;
 typedef struct dem_joint { int32_t id; } dem_joint;                          /* id counts from 1 */
+/* A joint. point and axis refer to the present poses of the bodies. */
 typedef struct dem_joint_desc {
-    dem_joint_kind kind;      /* required */
-    dem_motor motor;          /* of a revolute joint */
-    dem_body a, b;            /* a is required; b null: the wall, or the space */
-    dem_wall wall;            /* where b is null: moves with it; null: the space, at rest; of no
-                                 meaning where b is given */
-    int collide;              /* 1: the two touch as others do */
-    dem_vec3 point;           /* m, where they are joined, as they stand now */
-    dem_vec3 axis;            /* revolute: of any length but 0, as they stand now */
-    dem_real speed;           /* rad/s, of a against b about axis, right-handed; within +-1e12 */
-    dem_real torque;          /* N m, on a about axis, within +-1e12; of a motor with speed: its
-                                 limit, >= 0; 0: no limit */
+    dem_joint_kind kind;           /* required */
+    dem_motor motor;               /* of a revolute joint */
+    dem_body a, b;                 /* a is required; b null means `wall`, or space */
+    dem_wall wall;                 /* if b is null: moves with it; null means space, at rest */
+    int collide;                   /* 1: the two bodies may touch each other */
+    dem_vec3 point;                /* m, where the two are joined */
+    dem_vec3 axis;                 /* of a revolute joint, not 0; planar worlds: along z */
+    /* rad/s, of a against b about axis, right-handed; at most 1e12 in size */
+    dem_real speed;
+    /* N m, on a about axis; at most 1e12 in size. For DEM_MOTOR_SPEED the limit, >= 0, where 0
+       means no limit. */
+    dem_real torque;
 } dem_joint_desc;
 static const dem_joint_desc DEM_JOINT_DESC_ZERO = {DEM_JOINT_NONE, DEM_MOTOR_NONE, {0, 0}, {0, 0},
                                                    {0}, 0, {0, 0, 0}, {0, 0, 0}, 0, 0};
 #define DEM_JOINT_DESC DEM_JOINT_DESC_ZERO
+/* The state of a joint. */
 typedef struct dem_joint_state {
-    dem_vec3 force, torque;   /* N, N m about the point: on a, of the last step, the motor's with
-                                 them; on b the opposite */
-    dem_real motor_torque;    /* N m, on a about axis, of the last step */
-    dem_real power;           /* W, of the motor, given to a and b; 0: none */
-    dem_real gap, tilt;       /* m: distance of the two points; sine between the two axes */
-    double turned;            /* rad, of a against b about axis, since it was added */
-    double work;              /* J, sum of the motor's power over time */
+    /* N, N m about the joined point: on a (b has the opposite), of the last step, with the motor */
+    dem_vec3 force, torque;
+    dem_real motor_torque;         /* N m, on a about axis, of the last step */
+    dem_real power;                /* W, from the motor to a and b; 0 without a motor */
+    dem_real gap, tilt;            /* m between the points; sine of the angle between the axes */
+    double turned;                 /* rad, of a against b about axis since the joint was added */
+    double work;                   /* J, of the motor */
 } dem_joint_state;
-/* Adds a joint. Returns a null id and an error message on bad values, where contacts answer by
-   springs, where neither of the two can move, and of spheres in worlds without desc.orientations.
-   A joint ends with either of its bodies, or its wall, when that is removed or leaves: from then on
-   calls with its id are errors. While both of its bodies are fixed it holds nothing: force, torque
-   and power are 0; it acts again when one is freed. Ids are never given twice. Checkpoints hold
-   joints. */
+/* Adds a joint. It is an error if the response is DEM_RESPONSE_SPRINGS, if neither of the two can
+   move, or if a sphere is joined without desc.orientations. A joint ends when one of its bodies or
+   its wall is removed or leaves; its id is then invalid and is never used again. While both bodies
+   are fixed, force, torque and power are 0; the joint acts again when one is released. Checkpoints
+   contain joints. */
 DEM_API dem_joint dem_joint_add(dem_world *world, const dem_joint_desc *desc);
-/* Another motor, from the next step on: as in dem_joint_desc. */
+/* Replaces the motor of a joint from the next step on. The values are those of dem_joint_desc. */
 DEM_API dem_result dem_joint_motor_set(dem_world *world, dem_joint joint, dem_motor motor,
                                    dem_real speed, dem_real torque);
+/* Writes the state of a joint to state. */
 DEM_API dem_result dem_joint_get(const dem_world *world, dem_joint joint, dem_joint_state *state);
+/* Removes a joint. */
 DEM_API dem_result dem_joint_remove(dem_world *world, dem_joint joint);
 
 /* ---- feed and outlets ---- */
-enum { DEM_CLASSES = 16 };
+enum { DEM_CLASSES = 16 };         /* largest number of size classes */
 typedef struct dem_feed { int32_t id; } dem_feed;                            /* id counts from 1 */
 typedef struct dem_outlet { int32_t id; } dem_outlet;                        /* id counts from 1 */
 
-/* Adds grains while the world runs: at random places in a region, of random sizes, at a rate, or
-   all at once. A grain that finds no free place waits, and is not lost; places are found as
-   dem_spheres_fill finds them. Most grains join the list of neighbours as it is; it is made anew
-   for one that brings a first size or material in, or comes beside bodies that are no spheres. */
+/* A feed adds grains while the world runs, at random free positions in a region (free as in
+   dem_spheres_fill), at a rate or all at once. A grain for which there is no room waits; none is
+   lost. Most grains join the present neighbour list. The list is rebuilt for the first grain of a
+   radius or material, and for every grain if the world has bodies that are not spheres. */
 typedef struct dem_feed_desc {
-    dem_material material;           /* required */
-    int class_count;                 /* required, 1..16: classes of size */
-    dem_real radius[DEM_CLASSES];    /* m, required */
-    /* > 0, how much of each class: shares of any sum, or with `limited` grains (kg with by_mass) */
+    dem_material material;         /* required */
+    int class_count;               /* required, 1 to 16: size classes */
+    dem_real radius[DEM_CLASSES];  /* m, required */
+    /* > 0: relative amounts of the classes, or with `limited` grains (kg with by_mass) */
     double amount[DEM_CLASSES];
-    int limited;                     /* 1: `amount` is all there is, drawn without putting back */
-    int by_mass;                     /* 1: amount and rate are in kg and kg/s, not in grains */
-    double rate;                     /* grains/s; 0: all at once, as far as there is room */
-    double start, end;               /* s, in the world's time: a feed added later owes what was due
-                                        since start; end 0: no end */
-    dem_box box;                     /* m, required: centres are in it */
-    int round;                       /* 1: in the upright cylinder (elliptic as the box) in it */
-    dem_vec3 velocity;               /* m/s */
-    dem_real spread;                 /* m/s, each component of velocity +- up to this */
-    uint64_t seed;
-    dem_inside_fn inside;            /* places of the box to use, as in dem_region; 0: all */
-    void *inside_user;
-    /* A mixture: of each class, where it is not 0, its own material; its shape, in random
-       orientations, radius (m) that of the sphere of its volume; and sizes that are drawn (copied)
-       in place of that radius */
+    int limited;                   /* 1: the feed ends after `amount`, drawn without replacement */
+    int by_mass;                   /* 1: amount and rate are in kg and kg/s instead of grains */
+    double rate;                   /* grains/s; 0 means all as room permits, and needs limited */
+    /* s, time of the world. A feed that is added later catches up with what was due since start.
+       end 0 means no end. */
+    double start, end;
+    dem_box box;                   /* m, required: centres lie inside */
+    int round;                     /* 1: only the vertical elliptic cylinder inscribed in the box */
+    dem_vec3 velocity;             /* m/s */
+    dem_real spread;               /* m/s, largest random change of each component of velocity */
+    uint64_t seed;                 /* of random positions, sizes and velocities */
+    dem_inside_fn inside;          /* restricts the box further, as in dem_region */
+    void *inside_user;             /* passed to inside */
+    /* A mixture: for each class, if not 0, its material; its shape, in random orientations and with
+       the volume of a sphere of `radius`; and the distribution of its radius (copied). */
     dem_material materials[DEM_CLASSES];
     dem_shape shapes[DEM_CLASSES];
     const dem_sizes *sizes[DEM_CLASSES];
@@ -1833,56 +1860,58 @@ static const dem_feed_desc DEM_FEED_DESC_ZERO = {{0}, 0, {0}, {0}, 0, 0, 0, 0, 0
                                                  {{0, 0, 0}, {0, 0, 0}}, 0, {0, 0, 0}, 0, 0, 0, 0,
                                                  {{0}}, {{0}}, {0}};
 #define DEM_FEED_DESC DEM_FEED_DESC_ZERO
+/* The state of a feed. */
 typedef struct dem_feed_state {
-    uint64_t fed[DEM_CLASSES], total; /* grains */
-    double mass;                      /* kg */
-    uint64_t waiting;                 /* grains that are due without room; by mass, at a rate: 0 or
-                                         1 */
-    int done;                         /* 1: nothing more will come */
+    uint64_t fed[DEM_CLASSES], total;  /* grains added, per class and in all */
+    double mass;                   /* kg, added */
+    uint64_t waiting;              /* grains due but without room; by mass at a rate: 0 or 1 */
+    int done;                      /* 1: no more grains will be added */
 } dem_feed_state;
+/* Adds a feed. */
 DEM_API dem_feed dem_feed_add(dem_world *world, const dem_feed_desc *desc);
+/* Writes the state of a feed to state. */
 DEM_API dem_result dem_feed_get(const dem_world *world, dem_feed feed, dem_feed_state *state);
 
-/* Takes out grains whose centre is in a region (fixed ones too), and counts them; for the balance
-   they have left. It looks whenever a new list of neighbours is made, and every 64 steps: a grain
-   is in by half a skin at most, or for 64 steps, before it goes; a region thinner than half a skin
-   may be passed unseen. So many that leave one by one cost hardly more than none. The radius of a
-   body that is not a sphere: of the smallest sphere about its centre that holds it.
-   With `keep` it only counts: those that come in, those that go back, and those that are there;
-   discharge through a plane is what comes into the box beyond it. */
+/* An outlet removes the grains, fixed ones included, whose centre is in a region, and counts them;
+   dem_body_counts counts them as left. It checks whenever the neighbour list is rebuilt and every
+   64 steps: a grain is up to half a skin or 64 steps inside before it is removed, so that many
+   grains that leave one by one cost little. A region thinner than half a skin may miss grains.
+   Bodies that are not spheres count with the radius of their bounding sphere.
+   With `keep` an outlet only counts the grains that enter, go back and are inside. The discharge
+   through a plane is what enters the box behind it. */
 typedef struct dem_outlet_desc {
-    dem_wall frame;                  /* the region moves with this wall, which then cannot be
-                                        removed; null: it stands still */
-    dem_box box;                     /* m, required, in that frame; lo below hi on every axis
-                                        (planar: z may be 0 to 0) */
-    dem_real beyond;                 /* m, only those at least so far from the frame's z axis */
-    dem_real wanted_min, wanted_max; /* m, radii that ought to leave here; max 0: no limit */
-    int class_count;                 /* 0..16: classes to count by; a grain is of the nearest */
-    dem_real radius[DEM_CLASSES];    /* m, ascending */
-    dem_material material;           /* only grains of it; id 0: of all */
-    int keep;                        /* 1: grains stay, and are counted; at most 16 such outlets */
+    dem_wall frame;                /* the region moves with this wall; null means it is at rest */
+    /* m, required, in that frame; lo < hi on every axis (planar worlds: z may be 0 to 0) */
+    dem_box box;
+    dem_real beyond;               /* m: only grains this far or farther from the frame's z axis */
+    dem_real wanted_min, wanted_max;  /* m, radii meant to leave here; max 0: no limit */
+    int class_count;               /* 0 to 16 size classes to count in */
+    dem_real radius[DEM_CLASSES];  /* m, ascending; a grain counts in the nearest class */
+    dem_material material;         /* only grains of this material; id 0 means all */
+    int keep;                      /* 1: grains stay and are only counted; at most 16 such */
 } dem_outlet_desc;
 static const dem_outlet_desc DEM_OUTLET_DESC_ZERO = {{0}, {{0, 0, 0}, {0, 0, 0}}, 0, 0, 0, 0, {0},
                                                      {0}, 0};
 #define DEM_OUTLET_DESC DEM_OUTLET_DESC_ZERO
+/* The counts of an outlet: grains that were removed or, with `keep`, that entered. */
 typedef struct dem_outlet_state {
-    uint64_t count[DEM_CLASSES], total;
+    uint64_t count[DEM_CLASSES], total;     /* grains, per class and in all */
     double mass[DEM_CLASSES], total_mass;   /* kg */
-    uint64_t sorted, gangue;         /* grains of the wanted radii; the others: [ALK07] s_i, g_i */
-    double sorted_mass, gangue_mass; /* kg */
-    double since, last;              /* s, when counting began; when the last grain left (keep:
-                                        came in) */
-    /* keep: all above is what came in; what went back out; what is in it now. Grains that began in
-       the region have not come in */
+    uint64_t sorted, gangue;       /* grains of wanted radii, and others: [ALK07] s_i and g_i */
+    double sorted_mass, gangue_mass;        /* kg */
+    double since, last;            /* s: when counting began; when the last grain was counted */
+    /* `keep` only: grains that went back, and grains that are inside now. Grains that were inside
+       when counting began have not entered. */
     uint64_t back[DEM_CLASSES], held[DEM_CLASSES], back_total, held_total;
     double back_mass[DEM_CLASSES], held_mass[DEM_CLASSES];      /* kg */
-    double back_total_mass, held_total_mass;
+    double back_total_mass, held_total_mass;                    /* kg */
 } dem_outlet_state;
+/* Adds an outlet. The wall that is its frame cannot be removed. */
 DEM_API dem_outlet dem_outlet_add(dem_world *world, const dem_outlet_desc *desc);
+/* Writes the counts of an outlet to state. */
 DEM_API dem_result dem_outlet_get(const dem_world *world, dem_outlet outlet,
                                   dem_outlet_state *state);
-/* Begins counting anew (grains that left stay in the balance; those that are in a region have not
-   come in). */
+/* Sets the counts of an outlet to 0. dem_body_counts stays; grains inside have not entered. */
 DEM_API dem_result dem_outlet_reset(dem_world *world, dem_outlet outlet);
 
 /* ---------------------------------------------------------------------------------------------
