@@ -1,85 +1,85 @@
 /* dem.h - version 0.1.0 - discrete-element (granular) simulation in one C99 header. MIT licence.
 
-   It simulates grains: spheres of any radius (or discs, in a plane), ellipsoids, convex polyhedra
-   and rigid clusters of spheres that touch, rub, roll and bounce on each other and on moving walls.
+   dem.h simulates grains: spheres of any radius (discs in two dimensions), ellipsoids, convex
+   polyhedra and rigid clusters of spheres. They touch, rub, roll and bounce on each other and on
+   moving walls.
 
-   Include it plainly wherever you use it, and define DEM_IMPLEMENTATION before the include in *one*
-   C or C++ file to get the implementation. dem.c is such a file: compile it once (some 20 s with
-   gcc at -O2), and your own files compile in a moment:
+   Include it wherever you use it. Define DEM_IMPLEMENTATION before the include in exactly *one* C
+   or C++ file. dem.c is such a file: compile it once (about 20 s with gcc at -O2), and your own
+   files compile in a moment:
 
-       cc -O2 -c dem.c                        -fopenmp if you like
+       cc -O2 -c dem.c                        (add -fopenmp for threads)
        cc -O2 program.c dem.o -lm
 
-   Contents; jump to a part by searching for its tag:
-       >>manual      a complete program, conventions, one step, options, materials, lifetimes, the
-                     report, errors, threads, extending, a glossary
-       >>api         ids, choices, contacts and the built-in laws
-       >>scene       worlds, materials, bodies, walls, feeds
-       >>run         steps, measuring, files, slabs, report
-       >>implementation  stop there if you only want to use it
-       >>platform    compiler, OpenMP, the one parallel loop
-       >>maths       vectors, poses, random numbers
-       >>layout      the world, and what it is made of
-       >>memory      what each body has; errors, allocation, arrays that grow
-       >>laws        the built-in contact laws, a line each
-       >>materials   materials, the pair table, coefficients
-       >>shapes      ellipsoids, clusters of spheres: mass properties, supports, meetings
-       >>closed      which side of a mesh is inside: shells, open edges, triangles turned round
-       >>hulls       convex polyhedra: the hull of points, its faces and mass properties
-       >>unions      several shapes as one; polygons of planar worlds
-       >>bodies      grains: slots, arrays, insertion, removal
-       >>facets      what each face, edge and corner of a surface counts
-       >>sheets      which facets of a surface hang together, and where they end
-       >>walls       planes, cylinders, profiles, meshes, walls of grains, sieves, their motions
-       >>search      all pairs, grid, levels, linked linear list; the neighbour list
-       >>lists       candidates on walls; contacts that last, carried to new lists
-       >>near        neighbours that may touch soon: the pruned list that forces use
-       >>rebuild     effects, skin, order of bodies, domains: all lists made anew
-       >>touch       candidate pairs -> contacts: geometry only
-       >>respond     contact -> force and torque: the loops that bring touch and law together
-       >>polyhedra   what polyhedra share with each other and with surfaces
-       >>gaps        how far polyhedra are apart, and the points that keep them off
-       >>on-walls    where parts of bodies touch walls: geometry only
-       >>polyhedra-walls  where polyhedra touch walls whose elements are flat, or grains
-       >>polyhedra-round  where they touch cylinders and surfaces of revolution
-       >>polyhedra-sieves  where they touch sieves; who touches what
-       >>meets       where parts of two bodies touch; who meets whom
-       >>kept        contacts kept by themselves, all but sphere on sphere: touch
-       >>kept-respond  the law's answers to them: forces on both ends
-       >>integrators kick, drift, predict; rotation
-       >>impulses    in place of laws: impulses that keep bodies apart: who meets whom
-       >>joints      what holds bodies together: hinges, motors
-       >>joints-solved  all joints at once: trees, loops, the guard of energy
-       >>solvers     how they are found
-       >>impulses-told  what they do: forces, memory, losses
-       >>ledger      where the energy went
-       >>sizes       distributions of size: shares, drawing, classes
-       >>placing     room for new grains: regions, fills, packings
-       >>feed        grains fed in, taken out and counted
-       >>advice      which time step a scene bears
-       >>check       what is likely to be wrong with a scene, before it runs
-       >>fields      means on a grid, and the contacts they are made of
-       >>step        one step after the other
-       >>measure     counters, contacts, the digest
-       >>outlines    faces of many corners, cut into triangles
-       >>read        meshes and profiles in
-       >>decompose   spheres that stand for a mesh
-       >>read-tables  grains in: what a column or an array is, by its name
-       >>read-grains  text, CSV, XYZ, dumps, VTK, VTP
-       >>write       VTP, VTK, XYZ and CSV out
-       >>checkpoint  everything, to the last bit
-       >>restore     a checkpoint checked and read
-       >>output      files and calls on a schedule
-       >>trials      what a choice costs and changes, tried on copies of a scene
-       >>effects     what a scene calls for, what of it has happened, what each costs
-       >>world       create, destroy, report
-       >>slabs       one scene dealt to threads or processes: what grains take along
-       >>slabs-step  one step of all slabs
-       >>slabs-time  one time step for all slabs
-       >>slabs-run   what is fed into slabs; one step after the other
-       >>deal        slabs made and collected
-       >>viewer      the page that plays a film: made from examples/replay/viewer.html
-       >>replay      a film of a run: what has changed, frame by frame
+   Contents. Jump to a part by searching for its tag:
+       >>manual            guide: a complete program, the concepts in order, glossary, references
+       >>api               results, vectors, ids, choices, contacts, the built-in contact laws
+       >>scene             building a scene: worlds, materials, bodies, walls, joints, feeds
+       >>run               running it: steps, measuring, files, replays, slabs, the report
+       >>implementation    private code from here on; users need not read it
+       >>platform          compilers, OpenMP, the parallel loop
+       >>maths             vectors, poses, random numbers
+       >>layout            data structures of the world
+       >>memory            arrays of each body, errors, allocation
+       >>laws              table of the built-in contact laws and their coefficients
+       >>materials         materials, the pair table, damping from restitution
+       >>shapes            ellipsoids and clusters of spheres: mass properties, support points
+       >>closed            inside and outside of a mesh: shells, open edges, flipped triangles
+       >>hulls             convex polyhedra: hull of points, faces, mass properties
+       >>unions            several shapes as one body; polygons of planar worlds
+       >>bodies            grains: slots, arrays, insertion, removal
+       >>facets            weights of the faces, edges and corners of a surface
+       >>sheets            connected facets of a surface, their orientation and open edges
+       >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves, motions
+       >>search            broad phase: all pairs, grids, linked linear list, bins; candidates
+       >>lists             candidates on walls; persistent contacts carried over to new lists
+       >>near              the pruned neighbour list that forces use
+       >>rebuild           rebuilding lists: effects in force, skin, order of bodies, domains
+       >>touch             narrow phase: candidates to contacts, geometry only
+       >>respond           sphere on sphere: contacts to forces and torques, by the law in force
+       >>polyhedra         overlap of two polyhedra, or of one and a wall
+       >>gaps              distance between polyhedra, and their contact points
+       >>on-walls          contacts of spheres and ellipsoids with walls
+       >>polyhedra-walls   contacts of polyhedra with flat walls and walls of grains
+       >>polyhedra-round   contacts of polyhedra with cylinders and surfaces of revolution
+       >>polyhedra-sieves  contacts of polyhedra with sieves; table of shapes and walls
+       >>meets             contacts of two bodies, by their shapes
+       >>kept              contacts other than sphere on sphere: persistent contacts
+       >>kept-respond      persistent contacts to forces and torques on both bodies
+       >>integrators       kick, drift and prediction; rotation
+       >>impulses          rigid grains: the contacts and constraints of a step
+       >>joints            hinges, ball joints, motors
+       >>joints-solved     all joints at once: trees, loops, the bound on their energy
+       >>solvers           iterative solvers for impulses
+       >>impulses-told     solved impulses to forces, contact history and energy losses
+       >>ledger            account of energy
+       >>sizes             size distributions: sieve curves, drawing of radii, classes
+       >>placing           room for new grains: regions, random fills, packings
+       >>feed              feeds and outlets
+       >>advice            the time step: what is chosen and what is too large
+       >>check             likely mistakes in a scene, found before it runs
+       >>fields            averages on a grid: solid fraction, velocity, stress
+       >>step              one step after another
+       >>measure           counters, contacts, angle of repose, the digest
+       >>outlines          polygons with many corners cut into triangles
+       >>read              reading meshes and profiles
+       >>decompose         clusters of spheres that approximate a mesh
+       >>read-tables       reading grains: columns and arrays recognised by name
+       >>read-grains       reading grains: text, CSV, XYZ, dumps, VTK, VTP
+       >>write             writing VTP, VTK, XYZ and CSV
+       >>checkpoint        writing the complete state, bit for bit
+       >>restore           checking and reading a checkpoint
+       >>output            files and calls on a schedule
+       >>trials            cost and accuracy of other choices, tried on copies of a scene
+       >>effects           which effects are active, which never happened, what each costs
+       >>world             creating and destroying a world; the report
+       >>slabs             one scene on several threads or processes: data and messages
+       >>slabs-step        one step of all slabs
+       >>slabs-time        one time step for all slabs
+       >>slabs-run         feeds into slabs; one step after another
+       >>deal              distributing a world to slabs and collecting it again
+       >>viewer            the page that plays a replay, from examples/replay/viewer.html
+       >>replay            writing a replay, frame by frame
 */
 
 /* ---------------------------------------------------------------------------------------------
