@@ -85,20 +85,26 @@
 /* ---------------------------------------------------------------------------------------------
    >>manual
    ---------------------------------------------------------------------------------------------
-   A complete program: glass beads poured into a heap.
+   This guide explains the concepts in the order in which a new user needs them. Every function and
+   field is described where it is declared: in the parts >>api, >>scene and >>run. The pages in
+   docs/ hold derivations, comparisons and measured costs.
+
+   --- 1. A complete program ---
+
+   It pours glass beads into a heap, records a replay for a browser and measures the slope:
 
        #define DEM_IMPLEMENTATION
        #include "dem.h"
        #include <stdio.h>
 
        int main(void) {
-           dem_world_desc desc = DEM_WORLD_DESC;           // zeros: nothing asked, nothing done
+           dem_world_desc desc = DEM_WORLD_DESC;           // all zero: every default
            desc.gravity.z = -9.81;                         // m/s2
            dem_world *world = dem_world_create(&desc);
 
            dem_material_desc glass_desc = DEM_MATERIAL_DESC;
            glass_desc.density = 2500;                      // kg/m3
-           glass_desc.young = 1.5e7;                       // Pa, softened: the report says why
+           glass_desc.young = 1.5e7;                       // Pa, softened: see section 7
            glass_desc.poisson = 0.23;
            glass_desc.restitution = 0.5;
            glass_desc.friction = 0.7;
@@ -106,171 +112,411 @@
            dem_material glass = dem_material_add(world, &glass_desc);
 
            dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
-           dem_feed_desc feed = {glass, 1, {2e-3}, {600}}; // 600 beads of 2 mm radius, one class,
-           feed.limited = 1;
-           feed.rate = 600;                                // so many a second, from here (m):
-           feed.box = dem_box_make(-0.006, -0.006, 0.03, 0.006, 0.006, 0.04);
+           dem_feed_desc feed = {glass, 1, {2e-3}, {600}}; // one class: radius 2 mm, 600 beads
+           feed.limited = 1;                               // and no more than these
+           feed.rate = 600;                                // beads per second
+           feed.box = dem_box_make(-0.006, -0.006, 0.03, 0.006, 0.006, 0.04);      // m
            dem_feed_add(world, &feed);
 
-           dem_replay_desc film_desc = DEM_REPLAY_DESC;
-           film_desc.interval = 0.02;                      // s
-           dem_replay *film = dem_replay_open(world, "heap.html", &film_desc);    // for a browser
+           dem_replay_desc replay_desc = DEM_REPLAY_DESC;
+           replay_desc.interval = 0.02;                    // s between frames
+           dem_replay *replay = dem_replay_open(world, "heap.html", &replay_desc);
            if (dem_world_run(world, 1, dem_progress_print, stderr) != DEM_OK ||
                dem_world_settle(world, 2, 0, dem_progress_print, stderr) != DEM_OK)
                puts(dem_world_error_get(world));
-           dem_replay_close(film);
+           dem_replay_close(replay);
            dem_repose slope;
            dem_box all = {{0, 0, 0}, {0, 0, 0}};
            if (dem_repose_heap_get(world, all, &slope) == DEM_OK)
                printf("slope %.2f +- %.2f rad\n", slope.angle, slope.error);
-           dem_world_report(world, stdout);                // what was done, its price, the step
+           dem_world_report(world, stdout);                // laws, time step, balances: section 13
            dem_world_destroy(world);
            return 0;
        }
 
-   Conventions. SI units throughout. Overlap is positive when two bodies touch. The normal of a
-   contact points from body a to body b; of a wall contact, from the grain to the wall.
-   `closing_speed` is positive when the two approach. A `dem_contact_force` acts on body a, but for
-   `normal`, which is the repulsion (positive pushes the two apart). Rotations are
-   right-handed. Angles are in radians.
+   Most programs create a world, add materials, walls and grains, run, measure, and destroy the
+   world. The sections below follow this order.
 
-   One step, in the order in which data flows (the same numbers stand in demi_step_once):
-       1 move      first half kick, drift, predicted velocity; walls follow their motion
-       2 search    if something moved half the skin: sort bodies by cell, rebuild the candidate
-                   list, carry contact memory over; when due, pick the near pairs from it
-       3 touch     near pairs -> contacts: who, where, normal, overlap
-       4 respond   contact -> force and torque, by the law chosen
-       5 gather    forces are summed per body in a fixed order
+   --- 2. Scope ---
+
+   A world holds bodies (grains), walls, and optionally feeds, outlets, fields and joints. Bodies
+   are rigid. Contacts are either soft (springs: a contact law computes the force from the overlap)
+   or rigid (impulses prevent overlap). Worlds are three-dimensional, or planar with discs and
+   polygons.
+
+   dem.h has no fluids, no breaking grains and no implicit time integration. User-defined contact
+   laws can add effects: examples/laws has capillary bridges, bonds that break, heat and charge.
+   dem.h draws nothing except replays; other results are files for other programs.
+
+   --- 3. Units and signs ---
+
+   All quantities are in SI units; angles are in radians. Rotations are right-handed.
+       overlap             positive while two bodies touch, negative across a gap
+       normal              unit vector from body a to body b; for a wall, from the grain to the wall
+       closing_speed       positive while the two approach
+       force->normal       positive: repulsion
+       force->tangent, force->moment    act on body a; b receives the opposite
+       stress              pressure is positive
+
+   Contact laws see the velocities of the full step, v(t), with every integrator. Half-step
+   velocities v(t - dt/2) give unphysical static friction at size ratios above 3 [VYA25].
+
+   --- 4. The world and its options ---
+
+   A world is created from a dem_world_desc. Start from DEM_WORLD_DESC, which is all zero, and set
+   only the fields you need. Zero means "absent" or "chosen for you". dem_world_desc_get returns the
+   values in force, and dem_world_report prints most of them. An effect that is absent costs
+   nothing.
+
+       dem_world_desc desc = DEM_WORLD_DESC;
+       desc.boundary[0] = DEM_BOUNDARY_PERIODIC;
+       desc.domain = dem_box_make(0, -1, -1, 0.05, 1, 1);  // m; only x is periodic
+       dem_world *world = dem_world_create(&desc);
+       if (!world) puts(dem_world_create_error_get(&desc));
+
+       field                    what it sets                           default (0)
+       ------------------------------------------------------------------------------------------
+       gravity                  acceleration, m/s2                     none
+       domain, boundary         a box, and what happens at its faces   open
+       planar, thickness        discs in the x-y plane; m              three dimensions; 1 m
+       response                 springs (soft) or impulses (rigid)     springs
+       normal_law               law of the normal force                Hertz
+       tangent_law              law of friction                        a spring, if any pair has
+                                                                       friction; otherwise none
+       rolling_law              law of rolling resistance              EPSD, if any pair has rolling
+                                                                       friction; otherwise none
+       tension                  may a dashpot attract?                 yes
+       friction_load            the load L in Coulomb's limit mu L     the repulsive normal force
+       slider                   spring and dashpot while sliding       in parallel
+       convention               effective radius, mass, moduli         as in the literature
+       law, law_user            your contact law and its argument      built-in laws
+       law_memory, _names,
+         law_vectors            contact history of your law            none
+       law_stiffness            its largest stiffness, N/m             that of the built-in law
+       law_range, _radii        gap up to which your law is called, m  0: called in contact only
+       law_who                  fill in c->who for your law            no
+       law_rate                 bound on rates of change for dt        not checked
+       body_reals, _fn, _user   user-defined numbers on bodies, walls  none
+       force, body_force,
+         force_user             force fields                           none
+       integrator               scheme of time integration             velocity Verlet
+       dt                       time step, s                           chosen; impulses: required
+       allow_large_dt           run with a dt that is too large        no
+       impact_speed             typical impact speed, m/s              estimated; for the stiffness
+                                                                       of the linear law 1 m/s
+       cone, solver, sweeps,
+         tolerance              solution of impulses                   Coulomb, Gauss-Seidel, 200,
+                                                                       chosen
+       cold_start               start from zero impulses               no: from the last step's
+       unsolved_stops           stop if a step exceeds tolerance       no: count such steps
+       search, skin             broad phase and its margin, m          chosen
+       rotation                 rotation of bodies other than spheres  SPIRAL
+       ellipsoid_overlap        overlap of two ellipsoids              conservative
+       cluster_contacts         several contacts of a cluster          merged
+       orientations             follow orientations of spheres, too    no
+       ledger                   account of energy                      no
+       threads                  OpenMP threads, at most 64             all that OpenMP offers
+       allocator                memory functions                       malloc, free
+
+   --- 5. Materials ---
+
+   A material has a density, Young's modulus, Poisson's ratio, a coefficient of restitution and
+   coefficients of friction. Damping follows from the restitution. dem.h mixes the values for each
+   pair of materials; dem_pair_set replaces them:
+
+       dem_pair pair;
+       dem_pair_get(world, glass, steel, &pair);
+       pair.friction = 0.3;
+       dem_pair_set(world, glass, steel, &pair);
+
+   Sources of values:
+       density, young, poisson   tables of materials; soften young (section 7)
+       restitution               drop a grain on a plate: sqrt(rebound height / drop height)
+       friction                  tilt a plate until a block with grains glued under it slides: the
+                                 tangent of that angle
+       rolling_friction          usually fitted to a measured angle of repose; 0.01 to 0.3 as a rule
+
+   Sliding and rolling friction are 0 unless you set them.
+
+   --- 6. Choosing a contact law ---
+
+   Normal force (desc.normal_law):
+       DEM_NORMAL_HERTZ          elastic spheres; the stiffness grows with the overlap
+       DEM_NORMAL_LINEAR         the contact time does not depend on the speed; takes a given
+                                 stiffness (material or pair), otherwise derives one
+       DEM_NORMAL_HYSTERETIC     plastic and sticky grains: unloading is stiffer than loading, and
+                                 the contact may attract
+   Friction (desc.tangent_law):
+       DEM_TANGENT_SPRING        default: contacts hold at rest, so heaps stay
+       DEM_TANGENT_MINDLIN_RESCALED   with Hertz: pressing a sheared contact creates no energy.
+                                 With SPRING and MINDLIN it does, which matters if restitution is
+                                 near 1
+       DEM_TANGENT_VISCOUS, _STEP     cheap, without contact history: heaps creep
+   Rolling resistance (desc.rolling_law):
+       DEM_ROLLING_EPSD          default: a spring and dashpot, holds a grain on a slope
+       DEM_ROLLING_CONSTANT      a constant moment; holds a grain on a slope, too
+   The other choices reproduce published models; their comments in >>api say which. docs/theory.md
+   derives the laws, docs/accuracy.md lists their costs.
+
+   Rigid grains (desc.response = DEM_RESPONSE_IMPULSES) need no law. Their steps are much longer,
+   each step solves all contacts together, and only they have joints and motors. Choose them for
+   dense flows of stiff grains where contact forces need not be resolved in time: docs/impulses.md.
+
+   A user-defined law is one function (dem_law_fn in >>api). It may call the built-in laws:
+
+       static void sticky(const dem_contact *c, dem_real *memory, dem_contact_force *force) {
+           dem_law_hertz(c, memory, force);
+           dem_law_spring(c, memory, force);               // needs 3 reals of contact history
+           force->normal -= DEM_R(0.02);                   // N
+       }
+       desc.law = sticky; desc.law_memory = 3; desc.law_vectors = 1;
+
+   `make law` tests a law for mistakes (docs/laws.md). docs/own_law.md is a tutorial.
+
+   --- 7. Choosing a time step ---
+
+   Springs need steps that resolve a collision. Leave desc.dt at 0: dem.h then takes a fiftieth of
+   the shortest contact time t_c of the scene, or less where dashpots, many contacts on one grain,
+   or fast rotation require it. It adapts the step when the scene changes or grains become much
+   faster than assumed. A given dt is kept; a run stops with DEM_ERROR_TIME_STEP if dt exceeds
+   t_c/20 or another limit. dem_step_advice_get returns t_c, the limit and the contact that sets it.
+
+   Hertz's law has t_c = 2.87 (m*^2/(R* E*^2 v))^(1/5), v the impact speed: about 10 us for glass
+   beads of 3 mm diameter at 1 m/s. Therefore Young's modulus is usually reduced. E smaller by 100
+   makes steps longer by 100^(2/5) = 6.3 and overlaps larger by the same factor. Restitution, angles
+   of repose and flow hardly change while overlaps stay below 0.01 radii; the report prints the
+   largest overlap. The speed of sound and adhesion depend on the true stiffness.
+
+   Impulses need a given dt: 1e-3 s for grains of some millimetres, and so short that grains move by
+   less than a tenth of their radius.
+
+   dem_trials_run tries longer and shorter steps, softer grains and other laws on copies of your
+   scene and reports how far your results change (docs/accuracy.md).
+
+   --- 8. Grains and other bodies ---
+
+   Spheres are added singly (dem_sphere_add), from arrays (dem_spheres_add, dem_grains_read), at
+   random places (dem_spheres_fill, dem_sizes_fill), as a packing (dem_spheres_pack) or during the
+   run (feeds). Other bodies need a shape first; many bodies may share it:
+
+       dem_shape egg = dem_shape_ellipsoid_add(world, dem_vec3_make(3e-3, 2e-3, 2e-3));
+       dem_body body = dem_body_add(world, glass, egg, dem_vec3_make(0, 0, 0.1),
+                                    dem_quat_make(1, 0, 0, 0));
+       dem_region box = dem_region_make(dem_box_make(-0.02, -0.02, 0, 0.02, 0.02, 0.1));
+       dem_bodies_fill(world, glass, egg, box, 100, 1);    // 100 bodies, seed 1
+
+   Shapes are ellipsoids, clusters of spheres, convex polyhedra (from points or a mesh), unions of
+   polyhedra or ellipsoids, and in planar worlds polygons. A body is `fixed` if dem_body_set says
+   so: it never moves. Spheres cost least; docs/shapes.md compares costs. Ellipsoids do not collide
+   with sieves, surfaces of revolution and profiles of DEM_EDGE_FRACTION; dem.h reports an error
+   there.
+
+   --- 9. Walls and motions ---
+
+   Walls are rigid: planes, cylinders, cones and other surfaces of revolution, profiles (segments in
+   the x-y plane, extended along z), triangle meshes (STL, OBJ), walls of grains, and sieves. Planes
+   and cylinders are solid on one side; the others repel on both sides. A wall is at rest until it
+   gets a motion:
+
+       dem_motion turn = DEM_MOTION;
+       turn.kind = DEM_MOTION_ROTATING;
+       turn.axis = dem_vec3_make(0, 1, 0);                 // through turn.point, here the origin
+       turn.speed = 2;                                     // rad/s
+       dem_wall_motion_set(world, drum, &turn);
+
+   Other motions are translation, oscillation, a table of poses, and a function of yours.
+   dem_wall_loads_get returns force, torque and power of the grains on a wall.
+
+   --- 10. Feeds and outlets ---
+
+   A feed adds grains of given sizes at random places in a box, at a rate or all at once (the
+   program above). An outlet removes grains whose centre is in a box, or only counts them, by size
+   and mass:
+
+       dem_outlet_desc out = DEM_OUTLET_DESC;
+       out.box = dem_box_make(-0.1, -0.1, -0.2, 0.1, 0.1, -0.1);
+       dem_outlet drain = dem_outlet_add(world, &out);
+       dem_outlet_state state;
+       dem_outlet_get(world, drain, &state);               // state.total, state.total_mass
+
+   inserted = present + removed + left holds at every step (dem_body_counts_get).
+
+   --- 11. One step ---
+
+   A step has six stages, in the order in which data flows (the code uses the same numbers):
+       1 move      first half kick, drift, predicted velocity; walls follow their motions
+       2 search    if bodies moved too far for the skin: sort bodies by cell, rebuild the candidate
+                   list, carry contact history over. When due: rebuild the pruned neighbour list
+       3 touch     pairs to contacts: bodies, contact point, normal, overlap
+       4 respond   contacts to forces and torques, by the contact law
+       5 gather    sum the forces on each body in a fixed order
        6 kick      second half kick; ledger, counters, time
+   Impulses replace 4: all contacts are solved together (docs/impulses.md has their order).
 
-   Velocities that a law sees are those of the full step, v(t) and not v(t - dt/2), for every
-   integrator: half-step velocities give unphysical static friction at size ratios above 3 [VYA25].
+   --- 12. Measuring ---
 
-   What dem.h does not do: fluids, grains that break, implicit integration. What is a law of your
-   own it does: examples/laws has liquid bridges, bonds that break, heat, charge. What it draws is a
-   film for a browser (dem_replay_open); all else is files for other programs.
+       dem_body_get, dem_bodies_get          one body; arrays of all bodies
+       dem_contacts_get, dem_contacts_each   contacts with forces; with their contact history
+       dem_wall_loads_get                    force, torque, power, work on a wall
+       dem_totals_get, dem_temperature_get   mass, momentum, energy; granular temperature
+       dem_field_add, dem_field_cell_get     solid fraction, velocity, stress on a grid
+       dem_repose_heap_get, _drum_get        angle of repose
+       dem_ledger_get                        where the energy went
+       dem_counters_get                      steps, lists, largest overlap, memory
+       dem_world_hash_get                    a digest: equal runs have equal digests
 
-   Options are fields of `dem_world_desc`; zero there means absent, or "chosen for you". What was
-   chosen is told by dem_world_report. By what one wants to say:
+   --- 13. The report ---
 
-       the world is ...           gravity, boundary and domain (open, periodic, outflow), planar
-                                  and thickness (discs)
-       contacts push by ...       normal_law; impact_speed for the linear law's stiffness; tension:
-                                  may a dashpot pull as grains part?
-       they rub by ...            tangent_law; friction_load and slider: what friction counts on.
-                                  No friction in any pair: no spins, no memory, no price
-       they roll by ...           rolling_law
-       they do not give at all    response: rigid grains and impulses in place of laws; cone,
-                                  solver, sweeps, tolerance; joints and motors are theirs alone
-                                  (docs/impulses.md)
-       a law or force of my own   law, law_user, law_memory, law_vectors, law_stiffness; law_range,
-                                  law_range_radii: it reaches beyond touch; law_who: it is told
-                                  who touches; force, body_force, force_user
-       numbers of my own on grains    body_reals, body_reals_fn, body_reals_user; law_rate
-       bodies turn by ...         rotation, orientations; ellipsoid_overlap, cluster_contacts
-       time goes by ...           integrator, dt, allow_large_dt
-       it shall be fast           search, skin, threads
-       where does energy go?      ledger
-       whose memory?              allocator
+   dem_world_report prints, line by line:
+       dem.h                   version, precision, threads, domains, memory
+       bodies                  number and radii; inserted = present + removed + left
+       time                    simulated time, steps, dt, integrator
+       time step               (springs) t_c, t_c/dt, the limit, and the contact that limits dt:
+                               make that one softer or slower to get longer steps. A further line
+                               says why a chosen dt is shorter than t_c/50
+       search                  algorithm, skin, steps per rebuild, candidates and contacts per body
+       effects                 the laws in force and the size of their contact history; effects
+                               that you requested and that never happened: materials or walls that
+                               nothing touched. dem_effects_print lists all effects and, given a
+                               budget of wall time, what each costs
+       overlap                 the largest so far, in radii: beyond 0.05 the material is too soft
+       pair                    properties of each pair of materials after mixing
+       wall, joint             contacts, forces, torques, power
+       feed, outlet            grains and mass in and out
+       ledger                  (if switched on) energy in, stored and lost. The residual is the
+                               error of the time step; it falls with the third power of dt
 
-   Materials for a first day. Density, Young's modulus and Poisson's ratio are in tables of
-   materials; restitution is measured by dropping a grain (rebound height over drop height is its
-   square), friction by tilting a plate. A grain needs a time step of t_c/20 to t_c/50, t_c the
-   duration of a collision, which for Hertz's law is about 2.9 (m^2/(E^2 R v))^(1/5) of the reduced
-   mass, modulus and radius: for glass beads of 3 mm at 1 m/s some 10 us. That is why one softens:
-   E smaller by 100 makes steps longer by 100^(2/5) = 6.3 and impacts deeper by as much.
-   Restitution, angles of repose and flow hardly notice while overlaps stay below 0.01 radii; what
-   goes with the true stiffness (speed of sound, adhesion) does. The report tells the largest
-   overlap.
+   --- 14. Checking a scene ---
 
-   Lifetimes. What you hand over is copied at the call: descs, arrays, meshes, profiles. Functions
-   and user pointers in a desc must live as long as the world. Pointers that you are handed:
-       dem_bodies_get, dem_field_get     until the next call that steps or changes the world
-       dem_world_error_get                   until the next call that fails
-       dem_mesh_read and the like        until you free them, with the world that read them
-   Ids stay good until what they name is removed; that of a removed body is told from that of the
-   one that got its place. Indices (0 .. count - 1) change whenever bodies are sorted.
+   Call dem_world_check_print before the first run. It prints likely mistakes: wrong units, grains
+   that overlap, a missing floor, walls out of reach, a time step that is too large.
 
-   Functions that you hand over (laws, fields, motions, regions, progress, numbers of a replay) may
-   call what takes the world as const. All else that changes the world is refused there by name, and
-   nothing happens; note what is to be done and do it after the call, or let the function of an
-   output (DEM_OUTPUT_CALL) do it between two steps: that one may change the world, but not step or
-   destroy it. Progress functions, those of dem_contacts_each and an output's values may also write
-   files and frames of replays.
+       dem_world_check_print(world, stdout);               // returns the number of findings
 
-   The report (dem_world_report), line by line:
-       bodies      how many, of which radii; inserted = present + removed + left
-       time step   t_c, how many steps it has, what binds it: stiffen, soften or slow down that
-       search      method, skin, steps from one list to the next; candidates and contacts per body
-       effects     the laws in force, and what they remember per contact. "none" costs nothing. What
-                   was asked for and has not happened: materials that have not touched, walls
-                   (dem_effects_print: all of it, and the share of a step that each takes)
-       overlap     the largest so far, over the radius: beyond 0.05 the material is too soft
-       pair        what holds between each two materials, after mixing
-       wall, feed, outlet   what they bear, bring and take
-       ledger      the residual is what the time step gets wrong: it falls with its third power
+   If results look wrong after a run, read the report first, then use dem_trials_run (section 7).
 
-   Compile-time options:
-       DEM_REAL           double (default) or float: the type of all state
-       DEM_STATIC         makes every function static
-       DEM_LAW            name of your contact law, to have it inlined (see >>add-law)
-       DEM_NO_OPENMP      never use OpenMP, even when the compiler offers it
-       DEM_NO_SPECIALIZE  always law by law, never all laws at once: slower, same bits
-       DEM_NO_CLONES      kernels for the compiler's target only, not also for wider vectors
-       DEM_DOMAIN_BODIES  bodies per domain, about (2048); another number gives other bits
+   --- 15. Outputs, replays, checkpoints ---
 
-   Memory. All of it comes from the allocator of the world desc (default malloc and free). A step
-   allocates nothing once the world is warm; it may grow lists when more grains come together than
-   before.
+       dem_output_every_add(world, DEM_OUTPUT_VTP, "grains_####.vtp", 0.01);   // s; for ParaView
+       dem_output_every_add(world, DEM_OUTPUT_CHECKPOINT, "run.checkpoint", 1);
 
-   Errors. A function that can fail returns a `dem_result`, or a null id or null pointer, and leaves
-   one error message in dem_world_error_get: the call, the value, the limit, the likely cause, the
-   remedy. The world stays as it was before the call. If nobody reads why a part of the scene was
-   refused, the next run does not begin and quotes it. Null worlds, descs and places for answers are
-   answered: DEM_ERROR_ARGUMENT, a null id, 0. A run that cannot be right (a force that is not
-   finite, an overlap larger than a radius) stops at the step that caused it. dem.h never prints,
-   exits or aborts.
+   dem_vtp_write, dem_xyz_write and others write one file at once. A replay is one HTML file that
+   any browser plays (dem_replay_open). A checkpoint holds the complete state. To continue a run,
+   build the same scene again and call dem_checkpoint_read; the run goes on bit for bit, and
+   scheduled outputs continue without gaps or repetitions.
 
-   A scene that does something else than it should: dem_world_check_print(world, stdout) before the
-   first run says what looks wrong (units, overlaps, a floor that is missing), dem_world_report
-   after it what was simulated, and dem_trials_run what another step, stiffness or law would change.
+   --- 16. Lifetimes and ids ---
 
-   Threads. Different worlds may be used from different threads. Several threads may look at one
-   world at once, by functions that take it as const, while none changes it. Of those only these
-   write: one that fails (its sentence), dem_world_error_get (that it was read), dem_progress_print
-   (how far it has told), dem_world_report and dem_contacts_get (that a function of yours is asked),
-   and dem_bodies_get in a periodic world (the places, wrapped into the box).
-   Within a world, `threads` of the desc sets the OpenMP threads; the same input gives the same bits
-   for any number of them: bodies are dealt to domains that depend on the number of bodies only, and
-   every sum runs in a fixed order. To compare bits between builds, and with other systems and
-   processors, compile with -ffp-contract=off. Slabs (dem_slabs_create) deal a scene to processes,
-   over MPI or what you have: docs/parallel.md.
+   dem.h copies descs, arrays, meshes and profiles during the call. Functions and user pointers must
+   stay valid as long as the world. Pointers that dem.h returns stay valid:
+       dem_bodies_get, dem_field_get    until the next call that steps or changes the world
+       dem_world_error_get              until the next call that fails
+       dem_mesh_read and similar        until you free them, with the world that read them
+   An id (dem_body, dem_wall, ...) stays valid until its object is removed. Ids are never reused: a
+   new body in the same slot has another generation. All-zero ids name nothing. Indices into the
+   arrays of dem_bodies_get change whenever bodies are sorted; ids do not.
 
-   Extending. A contact law is a function and a row (>>add-law), so are a wall (>>add-wall), a shape
-   (>>add-shape), an integrator (>>add-integrator), a search (>>add-search) and a mesh format
-   (>>add-format); a number of each body is a field and a row (>>add-array).
-   docs/extending.md walks through each, and `make recipes` performs it. Who owns what in a world
-   stands at struct dem_world (>>layout).
+   --- 17. Errors ---
 
-   Glossary, of words that are ours or used in one sense:
-       candidate   a pair, or a body and an element of a wall, nearer than the skin
-       skin        m, how much nearer than touching two may come before a new list of candidates
-       near list   candidates that may touch within some steps; forces are worked out for these
-       slot        the number by which a body is known while indices change
-       domain      some 2000 bodies that lie together: what one thread works on at a time
-       tile        some 32 or 64 pairs whose forces are worked out together
-       memory      reals that a contact keeps from step to step: springs, largest load
-       slip        velocity of one surface along the other, at the contact
-       species     spheres alike in material, radius, mass, and in being fixed or not
-       place       where a surface of facets is nearest to a body; counted by its share
-       part        a sphere of a cluster, or the one sphere or ellipsoid that a body is
-       kept        of a contact: by itself, in a list, not in a column of the near list
-       spin        angular velocity of a body, as in the literature of granular gases
-       reduced     of two bodies: R* = Ra Rb/(Ra + Rb), m* likewise, E* in series (Hertz)
-       ghost       copy of a grain that belongs to the slab below
-       ledger      account of energy: put in, stored, lost, and what is left over
+   A function that can fail returns a dem_result, a null id or a null pointer, and stores one
+   message:
 
-   References, by the keys used below:
+       if (dem_world_run(world, 1, 0, 0) != DEM_OK) puts(dem_world_error_get(world));
+
+   A message names the function, the value, the limit, the likely cause and the remedy. After a
+   failed call the world is as it was before. If a call that builds the scene fails and nothing
+   reads its message, the next run refuses to start and repeats it. Null worlds, descs and result
+   pointers are errors, not crashes. A run that goes wrong (a force that is not finite, an overlap
+   larger than a radius) stops at that step and says why. dem.h never exits or aborts, and it prints
+   only where you call a function that prints.
+
+   --- 18. Functions that you hand over ---
+
+   Laws, force fields, motions, regions, progress functions and observers may call every function
+   that takes the world as const. Calls that change the world fail there and leave it as it is; make
+   them after the call has returned. Progress functions, functions given to dem_contacts_each and
+   the values of a CSV output may also write files and replay frames. The function of an output of
+   kind DEM_OUTPUT_CALL may change the world, but not step or destroy it. Laws, force fields and
+   body_reals_fn are called from several threads.
+
+   --- 19. Threads and reproducible bits ---
+
+   desc.threads sets the OpenMP threads of a world. The same program and input give the same bits
+   for any number of threads: the number of domains depends on the number of bodies only, and every
+   sum has a fixed order. Compile with -ffp-contract=off to get the same bits from other compilers,
+   systems and processors. Slabs (dem_slabs_create) distribute a scene to threads, or to processes
+   over MPI or any other transport: docs/parallel.md.
+
+   Different worlds may be used from different threads at the same time. Several threads may also
+   read one world by functions that take it as const, while none changes it. These exceptions write
+   to it:
+       a call that fails                        stores its message
+       dem_world_error_get                      marks the message as read
+       dem_progress_print                       stores the progress it has printed
+       dem_world_report, dem_contacts_get       mark that your functions are being called
+       dem_repose_heap_get, dem_repose_drum_get allocate memory from the world for the call
+       dem_bodies_get, in a periodic world      wraps positions into the box
+
+   --- 20. Compile-time options ---
+
+       DEM_IMPLEMENTATION   compiles the implementation into this file
+       DEM_REAL             double (default) or float: type of the state. All files of a program
+                            must agree; dem_world_create returns null otherwise
+       DEM_STATIC           makes every function static; use it with DEM_IMPLEMENTATION
+       DEM_LAW              name of your contact law, to have it inlined (docs/extending.md)
+       DEM_NO_OPENMP        never uses OpenMP, even if the compiler offers it
+       DEM_NO_SPECIALIZE    no combined kernels for common sets of laws: slower, same bits
+       DEM_NO_CLONES        no second set of kernels for wider vectors: same bits
+       DEM_DOMAIN_BODIES    approximate number of bodies per domain (2048); changes the bits
+
+   --- 21. Memory ---
+
+   All memory comes from desc.allocator. A step allocates nothing once a run is warm; lists grow if
+   more grains come together than before. dem_counters_get returns the bytes held.
+
+   --- 22. Extending dem.h ---
+
+   These tags in the code list the edits for a new contact law (>>add-law), wall (>>add-wall), shape
+   (>>add-shape), integrator (>>add-integrator), search (>>add-search), solver (>>add-solver), mesh
+   format (>>add-format), effect in the report (>>add-effect) or array with a value for each body
+   (>>add-array). docs/extending.md walks through most of them, and `make recipes` tests that page.
+   struct dem_world in >>layout says which part owns which data.
+
+   --- 23. Glossary ---
+
+       body, grain         a rigid particle of any shape; both words mean the same
+       candidate           a pair of bodies, or a body and a wall element, nearer than the skin
+       cluster             a rigid body of overlapping or separate spheres, its member spheres
+       contact history     numbers that a contact carries from step to step, such as the stretch of
+                           a spring (`memory` in the signatures of laws)
+       contact point       where two bodies, or a body and a surface, touch. There may be several,
+                           each with a weight
+       contact time, t_c   duration of a collision
+       Coulomb's limit     the largest friction force, mu L
+       domain              some 2000 neighbouring bodies, the work of one thread at a time
+       effect              a law or feature that a scene may or may not use
+       facet               a triangle of a mesh or a segment of a profile
+       ghost               copy of a grain that belongs to the slab below
+       ledger              account of energy: supplied, stored, dissipated, and the residual
+       part                a member sphere of a cluster, a piece of a union, or else the whole body
+       persistent contact  any contact other than sphere on sphere, for example with a wall. It is
+                           stored in a list of its own and followed from step to step
+       pruned neighbour list   the candidates that may touch within some steps; forces are computed
+                           for these only
+       reduced             of two bodies: R* = Ra Rb/(Ra + Rb), m* likewise, E* in series (Hertz)
+       skin                m: a candidate list holds all pairs with gaps below the skin, so that it
+                           lasts until bodies have moved half as far
+       slab                a slice of the scene between two parallel planes, computed separately
+       slip                tangential velocity of one surface relative to the other at the contact
+       slot                the number of a body that stays the same while indices change
+       species             spheres with the same material, radius and mass, all fixed or all free
+       spin                angular velocity, as in the literature on granular gases
+       sweep               one pass of the iterative solver over all contacts
+       tile                some 32 or 64 pairs whose forces are computed together
+       weight              the factor with which one contact point of a surface or cluster counts
+
+   --- 24. References, by the keys used in this file ---
+
      [AI11]    Ai, Chen, Rotter & Ooi, Powder Technol. 206 (2011) 269: rolling resistance
      [ALK07]   Alkhaldi, Contact Investigations of Granular Mechanical Media in a Tumbling Sorting
                Machine, thesis, Stuttgart 2007: screening, hysteresis, MOLDYN
