@@ -563,6 +563,8 @@
 
 /* ---------------------------------------------------------------------------------------------
    >>api
+   Types and constants that all other declarations use, and everything that a contact law needs: the
+   contact it sees, the force it returns, and the built-in laws, which it may call.
    --------------------------------------------------------------------------------------------- */
 #ifndef DEM_H
 #define DEM_H
@@ -577,10 +579,12 @@
 #define DEM_VERSION_PATCH 0
 #define DEM_VERSION (DEM_VERSION_MAJOR*10000 + DEM_VERSION_MINOR*100 + DEM_VERSION_PATCH)
 
+/* The type of the state: double or float. Times and sums are always double. */
 #ifndef DEM_REAL
 #define DEM_REAL double
 #endif
 typedef DEM_REAL dem_real;
+/* A constant in the precision of dem_real: DEM_R(0.1). */
 #define DEM_R(x) ((dem_real)(x))
 
 #if defined(DEM_STATIC) && defined(__GNUC__)
@@ -591,9 +595,9 @@ typedef DEM_REAL dem_real;
 #define DEM_API extern
 #endif
 
-/* Inlined whatever it takes: contact laws named by DEM_LAW, and functions whose triples of numbers
-   would otherwise go through memory, which costs more than their arithmetic. Not where the compiler
-   is asked not to optimise: code then only grows by it. */
+/* Forces inlining of contact laws (also the one named by DEM_LAW) and of small vector functions:
+   passing vectors through memory costs more than their arithmetic. Without optimisation it is plain
+   `inline`, because forced inlining would only make the code larger. */
 #if defined(__GNUC__) && defined(__OPTIMIZE__) && !defined(__TINYC__)
 #define DEM_INLINE static inline __attribute__((always_inline))
 #else
@@ -605,70 +609,88 @@ extern "C" {
 #endif
 
 /* ---- results ---- */
+/* The result of a call. dem_world_error_get returns the message, dem_result_name_get the name. */
 typedef enum dem_result {
     DEM_OK = 0,
-    DEM_ERROR_ARGUMENT,  /* a value outside its limits, an id that names nothing */
-    DEM_ERROR_MEMORY,    /* the allocator gave nothing */
-    DEM_ERROR_FILE,      /* a file could not be opened, read, written or renamed */
-    DEM_ERROR_FORMAT,    /* a file's contents are not what the format says; or of another version */
-    DEM_ERROR_TIME_STEP, /* the time step is larger than the stiffest contact allows */
-    DEM_ERROR_UNSTABLE,  /* the run blew up: a force not finite, an overlap beyond a radius */
-    DEM_ERROR_STOPPED    /* the progress callback asked to stop; dem_world_settle's time is up */
+    /* a value is out of range, an id is invalid, or a call is not allowed here */
+    DEM_ERROR_ARGUMENT,
+    /* the allocator returned null */
+    DEM_ERROR_MEMORY,
+    /* a file cannot be opened, read, written or renamed */
+    DEM_ERROR_FILE,
+    /* the contents of a file are damaged, or of another format, version or scene */
+    DEM_ERROR_FORMAT,
+    /* the time step is too large for a contact, a spin, or the speed of a body or wall */
+    DEM_ERROR_TIME_STEP,
+    /* a state or force is not finite, an overlap is larger than a radius, or a motion gives an
+       impossible pose */
+    DEM_ERROR_UNSTABLE,
+    /* a function of yours stopped the run, dem_world_settle ran out of time, or a step with
+       impulses exceeded the tolerance (unsolved_stops) */
+    DEM_ERROR_STOPPED
 } dem_result;
 
 /* ---- vectors, boxes, poses ---- */
 typedef struct dem_vec3 { dem_real x, y, z; } dem_vec3;
+/* An axis-aligned box from corner lo to corner hi. */
 typedef struct dem_box { dem_vec3 lo, hi; } dem_box;
-/* A unit quaternion: turns from a body's own frame into the world. w is the scalar part. */
+/* A unit quaternion that rotates vectors from the frame of a body into the world frame. w is the
+   scalar part. */
 typedef struct dem_quat { dem_real w, x, y, z; } dem_quat;
 
-/* Where a rigid wall is and how it moves. rotation is row-major: world = position + rotation *
-   local. */
+/* Position and motion of a rigid wall. A point with wall coordinates p is at position + rotation p
+   in the world frame. */
 typedef struct dem_pose {
-    dem_vec3 position;    /* m */
-    dem_real rotation[9]; /* orthonormal, 3 x 3 */
+    dem_vec3 position;    /* m, of the origin of the wall's frame */
+    dem_real rotation[9]; /* 3 x 3 rotation matrix, row by row */
     dem_vec3 velocity;    /* m/s, of `position` */
     dem_vec3 spin;        /* rad/s, about `position` */
 } dem_pose;
 
+/* The vector (x, y, z). */
 DEM_INLINE dem_vec3 dem_vec3_make(dem_real x, dem_real y, dem_real z) {
     dem_vec3 v; v.x = x; v.y = y; v.z = z; return v;
 }
+/* The box from (x0, y0, z0) to (x1, y1, z1). */
 DEM_INLINE dem_box dem_box_make(dem_real x0, dem_real y0, dem_real z0, dem_real x1, dem_real y1,
                                 dem_real z1) {
     dem_box b; b.lo = dem_vec3_make(x0, y0, z0); b.hi = dem_vec3_make(x1, y1, z1); return b;
 }
 
+/* The quaternion w + x i + y j + z k; it is not normalised. (1, 0, 0, 0) is no rotation. */
 DEM_INLINE dem_quat dem_quat_make(dem_real w, dem_real x, dem_real y, dem_real z) {
     dem_quat q; q.w = w; q.x = x; q.y = y; q.z = z; return q;
 }
-/* The rotation by angle (rad; degrees times pi/180) about an axis of any length but 0. */
+/* The right-handed rotation by `angle` (rad) about `axis` (any length except 0). */
 DEM_API dem_quat dem_quat_about(dem_vec3 axis, dem_real angle);
-/* First b, then a. */
+/* The product a b: the rotation b followed by the rotation a. */
 DEM_INLINE dem_quat dem_quat_multiply(dem_quat a, dem_quat b) {
     return dem_quat_make(a.w*b.w - a.x*b.x - a.y*b.y - a.z*b.z,
                          a.w*b.x + a.x*b.w + a.y*b.z - a.z*b.y,
                          a.w*b.y - a.x*b.z + a.y*b.w + a.z*b.x,
                          a.w*b.z + a.x*b.y - a.y*b.x + a.z*b.w);
 }
-/* v of the body's frame, in the world. */
+/* Rotates v from the frame of a body into the world frame. q must have unit length. */
 DEM_INLINE dem_vec3 dem_quat_rotate(dem_quat q, dem_vec3 v) {
     const dem_real x = 2*(q.y*v.z - q.z*v.y), y = 2*(q.z*v.x - q.x*v.z), z = 2*(q.x*v.y - q.y*v.x);
     return dem_vec3_make(v.x + q.w*x + q.y*z - q.z*y, v.y + q.w*y + q.z*x - q.x*z,
                          v.z + q.w*z + q.x*y - q.y*x);
 }
-/* v of the world, in the body's frame. */
+/* Rotates v from the world frame into the frame of a body. q must have unit length. */
 DEM_INLINE dem_vec3 dem_quat_unrotate(dem_quat q, dem_vec3 v) {
     return dem_quat_rotate(dem_quat_make(q.w, -q.x, -q.y, -q.z), v);
 }
 
-/* ---- ids: all-zero names nothing ---- */
-typedef struct dem_material { int32_t id; } dem_material;                    /* id counts from 1 */
-typedef struct dem_wall { int32_t id; } dem_wall;                            /* id counts from 1 */
-typedef struct dem_field { int32_t id; } dem_field;                          /* id counts from 1 */
-typedef struct dem_shape { int32_t id; } dem_shape;        /* id counts from 1; 0: a sphere */
-typedef struct dem_body { uint32_t slot, generation; } dem_body;  /* slot counts from 1 */
+/* ---- ids ----
+   An id names an object of one world. An all-zero id is the null id: it names nothing. */
+typedef struct dem_material { int32_t id; } dem_material;    /* counts from 1 */
+typedef struct dem_wall { int32_t id; } dem_wall;            /* counts from 1 */
+typedef struct dem_field { int32_t id; } dem_field;          /* counts from 1 */
+typedef struct dem_shape { int32_t id; } dem_shape;          /* counts from 1; 0 means a sphere */
+/* slot counts from 1. A later body in the same slot has another generation. */
+typedef struct dem_body { uint32_t slot, generation; } dem_body;
 
+/* A world: everything that one simulation consists of. */
 typedef struct dem_world dem_world;
 
 /* ---- choices: the constants of dem_world_desc ---- */
@@ -869,12 +891,12 @@ typedef enum dem_boundary {
     DEM_BOUNDARY_OUTFLOW
 } dem_boundary;
 
-/* ---- maths that laws are written with; not meant for more ---- */
-/* Maths in the precision of dem_real; the choice folds away at compile time. */
+/* ---- private maths for the laws below; it may change ---- */
+/* True if dem_real is float. The compiler evaluates it. */
 #define DEMI_SINGLE (sizeof(dem_real) == sizeof(float))
 #define DEMI_SQRT(x) (DEMI_SINGLE ? (dem_real)sqrtf((float)(x)) : (dem_real)sqrt((double)(x)))
 #define DEMI_ABS(x) (DEMI_SINGLE ? (dem_real)fabsf((float)(x)) : (dem_real)fabs((double)(x)))
-/* Added to a length before dividing by it. */
+/* Added to a denominator that may be 0. */
 #define DEMI_TINY (DEMI_SINGLE ? DEM_R(1e-30) : DEM_R(1e-200))
 #if defined(__GNUC__) && !defined(__TINYC__) && !defined(__cplusplus)
 extern double (sqrt)(double) __attribute__((const));  /* "const": does not set errno, so roots */
@@ -894,105 +916,117 @@ DEM_INLINE dem_vec3 demi_cross(dem_vec3 a, dem_vec3 b) {
 DEM_INLINE dem_real demi_length(dem_vec3 a) { return DEMI_SQRT(demi_dot(a, a)); }
 DEM_INLINE void demi_put(dem_real *p, dem_vec3 v) { p[0] = v.x; p[1] = v.y; p[2] = v.z; }
 
-/* ---- a contact, and a law of one's own ---- */
+/* ---- contacts and user-defined laws ---- */
 
-enum { DEM_BODY_REALS = 8 };      /* most numbers of your own that grains carry: desc.body_reals */
-enum { DEM_LAW_MEMORY = 16 };     /* most reals that a contact remembers: desc.law_memory */
+enum { DEM_BODY_REALS = 8 };      /* largest number of user-defined reals per body: body_reals */
+enum { DEM_LAW_MEMORY = 16 };     /* largest contact history of a user-defined law: law_memory */
 
-/* Who touches: for a law that asks for it by desc.law_who; else zeros. */
+/* The two bodies of a contact, for laws that request them by desc.law_who = 1. */
 typedef struct dem_contact_who {
-    dem_body a, b;                /* b: null with a wall, whose id is c->wall */
-    dem_real radius_a, radius_b;  /* m, of the spheres that touch, of a cluster too; of other shapes
-                                     bounding ones; 0 for a wall, but a wall of grains: theirs */
+    dem_body a, b;                /* b is the null id at a wall; c->wall is then the wall's id */
+    /* m, of the spheres that touch (member spheres of clusters); of other shapes the bounding
+       radius; 0 for a wall, except a wall of grains: the radius of its grains */
+    dem_real radius_a, radius_b;
     dem_real mass_a, mass_b;      /* kg, of the whole bodies; 0 for a wall */
-    dem_vec3 point;               /* m, in the world: between the surfaces; with a wall on a's */
+    dem_vec3 point;               /* m, contact point in the world frame; at a wall: on the surface
+                                     of a */
     double time;                  /* s, at the end of the step */
-    /* numbers of your own that a and b (or the wall) carry, as many as desc.body_reals names, now;
-       null where it names none */
+    /* present values of the user-defined numbers of a and of b or the wall, in the order of
+       desc.body_reals; null if desc.body_reals names none */
     const dem_real *reals_a, *reals_b;
-    /* 1/s: your law adds what each gains per second; begin at 0. Where several places share one
-       contact (spheres of clusters, facets) each counts by its share */
+    /* The law adds the rates of change of these numbers here, per s. They are 0 when the law is
+       called; the pointers are null if reals_a is. If a contact has several contact points (member
+       spheres of clusters, facets), dem.h multiplies the rates of each by its weight */
     dem_real *rate_a, *rate_b;
 } dem_contact_who;
-/* What a law sees: this contact and nothing else. Velocities are of body a relative to body b, or
-   to the wall's surface, at the full step: what dashpots and friction take. Displacements kept in
-   memory grow by slip_step dt, the very displacement of the step: so springs conserve energy as the
-   integrator does. */
+/* All that a contact law sees. Velocities are those of body a relative to body b, or to the surface
+   of the wall, at the full step: use them for dashpots and friction. Displacements in the contact
+   history grow by slip_step dt, the displacement of the step just taken, so that springs conserve
+   energy as well as the integrator does. */
 typedef struct dem_contact {
-    dem_real overlap;        /* m, > 0; < 0 where they are apart and your law has a range */
-    dem_real range;          /* m, gap up to which your law is asked here (desc.law_range); or 0 */
-    dem_real closing_speed;  /* m/s, positive while approaching */
-    dem_vec3 normal;         /* unit, from a to b */
+    dem_real overlap;        /* m, > 0 in contact; < 0 across a gap (laws with a range only) */
+    dem_real range;          /* m, gap up to which the law is called here (desc.law_range); or 0 */
+    dem_real closing_speed;  /* m/s, positive while the two approach */
+    dem_vec3 normal;         /* unit vector from a to b */
     dem_vec3 slip;           /* m/s, tangential velocity at the contact point, rotation included */
     dem_vec3 spin;           /* rad/s, spin of a minus spin of b */
-    dem_vec3 slip_step;  /* m/s, slip averaged over the step just taken: what memory integrates */
-    dem_vec3 spin_step;      /* rad/s, spin averaged over the step just taken */
-    dem_vec3 normal_rate;    /* 1/s, how the normal turned in that step; for dem_memory_rotate */
-    dem_real twist;          /* rad/s, how the contact plane turned about the normal */
-    dem_real r_eff;          /* m,  1/(1/Ra + 1/Rb);  Ra against a wall */
-    dem_real m_eff;          /* kg, 1/(1/ma + 1/mb);  ma against a wall */
-    dem_real dt;             /* s, to integrate memory with; 0: memory must be left as it is */
-    dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear) */
-    dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (linear) */
-    dem_real kun, kad;       /* N/m, hysteretic law: unloading, adhesion; otherwise 0 */
-    dem_real friction, friction_static, rolling_friction;
-    dem_real sliding;        /* what your law answered in force->sliding a step ago; 0 at first */
-    int32_t material_a, material_b; /* dem_material ids */
-    int32_t wall;            /* 0: b is a grain; otherwise the dem_wall id */
-    int tension, friction_load, slider;  /* dem_tension, dem_load, dem_slider: as in the desc */
+    dem_vec3 slip_step;      /* m/s, mean of `slip` over the step just taken */
+    dem_vec3 spin_step;      /* rad/s, mean of `spin` over the step just taken */
+    dem_vec3 normal_rate;    /* 1/s, mean rate of change of the normal in that step */
+    dem_real twist;          /* rad/s, mean rotation of the contact plane about the normal */
+    dem_real r_eff;          /* m, 1/(1/Ra + 1/Rb), at a wall Ra; other shapes: equivalent radii */
+    /* kg, 1/(1/ma + 1/mb), at a wall ma; with bodies other than spheres the mass that a normal
+       force at the contact point accelerates, rotation included */
+    dem_real m_eff;
+    dem_real dt;             /* s, the time step. 0: leave the contact history unchanged */
+    dem_real kn, cn;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
+    dem_real kt, ct;  /* built-in law: N/m^(3/2), N s/m^(5/4) (Hertz) or N/m, N s/m (others) */
+    dem_real kun, kad;       /* N/m, hysteretic law: unloading and adhesion; otherwise 0 */
+    dem_real friction, friction_static, rolling_friction;   /* of the pair of materials */
+    dem_real sliding;        /* force->sliding of the last step; 0 when the contact begins */
+    int32_t material_a, material_b; /* ids of materials */
+    int32_t wall;            /* id of the wall; 0: b is a body */
+    int tension, friction_load, slider;  /* dem_tension, dem_load, dem_slider of the world desc */
     dem_contact_who who;     /* zeros unless desc.law_who is 1 */
-    void *user;              /* law_user of the world desc */
+    void *user;              /* desc.law_user */
 } dem_contact;
 
-/* Where the energy of one contact goes in one step, J. */
+/* The energies of one contact, J. Losses and work are those of the step. */
 typedef struct dem_contact_energy {
     dem_real dashpot, sag;   /* lost to the normal dashpot, and to hysteresis */
-    dem_real elastic;        /* stored by the normal spring */
-    dem_real shear_work;     /* done against the tangential force */
+    dem_real elastic;        /* stored in the normal spring now */
+    dem_real shear_work;     /* work done against the tangential force */
     dem_real slide;          /* lost to sliding */
-    dem_real shear_stored;   /* stored by the tangential spring */
+    dem_real shear_stored;   /* stored in the tangential spring now */
     dem_real roll;           /* lost to rolling resistance */
 } dem_contact_energy;
 
-/* What a law answers. Zeroed before the law is called. */
+/* The result of a contact law. All fields are 0 when the law is called. */
 typedef struct dem_contact_force {
-    dem_real normal;         /* N, repulsion: positive pushes apart */
-    dem_vec3 tangent;        /* N, on a (b gets the opposite), at the contact point */
-    dem_vec3 moment;         /* N m, on a (b gets the opposite): rolling resistance */
-    /* what a normal law hands to one of friction and one of rolling, see dem_law_hertz; a law that
-       calls neither may leave it alone */
-    dem_real elastic;        /* N, the spring's part of `normal` */
-    dem_real load;           /* N, >= 0: friction's limit is friction times that */
-    dem_real slope, slope_step;  /* N/m, d(elastic)/d(overlap): now, in the middle of the step */
-    dem_real kt, kt_step;    /* N/m, tangential stiffness: the same */
+    dem_real normal;         /* N, positive: repulsion */
+    dem_vec3 tangent;        /* N, on a at the contact point; b receives the opposite */
+    dem_vec3 moment;         /* N m, on a (rolling resistance); b receives the opposite */
+    /* From here to ct: what a normal law passes to the friction and rolling laws that follow it. A
+       law that calls none of these may leave them at 0. */
+    dem_real elastic;        /* N, the part of `normal` that the spring exerts */
+    dem_real load;           /* N, >= 0: L of Coulomb's limit mu L */
+    /* N/m, d(elastic)/d(overlap): at the present overlap; and at the overlap in the middle of that
+       part of the step in which the two touched. Hysteretic law: kn */
+    dem_real slope, slope_step;
+    dem_real kt, kt_step;    /* N/m, tangential stiffness: likewise */
     dem_real ct;             /* N s/m, tangential dashpot */
-    /* 1 while the contact slides, else 0; the laws of friction set it. Kept in contact history, and
-       handed back in c->sliding, where a pair's friction_static is above its friction */
+    /* 1 while the contact slides, otherwise 0. The friction laws set it. If friction_static is
+       larger than friction for any pair, contact history keeps it and c->sliding returns it */
     dem_real sliding;
-    dem_contact_energy energy;   /* for the ledger: what your law leaves at 0 it cannot know */
+    dem_contact_energy energy;   /* for the ledger, which cannot know what a law leaves at 0 */
 } dem_contact_force;
 
-/* A contact law. memory holds law_memory reals that start at zero when the contact begins and are
-   kept while it lasts: while the two touch or, with a range, are nearer than that. Whether a bridge
-   has formed is then the law's to remember; what it sets back to 0 has ended. Must not look at
-   anything but its arguments and c->user; is called from several threads. When a contact turns
-   round (a and b change places) the first 3*law_vectors reals of the memory change sign: put there
-   what is a vector, such as a tangential spring, and scalars after them. */
+/* A contact law: computes *force from *c. `memory` is the contact history: desc.law_memory reals.
+   They are 0 when a contact begins and last as long as the two touch or, with a range, are nearer
+   than the range. A law with a range decides itself when a bond or bridge begins and ends, and
+   stores that in its history. If c->dt is 0, dem.h only asks for the force: leave `memory`
+   unchanged.
+   The first 3*law_vectors reals are vectors and change sign when a and b are exchanged; put
+   tangential springs there, and scalars after them.
+   A law must use nothing except its arguments and c->user. Several threads call it at once. */
 typedef void (*dem_law_fn)(const dem_contact *c, dem_real *memory, dem_contact_force *force);
-/* For a law that answers rates of bodies' own numbers (law_who): how fast this contact alone makes
-   a number of body a (rates[0]) and of body b (rates[1]) follow that of its partner, 1/s, >= 0; the
-   largest of several numbers. They are 0 when it is called. A step is stable while dt times the sum
-   over a body's contacts stays below 1. c: as the law sees it, but at rest: velocities are 0. */
+/* For laws that change user-defined numbers (law_who): bounds the time step. rates[0] receives how
+   fast this contact alone makes a number of body a approach that of its partner, rates[1] the same
+   for body b: 1/s, >= 0, the largest of several numbers. Both are 0 when it is called. A step is
+   stable while dt times the sum over the contacts of a body is below 1.
+   In *c only overlap, range, normal, r_eff, m_eff, dt, user, material_a, material_b, wall and `who`
+   (without point and rates) are set; velocities and coefficients are 0. */
 typedef void (*dem_law_rate_fn)(const dem_contact *c, dem_real *rates);
 
-/* A vector kept in contact memory, carried along with the contact plane over the last step: turned
-   with the normal, spun with the mean twist of the two bodies; lies in the tangent plane, keeps its
-   length. Laws with memory begin with this. (Rotation by n_old -> n is exact to sixth order of the
-   angle of one step; the twist of one step counts as 1 rad at most, shortens by a share of
-   t^4/64 and never lengthens: (1 - u/2)^2 + u (1 - 9 u/64)^2 <= 1, u = t^2 <= 1.) */
+/* Rotates a tangent vector of the contact history with the contact plane over the last step: with
+   the normal, and with the mean spin of the two bodies about it. The result lies in the tangent
+   plane and has the length of v. Laws with a tangential spring call it first.
+   Accuracy: the rotation of the normal is exact to sixth order in its angle. The rotation t about
+   the normal is limited to 1 rad per step; it shortens v by a fraction of t^4/64 and never
+   lengthens it: (1 - u/2)^2 + u (1 - 9 u/64)^2 <= 1 with u = t^2 <= 1. */
 DEM_INLINE dem_vec3 dem_memory_rotate(const dem_contact *c, dem_vec3 v) {
     const dem_vec3 n = c->normal, r = c->normal_rate;
-    const dem_real g = v.x*n.x + v.y*n.y + v.z*n.z;      /* what sticks out of the plane */
+    const dem_real g = v.x*n.x + v.y*n.y + v.z*n.z;      /* component along the normal */
     const dem_real e = c->dt*c->dt*(r.x*r.x + r.y*r.y + r.z*r.z);  /* sin^2 of the angle */
     const dem_real h = g*c->dt*(DEM_R(0.5) + e/8);       /* 1/(1 + cos) */
     const dem_real w = c->dt*c->twist, t = w > 1 ? 1 : w < -1 ? -1 : w;   /* rad, at most 1 */
@@ -1006,20 +1040,23 @@ DEM_INLINE dem_vec3 dem_memory_rotate(const dem_contact *c, dem_vec3 v) {
 }
 
 /* ---- the built-in laws ----
-   Each is a function like one of your own, and a law of your own may call them: first one for the
-   normal force, then one for friction, then one for rolling. Each of the later ones takes from the
-   answer what the normal law has put there: the load, and how stiff the contact is at its present
-   overlap. `memory` is where the law's own reals begin: as many as its comment says, vectors first.
-   Coefficients (kn, cn, kt, ct and so on) come with the contact. None has a branch that depends on
-   the contact, so that compilers turn loops over them into vector code. `energy` in the answer is
-   for the ledger. */
+   Every built-in law is a dem_law_fn, and user-defined laws may call them: first a normal law, then
+   a friction law, then a rolling law. The later ones use what the normal law has stored in *f: the
+   load and the stiffnesses. `memory` must point to the first real of the law's own history; the
+   comments give its size (vectors first). Coefficients (kn, cn, kt, ct, ...) come with the contact.
+   No law has a branch that depends on the contact, so that compilers can vectorise loops over
+   contacts. docs/theory.md has the coefficients.
+   tests/test_laws.c checks all of them: springs are of second order in the time step, user-defined
+   laws that call built-in laws get the same bits, and every accepted time step is stable. */
 
-/* For a normal law: sets what friction may count on from the elastic and the whole normal force, as
-   friction_load says, and takes away what pulls, if tension says so. hold: N, what adhesion holds
-   besides, 0 if there is none. */
+/* Computes the load for friction and removes a dashpot's attraction, for normal laws: they set
+   f->elastic and f->normal first. Without tension (CLIPPED, COMPENSATED) f->normal is raised to 0,
+   or to the elastic force if that attracts. The load is that of c->friction_load, at least 0;
+   without tension it is always the whole normal force.
+   hold: N, >= 0, adhesion that adds to the load (not with DEM_LOAD_MAGNITUDE); 0: none. */
 DEM_INLINE void dem_law_load(const dem_contact *c, dem_contact_force *f, dem_real hold) {
     const int clipped = c->tension != DEM_TENSION_ALLOWED;
-    const dem_real least = f->elastic < 0 ? f->elastic : 0;  /* adhesion may pull, no dashpot */
+    const dem_real least = f->elastic < 0 ? f->elastic : 0;  /* adhesion may attract */
     const dem_real whole = (clipped || c->friction_load != DEM_LOAD_ELASTIC ? f->normal
                                                                           : f->elastic) + hold;
     const dem_real size = f->normal < 0 ? -f->normal : f->normal;
@@ -1028,21 +1065,26 @@ DEM_INLINE void dem_law_load(const dem_contact *c, dem_contact_force *f, dem_rea
     if (clipped) f->normal = f->normal < least ? least : f->normal;
     f->energy.dashpot = (f->normal - f->elastic)*c->closing_speed*c->dt;
 }
-/* Memory grows by what happened in the step. That is of second order in dt with the stiffness of
-   the middle of the time in which the two touched: of the overlap half way between what it was a
-   step ago, 0 at least, and now. Answers which part of the step that was, 1 unless they have just
-   met (come within the range). Checked by "tangential and rolling memory is of second order". */
+/* The fraction of the step during which the two touched (were within the range): 1 unless the
+   contact began in this step. The contact history grows by the displacement in this time.
+   Tests: tests/test_laws.c (second order of tangential and rolling springs). */
 DEM_INLINE dem_real demi_law_share(const dem_contact *c) {
     const dem_real gone = c->closing_speed*c->dt;
     const dem_real in = c->range > 0 ? c->overlap + c->range : c->overlap;
     return in > gone ? 1 : in/(gone + DEMI_TINY);
 }
+/* m: the mean overlap of that part of the step in which the two touched: of the overlap at its
+   beginning (0 if the contact began in this step) and the present one. Springs whose history grows
+   with the stiffness at this overlap are of second order in dt. */
 DEM_INLINE dem_real demi_law_middle(const dem_contact *c) {
     const dem_real gone = c->closing_speed*c->dt;
     return (c->overlap + (c->overlap > gone ? c->overlap - gone : 0))/2;
 }
 
-/* F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92]; kt as d^(1/2), ct as d^(1/4). No memory. */
+/* The normal force of elastic spheres with a dashpot:
+       F = kn d^(3/2) + cn d^(1/4) v [HER82, TSU92],  d: overlap, v: closing speed.
+   The tangential coefficients are kt d^(1/2) [N/m] and ct d^(1/4) [N s/m]. No contact history.
+   Tests: tests/test_impacts.c, tests/test_analytic.c. */
 DEM_INLINE void dem_law_hertz(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real root = DEMI_SQRT(c->overlap), fourth = DEMI_SQRT(root);
     const dem_real middle = DEMI_SQRT(demi_law_middle(c));
@@ -1057,7 +1099,8 @@ DEM_INLINE void dem_law_hertz(const dem_contact *c, dem_real *memory, dem_contac
     dem_law_load(c, f, 0);
     f->energy.elastic = f->elastic*c->overlap*2/5;
 }
-/* F = kn d + cn v. No memory. */
+/* The normal force of a linear spring and dashpot: F = kn d + cn v. No contact history.
+   Tests: tests/test_impacts.c, tests/test_analytic.c. */
 DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory;
     f->elastic = c->kn*c->overlap;
@@ -1068,21 +1111,22 @@ DEM_INLINE void dem_law_linear(const dem_contact *c, dem_real *memory, dem_conta
     dem_law_load(c, f, 0);
     f->energy.elastic = f->elastic*c->overlap/2;
 }
-/* Hysteretic [ALK07] eq 2.41 to 2.49:
-       F = kun d - (kun - kn) D,  D: depth, N/m and m
-   loading (d = D): F = kn d; un- and reloading: slope kun, zero at d0 = (1 - kn/kun) D [2.44];
-   pulling: F = -kad d, on which D shrinks with d, so that reloading from any point of it, at slope
-   kun, meets kn d again at the D that belongs to that point. D is all there is to remember: the
-   larger of D and d, but at most d (kun + kad)/(kun - kn). The branches meet at
-   d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun. That is eq 2.49
-   with kad as a size; with the negative slope [ALK07] defines it as, its 2.48 and 2.49 have the
-   wrong sign, and its text calls d_ad a deformation and a force. Friction is what F + kad d can
-   hold, which is 0 at the pulling line; [ALK07] takes |F|, which is 0 where nothing pulls or pushes
-   and large where the two are torn apart.
-   Along the slope kun nothing is lost: a grain at rest on one swings there for ever unless
-   normal_damping calms it. Stored is F^2/(2 kun); a D that changes dissipates F (1 - kn/kun) dD,
-   summed exactly along either line. Memory: D, m, no vector.
-   Tests: "a hysteretic contact dissipates the area of its loop". */
+/* The normal force of a plastic, possibly sticky contact [ALK07] eq 2.41 to 2.49:
+       F = kun d - (kun - kn) D + cn v,   D: depth of the plastic deformation, m
+       loading                    d = D, so that F = kn d
+       unloading and reloading    slope kun; F = 0 at d0 = (1 - kn/kun) D  [eq 2.44]
+       adhesion                   F = -kad d. D shrinks with d here, so that reloading (slope kun)
+                                  returns to kn d at the D that belongs to this point
+   After each step D is the larger of D and d, but at most d (kun + kad)/(kun - kn). Unloading and
+   adhesion join at d_ad = (kun - kn) D/(kun + kad) = (1 - e^2) kn D/(kn + kad e^2), e^2 = kn/kun.
+   Differences from [ALK07]: kad is a magnitude here. It defines kad as a negative slope; with that
+   its eq 2.48 and 2.49 have the wrong sign, and its text calls d_ad both a deformation and a force.
+   The load of friction is F + kad d, which is 0 on the adhesion line. [ALK07] takes |F|, which is 0
+   where F is 0 and large where the two are pulled apart.
+   Energy: the contact stores F^2/(2 kun). A change of D dissipates F (1 - kn/kun) dD, summed
+   exactly along both lines. Motion along the slope kun loses nothing, so that a grain at rest
+   oscillates there unless the pair has normal_damping (cn).
+   Contact history: 1 real, D [m]. Tests: tests/test_hysteresis.c. */
 DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real kn = c->kn, kun = c->kun, kad = c->kad, soft = kun - kn, before = memory[0];
     const dem_real loaded = c->overlap > before ? c->overlap : before;
@@ -1100,13 +1144,14 @@ DEM_INLINE void dem_law_hysteretic(const dem_contact *c, dem_real *memory, dem_c
                                   kad*soft/(kun + kad)*(loaded*loaded - depth*depth));
 }
 
-/* Coulomb's limit of a trial force t, N. A contact that holds begins to slide where |t| exceeds
-   friction_static times the load. It slides on at `friction` times the load, and holds again when
-   its slip stops or turns back: when it no longer stretches the spring, whose force `spring` (N,
-   zero without one) then points along the slip, and |t| is within that lower limit. Returns the
-   fraction of t that is left; the rest is lost to sliding. Without the state of sliding the mean
-   force of a slow slide would depend on dt: (friction + friction_static)/2 as dt tends to 0.
-   Tests: "the mean force of a steady slide is mu N for any time step". */
+/* Limits a trial force t (N) by Coulomb's law and stores it in f->tangent. A contact that holds
+   begins to slide when |t| exceeds friction_static times the load. It then slides at `friction`
+   times the load. It holds again when |t| is within that lower limit and its slip has stopped or
+   reversed, so that the slip no longer stretches the spring: the force `spring` of the spring (N, 0
+   if there is none) no longer opposes the slip.
+   Returns the fraction of t that remains. Without the state of sliding the mean force of a slow
+   slide would depend on dt: (friction + friction_static)/2 times the load as dt tends to 0.
+   Tests: tests/test_friction.c (steady slide). */
 DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_contact_force *f, dem_vec3 t,
                                  dem_vec3 spring) {
     const dem_real size = DEMI_SQRT(demi_dot(t, t)), cap = f->load*c->friction;
@@ -1119,28 +1164,32 @@ DEM_INLINE dem_real demi_law_cap(const dem_contact *c, dem_contact_force *f, dem
     f->energy.shear_work = -demi_dot(f->tangent, c->slip)*c->dt;
     return cut;
 }
-/* No memory, a dashpot of so many N s/m. */
+/* Friction by a dashpot of ct (N s/m) alone: -ct v_t, limited by Coulomb's law. */
 DEM_INLINE void demi_law_dashpot(const dem_contact *c, dem_contact_force *f, dem_real ct) {
     const dem_vec3 v = c->slip;
     const dem_real cut = demi_law_cap(c, f, demi_v(-ct*v.x, -ct*v.y, -ct*v.z), demi_v(0, 0, 0));
     f->energy.slide = cut < 1 ? f->energy.shear_work : 0;
 }
-/* -ct v, capped; [MIL] 4.3. No memory. */
+/* Friction of a dashpot: -ct v_t, limited by Coulomb's law; [MIL] 4.3. No contact history, so that
+   contacts creep under a tangential load. Tests: tests/test_friction.c. */
 DEM_INLINE void dem_law_viscous(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory;
     demi_law_dashpot(c, f, f->ct);
 }
-/* -kt (v dt) - ct v, capped; [MIL] 4.2. No memory. */
+/* Friction of a spring that is stretched for one step only, and a dashpot: -kt (v_t dt) - ct v_t,
+   limited by Coulomb's law; [MIL] 4.2. No contact history. Tests: tests/test_friction.c,
+   tests/test_analytic.c. */
 DEM_INLINE void dem_law_step(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     (void)memory;
     demi_law_dashpot(c, f, f->kt*c->dt + f->ct);
 }
-/* The length by which a spring gives way when (1 - cut) t of a trial force t is cut off, m:
-       shared   the part of spring and dashpot side by side, kt dt/(kt dt + ct), so that the two
-                together hold what friction can
-       rest     all, so that spring and dashpot of the present slip do
-       spring   all and the dashpot's share besides, so that the spring alone does.
-   The dashpot's share comes from nowhere there. */
+/* Returns by how much the tangential spring is shortened (m) when Coulomb's limit leaves `cut` t of
+   the trial force t. It gives up this part of the removed force (1 - cut) t, by c->slider:
+       PARALLEL    kt dt/(kt dt + ct) of it: spring and dashpot together then exert the limit
+       REMAINDER   all of it: the spring then exerts what the dashpot leaves of the limit
+       SPRING      all of it and the force of the dashpot: the spring alone then exerts the limit.
+                   The energy of the dashpot's part comes from nowhere
+   Stores the energy lost to sliding. */
 DEM_INLINE dem_vec3 demi_law_give(const dem_contact *c, dem_contact_force *f, dem_vec3 t,
                                   dem_real cut) {
     const dem_real shared = (1 - cut)*c->dt/(f->kt*c->dt + f->ct + DEMI_TINY);
@@ -1152,8 +1201,10 @@ DEM_INLINE dem_vec3 demi_law_give(const dem_contact *c, dem_contact_force *f, de
     f->energy.slide = cut*demi_dot(t, lost);
     return lost;
 }
-/* -kt s - ct v, capped; s: displacement, carried along with the contact plane [CS79]. Memory: s, m,
-   a vector. */
+/* Friction of a spring and a dashpot [CS79]: -kt s - ct v_t, limited by Coulomb's law, where s is
+   the tangential displacement since the contact began, rotated with the contact plane. With Hertz's
+   law kt follows the present overlap. Contact history: 3 reals, the vector s [m].
+   Tests: tests/test_impacts.c (oblique impacts), tests/test_friction.c, tests/test_laws.c. */
 DEM_INLINE void dem_law_spring(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_vec3 v = c->slip;
     const dem_real kt = f->kt, ct = f->ct;
@@ -1166,8 +1217,8 @@ DEM_INLINE void dem_law_spring(const dem_contact *c, dem_real *memory, dem_conta
     demi_put(memory, s);
     f->energy.shear_stored = kt*demi_dot(s, s)/2;
 }
-/* Increments of force at the stiffness of the step's middle [DIR05]; old: what is left of the force
-   of the step before. */
+/* Friction by increments of force, for the two laws below. kt_step: N/m, stiffness of the
+   increment; old: the fraction of the force of the last step that remains. */
 DEM_INLINE void demi_law_increment(const dem_contact *c, dem_real *memory, dem_contact_force *f,
                                    dem_real kt_step, dem_real old) {
     const dem_vec3 v = c->slip;
@@ -1182,42 +1233,51 @@ DEM_INLINE void demi_law_increment(const dem_contact *c, dem_real *memory, dem_c
     memory[3] = kt;
     f->energy.shear_stored = demi_dot(s, s)/(2*kt + DEMI_TINY);
 }
-/* [DIR05]: s grows by -kt ds at kt of the present overlap; s - ct v, capped. Memory: s, N, a
-   vector, and kt of the last step, N/m. */
+/* Mindlin's friction by increments [DIR05]: s - ct v_t, limited by Coulomb's law, where the force s
+   changes by -kt ds in a step. Differs from [DIR05] in kt: it is that of the overlap in the middle
+   of the step, which makes the law of second order in dt.
+   Contact history: 4 reals, the vector s [N] and kt of the last step [N/m].
+   Tests: tests/test_impacts.c, tests/test_laws.c (impacts of [THO13]). */
 DEM_INLINE void dem_law_mindlin(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     demi_law_increment(c, memory, f, f->kt_step, 1);
 }
-/* [THO13]: the same, but unloading keeps the length s/kt: where kt falls, s falls with it. Memory
-   as above. */
+/* Mindlin's friction, rescaled on unloading [THO13]: as dem_law_mindlin, but while kt falls the
+   force s is multiplied by kt/(kt of the last step), so that the displacement s/kt is kept.
+   Pressing a sheared contact then creates no energy. Contact history as for dem_law_mindlin.
+   Tests: tests/test_impacts.c, tests/test_exam.c. */
 DEM_INLINE void dem_law_mindlin_rescaled(const dem_contact *c, dem_real *memory,
                                          dem_contact_force *f) {
     const dem_real kt = f->kt, before = memory[3];
     demi_law_increment(c, memory, f, kt < before ? kt : f->kt_step, kt < before ? kt/before : 1);
 }
 
-/* The moment of a spring m that takes up the relative rotation across the normal, at kr of the
-   step's middle, N m. */
+/* N m: the moment of the rolling spring in `memory` after this step. The rotation of a relative to
+   b about axes in the contact plane stretches it with the stiffness kr (N m). */
 DEM_INLINE dem_vec3 demi_law_roll(const dem_contact *c, const dem_real *memory, dem_real kr) {
     const dem_vec3 n = c->normal, w = c->spin_step;
     return demi_sub(dem_memory_rotate(c, demi_at(memory)),
                     demi_scale(demi_sub(w, demi_scale(n, demi_dot(w, n))),
                                kr*demi_law_share(c)*c->dt));
 }
-/* What rolling friction leaves of a moment of size `size`, at most `most`, both N m. */
+/* The fraction of a moment of magnitude `size` that the limit `most` leaves, both N m. */
 DEM_INLINE dem_real demi_law_left(dem_real size, dem_real most) {
     return (most + DEMI_TINY)/((size > most ? size : most) + DEMI_TINY);
 }
-/* mu_r R min(F, |w|) against the relative spin w: [MIL] 4.5, dimensions as printed. No memory. */
+/* Rolling resistance of [MIL] 4.5: a moment mu_r R* min(F, |w|) against the relative spin w, with F
+   in N and w in rad/s compared as printed there. It also acts on spin about the normal, and holds
+   nothing at rest. No contact history. Tests: tests/test_laws.c, tests/hard/hard_impacts.c. */
 DEM_INLINE void dem_law_roll_step(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_real size = demi_length(c->spin), least = f->load < size ? f->load : size;
     (void)memory;
     f->moment = demi_scale(c->spin, -c->rolling_friction*c->r_eff*least/(size + DEMI_TINY));
     f->energy.roll = -demi_dot(f->moment, c->spin)*c->dt;
 }
-/* mu_r R* F against the rotation [ZHO99], which at rest must be whatever holds it. That takes a
-   spring, as stiff as a step can resolve, kr = (.3/dt)^2 I of the lighter's inertia I = 2/5 m*
-   R*^2, critically damped and shared with the limit. What it yields goes with dt^2; nothing creeps.
-   Memory: its moment, N m, a vector. */
+/* Rolling resistance of constant magnitude [ZHO99]: a moment mu_r R* F against the relative spin in
+   the contact plane, and at rest any moment up to that. Differs from [ZHO99] at rest, where its
+   moment is undefined: a spring acts in parallel with a dashpot behind the limit. It is as stiff as
+   a step can resolve, kr = (0.3/dt)^2 I with I = 2/5 m* R*^2, and critically damped. It yields in
+   proportion to dt^2 and does not creep. Contact history: 3 reals, the vector of its moment [N m].
+   Tests: tests/test_laws.c (a sphere at rest on a slope). */
 DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory,
                                       dem_contact_force *f) {
     const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
@@ -1231,9 +1291,12 @@ DEM_INLINE void dem_law_roll_constant(const dem_contact *c, dem_real *memory,
     demi_put(memory, demi_sub(m, demi_scale(t, c->dt > 0 ? (1 - left)*DEM_R(0.09/0.69) : 0)));
     f->energy.roll = -demi_dot(f->moment, c->spin)*c->dt;
 }
-/* EPSD [AI11]: a spring kr = 2.25 k (mu_r R*)^2, k = dF/dd the normal stiffness, held at mu_r R* F;
-   below that a dashpot of .3 times the critical one of I = 7/5 m* R*^2. Memory: the spring's
-   moment, N m, a vector. */
+/* Rolling resistance of an elastic-plastic spring and a dashpot (EPSD) [AI11]. The spring has the
+   stiffness kr = 2.25 k (mu_r R*)^2, where k = dF/dd is the normal stiffness (hysteretic law: kn),
+   and its moment is limited to mu_r R* F. Below the limit a dashpot acts with 0.3 times the
+   critical damping of I = 7/5 m* R*^2. Contact history: 3 reals, the vector of the spring's
+   moment [N m].
+   Tests: tests/test_laws.c (a sphere at rest on a slope, order, time step). */
 DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const dem_vec3 n = c->normal, w = demi_sub(c->spin, demi_scale(n, demi_dot(c->spin, n)));
     const dem_real arm = c->rolling_friction*c->r_eff, mr2 = c->m_eff*c->r_eff*c->r_eff;
@@ -1247,36 +1310,41 @@ DEM_INLINE void dem_law_roll_epsd(const dem_contact *c, dem_real *memory, dem_co
     f->energy.roll = -demi_dot(f->moment, c->spin)*c->dt;
 }
 
-/* Force in N on a body at position (m) with velocity (m/s), of radius (m) and mass (kg), at time
-   (s). With impulses these are of the middle of the step. Called once per body and step, from
-   several threads. */
+/* ---- other functions that you may hand over ---- */
+
+/* A force field: returns the force (N) on a body with this position (m), velocity (m/s), radius (m)
+   and mass (kg) at a time (s). With impulses position, velocity and time are those of the middle of
+   the coming step. It is called once per body and step, from several threads. */
 typedef dem_vec3 (*dem_force_fn)(dem_vec3 position, dem_vec3 velocity, dem_real radius,
                                  dem_real mass,
                                  double time, void *user);
 
-/* The same, with the whole body to look at, and a torque to answer: force (N) and torque (N m,
-   about the centre of mass, in the world's frame) are zero when it is called. body: as dem_body_get
-   tells, orientation included (that of a sphere is followed when the desc asks for orientations),
-   at the present time (s). id: for numbers of your own, kept by slot. */
+/* A force field that sees the whole body and may exert a torque. It adds to *force (N) and *torque
+   (N m, about the centre of mass, in the world frame), which are 0 when it is called. *body is the
+   state as dem_body_get returns it; spheres have an orientation only with desc.orientations. time:
+   s. id: the body, to find your own data by its slot. Otherwise as dem_force_fn. */
 typedef struct dem_body_state dem_body_state;
 typedef void (*dem_body_force_fn)(const dem_body_state *body, dem_body id, double time,
                                   dem_vec3 *force, dem_vec3 *torque, void *user);
 
-/* What a grain's own numbers become in one step: reals (as many as desc.body_reals names) are to be
-   changed in place; rates: 1/s, what laws have answered for its contacts, summed; body: at the end
-   of the step, time (s), of length dt (s). Null: reals += rates dt, Euler's step, which is
-   stable below 2 over the fastest rate of decay. Called once per body and step, from several
-   threads. */
+/* Advances the user-defined numbers of a body by one step, in place: `reals` has as many entries as
+   desc.body_reals has names. rates: per second, the sum of what the law added for all contacts of
+   the body. *body is its state at the end of the step, at `time` (s); dt: s. Without this function
+   dem.h takes Euler's step, reals += rates dt, which is stable for dt below 2 over the fastest rate
+   of decay. It is called once per body and step, from several threads. */
 typedef void (*dem_reals_fn)(dem_real *reals, const dem_real *rates, const dem_body_state *body,
                              dem_body id, double time, dem_real dt, void *user);
 
-/* Fills in a wall's pose at a time (s). Called twice a step (for its end and its middle; with
-   impulses also for the end of the next step) from one thread. Must be smooth, with velocity and
-   spin the exact derivatives of position and rotation. */
+/* A motion: sets the pose of a wall at a time (s). When it is called, *pose is where the wall was
+   when it got the motion, at rest. It must be smooth, and velocity and spin must be the exact
+   derivatives of position and rotation. It is called twice per step (for its end and its middle;
+   with impulses also for the end of the next step), from one thread. A pose that is not finite, is
+   clearly no rotation, or is beyond 1e15 (m, m/s, rad/s) stops the run with DEM_ERROR_UNSTABLE. */
 typedef void (*dem_motion_fn)(double time, dem_pose *pose, void *user);
 
-/* Both functions or neither. size is given back on release. May be called from one thread at a
-   time. */
+/* Memory functions of a world. Give both or neither (malloc and free). alloc_fn returns null if
+   there is no memory; free_fn receives the size that was requested. One world, or one set of slabs,
+   calls them from one thread at a time. */
 typedef struct dem_allocator {
     void *(*alloc_fn)(size_t size, void *user);
     void (*free_fn)(void *memory, size_t size, void *user);
