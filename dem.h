@@ -737,7 +737,7 @@ typedef enum dem_rolling_law {
     DEM_ROLLING_EPSD
 } dem_rolling_law;
 
-/* What the dashpot does at the end of a contact, where it would attract. */
+/* The dashpot at the end of a contact, where it would attract. */
 typedef enum dem_tension {
     /* The dashpot may attract; the restitution is the given one. */
     DEM_TENSION_ALLOWED = 0,
@@ -805,9 +805,10 @@ typedef enum dem_response {
     /* Soft contacts: forces grow with the overlap, by the laws above. A time step is a fiftieth of
        a contact time. */
     DEM_RESPONSE_SPRINGS = 0,
-    /* Rigid contacts (non-smooth dynamics, >>impulses): impulses prevent overlap. Of the laws above
-       only restitution, friction, static friction and rolling friction apply. A time step is as
-       long as the flow allows, 1e-3 s for grains of some millimetres. */
+    /* Rigid contacts (non-smooth dynamics, >>impulses): impulses prevent overlap. The
+       laws above do not act; restitution, friction, static friction and rolling friction of the
+       materials do. A time step is as long as the flow allows, 1e-3 s for grains of some
+       millimetres. */
     DEM_RESPONSE_IMPULSES
 } dem_response;
 /* The friction law of impulses. */
@@ -880,7 +881,7 @@ typedef enum dem_search {
     DEM_SEARCH_BINS
 } dem_search;
 
-/* What happens where a body leaves the domain box, per axis. */
+/* The faces of the domain box, per axis: what they do to a body that leaves. */
 typedef enum dem_boundary {
     /* nothing: bodies may leave */
     DEM_BOUNDARY_OPEN = 0,
