@@ -172,7 +172,7 @@ viewer: ## put examples/replay/viewer.html into dem.h
 browser: build/write_film ## play a film in a headless chromium: frames, pixels, no errors
 	@sh tests/browser.sh
 
-recipes: ## apply the patches of docs/extending.md to a copy of dem.h and use what they add
+recipes: ## apply the patches of docs/extending*.md to a copy of dem.h and use what they add
 	@CC="$(CC)" sh tests/recipes.sh
 
 parts: ## cut dem.h into its parts, for reading: build/parts/01-manual.h ...

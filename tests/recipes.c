@@ -1,6 +1,6 @@
-/* What docs/extending.md adds to dem.h, in use: built by tests/recipes.sh with the patched header first on the include
-   path. A law or integrator of a recipe must do what its page says, and serve spheres, ellipsoids, clusters, meshes,
-   threads, checkpoint and report without another line. */
+/* Uses what docs/extending*.md add to dem.h. tests/recipes.sh builds it with the patched header first on the include
+   path. A law or integrator of a recipe must do what its page says, and must work with spheres, ellipsoids, clusters,
+   meshes, threads, checkpoint and report without further edits. */
 #define DEM_IMPLEMENTATION
 #include <dem.h>
 #include "test.h"
@@ -348,7 +348,7 @@ int main(int argc, char **argv) {
         dem_world *world;
         dem_body ball;
         double t;
-        desc.integrator = DEM_TAYLOR;
+        desc.integrator = DEM_INTEGRATOR_TAYLOR;
         serves(desc, "Taylor (order 1)");
         desc.gravity.z = DEM_R(-9.81);
         desc.dt = DEM_R(1e-4);
@@ -358,7 +358,7 @@ int main(int argc, char **argv) {
         t = dem_world_time_get(world);
         CHECK_REL(scene_state(world, ball).position.z, -9.81*t*t/2, 1e-10);
         CHECK_REL(scene_state(world, ball).velocity.z, -9.81*t, 1e-10);
-        desc.integrator = (dem_integrator)((int)DEM_TAYLOR + 1);
+        desc.integrator = (dem_integrator)((int)DEM_INTEGRATOR_TAYLOR + 1);
         CHECK(dem_world_create(&desc) == 0);
         dem_world_destroy(world);
     }

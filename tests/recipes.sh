@@ -1,17 +1,17 @@
-# sh tests/recipes.sh: performs docs/extending.md. Each block of a recipe (```diff) is taken from the page and applied
-# to a copy of dem.h by itself, its places are counted (at most 3), then all of them together are built into
-# tests/recipes.c, which uses what they add with spheres, ellipsoids, clusters, checkpoint, report and threads.
-# Ends with "N passed, N failed", or SKIP where patch is missing.
+# sh tests/recipes.sh: tests docs/extending.md and docs/extending_*.md. It applies each patch of these pages (```diff) to a
+# copy of dem.h and checks that the patch has at most 3 places. Then it applies all of them together and builds
+# tests/recipes.c, which uses the additions with spheres, ellipsoids, clusters, checkpoint, report and threads.
+# The last line is "N passed, N failed", or SKIP if patch is missing.
 CC=${CC:-cc}
 dir=build/recipes
 command -v patch >/dev/null 2>&1 || { echo "SKIP: patch not found (Debian package patch)"; exit 0; }
 rm -rf $dir; mkdir -p $dir/all build/tmp
 awk -v dir=$dir '/^```diff$/ { file = sprintf("%s/%d.diff", dir, ++n); inside = 1; next }
-    /^```/ { inside = 0 } inside { print > file }' docs/extending.md
+    /^```/ { inside = 0 } inside { print > file }' docs/extending.md docs/extending_*.md
 passed=0; failed=0
 cp dem.h $dir/all/dem.h
 for recipe in "$dir"/*.diff; do
-    [ -f "$recipe" ] || { echo "FAILED: docs/extending.md has no recipe"; failed=1; break; }
+    [ -f "$recipe" ] || { echo "FAILED: docs/extending*.md have no recipe"; failed=1; break; }
     places=$(grep -c '^@@' "$recipe")
     if [ "$places" -gt 3 ]; then echo "FAILED $recipe: touches $places places, must be at most 3"; failed=$((failed + 1)); fi
     mkdir -p "${recipe%.diff}"
