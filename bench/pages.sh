@@ -1,5 +1,5 @@
 # sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [blocks] [responses] [ellipsoids]: measures anew what stands in those pages
-# of docs/ (effects: the prices in accuracy.md and README.md; screener: its times in studies.md; peers: the table in README.md; blocks: that of shapes.md beside other codes; ellipsoids: Table 2 of ellipsoids.md),
+# of docs/ (effects: the prices in accuracy.md and README.md; screener: its times in screener.md; peers: the table in README.md; blocks: that of shapes.md beside other codes; ellipsoids: Table 2 of ellipsoids.md),
 # effects to clusters when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
 [ "$1" ] || set -- effects accuracy roofline clusters
 export OMP_PROC_BIND=true OMP_PLACES=cores
@@ -70,12 +70,12 @@ screener_times() {
         /^N[0-9]+\./ { split(substr($1, 2), p, "."); n = p[1]; what = p[2]
             if (what == "compute" || what == "overlap" || what == "left") { seen[n, what]++; value[n, what, seen[n, what]] = $3 }
             if (what == "thesis_compute") thesis[n] = $3 }
-        END { print "| balls | machine time | thesis | 200 N/m | ratio | overlap | 2000 N/m | ratio | overlap |"; print "|---|---|---|---|---|---|---|---|---|"
+        END { print "| balls | machine time (s) | thesis (h) | 200 N/m: time (s) | ratio | overlap (radii) | 2000 N/m: time (s) | ratio | overlap (radii) |"; print "|---|---|---|---|---|---|---|---|---|"
             k = split("775 4950 9900", row, " "); split("20 25 45", time, " ")
             for (i = 1; i <= k; i++) { n = row[i]
-                printf "| %d | %d s | %.1f h | %s | %s |\n", n, time[i], thesis[n]/3600, cells(n, 1), cells(n, 2) } }
+                printf "| %d | %d | %.1f | %s | %s |\n", n, time[i], thesis[n]/3600, cells(n, 1), cells(n, 2) } }
         function cells(n, k,    t) { t = value[n, "compute", k]
-            return t ? sprintf("%.0f s | %.0f | %.3f", t, thesis[n]/t, value[n, "overlap", k]) : " | | " }'
+            return t ? sprintf("%.0f | %.0f | %.3f", t, thesis[n]/t, value[n, "overlap", k]) : " | | " }'
 }
 
 # a row a size: millions of bodies times steps a second, beside the card of [RUB15]
@@ -123,7 +123,7 @@ for page in "$@"; do
     screener)
         for k in 200 2000; do build/screener --study size --stiffness $k --out $at/screener_size$k || exit 1; done
         screener_times $at/screener_size200/summary.txt $at/screener_size2000/summary.txt > build/page.times
-        splice studies.md screener build/page.times ;;
+        splice screener.md screener build/page.times ;;
     ellipsoids)
         build/ellipsoids --speeds --threads 1 || exit 1
         gas_speeds $at/ellipsoids/speeds.csv > build/page.speeds
