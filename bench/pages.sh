@@ -30,7 +30,7 @@ rates() {
 }
 # a row a scene and code, from what bench/peers.sh prints; empty where a code or a second core was missing
 peers() {
-    awk '/ = / && $1 ~ /^(bed|drum|gas)\.(double|single)\.vs_/ { value = $0; sub(/.* = /, "", value); ratio[$1] = value }
+    awk '/ = / && $1 ~ /^(bed|drum|gas)\.(double|single)\.vs_/ { value = $0; sub(/.* = /, "", value); sub(/\+-/, "±", value); ratio[$1] = value }
         END { print "| scene | against | one core | two cores | one core, dem.h in single precision |"; print "|---|---|---|---|---|"
             about["bed"] = "bed, 20,000 beads at rest"; about["drum"] = "drum with lifters, 18,000 beads"
             about["gas"] = "gas, 32,768 spheres"; name["lammps"] = "LAMMPS"; name["liggghts"] = "LIGGGHTS"
@@ -55,14 +55,14 @@ blocks() {
                 peer = ratio[s ".double.vs_" c]; if (ratio[s ".unshared.vs_" c]) peer = peer "; of dem.h unshared " ratio[s ".unshared.vs_" c]
                 printf "| %s | %s | %.3g | %.2f | %s | %s |\n", about[s], name[c == "yade" ? c s : c], 1/rate[s, c], touch[s, c], sank[s, c], peer } }' "$1"
 }
-# the price list of the README: some rows of the page of effects, in words
+# the table of costs in the README: some rows of the page of effects, in words
 prices() {
     awk -F'|' '/^\*\*Preliminary/ { print; print "" }
         /^\| `/ { gsub(/[` ]/, "", $2); price[$2] = $5; spread[$2] = $6; gsub(/ /, "", price[$2]); gsub(/^ | $/, "", spread[$2]) }
-        END { print "| effect | time of a step, without it = 1 |"; print "|---|---|"
+        END { print "| effect | time of a step with it, relative to one without it |"; print "|---|---|"
             n = split("friction tangent.mindlin_rescaled rolling.epsd rolling.constant ledger one_unlike two_species all_unlike orientation periodicity feed", row, " ")
-            split("friction by a spring/Mindlin'"'"'s friction in its place/rolling resistance (EPSD)/a constant rolling torque/the ledger of energy/one grain unlike 20,000 others/two sizes, half of the grains each/every grain of a size of its own/orientations of spheres/a periodic box/a bead fed every fourth step", word, "/")
-            for (i = 1; i <= n; i++) if (row[i] in price) printf "| %s | %s (+- %s) |\n", word[i], price[row[i]], spread[row[i]] }' "$1"
+            split("friction with a spring (Cundall-Strack)/rescaled Mindlin friction instead of that spring/rolling resistance (EPSD)/rolling resistance (constant torque)/energy ledger/one grain that differs from 20,000 equal ones/two sizes, half of the grains each/a different size for every grain/orientations of spheres/periodic box/feed, one bead every fourth step", word, "/")
+            for (i = 1; i <= n; i++) if (row[i] in price) printf "| %s | %s (± %s) |\n", word[i], price[row[i]], spread[row[i]] }' "$1"
 }
 # times of the glass screener beside the thesis's, for two stiffnesses, from their summaries
 screener_times() {
