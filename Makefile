@@ -182,7 +182,7 @@ parts: ## cut dem.h into its parts, for reading: build/parts/01-manual.h ...
 snippets: build/dem.o
 	@rm -rf build/snippets && mkdir -p build/snippets
 	@awk -v out=build/snippets -f tests/snippets.awk dem.h README.md CONTRIBUTING.md docs/extending.md docs/laws.md docs/replay.md \
-	    docs/own_law.md docs/parallel.md docs/impulses.md
+	    docs/own_law.md docs/parallel.md docs/impulses.md docs/shapes.md
 	@for f in build/snippets/*_program.c; do test -f $$f || continue; echo "$$f"; \
 	    $(COMPILE) -O0 -o $${f%.c} $$f $$(grep -q DEM_IMPLEMENTATION $$f || echo build/dem.o) $(LINK) || exit 1; done
 	@for f in build/snippets/*_part.c; do test -f $$f || continue; echo "$$f"; \

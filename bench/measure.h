@@ -60,8 +60,14 @@ STUDY_FN void bench_result_short(const char *name, double value, const char *uni
     snprintf(text, sizeof text, fabs(value) < 1000 ? "%.3g" : "%.0f", value);
     study_result_text(name, text, unit);
 }
-/* What study.h does not know: a page in markdown, beside the results; bench/pages.sh copies it into docs. */
+/* A page in markdown beside the results. bench/pages.sh puts it into docs. */
 STUDY_FN FILE *bench_page_open(void) { return study_open("page.md"); }
+/* A table beside the results, NAME.csv, with its line of headings. bench/pages.sh puts it into docs/data. */
+STUDY_FN FILE *bench_table_open(const char *name, const char *heading) {
+    FILE *file = study_open(name);
+    if (file) fprintf(file, "%s\n", heading);
+    return file;
+}
 
 /* ---- what it ran on ---- */
 
@@ -122,12 +128,12 @@ STUDY_FN int bench_machine(void) { /* answers how many processors               
     study_result_text("flags", BENCH_FLAGS, "");
     return count;
 }
-/* The same as one line of a page; a busy machine marks its figures. */
+/* Writes the same as one line of a page, and says if other programs kept the machine busy. */
 STUDY_FN void bench_page_machine(FILE *page, double load) {
     char name[256];
     const int count = bench_processors(name, sizeof name);
-    fprintf(page, "%s%s, %d logical processors; %s; `%s`.\n\n",
-            load > 0.5 ? "**Preliminary: the machine was busy.** " : "", name, count, BENCH_COMPILER, BENCH_FLAGS);
+    fprintf(page, "%s, %d logical processors; %s; `%s`.%s\n\n", name, count, BENCH_COMPILER, BENCH_FLAGS,
+            load > 0.5 ? " Other programs ran at the same time." : "");
 }
 
 #endif /* BENCH_MEASURE_H */

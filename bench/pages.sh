@@ -1,6 +1,14 @@
-# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [blocks] [responses] [ellipsoids]: measures anew what stands in those pages
-# of docs/ (effects: the prices in accuracy.md and README.md; screener: its times in screener.md; peers: the table in README.md; blocks: that of shapes.md beside other codes; ellipsoids: Table 2 of ellipsoids.md),
-# effects to clusters when none is named, and puts tables and pictures in place. Needs a quiet machine: a busy one is told in the page. Tables stand between <!-- NAME: begin --> and <!-- NAME: end -->; each bench writes its own as page.md.
+# sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [blocks] [responses] [ellipsoids]
+# Measures again and replaces tables and pictures in docs/ (without arguments: effects, accuracy, roofline, clusters).
+#   effects     what effects cost, in accuracy.md and README.md
+#   screener    times of the screener, in screener.md
+#   peers       the table of README.md
+#   blocks      beds of blocks beside other codes, in shapes.md
+#   responses   springs beside impulses, in impulses.md
+#   ellipsoids  Table 2 in ellipsoids.md, and the theory in docs/data
+#   others      the page of the same name
+# Tables are between <!-- NAME: begin --> and <!-- NAME: end -->. Each bench writes its own as page.md; full tables go to
+# docs/data. Other programs that run at the same time make times longer; the pages say so.
 [ "$1" ] || set -- effects accuracy roofline clusters
 export OMP_PROC_BIND=true OMP_PLACES=cores
 
@@ -18,6 +26,19 @@ picture() {
     if command -v rsvg-convert >/dev/null 2>&1; then rsvg-convert "$1" -o "docs/images/$2" && printf '\n![](images/%s)\n' "$2" >> "$3"
     else echo "SKIP: rsvg-convert not found (Debian package librsvg2-bin): docs/images/$2 stays as it was"; fi
 }
+# the processor, with family and model: "AMD EPYC" is sold in every generation
+processor() {
+    awk -F '[\t ]*: ' '/^cpu family/ { f = $2 } /^model\t/ { m = $2 } /^model name/ { n = $2 }
+        END { printf "%s (family %s, model %s)", n, f, m }' /proc/cpuinfo
+}
+commit() { git rev-parse --short HEAD; }
+# data NAME COMMAND FILE: docs/data/NAME.csv is FILE, a table, below a line with its command, processor and commit
+data() {
+    mkdir -p docs/data
+    { echo "# $2; $(processor); dem.h at commit $(commit)"; cat "$3"; } > "docs/data/$1.csv" && echo "docs/data/$1.csv"
+}
+# measured COMMAND: the last line of a block
+measured() { printf '\nMeasured by `%s`, dem.h at commit %s.\n' "$1" "$(commit)"; }
 # a row a scene: rates of the three builds, from their summaries
 rates() {
     cat build/out/bench/summary.txt build/out/bench_single/summary.txt build/out/bench_O2/summary.txt | awk '
@@ -42,22 +63,27 @@ peers() {
 # a row a scene and code, from the same: beds of blocks
 blocks() {
     awk '/^# (clumps|cubes)\./ { split($2, p, "."); rate[p[1], p[2]] = $3; for (i = 4; i < NF; i++) if ($i == "contacts/bead") touch[p[1], p[2]] = $(i + 1) }
-        /^# load/ { print "**Preliminary: the machine was busy.**"; print "" }
+        /^# load/ { busy = 1 }
         /middle sank/ { sank[p[1], p[2]] = $6 }
         / = / && $1 ~ /^(clumps|cubes)\./ { value = $0; sub(/.* = /, "", value); ratio[$1] = value }
-        END { print "| bed | | us a step and body | contacts per body | its middle sank, um | its time over that of dem.h |"; print "|---|---|---|---|---|---|"
+        END {
+            if (busy) { print "Other programs ran at the same time."; print "" }
+            print "| bed | code | time of a step and body, µs | contacts per body | the middle of the bed sank, µm | time over that of dem.h | ± % | time over that of dem.h with separate contacts | ± % |"
+            print "|---|---|---|---|---|---|---|---|---|"
             about["clumps"] = "clumps of 8 spheres"; about["cubes"] = "cubes"
             name["double"] = "dem.h"; name["unshared"] = "dem.h, `DEM_CLUSTER_CONTACTS_SEPARATE`"; name["liggghts"] = "LIGGGHTS, multispheres"
             name["yadeclumps"] = "YADE, clumps"; name["yadecubes"] = "YADE, polyhedra"
             n = split("clumps.double clumps.unshared clumps.liggghts clumps.yade cubes.double cubes.yade", row, " ")
             for (i = 1; i <= n; i++) { split(row[i], p, "."); s = p[1]; c = p[2]
                 if (!((s, c) in rate)) continue
-                peer = ratio[s ".double.vs_" c]; if (ratio[s ".unshared.vs_" c]) peer = peer "; of dem.h unshared " ratio[s ".unshared.vs_" c]
-                printf "| %s | %s | %.3g | %.2f | %s | %s |\n", about[s], name[c == "yade" ? c s : c], 1/rate[s, c], touch[s, c], sank[s, c], peer } }' "$1"
+                split(ratio[s ".double.vs_" c], r, /[ (+%)-]+/)
+                split(ratio[s ".unshared.vs_" c], u, /[ (+%)-]+/)
+                printf "| %s | %s | %.3g | %.2f | %s | %s | %s | %s | %s |\n", about[s], name[c == "yade" ? c s : c], 1/rate[s, c], touch[s, c], sank[s, c],
+                    r[1], r[2], u[1], u[2] } }' "$1"
 }
-# the table of costs in the README: some rows of the page of effects, in words
+# what effects cost, for the README: some rows of the page of effects, in words
 prices() {
-    awk -F'|' '/^\*\*Preliminary/ { print; print "" }
+    awk -F'|' '/Other programs ran/ { print "Other programs ran at the same time."; print "" }
         /^\| `/ { gsub(/[` ]/, "", $2); price[$2] = $5; spread[$2] = $6; gsub(/ /, "", price[$2]); gsub(/^ | $/, "", spread[$2]) }
         END { print "| effect | time of a step with it, relative to one without it |"; print "|---|---|"
             n = split("friction tangent.mindlin_rescaled rolling.epsd rolling.constant ledger one_unlike two_species all_unlike orientation periodicity feed", row, " ")
@@ -80,9 +106,8 @@ screener_times() {
 
 # a row a size: millions of bodies times steps a second, beside the card of [RUB15]
 gas_speeds() {
-    awk -F '[\t ]*: ' '/^cpu family/ { f = $2 } /^model\t/ { m = $2 } /^model name/ { n = $2 }
-        END { printf "%s (family %s, model %s), dem.h at commit %s.\n\n", n, f, m, commit }' commit="$(git rev-parse --short HEAD)" /proc/cpuinfo
-    awk -F , 'NR == 1 { print "| bodies | ellipsoids, one core | GPU of [RUB15] | ratio | spheres, one core | GPU of [RUB15] | ratio |"; print "|---|---|---|---|---|---|---|"; next }
+    printf '%s, dem.h at commit %s. Rates are in million body-steps per second.\n\n' "$(processor)" "$(commit)"
+    awk -F , 'NR == 1 { print "| bodies | ellipsoids, one core | ellipsoids, GPU of [RUB15] | ratio | spheres, one core | spheres, GPU of [RUB15] | ratio |"; print "|---|---|---|---|---|---|---|"; next }
         { printf "| %d | %.1f | %.2g | %.1f | %.0f | %.2g | %.0f |\n", $1, 1e-6*$2, 1e-6*$3, $2/$3, 1e-6*$4, 1e-6*$5, $4/$5 }' "$1"
 }
 
@@ -102,6 +127,8 @@ for page in "$@"; do
         rates > build/rates.md && splice accuracy.md precision build/rates.md ;;
     responses)
         build/responses || exit 1
+        data responses "make bench-pages PAGES=responses" $at/responses/responses.csv
+        measured "make bench-pages PAGES=responses" >> $at/responses/page.md
         for s in pile silo hopper drum; do picture $at/responses/$s.svg responses_$s.png $at/responses/page.md; done
         splice impulses.md responses $at/responses/page.md ;;
     roofline)
@@ -114,17 +141,25 @@ for page in "$@"; do
         for s in speedup speedup_tables scaling searches; do
             [ -f $at/parallel/$s.svg ] && picture $at/parallel/$s.svg parallel_$s.png $at/parallel/page.md
         done
+        for s in speedups messages; do data clusters_$s "make bench-pages PAGES=clusters" $at/parallel/$s.csv; done
+        data clusters_model "make bench-pages PAGES=clusters" $at/model/model.csv
+        measured "make bench-pages PAGES=clusters" >> $at/parallel/page.md
+        measured "make bench-pages PAGES=clusters" >> $at/model/page.md
         picture $at/model/model.svg clusters_model.png $at/model/page.md
         splice clusters.md measured $at/parallel/page.md
         splice clusters.md model $at/model/page.md ;;
     shapes)
         build/shapes || exit 1
+        for s in ellipsoids rotation bed; do data shapes_$s "make bench-pages PAGES=shapes" $at/shapes/$s.csv; done
+        measured "make bench-pages PAGES=shapes" >> $at/shapes/page.md
         splice shapes.md shapes $at/shapes/page.md ;;
     screener)
         for k in 200 2000; do build/screener --study size --stiffness $k --out $at/screener_size$k || exit 1; done
         screener_times $at/screener_size200/summary.txt $at/screener_size2000/summary.txt > build/page.times
         splice screener.md screener build/page.times ;;
     ellipsoids)
+        build/ellipsoids --theory || exit 1
+        data ellipsoids_theory "build/ellipsoids --theory; dimensionless, S_c in units of the square of the semi-axis b" $at/ellipsoids/theory.csv
         build/ellipsoids --speeds --threads 1 || exit 1
         gas_speeds $at/ellipsoids/speeds.csv > build/page.speeds
         splice ellipsoids.md speeds build/page.speeds ;;
@@ -137,7 +172,7 @@ for page in "$@"; do
         SCENES="clumps cubes" CORES=1 sh bench/peers.sh > build/blocks.out || { cat build/blocks.out; exit 1; }
         cat build/blocks.out
         grep -q ' = ' build/blocks.out || { echo "neither code was found: shapes.md stays as it was"; exit 1; }
-        blocks build/blocks.out > build/blocks.md && splice shapes.md blocks build/blocks.md || exit 1 ;;
+        { blocks build/blocks.out; measured "ROUNDS=${ROUNDS:-5} make bench-pages PAGES=blocks"; } > build/blocks.md && splice shapes.md blocks build/blocks.md || exit 1 ;;
     *) echo "no page $page: effects, accuracy, roofline, clusters, shapes, screener, ellipsoids, peers or blocks"; exit 1 ;;
     esac
 done

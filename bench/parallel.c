@@ -40,7 +40,7 @@
 static const char *part = "all", *data_folder = "bench/data", *out_folder = "";
 static int most_workers = 8, short_form, full_form, model_only, processors;
 static double settle_asked = 0.5, span_asked, cost_asked;
-static FILE *page;
+static FILE *page, *csv;           /* of what a part measures, for docs/data */
 
 /* ---- what is timed: a subject, and the ways to run it ---- */
 
@@ -276,7 +276,7 @@ static void printed_text(char *text, size_t room, int count, int workers, int me
 
 /* ---- one subject, all ways, all numbers of workers ---- */
 
-typedef struct point { const char *scene; const way *how; double workers, speedup; sent of; } point;
+typedef struct point { const char *scene; const way *how; int count; double serial, workers, speedup; sent of; } point;
 static point points[200];
 static int point_count;
 
@@ -295,18 +295,59 @@ static void tell_sent(int workers, const sent *of) {
     snprintf(name, sizeof name, "slabs%d.apart", workers);
     bench_result_short(name, of->apart, "m from the serial run, the farthest grain after the warm-up");
 }
-/* What slabs sent, of all points. */
+/* The point of a scene that the page shows: the most workers of a kind that have a processor each, or the fewest. */
+static const point *point_shown(const char *scene, const way *how) {
+    const point *best = 0;
+    int i;
+    for (i = 0; i < point_count; i++) {
+        const point *p = &points[i];
+        if (p->how != how || strcmp(p->scene, scene)) continue;
+        if (!best || (p->workers > best->workers && p->workers <= processors)) best = p;
+    }
+    return best;
+}
+/* Speedups on the page: a row for each scene. All points are in speedups.csv. */
+static void page_speedups(void) {
+    int i;
+    if (!page || !point_count) return;
+    fprintf(page, "| scene | grains | one thread, million particle-steps/s | threads | their speedup | slabs | their speedup | speedup "
+            "of [ALK07] on as many machines |\n|---|---|---|---|---|---|---|---|\n");
+    for (i = 0; i < point_count; i++) {
+        const point *p = &points[i], *on[WAYS];
+        const published *print;
+        int w;
+        if (i && !strcmp(p->scene, points[i - 1].scene)) continue;
+        fprintf(page, "| %s | %d | %.1f |", p->scene, p->count, p->serial);
+        for (w = 0; w < WAYS; w++) {
+            on[w] = point_shown(p->scene, &ways[w]);
+            if (on[w]) fprintf(page, " %.0f | %.2f |", on[w]->workers, on[w]->speedup);
+            else fprintf(page, " | |");
+        }
+        print = on[0] ? printed_find(p->count, (int)on[0]->workers) : 0;
+        if (print && print->several > 0) fprintf(page, " %.3g |\n", print->several);
+        else fprintf(page, " |\n");
+    }
+}
+/* What slabs sent: on the page for each scene, of all points in messages.csv. */
 static void tell_page_sent(void) {
     int i, any = 0;
-    for (i = 0; i < point_count && page; i++) {
+    csv = bench_table_open("messages.csv", "scene,slabs,halo_grains_per_border,kB_per_border_and_step,byte_per_halo_grain_and_step,"
+                           "steps_per_list,busiest_slab_over_mean,farthest_grain_from_serial_run_m");
+    for (i = 0; i < point_count; i++) {
         const sent *of = &points[i].of;
+        const double each = of->halo > 0 ? of->bytes/of->halo : 0;
         if (points[i].how->start != slabs_start) continue;
-        if (!any++) fprintf(page, "\nWhat slabs send, counted as if each were a process of its own:\n\n| scene | slabs | halo, grains "
-                            "a border | kB a border and step, there and back | byte a grain of the halo and step | steps of a list | "
-                            "busiest slab over the mean | farthest grain from the serial run, m |\n|---|---|---|---|---|---|---|---|\n");
-        fprintf(page, "| %s | %.0f | %.0f | %.1f | %.0f | %.0f | %.2f | %.0e |\n", points[i].scene, points[i].workers, of->halo,
-                1e-3*of->bytes, of->halo > 0 ? of->bytes/of->halo : 0, of->lists, of->uneven, of->apart);
+        if (csv) fprintf(csv, "%s,%.0f,%.0f,%.1f,%.0f,%.0f,%.2f,%.0e\n", points[i].scene, points[i].workers, of->halo,
+                         1e-3*of->bytes, each, of->lists, of->uneven, of->apart);
+        if (!page || &points[i] != point_shown(points[i].scene, points[i].how)) continue;
+        if (!any++) fprintf(page, "\nData that slabs exchange, counted as if each slab were a process:\n\n| scene | slabs | grains in "
+                            "the halo of a border | kB per border and step, both ways | byte per halo grain and step | steps between "
+                            "rebuilds of the list | busiest slab over the mean |\n|---|---|---|---|---|---|---|\n");
+        fprintf(page, "| %s | %.0f | %.0f | %.1f | %.0f | %.0f | %.2f |\n", points[i].scene, points[i].workers, of->halo,
+                1e-3*of->bytes, each, of->lists, of->uneven);
     }
+    study_close(csv, "messages.csv");
+    csv = 0;
 }
 static void tell_run(const subject *s, const run *serial, const run *r, int turns, int steps, double apart) {
     static const char *const names[4] = {"speedup", "efficiency", "cost", "overhead"};
@@ -326,13 +367,20 @@ static void tell_run(const subject *s, const run *serial, const run *r, int turn
     }
     snprintf(name, sizeof name, "%s%d.spread", r->how->name, r->workers);
     bench_result_short(name, bench_spread(r->seconds, turns), "%");
-    printed_text(text, sizeof text, s->count, r->workers, 0);
-    if (page) fprintf(page, "| %s | %d | %d %ss%s | %.1f | %.2f | %.2f | %.2f | %.2f | %s |\n", s->name, s->count,
-                      r->workers, r->how->worker, processors && r->workers > processors ? ", oversubscribed" : "",
-                      1e-6*s->count*steps/tp, values[0], values[1], values[2], values[3], text);
+    if (csv) {
+        const published *print = printed_find(s->count, r->workers);
+        fprintf(csv, "%s,%d,%ss,%d,%d,%.1f,%.2f,%.2f,%.2f,%.2f,", s->name, s->count, r->how->worker, r->workers,
+                processors && r->workers > processors, 1e-6*s->count*steps/tp, values[0], values[1], values[2], values[3]);
+        for (k = 0; k < 2; k++) {
+            const double published_tau = !print ? 0 : k ? print->several : print->single;
+            if (published_tau > 0) fprintf(csv, "%.3g", published_tau);
+            fputc(k ? '\n' : ',', csv);
+        }
+    }
     if (point_count < (int)(sizeof points/sizeof *points)) {
         point *p = &points[point_count++];
-        p->scene = s->name; p->how = r->how; p->workers = P; p->speedup = values[0];
+        p->scene = s->name; p->how = r->how; p->workers = P; p->speedup = values[0]; p->count = s->count;
+        p->serial = 1e-6*s->count*steps/bench_median(serial->seconds, turns);
         memset(&p->of, 0, sizeof p->of);
         if (r->how->start != slabs_start) return;
         p->of = slabs_sent((const dealt *)r->self);
@@ -372,7 +420,7 @@ static int compare_ways(const subject *s, double dt) { /* answers 0 when somethi
         const double ts = bench_median(runs[0].seconds, turns);
         bench_result_rate("serial.rate", (double)s->count*steps/ts);
         bench_result_short("serial.spread", bench_spread(runs[0].seconds, turns), "%");
-        if (page) fprintf(page, "| %s | %d | serial | %.1f | 1 | 1 | 1 | 0 | |\n", s->name, s->count, 1e-6*s->count*steps/ts);
+        if (csv) fprintf(csv, "%s,%d,serial,1,0,%.1f,1,1,1,0,,\n", s->name, s->count, 1e-6*s->count*steps/ts);
         tell_span(s, ts/steps, dt);
     }
     for (r = 1; r < count && turns; r++) {
@@ -683,9 +731,9 @@ static void tables_part(void) {
 
 enum { SEARCHES = 3, GROUPS = 5 };
 static const struct { dem_search search; const char *name, *about; } searches[SEARCHES] = {
-    {DEM_SEARCH_GRID, "verlet_grid", "Verlet list, found on a grid"},
+    {DEM_SEARCH_GRID, "verlet_grid", "Verlet list from a grid"},
     {DEM_SEARCH_LINKED_LIST, "linked_list", "linked linear list"},
-    {DEM_SEARCH_ALL_PAIRS, "verlet_all_pairs", "Verlet list, all pairs asked: that of [ALK07]"}};
+    {DEM_SEARCH_ALL_PAIRS, "verlet_all_pairs", "Verlet list, all pairs tested, as in [ALK07]"}};
 
 /* Seconds of wall time per simulated second of each search, from here on; medians of several turns. */
 static int search_here(discs *d, int steps, int turns, double seconds[SEARCHES], double rebuilds[SEARCHES]) {
@@ -742,7 +790,7 @@ static void searches_part(void) {
     study_figure f;
     char name[64], unit[96];
     int g, k, groups = 0;
-    if (page) fprintf(page, "\nSeconds of wall time per simulated second, one thread (Fig 2.17; the figure prints curves only):\n\n"
+    if (page) fprintf(page, "\nContact search in the scene of [ALK07] Fig 2.17, one thread, s of wall time per simulated s:\n\n"
                       "| discs | %s | %s | %s |\n|---|---|---|---|\n", searches[0].about, searches[1].about, searches[2].about);
     for (g = 0; g < GROUPS; g++) {
         double t[SEARCHES], rebuilds[SEARCHES];
@@ -839,8 +887,8 @@ static void scaling_part(void) {
     bench_scene bed = bench_scene_read(data_folder, "bed");
     study_figure f;
     int i, k, w, r, done = 0, lines = 0;
-    if (page) fprintf(page, "\nThe bed, cut and laid side by side:\n\n| beads | contacts a bead | ns a bead and step, serial | "
-                      "of that at 20000 | fastest on workers |\n|---|---|---|---|---|\n");
+    if (page) fprintf(page, "\nThe bed at other sizes:\n\n| beads | contacts per bead | one thread, ns per bead and step | the same over "
+                      "that at 20000 | largest speedup | on |\n|---|---|---|---|---|---|\n");
     for (i = 0; i < BEDS; i++) {
         bench_scene s;
         subject of, reference = scene_subject("bed", &bed, 100);
@@ -889,10 +937,10 @@ static void scaling_part(void) {
             bench_result_short(name, speedup, processors && runs[r].workers > processors ? "(more workers than processors)" : "");
             if (speedup > tau) {
                 tau = speedup;
-                snprintf(fastest, sizeof fastest, "%.2f x on %d %ss", tau, runs[r].workers, runs[r].how->worker);
+                snprintf(fastest, sizeof fastest, "%.2f | %d %ss", tau, runs[r].workers, runs[r].how->worker);
             }
         }
-        if (page && steps) fprintf(page, " %s |\n", fastest);
+        if (page && steps) fprintf(page, " %s |\n", *fastest ? fastest : "|");
         if (steps) number[done++] = s.count;
         for (r = 0; r < count; r++) runs[r].how->stop(runs[r].self);
         bench_scene_free(&s);
@@ -1028,15 +1076,20 @@ static void model_part(void) {
     f.y_label = "speedup";
     f.log_x = f.log_y = 1;
     study_curve(&f, "as many times faster", STUDY_FAINT, 2, ideal[0], ideal[1]);
-    if (page) fprintf(page, "Cost of a grain and step `c`: %.1f ns (%s). Measured on the bed of 1e5 beads in two slabs: `a` = %.2f "
-                      "grains of a halo to a square diameter of border, `b` = %.0f bytes each a step, there and back.\n\n| grains | "
-                      "network | halo, grains | kB a border and step | ranks | time of a step, ms | speedup | efficiency | share of "
-                      "messages |\n|---|---|---|---|---|---|---|---|---|\n",
+    if (page) fprintf(page, "Inputs: `c` = %.1f ns per grain and step (%s); `a` = %.2f grains of the halo per square diameter of "
+                      "border and `b` = %.0f byte per grain of the halo and step, both ways (measured on the bed of 1e5 beads in two "
+                      "slabs).\n\n| grains | network | grains in the halo | kB per border and step | speedup on 2 ranks | 8 ranks | "
+                      "32 ranks | 64 ranks |\n|---|---|---|---|---|---|---|---|\n",
                       ns, cost_asked > 0 ? "given" : "measured on one thread", model_layer, model_bytes);
+    csv = bench_table_open("model.csv", "grains,network,halo_grains,kB_per_border_and_step,ranks,step_ms,speedup,efficiency,"
+                           "messages_percent");
     for (i = 0; i < 3; i++)
         for (k = 0; k < 2; k++) {
             const double serial = model_step(sizes[i], 1, 1e-9*ns, &networks[k], 0);
             double best = 0, *px = x[2*i + k], *py = y[2*i + k];
+            int shown = 0;
+            if (page) fprintf(page, "| %.0e | %s | %.0f | %.0f |", sizes[i], networks[k].about, model_halo(sizes[i]),
+                              1e-3*model_bytes*model_halo(sizes[i]));
             for (P = 1, n = 0; P <= 256 && P <= model_side(sizes[i])/2; P *= 2, n++) { /* no slice thinner than two diameters */
                 double share, t = model_step(sizes[i], P, 1e-9*ns, &networks[k], &share);
                 px[n] = P;
@@ -1044,13 +1097,18 @@ static void model_part(void) {
                 best = fmax(best, py[n]);
                 snprintf(name, sizeof name, "model.n%.0f.%s.ranks%d.speedup", sizes[i], networks[k].name, P);
                 bench_result_short(name, py[n], "");
-                if (page && (P == 2 || P == 8 || P == 32 || P == 64))
-                    fprintf(page, "| %.0e | %s | %.0f | %.0f | %d | %.3g | %.1f | %.2f | %.0f %% |\n", sizes[i], networks[k].about,
-                            model_halo(sizes[i]), 1e-3*model_bytes*model_halo(sizes[i]), P, 1e3*t, py[n], py[n]/P, 100*share);
+                if (csv)
+                    fprintf(csv, "%.0e,\"%s\",%.0f,%.0f,%d,%.3g,%.1f,%.2f,%.0f\n", sizes[i], networks[k].about, model_halo(sizes[i]),
+                            1e-3*model_bytes*model_halo(sizes[i]), P, 1e3*t, py[n], py[n]/P, 100*share);
+                if (page && (P == 2 || P == 8 || P == 32 || P == 64)) { fprintf(page, " %.1f |", py[n]); shown++; }
             }
+            for (; page && shown < 4; shown++) fprintf(page, " |");
+            if (page) fprintf(page, "\n");
             snprintf(names[2*i + k], sizeof *names, "%.0e, %s", sizes[i], networks[k].about);
             study_curve(&f, names[2*i + k], k ? STUDY_DASHED : STUDY_LINE, n, px, py);
         }
+    study_close(csv, "model.csv");
+    csv = 0;
     study_figure_write(&f, "model.svg");
 }
 
@@ -1081,13 +1139,16 @@ int main(int argc, char **argv) {
     if (page) bench_page_machine(page, load);
     if (model_only) model_part();
     else {
-        if (page) fprintf(page, "| scene | grains | on | M particle-steps/s | speedup | efficiency | cost | overhead | published speedup |\n"
-                          "|---|---|---|---|---|---|---|---|---|\n");
+        csv = bench_table_open("speedups.csv", "scene,grains,on,workers,more_workers_than_processors,M_particle_steps_per_s,speedup,"
+                               "efficiency,cost,overhead,published_on_one_machine,published_on_several_machines");
         if (wanted("bed")) scene_part("bed");
         if (wanted("drum")) scene_part("drum");
         if (wanted("gas")) scene_part("gas");
         if (wanted("mill")) mill_part();
         if (wanted("tables")) tables_part();
+        study_close(csv, "speedups.csv");
+        csv = 0;
+        page_speedups();
         tell_page_sent();
         speedups_draw(0);
         speedups_draw(1);

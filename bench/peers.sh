@@ -125,7 +125,7 @@ ratio() { paste -d" " "$1" "$2" | awk '{ print $1/$(NF/2 + 1) }' | sort -g | awk
     m = (v[int((NR + 1)/2)] + v[int(NR/2) + 1])/2; printf "%.2f (+- %.0f %%)", m, 50*(v[NR] - v[1])/m }'; }
 
 load=$(cut -d" " -f1 /proc/loadavg 2>/dev/null)
-case $load in ""|0.[0-4]*) ;; *) echo "# load $load: other work runs here, these figures are preliminary" ;; esac
+case $load in ""|0.[0-4]*) ;; *) echo "# load $load: other programs run at the same time" ;; esac
 failed=
 for cores in $one $two; do
     suffix=; [ $cores = 2 ] && suffix=.threads2

@@ -1,6 +1,7 @@
 /* responses.c - springs beside impulses on the same scenes: time against error, and what solvers reach. MIT licence.
 
-   build/responses          some minutes; results in build/out/responses: page.md for docs/impulses.md, figures
+   build/responses          some minutes; results in build/out/responses: page.md for docs/impulses.md, responses.csv
+                            for docs/data, figures
    build/responses --part pile|silo|hopper|drum|heap|sweeps --seeds N
 
    pile      a column of discs falls apart (lesson 2): angle of repose
@@ -17,7 +18,7 @@
 #include "examples/study.h"
 #include "bench/measure.h"
 
-static FILE *page;
+static FILE *page, *csv;
 static int seeds = 3;
 static const double g = 9.81, pi = 3.14159265358979;
 
@@ -26,8 +27,8 @@ typedef struct way { const char *name; double young, dt; } way;
 enum { WAYS = 9 };
 static const way ways[WAYS] = {
     {"springs, 2.5 GPa", 2.5e9, 0}, {"springs, 250 MPa", 2.5e8, 0}, {"springs, 25 MPa", 2.5e7, 0},
-    {"springs, 2.5 MPa", 2.5e6, 0}, {"impulses, .1 ms", 0, 1e-4}, {"impulses, .2 ms", 0, 2e-4},
-    {"impulses, .5 ms", 0, 5e-4}, {"impulses, 1 ms", 0, 1e-3}, {"impulses, 2 ms", 0, 2e-3}};
+    {"springs, 2.5 MPa", 2.5e6, 0}, {"impulses, 0.1 ms", 0, 1e-4}, {"impulses, 0.2 ms", 0, 2e-4},
+    {"impulses, 0.5 ms", 0, 5e-4}, {"impulses, 1 ms", 0, 1e-3}, {"impulses, 2 ms", 0, 2e-3}};
 
 static dem_world_desc desc_of(const way *a) {
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -231,14 +232,55 @@ static told silo_run(const way *a, int seed) {
     return o;
 }
 
+/* Results of the scenes, for the page: means, their bars (of the first of a scene, and with the first's of the others),
+   processor time. A mean below 0: the run was refused. */
+enum { SCENES = 4 };
+static struct { const char *name, *what, *unit; double mean[WAYS], bar[WAYS], time[WAYS]; } results[SCENES];
+static int result_count;
+
+/* The differences from the first way, and the times: a row for each way, a column for each scene. */
+static void page_results(void) {
+    int i, k, which;
+    if (!page || !result_count) return;
+    for (which = 0; which < 2; which++) {
+        fprintf(page, which ? "\nProcessor time, s per simulated s:\n\n| contacts |"
+                : "\nDifference from springs of 2.5 GPa, %% (\302\261 is the standard error of both means):\n\n| contacts |");
+        for (k = 0; k < result_count; k++)
+            fprintf(page, which ? " %s |" : " %s: %s |", results[k].name, results[k].what);
+        fprintf(page, "\n|---|");
+        for (k = 0; k < result_count; k++) fprintf(page, "---|");
+        for (i = 0; i < WAYS; i++) {
+            fprintf(page, "\n| %s |", ways[i].name);
+            for (k = 0; k < result_count; k++)
+                if (results[k].mean[i] < 0) fprintf(page, " refused |");
+                else if (which) fprintf(page, " %.3g |", results[k].time[i]);
+                else fprintf(page, " %+.1f \302\261 %.1f |", 100*(results[k].mean[i]/results[k].mean[0] - 1), results[k].bar[i]);
+        }
+        fprintf(page, "\n");
+    }
+}
+/* One way in one scene as a line of responses.csv; without numbers if it was refused. */
+static void table_row(int scene, int i) {
+    const double mean = results[scene].mean[i];
+    if (!csv) return;
+    fprintf(csv, "%s,%s,%s,%s,", results[scene].name, results[scene].what, results[scene].unit,
+            ways[i].dt > 0 ? "impulses" : "springs");
+    if (ways[i].dt > 0) fprintf(csv, ",%g,", ways[i].dt);
+    else fprintf(csv, "%g,,", ways[i].young);
+    if (mean < 0) fprintf(csv, ",,,\n");
+    else fprintf(csv, "%.4g,%.1f,%.1f,%.3g\n", mean, 100*(mean/results[scene].mean[0] - 1), results[scene].bar[i],
+                 results[scene].time[i]);
+}
 /* Every way, every seed: error against time. */
 static void against(const char *name, const char *what, const char *unit, told (*run)(const way *a, int seed)) {
     double mean[WAYS], bar[WAYS], time[WAYS], x[2][WAYS], y[2][WAYS], ends[2] = {1e300, 0}, seeds_bar[2] = {0, 0};
     int i, k, n[2] = {0, 0};
     study_figure f;
     char label[96], file[32];
-    if (page) fprintf(page, "\n| %s | %s, %s | off the first | bar | s per simulated s |\n|---|---|---|---|---|\n",
-                      name, what, unit);
+    const int at = result_count++;
+    results[at].name = name;
+    results[at].what = what;
+    results[at].unit = unit;
     for (i = 0; i < WAYS; i++) {
         double sum = 0, squares = 0;
         int got = 0;
@@ -252,8 +294,8 @@ static void against(const char *name, const char *what, const char *unit, told (
             time[i] += o.time;
         }
         if (!got) {
-            if (page) fprintf(page, "| %s | refused | | | |\n", ways[i].name);
-            mean[i] = -1;
+            results[at].mean[i] = mean[i] = -1;
+            table_row(at, i);
             continue;
         }
         mean[i] = sum/got;
@@ -262,8 +304,10 @@ static void against(const char *name, const char *what, const char *unit, told (
         snprintf(label, sizeof label, "%s.%d", name, i);
         printf("%s, %s: %s %.4g +- %.2g %s, %.3g s per simulated s\n", name, ways[i].name, what, mean[i], bar[i], unit,
                time[i]);
-        if (page) fprintf(page, "| %s | %.4g | %+.1f %% | %.1f %% | %.3g |\n", ways[i].name, mean[i],
-                          100*(mean[i]/mean[0] - 1), 100*hypot(bar[i], i ? bar[0] : 0)/mean[0], time[i]);
+        results[at].mean[i] = mean[i];
+        results[at].bar[i] = 100*hypot(bar[i], i ? bar[0] : 0)/mean[0];
+        results[at].time[i] = time[i];
+        table_row(at, i);
         if (!i) continue;
         k = ways[i].dt > 0;
         ends[0] = fmin(ends[0], time[i]);
@@ -335,9 +379,10 @@ static void heap_part(void) {
         times[turn] = 1e9*(study_clock() - clock)/z.sweeps/world->solver.count;
     }
     study_result("heap.contact_and_sweep", bench_median(times, 5), "ns");
-    if (page) fprintf(page, "\n10,000 spheres at rest, steps of 1 ms: %d meetings within the range, %.1f sweeps and "
-                      "%.1f ms a step, one contact and sweep %.1f ns.\n", world->solver.count, swept/(5*STEPS),
-                      1e3*all/(5*STEPS), bench_median(times, 5));
+    if (page) fprintf(page, "\nA heap of 10,000 spheres at rest, steps of 1 ms:\n\n| contacts within the range | sweeps in a "
+                      "step | time of a step, ms | time of a sweep and contact, ns |\n|---|---|---|---|\n"
+                      "| %d | %.1f | %.1f | %.1f |\n", world->solver.count, swept/(5*STEPS), 1e3*all/(5*STEPS),
+                      bench_median(times, 5));
     dem_world_destroy(world);
 }
 /* States of a heap that has begun to lie, then one step of each solver from them, cold. */
@@ -353,9 +398,11 @@ static void sweeps_part(void) {
     for (i = 0; i < count; i++) dem_body_get(world, dem_body_id_get(world, i), &all[i]);
     dem_world_destroy(world);
     for (cone = 0; cone < 2; cone++) {
-        if (page) fprintf(page, "\n| left (rms, m/s) after | 30 | 100 | 300 | 1000 sweeps |\n|---|---|---|---|---|\n");
+        if (page && !cone) fprintf(page, "\n2,000 spheres that begin to settle, one step from a cold start:\n\n| solver | cone | rms "
+                                   "residual after 30 sweeps, m/s | 100 sweeps | 300 sweeps | 1000 sweeps |\n"
+                                   "|---|---|---|---|---|---|\n");
         for (k = 0; k < DEMI_SOLVERS; k++) {
-            if (page) fprintf(page, "| %s, %s cone |", demi_solvers[k].name, cone ? "convex" : "Coulomb's");
+            if (page) fprintf(page, "| %s | %s |", demi_solvers[k].name, cone ? "convex" : "Coulomb");
             for (i = 0; i < 4; i++) {
                 dem_world_desc desc = desc_of(&rigid);
                 dem_counters c;
@@ -396,12 +443,16 @@ int main(int argc, char **argv) {
     bench_machine();
     page = bench_page_open();
     if (page) bench_page_machine(page, load);
+    csv = bench_table_open("responses.csv", "scene,quantity,unit,response,young_Pa,dt_s,mean,difference_percent,"
+                             "difference_error_percent,processor_s_per_simulated_s");
     if (all || !strcmp(part, "sweeps")) sweeps_part();
     if (all || !strcmp(part, "heap")) heap_part();
     if (all || !strcmp(part, "pile")) against("pile", "angle of repose", "degrees", pile_run);
-    if (all || !strcmp(part, "silo")) against("silo", "floor's share", "of the weight", silo_run);
+    if (all || !strcmp(part, "silo")) against("silo", "load of the floor", "of the weight", silo_run);
     if (all || !strcmp(part, "hopper")) against("hopper", "discharge", "kg/s", hopper_run);
     if (all || !strcmp(part, "drum")) against("drum", "torque", "N m", drum_run);
+    page_results();
+    study_close(csv, "responses.csv");
     study_close(page, "page.md");
     return study_end();
 }

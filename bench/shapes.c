@@ -1,6 +1,7 @@
 /* shapes.c - what bodies that are not spheres cost: meetings of ellipsoids, rotation, whole steps. MIT licence.
 
-   build/shapes            about a minute; results in build/out/shapes, page.md for docs/shapes.md among them
+   build/shapes            about a minute; results in build/out/shapes, among them page.md for docs/shapes.md and
+                           ellipsoids.csv, rotation.csv and bed.csv for docs/data
    build/shapes --part meet|rotation|pile
 
    meet      Perram and Wertheim's function solved for 100,000 pairs of each aspect ratio, scaled distance W0 in
@@ -17,7 +18,7 @@
 
 enum { PAIRS = 100000, CHECKED = 3000, TURNS = 5, RATIOS = 7 };
 static const double ratios[RATIOS] = {1.0001, 1.5, 2, 3, 10, 30, 100};
-static FILE *page;
+static FILE *page, *csv;
 
 /* ---- meet ---- */
 
@@ -87,7 +88,8 @@ static void pair_exact(const meeting *m, long double *w0, long double *n) {
     for (k = 0; k < 3; k++) n[k] = s[k]/sqrtl(size);
     *w0 = sqrtl(f);
 }
-static void meet_run(double ratio) {
+/* on_page: the page shows this one; ellipsoids.csv has all */
+static void meet_run(double ratio, int on_page) {
     double cold[TURNS], warm[TURNS], sum = 0, scale_error = 0, normal_error = 0, square = 0;
     long looks[2] = {0, 0};
     int worst[2] = {0, 0}, early = 0, i, k, turn;
@@ -139,24 +141,33 @@ static void meet_run(double ratio) {
     bench_result_short(name, bench_median(cold, TURNS), "ns");
     snprintf(name, sizeof name, "meet.ratio%g.warm", ratio < 1.01 ? 1 : ratio);
     bench_result_short(name, bench_median(warm, TURNS), "ns");
-    if (page)
-        fprintf(page, "| %g | %.0f | %.2f / %d | %.0f | %.2f / %d | %.0e | %.0e / %.0e | %.1f %% |\n",
-                ratio < 1.01 ? 1 : ratio, bench_median(cold, TURNS), (double)looks[0]/PAIRS/TURNS, worst[0],
-                bench_median(warm, TURNS), (double)looks[1]/PAIRS/TURNS, worst[1], scale_error,
-                sqrt(square/CHECKED), normal_error, 100.0*early/PAIRS);
+    if (page && on_page)
+        fprintf(page, "| %g | %.0f | %.0f | %.2f | %.2f | %.0e | %.1f |\n", ratio < 1.01 ? 1 : ratio,
+                bench_median(cold, TURNS), bench_median(warm, TURNS), (double)looks[0]/PAIRS/TURNS,
+                (double)looks[1]/PAIRS/TURNS, sqrt(square/CHECKED), 100.0*early/PAIRS);
+    if (csv)
+        fprintf(csv, "%g,%.0f,%.2f,%d,%.0f,%.2f,%d,%.0e,%.0e,%.0e,%.1f\n", ratio < 1.01 ? 1 : ratio,
+                bench_median(cold, TURNS), (double)looks[0]/PAIRS/TURNS, worst[0], bench_median(warm, TURNS),
+                (double)looks[1]/PAIRS/TURNS, worst[1], scale_error, sqrt(square/CHECKED), normal_error,
+                100.0*early/PAIRS);
 }
 static void meet_part(void) {
     int i;
     if (page)
-        fprintf(page, "\n### Two ellipsoids meet\n\n| aspect ratio | cold, ns | looks, mean / most | warm, ns | looks, "
-                "mean / most | error of W0 | error of the normal, rms / most | apart told at first look |\n"
-                "|---|---|---|---|---|---|---|---|\n");
-    for (i = 0; i < RATIOS; i++) meet_run(ratios[i]);
+        fprintf(page, "\n### Contact detection of two ellipsoids\n\n| aspect ratio | cold start, ns | warm start, ns | "
+                "iterations, cold | iterations, warm | rms error of the normal | separate pairs rejected in one "
+                "iteration, %% |\n|---|---|---|---|---|---|---|\n");
+    csv = bench_table_open("ellipsoids.csv", "aspect_ratio,cold_ns,cold_iterations_mean,cold_iterations_max,warm_ns,"
+                             "warm_iterations_mean,warm_iterations_max,W0_error_max,normal_error_rms,normal_error_max,"
+                             "rejected_in_one_iteration_percent");
+    for (i = 0; i < RATIOS; i++) meet_run(ratios[i], i%2 == 0);
+    study_close(csv, "ellipsoids.csv");
 }
 
 /* ---- rotation ---- */
 
 static const char *const rotations[3] = {"spiral", "fincham", "no_squish"};
+static const char *const rotation_names[3] = {"DEM_ROTATION_SPIRAL", "DEM_ROTATION_FINCHAM", "DEM_ROTATION_NO_SQUISH"};
 static dem_world *top_world(int rotation, double dt, int count) {
     dem_world_desc desc = DEM_WORLD_DESC;
     dem_material_desc m = DEM_MATERIAL_DESC;
@@ -223,8 +234,11 @@ static void rotation_part(void) {
     const dem_quat exact = top_fly(DEM_ROTATION_SPIRAL, 1e-4, 40, &energy);
     int i, k;
     if (page)
-        fprintf(page, "\n### Rotation\n\n| `rotation` | error of orientation, rad: dt .1 | .025 | .00625 | order | energy "
-                "after 2000 s, dt .1 | .02 | a step and body, ns |\n|---|---|---|---|---|---|---|---|\n");
+        fprintf(page, "\n### Integrators of rotation\n\n| `desc.rotation` | order | error of the orientation at dt = 0.025 "
+                "s, rad | relative change of energy in 2000 s at dt = 0.02 s | time of a step and body, ns |\n"
+                "|---|---|---|---|---|\n");
+    csv = bench_table_open("rotation.csv", "rotation,error_dt_0.1_s_rad,error_dt_0.025_s_rad,error_dt_0.00625_s_rad,order,"
+                             "energy_change_dt_0.1_s,energy_change_dt_0.02_s,step_and_body_ns");
     for (i = 0; i < 3; i++) {
         double error[3], drift[2], price = turn_price(i);
         char name[64];
@@ -239,14 +253,20 @@ static void rotation_part(void) {
         snprintf(name, sizeof name, "rotation.%s.price", rotations[i]);
         bench_result_short(name, price, "ns");
         if (page)
-            fprintf(page, "| `%s` | %.1e | %.1e | %.1e | %.1f | %+.1e | %+.1e | %.0f |\n", rotations[i], error[0], error[1],
-                    error[2], log(error[1]/error[2])/log(4.0), drift[0], drift[1], price);
+            fprintf(page, "| `%s` | %.1f | %.1e | %+.1e | %.0f |\n", rotation_names[i], log(error[1]/error[2])/log(4.0),
+                    error[1], drift[1], price);
+        if (csv)
+            fprintf(csv, "%s,%.1e,%.1e,%.1e,%.1f,%+.1e,%+.1e,%.0f\n", rotation_names[i], error[0], error[1], error[2],
+                    log(error[1]/error[2])/log(4.0), drift[0], drift[1], price);
     }
+    study_close(csv, "rotation.csv");
 }
 
 /* ---- pile ---- */
 
 static const char *const kinds[4] = {"spheres", "ellipsoids", "tetrahedra", "rods"};
+static const char *const kind_names[4] = {"spheres", "ellipsoids, 1.5 : 1 : 1", "clusters of four spheres, tetrahedra",
+                                          "clusters of three spheres, rods"};
 static dem_shape kind_shape(dem_world *w, int kind, double volume) {
     const double r = cbrt(volume*3/(4*DEMI_PI));
     dem_cluster_desc c = DEM_CLUSTER_DESC;
@@ -270,8 +290,9 @@ static void pile_part(void) {
     char name[64];
     int kind, k;
     if (page)
-        fprintf(page, "\n### A bed at rest\n\n| 1000 | contacts per body | a step and body, ns | a contact, ns | spheres = 1 |\n"
-                "|---|---|---|---|---|\n");
+        fprintf(page, "\n### A bed of 1000 bodies at rest\n\n| bodies | contacts per body | time of a step and body, ns | the "
+                "same per contact, ns | time over that of spheres |\n|---|---|---|---|---|\n");
+    csv = bench_table_open("bed.csv", "bodies,contacts_per_body,step_and_body_ns,step_and_contact_ns,time_over_spheres");
     for (kind = 0; kind < 4; kind++) {
         dem_world_desc desc = DEM_WORLD_DESC;
         dem_material_desc m = DEM_MATERIAL_DESC;
@@ -311,9 +332,12 @@ static void pile_part(void) {
         snprintf(name, sizeof name, "pile.%s.step", kinds[kind]);
         bench_result_short(name, cost, "ns");
         if (page)
-            fprintf(page, "| %s | %.2f | %.0f | %.0f | %.1f |\n", kinds[kind], contacts, cost, cost/contacts, cost/first);
+            fprintf(page, "| %s | %.2f | %.0f | %.0f | %.1f |\n", kind_names[kind], contacts, cost, cost/contacts, cost/first);
+        if (csv)
+            fprintf(csv, "%s,%.2f,%.0f,%.0f,%.1f\n", kinds[kind], contacts, cost, cost/contacts, cost/first);
         dem_world_destroy(w);
     }
+    study_close(csv, "bed.csv");
 }
 
 int main(int argc, char **argv) {
