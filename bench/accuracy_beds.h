@@ -114,7 +114,7 @@ static void fill_gas_pressure(points *p) {
     const int seeds = gas_all();
     double bar;
     scene_points(p, gas_choices, GAS_CHOICES, seeds, gas_out, 1);
-    remark_add(p, " Carnahan and Starling's gas of hard spheres: %.4g.", enskog);
+    points_number(p, "hard spheres (Carnahan, Starling)", enskog, 0, p->unit, 0);
     p->mark = fabs(scene_mean(gas_out, 2*seeds, 1, &bar)/enskog - 1);
     p->mark_name = "converged against hard spheres (Carnahan, Starling)";
 }
@@ -231,13 +231,14 @@ static void fill_spheroids(points *p) {
     static outcome out[COUNT*SCENE_SEEDS];
     const int seeds = scene_seeds(SEEDS);
     double bar, ratio;
+    char what[72];
     int i;
     scene_measure("ellipsoids", scene_spheroids, c, COUNT, seeds, out);
     scene_errors(p, c, COUNT, seeds, out, 0, 0);
-    remark_add(p, "T_r/T_t, which must be 1:");
     for (i = 1; i < COUNT; i++) {
         ratio = scene_mean(out + i*SCENE_SEEDS, seeds, 1, &bar);
-        remark_add(p, " %s %s %.3f +- %.3f%s", c[i].series, c[i].label, ratio, bar, i + 1 < COUNT ? "," : ".");
+        snprintf(what, sizeof what, "T_r/T_t (theory: 1), %s, %s", c[i].series, c[i].label);
+        points_number(p, what, ratio, bar, "1", seeds);
     }
 }
 
@@ -399,9 +400,12 @@ static void fill_skin(points *p) {
     }
     p->mark = 1;
     p->mark_name = "chosen by the library";
-    remark_add(p, "No skin, a new list at every step: %.3g. Largest distance between places after %d steps, of all "
-               "skins and searches: %.1e radii.",
-               bench_median_ratio(times[SEARCHES*SKINS + 1], times[SEARCHES*SKINS], turns), quick ? 80 : 200, apart);
+    for (i = k = 0; k < p->count; k++) if (p->at[k].error < p->at[i].error) i = k;
+    snprintf(label, sizeof label, "fastest, %s", p->at[i].label);
+    points_number(p, label, p->at[i].error, 0, "time of a step [library's skin = 1]", 0);
+    points_number(p, "no skin", bench_median_ratio(times[SEARCHES*SKINS + 1], times[SEARCHES*SKINS], turns), 0,
+                  "time of a step [library's skin = 1]", 0);
+    points_number(p, "largest difference of positions", apart, 0, "radii", 0);
     bench_scene_free(&start); bench_scene_free(&first); bench_scene_free(&end);
 }
 #endif /* ACCURACY_BEDS_H */

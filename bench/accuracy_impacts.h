@@ -133,18 +133,10 @@ static double long_run(dem_integrator which, double tc) {
     dem_world_destroy(world);
     return broken ? (double)NAN : most/before;
 }
-static void remark_add(points *p, const char *format, ...) {
-    const size_t used = strlen(p->remark);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(p->remark + used, sizeof p->remark - used, format, arguments);
-    va_end(arguments);
-}
 static void bounces(points *p, double restitution) {
     const double tc = contact_time();
-    char label[32];
+    char label[32], what[72];
     int k, n;
-    remark_add(p, "Order of convergence, t_c/50 to t_c/400:");
     for (k = 0; k < SCHEMES; k++) {
         double error[STEPS];
         for (n = 0; n < STEPS; n++) {
@@ -153,14 +145,14 @@ static void bounces(points *p, double restitution) {
             points_add(p, schemes[k].name, label, price_of(schemes[k].which, DEM_TANGENT_AUTO)*steps_of_contact[n]/50,
                        error[n], 0);
         }
-        remark_add(p, " %s %.1f%s", schemes[k].name, log(error[2]/error[5])/log(8.0), k + 1 < SCHEMES ? "," : ".");
+        snprintf(what, sizeof what, "order from t_c/50 to t_c/400, %s", schemes[k].name);
+        points_number(p, what, log(error[2]/error[5])/log(8.0), 0, "1", 0);
     }
     if (restitution < 1) return;
-    remark_add(p, " Energy after %d bounces at t_c/50, over that at first:", BOUNCES);
     for (k = 0; k < SCHEMES; k++) {
-        const double energy = long_run(schemes[k].which, tc);
-        if (energy == energy) remark_add(p, " %s %.4f%s", schemes[k].name, energy, k + 1 < SCHEMES ? "," : ".");
-        else remark_add(p, " %s: the run was stopped%s", schemes[k].name, k + 1 < SCHEMES ? "," : ".");
+        const double energy = long_run(schemes[k].which, tc); /* NAN: the run was stopped                        */
+        snprintf(what, sizeof what, "energy after %d bounces at t_c/50, %s", BOUNCES, schemes[k].name);
+        points_number(p, what, energy, 0, "1", 0);
     }
 }
 static void fill_restitution(points *p) { bounces(p, 0.66); }
@@ -258,16 +250,17 @@ static void fill_oblique(points *p) {
         {"step, without memory", DEM_TANGENT_STEP, DEM_SLIDER_PARALLEL},
         {"viscous, without memory", DEM_TANGENT_VISCOUS, DEM_SLIDER_PARALLEL}};
     double converged[8][ANGLES][2], apart;
+    char what[72];
     int k, i;
     for (k = 0; k < 8; k++) {
         shot s = {DEM_INTEGRATOR_VELOCITY_VERLET, laws[k].law, laws[k].slider, 0, 0, 0};
         shot_series(p, laws[k].name, s, converged[k]);
     }
-    remark_add(p, "Errors are against each law's own converged answer. How far those are from that of the spring:");
     for (k = 1; k < 8; k++) {
         for (apart = i = 0; i < ANGLES; i++)
             apart += pow(converged[k][i][0] - converged[0][i][0], 2) + pow(converged[k][i][1] - converged[0][i][1], 2);
-        remark_add(p, " %s %.1e%s", laws[k].name, sqrt(apart/(2*ANGLES)), k < 7 ? "," : ".");
+        snprintf(what, sizeof what, "difference from the spring, both converged: %s", laws[k].name);
+        points_number(p, what, sqrt(apart/(2*ANGLES)), 0, "1", 0);
     }
 }
 /* MFiX's own figures: leaving over arriving tangential velocity. */

@@ -1,9 +1,8 @@
-/* accuracy_points.h - points of a work-precision diagram: which are efficient, a picture, a table. MIT licence.
+/* accuracy_points.h - points of a work-precision diagram: which are efficient, a picture, tables. MIT licence.
 
-   A point is one setting: what it costs and how far it is off. Cost is processor time, in units of the library's own
-   setting, so that it hardly hangs on the machine. Where chance enters, an error comes with a bar (the standard error
-   of the difference) and everything below the diagram's level of chance counts as equal: of such the cheapest is the
-   efficient one.
+   A point is one setting: its cost and its error. Cost is processor time in units of the library's own setting, so that it
+   hardly depends on the machine. Where results scatter, an error has a bar (the standard error of the difference), and all
+   errors below the diagram's level of chance count as equal: the cheapest of these settings is the efficient one.
 
        points_clear(&p, "hopper");
        points_add(&p, "time step", "t_c/50", 1, 0.004, 0.006);     // series, label, cost, error, bar
@@ -14,23 +13,31 @@
 #ifndef ACCURACY_POINTS_H
 #define ACCURACY_POINTS_H
 
-enum { POINTS_MOST = 160, POINTS_SERIES = 14, POINTS_BOXES = 3*POINTS_MOST };
+enum { POINTS_MOST = 160, POINTS_SERIES = 14, POINTS_BOXES = 3*POINTS_MOST, POINTS_NUMBERS = 16 };
 typedef struct point {
     int series;
     char label[32];
     double cost, error, bar;        /* bar: 0 where chance does not enter                                    */
-    int front;                      /* 1: nothing is both cheaper and nearer                                 */
+    int front;                      /* 1: efficient: nothing is both cheaper and more accurate               */
 } point;
+typedef struct number {              /* another result of a diagram, for accuracy_numbers.csv                 */
+    char what[72];
+    const char *unit;
+    double value, bar;              /* bar: standard error, 0 if there is none                               */
+    int seeds;                      /* 0: results do not scatter                                             */
+} number;
 typedef struct points {
-    const char *name;
+    const char *name, *unit;        /* unit: of the observable                                               */
     int count, series_count;
     point at[POINTS_MOST];
     const char *series[POINTS_SERIES];
-    double chance;                  /* errors below cannot be told from none                                 */
+    double chance;                  /* errors below are not significant                                      */
     int plain;                      /* 1: not error over cost; the lowest point of all is ringed             */
-    double mark;                    /* an outside number, drawn across; 0: none                              */
+    double mark;                    /* a published number, drawn across; 0: none                             */
     const char *mark_name;
-    char remark[600];               /* for the page, below the table                                         */
+    number number[POINTS_NUMBERS];
+    int number_count;
+    char remark[200];               /* written into the picture                                              */
 } points;
 
 static void points_clear(points *p, const char *name) {
@@ -50,6 +57,16 @@ static void points_add(points *p, const char *series, const char *label, double 
     q->error = fabs(error);
     q->bar = bar;
     p->count++;
+}
+static void points_number(points *p, const char *what, double value, double bar, const char *unit, int seeds) {
+    number *n = &p->number[p->number_count];
+    if (p->number_count == POINTS_NUMBERS) { study_fail("%s: too many numbers", p->name); return; }
+    snprintf(n->what, sizeof n->what, "%s", what);
+    n->unit = unit ? unit : "";
+    n->value = value;
+    n->bar = bar;
+    n->seeds = seeds;
+    p->number_count++;
 }
 static int point_is(const point *q) { return q->cost > 0 && q->cost < 1e300 && q->error >= 0 && q->error < 1e300; }
 
@@ -286,14 +303,40 @@ static void points_draw(points *p, const char *title, const char *x_label, const
 static void points_word(char *name) { /* names of results have no blanks                                    */
     for (; *name; name++) if (*name == ' ') *name = '_';
 }
-/* All points as lines of results and as CSV; the efficient ones as rows of the page. */
-static void points_tell(const points *p, FILE *page) {
+/* Tables for docs/data, open while diagrams are made; null in variant builds. */
+typedef struct accuracy_files { FILE *efficient, *numbers, *softening; } accuracy_files;
+static void accuracy_files_open(accuracy_files *f) {
+    static const char *const command = "make bench-pages PAGES=accuracy";
+    f->efficient = bench_data_open("accuracy_efficient.csv", command,
+        "diagram,series,setting,cost [library's own setting = 1],error [1; top: rad],standard error of the error [1],"
+        "within chance [0 or 1]");
+    f->numbers = bench_data_open("accuracy_numbers.csv", command, "diagram,quantity,value,standard error,unit,seeds");
+    f->softening = bench_data_open("accuracy_softening.csv", command,
+        "diagram,Young's modulus [true grain = 1],change [%],standard error [%],cost [true grain = 1],"
+        "largest overlap [radii]");
+}
+static void accuracy_files_close(const accuracy_files *f) {
+    study_close(f->efficient, "accuracy_efficient.csv");
+    study_close(f->numbers, "accuracy_numbers.csv");
+    study_close(f->softening, "accuracy_softening.csv");
+}
+static void points_numbers_write(const points *p, FILE *file) {
+    int i;
+    for (i = 0; i < p->number_count && file; i++) {
+        const number *n = &p->number[i];
+        fprintf(file, "%s,\"%s\",", p->name, n->what);
+        if (n->value == n->value) fprintf(file, "%.4g", n->value);
+        if (n->bar > 0) fprintf(file, ",%.2g", n->bar); else fprintf(file, ",");
+        if (n->seeds) fprintf(file, ",%s,%d\n", n->unit, n->seeds); else fprintf(file, ",%s,\n", n->unit);
+    }
+}
+/* All points as lines of results and as NAME.csv; the efficient ones as rows of accuracy_efficient.csv. */
+static void points_tell(const points *p, const accuracy_files *files) {
     char name[128], text[96];
     int i;
     snprintf(name, sizeof name, "%s.csv", p->name);
     FILE *file = study_open(name);
     if (file) fprintf(file, "series,setting,cost,error,bar,efficient\n");
-    if (page) fprintf(page, "| efficient | | cost | error | +- |\n|---|---|---|---|---|\n");
     for (i = 0; i < p->count; i++) {
         const point *q = &p->at[i];
         const char *within = q->bar > 0 && q->error < p->chance ? ", within chance" : "";
@@ -305,11 +348,11 @@ static void points_tell(const points *p, FILE *page) {
                                   q->front ? ", efficient" : "");
         else snprintf(text, sizeof text, "none: the run was stopped");
         study_result_text(name, text, "");
-        if (!page || !q->front) continue;
-        fprintf(page, "| %s | %s | %.2f | %.1e%s |", p->series[q->series], q->label, q->cost, q->error, within);
-        if (q->bar > 0) fprintf(page, " %.1e |\n", q->bar); else fprintf(page, " |\n");
+        if (!files->efficient || !q->front || p->plain) continue;
+        fprintf(files->efficient, "%s,\"%s\",\"%s\",%.2f,%.1e,", p->name, p->series[q->series], q->label, q->cost, q->error);
+        if (q->bar > 0) fprintf(files->efficient, "%.1e,%d\n", q->bar, *within != 0); else fprintf(files->efficient, ",0\n");
     }
     if (file) { snprintf(name, sizeof name, "%s.csv", p->name); study_close(file, name); }
-    if (page && *p->remark) fprintf(page, "\n%s\n", p->remark);
+    points_numbers_write(p, files->numbers);
 }
 #endif /* ACCURACY_POINTS_H */

@@ -85,8 +85,8 @@ static void scene_points(points *p, const choice *c, int count, int seeds, const
         if (i) points_add(p, c[i].series, c[i].label, scene_cost(out + i*SCENE_SEEDS, out + SCENE_SEEDS, seeds),
                           mean[i]/mean[0] - 1, hypot(bar[i], bar[0])/fabs(mean[0]));
     }
-    snprintf(p->remark, sizeof p->remark, "Reference: %.4g +- %.2g (%s, %d seeds; all others %d).", mean[0], bar[0],
-             c[0].label, 2*seeds, seeds);
+    snprintf(text, sizeof text, "reference, %s", c[0].label);
+    points_number(p, text, mean[0], bar[0], p->unit, 2*seeds);
 }
 
 /* ---- worlds ---- */

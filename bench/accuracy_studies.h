@@ -134,12 +134,13 @@ typedef struct softening {
     double change[SOFTS], bar[SOFTS], cost[SOFTS], overlap[SOFTS]; /* against a true grain; the bar is of both      */
     double fit[3], misfit;           /* change = fit0 + fit1 s^fit2, s: times softer; rms residual over bars */
     double passes[LEVELS];           /* times softer, where the change passes a level; 0: not by E/10000,
-                                        -1: no change can be told from chance                                */
+                                        -1: no change is significant                                         */
 } softening;
 
-/* All grains down to E/1000 tell together, since each by itself drowns in chance: least squares, weighted by bars, of a
-   constant and a power of how many times softer they are. Overlaps go with the power 2/5 in impacts and 2/3 under
-   weight, what hangs on them may level off: of the powers .2 to 2/3 the one that fits best. */
+/* Fits all grains down to E/1000 together, since each change alone is hardly significant: least squares, weighted by the
+   standard errors, of a constant and a power of the softness (how many times softer than the true grain). Overlaps grow
+   with the power 2/5 in impacts and 2/3 under weight, and their effect may level off: the best fit of the powers 0.2 to
+   2/3. */
 static void soft_fit(softening *s, const double *own) { /* own: bars without that of the true grain             */
     double best = 1e300, sure = 0;
     int k, level, power, count;
@@ -225,14 +226,12 @@ static void soft_draw(const points *p, const softening *s, const char *title, co
     study_text(t.file, t.left + 8, t.top + 16, "start", 12, 0, p->remark);
     sheet_end(&t, file);
 }
-static void soft_tell(const points *p, const softening *s, FILE *page) {
+static void soft_tell(points *p, const softening *s, const accuracy_files *files) {
     char name[96], text[128];
     int k;
     snprintf(name, sizeof name, "%s.csv", p->name);
     FILE *file = study_open(name);
     if (file) fprintf(file, "E_over_true,change,bar,cost,overlap\n");
-    if (page) fprintf(page, "| E over that of a true grain | change, %% | cost | largest overlap over radius |\n"
-                      "|---|---|---|---|\n");
     for (k = 0; k < SOFTS; k++) {
         if (file) fprintf(file, "%g,%.6g,%.3g,%.4g,%.4g\n", softs[k], s->change[k], s->bar[k], s->cost[k],
                           s->overlap[k]);
@@ -240,23 +239,29 @@ static void soft_tell(const points *p, const softening *s, FILE *page) {
         snprintf(text, sizeof text, "%+.2f +- %.2f", 100*s->change[k], 100*s->bar[k]);
         if (s->change[k] != s->change[k]) snprintf(text, sizeof text, "a run was stopped");
         study_result_text(name, text, s->change[k] == s->change[k] ? "%" : "");
-        if (page) fprintf(page, "| %g | %s | %.3f | %.3f |\n", softs[k], text, s->cost[k], s->overlap[k]);
+        if (!files->softening) continue;
+        if (s->change[k] == s->change[k]) fprintf(files->softening, "%s,%g,%.2f,%.2f,%.3f,%.3f\n", p->name, softs[k],
+                                                  100*s->change[k], 100*s->bar[k], s->cost[k], s->overlap[k]);
+        else fprintf(files->softening, "%s,%g,,,%.3f,%.3f\n", p->name, softs[k], s->cost[k], s->overlap[k]);
     }
-    if (page) fprintf(page, "\n");
     for (k = 0; k < LEVELS; k++) {
         snprintf(name, sizeof name, "%s.passes_%.0f_percent", p->name, 100*soft_levels[k]);
         if (s->passes[k] > 0) snprintf(text, sizeof text, "E/%.0f, overlap %.2g", s->passes[k],
                                         soft_overlap(s, s->passes[k]));
-        else if (s->passes[k] < 0) snprintf(text, sizeof text, "no change told from chance");
+        else if (s->passes[k] < 0) snprintf(text, sizeof text, "no significant change");
         else snprintf(text, sizeof text, "not by E/%.0f", 1/softs[SOFTS - 1]);
         study_result_text(name, text, "");
-        if (page) fprintf(page, "%s %.0f %%: %s%s", k ? ";" : "The fit passes", 100*soft_levels[k], text,
-                          k + 1 < LEVELS ? "" : ".\n");
+        if (!(s->passes[k] > 0)) continue;
+        snprintf(text, sizeof text, "softness at which the fit passes %.0f %%", 100*soft_levels[k]);
+        points_number(p, text, s->passes[k], 0, "1", 0);
+        snprintf(text, sizeof text, "largest overlap where the fit passes %.0f %%", 100*soft_levels[k]);
+        points_number(p, text, soft_overlap(s, s->passes[k]), 0, "radii", 0);
     }
     snprintf(name, sizeof name, "%s.power", p->name);
     study_result(name, s->fit[2], "");
-    if (page) fprintf(page, "It goes with softness to the power %.2f; residuals are %.1f bars. ", s->fit[2], s->misfit);
-    if (page) fprintf(page, "%s\n", p->remark);
+    points_number(p, "exponent of the fit over softness", s->fit[2], 0, "1", 0);
+    points_number(p, "residuals of the fit", s->misfit, 0, "standard errors", 0);
+    points_numbers_write(p, files->numbers);
     if (file) { snprintf(name, sizeof name, "%s.csv", p->name); study_close(file, name); }
 }
 /* Soft grains are cheap: they get more seeds. */
@@ -292,7 +297,8 @@ static void soft_measure(points *p, softening *s, scene_fn scene, int wanted, in
         s->cost[k] = bench_median_ratio(spent, unit, least);
     }
     soft_fit(s, own);
-    snprintf(p->remark, sizeof p->remark, "True grain: %.4g +- %.2g, %d seeds, %d of the softer ones; bars are two "
-             "standard errors.", mean[0], bar[0], least, seeds[SOFTS - 1]);
+    points_number(p, "true grain", mean[0], bar[0], p->unit, least);
+    snprintf(p->remark, sizeof p->remark, "true grain: %.4g, %d seeds, %d of the softer ones; bars are two standard errors",
+             mean[0], least, seeds[SOFTS - 1]);
 }
 #endif /* ACCURACY_STUDIES_H */

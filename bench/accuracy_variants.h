@@ -2,7 +2,7 @@
    MIT licence. Needs all that bench/accuracy.c includes before it.
 
    A build that has BENCH_VARIANT defined writes lines "diagram,setting,cost,unit,value,bar" to points.csv: cost in
-   units of its own library setting, unit in seconds, so that the ordinary build can tell what that is in its own. */
+   units of its own library setting, unit in seconds, so that the ordinary build can convert it. */
 #ifndef ACCURACY_VARIANTS_H
 #define ACCURACY_VARIANTS_H
 
@@ -85,11 +85,12 @@ static void variant_price(FILE *page) {
         prices();
         variant_note("price", "bed", 1, price_seconds, 0, 0);
     }
+    if (page) fprintf(page, "| build | time of a step on the bed [ordinary build = 1] |\n|---|---|\n");
     for (k = 0; k < 2 && page; k++) {
         if (!variant_notes(names[k], "price", &n, 1)) continue;
         prices();
         bench_result_short(names[k], n.unit/price_seconds, "of the time of a step on the bed");
-        fprintf(page, "A step on the bed with %s: %.2f of the ordinary build's.\n", what[k], n.unit/price_seconds);
+        fprintf(page, "| %s | %.2f |\n", what[k], n.unit/price_seconds);
     }
 }
 #endif /* ACCURACY_VARIANTS_H */

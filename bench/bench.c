@@ -145,8 +145,8 @@ static void measure(const bench_scene *s) {
     names_begin("");
 }
 
-/* ---- what an effect costs: time of a step with it over that without, on the same scene in turns; and what it costs
-   where it is asked for but has no cause (no friction in any pair, a field that is over), which shall be nothing ---- */
+/* ---- the cost of an effect: time of a step with it over that without it, on the same scene in turns; and its cost where
+   it is switched on but has no cause (no friction in any pair, a field that is over), which should be none ---- */
 
 typedef struct effect_row { const char *name, *scene, *buys; bench_choice with, without, absent; } effect_row;
 #define NO_FRICTION {.tangent = DEM_TANGENT_NONE}
@@ -158,11 +158,11 @@ static void bench_law_flows(const dem_contact *c, dem_real *memory, dem_contact_
     c->who.rate_b[0] -= flow;
 }
 static const effect_row effect_rows[] = {
-    {"friction", "bed", "a spring that holds what rests", {0}, NO_FRICTION, {.tangent = DEM_TANGENT_SPRING, .smooth = 1}},
+    {"friction", "bed", "a spring that holds grains at rest", {0}, NO_FRICTION, {.tangent = DEM_TANGENT_SPRING, .smooth = 1}},
     {"tangent.viscous", "bed", "friction without memory: heaps creep", {.tangent = DEM_TANGENT_VISCOUS}, {0}, {0}},
-    {"tangent.step", "bed", "spring of one step, as in [MIL]: heaps creep", {.tangent = DEM_TANGENT_STEP}, {0}, {0}},
+    {"tangent.step", "bed", "a spring of one step, as in [MIL]: heaps creep", {.tangent = DEM_TANGENT_STEP}, {0}, {0}},
     {"tangent.mindlin", "bed", "stiffness that follows the overlap", {.tangent = DEM_TANGENT_MINDLIN}, {0}, {0}},
-    {"tangent.mindlin_rescaled", "bed", "and no energy gained while unloading",
+    {"tangent.mindlin_rescaled", "bed", "the same, and unloading creates no energy",
      {.tangent = DEM_TANGENT_MINDLIN_RESCALED}, {0}, {0}},
     {"normal.linear", "bed", "contact time independent of speed", {.normal = DEM_NORMAL_LINEAR}, {0}, {0}},
     {"normal.hysteretic", "bed", "loading and unloading on two lines", {.adhesion = 1}, {.normal = DEM_NORMAL_LINEAR}, {0}},
@@ -173,35 +173,35 @@ static const effect_row effect_rows[] = {
      {.rolling = DEM_ROLLING_CONSTANT, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_CONSTANT}},
     {"rolling.epsd", "bed", "rolling resistance that holds a grain on a slope",
      {.rolling = DEM_ROLLING_EPSD, .rolling_friction = 0.1}, {0}, {.rolling = DEM_ROLLING_EPSD}},
-    {"own_law.inlined", "bed", "nothing: Hertz and a spring written out, named by DEM_LAW", {.law = bench_law}, {0}, {0}},
-    {"own_law.called", "bed", "nothing: the same by pointer", {.law = bench_law_called}, {0}, {0}},
-    {"own_law.who", "bed", "ids, radii, masses, place and time for a law by pointer",
+    {"own_law.inlined", "bed", "nothing: Hertz and a spring as a user-defined law, named by DEM_LAW", {.law = bench_law}, {0}, {0}},
+    {"own_law.called", "bed", "nothing: the same law by pointer", {.law = bench_law_called}, {0}, {0}},
+    {"own_law.who", "bed", "ids, radii, masses, position and time for a law by pointer",
      {.law = bench_law_called, .who = 1}, {.law = bench_law_called}, {0}},
-    {"body_reals", "bed", "a number on every grain, which a law that is told who touches lets flow",
+    {"body_reals", "bed", "a number on every grain, which a law exchanges between them",
      {.law = bench_law_flows, .who = 1, .reals = 1}, {.law = bench_law_called, .who = 1},
      {.law = bench_law_called, .who = 1, .reals = 1}},
-    {"own_law.range", "bed", "a law asked 0.05 radii before touch", {.law = bench_law, .range = 0.05}, {.law = bench_law}, {0}},
-    {"ledger", "bed", "where the energy went, watched at every step", {.ledger = 1}, {0}, {0}},
-    {"one_unlike", "bed", "one grain that differs from the others", {.mixed = 1}, {0}, {0}},
+    {"own_law.range", "bed", "a law called from 0.05 radii before contact", {.law = bench_law, .range = 0.05}, {.law = bench_law}, {0}},
+    {"ledger", "bed", "an energy balance, checked at every step", {.ledger = 1}, {0}, {0}},
+    {"one_unlike", "bed", "one grain unlike the others", {.mixed = 1}, {0}, {0}},
     {"two_species", "bed", "two sizes (or materials), half of the grains each", {.mixed = 2}, {0}, {0}},
-    {"all_unlike", "bed", "every grain of a size of its own", {.mixed = 3}, {0}, {0}},
-    {"memory", "bed", "a spring that is kept from step to step, beside friction that only brakes", {0},
+    {"all_unlike", "bed", "a different size for every grain", {.mixed = 3}, {0}, {0}},
+    {"memory", "bed", "contact history: a spring in place of viscous friction", {0},
      {.tangent = DEM_TANGENT_VISCOUS}, {0}},
     {"ellipsoids", "bed", "nothing: beads as ellipsoids of three equal axes", {.shaped = 1}, {0}, {0}},
     {"clusters", "bed", "nothing: beads as clusters of one sphere", {.shaped = 2}, {0}, {0}},
-    {"orientation", "bed", "which way a sphere points", {.orientations = 1}, {0}, {0}},
+    {"orientation", "bed", "orientations of spheres", {.orientations = 1}, {0}, {0}},
     {"periodicity", "gas", "a box without walls", {0}, {.open = 1}, {0}},
-    {"field", "bed", "solidicity and velocity on a grid, every 100 steps", {.field = 1}, {0}, {.field = 2}},
+    {"field", "bed", "solid fraction and velocity on a grid, every 100 steps", {.field = 1}, {0}, {.field = 2}},
     {"feed", "drum", "a bead fed every fourth step", {.feed = 50000}, {0}, {.feed = 1e-3}},
-    {"outlet", "drum", "beads that fly through the middle are taken out", {.outlet = 1}, {0}, {.outlet = 2}},
+    {"outlet", "drum", "removal of beads that fly through the middle", {.outlet = 1}, {0}, {.outlet = 2}},
     {"integrator.leapfrog", "bed", "the path of velocity Verlet", {.integrator = DEM_INTEGRATOR_LEAPFROG}, {0}, {0}},
     {"integrator.position_verlet", "bed", "the path of velocity Verlet", {.integrator = DEM_INTEGRATOR_POSITION_VERLET}, {0}, {0}},
     {"integrator.symplectic_euler", "bed", "first order, energy bounded", {.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER}, {0}, {0}},
     {"integrator.forward_euler", "bed", "first order, gains energy", {.integrator = DEM_INTEGRATOR_FORWARD_EULER}, {0}, {0}},
-    {"skin0", "bed", "nothing: a new list at every step", {.skin = -1}, {0}, {0}},
-    {"search.linked_list", "drum", "nothing here: pays at wide size ranges [ALK07]", {.search = DEM_SEARCH_LINKED_LIST}, {0}, {0}},
-    {"search.bins", "drum", "nothing here: bodies of very different extent [MAZ11]", {.search = DEM_SEARCH_BINS}, {0}, {0}},
-    {"search.all_pairs", "drum", "nothing: the oracle of the tests",
+    {"skin0", "bed", "nothing: the list is rebuilt at every step", {.skin = -1}, {0}, {0}},
+    {"search.linked_list", "drum", "nothing here: for wide size ranges [ALK07]", {.search = DEM_SEARCH_LINKED_LIST}, {0}, {0}},
+    {"search.bins", "drum", "nothing here: for bodies of very different extent [MAZ11]", {.search = DEM_SEARCH_BINS}, {0}, {0}},
+    {"search.all_pairs", "drum", "nothing: the reference of the tests",
      {.search = DEM_SEARCH_ALL_PAIRS, .every = 18}, {.every = 18}, {0}}, /* of 1000 */
 };
 
@@ -220,7 +220,9 @@ static double effect_ratio(const char *name, const bench_scene *s, const bench_c
     *spread = turns ? bench_spread(ratio, turns) : 0;
     return turns ? bench_median(ratio, turns) : 0;
 }
-static void effect(const effect_row *row, const bench_scene *s, FILE *page) {
+/* Adds a row to the table of numbers, and to the page where the cost differs from 1 by more than its spread; otherwise the
+   name is appended to `hidden`. */
+static void effect(const effect_row *row, const bench_scene *s, FILE *page, FILE *data, char *hidden, size_t room) {
     static const bench_choice none = {0};
     const int many = s->count/(row->with.every > 1 ? row->with.every : 1);
     double spread, price = effect_ratio(row->name, s, &row->with, &row->without, &spread), absent = 0;
@@ -229,20 +231,26 @@ static void effect(const effect_row *row, const bench_scene *s, FILE *page) {
     snprintf(unit, sizeof unit, "of the step without (%s, %d, +- %.0f %%)", s->name, many, spread);
     snprintf(name, sizeof name, "effect.%s.price", row->name);
     bench_result_short(name, price, unit);
-    if (page) fprintf(page, "| `%s` | %s | %s, %d | %.2f | %.0f %% |", row->name, row->buys, s->name, many, price, spread);
+    if (data) fprintf(data, "%s,\"%s\",%s,%d,%.2f,%.0f,", row->name, row->buys, s->name, many, price, spread);
+    if (page && fabs(price - 1) > spread/100)
+        fprintf(page, "| `%s` | %s | %s | %.2f | %.0f |\n", row->name, row->buys, s->name, price, spread);
+    else snprintf(hidden + strlen(hidden), room - strlen(hidden), "%s`%s`", *hidden ? ", " : "", row->name);
     if (memcmp(&row->absent, &none, sizeof none)) {
         absent = effect_ratio(row->name, s, &row->absent, &row->without, &spread);
         snprintf(unit, sizeof unit, "of the step without (+- %.0f %%)", spread);
         snprintf(name, sizeof name, "effect.%s.absent_price", row->name);
         if (absent > 0) bench_result_short(name, absent, unit);
     }
-    if (page && absent > 0) fprintf(page, " %.2f (%.0f %%) |\n", absent, spread);
-    else if (page) fprintf(page, " |\n");
+    if (data && absent > 0) fprintf(data, "%.2f,%.0f\n", absent, spread);
+    else if (data) fprintf(data, ",\n");
 }
 
 static void effects(double load) {
     bench_scene scenes[3];
-    FILE *page = bench_page_open();
+    char hidden[1000] = "";
+    FILE *page = bench_page_open(), *data = bench_data_open("effects.csv", "make bench-pages PAGES=effects",
+        "effect,what it buys,scene,grains,time of a step [without = 1],spread [%],"
+        "time when on but without a cause [without = 1],spread [%]");
     size_t i;
     int k;
     scenes[0] = bench_scene_read(data_folder, "bed");
@@ -250,14 +258,16 @@ static void effects(double load) {
     scenes[2] = bench_scene_read(data_folder, "gas");
     if (page) {
         bench_page_machine(page, load);
-        fprintf(page, "| effect or choice | what it buys | scene, grains | time of a step, without = 1 | +- | asked for, but "
-                "without a cause |\n|---|---|---|---|---|---|\n");
+        fprintf(page, "| effect or choice | what it buys | scene | time of a step [without = 1] | spread [%%] |\n"
+                "|---|---|---|---|---|\n");
     }
     for (i = 0; i < sizeof effect_rows/sizeof *effect_rows; i++)
         for (k = 0; k < 3; k++)
             if (bench_is(&scenes[k], effect_rows[i].scene) && strstr(effect_rows[i].name, effect_asked))
-                effect(&effect_rows[i], &scenes[k], page);
+                effect(&effect_rows[i], &scenes[k], page, data, hidden, sizeof hidden);
+    if (page && *hidden) fprintf(page, "\nThese differ from 1 by less than their spread: %s.\n", hidden);
     study_close(page, "page.md");
+    study_close(data, "effects.csv");
     for (k = 0; k < 3; k++) bench_scene_free(&scenes[k]);
 }
 

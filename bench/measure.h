@@ -1,10 +1,11 @@
-/* measure.h - what the benches share: clocks, medians, how numbers are told, what they ran on. MIT licence.
+/* measure.h - shared by the benches: clocks, medians, output of results, a description of the machine. MIT licence.
 
    Needs examples/study.h before it. BENCH_FLAGS is the compiler's flags, from the Makefile.
 
        bench_machine();                              // processor, compiler, flags, load: the first lines
        bench_result_rate("rate", 1.2e7);             // rate = 12.00e6 particle-steps/s
        bench_result_short("speedup", 1.8342, "");    // speedup = 1.83
+       file = bench_data_open("effects.csv", "build/bench --scene effects", "effect,time of a step [without = 1]");
 */
 #ifndef BENCH_MEASURE_H
 #define BENCH_MEASURE_H
@@ -48,7 +49,7 @@ STUDY_FN double bench_spread(const double *values, int count) { /* half the rang
     return 50*(hi - lo)/bench_median(values, count);
 }
 
-/* ---- how numbers are told ---- */
+/* ---- output of results ---- */
 
 STUDY_FN void bench_result_rate(const char *name, double rate) { /* with the exponent one reads rates in */
     char text[64];
@@ -69,7 +70,7 @@ STUDY_FN FILE *bench_table_open(const char *name, const char *heading) {
     return file;
 }
 
-/* ---- what it ran on ---- */
+/* ---- the machine ---- */
 
 /* How many processors, 0 if not known, and their name. "AMD EPYC" is sold in every generation: x86 tells them apart by
    family and model. */
@@ -128,12 +129,22 @@ STUDY_FN int bench_machine(void) { /* answers how many processors               
     study_result_text("flags", BENCH_FLAGS, "");
     return count;
 }
-/* Writes the same as one line of a page, and says if other programs kept the machine busy. */
+/* The same as one line of a page. On a busy machine the page begins with a mark, and bench/pages.sh does not copy it. */
 STUDY_FN void bench_page_machine(FILE *page, double load) {
     char name[256];
     const int count = bench_processors(name, sizeof name);
-    fprintf(page, "%s, %d logical processors; %s; `%s`.%s\n\n", name, count, BENCH_COMPILER, BENCH_FLAGS,
-            load > 0.5 ? " Other programs ran at the same time." : "");
+    if (load > 0.5) fprintf(page, "<!-- busy: other work kept %.1f processors -->\n", load);
+    fprintf(page, "%s, %d logical processors; %s; `%s`.\n\n", name, count, BENCH_COMPILER, BENCH_FLAGS);
+}
+/* Opens a table of numbers beside the results, for docs/data: a comment with the command and the machine, then the header
+   line. Close it with study_close. */
+STUDY_FN FILE *bench_data_open(const char *file_name, const char *command, const char *header) {
+    char name[256];
+    const int count = bench_processors(name, sizeof name);
+    FILE *file = study_open(file_name);
+    if (file) fprintf(file, "# %s; %s, %d logical processors; %s; %s\n%s\n", command, name, count, BENCH_COMPILER,
+                      BENCH_FLAGS, header);
+    return file;
 }
 
 #endif /* BENCH_MEASURE_H */

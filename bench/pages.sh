@@ -8,12 +8,13 @@
 #   ellipsoids  Table 2 in ellipsoids.md, and the theory in docs/data
 #   others      the page of the same name
 # Tables are between <!-- NAME: begin --> and <!-- NAME: end -->. Each bench writes its own as page.md; full tables go to
-# docs/data. Other programs that run at the same time make times longer; the pages say so.
+# docs/data. Needs a quiet machine: a page that was measured on a busy one begins with <!-- busy --> and is not copied.
 [ "$1" ] || set -- effects accuracy roofline clusters
 export OMP_PROC_BIND=true OMP_PLACES=cores
 
 # splice PAGE NAME FILE
 splice() {
+    if grep -q '<!-- busy' "$3"; then echo "docs/$1 keeps its $2: other work ran on the machine; measure again when it is quiet"; return 1; fi
     grep -q "<!-- $2: begin -->" "docs/$1" || { echo "docs/$1 has no place for $2"; exit 1; }
     awk -v begin="<!-- $2: begin -->" -v end="<!-- $2: end -->" -v file="$3" '
         $0 == end { skip = 0 }
@@ -21,6 +22,8 @@ splice() {
         $0 == begin { while ((getline line < file) > 0) print line; skip = 1 }' "docs/$1" > build/page.new &&
     cp build/page.new "docs/$1" && echo "docs/$1: $2"
 }
+# numbers FILE...: tables of numbers, into docs/data
+numbers() { mkdir -p docs/data && cp "$@" docs/data && for f in "$@"; do echo "docs/data/$(basename "$f")"; done; }
 # picture SVG PNG FILE: converts it, and adds it to the file that is to be spliced
 picture() {
     if command -v rsvg-convert >/dev/null 2>&1; then rsvg-convert "$1" -o "docs/images/$2" && printf '\n![](images/%s)\n' "$2" >> "$3"
@@ -63,11 +66,10 @@ peers() {
 # a row a scene and code, from the same: beds of blocks
 blocks() {
     awk '/^# (clumps|cubes)\./ { split($2, p, "."); rate[p[1], p[2]] = $3; for (i = 4; i < NF; i++) if ($i == "contacts/bead") touch[p[1], p[2]] = $(i + 1) }
-        /^# load/ { busy = 1 }
+        /^# load/ { print "<!-- busy -->" }
         /middle sank/ { sank[p[1], p[2]] = $6 }
         / = / && $1 ~ /^(clumps|cubes)\./ { value = $0; sub(/.* = /, "", value); ratio[$1] = value }
         END {
-            if (busy) { print "Other programs ran at the same time."; print "" }
             print "| bed | code | time of a step and body, µs | contacts per body | the middle of the bed sank, µm | time over that of dem.h | ± % | time over that of dem.h with separate contacts | ± % |"
             print "|---|---|---|---|---|---|---|---|---|"
             about["clumps"] = "clumps of 8 spheres"; about["cubes"] = "cubes"
@@ -81,14 +83,14 @@ blocks() {
                 printf "| %s | %s | %.3g | %.2f | %s | %s | %s | %s | %s |\n", about[s], name[c == "yade" ? c s : c], 1/rate[s, c], touch[s, c], sank[s, c],
                     r[1], r[2], u[1], u[2] } }' "$1"
 }
-# what effects cost, for the README: some rows of the page of effects, in words
+# the cost of effects for the README: some rows of effects.csv, in words
 prices() {
-    awk -F'|' '/Other programs ran/ { print "Other programs ran at the same time."; print "" }
-        /^\| `/ { gsub(/[` ]/, "", $2); price[$2] = $5; spread[$2] = $6; gsub(/ /, "", price[$2]); gsub(/^ | $/, "", spread[$2]) }
-        END { print "| effect | time of a step with it, relative to one without it |"; print "|---|---|"
+    awk -F, '/^#/ { next }
+        { cost[$1] = $(NF - 3); spread[$1] = $(NF - 2) }
+        END { print "| effect | time of a step [without it = 1] | spread [%] |"; print "|---|---|---|"
             n = split("friction tangent.mindlin_rescaled rolling.epsd rolling.constant ledger one_unlike two_species all_unlike orientation periodicity feed", row, " ")
             split("friction with a spring (Cundall-Strack)/rescaled Mindlin friction instead of that spring/rolling resistance (EPSD)/rolling resistance (constant torque)/energy ledger/one grain that differs from 20,000 equal ones/two sizes, half of the grains each/a different size for every grain/orientations of spheres/periodic box/feed, one bead every fourth step", word, "/")
-            for (i = 1; i <= n; i++) if (row[i] in price) printf "| %s | %s (± %s) |\n", word[i], price[row[i]], spread[row[i]] }' "$1"
+            for (i = 1; i <= n; i++) if (row[i] in cost) printf "| %s | %s | %s |\n", word[i], cost[row[i]], spread[row[i]] }' "$1"
 }
 # times of the glass screener beside the thesis's, for two stiffnesses, from their summaries
 screener_times() {
@@ -116,13 +118,15 @@ for page in "$@"; do
     case $page in
     effects)
         build/bench --scene effects --threads 1 && splice accuracy.md effects $at/bench/page.md || exit 1
-        prices $at/bench/page.md > build/prices.md && splice ../README.md prices build/prices.md || exit 1 ;;
+        numbers $at/bench/effects.csv
+        prices $at/bench/effects.csv > build/prices.md && splice ../README.md prices build/prices.md || exit 1 ;;
     accuracy)
         build/accuracy_single && build/accuracy_one_domain && build/accuracy || exit 1
-        if command -v rsvg-convert >/dev/null 2>&1; then         # the page names them by itself
+        splice accuracy.md accuracy $at/accuracy/page.md || exit 1
+        numbers $at/accuracy/accuracy_efficient.csv $at/accuracy/accuracy_numbers.csv $at/accuracy/accuracy_softening.csv
+        if command -v rsvg-convert >/dev/null 2>&1; then         # the page links them itself
             for s in $at/accuracy/*.svg; do rsvg-convert -w 760 "$s" -o "docs/images/accuracy_$(basename "$s" .svg).png"; done
         else echo "SKIP: rsvg-convert not found (Debian package librsvg2-bin): pictures stay as they were"; fi
-        splice accuracy.md integrators $at/accuracy/page.md
         build/bench --brief && build/bench_single --brief && build/bench_O2 --brief || exit 1
         rates > build/rates.md && splice accuracy.md precision build/rates.md ;;
     responses)
@@ -133,6 +137,8 @@ for page in "$@"; do
         splice impulses.md responses $at/responses/page.md ;;
     roofline)
         build/roofline || exit 1
+        splice roofline.md roofline_counts $at/roofline/counts.md || exit 1
+        numbers $at/roofline/roofline_counts.csv
         for s in bed drum gas; do picture $at/roofline/roofline_$s.svg roofline_$s.png $at/roofline/page.md; done
         splice roofline.md roofline $at/roofline/page.md ;;
     clusters)

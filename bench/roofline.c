@@ -1,28 +1,30 @@
-/* roofline.c - where a step stands between what the machine can compute and what it can fetch. MIT licence.
+/* roofline.c - compares each phase of a step with the arithmetic and bandwidth limits of the machine. MIT licence.
 
-   make bench-roofline               or build/roofline: half a minute, one thread
-   build/roofline --scene bed        one scene
+   make build/roofline && build/roofline     half a minute, one thread
+   build/roofline --scene bed                one scene
 
-   Measures, in the same run: bandwidth (triad a = b + s c, 24 bytes an element) with arrays that fit the first,
-   second and third cache and none; the peak of fused multiply-adds; exact 1/sqrt. Then runs bed, drum and gas
-   step by step with a clock around each phase:
-     respond   near pairs: bodies copied into rows, touch, motion, law, pushes added to both (w->kernel)
-     rest      pushes across domains fetched, walls, sums (demi_forces without the kernel)
-     move      half kicks, drift, pace, forces cleared (demi_step_move)
-     near      a new near list out of the candidates (demi_near_make), spread over its steps
-     search    bodies sorted, a new list, a near list, contact memory carried over (demi_rebuild), spread likewise
-   and divides by the flops and bytes counted in the table below. A bench may look inside dem.h: this one does,
-   at the names above and at what demi_step_once asks before it rebuilds.
+   Measures, in the same run: bandwidth (triad a = b + s c, 24 bytes per element) with arrays that fit in L1, L2, L3 and
+   in none of them; the peak of fused multiply-adds; exact 1/sqrt. Then runs bed, drum and gas step by step with a clock
+   around each phase:
+     respond   pairs of the pruned list: bodies copied into rows, contact, motion, law, forces added to both (w->kernel)
+     rest      forces fetched from other domains, walls, sums (demi_forces without the kernel)
+     move      half kicks, drift, largest changes, forces cleared (demi_step_move)
+     near      a new pruned list from the candidates (demi_near_make), spread over its steps
+     search    bodies sorted, new candidates, a pruned list, contact history carried over (demi_rebuild), spread likewise
+   and divides by the flops and bytes of the table below, which were counted in the source. A bench may use internals of
+   dem.h: this one uses the names above and the condition under which demi_step_once rebuilds.
 
-   Bytes are those that have to come from and go to where the world lies, once a step: a body's row is counted
-   once for all its contacts. A multiplication, an addition, a comparison, a division and a root count as one. */
+   Bytes are those that have to be read from or written to the memory level that holds the world, once per step: a body's
+   row is counted once for all its contacts. A multiplication, an addition, a comparison, a division and a root count as
+   one flop each. The counts do not depend on the load of the machine: they have a table of their own (counts.md and
+   roofline_counts.csv). */
 #define DEM_IMPLEMENTATION
 #include "dem.h"
 #include "examples/study.h"
 #include "bench/measure.h"
 #include "bench/scenes.h"
 
-/* ---- what a phase does, counted by hand; R: bytes of a real ---- */
+/* ---- work of each phase, counted in the source; R: bytes of a real ---- */
 
 #define R ((double)sizeof(dem_real))
 typedef struct work { double flops, bytes; } work;
@@ -201,11 +203,11 @@ static int step_timed(dem_world *w, double time[PHASES]) {
 
 /* ---- a scene ---- */
 
-static FILE *page;
+static FILE *page, *counts, *data;
 static int turns_asked = 5, steps_asked;
 static double second_kib = 1024, third_kib = 32768;
 
-/* What there is of each a bead, means of looks at the scene; rebuilds and near lists a step. */
+/* Numbers per bead, averaged over samples of the scene; rebuilds and pruned lists per step. */
 typedef struct tallies { double candidates, near, cross, contacts, walls, quiet, rebuilds, nears; int looks; } tallies;
 
 static void look(const dem_world *w, tallies *t) {
@@ -316,9 +318,11 @@ static void tell_scene(const bench_scene *s, const dem_counters *c, double times
         snprintf(unit, sizeof unit, "%% (%s, %s)", level_names[level],
                  here.flops/peak > here.bytes/bandwidth[level] ? "arithmetic" : "bandwidth");
         bench_result_short(name, 100*roof/ns, unit);
-        if (page) fprintf(page, "| %s | %s | %.1f | %.0f | %.0f | %.2f | %.2f | %.1f | %.0f %%, %s %s |\n", s->name, phase_names[p], ns,
-                          here.flops, here.bytes, x[p], y[p], here.bytes/ns, 100*roof/ns, level_names[level],
-                          here.flops/peak > here.bytes/bandwidth[level] ? "arithmetic" : "bandwidth");
+        if (counts) fprintf(counts, "| %s | %s | %.0f | %.0f | %.2f |\n", s->name, phase_names[p], here.flops, here.bytes, x[p]);
+        if (data) fprintf(data, "%s,%s,%.0f,%.0f,%.2f\n", s->name, phase_names[p], here.flops, here.bytes, x[p]);
+        if (page) fprintf(page, "| %s | %s | %.1f | %.2f | %.1f | %.0f | %s, %s |\n", s->name, phase_names[p], ns, y[p],
+                          here.bytes/ns, 100*roof/ns, here.flops/peak > here.bytes/bandwidth[level] ? "arithmetic" : "bandwidth",
+                          level_names[level]);
     }
     study.prefix[0] = 0;
     roofs_draw(s, x, y);
@@ -379,31 +383,39 @@ static void scene_place(const char *folder, const char *name) {
 int main(int argc, char **argv) {
     static const char *scene_name = "all", *folder = "bench/data", *out = "build/out/roofline";
     static const study_option table[] = {
-        {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|limits", "what to place"},
-        {"steps", STUDY_INT, &steps_asked, 0, 1e8, "", "of one turn, 0: by scene"},
-        {"turns", STUDY_INT, &turns_asked, 1, BENCH_MOST_LOOPS, "", "of which medians are told"},
-        {"l2", STUDY_REAL, &second_kib, 1, 1e9, "KiB", "second cache: what is larger lies in the third"},
-        {"l3", STUDY_REAL, &third_kib, 1, 1e9, "KiB", "third cache, what one core gets of it"},
-        {"data", STUDY_TEXT, &folder, 0, 0, "", "where the start states are"},
+        {"scene", STUDY_CHOICE, &scene_name, 0, 0, "all|bed|drum|gas|limits", "what to measure"},
+        {"steps", STUDY_INT, &steps_asked, 0, 1e8, "", "steps of one turn, 0: by scene"},
+        {"turns", STUDY_INT, &turns_asked, 1, BENCH_MOST_LOOPS, "", "turns, of which the median is printed"},
+        {"l2", STUDY_REAL, &second_kib, 1, 1e9, "KiB", "L2 per core: a larger world is in L3"},
+        {"l3", STUDY_REAL, &third_kib, 1, 1e9, "KiB", "L3 available to one core"},
+        {"data", STUDY_TEXT, &folder, 0, 0, "", "folder of start states"},
         {"out", STUDY_TEXT, &out, 0, 0, "", "folder of results"},
     };
     static const char *const names[3] = {"bed", "drum", "gas"};
     const double load = bench_load();
     int i;
-    study_options(argc, argv, "Where a step stands between arithmetic and bandwidth.", table, (int)(sizeof table/sizeof *table));
+    study_options(argc, argv, "Phases of a step beside the arithmetic and bandwidth limits of the machine.", table, (int)(sizeof table/sizeof *table));
     study_begin(out);
     bench_machine();
     measure_limits();
     page = bench_page_open();
     if (page) {
         bench_page_machine(page, load);
-        fprintf(page, "One core: triad %.0f GB/s in L1, %.0f in L2, %.0f in L3, %.1f from memory; multiply-adds %.1f GFLOP/s; "
-                "exact 1/sqrt %.2f G/s.\n\n| scene | phase | ns a bead and step | flops | bytes | flop/byte | GFLOP/s | GB/s | "
-                "of the roof |\n|---|---|---|---|---|---|---|---|---|\n", 1e-9*bandwidth[L1], 1e-9*bandwidth[L2],
-                1e-9*bandwidth[L3], 1e-9*bandwidth[MEMORY], 1e-9*peak, 1e-9*roots);
+        fprintf(page, "| limit of one core | value | unit |\n|---|---|---|\n");
+        for (i = 0; i < LEVELS; i++) fprintf(page, "| triad, %s | %.3g | GB/s |\n", level_names[i], 1e-9*bandwidth[i]);
+        fprintf(page, "| multiply-adds | %.1f | GFLOP/s |\n| exact 1/sqrt | %.2f | G/s |\n\n"
+                "| scene | phase | time per bead and step [ns] | GFLOP/s | GB/s | of the roof [%%] | limit |\n"
+                "|---|---|---|---|---|---|---|\n", 1e-9*peak, 1e-9*roots);
     }
+    counts = study_open("counts.md");
+    if (counts) fprintf(counts, "| scene | phase | flops per bead and step | bytes per bead and step | flops per byte |\n"
+                        "|---|---|---|---|---|\n");
+    data = bench_data_open("roofline_counts.csv", "make bench-pages PAGES=roofline",
+                           "scene,phase,flops [per bead and step],bytes [per bead and step],flops per byte");
     for (i = 0; i < 3; i++)
         if (!strcmp(scene_name, "all") || !strcmp(scene_name, names[i])) scene_place(folder, names[i]);
     study_close(page, "page.md");
+    study_close(counts, "counts.md");
+    study_close(data, "roofline_counts.csv");
     return study_end();
 }
