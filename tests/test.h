@@ -9,7 +9,7 @@
        }
 
    With the environment variable TEST_NUMBERS set, every test also prints one row of a table: its sentence and
-   the number that came nearest to its tolerance (docs/validation.md is made of these).
+   the number that came nearest to its tolerance (tests/validation.awk makes docs/data/validation.csv of these).
 
    A check that fails prints the sentence and the numbers, and the test goes on. A test without a check
    fails. `continue` leaves a test early. Works with any C99 or C++11 compiler. */
