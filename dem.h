@@ -717,7 +717,7 @@ typedef enum dem_tangent_law {
     DEM_TANGENT_STEP,
     /* [CS79]: -kt xi - ct v_t, where xi is the integral of v_t over the contact */
     DEM_TANGENT_SPRING,
-    /* [DIR05]: the force grows by increments, with kt of the present overlap */
+    /* [DIR05]: the force grows by increments, with kt of the overlap in the middle of the step */
     DEM_TANGENT_MINDLIN,
     /* [THO13]: as DEM_TANGENT_MINDLIN, but the force is scaled down with kt during unloading */
     DEM_TANGENT_MINDLIN_RESCALED
@@ -835,11 +835,11 @@ typedef enum dem_solver {
    momentum to round-off in free flight and is of second order in dt under torques. docs/shapes.md
    compares errors and costs. */
 typedef enum dem_rotation {
-    /* [SPI24] with conserved angular momentum; the most accurate */
+    /* [SPI24] with conserved angular momentum; the most accurate and the cheapest */
     DEM_ROTATION_SPIRAL = 0,
-    /* [FIN92], as used by [RUB15]; cheap, gains energy */
+    /* [FIN92], as used by [RUB15]; gains energy, for comparison */
     DEM_ROTATION_FINCHAM,
-    /* splitting [DLM97]; no drift of energy, the most expensive */
+    /* symplectic splitting [DLM97]; the smallest change of energy, the most expensive */
     DEM_ROTATION_NO_SQUISH
 } dem_rotation;
 
@@ -19786,8 +19786,8 @@ static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc 
         (d->kind == DEM_JOINT_REVOLUTE && (!demi_finite3(d->axis) || !(size > 0) ||
                                            !demi_finite(size)))) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: kind is %d, point (%g, %g, %g) m, axis (%g, %g, %g); "
-                  "kind must be DEM_JOINT_POINT or DEM_JOINT_REVOLUTE, the point within 1e9 m, the "
-                  "axis of a revolute joint finite and not 0", call, (int)d->kind,
+                  "kind must be DEM_JOINT_POINT or DEM_JOINT_REVOLUTE, the point within 1e15 m of "
+                  "the origin, the axis of a revolute joint finite and not 0", call, (int)d->kind,
                   (double)d->point.x, (double)d->point.y, (double)d->point.z, (double)d->axis.x,
                   (double)d->axis.y, (double)d->axis.z);
         return 0;
@@ -22376,8 +22376,12 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
                   ">= 0 and the box finite", call, (double)radius, (double)padding, count);
         return 0;
     }
-    if (demi_mass_refuse(w, call, m, radius, 0) || demi_cylinder_refuse(w, call, &region) ||
-        !demi_lattice_make(w, &region, radius, padding, &room, &g)) return 0;
+    if (demi_mass_refuse(w, call, m, radius, 0) || demi_cylinder_refuse(w, call, &region)) return 0;
+    if (!demi_lattice_make(w, &region, radius, padding, &room, &g)) {
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is smaller than one sphere of radius %g m; "
+                  "give lo below hi by at least a diameter", call, (double)radius);
+        return 0;
+    }
     g.count = count;
     if (!count && !region.inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has about %.3g places for spheres of radius "
@@ -23139,6 +23143,11 @@ static double demi_rayleigh(const dem_material_desc *d, double r) {
     const double nu = (double)d->poisson, G = (double)d->young/(2*(1 + nu));
     return G > 0 ? DEMI_PI*r*sqrt((double)d->density/G)/(0.1631*nu + 0.8766) : 1e300;
 }
+/* What sets dt_max: a share of the contact time, or stability where that is smaller. */
+static const char *demi_dt_limit(const dem_advice *a) {
+    return (double)a->dt_max < 0.0499*(double)a->contact_time
+        ? "the stability limit of dashpots and rolling" : "t_c/20";
+}
 /* Shortest contact among all material pairs and walls there are, for their smallest grains. */
 static void demi_advise(const dem_world *w, dem_advice *out) {
     const double speed = demi_speed_estimate(w);
@@ -23488,9 +23497,8 @@ static dem_result demi_dt_settle(dem_world *w) {
     if (w->desc.dt > 0) {
         if (!w->desc.allow_large_dt && a.contact_time > 0 && !(w->desc.dt <= a.dt_max))
             return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: dt is %g s, must be at most "
-                             "t_c/20 = %g s (t_c of %s"
-                             "); use dt = 0, a softer material or a smaller dt",
-                             (double)w->desc.dt, (double)a.dt_max, a.binds);
+                             "%s = %g s (t_c of %s); use dt = 0, a softer material or a smaller dt",
+                             (double)w->desc.dt, demi_dt_limit(&a), (double)a.dt_max, a.binds);
         w->clock.dt = w->desc.dt;
         if (!w->desc.allow_large_dt && spin*(double)w->clock.dt > 1)
             return demi_spins_refuse(w, spin, "dem_world_step");
@@ -29367,9 +29375,9 @@ static const demi_scene_row demi_desc_rows[] = {
     DEMI_ROW_ENUM(dem_world_desc, tangent_law,
                   "auto none viscous step spring mindlin mindlin_rescaled"),
     DEMI_ROW_ENUM(dem_world_desc, rolling_law, "auto none step constant epsd"),
-    DEMI_ROW_ENUM(dem_world_desc, tension, "kept clipped none"),
-    DEMI_ROW_ENUM(dem_world_desc, friction_load, "push elastic size"),
-    DEMI_ROW_ENUM(dem_world_desc, slider, "shared spring rest"),
+    DEMI_ROW_ENUM(dem_world_desc, tension, "allowed clipped compensated"),
+    DEMI_ROW_ENUM(dem_world_desc, friction_load, "repulsive elastic magnitude"),
+    DEMI_ROW_ENUM(dem_world_desc, slider, "parallel spring remainder"),
     DEMI_ROW_ENUM(dem_world_desc, convention, "standard mill"),
     DEMI_ROW_NULL(dem_world_desc, law), DEMI_ROW(dem_world_desc, law_memory, 'i'),
     DEMI_ROW_TEXT(dem_world_desc, law_memory_names, DEM_LAW_MEMORY),
@@ -29383,14 +29391,14 @@ static const demi_scene_row demi_desc_rows[] = {
                   "position_verlet leapfrog"),
     DEMI_ROW(dem_world_desc, dt, 'r'), DEMI_ROW(dem_world_desc, impact_speed, 'r'),
     DEMI_ROW_ENUM(dem_world_desc, cone, "coulomb convex"),
-    DEMI_ROW_ENUM(dem_world_desc, solver, "seidel jacobi apgd spectral"),
+    DEMI_ROW_ENUM(dem_world_desc, solver, "gauss_seidel jacobi apgd spectral"),
     DEMI_ROW(dem_world_desc, sweeps, 'i'), DEMI_ROW(dem_world_desc, tolerance, 'r'),
     DEMI_ROW(dem_world_desc, cold_start, 'i'),
-    DEMI_ROW_ENUM(dem_world_desc, search, "auto all_pairs grid linked_list levels bins"),
+    DEMI_ROW_ENUM(dem_world_desc, search, "auto all_pairs grid linked_list hierarchical bins"),
     DEMI_ROW(dem_world_desc, skin, 'r'),
     DEMI_ROW_ENUM(dem_world_desc, rotation, "spiral fincham no_squish"),
     DEMI_ROW_ENUM(dem_world_desc, ellipsoid_overlap, "conservative chord normal"),
-    DEMI_ROW_ENUM(dem_world_desc, cluster_contacts, "one none"),
+    DEMI_ROW_ENUM(dem_world_desc, cluster_contacts, "merged separate"),
     DEMI_ROW(dem_world_desc, orientations, 'i'), DEMI_ROW(dem_world_desc, ledger, 'i')};
 static const demi_scene_row demi_material_rows[] = {
     DEMI_ROW(dem_material_desc, density, 'r'), DEMI_ROW(dem_material_desc, young, 'r'),
@@ -30920,11 +30928,8 @@ DEM_API double dem_observer_kinetic(const dem_world *w, void *user) {
 }
 DEM_API double dem_observer_contacts(const dem_world *w, void *user) {
     const dem_counters c = dem_counters_get(w);
-    int d, kept = 0;
     (void)user;
-    for (d = 0; w && d < w->domain_count && w->stage.list_valid; d++)
-        kept += w->domains[d].kept - w->domains[d].kept_walls;
-    return w && w->bodies.count ? (2.0*(c.contacts + kept) + c.wall_contacts)/w->bodies.count : 0;
+    return w && w->bodies.count ? (2.0*c.contacts + c.wall_contacts)/w->bodies.count : 0;
 }
 DEM_API double dem_observer_walls(const dem_world *w, void *user) {
     double sum = 0;
@@ -32178,10 +32183,10 @@ static void demi_report(const dem_world *world, FILE *out) {
             demi_integrator_of(w)->name,
             demi_integrator_of(w)->order);
     if (!demi_impulsive(w))
-        fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit t_c/20 = %.4g s; Rayleigh %.4g s; "
+        fprintf(out, "time step  t_c %.4g s, t_c/dt %.1f, limit %s = %.4g s; Rayleigh %.4g s; "
                 "bound by %s\n", (double)a.contact_time,
                 w->clock.dt > 0 ? (double)a.contact_time/(double)w->clock.dt : 0,
-                (double)a.dt_max, (double)a.rayleigh, a.binds);
+                demi_dt_limit(&a), (double)a.dt_max, (double)a.rayleigh, a.binds);
     demi_held_report(w, out);
     fprintf(out, "search     %s, skin %.3g m, %llu rebuilds, %.1f steps each; per body %.2f "
             "candidates, %.2f contacts\n",

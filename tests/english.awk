@@ -37,7 +37,7 @@ function rule(name, words) { n++; names[n] = name; words_of[n] = "(^|[^A-Za-z_']
 FNR == 1 {
     finish()
     page = FILENAME ~ /\.md$/; header = FILENAME ~ /(^|\/)dem\.h$/
-    code = 0; comment = 0; private = 0; text = ""
+    code = 0; comment = 0; private = 0; api = 0; text = ""
 }
 page && /^ *```/ { finish(); code = !code; next }
 page && code { next }
@@ -59,6 +59,7 @@ page {
     if ($0 ~ /^#/) finish()
     next
 }
+header && /^ *>>api$/ { api = 1 }
 header && />>implementation - / { finish(); private = 1 }
 header && !private {
     line = $0
@@ -73,7 +74,7 @@ header && !private {
     if (ended) { finish(); comment = 0 }
     next
 }
-function in_manual(line) { return line ~ /^       [^ ]/ && FNR < 340 }
+function in_manual(line) { return line ~ /^       [^ ]/ && !api }
 # error messages: the strings that begin with the name of a call; names of tests
 /TEST\(|demi_fail\(|"dem_[a-z_]+: |"%s: / { catching = 1 }
 catching {

@@ -145,6 +145,29 @@ static void advise_follow(advise_scene scene, double begin, double duration, dou
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
+    TEST("two bodies that touch have one contact each, spheres, ellipsoids and clusters alike") {
+        int shape;
+        for (shape = 0; shape < 3; shape++) {
+            dem_world_desc desc = DEM_WORLD_DESC;
+            dem_world *world = dem_world_create(&desc);
+            const dem_material m = scene_material(world, 1e7, 0.5, 0, 0);
+            const dem_real centre[3] = {0, 0, 0};
+            dem_cluster_desc one = DEM_CLUSTER_DESC;
+            dem_shape s = {0};
+            one.count = 1; one.positions = centre; one.radius = DEM_R(0.01);
+            if (shape) s = shape == 1 ? dem_shape_ellipsoid_add(world, at(0.01, 0.01, 0.01)) : dem_shape_cluster_add(world, &one);
+            if (shape) {
+                dem_body_add(world, m, s, at(0, 0, 0), dem_quat_make(1, 0, 0, 0));
+                dem_body_add(world, m, s, at(0.01999, 0, 0), dem_quat_make(1, 0, 0, 0));
+            } else {
+                dem_sphere_add(world, m, DEM_R(0.01), at(0, 0, 0));
+                dem_sphere_add(world, m, DEM_R(0.01), at(0.01999, 0, 0));
+            }
+            CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+            CHECK_NEAR(dem_observer_contacts(world, 0), 1, 0);
+            dem_world_destroy(world);
+        }
+    }
     TEST("advice on grains that fall into a heap, followed, holds in runs twice as long: the height within 5 %") {
         const dem_observable height = {"height", "m", dem_observer_height, 0, 0};
         advise_follow(ADVISE_PILE, 0, 0.12, 0.05, &height);

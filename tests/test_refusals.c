@@ -482,6 +482,8 @@ int main(int argc, char **argv) {
         const dem_material m = stone(world);
         const dem_box huge = box_of(0, 0, 0, 1e6, 1e6, 1e6);
         int asked = 0;
+        CHECK_EQ(dem_spheres_pack(world, m, 1, 0, dem_region_make(box_of(0, 0, 0, 1, 1, 1)), 0), 0);
+        CHECK_STR(dem_world_error_get(world), "the box is smaller than one sphere");
         CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, dem_region_make(huge), 10), 10);
         CHECK_EQ(dem_spheres_pack(world, m, DEM_R(1e-3), 0, dem_region_make(huge), 0), 0);
         CHECK_STR(dem_world_error_get(world), "places");

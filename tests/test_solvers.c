@@ -153,7 +153,7 @@ int main(int argc, char **argv) {
         world = dem_world_create(&desc);
         m = dem_material_add(world, &stuff);
         dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
-        box = dem_body_add(world, m, scene_box(world, 0.01, 0.01, 0.005), at(0, 0, 0.005), dem_quat_make(1, 0, 0, 0));
+        box = dem_body_add(world, m, scene_box(world, 0.01, 0.01, 0.01), at(0, 0, 0.005), dem_quat_make(1, 0, 0, 0));
         scene_move(world, box, at(1, 0, 0), at(0, 0, 0));
         CHECK_EQ(dem_world_step(world, 5), DEM_ERROR_STOPPED);
         CHECK_STR(dem_world_error_get(world), "4 of 4 contacts are at their friction limit, where sweeps converge slowly");
