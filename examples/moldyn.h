@@ -72,6 +72,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #if defined(__GNUC__) && !defined(__TINYC__)
 #define MOLDYN_API static __attribute__((unused))
@@ -632,7 +633,7 @@ static const char *moldyn_grain_set(dem_real *row, const double *value, int flat
         row[flat ? to[k] : k] = (dem_real)value[k];
     if (!(row[12] > 0)) return "a radius > 0 (m) in the last column but one is expected";
     return (row[13] < 0 || row[13] > 0) && (row[13] < 1 || row[13] > 1)
-        ? "1 (moves) or 0 (stands) in the last column is expected" : 0;
+        ? "1 (moves) or 0 (fixed) in the last column is expected" : 0;
 }
 /* Normal and centre. */
 static const char *moldyn_wall_set(dem_real *row, const double *value, int flat) {
@@ -653,7 +654,7 @@ static dem_result moldyn_kind_set(moldyn_text *t, moldyn_table *table, int i, co
     if (moldyn_grain_set(table->rows + (size_t)i*MOLDYN_GRAIN, row, 1))
         return moldyn_fail(t->m, DEM_ERROR_FORMAT, "%s: %s line %ld: found radius (or factor of a "
                            "polygon) %g and flag %g in columns 7 and 8, must be > 0, and 1 (moves) "
-                           "or 0 (stands); correct the row", t->call, t->name, t->line, row[6],
+                           "or 0 (fixed); correct the row", t->call, t->name, t->line, row[6],
                            row[7]);
     if (value >= 0 && value <= most) kind = (int)value;
     if (value < kind || value > kind)
@@ -1250,7 +1251,7 @@ MOLDYN_API dem_result moldyn_take(moldyn *m, const dem_world *world) {
     free(all.index);
     if (strange)
         result = moldyn_fail(m, DEM_ERROR_ARGUMENT, "%s: %d bodies are not spheres, nor polygons "
-                             "that moldyn_add has added, which MOLDYN's files cannot tell; use "
+                             "that moldyn_add has added, which MOLDYN files cannot hold; use "
                              "dem_vtp_write or a checkpoint", call, strange);
     if (result != DEM_OK) {
         moldyn_taken_free(&to);
@@ -1290,7 +1291,7 @@ static void moldyn_put(FILE *file, double value, int digits, char after) {
 typedef struct moldyn_out {
     moldyn *m;
     const char *call, *path;
-    char *temporary;            /* path.tmp; null: path itself is written to */
+    char *temporary;            /* path.XXXXXXXX.tmp; null: path itself is written to */
     FILE *file;
 } moldyn_out;
 
@@ -1321,6 +1322,7 @@ static dem_result moldyn_out_close(moldyn_out *o) {
 /* Begins a file. If this fails there is nothing to close. */
 static dem_result moldyn_out_open(moldyn_out *o, moldyn *m, const char *call, const char *path) {
     const size_t length = strlen(path);
+    unsigned long tries = 0;
     FILE *there = fopen(path, "r+b");           /* of a pipe: does not wait for its other end */
     memset(o, 0, sizeof *o);
     o->m = m;
@@ -1338,12 +1340,16 @@ static dem_result moldyn_out_open(moldyn_out *o, moldyn *m, const char *call, co
         return DEM_OK;
     }
     if (there) fclose(there);
-    o->temporary = (char *)malloc(length + 5);
+    o->temporary = (char *)malloc(length + sizeof ".XXXXXXXX.tmp");
     if (!o->temporary) return moldyn_no_memory(m, call, (double)length, "letters of a file name");
-    memcpy(o->temporary, path, length);
-    memcpy(o->temporary + length, ".tmp", 5);
-    errno = 0;
-    o->file = fopen(o->temporary, "wb");
+    for (; !o->file && tries < 100; tries++) {
+        sprintf(o->temporary, "%s.%08lx.tmp", path,
+                ((unsigned long)time(0)*2654435761UL + (unsigned long)clock()*40503UL + tries) & 0xffffffffUL);
+        errno = 0;
+        o->file = fopen(o->temporary, "wbx");   /* C11: refuses a name that is taken, also by a link */
+        if (!o->file && errno != EEXIST) break;
+    }
+    if (!o->file && errno == EINVAL) o->file = fopen(o->temporary, "wb");       /* a library before C11 */
     return o->file ? DEM_OK : moldyn_out_close(o);
 }
 /* The columns of rows that a file has: all, or those named by `flat` in a plane. of: null, or what
@@ -1395,8 +1401,8 @@ static void moldyn_file_put(FILE *file, const moldyn *m, moldyn_file which) {
                         planar ? MOLDYN_WALL_FLAT : MOLDYN_WALL, planar ? wall : 0, 0);
     }
 }
-/* Writes the three files; null paths are left out. Each is written to a temporary name (path.tmp)
-   and renamed, so that a file that was there stays whole on failure. Read back, they are the same
+/* Writes the three files; null paths are left out. Each is written to a new temporary name
+   (path.XXXXXXXX.tmp) and renamed, so that a file that was there stays whole on failure. Read back, they are the same
    numbers. */
 MOLDYN_API dem_result moldyn_write(moldyn *m, const char *cin, const char *pin, const char *win) {
     const char *paths[3];

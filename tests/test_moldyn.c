@@ -352,11 +352,13 @@ int main(int argc, char **argv) {
         CHECK_EQ(moldyn_write(&m, "build/tmp/none/a.cin", 0, 0), DEM_ERROR_FILE);
         CHECK_STR(m.error, "cannot write build/tmp/none/a.cin");
         save(path, "old\n");
+        save(taken, "mine\n");                   /* the temporary name is one that no file has */
         CHECK_EQ(moldyn_write(&m, 0, path, 0), DEM_OK);
         load(path, text, sizeof text);
         CHECK_STR(text, "0\n");
         load(taken, text, sizeof text);
-        CHECK_EQ(text[0], 0);                    /* no temporary file is left */
+        CHECK_STR(text, "mine\n");
+        remove(taken);
         parse(&m, MOLDYN_PARTICLES, pin);
         m.grains[12] = 0;
         CHECK_EQ(moldyn_write(&m, 0, path, 0), DEM_ERROR_ARGUMENT);
