@@ -30,7 +30,8 @@
        >>bodies            grains: slots, arrays, insertion, removal
        >>facets            weights of the faces, edges and corners of a surface
        >>sheets            connected facets of a surface, their orientation and open edges
-       >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves, motions
+       >>motions           poses of moving walls: rotation, oscillation, tables of poses
+       >>walls             planes, cylinders, profiles, meshes, walls of grains, sieves
        >>search            broad phase: all pairs, grids, linked linear list, bins; candidates
        >>lists             candidates on walls; persistent contacts carried over to new lists
        >>near              the pruned neighbour list that forces use
@@ -3655,6 +3656,7 @@ typedef struct demi_border { int32_t side; dem_vec3 normal[2]; } demi_border;
 
 typedef struct demi_wall {
     int kind, material;            /* DEMI_WALL_..., index */
+    int32_t id;                    /* dem_wall id; of an empty place: that of its last wall */
     int inside;                    /* cylinder */
     dem_edge_rule rule;
     dem_real radius, share;        /* cylinder; grains */
@@ -4096,6 +4098,15 @@ struct dem_world {
     void (*kernel)(dem_world *w, int domain);
     demi_lookers look;             /* >>step, >>output, >>replay */
 };
+/* A wall's id is its place in `walls`, from 1, plus DEMI_WALLS_MOST for every wall that has been in
+   this place before: an id of a wall that was removed names nothing, and places are used again. */
+enum { DEMI_WALLS_MOST = 1 << 18 };
+static int demi_wall_place(dem_wall wall) { return (int)(((uint32_t)wall.id - 1)%DEMI_WALLS_MOST); }
+static int demi_wall_there(const dem_world *w, dem_wall wall) {
+    const int place = demi_wall_place(wall);
+    return wall.id > 0 && place < w->wall_count && w->walls[place].id == wall.id &&
+        w->walls[place].kind != DEMI_WALL_NONE;
+}
 /* ---------------------------------------------------------------------------------------------
    >>memory
    What each body has, told once; names; sentences of what went wrong; allocation, and arrays that
@@ -7598,13 +7609,13 @@ static int demi_shape_strange(const dem_world *w, const demi_wall *wall, const d
     }
     return -1;
 }
-/* number: the wall's. body: its slot, -1: it is yet to come. part: what it is. */
+/* number: the wall's id. body: its slot, -1: it is yet to come. part: what it is. */
 static dem_result demi_strangers(dem_world *w, const char *call, const demi_wall *wall, int number,
                                  int body, int part) {
     char who[32] = "the body";
     if (body >= 0) snprintf(who, sizeof who, "body %d", body + 1);
     return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d is a %s and %s a%s %s: %s; nothing was "
-                     "added", call, number + 1, demi_wall_kinds[wall->kind].name, who,
+                     "added", call, number, demi_wall_kinds[wall->kind].name, who,
                      demi_an(demi_shape_rows[part].name), demi_shape_rows[part].name,
                      demi_wall_why(w, wall, part));
 }
@@ -7616,7 +7627,7 @@ static int demi_walls_strange(dem_world *w, const char *call, int shape) {
         const int part = wall->kind == DEMI_WALL_NONE ? -1
             : demi_shape_strange(w, wall, &w->shapes[shape]);
         if (part < 0) continue;
-        demi_strangers(w, call, wall, j, -1, part);
+        demi_strangers(w, call, wall, (int)wall->id, -1, part);
         return 1;
     }
     return 0;
@@ -9092,11 +9103,10 @@ static int demi_wall_sheets(dem_world *w, demi_wall *wall) {
 }
 
 /* ---------------------------------------------------------------------------------------------
-   >>walls
-   A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls
-   of many elements keep a grid of them in their own frame, so that a grain finds its neighbours at
-   a cost that does not depend on their number. Planes and cylinders are one element each, without
-   end. Kinds are rows: DEMI_WALLS in >>layout.
+   >>motions
+   Poses of walls at any time: rotation, oscillation, translation with a ramp, and tables of poses.
+   Velocity and spin are the exact derivatives of position and rotation. Reads the motion and the
+   first pose of a wall; writes poses only.
    --------------------------------------------------------------------------------------------- */
 static void demi_pose_identity(dem_pose *p) {
     memset(p, 0, sizeof *p);
@@ -9309,6 +9319,13 @@ static double demi_wall_speed(const demi_wall *wall) {
     return (double)demi_length(p->velocity) + (double)demi_length(p->spin)*(double)wall->extent;
 }
 
+/* ---------------------------------------------------------------------------------------------
+   >>walls
+   A wall is rigid: elements in a frame of its own and a motion that says where that frame is. Walls
+   of many elements keep a grid of them in their own frame, so that a grain finds its neighbours at
+   a cost that does not depend on their number. Planes and cylinders are one element each, without
+   end. Kinds are rows: DEMI_WALLS in >>layout.
+   --------------------------------------------------------------------------------------------- */
 /* The arrays a wall owns: where their pointers stand. What is freed, and copied into slabs. */
 #define DEMI_WALL_ARRAYS(wall) {&(wall)->vertices, &(wall)->corners, &(wall)->edges, \
     &(wall)->weight, &(wall)->owns, &(wall)->sheet, &(wall)->borders, &(wall)->planes, \
@@ -9464,6 +9481,21 @@ static int demi_wall_index(dem_world *w, demi_wall *wall) {
     return 1;
 }
 
+/* Index of the place for one more wall: the first that a removed wall has left and whose ids are
+   not used up, else a new one. */
+static int demi_wall_vacant(const dem_world *w) {
+    int i;
+    for (i = 0; i < w->wall_count; i++)
+        if (w->walls[i].kind == DEMI_WALL_NONE && w->walls[i].id <= INT32_MAX - DEMI_WALLS_MOST)
+            return i;
+    return i;
+}
+/* The id of the next wall in this place. */
+static dem_wall demi_wall_next(const dem_world *w, int place) {
+    dem_wall id;
+    id.id = place < w->wall_count ? w->walls[place].id + DEMI_WALLS_MOST : place + 1;
+    return id;
+}
 /* Takes over a prepared wall (its arrays included) or frees it. */
 static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall) {
     dem_wall id;
@@ -9472,7 +9504,8 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
     for (i = 0; i < w->bodies.count && w->bodies.shaped; i++) {
         const int part = demi_shape_strange(w, wall, demi_shape_of(w, i));
         if (part < 0) continue;
-        demi_strangers(w, call, wall, w->wall_count, (int)w->bodies.slot[i], part);
+        demi_strangers(w, call, wall, (int)demi_wall_next(w, demi_wall_vacant(w)).id,
+                       (int)w->bodies.slot[i], part);
         demi_wall_free(w, wall);
         return id;
     }
@@ -9480,21 +9513,34 @@ static dem_wall demi_wall_enter(dem_world *w, const char *call, demi_wall *wall)
         const int shape = w->feeds[i/DEM_CLASSES].desc.shapes[i%DEM_CLASSES].id;
         const int part = demi_shape_strange(w, wall, shape ? &w->shapes[shape - 1] : 0);
         if (part < 0) continue;
-        demi_strangers(w, call, wall, w->wall_count, -1, part);
+        demi_strangers(w, call, wall, (int)demi_wall_next(w, demi_wall_vacant(w)).id, -1, part);
         demi_wall_free(w, wall);
         return id;
     }
-    if (!DEMI_GROW(w, w->walls, (size_t)w->wall_count + 1) || !demi_list_drop(w)) {
+    i = demi_wall_vacant(w);
+    if (i == DEMI_WALLS_MOST || !DEMI_GROW(w, w->walls, (size_t)i + 1) || !demi_list_drop(w)) {
         demi_wall_free(w, wall);
-        demi_no_memory(w, call);
+        if (i == DEMI_WALLS_MOST)
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a world holds at most %d walls; put several "
+                      "surfaces into one mesh", call, (int)DEMI_WALLS_MOST);
+        else demi_no_memory(w, call);
         return id;
     }
-    w->walls[w->wall_count++] = *wall;
+    id = demi_wall_next(w, i);
+    w->walls[i] = *wall;
+    w->walls[i].id = id.id;
+    w->wall_count = DEMI_MAX(w->wall_count, i + 1);
     w->facets_valid = 0;
     demi_built(w, call);
     demi_scene_changed(w);
-    id.id = w->wall_count;
     return id;
+}
+/* Takes the wall that was entered last back: all is as it was before. */
+static void demi_wall_leave(dem_world *w, dem_wall wall) {
+    const int place = demi_wall_place(wall);
+    demi_wall_free(w, &w->walls[place]);
+    if (wall.id > DEMI_WALLS_MOST) w->walls[place].id = wall.id - DEMI_WALLS_MOST;
+    else w->wall_count = place;
 }
 /* The same for a wall at rest in its first pose. */
 static dem_wall demi_wall_adopt(dem_world *w, const char *call, demi_wall *wall) {
@@ -9822,19 +9868,20 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
 
 /* Index of a wall, or -1 with a sentence. */
 static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
-    if (wall.id < 1 || wall.id > w->wall_count) {
+    const int place = demi_wall_place(wall);
+    if (wall.id < 1 || place >= w->wall_count) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, ids here go from 1 to %d; it "
                   "was not added (dem_world_error_get says why) or is of another world: check what "
                   "adding it returned", call, (int)wall.id, w->wall_count);
         return -1;
     }
-    if (w->walls[wall.id - 1].kind == DEMI_WALL_NONE) {
+    if (!demi_wall_there(w, wall)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist any more: it was removed "
                   "(dem_wall_remove); add it again and use the id that this returns", call,
                   (int)wall.id);
         return -1;
     }
-    return wall.id - 1;
+    return place;
 }
 
 /* 1 when turning about axis through point leaves the wall's surface where it is. */
@@ -9935,6 +9982,16 @@ DEM_API dem_result dem_wall_pose_get(const dem_world *world, dem_wall id, dem_po
     return DEM_OK;
 }
 
+/* Ends the contacts of a wall that goes: its place may get another one. After demi_list_drop. */
+static void demi_wall_forget(dem_world *w, int wall) {
+    int d, k, left;
+    for (d = 0; d < DEMI_DOMAINS; d++) {
+        demi_kept *c = demi_kept_of(w, d);
+        for (k = left = 0; k < w->domains[d].kept; k++)
+            if (c[k].b >= 0 || c[k].wall != wall) c[left++] = c[k];
+        w->domains[d].kept = left;
+    }
+}
 DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
     if (demi_null(w, "dem_wall_remove", w, "world")) return DEM_ERROR_ARGUMENT;
     const int i = demi_wall_find(w, "dem_wall_remove", id);
@@ -9946,7 +10003,9 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
                              "%d and would let nothing out any more; keep the wall", k + 1,
                              (int)id.id);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
-    demi_wall_free(w, &w->walls[i]);            /* its place stays empty: ids of other walls hold */
+    demi_wall_forget(w, i);
+    demi_wall_free(w, &w->walls[i]);            /* other walls keep their places */
+    w->walls[i].id = id.id;
     w->facets_valid = 0;
     demi_scene_changed(w);
     return DEM_OK;
@@ -11823,7 +11882,7 @@ static int demi_walls_end(dem_world *w, const char *call) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic axis "
                       "%d, which is longer than the period of %g m, so that it does not repeat; it "
                       "must reach %g m, the largest radius%s, beyond the faces at %g and %g m, or "
-                      "be no longer than the period", call, j + 1,
+                      "be no longer than the period", call, (int)wall->id,
                       (double)wall->span_lo[k], (double)wall->span_hi[k], k, (double)p.period[k],
                       (double)w->effects.radius_max + w->margin.reach, w->margin.reach > 0
                       ? " and the law's range" : "", (double)lo, (double)hi);
@@ -18457,7 +18516,7 @@ static void demi_kept_see(const dem_world *w, demi_kept_tile *t, const demi_run 
     c->range = r->ranged ? demi_range(w, demi_kept_radii(w, k)) : 0;
     c->material_a = w->bodies.material[k->a];
     c->material_b = k->b >= 0 ? w->bodies.material[k->b] : w->walls[k->wall].material + 1;
-    c->wall = k->b >= 0 ? 0 : k->wall + 1;
+    c->wall = k->b >= 0 ? 0 : w->walls[k->wall].id;
     c->user = w->desc.law_user;
     if (w->desc.law_who) demi_kept_who(w, k, t->rows.gains[q], &c->who);
 }
@@ -19435,7 +19494,8 @@ static int demi_joined(const dem_world *w, int a, int b, int wall) {
         next = r->next[r->a == a ? 0 : 1];
         if (w->joints[j].desc.collide) continue;
         if (b >= 0 ? (r->a == a ? r->b : r->a) == b
-                   : !w->joints[j].desc.b.slot && w->joints[j].desc.wall.id == wall + 1) return 1;
+                   : !w->joints[j].desc.b.slot &&
+                         w->joints[j].desc.wall.id == w->walls[wall].id) return 1;
     }
     return 0;
 }
@@ -19730,7 +19790,7 @@ static int demi_joint_body(const dem_world *w, dem_body b) {
 static int demi_joint_alive(const dem_world *w, const demi_joint *j) {
     if (demi_joint_body(w, j->desc.a) < 0) return 0;
     if (j->desc.b.slot) return demi_joint_body(w, j->desc.b) >= 0;
-    return !j->desc.wall.id || w->walls[j->desc.wall.id - 1].kind != DEMI_WALL_NONE;
+    return !j->desc.wall.id || demi_wall_there(w, j->desc.wall);
 }
 static int demi_joints_in_force(const dem_world *w) {
     int i, n = 0;
@@ -19840,7 +19900,7 @@ DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
         j.arm[1] = demi_joint_from_body(w, b, d->point, 1);
         j.axis[1] = demi_joint_from_body(w, b, j.desc.axis, 0);
     } else if (d->wall.id) {
-        const dem_pose *pose = &w->walls[d->wall.id - 1].pose;
+        const dem_pose *pose = &w->walls[demi_wall_place(d->wall)].pose;
         j.arm[1] = demi_unrotate(pose->rotation, demi_sub(d->point, pose->position));
         j.axis[1] = demi_unrotate(pose->rotation, j.desc.axis);
     }
@@ -20066,7 +20126,7 @@ static demi_rod_end demi_rod_end_of(const dem_world *w, int joint, int end, int 
         o.point = j->arm[end];
         o.axis = j->axis[end];
         if (j->desc.wall.id) {
-            const dem_pose *pose = &w->walls[j->desc.wall.id - 1].pose;
+            const dem_pose *pose = &w->walls[demi_wall_place(j->desc.wall)].pose;
             const dem_quat q = demi_quat_exp(demi_scale(pose->spin, by));
             o.point = dem_quat_rotate(q, demi_rotate(pose->rotation, o.point));
             o.point = demi_add(demi_add(pose->position, o.point), demi_scale(pose->velocity, by));
@@ -20319,7 +20379,7 @@ static void demi_joints_lay(dem_world *w) {
             demi_mover *m = s->movers + r->b;
             memset(m, 0, sizeof *m);
             if (j->desc.wall.id) {
-                const dem_pose *pose = &w->walls[j->desc.wall.id - 1].pose;
+                const dem_pose *pose = &w->walls[demi_wall_place(j->desc.wall)].pose;
                 demi_put(m->v, demi_surface_at(pose, demi_rod_end_of(w, i, 1, 0).point));
                 demi_put(m->w, pose->spin);
             }
@@ -20605,7 +20665,8 @@ static void demi_joints_tell(dem_world *w) {
         const demi_rod *r = s->rods + i;
         demi_joint *j = &w->joints[i];
         dem_joint_state *o = &j->state;
-        const int wall = j->desc.b.slot ? -1 : j->desc.wall.id - 1;
+        const int wall = j->desc.b.slot || !j->desc.wall.id ? -1
+            : demi_wall_place(j->desc.wall);
         dem_real u[6];
         j->held = 0;
         j->left = 0;
@@ -22847,7 +22908,7 @@ static int demi_outlet_has(const dem_outlet_desc *d, dem_vec3 x) {
    centre, or, of a region without end, the one in the box. */
 static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
                                   const dem_outlet_desc *d, dem_vec3 x) {
-    const dem_pose *pose = d->frame.id ? &w->walls[d->frame.id - 1].pose : 0;
+    const dem_pose *pose = d->frame.id ? &w->walls[demi_wall_place(d->frame)].pose : 0;
     dem_vec3 c = demi_scale(demi_add(d->box.lo, d->box.hi), DEM_R(0.5));
     if (p->any) {
         dem_real at[3], mid[3];
@@ -22866,7 +22927,7 @@ static dem_vec3 demi_outlet_place(const dem_world *w, const demi_periods *p,
 static int demi_outlet_sees(const dem_world *w, const demi_periods *p, const demi_outlet *o,
                             int i) {
     const dem_outlet_desc *d = &o->desc;
-    if (d->frame.id && w->walls[d->frame.id - 1].kind == DEMI_WALL_NONE) return 0;
+    if (d->frame.id && !demi_wall_there(w, d->frame)) return 0;
     if (d->material.id && w->bodies.material[i] != d->material.id) return 0;
     return demi_outlet_has(d, demi_outlet_place(w, p, d, demi_at(w->bodies.pos + 4*i)));
 }
@@ -23136,7 +23197,7 @@ static void demi_advise_pair(const dem_world *w, const demi_grades *g, int i, in
     s->partner = partner;
     s->material = i;
     s->other = other;
-    s->wall = wall + 1;
+    s->wall = wall < 0 ? 0 : w->walls[wall].id;
 }
 /* pi r sqrt(rho/G)/(.1631 nu + .8766), the time a surface wave takes over the smallest grain. */
 static double demi_rayleigh(const dem_material_desc *d, double r) {
@@ -23297,7 +23358,7 @@ static void demi_press_relax(const dem_world *w, int a, int b, int wall, dem_con
     c->dt = w->clock.dt;
     c->material_a = w->bodies.material[a];
     c->material_b = b >= 0 ? w->bodies.material[b] : w->walls[wall].material + 1;
-    c->wall = b >= 0 ? 0 : wall + 1;
+    c->wall = b >= 0 ? 0 : w->walls[wall].id;
     c->who.a = dem_body_id_get(w, a);
     if (b >= 0) c->who.b = dem_body_id_get(w, b);
     c->who.radius_a = w->bodies.pos[4*a + 3];
@@ -23597,7 +23658,7 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: wall %d moves at up "
                          "to %.3g m/s, %.3g radii of the smallest grain (%g m) in a step of %g s, "
                          "must be at most 1: it would pass grains unseen; use at most %.2g s, or a "
-                         "slower wall", (unsigned long long)w->clock.steps, i + 1, speed,
+                         "slower wall", (unsigned long long)w->clock.steps, (int)wall->id, speed,
                          speed*dt/radius, radius, dt, 0.1*radius/speed);
     }
     return DEM_OK;
@@ -23876,16 +23937,16 @@ static void demi_check_walls(const dem_world *w, demi_findings *f) {
         if (wall->kind == DEMI_WALL_NONE || wall->extent < 0) continue;
         if (most > 0 && size > 2e4*most)
             demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, %.3g radii of the "
-                      "largest grain: was it in millimetres? scale it by 0.001", i + 1,
+                      "largest grain: was it in millimetres? scale it by 0.001", (int)wall->id,
                       demi_wall_kinds[wall->kind].name, size, size/most);
         else if (most > 0 && size < least)
             demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is %g m long, less than the radius "
-                      "of the smallest grain, %g m: is it in other units?", i + 1,
+                      "of the smallest grain, %g m: is it in other units?", (int)wall->id,
                       demi_wall_kinds[wall->kind].name, size, least);
         if (demi_wall_hidden(w, wall))
             demi_find(f, DEM_SEVERITY_WARNING, "wall %d, a %s, is behind a plane or outside the "
                       "domain: nothing can reach it; does the plane's normal point to the grains?",
-                      i + 1, demi_wall_kinds[wall->kind].name);
+                      (int)wall->id, demi_wall_kinds[wall->kind].name);
     }
 }
 
@@ -23931,7 +23992,7 @@ static void demi_check_in_walls(dem_world *w, demi_findings *f) {
             if ((double)c->deep <= worst) continue;
             worst = (double)c->deep;
             body = (int)w->bodies.slot[c->a] + 1;
-            wall = c->wall + 1;
+            wall = w->walls[c->wall].id;
         }
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = w->domains[d].kept;
     if (count)
@@ -24056,12 +24117,12 @@ static void demi_probes_judge(const dem_world *w, demi_findings *f, const demi_p
         demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "%d of %d grains "
                   "begin inside wall %d, a closed %s%s, and stay inside: if it is solid, keep them "
                   "out (`inside` of dem_region), or remove them; if it is hollow, this is right",
-                  grains, p->grains, wall + 1, name, way);
+                  grains, p->grains, (int)w->walls[wall].id, name, way);
     else
         demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "feed %d brings "
                   "grains inside wall %d, a closed %s%s, and they stay inside: if it is solid, "
                   "keep them out (`inside` of the feed); if it is hollow, this is right", feed,
-                  wall + 1, name, way);
+                  (int)w->walls[wall].id, name, way);
 }
 /* Does the line from x along the first axis cross the side from a to b? 1: from below, -1: from
    above; the same of a side from b to a, to the bit. */
@@ -24337,7 +24398,7 @@ static void demi_kept_info(const dem_world *w, const demi_kept *c, dem_contact_i
     dem_vec3 x = demi_add(demi_at(w->bodies.pos + 4*c->a), c->arm_a);
     out->a = dem_body_id_get(w, c->a);
     out->b = dem_body_id_get(w, c->b);
-    out->wall = c->b < 0 ? c->wall + 1 : 0;
+    out->wall = c->b < 0 ? w->walls[c->wall].id : 0;
     out->normal = c->normal;
     if (c->b < 0) x = demi_sub(x, demi_scale(c->normal, c->overlap));
     out->point = demi_place_of(&p, x);
@@ -25034,7 +25095,7 @@ static dem_result demi_unstable(dem_world *w) {
                                  "radius, must be below 1; it started inside the wall, hit it too "
                                  "fast for dt = %g s, or the "
                                  "material is too soft", (unsigned long long)w->clock.steps,
-                                 (unsigned)w->bodies.slot[c->a] + 1, (int)c->wall + 1,
+                                 (unsigned)w->bodies.slot[c->a] + 1, (int)w->walls[c->wall].id,
                                  (double)c->deep, (double)w->clock.dt);
         }
     deepest = demi_deepest_pair(w, &first, &second);
@@ -27028,37 +27089,36 @@ DEM_API dem_result dem_wall_parts_add(dem_world *w, const char *path, dem_real s
     dem_result result = DEM_OK;
     demi_wall *made;
     dem_wall wall = demi_no_wall;
-    int i, first;
+    int i;
     for (i = 0; i < count && walls; i++) walls[i] = demi_no_wall;
     if (demi_null(w, call, parts, "parts")) return DEM_ERROR_ARGUMENT;
     if (count < 1)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be > 0", call, count);
-    first = w->wall_count;
     made = (demi_wall *)demi_alloc(w, (size_t)count, sizeof *made);
     if (!made) return demi_no_memory(w, call);
     for (i = 0; i < count && result == DEM_OK; i++) {
-        wall.id = first + i + 1;
+        wall.id = w->wall_count + i + 1;
         result = demi_part_make(w, path, scale > 0 || scale < 0 ? scale : 1, parts + i, wall,
                                 made + i);
     }
-    if (result == DEM_OK && !DEMI_GROW(w, w->walls, (size_t)first + (size_t)count))
+    if (result == DEM_OK && !DEMI_GROW(w, w->walls, (size_t)w->wall_count + (size_t)count))
         result = demi_no_memory(w, call);
     for (i = 0; i < count && result == DEM_OK; i++) {
         wall = demi_wall_enter(w, "dem_wall_mesh_add", made + i);
         memset(made + i, 0, sizeof *made);
+        made[i].id = wall.id;
         result = wall.id ? DEM_OK : DEM_ERROR_ARGUMENT;
         if (walls) walls[i] = wall;
     }
     memcpy(sentence, w->error, sizeof sentence);
-    for (i = 0; i < count; i++) demi_wall_free(w, made + i);
+    for (i = count - 1; i >= 0; i--) {          /* out of memory: those before it go again */
+        wall.id = made[i].id;
+        if (wall.id && result != DEM_OK) demi_wall_leave(w, wall);
+        if (walls && result != DEM_OK) walls[i] = demi_no_wall;
+        demi_wall_free(w, made + i);
+    }
     demi_free(w, made);
     if (result == DEM_OK) { demi_built(w, call); return DEM_OK; }
-    while (w->wall_count > first) {             /* out of memory: those before it go again */
-        const dem_wall last = {w->wall_count};
-        dem_wall_remove(w, last);
-        w->wall_count--;
-    }
-    for (i = 0; i < count && walls; i++) walls[i] = demi_no_wall;
     return demi_fail(w, result, "%s: %.440s", call, sentence);
 }
 
@@ -29127,7 +29187,7 @@ DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
 /* ---- walls and loads out ---- */
 
 /* A surface of revolution, as demi_wall_draw has it. */
-static void demi_rings_draw(const demi_wall *wall, int i, int64_t *points, int64_t *triangles,
+static void demi_rings_draw(const demi_wall *wall, int64_t *points, int64_t *triangles,
                             dem_real *place, int32_t *corners, int32_t *id) {
     const int64_t base = *points, first = *triangles;
     const int all = 2*(wall->ring_count - 1)*DEMI_RING_SIDES;
@@ -29144,7 +29204,7 @@ static void demi_rings_draw(const demi_wall *wall, int i, int64_t *points, int64
     for (k = 0; k < all; k++) {
         for (c = 0; c < 3; c++)
             corners[3*(first + k) + c] = (int32_t)(base + demi_ring_triangle(k, c));
-        id[first + k] = i + 1;
+        id[first + k] = wall->id;
     }
 }
 /* Adds wall i as it lies now: its points (those of a profile at z[0], then at z[1]) and triangles
@@ -29156,9 +29216,9 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
     int c, profile = demi_wall_is(wall, DEMI_DRAWN), sides = profile ? 2 : 1;
     dem_pose pose;
     dem_wall handle;
-    handle.id = i + 1;
+    handle.id = wall->id;
     if (wall->ring_count) {
-        demi_rings_draw(wall, i, points, triangles, place, corners, id);
+        demi_rings_draw(wall, points, triangles, place, corners, id);
         return;
     }
     if (demi_wall_per(wall) < 2) return;
@@ -29178,7 +29238,7 @@ static void demi_wall_draw(const dem_world *w, int i, const dem_real *z, int64_t
         to[1] = profile && k%2 ? from[1] + up : from[1];
         to[2] = !profile ? from[2] : (k%2 ? from[0] : from[1]) + up;
         for (c = 0; c < 3; c++) corners[3*at + c] = (int32_t)(base + to[c]);
-        id[at] = i + 1;
+        id[at] = wall->id;
     }
 }
 
@@ -29468,11 +29528,12 @@ static uint64_t demi_digest_table(const void *item) {
     }
     return h;
 }
-/* kind comes first: see demi_checkpoint_scene. Numbers of a motion are state. */
+/* kind and id come first: see demi_checkpoint_scene. Numbers of a motion are state. */
 static const demi_scene_row demi_wall_rows[] = {
     DEMI_ROW_ENUM(demi_wall, kind, "none plane cylinder profile segments mesh grains sieve "
                   "revolved"),
-    DEMI_ROW(demi_wall, material, 'i'), DEMI_ROW(demi_wall, inside, 'i'),
+    DEMI_ROW(demi_wall, id, 'i'), DEMI_ROW(demi_wall, material, 'i'),
+    DEMI_ROW(demi_wall, inside, 'i'),
     DEMI_ROW_ENUM(demi_wall, rule, "resolved fraction"), DEMI_ROW(demi_wall, radius, 'r'),
     DEMI_ROW(demi_wall, share, 'r'), DEMI_ROW(demi_wall, vertex_count, 'i'),
     DEMI_ROW(demi_wall, element_count, 'i'),
@@ -29975,8 +30036,11 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                     else if (w->walls[i].kind == DEMI_WALL_NONE)
                         return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: "
                                          "belongs to another scene: wall %d was removed here and "
-                                         "stands there; read before you remove it", path, i + 1);
+                                         "exists there; read before you remove it", path,
+                                         (int)w->walls[i].id);
                 }
+                if (part == DEMI_PART_WALLS && k == 1 && gone)
+                    memcpy(&twin->walls[i].id, there, sizeof twin->walls[i].id);
                 if (gone || !memcmp(here, there, r->size)) continue;
                 if (part == DEMI_PART_PAIRS)
                     snprintf(of, sizeof of, "%s %d and %d", demi_scene_parts[part].name, i/n + 1,
@@ -30382,7 +30446,8 @@ static int demi_joints_check(const demi_reader *r) {
         if ((int)j->desc.kind <= 0 || j->desc.kind > DEM_JOINT_REVOLUTE ||
             (int)j->desc.motor < 0 || j->desc.motor > DEM_MOTOR_TORQUE || !r->t->bodies.orienting ||
             (j->desc.motor != DEM_MOTOR_NONE && j->desc.kind != DEM_JOINT_REVOLUTE) ||
-            j->desc.wall.id < 0 || j->desc.wall.id > r->t->wall_count ||
+            j->desc.wall.id < 0 || (j->desc.wall.id &&
+             demi_wall_place(j->desc.wall) >= r->t->wall_count) ||
             j->id <= (i ? j[-1].id : 0) || j->id > r->t->joint_last ||
             !(DEMI_ABS(j->desc.speed) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->bank) ||
             !(DEMI_ABS(j->desc.torque) <= DEMI_MOTOR_MOST) || !demi_finite_double(j->held) ||
@@ -30838,7 +30903,7 @@ static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d)
     if (!d->columns != !d->values)
         return "one of columns and values is given; give both, or neither for the world's own";
     if (d->wall.id && d->values) return "wall and values are given; give one of the two";
-    if (d->wall.id && (d->wall.id < 1 || d->wall.id > w->wall_count)) return "wall names none; "
+    if (d->wall.id && !demi_wall_there(w, d->wall)) return "wall names none; "
         "give what a function that adds walls returned";
     if (demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS) < 1) return "columns must be 1 to 32 "
         "words of at most 23 letters, digits and _, a space between two";
@@ -31467,7 +31532,7 @@ static dem_effect_state demi_look_walls(const dem_world *w, dem_effect *e) {
         if (w->walls[i].kind == DEMI_WALL_NONE) continue;
         count++;
         if (w->walls[i].loads.touched) touched++;
-        else if (!some) some = i + 1;
+        else if (!some) some = (int)w->walls[i].id;
     }
     if (!count) return demi_look_off(e, "there are none");
     e->missing = count - touched;
@@ -31587,17 +31652,23 @@ static void demi_leave_adhesion(dem_world *t, demi_again *own) {
 }
 static void demi_leave_motions(dem_world *t, demi_again *own) {
     dem_wall id;
+    int i;
     (void)own;
     /* facets will be weighed anew: in arrays of its own. A wall that has no room for them goes */
-    for (id.id = 1; id.id <= t->wall_count; id.id++)
-        if (demi_wall_own(t, &t->walls[id.id - 1]) &&
-            t->walls[id.id - 1].kind != DEMI_WALL_NONE) dem_wall_motion_set(t, id, &DEM_MOTION);
+    for (i = 0; i < t->wall_count; i++)
+        if (demi_wall_own(t, &t->walls[i]) && t->walls[i].kind != DEMI_WALL_NONE) {
+            id.id = t->walls[i].id;
+            dem_wall_motion_set(t, id, &DEM_MOTION);
+        }
 }
 static void demi_leave_walls(dem_world *t, demi_again *own) {
     dem_wall id;
+    int i;
     (void)own;
-    for (id.id = 1; id.id <= t->wall_count; id.id++)
-        if (t->walls[id.id - 1].kind != DEMI_WALL_NONE) dem_wall_remove(t, id);
+    for (i = 0; i < t->wall_count; i++) {
+        id.id = t->walls[i].id;
+        if (t->walls[i].kind != DEMI_WALL_NONE) dem_wall_remove(t, id);
+    }
 }
 static void demi_law_again(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
     const demi_again *own = (const demi_again *)c->user;
@@ -32108,7 +32179,7 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
         const dem_wall_loads *ch = &w->walls[i].loads;
         if (w->walls[i].kind == DEMI_WALL_NONE) continue;
         fprintf(out, "wall %-3d   %d contacts, force (%.4g, %.4g, %.4g) N, axial torque %.4g N m, "
-                "power %.4g W\n", i + 1,
+                "power %.4g W\n", (int)w->walls[i].id,
                 ch->contacts, (double)ch->force.x, (double)ch->force.y, (double)ch->force.z,
                 (double)ch->torque_axial,
                 (double)ch->power);
@@ -34834,7 +34905,7 @@ struct dem_replay {
     double resolution;               /* m; 0: no frame yet */
     demi_seen *seen;                 /* x seen_count: slots */
     float (*pose)[7];                /* x wall_count: as told */
-    unsigned char *wall_told;        /* x wall_count: 0: not yet, 1: there, 2: gone */
+    int32_t *wall_told;              /* x wall_count: id of the wall last told of, 0: none */
     unsigned char *bytes;            /* of the frame under way */
     size_t size;
     int seen_count, wall_count, shape_count, value_count, frames, failed;
@@ -34966,7 +35037,8 @@ static void demi_film_wall(dem_replay *r, int i) {
     FILE *out = r->out.file;
     char text[32];
     int k, corners = wall->corners ? wall->element_count*kind->corners : 0;
-    fprintf(out, "<script type=\"dem/wall\">{\"id\":%d,\"kind\":\"%s\",\"radius\":%s", i + 1,
+    fprintf(out, "<script type=\"dem/wall\">{\"id\":%d,\"kind\":\"%s\",\"radius\":%s",
+            (int)wall->id,
             kind->traits & DEMI_BALLS ? "grains" : kind->traits & DEMI_DRAWN ? "profile" :
             wall->ring_count ? "mesh" : kind->name,
             demi_format_real(text, (double)wall->radius, 9));
@@ -35003,7 +35075,7 @@ static void demi_film_walls(dem_replay *r) {
     uint32_t changed = 0;
     int i, k, pass;
     if (!demi_grow(w, DEMI_LOOSE, &r->pose, sizeof *r->pose, (size_t)w->wall_count) ||
-        !demi_grow(w, DEMI_LOOSE, &r->wall_told, 1, (size_t)w->wall_count)) {
+        !demi_grow(w, DEMI_LOOSE, &r->wall_told, sizeof *r->wall_told, (size_t)w->wall_count)) {
         r->failed = 1;
         return;
     }
@@ -35011,31 +35083,33 @@ static void demi_film_walls(dem_replay *r) {
         if (pass) demi_film_count(r, changed);
         for (i = 0; i < w->wall_count; i++) {
             const demi_wall *wall = &w->walls[i];
+            const int there = wall->kind != DEMI_WALL_NONE, known = r->wall_told[i] == wall->id;
             float now[7];
             double R[3][3];
             dem_quat q;
-            if (wall->kind == DEMI_WALL_NONE) {
-                if (r->wall_told[i] != 1) continue;
-                if (!pass) { changed++; continue; }
-                r->wall_told[i] = 2;
-                demi_film_count(r, (uint32_t)i + 1);
-                demi_film_byte(r, 0);
-                continue;
+            if (r->wall_told[i] && !(there && known)) {
+                changed += !pass;
+                if (pass) {
+                    demi_film_count(r, (uint32_t)r->wall_told[i]);
+                    demi_film_byte(r, 0);
+                    r->wall_told[i] = 0;
+                }
             }
+            if (!there) continue;
             for (k = 0; k < 9; k++) R[k/3][k%3] = (double)wall->pose.rotation[k];
             q = demi_quat_of(R);
             now[0] = (float)wall->pose.position.x; now[1] = (float)wall->pose.position.y;
             now[2] = (float)wall->pose.position.z;
             now[3] = (float)q.w; now[4] = (float)q.x; now[5] = (float)q.y; now[6] = (float)q.z;
-            if (r->wall_told[i] == 1 && !memcmp(now, r->pose[i], sizeof now)) continue;
+            if (known && !memcmp(now, r->pose[i], sizeof now)) continue;
             if (!pass) {
-                if (!r->wall_told[i]) demi_film_wall(r, i);
+                if (!known) demi_film_wall(r, i);
                 changed++;
                 continue;
             }
-            r->wall_told[i] = 1;
+            r->wall_told[i] = wall->id;
             memcpy(r->pose[i], now, sizeof now);
-            demi_film_count(r, (uint32_t)i + 1);
+            demi_film_count(r, (uint32_t)wall->id);
             demi_film_byte(r, 1);
             for (k = 0; k < 7; k++) demi_film_real(r, (double)now[k]);
         }

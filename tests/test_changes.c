@@ -539,7 +539,6 @@ static uint64_t intruded(int from, int begin, int response) {
     dem_feed_desc feed = DEM_FEED_DESC;
     dem_region region = DEM_REGION;
     dem_slabs_desc slabs = DEM_SLABS_DESC;
-    const dem_shape none = {0};
     const dem_box above = box_of(0, 0, 0.02, 0.02, 0.02, 0.03);
     dem_real x[3*27];
     dem_world *w;
@@ -629,9 +628,123 @@ static uint64_t intruded(int from, int begin, int response) {
     return hash;
 }
 
+/* A ball pressed into a floor, which it slides along. */
+static dem_world *slid_world(int orientations, dem_material *m, dem_body *ball, const dem_body_state *as) {
+    dem_world_desc desc = DEM_WORLD_DESC;
+    dem_world *world;
+    desc.threads = 1;
+    desc.dt = DEM_R(1e-6);
+    desc.orientations = orientations;
+    desc.response = orientations ? DEM_RESPONSE_IMPULSES : DEM_RESPONSE_SPRINGS;
+    world = dem_world_create(&desc);
+    *m = scene_material(world, 1e6, 1, 0.5, 0);
+    *ball = dem_sphere_add(world, *m, DEM_R(0.01), at(0, 0, 0.00999));
+    scene_move(world, *ball, at(1e-3, 0, 0), at(0, 0, 0));
+    if (as) CHECK_EQ(dem_body_set(world, *ball, as), DEM_OK);
+    return world;
+}
+
 int main(int argc, char **argv) {
     test_begin(argc, argv);
 
+    TEST("ids of removed walls name nothing, though 200,000 walls that come and go leave few places") {
+        dem_material m;
+        dem_body ball;
+        dem_world *world = slid_world(0, &m, &ball, 0);
+        const dem_wall first = dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall last = first;
+        dem_pose pose;
+        int i, wrong = 0;
+        for (i = 0; i < 200000; i++) {
+            wrong += dem_wall_remove(world, last) != DEM_OK;
+            last = dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+            wrong += last.id <= 0 || last.id == first.id;
+        }
+        CHECK_EQ(wrong, 0);
+        CHECK(world->wall_count < 40);
+        CHECK_EQ(dem_wall_pose_get(world, first, &pose), DEM_ERROR_ARGUMENT);
+        CHECK_STR(dem_world_error_get(world), "does not exist any more");
+        CHECK_EQ(dem_wall_pose_get(world, last, &pose), DEM_OK);
+        dem_world_destroy(world);
+    }
+    TEST("a wall in the place of a removed one has no contact history of it, and a joint to the removed wall has ended") {
+        dem_material m, n;
+        dem_body ball, fresh_ball;
+        dem_world *world = slid_world(0, &m, &ball, 0), *fresh;
+        const dem_wall floor_ = dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        dem_wall again;
+        dem_body_state state;
+        dem_contact_info contact;
+        dem_joint_desc hinge = DEM_JOINT_DESC;
+        dem_joint_state held;
+        dem_joint joint;
+        double loaded;
+        CHECK_EQ(dem_world_step(world, 50), DEM_OK);
+        state = scene_state(world, ball);
+        loaded = (double)state.force.x;
+        CHECK_EQ(dem_wall_remove(world, floor_), DEM_OK);
+        again = dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        CHECK(again.id != floor_.id && world->wall_count == 1);
+        fresh = slid_world(0, &n, &fresh_ball, &state);
+        dem_wall_plane_add(fresh, n, at(0, 0, 0), at(0, 0, 1));
+        CHECK_EQ(dem_world_step(world, 1), DEM_OK);
+        CHECK_EQ(dem_world_step(fresh, 1), DEM_OK);
+        CHECK_NEAR((double)scene_state(world, ball).force.x, (double)scene_state(fresh, fresh_ball).force.x, 1e-9*fabs(loaded));
+        CHECK_NEAR((double)scene_state(world, ball).force.x/loaded, 0, 0.5);
+        CHECK_EQ(dem_contacts_get(world, &contact, 1), 1);
+        CHECK_EQ(contact.wall, again.id);
+        dem_world_destroy(fresh);
+        dem_world_destroy(world);
+        world = slid_world(1, &m, &ball, 0);
+        again = dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));
+        hinge.kind = DEM_JOINT_POINT;
+        hinge.a = ball;
+        hinge.wall = again;
+        joint = dem_joint_add(world, &hinge);
+        CHECK_EQ(dem_world_step(world, 2), DEM_OK);
+        CHECK_EQ(dem_wall_remove(world, again), DEM_OK);
+        dem_wall_plane_add(world, m, at(0, 0, -1), at(0, 0, 1));
+        CHECK_EQ(dem_joint_get(world, joint, &held), DEM_ERROR_ARGUMENT);
+        CHECK_EQ(dem_world_step(world, 2), DEM_OK);
+        dem_world_destroy(world);
+    }
+    TEST("a replay and a checkpoint tell a wall from the removed one whose place it has") {
+        static const char *const page = "build/tmp/changes_walls.html";
+        dem_material m;
+        dem_body ball;
+        dem_world *world = slid_world(0, &m, &ball, 0), *other;
+        dem_replay *replay = dem_replay_open(world, page, 0);
+        dem_wall wall = dem_wall_plane_add(world, m, at(0, 0, 0), at(0, 0, 1));
+        char text[4000];
+        size_t size;
+        int k, walls = 0;
+        FILE *file;
+        CHECK_EQ(dem_replay_frame_write(replay), DEM_OK);
+        dem_wall_remove(world, wall);
+        wall = dem_wall_cylinder_add(world, m, at(0, 0, 0), at(0, 0, 1), 1, 1);
+        CHECK_EQ(dem_replay_frame_write(replay), DEM_OK);
+        CHECK_EQ(dem_replay_close(replay), DEM_OK);
+        file = fopen(page, "rb");
+        text[0] = 0;
+        for (size = 0; file && fgets(text, sizeof text, file); size++)
+            walls += strstr(text, "\"kind\":\"plane\"") || strstr(text, "\"kind\":\"cylinder\"");
+        if (file) fclose(file);
+        CHECK_EQ(walls, 2);
+        CHECK_EQ(dem_world_step(world, 3), DEM_OK);
+        CHECK_EQ(dem_checkpoint_write(world, saved), DEM_OK);
+        for (k = 0; k < 2; k++) {
+            other = slid_world(0, &m, &ball, 0);
+            if (!k) dem_wall_remove(other, dem_wall_plane_add(other, m, at(0, 0, 0), at(0, 0, 1)));
+            dem_wall_cylinder_add(other, m, at(0, 0, 0), at(0, 0, 1), 1, 1);
+            CHECK_EQ(dem_checkpoint_read(other, saved), k ? DEM_ERROR_FORMAT : DEM_OK);
+            if (k) CHECK_STR(dem_world_error_get(other), "id");
+            else CHECK(dem_world_hash_get(other) == dem_world_hash_get(world));
+            dem_world_destroy(other);
+        }
+        dem_world_destroy(world);
+        remove(saved);
+        remove(page);
+    }
     TEST("a law, field, motion, region or other function of the user's that changes the world is refused by name and changes no bit") {
         int from, response;
         for (response = 0; response < 2; response++)
