@@ -25,7 +25,7 @@ TESTS    := $(patsubst tests/%.c,build/%,$(wildcard tests/test_*.c)) $(HARD)
 ALONE    := $(addprefix build/,test_api test_feed test_own_law)
 TOGETHER := $(filter-out $(ALONE),$(TESTS))
 LESSONS  := $(patsubst examples/%.c,build/%,$(wildcard examples/[0-9][0-9]_*.c))
-# what laws that come along and files can do: they run without options, and check themselves
+# examples of shipped laws and of files: they run without options and check themselves
 SHOWS    := $(addprefix build/,wet_sand heat rock hopper)
 STUDIES  := $(filter-out $(LESSONS) $(SHOWS),$(patsubst examples/%.c,build/%,$(wildcard examples/*.c)))
 FUZZERS  := $(patsubst tests/%.c,build/%,$(wildcard tests/fuzz_*.c))
@@ -91,7 +91,7 @@ law: $(if $(LAW),build/dem.o,build/exam) ## the exam of a contact law, LAW=path/
 	@if [ -n "$(LAW)" ]; then $(COMPILE) -DLAW_FILE='"$(abspath $(LAW))"' examples/exam.c build/dem.o -o build/law $(LINK) && build/law; \
 	    else build/exam; fi
 
-lessons: $(LESSONS) ## the twelve lessons: build, run, film into build/out/NAME, mark right and wrong answers to their exercises
+lessons: $(LESSONS) ## the twelve lessons: build, run, record replays in build/out/NAME, mark right and wrong answers to their exercises
 	@JOBS=$(JOBS) sh tests/lessons.sh $(LESSONS)
 
 examples: lessons $(SHOWS) snippets ## the lessons, the other examples that check themselves, the snippets of the manual

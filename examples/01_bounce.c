@@ -1,31 +1,32 @@
-/* 01_bounce.c - lesson 1: a glass ball falls half a metre and bounces.
+/* 01_bounce.c - lesson 1: a bouncing ball. You learn: world, material, wall, grain, time step, restitution.
 
-   Question:  it keeps 80 % of its speed in every impact (restitution e = .8). Which share of its height does it keep?
-              And does it bounce for ever? Write down both answers, then run.
-   Theory:    speed v falls from height v^2/(2 g): rebound n reaches h e^(2n). Each flight lasts e times as long as the
-              one before; the sum of them all is finite: the ball lies still at sqrt(2 h/g) (1 + e)/(1 - e).
+   Question:  A glass ball falls 0.5 m onto a floor. After each impact it has 80 % of the speed that it had before it
+              (coefficient of restitution e = 0.8). What fraction of its height does it reach again? Does it bounce
+              for ever? Write down both answers, then run.
+   Theory:    A fall from height h ends with speed v = sqrt(2 g h). Rebound n therefore reaches h e^(2n). Each flight
+              lasts e times as long as the flight before. The flight times form a geometric series with a finite sum,
+              so infinitely many impacts end at the time t = sqrt(2 h/g) (1 + e)/(1 - e).
    Build:     cc -O2 01_bounce.c ../dem.c -lm
-   Run:       01_bounce, or 01_bounce --replay for a film, 01_bounce.html: arches, each lower and shorter than the one
-              before
-   Expected:  five heights within 1 %, the time at which it lies still within 2 %
-   Exercises: check with 01_bounce --check N VALUE
-   1  A ball with e = .7 is dropped from 2 m. How high is its fifth rebound, in m?
-   2  Which restitution lets a ball dropped from 1 m lie still after 3 s? (Make the program confirm it.) */
+   Run:       01_bounce or, with a replay of the falling arches, 01_bounce --replay
+   Output:    the heights of five rebounds (within 1 %) and the time at which the ball lies still (within 2 %)
+   Exercises: check an answer with 01_bounce --check N VALUE
+   1  A ball with e = 0.7 falls from 2 m. How high is its fifth rebound, in m?
+   2  A ball falls from 1 m and lies still after 3 s. What is its restitution? Confirm the answer with the program. */
 #include "../dem.h"
 #include "lesson.h"
 
 static double answer(int exercise);
 
 int main(int argc, char **argv) {
-    const int replay = lesson_begin(argc, argv, "01_bounce", answer);
+    const int record = lesson_begin(argc, argv, "01_bounce", answer);
     const double restitution = 0.8, height = 0.5, radius = 0.01, g = 9.81;  /* -, m, m, m/s2 */
 
-    /* the world: what is left at zero is absent, or chosen for you */
+    /* the world: a field that stays zero is absent or chosen for you */
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.gravity.z = -g;
     dem_world *world = dem_world_create(&desc);
 
-    /* what ball and floor are made of; the true modulus of glass is 7e10 Pa, a softer one allows longer steps */
+    /* the material of ball and floor; glass has 7e10 Pa, but a softer material allows longer steps */
     dem_material_desc glass_desc = DEM_MATERIAL_DESC;
     glass_desc.density = 2500;                                      /* kg/m3 */
     glass_desc.young = 1e9;                                         /* Pa */
@@ -34,39 +35,40 @@ int main(int argc, char **argv) {
     dem_material glass = dem_material_add(world, &glass_desc);
     dem_wall_plane_add(world, glass, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
     dem_body ball = dem_sphere_add(world, glass, radius, dem_vec3_make(0, 0, radius + height));
-    dem_world_check_print(world, stdout);                                 /* says what looks wrong: here, nothing */
+    dem_world_check_print(world, stdout);                           /* prints likely mistakes: here none */
 
-    dem_replay_desc film_desc = DEM_REPLAY_DESC;
-    film_desc.interval = 0.01;                                      /* s, from frame to frame */
-    dem_replay *film = replay ? dem_replay_open(world, "01_bounce.html", &film_desc) : 0;
+    dem_replay_desc replay_desc = DEM_REPLAY_DESC;
+    replay_desc.interval = 0.01;                                    /* s, from frame to frame */
+    dem_replay *replay = record ? dem_replay_open(world, "01_bounce.html", &replay_desc) : 0;
 
-    /* the run: one step at a time, for we want the moment at which the ball turns round */
+    /* the run: one step at a time, to find the steps at which the ball begins to fall */
     double expected = height, last_speed = 0, last_impact = 0;
     int bounces = 0;
     while (dem_world_time_get(world) < 3.2) {
         if (dem_world_step(world, 1) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
         dem_body_state state;
         dem_body_get(world, ball, &state);
-        double bottom = state.position.z - radius;                  /* m, of the ball above the floor */
-        dem_replay_value_set(film, "height (m)", bottom);               /* without a film nothing happens */
+        double bottom = state.position.z - radius;                  /* m above the floor */
+        dem_replay_value_set(replay, "height (m)", bottom);         /* does nothing without a replay */
         if (last_speed > 0 && state.velocity.z <= 0 && bounces < 5) {
-            char name[32];
+            char name[48];
             expected *= restitution*restitution;
             snprintf(name, sizeof name, "height of rebound %d [m]", ++bounces);
             lesson_row(name, bottom, 0, expected, 1);
         }
-        if (state.velocity.z > 0.02) last_impact = dem_world_time_get(world);   /* m/s: it still leaves the floor */
+        if (state.velocity.z > 0.02) last_impact = dem_world_time_get(world);   /* m/s: it leaves the floor */
         last_speed = state.velocity.z;
     }
-    lesson_row("lies still at [s]", last_impact, 0, sqrt(2*height/g)*(1 + restitution)/(1 - restitution), 2);
-    lesson_range("rebounds counted (five are looked for)", bounces, 0, 5, 5);
-    dem_replay_close(film);
+    expected = sqrt(2*height/g)*(1 + restitution)/(1 - restitution);
+    lesson_row("time until the ball lies still [s]", last_impact, 0, expected, 2);
+    lesson_claim("the ball rebounds five times", bounces == 5);
+    dem_replay_close(replay);
     dem_world_destroy(world);
     return lesson_end();
 }
 
-/* The marking. Stop here if you want to find the answers by yourself. */
+/* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
-    const double t = 3/sqrt(2*1/9.81);                              /* in times of the fall: (1 + e)/(1 - e) */
+    const double t = 3/sqrt(2*1/9.81);                              /* in units of the time of fall: (1 + e)/(1 - e) */
     return exercise == 1 ? 2*pow(0.7, 10) : (t - 1)/(t + 1);
 }

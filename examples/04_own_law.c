@@ -1,22 +1,21 @@
-/* 04_own_law.c - lesson 4: a contact law of your own, and the exam it has to pass.
+/* 04_own_law.c - lesson 4: your own contact law. You learn: law, contact history, energy; an exam for laws.
 
-   Question:  a spring that is stiffer on the way out than on the way in: k1 while loading, k2 while unloading. The area
-              between the two lines is energy lost. If k2 = 4 k1, which restitution follows: 1/2, 1/4, or does it depend
-              on the speed? And what is wrong with the law `hasty` below, which does what is said here? Write it down,
-              then run.
-   Theory:    Walton & Braun, J. Rheol. 30 (1986) 949: loading F = k1 d, unloading F = k2 (d - d0) from the largest
-              overlap D; so d0 = (1 - k1/k2) D stays as a dent. The work that comes back is k1/k2 of what went in:
-                  e = sqrt(k1/k2),  whatever the speed
-   The law sees one contact, remembers one number, D, and answers with a force. The exam (exam.h, docs/laws.md) moves a
-   law by hand and lets grains collide: is it finite, the same from both sides and in every frame, free of energy from
-   nothing, stable at the step advised? Without a dent, stiffer on the way out gives more than was taken: the exam finds
-   it.
+   Question:  A spring is stiffer on unloading (k2) than on loading (k1). The area between the two lines is the energy
+              lost. Let k2 = 4 k1: is the restitution 1/2, is it 1/4, or does it depend on the speed? The law `hasty`
+              below seems to do the same. Why is it wrong? Write down your answers, then run.
+   Theory:    Walton and Braun, J. Rheol. 30 (1986) 949. Loading: F = k1 d for an overlap d. Unloading from the
+              largest overlap D: F = k2 (d - d0). Both lines meet at D, so a dent d0 = (1 - k1/k2) D remains. The
+              fraction k1/k2 of the work is returned:
+                  e = sqrt(k1/k2) at any speed
+              The law sees one contact, stores one number (D) and returns a force. The exam (exam.h, docs/laws.md)
+              tests 14 properties of a law: finite forces, symmetry, independence of the frame, no creation of
+              energy, stability at the advised step and others. A law without the dent returns more work than it took.
    Build:     cc -O2 04_own_law.c ../dem.c -lm
-   Run:       04_own_law, or 04_own_law --replay for a film of k2 = 4 k1, 04_own_law.html
-   Expected:  e within .2 % for four ratios at two speeds; the exam passed; the hasty version fails it
-   Exercises: check with 04_own_law --check N VALUE
-   1  Which k2/k1 gives a restitution of .3?
-   2  Of a law with e = .6, which share of the largest overlap stays as a dent? */
+   Run:       04_own_law or, with a replay of an impact at k2 = 4 k1, 04_own_law --replay
+   Output:    the exam of both laws, and e for four ratios at two speeds (within 0.2 %)
+   Exercises: check an answer with 04_own_law --check N VALUE
+   1  Which k2/k1 gives a restitution of 0.3?
+   2  A law has e = 0.6. What fraction of the largest overlap remains as a dent? */
 #include "../dem.h"
 #include "exam.h"
 #include "lesson.h"
@@ -31,10 +30,10 @@ static void hysteretic(const dem_contact *c, dem_real *memory, dem_contact_force
     dem_real loading = k->k1*c->overlap;
     dem_real unloading = k->k2*(c->overlap - (1 - k->k1/k->k2)*most);
     force->normal = unloading < loading ? unloading : loading;
-    if (force->normal < 0) force->normal = 0;                       /* inside the dent: nothing */
-    if (c->dt > 0) memory[0] = most;                                /* dt = 0: only asked, not run */
+    if (force->normal < 0) force->normal = 0;                       /* no force inside the dent */
+    if (c->dt > 0) memory[0] = most;                                /* dt = 0: the history must stay */
 }
-/* A hasty version: "stiffer on the way out", word for word. */
+/* A hasty version of "stiffer on unloading". */
 static void hasty(const dem_contact *c, dem_real *memory, dem_contact_force *force) {
     const springs *k = (const springs *)c->user;
     (void)memory;
@@ -42,24 +41,24 @@ static void hasty(const dem_contact *c, dem_real *memory, dem_contact_force *for
 }
 static exam_sheet examine(const char *name, dem_law_fn law, springs *k) {
     exam_sheet sheet;
-    exam e = exam_of(name, law, k, 1, 0, k->k2);            /* 1 real of memory, no vector, the stiffest spring */
+    exam e = exam_of(name, law, k, 1, 0, k->k2);            /* 1 real of history, no vector, largest stiffness */
     exam_take(&e, &sheet);
     exam_print(&sheet, stdout);
     return sheet;
 }
 
-/* Two equal grains meet head-on: speed after over speed before; < 0: the run broke. */
-static double collide(springs *k, double speed, dem_replay_desc *film_desc) {
+/* Returns the restitution of a head-on impact of two equal grains; -1: the run failed. */
+static double collide(springs *k, double speed, dem_replay_desc *replay_desc) {
     const double radius = 0.005;                                    /* m */
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.law = hysteretic;
     desc.law_user = k;
     desc.law_memory = 1;
-    desc.law_stiffness = k->k2;                                     /* what the time step must resolve */
+    desc.law_stiffness = k->k2;                                     /* N/m, for the time step */
     dem_world *world = dem_world_create(&desc);
     dem_material_desc clay_desc = DEM_MATERIAL_DESC;
     clay_desc.density = 2000;                                       /* kg/m3 */
-    clay_desc.young = 1e7;                                          /* required, though our law looks away */
+    clay_desc.young = 1e7;                                          /* Pa; required, not used by this law */
     clay_desc.restitution = 1;
     dem_material clay = dem_material_add(world, &clay_desc);
     dem_body pair[2];
@@ -71,36 +70,36 @@ static double collide(springs *k, double speed, dem_replay_desc *film_desc) {
         dem_body_set(world, pair[i], &state);
     }
     dem_world_check_print(world, stdout);
-    dem_replay *film = film_desc ? dem_replay_open(world, "04_own_law.html", film_desc) : 0;
-    const double bit = (0.1*radius/speed + 5e-3)/100;               /* s */
+    dem_replay *replay = replay_desc ? dem_replay_open(world, "04_own_law.html", replay_desc) : 0;
+    const double part = (0.1*radius/speed + 5e-3)/100;               /* s */
     for (int i = 0; i < 100; i++) {
-        if (dem_world_run(world, bit, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
+        if (dem_world_run(world, part, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
         dem_body_get(world, pair[1], &state);
-        dem_replay_value_set(film, "force (N)", state.force.x);
-        dem_replay_value_set(film, "speed (m/s)", state.velocity.x);
+        dem_replay_value_set(replay, "force (N)", state.force.x);
+        dem_replay_value_set(replay, "speed (m/s)", state.velocity.x);
     }
-    dem_replay_close(film);
+    dem_replay_close(replay);
     dem_world_destroy(world);
     return 2*state.velocity.x/speed;
 }
 
 int main(int argc, char **argv) {
-    const int replay = lesson_begin(argc, argv, "04_own_law", answer);
+    const int record = lesson_begin(argc, argv, "04_own_law", answer);
     const double ratios[] = {1, 2, 4, 10}, speeds[] = {0.1, 1};     /* k2/k1, m/s */
-    dem_replay_desc film_desc = DEM_REPLAY_DESC;
-    film_desc.interval = 5.5e-5;                                    /* s */
+    dem_replay_desc replay_desc = DEM_REPLAY_DESC;
+    replay_desc.interval = 5.5e-5;                                  /* s */
     springs k = {1e4, 4e4};
     exam_sheet good = examine("hysteretic", hysteretic, &k), bad = examine("hasty", hasty, &k);
-    lesson_row("lines of the exam passed, of 14", good.passed, 0, EXAM_LINES, 0);
-    lesson_range("by the hasty version", bad.passed, 0, 1, EXAM_LINES - 2);
+    lesson_row("exam, lines passed by the law", good.passed, 0, EXAM_LINES, 0);
+    lesson_range("exam, lines passed by hasty", bad.passed, 0, 1, EXAM_LINES - 2);
     for (int i = 0; i < 8; i++) {
         char name[64];
         k.k2 = ratios[i/2]*k.k1;
         snprintf(name, sizeof name, "restitution, k2 = %.0f k1, %.1f m/s", ratios[i/2], speeds[i%2]);
-        lesson_row(name, collide(&k, speeds[i%2], replay && i == 5 ? &film_desc : 0), 0, sqrt(k.k1/k.k2), 0.2);
+        lesson_row(name, collide(&k, speeds[i%2], record && i == 5 ? &replay_desc : 0), 0, sqrt(k.k1/k.k2), 0.2);
     }
     return lesson_end();
 }
 
-/* The marking. Stop here if you want to find the answers by yourself. */
+/* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) { return exercise == 1 ? 1/(0.3*0.3) : 1 - 0.6*0.6; }

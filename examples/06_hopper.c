@@ -1,18 +1,19 @@
-/* 06_hopper.c - lesson 6: a hopper runs out through a hole in its flat bottom.
+/* 06_hopper.c - lesson 6: a hopper. You learn: flow through a hole (Beverloo), scaling laws, outlets.
 
-   Question:  water runs out with sqrt(2 g h): slower and slower. Does sand? And if the hole is twice as wide, does
-              twice as much come? Write both down, then run.
-   Theory:    Beverloo 1961: grains fall freely below an arch over the hole, whatever presses above. A hole of width B
-              then lets pass B sqrt(g B) per depth in a plane; its rim, k d wide (k about 1.4), is no use to grains of
-              diameter d:
-                  W = C rho_b sqrt(g) (B - k d)^(3/2)          round holes in 3-D: (B - k d)^(5/2), C about .58
+   Question:  Water flows out with the speed sqrt(2 g h), so it becomes slower and slower. Does sand? Is the flow
+              doubled if the hole is twice as wide? Write down both answers, then run.
+   Theory:    Beverloo 1961. Grains fall freely below an arch over the hole, independent of the load above. In a plane
+              a hole of width B then passes a flow proportional to B sqrt(g B). Grains of diameter d cannot use a rim
+              of width k d in all, k about 1.4:
+                  W = C rho_b sqrt(g) (B - k d)^(3/2)       per depth; rho_b: bulk density
+              For a round hole in three dimensions the exponent is 5/2, and C is about 0.58.
    Build:     cc -O2 06_hopper.c ../dem.c -lm
-   Run:       06_hopper, or 06_hopper --replay for a film of the middle hole with its flow, 06_hopper.html
-   Expected:  with k = 1.4 the exponent is 1.5 within 15 %; C of discs is .7 to 1.2; half empty it flows at .8 to 1.1 of
-              its first rate, where water would at .71
-   Exercises: check with 06_hopper --check N VALUE
-   1  In this plane, with k = 1.4: how many times as much comes through a hole of 16 d as through one of 8 d?
-   2  A round hole of 20 mm, grains of 2 mm, rho_b = 1500 kg/m3, C = .58, k = 1.4: how many kg/s? */
+   Run:       06_hopper or, with a replay of the middle hole and its flow, 06_hopper --replay
+   Output:    flows through three holes. With k = 1.4 the exponent is 1.5 within 15 %, and C of discs is 0.7 to 1.2. A
+              hopper that is half empty flows at 0.8 to 1.1 of its first rate; water would flow at 0.71
+   Exercises: check an answer with 06_hopper --check N VALUE
+   1  In this plane, with k = 1.4: by which factor is the flow through a hole of 16 d larger than through one of 8 d?
+   2  Round hole of 20 mm, grains of 2 mm, rho_b = 1500 kg/m3, C = 0.58, k = 1.4. What is the flow in kg/s? */
 #include "../dem.h"
 #include "lesson.h"
 
@@ -21,15 +22,15 @@ static double answer(int exercise);
 enum { COUNT = 480, SEEDS = 2, HOLES = 3 };
 static const double R = 2.5e-3, half = 0.045, thickness = 5e-3, g = 9.81;   /* m, half the hopper's width; m/s2 */
 
-typedef struct outflow { double rate, evenness, bulk, overlap; } outflow;   /* kg/s; -; kg/m3; of the radius */
+typedef struct outflow { double rate, evenness, bulk, overlap; } outflow;   /* kg/s; -; kg/m3; radii */
 
-/* Fills the hopper, opens it, and times 10, 30, 50 and 70 % of the discs as they leave; 1: the run broke. */
-static int run_out(double hole, int seed, int replay, outflow *f) {
+/* Fills the hopper, opens it, and finds when 10, 30, 50 and 70 % of the discs have left. Returns 1 on failure. */
+static int run_out(double hole, int seed, int record, outflow *f) {
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.planar = 1;
     desc.thickness = thickness;
     desc.gravity.y = -g;
-    desc.dt = 1.4e-5;                                               /* s, t_c/22; 0: a finer one would be chosen */
+    desc.dt = 1.4e-5;                                               /* s, t_c/22; 0 would choose a shorter step */
     dem_world *world = dem_world_create(&desc);
     dem_material_desc bead_desc = DEM_MATERIAL_DESC;
     bead_desc.density = 2500;                                       /* kg/m3 */
@@ -44,7 +45,7 @@ static int run_out(double hole, int seed, int replay, outflow *f) {
     dem_profile hopper = {6, 4, corners, sides}, lid = {6, 1, corners, across};
     dem_wall_profile_add(world, bead, &hopper, DEM_EDGE_RESOLVED);
     dem_wall closed = dem_wall_profile_add(world, bead, &lid, DEM_EDGE_RESOLVED);
-    for (int i = 0; i < 2; i++)                                     /* two sizes, lest they lie in rows */
+    for (int i = 0; i < 2; i++)                                     /* two sizes, against regular packing */
         dem_spheres_fill(world, bead, (0.95 + 0.1*i)*R,
                          dem_region_make(dem_box_make(-x, 0, 0, x, 0.24, 0)), COUNT/2,
                          (uint64_t)(2*seed + i));
@@ -55,25 +56,25 @@ static int run_out(double hole, int seed, int replay, outflow *f) {
 
     if (dem_world_run(world, 0.3, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
     dem_totals full = dem_totals_get(world);
-    f->bulk = full.mass/(4*half*full.centre[1])/thickness;          /* as wide as the hopper, twice its centre high */
+    f->bulk = full.mass/(4*half*full.centre[1])/thickness;          /* height: twice that of the centre of mass */
     dem_wall_remove(world, closed);
     dem_overlap_max_reset(world);
-    dem_replay_desc film_desc = DEM_REPLAY_DESC;
-    film_desc.interval = 0.01;                                      /* s */
-    dem_replay *film = replay ? dem_replay_open(world, "06_hopper.html", &film_desc) : 0;
+    dem_replay_desc replay_desc = DEM_REPLAY_DESC;
+    replay_desc.interval = 0.01;                                    /* s */
+    dem_replay *replay = record ? dem_replay_open(world, "06_hopper.html", &replay_desc) : 0;
     dem_outlet_state gone;
     double begun = dem_world_time_get(world), mark[4] = {0, 0, 0, 0}, mass[4] = {0, 0, 0, 0};
     for (int stage = 0; stage < 4 && dem_world_time_get(world) < begun + 5;) {
         if (dem_world_run(world, 0.01, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
         dem_outlet_get(world, out, &gone);
-        dem_replay_value_set(film, "run out (kg)", gone.total_mass);
+        dem_replay_value_set(replay, "discharged mass (kg)", gone.total_mass);
         if ((int)gone.total >= COUNT*(1 + 2*stage)/10) {            /* 10, 30, 50, 70 % of the discs are out */
             mark[stage] = dem_world_time_get(world);
             mass[stage++] = gone.total_mass;
         }
     }
     f->overlap = dem_counters_get(world).overlap_max;
-    dem_replay_close(film);
+    dem_replay_close(replay);
     dem_world_destroy(world);
     f->evenness = (mass[3] - mass[2])/(mark[3] - mark[2])/((mass[1] - mass[0])/(mark[1] - mark[0]));
     f->rate = (mass[2] - mass[0])/(mark[2] - mark[0]);
@@ -81,15 +82,15 @@ static int run_out(double hole, int seed, int replay, outflow *f) {
 }
 
 int main(int argc, char **argv) {
-    const int replay = lesson_begin(argc, argv, "06_hopper", answer);
+    const int record = lesson_begin(argc, argv, "06_hopper", answer);
     const double d = 2*R, k = 1.4, holes[HOLES] = {6*d, 7.5*d, 9*d};  /* m, -, m */
     double rate[HOLES], error[HOLES], C[HOLES], even[HOLES*SEEDS], bar, overlap = 0;
-    puts("hole/d   flow [kg/s]           C      half empty over full");
+    puts("hole/d     flow [kg/s]           C   flow half empty/full");
     for (int i = 0; i < HOLES; i++) {
         double w[SEEDS], rho_b = 0;
         for (int seed = 0; seed < SEEDS; seed++) {
             outflow f;
-            if (run_out(holes[i], seed + 1, replay && i == 1 && !seed, &f)) return 1;
+            if (run_out(holes[i], seed + 1, record && i == 1 && !seed, &f)) return 1;
             w[seed] = f.rate;
             even[i*SEEDS + seed] = f.evenness;
             rho_b += f.bulk/(double)SEEDS;
@@ -97,20 +98,20 @@ int main(int argc, char **argv) {
         }
         rate[i] = lesson_mean(w, SEEDS, &error[i]);
         C[i] = rate[i]/(rho_b*thickness*sqrt(g)*pow(holes[i] - k*d, 1.5));
-        printf("%6.1f  %8.4f +- %.4f  %10.3f  %10.3f\n", holes[i]/d, rate[i], error[i], C[i],
+        printf("%6.1f  %8.4f +- %.4f  %8.2f  %8.2f\n", holes[i]/d, rate[i], error[i], C[i],
                lesson_mean(even + i*SEEDS, SEEDS, &bar));
     }
     const double span = log((holes[2] - k*d)/(holes[0] - k*d)), c = lesson_mean(C, HOLES, &bar);
     const double misfit = hypot(error[0]/rate[0], error[2]/rate[2])/span;
-    lesson_row("exponent of B - 1.4 d", log(rate[2]/rate[0])/span, misfit, 1.5, 15);
+    lesson_row("exponent of (B - 1.4 d)", log(rate[2]/rate[0])/span, misfit, 1.5, 15);
     lesson_range("C, mean of the three holes", c, bar, 0.7, 1.2);
-    const double steady = lesson_mean(even, HOLES*SEEDS, &bar);     /* water: sqrt(.4/.8) = .71 */
-    lesson_range("flow when half empty over that when full", steady, bar, 0.8, 1.1);
-    lesson_range("largest overlap [of the radius]", overlap, 0, 0, 0.06);
+    const double steady = lesson_mean(even, HOLES*SEEDS, &bar);     /* water: sqrt(0.4/0.8) = 0.71 */
+    lesson_range("flow when half empty over flow when full", steady, bar, 0.8, 1.1);
+    lesson_range("largest overlap [radii]", overlap, 0, 0, 0.06);
     return lesson_end();
 }
 
-/* The marking. Stop here if you want to find the answers by yourself. */
+/* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     return exercise == 1 ? pow((16 - 1.4)/(8 - 1.4), 1.5) : 0.58*1500*sqrt(g)*pow(0.020 - 1.4*0.002, 2.5);
 }

@@ -1,28 +1,28 @@
-/* 09_moving_wall.c - lesson 9: a conveyor belt from a drawing (STL), and a resting ball that it takes along.
+/* 09_moving_wall.c - lesson 9: a conveyor belt. You learn: meshes from files, moving walls, the energy ledger.
 
-   Question:  the belt runs at V = 1 m/s. How fast is the ball in the end: 1 m/s? Of the work that the belt does, how
-              much becomes heat? And will it notice where the belt's triangles meet? Write it down, then run.
-   Theory:    the ball slides at first and gains speed mu g t, and spin against the belt, until both surfaces move
-              alike:
-                  v = 2/7 V,  R w = 5/7 V  at  t = 2 V/(7 mu g)
-              The belt has then done the work 2/7 m V^2: half of it is in the ball, the other half became heat.
-   STL files have no unit, and drawings are in millimetres: the health of a mesh that is read says so where the size
-   looks like it. dem.h is in metres.
+   Question:  A ball at rest is put on a belt that runs at V = 1 m/s. Is its final speed 1 m/s? What fraction of the
+              belt's work becomes heat? Does the ball notice the edges of the belt's triangles? Write down three
+              answers, then run.
+   Theory:    First the ball slides. It gains the speed mu g t and rotates against the belt (w). Sliding ends
+              when both surfaces move alike:
+                  v = 2/7 V,   R w = 5/7 V   at t = 2 V/(7 mu g)
+              The belt has then done the work 2/7 m V^2. Half of it is energy of the ball; the other half is heat.
+   Note:      STL files contain no unit, and drawings are usually in mm; dem.h is in m. When it reads a mesh, it counts
+              defects and suggests a unit.
    Build:     cc -O2 09_moving_wall.c ../dem.c -lm
-   Run:       09_moving_wall, or 09_moving_wall --replay for a film of the mesh, 09_moving_wall.html; writes belt.stl
-   Expected:  v, R w, the belt's work and the heat within 1 %; the ledger misses nothing; the ball on triangles is where
-              one on an endless plane is, to 1e-9 m; the mesh has 26 open edges, those of its rim, and a hint about
-              units
-   Exercises: check with 09_moving_wall --check N VALUE
-   1  V = 2 m/s, mu = .25: for how long does the ball slide, in s?
-   2  V = 1.5 m/s, and a cylinder lies across the belt (planar = 1, gravity along y): how fast is it in the end, in m/s?
-   */
+   Run:       09_moving_wall or, with a replay on the mesh, 09_moving_wall --replay; both write belt.stl
+   Output:    speeds, work and heat within 1 %; a ledger without loss; the same path on triangles and on a plane, to
+              1e-9 m; a mesh with 26 open edges, those of its rim
+   Exercises: check an answer with 09_moving_wall --check N VALUE
+   1  V = 2 m/s, mu = 0.25. How long does the ball slide, in s?
+   2  V = 1.5 m/s. What is the final speed of a cylinder that lies across the belt (planar = 1, gravity along y), in
+      m/s? */
 #include "../dem.h"
 #include "lesson.h"
 
 static double answer(int exercise);
 
-/* A belt of 12 x 1 squares of 50 mm, two triangles each, as a drawing program writes it: text, millimetres. */
+/* Writes a belt of 12 x 1 squares of 50 mm, two triangles each, as drawing programs do: text, in mm. */
 static int write_belt(const char *path) {
     FILE *file = fopen(path, "w");
     if (!file) return 0;
@@ -37,18 +37,18 @@ static int write_belt(const char *path) {
 }
 
 int main(int argc, char **argv) {
-    const int replay = lesson_begin(argc, argv, "09_moving_wall", answer);
+    const int record = lesson_begin(argc, argv, "09_moving_wall", answer);
     const double V = 1, mu = 0.3, g = 9.81, radius = 0.01;          /* m/s, -, m/s2, m */
-    if (!write_belt("belt.stl")) { puts("belt.stl cannot be written: is this folder yours?"); return 1; }
+    if (!write_belt("belt.stl")) { puts("cannot write belt.stl: may you write to this folder?"); return 1; }
     dem_world *worlds[2];
     dem_wall belt[2];
     dem_body ball[2];
     dem_mesh_health health;
-    for (int i = 0; i < 2; i++) {                                   /* 0: the mesh, 1: a plane in its place */
+    for (int i = 0; i < 2; i++) {                                   /* 0: mesh, 1: plane */
         dem_world_desc desc = DEM_WORLD_DESC;
         desc.gravity.z = -g;
         desc.ledger = 1;                                            /* account for energy */
-        desc.orientations = 1;                                      /* so that the film shows it turn */
+        desc.orientations = 1;                                      /* so that the replay shows the rotation */
         dem_world *world = worlds[i] = dem_world_create(&desc);
         dem_material_desc rubber_desc = DEM_MATERIAL_DESC;
         rubber_desc.density = 1200;                                 /* kg/m3 */
@@ -59,11 +59,14 @@ int main(int argc, char **argv) {
         dem_material rubber = dem_material_add(world, &rubber_desc);
         if (i == 0) {
             dem_mesh mesh;
-            if (dem_mesh_read(world, "belt.stl", &mesh, &health) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
+            if (dem_mesh_read(world, "belt.stl", &mesh, &health) != DEM_OK) {
+                puts(dem_world_error_get(world));
+                return 1;
+            }
             printf("belt.stl: %d triangles, %d open edges, %d slivers. %s\n", mesh.triangle_count, health.open_edges,
                    health.slivers, health.hint);
             dem_mesh_place(world, &mesh, 1e-3, dem_quat_make(1, 0, 0, 0), dem_vec3_make(0, 0.003, 0));  /* mm to m */
-            belt[i] = dem_wall_mesh_add(world, rubber, &mesh);           /* the world keeps a copy */
+            belt[i] = dem_wall_mesh_add(world, rubber, &mesh);           /* has its own copy */
             dem_mesh_free(world, &mesh);
         } else belt[i] = dem_wall_plane_add(world, rubber, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
         dem_motion motion = DEM_MOTION;
@@ -74,12 +77,12 @@ int main(int argc, char **argv) {
         dem_world_check_print(world, stdout);
     }
 
-    dem_replay_desc film_desc = DEM_REPLAY_DESC;
-    film_desc.interval = 0.002;                                     /* s */
-    dem_replay *film = replay ? dem_replay_open(worlds[0], "09_moving_wall.html", &film_desc) : 0;
+    dem_replay_desc replay_desc = DEM_REPLAY_DESC;
+    replay_desc.interval = 0.002;                                   /* s */
+    dem_replay *replay = record ? dem_replay_open(worlds[0], "09_moving_wall.html", &replay_desc) : 0;
     dem_body_state state[2];
     double apart = 0;
-    puts("time [s]  speed [m/s]  expected");
+    puts("time [s]  speed [m/s]  expected [m/s]");
     for (int i = 1; i <= 60; i++) {
         for (int k = 0; k < 2; k++) {
             if (dem_world_run(worlds[k], 0.0025, 0, 0) != DEM_OK) { puts(dem_world_error_get(worlds[k])); return 1; }
@@ -88,26 +91,26 @@ int main(int argc, char **argv) {
         const double t = dem_world_time_get(worlds[0]), sliding = mu*g*t, rolling = 2*V/7;
         const dem_vec3 a = state[0].position, b = state[1].position;
         apart = fmax(apart, hypot(a.x - b.x, a.z - b.z));
-        dem_replay_value_set(film, "speed (m/s)", state[0].velocity.x);
-        dem_replay_value_set(film, "-R w (m/s)", -radius*state[0].spin.y);
-        if (i%10 == 0) printf("%8.3f  %11.4f  %8.4f\n", t, state[0].velocity.x, sliding < rolling ? sliding : rolling);
+        dem_replay_value_set(replay, "speed (m/s)", state[0].velocity.x);
+        dem_replay_value_set(replay, "-R w (m/s)", -radius*state[0].spin.y);
+        if (i%10 == 0) printf("%8.3f  %11.4f  %14.4f\n", t, state[0].velocity.x, sliding < rolling ? sliding : rolling);
     }
     dem_wall_loads loads;
     dem_wall_loads_get(worlds[0], belt[0], &loads);
     const dem_ledger ledger = dem_ledger_get(worlds[0]);
     const double mv2 = state[0].mass*V*V;                           /* J */
-    lesson_row("speed [m/s]", state[0].velocity.x, 0, 2*V/7, 1);
-    lesson_row("-R w [m/s]", -radius*state[0].spin.y, 0, 5*V/7, 1);
+    lesson_row("final speed [m/s]", state[0].velocity.x, 0, 2*V/7, 1);
+    lesson_row("final -R w [m/s]", -radius*state[0].spin.y, 0, 5*V/7, 1);
     lesson_row("work of the belt [mJ]", 1e3*loads.work, 0, 2e3*mv2/7, 1);
     lesson_row("heat of sliding [mJ]", 1e3*(ledger.slide + ledger.tangent), 0, 1e3*mv2/7, 1);
-    lesson_range("missing from the ledger, of all put in", fabs(ledger.residual)/ledger.throughput, 0, 0, 1e-3);
-    lesson_range("mesh and plane part the balls by [m]", apart, 0, 0, 1e-9);
+    lesson_range("residual of the ledger over energy supplied", fabs(ledger.residual)/ledger.throughput, 0, 0, 1e-3);
+    lesson_range("distance of paths on mesh and plane [m]", apart, 0, 0, 1e-9);
     lesson_row("open edges of the mesh", health.open_edges, 0, 26, 0);
-    lesson_range("letters in the hint about units", (double)strlen(health.hint), 0, 1, 200);
-    dem_replay_close(film);
+    lesson_claim("the mesh gets a hint about its unit", *health.hint);
+    dem_replay_close(replay);
     for (int i = 0; i < 2; i++) dem_world_destroy(worlds[i]);
     return lesson_end();
 }
 
-/* The marking. Stop here if you want to find the answers by yourself. A body of inertia k m R^2 ends at V k/(1 + k). */
+/* Marking. Stop here if you want to find the answers yourself. A body with inertia k m R^2 ends at V k/(1 + k). */
 static double answer(int exercise) { return exercise == 1 ? 2*2/(7*0.25*9.81) : 1.5*0.5/1.5; }

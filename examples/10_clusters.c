@@ -1,20 +1,20 @@
-/* 10_clusters.c - lesson 10: grains that are not round: clusters of spheres.
+/* 10_clusters.c - lesson 10: grains that are not round. You learn: clusters, moments of inertia, interlocking.
 
-   Question:  tetrahedra of four touching spheres slump from a tube that is taken away; then balls of the same volume
-              and material do, which (other than the tetrahedra) even resist rolling. Which heap is steeper, and by how
-              much? And how hard is a tetrahedron to spin, compared with a ball of its mass and volume? Write it down,
-              then run.
-   Theory:    inertia: that of each sphere about itself, 2/5 m r^2, and m a^2 for its centre being off the axis by a. In
-              a tetrahedron centres are r sqrt(3/2) from the middle, and by symmetry every axis has 2/3 of that square:
-                  I = M r^2 (2/5 + 1)              a ball of its volume: 2/5 M (4^(1/3) r)^2 = 1.008 M r^2
-              Of a cone of height H and radius L the mean height is H/4 and the mean distance from the axis L/2.
+   Question:  Tetrahedra of four touching spheres collapse after the tube around them is removed. Balls of the same
+              volume and material do the same; only the balls have rolling resistance. Which heap is steeper? Which has
+              the larger moment of inertia, a tetrahedron or a ball of its mass and volume? Write it down, then run.
+   Theory:    Each sphere of mass m contributes 2/5 m r^2 about its own centre, plus m a^2 if its centre is a off the
+              axis. The centres are sqrt(3/2) r from the middle, and by symmetry a^2 is 2/3 of that squared: r^2. So
+                  I = (2/5 + 1) M r^2;   a ball of the same volume: 2/5 M (4^(1/3) r)^2 = 1.008 M r^2
+              A cone of height H and radius L has the mean height H/4 and the mean distance L/2 from its axis.
    Build:     cc -O2 10_clusters.c ../dem.c -lm
-   Run:       10_clusters, or 10_clusters --replay for a film of a heap of tetrahedra, 10_clusters.html. 25 times as
-              many, until nothing moves: build/heap (examples/heap.c), five minutes
-   Expected:  I/(M r^2) = 1.4 within .1 %; tetrahedra are steeper by 3 to 20 degrees, mean of two seeds
-   Exercises: check with 10_clusters --check N VALUE
-   1  Three touching spheres in a row: I/(M r^2) about an axis across the row? (dem_shape_get confirms it.)
-   2  A cone-shaped heap: mean height 3 mm, mean distance from the axis 12 mm. Its slope, in degrees? */
+   Run:       10_clusters or, with a replay of a heap of tetrahedra, 10_clusters --replay. The long form is heap.c: 25
+              times as many grains until all rest, five minutes
+   Output:    I/(M r^2) = 1.4 within 0.1 %; tetrahedra are steeper by 3 to 20 degrees (mean of two runs)
+   Exercises: check an answer with 10_clusters --check N VALUE
+   1  What is I/(M r^2) of three touching spheres in a row, about an axis across the row? (dem_shape_get confirms it.)
+   2  A conical heap has a mean height of 3 mm and a mean distance of 12 mm from its axis. What is its slope in degrees?
+   */
 #include "../dem.h"
 #include "lesson.h"
 
@@ -33,8 +33,8 @@ static dem_shape tetrahedron(dem_world *world) {
     desc.radius = r;
     return dem_shape_cluster_add(world, &desc);
 }
-/* Degrees: the slope of a heap; below 0: the run broke. */
-static double heap(int tetrahedra, int seed, int replay, double *inertia, double *overlap) {
+/* Returns the slope of a heap (degrees); -1: the run failed. */
+static double heap(int tetrahedra, int seed, int record, double *inertia, double *overlap) {
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.gravity.z = -9.81;                                         /* m/s2 */
     desc.normal_law = DEM_NORMAL_LINEAR;
@@ -44,31 +44,27 @@ static double heap(int tetrahedra, int seed, int replay, double *inertia, double
     gravel_desc.stiffness = 1200;                                   /* N/m */
     gravel_desc.restitution = 0.3;
     gravel_desc.friction = 0.5;
-    gravel_desc.rolling_friction = tetrahedra ? 0 : 0.05;           /* or balls would roll away */
+    gravel_desc.rolling_friction = tetrahedra ? 0 : 0.05;           /* otherwise balls roll away */
     dem_material gravel = dem_material_add(world, &gravel_desc);
     const dem_vec3 origin = dem_vec3_make(0, 0, 0), up = dem_vec3_make(0, 0, 1);
     dem_wall_plane_add(world, gravel, origin, up);
     dem_wall tube = dem_wall_cylinder_add(world, gravel, origin, up, 0.012, 1);
 
-    dem_shape shape = {0};                                          /* 0: a ball */
-    dem_shape_info info;
-    if (tetrahedra) {
-        shape = tetrahedron(world);
-        dem_shape_get(world, shape, &info);
-        *inertia = info.inertia.z/(info.volume*r*r);                /* moments per density, hence over volume */
-    }
-    dem_region inside;
-    memset(&inside, 0, sizeof inside);
-    inside.box = dem_box_make(-0.012, -0.012, 0, 0.012, 0.012, 0.045);
+    dem_region inside = dem_region_make(dem_box_make(-0.012, -0.012, 0, 0.012, 0.012, 0.045));
+    int placed;
     inside.cylinder = 'z';
-    if (dem_bodies_fill(world, gravel, shape, inside, COUNT, (uint64_t)seed) < COUNT) {
-        puts(dem_world_error_get(world));
-        return -1;
-    }
+    if (tetrahedra) {
+        const dem_shape shape = tetrahedron(world);
+        dem_shape_info info;
+        placed = dem_bodies_fill(world, gravel, shape, inside, COUNT, (uint64_t)seed);
+        dem_shape_get(world, shape, &info);
+        *inertia = info.inertia.z/(info.volume*r*r);                /* moments are per density */
+    } else placed = dem_spheres_fill(world, gravel, cbrt(4.0)*r, inside, COUNT, (uint64_t)seed);
+    if (placed < COUNT) { puts(dem_world_error_get(world)); return -1; }
 
-    dem_replay_desc film_desc = DEM_REPLAY_DESC;
-    film_desc.interval = 0.01;                                      /* s */
-    dem_replay *film = replay ? dem_replay_open(world, "10_clusters.html", &film_desc) : 0;
+    dem_replay_desc replay_desc = DEM_REPLAY_DESC;
+    replay_desc.interval = 0.01;                                    /* s */
+    dem_replay *replay = record ? dem_replay_open(world, "10_clusters.html", &replay_desc) : 0;
     double slope = 0;
     for (int i = 0; i < 55; i++) {
         if (i == 20) dem_wall_remove(world, tube);
@@ -80,30 +76,30 @@ static double heap(int tetrahedra, int seed, int replay, double *inertia, double
             far += hypot(all.positions[4*k], all.positions[4*k + 1]);
         }
         slope = atan(4*high/(2*far))*180/pi;
-        dem_replay_value_set(film, "slope (degrees)", slope);
+        dem_replay_value_set(replay, "slope (degrees)", slope);
     }
     *overlap = fmax(*overlap, dem_counters_get(world).overlap_max);
-    dem_replay_close(film);
+    dem_replay_close(replay);
     dem_world_destroy(world);
     return slope;
 }
 
 int main(int argc, char **argv) {
-    const int replay = lesson_begin(argc, argv, "10_clusters", answer);
+    const int record = lesson_begin(argc, argv, "10_clusters", answer);
     double slope[2][SEEDS], mean[2], error[2], inertia = 0, overlap = 0;
     for (int kind = 0; kind < 2; kind++) {
         for (int seed = 0; seed < SEEDS; seed++) {
-            slope[kind][seed] = heap(kind, seed + 1, replay && kind && !seed, &inertia, &overlap);
+            slope[kind][seed] = heap(kind, seed + 1, record && kind && !seed, &inertia, &overlap);
             if (slope[kind][seed] < 0) return 1;
         }
         mean[kind] = lesson_mean(slope[kind], SEEDS, &error[kind]);
-        printf("%-10s: slope %4.1f +- %.1f degrees\n", kind ? "tetrahedra" : "balls", mean[kind], error[kind]);
     }
-    lesson_row("a tetrahedron's I/(M r^2)", inertia, 0, 1.4, 0.1);
-    lesson_range("its heap is steeper by [degrees]", mean[1] - mean[0], hypot(error[0], error[1]), 3, 20);
-    lesson_range("largest overlap [of the radius]", overlap, 0, 0, 0.08);
+    lesson_row("I/(M r^2) of a tetrahedron", inertia, 0, 1.4, 0.1);
+    lesson_range("slope of balls [degrees]", mean[0], error[0], 1, 25);
+    lesson_range("slope of tetrahedra [degrees]", mean[1], error[1], mean[0] + 3, mean[0] + 20);
+    lesson_range("largest overlap [radii]", overlap, 0, 0, 0.08);
     return lesson_end();
 }
 
-/* The marking. Stop here if you want to find the answers by yourself. */
+/* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) { return exercise == 1 ? 0.4 + 2*4/3.0 : atan(4*3/(2*12.0))*180/pi; }

@@ -1,36 +1,34 @@
-/* 11_advise.c - lesson 11: what accuracy costs in a scene of one's own: a drum that turns, tried on copies of it.
+/* 11_advise.c - lesson 11: what accuracy costs. You learn: time step, stiffness and chance in your own scene.
 
-   Question:  the power that the drum takes shall be right within 10 %. How long may the time step be, and how soft the
-              grains? And how much longer is a step when grains are 10 times softer: 10 times? Guess, then run.
-   Theory:    a step has to resolve the duration of a collision, by Hertz's law 2.87 (m^2/(E^2 R v))^(1/5) of the
-              reduced mass, modulus and radius: it goes with E^(-2/5), so that 10 times softer buys steps 2.5 times as
-              long. The power is told by the torque's theorem too, w M g x of the centre of mass (lesson 8): a number to
-              judge the runs by.
-   dem_trials_run lets copies of a scene run on with other steps, other stiffnesses and other laws, each three times from
-   places that hardly differ, so that a change is told from chance. The budget is wall time: on a busy machine trials
-   simulate less.
+   Question:  The power of a drum must be right within 10 %. How long may the time step be, and how soft the grains?
+              Does a step become 10 times as long if grains are 10 times softer? Guess, then run.
+   Theory:    A step must resolve a collision, which by Hertz's law lasts 2.87 (m^2/(E^2 R v))^(1/5), with the reduced
+              mass m, modulus E, radius R and the speed v. This is proportional to E^(-2/5): grains that are 10 times
+              softer allow steps 2.5 times as long. The theorem of lesson 8 gives the power, too: w M g x.
+   Method:    dem_trials_run continues copies of the scene with other steps, stiffnesses and laws. Each trial runs three
+              times from positions that hardly differ, which shows whether a change is statistically significant. The
+              budget is in seconds of wall time: on a busy machine the trials simulate less.
    Build:     cc -O2 11_advise.c ../dem.c -lm
-   Run:       11_advise, or 11_advise --replay for a film of the scene before it is tried, 11_advise.html
-   Expected:  softer grains get steps 10^(2/5) = 2.51 times as long within 10 %; power = w M g x within 5 %; a scene as
-              it was, to the last bit; and one sentence of advice
-   Exercises: check with 11_advise --check N VALUE
-   1  How much longer a step does a modulus lower by 100 buy: which factor?
-   2  Glass beads of 3 mm diameter (2500 kg/m3, 70 GPa, Poisson .23) meet at 1 m/s. How long do they touch, in us?
-      (Reduced: m/2, R/2, E/(2 (1 - nu^2)). dem_coefficients_get agrees, when impact_speed is 1.) */
+   Run:       11_advise or, with a replay of the scene before the trials, 11_advise --replay
+   Output:    the table of trials with advice; steps longer by 10^(2/5) = 2.51 (within 10 %); power = w M g x (5 %)
+   Exercises: check an answer with 11_advise --check N VALUE
+   1  By which factor does the step grow if the modulus is 100 times smaller?
+   2  Glass beads of 3 mm diameter (2500 kg/m3, 70 GPa, Poisson's ratio 0.23) collide at 1 m/s. How long do they
+      touch, in us? (Reduced: m/2, R/2, E/(2 (1 - nu^2)). dem_coefficients_get confirms it if impact_speed is 1.) */
 #include "../dem.h"
 #include "lesson.h"
 
 static double answer(int exercise);
 
-/* W, mean power since the loads were reset. Any function of the world will do; means are told from chance sooner than
-   what is of one moment. */
+/* Returns the mean power since the loads were reset, W: an observable. Any function of the world may be one; means have
+   smaller statistical errors than values of one moment. */
 static double power(const dem_world *world, void *drum) {
     dem_wall_loads loads;
     return dem_wall_loads_get(world, *(dem_wall *)drum, &loads) == DEM_OK ? loads.work/loads.time : 0;
 }
 
 int main(int argc, char **argv) {
-    const int replay = lesson_begin(argc, argv, "11_advise", answer);
+    const int record = lesson_begin(argc, argv, "11_advise", answer);
     const double speed = 5, g = 9.81;                               /* rad/s, m/s2 */
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.planar = 1;
@@ -56,24 +54,25 @@ int main(int argc, char **argv) {
                      dem_region_make(dem_box_make(-0.035, -0.035, 0, 0.035, 0.015, 0)), 150, 1);
     dem_world_check_print(world, stdout);
 
-    dem_replay_desc film_desc = DEM_REPLAY_DESC;
-    film_desc.interval = 0.02;                                      /* s */
-    dem_replay *film = replay ? dem_replay_open(world, "11_advise.html", &film_desc) : 0;
-    double lever = 0;                                               /* m, of the weight about the axis: a mean */
+    dem_replay_desc replay_desc = DEM_REPLAY_DESC;
+    replay_desc.interval = 0.02;                                    /* s */
+    dem_replay *replay = record ? dem_replay_open(world, "11_advise.html", &replay_desc) : 0;
+    double lever = 0;                                               /* m, mean lever arm of the weight */
     for (int i = 0; i < 50; i++) {
         if (i == 25) dem_wall_loads_reset(world, drum);
         if (dem_world_run(world, 0.02, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return 1; }
-        dem_replay_value_set(film, "w M g x (mW)", 1e3*speed*g*dem_totals_get(world).mass*dem_totals_get(world).centre[0]);
-        if (i >= 25) lever += dem_totals_get(world).centre[0]/25;
+        const dem_totals t = dem_totals_get(world);
+        dem_replay_value_set(replay, "w M g x (mW)", 1e3*speed*g*t.mass*t.centre[0]);
+        if (i >= 25) lever += t.centre[0]/25;
     }
-    dem_replay_close(film);
+    dem_replay_close(replay);
     const double direct = power(world, &drum), by_torque = speed*g*dem_totals_get(world).mass*lever;
 
     dem_wall_loads_reset(world, drum);
     dem_trials_desc how = DEM_TRIALS_DESC;
-    how.duration = 1;                                               /* s of simulated time, each trial */
-    how.budget = 10;                                                /* s of wall time, all of them */
-    how.tolerance = 0.1;                                            /* share of the power by which it may be off */
+    how.duration = 1;                                               /* s of simulated time per trial */
+    how.budget = 10;                                                /* s of wall time for all trials */
+    how.tolerance = 0.1;                                            /* allowed relative deviation of the power */
     how.observable_count = 1;
     how.observables[0].name = "power";
     how.observables[0].unit = "W";
@@ -92,15 +91,15 @@ int main(int argc, char **argv) {
         if (t->step < 1.01 && t->step > 0.99 && t->stiffness < 0.11) softer = t->dt;
         if (k == 0) as_it_is = t->dt;
     }
-    lesson_row("10 times softer: steps longer by", softer/as_it_is, 0, pow(10, 0.4), 10);
-    lesson_row("power [mW] beside w M g x", 1e3*direct, 0, 1e3*by_torque, 5);
-    lesson_range("bits of the scene that the trials changed", dem_world_hash_get(world) != before, 0, 0, 0);
-    lesson_range("letters of advice", (double)strlen(trials.advice), 0, 20, 400);
+    lesson_row("factor on the step if 10 times softer", softer/as_it_is, 0, pow(10, 0.4), 10);
+    lesson_row("power, and w M g x [mW]", 1e3*direct, 0, 1e3*by_torque, 5);
+    lesson_claim("the trials leave the scene as it was, bit for bit", dem_world_hash_get(world) == before);
+    lesson_claim("the trials give advice", strlen(trials.advice) > 20);
     dem_world_destroy(world);
     return lesson_end();
 }
 
-/* The marking. Stop here if you want to find the answers by yourself. */
+/* Marking. Stop here if you want to find the answers yourself. */
 static double answer(int exercise) {
     const double R = 1.5e-3, m = 4*3.14159265/3*R*R*R*2500, E = 70e9/(2*(1 - 0.23*0.23));
     return exercise == 1 ? pow(100, 0.4) : 1e6*2.87*pow(m*m/4/(E*E*R/2*1), 0.2);

@@ -1,22 +1,21 @@
-/* 12_effects.c - lesson 12: only what a scene calls for: effects switched on one by one, and what a step costs then.
+/* 12_effects.c - lesson 12: the cost of a step. You learn: only the effects of your scene cost time.
 
-   Question:  friction doubles what is computed in a contact. Does it double the time of a step? What does a ledger of
-              energy cost, what a force field of one's own? Guess, then run.
-   Theory:    what is not asked for is not computed, so each row of the table should cost as much as the one above or
-              more, and the time of a step is the product of the factors. Of a bed at rest: three directions of force
-              ask for 3 contacts per bead (each serves two beads) where beads are smooth; friction in two directions
-              makes 2 enough.
-   A bed of beads on a floor, in a periodic box. Worlds take turns, and medians are told, since other programs use the
-   machine too. At last the scene with everything says what each effect takes of a step, and what was asked for and
-   never happened: there is a lid of steel that nothing touches, so that glass has not met steel.
+   Question:  Friction doubles the calculations in a contact. Does it double the time of a step? What does an energy
+              ledger cost, and what a user-defined force field? Guess, then run.
+   Theory:    dem.h computes only what a scene contains, so each effect adds to the time of a step, and the time is the
+              product of the factors. In a bed at rest smooth beads need 3 contacts each, because a contact serves two
+              beads and three force components must balance. With friction 2 are enough.
+   Method:    Six beds of beads in a periodic box, each with one effect more than the one before, take steps in turn;
+              the table has medians, because other programs use the machine too. Then a steel lid is added to the last
+              bed. No bead touches it, and dem_effects_print lists it among what has not happened.
    Build:     cc -O2 12_effects.c ../dem.c -lm
-   Run:       12_effects, or 12_effects --replay for a film of the bed with everything, 12_effects.html
-   Expected:  a price list: all five together make a step 1 to 8 times as long; contacts per bead 2.5 to 3.1 smooth,
-              1.8 to 2.6 with friction; wall 2 was never touched, and materials 1 and 2 neither
-   Exercises: check with 12_effects --check N VALUE
-   1  Friction makes a step 1.84 times as long, rolling resistance besides 1.34 times, the ledger 1.12 times. How many
-      times as long is a step with all three?
-   2  The field `air` and gravity pull at a glass bead (2500 kg/m3) of R = 20 um. Its final speed of fall, in m/s? */
+   Run:       12_effects or, with a replay of the bed with all effects, 12_effects --replay
+   Output:    the cost of each effect. All five together make a step 1 to 8 times as long. Contacts per bead: 2.5 to
+              3.1 smooth, 1.8 to 2.6 with friction
+   Exercises: check an answer with 12_effects --check N VALUE
+   1  Friction makes a step 1.84 times as long, rolling friction another 1.34 times, the ledger another 1.12 times.
+      What is the factor of all three?
+   2  A glass bead (2500 kg/m3) of R = 20 um falls in the field `air`. What is its terminal speed, in m/s? */
 #include "../dem.h"
 #include "lesson.h"
 #include <time.h>
@@ -25,17 +24,17 @@ static double answer(int exercise);
 
 enum { PLAIN, FRICTION, ROLLING, SIZES, LEDGER, FIELD, ROWS, TURNS = 9, BEADS = 400 };
 static const char *names[ROWS] = {"smooth beads, all alike", "friction", "rolling friction", "two sizes",
-                                  "ledger of energy", "force field of one's own"};
+                                  "ledger of energy", "user-defined force field"};
 
-/* Stokes' drag of air. */
+/* Returns Stokes' drag of air. */
 static dem_vec3 air(dem_vec3 position, dem_vec3 velocity, dem_real radius, dem_real mass, double time, void *user) {
     (void)position, (void)mass, (void)time, (void)user;
     dem_real drag = (dem_real)(-6*3.1416*1.8e-5)*radius;            /* N s/m */
     return dem_vec3_make(drag*velocity.x, drag*velocity.y, drag*velocity.z);
 }
 
-/* A bed that asks for the first so many things of the list. */
-static dem_world *bed(int things, int replay) {
+/* Returns a bed at rest with the first effects of the list, as many as `things` says. */
+static dem_world *bed(int things, int record) {
     dem_world_desc desc = DEM_WORLD_DESC;
     desc.gravity.z = -9.81;                                         /* m/s2 */
     desc.boundary[0] = desc.boundary[1] = DEM_BOUNDARY_PERIODIC;
@@ -57,14 +56,14 @@ static dem_world *bed(int things, int replay) {
     dem_spheres_fill(world, glass, things >= SIZES ? 0.8e-3 : 1e-3, dem_region_make(desc.domain),
                      BEADS/2, 1);
     dem_spheres_fill(world, glass, 1e-3, dem_region_make(desc.domain), BEADS/2, 2);
-    dem_replay_desc film_desc = DEM_REPLAY_DESC;
-    film_desc.interval = 0.002;                                     /* s */
-    dem_replay *film = replay ? dem_replay_open(world, "12_effects.html", &film_desc) : 0;
+    dem_replay_desc replay_desc = DEM_REPLAY_DESC;
+    replay_desc.interval = 0.002;                                   /* s */
+    dem_replay *replay = record ? dem_replay_open(world, "12_effects.html", &replay_desc) : 0;
     for (int i = 0; i < 140; i++) {
         if (dem_world_run(world, 0.002, 0, 0) != DEM_OK) puts(dem_world_error_get(world));
-        dem_replay_value_set(film, "contacts per bead", dem_counters_get(world).contacts/(double)BEADS);
+        dem_replay_value_set(replay, "contacts per bead", dem_counters_get(world).contacts/(double)BEADS);
     }
-    dem_replay_close(film);
+    dem_replay_close(replay);
     return world;
 }
 static double seconds_of(dem_world *world, int steps) {
@@ -77,14 +76,14 @@ static int lower_first(const void *a, const void *b) {
 }
 
 int main(int argc, char **argv) {
-    const int replay = lesson_begin(argc, argv, "12_effects", answer);
+    const int record = lesson_begin(argc, argv, "12_effects", answer);
     dem_world *world[ROWS];
     double time[ROWS][TURNS], contacts[ROWS], step[ROWS];
-    for (int row = 0; row < ROWS; row++) world[row] = bed(row, replay && row == ROWS - 1);
+    for (int row = 0; row < ROWS; row++) world[row] = bed(row, record && row == ROWS - 1);
     for (int turn = 0; turn < TURNS; turn++)
         for (int row = 0; row < ROWS; row++) time[row][turn] = seconds_of(world[row], 100);
 
-    printf("%-28s%12s%16s%20s\n", "", "us per step", "without it = 1", "contacts per bead");
+    printf("%-28s%12s%16s%20s\n", "", "us per step", "factor", "contacts per bead");
     for (int row = 0; row < ROWS; row++) {
         qsort(time[row], TURNS, sizeof **time, lower_first);
         step[row] = time[row][TURNS/2]/100;
@@ -93,7 +92,7 @@ int main(int argc, char **argv) {
                row ? step[row]/step[row - 1] : 1, contacts[row]);
     }
 
-    dem_world *all = world[ROWS - 1];                               /* two things that will not happen */
+    dem_world *all = world[ROWS - 1];                               /* a lid of steel that no bead touches */
     dem_material_desc steel_desc = DEM_MATERIAL_DESC;
     steel_desc.density = 7850;
     steel_desc.young = 2e7;
@@ -101,20 +100,19 @@ int main(int argc, char **argv) {
     dem_material steel = dem_material_add(all, &steel_desc);
     dem_wall lid = dem_wall_plane_add(all, steel, dem_vec3_make(0, 0, 0.07), dem_vec3_make(0, 0, -1));
     if (dem_world_step(all, 100) != DEM_OK) puts(dem_world_error_get(all));
-    dem_effects_print(all, 2, stdout);                              /* 2 s of wall time for the shares */
+    dem_effects_print(all, 2, stdout);                              /* 2 s of wall time to measure costs */
     dem_effect effects[DEM_EFFECTS];
     int missing = 0;
     for (int k = 0; k < dem_effects_get(all, 0, effects); k++) missing += effects[k].missing > 0;
     dem_wall_loads loads;
     int touched = dem_wall_loads_get(all, lid, &loads) != DEM_OK || loads.touched;
-    lesson_range("price of all five together", step[ROWS - 1]/step[PLAIN], 0, 1, 8);
+    lesson_range("step with all five effects, over without", step[ROWS - 1]/step[PLAIN], 0, 1, 8);
     lesson_range("contacts per bead, smooth", contacts[PLAIN], 0, 2.5, 3.1);
-    lesson_range("with friction", contacts[FRICTION], 0, 1.8, 2.6);
-    lesson_row("walls never touched, of two", !touched, 0, 1, 0);
-    lesson_range("effects that miss something", missing, 0, 1, DEM_EFFECTS);
+    lesson_range("contacts per bead, with friction", contacts[FRICTION], 0, 1.8, 2.6);
+    lesson_claim("nothing has touched the lid, and an effect reports it", !touched && missing > 0);
     for (int row = 0; row < ROWS; row++) dem_world_destroy(world[row]);
     return lesson_end();
 }
 
-/* The marking. Stop here if you want to find the answers by yourself. Drag bears the weight, 6 pi eta R v = m g. */
+/* Marking. Stop here if you want to find the answers yourself. Drag equals weight: 6 pi eta R v = m g. */
 static double answer(int exercise) { return exercise == 1 ? 1.84*1.34*1.12 : 2*2500*9.81*20e-6*20e-6/(9*1.8e-5); }

@@ -1,20 +1,20 @@
-/* lesson.h - what the twelve lessons share: arguments, rows of what was measured beside what is expected, the marking
-   of exercises. MIT licence. There is no physics in it, and no call of dem.h: those are in the lessons.
+/* lesson.h - what the twelve lessons share: arguments, rows with measured and expected values, marking of exercises.
+   MIT licence. It contains no physics and calls no function of dem.h.
 
-       static double answer(int exercise);                              // 1 or 2; at the end of the lesson
+       static double answer(int exercise);                              // exercise 1 or 2; at the end of the lesson
        int main(int argc, char **argv) {
-           const int replay = lesson_begin(argc, argv, "01_bounce", answer);
+           const int record = lesson_begin(argc, argv, "01_bounce", answer);
            ...
-           lesson_row("rebound [m]", measured, error, expected, 2);      // 2 % may be missing
+           lesson_row("rebound [m]", measured, error, expected, 2);      // may differ by 2 %
            return lesson_end();
        }
 
    Arguments of every lesson:
-       (none)             runs it; exit code 1 when something measured is not as expected
-       --replay           the same, with a film NN_name.html for the browser
-       --check N VALUE    marks your answer to exercise N (1 or 2), in the unit that the exercise names: within 5 % is
-                          right, exit code 0; else wrong, 1
-       --help             says so; anything else is refused, exit code 2 */
+       (none)             runs the lesson; exit code 1 if a result is not as expected
+       --replay           also records NN_name.html, a replay for the browser
+       --check N VALUE    marks VALUE, in the unit of the exercise, as the answer to exercise N (1 or 2): exit code 0
+                          if it is right within 5 %, otherwise 1
+       --help             prints this list; any other argument ends the program with exit code 2 */
 #ifndef LESSON_H
 #define LESSON_H
 #include <math.h>
@@ -22,50 +22,50 @@
 #include <stdlib.h>
 #include <string.h>
 
-static struct lesson_state { const char *name; char film[64]; int rows, wrong; } lesson = {"", "", 0, 0};
+static struct lesson_state { const char *name; char replay[64]; int rows, wrong; } lesson = {"", "", 0, 0};
 
-/* Ends the program for a bad argument: one sentence, exit code 2. */
-static inline void lesson_refuse(const char *what, const char *remedy) {
-    fprintf(stderr, "%s: %s; %s\n", lesson.name, what, remedy);
+/* Ends the program because of a bad argument: prints the reason and the remedy, exit code 2. */
+static inline void lesson_refuse(const char *reason, const char *remedy) {
+    fprintf(stderr, "%s: %s; %s\n", lesson.name, reason, remedy);
     exit(2);
 }
-/* A number, with a decimal point and no unit. */
+/* Returns the number that a text holds; ends the program if the text is anything else. */
 static inline double lesson_number(const char *text) {
     char *end;
     const double value = strtod(text, &end);
     if (end == text || *end || !(fabs(value) < 1e300))
-        lesson_refuse("VALUE is no number", "write it as 12.3 or 1.23e1, without a unit");
+        lesson_refuse("VALUE is not a number", "write it as 12.3 or 1.23e1, without a unit");
     return value;
 }
-/* 1: a film is wanted, 0: not. --help, --check and bad arguments end the program here. */
+/* Returns 1 if a replay is to be recorded, otherwise 0. --help, --check and bad arguments end the program here. */
 static inline int lesson_begin(int argc, char **argv, const char *name, double (*answer)(int exercise)) {
-    const char *usage = "[--replay] or --check N VALUE, N being the exercise, 1 or 2; --help";
+    const char *usage = "[--replay] or --check N VALUE (exercise N is 1 or 2) or --help";
     lesson.name = name;
     if (argc < 2) return 0;
     if (!strcmp(argv[1], "--help")) {
-        printf("%s %s\n  --replay         runs the lesson and writes %s.html, a film for the browser\n"
-               "  --check N VALUE  marks your answer to exercise N: within 5 %% is right\n"
-               "The question, the physics and the exercises are in the first comment of examples/%s.c\n", name, usage,
-               name, name);
+        printf("%s %s\n  --replay         runs the lesson and records %s.html, a replay for the browser\n"
+               "  --check N VALUE  marks your answer to exercise N: it is right within 5 %%\n"
+               "The first comment of examples/%s.c has the question, the theory and the exercises.\n",
+               name, usage, name, name);
         exit(0);
     }
     if (!strcmp(argv[1], "--check")) {
-        if (argc != 4) lesson_refuse("--check takes an exercise and a value", "such as --check 1 12.3");
+        if (argc != 4) lesson_refuse("--check needs an exercise and a value", "for example --check 1 12.3");
         if (strcmp(argv[2], "1") && strcmp(argv[2], "2"))
-            lesson_refuse("there are exercises 1 and 2", "such as --check 1 12.3");
+            lesson_refuse("the exercises are 1 and 2", "for example --check 1 12.3");
         const int exercise = argv[2][0] - '0';
         const double value = lesson_number(argv[3]), right = answer(exercise);
         const int wrong = !(fabs(value - right) <= 0.05*fabs(right));
         printf("exercise %d: %g is %s\n", exercise, value, wrong ? "wrong" : "right");
         exit(wrong);
     }
-    if (argc != 2 || strcmp(argv[1], "--replay")) lesson_refuse("these arguments mean nothing here", usage);
-    snprintf(lesson.film, sizeof lesson.film, "%s.html", name);
-    remove(lesson.film);                        /* that of an earlier run: lesson_end looks whether there is a new one */
+    if (argc != 2 || strcmp(argv[1], "--replay")) lesson_refuse("unknown arguments", usage);
+    snprintf(lesson.replay, sizeof lesson.replay, "%s.html", name);
+    remove(lesson.replay);                      /* so that lesson_end cannot mistake an old file for the new one */
     return 1;
 }
 
-/* Mean of n values from runs that differ by chance, and its standard error. */
+/* Returns the mean of n values from independent runs and writes its standard error. */
 static inline double lesson_mean(const double *values, int n, double *error) {
     double sum = 0, squares = 0;
     for (int i = 0; i < n; i++) sum += values[i];
@@ -73,35 +73,46 @@ static inline double lesson_mean(const double *values, int n, double *error) {
     *error = n > 1 ? sqrt(squares/(n - 1)/n) : 0;
     return sum/n;
 }
-static inline void lesson_tell(const char *name, double value, double error, int right) {
-    char bar[32] = "";
-    if (!lesson.rows++) printf("\n%-42s %10s %-11s   %s\n", "", "measured", "", "expected");
-    if (error > 0) snprintf(bar, sizeof bar, "+- %.2g", error);
-    printf("%-42s %10.5g %-11s ", name, value, bar);
+/* Prints a value with four significant digits or, if its error is not 0, with the decimals of the error's first two
+   digits. */
+static inline void lesson_print(const char *name, double value, double error, int right) {
+    char text[64];
+    int decimals = error > 0 ? 1 - (int)floor(log10(error)) : 0;
+    decimals = decimals < 0 ? 0 : decimals > 6 ? 6 : decimals;
+    if (!lesson.rows++) printf("\n%-46s %-18s  %s\n", "", "measured", "expected");
+    if (error > 0) snprintf(text, sizeof text, "%.*f +- %.*f", decimals, value, decimals, error);
+    else snprintf(text, sizeof text, "%.4g", value);
+    printf("%-46s %-18s%s ", name, text, right ? " " : "!");
     lesson.wrong += !right;
 }
-/* What was measured (error: its standard error, 0: none) beside what is expected, within so many per cent of that. */
+/* Prints a measured value (error: its standard error; 0: none) and the expected one, from which it may differ by some
+   per cent. */
 static inline void lesson_row(const char *name, double value, double error, double expected, double percent) {
-    const int right = fabs(value - expected) <= percent/100*fabs(expected);
-    lesson_tell(name, value, error, right);
-    printf("%s %.5g within %g %%\n", right ? " " : "!", expected, percent);
+    lesson_print(name, value, error, fabs(value - expected) <= percent/100*fabs(expected));
+    if (percent > 0) printf("%.4g within %g %%\n", expected, percent);
+    else printf("%.4g\n", expected);
 }
-/* The same, where theory or other people's measurements name a range. */
+/* The same with an expected range. */
 static inline void lesson_range(const char *name, double value, double error, double low, double high) {
-    const int right = value >= low && value <= high;
-    lesson_tell(name, value, error, right);
-    printf("%s %.5g to %.5g\n", right ? " " : "!", low, high);
+    lesson_print(name, value, error, value >= low && value <= high);
+    printf("%.4g to %.4g\n", low, high);
 }
-/* The exit code: 1 when a row, marked with !, was not as expected, or a film that was wanted is not there. */
+/* Checks a claim about the program itself; prints it only if it does not hold. */
+static inline void lesson_claim(const char *claim, int holds) {
+    if (holds) return;
+    printf("! this should hold, but does not: %s\n", claim);
+    lesson.wrong++;
+}
+/* Returns the exit code: 1 if a row, marked with !, or a claim is wrong, or if the replay was not written. */
 static inline int lesson_end(void) {
-    if (*lesson.film) {
-        FILE *film = fopen(lesson.film, "rb");
-        printf(film ? "open %s in a browser: it plays the run\n" : "%s could not be written: is this folder yours?\n",
-               lesson.film);
-        if (!film) return 1;
-        fclose(film);
+    if (*lesson.replay) {
+        FILE *file = fopen(lesson.replay, "rb");
+        printf(file ? "open %s in a browser: it plays the run\n" : "cannot write %s: may you write to this folder?\n",
+               lesson.replay);
+        if (!file) return 1;
+        fclose(file);
     }
-    if (lesson.wrong) printf("%s: %d of %d rows are not as expected, see !\n", lesson.name, lesson.wrong, lesson.rows);
+    if (lesson.wrong) printf("%s: %d results are not as expected, see !\n", lesson.name, lesson.wrong);
     return lesson.wrong > 0 || lesson.rows == 0;
 }
 #endif

@@ -1,5 +1,5 @@
 # sh tests/lessons.sh PROGRAM...: the lessons (build/01_bounce and so on), JOBS (1) at a time. Each runs with --replay in
-# build/out/NAME and must end with 0, leave a film, mark the right answers to its two exercises as right (exit code 0),
+# build/out/NAME and must end with 0, leave a replay, mark the right answers to its two exercises as right (exit code 0),
 # answers that are off by 20 %, 0 or of the other sign as wrong (1), and refuse what makes no sense (2).
 # The right answers stand here, worked out by awk and not by the lessons. The last line is "N passed, N failed".
 answers() {                                    # NAME: two expressions; tan, asin: see below
@@ -44,9 +44,9 @@ if [ "$1" = -one ]; then                       # DIR PROGRAM
     times >times                               # of the shell; of what it has run: minutes m seconds s, user and system
     worked=$(awk 'NR == 2 { split($1, t, /[ms]/); print 60*t[1] + t[2] }' times)
     [ $code -eq 0 ] || wrong "ends with code $code"
-    [ -s "$name.html" ] || wrong "leaves no film $name.html"
+    [ -s "$name.html" ] || wrong "leaves no replay $name.html"
     expect 0 --help
-    expect 2 --film
+    expect 2 --movie
     expect 2 --check 1
     expect 2 --check 3 1
     expect 2 --check 1 '12,3'
