@@ -1,18 +1,17 @@
-/* exam.c - the exam of a contact law, and its portrait as one page. MIT licence.
+/* exam.c - the exam of a contact law, and its curves on one page. MIT licence.
 
-   make law LAW=path/to/my_law.h        examines yours; without LAW the built-in ones
-   build/exam [--out FOLDER]            results in build/out/exam: a page NAME.html each
+   make law LAW=path/to/my_law.h        examines your law; without LAW the built-in laws
+   build/exam [--out FOLDER]            writes a page NAME.html per law to build/out/exam
 
-   A law of your own is a header with its function and one line that tells what it is,
+   A user-defined law is a header with its function and one line that describes it:
 
        #define LAW {"my law", my_law, 0, 3, 1, 1e5}     // name, function, c->user, reals, vectors, N/m
 
-   as law, law_user, law_memory, law_vectors and law_stiffness of the world desc; a law with a range goes on with
-   DEM_NORMAL_HERTZ (whose coefficients it gets), -1 and law_range in m; one that is told who touches with law_who, 1:
-   its grains then carry eight numbers (body_reals), zeros; a law of bonds with what makes one
-   (dem_contact_fn, whose user is its world): its paths begin bonded, at touch. What the lines of the exam ask, and
-   how to read the curves: docs/laws.md. Exit code 1 when a line was not passed (built-in laws: when one is not passed
-   that is known to be). */
+   The last five are law, law_user, law_memory, law_vectors and law_stiffness of the world desc. Further fields, all
+   optional: the built-in law that supplies the coefficients (DEM_NORMAL_HERTZ); -1; law_range in m; 1 if the law needs
+   law_who (its grains then carry eight numbers, all zero); the function that makes a bond (dem_contact_fn, its user is
+   the world), with which paths begin bonded, in contact. docs/laws.md explains the lines of the exam and the curves.
+   The exit code is 1 if a line is not passed; for built-in laws, except a line that is known to fail. */
 #include "../dem.h"
 #include "study.h"
 #include "exam.h"
@@ -21,8 +20,7 @@
 #include LAW_FILE
 #endif
 
-/* name, function, user, reals, vectors, N/m; coefficients of the contact; the line that it is known not to pass, or -1;
-   m, range; law_who; what makes a bond */
+/* An examined law. known: the line that it is known to fail, or -1. */
 typedef struct examinee {
     const char *name;
     dem_law_fn law;
@@ -37,7 +35,7 @@ typedef struct examinee {
 } examinee;
 
 #ifdef LAW
-static const examinee examinees[] = {LAW};       /* what a law leaves out is 0 */
+static const examinee examinees[] = {LAW};       /* missing fields are 0 */
 enum { KNOWN = 0 };
 #else
 enum { KNOWN = 1 };
@@ -82,7 +80,7 @@ typedef struct curve { int count; double x[POINTS], y[POINTS]; } curve;
 static void curve_add(curve *c, double x, double y) {
     if (c->count < POINTS) { c->x[c->count] = x; c->y[c->count++] = y; }
 }
-/* Loaded, partly unloaded, reloaded, unloaded: N against m; from the range and to it. */
+/* Loads, partly unloads, reloads and unloads a contact, from the range and back: force (N) against overlap (m). */
 static void press(const exam *e, double speed, curve *c) {
     const double deep = e->deep*e->radius, apart = exam_last(e)/deep, turn[5] = {0.7, 0.3, 1, 0.5, apart};
     exam_path p;
@@ -97,7 +95,7 @@ static void press(const exam *e, double speed, curve *c) {
         }
     }
 }
-/* Slid to and fro by `far` (m), or rolled by it (rad), three times at a steady overlap. */
+/* Slides to and fro by `far` (m), or rolls by it (rad), three times at a constant overlap. */
 static void cycle(const exam *e, double far, int rolling, curve *c) {
     exam_path p;
     double at = 0;
@@ -126,7 +124,7 @@ static void bounces(const exam *e, curve *c) {
         if (m.energy >= 0) curve_add(c, m.speed, m.normal/m.speed);
     }
 }
-/* What is left of the energy, and of the slip over the normal speed, against the angle. */
+/* Energy after over before, and slip over normal speed, against the angle. */
 static void slants(const exam *e, curve *energy, curve *slip) {
     int k;
     energy->count = slip->count = 0;
@@ -143,7 +141,7 @@ static void slants(const exam *e, curve *energy, curve *slip) {
 
 /* ---- the page ---- */
 
-/* Puts a picture that study.h has written into the page. */
+/* Copies a picture that study.h has written into the page. */
 static void paste(FILE *page, const char *name) {
     FILE *in = fopen(study_path(name), "r");
     char text[4096];
@@ -160,14 +158,14 @@ static void draw(FILE *page, const char *title, const char *x, const char *y, in
     study_figure f;
     int k;
     memset(&f, 0, sizeof f);
-    f.title = title; f.x_label = x; f.y_label = y; f.log_x = log_x; f.size = 420; f.y1 = top;  /* 0: as the curves are */
+    f.title = title; f.x_label = x; f.y_label = y; f.log_x = log_x; f.size = 420; f.y1 = top;  /* 0: automatic */
     for (k = 0; k < count; k++)
         study_curve(&f, names ? names[k] : 0, STUDY_LINE, curves[k].count, curves[k].x, curves[k].y);
     study_figure_write(&f, "part.svg");
     paste(page, "part.svg");
 }
 static void portrait(const exam *e, const exam_sheet *sheet) {
-    static const char *const rates[2] = {"slowly", "as fast as it meets"}, *const sizes[3] = {"small", "medium", "large"};
+    static const char *const rates[2] = {"quasi-static", "at impact speed"}, *const sizes[3] = {"small", "medium", "large"};
     static curve c[3];
     char name[120];
     FILE *page;
@@ -179,7 +177,7 @@ static void portrait(const exam *e, const exam_sheet *sheet) {
             "sans-serif;max-width:1240px;margin:2em auto;color:#222}figure{display:inline-block;margin:0}td{padding:.2em "
             "1em .2em 0;vertical-align:top}.found{color:#b3261e;font-weight:bold}</style>\n<h1>%s: %d of %d lines passed"
             "</h1>\n<p>Two grains of radius %g m, %g kg/m3, Young's modulus %g Pa, restitution %g, friction %g, rolling "
-            "friction %g; paths down to an overlap of %g radii, impacts at %g m/s. What the lines ask: docs/laws.md.</p>\n"
+            "friction %g; paths to an overlap of %g radii, impacts at %g m/s. docs/laws.md explains the lines.</p>\n"
             "<table>\n", e->name, e->name, sheet->passed, (int)EXAM_LINES, e->radius, (double)e->material.density,
             (double)e->material.young, (double)e->material.restitution, (double)e->material.friction,
             (double)e->material.rolling_friction, e->deep, e->speed);
@@ -194,7 +192,7 @@ static void portrait(const exam *e, const exam_sheet *sheet) {
     draw(page, "Slid to and fro", "slip (m)", "tangential force (N)", 0, 0, 3, c, sizes);
     for (k = 0; k < 3; k++) cycle(e, k == 0 ? 0.002 : k == 1 ? 0.01 : 0.05, 1, &c[k]);
     draw(page, "Rolled to and fro", "angle (rad)", "moment (N m)", 0, 0, 3, c, sizes);
-    if (e->made) { study_close(page, name); return; }      /* who is bonded does not bounce */
+    if (e->made) { study_close(page, name); return; }      /* bonded grains do not bounce */
     bounces(e, &c[0]);
     draw(page, "Head-on impacts", "speed (m/s)", "restitution", 1, 1.1, 1, c, 0);
     slants(e, &c[0], &c[1]);
@@ -208,7 +206,7 @@ int main(int argc, char **argv) {
     const char *out = "build/out/exam";
     const study_option table[] = {{"out", STUDY_TEXT, &out, 0, 0, "", "folder of the results"}};
     int k, line;
-    study_options(argc, argv, "The exam of contact laws: a page each in build/out/exam. A law of your own: make law LAW=my_law.h",
+    study_options(argc, argv, "The exam of contact laws: one page per law in build/out/exam. A user-defined law: make law LAW=my_law.h",
                   table, 1);
     study_begin(out);
     for (k = 0; k < (int)(sizeof examinees/sizeof *examinees); k++) {

@@ -1,17 +1,16 @@
-/* heap.c - a study, the long form of 10_clusters.c: 2000 tetrahedra of four touching spheres fill a tube that
-   is then pulled up, and stay behind as a heap; then 2000 spheres of the same volume and material do.
-   Tetrahedra interlock and hardly roll: their heap is steeper, though only the spheres have rolling
-   resistance, and it comes to rest.
+/* heap.c - a study, the long form of 10_clusters.c: 2000 tetrahedra of four touching spheres fill a tube, the tube is
+   pulled up, and a heap remains. Then 2000 spheres of the same volume and material do the same. Tetrahedra interlock
+   and hardly roll, so their heap is steeper, although only the spheres have rolling resistance. Both heaps come to rest.
 
-   The slope is that of the cone with the heap's centre of mass and mean distance from its axis:
-       tan(slope) = H/R,  H = 4 (z_mean - z of the lowest layer),  R = 2 r_mean
-   At rest: kinetic energy below 1e-9 of what the fall brought, and still so a while later.
+   The slope is that of the cone with the same centre of mass and the same mean distance from its axis:
+       tan(slope) = H/R,   H = 4 (z_mean - z of the lowest layer),   R = 2 r_mean
+   At rest: the kinetic energy is below 1e-9 of the energy of the fall, and still is 0.2 s later.
 
    Build:     make build/heap, or cc -O2 heap.c ../dem.c -lm
    Run:       heap             five minutes on one core
-              heap --quick     the same with 500 of each: one minute
-   Expected:  a slope of about 20 degrees for tetrahedra and 9 for spheres; heap_tetrahedra.svg and
-              heap_spheres.svg to look at, and .vtp for ParaView */
+              heap --quick     with 500 grains of each kind: one minute
+   Output:    slopes of about 20 degrees (tetrahedra) and 9 degrees (spheres); pictures heap_tetrahedra.svg and
+              heap_spheres.svg; heap_*.vtp for ParaView */
 #include "../dem.h"
 #include <math.h>
 #include <stdlib.h>
@@ -36,7 +35,7 @@ static int farther(const void *a, const void *b) {          /* x y z radius id; 
     const double *p = (const double *)a, *q = (const double *)b;
     return (p[1] < q[1]) - (p[1] > q[1]);
 }
-/* A tube about the z axis, drawn upwards from a time on. */
+/* Adds a tube about the z axis that moves up from 0.25 s on. */
 static void tube(dem_world *world, dem_material material, double radius, double height) {
     enum { SIDES = 24 };
     dem_real vertices[2*SIDES*3];
@@ -56,11 +55,11 @@ static void tube(dem_world *world, dem_material material, double radius, double 
     }
     motion.kind = DEM_MOTION_TRANSLATING;
     motion.velocity.z = DEM_R(0.15);                                /* m/s */
-    motion.start = 0.25;                                            /* s: when all have fallen */
+    motion.start = 0.25;                                            /* s: all have fallen */
     dem_wall_motion_set(world, dem_wall_mesh_add(world, material, &mesh), &motion);
 }
 
-/* The heap from the side, every sphere a disc, the farthest first. */
+/* Draws the heap from the side, each sphere as a disc, the farthest first. */
 static void draw(const char *path, double *ball, int count) {
     FILE *file = fopen(path, "w");
     if (!file) return;
@@ -83,8 +82,8 @@ int main(int argc, char **argv) {
     const dem_real radius = 1e-3;                                   /* m, of a tetrahedron's spheres */
     double slope[2], rest[2] = {0, 0};
     if (argc > 1 && !quick) {
-        puts("heap [--quick]: a heap of 2000 (500) tetrahedra and one of as many spheres, their slopes, pictures and how "
-             "still they lie");
+        puts("heap [--quick]: a heap of 2000 (500) tetrahedra and one of as many spheres: slopes, kinetic energies at rest, "
+             "pictures");
         return strcmp(argv[1], "--help") ? 2 : 0;
     }
     for (int kind = 0; kind < 2; kind++) {
@@ -98,7 +97,7 @@ int main(int argc, char **argv) {
         gravel_desc.stiffness = 1500;                               /* N/m */
         gravel_desc.restitution = DEM_R(0.3);
         gravel_desc.friction = DEM_R(0.5);
-        if (kind == SPHERES) gravel_desc.rolling_friction = DEM_R(0.05);    /* or they would roll away */
+        if (kind == SPHERES) gravel_desc.rolling_friction = DEM_R(0.05);    /* otherwise they roll away */
         dem_material gravel = dem_material_add(world, &gravel_desc);
         dem_wall_plane_add(world, gravel, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
         tube(world, gravel, 0.027, 0.5);
@@ -115,10 +114,10 @@ int main(int argc, char **argv) {
                                                                  dem_region_make(box), count, 1);
         if (placed < count) { puts(dem_world_error_get(world)); return 1; }
 
-        /* fall, come to rest; how still it is then and a while later */
+        /* fall and come to rest; kinetic energy then and 0.2 s later */
         dem_world_check_print(world, stdout);
         const dem_totals before = dem_totals_get(world);
-        const double fall = before.mass*9.81*before.centre[2];      /* J, from there to the floor */
+        const double fall = before.mass*9.81*before.centre[2];      /* J, energy of the fall to the floor */
         double still[2] = {0, 0}, height[2] = {0, 0};
         for (int late = 0; late < 2; late++) {
             if (dem_world_run(world, late ? 0.2 : 1.2, dem_progress_print, stderr) != DEM_OK) {
@@ -130,7 +129,7 @@ int main(int argc, char **argv) {
             height[late] = t.centre[2];
         }
 
-        /* the cone with this centre of mass and mean distance from the axis; what lies apart does not count */
+        /* the cone with this centre of mass and mean distance from the axis; grains beyond 60 mm do not count */
         const dem_bodies all = dem_bodies_get(world);
         double *ball = (double *)calloc((size_t)count*4, 5*sizeof *ball);
         double sum = 0, high = 0;
@@ -141,7 +140,7 @@ int main(int argc, char **argv) {
             dem_quat q = dem_quat_make(1, 0, 0, 0);
             if (all.orientations) q = dem_quat_make(all.orientations[4*i], all.orientations[4*i + 1],
                                                     all.orientations[4*i + 2], all.orientations[4*i + 3]);
-            for (int k = 0; k < (kind == TETRAHEDRA ? 4 : 1); k++) {    /* principal axes: the corners' own */
+            for (int k = 0; k < (kind == TETRAHEDRA ? 4 : 1); k++) {    /* the frame of the corners has principal axes */
                 static const int corner[12] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
                 const dem_real a = kind == TETRAHEDRA ? (dem_real)((double)radius/sqrt(2.0)) : 0;
                 const dem_vec3 c = dem_quat_rotate(q, dem_vec3_make(a*(dem_real)corner[3*k], a*(dem_real)corner[3*k + 1],
@@ -158,8 +157,9 @@ int main(int argc, char **argv) {
         }
         slope[kind] = atan(4*(high/heap - (double)same)/(2*sum/heap))*180/3.14159265358979;
         rest[kind] = still[1];
-        printf("%-10s  slope %4.1f degrees, %d in the heap; kinetic energy %.1e of the fall, %.1e 0.2 s later; "
-               "centre sank %.1e m\n", names[kind], slope[kind], heap, still[0], still[1], height[0] - height[1]);
+        printf("%-10s  slope %4.1f degrees, %d grains in the heap; kinetic energy over energy of the fall %.1e, 0.2 s "
+               "later %.1e; centre of mass sank by %.1e m meanwhile\n",
+               names[kind], slope[kind], heap, still[0], still[1], height[0] - height[1]);
         char path[64];
         snprintf(path, sizeof path, "heap_%s.svg", names[kind]);
         draw(path, ball, balls);

@@ -1,28 +1,27 @@
-/* heat.c - heat through a bed of steel balls.
+/* heat.c - heat conduction through a bed of steel balls.
 
-   The floor is kept at 400 K, the uppermost balls at 300 K. Heat passes where balls touch, 2 k a dT through a disc of radius
-   a = sqrt(R* d), d being how deep Hertz's contact is pressed: a law of its own, in examples/laws/heat.h, where its source
-   and limits stand. Every ball carries one number more, its temperature (body_reals); the law sees those of the two that
-   touch and answers what each gains per second; dem.h adds it up.
+   The floor is kept at 400 K, the uppermost balls at 300 K. Heat flows through contacts: 2 k a dT through a disc of radius
+   a = sqrt(R* d), where d is the overlap of Hertz's law. examples/laws/heat.h is the law, with source and limits. Each ball
+   carries its temperature as a user-defined number (body_reals). The law sees both temperatures of a contact and adds the
+   rates of change; dem.h sums and integrates them.
 
-   Balls of 5 mm take minutes to warm, and a step is some millionths of a second. But the bed rests: what flows in the end
-   does not depend on how fast it began, so their capacity is made small, and the end comes in a second.
+   Real balls of 5 mm warm up within minutes, and a step lasts some microseconds. But the bed is at rest, and the final flow of
+   heat does not depend on the heat capacity. The capacity is therefore made small, and the steady state comes within a second.
 
-   Before you run it: eight times the weight presses every contact with eight times the force. How much more heat flows?
-   (d goes with F^(2/3).) And with balls ten times as stiff?
-
+   Question:  Eight times the weight presses each contact with eight times the force. How much more heat flows? (d is
+              proportional to F^(2/3).) And through balls that are ten times as stiff?
    Build:     cc -O2 heat.c ../dem.c -lm
-   Expected:  8 g: 2.0 to 2.6 times the heat: twice for the discs, the rest for balls that touch now and did not before;
-              10 E: 0.40 to 0.50, 10^(-1/3) = 0.46. The floor gives what the top takes, to 1 %. heat.vtp opens in ParaView:
-              colour by temperature. Some 10 s on one core
-   Exercises: cool the floor to 300 K when all has settled: how long until half the heat is gone? Which capacity makes
-              `body_reals` swing from step to step, and why? (heat.h tells Euler's limit.) */
+   Output:    8 g: 2.0 to 2.6 times the heat; the discs give the factor 2, new contacts the rest. 10 E: 0.40 to 0.50 times
+              (10^(-1/3) = 0.46). Floor and top agree within 1 %. heat.vtp is for ParaView: colour by temperature. About 10 s
+              on one core
+   Exercises: Cool the floor to 300 K in the steady state. After which time has half of the excess heat left the bed? For which
+              capacity do the temperatures oscillate from step to step, and why? (heat.h has the limit of Euler's step.) */
 #include "../dem.h"
 #include "laws/heat.h"
 
 static const double R = 2.5e-3;                                     /* m */
 
-/* Balls above that height are cooled: they keep their temperature. */
+/* Integrates the temperature of balls below a height; balls above it keep theirs (cooled). */
 static void follow(dem_real *reals, const dem_real *rates, const dem_body_state *body, dem_body id, double time, dem_real dt,
                    void *user) {
     const double *height = (const double *)user;
@@ -30,7 +29,8 @@ static void follow(dem_real *reals, const dem_real *rates, const dem_body_state 
     if ((double)body->position.z < *height) reals[0] += rates[0]*dt;
 }
 
-/* W: what the floor gives a bed of this stiffness (Pa) under g (m/s2); *top: what the cooled balls are given. */
+/* Returns the heat flow (W) from the floor into a bed with this modulus (Pa) under g (m/s2), and writes that into the cooled
+   balls to *top. Returns -1 if the run failed. */
 static double heat_through(double young, double g, const char *picture, double *top) {
     static const dem_real conductivity[] = {16}, capacity[] = {DEM_R(0.02)};    /* W/(m K); J/(kg K): of steel 500 */
     heat steel_heat = {conductivity, capacity, 0, 0};
@@ -70,7 +70,7 @@ static double heat_through(double young, double g, const char *picture, double *
     balls = dem_bodies_get(world);
     for (int i = 0; i < balls.count; i++)
         if (i == 0 || (double)balls.positions[4*i + 2] > height + 2*R) height = (double)balls.positions[4*i + 2] - 2*R;
-    for (int i = 0; i < balls.count; i++)                           /* what it warmed as it fell does not count */
+    for (int i = 0; i < balls.count; i++)                           /* removes the heat of the filling */
         dem_body_reals_set(world, dem_body_id_get(world, i), &cold);
     if (dem_world_run(world, 0.4, 0, 0) != DEM_OK) { puts(dem_world_error_get(world)); return -1; }
 
@@ -92,7 +92,7 @@ int main(void) {
         {"5 MPa, 1 g", 5e6, 9.81, 1, 1}, {"5 MPa, 8 g", 5e6, 8*9.81, 2, 2.6}, {"50 MPa, 1 g", 5e7, 9.81, 0.4, 0.5}};
     double first = 0, top;
     int k, wrong = 0;
-    printf("%-16s %12s %14s %8s\n", "", "floor gives", "top is given", "ratio");
+    printf("%-16s %12s %14s %8s\n", "", "from floor", "into top", "ratio");
     for (k = 0; k < 3; k++) {
         const double Q = heat_through(rows[k].young, rows[k].g, k ? 0 : "heat.vtp", &top);
         if (!k) first = Q;

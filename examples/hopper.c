@@ -1,12 +1,13 @@
-/* hopper.c - a hopper from an STL file, filled by a sieve curve and emptied through its mouth: counted, filmed, written
-   on a schedule, and restarted after whatever stopped it.
+/* hopper.c - a small project in one file: a hopper from an STL file, filled by a sieve curve and emptied through its
+   mouth; discharge to a CSV file, a replay, checkpoints, and a restart after an interruption.
 
-   Build:  cc -O2 hopper.c ../dem.c -lm, and run it where hopper.stl lies (examples/data); --resume goes on from its
-           checkpoint: no line of hopper.csv is missing or double */
+   Build:  cc -O2 hopper.c ../dem.c -lm
+   Run:    in the folder of hopper.stl (examples/data). `hopper --resume` continues from the last checkpoint; hopper.csv then
+           has no line missing and none twice */
 #include "../dem.h"
 #include <string.h>
 
-static void out_of_it(const dem_world *world, double *values, void *outlet) {
+static void discharge(const dem_world *world, double *values, void *outlet) {
     dem_outlet_state out;
     dem_outlet_get(world, *(dem_outlet *)outlet, &out);
     values[0] = out.total_mass;
@@ -33,13 +34,13 @@ int main(int argc, char **argv) {
         walls[k] = dem_wall_mesh_add(world, grit, &mesh);
         dem_mesh_free(world, &mesh);
     }
-    dem_sizes curve = {DEM_SIZES_SIEVE_CURVE, 0, 0, 0, 0, 0, 0, 0, 3, {1e-3, 1.5e-3, 2e-3}, {0.2, 0.6, 1}};    /* m, shares */
+    dem_sizes curve = {DEM_SIZES_SIEVE_CURVE, 0, 0, 0, 0, 0, 0, 0, 3, {1e-3, 1.5e-3, 2e-3}, {0.2, 0.6, 1}, 0}; /* m, - */
     dem_region above = {{{-0.017, -0.017, 0.045}, {0.017, 0.017, 0.1}}, 'z', 0, 0};
     dem_sizes_fill(world, grit, &curve, above, 1200, 1);
     dem_outlet_desc mouth = {{0}, {{-1, -1, -1}, {1, 1, 0.01}}, 0, 0, 0, 0, {0}, {0}, 0};
     dem_outlet outlet = dem_outlet_add(world, &mouth);
 
-    dem_output_desc lines = {DEM_OUTPUT_CSV, "hopper.csv", 0.02, 0, 0, {0}, "mass grains", out_of_it, 0, &outlet};
+    dem_output_desc lines = {DEM_OUTPUT_CSV, "hopper.csv", 0.02, 0, 0, {0}, "mass grains", discharge, 0, &outlet};
     dem_output_add(world, &lines);
     dem_output_every_add(world, DEM_OUTPUT_CHECKPOINT, "hopper.ckpt", 0.2);
 
@@ -47,12 +48,12 @@ int main(int argc, char **argv) {
                              : dem_world_settle(world, 2, 0, dem_progress_print, stderr);
     if (well != DEM_OK) puts(dem_world_error_get(world));                   /* before another call fails */
     if (well == DEM_OK && !resume) dem_wall_remove(world, walls[1]);                      /* the gate opens */
-    dem_replay_desc film_desc = DEM_REPLAY_DESC;
-    film_desc.interval = 0.02;
-    dem_replay *film = dem_replay_open(world, resume ? "hopper2.html" : "hopper.html", &film_desc);
+    dem_replay_desc replay_desc = DEM_REPLAY_DESC;
+    replay_desc.interval = 0.02;
+    dem_replay *replay = dem_replay_open(world, resume ? "hopper2.html" : "hopper.html", &replay_desc);
     if (well == DEM_OK && (well = dem_world_run_to(world, 1.5, dem_progress_print, stderr)) != DEM_OK)
         puts(dem_world_error_get(world));
-    dem_replay_close(film);
+    dem_replay_close(replay);
     dem_world_report(world, stdout);
     dem_world_destroy(world);
     return well != DEM_OK;

@@ -1,39 +1,38 @@
 /* rock.c - a rock that breaks.
 
-   Grains are packed into a block, one in seven places left empty, and glued where they are near each other: bonds that stretch,
-   shear, bend and twist, and break for good when they bear more than their strength (examples/laws/bond.h, where the source
-   stands). A plate comes down on the block, as in a press. What it feels grows in proportion, then cracks run and it falls:
-   the largest force over the block's section is its strength.
+   Grains are packed into a block in which one site in seven is empty. Neighbours are bonded: bonds stretch, shear, bend and
+   twist, and break for good beyond their strength (examples/laws/bond.h has the source). A plate presses the block from above.
+   Its force first grows in proportion, then cracks run and the force falls. The largest force over the cross-section is the
+   strength of the rock.
 
-   Before you run it: bonds twice as strong make how strong a rock? And when every second bond is missing?
-
+   Question:  How strong is a rock whose bonds are twice as strong? And one in which every second bond is missing?
    Build:     cc -O2 rock.c ../dem.c -lm
-   Expected:  twice the bonds' strength gives 1.7 to 2.1 times the rock's; half of the bonds 0.5 to 0.7 of it. Most bonds hold
-              when it breaks: cracks run aslant through what is missing. rock.vtp (grains) and bonds.vtp (lines: colour by
-              `length`, below 0 are the broken ones) open in ParaView. Some 10 s on one core
-   Exercises: pull instead of press: how many times weaker is the rock? (Real ones: 10 to 20.) What does `beta` do to it? And
-              the speed of the plate, 1/600 of sound in it? */
+   Output:    bonds twice as strong: 1.7 to 2.1 times the strength; half of the bonds: 0.5 to 0.7 times. Most bonds hold when
+              the rock breaks, because cracks run through the empty sites. rock.vtp (grains) and bonds.vtp (lines; `length` is
+              negative for broken bonds) are for ParaView. 10 s on one core
+   Exercises: Pull instead of pressing. How many times weaker is the rock? (Real rocks: 10 to 20 times.) What does `beta`
+              change? And the speed of the plate, 1/600 of the speed of sound? */
 #include "../dem.h"
 #include "laws/bond.h"
 
 static const double R = 1e-3, side = 12e-3, tall = 22e-3;          /* m */
 
-/* One in seven places is left empty. */
-static int place(dem_vec3 centre, dem_real radius, void *user) {
+/* Returns 0 for one site in seven: it stays empty. */
+static int occupied(dem_vec3 centre, dem_real radius, void *user) {
     unsigned *seed = (unsigned *)user;
     (void)centre; (void)radius;
     *seed = *seed*1664525u + 1013904223u;
     return (*seed >> 16)%7 != 0;
 }
-/* One bond in `every` is made. */
+/* Makes one bond of every `every`. */
 typedef struct glue { dem_world *world; int every, count; } glue;
 static void glue_bond(const dem_contact_info *c, dem_real *memory, void *user) {
     glue *g = (glue *)user;
     if (g->count++%g->every == 0) bond_make(c, memory, g->world);
 }
 
-/* Pa: what a block bears whose bonds bear `strength` (Pa), of which one in `every` is there. bonds: how many hold, and how many
-   have broken, when the force has fallen to half; < 0: the run broke. */
+/* Returns the strength (Pa) of a block with bonds of `strength` (Pa), one of every `every`; -1: the run failed. bonds: receives
+   the numbers of intact and of broken bonds when the force has fallen to half of its maximum. */
 static double press(double strength, int every, int bonds[2], int pictures) {
     bond cement = {DEM_R(1e7), DEM_R(2.5), DEM_R(0.8e-3), 0, 0, DEM_R(0.1)};
     glue tube = {0, every, 0};
@@ -50,7 +49,7 @@ static double press(double strength, int every, int bonds[2], int pictures) {
     desc.law_who = 1;
     desc.law_range = (dem_real)(0.2*R);
     desc.law_stiffness = (dem_real)(4*1e7*3.14159*0.64e-6/(2*R));   /* 4 E A/l: bond.h */
-    desc.normal_law = DEM_NORMAL_LINEAR;                            /* of what is not bonded */
+    desc.normal_law = DEM_NORMAL_LINEAR;                            /* of grains without bonds */
     dem_world *world = tube.world = dem_world_create(&desc);
 
     dem_material_desc stone_desc = DEM_MATERIAL_DESC;
@@ -64,8 +63,8 @@ static double press(double strength, int every, int bonds[2], int pictures) {
     dem_wall_plane_add(world, stone, dem_vec3_make(0, 0, 0), dem_vec3_make(0, 0, 1));
     dem_wall plate = dem_wall_plane_add(world, stone, dem_vec3_make(0, 0, (dem_real)tall), dem_vec3_make(0, 0, -1));
     dem_spheres_pack(world, stone, (dem_real)R, (dem_real)(0.01*R),
-                     dem_region_inside_make(dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)tall), place, &seed),
-                     0);
+                     dem_region_inside_make(dem_box_make(0, 0, 0, (dem_real)side, (dem_real)side, (dem_real)tall),
+                                            occupied, &seed), 0);
     if (dem_bonds_make(world, (dem_real)(0.1*R), glue_bond, &tube) < 0) { puts(dem_world_error_get(world)); return -1; }
 
     dem_motion down = DEM_MOTION;
@@ -96,7 +95,7 @@ int main(void) {
     for (k = 0; k < 3; k++) {
         const double bears = press(rows[k].strength, rows[k].every, bonds, k == 0);
         if (!k) first = bears;
-        printf("%-24s the rock bears %6.1f kPa, %.2f of the first; %d bonds hold, %d are broken\n", rows[k].what, bears/1e3,
+        printf("%-24s strength %6.1f kPa, %.2f of the first; %d bonds intact, %d broken\n", rows[k].what, bears/1e3,
                bears/first, bonds[0], bonds[1]);
         wrong += !(bears > 0) || bears/first < rows[k].least || bears/first > rows[k].most;
     }

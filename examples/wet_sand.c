@@ -1,22 +1,22 @@
 /* wet_sand.c - how much water does a sand castle need?
 
-   Sand is filled into a mould, a little water into the sand, and the mould is taken off. Between any two grains that have
-   touched hangs a bridge that pulls them together, 2 pi R g cos t at touch, until they are (1 + t/2) V^(1/3) apart: a law
-   that reaches beyond touch, in examples/laws/capillary.h, where its source and limits stand. Dry sand slumps.
+   Sand fills a mould and contains a little water; then the mould is removed. Dry sand collapses. In wet sand a liquid bridge
+   attracts any two grains that have touched, with the force 2 pi R g cos t in contact (surface tension g, contact angle t),
+   until they are (1 + t/2) V^(1/3) apart. This is a law with a range: examples/laws/capillary.h has source and limits.
 
-   Before you run it: at touch a bridge pulls as strongly with little water as with much. Does a castle stand better with a
-   hundred times as much in every bridge? Does one of gravel? (A bridge pulls with R, a grain weighs with R^3.)
-
+   Question:  In contact the force of a bridge does not depend on its volume. Is a castle with a hundred times as much water in
+              every bridge stronger? Can a castle be made of gravel? (The force is proportional to R, the weight to R^3.)
    Build:     cc -O2 wet_sand.c ../dem.c -lm
-   Expected:  dry sand, and gravel with the most water, keep below 0.3 of their height; the more water in sand, the more,
-              with a hundredth of R^3 above 0.7: a bridge that reaches farther takes more work to tear. wet.vtp opens in
-              ParaView. Some 17 s on one core
-   Exercises: which of tension, angle and volume makes a castle of 4 mm gravel stand? Up to which R does water hold? */
+   Output:    dry sand, and gravel with the most water, keep less than 0.3 of their height. Sand keeps the more the more water
+              it has, with 0.01 R^3 per bridge above 0.7: a bridge that extends farther takes more work to break. wet.vtp is
+              for ParaView. About 17 s on one core
+   Exercises: Which of surface tension, angle and volume makes a castle of 4 mm gravel possible? Up to which R does water hold
+              one? */
 #include "../dem.h"
 #include "laws/capillary.h"
 
-/* Grains of radius R (m) in a mould of 6 R, with bridges of `water` R^3 each (0: dry), set free. Answers the height of the
-   centre of mass in the end, of what it was in the mould; below 0: the run broke. */
+/* Removes a mould of radius 6 R from grains of radius R (m) with bridges of the volume water R^3 (0: dry). Returns the final
+   height of the centre of mass over that in the mould; -1: the run failed. */
 static double castle(double R, double water, const char *picture) {
     capillary bridge = {0.073, 0.3, 1};                             /* N/m, rad: water; volume below */
     dem_world_desc desc = DEM_WORLD_DESC;
@@ -29,12 +29,12 @@ static double castle(double R, double water, const char *picture) {
     desc.law_user = &bridge;
     desc.law_memory = 5;
     desc.law_vectors = 1;
-    desc.law_range = (dem_real)(1.1*capillary_rupture(&bridge));    /* it is asked when a bridge breaks */
+    desc.law_range = (dem_real)(1.1*capillary_rupture(&bridge));    /* beyond rupture, where the law ends a bridge */
     dem_world *world = dem_world_create(&desc);
 
     dem_material_desc sand_desc = DEM_MATERIAL_DESC;
     sand_desc.density = 2500;
-    sand_desc.young = (dem_real)(5e9*R);                           /* Pa, as soft in proportion at any size */
+    sand_desc.young = (dem_real)(5e9*R);                           /* Pa, proportional to R: equal relative overlaps */
     sand_desc.poisson = 0.25;
     sand_desc.restitution = 0.4;
     sand_desc.friction = 0.5;
@@ -58,12 +58,12 @@ static double castle(double R, double water, const char *picture) {
 
 int main(void) {
     static const struct { const char *what; double R, water; const char *picture; } rows[] = {
-        {"dry sand", 5e-4, 0, 0}, {"a millionth of R^3 of water", 5e-4, 1e-6, 0},
-        {"a hundred times that", 5e-4, 1e-4, 0}, {"and that again", 5e-4, 1e-2, "wet.vtp"},
-        {"gravel, eight times as large", 4e-3, 1e-2, 0}};
+        {"sand, dry", 5e-4, 0, 0}, {"sand, bridges of 1e-6 R^3", 5e-4, 1e-6, 0},
+        {"sand, bridges of 1e-4 R^3", 5e-4, 1e-4, 0}, {"sand, bridges of 1e-2 R^3", 5e-4, 1e-2, "wet.vtp"},
+        {"gravel, bridges of 1e-2 R^3", 4e-3, 1e-2, 0}};
     double last = 0;
     int k, wrong = 0;
-    printf("%-32s  height kept\n", "");
+    printf("%-32s  final height over height in the mould\n", "");
     for (k = 0; k < 5; k++) {
         const double kept = castle(rows[k].R, rows[k].water, rows[k].picture);
         printf("%-32s  %.2f\n", rows[k].what, kept);

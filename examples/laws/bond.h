@@ -1,32 +1,33 @@
 /* bond.h - cement between grains: bonds that stretch, shear, bend, twist and break. MIT licence. Include it after dem.h.
 
-   Potyondy and Cundall, Int. J. Rock Mech. Min. Sci. 41 (2004) 1329, parallel bonds: a round beam of radius r from centre
-   to centre of two grains that are l apart when it is made, with A = pi r^2, I = pi r^4/4, J = 2 I,
+   Potyondy and Cundall, Int. J. Rock Mech. Min. Sci. 41 (2004) 1329, parallel bonds. A bond is a round beam of radius r
+   between the centres of two grains, whose distance is l when it is made. With A = pi r^2, I = pi r^4/4, J = 2 I:
 
-       pull E A/l per m of stretch    shear E/k A/l per m    bending E I/l per rad    twist E/k J/l per rad
+       tension E A/l per m    shear E/k A/l per m    bending E I/l per rad    twist E/k J/l per rad
 
-   E Pa, Young's modulus of the cement; k its ratio of normal to shear stiffness (2.5 of an isotropic one of nu 1/4). It
-   breaks, for good, where either stress is larger than the cement bears:
+   E: Young's modulus of the cement, Pa; k: ratio of normal to shear stiffness (2.5 for an isotropic cement with Poisson's
+   ratio 1/4). A bond breaks for good when a stress (Pa) exceeds its strength:
 
-       pull/A + |M| r/I > tension          |shear|/A + |twist| r/J > shear          Pa
+       tensile force/A + |M| r/I > tension          |shear force|/A + |twist| r/J > shear
 
-   Bonds are made by `dem_bonds_make(world, gap, bond_make, world)`: between all two spheres whose gap is smaller; not with
-   walls. A beam of n bonds bends under F at its end by F l^3/(E I) (n^3/3 - n/12) + F n l k/(E A): F L^3/(3 E I) of
-   L = n l for large n. Damping: beta of the critical one, of each bond by itself: low notes ring long.
+   `dem_bonds_make(world, gap, bond_make, world)` makes bonds between all pairs of spheres with smaller gaps, not with walls.
+   A beam of n bonds bends under a force F at its end by F l^3/(E I) (n^3/3 - n/12) + F n l k/(E A), for large n by
+   F L^3/(3 E I) with L = n l. beta: damping of each bond, over the critical one; slow vibrations of a whole beam are damped
+   little.
 
-   Range: desc.law_range above `gap`, and above the stretch at which bonds break, tension l/E. law_stiffness: 4 E A/l.
-   law_who = 1. Limits: small turns of a bond; what is not bonded has the linear law with a spring (normal_law linear).
-   Memory: 8 reals, 2 vectors: shear m and bending rad; twist rad; 0: none, > 0: l, < 0: broken. */
+   law_range: above `gap`, and above the stretch at rupture, tension l/E. law_stiffness: 4 E A/l. law_who = 1. Limits: small
+   rotations of a bond; grains without a bond use the linear law with a spring (set normal_law to linear).
+   History: 8 reals, 2 vectors: shear (m), bending (rad), twist (rad), state: 0: no bond, > 0: l, < 0: broken. */
 #ifndef BOND_H
 #define BOND_H
 #include <math.h>
 typedef struct bond {                        /* what law_user points to                               */
-    dem_real E, k, radius;                   /* Pa > 0; > 0; m > 0                                        */
+    dem_real E, k, radius;                   /* Pa > 0; > 0; m > 0                     */
     dem_real tension, shear, beta;           /* Pa, strengths > 0; >= 0                                   */
 } bond;
-enum { BOND_LENGTH = 7 };                    /* of its memory: 0: none, > 0: l, m; < 0: broken            */
+enum { BOND_LENGTH = 7 };                    /* index of the state in the history              */
 
-/* For dem_bonds_make: a bond as long as the two are apart now. user: their world. */
+/* For dem_bonds_make: makes a bond of the present distance. user: the world. */
 static inline void bond_make(const dem_contact_info *c, dem_real *memory, void *user) {
     dem_body_state a, b; int k;
     for (k = 0; k < BOND_LENGTH; k++) memory[k] = 0;
@@ -34,12 +35,12 @@ static inline void bond_make(const dem_contact_info *c, dem_real *memory, void *
         dem_body_get((const dem_world *)user, c->b, &b) == DEM_OK)
         memory[BOND_LENGTH] = a.radius + b.radius - c->overlap;
 }
-/* For dem_contacts_each: counts bonds that hold into user[0], broken ones (of grains still near) into user[1]. */
+/* For dem_contacts_each: counts intact bonds in user[0], and broken ones whose grains are still near in user[1]. */
 static inline void bond_count(const dem_contact_info *c, dem_real *memory, void *user) {
     (void)c; ((int *)user)[memory[BOND_LENGTH] < 0] += memory[BOND_LENGTH] < 0 || memory[BOND_LENGTH] > 0;
 }
 static inline dem_real bond_dot(dem_vec3 v, dem_vec3 w) { return v.x*w.x + v.y*w.y + v.z*w.z; }
-/* J, stored by a bond with these stiffnesses (N/m, N/m, N m, N m), stretch (m), shear, bending and twist. */
+/* Returns the energy stored in a bond (J) with these stiffnesses (N/m, N/m, N m, N m), stretch, shear, bending, twist. */
 static inline dem_real bond_stored(const dem_real *stiff, dem_real x, dem_vec3 s, dem_vec3 b, dem_real twist) {
     return (stiff[0]*x*x + stiff[1]*bond_dot(s, s) + stiff[2]*bond_dot(b, b) + stiff[3]*twist*twist)/2;
 }
@@ -52,7 +53,7 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     const dem_vec3 n = c->normal, v = c->slip, w = c->spin_step, slip = c->slip_step;
     dem_real x, twist, along, damp[2];
     dem_vec3 s, b; double pull, side;
-    if (!(memory[BOND_LENGTH] > 0)) {                  /* none, or broken */
+    if (!(memory[BOND_LENGTH] > 0)) {                  /* no bond, or broken */
         if (c->overlap > 0) { dem_law_linear(c, memory, f); dem_law_spring(c, memory, f); }
         else if (dt > 0) memory[0] = memory[1] = memory[2] = 0;
         return;
@@ -66,7 +67,7 @@ static inline void bond_law(const dem_contact *c, dem_real *memory, dem_contact_
     pull = (double)(stiff[0]*x)/(double)A + (double)stiff[2]*sqrt((double)bond_dot(b, b))*(double)(r/I);
     side = (double)stiff[1]*sqrt((double)bond_dot(s, s))/(double)A + fabs((double)(stiff[3]*twist))*(double)(r/(2*I));
     if (dt > 0 && (pull > (double)u->tension || side > (double)u->shear)) {
-        f->energy.sag = bond_stored(stiff, x, s, b, twist);          /* what it held is lost */
+        f->energy.sag = bond_stored(stiff, x, s, b, twist);          /* its stored energy is lost */
         memory[BOND_LENGTH] = -1;
         memory[0] = memory[1] = memory[2] = memory[3] = memory[4] = memory[5] = memory[6] = 0;
         return;

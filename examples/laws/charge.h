@@ -1,20 +1,21 @@
-/* charge.h - grains that charge each other by touching. MIT licence. Include it after dem.h.
+/* charge.h - grains that charge each other in contact. MIT licence. Include it after dem.h.
 
    The condenser model (Harper, Contact and Frictional Electrification, 1967; Laurentie, Traore and Dascalescu, J.
-   Electrost. 71 (2013) 951): charge passes through a gap z wherever new area dA comes into contact, until the field there
-   is what the work functions ask for,
+   Electrost. 71 (2013) 951). Where new area dA comes into contact, charge crosses a gap z until the field there balances the
+   difference of the work functions:
 
        dq_a = eps0/z (phi_a - phi_b - z E) dA,   E = (q_a/R_a^2 - q_b/R_b^2)/(4 pi eps0)
 
-   phi V, work functions of the materials over e; A = pi R* d m2, the largest so far of this contact; q C; E V/m, of the
-   charges of the two alone, each spread over its sphere; a wall is taken as uncharged. So dq/dA = s - q/(4 pi R^2) of a
-   grain that hits a wall: charge grows to 4 pi R^2 s, s = eps0 (phi_a - phi_b)/z C/m2, by 1 - exp(-A/(4 pi R^2)) of it.
-   What one gains the other loses; of a wall: `gained` of dem_wall_loads.
+   phi: work functions of the materials over e, V; A = pi R* d, m2, counted up to its largest value in this contact; q: C;
+   E: V/m, of the charges of these two grains, each spread over its sphere; a wall counts as uncharged. For a grain that hits
+   a wall dq/dA = s - q/(4 pi R^2), with s = eps0 (phi_a - phi_b)/z in C/m2: its charge approaches 4 pi R^2 s, of which an
+   area A gives the fraction 1 - exp(-A/(4 pi R^2)). One gains the charge that the other loses; for a wall see `gained` in
+   dem_wall_loads.
 
-   Limits: no charge returns when contacts part, none leaks; no force between charges (a force field's, which sees them:
-   dem_bodies). Normal force and friction: dem_law_hertz, dem_law_mindlin_rescaled.
+   Limits: no charge flows back when a contact ends, none leaks; charges exert no force here (a force field can: it sees the
+   charges in dem_bodies). Normal force and friction: dem_law_hertz, dem_law_mindlin_rescaled.
 
-   law_who = 1, body_reals = "charge" (in C) or more, `at` telling which. Memory: 5 reals, 1 vector; the last: A, m2. */
+   law_who = 1; body_reals = "charge" (in C) or more names, `at` is its index. History: 5 reals, 1 vector; the last is A, m2. */
 #ifndef CHARGE_H
 #define CHARGE_H
 
@@ -22,7 +23,7 @@
 typedef struct charge {
     const dem_real *work;                    /* V, work functions over e of materials 1, 2, ...           */
     dem_real gap;                            /* m, z > 0: some 1e-9 (metals) to 5e-7 (polymers)           */
-    int at;                                  /* which of body_reals the charge is, from 0                 */
+    int at;                                  /* index of the charge in body_reals, from 0                 */
 } charge;
 
 static inline void charge_law(const dem_contact *c, dem_real *memory, dem_contact_force *f) {
@@ -32,12 +33,12 @@ static inline void charge_law(const dem_contact *c, dem_real *memory, dem_contac
     const dem_real ra = c->who.radius_a, rb = c->who.radius_b;
     const dem_real side_a = c->who.reals_a[u->at]/(4*pi*ra*ra);
     const dem_real side_b = c->wall ? 0 : c->who.reals_b[u->at]/(4*pi*rb*rb);
-    const dem_real asked = eps0*(u->work[c->material_a - 1] - u->work[c->material_b - 1])/u->gap;
+    const dem_real density = eps0*(u->work[c->material_a - 1] - u->work[c->material_b - 1])/u->gap;
     dem_law_hertz(c, memory, f);
     dem_law_mindlin_rescaled(c, memory, f);
     if (!(more > 0) || !(c->dt > 0)) return;
-    c->who.rate_a[u->at] += (asked - side_a + side_b)*more/c->dt;
-    c->who.rate_b[u->at] -= (asked - side_a + side_b)*more/c->dt;
+    c->who.rate_a[u->at] += (density - side_a + side_b)*more/c->dt;
+    c->who.rate_b[u->at] -= (density - side_a + side_b)*more/c->dt;
     memory[4] = area;
 }
 

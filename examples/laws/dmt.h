@@ -1,15 +1,15 @@
 /* dmt.h - small hard grains that stick: Derjaguin, Muller and Toporov. MIT licence. Include it after dem.h.
 
-   J. Colloid Interface Sci. 53 (1975) 314: Hertz's spring, and a pull that is the same as long as the two touch,
+   J. Colloid Interface Sci. 53 (1975) 314: Hertz's spring, and an attractive force that is constant during contact:
 
-       F = kn d^(3/2) - 2 pi w R*,   nothing before they touch and after
+       F = kn d^(3/2) - 2 pi w R*;   no force before and after contact
 
-   d m, overlap; kn N/m^(3/2), as Hertz's; w J/m2, work of adhesion, twice the surface energy of two alike; R* m. They are
-   torn apart by 2 pi w R*, at d = 0. Range: Tabor's number (R* w^2/(E*^2 z^3))^(1/3) below 0.1, z some 0.3e-9 m; JKR
-   (jkr.h) where it is above 5. Limits: adhesion itself loses nothing here; what is lost goes to Hertz's dashpot, so that
-   elastic grains never stick. The force begins with its full pull: t_c/200 and below for the energy to close.
+   d: overlap, m; kn: as in Hertz's law, N/m^(3/2); w: work of adhesion, J/m2, twice the surface energy of two equal materials;
+   R*: m. The pull-off force is 2 pi w R*, at d = 0. Range: Tabor's number (R* w^2/(E*^2 z^3))^(1/3) below 0.1, with z about
+   0.3e-9 m; above 5 use JKR (jkr.h). Limits: adhesion itself loses no energy here; only Hertz's dashpot does, so elastic
+   grains never stick. The force begins with its full attraction: the energy balance closes with t_c/200 and below.
 
-   Friction is Mindlin's spring, rescaled [THO13]; its limit is mu (F + 2 pi w R*). Memory: 4 reals, 1 vector. */
+   Friction is Mindlin's spring, rescaled [THO13]; Coulomb's limit is mu (F + 2 pi w R*). History: 4 reals, 1 vector. */
 #ifndef DMT_H
 #define DMT_H
 

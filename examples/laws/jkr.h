@@ -1,25 +1,26 @@
 /* jkr.h - soft grains that stick: Johnson, Kendall and Roberts. MIT licence. Include it after dem.h.
 
-   Proc. R. Soc. Lond. A 324 (1971) 301: of two that touch in a circle of radius a (m),
+   Proc. R. Soc. Lond. A 324 (1971) 301. For two grains in contact on a circle of radius a (m):
 
        d = a^2/R* - B a^(1/2),   F = 4/3 E* a^3/R* - 2 E* B a^(3/2),   B = (2 pi w/E*)^(1/2)
 
-   d m, overlap; w J/m2, work of adhesion, twice the surface energy of two alike; E* Pa, R* m. They meet at d = 0, where F
-   at once is -4/3 pi w R*; pulled by a growing force they part at -3/2 pi w R*, drawn apart by hand at 5/9 of that, at
+   d: overlap, m; w: work of adhesion, J/m2, twice the surface energy of two equal materials; E*: Pa; R*: m. A contact begins at
+   d = 0, where F jumps to -4/3 pi w R*. Under a growing tensile force it ends at -3/2 pi w R*; under a prescribed displacement
+   at 5/9 of that, at
 
-       d = -3/4 B (R* B/4)^(1/3)     the range that desc.law_range must have: jkr_range, of the largest R*
+       d = -3/4 B (R* B/4)^(1/3)     desc.law_range must be at least that: jkr_range, with the largest R*
 
-   On the way from there to d = 0 and back 7.09 (w^5 R*^4/E*^2)^(1/3) is lost, J: 0.90 of it when they meet, the rest when they
-   part. Elastic grains slower than that energy stick (Thornton and Ning, Powder Technol. 99 (1998) 154):
+   A cycle from there to d = 0 and back loses 7.09 (w^5 R*^4/E*^2)^(1/3) in J: 0.90 of it when the contact begins, the rest when
+   it ends. Slow elastic grains stick (Thornton and Ning, Powder Technol. 99 (1998) 154):
 
        e^2 = 1 - (v_s/v)^2,   v_s^2 = 14.18 (w^5 R*^4/E*^2)^(1/3)/m*
 
-   Range: Tabor's number (R* w^2/(E*^2 z^3))^(1/3) above 5, z some 0.3e-9 m; DMT (dmt.h) where it is below 0.1. Soften E,
-   and they stick more: keep w^5/E^2. The dashpot is Hertz's for the circle a.
+   Range: Tabor's number (R* w^2/(E*^2 z^3))^(1/3) above 5, with z about 0.3e-9 m; below 0.1 use DMT (dmt.h). Softened grains
+   stick more: keep w^5/E^2. The dashpot is Hertz's for the circle a.
 
-   Friction is Mindlin's spring, rescaled [THO13], of 8 G* a; its limit is mu (F + 3 pi w R*) (Thornton, J. Phys. D 24
-   (1991) 1942). law_stiffness: Hertz's (0). Memory: 6 reals, 1 vector: spring and its stiffness; 1 while they stick
-   together; what is stored, J. */
+   Friction is Mindlin's spring, rescaled [THO13], with 8 G* a; Coulomb's limit is mu (F + 3 pi w R*) (Thornton, J. Phys. D 24
+   (1991) 1942). law_stiffness: 0 (Hertz's). History: 6 reals, 1 vector: spring and its stiffness; 1 while in contact; stored
+   energy, J. */
 #ifndef JKR_H
 #define JKR_H
 #include <math.h>
@@ -27,11 +28,11 @@
 /* What law_user points to. */
 typedef struct jkr { dem_real w; } jkr;                             /* J/m2, > 0 */
 
-static inline double jkr_range(double w, double E, double R) {      /* m; E* Pa, R* m */
+static inline double jkr_range(double w, double E, double R) {      /* m; E: E*, Pa; R: R*, m */
     const double B = sqrt(6.283185307179586*w/E);
     return 0.75*B*pow(R*B/4, 1.0/3);
 }
-/* Root of a of a circle at overlap d: the larger of c^4/R - B c = d, by Newton's method from above. */
+/* Returns c = a^(1/2) at overlap d: the larger root of c^4/R - B c = d, by Newton's method from above. */
 static inline dem_real jkr_root(dem_real d, dem_real R, dem_real B) {
     const dem_real far = (dem_real)cbrt((double)(2*R*B));
     dem_real c = d > 0 ? (dem_real)sqrt(sqrt((double)(2*R*d))) : 0;
@@ -62,7 +63,7 @@ static inline void jkr_law(const dem_contact *c, dem_real *memory, dem_contact_f
         f->normal = F + c->cn*x/(dem_real)sqrt((double)root)*c->closing_speed;
         dem_law_load(c, f, DEM_R(9.42477796076938)*u->w*R);
     }
-    if (c->dt > 0) {                                                /* met: what was let go; parted: what was held */
+    if (c->dt > 0) {                                                /* begin: energy released; end: energy still stored */
         if (sticks != (memory[4] > 0)) f->energy.sag = stored - f->energy.elastic;
         memory[4] = sticks ? DEM_R(1) : DEM_R(0);
         memory[5] = f->energy.elastic;

@@ -1,39 +1,39 @@
-/* luding.h - cohesive powder: grains that yield, stick, and stick the more the harder they were pressed. MIT licence.
+/* luding.h - cohesive powder: grains that yield, and stick the more the harder they were pressed. MIT licence.
    Include it after dem.h.
 
-   Luding, Granular Matter 10 (2008) 235. With D (m) the depth that the contact remembers,
+   Luding, Granular Matter 10 (2008) 235. D (m) is the depth in the contact history:
 
-       loading         F = k1 d
-       un-, reloading  F = k2 (d - d0),   d0 = (1 - k1/k2) D
-       pulling         F = -kc d at the least, on which D shrinks: D = d (k2 + kc)/(k2 - k1)
-       k2              k1 + (k2p - k1) D/Dp while D < Dp, k2p from there on: at Dp the contact is wholly yielded, and
-                       presses along k2p from then on (D stays at Dp)
+       loading             F = k1 d
+       un- and reloading   F = k2 (d - d0),   d0 = (1 - k1/k2) D
+       tension             F >= -kc d; on this line D decreases: D = d (k2 + kc)/(k2 - k1)
+       k2                  k1 + (k2p - k1) D/Dp for D < Dp, then k2p: at Dp the contact has yielded completely; beyond, it
+                           is loaded along k2p, and D stays at Dp
 
-   k1 <= k2p, kc N/m; d m, overlap. It pulls most at d = (k2 - k1) D/(k2 + kc). An impact at g (m/s), reduced mass
-   m (kg), presses to D = g sqrt(m/k1); where that is below Dp, and with the k2 there,
+   k1 <= k2p, kc: N/m; d: overlap, m. The largest attraction is at d = (k2 - k1) D/(k2 + kc). An impact at g (m/s) with the
+   reduced mass m (kg) reaches D = g sqrt(m/k1). If that is below Dp, with the k2 there:
 
-       e^2 = k1/k2 - kc (k2 - k1)^2/(k1 k2 (k2 + kc)),   0 where that is below 0: they stick
+       e^2 = k1/k2 - kc (k2 - k1)^2/(k1 k2 (k2 + kc));   negative: e = 0, they stick
 
-   Range: kc up to some k1; dem.h has the same with a k2 that does not grow as DEM_NORMAL_HYSTERETIC. Limits: as there, a
-   grain at rest on its slope swings on without damping (N s/m). law_stiffness: k2p.
+   Range: kc up to about k1. With a constant k2 dem.h has this law as DEM_NORMAL_HYSTERETIC. Limits: as there, a grain at rest
+   on the unloading line oscillates without end unless `damping` (N s/m) is set. law_stiffness: k2p.
 
-   Friction is a spring of kt = 2/7 k1, whose limit is mu (F + kc d): nothing holds where they are torn apart.
-   Memory: 6 reals, 1 vector: spring, D, and overlap and force of the last step, for the energy account. */
+   Friction is a spring with kt = 2/7 k1; Coulomb's limit is mu (F + kc d), which is 0 at the limit of tension.
+   History: 6 reals, 1 vector: spring, D, and overlap and force of the last step, for the energy account. */
 #ifndef LUDING_H
 #define LUDING_H
 #include <math.h>
 
 /* What law_user points to. */
 typedef struct luding {
-    dem_real k1, k2p, kc;        /* N/m: loading > 0; unloading when wholly yielded >= k1; adhesion >= 0 */
-    dem_real Dp;                 /* m, > 0: depth at which it is; 0: k2 = k2p at every depth, and no end */
+    dem_real k1, k2p, kc;        /* N/m: loading > 0; unloading after complete yield >= k1; adhesion >= 0 */
+    dem_real Dp;                 /* m, > 0: depth of complete yield; 0: k2 = k2p at any depth, no limit */
     dem_real damping;            /* N s/m, >= 0                                               */
 } luding;
 
 static inline dem_real luding_k2(const luding *l, dem_real D) {
     return D < l->Dp ? l->k1 + (l->k2p - l->k1)*D/l->Dp : l->k2p;
 }
-/* Least depth D on the pulling line, and the stiffness that belongs to it: D (k2(D) - k1) = d (k2(D) + kc). */
+/* Returns D, reduced on the line of tension: D (k2(D) - k1) = d (k2(D) + kc). */
 static inline dem_real luding_depth(const luding *l, dem_real D, dem_real d) {
     const dem_real soft = l->k2p - l->k1, full = d*(l->k2p + l->kc)/(soft > 0 ? soft : DEM_R(1e-30));
     dem_real s, b, least = full;                                    /* s D^2 = d (k1 + s D + kc) */
@@ -65,7 +65,7 @@ static inline void luding_law(const dem_contact *c, dem_real *memory, dem_contac
     dem_law_spring(c, memory, f);
 }
 
-/* Square of the restitution of an impact at g (m/s) with D < Dp, or Dp = 0; below 0: they stick. m: kg, reduced. */
+/* Returns the square of the restitution at g (m/s) for D < Dp or Dp = 0; negative: they stick. m: reduced mass, kg. */
 static inline double luding_restitution2(const luding *l, double m, double g) {
     const double k1 = (double)l->k1, kc = (double)l->kc;
     const double k2 = (double)luding_k2(l, (dem_real)(g*sqrt(m/k1))), soft = k2 - k1;

@@ -1,22 +1,22 @@
-/* walton_braun.h - grains that yield: stiffer on the way out than on the way in, the more so the harder they were
-   pressed. MIT licence. Include it after dem.h.
+/* walton_braun.h - grains that yield: unloading is stiffer than loading, the more the harder they were pressed.
+   MIT licence. Include it after dem.h.
 
-   Walton and Braun, J. Rheol. 30 (1986) 949. With D (m) the largest overlap so far,
+   Walton and Braun, J. Rheol. 30 (1986) 949. D (m) is the largest overlap so far:
 
-       loading         F = k1 d
-       un-, reloading  F = k2 (d - d0),   d0 = (1 - k1/k2) D,   never pulling
-       k2              k1 + S k1 D: it grows with the largest force, by S (1/m); S = 0: give k2 = stiffer
+       loading             F = k1 d
+       un- and reloading   F = k2 (d - d0),   d0 = (1 - k1/k2) D,   never attractive
+       k2                  k1 stiffer + S k1 D: grows with the largest force; S (1/m) 0: constant
 
-   k1, k2 N/m; d m, overlap. An impact at g (m/s) presses to D = g sqrt(m/k1), so that, with m (kg) the reduced mass,
+   k1, k2: N/m; d: overlap, m. An impact at g (m/s) with the reduced mass m (kg) reaches D = g sqrt(m/k1), so that
 
        e = sqrt(k1/k2(D))
 
-   falls from 1 at no speed where k2 grows from k1, and is the same at every speed where it does not. No dashpot is needed.
-   Range: e from 0.1 to 1. Limits: a grain at rest on its slope k2 swings on, since nothing is lost along it: add a dashpot
-   (damping, N s/m) where grains are to come to rest; the dent is forgotten when the grains part. law_stiffness: the
-   largest k2 that is met, for the time step.
+   With `stiffer` = 1 and S > 0, e falls from 1 at speed 0; with S = 0 it is the same at any speed. No dashpot is needed.
+   Range: e from 0.1 to 1. Limits: a grain at rest on the unloading line oscillates, because nothing is lost there: set
+   `damping` (N s/m) where grains must come to rest. The dent is forgotten when the contact ends. law_stiffness: the largest k2
+   that occurs, for the time step.
 
-   Friction is a spring of kt = 2/7 k1 [CS79]. Memory: 6 reals, 1 vector: spring, D, and overlap and force of the last
+   Friction is a spring with kt = 2/7 k1 [CS79]. History: 6 reals, 1 vector: spring, D, and overlap and force of the last
    step, for the energy account. */
 #ifndef WALTON_BRAUN_H
 #define WALTON_BRAUN_H
@@ -26,7 +26,7 @@
 typedef struct walton_braun {
     dem_real k1;                 /* N/m, > 0: loading                                         */
     dem_real stiffer;            /* k2/k1 at D = 0, >= 1                                      */
-    dem_real S;                  /* 1/m, >= 0: how k2/k1 grows with D                         */
+    dem_real S;                  /* 1/m, >= 0: growth of k2/k1 with D                         */
     dem_real damping;            /* N s/m, >= 0                                               */
 } walton_braun;
 
@@ -41,14 +41,14 @@ static inline void walton_braun_law(const dem_contact *c, dem_real *memory, dem_
     f->slope = f->slope_step = w->k1;
     f->kt = f->kt_step = w->k1*2/7;
     dem_law_load(c, f, 0);
-    f->energy.elastic = f->elastic*f->elastic/(2*k2);               /* what is not stored of the work is lost */
+    f->energy.elastic = f->elastic*f->elastic/(2*k2);               /* work that is not stored is lost */
     f->energy.sag = (f->elastic + own[2])/2*(c->overlap - own[1]) - (f->energy.elastic - stored);
     if (c->dt > 0) { own[0] = D; own[1] = c->overlap; own[2] = f->elastic; }
     else f->energy.sag = 0;
     dem_law_spring(c, memory, f);
 }
 
-/* Restitution of an impact at g (m/s); m: kg, reduced. */
+/* Returns the restitution of an impact at g (m/s); m: reduced mass, kg. */
 static inline double walton_braun_restitution(const walton_braun *w, double m, double g) {
     return 1/sqrt((double)w->stiffer + (double)w->S*g*sqrt(m/(double)w->k1));
 }
