@@ -36,7 +36,7 @@ ACCURACY_ALSO := $(if $(wildcard bench/accuracy.c),build/accuracy_single build/a
 hash := \#
 
 # ---- what the compiler can do; asked only when something is to be compiled ----
-ifneq ($(filter-out help new clean tags english parts recipes viewer web check fuzz docs,$(or $(MAKECMDGOALS),help)),)
+ifneq ($(filter-out help new clean tags english pages-check parts recipes viewer web check fuzz docs,$(or $(MAKECMDGOALS),help)),)
 $(shell mkdir -p build/tmp)
 CFLAGS_FOUND := $(shell echo 'int main(void) { return 0; }' > build/probe.c; \
     for f in -std=c99 -O3 -march=native -fno-math-errno -ffp-contract=off; do \
@@ -60,7 +60,7 @@ $(shell echo '$(COMPILE) $(LINK)' | cmp -s - build/flags || echo '$(COMPILE) $(L
 MAKEFLAGS += -j$(JOBS)
 endif
 
-.PHONY: help all run new install test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages fuzz docs readers viewer browser tags english parts recipes snippets clean
+.PHONY: help all run new install test hard law lessons web examples studies studies-check mpi check bench bench-compile bench-parallel bench-peers bench-pages pages pages-check fuzz docs readers viewer browser tags english pages-check parts recipes snippets clean
 .DEFAULT_GOAL := help
 
 help: ## this list
@@ -146,6 +146,13 @@ bench-peers: $(BENCHES) $(BENCH_ALSO) ## the same scenes in LAMMPS, LIGGGHTS and
 bench-pages: $(BENCHES) $(BENCH_ALSO) $(ACCURACY_ALSO) build/screener build/ellipsoids ## measure anew what docs/ tells of speed; PAGES=roofline: one page
 	@sh bench/pages.sh $(PAGES)
 
+# figures that need no quiet machine: they have the same bits on a busy one
+pages: $(LESSONS) build/readme_program ## write the figures that lessons and the README's program print into the pages
+	@JOBS=$(JOBS) sh bench/pages.sh lessons heap files
+
+pages-check: ## which measured figures of README.md and docs/ are older than their code; STRICT=1: older ones are an error
+	@STRICT=$(STRICT) sh tests/pages.sh
+
 fuzz: ## FUZZ_SECONDS (600) per reader, and for programs of calls, under clang's fuzzer and sanitizers
 	@FUZZ_CC="$(FUZZ_CC)" FUZZ_SECONDS="$(FUZZ_SECONDS)" sh tests/fuzz.sh
 
@@ -219,6 +226,10 @@ build/dem.o build/dem_run.o: dem.c dem.h build/flags
 	$(COMPILE) $(LTO) $(OMP) -c -o $@ dem.c
 $(LESSONS) $(SHOWS) $(STUDIES) build/write_files build/write_film: $(DEM_O)
 	$(COMPILE) $(LTO) -o $@ $(filter %/$(@F).c,$^) $(DEM_O) $(LINK)
+build/readme_program: README.md tests/snippets.awk $(DEM_O)
+	@rm -rf build/readme && mkdir -p build/readme && awk -v out=build/readme -f tests/snippets.awk README.md
+	sed '/DEM_IMPLEMENTATION/d' build/readme/README_md_1_program.c > build/readme/heap.c
+	$(COMPILE) -o $@ build/readme/heap.c $(DEM_O) $(LINK)
 # benches say how they were built; bench.c also in single precision, and as plain as can be
 $(BENCHES): private CPPFLAGS += -DBENCH_FLAGS='"$(strip $(CFLAGS) $(OMP))"'
 build/bench_single: bench/bench.c $(HEADERS) $(wildcard bench/*.h) dem.h build/flags

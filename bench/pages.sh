@@ -1,4 +1,5 @@
 # sh bench/pages.sh [effects] [accuracy] [roofline] [clusters] [shapes] [screener] [peers] [blocks] [responses] [ellipsoids]
+#                   [lessons] [heap] [files]
 # Measures again and replaces tables and pictures in docs/ (without arguments: effects, accuracy, roofline, clusters).
 #   effects     what effects cost, in accuracy.md and README.md
 #   screener    times of the screener, in screener.md
@@ -6,24 +7,51 @@
 #   blocks      beds of blocks beside other codes, in shapes.md
 #   responses   springs beside impulses, in impulses.md
 #   ellipsoids  Table 2 in ellipsoids.md, and the theory in docs/data
+#   lessons     what the twelve lessons print, in teaching.md
+#   heap        what the program in README.md prints
+#   files       the files that web.md lets readers copy
 #   others      the page of the same name
 # Tables are between <!-- NAME: begin --> and <!-- NAME: end -->. Each bench writes its own as page.md; full tables go to
 # docs/data. Needs a quiet machine: a page that was measured on a busy one begins with <!-- busy --> and is not copied.
+# lessons, heap and files need none (make pages).
+# Below the begin of a block a stamp says how its figures were measured, and on which code (bench/figures.txt, bench/code.sh):
+#   <!-- NAME: COMMAND; PROCESSOR; commit HASH; code PARTS DIGESTS -->
+# A table in docs/data has the same in its first line: # COMMAND; PROCESSOR; commit HASH; code PARTS DIGESTS
 [ "$1" ] || set -- effects accuracy roofline clusters
 export OMP_PROC_BIND=true OMP_PLACES=cores
+# the code before anything runs: what the programs were built from
+sh bench/code.sh > build/code.begun || exit 1
 
-# splice PAGE NAME FILE
+# stamp PAGE NAME [COMMAND]: COMMAND (of bench/figures.txt); PROCESSOR; commit HASH; code PARTS DIGESTS. NAME is - for a table
+stamp() {
+    awk -F '|' -v page="$1" -v name="$2" -v command="$3" -v processor="$(processor)" -v commit="$(commit)" '
+        $1 == page && $2 == name { found = 1
+            printf "%s; %s; commit %s; code %s %s", command == "" ? $3 : command, processor, commit, $4, $5 }
+        END { if (!found) { print page ": " name " is not in bench/figures.txt" | "cat 1>&2"; exit 1 } }' build/code.begun
+}
+# splice PAGE NAME FILE [COMMAND]: PAGE is README.md or lies in docs
 splice() {
-    if grep -q '<!-- busy' "$3"; then echo "docs/$1 keeps its $2: other work ran on the machine; measure again when it is quiet"; return 1; fi
-    grep -q "<!-- $2: begin -->" "docs/$1" || { echo "docs/$1 has no place for $2"; exit 1; }
-    awk -v begin="<!-- $2: begin -->" -v end="<!-- $2: end -->" -v file="$3" '
+    page=docs/$1; [ "$1" = README.md ] && page=$1
+    if grep -q '<!-- busy' "$3"; then echo "$page keeps its $2: other work ran on the machine; measure again when it is quiet"; return 1; fi
+    grep -q "<!-- $2: begin -->" "$page" || { echo "$page has no place for $2"; exit 1; }
+    stamp "$page" "$2" "$4" > build/page.stamp || exit 1
+    awk -v begin="<!-- $2: begin -->" -v end="<!-- $2: end -->" -v name="$2" -v file="$3" '
         $0 == end { skip = 0 }
         !skip { print }
-        $0 == begin { while ((getline line < file) > 0) print line; skip = 1 }' "docs/$1" > build/page.new &&
-    cp build/page.new "docs/$1" && echo "docs/$1: $2"
+        $0 == begin { getline line < "build/page.stamp"; print "<!-- " name ": " line " -->"
+            while ((getline line < file) > 0) print line; skip = 1 }' "$page" > build/page.new &&
+    cp build/page.new "$page" && echo "$page: $2"
 }
-# numbers FILE...: tables of numbers, into docs/data
-numbers() { mkdir -p docs/data && cp "$@" docs/data && for f in "$@"; do echo "docs/data/$(basename "$f")"; done; }
+# numbers FILE...: tables of numbers, into docs/data; their first line has the command and the machine, and gets the rest
+numbers() {
+    mkdir -p docs/data
+    for f in "$@"; do
+        data=docs/data/$(basename "$f")
+        stamp "$data" - > build/page.stamp || exit 1
+        awk 'NR == 1 { getline line < "build/page.stamp"; sub(/.*; commit /, "; commit ", line); $0 = $0 line } { print }' "$f" > "$data" &&
+            echo "$data"
+    done
+}
 # picture SVG PNG FILE: converts it, and adds it to the file that is to be spliced
 picture() {
     if command -v rsvg-convert >/dev/null 2>&1; then rsvg-convert "$1" -o "docs/images/$2" && printf '\n![](images/%s)\n' "$2" >> "$3"
@@ -32,13 +60,14 @@ picture() {
 # the processor, with family and model: "AMD EPYC" is sold in every generation
 processor() {
     awk -F '[\t ]*: ' '/^cpu family/ { f = $2 } /^model\t/ { m = $2 } /^model name/ { n = $2 }
-        END { printf "%s (family %s, model %s)", n, f, m }' /proc/cpuinfo
+        END { if (n == "") print "unknown processor"; else printf "%s (family %s, model %s)", n, f, m }' /proc/cpuinfo
 }
-commit() { git rev-parse --short HEAD; }
-# data NAME COMMAND FILE: docs/data/NAME.csv is FILE, a table, below a line with its command, processor and commit
+commit() { git rev-parse --short HEAD 2>/dev/null || echo unknown; }
+# data NAME COMMAND FILE: docs/data/NAME.csv is FILE, a table, below a line with its stamp
 data() {
     mkdir -p docs/data
-    { echo "# $2; $(processor); dem.h at commit $(commit)"; cat "$3"; } > "docs/data/$1.csv" && echo "docs/data/$1.csv"
+    stamp "docs/data/$1.csv" - "$2" > build/page.stamp || exit 1
+    { echo "# $(cat build/page.stamp)"; cat "$3"; } > "docs/data/$1.csv" && echo "docs/data/$1.csv"
 }
 # measured COMMAND: the last line of a block
 measured() { printf '\nMeasured by `%s`, dem.h at commit %s.\n' "$1" "$(commit)"; }
@@ -113,13 +142,26 @@ gas_speeds() {
         { printf "| %d | %.1f | %.2g | %.1f | %.0f | %.2g | %.0f |\n", $1, 1e-6*$2, 1e-6*$3, $2/$3, 1e-6*$4, 1e-6*$5, $4/$5 }' "$1"
 }
 
+# the files of the browser lesson
+files() {
+    printf '| file | lines | purpose |\n|---|---|---|\n'
+    for f in lesson.c lesson.html make.sh; do
+        case $f in
+        lesson.c) purpose="the scenes and the functions that the page calls" ;;
+        lesson.html) purpose="drawing and sliders" ;;
+        *) purpose="the two commands that join both into one page" ;;
+        esac
+        printf '| [%s](../examples/web/%s) | %d | %s |\n' $f $f "$(wc -l < examples/web/$f)" "$purpose"
+    done
+}
+
 at=build/out
-for page in "$@"; do
-    case $page in
+for what in "$@"; do
+    case $what in
     effects)
         build/bench --scene effects --threads 1 && splice accuracy.md effects $at/bench/page.md || exit 1
         numbers $at/bench/effects.csv
-        prices $at/bench/effects.csv > build/prices.md && splice ../README.md prices build/prices.md || exit 1 ;;
+        prices $at/bench/effects.csv > build/prices.md && splice README.md prices build/prices.md || exit 1 ;;
     accuracy)
         build/accuracy_single && build/accuracy_one_domain && build/accuracy || exit 1
         splice accuracy.md accuracy $at/accuracy/page.md || exit 1
@@ -131,10 +173,10 @@ for page in "$@"; do
         rates > build/rates.md && splice accuracy.md precision build/rates.md ;;
     responses)
         build/responses || exit 1
-        data responses "make bench-pages PAGES=responses" $at/responses/responses.csv
         measured "make bench-pages PAGES=responses" >> $at/responses/page.md
         for s in pile silo hopper drum; do picture $at/responses/$s.svg responses_$s.png $at/responses/page.md; done
-        splice impulses.md responses $at/responses/page.md ;;
+        splice impulses.md responses $at/responses/page.md || exit 1
+        data responses "make bench-pages PAGES=responses" $at/responses/responses.csv ;;
     roofline)
         build/roofline || exit 1
         splice roofline.md roofline_counts $at/roofline/counts.md || exit 1
@@ -147,18 +189,18 @@ for page in "$@"; do
         for s in speedup speedup_tables scaling searches; do
             [ -f $at/parallel/$s.svg ] && picture $at/parallel/$s.svg parallel_$s.png $at/parallel/page.md
         done
-        for s in speedups messages; do data clusters_$s "make bench-pages PAGES=clusters" $at/parallel/$s.csv; done
-        data clusters_model "make bench-pages PAGES=clusters" $at/model/model.csv
         measured "make bench-pages PAGES=clusters" >> $at/parallel/page.md
         measured "make bench-pages PAGES=clusters" >> $at/model/page.md
         picture $at/model/model.svg clusters_model.png $at/model/page.md
-        splice clusters.md measured $at/parallel/page.md
-        splice clusters.md model $at/model/page.md ;;
+        splice clusters.md measured $at/parallel/page.md || exit 1
+        for s in speedups messages; do data clusters_$s "make bench-pages PAGES=clusters" $at/parallel/$s.csv; done
+        splice clusters.md model $at/model/page.md || exit 1
+        data clusters_model "make bench-pages PAGES=clusters" $at/model/model.csv ;;
     shapes)
         build/shapes || exit 1
-        for s in ellipsoids rotation bed; do data shapes_$s "make bench-pages PAGES=shapes" $at/shapes/$s.csv; done
         measured "make bench-pages PAGES=shapes" >> $at/shapes/page.md
-        splice shapes.md shapes $at/shapes/page.md ;;
+        splice shapes.md shapes $at/shapes/page.md || exit 1
+        for s in ellipsoids rotation bed; do data shapes_$s "make bench-pages PAGES=shapes" $at/shapes/$s.csv; done ;;
     screener)
         for k in 200 2000; do build/screener --study size --stiffness $k --out $at/screener_size$k || exit 1; done
         screener_times $at/screener_size200/summary.txt $at/screener_size2000/summary.txt > build/page.times
@@ -169,16 +211,29 @@ for page in "$@"; do
         build/ellipsoids --speeds --threads 1 || exit 1
         gas_speeds $at/ellipsoids/speeds.csv > build/page.speeds
         splice ellipsoids.md speeds build/page.speeds ;;
+    lessons)
+        # JOBS lessons at a time, each on one thread: the figures do not depend on the number of threads
+        ls examples/[0-9][0-9]_*.c | sed 's/.*\///; s/\.c$//' > build/lessons.txt
+        (unset OMP_PROC_BIND OMP_PLACES
+        OMP_NUM_THREADS=1 xargs -P "${JOBS:-1}" -n 1 sh -c 'mkdir -p build/out/$1 && cd build/out/$1 &&
+            { ../../$1 > log 2>&1 || { echo "build/$1 ends with code $?:"; tail -n 5 log; exit 1; }; }' run < build/lessons.txt) || exit 1
+        awk -f bench/lessons.awk $(sed 's/.*/build\/out\/&\/log/' build/lessons.txt) > build/page.lessons || exit 1
+        splice teaching.md lessons build/page.lessons || exit 1 ;;
+    heap)
+        mkdir -p $at/readme && (cd $at/readme && ../../readme_program > log 2>&1) || { cat $at/readme/log; exit 1; }
+        { echo '```'; grep '^slope' $at/readme/log; echo '```'; } > build/page.heap && splice README.md heap build/page.heap || exit 1 ;;
+    files) files > build/page.files && splice web.md files build/page.files || exit 1 ;;
     peers)
         SCENES="bed drum gas" sh bench/peers.sh > build/peers.out || { cat build/peers.out; exit 1; }
         cat build/peers.out
         grep -q ' = ' build/peers.out || { echo "neither code was found: README.md stays as it was"; exit 1; }
-        peers build/peers.out > build/peers.md && splice ../README.md peers build/peers.md || exit 1 ;;
+        peers build/peers.out > build/peers.md && splice README.md peers build/peers.md "${ROUNDS:+ROUNDS=$ROUNDS }make bench-pages PAGES=peers" || exit 1 ;;
     blocks)
         SCENES="clumps cubes" CORES=1 sh bench/peers.sh > build/blocks.out || { cat build/blocks.out; exit 1; }
         cat build/blocks.out
         grep -q ' = ' build/blocks.out || { echo "neither code was found: shapes.md stays as it was"; exit 1; }
-        { blocks build/blocks.out; measured "ROUNDS=${ROUNDS:-5} make bench-pages PAGES=blocks"; } > build/blocks.md && splice shapes.md blocks build/blocks.md || exit 1 ;;
-    *) echo "no page $page: effects, accuracy, roofline, clusters, shapes, screener, ellipsoids, peers or blocks"; exit 1 ;;
+        { blocks build/blocks.out; measured "ROUNDS=${ROUNDS:-5} make bench-pages PAGES=blocks"; } > build/blocks.md
+        splice shapes.md blocks build/blocks.md "${ROUNDS:+ROUNDS=$ROUNDS }make bench-pages PAGES=blocks" || exit 1 ;;
+    *) echo "no page $what: effects, accuracy, roofline, clusters, shapes, screener, responses, ellipsoids, peers, blocks, lessons, heap or files"; exit 1 ;;
     esac
 done

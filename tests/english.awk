@@ -39,6 +39,7 @@ FNR == 1 {
     page = FILENAME ~ /\.md$/; header = FILENAME ~ /(^|\/)dem\.h$/
     code = 0; comment = 0; private = 0; api = 0; text = ""
 }
+page && /^<!-- .* -->$/ { finish(); next }
 page && /^ *```/ { finish(); code = !code; next }
 page && code { next }
 page {
