@@ -4287,7 +4287,7 @@ static void demi_built(dem_world *w, const char *call) {
     memmove(w->refused_calls[k], w->refused_calls[k + 1],
             (size_t)(--w->refused - k)*sizeof *w->refused_calls);
     if (!w->refused || strncmp(w->refusal, call, n) || w->refusal[n] != ':') return;
-    snprintf(w->refusal, sizeof w->refusal, "%s: was refused, too", w->refused_calls[0]);
+    snprintf(w->refusal, sizeof w->refusal, "%s: failed as well", w->refused_calls[0]);
 }
 /* Before a run: says so when a call that builds the scene was refused and nobody read why. A scene
    that lacks something would run, and answer DEM_OK. */
@@ -4295,9 +4295,9 @@ static dem_result demi_unbuilt(dem_world *w, const char *call) {
     char why[sizeof w->refusal];
     if (!w->refused) return DEM_OK;
     memcpy(why, w->refusal, sizeof why);
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: not begun, because a call before was refused and "
-                     "nobody has read why: \"%.320s\"; mend that call, or read dem_world_error_get "
-                     "and go on without it", call, why);
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: did not start, because an earlier call failed "
+                     "and its message has not been read: \"%.320s\"; correct that call, or read "
+                     "dem_world_error_get and continue without it", call, why);
 }
 /* Before a function of the user's is called: until `w->look.calling` is what this returns again,
    calls that change the world are refused. */
@@ -4329,10 +4329,10 @@ static int demi_null_look(const dem_world *w, const char *call, const void *poin
     return 1;
 }
 static int demi_barred(dem_world *w, const char *call) {
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called by a function of yours that %s has called (law, "
-              "field, motion, region, progress or the like), which may only look at the world; "
-              "note what is to be done and do it when %s has returned, or between two steps in an "
-              "output of kind DEM_OUTPUT_CALL", call, w->look.calling.who, w->look.calling.who);
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: called from a function that %s calls (law, field, "
+              "motion, region, progress or the like), which may only read the world; make this "
+              "call after %s has returned, or between two steps in an output of kind "
+              "DEM_OUTPUT_CALL", call, w->look.calling.who, w->look.calling.who);
     return 1;
 }
 /* For functions that need memory of the world but leave its state alone, such as those that read
@@ -4690,14 +4690,14 @@ static dem_result demi_material_check(dem_world *w, const char *call, const dem_
     DEMI_ROW(4, friction, d->friction >= 0, ">= 0");
     DEMI_ROW(5, friction_static, DEMI_ABS(d->friction_static) <= 0 ||
              d->friction_static >= d->friction,
-             "0 or at least the sliding friction");
+             "0, or at least the sliding friction");
     DEMI_ROW(6, rolling_friction, d->rolling_friction >= 0, ">= 0");
     DEMI_ROW(7, stiffness, d->stiffness >= 0, ">= 0 N/m");
     DEMI_ROW(8, stiffness_ratio, d->stiffness_ratio >= 0, ">= 0");
     DEMI_ROW(9, stiffness_unloading, DEMI_ABS(d->stiffness_unloading) <= 0 ||
              (d->stiffness > 0 && d->stiffness_unloading >= d->stiffness),
-             "0 or at least the stiffness of loading, which is to be given then, in N/m");
-    DEMI_ROW(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (its size, not its "
+             "0, or at least the stiffness of loading, which must then be set (N/m)");
+    DEMI_ROW(10, stiffness_adhesion, d->stiffness_adhesion >= 0, ">= 0 N/m (the magnitude of the "
              "slope)");
 #undef DEMI_ROW
     for (i = 0; i < 11; i++) {
@@ -4798,8 +4798,8 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
     id.id = 0;
     if (demi_material_check(w, "dem_material_add", desc) != DEM_OK) return id;
     if (n == DEMI_MATERIALS) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, the "
-                  "limit; reuse one", n);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_add: there are %d materials already, which "
+                  "is the limit; reuse one of them", n);
         return id;
     }
     w->materials[n] = *desc;
@@ -4818,9 +4818,9 @@ DEM_API dem_material dem_material_add(dem_world *w, const dem_material_desc *des
 /* From the id that a user holds to an index, or a sentence in the name of `call`. */
 static dem_result demi_material_index(dem_world *w, const char *call, dem_material m, int *index) {
     if (m.id < 1 || m.id > w->material_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; add "
-                         "it with dem_material_add and check what that returned", call, (int)m.id,
-                         w->material_count);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material %d does not exist, there are %d; "
+                         "add it with dem_material_add and check the id that this returns", call,
+                         (int)m.id, w->material_count);
     *index = m.id - 1;
     return DEM_OK;
 }
@@ -4844,8 +4844,9 @@ DEM_API dem_result dem_material_set(dem_world *w, dem_material material,
     before = w->materials[m];
     if (desc->density < before.density || desc->density > before.density)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_material_set: density of material %d is %g "
-                         "kg/m3, must stay %g: bodies have their masses; add another material",
-                         m + 1, (double)desc->density, (double)before.density);
+                         "kg/m3, must stay %g, because masses of bodies were computed from it; "
+                         "add another material", m + 1, (double)desc->density,
+                         (double)before.density);
     w->materials[m] = *desc;
     if (!(desc->restitution > 0) && !demi_impulsive(w))     /* left to the stiffnesses */
         w->materials[m].restitution = DEMI_SQRT(desc->stiffness/desc->stiffness_unloading);
@@ -4896,7 +4897,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
     DEMI_BAD(friction, p->friction >= 0, DEMI_MOST_RATIO, ">= 0")
     DEMI_BAD(friction_static, DEMI_ABS(p->friction_static) <= 0 ||
              p->friction_static >= p->friction,
-             DEMI_MOST_RATIO, "0, to be the same as the sliding friction, or at least that")
+             DEMI_MOST_RATIO, "0 (the same as the sliding friction), or at least the sliding "
+                 "friction")
     DEMI_BAD(rolling_friction, p->rolling_friction >= 0, DEMI_MOST_RATIO, ">= 0")
     DEMI_BAD(stiffness, p->stiffness >= 0, DEMI_MOST, ">= 0 N/m")
     DEMI_BAD(stiffness_ratio, p->stiffness_ratio >= 0, DEMI_MOST_RATIO, ">= 0")
@@ -4913,8 +4915,8 @@ DEM_API dem_result dem_pair_set(dem_world *w, dem_material a, dem_material b, co
 #undef DEMI_BAD
     if (bad)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_pair_set: %s of materials %d and %d is %g, "
-                         "must be %s, and at most %g; start from dem_pair_get and change what "
-                         "differs", bad, i + 1, j + 1, (double)value, limit, most);
+                         "must be %s, and at most %g; start from dem_pair_get and change only "
+                         "what differs", bad, i + 1, j + 1, (double)value, limit, most);
     demi_pair_put(w, i, j, p);
     w->stage.pairs_changed = 1;                       /* the next step makes a new list of it */
     demi_built(w, "dem_pair_set");
@@ -5007,8 +5009,8 @@ static int demi_mass_refuse(dem_world *w, const char *call, int material, dem_re
         !(inertia > 0) || r > DEMI_FARTHEST;
     for (k = 0; k < 4 && !bad; k++) bad = !demi_finite(four[k]) || !(four[k] > 0);
     if (bad)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius of number %d is %g m, which gives it a mass "
-                  "of %g kg: too small or too large to calculate with in %s precision; lengths are "
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the radius of sphere %d is %g m and its mass %g kg, "
+                  "which is too small or too large to calculate with in %s precision; lengths are "
                   "in metres: check the unit; nothing was added", call, i, r, m,
                   DEMI_SINGLE ? "single" : "double");
     return bad;
@@ -5026,9 +5028,8 @@ DEM_API dem_result dem_coefficients_get(const dem_world *world, dem_material a, 
         demi_material_index(w, "dem_coefficients_get", b, &j))
         return DEM_ERROR_ARGUMENT;
     if (!(ra > 0) || !(rb >= 0) || !demi_finite(radius_a) || !demi_finite(radius_b))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_coefficients_get: radii are %g and %g m, must "
-                         "be > 0 and >= 0 "
-                         "(0: a wall)", ra, rb);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_coefficients_get: radii are %g and %g m; the "
+                         "first must be > 0, the second >= 0 (0 means a wall)", ra, rb);
     ma = demi_sphere_mass(w, i, ra);
     r = rb > 0 ? ra*rb/(ra + rb) : ra;
     m = rb > 0 ? 1/(1/ma + 1/demi_sphere_mass(w, j, rb)) : ma;
@@ -5342,9 +5343,9 @@ static int demi_shapes_strange(dem_world *w, const char *call, int kind) {
     for (i = -1; i <= w->shape_count; i++) {
         other = i < 0 ? DEMI_BALL : i < w->shape_count ? w->shapes[i].kind : kind;
         if (demi_meet_known(kind, other)) continue;
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d, a%s %s, and shape %d, a%s %s, do not know "
-                  "each other: a world holds one or the other; nothing was added", call,
-                  w->shape_count + 1, demi_an(demi_shape_rows[kind].name),
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts between shape %d, a%s %s, and shape %d, "
+                  "a%s %s, are not available, so a world can hold only one of the two; nothing "
+                  "was added", call, w->shape_count + 1, demi_an(demi_shape_rows[kind].name),
                   demi_shape_rows[kind].name, i + 1, demi_an(demi_shape_rows[other].name),
                   demi_shape_rows[other].name);
         return 1;
@@ -5369,8 +5370,8 @@ static dem_shape demi_shape_adopt(dem_world *w, const char *call, demi_shape *sh
 /* 1 with a sentence where bodies are flat: shapes are of three dimensions. */
 static int demi_shape_planar(dem_world *w, const char *call) {
     if (!w->desc.planar) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is planar, where bodies are discs and "
-              "polygons; set planar to 0, or use discs and dem_shape_polygon_add", call);
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is planar and holds only discs and polygons; "
+              "set planar to 0, or use discs and dem_shape_polygon_add", call);
     return 1;
 }
 
@@ -5446,17 +5447,18 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
     int i;
     if (desc->count < 1 || desc->count > 1000 || !desc->positions || desc->rays < 0 ||
         desc->rays > 4096 || (desc->rays > 0 && desc->rays < 16)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and rays %d, must be 1 to 1000 with "
-                  "positions (count x 3), and 0 or 16 to 4096", call, desc->count, desc->rays);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and rays is %d; count must be 1 to 1000 "
+                  "with positions (count x 3), rays 0 or 16 to 4096", call, desc->count,
+                  desc->rays);
         return 0;
     }
     for (i = 0; i < desc->count; i++) {
         const dem_real r = desc->radii ? desc->radii[i] : desc->radius;
         if (demi_finite(r) && r > 0 && demi_place(demi_at(desc->positions + 3*i))) continue;
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sphere %d has radius %g m at (%g, %g, %g), must be "
-                  "> 0 and finite, at most 1e15; fill in radii or radius", call, i, (double)r,
-                  (double)desc->positions[3*i], (double)desc->positions[3*i + 1],
-                  (double)desc->positions[3*i + 2]);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: sphere %d has radius %g m at (%g, %g, %g) m; the "
+                  "radius must be > 0 and finite, coordinates at most 1e15 m; fill in radii or "
+                  "radius", call, i, (double)r, (double)desc->positions[3*i],
+                  (double)desc->positions[3*i + 1], (double)desc->positions[3*i + 2]);
         return 0;
     }
     if ((int)desc->mass < 0 || desc->mass > DEM_CLUSTER_GIVEN) {
@@ -5470,8 +5472,9 @@ static int demi_cluster_check(dem_world *w, const dem_cluster_desc *desc) {
         demi_finite(I[3]) && demi_finite(I[4]) && demi_finite(I[5]) &&
         demi_finite(I[0] + I[1] + I[2])) return 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: volume is %g m3, moments are %g, %g, %g m5 (per "
-              "density), must be > 0, none above the other two together; centre within 1e15 m",
-              call, (double)desc->volume, (double)I[0], (double)I[1], (double)I[2]);
+              "density); all must be > 0, no moment above the sum of the other two, and the "
+              "centre within 1e15 m", call, (double)desc->volume, (double)I[0], (double)I[1],
+              (double)I[2]);
     return 0;
 }
 /* 1 with a sentence when rays lie so far apart that they may miss a sphere. */
@@ -5488,8 +5491,8 @@ static int demi_cluster_coarse(dem_world *w, const dem_cluster_desc *desc, const
                 side = DEMI_MAX(side, to - (double)(shape->parts[4*j + e] - shape->parts[4*j + 3]));
             }
     if (side/rays <= (double)least/4) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: rays is %d, so that rays lie %.3g m "
-              "apart, more than a quarter of the smallest radius %g m; set rays to %.0f or more, "
+    demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: rays is %d, so rays are %.3g m "
+              "apart, more than a quarter of the smallest radius, %g m; set rays to %.0f or more, "
               "at most 4096, or give the moments", rays, side/rays, (double)least,
               ceil(4*side/(double)least));
     return 1;
@@ -5527,7 +5530,7 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
         demi_shape_free(w, &shape);
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_shape_cluster_add: a principal moment of inertia is "
                   "not > 0; %s", desc->mass == DEM_CLUSTER_GIVEN
-                  ? "the off-diagonal parts given are too large" : "use more rays");
+                  ? "the given off-diagonal moments are too large" : "use more rays");
         return none;
     }
     for (i = 0; i < shape.count; i++)
@@ -5543,8 +5546,8 @@ DEM_API dem_shape dem_shape_cluster_add(dem_world *w, const dem_cluster_desc *de
 static int demi_shape_index(dem_world *w, const char *call, dem_shape shape) {
     if (shape.id >= 1 && shape.id <= w->shape_count) return shape.id - 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d does not exist, there are %d; add it with "
-              "dem_shape_ellipsoid_add and the like and check what that returned",
-              call, (int)shape.id, w->shape_count);
+              "dem_shape_ellipsoid_add and the like and check the id that this returns", call,
+              (int)shape.id, w->shape_count);
     return -1;
 }
 /* Semi-axes of the ellipsoid that has its moments, m. */
@@ -6283,8 +6286,8 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
                 demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
                 demi_fail(w, DEM_ERROR_ARGUMENT, "%s: two closed shells of the mesh cross (one "
                           "begins at (%g, %g, %g) m), must be apart or one inside the other; "
-                          "unite them in the program that made them, or give them one by one",
-                          call, x[0], x[1], x[2]);
+                          "unite them in the program that exported them, or pass them as separate "
+                          "meshes", call, x[0], x[1], x[2]);
                 return 0;
             }
             s->depth[a] += in;
@@ -6297,7 +6300,7 @@ static int demi_shells_nest(dem_world *w, const char *call, const demi_closed *c
         demi_mesh_corner(c->mesh, s->order[s->start[a]], 0, x);
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the shell of the mesh that begins at (%g, %g, %g) m "
                   "lies inside another and faces the same way, must face the other way to be a "
-                  "cavity; turn its triangles round, or leave it out if it is a second body", call,
+                  "cavity; reverse its triangles, or leave it out if it is a second body", call,
                   x[0], x[1], x[2]);
         return 0;
     }
@@ -6314,18 +6317,18 @@ static int demi_closed_body(dem_world *w, const char *call, demi_closed *c) {
     demi_mesh_corner(c->mesh, side/3, side%3, x);
     if (loose || c->twisted || !c->shells || c->shells > DEMI_CLOSED_SHELLS) {
         if (c->twisted)
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has one side only (%d edges where no "
-                      "winding fits), must have an inside and an outside; repair it in the "
-                      "program that made it", call, c->twisted);
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is one-sided, as a Moebius strip is "
+                      "(no winding fits at %d edges), so it has no inside; repair it in the "
+                      "program that exported it", call, c->twisted);
         else if (loose)
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is open at %d edges, or more than two "
-                      "triangles meet there (first near (%.4g, %.4g, %.4g) m); it must be closed "
-                      "to have an inside: see dem_mesh_health; close it in the program that made "
-                      "it", call, loose, x[0], x[1], x[2]);
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is open at %d edges, or has more than "
+                      "two triangles there (first near (%.4g, %.4g, %.4g) m), so it has no "
+                      "inside; close it in the program that exported it (dem_mesh_health counts "
+                      "such edges)", call, loose, x[0], x[1], x[2]);
         else
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh has %d closed shells, must have 1 to "
-                      "%d; does it hold bodies, not one? Give them one by one", call, c->shells,
-                      (int)DEMI_CLOSED_SHELLS);
+                      "%d; if it holds several bodies, pass them as separate meshes", call,
+                      c->shells, (int)DEMI_CLOSED_SHELLS);
         return 0;
     }
     memset(&s, 0, sizeof s);
@@ -6699,16 +6702,16 @@ static int demi_polyhedron_make(dem_world *w, const char *call, demi_hull *h, do
         if (faces && faces <= DEM_POLYHEDRON_FACES) break;
     }
     if (faces < 0)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d points lie in a plane, to %.1g m; a "
-                  "polyhedron needs four that do not", call, h->count, h->near);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d points lie in one plane within %.1g m; a "
+                  "polyhedron needs four points that do not", call, h->count, h->near);
     else if (faces > DEM_POLYHEDRON_FACES)
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points has more than %d faces; "
-                  "give fewer points, or an ellipsoid or a cluster of spheres for what is round",
+                  "give fewer points, or use an ellipsoid or a cluster of spheres for a round body",
                   call, h->count, DEM_POLYHEDRON_FACES);
     else if (!faces)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points does not close: many lie "
-                  "nearly in one plane, or on one line, without lying in it; give corners alone",
-                  call, h->count);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the hull of the %d points does not close, likely "
+                  "because many points lie nearly, but not exactly, in one plane or on one line; "
+                  "give only the corners", call, h->count);
     if (faces < 1 || faces > DEM_POLYHEDRON_FACES) return 0;
     demi_polyhedron_moments(h->x, rim, faces, &m);
     demi_shape_principal(shape, &m);
@@ -6802,23 +6805,24 @@ static int demi_mesh_sound(dem_world *w, const char *call, int vertices, const d
     int i;
     if (vertices < 1 || elements < 1 || vertices > INT_MAX/8 || elements > INT_MAX/8 || !xyz ||
         (per_element && !corners)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d vertices and %d elements, must be at least one of "
-                  "each, at most %d, with pointers to them; was the file read?", call, vertices,
-                  elements, INT_MAX/8);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: there are %d vertices and %d elements; there must "
+                  "be at least one and at most %d of each, with pointers to them; was the file "
+                  "read?", call, vertices, elements, INT_MAX/8);
         return 0;
     }
     for (i = 0; i < vertices*per_vertex; i++)
         if (!demi_finite(xyz[i]) || fabs((double)xyz[i]) > DEMI_FARTHEST) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a coordinate of vertex %d is %g m, must be "
-                      "finite and between -%g and %g; was the file read whole, in metres?", call,
-                      i/per_vertex, (double)xyz[i], DEMI_FARTHEST, DEMI_FARTHEST);
+                      "finite and between -%g and %g; check that the file was read completely and "
+                      "is in metres", call, i/per_vertex, (double)xyz[i], DEMI_FARTHEST,
+                      DEMI_FARTHEST);
             return 0;
         }
     for (i = 0; i < elements*per_element; i++)
         if (corners[i] < 0 || corners[i] >= vertices) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; are "
-                      "they counted from 1?",
-                      call, i/per_element, (int)corners[i], vertices - 1);
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: element %d names vertex %d, must be 0 to %d; "
+                      "are vertices numbered from 1 in the file?", call, i/per_element,
+                      (int)corners[i], vertices - 1);
             return 0;
         }
     return 1;
@@ -6874,8 +6878,8 @@ DEM_API dem_shape dem_shape_mesh_add(dem_world *w, const dem_mesh *mesh, dem_rea
     }
     if (most > dent + shape.radius*(DEMI_SINGLE ? DEM_R(2e-5) : DEM_R(1e-8))) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is not convex: at (%g, %g, %g) m it lies "
-                  "%.3g m inside its hull, more than dent, %g m; cut it into convex pieces, take a "
-                  "cluster of spheres, or let dent be larger to have the hull", call,
+                  "%.3g m inside its hull, more than the allowed dent of %g m; cut it into convex "
+                  "pieces, use a cluster of spheres, or increase dent to use the hull", call,
                   (double)place.x, (double)place.y, (double)place.z, (double)most, (double)dent);
         demi_shape_free(w, &shape);
         return demi_no_shape;
@@ -7042,15 +7046,16 @@ DEM_API dem_shape dem_shape_union_add(dem_world *w, int count, const dem_shape *
         if (which[i] < 0) return demi_no_shape;
         if (w->shapes[which[i]].count || w->shapes[which[i]].pieces) {
             demi_fail(w, DEM_ERROR_ARGUMENT, "%s: shape %d is a cluster or a union, must be an "
-                      "ellipsoid, a polyhedron or a polygon; give its pieces", call, which[i] + 1);
+                      "ellipsoid, a polyhedron or a polygon; pass its pieces instead", call,
+                      which[i] + 1);
             return demi_no_shape;
         }
         if (!demi_place(demi_at(positions + 3*i)) || !demi_quat_finite(q) ||
             !(demi_quat_most(q) > 0) || (w->desc.planar && (positions[3*i + 2] < 0 ||
             positions[3*i + 2] > 0 || q.x < 0 || q.x > 0 || q.y < 0 || q.y > 0))) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: place or orientation of piece %d is not finite, "
-                      "is zero, or leads out of the plane of a planar world; (1, 0, 0, 0) does not "
-                      "turn it", call, i);
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: position or orientation of piece %d is not "
+                      "finite, is a zero quaternion, or leaves the plane of a planar world; "
+                      "(1, 0, 0, 0) is no rotation", call, i);
             return demi_no_shape;
         }
     }
@@ -7165,12 +7170,12 @@ static double demi_polygon_read(dem_world *w, const char *call, int count, const
         for (k = 0; k < count; k++)
             if (demi_sides_cross(x, count, i, k)) {
                 demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the sides from point %d and from point %d "
-                          "cross or touch; give the corners in turn, each once", call, i, k);
+                          "cross or touch; give the corners in order, each once", call, i, k);
                 return 0;
             }
     if (!(area < 0 || area > 0))
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the area is %g m2; give corners that are not on one "
-                  "line", call, area);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the area is %g m2, must not be 0; give corners that "
+                  "are not on one line", call, area);
     for (i = 0; i < count && area < 0; i++) {
         x[2*i] = (double)points[2*(count - 1 - i)];
         x[2*i + 1] = (double)points[2*(count - 1 - i) + 1];
@@ -7196,7 +7201,7 @@ DEM_API dem_shape dem_shape_polygon_add(dem_world *w, int count, const dem_real 
     pieces = demi_polygon_cut(x, count, piece);
     if (!pieces)
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the %d corners cannot be cut into convex pieces: "
-                  "some are too near to others or to sides; leave those out", call, count);
+                  "some are too close to others or to sides; leave those out", call, count);
     first = w->shape_count;
     high = 2*sqrt(area/DEMI_PI)/3;              /* half of its thickness */
     for (i = 0; i < pieces; i++) {
@@ -7674,16 +7679,14 @@ DEM_API dem_result dem_spheres_add(dem_world *w, dem_material material, int coun
     for (i = 0; i < count; i++) {
         const dem_real r = radii ? radii[i] : radius;
         if (!(r > 0) || !demi_finite(r))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: radius of sphere %d is %g, "
-                             "must be > 0 m; "
-                             "no sphere was added", i, (double)r);
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: radius of sphere %d is %g "
+                             "m, must be > 0 and finite; no sphere was added", i, (double)r);
         if (demi_mass_refuse(w, "dem_spheres_add", m, r, i)) return DEM_ERROR_ARGUMENT;
         if (!demi_place(demi_at(positions + 3*i)) || (velocities &&
                                                       !demi_place(demi_at(velocities + 3*i))))
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_spheres_add: position or velocity of "
-                             "sphere %d is not a finite number, or farther than %g m from the "
-                             "origin, or faster than that in m/s; check the data it came from; no "
-                             "sphere was added", i, DEMI_FARTHEST);
+                             "sphere %d is not a finite number, or beyond %g m or m/s; check the "
+                             "data it came from; no sphere was added", i, DEMI_FARTHEST);
     }
     if (!demi_bodies_reserve(w, (size_t)w->bodies.count + (size_t)count) || !demi_list_drop(w))
         return demi_no_memory(w, "dem_spheres_add");
@@ -7732,8 +7735,8 @@ static int demi_bodies_check(dem_world *w, const char *call, int count, const de
             return 0;
         }
         if (!demi_quat_finite(o) || !(demi_quat_most(o) > 0)) {
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: orientation of body %d is (%g, %g, %g, %g), must "
-                      "be finite and not zero; (1, 0, 0, 0) does not turn it; no body was added",
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: orientation of body %d is (%g, %g, %g, %g), "
+                      "must be finite and not zero; (1, 0, 0, 0) is no rotation; no body was added",
                       call, i, (double)o.w, (double)o.x, (double)o.y, (double)o.z);
             return 0;
         }
@@ -7757,9 +7760,10 @@ static int demi_shape_mass_refuse(dem_world *w, const char *call, int material, 
     int k, bad = !demi_finite_double(m) || !(m > 0);
     for (k = 0; k < 6 && !bad; k++) bad = !demi_finite(six[k]) || !(six[k] > 0);
     if (bad)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %d has scale %g and a mass of %g kg: it or its "
-                  "inertia is too small or too large to calculate with in %s precision; lengths "
-                  "are in metres: check the unit; nothing was added", call, i, s, m,
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %d has scale %g and a mass of %g kg, and the "
+                  "mass or its inertia is too small or too large to calculate with in %s "
+                  "precision; lengths are in metres: check the unit; nothing was added",
+                  call, i, s, m,
                   DEMI_SINGLE ? "single" : "double");
     return bad;
 }
@@ -7825,8 +7829,8 @@ static int demi_body_index(dem_world *w, const char *call, dem_body b) {
         w->bodies.slot_generation[b.slot - 1] != b.generation ||
         w->bodies.slot_index[b.slot - 1] < 0) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u (generation %u) does not exist; it was "
-                  "removed, has left the "
-                  "domain, or never was", call, (unsigned)b.slot, (unsigned)b.generation);
+                  "removed, has left the domain, or was never added", call, (unsigned)b.slot,
+                  (unsigned)b.generation);
         return -1;
     }
     return w->bodies.slot_index[b.slot - 1];
@@ -7979,10 +7983,11 @@ DEM_API dem_result dem_temperature_set(dem_world *w, double temperature, uint64_
     was = demi_temperature(w, &mass, &count, mean);
     if (!(temperature >= 0) || !demi_finite_double(temperature) || count < 2 ||
         (!seed && temperature > 0 && !(was > 0)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_temperature_set: temperature is %g m2/s2, of "
-                         "%d bodies that can move, now at %g m2/s2; must be finite and >= 0, of at "
-                         "least two, and above 0 now where they are to be scaled: give a seed to "
-                         "draw velocities", temperature, count, was);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_temperature_set: temperature is %g m2/s2, "
+                         "for %d bodies that can move and have %g m2/s2 now; it must be finite "
+                         "and >= 0, for two bodies at least, and bodies at rest have no "
+                         "velocities to scale: give a seed to draw velocities", temperature, count,
+                         was);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_temperature_set");
     /* first, with a seed, the velocities are drawn; then they are scaled */
     for (pass = seed ? 0 : 1; pass < 2; pass++) {
@@ -8033,8 +8038,8 @@ static dem_result demi_reals_ask(const dem_world *world, const char *call, const
     if (setting ? demi_null(w, call, reals, "reals") : demi_null_look(w, call, reals, "reals"))
         return DEM_ERROR_ARGUMENT;
     if (!w->bodies.real_count)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grains carry no numbers of your own; name "
-                         "them in desc.body_reals when the world is created", call);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: bodies carry no user-defined numbers; name "
+                         "the numbers in desc.body_reals when the world is created", call);
     for (k = 0; setting && k < count*w->bodies.real_count; k++)
         if (!demi_finite(reals[k]))
             return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: number %d is %g, must be finite; check "
@@ -9236,9 +9241,8 @@ static dem_result demi_table_check(dem_world *w, int wall, const dem_motion *m) 
     }
     if (bad < 0) return DEM_OK;
     return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: row %d of the table of wall %d, "
-                     "at "
-                     "%g s, is not finite or not later than the one before; the first is at 0 s",
-                     bad, wall, m->table[bad].time);
+                     "at %g s, is not finite or not later than the row before; the first row must "
+                     "be at 0 s", bad, wall, m->table[bad].time);
 }
 /* Where the wall is at a time. Rotating: exact rotation from the pose it started with, so that no
    error builds up. Velocities are exact derivatives. */
@@ -9594,10 +9598,10 @@ DEM_API dem_wall dem_wall_cylinder_add(dem_world *w, dem_material material, dem_
                          &wall)) return none;
     if (!demi_place(point) || !demi_finite3(axis) || !(demi_dot(axis, axis) > 0) ||
         !(radius > 0) || !demi_bounded((double)radius)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_cylinder_add: radius is %g m and axis (%g, %g, "
-                  "%g), "
-                  "must be > 0 and not zero; radius and the point's coordinates at most %g m",
-                  (double)radius, (double)axis.x, (double)axis.y, (double)axis.z, DEMI_FARTHEST);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_cylinder_add: radius is %g m and axis is (%g, "
+                  "%g, %g); the radius must be > 0, the axis not zero, the radius and the "
+                  "coordinates of the point at most %g m", (double)radius, (double)axis.x,
+                  (double)axis.y, (double)axis.z, DEMI_FARTHEST);
         return none;
     }
     wall.element_count = 1;
@@ -9620,9 +9624,9 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
     if (!demi_wall_begin(w, call, material, DEMI_WALL_REVOLVED, &wall)) return demi_no_wall;
     if (count < 2 || count > DEM_RINGS || !demi_place(point) || !demi_finite3(axis) ||
         !(demi_dot(axis, axis) > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and axis (%g, %g, %g), must be 2 to %d "
-                  "rings and not zero, point finite", call, count, (double)axis.x, (double)axis.y,
-                  (double)axis.z, (int)DEM_RINGS);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d and axis is (%g, %g, %g); there must be "
+                  "2 to %d rings, the axis must not be zero, the point must be finite", call, count,
+                  (double)axis.x, (double)axis.y, (double)axis.z, (int)DEM_RINGS);
         return demi_no_wall;
     }
     for (k = 0; k < count && bad < 0; k++) {
@@ -9638,9 +9642,9 @@ static dem_wall demi_revolved_make(dem_world *w, const char *call, dem_material 
         wall.extent = DEMI_MAX(wall.extent, DEMI_SQRT(r*r + h*h));
     }
     if (bad >= 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: ring %d has radius %g m at height %g m; must be "
-                  "finite, the radius >= 0 and not 0 twice running, no two neighbours in one place",
-                  call, bad, (double)radii[bad], (double)heights[bad]);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: ring %d has radius %g m at height %g m; both must "
+                  "be finite, the radius >= 0, not 0 for two rings in a row, and no ring equal to "
+                  "the one before", call, bad, (double)radii[bad], (double)heights[bad]);
         return demi_no_wall;
     }
     wall.ring_count = count;
@@ -9716,9 +9720,9 @@ static int demi_wall_load(dem_world *w, const char *call, demi_wall *wall, int v
     demi_wall_bounds(wall);
     if (per_element && (!demi_facets_any(wall) ||
                         !(demi_size(demi_sub(wall->box.hi, wall->box.lo)) > DEMI_LEAST))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: of %d elements none has a size: corners in one "
-                  "place, triangles without height, or all within %g m; were the coordinates "
-                  "lost, or in another unit?", call, elements, DEMI_LEAST);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: none of the %d elements has a size: corners "
+                  "coincide, triangles have no height, or all lie within %g m; check that "
+                  "coordinates were read and are in metres", call, elements, DEMI_LEAST);
         demi_wall_free(w, wall);
         return 0;
     }
@@ -9746,10 +9750,10 @@ DEM_API dem_wall dem_wall_profile_add(dem_world *w, dem_material material,
         return none;
     }
     if (rule == DEM_EDGE_FRACTION && (w->desc.law_range > 0 || w->desc.law_range_radii > 0)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is DEM_EDGE_FRACTION, and the "
-                  "law "
-                  "of this world has a range; what counts there is the chord of a segment in a "
-                  "grain, and there is none before the two touch: use DEM_EDGE_RESOLVED");
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_profile_add: rule is DEM_EDGE_FRACTION, but "
+                  "the law of this world has a range; that rule weighs the chord of a segment "
+                  "inside a grain, which does not exist before the two touch: use "
+                  "DEM_EDGE_RESOLVED");
         return none;
     }
     wall.rule = rule;
@@ -9785,9 +9789,9 @@ DEM_API dem_wall dem_wall_grains_add(dem_world *w, dem_material material, int co
     none.id = 0;
     if (!demi_wall_begin(w, "dem_wall_grains_add", material, DEMI_WALL_GRAINS, &wall)) return none;
     if (!(radius > 0) || !demi_bounded((double)radius) || !(share > 0) || !(share <= 1)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_grains_add: radius is %g m and share %g, must "
-                  "be > 0, at most %g m, and 0 < share <= 1", (double)radius, (double)share,
-                  DEMI_FARTHEST);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_grains_add: radius is %g m and share is %g; "
+                  "the radius must be > 0 and at most %g m, the share > 0 and at most 1",
+                  (double)radius, (double)share, DEMI_FARTHEST);
         return none;
     }
     wall.radius = radius;
@@ -9818,30 +9822,28 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
     DEMI_BAD(aperture, d->aperture > 0, "> 0 m (required)")
     DEMI_BAD(bar, d->bar > 0, "> 0 m (required)")
     DEMI_BAD(length, DEMI_ABS(d->length) <= 0 || (d->kind == DEM_SIEVE_SLOTS &&
-             d->length >= d->aperture), "0, or of slots at least the aperture, in m")
+             d->length >= d->aperture), "0, or for slots at least the aperture (m)")
     DEMI_BAD(thickness, DEMI_ABS(d->thickness) <= 0 || (plate && d->thickness > 0),
-             ">= 0 m, and 0 but for plates")
+             ">= 0 m, and 0 except for plates")
     DEMI_BAD(lift, DEMI_ABS(d->lift) <= 0 || (d->kind == DEM_SIEVE_WIRES && d->lift > 0),
-             ">= 0 m, and 0 but for a weave of wires")
+             ">= 0 m, and 0 except for a weave of wires")
     DEMI_BAD(radius, d->radius >= 0, ">= 0 m")
-    DEMI_BAD(staggered, !d->staggered || d->kind == DEM_SIEVE_ROUND, "0 but for round holes")
+    DEMI_BAD(staggered, !d->staggered || d->kind == DEM_SIEVE_ROUND, "0 except for round holes")
     DEMI_BAD(model, !d->model || (d->kind == DEM_SIEVE_REDUCED && d->model > 0 && d->model <= 2),
-             "0, or of reduced holes 1 or 2")
+             "0, or for reduced holes 1 or 2")
     DEMI_BAD(clearance, DEMI_ABS(d->clearance) <= 0 || (d->kind == DEM_SIEVE_REDUCED &&
-             d->clearance > 0 && d->clearance <= 1), "0, or of reduced holes up to 1")
+             d->clearance > 0 && d->clearance <= 1), "0, or for reduced holes up to 1")
 #undef DEMI_BAD
     if (bad) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: %s is %g, must be %s, at most %g; "
-                  "start "
-                  "from DEM_SIEVE_DESC and set what differs", bad, (double)value, limit,
+                  "start from DEM_SIEVE_DESC and set only what differs", bad, (double)value, limit,
                   DEMI_FARTHEST);
         return none;
     }
     if (!demi_place(d->point) || !demi_finite3(n) || !demi_finite3(t)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_sieve_add: point, normal or along is not "
-                  "finite, or "
-                  "point farther than %g m from the origin; check how it was computed",
-                  DEMI_FARTHEST);
+                  "finite, or point is farther than %g m from the origin; check how it was "
+                  "computed", DEMI_FARTHEST);
         return none;
     }
     n = demi_size(n) > 0 ? demi_unit(n) : demi_v(0, 0, 1);
@@ -9870,14 +9872,14 @@ DEM_API dem_wall dem_wall_sieve_add(dem_world *w, dem_material material, const d
 static int demi_wall_find(dem_world *w, const char *call, dem_wall wall) {
     const int place = demi_wall_place(wall);
     if (wall.id < 1 || place >= w->wall_count) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, ids here go from 1 to %d; it "
-                  "was not added (dem_world_error_get says why) or is of another world: check what "
-                  "adding it returned", call, (int)wall.id, w->wall_count);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist, ids in this world are 1 to "
+                  "%d; adding it failed (dem_world_error_get says why) or it belongs to another "
+                  "world: check the id that adding it returned", call, (int)wall.id, w->wall_count);
         return -1;
     }
     if (!demi_wall_there(w, wall)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist any more: it was removed "
-                  "(dem_wall_remove); add it again and use the id that this returns", call,
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d does not exist any more, because "
+                  "dem_wall_remove removed it; add it again and use the id that this returns", call,
                   (int)wall.id);
         return -1;
     }
@@ -9905,9 +9907,9 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
                          (int)id.id);
     if (motion->kind == DEM_MOTION_OSCILLATING && !(demi_dot(motion->velocity,
                                                              motion->velocity) > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity, the direction of "
-                         "oscillating wall %d, is "
-                         "zero; give a direction", (int)id.id);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: velocity of oscillating "
+                         "wall %d is zero, but gives the direction of its motion; set it",
+                         (int)id.id);
     if (motion->kind == DEM_MOTION_USER && !motion->function)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: wall %d has kind "
                          "DEM_MOTION_USER "
@@ -9915,9 +9917,8 @@ static dem_result demi_motion_check(dem_world *w, dem_wall id, const dem_motion 
                          "set motion.function", (int)id.id);
     if (!demi_motion_sane(motion) || (int)motion->kind < 0 || motion->kind > DEM_MOTION_TABLE)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: a number in the motion of "
-                         "wall "
-                         "%d is not finite or beyond %g (m, m/s, rad/s, s), its ramp, %g s, below "
-                         "0, or its kind %d unknown; start from DEM_MOTION", (int)id.id,
+                         "wall %d is not finite or beyond %g (m, m/s, rad/s, s), its ramp of %g s "
+                         "is below 0, or its kind %d is unknown; start from DEM_MOTION", (int)id.id,
                          DEMI_FARTHEST, motion->ramp, (int)motion->kind);
     return motion->kind == DEM_MOTION_TABLE ? demi_table_check(w, (int)id.id, motion) : DEM_OK;
 }
@@ -9944,9 +9945,9 @@ static dem_result demi_motion_lay(dem_world *w, dem_wall id, const dem_motion *m
     if (!demi_pose_sane(&laid.pose)) {
         demi_free(w, rows);
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_motion_set: the motion of wall %d gives "
-                         "a "
-                         "pose that is not finite, does not only rotate, or is beyond %g m, m/s or "
-                         "rad/s now, at %g s; check it", (int)id.id, DEMI_FARTHEST, w->clock.time);
+                         "a pose that is not finite, whose matrix is not a rotation, or that is "
+                         "beyond %g m, m/s or rad/s now, at %g s; check the motion", (int)id.id,
+                         DEMI_FARTHEST, w->clock.time);
     }
     *next = laid;
     return DEM_OK;
@@ -10000,7 +10001,7 @@ DEM_API dem_result dem_wall_remove(dem_world *w, dem_wall id) {
     for (k = 0; k < w->outlet_count; k++)
         if (w->outlets[k].desc.frame.id == id.id)
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_wall_remove: outlet %d moves with wall "
-                             "%d and would let nothing out any more; keep the wall", k + 1,
+                             "%d and would stop working without it; keep the wall", k + 1,
                              (int)id.id);
     if (!demi_list_drop(w)) return demi_no_memory(w, "dem_wall_remove");
     demi_wall_forget(w, i);
@@ -10891,8 +10892,8 @@ static const demi_search_row demi_searches[] = {
     {"all pairs", demi_rows_all_pairs, 0, 0},
     {"uniform grid", demi_rows_cells, 0, 1},
     {"linked linear list", demi_rows_linked, demi_lll_rows, 0},
-    {"levels (hierarchical grid)", demi_rows_cells, 0, 1},
-    {"bins of boxes", demi_rows_bins, demi_bins_lay, 0},
+    {"hierarchical grid", demi_rows_cells, 0, 1},
+    {"bins of bounding boxes", demi_rows_bins, demi_bins_lay, 0},
 };
 enum { DEMI_SEARCHES = (int)(sizeof demi_searches/sizeof *demi_searches) };
 
@@ -11840,9 +11841,9 @@ static dem_result demi_lost(dem_world *w, int body) {
     const dem_real *x = w->bodies.pos + 4*body;
     return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its position is "
                      "(%g, %g, %g) m, must be finite and at most %g m from the origin; the run "
-                     "blew up before (two grains at one place, dt too large, or a law, field "
-                     "or motion of your own that divides by zero): take the body out, or go back "
-                     "to a checkpoint", (unsigned long long)w->clock.steps,
+                     "blew up earlier (two grains at the same position, dt too large, or a "
+                     "user-defined law, field or motion that divides by zero): remove the body, "
+                     "or go back to a checkpoint", (unsigned long long)w->clock.steps,
                      (unsigned)w->bodies.slot[body] + 1, (double)x[0], (double)x[1], (double)x[2],
                      DEMI_FARTHEST);
 }
@@ -11860,10 +11861,10 @@ static int demi_crowd_refuse(dem_world *w) {
     }
     if (!demi_searches[w->desc.search].crowds || work <= 1e9 + 2e4*w->bodies.count) return 0;
     demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: a search would compare %.2g pairs: %d of %d "
-              "bodies are in one cell of %.3g by %.3g by %.3g m; they lie on each other, or some "
-              "are far from all others: take those out (an outflow boundary does), or spread the "
-              "others", work, crowd, w->bodies.count, w->cell_size[0], w->cell_size[1],
-              w->cell_size[2]);
+              "bodies are in one cell of %.3g by %.3g by %.3g m; either they lie on each other, "
+              "or a few bodies far away stretch the grid: remove those (an outflow boundary "
+              "does), or spread the others", work, crowd, w->bodies.count, w->cell_size[0],
+              w->cell_size[1], w->cell_size[2]);
     return 1;
 }
 /* A wall longer than the period does not repeat, and must be there for all that stands in the box;
@@ -11879,10 +11880,10 @@ static int demi_walls_end(dem_world *w, const char *call) {
             if (wall->kind == DEMI_WALL_NONE || wall->extent < 0 || wall->repeats[k] ||
                 !(p.period[k] > 0) || !(w->bodies.count > 0) ||
                 (wall->span_lo[k] <= lo - need && wall->span_hi[k] >= hi + need)) continue;
-            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic axis "
-                      "%d, which is longer than the period of %g m, so that it does not repeat; it "
-                      "must reach %g m, the largest radius%s, beyond the faces at %g and %g m, or "
-                      "be no longer than the period", call, (int)wall->id,
+            demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %d goes from %g to %g m along periodic "
+                      "axis %d, which is longer than the period of %g m, so that it does not "
+                      "repeat; extend it by %g m (the largest radius%s) beyond the faces at %g "
+                      "and %g m, or make it no longer than the period", call, (int)wall->id,
                       (double)wall->span_lo[k], (double)wall->span_hi[k], k, (double)p.period[k],
                       (double)w->effects.radius_max + w->margin.reach, w->margin.reach > 0
                       ? " and the law's range" : "", (double)lo, (double)hi);
@@ -12144,9 +12145,8 @@ static dem_result demi_rebuild(dem_world *w, const char *call) {
 
 /* Answers -1 with a sentence, for those who ask about a list that no longer fits. */
 static int demi_list_stale(const dem_world *world, const char *call) {
-    demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: there was no step since bodies or "
-              "walls were added or changed, so there is no list of contacts; call "
-              "dem_candidates_rebuild "
+    demi_fail((dem_world *)world, DEM_ERROR_ARGUMENT, "%s: bodies or walls were added or changed "
+              "after the last step, so there is no list of contacts; call dem_candidates_rebuild "
               "or dem_world_step first", call);
     return -1;
 }
@@ -17209,16 +17209,17 @@ static const char *demi_wall_why(const dem_world *w, const demi_wall *wall, int 
     const dem_sieve_desc *s = &wall->sieve;
     const int plate = s->kind != DEM_SIEVE_WIRES && s->kind != DEM_SIEVE_BARS;
     if (!demi_touches[wall->kind][part])
-        return "the two do not know each other; make bodies clusters of spheres, or the wall a "
-               "mesh or a resolved profile";
+        return "contacts between the two are not available; make bodies clusters of spheres, or "
+               "the wall a mesh or a resolved profile";
     if (part != DEMI_POLYHEDRON || wall->kind != DEMI_WALL_SIEVE) return 0;
     if (s->kind == DEM_SIEVE_REDUCED)
-        return "reduced holes are for spheres; take DEM_SIEVE_SQUARE";
+        return "reduced holes are only for spheres; use DEM_SIEVE_SQUARE";
     if (s->radius > 0)
-        return "a sieve cut from a disc is for spheres; leave its radius at 0, and stand a "
-               "cylinder round what is sieved";
+        return "a sieve cut from a disc is only for spheres; leave its radius at 0, and put a "
+               "cylinder around it";
     if (plate && !(s->thickness > 0) && !demi_impulsive(w))
-        return "to springs a sheet has no inside; give the sieve a thickness, or take impulses";
+        return "a sheet without thickness has no inside for springs to act on; give the sieve a "
+            "thickness, or use impulses";
     return 0;
 }
 
@@ -19807,9 +19808,9 @@ static int demi_joint_find(dem_world *w, const char *call, dem_joint joint) {
     }
     if (low < w->joint_count && w->joints[low].id == joint.id &&
         demi_joint_alive(w, w->joints + low)) return low;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: joint %d does not exist, there are %d; it was removed, "
-              "or one of its bodies or its wall was, or adding it was refused", call,
-              (int)joint.id, demi_joints_in_force(w));
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: joint %d does not exist, there are %d; it, one of its "
+              "bodies or its wall was removed, or adding it failed", call, (int)joint.id,
+              demi_joints_in_force(w));
     return -1;
 }
 /* What is wrong with a motor; 0 with a sentence. The limit is far beyond any machine, and squares
@@ -19822,8 +19823,8 @@ static int demi_motor_sane(dem_world *w, const char *call, dem_joint_kind kind, 
         (motor == DEM_MOTOR_NONE || kind == DEM_JOINT_REVOLUTE)) return 1;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: motor is %d, speed %g rad/s, torque %g N m; speed and "
               "torque must lie within +-1e12, and the limit on torque of DEM_MOTOR_SPEED must be "
-              ">= 0 (0: no limit); likely the units are not SI, or the joint is no hinge; motors "
-              "act on revolute joints alone", call, (int)motor, (double)speed, (double)torque);
+              ">= 0 (0: no limit); likely the units are not SI, or the joint is not revolute: "
+              "only revolute joints have motors", call, (int)motor, (double)speed, (double)torque);
     return 0;
 }
 /* A place or direction, as seen from body `index` (with `place`: from its centre). */
@@ -19837,9 +19838,8 @@ static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc 
     const dem_real size = demi_length(d->axis);
     int a, b = -1;
     if (!demi_impulsive(w)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts answer by springs, and joints are "
-                  "found with impulses; create the world with desc.response = "
-                  "DEM_RESPONSE_IMPULSES", call);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are springs, but joints need "
+                  "impulses; create the world with desc.response = DEM_RESPONSE_IMPULSES", call);
         return 0;
     }
     if ((d->kind != DEM_JOINT_POINT && d->kind != DEM_JOINT_REVOLUTE) || !demi_place(d->point) ||
@@ -19854,8 +19854,8 @@ static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc 
     }
     if (w->desc.planar && d->kind == DEM_JOINT_REVOLUTE &&
         !(DEMI_ABS(d->axis.z) > DEM_R(0.9999)*size)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be along z: discs turn "
-                  "about nothing else", call, (double)d->axis.x, (double)d->axis.y,
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is (%g, %g, %g), must be along z, because "
+                  "discs rotate about no other axis", call, (double)d->axis.x, (double)d->axis.y,
                   (double)d->axis.z);
         return 0;
     }
@@ -19864,15 +19864,16 @@ static int demi_joint_sane(dem_world *w, const char *call, const dem_joint_desc 
     if (d->b.slot && (b = demi_body_index(w, call, d->b)) < 0) return 0;
     if (!d->b.slot && d->wall.id && demi_wall_find(w, call, d->wall) < 0) return 0;
     if (!w->desc.orientations && (!demi_shape_of(w, a) || (b >= 0 && !demi_shape_of(w, b)))) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u is a sphere, and how spheres are turned is "
-                  "not followed in this world; create it with desc.orientations = 1", call,
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: body %u is a sphere, and this world does not follow "
+                  "the orientations of spheres; create the world with desc.orientations = 1", call,
                   (unsigned)(demi_shape_of(w, a) ? d->b.slot : d->a.slot));
         return 0;
     }
     if (a != b && w->bodies.inv_mass[a] + (b >= 0 ? w->bodies.inv_mass[b] : 0) > 0) return 1;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a is body %u, b body %u (0: none): %s; a joint holds two "
-              "that are not the same, one of which can move", call, (unsigned)d->a.slot,
-              (unsigned)d->b.slot, a == b ? "they are one" : "neither can move");
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: a is body %u and b is body %u (0: none), but %s; a "
+              "joint holds two different bodies, at least one of which can move",
+              call, (unsigned)d->a.slot,
+              (unsigned)d->b.slot, a == b ? "they are the same" : "neither can move");
     return 0;
 }
 DEM_API dem_joint dem_joint_add(dem_world *w, const dem_joint_desc *d) {
@@ -21708,7 +21709,7 @@ static void demi_size_why(const dem_sizes *d, double *lo, double *hi, char *why,
                         median);
     if (d->kind == DEM_SIZES_LOGNORMAL) {
         DEMI_SIZE_NEEDS(d->spread > 0 && d->spread < 10, "spread is %g, must be > 0 and < 10: it "
-                        "is that of the logarithm", d->spread);
+                        "is the standard deviation of ln(radius)", d->spread);
         if (!*why && !(*lo > 0)) *lo = DEMI_MAX(median*demi_exp(-6*d->spread), DEMI_FINEST);
         if (!*why && !(*hi > 0)) *hi = median*demi_exp(6*d->spread);
     }
@@ -21733,8 +21734,8 @@ static void demi_size_why(const dem_sizes *d, double *lo, double *hi, char *why,
     if (d->kind == DEM_SIZES_SIEVE_CURVE) {
         DEMI_SIZE_NEEDS(d->count >= 2 && d->count <= DEM_SIEVES, "count is %d sieves, must be 2 to "
                         "32", d->count);
-        DEMI_SIZE_NEEDS(fabs(last - 1) < 1e-9, "the last of passing is %g, must be 1 (not 100 "
-                        "per cent): divide all by it", last);
+        DEMI_SIZE_NEEDS(fabs(last - 1) < 1e-9, "the last entry of passing is %g, must be 1 (not "
+                        "100 per cent): divide all entries by it", last);
         for (k = 0; k < d->count && !*why; k++) {
             DEMI_SIZE_NEEDS(demi_finite(d->radius[k]) && d->radius[k] > (k ? d->radius[k - 1] : 0),
                             "radius[%d] must be > 0, finite and above the one before", k);
@@ -21749,8 +21750,8 @@ static void demi_size_why(const dem_sizes *d, double *lo, double *hi, char *why,
     DEMI_SIZE_NEEDS(*hi >= *lo && *hi < DEMI_FARTHEST, "the largest radius is %g m, must be at "
                     "least min and below 1e15 m", *hi);
     DEMI_SIZE_NEEDS(!(*hi > *lo) || d->kind == DEM_SIZES_UNIFORM ||
-                    demi_size_share(d, *hi) > demi_size_share(d, *lo), "no grains are between min "
-                    "and max, which is %g m; give others", *hi);
+                    demi_size_share(d, *hi) > demi_size_share(d, *lo), "the distribution has no "
+                    "grains between min and max (%g m); change min or max", *hi);
 #undef DEMI_SIZE_NEEDS
 }
 /* The ends of a distribution; 0 with a sentence in the name of `call` when it is none. */
@@ -22264,8 +22265,8 @@ static int demi_fill_places(dem_world *w, demi_crowd *c, const dem_region *regio
 }
 static int demi_cylinder_refuse(dem_world *w, const char *call, const dem_region *region) {
     if (!region->cylinder || (region->cylinder >= 'x' && region->cylinder <= 'z')) return 0;
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z', the axis "
-              "it is along, or 0 for all of the box", call, region->cylinder);
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: region.cylinder is %d, must be 'x', 'y' or 'z' (the "
+              "axis of the cylinder), or 0 for the whole box", call, region->cylinder);
     return 1;
 }
 /* Fills a region with spheres, or with bodies of a shape (>= 0), whose bounding sphere has this
@@ -22280,8 +22281,8 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
     if (demi_material_index(w, call, material, &m) != DEM_OK) return 0;
     if (radii) radius = count > 0 ? radii[0] : 1;
     if (!(radius > 0) || !demi_finite(radius) || count < 0) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m and count %d, must be > 0 and >= 0",
-                  call, (double)radius, count);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m and count is %d; the radius must be "
+                  "> 0 and finite, the count >= 0", call, (double)radius, count);
         return 0;
     }
     if (shape < 0 ? demi_mass_refuse(w, call, m, radii && count ? radii[count - 1] : radius, 0)
@@ -22308,12 +22309,12 @@ static int demi_fill(dem_world *w, const char *call, dem_material material, int 
         return 0;
     }
     if (done < count)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a place in %d "
-                  "tries each, free of other bodies and of walls; enlarge the %s, or %s", call,
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d %s of radius %g m found a free position, "
+                  "clear of other bodies and walls, in %d tries each; enlarge the %s, or %s", call,
                   done, count, shape < 0 ? "spheres" : "bodies with bounding spheres",
                   (double)(radii ? radii[done] : radius), (int)DEMI_FILL_TRIES,
                   region->inside ? "region" : "box", shape < 0
-                  ? "pack them with dem_spheres_pack" : "place them yourself with dem_bodies_add");
+                  ? "pack them with dem_spheres_pack" : "place them with dem_bodies_add");
     demi_built(w, call);                        /* fewer than asked: the answer says so */
     return done;
 }
@@ -22433,8 +22434,9 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
         return 0;
     if (!(radius > 0) || !(padding >= 0) || !demi_finite(radius) || !demi_finite(padding) ||
         count < 0 || !demi_place(region.box.lo) || !demi_place(region.box.hi)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius %g, padding %g, count %d; must be > 0, >= 0, "
-                  ">= 0 and the box finite", call, (double)radius, (double)padding, count);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: radius is %g m, padding is %g m, count is %d; the "
+                  "radius must be > 0, padding and count >= 0, and the box finite", call,
+                  (double)radius, (double)padding, count);
         return 0;
     }
     if (demi_mass_refuse(w, call, m, radius, 0) || demi_cylinder_refuse(w, call, &region)) return 0;
@@ -22445,9 +22447,9 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
     }
     g.count = count;
     if (!count && !region.inside && demi_lattice_places(w, &g) > 1.1*(INT_MAX/64)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has about %.3g places for spheres of radius "
-                  "%g m, must be at most %d, which is what a world holds; make the box smaller or "
-                  "give a count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box has room for about %.3g spheres of radius "
+                  "%g m, must be at most %d, the limit of a world; make the box smaller or give a "
+                  "count", call, demi_lattice_places(w, &g), (double)radius, INT_MAX/64);
         return 0;
     }
     done = demi_crowd_begin(w, &c, &room, radius, demi_periods_of(w)) ? 0 : -1;
@@ -22463,9 +22465,10 @@ DEM_API int dem_spheres_pack(dem_world *w, dem_material material, dem_real radiu
         return 0;
     }
     if (g.looked > DEMI_PACK_MOST || c.count >= INT_MAX/64)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: stopped after %.3g places, %d spheres of radius %g m "
-                  "packed; a world holds %d bodies, and %g places are looked at: make the box "
-                  "smaller", call, g.looked, done, (double)radius, INT_MAX/64, DEMI_PACK_MOST);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: stopped after %.3g trial positions, with %d spheres "
+                  "of radius %g m packed; the limits are %d bodies and %g trial positions: make "
+                  "the box smaller", call, g.looked, done, (double)radius, INT_MAX/64,
+                  DEMI_PACK_MOST);
     demi_built(w, call);
     return done;
 }
@@ -22492,9 +22495,10 @@ static int demi_box_empty(dem_world *w, const char *call, dem_box b, int planar)
     if (demi_place(b.lo) && demi_place(b.hi) && b.hi.x > b.lo.x && b.hi.y > b.lo.y &&
         (b.hi.z > b.lo.z || (planar && b.hi.z >= b.lo.z))) return 0;
     demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box goes from (%g, %g, %g) to (%g, %g, %g) m, must "
-              "be finite with lo below hi on every axis, at most %g m away: nothing can be in it; "
-              "give desc.box two corners that differ", call, (double)b.lo.x, (double)b.lo.y,
-              (double)b.lo.z, (double)b.hi.x, (double)b.hi.y, (double)b.hi.z, DEMI_FARTHEST);
+              "be finite with lo below hi on every axis, at most %g m from the origin; as it is "
+              "nothing can be in it: give desc.box two corners that differ", call, (double)b.lo.x,
+              (double)b.lo.y, (double)b.lo.z, (double)b.hi.x, (double)b.hi.y, (double)b.hi.z,
+              DEMI_FARTHEST);
     return 1;
 }
 static int demi_box_bad(dem_box b, int planar) {
@@ -22579,8 +22583,8 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
     id.id = 0;
     if (demi_material_index(w, call, d->material, &m) != DEM_OK) return id;
     if (d->class_count < 1 || d->class_count > DEM_CLASSES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d (required); say "
-                  "how many entries of radius and amount are filled in", call, d->class_count,
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, must be 1 to %d (required); set "
+                  "it to the number of entries of radius and amount", call, d->class_count,
                   (int)DEM_CLASSES);
         return id;
     }
@@ -22614,15 +22618,15 @@ DEM_API dem_feed dem_feed_add(dem_world *w, const dem_feed_desc *d) {
         !((double)d->spread <= DEMI_FARTHEST) || !demi_place(d->velocity) ||
         (!(d->rate > 0) && !d->limited) || (d->end > 0 && d->end < d->start)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "%s: rate is %g, start %g s, end %g s, spread %g m/s, "
-                  "velocity up to %g m/s; must be finite, >= 0 but for velocities and at most %g, "
-                  "the end 0 or after the start, and all at once (rate 0) needs `limited`, or it "
-                  "has no end", call, d->rate, d->start, d->end, (double)d->spread,
-                  demi_size(d->velocity), DEMI_FARTHEST);
+                  "velocity up to %g m/s; all must be finite and at most %g, all but the velocity "
+                  ">= 0, the end 0 or after the start; a feed of all grains at once (rate 0) "
+                  "needs `limited`, or it never ends", call, d->rate, d->start, d->end,
+                  (double)d->spread, demi_size(d->velocity), DEMI_FARTHEST);
         return id;
     }
     if (demi_box_bad(d->box, w->desc.planar)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is not finite or lo is above hi; give the "
-                  "region where centres of new grains are", call);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the box is not finite or lo is above hi; set it to "
+                  "the region of the centres of new grains", call);
         return id;
     }
     if (!DEMI_GROW(w, w->feeds, (size_t)w->feed_count + 1) ||
@@ -22829,8 +22833,9 @@ DEM_API dem_result dem_feed_get(const dem_world *w, dem_feed id, dem_feed_state 
     if (demi_null_look(w, "dem_feed_get", state, "state")) return DEM_ERROR_ARGUMENT;
     if (id.id < 1 || id.id > w->feed_count)
         return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_feed_get: feed %d does not "
-                         "exist, ids here go from 1 to %d; it was refused or is of another world: "
-                         "check what dem_feed_add returned", (int)id.id, w->feed_count);
+                         "exist, ids in this world are 1 to %d; adding it failed or it belongs to "
+                         "another world: check the id that dem_feed_add returned", (int)id.id,
+                         w->feed_count);
     *state = demi_feed_at(w, id.id - 1)->state;
     return DEM_OK;
 }
@@ -22849,10 +22854,10 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     for (k = 0; k < d->class_count && !bad; k++)
         bad = !(d->radius[k] > (k ? d->radius[k - 1] : 0)) || !demi_finite(d->radius[k]);
     if (bad) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, beyond %g m, wanted %g to %g m; "
-                  "must be 0 to %d classes with ascending radii, lengths >= 0, wanted_min below "
-                  "wanted_max", call, d->class_count, (double)d->beyond, (double)d->wanted_min,
-                  (double)d->wanted_max, (int)DEM_CLASSES);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: class_count is %d, beyond is %g m, wanted is %g to "
+                  "%g m; there must be 0 to %d classes with ascending radii, lengths must be "
+                  ">= 0, and wanted_min below wanted_max", call, d->class_count, (double)d->beyond,
+                  (double)d->wanted_min, (double)d->wanted_max, (int)DEM_CLASSES);
         return id;
     }
     if (demi_box_empty(w, call, d->box, w->desc.planar)) return id;
@@ -22860,8 +22865,9 @@ DEM_API dem_outlet dem_outlet_add(dem_world *w, const dem_outlet_desc *d) {
     if (d->material.id && demi_material_index(w, call, d->material, &k) != DEM_OK) return id;
     for (k = 0; k < w->outlet_count; k++) kept += demi_outlet_at(w, k)->desc.keep != 0;
     if (d->keep && kept == DEMI_ZONES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: keep is %d, and there are %d outlets that only "
-                  "count already, the limit; count by classes", call, d->keep, kept);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: keep is %d, but %d outlets that keep their grains "
+                  "exist already, which is the limit; count by classes instead", call, d->keep,
+                  kept);
         return id;
     }
     if ((d->keep && !demi_zones_begin(w)) ||
@@ -22968,9 +22974,9 @@ static dem_result demi_outlets_run(dem_world *w) {
 }
 static demi_outlet *demi_outlet_find(const dem_world *w, const char *call, dem_outlet id) {
     if (id.id >= 1 && id.id <= w->outlet_count) return demi_outlet_at(w, id.id - 1);
-    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, ids here go "
-              "from 1 to %d; it was refused or is of another world: check what dem_outlet_add "
-              "returned", call, (int)id.id, w->outlet_count);
+    demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "%s: outlet %d does not exist, ids in this "
+              "world are 1 to %d; adding it failed or it belongs to another world: check the id "
+              "that dem_outlet_add returned", call, (int)id.id, w->outlet_count);
     return 0;
 }
 DEM_API dem_result dem_outlet_get(const dem_world *w, dem_outlet id, dem_outlet_state *state) {
@@ -23250,8 +23256,8 @@ static void demi_advise(const dem_world *w, dem_advice *out) {
     out->dt_max = (dem_real)DEMI_MIN(s.time/20, s.limit);
     if (s.time > 0 && s.limit < s.time/20) {
         const size_t n = strlen(out->binds);
-        snprintf(out->binds + n, sizeof out->binds - n, "; stable to %.3g s, by its dashpot, "
-                 "friction or rolling", s.limit);
+        snprintf(out->binds + n, sizeof out->binds - n, "; stable to %.3g s because of its "
+                 "dashpot, friction or rolling", s.limit);
     }
 }
 
@@ -23490,9 +23496,9 @@ static double demi_press_limit(dem_world *w, double dt, int *worst) {
 
 /* Says that a body that is not a sphere turns too far in a step. */
 static dem_result demi_spins_refuse(dem_world *w, double rate, const char *call) {
-    return demi_fail(w, DEM_ERROR_TIME_STEP, "%s: step %llu: a body that is not a sphere turns by "
-                     "%.3g rad in a step of %g s, must be at most 1; its spin is %.3g rad/s: use "
-                     "dt = 0 or at most %.2g s, or look for what spun it up", call,
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "%s: step %llu: a body that is not a sphere rotates "
+                     "by %.3g rad in a step of %g s, must be at most 1; its spin is %.3g rad/s: "
+                     "use dt = 0 or at most %.2g s, or find what spun it up", call,
                      (unsigned long long)w->clock.steps, rate*(double)w->clock.dt,
                      (double)w->clock.dt, rate, 0.1/rate);
 }
@@ -23509,22 +23515,20 @@ static double demi_spin_fastest(const dem_world *w) {
 DEM_API dem_result dem_step_advice_get(const dem_world *w, dem_advice *advice) {
     if (demi_null_look(w, "dem_step_advice_get", advice, "advice")) return DEM_ERROR_ARGUMENT;
     if (demi_impulsive(w))
-        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: contacts answer "
-                         "by "
-                         "impulses, which have no contact time; take a step in which grains move "
-                         "by less than a tenth of their radius");
+        return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: contacts of "
+                         "this world are impulses, which have no contact time; choose a step in "
+                         "which grains move by less than a tenth of their radius");
     demi_advise(w, advice);
     if (advice->contact_time > 0) return DEM_OK;
     return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_step_advice_get: the world has no "
-                     "grain "
-                     "that moves; add grains before asking for a time step");
+                     "grain that can move; add grains before this call");
 }
 /* Refuses a step that is chosen so short that time would stand still. */
 static dem_result demi_dt_refuse(dem_world *w, double dt, const char *by) {
-    return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: the contacts of the scene ask for a "
-                     "step of %g s, must be at least %g s, or time stands still (shortest: %s); a "
-                     "stiffness, damping, rolling friction or speed is far too large, or a grain "
-                     "far too light: look for it with dem_world_check_print", dt, DEMI_DT_LEAST,
+    return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: the contacts of the scene need a "
+                     "step of %g s, must be at least %g s, or time does not advance (shortest: "
+                     "%s); a stiffness, damping, rolling friction or speed is far too large, or a "
+                     "grain far too light: find it with dem_world_check_print", dt, DEMI_DT_LEAST,
                      by);
 }
 /* The time step for the scene as it is, asked for or advised; one that is not stable is refused.
@@ -23535,14 +23539,14 @@ static dem_result demi_dt_settle(dem_world *w) {
     if (w->stage.dt_valid) return DEM_OK;
     if (demi_impulsive(w)) {                    /* as given: no contact is too short for it */
         if (demi_impulses_twist(w) && !demi_solvers[w->desc.solver].moments)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there is rolling or spinning "
-                             "friction between materials, which %s does not know; leave "
-                             "desc.solver DEM_SOLVER_GAUSS_SEIDEL",
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: materials have rolling or "
+                             "spinning friction, which the solver %s does not support; leave "
+                             "desc.solver at DEM_SOLVER_GAUSS_SEIDEL",
                              demi_solvers[w->desc.solver].name);
         if (demi_joints_in_force(w) && !demi_solvers[w->desc.solver].joints)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which %s "
-                             "does not know; leave desc.solver DEM_SOLVER_GAUSS_SEIDEL",
-                             demi_solvers[w->desc.solver].name);
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: there are joints, which the "
+                             "solver %s does not support; leave desc.solver at "
+                             "DEM_SOLVER_GAUSS_SEIDEL", demi_solvers[w->desc.solver].name);
         w->clock.dt = w->desc.dt;
         w->clock.press_since = w->clock.steps;
         w->stage.dt_valid = 1;
@@ -23638,11 +23642,11 @@ static dem_result demi_speed_check(dem_world *w, double speed, int named) {
     }
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: %s may reach %.3g m/s in "
                      "this step: it moves %.3g radii of the smallest grain (%g m) in a step of %g "
-                     "s, must be at most 1: it would pass others and walls unseen; use at most "
-                     "%.2g s%s, or look for what made it so fast",
+                     "s, must be at most 1: it would pass through others and walls undetected; "
+                     "use at most %.2g s%s, or find what made it so fast",
                      (unsigned long long)w->clock.steps, who, speed, speed*dt/radius, radius, dt,
                      0.1*radius/speed,
-                     demi_impulsive(w) ? ", or a law_range of twice its way" : "");
+                     demi_impulsive(w) ? ", or a law_range of twice that distance" : "");
 }
 /* The same of walls that are thin: planes and cylinders cannot be passed. */
 static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) {
@@ -23657,9 +23661,9 @@ static dem_result demi_wall_speed_check(dem_world *w, double radius, double dt) 
         if (!(speed*dt > radius)) continue;
         return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: wall %d moves at up "
                          "to %.3g m/s, %.3g radii of the smallest grain (%g m) in a step of %g s, "
-                         "must be at most 1: it would pass grains unseen; use at most %.2g s, or a "
-                         "slower wall", (unsigned long long)w->clock.steps, (int)wall->id, speed,
-                         speed*dt/radius, radius, dt, 0.1*radius/speed);
+                         "must be at most 1: it would pass through grains undetected; use at most "
+                         "%.2g s, or a slower wall", (unsigned long long)w->clock.steps,
+                         (int)wall->id, speed, speed*dt/radius, radius, dt, 0.1*radius/speed);
     }
     return DEM_OK;
 }
@@ -23673,14 +23677,14 @@ static void demi_held_report(const dem_world *w, FILE *out) {
     if (h->body > 0)
         snprintf(who, sizeof who, "body %d, pressed by %.3g contacts,", (int)h->body, h->contacts);
     if (h->by == DEMI_HELD_PRESSED)
-        fprintf(out, "%s is stable to %.4g s, and half of that is taken\n", who, h->limit);
+        fprintf(out, "%s is stable to %.4g s, and half of that is used\n", who, h->limit);
     else if (h->by == DEMI_HELD_RATE)
-        fprintf(out, "by desc.law_rate numbers of body %d are stable to %.4g s, and half of that "
-                "is taken\n", (int)h->body, h->limit);
+        fprintf(out, "the numbers of body %d (desc.law_rate) are stable to %.4g s, and half of "
+                "that is used\n", (int)h->body, h->limit);
     else if (h->by == DEMI_HELD_SPIN)
         fprintf(out, "a body that is not a sphere spins at %.3g rad/s\n", h->limit);
     else fprintf(out, "dashpot, friction or rolling is stable to %.4g s, and a fifth of that is "
-                 "taken\n", h->limit);
+                 "used\n", h->limit);
 }
 /* What presses has been looked at: again more and more rarely while the scene stays, at least every
    thousand steps; where a law has rates, which run away sooner, at least every eight. */
@@ -23697,9 +23701,8 @@ static dem_result demi_press_refuse(dem_world *w, double limit, int worst) {
                          (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
                          (unsigned)w->bodies.slot[worst] + 1, w->press[worst].relax);
     return demi_fail(w, DEM_ERROR_TIME_STEP, "dem_world_step: step %llu: dt is %g s, must be at "
-                     "most %g s: body %u is pressed by %.3g contacts, by %.3g of its radius at "
-                     "most; "
-                     "use dt = 0, a smaller dt, or less overlap",
+                     "most %g s: body %u is pressed by %.3g contacts with overlaps up to %.3g of "
+                     "its radius; use dt = 0, a smaller dt, or less overlap",
                      (unsigned long long)w->clock.steps, (double)w->clock.dt, limit,
                      (unsigned)w->bodies.slot[worst] + 1, w->press[worst].contacts,
                      (double)w->press[worst].deepest);
@@ -23782,30 +23785,31 @@ static void demi_check_materials(const dem_world *w, demi_findings *f) {
             demi_find(f, DEM_SEVERITY_NOTE, "material %d is used by no grain, wall or feed", i + 1);
         if (m->density < 10 || m->density > 25000)
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a density of %g kg/m3: densities "
-                      "are in kg/m3 (water 1000), was %g g/cm3 meant?", i + 1, (double)m->density,
+                      "are in kg/m3 (water has 1000), was %g g/cm3 meant?",
+                      i + 1, (double)m->density,
                       (double)(m->density < 10 ? m->density : m->density/1000));
         if (!w->desc.law && !(m->stiffness > 0) &&
             (m->young < DEM_R(1e4) || m->young > DEM_R(2e12)))
-            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: moduli "
-                      "are in Pa (glass 7e10, softened 1e6 to 1e8)", i + 1, (double)m->young);
+            demi_find(f, DEM_SEVERITY_WARNING, "material %d has a Young's modulus of %g Pa: "
+                      "moduli are in Pa (glass has 7e10, softened grains 1e6 to 1e8)", i + 1,
+                      (double)m->young);
         if (m->friction > 2)
             demi_find(f, DEM_SEVERITY_WARNING, "material %d has a friction of %g: it is a "
-                      "coefficient, not an angle; tan of %g degrees is %.3g", i + 1,
+                      "coefficient, not an angle; tan(%g degrees) is %.3g", i + 1,
                       (double)m->friction, (double)m->friction,
                       demi_sin((double)m->friction*DEMI_PI/180)/
                       demi_cos((double)m->friction*DEMI_PI/180));
         if (m->rolling_friction > 1)
             demi_find(f, DEM_SEVERITY_WARNING,
-                      "material %d has a rolling friction of %g: it counts "
-                      "in effective radii, 0.01 to 0.3 as a rule", i + 1,
-                      (double)m->rolling_friction);
+                      "material %d has a rolling friction of %g: it is a fraction of the "
+                      "effective radius, usually 0.01 to 0.3", i + 1, (double)m->rolling_friction);
         if (m->rolling_friction > 0 && !(m->friction > 0))
-            demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction and no sliding "
+            demi_find(f, DEM_SEVERITY_NOTE, "material %d has rolling friction but no sliding "
                       "friction: its grains slide instead of rolling", i + 1);
     }
     if (w->desc.threads > demi_threads_available() && demi_threads_available() > 0)
-        demi_find(f, DEM_SEVERITY_NOTE, "threads is %d, but only %d can run at once: more are "
-                  "slower", w->desc.threads, demi_threads_available());
+        demi_find(f, DEM_SEVERITY_NOTE, "threads is %d, but only %d can run at once: more threads "
+                  "make the run slower", w->desc.threads, demi_threads_available());
 }
 static void demi_radii_of(const dem_world *w, double *least, double *most) {
     int i;
@@ -23824,7 +23828,7 @@ static void demi_check_radii(const dem_world *w, demi_findings *f) {
                   "metres, was %g mm meant?", most, most);
     if (least < 1e-7)
         demi_find(f, DEM_SEVERITY_WARNING, "the smallest grain has a radius of %g m: below 1e-7 m "
-                  "attraction and thermal motion outweigh what is simulated here", least);
+                  "attraction and thermal motion outweigh the forces simulated here", least);
 }
 /* Places are numbers of so many digits: far from the origin too few are left for overlaps, which
    are thousandths of a radius. A bead that rebounds from a plane in single precision is off by 1 %
@@ -23843,10 +23847,11 @@ static void demi_check_digits(const dem_world *w, demi_findings *f) {
         }
     if (worst > 2e-4)
         demi_find(f, worst > 2e-3 ? DEM_SEVERITY_WARNING : DEM_SEVERITY_NOTE, "body %d is so far "
-                  "from the origin that places there are %.2g of its radius apart: contacts lose "
-                  "%s; build the scene about the origin%s", (int)w->bodies.slot[body] + 1, worst,
+                  "from the origin that its position is resolved only to %.2g of its radius: "
+                  "contacts lose %s; build the scene around the origin%s",
+                  (int)w->bodies.slot[body] + 1, worst,
                   worst > 2e-3 ? "their accuracy" : "about 1 % of accuracy",
-                  DEMI_SINGLE ? ", or in double precision" : "");
+                  DEMI_SINGLE ? ", or use double precision" : "");
 }
 
 /* m, how far along n (unit) from the origin a wall may stop what comes that way; 1e300: without
@@ -23887,13 +23892,13 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
         speed = DEMI_MAX(speed, (double)demi_length(demi_at(w->bodies.vel + 4*i)));
     }
     if (!moving && !w->feed_count) {
-        demi_find(f, DEM_SEVERITY_ERROR, "no grain moves, and no feed brings any: add grains, with "
-                  "dem_spheres_fill for one");
+        demi_find(f, DEM_SEVERITY_ERROR, "no grain can move, and there is no feed: add grains, "
+                  "for example with dem_spheres_fill");
         return;
     }
     if (!pulled && !forced && !(speed > 0) && moving)
         demi_find(f, DEM_SEVERITY_WARNING, "all grains rest, and there is neither gravity nor a "
-                  "force: set gravity (0, 0, -9.81 m/s2) or velocities");
+                  "force field: set gravity (0, 0, -9.81 m/s2) or velocities");
     for (i = 0; i < w->wall_count; i++)
         if (w->walls[i].kind != DEMI_WALL_NONE)
             floor = DEMI_MAX(floor, demi_wall_far(&w->walls[i], down));
@@ -23901,9 +23906,9 @@ static void demi_check_motion(const dem_world *w, demi_findings *f) {
         w->desc.boundary[0] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.y) > DEM_R(0.1) &&
         w->desc.boundary[1] == DEM_BOUNDARY_PERIODIC) && !(DEMI_ABS(down.z) > DEM_R(0.1) &&
         w->desc.boundary[2] == DEM_BOUNDARY_PERIODIC))
-        demi_find(f, DEM_SEVERITY_WARNING, "gravity is (%g, %g, %g) m/s2, and no wall or fixed "
-                  "grain is below the lowest grain: they fall for ever; add a floor, or turn "
-                  "gravity", (double)g.x, (double)g.y, (double)g.z);
+        demi_find(f, DEM_SEVERITY_WARNING, "gravity is (%g, %g, %g) m/s2, but no wall or fixed "
+                  "grain is below the lowest grain: grains fall for ever; add a floor, or change "
+                  "the direction of gravity", (double)g.x, (double)g.y, (double)g.z);
 }
 
 /* Is a wall with ends all behind some plane, or beyond a face where grains leave? */
@@ -23975,9 +23980,9 @@ static void demi_check_pairs(const dem_world *w, demi_findings *f) {
     if (count)
         demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
                   : DEM_SEVERITY_NOTE,
-                      "%d pair%s of grains begin%s inside each other, bodies %d and "
-                  "%d by %.3g of the smaller radius: they will fly apart; place them by "
-                  "dem_spheres_fill, or farther from each other", count, count > 1 ? "s" : "",
+                      "%d pair%s of grains begin%s with an overlap, bodies %d and %d by %.3g of "
+                  "the smaller radius: they will fly apart; place them with dem_spheres_fill, or "
+                  "farther apart", count, count > 1 ? "s" : "",
                   count > 1 ? "" : "s", who[0], who[1], worst);
 }
 static void demi_check_in_walls(dem_world *w, demi_findings *f) {
@@ -23997,9 +24002,9 @@ static void demi_check_in_walls(dem_world *w, demi_findings *f) {
     for (d = 0; d < w->domain_count; d++) w->domains[d].kept_next = w->domains[d].kept;
     if (count)
         demi_find(f, worst >= 1 ? DEM_SEVERITY_ERROR : worst > 0.05 ? DEM_SEVERITY_WARNING
-                  : DEM_SEVERITY_NOTE, "grains begin in walls at %d place%s, body %d in wall %d by "
-                  "%.3g of its radius: move it, or does the wall's normal (inside) point the wrong "
-                  "way?", count, count > 1 ? "s" : "", body, wall, worst);
+                  : DEM_SEVERITY_NOTE, "grains overlap walls at %d place%s, body %d wall %d by "
+                  "%.3g of its radius: move it, or does the normal (inside) of the wall point the "
+                  "wrong way?", count, count > 1 ? "s" : "", body, wall, worst);
 }
 static void demi_check_outside(const dem_world *w, demi_findings *f) {
     double lo[3], hi[3];
@@ -24013,8 +24018,8 @@ static void demi_check_outside(const dem_world *w, demi_findings *f) {
             break;
         }
     if (count)
-        demi_find(f, DEM_SEVERITY_WARNING, "%d grain%s outside the domain, whose faces take out "
-                  "what crosses them: gone with the first step; make the domain larger", count,
+        demi_find(f, DEM_SEVERITY_WARNING, "%d grain%s outside the domain, whose outflow faces "
+                  "will remove them in the first step; make the domain larger", count,
                   count > 1 ? "s are" : " is");
 }
 
@@ -24114,15 +24119,15 @@ static void demi_probes_judge(const dem_world *w, demi_findings *f, const demi_p
     if (normals && turn) way = turn > 0 ? " with normals outwards" : " with normals inwards";
     if (!(grains + places) || grains + places == p->grains + p->places) return;
     if (grains)
-        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "%d of %d grains "
-                  "begin inside wall %d, a closed %s%s, and stay inside: if it is solid, keep them "
-                  "out (`inside` of dem_region), or remove them; if it is hollow, this is right",
-                  grains, p->grains, (int)w->walls[wall].id, name, way);
+        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "%d of %d "
+                  "grains begin inside wall %d, a closed %s%s, and stay inside: if the wall is "
+                  "solid, keep them out (`inside` of dem_region) or remove them; if it is hollow, "
+                  "all is well", grains, p->grains, (int)w->walls[wall].id, name, way);
     else
-        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "feed %d brings "
-                  "grains inside wall %d, a closed %s%s, and they stay inside: if it is solid, "
-                  "keep them out (`inside` of the feed); if it is hollow, this is right", feed,
-                  (int)w->walls[wall].id, name, way);
+        demi_find(f, *way && turn < 0 ? DEM_SEVERITY_NOTE : DEM_SEVERITY_WARNING, "feed %d "
+                  "inserts grains inside wall %d, a closed %s%s, and they stay inside: if the "
+                  "wall is solid, keep them out (`inside` of the feed); if it is hollow, all is "
+                  "well", feed, (int)w->walls[wall].id, name, way);
 }
 /* Does the line from x along the first axis cross the side from a to b? 1: from below, -1: from
    above; the same of a side from b to a, to the bit. */
@@ -24284,22 +24289,22 @@ static void demi_check_step(dem_world *w, const dem_advice *a, demi_findings *f)
             fastest = DEMI_MAX(fastest, demi_motion_speed(&w->walls[i]));
     if (demi_impulsive(w)) limit = 0;           /* no contact is too short */
     else if (dt > (double)a->dt_max)
-        demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is %g "
-                  "s, more than %g s, which %s bear: use dt = 0, or softer material", dt,
+        demi_find(f, w->desc.allow_large_dt ? DEM_SEVERITY_WARNING : DEM_SEVERITY_ERROR, "dt is "
+                  "%g s, must be at most %g s for %s: use dt = 0, or a softer material", dt,
                   (double)a->dt_max, a->binds);
     else if ((limit = demi_press_limit(w, dt, &worst)) > 0)
         demi_find(f, DEM_SEVERITY_ERROR,
-                  "dt is %g s, more than %g s, which body %d bears, pressed by "
-                  "%.3g contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
+                  "dt is %g s, must be at most %g s for body %d, which is pressed by %.3g "
+                  "contacts: use dt = 0", dt, limit, (int)w->bodies.slot[worst] + 1,
                   w->press[worst].contacts);
     else if (dt < (double)a->dt/20)
-        demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than need be (t_c/50 = %g "
-                  "s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
+        demi_find(f, DEM_SEVERITY_NOTE, "dt is %g s, %.3g times smaller than necessary (t_c/50 "
+                  "= %g s): the run takes that much longer; use dt = 0", dt, (double)a->dt/dt,
                   (double)a->dt);
     if (w->effects.radius_min > 0 && fastest*dt > (double)w->effects.radius_min)
         demi_find(f, DEM_SEVERITY_ERROR, "at %.3g m/s a grain or wall moves %.3g radii of the "
-                  "smallest grain in a step of %g s: they would pass each other unseen; use dt = 0",
-                  fastest, fastest*dt/(double)w->effects.radius_min, dt);
+                  "smallest grain in a step of %g s: they would pass through each other "
+                  "undetected; use dt = 0", fastest, fastest*dt/(double)w->effects.radius_min, dt);
 }
 /* Overlaps, over the radius, of the smallest grains of each material with their like: when they
    meet at the speed there may be, and under the weight of all, were they stacked where they are. */
@@ -24434,7 +24439,7 @@ static int demi_contact_force(const dem_world *w, int d, int p, dem_contact_info
     demi_motion_one(&tile, &r.same, 0, r.alike, r.turning, r.following);
     demi_who_clear(&c.who);
     demi_tile_own(&tile, &r, &r.same, 0, w->desc.law_who, &c);
-    was = demi_look_calls(w, "a look at contacts");
+    was = demi_look_calls(w, "a read of the contacts");
     demi_law(w, &c, memory, &f);
     demi_look_called(w, was);
     demi_answer_one(&tile, 0, f.normal, f.tangent, f.moment, r.alike, r.turning, r.parting);
@@ -24659,19 +24664,18 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
         (double)d->cells[0]*d->cells[1]*d->cells[2] > 268435456.0 || !(d->interval >= 0) ||
         !(d->start >= 0) || !demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
         !demi_finite_double(d->end)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval %g s; "
-                  "must be >= 1 each and at most "
-                  "2^28 in all, times finite and >= 0",
-                  d->cells[0], d->cells[1], d->cells[2], d->interval);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: cells are %d x %d x %d, interval is %g "
+                  "s; there must be >= 1 cells on each axis and at most 2^28 in all, and times "
+                  "must be finite and >= 0", d->cells[0], d->cells[1], d->cells[2], d->interval);
         return id;
     }
     if (demi_box_empty(w, "dem_field_add", d->box, 0)) return id;
     if (!(d->width >= 0) || !demi_finite(d->width) || !(d->radius_min >= 0) ||
         !demi_finite(d->radius_max) || !(d->radius_max >= 0) ||
         (d->radius_max > 0 && d->radius_max < d->radius_min)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: width is %g m, radii %g to %g m; must be "
-                  "finite and >= 0, the smaller radius first, the larger 0 for no limit",
-                  (double)d->width, (double)d->radius_min, (double)d->radius_max);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_field_add: width is %g m, radii are %g to %g m; all "
+                  "must be finite and >= 0, radius_min below radius_max, and radius_max 0 for no "
+                  "limit", (double)d->width, (double)d->radius_min, (double)d->radius_max);
         return id;
     }
     if (d->material.id && demi_material_index(w, "dem_field_add", d->material, &k) != DEM_OK)
@@ -24694,8 +24698,8 @@ DEM_API dem_field dem_field_add(dem_world *w, const dem_field_desc *d) {
 /* From an id to a field, or a sentence in the name of `call`. */
 static demi_field *demi_field_find(dem_world *w, const char *call, dem_field id) {
     if (id.id >= 1 && id.id <= w->field_count) return &w->fields[id.id - 1];
-    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d", call,
-              (int)id.id, w->field_count);
+    demi_fail(w, DEM_ERROR_ARGUMENT, "%s: field %d does not exist, there are %d; check the id "
+              "that dem_field_add returned", call, (int)id.id, w->field_count);
     return 0;
 }
 DEM_API dem_result dem_field_get(const dem_world *w, dem_field id, dem_field_data *data) {
@@ -24736,8 +24740,8 @@ DEM_API dem_result dem_field_cell_get(const dem_world *w, dem_field id, int i, i
     dem_field_get(w, id, &d);
     if (i < 0 || j < 0 || k < 0 || i >= d.cells[0] || j >= d.cells[1] || k >= d.cells[2])
         return demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_field_cell_get: cell (%d, %d, "
-                         "%d) is none of %d x %d x %d; they count from 0", i, j, k, d.cells[0],
-                         d.cells[1], d.cells[2]);
+                         "%d) does not exist, the field has %d x %d x %d cells; indices start at 0",
+                         i, j, k, d.cells[0], d.cells[1], d.cells[2]);
     memset(out, 0, sizeof *out);
     if (!d.samples) return DEM_OK;
     c = (size_t)i + (size_t)d.cells[0]*((size_t)j + (size_t)d.cells[1]*(size_t)k);
@@ -25067,21 +25071,22 @@ static dem_result demi_unstable(dem_world *w) {
                 !demi_finite3(demi_at(w->bodies.force + 4*i)) ||
             !demi_finite3(demi_at(w->bodies.torque + 4*i)))
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its "
-                             "position, velocity or spin is no "
-                             "longer a finite number; likely two grains stand at the same place, a "
-                             "law, force field or motion of your own divided by zero, or dt "
-                             "= %g s is too large", (unsigned long long)w->clock.steps,
-                             (unsigned)w->bodies.slot[i] + 1, (double)w->clock.dt);
+                             "position, velocity or spin is no longer a finite number; likely two "
+                             "grains are at the same position, a user-defined law, force field or "
+                             "motion divided by zero, or dt = %g s is too large",
+                             (unsigned long long)w->clock.steps, (unsigned)w->bodies.slot[i] + 1,
+                             (double)w->clock.dt);
     for (i = 0; i < w->bodies.count*w->bodies.real_count; i++) {
         const int k = i%w->bodies.real_count;
         int n;
         const char *name = demi_name(w->real_names, k, &n);
         if (!(fabs((double)w->bodies.reals[i]) + fabs((double)w->bodies.rates[i]) < 1e300))
             return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its %.*s "
-                             "is %g with a rate of %g, no longer a number; likely it swings from "
-                             "step to step: reals += rates dt wants dt = %g s below 2 over the "
-                             "fastest rate of decay (a larger capacity, a smaller dt), or your law "
-                             "or body_reals_fn divided by zero", (unsigned long long)w->clock.steps,
+                             "is %g with a rate of %g, no longer a finite number; likely it "
+                             "oscillates from step to step, because dt = %g s must be below 2 "
+                             "over its fastest rate of decay (use a larger capacity or a smaller "
+                             "dt), or your law or body_reals_fn divided by zero",
+                             (unsigned long long)w->clock.steps,
                              (unsigned)w->bodies.slot[i/w->bodies.real_count] + 1, n, name,
                              (double)w->bodies.reals[i], (double)w->bodies.rates[i],
                              (double)w->clock.dt);
@@ -25109,14 +25114,14 @@ static dem_result demi_unstable(dem_world *w) {
                 if (size > most) { most = size; first = i; }
             }
         return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu, body %u: its force, "
-                         "speed or place is beyond what can be calculated with; a law, force "
-                         "field or motion of your own answered a huge number, or dt = %g s is too "
-                         "large", (unsigned long long)w->clock.steps,
-                         (unsigned)w->bodies.slot[first] + 1, (double)w->clock.dt);
+                         "speed or position is too large to calculate with; a user-defined law, "
+                         "force field or motion returned a huge number, or dt = %g s is too large",
+                         (unsigned long long)w->clock.steps, (unsigned)w->bodies.slot[first] + 1,
+                         (double)w->clock.dt);
     }
     return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: bodies %u and %u overlap "
                      "by %.3g of the smaller radius, must be below 1; they started inside each "
-                     "other, met too fast for dt = %g s, or the material is too soft",
+                     "other, collided too fast for dt = %g s, or the material is too soft",
                      (unsigned long long)w->clock.steps, (unsigned)w->bodies.slot[first] + 1,
                      (unsigned)w->bodies.slot[second] + 1, deepest, (double)w->clock.dt);
 }
@@ -25193,10 +25198,10 @@ static dem_result demi_step_move(dem_world *w) {
         if (!demi_pose_sane(&pose) || !demi_pose_sane(&mid)) {
             w->stage.forces_valid = 0;          /* the wall stays where it was, finite */
             w->margin.walls_gone = 1e300;
-            return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: the motion of wall "
-                             "%d gave a pose that is not finite, does not only rotate, or is "
-                             "beyond %g m, m/s or rad/s at %g s; check its motion",
-                             (unsigned long long)w->clock.steps, i + 1, DEMI_FARTHEST,
+            return demi_fail(w, DEM_ERROR_UNSTABLE, "dem_world_step: step %llu: the motion of "
+                             "wall %d gave a pose that is not finite, whose matrix is not a "
+                             "rotation, or that is beyond %g m, m/s or rad/s at %g s; check the "
+                             "motion", (unsigned long long)w->clock.steps, i + 1, DEMI_FARTHEST,
                              w->clock.time);
         }
         wall->pose = pose;
@@ -25353,9 +25358,9 @@ DEM_API dem_result dem_world_dt_set(dem_world *w, dem_real dt) {
                          "%g s; 0 lets the library choose", (double)dt, DEMI_DT_LEAST,
                          DEMI_FARTHEST);
     if (demi_impulsive(w) && !(dt > 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have no "
-                         "contact time to choose it from; set it, 1e-3 s for grains of "
-                         "millimetres");
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_dt_set: dt is 0 s, but impulses have "
+                         "no contact time to choose it from; set it, for example 1e-3 s for "
+                         "grains of millimetres");
     demi_finish(w);                             /* half steps were of the old one */
     w->desc.dt = dt;
     demi_scene_changed(w);
@@ -25378,9 +25383,9 @@ static dem_result demi_step_ready(dem_world *w) {
         result = demi_refresh(w);
     if (result == DEM_OK) result = demi_dt_check(w);
     if (result == DEM_OK && !demi_bounded(w->clock.time + (double)w->clock.dt))
-        result = demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: time is %g s and dt %g s, must "
-                           "stay below %g s; was dt meant in another unit?", w->clock.time,
-                           (double)w->clock.dt, DEMI_FARTHEST);
+        result = demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: time is %g s and dt is %g s, "
+                           "their sum must stay below %g s; was dt meant in another unit?",
+                           w->clock.time, (double)w->clock.dt, DEMI_FARTHEST);
     if (result == DEM_OK && !w->stage.primed) { demi_finish(w); demi_prime(w); }
     return result;
 }
@@ -25393,9 +25398,9 @@ DEM_API dem_result dem_world_step(dem_world *w, int steps) {
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: steps is %d, must be >= 0", steps);
     if (steps && demi_unbuilt(w, "dem_world_step") != DEM_OK) return DEM_ERROR_ARGUMENT;
     if (w->look.under_way)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: called by a function that looks "
-                         "at the world between two steps (dem_output_add); let it look, and step "
-                         "when the run has ended");
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_step: called from the function of an "
+                         "output (dem_output_add), which runs between two steps and must not step "
+                         "the world; step it when the run has ended");
     if (steps) result = demi_look(w);
     for (i = 0; i < steps && result == DEM_OK; i++) {
         was = demi_calls(w, "dem_world_step", 1);
@@ -25470,7 +25475,7 @@ DEM_API dem_result dem_world_run_to(dem_world *w, double time, dem_progress_fn p
     if (demi_null(w, "dem_world_run_to", w, "world")) return DEM_ERROR_ARGUMENT;
     if (!demi_finite_double(time) || time < w->clock.time - (double)w->clock.dt/2)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_run_to: time is %g s, must be finite "
-                         "and not before now, %g s; to go back read a checkpoint", time,
+                         "and not before now (%g s); to go back in time, read a checkpoint", time,
                          w->clock.time);
     w->clock.run_steps = w->clock.steps + 1;        /* it does not follow the run before */
     return dem_world_run(w, DEMI_MAX(time - w->clock.time, 0), progress, user);
@@ -25518,15 +25523,14 @@ static dem_result demi_unsettled(dem_world *w, double seconds, double below) {
     if (i >= 0) {
         const dem_feed_state *f = &demi_feed_at(w, i)->state;
         return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: feed %d "
-                         "still brings grains; %llu have come and %llu wait for room, and all must "
-                         "have come before they can rest; give it more time, a higher rate or a "
-                         "larger box", seconds, i + 1, (unsigned long long)f->total,
+                         "is not done (%llu grains inserted, %llu waiting for room), and grains "
+                         "can rest only when it is; allow more time, a higher rate or a larger box",
+                         seconds, i + 1, (unsigned long long)f->total,
                          (unsigned long long)f->waiting);
     }
-    return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: mean "
-                     "speed %.3g m/s, largest %.3g m/s, must be below %.3g and %.3g; give "
-                     "it more time, or look what drives it", seconds, mean, most, below,
-                     10*below);
+    return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_settle: not at rest after %g s: mean speed "
+                     "%.3g m/s, largest %.3g m/s, must be below %.3g and %.3g; allow more time, "
+                     "or find what drives the grains", seconds, mean, most, below, 10*below);
 }
 DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed,
                                     dem_progress_fn progress, void *user) {
@@ -25536,15 +25540,16 @@ DEM_API dem_result dem_world_settle(dem_world *w, double seconds, dem_real speed
     int i, calm = 0;
     if (!demi_finite_double(seconds) || !(seconds > 0) || !(speed >= 0) || !demi_finite(speed) ||
         (!(below > 0) && (w->bodies.count || demi_feed_coming(w) >= 0)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: seconds is %g and speed %g m/s, "
-                         "must be > 0 and >= 0, and speed > 0 where there is no gravity to compare "
-                         "it with; say how slow is at rest", seconds, (double)speed);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: seconds is %g and speed is %g "
+                         "m/s; seconds must be > 0, speed >= 0, and > 0 without gravity, from "
+                         "which the default follows; set the speed that counts as rest", seconds,
+                         (double)speed);
     for (i = 0; i < w->feed_count; i++) {
         const demi_feed *f = demi_feed_at(w, i);
         if (!f->desc.limited && !(f->desc.end > 0))
             return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_settle: feed %d has limited 0 and "
-                             "end 0 s, one of them must be > 0, or its grains never stop coming; "
-                             "give it either, or use dem_world_run", i + 1);
+                             "end 0 s, one of them must be > 0, or the feed never ends; set one "
+                             "of them, or use dem_world_run", i + 1);
     }
     w->look.tenths_told = 0;
     while (w->bodies.count || demi_feed_coming(w) >= 0) {
@@ -25589,7 +25594,7 @@ DEM_API int dem_progress_print(const dem_world *w, double done, double seconds_l
     fprintf(out, "%s%5.1f %%  t = %-10.4g s  %d grains  %.0f s left   ", line ? "" : "\r",
             100*done, w->clock.time, w->bodies.count, seconds_left);
     if (w->booked.unsolved)
-        fprintf(out, "%llu steps left more than the tolerance   ",
+        fprintf(out, "%llu steps above the tolerance   ",
                 (unsigned long long)w->booked.unsolved);
     if (line || done >= 1) fputc('\n', out);
     fflush(out);
@@ -25665,7 +25670,7 @@ static dem_result demi_contacts_settle(dem_world *w) {
     dem_result result;
     demi_calling was;
     if (s->list_valid && s->forces_valid && !s->pairs_changed) return DEM_OK;
-    was = demi_calls(w, "the look at contacts", 1);
+    was = demi_calls(w, "a read of the contacts", 1);
     result = demi_dt_settle(w);
     if (result == DEM_OK) result = demi_refresh(w);
     w->look.calling = was;
@@ -25729,7 +25734,7 @@ DEM_API int dem_bonds_make(dem_world *w, dem_real gap, dem_contact_fn make, void
     most = (double)w->desc.law_range + (double)w->desc.law_range_radii*2*least;
     if (!(gap >= 0) || (double)gap > most)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_bonds_make: gap is %g m, must be >= 0 and at "
-                         "most %g m, up to which your law is asked about the smallest grains; set "
+                         "most %g m, the range of your law for the smallest grains; set a larger "
                          "law_range or law_range_radii when the world is created", (double)gap,
                          DEMI_MAX(most, 0)), -1;
     b.make = make;
@@ -25843,8 +25848,7 @@ DEM_API int dem_sieve_blinded_get(const dem_world *w, dem_wall sieve, dem_real s
     if (!wall) return -1;
     if (!wall->sieve.kind) {
         demi_fail((dem_world *)w, DEM_ERROR_ARGUMENT, "dem_sieve_blinded_get: wall %d is not a "
-                  "sieve; "
-                  "give what dem_wall_sieve_add returned", (int)sieve.id);
+                  "sieve; pass the id that dem_wall_sieve_add returned", (int)sieve.id);
         return -1;
     }
     if (!w->stage.list_valid) return demi_list_stale(w, "dem_sieve_blinded_get");
@@ -26046,16 +26050,17 @@ static dem_result demi_repose_begin(dem_world *w, const char *call, dem_box box,
     dem_real R[9];
     memset(s, 0, sizeof *s);
     if (!(g > 0) || demi_box_bad(box, 0))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: gravity is %g m/s2, must not be 0: the slope "
-                         "is told against it; and the box finite, lo below hi or both 0", call, g);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: gravity is %g m/s2, must not be 0, because "
+                         "it defines the slope; the box must be finite with lo below hi, or both 0",
+                         call, g);
     s->up = demi_scale(w->desc.gravity, (dem_real)(-1/g));
     demi_frame_of(R, s->up);
     s->along = demi_v(R[0], R[3], R[6]);
     if (demi_dot(axis, axis) > 0) {             /* its level part */
         s->along = demi_sub(axis, demi_scale(s->up, demi_dot(axis, s->up)));
         if (!(demi_dot(s->along, s->along) > DEM_R(0.01)*demi_dot(axis, axis)))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis (%g, %g, %g) is upright, must be "
-                             "level: give the axis that the drum turns about", call,
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis (%g, %g, %g) is vertical, must be "
+                             "horizontal; give the axis of rotation of the drum", call,
                              (double)axis.x, (double)axis.y, (double)axis.z);
         s->along = demi_unit(s->along);
     } else if (w->desc.planar) s->along = demi_v(0, 0, 1);
@@ -26072,9 +26077,9 @@ static dem_result demi_repose_end(dem_world *w, const char *call, demi_surface *
         heap += s->root[i] == s->heap;
     }
     if (!good)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: its surface has %d places, each a mean diameter "
-                  "wide, too few for a line; must be a heap some 10 diameters wide, and %d of %d "
-                  "grains are of the largest: look at the box, or add grains", call,
+        demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the surface of the heap has %d columns of one mean "
+                  "diameter, too few to fit a line, must be some 10; the largest heap has %d of "
+                  "the %d grains: check the box, or add grains", call,
                   s->top ? s->rows : 0, heap, all);
     demi_free(w, s->top);
     demi_free(w, s->root);
@@ -26483,8 +26488,8 @@ static dem_result demi_text_fail(const demi_text *t, const char *where) {
 }
 
 static dem_result demi_text_memory(const demi_text *t) {
-    return demi_fail(t->world, DEM_ERROR_MEMORY, "%s: %s: no memory for what it holds; free some "
-                     "or simplify the mesh", t->call, t->name);
+    return demi_fail(t->world, DEM_ERROR_MEMORY, "%s: %s: not enough memory for its contents; "
+                     "free some, or simplify the mesh", t->call, t->name);
 }
 
 /* 1 if the present word is this one (given in lower case), in capitals or not. */
@@ -26574,8 +26579,8 @@ static dem_result demi_mesh_allocate(const demi_text *t, dem_mesh *mesh, size_t 
     if (vertices == 0 || elements == 0 || elements > DEMI_ELEMENTS_MAX ||
         vertices > 3*(size_t)DEMI_ELEMENTS_MAX)
         return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: found %.0f vertices and %.0f "
-                         "triangles where from 1 to %d are allowed; check what was exported",
-                         t->call, t->name, (double)vertices, (double)elements, DEMI_ELEMENTS_MAX);
+                         "triangles where 1 to %d are allowed; check the export", t->call, t->name,
+                         (double)vertices, (double)elements, DEMI_ELEMENTS_MAX);
     mesh->vertex_count = (int)vertices;
     mesh->triangle_count = (int)elements;
     mesh->vertices = (dem_real *)demi_alloc(t->world, vertices*width, sizeof(dem_real));
@@ -26659,12 +26664,11 @@ static dem_result demi_obj_face(demi_text *t, const dem_mesh *mesh, int vertices
         if (result != DEM_OK) return result;
     }
     if (o->count < 3)
-        return demi_text_fail(t, "a face needs three corners or more; complete it or take it out");
+        return demi_text_fail(t, "a face needs three corners or more; complete it or remove it");
     if (!demi_outline_cut(o, mesh->vertices, out))
         return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: a face that is not convex "
-                         "has %d corners, must be at most %d; let the program that wrote it export "
-                         "triangles", t->call, t->name, t->line, o->count,
-                         (int)DEMI_OUTLINE_MOST);
+                         "has %d corners, must be at most %d; export the mesh as triangles",
+                         t->call, t->name, t->line, o->count, (int)DEMI_OUTLINE_MOST);
     h->split_faces += o->count > 3;
     h->bent_faces += o->bent;
     h->crossed_faces += o->crossed;
@@ -26927,22 +26931,23 @@ static dem_result demi_parse(dem_world *w, const char *call, const char *name, c
     t.parts = parts;
     t.health = &found;
     if (!(format && format->binary) && memchr(data, 0, size)) {
-        result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s: found %.0f bytes that are not text%s; the "
-                           "file is cut short or of another format, so copy or export it again",
-                           call, t.name, (double)size, width == 2 ? "" : ", where a binary STL has "
-                           "84 and 50 for each triangle it counts");
+        result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s: found %.0f bytes that are not text%s; "
+                           "the file is cut short or has another format, so copy or export it "
+                           "again",
+                           call, t.name, (double)size, width == 2 ? "" : ", where a binary STL "
+                           "has 84 bytes and 50 for each triangle in its count");
     } else if (format) {
         result = format->pass(t, mesh, 0);
         if (part && (!mesh->triangle_count || !parts[0]))
             result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s has no triangles of a part \"%.60s\", "
-                               "must be one of: %s; ask for one of these, or read the whole mesh",
-                               call, t.name, part, parts[0] ? parts : "(it names none)");
+                               "must be one of: %s; use one of these names, or read the whole mesh",
+                               call, t.name, part, parts[0] ? parts : "(the file has no names)");
         if (result == DEM_OK) result = format->pass(t, mesh, 1);
         if (result == DEM_OK && format->by_place) result = demi_mesh_merge(&t, mesh);
         if (result == DEM_OK && part) result = demi_mesh_compact(&t, mesh);
     } else if (part) {
-        result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s is of a format without named parts; give "
-                           "STL as text or OBJ, or read the whole mesh", call, t.name);
+        result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s has a format without named parts; use a "
+                           "text STL or an OBJ file, or read the whole mesh", call, t.name);
     } else {
         result = demi_lists_read(&t, width, mesh);
     }
@@ -26986,19 +26991,20 @@ static dem_result demi_load(dem_world *w, const char *call, const char *path, ch
     file = demi_open(path);
     length = file ? demi_file_size(file) : 0;
     if (length == DEMI_ENDLESS)
-        result = demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a pipe or a terminal, must be a file; "
-                           "write what comes through it into a file and read that", call, path);
+        result = demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a pipe or a terminal, must be a "
+                           "file; save its output to a file and read that", call, path);
     if (file) errno = 0;
     while (file && !feof(file) && !ferror(file) && result == DEM_OK && *size <= length) {
         if (demi_grow(w, DEMI_LOOSE, bytes, 1, *size + 65536)) {
             const size_t room = demi_room(*bytes, 1) - *size;
             *size += fread(*bytes + *size, 1, DEMI_MIN(room, length + 1 - *size), file);
-        } else result = demi_fail(w, DEM_ERROR_MEMORY, "%s: %.200s: no memory to load it beyond "
-                                  "%.0f bytes; free some", call, path, (double)*size);
+        } else result = demi_fail(w, DEM_ERROR_MEMORY, "%s: %.200s: not enough memory to load "
+                                  "more than %.0f bytes; free some", call, path, (double)*size);
     }
     if (result == DEM_OK && file && *size > length)
         result = demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a device, or grows while it is read, "
-                           "must be a file at rest; copy it and read the copy", call, path);
+                           "must be a file that does not change; copy it and read the copy", call,
+                           path);
     if (result == DEM_OK && (!file || ferror(file)))
         result = demi_fail(w, DEM_ERROR_FILE, "%s: cannot read %.200s: %s; check its name and "
                            "permissions", call, path, errno ? strerror(errno) : "unknown cause");
@@ -27060,8 +27066,9 @@ DEM_API dem_result dem_mesh_place(dem_world *w, dem_mesh *mesh, dem_real scale, 
         : dem_quat_make(1, 0, 0, 0);
     int i;
     if (!(scale > 0) || !demi_finite(scale) || !demi_quat_finite(rotation) || !demi_place(to))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_mesh_place: scale is %g, must be finite and > "
-                         "0; rotation and place must be finite, within 1e15 m", (double)scale);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_mesh_place: scale is %g, must be finite and "
+                         "> 0; rotation and translation must be finite, and the translation "
+                         "within 1e15 m", (double)scale);
     for (i = 0; i < mesh->vertex_count; i++)
         demi_put(mesh->vertices + 3*i, demi_add(to,
                  dem_quat_rotate(q, demi_scale(demi_at(mesh->vertices + 3*i), scale))));
@@ -27134,8 +27141,8 @@ static dem_result demi_profile_take(dem_world *w, const char *call, const char *
         const int32_t *segment = profile->segments + 2*(size_t)i;
         if (segment[0] != segment[1]) continue;
         dem_profile_free(w, profile);
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: found segment %d with one corner twice "
-                         "where two are expected; correct it or take it out", call,
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: found segment %d with the same corner "
+                         "twice where two corners are expected; correct it or remove it", call,
                          name ? name : "data", i + 1);
     }
     return DEM_OK;
@@ -27441,9 +27448,8 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
     }
     if (!(moments.one > 1e-6*(hi[0] - lo[0])*(hi[1] - lo[1])*(hi[2] - lo[2])))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh of %d triangles encloses %.3g m3, "
-                         "must be more than 1e-6 of its box: it is thinner than the grid that "
-                         "spheres are sought on; is it a sheet?", call, mesh->triangle_count,
-                         moments.one);
+                         "must be more than 1e-6 of its box: it is too thin for spheres; is it a "
+                         "sheet?", call, mesh->triangle_count, moments.one);
     memset(&m, 0, sizeof m);
     m.mesh = mesh;
     m.sign = sign;
@@ -27453,8 +27459,9 @@ static dem_result demi_mesh_spheres(dem_world *w, const char *call, const dem_me
         demi_mould_free(w, &m);
         demi_free(w, sphere);
         return made ? demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the mesh is thinner than 1/%d of its "
-                                "length everywhere: no sphere finds room", call,
-                                (int)DEMI_GRAIN_CELLS) : demi_no_memory(w, call);
+                                "length everywhere, so no sphere fits; use a polyhedron, or a "
+                                "thicker mesh", call, (int)DEMI_GRAIN_CELLS) : demi_no_memory(w,
+                                call);
     }
     for (i = 0; i < count; i++) {
         demi_mould_best(&m, sphere + 4*i);
@@ -27661,13 +27668,14 @@ static dem_result demi_layout_add(const demi_text *t, demi_layout *l, dem_grains
         const int is = what == DEMI_COLUMN_TYPE ? (int)DEMI_COLUMN_MATERIAL : what;
         if (l->count == DEMI_COLUMNS_MOST)
             return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s has more than %d columns; leave "
-                             "out what is not needed", t->call, t->name, (int)DEMI_COLUMNS_MOST);
+                             "out those that are not needed", t->call, t->name,
+                             (int)DEMI_COLUMNS_MOST);
         if (l->has[is] || l->has[what] || (is == DEMI_COLUMN_D && l->has[DEMI_COLUMN_R]) ||
             (is == DEMI_COLUMN_R && l->has[DEMI_COLUMN_D])) what = DEMI_COLUMN_OTHER;
         if (!(factor > 0))
             return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: the unit of column "
                              "%.*s is not known, must be m, mm, cm or um, with /s for velocities, "
-                             "rad/s for spins; give SI units", t->call, t->name, t->line,
+                             "rad/s for spins; use SI units", t->call, t->name, t->line,
                              (int)DEMI_MIN(length, 60), name);
         for (k = 0; k < l->count && what == DEMI_COLUMN_MATERIAL; k++)      /* before a type */
             if (l->what[k] == DEMI_COLUMN_TYPE) l->what[k] = DEMI_COLUMN_OTHER;
@@ -27684,9 +27692,11 @@ static dem_result demi_layout_check(const demi_text *t, const demi_layout *l,
                                     const dem_grains *g) {
     if (l->has[0] && l->has[1] && (l->has[DEMI_COLUMN_R] || l->has[DEMI_COLUMN_D])) return DEM_OK;
     return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: columns x, y and r (radius) or d "
-                     "(diameter) are needed; %s%s%s; name them in the first line, or have them "
-                     "written", t->call, t->name, l->has[DEMI_COLUMN_SCALED] ? "xs is a share of "
-                     "the box, so dump x y z" : "not used", g->ignored[0] ? ": " : "", g->ignored);
+                     "(diameter) are needed; %s%s%s; name them in the first line, or add them to "
+                     "the export",
+                     t->call, t->name, l->has[DEMI_COLUMN_SCALED] ? "xs is a fraction "
+                     "of the box, so dump x y z"
+                     : "not used", g->ignored[0] ? ": " : "", g->ignored);
 }
 
 /* ---------------------------------------------------------------------------------------------
@@ -27782,8 +27792,8 @@ static dem_result demi_grain_line(demi_text *t, demi_layout *l, char between, de
         if (what == DEMI_COLUMN_OTHER && there) continue;
         if (!t->length)
             return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s line %ld: cell %d%s is empty, "
-                             "must be a number for each column; fill it in, or take its column "
-                             "out", t->call, t->name, t->line, k + 1, demi_quantity[what]);
+                             "must be a number for each column; fill it in, or remove its column",
+                             t->call, t->name, t->line, k + 1, demi_quantity[what]);
         if (what == DEMI_COLUMN_TYPE && !(*t->word >= '0' && *t->word <= '9')) {
             demi_layout_untype(t, l, g, k);
             continue;
@@ -27795,9 +27805,9 @@ static dem_result demi_grain_line(demi_text *t, demi_layout *l, char between, de
     }
     while (demi_cell(t, between))
         if (t->length)
-            return demi_text_fail(t, "the line should end: it has more columns than the first; "
-                                  "numbers have a point, or a comma where ; or tabs separate "
-                                  "columns");
+            return demi_text_fail(t, "the line should end: it has more columns than the first "
+                                  "line; write numbers with a point, or with a comma where ; or "
+                                  "tabs separate columns");
     return DEM_OK;
 }
 /* Lines to the end of the text, or `said` of them (-1: to the end), as grains. */
@@ -27810,8 +27820,9 @@ static dem_result demi_grains_rows(demi_text *t, demi_layout *l, char between, d
     if (result != DEM_OK) return result;
     while ((said < 0 || (double)n < said) && demi_text_line(&at)) n++;
     if (said > (double)n)
-        return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: has %.0f lines of grains where it "
-                         "says %.0f; it was cut short", t->call, t->name, (double)n, said);
+        return demi_fail(t->world, DEM_ERROR_FORMAT, "%s: %s: has %.0f lines of grains where its "
+                         "head announces %.0f; the file was cut short", t->call, t->name, (double)n,
+                         said);
     if (n > (size_t)(INT_MAX/64)) return demi_text_memory(t);
     for (k = 0; k < l->count; k++)
         if (!demi_grains_hold(t->world, g, l->what[k], n)) return demi_text_memory(t);
@@ -27871,7 +27882,7 @@ static dem_result demi_grains_text(demi_text *t, demi_layout *l, dem_grains *g) 
     dem_result result;
     if (t->length >= 4 && !memcmp(t->word, "sep=", 4)) {    /* a spreadsheet says what separates */
         said = t->length > 4 ? t->word[4] : '\t';
-        if (!demi_text_line(t)) return demi_text_fail(t, "grains are expected; is it empty?");
+        if (!demi_text_line(t)) return demi_text_fail(t, "grains are expected; is the file empty?");
         line = demi_line_begin(t);
     }
     result = demi_layout_comment(t, line, l, g, &named);
@@ -27923,9 +27934,9 @@ static dem_result demi_grains_xyz(demi_text *t, double count, demi_layout *l, de
     }
     if (!l->count) {
         demi_text_line(t);
-        return demi_text_fail(t, "an XYZ file is expected to tell its columns "
+        return demi_text_fail(t, "an XYZ file is expected to name its columns "
                               "(Properties=species:S:1:pos:R:3:radius:R:1); write it with radii, "
-                              "or give text with columns x y z r");
+                              "or use text with columns x y z r");
     }
     if (end < t->end) end += *end == '\r' && t->end - end > 1 && end[1] == '\n' ? 2 : 1;
     t->next = end;
@@ -28281,7 +28292,7 @@ static dem_result demi_vtp_array(const demi_vtp_in *v, const char *tag, const ch
     dem_result result;
     memset(&in, 0, sizeof in);
     if (!type || !demi_numbers_type(&in, type, size))
-        return demi_vtp_fail(v, "has an array without a type that holds numbers");
+        return demi_vtp_fail(v, "has an array whose type is not a number");
     if (appended) {
         const double offset = demi_attribute_number(tag, body, "offset");
         if (!v->data || offset < 0 || offset > (double)(v->end - v->data))
@@ -28318,7 +28329,7 @@ static dem_result demi_vtp_array(const demi_vtp_in *v, const char *tag, const ch
         const double says = (size_t)(in.end - in.at) < head ? -1 :
             demi_number_of(in.at, (int)head, 'u', in.big);
         if (says < (double)n*in.size || says > (double)n*in.size)
-            result = demi_vtp_fail(v, "is cut short, or says another size of an array");
+            result = demi_vtp_fail(v, "is cut short, or gives a wrong size for an array");
         else in.at += head;
     }
     if (result == DEM_OK)
@@ -28370,7 +28381,7 @@ static dem_result demi_grains_vtp(const demi_text *t, demi_layout *l, dem_grains
         if (demi_tag_is(p, end, "<Piece")) {
             number = demi_attribute_number(p, end, "NumberOfPoints");
             if (number < 0 || number > INT_MAX/64)
-                return demi_vtp_fail(&v, "has no number of points, or too many");
+                return demi_vtp_fail(&v, "has no number of points, or too many points");
             if (number > 0 && pieces++) return demi_vtp_fail(&v, "has more than one piece");
             if (number > 0 || !pieces) v.points = (size_t)number;
         }
@@ -28413,7 +28424,8 @@ static dem_result demi_grains_parse(dem_world *w, const char *call, const char *
     else if (memchr(data, 0, size))
         result = demi_fail(w, DEM_ERROR_FORMAT, "%s: %s: found bytes that are not text; give text, "
                            "CSV, XYZ, a LAMMPS or LIGGGHTS dump, VTK or VTP", call, t.name);
-    else if (!first.length) result = demi_text_fail(&first, "grains are expected; is it empty?");
+    else if (!first.length) result = demi_text_fail(&first, "grains are expected; is the file "
+                                                    "empty?");
     else if (demi_text_is(&first, "item:")) result = demi_grains_dump(&first, &layout, g);
     else if (demi_text_integer(&first, first.length, &count) && count >= 0 &&
              (t = first, !demi_text_word(&t)))
@@ -28453,23 +28465,24 @@ DEM_API dem_result dem_grains_add(dem_world *w, dem_material material, const dem
     int i, first;
     if (demi_null(w, call, g, "grains")) return DEM_ERROR_ARGUMENT;
     if (g->count < 0 || (g->count && (!g->positions || !g->radii)))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, positions or radii are null; "
-                         "count must be >= 0 and both be there; give what dem_grains_read wrote",
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, or positions or radii are null; "
+                         "count must be >= 0 with both arrays; pass what dem_grains_read filled in",
                          call, g->count);
     for (i = 0; i < g->count; i++) {
         dem_material m = material;
         int index = 0;
         if (!m.id && !g->materials)
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material is null and the grains have none "
-                             "of their own; give what dem_material_add returned", call);
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: material is null and the file names no "
+                             "materials; pass an id that dem_material_add returned", call);
         if (!m.id) m.id = g->materials[i];
         if (demi_material_index(w, call, m, &index) != DEM_OK) return DEM_ERROR_ARGUMENT;
         if (!(g->radii[i] > 0) || !demi_finite(g->radii[i]) ||
             !demi_place(demi_at(g->positions + 3*i)) ||
             (g->velocities && !demi_finite3(demi_at(g->velocities + 3*i))) ||
             (g->spins && !demi_finite3(demi_at(g->spins + 3*i))))
-            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grain %d has a radius of %g m or a number "
-                             "that is not finite; none was added", call, i, (double)g->radii[i]);
+            return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: grain %d has a radius of %g m; the "
+                             "radius must be > 0, and position, velocity and spin must be finite; "
+                             "no grain was added", call, i, (double)g->radii[i]);
         if (demi_mass_refuse(w, call, index, g->radii[i], i)) return DEM_ERROR_ARGUMENT;
     }
     first = w->bodies.count;
@@ -28624,7 +28637,8 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
     o->temporary = (char *)demi_alloc(w, o->room, 1);
     if (!o->place || !o->temporary) {
         demi_out_free(o);
-        return demi_fail(w, DEM_ERROR_MEMORY, "%s: no memory for a file name; free some", call);
+        return demi_fail(w, DEM_ERROR_MEMORY, "%s: not enough memory for a file name; free some",
+                         call);
     }
     memcpy(o->place, path, length + 1);
     there = fopen(path, "r+b");                 /* of a pipe: does not wait for its other end */
@@ -28633,14 +28647,14 @@ static dem_result demi_out_open(demi_out *o, dem_world *w, const char *call, con
         fclose(there);
         demi_out_free(o);
         return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a pipe or a terminal, must be a file, "
-                         "which is written whole or not at all; write a file and send that", call,
-                         path);
+                         "because a file is written whole or not at all; write a file and send "
+                         "that", call, path);
     }
     if (!demi_link_follow(o->place, o->room)) {
         if (there) fclose(there);
         demi_out_free(o);
-        return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a link that leads in a circle or "
-                         "through too many others; give the file itself", call, path);
+        return demi_fail(w, DEM_ERROR_FILE, "%s: %.200s is a link that leads to itself or through "
+                         "too many other links; give the file itself", call, path);
     }
     if (there && demi_is_device(o->place, there, size)) {
         demi_free(w, o->temporary);
@@ -28773,8 +28787,8 @@ static void demi_drawing_free(dem_world *w, demi_drawing *g) {
 }
 static dem_result demi_drawing_fails(dem_world *w, const char *call, demi_drawing *g) {
     demi_drawing_free(w, g);
-    return demi_fail(w, DEM_ERROR_MEMORY, "%s: no memory for the %d parts of the bodies; free some",
-                     call, g->count);
+    return demi_fail(w, DEM_ERROR_MEMORY, "%s: not enough memory for the %d parts of the bodies; "
+                     "free some", call, g->count);
 }
 
 /* What is told of grains; the last two make a cell of every point, so that it is drawn. */
@@ -29173,8 +29187,8 @@ DEM_API dem_result dem_surfaces_vtp_write(dem_world *world, const char *path) {
             for (k = 4; k < 6; k++) column[count++] = all[k];
         }
         result = demi_vtp(world, call, path, column, count, 0, 0, (int)s.polygons);
-    } else result = demi_fail(world, DEM_ERROR_MEMORY, "%s: no memory for the surfaces of %d "
-                              "bodies; free some", call, world->bodies.count);
+    } else result = demi_fail(world, DEM_ERROR_MEMORY, "%s: not enough memory for the surfaces of "
+                              "%d bodies; free some", call, world->bodies.count);
     demi_free(world, s.place);
     demi_free(world, s.body);
     demi_free(world, s.link);
@@ -29258,9 +29272,9 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
         profiles += demi_wall_is(&world->walls[i], DEMI_DRAWN);
     }
     if (profiles && !(z1 > z0))
-        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_walls_vtp_write: z0 is %g and z1 is %g, "
-                         "but must be z0 < z1 to draw out a profile; change them", (double)z0,
-                         (double)z1);
+        return demi_fail(world, DEM_ERROR_ARGUMENT, "dem_walls_vtp_write: z0 is %g m and z1 is %g "
+                         "m, but z0 must be below z1 to extrude a profile between them; change "
+                         "them", (double)z0, (double)z1);
     room[0] = 3*(size_t)points + 1; /* never nothing */
     room[1] = (size_t)triangles + 1;
     if (points < DEMI_ELEMENTS_MAX && triangles < DEMI_ELEMENTS_MAX) {
@@ -29278,8 +29292,8 @@ DEM_API dem_result dem_walls_vtp_write(dem_world *world, const char *path, dem_r
             {"Polys",    "offsets",      'i', 1, (int)triangles,   3, 3, 0}};
         result = demi_vtp(world, "dem_walls_vtp_write", path, column, 4, 0, 0, (int)triangles);
     } else {
-        result = demi_fail(world, DEM_ERROR_MEMORY, "dem_walls_vtp_write: no memory for %.0f "
-                           "points and %.0f triangles; free some", (double)points,
+        result = demi_fail(world, DEM_ERROR_MEMORY, "dem_walls_vtp_write: not enough memory for "
+                           "%.0f points and %.0f triangles; free some", (double)points,
                            (double)triangles);
     }
     demi_free(world, place);
@@ -29333,8 +29347,8 @@ enum { DEMI_LOADS = 9 };
 static dem_result demi_loads_values(dem_world *w, const char *call, dem_wall wall, double *value) {
     dem_wall_loads c;
     if (dem_wall_loads_get(w, wall, &c) != DEM_OK)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %ld names none; give one that was added "
-                         "and not removed", call, (long)wall.id);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: wall %ld does not exist; give one that was "
+                         "added and not removed", call, (long)wall.id);
     value[0] = (double)c.force.x;
     value[1] = (double)c.force.y;
     value[2] = (double)c.force.z;
@@ -29881,9 +29895,10 @@ DEM_API dem_result dem_checkpoint_write(dem_world *w, const char *path) {
     dem_result result;
     uint64_t sum;
     if (lost >= 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_write: body %u is no longer at a "
-                         "finite place and speed: the run has blown up; go back to an earlier "
-                         "checkpoint, %s is left as it was", (unsigned)w->bodies.slot[lost] + 1,
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_checkpoint_write: body %u no longer has a "
+                         "finite position, velocity and force: the run has blown up; go back to "
+                         "an earlier checkpoint; %s was not changed",
+                         (unsigned)w->bodies.slot[lost] + 1,
                          path ? path : "the file");
     result = demi_out_open(&out, w, "dem_checkpoint_write", path);
     if (result != DEM_OK) return result;
@@ -29921,10 +29936,10 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: %s; write checkpoints with "
                          "dem_checkpoint_write", call, path,
                          size >= 8 && !memcmp(data, DEMI_CHECKPOINT_MAGIC, 8)
-                         ? "is cut short within its head" : "is not a checkpoint");
+                         ? "is cut short within its header" : "is not a checkpoint");
     memcpy(head, data, sizeof *head);
     if (head->byte_order != 0x01020304u || head->version != DEMI_CHECKPOINT_VERSION)
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: is of checkpoint version %u%s, must be "
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has checkpoint version %u%s, must be "
                          "%d; read it with the dem.h that wrote it", call, path,
                          (unsigned)head->version,
                          head->byte_order != 0x01020304u ? " and another byte order" : "",
@@ -29935,16 +29950,18 @@ static dem_result demi_checkpoint_check(dem_world *w, const char *path, const ch
                          (unsigned)head->real_size, (unsigned)sizeof(dem_real));
     if (head->body_size != (uint64_t)(size - sizeof *head) - sizeof sum)
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: has %llu bytes, must be %llu; it was "
-                         "cut short or appended to", call, path, (unsigned long long)size,
+                         "cut short or appended to: use another copy or an older checkpoint", call,
+                         path, (unsigned long long)size,
                          (unsigned long long)(sizeof *head + head->body_size + sizeof sum));
     memcpy(&sum, data + size - sizeof sum, sizeof sum);
     if (sum != demi_hash(DEMI_HASH_START, data, size - sizeof sum))
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: its check sum does not match its "
-                         "contents; the file is damaged", call, path);
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: its checksum does not match its "
+                         "contents; the file is damaged: use another copy or an older checkpoint",
+                         call, path);
     if (head->int_size != demi_checkpoint_layout())
-        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written by another dem.h, or one "
-                         "whose compiler lays out memory in another way; read it with a program "
-                         "built like the one that wrote it", call, path);
+        return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s: was written by another dem.h, or by a "
+                         "compiler with another memory layout; read it with a program built like "
+                         "the one that wrote it", call, path);
     return DEM_OK;
 }
 /* Element k of a value, as a sentence has it; digits: of reals. */
@@ -29992,8 +30009,8 @@ static dem_result demi_scene_row_differs(dem_world *w, const char *path, const d
     while (k + 1 < count && !memcmp(there + item*k, here + item*k, item)) k++;
     if (r->type == 'h')
         return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another "
-                         "scene: written with other %s%s than this world has; %s", path, r->name,
-                         of, advice);
+                         "scene: written with other %s%s than those of this world; %s", path,
+                         r->name, of, advice);
     if (r->type == 'v') snprintf(which, sizeof which, "%s", axes[count == 6 ? k + 3 : k]);
     else if (count > 1) snprintf(which, sizeof which, "[%d]", (int)k);
     demi_scene_row_print(r, there, k, 6, a, sizeof a);
@@ -30017,10 +30034,10 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
     demi_scene_counts(w, counts);
     for (part = 0; part < DEMI_PARTS; part++)
         if (parts[part] != counts[part])
-            return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to another "
-                             "scene: %d %s there, %d here (removed ones count); create the world "
-                             "as the one that wrote it, then read", path, (int)parts[part],
-                             demi_scene_parts[part].many, (int)counts[part]);
+            return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: belongs to "
+                             "another scene: it has %d %s, this world %d (removed ones count); "
+                             "create the world like the one that wrote it, then read", path,
+                             (int)parts[part], demi_scene_parts[part].many, (int)counts[part]);
     for (part = 0; part < DEMI_PARTS; part++)
         for (i = gone = 0; i < counts[part]; i++)
             for (k = 0; k < demi_scene_parts[part].row_count; k++) {
@@ -30035,7 +30052,7 @@ static dem_result demi_checkpoint_scene(dem_world *w, dem_world *twin, const cha
                     if (gone) memset(&twin->walls[i], 0, sizeof twin->walls[i]);
                     else if (w->walls[i].kind == DEMI_WALL_NONE)
                         return demi_fail(w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: "
-                                         "belongs to another scene: wall %d was removed here and "
+                                         "belongs to another scene: wall %d was removed here but "
                                          "exists there; read before you remove it", path,
                                          (int)w->walls[i].id);
                 }
@@ -30148,9 +30165,9 @@ typedef struct demi_reader {
 static int demi_lie(const demi_reader *r, const char *what, long long which) {
     char number[32] = "";
     if (which >= 0) snprintf(number, sizeof number, " %lld", which + 1);
-    demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: %s%s cannot be, although the "
-              "check sum is right; the file was altered, or the run that wrote it had blown up: "
-              "use an older one", r->path, what, number);
+    demi_fail(r->w, DEM_ERROR_FORMAT, "dem_checkpoint_read: %.200s: invalid %s%s, although the "
+              "checksum is correct; the file was altered, or the run that wrote it had blown up: "
+              "use an older checkpoint", r->path, what, number);
     return 0;
 }
 /* Are so many items of `size` bytes left in the file? */
@@ -30176,45 +30193,44 @@ static int demi_numbers_check(const demi_reader *r) {
         !demi_left(r, t->bodies.slot_count, 8) ||
         t->bodies.count > INT_MAX/64 || t->bodies.slot_count > INT_MAX/64 ||
             t->bodies.count > t->bodies.slot_count)
-        return demi_lie(r, "its number of bodies or of slots", -1);
+        return demi_lie(r, "number of bodies or slots", -1);
     if (t->domain_count < 0 || t->domain_count > DEMI_DOMAINS ||
         (t->stage.list_valid && (!t->domain_count ||
                            t->domain_count > demi_domains_for(4*t->bodies.count + 16))) ||
         !demi_left(r, t->domain_count, sizeof(demi_domain)))
-        return demi_lie(r, "its number of domains", -1);
+        return demi_lie(r, "number of domains", -1);
     if (t->join_room < 0 || t->join_room > DEMI_JOIN_MOST)
-        return demi_lie(r, "the room in its lists", -1);
+        return demi_lie(r, "list capacity", -1);
     if (!demi_left(r, t->joint_count, sizeof(demi_joint)) || (t->joint_count && !demi_impulsive(w)))
-        return demi_lie(r, "its number of joints", -1);
+        return demi_lie(r, "number of joints", -1);
     if (!demi_left(r, t->written_count, sizeof(demi_written)))
-        return demi_lie(r, "its number of outputs", -1);
+        return demi_lie(r, "number of outputs", -1);
     if ((int)t->desc.search < 0 || (int)t->desc.search >= DEMI_SEARCHES || t->levels.count < 0 ||
         t->levels.count > DEMI_LEVELS || (w->asked.search != DEM_SEARCH_AUTO &&
                                          t->desc.search != w->desc.search))
-        return demi_lie(r, "its search", -1);
+        return demi_lie(r, "search", -1);
     if (t->bodies.shaped < 0 || t->bodies.shaped > (t->bodies.orienting ? t->bodies.count : 0) ||
         (w->asked.orientations && !t->bodies.orienting))
-        return demi_lie(r, "its number of bodies that are not spheres", -1);
+        return demi_lie(r, "number of bodies that are not spheres", -1);
     if (!demi_left(r, t->filed.count, 4) || t->filed.rows < 0 ||
         t->filed.rows > t->bodies.slot_count ||
         t->filed.stride < 0 || t->filed.stride > DEMI_MEMORY ||
             (t->stage.list_valid && t->filed.count))
-        return demi_lie(r, "its contact memory", -1);
+        return demi_lie(r, "contact history", -1);
     if (((t->effects.tangent || t->stage.list_valid) && t->effects.tangent != tangent &&
          t->effects.tangent != DEM_TANGENT_NONE) || ((t->effects.rolling || t->stage.list_valid) &&
          t->effects.rolling != rolling && t->effects.rolling != DEM_ROLLING_NONE) ||
              (t->effects.uniform & ~1) || (t->effects.sticks & ~1) ||
              t->effects.species_count < 0 ||
              t->effects.species_count > (t->effects.uniform ? 1 : DEMI_SPECIES + 1))
-        return demi_lie(r, "the laws in force", -1);
+        return demi_lie(r, "laws in force", -1);
     for (k = 0; k < t->effects.species_count && k < DEMI_SPECIES; k++)
         if (t->effects.species[k].material < 1 ||
             t->effects.species[k].material > t->material_count)
-            return demi_lie(r, "its table of species", -1);
+            return demi_lie(r, "table of species", -1);
     for (i = 0; i < sizeof positive/sizeof *positive; i++)
         if (!demi_sane(positive[i], 0))
-            return demi_lie(r, "its time, time step, skin or one of the lengths that go with the "
-                            "list", -1);
+            return demi_lie(r, "time, time step, skin or other length of the neighbour list", -1);
     if (!demi_finite_double(t->clock.time) || fabs(t->clock.time) > DEMI_FARTHEST ||
         !demi_finite_double(t->clock.since.time) || fabs(t->clock.since.time) > DEMI_FARTHEST ||
         t->clock.since.steps > t->clock.steps || !demi_sane(t->clock.since.dt, 0) ||
@@ -30223,11 +30239,11 @@ static int demi_numbers_check(const demi_reader *r) {
             (t->stage.dt_valid && t->bodies.count && !(t->clock.dt > 0)) ||
         (t->stage.dt_valid && t->bodies.count && t->desc.dt > 0 &&
          (t->clock.dt < t->desc.dt || t->clock.dt > t->desc.dt)))
-        return demi_lie(r, "its time or time step", -1);
+        return demi_lie(r, "time or time step", -1);
     if (t->bodies.balance.present != (uint64_t)t->bodies.count ||
         t->bodies.balance.inserted != t->bodies.balance.present + t->bodies.balance.removed +
             t->bodies.balance.left)
-        return demi_lie(r, "its balance of bodies", -1);
+        return demi_lie(r, "body counts", -1);
     return 1;
 }
 /* Counts of domain d; begins where the one before ended. */
@@ -30262,7 +30278,7 @@ static int demi_domains_check(const demi_reader *r) {
     int d;
     for (d = 0; d < t->domain_count; d++) {
         demi_domain *o = &t->domains[d];
-        if (!demi_domain_check(r, d)) return demi_lie(r, "the counts of domain", d);
+        if (!demi_domain_check(r, d)) return demi_lie(r, "counts of domain", d);
         o->overflow = 0;
         if (t->stage.list_valid) continue;
         /* of a list that is no more */
@@ -30278,7 +30294,7 @@ static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
     for (i = 0; i < t->bodies.count; i++) {
         const uint32_t slot = t->bodies.slot[i];
         if (slot >= (uint32_t)t->bodies.slot_count || t->bodies.slot_index[slot] != i)
-            return demi_lie(r, "the slot of body", i);
+            return demi_lie(r, "slot of body", i);
     }
     for (chain = 0; chain < 2; chain++) {
         int slot = chain ? t->bodies.slot_pending : t->bodies.slot_free;
@@ -30286,11 +30302,11 @@ static int demi_slots_check(const demi_reader *r, unsigned char *seen) {
             if (slot < 0 || slot >= t->bodies.slot_count || seen[slot]++ ||
                 t->bodies.slot_index[slot] >= 0 ||
                 t->bodies.slot_index[slot] < -2 - t->bodies.slot_count || !left--)
-                return demi_lie(r, "a chain of free slots", -1);
+                return demi_lie(r, "chain of free slots", -1);
             slot = -2 - t->bodies.slot_index[slot];
         }
     }
-    return left == 0 ? 1 : demi_lie(r, "the number of free slots", -1);
+    return left == 0 ? 1 : demi_lie(r, "number of free slots", -1);
 }
 static dem_real demi_quat_size2(const dem_real *q) {
     return q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3];
@@ -30301,7 +30317,7 @@ static int demi_bodies_sane(const demi_reader *r) {
     const dem_world *t = r->t;
     const int lost = demi_body_lost(t);
     int i, k, shaped = 0;
-    if (lost >= 0) return demi_lie(r, "a number of body", lost);
+    if (lost >= 0) return demi_lie(r, "state of body", lost);
     for (i = 0; i < t->bodies.count; i++) {
         if (!(t->bodies.pos[4*i + 3] > 0) ||
             !demi_sane((double)t->bodies.mass[i], 0) || !(t->bodies.mass[i] > 0) ||
@@ -30309,19 +30325,19 @@ static int demi_bodies_sane(const demi_reader *r) {
                 !demi_sane((double)t->bodies.inv_inertia[i], 0))
             return demi_lie(r, "position, radius or mass of body", i);
         if (t->bodies.material[i] < 1 || t->bodies.material[i] > t->material_count)
-            return demi_lie(r, "the material of body", i);
+            return demi_lie(r, "material of body", i);
         if (!t->bodies.orienting) continue;
         if (t->bodies.shape[i] < 0 || t->bodies.shape[i] > t->shape_count)
-            return demi_lie(r, "the shape of body", i);
+            return demi_lie(r, "shape of body", i);
         if (!(demi_quat_size2(t->bodies.orient + 4*i) > DEM_R(0.98)) ||
             !(demi_quat_size2(t->bodies.orient + 4*i) < DEM_R(1.02)))
-            return demi_lie(r, "the orientation of body", i);
+            return demi_lie(r, "orientation of body", i);
         if (!t->bodies.shape[i]) continue;
         shaped++;
         for (k = 0; k < 3; k++)
-            if (!(t->bodies.moment[4*i + k] > 0)) return demi_lie(r, "the inertia of body", i);
+            if (!(t->bodies.moment[4*i + k] > 0)) return demi_lie(r, "inertia of body", i);
     }
-    return shaped == t->bodies.shaped ? 1 : demi_lie(r, "the number of shaped bodies", -1);
+    return shaped == t->bodies.shaped ? 1 : demi_lie(r, "number of shaped bodies", -1);
 }
 /* Near pairs p = begin .. end - 1 of domain d: entries of this list, ascending, all of spheres or
    none; from here on counted in all domains. */
@@ -30337,7 +30353,7 @@ static int demi_near_check(const demi_reader *r, int d, const demi_list *list, i
             shaped != (demi_shape_of(t, t->near.a[at]) || demi_shape_of(t, t->near.b[at])) ||
             (!shaped && !demi_species_has(t, t->near.a[at])) ||
             (!shaped && !demi_species_has(t, t->near.b[at])))
-            return demi_lie(r, "a near pair of domain", d);
+            return demi_lie(r, "neighbour pair of domain", d);
         last = k;
         t->near.k[at] = first + k;
     }
@@ -30357,7 +30373,7 @@ static int demi_lists_check(const demi_reader *r) {
                 const int a = list->a[k], b = list->b[k];
                 if (a < o->begin || a >= o->end || b <= a || b >= t->bodies.count ||
                     (b >= o->end) != l)
-                    return demi_lie(r, "a candidate pair of domain", d);
+                    return demi_lie(r, "candidate pair of domain", d);
             }
             if (!demi_near_check(r, d, list, count, l ? o->near_cross : 0,
                                  l ? o->near_end : o->near_own, 0) ||
@@ -30371,7 +30387,7 @@ static int demi_lists_check(const demi_reader *r) {
                 t->wall_element[k] >= t->walls[wall].element_count ||
                 !demi_finite3(demi_at(t->wall_shift + 3*(size_t)k)) ||
                 (k > d*t->wall_stride && body < t->wall_body[k - 1]))
-                return demi_lie(r, "a wall candidate of domain", d);
+                return demi_lie(r, "wall candidate of domain", d);
         }
     }
     return 1;
@@ -30388,20 +30404,20 @@ static int demi_contacts_check(const demi_reader *r) {
                 (c->b >= 0 && !t->bodies.orienting) ||
                     (c->b < 0 && (c->wall < 0 || c->wall >= t->wall_count ||
                  (t->stage.list_valid && t->walls[c->wall].kind == DEMI_WALL_NONE))))
-                return demi_lie(r, "a contact of domain", d);
+                return demi_lie(r, "contact of domain", d);
         }
     }
     if (t->stage.list_valid || !t->filed.count) return 1;
     for (k = 0; k <= t->filed.rows; k++)
         if (t->filed.start[k] < (k ? t->filed.start[k - 1] : 0) ||
             t->filed.start[k] > t->filed.count || (!k && t->filed.start[k]))
-            return demi_lie(r, "contact memory of slot", k);
+            return demi_lie(r, "contact history of slot", k);
     if (t->filed.start[t->filed.rows] != t->filed.count)
-        return demi_lie(r, "contact memory of slot", t->filed.rows);
+        return demi_lie(r, "contact history of slot", t->filed.rows);
     for (k = 0; k < t->filed.count; k++) {
         const int32_t p = t->filed.partner[k], other = p < 0 ? ~p : p;
-        if (other >= t->bodies.slot_count) return demi_lie(r, "a partner in contact memory, entry",
-                                                           k);
+        if (other >= t->bodies.slot_count) return demi_lie(r, "partner in the contact history, "
+                                                           "entry", k);
     }
     return 1;
 }
@@ -30414,9 +30430,9 @@ static int demi_walls_check(const demi_reader *r) {
         if (wall->kind == DEMI_WALL_NONE) continue;
         if (!demi_pose_sane(&wall->home) || !demi_pose_sane(&wall->pose) ||
             !demi_pose_sane(&wall->mid) || !demi_pose_sane(&wall->ahead))
-            return demi_lie(r, "the pose of wall", i);
+            return demi_lie(r, "pose of wall", i);
         if (m->kind != own->motion.kind || !demi_motion_sane(m))
-            return demi_lie(r, "the motion of wall", i);
+            return demi_lie(r, "motion of wall", i);
     }
     return 1;
 }
@@ -30425,14 +30441,14 @@ static int demi_measured_check(const demi_reader *r) {
     int i, k;
     for (i = 0; i < r->t->field_count; i++)
         if (!demi_finite_double(r->t->fields[i].next))
-            return demi_lie(r, "the time of the next sample of field", i);
+            return demi_lie(r, "next sampling time of field", i);
     for (i = 0; i < r->t->feed_count; i++) {
         const demi_feed *f = demi_feed_at(r->t, i);
         if (f->next < -1 || f->next >= f->desc.class_count || !demi_sane(f->state.mass, 0))
-            return demi_lie(r, "the state of feed", i);
+            return demi_lie(r, "state of feed", i);
         for (k = 0; k < f->desc.class_count; k++)
             if (f->desc.limited && f->state.fed[k] > f->limit[k])
-                return demi_lie(r, "the state of feed", i);
+                return demi_lie(r, "state of feed", i);
     }
     return 1;
 }
@@ -30467,7 +30483,7 @@ static int demi_outputs_check(const demi_reader *r) {
     for (i = 0; i < r->t->written_count; i++) {
         const demi_written *o = &r->t->written[i];
         if (o->next < DEMI_OUTPUT_UNKNOWN || (double)o->next > DEMI_OUTPUT_MOST ||
-            !demi_finite_double(o->last)) return demi_lie(r, "what is written by output", i);
+            !demi_finite_double(o->last)) return demi_lie(r, "state of output", i);
     }
     return 1;
 }
@@ -30565,7 +30581,7 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     dem_world *t = r->t;
     demi_stream *s = &r->s;
     demi_visit_numbers(t, s);
-    if (s->cut) demi_lie(r, "its length", -1);
+    if (s->cut) demi_lie(r, "length", -1);
     if (s->cut || !demi_numbers_check(r)) return DEM_ERROR_FORMAT;
     demi_effects_memory(t);
     demi_visit(s, t->domains, (size_t)t->domain_count*sizeof(demi_domain));
@@ -30583,7 +30599,7 @@ static dem_result demi_twin_read(demi_reader *r, unsigned char **seen) {
     demi_visit_walls(t, s);
     demi_visit_measured(t, s);
     demi_visit_outputs(t, s);
-    if (s->cut || s->left) demi_lie(r, "its length", -1);
+    if (s->cut || s->left) demi_lie(r, "length", -1);
     if (s->cut || s->left || !demi_walls_check(r) || !demi_measured_check(r) ||
         !demi_joints_check(r) || !demi_outputs_check(r)) return DEM_ERROR_FORMAT;
     return demi_twin_follow(t) ? DEM_OK : DEM_ERROR_MEMORY;
@@ -30717,7 +30733,7 @@ static dem_result demi_csv_resume(dem_world *w, const char *path, const char *he
     if (size <= head || memcmp(data, heading, head) || data[head] != '\n') {
         demi_free(w, data);
         return demi_fail(w, DEM_ERROR_FORMAT, "%s: %.200s has other columns than %.100s; remove "
-                         "it, or give another path", call, path, heading);
+                         "the file, or give another path", call, path, heading);
     }
     for (keep = head + 1; keep < size; keep = (size_t)(line - data) + 1) {
         demi_text text;
@@ -30831,9 +30847,10 @@ static dem_result demi_outputs_look(dem_world *w) {
             (d->end > 0 && now - half > d->end)) continue;
         number = DEMI_MAX(floor((now + half - d->start)/d->interval), number);
         if (!(number < DEMI_OUTPUT_MOST))
-            return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: the number of output %d is %g "
-                             "at %g s, must be below %g: its interval is %g s; give a longer one, "
-                             "or an end", (int)o.id, number, now, DEMI_OUTPUT_MOST, d->interval);
+            return demi_fail(w, DEM_ERROR_STOPPED, "dem_world_step: output %d would get number %g "
+                             "at %g s, must be below %g, because its interval is %g s; give a "
+                             "longer interval, or an end", (int)o.id, number, now, DEMI_OUTPUT_MOST,
+                             d->interval);
         demi_finish(w);
         written->next = (int64_t)number + 1;
         written->last = now;
@@ -30890,23 +30907,25 @@ static const char *demi_output_bad(const dem_world *w, const dem_output_desc *d)
     if (!demi_finite_double(d->interval) || !demi_finite_double(d->start) ||
         !demi_finite_double(d->end) || d->interval < DEMI_OUTPUT_LEAST || d->end < 0 ||
         fmax(d->interval, fmax(fabs(d->start), d->end)) > DEMI_FARTHEST)
-        return "interval must be 1e-12 to 1e15 s, start at most 1e15 s from 0, end 0 to 1e15 s; "
-            "was a unit other than seconds meant?";
+        return "interval must be 1e-12 to 1e15 s, start within 1e15 s of 0, end 0 to 1e15 s; was "
+            "a unit other than seconds meant?";
     if (fabs(w->clock.time - d->start)/d->interval >= DEMI_OUTPUT_MOST)
         return "start is more than 9e15 intervals from now; give a longer interval";
     if (d->kind == DEM_OUTPUT_CALL)
-        return d->function ? 0 : "kind is DEM_OUTPUT_CALL and function is null; give one";
+        return d->function ? 0 : "kind is DEM_OUTPUT_CALL, but function is null; give a function";
     if (!d->path || !*d->path) return "path is null or empty; give a file name, with #### in it "
-        "where each output is a file of its own";
+        "if each output goes to a separate file";
     if (d->kind != DEM_OUTPUT_CSV) return 0;
-    if (strchr(d->path, '#')) return "path of a CSV file has a #, and it is one file; leave it out";
+    if (strchr(d->path, '#')) return "path of a CSV file has a #, but all its lines go to one "
+        "file; leave the # out";
     if (!d->columns != !d->values)
-        return "one of columns and values is given; give both, or neither for the world's own";
-    if (d->wall.id && d->values) return "wall and values are given; give one of the two";
-    if (d->wall.id && !demi_wall_there(w, d->wall)) return "wall names none; "
-        "give what a function that adds walls returned";
+        return "only one of columns and values is given; give both, or neither for the default "
+            "columns";
+    if (d->wall.id && d->values) return "both wall and values are given; give only one of them";
+    if (d->wall.id && !demi_wall_there(w, d->wall)) return "wall does not "
+        "exist; give an id that adding a wall returned";
     if (demi_names(demi_output_names(d), DEM_OUTPUT_COLUMNS) < 1) return "columns must be 1 to 32 "
-        "words of at most 23 letters, digits and _, a space between two";
+        "words of at most 23 letters, digits and _, separated by one space";
     return 0;
 }
 DEM_API dem_output dem_output_add(dem_world *w, const dem_output_desc *desc) {
@@ -31161,22 +31180,22 @@ static void demi_trials_advise(dem_trials *out) {
     out->best = found < 0 ? out->reference : found;
     best = &out->trial[out->best];
     if (found < 0)
-        snprintf(out->advice, sizeof out->advice, "chance alone moves the observables by up to "
+        snprintf(out->advice, sizeof out->advice, "chance alone changes the observables by up to "
                  "%.2g of their scale, more than the tolerance of %.2g: give a longer duration, "
                  "more seeds, or observables that are averages", ref->promise, out->tolerance);
     else if (!found)
         snprintf(out->advice, sizeof out->advice, "keep the scene as it is: all observables are "
-                 "within %.2g of those of \"%s\" (asked: %.2g), and nothing tried is as good in a "
-                 "tenth less time", best->promise, ref->name, out->tolerance);
+                 "within %.2g of those of \"%s\" (tolerance %.2g), and no trial within it saves a "
+                 "tenth of the time", best->promise, ref->name, out->tolerance);
     else if (best->seconds < now)
-        snprintf(out->advice, sizeof out->advice, "take \"%s\": all observables are within %.2g of "
-                 "those of \"%s\" (asked: %.2g), in %.2g of the time that the scene takes as it is",
-                 best->name, best->promise, ref->name, out->tolerance, best->seconds/now);
+        snprintf(out->advice, sizeof out->advice, "use \"%s\": all observables are within %.2g of "
+                 "those of \"%s\" (tolerance %.2g), in %.2g of the time that the scene takes as "
+                 "it is", best->name, best->promise, ref->name, out->tolerance, best->seconds/now);
     else
-        snprintf(out->advice, sizeof out->advice, "take \"%s\": as it is the scene is only within "
-                 "%.2g of \"%s\" (asked: %.2g); this is within %.2g, in %.2g times the time",
-                 best->name, scene->promise, ref->name, out->tolerance, best->promise,
-                 best->seconds/now);
+        snprintf(out->advice, sizeof out->advice, "use \"%s\": as it is, the scene is only within "
+                 "%.2g of \"%s\" (tolerance %.2g); this trial is within %.2g, and takes %.2g "
+                 "times as long", best->name, scene->promise, ref->name, out->tolerance,
+                 best->promise, best->seconds/now);
 }
 /* All runs of one trial, each on a copy of its own. A run that is refused or blows up is the
    trial's answer, not the call's: the step may be too large, and that is worth knowing. */
@@ -31214,20 +31233,20 @@ static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
     const int lost = demi_body_lost(w);
     int e;
     if (demi_impulsive(w)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: contacts answer by impulses, and what it "
-                  "tries are steps, stiffnesses and laws of springs; compare runs of other dt, "
-                  "sweeps and tolerance");
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: contacts of this world are impulses, "
+                  "but trials vary the steps, stiffnesses and laws of springs; compare runs with "
+                  "other dt, sweeps and tolerance instead");
         return 1;
     }
     if (!(d->duration > 0) || !demi_finite_double(d->duration) || !(d->budget >= 0) ||
         !demi_finite_double(d->budget) || !(d->tolerance >= 0) ||
         !demi_finite_double(d->tolerance) || d->seeds < 0 || d->seeds == 1 ||
         d->seeds > 16 || d->observable_count < 0 || d->observable_count > DEM_OBSERVABLES) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: duration is %g s, budget %g s, tolerance "
-                  "%g, "
-                  "seeds %d, observables %d; must be > 0, >= 0, >= 0, 2 to 16 (0: 3) and 0 to %d; "
-                  "start from DEM_TRIALS_DESC and set duration", d->duration, d->budget,
-                  d->tolerance, d->seeds, d->observable_count, (int)DEM_OBSERVABLES);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: duration is %g s, budget %g s, "
+                  "tolerance %g, seeds %d, observables %d; duration must be > 0, budget and "
+                  "tolerance >= 0, seeds 2 to 16 (0 means 3), observables 0 to %d; start from "
+                  "DEM_TRIALS_DESC and set duration", d->duration, d->budget, d->tolerance,
+                  d->seeds, d->observable_count, (int)DEM_OBSERVABLES);
         return 1;
     }
     for (e = 0; e < d->observable_count; e++)
@@ -31246,14 +31265,12 @@ static int demi_advise_refuse(dem_world *w, const dem_trials_desc *d) {
         }
     if (lost < 0 && w->bodies.count) return 0;
     if (lost < 0)
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: there are no bodies: nothing to judge "
-                  "by; "
-                  "add them, or run until some are fed");
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: there are no bodies to compare; add "
+                  "some, or run until some are fed");
     else
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: body %u is no longer at a finite place "
-                  "and "
-                  "speed: the run has blown up; go back to an earlier checkpoint",
-                  (unsigned)w->bodies.slot[lost] + 1);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: body %u no longer has a finite "
+                  "position, velocity and force: the run has blown up; go back to an earlier "
+                  "checkpoint", (unsigned)w->bodies.slot[lost] + 1);
     return 1;
 }
 /* What the trials shall simulate so that all end within the budget, from the time of some steps of
@@ -31275,18 +31292,16 @@ static dem_result demi_advise_plan(dem_world *w, const char *state, size_t size,
             steps += out->seeds/(double)t->clock.dt/demi_tries[k].step*
                 demi_pow(demi_tries[k].stiffness, 0.4);
     if (each*steps*out->duration > budget) out->duration = budget/each/steps;
-    if (result != DEM_OK) demi_fail(w, result, "dem_trials_run: the scene as it is: %.400s",
+    if (result != DEM_OK) demi_fail(w, result, "dem_trials_run: the scene as it is fails: %.400s",
                                     t->error);
     else if (asked < 64*(double)t->clock.dt)
         result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: duration is %g s, must be at "
-                           "least "
-                           "64 steps of %g s; let trials simulate as long as observables need to "
-                           "settle", asked, (double)t->clock.dt);
+                           "least 64 steps of %g s; set a duration in which the observables settle",
+                           asked, (double)t->clock.dt);
     else if (out->duration < 64*(double)t->clock.dt)
-        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: %g s of wall time allow for %g "
-                           "s of "
-                           "this scene in each trial, must be at least 64 steps of %g s; give more "
-                           "budget, fewer seeds, or a smaller part of the scene", budget,
+        result = demi_fail(w, DEM_ERROR_ARGUMENT, "dem_trials_run: %g s of wall time allow %g s "
+                           "of this scene in each trial, must be at least 64 steps of %g s; give "
+                           "a larger budget, fewer seeds, or a smaller part of the scene", budget,
                            out->duration, (double)t->clock.dt);
     demi_twin_free(w, t);
     return result;
@@ -31365,7 +31380,7 @@ DEM_API dem_result dem_trials_run(dem_world *w, const dem_trials_desc *d, dem_tr
 DEM_API void dem_trials_print(const dem_trials *t, FILE *out) {
     int i, e;
     if (!t || !out) return;
-    fprintf(out, "trials     %d runs each of %.3g s, means of the second half +- their error\n",
+    fprintf(out, "trials     %d runs each of %.3g s; means of the second half +- standard error\n",
             t->seeds, t->duration);
     fprintf(out, "  %-20s %-9s %-9s", "", "dt [s]", "s per s");
     for (e = 0; e < t->observable_count; e++) {
@@ -31440,11 +31455,11 @@ static dem_effect_state demi_look_pairs(const dem_world *w, dem_real (*of)(const
         }
     e->missing = possible - met;
     if (!have) demi_say(e, "no pair of materials has it");
-    else if (!possible) demi_say(e, "%s; no two that can touch have it", what);
+    else if (!possible) demi_say(e, "%s; no two materials that can touch have it", what);
     else if (met == possible) demi_say(e, "%s", what);
     else if (first == second)
-        demi_say(e, "%s; material %d has not been seen to touch its kind", what, first);
-    else demi_say(e, "%s; materials %d and %d have not been seen to touch", what, first,
+        demi_say(e, "%s; material %d has not touched itself so far", what, first);
+    else demi_say(e, "%s; materials %d and %d have not touched so far", what, first,
                   second);
     return !have ? DEM_EFFECT_OFF : met ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
@@ -31460,33 +31475,33 @@ static dem_real demi_coheres(const dem_pair *p) { return p->cohesion; }
 
 static dem_effect_state demi_look_contacts(const dem_world *w, dem_effect *e) {
     const char *name = demi_normal_laws[w->desc.normal_law].name;
-    if (w->desc.law) return demi_look_off(e, "left to your own law");
+    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
     return demi_look_pairs(w, demi_any, demi_impulsive(w) ? "impulses" : name, e);
 }
 static dem_effect_state demi_look_law(const dem_world *w, dem_effect *e) {
     if (!w->desc.law) return demi_look_off(e, "desc.law is null");
-    return demi_look_pairs(w, demi_any, "in place of the built-in ones", e);
+    return demi_look_pairs(w, demi_any, "replaces the built-in laws", e);
 }
 static dem_effect_state demi_look_friction(const dem_world *w, dem_effect *e) {
     const int law = demi_tangent_meant(w);
     if (demi_impulsive(w)) return demi_look_pairs(w, demi_rubs, "impulses", e);
-    if (w->desc.law) return demi_look_off(e, "left to your own law");
+    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
     if (law == DEM_TANGENT_NONE) return demi_look_off(e, "tangent_law is DEM_TANGENT_NONE");
     return demi_look_pairs(w, demi_rubs, demi_tangent_laws[law].name, e);
 }
 static dem_effect_state demi_look_rolling(const dem_world *w, dem_effect *e) {
     const int law = demi_rolling_meant(w);
     if (demi_impulsive(w)) return demi_look_pairs(w, demi_rolls, "impulses", e);
-    if (w->desc.law) return demi_look_off(e, "left to your own law");
+    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
     if (law == DEM_ROLLING_NONE) return demi_look_off(e, "rolling_law is DEM_ROLLING_NONE");
     return demi_look_pairs(w, demi_rolls, demi_rolling_laws[law].name, e);
 }
 static dem_effect_state demi_look_adhesion(const dem_world *w, dem_effect *e) {
-    if (demi_impulsive(w)) return demi_look_pairs(w, demi_coheres, "cohesion of impulses", e);
-    if (w->desc.law) return demi_look_off(e, "left to your own law");
+    if (demi_impulsive(w)) return demi_look_pairs(w, demi_coheres, "cohesion under impulses", e);
+    if (w->desc.law) return demi_look_off(e, "left to the user-defined law");
     if (!demi_normal_is(w, DEMI_BRANCHED))
         return demi_look_off(e, "only the hysteretic normal law has it");
-    return demi_look_pairs(w, demi_sticks, "of the hysteretic law", e);
+    return demi_look_pairs(w, demi_sticks, "hysteretic law", e);
 }
 /* Is there a force now? The field is asked for every body that moves. */
 static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
@@ -31506,7 +31521,7 @@ static dem_effect_state demi_look_field(const dem_world *w, dem_effect *e) {
                                                   w->clock.time, w->desc.force_user));
         pushed += demi_dot(force, force) > 0 || demi_dot(torque, torque) > 0;
     }
-    demi_say(e, "pushes %d of %d bodies now", pushed, w->bodies.count);
+    demi_say(e, "acts on %d of %d bodies now", pushed, w->bodies.count);
     return pushed ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
 static dem_effect_state demi_look_reals(const dem_world *w, dem_effect *e) {
@@ -31514,7 +31529,7 @@ static dem_effect_state demi_look_reals(const dem_world *w, dem_effect *e) {
     int i, k, moving = 0;
     if (!n) return demi_look_off(e, "desc.body_reals is null");
     if (!demi_exchanges(w) && !w->desc.body_reals_fn) {
-        demi_say(e, "%s: carried; no law answers rates (law_who), body_reals_fn is null",
+        demi_say(e, "%s: constant; no law gives rates (law_who), and body_reals_fn is null",
                  w->real_names);
         return DEM_EFFECT_IDLE;
     }
@@ -31522,7 +31537,7 @@ static dem_effect_state demi_look_reals(const dem_world *w, dem_effect *e) {
         for (k = 0; k < n && !(DEMI_ABS(w->bodies.rates[n*i + k]) > 0);) k++;
         moving += k < n;
     }
-    demi_say(e, "%s: contacts change those of %d of %d bodies now", w->real_names, moving,
+    demi_say(e, "%s: contacts change them on %d of %d bodies now", w->real_names, moving,
              w->bodies.count);
     return moving || w->desc.body_reals_fn ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
@@ -31552,7 +31567,7 @@ static dem_effect_state demi_look_motions(const dem_world *w, dem_effect *e) {
     if (!count) return demi_look_off(e, "no wall moves");
     e->missing = count - touched;
     demi_say(e, "%d wall%s%s", count, count == 1 ? "" : "s", touched ? ""
-             : ", that nothing has touched");
+             : ", never touched");
     return touched ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
 /* Does any near pair reach across a face? */
@@ -31570,17 +31585,17 @@ static dem_effect_state demi_look_periodic(const dem_world *w, dem_effect *e) {
             across += demi_dot(demi_at(shift), demi_at(shift)) > 0;
         }
     }
-    if (across) demi_say(e, "along %d ax%s; %d near pairs reach across", faces,
+    if (across) demi_say(e, "along %d ax%s; %d neighbour pairs cross a face", faces,
                          faces == 1 ? "is" : "es", across);
-    else demi_say(e, "along %d ax%s; no two grains are near each other across a face now",
+    else demi_say(e, "along %d ax%s; no neighbour pair crosses a face now",
                   faces, faces == 1 ? "is" : "es");
     return across ? DEM_EFFECT_ACTIVE : DEM_EFFECT_IDLE;
 }
 static dem_effect_state demi_look_unlike(const dem_world *w, dem_effect *e) {
     if (w->effects.uniform || !w->bodies.count)
-        return demi_look_off(e, "all bodies are alike: coefficients are worked out once");
-    demi_say(e, "%s", demi_many_species(w) ? "coefficients of each near pair"
-             : "coefficients of each two kinds");
+        return demi_look_off(e, "all bodies are alike: coefficients are computed once");
+    demi_say(e, "%s", demi_many_species(w) ? "coefficients per neighbour pair"
+             : "coefficients per pair of species");
     return DEM_EFFECT_ACTIVE;
 }
 static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
@@ -31589,14 +31604,14 @@ static dem_effect_state demi_look_shapes(const dem_world *w, dem_effect *e) {
     return DEM_EFFECT_ACTIVE;
 }
 static dem_effect_state demi_look_orientations(const dem_world *w, dem_effect *e) {
-    if (w->bodies.shaped) return demi_look_off(e, "part of what shapes cost");
+    if (w->bodies.shaped) return demi_look_off(e, "included in shapes");
     if (!w->bodies.orienting) return demi_look_off(e, "desc.orientations is 0");
-    demi_say(e, "followed because you asked; no force hangs on them");
+    demi_say(e, "followed because desc.orientations is 1; no force depends on them");
     return DEM_EFFECT_ACTIVE;
 }
 static dem_effect_state demi_look_ledger(const dem_world *w, dem_effect *e) {
     if (!w->desc.ledger) return demi_look_off(e, "desc.ledger is 0");
-    demi_say(e, "every contact tells where its energy goes");
+    demi_say(e, "every contact reports where its energy goes");
     return DEM_EFFECT_ACTIVE;
 }
 static dem_effect_state demi_look_feeds(const dem_world *w, dem_effect *e) {
@@ -31730,7 +31745,7 @@ static const demi_effect_row demi_effect_rows[DEM_EFFECTS] = {
     {"friction",         demi_look_friction,     demi_leave_friction,     0},
     {"rolling friction", demi_look_rolling,      demi_leave_rolling,      0},
     {"adhesion",         demi_look_adhesion,     demi_leave_adhesion,     0},
-    {"law of your own",  demi_look_law,          demi_again_law,          1},
+    {"user-defined law", demi_look_law,          demi_again_law,          1},
     {"force field",      demi_look_field,        demi_again_field,        1},
     {"body_reals",       demi_look_reals,        0,                       0},
     {"walls",            demi_look_walls,        demi_leave_walls,        0},
@@ -31858,7 +31873,7 @@ DEM_API int dem_effects_get(dem_world *w, double budget, dem_effect out[DEM_EFFE
     if (demi_null(w, "dem_effects_get", out, "effects")) return -1;
     if (!(budget >= 0) || !demi_finite_double(budget)) {
         demi_fail(w, DEM_ERROR_ARGUMENT, "dem_effects_get: budget is %g s, must be >= 0 and "
-                  "finite; 0 means states alone, 5 is enough on a quiet machine", budget);
+                  "finite; 0 gives only states, and 5 s are enough on a quiet machine", budget);
         return -1;
     }
     if (demi_unbuilt(w, "dem_effects_get") != DEM_OK) return -1;
@@ -31880,15 +31895,15 @@ static void demi_effects_lines(const dem_effect *e, FILE *out) {
         fprintf(out, "  %-17s%-7s%-17s%s\n", e[k].name, states[e[k].state], share, e[k].text);
     }
     if (noisy)
-        fprintf(out, "  too noisy: other programs kept the machine busy while %d of them %s "
-                "measured; measure again on a quiet machine, or with a larger budget\n", noisy,
+        fprintf(out, "  too noisy: other programs used the machine while %d of them %s measured; "
+                "measure again on a quiet machine, or with a larger budget\n", noisy,
                 noisy > 1 ? "were" : "was");
 }
 DEM_API void dem_effects_print(dem_world *w, double budget, FILE *out) {
     dem_effect effects[DEM_EFFECTS];
     if (demi_null_look(w, "dem_effects_print", out, "out")) return;
     if (dem_effects_get(w, budget, effects) < 0) return;
-    fprintf(out, "effects, and the share of a step's time that goes without each\n");
+    fprintf(out, "effects, and the share of a step's time that each costs\n");
     demi_effects_lines(effects, out);
 }
 
@@ -31910,31 +31925,32 @@ DEM_API const char *dem_result_name_get(dem_result r) {
 static const char *demi_answer_error(const dem_world_desc *d) {
     if (!(d->law_range >= 0) || !demi_finite(d->law_range) || !(d->law_range_radii >= 0) ||
         !demi_finite(d->law_range_radii))
-        return "dem_world_create: law_range (m) and law_range_radii must be finite and >= 0; 0 "
-            "means that your law is asked about what touches alone";
+        return "dem_world_create: law_range (m) and law_range_radii must be finite and >= 0; set "
+            "both to 0 to call the law only in contact";
     if (!d->law && ((d->law_range > 0 && d->response != DEM_RESPONSE_IMPULSES) ||
                     d->law_range_radii > 0 || d->law_who))
         return "dem_world_create: law_range, law_range_radii or law_who is set, but law is null; "
-            "they are for a law of your own: name it in law, or leave them 0";
+            "they apply only to a user-defined law: set law, or leave them 0";
     if (d->law_rate && (!d->law || !d->law_who || !d->body_reals))
-        return "dem_world_create: law_rate is set without law, law_who or body_reals; it says how "
-            "fast your law changes numbers of bodies: give all four, or leave it null";
+        return "dem_world_create: law_rate is set without law, law_who or body_reals; it gives "
+            "the rate at which your law changes the numbers of bodies: set all four, or leave it "
+            "null";
     if ((int)d->response < 0 || d->response > DEM_RESPONSE_IMPULSES || (int)d->cone < 0 ||
         d->cone > DEM_CONE_CONVEX || (int)d->solver < 0 || (int)d->solver >= DEMI_SOLVERS)
-        return "dem_world_create: response, cone or solver is unknown, must be one of the enum "
-            "values; start from DEM_WORLD_DESC";
+        return "dem_world_create: response, cone or solver is not one of the enum values; start "
+            "from DEM_WORLD_DESC";
     if (d->sweeps < 0 || !(d->tolerance >= 0) || !demi_finite(d->tolerance))
         return "dem_world_create: sweeps and tolerance (m/s) must be >= 0 and finite; 0 lets the "
             "library choose";
     if (d->response == DEM_RESPONSE_IMPULSES && !(d->dt > 0))
-        return "dem_world_create: response is DEM_RESPONSE_IMPULSES and dt is 0 s; impulses have "
-            "no contact time to choose it from: give one in which grains move by less than a tenth "
-            "of their radius, such as 1e-3 s";
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but dt is 0 s; impulses have "
+            "no contact time to choose it from: set a dt in which grains move by less than a "
+            "tenth of their radius, such as 1e-3 s";
     if (d->response == DEM_RESPONSE_IMPULSES && (d->law ||
                                                  (d->integrator != DEM_INTEGRATOR_VELOCITY_VERLET &&
                                                  d->integrator != DEM_INTEGRATOR_SYMPLECTIC_EULER)))
-        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, with a law or an integrator "
-            "of its own; impulses need neither: leave both 0";
+        return "dem_world_create: response is DEM_RESPONSE_IMPULSES, but law or integrator is "
+            "set; impulses use neither: leave both 0";
     return "";
 }
 DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
@@ -31943,12 +31959,12 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     const dem_real lo[3] = {d->domain.lo.x, d->domain.lo.y, d->domain.lo.z};
     const dem_real hi[3] = {d->domain.hi.x, d->domain.hi.y, d->domain.hi.z};
     int k;
-    if (!demi_place(d->gravity)) return "dem_world_create: gravity is not finite or above 1e15 in "
-        "size, must be m/s2; check how it was computed";
+    if (!demi_place(d->gravity)) return "dem_world_create: gravity is not finite or above 1e15 "
+        "m/s2; check how it was computed";
     for (k = 0; k < 3; k++) {
         if ((int)d->boundary[k] < 0 || d->boundary[k] > DEM_BOUNDARY_OUTFLOW)
-            return "dem_world_create: a boundary is unknown, must be a DEM_BOUNDARY_ value; start "
-                "from DEM_WORLD_DESC";
+            return "dem_world_create: a boundary is not a DEM_BOUNDARY_ value; start from "
+                "DEM_WORLD_DESC";
         if (d->boundary[k] != DEM_BOUNDARY_OPEN && (!(hi[k] > lo[k]) ||
                                                     !demi_bounded((double)lo[k]) ||
                                                     !demi_bounded((double)hi[k])))
@@ -31956,8 +31972,8 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
                 "below domain.hi there, or one is beyond 1e15 m; set domain";
     }
     if (d->planar && d->boundary[2] != DEM_BOUNDARY_OPEN)
-        return "dem_world_create: planar is 1 and the z boundary is not open; discs live at z = 0: "
-            "leave it open";
+        return "dem_world_create: planar is 1, but the z boundary is not open; discs stay at z "
+            "= 0: leave it open";
     if (!(d->thickness >= 0) || !demi_finite(d->thickness)) return "dem_world_create: thickness "
         "must be >= 0 m; 0 means 1 m";
     if (demi_dt_bad(d->dt)) return "dem_world_create: dt must be 0 or 1e-20 to 1e15 s; 0 lets the "
@@ -31965,52 +31981,52 @@ DEM_API const char *dem_world_create_error_get(const dem_world_desc *d) {
     if (!(d->impact_speed >= 0) || !((double)d->impact_speed <= DEMI_FARTHEST))
         return "dem_world_create: impact_speed must be 0 to 1e15 m/s";
     if (!(d->law_stiffness >= 0) || !((double)d->law_stiffness <= DEMI_MOST))
-        return "dem_world_create: law_stiffness must be 0 to 1e30 N/m; 0 means that of the "
-            "built-in law";
+        return "dem_world_create: law_stiffness must be 0 to 1e30 N/m; 0 means the stiffness of "
+            "the built-in law";
     if (*demi_answer_error(d)) return demi_answer_error(d);
     if (demi_names(d->body_reals, DEM_BODY_REALS) < 0)
-        return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, digits "
-            "and _, with a space between two, such as \"temperature charge\"; null means none";
+        return "dem_world_create: body_reals must be at most 8 words of at most 23 letters, "
+            "digits and _, separated by one space, such as \"temperature charge\"; null means none";
     if (demi_names(d->law_memory_names, d->law_memory) < 0)
         return "dem_world_create: law_memory_names must be at most law_memory words of at most 23 "
-            "letters, digits and _, with a space between two; null means memory0, memory1, ...";
+            "letters, digits and _, separated by one space; null means memory0, memory1, ...";
     if (!demi_names(d->body_reals, DEM_BODY_REALS) && d->body_reals_fn)
         return "dem_world_create: body_reals_fn is given, but body_reals names no numbers; name "
             "them, or leave both 0";
     if (!demi_finite(d->skin)) return "dem_world_create: skin is not finite; 0 lets the library "
-        "choose, below 0 means none";
-    if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64; 0 "
-        "means as many as OpenMP offers";
+        "choose, below 0 means no skin";
+    if (d->threads < 0 || d->threads > 64) return "dem_world_create: threads must be 0 to 64, "
+        "where 0 means as many as OpenMP offers";
     if (d->law_memory < 0 || d->law_memory > DEM_LAW_MEMORY) return "dem_world_create: law_memory "
         "must be 0 to 16 reals";
     if (d->law_vectors < 0 || d->law_vectors > d->law_memory/3)
-        return "dem_world_create: law_vectors is more than fits into law_memory, must be at most "
-            "law_memory/3";
+        return "dem_world_create: law_vectors must be 0 to law_memory/3; increase law_memory, "
+            "which counts reals";
     if (!demi_law_known(demi_normal_laws, (int)d->normal_law) ||
         !demi_law_known(demi_tangent_laws, (int)d->tangent_law) ||
         !demi_law_known(demi_rolling_laws, (int)d->rolling_law))
-        return "dem_world_create: a contact law is unknown, must be one of the enum values; start "
-            "from DEM_WORLD_DESC";
+        return "dem_world_create: a contact law is not one of the enum values; start from "
+            "DEM_WORLD_DESC";
     if ((int)d->tension < 0 || d->tension > DEM_TENSION_COMPENSATED || (int)d->convention < 0 ||
         d->convention > DEM_CONVENTION_MILL)
-        return "dem_world_create: tension or convention is unknown, must be one of the enum "
-               "values; start from DEM_WORLD_DESC";
+        return "dem_world_create: tension or convention is not one of the enum values; start from "
+               "DEM_WORLD_DESC";
     if ((int)d->friction_load < 0 || d->friction_load > DEM_LOAD_MAGNITUDE || (int)d->slider < 0 ||
         d->slider > DEM_SLIDER_REMAINDER)
-        return "dem_world_create: friction_load or slider is unknown, must be one of the enum "
-               "values; start from DEM_WORLD_DESC";
+        return "dem_world_create: friction_load or slider is not one of the enum values; start "
+               "from DEM_WORLD_DESC";
     if ((int)d->integrator < 0 || (int)d->integrator >= DEMI_INTEGRATORS || (int)d->search < 0 ||
         (int)d->search >= DEMI_SEARCHES)
-        return "dem_world_create: integrator or search is unknown, must be one of the enum values; "
-            "start from DEM_WORLD_DESC";
+        return "dem_world_create: integrator or search is not one of the enum values; start from "
+            "DEM_WORLD_DESC";
     if ((int)d->rotation < 0 || d->rotation > DEM_ROTATION_NO_SQUISH ||
         (int)d->ellipsoid_overlap < 0 || d->ellipsoid_overlap > DEM_OVERLAP_NORMAL ||
         (int)d->cluster_contacts < 0 || d->cluster_contacts > DEM_CLUSTER_CONTACTS_SEPARATE)
-        return "dem_world_create: rotation, ellipsoid_overlap or cluster_contacts is unknown, must "
-            "be one of the enum values; start from DEM_WORLD_DESC";
+        return "dem_world_create: rotation, ellipsoid_overlap or cluster_contacts is not one of "
+            "the enum values; start from DEM_WORLD_DESC";
     if (!d->allocator.alloc_fn != !d->allocator.free_fn)
-        return "dem_world_create: the allocator has one of alloc_fn and free_fn; give both or "
-            "neither";
+        return "dem_world_create: the allocator has only one of alloc_fn and free_fn; give both "
+            "or neither";
     return "";
 }
 
@@ -32052,9 +32068,9 @@ DEM_API void dem_world_destroy(dem_world *w) {
     int chain;
     if (demi_null(w, "dem_world_destroy", w, "world")) return;
     if (w->look.under_way) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_destroy: called by the function of an output "
-                  "(dem_output_add) while the world runs; let that function return 1, which stops "
-                  "the run, and destroy the world then");
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_world_destroy: called from the function of an "
+                  "output (dem_output_add) while the world runs; return 1 from that function to "
+                  "stop the run, then destroy the world");
         return;
     }
     for (chain = 0; chain < DEMI_CHAINS; chain++) demi_free_chain(w, chain);
@@ -32063,7 +32079,7 @@ DEM_API void dem_world_destroy(dem_world *w) {
 }
 
 DEM_API const char *dem_world_error_get(const dem_world *w) {
-    if (!w) return "dem_world_create: the world is null, so it was refused and this call too; "
+    if (!w) return "dem_world_create: the world is null, because dem_world_create failed; "
         "dem_world_create_error_get(desc) says why";
     ((dem_world *)w)->refused = 0;              /* somebody looks */
     return w->error;
@@ -32090,8 +32106,8 @@ static void demi_levels_report(const dem_world *w, FILE *out) {
         fprintf(out, "\n");
     }
     if (w->levels.tests[0] > 0)
-        fprintf(out, "           %s: about %.3g tests per body and search by levels, %.3g on one "
-                "grid\n", auto_ ? "chosen" : "by levels or not", w->levels.tests[1],
+        fprintf(out, "           %s: about %.3g tests per body and search with levels, %.3g with "
+                "one grid\n", auto_ ? "chosen" : "levels or one grid", w->levels.tests[1],
                 w->levels.tests[0]);
 }
 
@@ -32104,15 +32120,17 @@ static int demi_kept_total(const dem_world *w) {
 static const char *demi_law_memory_text(const demi_law_row *row, char text[64]) {
     text[0] = 0;
     if (row->memory)
-        snprintf(text, 64, " (%d bytes of memory per near pair)",
+        snprintf(text, 64, " (%d bytes of memory per neighbour pair)",
                  row->memory*(int)sizeof(dem_real));
     return text;
 }
 /* The laws in force. Of a law of the user's own only what it was given is known. */
 static void demi_laws_report(const dem_world *w, FILE *out) {
-    static const char *loads[] = {"the normal force", "its spring's part", "its size"};
-    static const char *sliders[] = {"spring and dashpot share it", "the spring alone holds it",
-                                    "the spring holds what the dashpot leaves"};
+    static const char *loads[] = {"the normal force", "the elastic part of the normal force",
+                                  "the magnitude of the normal force"};
+    static const char *sliders[] = {"spring and dashpot share this limit",
+                                    "the spring alone takes this limit",
+                                    "the spring takes what the dashpot leaves"};
     const int load = w->desc.tension != DEM_TENSION_ALLOWED ? DEM_LOAD_REPULSIVE
         : (int)w->desc.friction_load;           /* nothing pulls there */
     const demi_laws *laws = &w->laws;
@@ -32122,7 +32140,7 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
     unused = "; DEM_LAW is named, but desc.law is null, so it does not act here";
 #endif
     if (demi_impulsive(w)) {
-        fprintf(out, "effects    contacts answer by impulses, %s; gaps up to %.3g m are looked at\n"
+        fprintf(out, "effects    contacts are impulses, %s; gaps up to %.3g m are included\n"
                 "           last step: %d sweeps left %.3g m/s; %llu steps did not reach their "
                 "tolerance, in the last of them %d contacts were at their friction limit\n",
                 w->desc.cone == DEM_CONE_CONVEX ? "convex law" : "Coulomb's law",
@@ -32131,18 +32149,18 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
         return;
     }
     if (w->desc.law) {
-        fprintf(out, "effects    normal, tangential, rolling: your own law; spins and torques are "
-                "followed; %d reals of memory per contact\n", w->desc.law_memory);
+        fprintf(out, "effects    normal, tangential, rolling: user-defined law; spins and torques "
+                "are followed; %d reals of memory per contact\n", w->desc.law_memory);
         if (w->margin.reach > 0)
-            fprintf(out, "           asked about what is nearer than %.3g m, whether it touches or "
-                    "not\n", w->margin.reach);
+            fprintf(out, "           called for gaps below %.3g m, in contact or not\n",
+                    w->margin.reach);
 #ifdef DEM_LAW
         if (w->desc.law != DEM_LAW)
             fprintf(out, "           DEM_LAW names another law than desc.law, which is called by "
                     "pointer: slower\n");
         else if (w->desc.law_who)
-            fprintf(out, "           named by DEM_LAW, but told who touches (law_who): called one "
-                    "by one, slower\n");
+            fprintf(out, "           named by DEM_LAW, but law_who is set: called contact by "
+                    "contact, slower\n");
 #endif
         return;
     }
@@ -32154,8 +32172,8 @@ static void demi_laws_report(const dem_world *w, FILE *out) {
             ? demi_law_memory_text(laws->tangent, text)
             : " (no friction in any pair: no spin, no torque, no memory)");
     if (laws->tangent->law)
-        fprintf(out, "           friction's limit is mu times %s; %s\n", loads[load],
-                laws->tangent->memory ? sliders[w->desc.slider] : "a dashpot alone holds it");
+        fprintf(out, "           friction is limited to mu times %s; %s\n", loads[load],
+                laws->tangent->memory ? sliders[w->desc.slider] : "there is only a dashpot");
     fprintf(out, "           rolling: %s%s\n", laws->rolling->name,
             demi_law_memory_text(laws->rolling, text));
 }
@@ -32164,13 +32182,15 @@ static void demi_shapes_report(const dem_world *w, FILE *out) {
     static const char *rotations[] = {"SPIRAL", "Fincham", "NO_SQUISH"};
     static const char *overlaps[] = {"conservative", "[RUB15]'s chord", "along the normal"};
     if (w->bodies.shaped)
-        fprintf(out, "           %d bodies are not spheres: rotation by %s; ellipsoids' overlap "
-                "%s; a cluster's contacts %s; %.2f contacts per body\n", w->bodies.shaped,
+        fprintf(out, "           %d bodies are not spheres: rotation by %s; overlap of ellipsoids "
+                "%s; contacts of a cluster %s; %.2f contacts per body\n", w->bodies.shaped,
                 rotations[w->desc.rotation], overlaps[w->desc.ellipsoid_overlap],
-                w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are shared" : "add up",
+                w->desc.cluster_contacts == DEM_CLUSTER_CONTACTS_MERGED ? "are merged"
+                    : "are separate",
                 w->bodies.count ? (double)demi_kept_total(w)/w->bodies.count : 0);
     else if (w->bodies.orienting)
-        fprintf(out, "           orientations of spheres are followed, because you asked\n");
+        fprintf(out, "           orientations of spheres are followed, because desc.orientations "
+                "is 1\n");
 }
 /* What each wall bears, and what came in and went out. */
 static void demi_flows_report(const dem_world *w, FILE *out) {
@@ -32187,10 +32207,10 @@ static void demi_flows_report(const dem_world *w, FILE *out) {
     for (i = 0; i < w->joint_count; i++) {
         const dem_joint_state *j = &w->joints[i].state;
         if (!demi_joint_alive(w, w->joints + i)) continue;
-        fprintf(out, "joint %-3d  force %.4g N, torque %.4g N m; motor %.4g N m, %.4g W; off by "
-                "%.3g m\n", (int)w->joints[i].id, (double)demi_length(j->force),
-                (double)demi_length(j->torque),
-                (double)j->motor_torque, (double)j->power, (double)j->gap);
+        fprintf(out, "joint %-3d  force %.4g N, torque %.4g N m; motor %.4g N m, %.4g W; gap %.3g "
+                "m\n", (int)w->joints[i].id, (double)demi_length(j->force),
+                (double)demi_length(j->torque), (double)j->motor_torque, (double)j->power,
+                (double)j->gap);
     }
     for (i = 0; i < w->feed_count; i++) {
         const dem_feed_state *f = &demi_feed_at(w, i)->state;
@@ -32215,7 +32235,7 @@ static void demi_ledger_report(const dem_world *w, FILE *out) {
             l.gravity, l.walls, l.force, l.inserted, l.removed, l.kinetic, l.rotational, l.elastic,
             l.normal, l.slide, l.tangent, l.rolling);
     if (w->desc.law && !(w->booked.energy[DEMI_E_TOLD] > 0))
-        fprintf(out, "           unknown to the ledger: %.3g J by your law, which fills in no "
+        fprintf(out, "           unknown to the ledger: %.3g J of your law, which does not set "
                 "force->energy\n", l.unknown);
     else
         fprintf(out, "           residual %.3g (%.2g of the throughput)\n", l.residual,
@@ -32271,13 +32291,13 @@ static void demi_report(const dem_world *world, FILE *out) {
     demi_shapes_report(w, out);
     fprintf(out, "           bodies %s; walls %d; force field %s; ledger %s; kernel: %s\n",
             w->effects.uniform ? "all alike (coefficients once)" : demi_many_species(w)
-                ? "differ (coefficients per near pair)"
-                : "of few species (coefficients once for each two)", w->wall_count,
+                ? "differ (coefficients per neighbour pair)"
+                : "of few species (coefficients per pair of species)", w->wall_count,
             w->desc.force || w->desc.body_force ? "yes" : "no", w->desc.ledger ? "on" : "off",
             demi_kernel_choose(w));
     demi_idle_report(w, out);
     fprintf(out, "overlap    %.3g of the radius at most so far%s\n", w->booked.overlap_max,
-            w->booked.overlap_max > 0.05 ? "  (beyond .05: stiffen the material or slow down)"
+            w->booked.overlap_max > 0.05 ? "  (above 0.05: use a stiffer material or lower speeds)"
                 : "");
     dem_pairs_print(w, out);
     demi_flows_report(w, out);
@@ -32576,9 +32596,9 @@ static const demi_message *demi_slab_inbox(const dem_slabs *s, const demi_slab *
 /* From here on processes may differ: nothing but collecting from elsewhere makes sense. */
 static dem_result demi_slabs_transport_failed(dem_slabs *s, const char *what, int answer) {
     s->broken = 1;
-    return demi_fail(&s->head, DEM_ERROR_STOPPED, "dem_slabs_step: the transport's %s answered %d, "
-                     "must be 0; the slabs cannot go on: mend the connection and create them anew "
-                     "from the last collected world or checkpoint", what, answer);
+    return demi_fail(&s->head, DEM_ERROR_STOPPED, "dem_slabs_step: %s of the transport returned "
+                     "%d, must be 0; the slabs cannot continue: repair the connection and create "
+                     "them again from the last collected world or checkpoint", what, answer);
 }
 /* Maxima over processes, or sums, which are of whole numbers. */
 static dem_result demi_slabs_reduce(dem_slabs *s, double *values, int count, int sum) {
@@ -32611,7 +32631,7 @@ static dem_result demi_slabs_agree(dem_slabs *s, double *flags, int count) {
         return demi_fail(&s->head, result, "dem_slabs_step: slab %d: %.440s", index,
                          s->slabs[index - s->first].world->error);
     return demi_fail(&s->head, result, "dem_slabs_step: slab %d stopped: %s; the process that "
-                     "holds it has the sentence", index, dem_result_name_get(result));
+                     "holds it has the message", index, dem_result_name_get(result));
 }
 
 /* Outboxes that lead to other processes, up, down or both ways. Sizes are told first unless both
@@ -33634,9 +33654,9 @@ static dem_result demi_slabs_feed(dem_slabs *s) {
 /* Not after the transport has failed. */
 static dem_result demi_slabs_usable(dem_slabs *s, const char *call) {
     if (!s->broken) return DEM_OK;
-    return demi_fail(&s->head, DEM_ERROR_STOPPED, "%s: the transport failed before, so slabs may "
-                     "have lost step; create them anew from the last collected world or checkpoint",
-                     call);
+    return demi_fail(&s->head, DEM_ERROR_STOPPED, "%s: the transport failed earlier, so slabs may "
+                     "be out of step; create them again from the last collected world or "
+                     "checkpoint", call);
 }
 DEM_API dem_result dem_slabs_step(dem_slabs *s, int steps) {
     if (!s || demi_null(&s->head, "dem_slabs_step", s, "slabs")) return DEM_ERROR_ARGUMENT;
@@ -33873,31 +33893,31 @@ static dem_result demi_slabs_check(dem_world *w, const dem_slabs_desc *d) {
     const char *call = "dem_slabs_create";
     const int local = d->local ? d->local : d->count;
     if (demi_impulsive(w))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts answer by impulses, which are solved "
-                         "in one world; use threads", call);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: contacts of this world are impulses, which "
+                         "cannot be split into slabs; use threads", call);
     if (d->axis < 0 || d->axis > 2 || (w->desc.planar && d->axis == 2))
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: axis is %d, must be 0, 1 or 2%s; choose the "
                          "one along which the scene is longest", call, d->axis,
-                         w->desc.planar ? " (discs live at z = 0: 0 or 1)" : "");
+                         w->desc.planar ? " (for discs, at z = 0, only 0 or 1)" : "");
     if (d->count < 1 || d->count > DEMI_SLABS)
         return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: count is %d, must be 1 to %d (required); one "
-                         "slab per processor is a good number", call, d->count, (int)DEMI_SLABS);
+                         "slab per processor is a good choice", call, d->count, (int)DEMI_SLABS);
     if (d->first < 0 || local < 1 || d->first > d->count - local || (!d->local && d->first))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: slabs %d to %d are asked for, must lie in 0 "
-                         "to %d; set first and local, or leave both 0 for all", call, d->first,
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: first and local give slabs %d to %d, must "
+                         "lie in 0 to %d; set both, or leave both 0 for all slabs", call, d->first,
                          d->first + local - 1, d->count - 1);
     if (!d->transport.exchange_fn != !d->transport.reduce_fn ||
         (local < d->count && !d->transport.exchange_fn))
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: %d of %d slabs are here and the transport "
-                         "lacks exchange_fn or reduce_fn; give both, or hold all slabs", call,
-                         local, d->count);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: this process holds %d of %d slabs, but the "
+                         "transport lacks exchange_fn or reduce_fn; give both, or hold all slabs",
+                         call, local, d->count);
     if (!demi_finite(d->balance) || (d->balance > 0 && d->balance < 1) || d->balance_interval < 0)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval %d, must "
-                         "be 0, >= 1 or < 0 (never), and >= 0", call, (double)d->balance,
-                         d->balance_interval);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: balance is %g and balance_interval is %d; "
+                         "balance must be 0, >= 1 or < 0 (never), balance_interval >= 0", call,
+                         (double)d->balance, d->balance_interval);
     if (w->stage.moved)
-        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world stands in the middle of a step that "
-                         "ran out of memory; finish it with dem_world_step first", call);
+        return demi_fail(w, DEM_ERROR_ARGUMENT, "%s: the world is in the middle of a step that "
+                         "ran out of memory; finish the step with dem_world_step first", call);
     return DEM_OK;
 }
 /* Do all processes hold the same scene in the same order, with a list or without, have they got
@@ -33922,10 +33942,10 @@ static dem_result demi_slabs_same(dem_slabs *s, dem_world *w, int ok) {
     if (v[8] > 0) return demi_no_memory(w, "dem_slabs_create");
     for (k = 0; k < 8; k += 2) differ |= v[k] + v[k + 1] > 0;
     if (!differ && (int)slabs == s->count) return DEM_OK;
-    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_slabs_create: processes %s, %d slabs of %d are "
-                     "asked for; build the same world from the same numbers in every process, "
-                     "search or step it in all or none, and ask for every slab once", differ
-                     ? "built different scenes" : "do not fit together", (int)slabs, s->count);
+    return demi_fail(w, DEM_ERROR_ARGUMENT, "dem_slabs_create: processes %s and together hold %d "
+                     "slabs of %d; build the same world from the same numbers in every process, "
+                     "search or step it in all or none, and assign every slab once", differ
+                     ? "built different scenes" : "do not match", (int)slabs, s->count);
 }
 
 /* The head's share of a world. 0 when memory ran out. */
@@ -34279,31 +34299,32 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
     demi_message_head come = {0, 0, 0, 0};
     int k, i;
     if (w->bodies.orienting != s->slabs[0].world->bodies.orienting)
-        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations in %s only; collect "
-                         "into the world the slabs were created from, unchanged, or one built like "
-                         "it", call, w->bodies.orienting ? "the world" : "the slabs");
+        return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: bodies have orientations only in %s; collect "
+                         "into the world from which the slabs were created, unchanged, or one "
+                         "built like it", call, w->bodies.orienting ? "the world" : "the slabs");
     if (w->bodies.slot_count < s->dealt || w->wall_count != h->wall_count ||
         w->material_count != h->material_count || w->feed_count != h->feed_count ||
         w->field_count != s->slabs[0].world->field_count ||
         w->outlet_count != s->slabs[0].world->outlet_count)
         return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: the world has %d slots, %d walls, %d "
                          "materials, %d feeds, the slabs %d, %d, %d, %d; collect into the world "
-                         "they were created from, unchanged, or one built like it", call,
+                         "from which they were created, unchanged, or one built like it", call,
                          w->bodies.slot_count, w->wall_count, w->material_count, w->feed_count,
                          s->dealt, h->wall_count, h->material_count, h->feed_count);
     for (i = 0; i < w->bodies.count; i++) {
         const uint32_t slot = w->bodies.slot[i];
         if ((int)slot >= s->told || w->bodies.slot_generation[slot] != s->known[slot])
             return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u was added to the world after the "
-                             "slabs had been created; collect before adding grains, or create the "
-                             "slabs anew after it", call, (unsigned)slot + 1);
+                             "slabs were created; collect before adding grains, or create the "
+                             "slabs again afterwards", call, (unsigned)slot + 1);
     }
     for (k = 0; k < s->count; k++) {
         const char *from = demi_slabs_find(s, k, &sums);
         demi_message_head head;
         if (!from)
-            return demi_fail(h, DEM_ERROR_STOPPED, "%s: slab %d did not report; see that every "
-                             "process makes the call and the ring is closed", call, k);
+            return demi_fail(h, DEM_ERROR_STOPPED, "%s: slab %d did not report; check that every "
+                             "process makes this call and that the ring of processes is closed",
+                             call, k);
         from = demi_slabs_skip(w, &sums, from);
         demi_unpack(&from, &head, sizeof head);
         come.pairs += head.pairs;
@@ -34315,7 +34336,7 @@ static dem_result demi_slabs_room(dem_slabs *s, dem_world *w, int32_t **add, uin
             if ((int)slot < w->bodies.slot_count && w->bodies.slot_index[slot] < 0)
                 return demi_fail(h, DEM_ERROR_ARGUMENT, "%s: body %u is in slab %d, but no longer "
                                  "in the world; collect before removing grains, or create the "
-                                 "slabs anew after it", call, (unsigned)slot + 1, k);
+                                 "slabs again afterwards", call, (unsigned)slot + 1, k);
         }
     }
     if (!demi_list_drop(w)) return demi_no_memory(h, call);
@@ -34399,8 +34420,9 @@ DEM_API dem_result dem_slab_get(const dem_slabs *s, int index, dem_slab *out) {
     const demi_slab *b;
     if (index < s->first || index >= s->first + s->local)
         return demi_fail((dem_world *)&s->head, DEM_ERROR_ARGUMENT, "dem_slab_get: slab %d is not "
-                         "here, this process holds %d to %d of %d; ask the process that holds it",
-                         index, s->first, s->first + s->local - 1, s->count);
+                         "here, this process holds slabs %d to %d of %d; make this call in the "
+                         "process that holds it", index, s->first, s->first + s->local - 1,
+                         s->count);
     b = &s->slabs[index - s->first];
     out->grains = b->world->bodies.count - b->ghost_count;
     out->ghosts = b->ghost_count;
@@ -35299,13 +35321,13 @@ DEM_API dem_replay *dem_replay_open(dem_world *w, const char *path, const dem_re
     int i, n, real = w && w->bodies.real_count && !d.number_fn ? 0 : -1;
     if (demi_null_write(w, "dem_replay_open", w, "world")) return 0;
     if (!(d.resolution >= 0) || !demi_finite(d.resolution)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: resolution is %g m, must be >= 0; 0 is "
-                  "a 32nd of the smallest radius", (double)d.resolution);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: resolution is %g m, must be "
+                  ">= 0, where 0 means 1/32 of the smallest radius", (double)d.resolution);
         return 0;
     }
     if (!(d.interval >= 0) || !demi_finite_double(d.interval)) {
-        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: interval is %g s, must be >= 0; 0: "
-                  "frames when dem_replay_frame_write is called", d.interval);
+        demi_fail(w, DEM_ERROR_ARGUMENT, "dem_replay_open: interval is %g s, must be >= 0, where "
+                  "0 means frames only from dem_replay_frame_write", d.interval);
         return 0;
     }
     for (i = 0; d.number && !d.number_fn && i < w->bodies.real_count; i++) {
@@ -35353,8 +35375,7 @@ DEM_API dem_result dem_replay_value_set(dem_replay *r, const char *name, double 
     for (k = 0; k < r->value_count && strcmp(r->names[k], name) != 0; k++) {}
     if (k == DEM_REPLAY_VALUES)
         return demi_fail(r->world, DEM_ERROR_ARGUMENT, "dem_replay_value_set: \"%.60s\" would be "
-                         "value "
-                         "%d, a replay draws at most %d; leave some out", name, k + 1,
+                         "value %d, but a replay draws at most %d; leave some out", name, k + 1,
                          (int)DEM_REPLAY_VALUES);
     if (k == r->value_count) {
         r->value_count++;
