@@ -216,7 +216,7 @@ int main(int argc, char **argv) {
         m = scene_material(w, 1e6, 0.5, 0, 0);
         body = dem_sphere_add(w, m, DEM_R(1e-3), at(0, 0, 0));
         CHECK_EQ(dem_body_reals_set(w, body, reals), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(w), "name them in desc.body_reals");
+        CHECK_STR(dem_world_error_get(w), "name the numbers in desc.body_reals");
         CHECK(!dem_bodies_get(w).reals && dem_bodies_get(w).real_count == 0);
         dem_world_destroy(w);
         desc.body_reals = "  temperature   charge_2 ";
@@ -407,7 +407,7 @@ int main(int argc, char **argv) {
         w = hot_row(5000, 1, 0);
         CHECK_EQ(scene_step(w, 100), DEM_OK);
         CHECK_NEAR(beyond(w), 0, 1e-3);
-        scene_report_has(w, "by desc.law_rate numbers of body");
+        scene_report_has(w, "the numbers of body");
         dem_world_destroy(w);
         for (count = 1; count <= 3; count++) {  /* sums across borders, too */
             dem_slabs_desc deal = DEM_SLABS_DESC;

@@ -600,7 +600,7 @@ static uint64_t intruded(int from, int begin, int response) {
         if (begin) intrudes.slabs = dealt;
         CHECK_EQ(dem_slabs_step(dealt, 3), DEM_OK);
         intrudes.slabs = 0;
-        if (begin) CHECK_STR(dem_slabs_error_get(dealt), "dem_slabs_step: called by a function of yours");
+        if (begin) CHECK_STR(dem_slabs_error_get(dealt), "dem_slabs_step: called from a function that");
         if (begin) CHECK(intrudes.calls > 0 && intrudes.refused == 0);
         CHECK_EQ(dem_slabs_collect(dealt, w), DEM_OK);
         dem_slabs_destroy(dealt);
@@ -612,7 +612,7 @@ static uint64_t intruded(int from, int begin, int response) {
     if (from == FROM_REPORT || from == FROM_CONTACTS) intrudes.world = 0;
     if (begin && from != FROM_SLABS) {
         CHECK(intrudes.calls > 0 && intrudes.refused == 0);
-        CHECK_STR(dem_world_error_get(w), "called by a function of yours");
+        CHECK_STR(dem_world_error_get(w), "called from a function that");
         if (intrudes.refused) printf("        from a %s: %ld calls were not refused\n", intruders[from], -intrudes.refused);
     }
     trying = 0;

@@ -168,29 +168,29 @@ int main(int argc, char **argv) {
     }
     TEST("each of 24 mistakes that were planted in it is named, with its value") {
 #define PLANT(change, severity, says) do { tray t = TRAY; change; CHECK(tray_check(&t, severity, says) > 0); } while (0)
-        PLANT(t.grains = 0, DEM_SEVERITY_ERROR, "no grain moves, and no feed brings any");
+        PLANT(t.grains = 0, DEM_SEVERITY_ERROR, "no grain can move, and there is no feed");
         PLANT(t.gravity = 0, DEM_SEVERITY_WARNING, "neither gravity nor a force");
-        PLANT(t.floor = 0, DEM_SEVERITY_WARNING, "they fall for ever");
+        PLANT(t.floor = 0, DEM_SEVERITY_WARNING, "grains fall for ever");
         PLANT(t.gravity = 9.81, DEM_SEVERITY_WARNING, "gravity is (0, 0, 9.81) m/s2");
         PLANT(t.radius = 2; t.drop = 4, DEM_SEVERITY_WARNING, "was 2 mm meant?");
         PLANT(t.radius = 5e-8; t.drop = 1e-7, DEM_SEVERITY_WARNING, "radius of 5e-08 m");
         PLANT(t.density = 2.5, DEM_SEVERITY_WARNING, "was 2.5 g/cm3 meant?");
         PLANT(t.young = 70; t.dt = 1e-5, DEM_SEVERITY_WARNING, "Young's modulus of 70 Pa");
-        PLANT(t.friction = 30, DEM_SEVERITY_WARNING, "tan of 30 degrees is 0.577");
+        PLANT(t.friction = 30, DEM_SEVERITY_WARNING, "tan(30 degrees) is 0.577");
         PLANT(t.rolling = 20, DEM_SEVERITY_WARNING, "rolling friction of 20");
         PLANT(t.mesh = 300, DEM_SEVERITY_WARNING, "wall 4, a mesh, is 300 m long");
         PLANT(t.mesh = 1e-4, DEM_SEVERITY_WARNING, "is it in other units?");
         PLANT(t.hidden = 1, DEM_SEVERITY_WARNING, "nothing can reach it");
-        PLANT(t.normal_up = 0, DEM_SEVERITY_ERROR, "grains begin in walls");
-        PLANT(t.drop = -0.0005, DEM_SEVERITY_WARNING, "body 1 in wall 1 by 0.5");
+        PLANT(t.normal_up = 0, DEM_SEVERITY_ERROR, "grains overlap walls");
+        PLANT(t.drop = -0.0005, DEM_SEVERITY_WARNING, "body 1 wall 1 by 0.5");
         PLANT(t.inside = 1, DEM_SEVERITY_ERROR, "bodies 1 and 61 by");
         PLANT(t.outflow = 2, DEM_SEVERITY_WARNING, "1 grain is outside the domain");
-        PLANT(t.dt = 1e-3, DEM_SEVERITY_ERROR, "dt is 0.001 s, more than");
-        PLANT(t.dt = 1e-9, DEM_SEVERITY_NOTE, "times smaller than need be");
+        PLANT(t.dt = 1e-3, DEM_SEVERITY_ERROR, "dt is 0.001 s, must be at most");
+        PLANT(t.dt = 1e-9, DEM_SEVERITY_NOTE, "times smaller than necessary");
         PLANT(t.impact_speed = 20, DEM_SEVERITY_WARNING, "of their radius at 20 m/s");
         PLANT(t.heavy = 1; t.young = 1e5, DEM_SEVERITY_WARNING, "N each");
         PLANT(t.mesh = 0.02; t.wall_speed = 3000; t.dt = 1e-6; t.impact_speed = 1, DEM_SEVERITY_ERROR,
-              "pass each other unseen");
+              "pass through each other undetected");
         PLANT(t.spare_material = 1, DEM_SEVERITY_NOTE, "material 2 is used by no grain");
         if (demi_threads_available() < 64) PLANT(t.threads = 64, DEM_SEVERITY_NOTE, "threads is 64");
 #undef PLANT
@@ -274,7 +274,7 @@ int main(int argc, char **argv) {
                 snprintf(says, sizeof says, "%d of 32 grains begin inside wall 1, a closed %s", in, kind == BODY_PROFILE
                          ? "profile" : kind >= BODY_CAN ? "surface of revolution" : kind == BODY_INSIDE_OUT
                          ? "mesh with normals inwards" : "mesh with normals outwards");
-                if (way == 4) strcpy(says, "feed 1 brings grains inside wall 1");
+                if (way == 4) strcpy(says, "feed 1 inserts grains inside wall 1");
                 else if (way == 1 ? in == 27 : way == 2 || way == 3) strcpy(says, "inside wall");
                 else if (way == 1) strcpy(says, "24 of 27 grains begin inside wall 1");
                 CHECK_EQ(body_findings(world, says, severity),

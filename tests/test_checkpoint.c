@@ -592,7 +592,7 @@ static int walk_into(const walk_scene *from, const walk_scene *to, char *why) {
     if (scene_step(a, 20) != DEM_OK || dem_checkpoint_write(a, path) != DEM_OK) how = -1;
     else if (dem_checkpoint_read(b, path) != DEM_OK) {
         snprintf(why, 512, "%s", dem_world_error_get(b));
-        how = (strstr(why, "written with ") && (strstr(why, ", this world has ") || strstr(why, " than this world has"))) ||
+        how = (strstr(why, "written with ") && (strstr(why, ", this world has ") || strstr(why, " than those of this world"))) ||
             (strstr(why, " there, ") && strstr(why, " here (")) ? 0 : -1;
     } else {
         const dem_result ra = dem_world_step(a, 100), rb = dem_world_step(b, 100);

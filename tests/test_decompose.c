@@ -314,7 +314,7 @@ int main(int argc, char **argv) {
         pile_box(0, 1, 0, 0);
         memcpy(pile.triangles, strip, sizeof strip);
         pile.triangle_count = 5;
-        CHECK_NEAR(pile_volume(w, "one side only"), -1, 0);
+        CHECK_NEAR(pile_volume(w, "one-sided"), -1, 0);
         CHECK(pile_health(w).twisted_edges > 0);
         dem_world_destroy(w);
     }

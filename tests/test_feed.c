@@ -291,7 +291,7 @@ int main(int argc, char **argv) {
         dem_feed_add(world, &d);
         CHECK_EQ(dem_world_settle(world, 0.1, 0, 0, 0), DEM_ERROR_ARGUMENT);    /* what is slow? */
         CHECK_EQ(dem_world_settle(world, 0.1, DEM_R(1e-3), 0, 0), DEM_ERROR_STOPPED);
-        CHECK_STR(dem_world_error_get(world), "feed 1 still brings grains");
+        CHECK_STR(dem_world_error_get(world), "feed 1 is not done");
         CHECK_STR(dem_world_error_get(world), "wait for room");
         CHECK_EQ(dem_world_settle(world, 1e-20, DEM_R(1e-3), 0, 0), DEM_ERROR_STOPPED);     /* and ends */
         dem_world_destroy(world);
@@ -310,17 +310,17 @@ int main(int argc, char **argv) {
         const dem_outlet outlet = {2};
         other.id = 7;
         CHECK_EQ(dem_wall_pose_get(world, other, &pose), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "wall 7 does not exist, ids here go from 1 to 1");
+        CHECK_STR(dem_world_error_get(world), "wall 7 does not exist, ids in this world are 1 to 1");
         CHECK_EQ(dem_wall_remove(world, wall), DEM_OK);
         CHECK_EQ(dem_wall_pose_get(world, wall, &pose), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "wall 1 does not exist any more: it was removed");
+        CHECK_STR(dem_world_error_get(world), "wall 1 does not exist any more, because dem_wall_remove removed it");
         CHECK_EQ(dem_feed_get(world, feed, &fed), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "check what dem_feed_add returned");
+        CHECK_STR(dem_world_error_get(world), "check the id that dem_feed_add returned");
         CHECK_EQ(dem_outlet_get(world, outlet, &out), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "check what dem_outlet_add returned");
+        CHECK_STR(dem_world_error_get(world), "check the id that dem_outlet_add returned");
         d.class_count = 0;
         CHECK_EQ(dem_feed_add(world, &d).id, 0);
-        CHECK_STR(dem_world_error_get(world), "say how many entries of radius and amount");
+        CHECK_STR(dem_world_error_get(world), "set it to the number of entries of radius and amount");
         dem_world_destroy(world);
     }
 
@@ -852,7 +852,7 @@ int main(int argc, char **argv) {
         CHECK_EQ((int)s.held_total, 20);
         for (i = 2; i < 16; i++) CHECK_EQ(dem_outlet_add(world[0], &d).id, i + 1);
         CHECK_EQ(dem_outlet_add(world[0], &d).id, 0);
-        CHECK_STR(dem_world_error_get(world[0]), "16 outlets that only count");
+        CHECK_STR(dem_world_error_get(world[0]), "16 outlets that keep their grains");
         for (k = 0; k < 2; k++) dem_world_destroy(world[k]);
     }
     return test_end();

@@ -120,7 +120,7 @@ int main(int argc, char **argv) {
         CHECK_NEAR(a.grains, 500, 1e-6);
         CHECK_REL((a.stress[2] + b.stress[2])*0.08, (all_of(&d, d.stress, 6, 2) + all_of(&d, d.flux, 6, 2))/1.6e-3, 1e-3);
         CHECK_EQ(dem_field_cell_get(world, small, 0, 1, 0, &a), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "cell (0, 1, 0) is none of 1 x 1 x 1");
+        CHECK_STR(dem_world_error_get(world), "cell (0, 1, 0) does not exist, the field has 1 x 1 x 1");
         dem_world_destroy(world);
     }
 

@@ -554,7 +554,7 @@ static void profiles(void) {
     }
     TEST("a bad profile is refused with its line") {
         const char *const bad[][2] = {{"", "end of the file"}, {"2 1\n0 0\n1 1\n1 3\n", "line 4: found '3'"},
-            {"2 1\n0 0\n1 1\n2 2\n", "one corner twice"}, {"2 1\n0 0 0\n1 1 0\n1 2\n", "line 2: found '0'"},
+            {"2 1\n0 0\n1 1\n2 2\n", "same corner twice"}, {"2 1\n0 0 0\n1 1 0\n1 2\n", "line 2: found '0'"},
             {"2 1\n0 0\n1 1\n1 2\n1", "line 5"}, {"solid x\n", "found 'solid'"}};
         for (size_t i = 0; i < sizeof bad/sizeof *bad; i++) {
             CHECK_EQ(dem_profile_parse(world, "p.txt", bad[i][0], strlen(bad[i][0]), &profile), DEM_ERROR_FORMAT);

@@ -157,7 +157,7 @@ int main(int argc, char **argv) {
         }
         CHECK_EQ(dem_grains_add(again, own, &g), DEM_OK);
         CHECK_EQ(dem_grains_add(text, own, &x), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(text), "material is null and the grains have none");
+        CHECK_STR(dem_world_error_get(text), "material is null and the file names no materials");
         CHECK_EQ(dem_grains_add(text, a, &x), DEM_OK);
         CHECK_EQ(dem_world_run_to(world, 0.02, 0, 0), DEM_OK);
         CHECK_EQ(dem_world_run_to(again, 0.02, 0, 0), DEM_OK);
@@ -262,7 +262,7 @@ int main(int argc, char **argv) {
         refused(world, "x;y;z;r\n1.000,5;2;3;.5\n", "line 2: found '1.000,5'");
         refused(world, "x (inch),y,z,r\n1,2,3,.5\n", "line 1: the unit of column x (inch) is not known");
         refused(world, "x,y,z,mass\n1,2,3,.5\n", "columns x, y and r (radius) or d (diameter) are needed; not used: mass");
-        refused(world, "id xs ys zs radius\n1 .5 .5 .5 1\n", "xs is a share of the box");
+        refused(world, "id xs ys zs radius\n1 .5 .5 .5 1\n", "xs is a fraction of the box");
         CHECK_EQ(parse(world, "id,x,y,z,r,radius,fx,material\n7,1,2,3,.5,9,0,2\n", &g), DEM_OK);
         CHECK_STR(g.ignored, "id, radius, fx");
         CHECK_NEAR(g.radii[0], 0.5, 0);
@@ -416,7 +416,7 @@ int main(int argc, char **argv) {
         refused(world, "1 2 3 .5\n1 2 3 -1\n", "line 2: found '-1' where a radius");
         refused(world, "x y z\n1 2 3\n", "columns x, y and r (radius) or d (diameter) are needed");
         refused(world, "5\nno properties here\nH 1 2 3\n", "Properties=");
-        refused(world, "5\nProperties=species:S:1:pos:R:3:radius:R:1\nH 1 2 3 .5\n", "1 lines of grains where it says 5");
+        refused(world, "5\nProperties=species:S:1:pos:R:3:radius:R:1\nH 1 2 3 .5\n", "1 lines of grains where its head announces 5");
         refused(world, "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 1 float\n1 2 3\nPOINTS 99 float\n"
                 "1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3\n",
                 "cut short");

@@ -302,7 +302,7 @@ int main(int argc, char **argv) {
                 CHECK_NEAR((double)scene_state(world, ball).position.z, 0.0005, 1e-8);
             } else {
                 CHECK_EQ(dem_world_step(world, 10), DEM_ERROR_TIME_STEP);
-                CHECK_STR(dem_world_error_get(world), "law_range of twice its way");
+                CHECK_STR(dem_world_error_get(world), "law_range of twice that distance");
             }
             dem_world_destroy(world);
         }
@@ -497,7 +497,7 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_create_error_get(&desc), "integrator");
         desc.integrator = DEM_INTEGRATOR_SYMPLECTIC_EULER;
         desc.cone = (dem_cone)2;
-        CHECK_STR(dem_world_create_error_get(&desc), "cone or solver is unknown");
+        CHECK_STR(dem_world_create_error_get(&desc), "cone or solver is not one of the enum values");
         desc.cone = DEM_CONE_CONVEX;
         desc.sweeps = -1;
         CHECK_STR(dem_world_create_error_get(&desc), "sweeps");

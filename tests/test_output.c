@@ -398,7 +398,7 @@ int main(int argc, char **argv) {
         d.columns = 0;
         d.wall.id = 9;
         CHECK(dem_output_add(world, &d).id == 0);
-        CHECK_STR(dem_world_error_get(world), "wall names none");
+        CHECK_STR(dem_world_error_get(world), "wall does not exist");
         d.wall.id = 0;
         CHECK(dem_output_every_add(0, DEM_OUTPUT_CSV, "x", 1).id == 0);
         CHECK(dem_output_add(world, &d).id == 1);
@@ -431,7 +431,7 @@ int main(int argc, char **argv) {
         dem_output_add(world, &d);
         CHECK_EQ(dem_world_run(world, 0.005, 0, 0), DEM_OK);
         CHECK(refused);
-        CHECK_STR(dem_world_error_get(world), "looks at the world between two steps");
+        CHECK_STR(dem_world_error_get(world), "runs between two steps");
         dem_world_destroy(world);
         world = heap();
         d.function = heats;
@@ -483,7 +483,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_settle(world, 1, 0, 0, 0), DEM_OK);   /* nobody there: at rest */
         dem_sphere_add(world, m, DEM_R(0.005), at(0, 0, 0.05));
         CHECK_EQ(dem_world_settle(world, 1, 0, 0, 0), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "where there is no gravity");
+        CHECK_STR(dem_world_error_get(world), "without gravity");
         CHECK_EQ(dem_world_settle(world, 1, DEM_R(1e-3), 0, 0), DEM_OK);
         dem_world_destroy(world);
     }

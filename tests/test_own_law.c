@@ -75,7 +75,7 @@ int main(int argc, char **argv) {
     }
     TEST("a desc that names another law than DEM_LAW, none, or one that is told who touches, is told what that means") {
         static const char *const says[] = {"DEM_LAW names another law", "desc.law is null, so it does not act",
-                                           "told who touches"};
+                                           "law_who is set"};
         int k;
         for (k = 0; k < 3; k++) {
             dem_world_desc desc = DEM_WORLD_DESC;

@@ -501,7 +501,7 @@ int main(int argc, char **argv) {
         dem_world *w = dem_world_create(&desc);
         dem_sphere_add(w, scene_material(w, 1e5, 0.5, 0, 0), DEM_R(1e-3), at(0, 0, 1e-3));
         CHECK_EQ(scene_step(w, 1), DEM_OK);
-        scene_report_has(w, "nearer than 0.0003 m");
+        scene_report_has(w, "gaps below 0.0003 m");
         dem_world_destroy(w);
     }
     TEST("a range without a law, below 0 or with segments that push by a fraction is refused by name") {

@@ -444,7 +444,7 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "rule is 3");
         profile.segment_count = -1;
         CHECK_EQ(dem_wall_profile_add(world, m, &profile, DEM_EDGE_RESOLVED).id, 0);
-        CHECK_STR(dem_world_error_get(world), "-1 elements, must be at least one");
+        CHECK_STR(dem_world_error_get(world), "-1 elements; there must be at least one");
         profile.segment_count = 1; profile.vertex_count = INT_MAX;
         CHECK_EQ(dem_wall_profile_add(world, m, &profile, DEM_EDGE_RESOLVED).id, 0);
         CHECK_STR(dem_world_error_get(world), "2147483647 vertices");
@@ -546,7 +546,7 @@ int main(int argc, char **argv) {
             }
         pair.friction_static = DEM_R(0.05);                    /* below the sliding one */
         CHECK_EQ(dem_pair_set(world, m[0], m[1], &pair), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "0, to be the same as the sliding friction");
+        CHECK_STR(dem_world_error_get(world), "0 (the same as the sliding friction)");
         dem_world_destroy(world);
     }
     TEST("a run that once got no memory and is called again takes the same way: the same grains "
@@ -663,7 +663,7 @@ int main(int argc, char **argv) {
                               : "dem_wall_sieve_add");
                     CHECK_STR(dem_world_error_get(world), kind ? "is a profile of DEM_EDGE_FRACTION"
                               : "is a sieve");
-                    CHECK_STR(dem_world_error_get(world), "do not know each other");
+                    CHECK_STR(dem_world_error_get(world), "are not available");
                     CHECK_EQ(scene_step(world, 2), DEM_OK);
                     dem_world_destroy(world);
                 }
@@ -762,7 +762,7 @@ int main(int argc, char **argv) {
         dem_world_report(world, f);
         rewind(f);
         CHECK(fread(text, 1, sizeof text - 1, f) > 100);
-        CHECK_STR(text, "your own law; spins and torques are followed; 3 reals of memory");
+        CHECK_STR(text, "user-defined law; spins and torques are followed; 3 reals of memory");
         CHECK(!strstr(text, "no friction"));
         fclose(f);
         remove("build/tmp/report.txt");

@@ -120,12 +120,12 @@ int main(int argc, char **argv) {
         CHECK_STR(dem_world_error_get(world), "gravity is 0 m/s2");
         dem_world_gravity_set(world, at(0, 0, -9.81));
         CHECK_EQ(dem_repose_heap_get(world, all, &r), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "0 places");
+        CHECK_STR(dem_world_error_get(world), "0 columns");
         dem_sphere_add(world, m, DEM_R(0.001), at(0, 0, 0));
         dem_sphere_add(world, m, DEM_R(0.001), at(1e9, 0, 0));
         CHECK_EQ(dem_repose_heap_get(world, all, &r), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_repose_drum_get(world, all, at(0, 0, 1), &r), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_world_error_get(world), "is upright");
+        CHECK_STR(dem_world_error_get(world), "is vertical");
         CHECK_EQ(dem_repose_drum_get(world, all, at(0, 0, 0), &r), DEM_ERROR_ARGUMENT);
         CHECK_EQ(dem_repose_drum_get(world, all, at(0, 1, 0), 0), DEM_ERROR_ARGUMENT);
         dem_world_destroy(world);

@@ -283,7 +283,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(tube_of(world, m, 2, r, h).id, 0);
         CHECK_STR(dem_world_error_get(world), "ring 1 has radius 0.1 m at height 0 m");
         CHECK_EQ(tube_of(world, m, 2, r + 2, h + 2).id, 0);
-        CHECK_STR(dem_world_error_get(world), "not 0 twice running");
+        CHECK_STR(dem_world_error_get(world), "not 0 for two rings in a row");
         CHECK_EQ(dem_wall_revolved_add(world, m, at(0, 0, 0), at(0, 0, 0), 2, up, up).id, 0);
         CHECK_EQ(dem_wall_revolved_add(world, m, at(0, 0, 0), at(0, 0, 1), 2, bad, up).id, 0);
         CHECK_STR(dem_world_error_get(world), "ring 1 has radius -1 m");

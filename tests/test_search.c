@@ -273,7 +273,7 @@ static dem_search mix_chosen(double ratio, double share) {
         rewind(out);
         n = fread(text, 1, sizeof text - 1, out);
         text[n] = 0;
-        CHECK_STR(text, chosen == DEM_SEARCH_HIERARCHICAL ? "levels (hierarchical grid)"
+        CHECK_STR(text, chosen == DEM_SEARCH_HIERARCHICAL ? "hierarchical grid"
                   : "uniform grid");
         if (chosen == DEM_SEARCH_HIERARCHICAL) CHECK_STR(text, "levels for radii 1 : ");
         if (ratio > 2.5) CHECK_STR(text, "chosen: about");

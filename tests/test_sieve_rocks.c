@@ -326,7 +326,7 @@ int main(int argc, char **argv) {
 
     TEST("sieve rocks: reduced holes, a disc, unions with an ellipsoid, and to springs a sheet, are refused by name; to impulses "
          "a sheet is a sieve") {
-        static const char *const says[3] = {"reduced holes are for spheres", "cut from a disc", "give the sieve a thickness"};
+        static const char *const says[3] = {"reduced holes are only for spheres", "cut from a disc", "give the sieve a thickness"};
         int k, order;
         for (order = 0; order < 4; order++) {   /* a union is what its pieces are, whichever comes first */
             dem_material m;

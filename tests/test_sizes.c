@@ -174,7 +174,7 @@ int main(int argc, char **argv) {
         region.box = box_of(0, 0, 0.05, 0.01, 0.01, 0.06);
         CHECK(dem_sizes_fill(world, m, &d, region, 5000, 3) < 5000);
         CHECK_STR(dem_world_error_get(world), "dem_sizes_fill: ");
-        CHECK_STR(dem_world_error_get(world), "found a place");
+        CHECK_STR(dem_world_error_get(world), "found a free position");
         dem_world_destroy(world);
     }
 

@@ -1217,10 +1217,10 @@ int main(int argc, char **argv) {
         desc.axis = 0;
         desc.first = 1; desc.local = 2;
         CHECK(!dem_slabs_create(world, &desc));
-        CHECK_STR(dem_world_error_get(world), "slabs 1 to 2 are asked for, must lie in 0 to 1");
+        CHECK_STR(dem_world_error_get(world), "slabs 1 to 2, must lie in 0 to 1");
         desc.local = 1;
         CHECK(!dem_slabs_create(world, &desc));
-        CHECK_STR(dem_world_error_get(world), "1 of 2 slabs are here and the transport lacks");
+        CHECK_STR(dem_world_error_get(world), "this process holds 1 of 2 slabs, but the transport lacks");
         desc.first = desc.local = 0;
         desc.balance = DEM_R(0.5);
         CHECK(!dem_slabs_create(world, &desc));
@@ -1230,7 +1230,7 @@ int main(int argc, char **argv) {
         desc.balance = 0;
         desc.axis = 2;
         CHECK(!dem_slabs_create(flat, &desc));
-        CHECK_STR(dem_world_error_get(flat), "discs live at z = 0");
+        CHECK_STR(dem_world_error_get(flat), "for discs, at z = 0");
         desc.axis = 0;
         CHECK_STR(dem_slabs_error_get(0), "dem_slabs_create: returned null");
         slabs = deal(world, 0, 3);
@@ -1246,7 +1246,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_slabs_step(slabs, -1), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_slabs_error_get(slabs), "steps is -1, must be >= 0");
         CHECK_EQ(dem_slabs_collect(slabs, small), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_slabs_error_get(slabs), "collect into the world they were created from");
+        CHECK_STR(dem_slabs_error_get(slabs), "collect into the world from which they were created");
         dem_body_remove(world, dem_body_id_get(world, 3));
         CHECK_EQ(dem_slabs_collect(slabs, world), DEM_ERROR_ARGUMENT);
         CHECK_STR(dem_slabs_error_get(slabs), "no longer in the world; collect before removing");
@@ -1254,7 +1254,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_candidates_rebuild(world), DEM_OK);                /* from now on its slot is free */
         dem_sphere_add(world, first, DEM_R(1e-3), at(0, 0, 0.5));   /* takes the removed one's slot */
         CHECK_EQ(dem_slabs_collect(slabs, world), DEM_ERROR_ARGUMENT);
-        CHECK_STR(dem_slabs_error_get(slabs), "was added to the world after the slabs had been created");
+        CHECK_STR(dem_slabs_error_get(slabs), "was added to the world after the slabs were created");
         dem_slabs_destroy(slabs);
         slabs = deal(small, 0, 16);            /* 50 mm in 16 slabs: 3.1 mm, largest grain 3 mm */
         CHECK_EQ(dem_slabs_step(slabs, 1), DEM_OK);

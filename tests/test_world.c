@@ -394,10 +394,10 @@ int main(int argc, char **argv) {
                 "generation 1", "removed");
         never.slot = 0; never.generation = 0;
         refused(world, dem_body_get(world, never, &s), DEM_ERROR_ARGUMENT, hash, "dem_body_get: ",
-                "body 0", "never was");
+                "body 0", "never added");
         never.slot = 4000; never.generation = 1;
         refused(world, dem_body_remove(world, never), DEM_ERROR_ARGUMENT, hash, "dem_body_remove: ",
-                "body 4000", "never was");
+                "body 4000", "never added");
         s = scene_state(world, again_there);
         s.velocity.x = (dem_real)nan_number;
         refused(world, dem_body_set(world, again_there, &s), DEM_ERROR_ARGUMENT, hash,
@@ -457,15 +457,15 @@ int main(int argc, char **argv) {
         glass.id = 1; floor.id = 1; no.id = 2;
         hash = dem_world_hash_get(world);
         refused(world, dem_wall_motion_set(world, no, &m), DEM_ERROR_ARGUMENT, hash,
-                "dem_wall_motion_set: ", "wall 2", "ids here go from 1 to 1");
+                "dem_wall_motion_set: ", "wall 2", "ids in this world are 1 to 1");
         refused(world, dem_wall_pose_get(world, no, &pose), DEM_ERROR_ARGUMENT, hash, "dem_wall_pose_get: ",
-                "wall 2", "ids here go from 1 to 1");
+                "wall 2", "ids in this world are 1 to 1");
         refused(world, dem_wall_remove(world, no), DEM_ERROR_ARGUMENT, hash, "dem_wall_remove: ",
-                "wall 2", "ids here go from 1 to 1");
+                "wall 2", "ids in this world are 1 to 1");
         refused(world, dem_wall_loads_get(world, no, &ch), DEM_ERROR_ARGUMENT, hash,
-                "dem_wall_loads_get: ", "wall 2", "ids here go from 1 to 1");
+                "dem_wall_loads_get: ", "wall 2", "ids in this world are 1 to 1");
         refused(world, dem_wall_loads_reset(world, no), DEM_ERROR_ARGUMENT, hash,
-                "dem_wall_loads_reset: ", "wall 2", "ids here go from 1 to 1");
+                "dem_wall_loads_reset: ", "wall 2", "ids in this world are 1 to 1");
         m.kind = DEM_MOTION_ROTATING;
         refused(world, dem_wall_motion_set(world, floor, &m), DEM_ERROR_ARGUMENT, hash,
                 "dem_wall_motion_set: ", "axis", "direction");

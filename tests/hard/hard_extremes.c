@@ -1126,7 +1126,7 @@ int main(int argc, char **argv) {
             CHECK_EQ(dem_world_step(world, 10000), given ? DEM_ERROR_TIME_STEP : DEM_OK);
             after = dem_totals_get(world);
             if (given) {
-                CHECK_STR(dem_world_error_get(world), "turns by 2 rad in a step of 2e-06 s, must be "
+                CHECK_STR(dem_world_error_get(world), "rotates by 2 rad in a step of 2e-06 s, must be "
                           "at most 1");
                 CHECK_STR(dem_world_error_get(world), "at most 1e-07 s");
             } else CHECK_NEAR(dem_counters_get(world).dt, 1e-7, 1e-9);

@@ -212,7 +212,7 @@ static uint64_t force_goes_wrong(int kind, int threads, char sentence[600]) {
     snprintf(sentence, 600, "%s", dem_world_error_get(world));
     snprintf(words, sizeof words, "body %u:", odd.slot);
     says(world, "dem_world_step: step 11,", words, "a finite number",
-         "law, force field or motion of your own divided by zero");
+         "user-defined law, force field or motion divided by zero");
     all = not_finite(world, odd, &others);
     CHECK(all > 0);
     CHECK_EQ(others, 0);                        /* the odd one alone, that touches no other grain */
@@ -248,7 +248,7 @@ static void motion_goes_wrong(int kind, int threads) {
     CHECK_EQ(dem_world_step(world, 5), DEM_ERROR_UNSTABLE);
     CHECK_EQ(dem_world_steps_get(world), GOOD + 1);
     says(world, "dem_world_step: step 11: the motion of wall 1", "not finite", "at 0.00011 s",
-         "check its motion");
+         "check the motion");
     CHECK_EQ(not_finite(world, odd, &others), 0);
     scene_report_has(world, "wall 1");
     t.on = 0;
@@ -432,7 +432,7 @@ static void thrown(int obstacle, int late) {
     CHECK_EQ(dem_world_steps_get(world), late);
     snprintf(words, sizeof words, "body %u, the fastest, is at 5e+03 m/s and may", ball.slot);
     says(world, words, "moves 5 radii of the smallest grain (0.001 m) in a step of 1e-06 s, must be "
-         "at most 1", "it would pass others and walls unseen", "use at most 2e-08 s");
+         "at most 1", "it would pass through others and walls undetected", "use at most 2e-08 s");
     CHECK_EQ(dem_world_hash_get(world), hash);      /* nothing moved: it stands before the obstacle */
     CHECK_NEAR(scene_state(world, ball).position.z, 1.5*ball_size, 1e-9);
     CHECK_EQ(not_finite(world, ball, &others), 0);
@@ -589,7 +589,7 @@ int main(int argc, char **argv) {
         CHECK_EQ(dem_world_step(world, 5), DEM_ERROR_UNSTABLE);
         /* 3e38 is not beyond what forces are tested for; the speed it gives is */
         CHECK_EQ(dem_world_steps_get(world), GOOD + (DEMI_SINGLE ? 2 : 1));
-        says(world, "body 2198: its", "force", "law, force field or motion of your own", "");
+        says(world, "body 2198: its", "force", "user-defined law, force field or motion", "");
         CHECK(not_finite(world, odd, &others) > 0);
         CHECK_EQ(others, 0);
         inspect(world, 1);
@@ -718,8 +718,8 @@ int main(int argc, char **argv) {
         CHECK_EQ(steps[0], 0);
         CHECK_STR(sentence[0], "body ");
         /* what limits dt is rotation, which four contacts resist inside the block and on its faces alike */
-        CHECK(strstr(sentence[0], "is pressed by 6 contacts, by 0.03 of its radius") ||
-              strstr(sentence[0], "is pressed by 5 contacts, by 0.03 of its radius"));
+        CHECK(strstr(sentence[0], "is pressed by 6 contacts with overlaps up to 0.03 of its radius") ||
+              strstr(sentence[0], "is pressed by 5 contacts with overlaps up to 0.03 of its radius"));
         CHECK_STR(sentence[0], "use dt = 0, a smaller dt, or less overlap");
     }
     TEST("a grain that begins 1.02 radii deep in another or in a wall, be it sphere, ellipsoid or "
